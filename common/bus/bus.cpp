@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/bus/bus.hpp"
+
+#include <sstream>
+
+namespace tread {
+
+void Bus::deliver(const RawHandler& handler, const char* channel, const uint8_t* bytes,
+                  size_t size) {
+  try {
+    handler(bytes, size);
+  } catch (const std::exception& error) {
+    ++statistics_.failed;
+    statistics_.last_refusal = std::string(channel) + ": handler failed: " + error.what();
+  }
+}
+
+void Bus::noteReceipt(const ChannelSpec& spec, int64_t utime, int64_t seq) {
+  ++statistics_.received;
+  onReceipt(utime);
+  if (spec.max_age_ms > 0 && now() - utime > spec.max_age_ms * int64_t{1000}) ++statistics_.late;
+  const auto [last, first] = last_seq_.try_emplace(spec.name, seq);
+  // A publisher that starts again counts from its beginning: no loss. Several publishers share
+  // HEALTH, CONFIG, ARM, ESTOP and MARK, so a gap says nothing there.
+  const bool one_publisher = std::string(spec.publisher).find("every") == std::string::npos &&
+                             std::string(spec.publisher) != "anyone";
+  if (!first && one_publisher && seq > last->second + 1) statistics_.lost += seq - last->second - 1;
+  last->second = seq;
+}
+
+void Bus::noteUndecodable(const ChannelSpec& spec, size_t size) {
+  ++statistics_.undecodable;
+  std::ostringstream line;
+  line << spec.name << ": a message of " << size << " bytes is not a " << spec.type
+       << "; another program publishes on this channel, or was built with other message types";
+  statistics_.last_refusal = line.str();
+}
+
+bool Bus::refuseOversized(const ChannelSpec& spec, int size) {
+  ++statistics_.oversized;
+  std::ostringstream line;
+  line << spec.name << ": a message of " << size << " bytes was not sent; allowed "
+       << spec.max_bytes;
+  statistics_.last_refusal = line.str();
+  return false;
+}
+
+}  // namespace tread

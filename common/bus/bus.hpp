@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/bus/channels.hpp"
+
+namespace tread {
+
+/// What a bus endpoint counted since its start. Every refusal is here; none is silent.
+struct BusStatistics {
+  int64_t received = 0;      ///< messages that reached a handler
+  int64_t undecodable = 0;   ///< of a foreign or broken type
+  int64_t lost = 0;          ///< missing by seq
+  int64_t late = 0;          ///< older than their channel's maximum age on receipt
+  int64_t failed = 0;        ///< handler threw
+  int64_t oversized = 0;     ///< own messages above the channel's max_bytes: not sent
+  std::string last_refusal;  ///< the newest refusal in one line: channel, what, size
+};
+
+/// Duration of a node's steps [us].
+struct CycleTimes {
+  int32_t mean_us = 0;
+  int32_t max_us = 0;
+};
+
+/// A node's end of the message bus. Two kinds: LcmBus (real LCM) and the endpoints of a VirtualBus.
+/** All calls come from one thread. Handlers run between steps, never inside publish(). */
+class Bus {
+ public:
+  virtual ~Bus() = default;
+  Bus() = default;
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+
+  /// Present time of the robot [us], monotonic. See design: only device processes take it from the
+  /// host.
+  virtual int64_t now() const = 0;
+  /// Differs for each start of a process on this robot [us]; the run id of a planner, the boot id
+  /// in HEALTH.
+  virtual int64_t bootId() const = 0;
+  /// The host's UTC [us since 1970], only to date logs; -1 in virtual time.
+  virtual int64_t utc() const { return -1; }
+  /// How long the node's steps took since the last call; zero in virtual time.
+  virtual CycleTimes takeCycleTimes() { return {}; }
+
+  /// Encodes and sends. Returns false if it could not be sent (oversized, no network).
+  template <class Message>
+  bool publish(const Channel<Message>& channel, const Message& message) {
+    const int size = message.getEncodedSize();
+    if (size < 0 || size > channel.max_bytes) return refuseOversized(channel, size);
+    buffer_.resize(static_cast<size_t>(size));
+    if (message.encode(buffer_.data(), 0, size) != size) return refuseOversized(channel, size);
+    return send(channel.name, buffer_.data(), buffer_.size());
+  }
+
+  /// Calls the handler for each good message. Decoding must consume every byte; what fails is
+  /// counted.
+  template <class Message>
+  void subscribe(const Channel<Message>& channel, std::function<void(const Message&)> handler) {
+    const ChannelSpec spec = channel;
+    listen(channel.name,
+           [this, spec, handler = std::move(handler)](const uint8_t* bytes, size_t size) {
+             Message message{};
+             if (!decode(spec, bytes, size, message)) return;
+             noteReceipt(spec, message.utime, message.seq);
+             handler(message);
+           });
+  }
+
+  const BusStatistics& statistics() const { return statistics_; }
+
+ protected:
+  using RawHandler = std::function<void(const uint8_t* bytes, size_t size)>;
+
+  virtual bool send(const char* channel, const uint8_t* bytes, size_t size) = 0;
+  virtual void listen(const char* channel, RawHandler handler) = 0;
+  /// A good message with this utime came in.
+  virtual void onReceipt(int64_t /*utime*/) {}
+
+  /// Runs a raw handler behind the exception firewall: nothing may pass through LCM's C frames.
+  void deliver(const RawHandler& handler, const char* channel, const uint8_t* bytes, size_t size);
+
+ private:
+  template <class Message>
+  bool decode(const ChannelSpec& spec, const uint8_t* bytes, size_t size, Message& message) {
+    // A negative length in a broken message makes the generated code throw: see lcm.md, row 11.
+    try {
+      const int expected = static_cast<int>(size);
+      if (message.decode(bytes, 0, expected) == expected) return true;
+    } catch (const std::exception&) {
+    }
+    noteUndecodable(spec, size);
+    return false;
+  }
+  void noteReceipt(const ChannelSpec& spec, int64_t utime, int64_t seq);
+  void noteUndecodable(const ChannelSpec& spec, size_t size);
+  bool refuseOversized(const ChannelSpec& spec, int size);
+
+  BusStatistics statistics_;
+  std::map<std::string, int64_t> last_seq_;
+  std::vector<uint8_t> buffer_;
+};
+
+/// The newest message of a channel: a mailbox, so that a node reads instead of being called.
+template <class Message>
+class Latest {
+ public:
+  Latest(Bus& bus, const Channel<Message>& channel) {
+    bus.subscribe<Message>(channel, [this, &bus](const Message& message) {
+      message_ = message;
+      received_ = bus.now();
+      ++count_;
+    });
+  }
+  Latest(const Latest&) = delete;
+  Latest& operator=(const Latest&) = delete;
+
+  bool any() const { return count_ > 0; }
+  int64_t count() const { return count_; }
+  const Message& message() const { return message_; }
+  /// Time since receipt [us]; the largest value if there was none.
+  int64_t age(int64_t now) const { return any() ? now - received_ : INT64_MAX; }
+
+ private:
+  Message message_{};
+  int64_t received_ = 0;
+  int64_t count_ = 0;
+};
+
+/// What a process runs: built from (config, Bus&, Link& where it has a device, Store& where it
+/// keeps files).
+class Node {
+ public:
+  virtual ~Node() = default;
+  Node() = default;
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  /// Time between steps [us], constant over the node's life.
+  virtual int64_t period() const = 0;
+  /// Takes the latest messages, checks age and sense, calls the core, publishes.
+  virtual void step(int64_t utime) = 0;
+  /// Makes outputs safe before the process ends (SIGINT, SIGTERM). Not called when it is killed.
+  virtual void shutdown(int64_t /*utime*/) {}
+};
+
+}  // namespace tread

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <array>
+
+#include <tread/arm_t.hpp>
+#include <tread/config_t.hpp>
+#include <tread/estop_t.hpp>
+#include <tread/execution_t.hpp>
+#include <tread/goal_t.hpp>
+#include <tread/health_t.hpp>
+#include <tread/ins_t.hpp>
+#include <tread/learner_state_t.hpp>
+#include <tread/learning_t.hpp>
+#include <tread/map_tile_t.hpp>
+#include <tread/mark_t.hpp>
+#include <tread/motor_t.hpp>
+#include <tread/pattern_set_part_t.hpp>
+#include <tread/plan_t.hpp>
+#include <tread/plan_tree_t.hpp>
+#include <tread/program_t.hpp>
+#include <tread/scan_t.hpp>
+
+namespace tread {
+
+/// One line of the channel table: what everybody must know about a channel.
+struct ChannelSpec {
+  const char* name;  ///< LCM channel; [A-Z_] only, because LCM reads it as a regular expression
+  const char* type;  ///< message type
+  const char* publisher;  ///< the process that may publish it
+  double rate_hz;         ///< nominal rate; 0 = on demand
+  int max_age_ms;         ///< older than this on receipt counts as late; 0 = no limit
+  int max_bytes;          ///< largest encoded message; never above 60 kB
+};
+
+/// A channel together with its message type, so that nobody can publish the wrong type on it.
+template <class Message>
+struct Channel : ChannelSpec {};
+
+inline constexpr Channel<ins_t> kIns{{"INS", "ins_t", "ins_driver", 50, 100, 400}};
+inline constexpr Channel<scan_t> kScan{{"SCAN", "scan_t", "lidar_driver", 10, 250, 60000}};
+inline constexpr Channel<map_tile_t> kMap{{"MAP", "map_tile_t", "mapping", 5, 2000, 20000}};
+inline constexpr Channel<goal_t> kGoal{{"GOAL", "goal_t", "tread-goal", 1, 3000, 200}};
+inline constexpr Channel<plan_t> kPlan{{"PLAN", "plan_t", "planner", 5, 1000, 20000}};
+inline constexpr Channel<plan_tree_t> kPlanTree{
+    {"PLAN_TREE", "plan_tree_t", "planner", 1, 3000, 60000}};
+inline constexpr Channel<program_t> kProgram{{"PROGRAM", "program_t", "planner", 20, 200, 20000}};
+inline constexpr Channel<motor_t> kMotor{{"MOTOR", "motor_t", "motor_bridge", 20, 150, 400}};
+inline constexpr Channel<execution_t> kExecution{
+    {"EXECUTION", "execution_t", "motor_bridge", 5, 1000, 2000}};
+inline constexpr Channel<pattern_set_part_t> kPatternSet{
+    {"PATTERN_SET", "pattern_set_part_t", "learner", 0.5, 0, 60000}};
+inline constexpr Channel<learner_state_t> kLearnerState{
+    {"LEARNER_STATE", "learner_state_t", "learner", 0, 0, 60000}};
+inline constexpr Channel<learning_t> kLearning{{"LEARNING", "learning_t", "learner", 0, 0, 1000}};
+inline constexpr Channel<health_t> kHealth{{"HEALTH", "health_t", "every process", 1, 3000, 8000}};
+inline constexpr Channel<arm_t> kArm{{"ARM", "arm_t", "tread-arm", 0, 1000, 1000}};
+inline constexpr Channel<estop_t> kEstop{{"ESTOP", "estop_t", "anyone", 0, 0, 1000}};
+inline constexpr Channel<mark_t> kMark{{"MARK", "mark_t", "anyone", 0, 0, 1000}};
+inline constexpr Channel<config_t> kConfig{{"CONFIG", "config_t", "every process", 0.1, 0, 60000}};
+
+/// The whole table, for README, health checks and tests.
+inline constexpr std::array<ChannelSpec, 17> kChannels{
+    kIns,        kScan,         kMap,      kGoal,   kPlan, kPlanTree, kProgram, kMotor, kExecution,
+    kPatternSet, kLearnerState, kLearning, kHealth, kArm,  kEstop,    kMark,    kConfig};
+
+}  // namespace tread

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/bus/lcm_bus.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+#include <lcm/lcm-cpp.hpp>
+
+namespace tread {
+namespace {
+
+int64_t hostNow() {
+  using std::chrono::duration_cast;
+  using std::chrono::microseconds;
+  // steady_clock is CLOCK_MONOTONIC on Linux.
+  return duration_cast<microseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+struct LcmBus::Subscription {
+  LcmBus* bus;
+  std::string channel;
+  RawHandler handler;
+
+  static void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel,
+                      Subscription* self) {
+    // LCM reads a channel name as a regular expression; ours have no special characters, others
+    // may.
+    if (channel != self->channel) return;
+    self->bus->deliver(self->handler, self->channel.c_str(),
+                       static_cast<const uint8_t*>(buffer->data), buffer->data_size);
+  }
+};
+
+LcmBus::LcmBus(const std::string& url, TimeSource time_source)
+    : lcm_(std::make_unique<lcm::LCM>(url)), time_source_(time_source), boot_id_(hostNow()) {
+  newest_host_ = boot_id_;
+  // getFileno() runs LCM's self-test now instead of at the first subscription (lcm.md, row 14).
+  if (!lcm_->good() || lcm_->getFileno() < 0)
+    throw std::runtime_error(
+        "LCM cannot use '" + (url.empty() ? std::string("the default URL") : url) +
+        "': is there a multicast route? type: sudo ip link set lo multicast on && "
+        "sudo ip route add 224.0.0.0/4 dev lo");
+}
+
+LcmBus::~LcmBus() = default;
+
+int64_t LcmBus::now() const {
+  if (time_source_ == TimeSource::kHost) return hostNow();
+  return newest_utime_ + (hostNow() - newest_host_);
+}
+
+int64_t LcmBus::utc() const {
+  using std::chrono::duration_cast;
+  using std::chrono::microseconds;
+  return duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+void LcmBus::onReceipt(int64_t utime) {
+  // Time follows the newest message; an old one says nothing about the present.
+  if (utime <= now()) return;
+  newest_utime_ = utime;
+  newest_host_ = hostNow();
+}
+
+bool LcmBus::send(const char* channel, const uint8_t* bytes, size_t size) {
+  return lcm_->publish(channel, bytes, static_cast<unsigned int>(size)) == 0;
+}
+
+void LcmBus::listen(const char* channel, RawHandler handler) {
+  subscriptions_.push_back(
+      std::make_unique<Subscription>(Subscription{this, channel, std::move(handler)}));
+  lcm::Subscription* subscription =
+      lcm_->subscribeFunction(channel, &Subscription::receive, subscriptions_.back().get());
+  if (subscription == nullptr)
+    throw std::runtime_error(std::string("LCM does not let us subscribe to ") + channel);
+  // LCM drops the newest when its queue is full (lcm.md, row 6): never let it get full.
+  subscription->setQueueCapacity(1000);
+}
+
+void LcmBus::handle(int timeout_ms) {
+  if (lcm_->handleTimeout(timeout_ms) <= 0) return;
+  while (lcm_->handleTimeout(0) > 0) {
+  }
+}
+
+void LcmBus::run(Node& node, const std::atomic<bool>& stop) {
+  const int64_t period = node.period();
+  int64_t next_step = hostNow();
+  while (!stop) {
+    const int64_t wait = next_step - hostNow();
+    handle(static_cast<int>(std::max<int64_t>(0, wait / 1000)));
+    const int64_t started = hostNow();
+    if (started < next_step) continue;
+    node.step(now());
+    noteCycle(hostNow() - started);
+    // A step that came too late is not made up for: stay on the grid.
+    next_step += period * std::max<int64_t>(1, (hostNow() - next_step) / period + 1);
+  }
+  node.shutdown(now());
+}
+
+void LcmBus::noteCycle(int64_t microseconds) {
+  ++cycles_;
+  cycle_sum_ += microseconds;
+  cycle_max_ = std::max(cycle_max_, microseconds);
+}
+
+CycleTimes LcmBus::takeCycleTimes() {
+  CycleTimes times;
+  if (cycles_ > 0) times.mean_us = static_cast<int32_t>(cycle_sum_ / cycles_);
+  times.max_us = static_cast<int32_t>(cycle_max_);
+  cycles_ = cycle_sum_ = cycle_max_ = 0;
+  return times;
+}
+
+}  // namespace tread

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <memory>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/fault_plan.hpp"
+
+namespace tread {
+
+/// How long a node takes, as a model: what a step or handler publishes leaves this much later.
+struct NodeTiming {
+  int64_t compute_us =
+      0;  ///< [us] from the start of a step to its messages' departure; the node is busy meanwhile
+  int64_t phase_us = 0;  ///< [us] of the first step after the start
+};
+
+/// All nodes in one process and in virtual time; every message really encoded and decoded, with
+/// seeded faults.
+/** Same nodes, same seed, same faults: same messages in the same order. */
+class VirtualBus {
+ public:
+  using Factory = std::function<std::unique_ptr<Node>(Bus&)>;
+  /// Hears each message when it leaves its publisher: a recorder.
+  using Tap =
+      std::function<void(int64_t utime, const char* channel, const uint8_t* bytes, size_t size)>;
+
+  explicit VirtualBus(uint64_t seed, FaultPlan faults = {}, int64_t start_utime = 1'000'000);
+  ~VirtualBus();
+  VirtualBus(const VirtualBus&) = delete;
+  VirtualBus& operator=(const VirtualBus&) = delete;
+
+  /// Adds and starts a node; the factory builds it again after each kill-and-restart.
+  void addNode(const std::string& name, Factory factory, NodeTiming timing = {});
+  /// Ends a node as SIGKILL does: no shutdown, its subscriptions and unsent messages are gone.
+  void kill(const std::string& name);
+  void restart(const std::string& name);
+  /// The running node of that name or nullptr; for tests that look inside.
+  Node* node(const std::string& name);
+  const BusStatistics& statistics(const std::string& name) const;
+
+  /// An endpoint for the tool or test itself: hears and says without delay and without faults.
+  Bus& outside();
+  void setTap(Tap tap);
+
+  /// Puts raw bytes on a channel, as a foreign process would.
+  void inject(const char* channel, const uint8_t* bytes, size_t size);
+
+  /// Runs until virtual time reaches `utime`.
+  void runUntil(int64_t utime);
+  int64_t now() const;
+
+ private:
+  class Core;
+  std::unique_ptr<Core> core_;
+};
+
+}  // namespace tread

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace tread {
+
+/// A configuration is wrong: what() is one line "file:line: what is wrong; what is allowed".
+class ConfigError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Allowed values of a number, both ends included.
+struct Range {
+  double min;
+  double max;
+};
+
+/// Reads one YAML map strictly into structs with defaults.
+/** Every key that is in the file must be asked for before finish(); unknown keys, duplicates, wrong types,
+ *  non-finite and out-of-range numbers, a second document and syntax errors throw ConfigError with file:line.
+ *  A key that is absent leaves the default, unless it is asked for with `required`. Usage:
+ *
+ *      ConfigReader reader = ConfigReader::fromFile("robot.yaml");
+ *      reader.number("lease", config.lease, {0.05, 1.0}, "s");
+ *      ConfigReader gate = reader.section("gate");
+ *      gate.number("max_gap", config.max_gap, {0.0, 1.0}, "s");
+ *      reader.finish();  // checks the sections, too
+ */
+class ConfigReader {
+ public:
+  static ConfigReader fromFile(const std::string& path);
+  /// `name` stands for the file in messages.
+  static ConfigReader fromText(const std::string& text, const std::string& name);
+
+  ConfigReader(ConfigReader&&) noexcept;
+  ConfigReader& operator=(ConfigReader&&) noexcept;
+  ~ConfigReader();
+
+  bool has(const std::string& key) const;
+  void number(const std::string& key, double& value, Range range, const std::string& unit,
+              bool required = false);
+  void integer(const std::string& key, int64_t& value, Range range, const std::string& unit,
+               bool required = false);
+  void flag(const std::string& key, bool& value, bool required = false);
+  void text(const std::string& key, std::string& value, bool required = false);
+  void choice(const std::string& key, std::string& value, const std::vector<std::string>& allowed,
+              bool required = false);
+  /// A list of numbers; `size` 0 = any length.
+  void numbers(const std::string& key, std::vector<double>& values, size_t size, Range range,
+               const std::string& unit, bool required = false);
+  /// A list of lists of numbers, each of `columns` (for trajectories, commands, polygons).
+  void table(const std::string& key, std::vector<std::vector<double>>& rows, size_t columns,
+             Range range, const std::string& unit, bool required = false);
+  void texts(const std::string& key, std::vector<std::string>& values, bool required = false);
+  /// A map under this key; an empty reader if it is absent.
+  ConfigReader section(const std::string& key, bool required = false);
+  /// A list of maps under this key; empty if it is absent.
+  std::vector<ConfigReader> sections(const std::string& key, bool required = false);
+  /// The keys of this map in the order of the file (for maps whose keys are names).
+  std::vector<std::string> keys() const;
+
+  /// Throws for the first key that nobody asked for, here or in any section, with the known keys.
+  void finish() const;
+  /// What was read, defaults included, as YAML text; for CONFIG and for people.
+  std::string effective() const;
+  /// ConfigError that points at a key of this map, for checks across keys.
+  ConfigError error(const std::string& key, const std::string& problem) const;
+
+ private:
+  struct Level;
+  explicit ConfigReader(std::shared_ptr<Level> level);
+  std::shared_ptr<Level> level_;
+};
+
+}  // namespace tread

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "common/geometry/se2.hpp"
+
+namespace tread {
+
+/// A pose with the time at which it was measured.
+struct TimedPose {
+  int64_t utime = 0;  ///< [us]
+  Pose2 T_map_body;   ///< yaw unwrapped along the track
+};
+
+/// The recent track of a body: timed poses in order, yaw made continuous, interpolated between,
+/// never extrapolated.
+/** Own code instead of CPose2DInterpolator, which turns the short way round and accepts any gap. */
+class PoseTrack {
+ public:
+  /// Keeps poses that are at most `span_us` older than the newest.
+  explicit PoseTrack(int64_t span_us) : span_us_(span_us) {}
+
+  /// Appends a pose; yaw may be wrapped, the nearest turn to the predecessor is taken.
+  /** Returns false (and keeps the track) if it is not newer than the last pose or not finite. */
+  bool push(int64_t utime, const Pose2& T_map_body);
+
+  /// Pose at a time between two kept poses at most `max_gap_us` apart (SE(2) interpolation); else
+  /// nothing.
+  std::optional<Pose2> at(int64_t utime, int64_t max_gap_us) const;
+
+  /// Longest time between neighbours of the kept poses that cover [from, to]; nothing if they do
+  /// not cover it.
+  std::optional<int64_t> longestGap(int64_t from, int64_t to) const;
+
+  /// Mean body twist over [utime - window, utime] from the interpolated end poses; nothing where
+  /// at() has nothing.
+  std::optional<Twist2> twistBefore(int64_t utime, int64_t window_us, int64_t max_gap_us) const;
+
+  const std::deque<TimedPose>& poses() const { return poses_; }
+  void clear() { poses_.clear(); }
+
+ private:
+  int64_t span_us_;
+  std::deque<TimedPose> poses_;
+};
+
+}  // namespace tread

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "common/geometry/se2.hpp"
+
+namespace tread {
+
+/// Values of a cell: 0..100 free (cost of roughness), the rest below.
+using Cell = uint8_t;
+inline constexpr Cell kFree = 0;
+inline constexpr Cell kCostMax = 100;
+inline constexpr Cell kObstacle = 254;
+inline constexpr Cell kUnknown = 255;
+
+inline bool isFree(Cell cell) { return cell <= kCostMax; }
+
+/// Index of a cell in map: the cell (0, 0) has its lower left corner in the origin of map.
+struct CellIndex {
+  int x = 0;
+  int y = 0;
+};
+inline bool operator==(CellIndex a, CellIndex b) { return a.x == b.x && a.y == b.y; }
+
+/// A rectangular window of occupancy cells whose indices are fixed in map.
+class Grid {
+ public:
+  Grid() = default;
+  /// All cells unknown. `lower` is the index of the lower left cell.
+  Grid(double cell_size, CellIndex lower, int width, int height);
+
+  double cellSize() const { return cell_size_; }
+  CellIndex lower() const { return lower_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+  bool empty() const { return cells_.empty(); }
+
+  CellIndex indexOf(const Eigen::Vector2d& p_map) const;
+  /// Centre of a cell in map [m].
+  Eigen::Vector2d centre(CellIndex index) const;
+  bool contains(CellIndex index) const {
+    return index.x >= lower_.x && index.y >= lower_.y && index.x < lower_.x + width_ &&
+           index.y < lower_.y + height_;
+  }
+  /// The cell, or unknown outside the window.
+  Cell at(CellIndex index) const { return contains(index) ? cells_[offset(index)] : kUnknown; }
+  /// Sets a cell of the window; outside nothing happens.
+  void set(CellIndex index, Cell cell) {
+    if (contains(index)) cells_[offset(index)] = cell;
+  }
+  /// Row by row from the lower left, x fastest.
+  const std::vector<Cell>& cells() const { return cells_; }
+  std::vector<Cell>& cells() { return cells_; }
+  size_t offset(CellIndex index) const {
+    return static_cast<size_t>(index.y - lower_.y) * static_cast<size_t>(width_) +
+           static_cast<size_t>(index.x - lower_.x);
+  }
+
+ private:
+  double cell_size_ = 0.1;
+  CellIndex lower_;
+  int width_ = 0;
+  int height_ = 0;
+  std::vector<Cell> cells_;
+};
+
+/// Distance from each cell's centre to the nearest cell that is not free [m], to that cell's nearest border.
+/** Exact Euclidean distance transform (Felzenszwalb and Huttenlocher 2012), two passes. `unknown_blocks` decides
+ *  whether unknown cells count as not free; outside the window everything counts as unknown. */
+class ClearanceField {
+ public:
+  ClearanceField() = default;
+  ClearanceField(const Grid& grid, bool unknown_blocks);
+
+  /// Clearance at a point of map [m]: a lower bound of the distance to the nearest blocked cell's area; 0 in a
+  /// blocked cell; outside the window 0 if unknown blocks, else the value of the nearest cell of the window.
+  double at(const Eigen::Vector2d& p_map) const;
+
+ private:
+  Grid window_;  // geometry only
+  std::vector<float> clearance_;
+  bool unknown_blocks_ = true;
+};
+
+/// One square tile of the map, as sent on MAP.
+struct Tile {
+  int tile_x = 0;
+  int tile_y = 0;
+  int64_t utime = 0;        ///< [us] of the newest scan in it
+  std::vector<Cell> cells;  ///< tile_cells x tile_cells, row by row, x fastest
+};
+
+/// The tiles that were received, put together. Tiles stay until they are forgotten by distance.
+class TileMap {
+ public:
+  TileMap(double cell_size, int tile_cells) : cell_size_(cell_size), tile_cells_(tile_cells) {}
+
+  /// Takes a tile if it is not older than the one that is there. Returns whether any cell changed.
+  bool put(Tile tile);
+  /// Drops tiles whose centre is farther than `radius` from a point [m].
+  void forgetBeyond(const Eigen::Vector2d& p_map, double radius);
+  /// A window of the map; what no tile covers is unknown.
+  Grid window(CellIndex lower, int width, int height) const;
+  /// Age-checked: utime of the tile under a point, or 0.
+  int64_t utimeAt(const Eigen::Vector2d& p_map) const;
+  double cellSize() const { return cell_size_; }
+  int tileCells() const { return tile_cells_; }
+  const std::map<std::pair<int, int>, Tile>& tiles() const { return tiles_; }
+
+ private:
+  double cell_size_;
+  int tile_cells_;
+  std::map<std::pair<int, int>, Tile> tiles_;
+};
+
+}  // namespace tread

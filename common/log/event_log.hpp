@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/bus/bus.hpp"
+
+namespace tread {
+
+/// One event of an LCM log.
+struct LogEvent {
+  int64_t utime = 0;  ///< [us] when it was recorded
+  std::string channel;
+  std::vector<uint8_t> bytes;
+};
+
+/// Writes LCM event logs that lcm-logplayer and lcm-spy read.
+/** Throws std::runtime_error with one clear line if the file cannot be made. */
+class LogWriter {
+ public:
+  explicit LogWriter(const std::string& path);
+  ~LogWriter();
+  LogWriter(const LogWriter&) = delete;
+  LogWriter& operator=(const LogWriter&) = delete;
+
+  /// Appends an event; throws std::runtime_error when the disk is full.
+  void write(int64_t utime, const std::string& channel, const uint8_t* bytes, size_t size);
+
+  /// Encodes and appends a message at its own utime.
+  template <class Message>
+  void write(const Channel<Message>& channel, const Message& message) {
+    std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
+    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    write(message.utime, channel.name, bytes.data(), bytes.size());
+  }
+
+ private:
+  struct File;
+  std::unique_ptr<File> file_;
+};
+
+/// Reads LCM event logs from front to back; a damaged or truncated log gives what is whole, and says so.
+class LogReader {
+ public:
+  explicit LogReader(const std::string& path);
+  ~LogReader();
+  LogReader(const LogReader&) = delete;
+  LogReader& operator=(const LogReader&) = delete;
+
+  /// The next event; false at the end.
+  bool next(LogEvent& event);
+  /// One clear line if the log ends in the middle of an event or holds damaged bytes; empty if it is whole.
+  const std::string& problem() const;
+
+ private:
+  struct File;
+  std::unique_ptr<File> file_;
+};
+
+/// Decodes an event into a message; false if its channel or type is another or bytes are left over.
+template <class Message>
+bool decode(const LogEvent& event, const Channel<Message>& channel, Message& message) {
+  if (event.channel != channel.name) return false;
+  message = Message{};
+  try {
+    const int size = static_cast<int>(event.bytes.size());
+    return message.decode(event.bytes.data(), 0, size) == size;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+}  // namespace tread

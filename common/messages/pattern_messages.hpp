@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tread/pattern_set_part_t.hpp>
+
+#include "common/pattern/pattern.hpp"
+
+namespace tread {
+
+/// The parts of a set as messages, without utime of sending and seq (the publisher sets seq).
+std::vector<pattern_set_part_t> toMessages(const PatternSet& set);
+
+/// Puts sets together from their parts, which may come in any order, twice, or not at all.
+class PatternSetAssembler {
+ public:
+  /// Takes a part. Returns a set when it completes a valid one that is newer than the last returned.
+  std::optional<PatternSet> add(const pattern_set_part_t& part);
+
+  /// Why the last part or set was refused, in one line; empty if it was not.
+  const std::string& refusal() const { return refusal_; }
+  int64_t refused() const { return refused_; }
+
+ private:
+  std::optional<PatternSet> refuse(const std::string& why);
+
+  std::vector<pattern_set_part_t> parts_;
+  int64_t last_version_ = 0;
+  std::string refusal_;
+  int64_t refused_ = 0;
+};
+
+}  // namespace tread

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/geometry/se2.hpp"
+
+namespace tread {
+
+/// What a command means: motor power or track speed.
+enum class CommandKind : int16_t { kPower = 1, kTrackSpeed = 2 };
+
+/// One command u_t: left and right track, power -1..1 [1] or track speed [m/s], + forward.
+struct TrackCommand {
+  double left = 0.0;
+  double right = 0.0;
+};
+
+/// A steady motion in which patterns begin and end (a trim): what came before decides what a pattern does.
+struct MotionClass {
+  std::string name;     ///< for instance rest, cruise, reverse
+  Twist2 twist;         ///< v_body of the steady motion
+  TrackCommand steady;  ///< the command that keeps it
+};
+
+/// Upper triangle of a planar pose covariance: xx xy xyaw yy yyaw yawyaw [m2, m rad, rad2]; NaN = unknown.
+using PoseCovariance = std::array<double, 6>;
+
+/// A command series U and the trajectory R that it is expected to produce (paper, section III).
+struct MotionPattern {
+  int id = 0;                         ///< unique within its set
+  std::string name;
+  std::string entry_class;            ///< name of the class in which it must begin
+  std::string exit_class;             ///< and of the one in which it ends
+  std::vector<TrackCommand> commands; ///< U = (u_1..u_T); never changes
+  std::vector<Pose2> trajectory;      ///< R = (r_1..r_T): T_start_body after u_t, yaw unwrapped
+  PoseCovariance end_covariance;      ///< of the prediction r_T; NaN unknown
+  int times_learned = 0;              ///< executions of this very pattern that changed R
+
+  const Pose2& end() const { return trajectory.back(); }
+  /// Length of the path through the origin and all r_t [m].
+  double pathLength() const;
+};
+
+/// Everything in a pattern set, not yet checked.
+struct PatternSetContent {
+  std::string name;
+  int64_t version = 1;         ///< counts up for ever; >= 1
+  int64_t parent_version = 0;  ///< 0 = none
+  int64_t utime = 0;           ///< [us] of the newest measurement that is in it; 0 = shipped
+  CommandKind kind = CommandKind::kPower;
+  int64_t period_us = 50'000;  ///< each command is held this long
+  std::vector<MotionClass> classes;
+  std::vector<MotionPattern> patterns;
+};
+
+/// A checked, immutable pattern set; copies share their content, so that handing over a set costs nothing.
+class PatternSet {
+ public:
+  /// Checks and freezes. On failure returns nothing and one clear line in `why`: pattern, what, what is allowed.
+  /** Checked: names and ids unique; T >= 1 and |U| = |R|; all numbers finite; commands within the kind's
+   *  range (power -1..1, track speed +-20 m/s); steps of R at most 20 m/s and 20 rad/s, the first one taken from
+   *  the origin; classes exist; version >= 1; period 5 ms..1 s; at most 1000 patterns of at most 1000 samples. */
+  static std::optional<PatternSet> make(PatternSetContent content, std::string& why);
+
+  const PatternSetContent& content() const { return *content_; }
+  int64_t version() const { return content_->version; }
+  const std::vector<MotionPattern>& patterns() const { return content_->patterns; }
+  double periodSeconds() const { return static_cast<double>(content_->period_us) * 1e-6; }
+  /// The pattern with this id, or nullptr.
+  const MotionPattern* find(int id) const;
+  const MotionPattern* findByName(const std::string& name) const;
+  const MotionClass& classNamed(const std::string& name) const;
+  /// Whether `next` may follow `previous` without a harsh change: same class, at the join.
+  bool joinable(const MotionPattern& previous, const MotionPattern& next) const;
+  /// Patterns that begin in a class, in the order of the set.
+  std::vector<const MotionPattern*> startingIn(const std::string& entry_class) const;
+  /// Over everything that matters; equal content has an equal checksum on every machine.
+  int64_t checksum() const { return checksum_; }
+
+ private:
+  PatternSet(std::shared_ptr<const PatternSetContent> content, int64_t checksum)
+      : content_(std::move(content)), checksum_(checksum) {}
+
+  std::shared_ptr<const PatternSetContent> content_;
+  int64_t checksum_ = 0;
+};
+
+}  // namespace tread

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tread {
+
+/// Named pieces of state that outlive a process. Writing is atomic: after a crash the old or the new is there, whole.
+class Store {
+ public:
+  virtual ~Store() = default;
+
+  /// Content of an entry, or nothing.
+  virtual std::optional<std::string> read(const std::string& name) const = 0;
+  /// Replaces an entry. Returns one clear line if it could not be written (disk full, no permission), else nothing.
+  virtual std::optional<std::string> write(const std::string& name, const std::string& content) = 0;
+  /// Removes an entry if it exists.
+  virtual void remove(const std::string& name) = 0;
+  /// Names of the entries, sorted.
+  virtual std::vector<std::string> names() const = 0;
+};
+
+/// Entries are files of a folder: written to a temporary file, flushed to disk, renamed.
+class FileStore : public Store {
+ public:
+  /// Creates the folder if needed; throws std::runtime_error if that fails.
+  explicit FileStore(std::string folder);
+
+  std::optional<std::string> read(const std::string& name) const override;
+  std::optional<std::string> write(const std::string& name, const std::string& content) override;
+  void remove(const std::string& name) override;
+  std::vector<std::string> names() const override;
+
+ private:
+  std::string folder_;
+};
+
+/// Entries in memory; for virtual time. Outlives the nodes that use it.
+class MemoryStore : public Store {
+ public:
+  std::optional<std::string> read(const std::string& name) const override;
+  std::optional<std::string> write(const std::string& name, const std::string& content) override;
+  void remove(const std::string& name) override;
+  std::vector<std::string> names() const override;
+  /// From now on writing fails with this line, as on a full disk; empty = works again.
+  void failWith(const std::string& problem) { problem_ = problem; }
+
+ private:
+  std::map<std::string, std::string> entries_;
+  std::string problem_;
+};
+
+}  // namespace tread
