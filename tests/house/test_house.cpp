@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// The rules of the house, read from the sources: who may include whom, and what a core may not
+// touch.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "common/bus/channels.hpp"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Include {
+  std::string file;    // path from the root
+  std::string target;  // what stands between the quotes or brackets
+};
+
+std::string contentOf(const fs::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::vector<fs::path> sourcesUnder(const std::string& folder) {
+  std::vector<fs::path> files;
+  const fs::path root = fs::path(TREAD_SOURCE_DIR) / folder;
+  if (!fs::exists(root)) return files;
+  for (const auto& entry : fs::recursive_directory_iterator(root)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension == ".hpp" || extension == ".cpp") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<Include> includesUnder(const std::string& folder) {
+  static const std::regex kInclude(R"re(^\s*#\s*include\s*[<"]([^>"]+)[>"])re");
+  std::vector<Include> includes;
+  for (const fs::path& path : sourcesUnder(folder)) {
+    std::istringstream lines(contentOf(path));
+    std::smatch match;
+    for (std::string line; std::getline(lines, line);)
+      if (std::regex_search(line, match, kInclude))
+        includes.push_back({fs::relative(path, TREAD_SOURCE_DIR).string(), match[1]});
+  }
+  return includes;
+}
+
+bool startsWith(const std::string& text, const std::string& prefix) {
+  return text.compare(0, prefix.size(), prefix) == 0;
+}
+
+/// The first `parts` components of a path: modules/planner of modules/planner/core/search.hpp.
+std::string head(const std::string& path, int parts) {
+  size_t end = 0;
+  for (int i = 0; i < parts && end != std::string::npos; ++i) end = path.find('/', end + 1);
+  return path.substr(0, end);
+}
+
+std::vector<std::string> foldersOf(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(fs::path(TREAD_SOURCE_DIR) / folder))
+    if (entry.is_directory()) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("dependencies point one way: lcmtypes, common, modules, tools, tests") {
+  for (const Include& include : includesUnder("common")) {
+    CAPTURE(include.file, include.target);
+    CHECK_FALSE(startsWith(include.target, "modules/"));
+    CHECK_FALSE(startsWith(include.target, "tools/"));
+    CHECK_FALSE(startsWith(include.target, "tests/"));
+  }
+  for (const Include& include : includesUnder("modules")) {
+    CAPTURE(include.file, include.target);
+    CHECK_FALSE(startsWith(include.target, "tools/"));
+    CHECK_FALSE(startsWith(include.target, "tests/"));
+  }
+  for (const Include& include : includesUnder("tools")) {
+    CAPTURE(include.file, include.target);
+    CHECK_FALSE(startsWith(include.target, "tests/"));
+  }
+}
+
+TEST_CASE("a module never includes another module") {
+  for (const Include& include : includesUnder("modules")) {
+    if (!startsWith(include.target, "modules/")) continue;
+    CAPTURE(include.file, include.target);
+    CHECK(head(include.file, 2) == head(include.target, 2));
+  }
+}
+
+TEST_CASE("a core knows neither bus nor clock nor files") {
+  const std::set<std::string> concepts{"common/geometry", "common/grid", "common/pattern",
+                                       "common/vehicle"};
+  const std::set<std::string> forbidden{"chrono", "ctime",   "time.h",        "fstream",
+                                        "cstdio", "stdio.h", "iostream",      "filesystem",
+                                        "thread", "mutex",   "random_device", "unistd.h"};
+  size_t cores = 0;
+  for (const std::string& module : foldersOf("modules")) {
+    const std::string core = "modules/" + module + "/core";
+    for (const Include& include : includesUnder(core)) {
+      ++cores;
+      CAPTURE(include.file, include.target);
+      CHECK_FALSE(startsWith(include.target, "lcm/"));
+      CHECK_FALSE(startsWith(include.target, "tread/"));
+      CHECK_FALSE(startsWith(include.target, "yaml-cpp"));
+      CHECK(forbidden.count(include.target) == 0);
+      if (startsWith(include.target, "common/"))
+        CHECK(concepts.count(head(include.target, 2)) == 1);
+      if (startsWith(include.target, "modules/")) CHECK(startsWith(include.target, core));
+    }
+    for (const fs::path& path : sourcesUnder(core)) {
+      CAPTURE(path);
+      const std::string content = contentOf(path);
+      CHECK(content.find("random_device") == std::string::npos);
+      CHECK(content.find("std::rand") == std::string::npos);
+      CHECK(content.find("Eigen::Random") == std::string::npos);
+      CHECK(content.find("::Random(") == std::string::npos);
+    }
+  }
+  CHECK(cores > 50);  // the check itself looks at something
+}
+
+TEST_CASE("concepts link no bus: geometry, grid, pattern and vehicle include no message type") {
+  for (const char* folder : {"common/geometry", "common/grid", "common/pattern", "common/vehicle"})
+    for (const Include& include : includesUnder(folder)) {
+      CAPTURE(include.file, include.target);
+      CHECK_FALSE(startsWith(include.target, "lcm/"));
+      CHECK_FALSE(startsWith(include.target, "tread/"));
+      CHECK_FALSE(startsWith(include.target, "common/bus"));
+    }
+}
+
+TEST_CASE("the two vehicle models share no equations") {
+  for (const Include& include : includesUnder("modules/simulator")) {
+    CAPTURE(include.file, include.target);
+    CHECK_FALSE(startsWith(include.target, "common/vehicle"));
+  }
+  for (const Include& include : includesUnder("common/vehicle")) {
+    CAPTURE(include.file, include.target);
+    CHECK_FALSE(startsWith(include.target, "modules/"));
+  }
+}
+
+TEST_CASE("only lidar_driver knows mrpt-hwdrivers") {
+  for (const char* folder : {"common", "modules", "tools"})
+    for (const Include& include : includesUnder(folder)) {
+      CAPTURE(include.file, include.target);
+      if (startsWith(include.target, "mrpt/hwdrivers") || startsWith(include.target, "mrpt/obs"))
+        CHECK(startsWith(include.file, "modules/lidar_driver/"));
+    }
+}
+
+TEST_CASE("each folder of common serves at least two modules or tools") {
+  std::map<std::string, std::set<std::string>> users;
+  for (const char* folder : {"modules", "tools"})
+    for (const Include& include : includesUnder(folder))
+      if (startsWith(include.target, "common/"))
+        users[head(include.target, 2)].insert(head(include.file, 2));
+  for (const std::string& folder : foldersOf("common")) {
+    CAPTURE(folder);
+    CHECK(users["common/" + folder].size() >= 2);
+  }
+}
+
+TEST_CASE("the top level holds what the user fixed and nothing else") {
+  const std::set<std::string> allowed{
+      "CMakeLists.txt", "lcmtypes", "modules",           "common", "config", "tests", "tools",
+      "README.md",      "LICENSE",  "CMakePresets.json", "build"};
+  for (const auto& entry : fs::directory_iterator(TREAD_SOURCE_DIR)) {
+    const std::string name = entry.path().filename().string();
+    CAPTURE(name);
+    CHECK((name.front() == '.' || allowed.count(name) == 1));
+  }
+}
+
+TEST_CASE("README lists every channel as the table in code has it") {
+  const std::string readme = contentOf(fs::path(TREAD_SOURCE_DIR) / "README.md");
+  for (const tread::ChannelSpec& channel : tread::kChannels) {
+    std::ostringstream row;
+    row << "| " << channel.name << " | " << channel.type << " | " << channel.publisher << " | ";
+    if (channel.rate_hz > 0) {
+      row << channel.rate_hz << " Hz |";
+    } else {
+      row << "on demand |";
+    }
+    CAPTURE(row.str());
+    CHECK(readme.find(row.str()) != std::string::npos);
+  }
+}
