@@ -4,9 +4,11 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/geometry/se2.hpp"
@@ -22,26 +24,35 @@ struct TrackCommand {
   double right = 0.0;
 };
 
-/// A steady motion in which patterns begin and end (a trim): what came before decides what a pattern does.
+/// A steady motion in which patterns begin and end (a trim): what came before decides what a
+/// pattern does.
 struct MotionClass {
   std::string name;     ///< for instance rest, cruise, reverse
   Twist2 twist;         ///< v_body of the steady motion
   TrackCommand steady;  ///< the command that keeps it
 };
 
-/// Upper triangle of a planar pose covariance: xx xy xyaw yy yyaw yawyaw [m2, m rad, rad2]; NaN = unknown.
+/// Upper triangle of a planar pose covariance: xx xy xyaw yy yyaw yawyaw [m2, m rad, rad2]; NaN =
+/// unknown.
 using PoseCovariance = std::array<double, 6>;
+
+/// A covariance that nobody has stated yet.
+inline constexpr PoseCovariance kUnknownCovariance = {
+    std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
+    std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
+    std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
 
 /// A command series U and the trajectory R that it is expected to produce (paper, section III).
 struct MotionPattern {
-  int id = 0;                         ///< unique within its set
+  int id = 0;  ///< unique within its set
   std::string name;
-  std::string entry_class;            ///< name of the class in which it must begin
-  std::string exit_class;             ///< and of the one in which it ends
-  std::vector<TrackCommand> commands; ///< U = (u_1..u_T); never changes
-  std::vector<Pose2> trajectory;      ///< R = (r_1..r_T): T_start_body after u_t, yaw unwrapped
-  PoseCovariance end_covariance;      ///< of the prediction r_T; NaN unknown
-  int times_learned = 0;              ///< executions of this very pattern that changed R
+  std::string entry_class;             ///< name of the class in which it must begin
+  std::string exit_class;              ///< and of the one in which it ends
+  std::vector<TrackCommand> commands;  ///< U = (u_1..u_T); never changes
+  std::vector<Pose2> trajectory;       ///< R = (r_1..r_T): T_start_body after u_t, yaw unwrapped
+  /// Of the prediction r_T: all six finite, or all six NaN = unknown.
+  PoseCovariance end_covariance = kUnknownCovariance;
+  int times_learned = 0;  ///< executions of this very pattern that changed R
 
   const Pose2& end() const { return trajectory.back(); }
   /// Length of the path through the origin and all r_t [m].
@@ -60,13 +71,17 @@ struct PatternSetContent {
   std::vector<MotionPattern> patterns;
 };
 
-/// A checked, immutable pattern set; copies share their content, so that handing over a set costs nothing.
+/// A checked, immutable pattern set; copies share their content, so that handing over a set costs
+/// nothing.
 class PatternSet {
  public:
-  /// Checks and freezes. On failure returns nothing and one clear line in `why`: pattern, what, what is allowed.
-  /** Checked: names and ids unique; T >= 1 and |U| = |R|; all numbers finite; commands within the kind's
-   *  range (power -1..1, track speed +-20 m/s); steps of R at most 20 m/s and 20 rad/s, the first one taken from
-   *  the origin; classes exist; version >= 1; period 5 ms..1 s; at most 1000 patterns of at most 1000 samples. */
+  /// Checks and freezes. On failure returns nothing and one clear line in `why`: pattern, what,
+  /// what is allowed.
+  /** Checked: names and ids unique; T >= 1 and |U| = |R|; all numbers finite; commands within the
+   * kind's range (power -1..1, track speed +-20 m/s); steps of R at most 20 m/s and 20 rad/s, the
+   * first one taken from the origin; classes exist and each is used by a pattern (the bus carries
+   * classes only with patterns); version >= 1; period 5 ms..1 s; at most 1000 patterns of at most
+   * 1000 samples. */
   static std::optional<PatternSet> make(PatternSetContent content, std::string& why);
 
   const PatternSetContent& content() const { return *content_; }
@@ -76,12 +91,14 @@ class PatternSet {
   /// The pattern with this id, or nullptr.
   const MotionPattern* find(int id) const;
   const MotionPattern* findByName(const std::string& name) const;
+  /// The class with this name; throws std::out_of_range for a name that no pattern of the set has.
   const MotionClass& classNamed(const std::string& name) const;
   /// Whether `next` may follow `previous` without a harsh change: same class, at the join.
   bool joinable(const MotionPattern& previous, const MotionPattern& next) const;
   /// Patterns that begin in a class, in the order of the set.
   std::vector<const MotionPattern*> startingIn(const std::string& entry_class) const;
-  /// Over everything that matters; equal content has an equal checksum on every machine.
+  /// Over everything but utime; equal content has an equal checksum on every machine, never
+  /// negative.
   int64_t checksum() const { return checksum_; }
 
  private:
