@@ -22,8 +22,11 @@ double MotionPattern::pathLength() const {
 }
 
 std::optional<PatternSet> PatternSet::make(PatternSetContent content, std::string& why) {
-  why = firstProblem(content);
-  if (!why.empty()) return std::nullopt;
+  why.clear();
+  if (const auto problem = firstProblem(content)) {
+    why = problem->line(content);
+    return std::nullopt;
+  }
   const int64_t checksum = checksumOf(content);
   return PatternSet(std::make_shared<const PatternSetContent>(std::move(content)), checksum);
 }
