@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/lidar_driver/core/range_scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tread::lidar {
+namespace {
+
+constexpr double kTurn = 6.28318530717958647692;
+
+float judged(float range, double range_min, double range_max) {
+  if (std::isnan(range) || range < static_cast<float>(range_min))
+    return std::numeric_limits<float>::quiet_NaN();
+  if (range > static_cast<float>(range_max)) return std::numeric_limits<float>::infinity();
+  return range;
+}
+
+}  // namespace
+
+double ScipGeometry::angleStep() const {
+  return kTurn / steps_per_turn;
+}
+
+double ScipGeometry::angleFirst() const {
+  return (first_step - front_step) * angleStep();
+}
+
+double ScipGeometry::shareOfTurn() const {
+  return static_cast<double>(last_step - first_step) / steps_per_turn;
+}
+
+std::optional<std::string> ScipGeometry::problem() const {
+  if (steps_per_turn < 8 || steps_per_turn > 100000)
+    return "the device says ARES " + std::to_string(steps_per_turn) +
+           " steps a turn; allowed 8..100000";
+  if (first_step < 0 || last_step <= first_step || last_step - first_step >= steps_per_turn)
+    return "the device says AMIN " + std::to_string(first_step) + ", AMAX " +
+           std::to_string(last_step) +
+           "; a sweep must be longer than one step and shorter than a turn";
+  if (front_step < 0 || front_step >= steps_per_turn)
+    return "the device says AFRT " + std::to_string(front_step) + "; allowed 0..ARES-1";
+  return std::nullopt;
+}
+
+std::string ScanCheck::problemOf(const RangeScan& raw) const {
+  if (raw.ranges.empty()) return "no beams";
+  if (raw.ranges.size() > static_cast<size_t>(limits_.max_beams)) return "too many beams";
+  if (!std::isfinite(raw.angle_first) || !std::isfinite(raw.angle_step) || raw.angle_step == 0.0)
+    return "angles not finite";
+  const double sweep = std::abs(raw.angle_step) * static_cast<double>(raw.ranges.size() - 1);
+  if (sweep > kTurn + 1e-6) return "more than a turn";
+  if (raw.duration_us < 0 || raw.duration_us > 1'000'000) return "duration outside 0..1 s";
+  if (raw.utime <= last_utime_) return "not newer than the scan before";
+  return {};
+}
+
+std::optional<RangeScan> ScanCheck::accept(const RangeScan& raw) {
+  refusal_ = problemOf(raw);
+  if (!refusal_.empty()) return std::nullopt;
+  last_utime_ = raw.utime;
+  RangeScan scan = raw;
+  scan.range_min = std::max(raw.range_min, limits_.range_min);
+  scan.range_max = std::min(raw.range_max, limits_.range_max);
+  scan.angle_step = raw.angle_step * limits_.beam_stride;
+  scan.ranges.clear();
+  const auto stride = static_cast<size_t>(limits_.beam_stride);
+  for (size_t i = 0; i < raw.ranges.size(); i += stride)
+    scan.ranges.push_back(judged(raw.ranges[i], scan.range_min, scan.range_max));
+  // The last kept beam may lie before the last measured one.
+  if (raw.ranges.size() > 1)
+    scan.duration_us = raw.duration_us * static_cast<int64_t>((scan.ranges.size() - 1) * stride) /
+                       static_cast<int64_t>(raw.ranges.size() - 1);
+  return scan;
+}
+
+}  // namespace tread::lidar

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/lidar_driver/hokuyo_source.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include <mrpt/hwdrivers/CHokuyoURG.h>
+
+#include "common/link/link.hpp"
+
+namespace tread::lidar {
+namespace {
+
+int64_t hostNow() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+void pause(int milliseconds) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+}
+
+/// The library's class with its device parameters made visible, its clock off and its talk
+/// silenced.
+class Device : public mrpt::hwdrivers::CHokuyoURG {
+ public:
+  Device(const std::string& host, unsigned int port) {
+    setIPandPort(host, port);
+    m_disable_firmware_timestamp = true;
+    logging_enable_console_output = false;
+  }
+  ScipGeometry geometry() const {
+    return {m_sensor_info.scan_first, m_sensor_info.scan_last, m_sensor_info.scan_front,
+            m_sensor_info.scans_per_360deg};
+  }
+  double rangeMin() const { return m_sensor_info.d_min; }
+  double rangeMax() const { return m_sensor_info.d_max; }
+  double turnSeconds() const {
+    return m_sensor_info.motor_speed_rpm > 0 ? 60.0 / m_sensor_info.motor_speed_rpm : 0.1;
+  }
+};
+
+/// host and port of tcp:host:port.
+std::pair<std::string, unsigned int> split(const std::string& address) {
+  const size_t colon = address.rfind(':');
+  const bool formed = address.compare(0, 4, "tcp:") == 0 && colon != std::string::npos && colon > 4;
+  const std::string digits = formed ? address.substr(colon + 1) : std::string();
+  if (digits.empty() || digits.size() > 5 ||
+      digits.find_first_not_of("0123456789") != std::string::npos || std::stoi(digits) > 65535)
+    throw std::invalid_argument("'" + address +
+                                "' is not an address of a range finder; write tcp:host:port");
+  return {address.substr(4, colon - 4), static_cast<unsigned int>(std::stoi(digits))};
+}
+
+}  // namespace
+
+class HokuyoSource::Worker {
+ public:
+  Worker(const std::string& address, double latency)
+      : address_(address), latency_us_(static_cast<int64_t>(latency * 1e6)), alive_(hostNow()) {
+    std::tie(host_, port_) = split(address);
+    thread_ = std::thread([this] { run(); });
+  }
+  ~Worker() {
+    stop_ = true;
+    // A thread that is stuck inside the library cannot be joined; the process is about to end.
+    if (secondsSinceAlive() > 5.0) {
+      thread_.detach();
+    } else {
+      thread_.join();
+    }
+  }
+
+  std::vector<RangeScan> take() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return std::move(scans_);
+  }
+  std::string problem() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return problem_;
+  }
+  double secondsSinceAlive() const { return static_cast<double>(hostNow() - alive_) * 1e-6; }
+
+ private:
+  void run() {
+    while (!stop_) {
+      alive_ = hostNow();
+      if (answersScip()) drive();
+      for (int i = 0; i < 5 && !stop_; ++i) pause(100);
+    }
+  }
+
+  /// One command of our own: is there a SCIP device at all, and does it keep the connection?
+  bool answersScip() {
+    const std::unique_ptr<Link> link = makeLink(address_);
+    std::string heard;
+    bool asked = false;
+    for (int i = 0; i < 100 && !stop_; ++i, pause(10)) {
+      if (!link->isOpen()) {
+        if (asked) break;
+        link->reopen(hostNow());
+        continue;
+      }
+      if (!asked) asked = link->write(reinterpret_cast<const uint8_t*>("QT\n"), 3);
+      uint8_t buffer[256];
+      const auto size = link->read(buffer, sizeof buffer);
+      if (!size) break;
+      heard.append(reinterpret_cast<const char*>(buffer), *size);
+      if (heard.find("QT\n") != std::string::npos) return true;
+    }
+    setProblem(
+        !asked ? "cannot connect: " + link->problem()
+               : "connected, but it does not answer SCIP 2.0; is this the range finder's port?");
+    return false;
+  }
+
+  void drive() {
+    try {
+      Device device(host_, port_);
+      device.initialize();
+      const ScipGeometry geometry = device.geometry();
+      if (const auto wrong = geometry.problem()) return setProblem(*wrong);
+      setProblem("");
+      while (!stop_) {
+        alive_ = hostNow();
+        bool hardware_error = false;
+        if (!readScan(device, geometry, hardware_error) && hardware_error)
+          return setProblem("the device stopped answering; connecting again");
+      }
+    } catch (const std::exception& error) {
+      const std::string words = error.what();
+      setProblem("the library gave up: " + words.substr(0, words.find('\n')));
+    }
+  }
+
+  bool readScan(Device& device, const ScipGeometry& geometry, bool& hardware_error) {
+    bool there_is_one = false;
+    mrpt::obs::CObservation2DRangeScan observation;
+    device.doProcessSimple(there_is_one, observation, hardware_error);
+    if (!there_is_one) {
+      if (hostNow() - last_scan_ > 1'000'000 && last_scan_ > 0) hardware_error = true;
+      return false;
+    }
+    last_scan_ = hostNow();
+    RangeScan scan;
+    scan.duration_us = static_cast<int64_t>(geometry.shareOfTurn() * device.turnSeconds() * 1e6);
+    scan.utime = last_scan_ - latency_us_ - scan.duration_us;
+    scan.angle_first = geometry.angleFirst();
+    scan.angle_step = geometry.angleStep();
+    scan.range_min = device.rangeMin();
+    scan.range_max = device.rangeMax();
+    const size_t beams = observation.getScanSize();
+    if (beams != static_cast<size_t>(geometry.last_step - geometry.first_step + 1)) {
+      setProblem("a scan has " + std::to_string(beams) + " beams, not what AMIN and AMAX say");
+      return false;
+    }
+    for (size_t i = 0; i < beams; ++i) scan.ranges.push_back(observation.getScanRange(i));
+    const std::lock_guard<std::mutex> lock(mutex_);
+    // A node that does not fetch must not fill the memory.
+    if (scans_.size() < 100) scans_.push_back(std::move(scan));
+    return true;
+  }
+
+  void setProblem(const std::string& problem) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    problem_ = problem;
+  }
+
+  std::string address_;
+  std::string host_;
+  unsigned int port_ = 0;
+  int64_t latency_us_;
+  int64_t last_scan_ = 0;
+  std::atomic<int64_t> alive_;
+  std::atomic<bool> stop_{false};
+  mutable std::mutex mutex_;
+  std::vector<RangeScan> scans_;
+  std::string problem_;
+  std::thread thread_;
+};
+
+HokuyoSource::HokuyoSource(const std::string& address, double latency)
+    : worker_(std::make_unique<Worker>(address, latency)) {}
+HokuyoSource::~HokuyoSource() = default;
+std::vector<RangeScan> HokuyoSource::take(int64_t /*utime*/) {
+  return worker_->take();
+}
+std::string HokuyoSource::problem() const {
+  return worker_->problem();
+}
+double HokuyoSource::stuckFor() const {
+  return worker_->secondsSinceAlive();
+}
+
+}  // namespace tread::lidar

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <memory>
+
+#include "modules/lidar_driver/scan_source.hpp"
+
+namespace tread::lidar {
+
+/// A SCIP 2.0 range finder over TCP, through mrpt::hwdrivers::CHokuyoURG in a thread of its own.
+/** What that class does in 2.5.8 and how it is met:
+ *  - its device clock wraps after 4 h 39 min and stamps jump by 49.5 days: switched off, we stamp
+ * on arrival;
+ *  - its aperture is one step too wide and ignores AFRT: recomputed (ScipGeometry);
+ *  - with a peer that accepts and closes at once initialize() never returns: each connection is
+ * first probed with one command of our own; if it still happens while running, stuckFor() grows and
+ * the process ends, so that its supervisor starts it again. */
+class HokuyoSource : public ScanSource {
+ public:
+  /// `address` is tcp:host:port; throws std::invalid_argument with one clear line if it is not.
+  /// `latency` [s] from the last beam to the arrival of its bytes.
+  HokuyoSource(const std::string& address, double latency);
+  ~HokuyoSource() override;
+
+  std::vector<RangeScan> take(int64_t utime) override;
+  std::string problem() const override;
+  /// Seconds since the library last came back; a library that never comes back cannot be stopped.
+  double stuckFor() const;
+
+ private:
+  class Worker;
+  std::unique_ptr<Worker> worker_;
+};
+
+}  // namespace tread::lidar

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "common/bus/health.hpp"
+#include "common/config/config_reader.hpp"
+#include "modules/lidar_driver/scan_source.hpp"
+
+namespace tread::lidar {
+
+/// Configuration of lidar_driver, with its defaults.
+struct LidarDriverConfig {
+  std::string address = "tcp:192.168.0.10:10940";  ///< of the SCIP 2.0 device
+  Eigen::Vector3d p_body_sensor{0.25, 0.0, 0.5};   ///< [m]
+  double yaw = 0.0;                                ///< [rad] of the sensor in body, as the next two
+  double pitch = 0.0;
+  double roll = 0.0;
+  double latency = 0.002;  ///< [s] from the last beam to the arrival of its bytes
+  double silence = 1.0;    ///< [s] without a scan after which the device counts as silent
+  ScanLimits limits;
+  std::string effective;  ///< the whole as YAML, for CONFIG
+};
+
+/// Reads the configuration; throws ConfigError with file:line.
+LidarDriverConfig readLidarDriverConfig(ConfigReader& reader);
+
+/// Publishes SCAN from a source of scans, and HEALTH with every refusal and its reason.
+class LidarDriverNode : public Node {
+ public:
+  LidarDriverNode(const LidarDriverConfig& config, Bus& bus, ScanSource& source);
+
+  int64_t period() const override { return 5'000; }
+  void step(int64_t utime) override;
+
+ private:
+  void publish(const RangeScan& scan);
+  void judgeDevice(int64_t utime);
+
+  LidarDriverConfig config_;
+  Bus& bus_;
+  ScanSource& source_;
+  ScanCheck check_;
+  HealthReporter health_;
+  Eigen::Quaterniond R_body_sensor_;
+  int64_t seq_ = 0;
+  int64_t last_scan_;
+};
+
+}  // namespace tread::lidar

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include "common/bus/virtual_bus.hpp"
+#include "modules/lidar_driver/lidar_driver_node.hpp"
+
+using namespace tread;
+using namespace tread::lidar;
+
+namespace {
+
+/// Gives what a test puts in.
+class ScriptedSource : public ScanSource {
+ public:
+  std::vector<RangeScan> take(int64_t /*utime*/) override { return std::move(next); }
+  std::string problem() const override { return trouble; }
+  std::vector<RangeScan> next;
+  std::string trouble;
+};
+
+RangeScan scanAt(int64_t utime) {
+  RangeScan scan;
+  scan.utime = utime;
+  scan.angle_step = 0.01;
+  scan.range_max = 30.0;
+  scan.ranges.assign(100, 3.0f);
+  return scan;
+}
+
+}  // namespace
+
+TEST_CASE("lidar_driver publishes good scans with the sensor's pose and counts the refused") {
+  VirtualBus bus(1);
+  ScriptedSource source;
+  LidarDriverConfig config;
+  config.yaw = M_PI / 2;
+  std::vector<scan_t> scans;
+  bus.outside().subscribe<scan_t>(kScan, [&](const scan_t& scan) { scans.push_back(scan); });
+  bus.addNode("lidar_driver",
+              [&](Bus& end) { return std::make_unique<LidarDriverNode>(config, end, source); });
+  const int64_t start = bus.now();
+  for (int i = 1; i <= 20; ++i) {
+    source.next = {scanAt(start + i * 100'000 - 80'000)};
+    if (i == 10) source.next.push_back(source.next.back());
+    bus.runUntil(start + i * 100'000);
+  }
+  REQUIRE(scans.size() == 20);
+  REQUIRE(scans[3].seq == 3);
+  REQUIRE(scans[0].num_beams == 100);
+  REQUIRE(scans[0].sensor_position[2] == 0.5);
+  REQUIRE(scans[0].sensor_orientation[0] == Approx(std::sqrt(0.5)));
+  REQUIRE(scans[0].sensor_orientation[3] == Approx(std::sqrt(0.5)));
+}
+
+TEST_CASE("a silent range finder is told in one line and forgotten when it speaks again") {
+  VirtualBus bus(1);
+  ScriptedSource source;
+  source.trouble = "cannot connect: connection refused";
+  std::vector<health_t> health;
+  bus.outside().subscribe<health_t>(kHealth, [&](const health_t& m) { health.push_back(m); });
+  bus.addNode("lidar_driver", [&](Bus& end) {
+    return std::make_unique<LidarDriverNode>(LidarDriverConfig{}, end, source);
+  });
+  const int64_t start = bus.now();
+  bus.runUntil(start + 3'100'000);
+  REQUIRE(health.back().health_state == health_t::HEALTH_FAILED);
+  REQUIRE(health.back().health_reason ==
+          "tcp:192.168.0.10:10940: no scan for 3 s; cannot connect: connection refused");
+  source.next = {scanAt(bus.now())};
+  bus.runUntil(bus.now() + 900'000);
+  source.next = {scanAt(bus.now())};
+  bus.runUntil(bus.now() + 200'000);
+  REQUIRE(health.back().health_state == health_t::HEALTH_OK);
+}
+
+TEST_CASE("a mistyped key of lidar_driver's configuration is one line with file and line") {
+  ConfigReader reader = ConfigReader::fromText("latency: 0.01\nrange_maks: 20\n", "lidar.yaml");
+  REQUIRE_THROWS_WITH(readLidarDriverConfig(reader),
+                      Catch::Contains("lidar.yaml:2") && Catch::Contains("range_maks"));
+}

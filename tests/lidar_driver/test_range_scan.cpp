@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include "modules/lidar_driver/core/range_scan.hpp"
+
+using namespace tread::lidar;
+
+namespace {
+
+RangeScan goodScan(int64_t utime) {
+  RangeScan scan;
+  scan.utime = utime;
+  scan.duration_us = 80'000;
+  scan.angle_first = -1.0;
+  scan.angle_step = 0.5;
+  scan.range_min = 0.02;
+  scan.range_max = 30.0;
+  scan.ranges = {1.0f, 0.01f, 31.0f, std::numeric_limits<float>::quiet_NaN(), 2.0f};
+  return scan;
+}
+
+}  // namespace
+
+TEST_CASE("angles of a SCIP device come from its own parameters and honour the front step") {
+  // UTM-30LX: 1081 steps of 0.25 degrees, 540 forward.
+  const ScipGeometry utm{0, 1080, 540, 1440};
+  REQUIRE_FALSE(utm.problem());
+  REQUIRE(utm.angleFirst() == Approx(-135.0 * M_PI / 180.0));
+  REQUIRE(utm.angleFirst() + 1080 * utm.angleStep() == Approx(135.0 * M_PI / 180.0));
+  REQUIRE(utm.shareOfTurn() == Approx(0.75));
+  // URG-04LX: not symmetric about its front.
+  const ScipGeometry urg{44, 725, 384, 1024};
+  REQUIRE(urg.angleFirst() == Approx((44 - 384) * 2 * M_PI / 1024));
+}
+
+TEST_CASE("a device with senseless parameters is refused in one line") {
+  REQUIRE(ScipGeometry{0, 1080, 540, 0}.problem());
+  REQUIRE(ScipGeometry{10, 10, 0, 1440}.problem());
+  REQUIRE(ScipGeometry{0, 1440, 540, 1440}.problem());
+  REQUIRE(ScipGeometry{0, 1080, 1440, 1440}.problem());
+}
+
+TEST_CASE("a beam is a range, nothing hit, or no measurement") {
+  ScanCheck check({0.1, 20.0, 4000, 1});
+  const auto scan = check.accept(goodScan(1));
+  REQUIRE(scan);
+  REQUIRE(scan->ranges.size() == 5);
+  REQUIRE(scan->ranges[0] == 1.0f);
+  REQUIRE(std::isnan(scan->ranges[1]));
+  REQUIRE(std::isinf(scan->ranges[2]));
+  REQUIRE(std::isnan(scan->ranges[3]));
+  REQUIRE(scan->range_min == 0.1);
+  REQUIRE(scan->range_max == 20.0);
+}
+
+TEST_CASE("a stride keeps every n-th beam with its own angle and time") {
+  ScanCheck check({0.1, 20.0, 4000, 3});
+  const auto scan = check.accept(goodScan(1));
+  REQUIRE(scan->ranges.size() == 2);
+  REQUIRE(scan->angle_step == 1.5);
+  REQUIRE(scan->duration_us == 60'000);
+}
+
+TEST_CASE("scans that cannot be are refused with their reason, and good ones after them pass") {
+  ScanCheck check({0.1, 20.0, 10, 1});
+  const auto refusal = [&](RangeScan scan) {
+    REQUIRE_FALSE(check.accept(scan));
+    return check.refusal();
+  };
+  REQUIRE(check.accept(goodScan(100)));
+  REQUIRE(refusal(goodScan(100)) == "not newer than the scan before");
+  RangeScan bad = goodScan(200);
+  bad.ranges.clear();
+  REQUIRE(refusal(bad) == "no beams");
+  bad = goodScan(200);
+  bad.ranges.resize(11);
+  REQUIRE(refusal(bad) == "too many beams");
+  bad = goodScan(200);
+  bad.angle_step = NAN;
+  REQUIRE(refusal(bad) == "angles not finite");
+  bad = goodScan(200);
+  bad.angle_step = 2.0;
+  REQUIRE(refusal(bad) == "more than a turn");
+  bad = goodScan(200);
+  bad.duration_us = -1;
+  REQUIRE(refusal(bad) == "duration outside 0..1 s");
+  REQUIRE(check.accept(goodScan(200)));
+}
