@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/simulator/core/motion_noise.hpp"
+
+#include <cmath>
+
+namespace tread::sim {
+namespace {
+
+/// How long the ground stays like itself under a moving vehicle [s].
+constexpr double kCorrelationTime = 2.0;
+/// The calibration's executions last this long [s].
+constexpr double kExecutionTime = 1.0;
+
+}  // namespace
+
+MotionNoise::MotionNoise(uint64_t seed, double step)
+    : gaussian_(seed),
+      forward_(kCorrelationTime, step, gaussian_),
+      yaw_(kCorrelationTime, step, gaussian_),
+      heading_(kCorrelationTime, step, gaussian_),
+      scale_(1.0 / std::sqrt(OrnsteinUhlenbeck::varianceOfMean(kCorrelationTime, kExecutionTime))) {
+}
+
+void MotionNoise::step() {
+  forward_.step(gaussian_);
+  yaw_.step(gaussian_);
+  heading_.step(gaussian_);
+}
+
+Twist2 MotionNoise::disturb(const Twist2& v_body, const MotionSpread& spread) const {
+  const double forward = 1.0 + scale_ * spread.forward * forward_.value();
+  const double yaw = 1.0 + scale_ * spread.yaw * yaw_.value();
+  const double heading = scale_ * spread.heading * heading_.value();
+  const double v_x = v_body.v_x * forward;
+  return {v_x, v_body.v_y + v_x * std::tan(heading), v_body.omega * yaw};
+}
+
+}  // namespace tread::sim

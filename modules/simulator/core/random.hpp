@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+
+namespace tread::sim {
+
+/// Seed of one of several independent random streams of one simulation (SplitMix64 finaliser).
+inline uint64_t streamSeed(uint64_t seed, uint64_t stream) {
+  uint64_t z = seed + (stream + 1) * 0x9E3779B97F4A7C15ULL;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+  return z ^ (z >> 31);
+}
+
+/// Standard normal numbers by the polar method.
+/** Own code, since the standard leaves the algorithm of std::normal_distribution open and the same
+    seed must give the same bytes with every library. */
+class Gaussian {
+ public:
+  explicit Gaussian(uint64_t seed) : generator_(seed) {}
+
+  /// One draw of N(0, 1).
+  double draw() {
+    if (spare_valid_) {
+      spare_valid_ = false;
+      return spare_;
+    }
+    double u = 0.0, v = 0.0, square = 0.0;
+    do {
+      u = uniform();
+      v = uniform();
+      square = u * u + v * v;
+    } while (square >= 1.0 || square == 0.0);
+    const double scale = std::sqrt(-2.0 * std::log(square) / square);
+    spare_ = v * scale;
+    spare_valid_ = true;
+    return u * scale;
+  }
+
+ private:
+  /// Uniform in [-1, 1), 53 bits.
+  double uniform() { return static_cast<double>(generator_() >> 11) * 0x1.0p-52 - 1.0; }
+
+  std::mt19937_64 generator_;
+  double spare_ = 0.0;
+  bool spare_valid_ = false;
+};
+
+/// An Ornstein-Uhlenbeck process with unit variance at rest, sampled exactly at fixed steps.
+class OrnsteinUhlenbeck {
+ public:
+  /// Starts in its stationary distribution. Correlation time and step [s].
+  OrnsteinUhlenbeck(double correlation_time, double step, Gaussian& gaussian)
+      : decay_(std::exp(-step / correlation_time)),
+        drive_(std::sqrt(1.0 - decay_ * decay_)),
+        value_(gaussian.draw()) {}
+
+  void step(Gaussian& gaussian) { value_ = decay_ * value_ + drive_ * gaussian.draw(); }
+  double value() const { return value_; }
+
+  /// Variance of the mean over a time [s] of a unit process with the given correlation time [s].
+  static double varianceOfMean(double correlation_time, double time) {
+    const double ratio = correlation_time / time;
+    return 2.0 * ratio * (1.0 - ratio * (1.0 - std::exp(-1.0 / ratio)));
+  }
+
+ private:
+  double decay_;
+  double drive_;
+  double value_;
+};
+
+}  // namespace tread::sim

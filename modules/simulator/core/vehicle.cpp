@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/simulator/core/vehicle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tread::sim {
+namespace {
+
+constexpr double kGravity = 9.81;  // [m/s^2]
+
+/// Weight on the two tracks; a cross slope moves it to the lower one.
+struct Loads {
+  ContactLoad left;
+  ContactLoad right;
+};
+
+Loads loadsOn(const VehicleParameters& vehicle, const Ground& ground) {
+  const double steepness =
+      ground.slope_along * ground.slope_along + ground.slope_across * ground.slope_across;
+  const double normal = vehicle.mass * kGravity / std::sqrt(1.0 + steepness);
+  const double shift =
+      std::clamp(vehicle.mass_height * ground.slope_across / vehicle.gauge, -0.5, 0.5);
+  const double offset = -vehicle.mass_height * ground.slope_along;
+  return {{normal * (0.5 - shift), offset}, {normal * (0.5 + shift), offset}};
+}
+
+}  // namespace
+
+Ground levelGround(const SurfaceParameters& surface) {
+  Ground ground;
+  ground.left.fill(&surface);
+  ground.right.fill(&surface);
+  return ground;
+}
+
+TrackedVehicle::TrackedVehicle(const VehicleParameters& parameters)
+    : parameters_(parameters),
+      left_geometry_{parameters.contact_length, parameters.gauge / 2.0},
+      right_geometry_{parameters.contact_length, -parameters.gauge / 2.0} {
+  battery_.voltage = parameters.drive.full_voltage;
+}
+
+void TrackedVehicle::step(const MotorPower& power, const Ground& ground, double dt) {
+  const Loads loads = loadsOn(parameters_, ground);
+  const TrackForce left =
+      left_contact_.step(left_geometry_, ground.left, v_centre_, left_.speed, loads.left, dt);
+  const TrackForce right =
+      right_contact_.step(right_geometry_, ground.right, v_centre_, right_.speed, loads.right, dt);
+  moveBody(left, right, ground, dt);
+  stepTrack(parameters_.drive, std::clamp(power.left, -1.0, 1.0), battery_.voltage,
+            {-left.along, left.dry_friction}, dt, left_);
+  stepTrack(parameters_.drive, std::clamp(power.right, -1.0, 1.0), battery_.voltage,
+            {-right.along, right.dry_friction}, dt, right_);
+  stepBattery(parameters_.drive, left_, right_, dt, battery_);
+}
+
+void TrackedVehicle::moveBody(const TrackForce& left, const TrackForce& right, const Ground& ground,
+                              double dt) {
+  const double steepness =
+      ground.slope_along * ground.slope_along + ground.slope_across * ground.slope_across;
+  const double weight = parameters_.mass * kGravity / std::sqrt(1.0 + steepness);
+  const double force_x =
+      left.along + left.resistance + right.along + right.resistance - weight * ground.slope_along;
+  const double force_y = left.across + right.across - weight * ground.slope_across;
+  const double v_x = v_centre_.v_x;
+  v_centre_.v_x += dt * (force_x / parameters_.mass + v_centre_.omega * v_centre_.v_y);
+  v_centre_.v_y += dt * (force_y / parameters_.mass - v_centre_.omega * v_x);
+  v_centre_.omega += dt * (left.moment + right.moment) / parameters_.yaw_inertia;
+}
+
+}  // namespace tread::sim
