@@ -122,7 +122,8 @@ class HokuyoSource::Worker {
   void drive() {
     try {
       Device device(host_, port_);
-      device.initialize();
+      // Private in the class itself, public in its base.
+      static_cast<mrpt::hwdrivers::CGenericSensor&>(device).initialize();
       const ScipGeometry geometry = device.geometry();
       if (const auto wrong = geometry.problem()) return setProblem(*wrong);
       setProblem("");
