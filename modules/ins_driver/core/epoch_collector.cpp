@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/ins_driver/core/epoch_collector.hpp"
+
+namespace tread::ins {
+namespace {
+
+/// Further back than this is no late sentence but a clock that was set.
+constexpr int64_t kMaxLateUs = 2'000'000;
+/// So many late sentences without one in time mean that the clock was set back a little.
+constexpr int kLateLimit = 10;
+/// An epoch whose sentences keep coming with an unchanged time ends after this.
+constexpr int64_t kMaxEpochUs = 500'000;
+
+}  // namespace
+
+bool EpochCollector::push(const NmeaSentence& sentence, int64_t arrival) {
+  const std::optional<int64_t> time_of_day = timeOfDay(sentence);
+  if (!time_of_day) {
+    placeUntimed(sentence, arrival);
+    return true;
+  }
+  const int64_t device_time = clock_.timeOf(*time_of_day);
+  switch (orderOf(device_time)) {
+    case Order::kLate:
+      ++late_in_a_row_;
+      return false;
+    case Order::kStep:
+      close();
+      clock_was_set_ = true;
+      break;
+    case Order::kNewer:
+      if (epoch_ && epoch_->device_time) close();
+      break;
+    case Order::kSame:
+      break;
+  }
+  late_in_a_row_ = 0;
+  place(sentence, arrival, device_time);
+  return true;
+}
+
+EpochCollector::Order EpochCollector::orderOf(int64_t device_time) {
+  const std::optional<int64_t>& newest = clock_.newest();
+  if (!newest || device_time > *newest) return Order::kNewer;
+  if (epoch_ && epoch_->device_time == device_time) return Order::kSame;
+  const bool set_back = *newest - device_time > kMaxLateUs || late_in_a_row_ >= kLateLimit;
+  return set_back ? Order::kStep : Order::kLate;
+}
+
+void EpochCollector::place(const NmeaSentence& sentence, int64_t arrival, int64_t device_time) {
+  if (!epoch_) open(arrival);
+  epoch_->device_time = device_time;
+  epoch_->take(sentence);
+  clock_.accept(device_time);
+  learnDate(sentence, device_time);
+}
+
+void EpochCollector::placeUntimed(const NmeaSentence& sentence, int64_t arrival) {
+  if (epoch_ && epoch_->holds(sentence)) close();
+  if (!epoch_) open(arrival);
+  epoch_->take(sentence);
+}
+
+void EpochCollector::learnDate(const NmeaSentence& sentence, int64_t device_time) {
+  const auto* zda = std::get_if<Zda>(&sentence);
+  const auto* rmc = std::get_if<Rmc>(&sentence);
+  const std::optional<CivilDate> date = zda ? zda->date : rmc ? rmc->date : std::nullopt;
+  const std::optional<int64_t> time_of_day = timeOfDay(sentence);
+  if (date && time_of_day) clock_.setDate(*date, *time_of_day, device_time);
+}
+
+std::optional<Epoch> EpochCollector::next(int64_t now) {
+  if (epoch_ && (now - last_bytes_ >= quiet_us_ || now - epoch_->arrival >= kMaxEpochUs)) close();
+  if (finished_.empty()) return std::nullopt;
+  const Epoch epoch = finished_.front();
+  finished_.pop_front();
+  return epoch;
+}
+
+void EpochCollector::open(int64_t arrival) {
+  epoch_.emplace();
+  epoch_->arrival = arrival;
+  epoch_->clock_was_set = clock_was_set_;
+  clock_was_set_ = false;
+}
+
+void EpochCollector::close() {
+  if (!epoch_) return;
+  if (epoch_->device_time) epoch_->device_utc = clock_.utc(*epoch_->device_time);
+  finished_.push_back(*epoch_);
+  epoch_.reset();
+}
+
+}  // namespace tread::ins

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <Eigen/Core>
+#include <GeographicLib/LocalCartesian.hpp>
+
+#include "modules/ins_driver/core/nmea_sentence.hpp"
+
+namespace tread::ins {
+
+/// Where the map frame lies on the Earth.
+struct GeoOrigin {
+  GeoPoint point;         ///< WGS84 [rad]
+  double altitude = 0.0;  ///< above mean sea level [m]
+  double yaw = 0.0;       ///< direction of the map's x axis, counter-clockwise from east [rad]
+};
+
+/// The map frame as a plane that touches the Earth at the origin.
+/** Heights are above mean sea level throughout: not every device tells the geoid separation, and
+   leaving it out scales the plane by less than 2e-5 (100 m of 6378 km). */
+class LocalFrame {
+ public:
+  explicit LocalFrame(const GeoOrigin& origin);
+
+  /// p_map of a point [m].
+  Eigen::Vector3d toMap(const GeoPoint& point, double altitude) const;
+  const GeoOrigin& origin() const { return origin_; }
+
+ private:
+  GeoOrigin origin_;
+  GeographicLib::LocalCartesian cartesian_;
+};
+
+}  // namespace tread::ins

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <Eigen/Core>
+
+#include "modules/ins_driver/core/nmea_sentence.hpp"
+
+namespace tread::ins {
+
+/// Standard deviation of a GGA position along east, north, up [m]; NaN without HDOP or for an
+/// estimated fix.
+/** Range error times dilution of precision. Range errors by fix quality [m, one sigma]:
+    - standard, precise: 3.9. GPS SPS Performance Standard (4th ed., 2008): 7.8 m at 95 %, all ages
+   of data;
+    - differential, augmented: 1.0. A quarter of it, the ratio that gpsd uses between the two (15
+   : 3.75 m);
+    - RTK fixed: 0.02, float: 0.4. What makers of dual-frequency receivers commonly promise: 1 cm +
+   1 ppm of the base line, here 10 km; float 0.4 m;
+    - estimated (dead reckoning): unknown, because it grows with time.
+    HDOP holds both horizontal axes, so each has 1/sqrt(2) of it; the vertical one is taken as twice
+   the horizontal. */
+Eigen::Vector3d positionStd(const Gga& gga);
+
+}  // namespace tread::ins

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/ins_driver/core/track_monitor.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace tread::ins {
+namespace {
+
+constexpr size_t kIntervals = 9;
+constexpr size_t kFewestIntervals = 3;
+
+}  // namespace
+
+int64_t TrackMonitor::typicalPeriod() const {
+  if (period_us_ > 0) return period_us_;
+  if (intervals_.size() < kFewestIntervals) return 0;
+  std::vector<int64_t> sorted(intervals_.begin(), intervals_.end());
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle;
+}
+
+bool TrackMonitor::isGap(int64_t utime) {
+  if (!last_utime_) {
+    last_utime_ = utime;
+    return false;
+  }
+  const int64_t interval = utime - *last_utime_;
+  last_utime_ = utime;
+  const int64_t period = typicalPeriod();
+  intervals_.push_back(interval);
+  if (intervals_.size() > kIntervals) intervals_.pop_front();
+  return period > 0 && interval > 3 * period;
+}
+
+bool TrackMonitor::isJump(int64_t utime, const Eigen::Vector3d& p_map_body) {
+  const Eigen::Vector2d position = p_map_body.head<2>();
+  bool jump = false;
+  if (position_utime_) {
+    const double dt = static_cast<double>(utime - *position_utime_) * 1e-6;
+    jump = (position - position_).norm() > max_speed_ * dt + slack_;
+  }
+  position_utime_ = utime;
+  position_ = position;
+  return jump;
+}
+
+}  // namespace tread::ins
