@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "modules/motor_bridge/core/device_report.hpp"
+#include "modules/motor_bridge/core/failsafe.hpp"
+#include "modules/motor_bridge/core/ins_watch.hpp"
+#include "modules/motor_bridge/core/operator_requests.hpp"
+#include "modules/motor_bridge/core/program_gate.hpp"
+#include "modules/motor_bridge/core/series_player.hpp"
+
+namespace tread::motor {
+
+/// Everything the bridge can be told about its behaviour.
+struct BridgeConfig {
+  std::int64_t step_us = 10'000;              ///< step() is called this often [us]
+  std::int64_t command_interval_us = 20'000;  ///< a command is repeated this often [us]
+  std::int64_t idle_interval_us = 100'000;    ///< zero, a while after a stop [us]
+  std::int64_t max_stall_us = 100'000;        ///< longest gap between steps [us]
+  GateLimits gate;
+  InsLimits ins;
+  RequestLimits requests;
+  FailsafeTimes times;
+};
+
+/// What a step decided.
+struct BridgeOutput {
+  FailsafeOutputs failsafe;
+  TrackCommand command;                   ///< zero unless driving
+  bool send = false;                      ///< the command is to be given to the controller now
+  CommandKind kind = CommandKind::kNone;  ///< of the series played
+  std::int64_t run_id = 0;                ///< of the series played; 0 = none
+  std::int64_t execution_id = 0;          ///< being played; 0 = none
+  std::int32_t command_index = -1;        ///< in the series; -1 = none
+  bool hold_device_stop = false;          ///< the controller's own emergency stop is to be engaged
+  bool release_device_stop = false;       ///< ... and to be released
+};
+
+/// The last process before the motors, without its wires: messages in, commands out, time as an
+/// argument.
+class Bridge {
+ public:
+  explicit Bridge(const BridgeConfig& config);
+
+  /// Messages as they are received, now [us] on the clock that step() uses.
+  void receive(const Program& program, std::int64_t now);
+  void receive(const ArmRequest& request, std::int64_t now);
+  void receive(const EstopRequest& request, std::int64_t now);
+  void receive(const InsNotice& notice, std::int64_t now);
+
+  /// Decides what the motors do from now [us] on.
+  BridgeOutput step(std::int64_t now, const DeviceReport& device);
+
+  const ExecutionLog& executions() const { return player_.log(); }
+  /// How often something was refused or noted, by its name in words.
+  const std::map<std::string, std::int64_t>& counters() const { return counters_; }
+
+ private:
+  /// What happened since the last step.
+  struct Since {
+    bool arm = false;
+    bool disarm = false;
+    bool estop_cleared = false;
+    bool planner_stop = false;
+    ArmRequest request;
+    std::string program_fault;
+  };
+
+  void count(const std::string& what) { ++counters_[what]; }
+  void take(const Program& program, std::int64_t now);
+  std::string stallFault(std::int64_t now) const;
+  std::string leaseFault(std::int64_t now) const;
+  std::string moveSchedule(std::int64_t now, bool stalled);
+  FailsafeInputs look(std::int64_t now, const DeviceReport& device);
+  void command(std::int64_t now, BridgeOutput& out);
+  void schedule(std::int64_t now, BridgeOutput& out);
+
+  BridgeConfig config_;
+  ProgramGate gate_;
+  SeriesPlayer player_;
+  InsWatch ins_;
+  OperatorRequests requests_;
+  Failsafe failsafe_;
+  Since since_;
+  std::optional<std::int64_t> last_step_;
+  std::optional<std::int64_t> last_sent_;
+  TrackCommand sent_;
+  std::map<std::string, std::int64_t> counters_;
+};
+
+}  // namespace tread::motor

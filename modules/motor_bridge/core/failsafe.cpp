@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/motor_bridge/core/failsafe.hpp"
+
+namespace tread::motor {
+namespace {
+
+struct Fault {
+  State state = State::kDisarmed;
+  std::string reason;
+};
+
+/// Worst fault of the inputs, if any: the order of the lines is the ranking.
+std::optional<Fault> worstFault(const FailsafeInputs& in) {
+  if (in.estop) {
+    return Fault{State::kEstopped, "E-stop: " + in.estop_reason};
+  }
+  const Fault ranked[] = {{State::kFault, in.link_fault},     {State::kFault, in.device_fault},
+                          {State::kFault, in.bridge_fault},   {State::kDisarmed, in.program_fault},
+                          {State::kDisarmed, in.lease_fault}, {State::kDisarmed, in.ins_fault}};
+  for (const Fault& fault : ranked) {
+    if (!fault.reason.empty()) {
+      return fault;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+const char* describe(State state) {
+  switch (state) {
+    case State::kDriving:
+      return "driving";
+    case State::kArmed:
+      return "armed";
+    case State::kStopping:
+      return "stopping";
+    case State::kDisarmed:
+      return "disarmed";
+    case State::kFault:
+      return "fault";
+    case State::kEstopped:
+      return "E-stop";
+  }
+  return "unknown";
+}
+
+FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
+  const State state_before = state_;
+  const std::string reason_before = reason_;
+  const std::string refusal_before = refusal_;
+  if (!zero_since_) {
+    zero_since_ = in.now;
+  }
+  watchHealth(in);
+  // A fault or a request leaves nothing to decide: the next series waits for the next step, so that
+  // at least one zero lies between.
+  if (!stopOnFault(in) && !serveRequest(in)) {
+    serveSeries(in);
+  }
+  FailsafeOutputs out;
+  out.state = state_;
+  out.may_drive = state_ == State::kDriving;
+  out.zero_fast = in.now - *zero_since_ < times_.fast_zero_us;
+  out.arm_refused = in.arm && !refusal_.empty();
+  out.reason =
+      refusal_.empty() || isArmed(state_) ? reason_ : reason_ + "; ARM refused: " + refusal_;
+  if (const std::optional<Fault> fault = worstFault(in)) {
+    out.standing_fault = fault->reason;
+  }
+  out.changed = state_ != state_before || reason_ != reason_before || refusal_ != refusal_before;
+  return out;
+}
+
+void Failsafe::enter(State state, const std::string& reason, std::int64_t now) {
+  if (state_ == State::kDriving || !isArmed(state)) {
+    zero_since_ = now;
+  }
+  if (!isArmed(state)) {
+    disarmed_at_ = now;
+  }
+  state_ = state;
+  reason_ = reason;
+  refusal_.clear();
+}
+
+void Failsafe::watchHealth(const FailsafeInputs& in) {
+  if (worstFault(in)) {
+    healthy_since_.reset();
+  } else if (!healthy_since_) {
+    healthy_since_ = in.now;
+  }
+}
+
+bool Failsafe::stopOnFault(const FailsafeInputs& in) {
+  const std::optional<Fault> fault = worstFault(in);
+  if (!fault) {
+    return false;
+  }
+  if (isArmed(state_)) {
+    enter(fault->state, fault->reason, in.now);
+  } else if (fault->state > state_ && fault->state == State::kEstopped) {
+    enter(fault->state, fault->reason, in.now);
+  }
+  if (in.arm) {
+    refusal_ = fault->reason;
+  }
+  return true;
+}
+
+std::string Failsafe::whyNotArm(const FailsafeInputs& in) const {
+  const std::int64_t healthy = healthy_since_ ? in.now - *healthy_since_ : 0;
+  if (healthy >= times_.healthy_before_arm_us) {
+    return "";
+  }
+  return "inputs good for " + std::to_string(healthy / 1000) + " ms, " +
+         std::to_string(times_.healthy_before_arm_us / 1000) + " are needed";
+}
+
+bool Failsafe::serveRequest(const FailsafeInputs& in) {
+  if (in.disarm) {
+    if (isArmed(state_)) {
+      enter(State::kDisarmed, "disarmed by " + in.requested_by, in.now);
+    }
+    return true;
+  }
+  if (!in.arm || isArmed(state_)) {
+    return false;
+  }
+  refusal_ = whyNotArm(in);
+  if (refusal_.empty()) {
+    enter(State::kArmed, "armed by " + in.requested_by, in.now);
+  }
+  return true;
+}
+
+void Failsafe::serveSeries(const FailsafeInputs& in) {
+  if (state_ == State::kDriving && !in.playing) {
+    enter(State::kStopping, in.series_end.empty() ? "series ended" : in.series_end, in.now);
+  } else if ((state_ == State::kArmed || state_ == State::kStopping) && in.start_wanted) {
+    enter(State::kDriving, "playing", in.now);
+  } else if (state_ == State::kStopping && in.now - *zero_since_ >= times_.fast_zero_us) {
+    enter(State::kArmed, reason_, in.now);
+  }
+}
+
+}  // namespace tread::motor

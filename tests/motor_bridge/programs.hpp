@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+
+#include "modules/motor_bridge/core/program.hpp"
+
+namespace tread::motor {
+
+/// A slot of constant power; period 50 ms.
+inline Slot makeSlot(std::int64_t execution_id, int commands, double left = 0.5,
+                     double right = 0.5) {
+  Slot slot;
+  slot.execution_id = execution_id;
+  slot.pattern_id = static_cast<std::int32_t>(100 + execution_id);
+  slot.set_version = 7;
+  slot.kind = CommandKind::kPower;
+  slot.period_us = 50'000;
+  slot.series.assign(static_cast<std::size_t>(commands), TrackCommand{left, right});
+  return slot;
+}
+
+/// A program of run 1 sent at utime.
+inline Program makeProgram(std::int64_t utime, const Slot& running, const Slot& next = {}) {
+  Program program;
+  program.utime = utime;
+  program.seq = utime;
+  program.run_id = 1;
+  program.lease_us = 200'000;
+  program.running = running;
+  program.next = next;
+  return program;
+}
+
+}  // namespace tread::motor

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <limits>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include "tests/motor_bridge/bridge_world.hpp"
+
+using namespace tread::motor;
+
+namespace {
+
+/// Steps until the command is zero; returns how long it took [us].
+std::int64_t timeToZero(BridgeWorld& world) {
+  const std::int64_t from = world.now;
+  do {
+    world.step();
+  } while (!world.out.command.zero() && world.now - from < 10'000'000);
+  return world.now - from;
+}
+
+}  // namespace
+
+TEST_CASE("armed with a planner and an INS it drives, series joined to series without a gap") {
+  BridgeWorld world;
+  world.drive();
+  REQUIRE(world.state() == State::kDriving);
+  for (int i = 0; i < 6'000; ++i) {
+    world.step();
+    REQUIRE_FALSE(world.out.command.zero());
+  }
+  const auto& records = world.bridge.executions().records();
+  for (std::size_t i = 0; i + 1 < records.size(); ++i) {
+    CHECK(records[i].end_utime == records[i + 1].start_utime);
+    CHECK(records[i].end_utime - records[i].start_utime == 400'000);
+    CHECK(records[i].commands_played == records[i].commands_total);
+  }
+}
+
+TEST_CASE("it gives the planner's commands, unchanged, with their execution and index") {
+  BridgeWorld world;
+  world.drive();
+  world.run(10'000'000);
+  const std::int64_t since_start = world.now - world.last().start_utime;
+  CHECK(world.out.execution_id == world.last().execution_id);
+  CHECK(world.out.command_index == since_start / 50'000);
+  CHECK(world.out.run_id == 1);
+  CHECK(world.out.kind == CommandKind::kPower);
+}
+
+TEST_CASE("without ARM nothing ever moves") {
+  BridgeWorld world;
+  for (int i = 0; i < 60'000; ++i) {
+    world.step();
+    REQUIRE(world.out.command.zero());
+  }
+  CHECK(world.bridge.executions().records().empty());
+}
+
+TEST_CASE("a silent planner: zero one step after the lease, then ARM is needed") {
+  BridgeWorld world;
+  world.planner.commands = 200;
+  world.drive();
+  world.planner_alive = false;
+  const std::int64_t lease_end = world.now - world.now % 50'000 - 1'000 + 200'000;
+  timeToZero(world);
+  CHECK(world.now - lease_end <= BridgeWorld::kStep);
+  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.reason() == "no good PROGRAM within its lease");
+  CHECK(world.last().outcome == Outcome::kAborted);
+  CHECK(world.last().reason == "no good PROGRAM within its lease");
+  world.planner_alive = true;
+  world.run(5'000'000);
+  CHECK(world.state() == State::kDisarmed);
+  world.arm();
+  world.run(200'000);
+  CHECK(world.state() == State::kDriving);
+}
+
+TEST_CASE(
+    "series end without a next: zero in the very step, still armed, goes on with the next "
+    "program") {
+  BridgeWorld world;
+  world.drive();
+  world.planner_alive = false;
+  Program last = world.planner.plan(world.now, world.bridge.executions());
+  last.next = Slot{};
+  world.bridge.receive(last, world.now);
+  while (world.last().outcome == Outcome::kRunning) {
+    world.step();
+    last.utime = world.now;
+    world.bridge.receive(last, world.now);
+  }
+  CHECK(world.out.command.zero());
+  CHECK(world.now == world.last().end_utime);
+  CHECK(world.last().outcome == Outcome::kCompleted);
+  CHECK(world.state() == State::kStopping);
+  world.planner_alive = true;
+  world.run(100'000);
+  CHECK(world.state() == State::kDriving);
+}
+
+TEST_CASE("an empty running slot stops at once and stays armed") {
+  BridgeWorld world;
+  world.drive();
+  world.planner_alive = false;
+  world.bridge.receive(makeProgram(world.now + 1, Slot{}), world.now + 1);
+  CHECK(timeToZero(world) == BridgeWorld::kStep);
+  CHECK(world.state() == State::kStopping);
+  CHECK(world.reason() == "stopped by the planner");
+  CHECK(world.last().reason == "stopped by the planner");
+  CHECK(world.last().outcome == Outcome::kAborted);
+}
+
+TEST_CASE("a silent INS stops 100 ms later") {
+  BridgeWorld world;
+  world.drive();
+  world.ins_alive = false;
+  CHECK(timeToZero(world) <= 100'000 + BridgeWorld::kStep);
+  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.reason() == "INS is stale: nothing new within 100 ms");
+}
+
+TEST_CASE("E-stop, link fault and device fault stop in the next step") {
+  BridgeWorld world;
+  world.drive();
+  SECTION("E-stop") {
+    world.bridge.receive(EstopRequest{world.now, true, "operator", "person"}, world.now);
+    CHECK(timeToZero(world) == BridgeWorld::kStep);
+    CHECK(world.state() == State::kEstopped);
+    CHECK(world.out.hold_device_stop);
+    world.run(2'000'000);
+    world.arm();
+    world.run(100'000);
+    CHECK(world.state() == State::kEstopped);
+    world.bridge.receive(EstopRequest{world.now, false, "operator", "clear"}, world.now);
+    world.step();
+    CHECK(world.out.release_device_stop);
+    CHECK_FALSE(world.out.hold_device_stop);
+  }
+  SECTION("link") {
+    world.device.link_fault = "controller lost";
+    CHECK(timeToZero(world) == BridgeWorld::kStep);
+    CHECK(world.state() == State::kFault);
+  }
+  SECTION("device") {
+    world.device.device_fault = "controller: overheat";
+    CHECK(timeToZero(world) == BridgeWorld::kStep);
+    CHECK(world.state() == State::kFault);
+    CHECK(world.reason() == "controller: overheat");
+  }
+  world.device = {};
+  world.run(1'200'000);
+  CHECK(world.out.command.zero());
+  world.arm();
+  world.run(200'000);
+  CHECK(world.state() == State::kDriving);
+}
+
+TEST_CASE("one bad slot in one program stops, whichever slot it is") {
+  for (const bool in_next : {false, true}) {
+    for (int fault = 0; fault < 4; ++fault) {
+      BridgeWorld world;
+      world.drive();
+      Program program = world.planner.plan(world.now + 1, world.bridge.executions());
+      Slot& slot = in_next ? program.next : program.running;
+      if (fault == 0) slot.series[1].left = std::numeric_limits<double>::quiet_NaN();
+      if (fault == 1) slot.series[1].left = 1.5;
+      if (fault == 2) slot.kind = CommandKind::kTrackSpeed;
+      if (fault == 3) slot.period_us = 33'000;
+      world.bridge.receive(program, world.now + 1);
+      CHECK(timeToZero(world) == BridgeWorld::kStep);
+      CHECK(world.state() == State::kDisarmed);
+      CHECK(world.reason().rfind("PROGRAM with a", 0) == 0);
+    }
+  }
+}
+
+TEST_CASE("a planner that was restarted while driving is a reason to stop; armed again it drives") {
+  BridgeWorld world;
+  world.drive();
+  world.planner = EndlessPlanner(2);
+  CHECK(timeToZero(world) <= 60'000);
+  CHECK(world.reason() == "the planner was restarted while armed");
+  CHECK(world.state() == State::kDisarmed);
+  world.run(1'300'000);
+  world.arm();
+  world.run(200'000);
+  CHECK(world.state() == State::kDriving);
+  CHECK(world.out.run_id == 2);
+}
+
+TEST_CASE("two planners at once can never be armed") {
+  BridgeWorld world;
+  EndlessPlanner second(2);
+  for (int i = 0; i < 1'000; ++i) {
+    world.run(50'000);
+    world.bridge.receive(second.plan(world.now + 1, world.bridge.executions()), world.now + 1);
+    world.arm();
+    CHECK(world.state() == State::kDisarmed);
+  }
+}
+
+TEST_CASE("a planner that talks about another execution does not keep the robot moving") {
+  BridgeWorld world;
+  world.planner.commands = 200;
+  world.drive();
+  world.planner_alive = false;
+  const std::int64_t from = world.now;
+  while (world.state() == State::kDriving && world.now - from < 1'000'000) {
+    world.step();
+    world.bridge.receive(makeProgram(world.now, makeSlot(900, 20)), world.now);
+  }
+  CHECK(world.now - from <= 210'000);
+  CHECK(world.bridge.counters().at("PROGRAM refused: running slot is neither played nor pending") >
+        10);
+}
+
+TEST_CASE("a bridge that was held up stops and says so") {
+  BridgeWorld world;
+  world.drive();
+  world.now += 200'000;
+  world.bridge.receive(InsNotice{world.now, true}, world.now);
+  world.bridge.receive(world.planner.plan(world.now, world.bridge.executions()), world.now);
+  world.step();
+  CHECK(world.out.command.zero());
+  CHECK(world.state() == State::kFault);
+  CHECK(world.reason() == "motor_bridge was held up for 210 ms");
+}
+
+TEST_CASE("disarming and late copies of an old ARM") {
+  BridgeWorld world;
+  world.drive();
+  const ArmRequest arm{world.now + 1, true, "operator", "again"};
+  world.bridge.receive(arm, world.now + 1);
+  world.step();
+  world.bridge.receive(ArmRequest{world.now, false, "operator", "stop"}, world.now);
+  world.step();
+  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.reason() == "disarmed by operator");
+  world.run(1'200'000);
+  world.bridge.receive(arm, world.now);
+  world.step();
+  CHECK(world.state() == State::kDisarmed);
+}
+
+TEST_CASE("commands leave at 50 Hz, on every change, and zero at 10 Hz a while after a stop") {
+  BridgeWorld world;
+  world.drive();
+  TrackCommand sent = world.out.command;
+  int sends = 0;
+  for (int i = 0; i < 1'000; ++i) {
+    world.step();
+    const bool changed = world.out.command != sent;
+    REQUIRE((world.out.send || !changed));
+    sends += world.out.send;
+    sent = world.out.send ? world.out.command : sent;
+  }
+  CHECK(sends >= 500);
+  world.bridge.receive(ArmRequest{world.now, false, "operator", "stop"}, world.now);
+  int fast = 0;
+  int slow = 0;
+  for (int i = 0; i < 200; ++i) {
+    world.step();
+    (i < 100 ? fast : slow) += world.out.send;
+  }
+  CHECK(fast == 50);
+  CHECK(slow == 10);
+}

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <random>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "modules/motor_bridge/core/failsafe.hpp"
+
+using namespace tread::motor;
+
+namespace {
+
+constexpr std::int64_t kStep = 10'000;
+
+/// Drives a failsafe in virtual time; inputs are good unless a test says otherwise.
+struct Rig {
+  Failsafe failsafe{FailsafeTimes{}};
+  FailsafeInputs in;
+  FailsafeOutputs out;
+
+  Rig() { in.now = 1'000'000; }
+
+  void step() {
+    in.now += kStep;
+    out = failsafe.update(in);
+    in.arm = in.disarm = false;
+    in.series_end.clear();
+  }
+  void run(std::int64_t us) {
+    for (const std::int64_t end = in.now + us; in.now < end;) {
+      step();
+    }
+  }
+  void arm() {
+    run(1'100'000);
+    in.arm = true;
+    in.requested_by = "operator";
+    step();
+    REQUIRE(out.state == State::kArmed);
+  }
+  void drive() {
+    arm();
+    in.start_wanted = true;
+    step();
+    REQUIRE(out.state == State::kDriving);
+    in.start_wanted = false;
+    in.playing = true;
+  }
+};
+
+/// The inputs that stop, worst first, with the state they lead to.
+struct Cause {
+  std::string FailsafeInputs::*reason;
+  State state;
+};
+const std::vector<Cause> kCauses = {
+    {&FailsafeInputs::link_fault, State::kFault},
+    {&FailsafeInputs::device_fault, State::kFault},
+    {&FailsafeInputs::bridge_fault, State::kFault},
+    {&FailsafeInputs::program_fault, State::kDisarmed},
+    {&FailsafeInputs::lease_fault, State::kDisarmed},
+    {&FailsafeInputs::ins_fault, State::kDisarmed},
+};
+
+}  // namespace
+
+TEST_CASE("it comes up disarmed and does not arm by itself") {
+  Rig rig;
+  rig.in.start_wanted = true;
+  rig.run(60'000'000);
+  CHECK(rig.out.state == State::kDisarmed);
+  CHECK_FALSE(rig.out.may_drive);
+  CHECK(rig.out.reason == "not armed yet");
+}
+
+TEST_CASE("arming needs a second of good inputs, and says so") {
+  Rig rig;
+  rig.run(500'000);
+  rig.in.arm = true;
+  rig.step();
+  CHECK(rig.out.state == State::kDisarmed);
+  CHECK(rig.out.arm_refused);
+  CHECK(rig.out.reason == "not armed yet; ARM refused: inputs good for 500 ms, 1000 are needed");
+  rig.run(600'000);
+  rig.in.arm = true;
+  rig.step();
+  CHECK(rig.out.state == State::kArmed);
+}
+
+TEST_CASE("every cause stops in the very step it is seen, stays stopped and needs ARM") {
+  for (const Cause& cause : kCauses) {
+    Rig rig;
+    rig.drive();
+    rig.in.*cause.reason = "something";
+    rig.step();
+    CHECK_FALSE(rig.out.may_drive);
+    CHECK(rig.out.state == cause.state);
+    CHECK(rig.out.reason == "something");
+    rig.in.playing = false;
+    (rig.in.*cause.reason).clear();
+    rig.in.start_wanted = true;
+    rig.run(10'000'000);
+    CHECK(rig.out.state == cause.state);
+    CHECK(rig.out.standing_fault.empty());
+    rig.in.arm = true;
+    rig.step();
+    CHECK(rig.out.state == State::kArmed);
+    CHECK_FALSE(rig.out.may_drive);
+    rig.step();
+    CHECK(rig.out.state == State::kDriving);
+  }
+}
+
+TEST_CASE("ARM while a fault stands is refused with that fault") {
+  for (const Cause& cause : kCauses) {
+    Rig rig;
+    rig.run(2'000'000);
+    rig.in.*cause.reason = "something";
+    rig.in.arm = true;
+    rig.step();
+    CHECK(rig.out.state == State::kDisarmed);
+    CHECK(rig.out.reason == "not armed yet; ARM refused: something");
+  }
+}
+
+TEST_CASE("the worst cause is the one that is named") {
+  for (std::size_t worst = 0; worst < kCauses.size(); ++worst) {
+    Rig rig;
+    rig.drive();
+    for (std::size_t i = worst; i < kCauses.size(); ++i) {
+      rig.in.*kCauses[i].reason = "cause " + std::to_string(i);
+    }
+    rig.step();
+    CHECK(rig.out.reason == "cause " + std::to_string(worst));
+    CHECK(rig.out.state == kCauses[worst].state);
+  }
+}
+
+TEST_CASE("an E-stop wins over everything, latches, and needs clearing and then ARM") {
+  Rig rig;
+  rig.drive();
+  rig.in.estop = true;
+  rig.in.estop_reason = "person in front (operator)";
+  rig.in.link_fault = "gone";
+  rig.step();
+  CHECK(rig.out.state == State::kEstopped);
+  CHECK(rig.out.reason == "E-stop: person in front (operator)");
+  rig.in.playing = false;
+  rig.in.link_fault.clear();
+  rig.run(3'000'000);
+  rig.in.arm = true;
+  rig.step();
+  CHECK(rig.out.state == State::kEstopped);
+  CHECK(rig.out.arm_refused);
+  rig.in.estop = false;
+  rig.run(5'000'000);
+  CHECK(rig.out.state == State::kEstopped);
+  rig.in.arm = true;
+  rig.step();
+  CHECK(rig.out.state == State::kArmed);
+}
+
+TEST_CASE("an E-stop reaches a bridge that is disarmed or in fault, too") {
+  for (const bool fault : {false, true}) {
+    Rig rig;
+    if (fault) {
+      rig.drive();
+      rig.in.link_fault = "gone";
+      rig.step();
+      REQUIRE(rig.out.state == State::kFault);
+    }
+    rig.in.estop = true;
+    rig.step();
+    CHECK(rig.out.state == State::kEstopped);
+  }
+}
+
+TEST_CASE("the normal end of a series stops, stays armed and may go on after one zero") {
+  Rig rig;
+  rig.drive();
+  rig.in.playing = false;
+  rig.in.start_wanted = true;
+  rig.in.series_end = "series ended without a next";
+  rig.step();
+  CHECK(rig.out.state == State::kStopping);
+  CHECK_FALSE(rig.out.may_drive);
+  CHECK(rig.out.reason == "series ended without a next");
+  rig.step();
+  CHECK(rig.out.state == State::kDriving);
+}
+
+TEST_CASE(
+    "zero is repeated at the command rate for a second after every stop, then at the idle rate") {
+  Rig rig;
+  rig.drive();
+  rig.in.playing = false;
+  rig.step();
+  const std::int64_t stopped = rig.in.now;
+  while (rig.out.zero_fast) {
+    rig.step();
+  }
+  CHECK(rig.in.now - stopped == 1'000'000);
+  CHECK(rig.out.state == State::kArmed);
+  rig.run(5'000'000);
+  rig.in.estop = true;
+  rig.step();
+  CHECK(rig.out.zero_fast);
+}
+
+TEST_CASE("disarming stops, and wins over arming in the same step") {
+  Rig rig;
+  rig.drive();
+  rig.in.arm = true;
+  rig.in.disarm = true;
+  rig.in.requested_by = "operator";
+  rig.step();
+  CHECK(rig.out.state == State::kDisarmed);
+  CHECK(rig.out.reason == "disarmed by operator");
+}
+
+TEST_CASE("any sequence of inputs keeps the promises (ten hours of random scenario)") {
+  std::mt19937_64 random(20260701);
+  const auto chance = [&random](double p) {
+    return static_cast<double>(random() >> 11) * 0x1.0p-53 < p;
+  };
+  Rig rig;
+  std::int64_t good_since = 0;
+  for (int step = 0; step < 3'600'000; ++step) {
+    const State before = rig.failsafe.state();
+    bool good = true;
+    for (const Cause& cause : kCauses) {
+      std::string& reason = rig.in.*cause.reason;
+      reason = reason.empty() ? (chance(0.0005) ? "bad" : "") : (chance(0.05) ? "" : "bad");
+      good = good && reason.empty();
+    }
+    rig.in.estop = rig.in.estop ? !chance(0.02) : chance(0.0003);
+    good = good && !rig.in.estop;
+    const bool arm = rig.in.arm = chance(0.01);
+    rig.in.disarm = chance(0.0005);
+    rig.in.start_wanted = chance(0.5);
+    rig.in.playing = before == State::kDriving && chance(0.98);
+    rig.step();
+    if (!good) {
+      good_since = rig.in.now + kStep;
+    }
+    const State after = rig.out.state;
+    const bool enabled = !isArmed(before) && isArmed(after);
+    REQUIRE(rig.out.may_drive == (after == State::kDriving));
+    REQUIRE((good || !rig.out.may_drive));
+    REQUIRE((!enabled || (arm && rig.in.now - good_since >= 1'000'000)));
+    REQUIRE((before != State::kDriving || rig.in.playing || !rig.out.may_drive));
+    REQUIRE((!rig.in.estop || after == State::kEstopped));
+  }
+}

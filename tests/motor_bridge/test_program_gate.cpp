@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include "modules/motor_bridge/core/ins_watch.hpp"
+#include "modules/motor_bridge/core/operator_requests.hpp"
+#include "modules/motor_bridge/core/program_gate.hpp"
+#include "tests/motor_bridge/programs.hpp"
+
+using namespace tread::motor;
+
+namespace {
+
+constexpr std::int64_t kNow = 10'000'000;
+
+Refusal admit(ProgramGate& gate, const Program& program, std::int64_t now = kNow) {
+  return gate.admit(program, now, true).refusal;
+}
+
+}  // namespace
+
+TEST_CASE("programs from the future and older than the lease are refused") {
+  ProgramGate gate({});
+  CHECK(admit(gate, makeProgram(kNow + 50'001, makeSlot(1, 4))) == Refusal::kFromFuture);
+  CHECK(admit(gate, makeProgram(kNow - 200'001, makeSlot(1, 4))) == Refusal::kTooOld);
+  CHECK(admit(gate, makeProgram(kNow - 200'000, makeSlot(1, 4))) == Refusal::kNone);
+  CHECK(admit(gate, makeProgram(kNow + 50'000, makeSlot(1, 4))) == Refusal::kNone);
+}
+
+TEST_CASE("stamp zero is not now, and lease zero is not for ever") {
+  ProgramGate gate({});
+  CHECK(admit(gate, makeProgram(0, makeSlot(1, 4))) == Refusal::kTooOld);
+  Program program = makeProgram(kNow, makeSlot(1, 4));
+  program.lease_us = 0;
+  CHECK(admit(gate, program) == Refusal::kBadLease);
+  program.lease_us = -1;
+  CHECK(admit(gate, program) == Refusal::kBadLease);
+}
+
+TEST_CASE("duplicated and reordered programs are refused and do not renew anything") {
+  ProgramGate gate({});
+  CHECK(admit(gate, makeProgram(kNow, makeSlot(1, 4))) == Refusal::kNone);
+  CHECK(admit(gate, makeProgram(kNow, makeSlot(1, 4))) == Refusal::kOutOfOrder);
+  CHECK(admit(gate, makeProgram(kNow - 50'000, makeSlot(1, 4))) == Refusal::kOutOfOrder);
+  CHECK_FALSE(gate.leaseValid(kNow));
+}
+
+TEST_CASE(
+    "the lease runs from receipt and from utime, whichever is older, and is never longer than "
+    "allowed") {
+  ProgramGate gate({});
+  Program program = makeProgram(kNow - 120'000, makeSlot(1, 4));
+  program.lease_us = 10'000'000;
+  gate.renew(program, kNow);
+  CHECK(gate.leaseValid(kNow + 80'000));
+  CHECK_FALSE(gate.leaseValid(kNow + 80'001));
+  program.utime = kNow + 40'000;
+  gate.renew(program, kNow);
+  CHECK(gate.leaseValid(kNow + 200'000));
+  CHECK_FALSE(gate.leaseValid(kNow + 200'001));
+}
+
+TEST_CASE("a planner may ask for a shorter lease") {
+  ProgramGate gate({});
+  Program program = makeProgram(kNow, makeSlot(1, 4));
+  program.lease_us = 60'000;
+  gate.renew(program, kNow);
+  CHECK(gate.leaseValid(kNow + 60'000));
+  CHECK_FALSE(gate.leaseValid(kNow + 60'001));
+}
+
+TEST_CASE(
+    "another run is let in only where it may be adopted, and late words of the old run never") {
+  ProgramGate gate({});
+  CHECK(gate.admit(makeProgram(kNow, makeSlot(1, 4)), kNow, false).new_run);
+  Program other = makeProgram(kNow + 50'000, makeSlot(1, 4));
+  other.run_id = 2;
+  CHECK(gate.admit(other, kNow + 50'000, false).refusal == Refusal::kRunChanged);
+  const ProgramGate::Verdict adopted = gate.admit(other, kNow + 50'000, true);
+  CHECK(adopted.refusal == Refusal::kNone);
+  CHECK(adopted.new_run);
+  CHECK(admit(gate, makeProgram(kNow + 40'000, makeSlot(2, 4)), kNow + 60'000) ==
+        Refusal::kOutOfOrder);
+}
+
+TEST_CASE("bad slots are refused in both places") {
+  ProgramGate gate({});
+  Slot bad = makeSlot(2, 4);
+  bad.series[0].left = 2.0;
+  CHECK(gate.admit(makeProgram(kNow, bad), kNow, true).slot_fault == SlotFault::kOutOfRange);
+  CHECK(gate.admit(makeProgram(kNow + 1, makeSlot(1, 4), bad), kNow + 1, true).refusal ==
+        Refusal::kBadSlot);
+}
+
+TEST_CASE("the INS limit is three periods, at least 100 ms") {
+  CHECK(InsLimits{20'000}.maxAge() == 100'000);
+  CHECK(InsLimits{50'000}.maxAge() == 150'000);
+}
+
+TEST_CASE("an INS that repeats its last measurement is as good as silent") {
+  InsWatch watch({});
+  CHECK(watch.fault(kNow) == "no INS yet");
+  for (std::int64_t t = 0; t <= 200'000; t += 20'000) {
+    watch.receive({kNow, true}, kNow + t);
+  }
+  CHECK(watch.fault(kNow + 100'000).empty());
+  CHECK_FALSE(watch.fault(kNow + 100'001).empty());
+  watch.receive({kNow + 200'000, true}, kNow + 210'000);
+  CHECK(watch.fault(kNow + 220'000).empty());
+}
+
+TEST_CASE("INS from the future, out of the past or without position or heading does not count") {
+  InsWatch watch({});
+  watch.receive({kNow + 60'000, true}, kNow);
+  CHECK_FALSE(watch.fault(kNow).empty());
+  watch.receive({kNow - 400'000, true}, kNow);
+  CHECK_FALSE(watch.fault(kNow).empty());
+  watch.receive({kNow, false}, kNow);
+  CHECK_FALSE(watch.fault(kNow).empty());
+  watch.receive({kNow + 20'000, true}, kNow + 20'000);
+  CHECK(watch.fault(kNow + 20'000).empty());
+}
+
+TEST_CASE("permission to drive must be fresh, newer than the last stop, and is used once") {
+  OperatorRequests requests({});
+  using Verdict = OperatorRequests::Verdict;
+  const ArmRequest arm{kNow, true, "operator", "go"};
+  CHECK(requests.judge(arm, kNow, kNow - 1) == Verdict::kArm);
+  CHECK(requests.judge(arm, kNow + 1'500'001, 0) == Verdict::kIgnored);
+  CHECK(requests.judge(arm, kNow - 50'001, 0) == Verdict::kIgnored);
+  CHECK(requests.judge(arm, kNow, kNow) == Verdict::kIgnored);
+  requests.consume(arm);
+  CHECK(requests.judge(arm, kNow, 0) == Verdict::kIgnored);
+  CHECK(requests.judge({0, false, "anyone", "stop"}, kNow, kNow) == Verdict::kDisarm);
+}
+
+TEST_CASE("an E-stop always counts; its clearing must be fresh and newer") {
+  OperatorRequests requests({});
+  requests.receive({0, true, "nobody", "clock is wrong"}, kNow);
+  CHECK(requests.estop());
+  CHECK(requests.estopReason() == "clock is wrong (nobody)");
+  CHECK_FALSE(requests.receive({kNow - 2'000'000, false, "operator", ""}, kNow));
+  requests.receive({kNow, true, "operator", "person"}, kNow);
+  CHECK_FALSE(requests.receive({kNow - 10, false, "operator", "late word"}, kNow));
+  CHECK(requests.receive({kNow + 10, false, "operator", "clear"}, kNow + 10));
+  CHECK_FALSE(requests.estop());
+}
+
+TEST_CASE("an E-stop stamped in the far future can still be cleared") {
+  OperatorRequests requests({});
+  requests.receive({kNow * 100, true, "broken clock", "?"}, kNow);
+  CHECK(requests.estop());
+  CHECK(requests.receive({kNow + 1, false, "operator", "clear"}, kNow + 1));
+}
