@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -22,9 +24,10 @@ struct Range {
 };
 
 /// Reads one YAML map strictly into structs with defaults.
-/** Every key that is in the file must be asked for before finish(); unknown keys, duplicates, wrong types,
- *  non-finite and out-of-range numbers, a second document and syntax errors throw ConfigError with file:line.
- *  A key that is absent leaves the default, unless it is asked for with `required`. Usage:
+/** Every key that is in the file must be asked for before finish(); unknown keys, duplicates, wrong
+ * types, non-finite and out-of-range numbers, a second document and syntax errors throw ConfigError
+ * with file:line. A key that is absent leaves the default, unless it is asked for with `required`.
+ * Usage:
  *
  *      ConfigReader reader = ConfigReader::fromFile("robot.yaml");
  *      reader.number("lease", config.lease, {0.05, 1.0}, "s");

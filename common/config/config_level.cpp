@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/config/config_level.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "common/config/scalars.hpp"
+
+namespace tread {
+namespace {
+
+int lineFrom(const YAML::Mark& mark, int otherwise) {
+  return mark.is_null() ? otherwise : mark.line + 1;
+}
+
+/// A scalar as it is quoted in a message: one short line.
+std::string shown(const std::string& text) {
+  constexpr size_t kLongest = 40;
+  const std::string quoted = formatText(text.substr(0, kLongest));
+  return text.size() > kLongest ? quoted + "..." : quoted;
+}
+
+const char* kindOf(const YAML::Node& node) {
+  if (node.IsSequence()) return "a list";
+  if (node.IsMap()) return "a map";
+  return node.IsScalar() ? "a single value" : "empty";
+}
+
+/// Whether the quoted scalar that begins here is closed before the text ends.
+bool isClosed(const std::string& text, size_t open) {
+  const char quote = text[open];
+  for (size_t at = open + 1; at < text.size(); ++at) {
+    if (text[at] == quote) return true;
+    if (quote == '"' && text[at] == '\\') ++at;
+  }
+  return false;
+}
+
+/// The number of an item that has nothing wrong with it; the way of nearly all, without texts for
+/// messages.
+std::optional<double> goodNumber(const YAML::Node& node, Range range) {
+  if (!node.IsScalar() || node.Tag() != "?") return std::nullopt;
+  const auto value = parseNumber(node.Scalar());
+  return value && *value >= range.min && *value <= range.max ? value : std::nullopt;
+}
+
+std::vector<YAML::Node> loadDocuments(const std::string& text, const std::string& name) {
+  try {
+    return YAML::LoadAll(text);
+  } catch (const YAML::Exception& e) {
+    const std::string where = e.mark.is_null() ? "" : ":" + std::to_string(e.mark.line + 1);
+    throw ConfigError(name + where + ": " + e.msg +
+                      "; check indentation, quotes and brackets at and above this line");
+  }
+}
+
+}  // namespace
+
+ConfigSource::ConfigSource(std::string file_name, std::string file_text)
+    : name(std::move(file_name)), text(std::move(file_text)), line_starts{0} {
+  for (size_t at = 0; at < text.size(); ++at)
+    if (text[at] == '\n') line_starts.push_back(at + 1);
+}
+
+size_t ConfigSource::offsetOf(const YAML::Mark& mark) const {
+  const auto line = static_cast<size_t>(mark.line);
+  if (mark.is_null() || line >= line_starts.size()) return text.size();
+  return line_starts[line] + static_cast<size_t>(mark.column);
+}
+
+std::string formatQuantity(double value, const std::string& unit) {
+  return formatNumber(value) + (unit.empty() || unit == "1" ? "" : " " + unit);
+}
+
+std::string formatRange(Range range, const std::string& unit) {
+  const bool low = std::isfinite(range.min);
+  const bool high = std::isfinite(range.max);
+  if (low && high) return formatNumber(range.min) + ".." + formatQuantity(range.max, unit);
+  if (low) return "at least " + formatQuantity(range.min, unit);
+  if (high) return "at most " + formatQuantity(range.max, unit);
+  return "any finite number" + (unit.empty() || unit == "1" ? "" : " [" + unit + "]");
+}
+
+std::shared_ptr<ConfigReader::Level> ConfigReader::Level::parse(std::string text,
+                                                                const std::string& name) {
+  // yaml-cpp takes a byte order mark off; without it, offsets in this copy agree with its marks.
+  if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) text.erase(0, 3);
+  const auto source = std::make_shared<ConfigSource>(name, std::move(text));
+  const std::vector<YAML::Node> documents = loadDocuments(source->text, name);
+  if (documents.size() > 1) {
+    const int second = lineFrom(documents[1].Mark(), 1);
+    throw ConfigError(name + ":" + std::to_string(second) +
+                      ": a second document begins here (---); one is allowed");
+  }
+  return of(source, "", documents.empty() ? YAML::Node() : documents.front(), 1);
+}
+
+std::shared_ptr<ConfigReader::Level> ConfigReader::Level::of(
+    std::shared_ptr<const ConfigSource> source, const std::string& prefix, const YAML::Node& map,
+    int line) {
+  auto level = std::make_shared<Level>();
+  level->source = std::move(source);
+  level->prefix = prefix;
+  level->line = line;
+  if (map.IsNull()) return level;
+  if (!map.IsMap()) {
+    const std::string name = prefix.empty() ? "the file" : prefix.substr(0, prefix.size() - 1);
+    throw level->errorAt(line, name + " is " + kindOf(map) + "; a map of keys is needed");
+  }
+  level->collect(map);
+  return level;
+}
+
+void ConfigReader::Level::collect(const YAML::Node& map) {
+  for (const auto& pair : map) {
+    const int key_line = lineFrom(pair.first.Mark(), line);
+    if (!pair.first.IsScalar())
+      throw errorAt(key_line, std::string("a key is ") + kindOf(pair.first) + "; a word is needed");
+    const std::string key = pair.first.Scalar();
+    if (const Entry* first = find(key))
+      throw errorAt(key_line, path(key) + " is there twice; it was in line " +
+                                  std::to_string(first->line) + " already");
+    entries.push_back({key, key_line, pair.second, false});
+  }
+}
+
+ConfigReader::Level::Entry* ConfigReader::Level::find(const std::string& key) {
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [&](const Entry& entry) { return entry.key == key; });
+  return found == entries.end() ? nullptr : &*found;
+}
+
+const ConfigReader::Level::Entry* ConfigReader::Level::ask(const std::string& key, bool required) {
+  know(key);
+  Entry* entry = find(key);
+  if (entry == nullptr) {
+    if (required) throw missing(key);
+    return nullptr;
+  }
+  entry->asked = true;
+  return entry;
+}
+
+void ConfigReader::Level::know(const std::string& key) {
+  if (answered(key) == nullptr) answers.push_back({key, "", false, {}});
+}
+
+const ConfigReader::Level::Answer* ConfigReader::Level::answered(const std::string& key) const {
+  const auto found = std::find_if(answers.begin(), answers.end(),
+                                  [&](const Answer& answer) { return answer.key == key; });
+  return found == answers.end() ? nullptr : &*found;
+}
+
+ConfigReader::Level::Answer& ConfigReader::Level::answer(const std::string& key,
+                                                         const std::string& value) {
+  know(key);
+  const auto found = std::find_if(answers.begin(), answers.end(),
+                                  [&](const Answer& answer) { return answer.key == key; });
+  found->value = value;
+  return *found;
+}
+
+ConfigError ConfigReader::Level::errorAt(int at, const std::string& problem) const {
+  return ConfigError(source->name + ":" + std::to_string(at) + ": " + problem);
+}
+
+ConfigError ConfigReader::Level::missing(const std::string& key) const {
+  std::vector<std::string> unasked;
+  for (const Entry& entry : entries)
+    if (!entry.asked) unasked.push_back(entry.key);
+  const auto meant = nearestSpelling(key, unasked);
+  return errorAt(line, "required key " + path(key) + " is missing" +
+                           (meant ? "; is " + shown(*meant) + " meant?" : ""));
+}
+
+ConfigError ConfigReader::Level::unknown(const Entry& entry) const {
+  std::vector<std::string> known;
+  for (const Answer& answer : answers) known.push_back(answer.key);
+  const auto meant = nearestSpelling(entry.key, known);
+  std::string problem = "unknown key " + path(shown(entry.key));
+  if (meant) problem += "; is " + *meant + " meant?";
+  return errorAt(entry.line, problem + "; known here: " + joinWords(known));
+}
+
+int ConfigReader::Level::lineOf(const Entry& entry) {
+  return entry.value.IsScalar() ? lineFrom(entry.value.Mark(), entry.line) : entry.line;
+}
+
+std::string ConfigReader::Level::scalar(const YAML::Node& node, const std::string& name, int at,
+                                        const std::string& wanted, bool quotes_allowed) const {
+  if (!node.IsScalar())
+    throw errorAt(at, name + " is " + kindOf(node) + "; " + wanted + " is needed");
+  const std::string tag = node.Tag();
+  const bool quoted = tag == "!";
+  if (!quoted && tag != "?" && !tag.empty())
+    throw errorAt(at, name + " has the tag " + shown(tag) + "; " + wanted + " is needed");
+  if (quoted) refuseOpenQuote(node, name, at);
+  if (quoted && !quotes_allowed)
+    throw errorAt(at, name + " is text in quotes; " + wanted + " is needed");
+  return node.Scalar();
+}
+
+void ConfigReader::Level::refuseOpenQuote(const YAML::Node& node, const std::string& name,
+                                          int at) const {
+  // yaml-cpp takes a quote that is never closed as text up to the end of the file, with all keys
+  // that follow.
+  const std::string& text = source->text;
+  const size_t open = source->offsetOf(node.Mark());
+  if (open >= text.size() || (text[open] != '"' && text[open] != '\'')) return;
+  if (!isClosed(text, open))
+    throw errorAt(at, name + " begins with a quote that is never closed; close it");
+}
+
+double ConfigReader::Level::number(const YAML::Node& node, const std::string& name, int at,
+                                   Range range, const std::string& unit) const {
+  const std::string allowed = "; allowed " + formatRange(range, unit);
+  const std::string text = scalar(node, name, at, "a number, " + formatRange(range, unit), false);
+  const auto value = parseNumber(text);
+  if (!value) throw errorAt(at, name + " is " + shown(text) + ", not a decimal number" + allowed);
+  if (!(*value >= range.min && *value <= range.max))
+    throw errorAt(at, name + " is " + formatQuantity(*value, unit) + allowed);
+  return *value;
+}
+
+std::vector<double> ConfigReader::Level::numberList(const YAML::Node& node, const std::string& name,
+                                                    int at, size_t size, Range range,
+                                                    const std::string& unit) const {
+  if (!node.IsSequence())
+    throw errorAt(at, name + " is " + kindOf(node) + "; a list of numbers is needed");
+  if (size != 0 && node.size() != size)
+    throw errorAt(at, name + " has " + std::to_string(node.size()) + " numbers; " +
+                          std::to_string(size) + " needed");
+  std::vector<double> values;
+  for (const auto& item : node) {
+    if (const auto good = goodNumber(item, range)) {
+      values.push_back(*good);
+      continue;
+    }
+    const std::string item_name = name + "[" + std::to_string(values.size()) + "]";
+    const int item_line = item.IsScalar() ? lineFrom(item.Mark(), at) : at;
+    values.push_back(number(item, item_name, item_line, range, unit));
+  }
+  return values;
+}
+
+void ConfigReader::Level::finish() const {
+  for (const Entry& entry : entries)
+    if (!entry.asked) throw unknown(entry);
+  for (const Answer& answer : answers)
+    for (const auto& child : answer.children) child->finish();
+}
+
+std::string ConfigReader::Level::effective(const std::string& indent) const {
+  std::string text;
+  for (const Answer& answer : answers) {
+    const std::string key = indent + formatText(answer.key) + ":";
+    if (!answer.value.empty()) text += key + " " + answer.value + "\n";
+    if (!answer.value.empty() || (answer.children.empty() && !answer.is_list)) continue;
+    if (answer.children.empty()) text += key + " []\n";
+    if (!answer.children.empty()) text += key + "\n";
+    for (const auto& child : answer.children) {
+      std::string body = child->effective(indent + (answer.is_list ? "    " : "  "));
+      if (body.empty()) body = indent + (answer.is_list ? "    {}\n" : "  {}\n");
+      if (answer.is_list) body[indent.size() + 2] = '-';
+      text += body;
+    }
+  }
+  return text;
+}
+
+}  // namespace tread

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/config/config_reader.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "common/config/config_level.hpp"
+#include "common/config/scalars.hpp"
+
+namespace tread {
+namespace {
+
+/// A value that was never set (NaN) has no YAML that could be read back: it is left out.
+std::string numberAnswer(double value) {
+  return std::isfinite(value) ? formatNumber(value) : "";
+}
+
+std::string listAnswer(const std::vector<double>& values) {
+  std::vector<std::string> words;
+  if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
+    return "";
+  for (const double value : values) words.push_back(formatNumber(value));
+  return "[" + joinWords(words) + "]";
+}
+
+}  // namespace
+
+ConfigReader::ConfigReader(std::shared_ptr<Level> level) : level_(std::move(level)) {}
+ConfigReader::ConfigReader(ConfigReader&&) noexcept = default;
+ConfigReader& ConfigReader::operator=(ConfigReader&&) noexcept = default;
+ConfigReader::~ConfigReader() = default;
+
+ConfigReader ConfigReader::fromFile(const std::string& path) {
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none))
+    throw ConfigError(path + ": is a folder; a YAML file is needed");
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    throw ConfigError(path + ": cannot be read (" + std::strerror(errno) + "); check the path");
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (file.bad()) throw ConfigError(path + ": reading failed (" + std::strerror(errno) + ")");
+  return fromText(text.str(), path);
+}
+
+ConfigReader ConfigReader::fromText(const std::string& text, const std::string& name) {
+  return ConfigReader(Level::parse(text, name));
+}
+
+bool ConfigReader::has(const std::string& key) const {
+  level_->know(key);
+  return level_->find(key) != nullptr;
+}
+
+void ConfigReader::number(const std::string& key, double& value, Range range,
+                          const std::string& unit, bool required) {
+  if (const auto* entry = level_->ask(key, required))
+    value = level_->number(entry->value, level_->path(key), Level::lineOf(*entry), range, unit);
+  level_->answer(key, numberAnswer(value));
+}
+
+void ConfigReader::integer(const std::string& key, int64_t& value, Range range,
+                           const std::string& unit, bool required) {
+  if (const auto* entry = level_->ask(key, required)) {
+    const std::string name = level_->path(key);
+    const int line = Level::lineOf(*entry);
+    const std::string allowed = formatRange(range, unit);
+    const std::string text =
+        level_->scalar(entry->value, name, line, "a whole number, " + allowed, false);
+    const auto parsed = parseInteger(text);
+    if (!parsed)
+      throw level_->errorAt(line, name + " is " + formatText(text) +
+                                      ", not a plain decimal whole number; allowed " + allowed);
+    const auto as_number = static_cast<double>(*parsed);
+    if (!(as_number >= range.min && as_number <= range.max))
+      throw level_->errorAt(
+          line, name + " is " + formatQuantity(as_number, unit) + "; allowed " + allowed);
+    value = *parsed;
+  }
+  level_->answer(key, std::to_string(value));
+}
+
+void ConfigReader::flag(const std::string& key, bool& value, bool required) {
+  if (const auto* entry = level_->ask(key, required)) {
+    const std::string name = level_->path(key);
+    const int line = Level::lineOf(*entry);
+    const std::string text = level_->scalar(entry->value, name, line, "true or false", false);
+    if (text != "true" && text != "false")
+      throw level_->errorAt(line, name + " is " + formatText(text) + "; allowed true, false");
+    value = text == "true";
+  }
+  level_->answer(key, value ? "true" : "false");
+}
+
+void ConfigReader::text(const std::string& key, std::string& value, bool required) {
+  if (const auto* entry = level_->ask(key, required))
+    value = level_->scalar(entry->value, level_->path(key), Level::lineOf(*entry), "text", true);
+  level_->answer(key, formatText(value));
+}
+
+void ConfigReader::choice(const std::string& key, std::string& value,
+                          const std::vector<std::string>& allowed, bool required) {
+  if (const auto* entry = level_->ask(key, required)) {
+    const std::string name = level_->path(key);
+    const int line = Level::lineOf(*entry);
+    const std::string wanted = "one of " + joinWords(allowed);
+    const std::string text = level_->scalar(entry->value, name, line, wanted, true);
+    if (std::find(allowed.begin(), allowed.end(), text) == allowed.end()) {
+      const auto meant = nearestSpelling(text, allowed);
+      throw level_->errorAt(line, name + " is " + formatText(text) +
+                                      (meant ? "; is " + *meant + " meant?" : "") + "; allowed " +
+                                      joinWords(allowed));
+    }
+    value = text;
+  }
+  level_->answer(key, formatText(value));
+}
+
+void ConfigReader::numbers(const std::string& key, std::vector<double>& values, size_t size,
+                           Range range, const std::string& unit, bool required) {
+  if (const auto* entry = level_->ask(key, required))
+    values = level_->numberList(entry->value, level_->path(key), Level::lineOf(*entry), size, range,
+                                unit);
+  level_->answer(key, listAnswer(values));
+}
+
+void ConfigReader::table(const std::string& key, std::vector<std::vector<double>>& rows,
+                         size_t columns, Range range, const std::string& unit, bool required) {
+  if (const auto* entry = level_->ask(key, required)) {
+    const std::string name = level_->path(key);
+    if (!entry->value.IsSequence())
+      throw level_->errorAt(Level::lineOf(*entry), name + " is not a list; a list of rows of " +
+                                                       std::to_string(columns) +
+                                                       " numbers is needed");
+    std::vector<std::vector<double>> read;
+    for (const auto& row : entry->value) {
+      const int line = row.Mark().is_null() ? entry->line : row.Mark().line + 1;
+      const std::string row_name = name + "[" + std::to_string(read.size()) + "]";
+      read.push_back(level_->numberList(row, row_name, line, columns, range, unit));
+    }
+    rows = std::move(read);
+  }
+  std::vector<std::string> written;
+  for (const auto& row : rows) written.push_back(listAnswer(row));
+  level_->answer(key, "[" + joinWords(written) + "]");
+}
+
+void ConfigReader::texts(const std::string& key, std::vector<std::string>& values, bool required) {
+  if (const auto* entry = level_->ask(key, required)) {
+    const std::string name = level_->path(key);
+    if (!entry->value.IsSequence())
+      throw level_->errorAt(Level::lineOf(*entry),
+                            name + " is not a list; a list of texts is needed");
+    std::vector<std::string> read;
+    for (const auto& item : entry->value) {
+      const int line = item.Mark().is_null() ? entry->line : item.Mark().line + 1;
+      const std::string item_name = name + "[" + std::to_string(read.size()) + "]";
+      read.push_back(level_->scalar(item, item_name, line, "text", true));
+    }
+    values = std::move(read);
+  }
+  std::vector<std::string> words;
+  for (const std::string& value : values) words.push_back(formatText(value));
+  level_->answer(key, "[" + joinWords(words) + "]");
+}
+
+ConfigReader ConfigReader::section(const std::string& key, bool required) {
+  const auto* entry = level_->ask(key, required);
+  auto& answer = level_->answer(key, "");
+  if (answer.children.empty()) {
+    const YAML::Node map = entry != nullptr ? entry->value : YAML::Node();
+    const int line = entry != nullptr ? entry->line : level_->line;
+    answer.children = {Level::of(level_->source, level_->path(key) + ".", map, line)};
+  }
+  return ConfigReader(answer.children.front());
+}
+
+std::vector<ConfigReader> ConfigReader::sections(const std::string& key, bool required) {
+  const auto* entry = level_->ask(key, required);
+  auto& answer = level_->answer(key, "");
+  answer.is_list = true;
+  const std::string name = level_->path(key);
+  if (entry != nullptr && !entry->value.IsSequence())
+    throw level_->errorAt(entry->line, name + " is not a list; a list of maps is needed");
+  if (entry != nullptr && answer.children.empty()) {
+    for (const auto& item : entry->value) {
+      const int line = item.Mark().is_null() ? entry->line : item.Mark().line + 1;
+      const std::string prefix = name + "[" + std::to_string(answer.children.size()) + "].";
+      answer.children.push_back(Level::of(level_->source, prefix, item, line));
+    }
+  }
+  std::vector<ConfigReader> readers;
+  for (const auto& child : answer.children) readers.push_back(ConfigReader(child));
+  return readers;
+}
+
+std::vector<std::string> ConfigReader::keys() const {
+  std::vector<std::string> names;
+  for (const auto& entry : level_->entries) names.push_back(entry.key);
+  return names;
+}
+
+void ConfigReader::finish() const {
+  level_->finish();
+}
+
+std::string ConfigReader::effective() const {
+  return level_->effective("");
+}
+
+ConfigError ConfigReader::error(const std::string& key, const std::string& problem) const {
+  const auto* entry = level_->find(key);
+  return level_->errorAt(entry != nullptr ? Level::lineOf(*entry) : level_->line,
+                         level_->path(key) + ": " + problem);
+}
+
+}  // namespace tread

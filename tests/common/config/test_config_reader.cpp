@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+
+#include <catch2/catch.hpp>
+
+#include "common/config/config_reader.hpp"
+
+namespace tread {
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+/// A configuration with one of everything.
+struct Everything {
+  double lease = 0.2;
+  int64_t port = 7667;
+  bool echo = true;
+  std::string device = "tty:/dev/ttyUSB0?baud=115200";
+  std::string rule = "off";
+  std::vector<double> gains{1.0, 2.5};
+  std::vector<std::vector<double>> polygon{{0.1, 0.2}, {1e-7, -3.0}};
+  std::vector<std::string> names{"rest", "a \"b\"\n\tc", "yes"};
+  double gap = 0.1;
+  std::vector<std::string> region_names;
+  std::vector<double> region_friction;
+};
+
+void readEverything(ConfigReader& reader, Everything& c) {
+  reader.number("lease", c.lease, {0.05, 1.0}, "s");
+  reader.integer("port", c.port, {1, 65535}, "1");
+  reader.flag("echo", c.echo);
+  reader.text("device", c.device);
+  reader.choice("rule", c.rule, {"off", "single", "collective"});
+  reader.numbers("gains", c.gains, 2, {-10, 10}, "1");
+  reader.table("polygon", c.polygon, 2, {-10, 10}, "m");
+  reader.texts("names", c.names);
+  ConfigReader gate = reader.section("gate");
+  gate.number("max_gap", c.gap, {0, 1}, "s");
+  for (ConfigReader& region : reader.sections("regions")) {
+    std::string name;
+    double friction = 0.5;
+    region.text("name", name, true);
+    region.number("friction", friction, {0, 1}, "1");
+    c.region_names.push_back(name);
+    c.region_friction.push_back(friction);
+  }
+  reader.finish();
+}
+
+}  // namespace
+
+TEST_CASE("an empty file leaves every default") {
+  for (const char* text : {"", "# only a remark\n", "---\n", "{}\n"}) {
+    Everything c;
+    ConfigReader reader = ConfigReader::fromText(text, "robot.yaml");
+    readEverything(reader, c);
+    CHECK(c.lease == 0.2);
+    CHECK(c.rule == "off");
+    CHECK(c.region_names.empty());
+  }
+}
+
+TEST_CASE("every kind of value is read") {
+  const char* text =
+      "lease: 0.25\nport: 8000\necho: false\ndevice: \"tcp:localhost:10940\"\nrule: collective\n"
+      "gains: [1, -2e-1]\npolygon:\n  - [1, 2]\n  - [3, 4]\nnames: [a, 'b c']\n"
+      "gate: {max_gap: 0.5}\nregions:\n  - name: grass\n    friction: 0.7\n  - {name: tarmac}\n";
+  Everything c;
+  ConfigReader reader = ConfigReader::fromText(text, "robot.yaml");
+  readEverything(reader, c);
+  CHECK(c.lease == 0.25);
+  CHECK(c.port == 8000);
+  CHECK_FALSE(c.echo);
+  CHECK(c.device == "tcp:localhost:10940");
+  CHECK(c.rule == "collective");
+  CHECK(c.gains == std::vector<double>{1.0, -0.2});
+  CHECK(c.polygon == std::vector<std::vector<double>>{{1, 2}, {3, 4}});
+  CHECK(c.names == std::vector<std::string>{"a", "b c"});
+  CHECK(c.gap == 0.5);
+  CHECK(c.region_names == std::vector<std::string>{"grass", "tarmac"});
+  CHECK(c.region_friction == std::vector<double>{0.7, 0.5});
+}
+
+TEST_CASE("the effective configuration reads back to the same values and the same text") {
+  Everything first;
+  ConfigReader reader = ConfigReader::fromText(
+      "lease: 0.1\nregions: [{name: 'x: y'}, {name: off, friction: 0.30000000000000004}]\n", "a");
+  readEverything(reader, first);
+  const std::string text = reader.effective();
+  INFO(text);
+  Everything second;
+  second.gains = {9, 9};
+  second.names.clear();
+  ConfigReader again = ConfigReader::fromText(text, "b");
+  readEverything(again, second);
+  CHECK(second.lease == first.lease);
+  CHECK(second.gains == first.gains);
+  CHECK(second.polygon == first.polygon);
+  CHECK(second.names == first.names);
+  CHECK(second.device == first.device);
+  CHECK(second.region_names == first.region_names);
+  CHECK(second.region_friction == first.region_friction);
+  CHECK(again.effective() == text);
+}
+
+TEST_CASE("the effective configuration holds the defaults, in the order of asking") {
+  ConfigReader reader = ConfigReader::fromText("b: 3\n", "a");
+  double a = 0.1;
+  double b = 0.0;
+  double never_set = std::numeric_limits<double>::quiet_NaN();
+  reader.number("a", a, {0, 1}, "m");
+  reader.number("b", b, {0, 9}, "m");
+  reader.number("c", never_set, {0, 9}, "m");
+  reader.section("empty");
+  CHECK(reader.effective() == "a: 0.1\nb: 3\nempty:\n  {}\n");
+}
+
+TEST_CASE("keys come in the order of the file, so that a map's keys may be names") {
+  ConfigReader reader = ConfigReader::fromText("zebra: {w: 1}\nant: {w: 2}\n", "a");
+  REQUIRE(reader.keys() == std::vector<std::string>{"zebra", "ant"});
+  double sum = 0.0;
+  for (const std::string& name : reader.keys()) {
+    double w = 0.0;
+    reader.section(name).number("w", w, {0, 9}, "kg", true);
+    sum += w;
+  }
+  reader.finish();
+  CHECK(sum == 3.0);
+}
+
+TEST_CASE("a section may be asked for twice and is one section") {
+  ConfigReader reader = ConfigReader::fromText("gate: {a: 1, b: 2}\n", "f");
+  double a = 0.0;
+  double b = 0.0;
+  reader.section("gate").number("a", a, {0, 9}, "m");
+  reader.section("gate").number("b", b, {0, 9}, "m");
+  reader.finish();
+  CHECK(a + b == 3.0);
+}
+
+TEST_CASE("CRLF, a byte order mark and a section without content are no errors") {
+  ConfigReader reader =
+      ConfigReader::fromText("\xEF\xBB\xBFname: \"x\"\r\ngate:\r\nb: 'y'\r\n", "f");
+  std::string a;
+  std::string b;
+  double gap = 0.5;
+  reader.text("name", a);
+  reader.section("gate").number("gap", gap, {-kInf, kInf}, "s");
+  reader.text("b", b);
+  reader.finish();
+  CHECK(a == "x");
+  CHECK(b == "y");
+}
+
+TEST_CASE("a file is read from disk, an absent one and a folder are one clear line") {
+  const std::string path = "/tmp/tread_config_" + std::to_string(::getpid()) + ".yaml";
+  std::ofstream(path) << "lease: 0.5\n";
+  double lease = 0.0;
+  ConfigReader reader = ConfigReader::fromFile(path);
+  reader.number("lease", lease, {0, 1}, "s");
+  CHECK(lease == 0.5);
+  std::remove(path.c_str());
+  CHECK_THROWS_WITH(ConfigReader::fromFile(path),
+                    path + ": cannot be read (No such file or directory); check the path");
+  CHECK_THROWS_WITH(ConfigReader::fromFile("/tmp"), "/tmp: is a folder; a YAML file is needed");
+}
+
+}  // namespace tread
