@@ -10,14 +10,16 @@
 
 namespace tread {
 
-/// Named pieces of state that outlive a process. Writing is atomic: after a crash the old or the new is there, whole.
+/// Named pieces of state that outlive a process. Writing is atomic: after a crash the old or the
+/// new is there, whole.
 class Store {
  public:
   virtual ~Store() = default;
 
   /// Content of an entry, or nothing.
   virtual std::optional<std::string> read(const std::string& name) const = 0;
-  /// Replaces an entry. Returns one clear line if it could not be written (disk full, no permission), else nothing.
+  /// Replaces an entry. Returns one clear line if it could not be written (disk full, no
+  /// permission), else nothing.
   virtual std::optional<std::string> write(const std::string& name, const std::string& content) = 0;
   /// Removes an entry if it exists.
   virtual void remove(const std::string& name) = 0;
