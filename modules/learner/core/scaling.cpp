@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/learner/core/scaling.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tread::learner {
+namespace {
+
+/// A box that has shrunk to less than this cannot be divided by [m, rad].
+constexpr double kTiniestBox = 1e-6;
+
+/// Variances of x, y, yaw within xx xy xyaw yy yyaw yawyaw.
+Axes variances(const PoseCovariance& covariance) {
+  return {covariance[0], covariance[3], covariance[5]};
+}
+
+}  // namespace
+
+Axes boundingBox(const std::vector<Pose2>& trajectory) {
+  // The start pose (0, 0, 0) belongs to the box: a reversing pattern is as long as a forward one.
+  Axes low = Axes::Zero();
+  Axes high = Axes::Zero();
+  for (const Pose2& pose : trajectory) {
+    const Axes at(pose.x, pose.y, pose.yaw);
+    low = low.min(at);
+    high = high.max(at);
+  }
+  return high - low;
+}
+
+PatternRole roleOf(const MotionPattern& shipped, const ScalingLimits& limits) {
+  const Axes box = boundingBox(shipped.trajectory);
+  const Axes variance = variances(shipped.end_covariance);
+  PatternRole role;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool known = std::isfinite(variance[axis]) && variance[axis] >= 0.0;
+    const double noise = known ? limits.min_box_sigmas * std::sqrt(variance[axis]) : 0.0;
+    role.scalable[static_cast<size_t>(axis)] = box[axis] >= std::max(limits.min_box[axis], noise);
+  }
+  role.gives_scaling = box[2] >= limits.min_turn && box[0] >= limits.min_length;
+  return role;
+}
+
+Axes scalingVector(const std::vector<Pose2>& measured, const std::vector<Pose2>& predicted,
+                   const PatternRole& role, const ScalingLimits& limits) {
+  const Axes new_box = boundingBox(measured);
+  const Axes old_box = boundingBox(predicted);
+  Axes factors = Axes::Ones();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!role.scalable[static_cast<size_t>(axis)] || old_box[axis] < kTiniestBox) continue;
+    factors[axis] = std::clamp(new_box[axis] / old_box[axis], limits.min_factor, limits.max_factor);
+  }
+  return factors;
+}
+
+std::vector<Pose2> scaled(const std::vector<Pose2>& trajectory, const Axes& factors,
+                          const PatternRole& role) {
+  Axes applied = Axes::Ones();
+  for (int axis = 0; axis < 3; ++axis)
+    if (role.scalable[static_cast<size_t>(axis)]) applied[axis] = factors[axis];
+  std::vector<Pose2> result;
+  result.reserve(trajectory.size());
+  for (const Pose2& pose : trajectory)
+    result.push_back({pose.x * applied[0], pose.y * applied[1], pose.yaw * applied[2]});
+  return result;
+}
+
+std::vector<Pose2> smoothed(const std::vector<Pose2>& measured, const std::vector<Pose2>& predicted,
+                            double memory) {
+  const double fresh = 1.0 - memory;
+  std::vector<Pose2> result;
+  result.reserve(predicted.size());
+  for (size_t t = 0; t < predicted.size(); ++t) {
+    const Pose2& m = measured[t];
+    const Pose2& r = predicted[t];
+    result.push_back(
+        {fresh * m.x + memory * r.x, fresh * m.y + memory * r.y, fresh * m.yaw + memory * r.yaw});
+  }
+  return result;
+}
+
+}  // namespace tread::learner

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/pattern/pattern.hpp"
+
+// The arithmetic of collective motion pattern scaling (paper, section IV):
+//   1. the box around a trajectory and its start, and the interval of its yaw;
+//   2. the quotient of two boxes, V = (x_s, y_s, phi_s), equation (1);
+//   3. a trajectory scaled by V, component by component in the pattern's start frame;
+//   4. exponential smoothing, equation (2).
+// The guards against boxes that hold nothing but noise are decided once, from the shipped set: a
+// test of each execution against a threshold would work as a ratchet.
+namespace tread::learner {
+
+/// One number for each of x, y and yaw of a trajectory in its start frame.
+using Axes = Eigen::Array3d;
+
+/// When a box is large enough to be compared, and how far a factor may go.
+struct ScalingLimits {
+  Axes min_box{0.05, 0.02,
+               0.03};           ///< [m], [m], [rad]: smaller boxes are noise; their factor stays 1
+  double min_box_sigmas = 3.0;  ///< a box must also exceed this many recorded standard deviations
+  double min_turn = 0.05;       ///< [rad] a smaller yaw interval makes a pattern one-dimensional
+  double min_length = 0.10;     ///< [m] and so does a shorter box
+  double min_factor = 0.5;      ///< [1] limits of each factor of V
+  double max_factor = 2.0;
+};
+
+/// Length and width [m] of the box around the start pose and all poses, and the interval of yaw
+/// [rad].
+Axes boundingBox(const std::vector<Pose2>& trajectory);
+
+/// What a pattern may give to the others and take from them.
+struct PatternRole {
+  std::array<bool, 3> scalable{};  ///< x, y, yaw: its box is more than noise
+  bool gives_scaling = false;      ///< it moves in more than one dimension
+};
+
+/// The role of a pattern, from its shipped prediction; standard deviations from its covariance
+/// where that is known.
+PatternRole roleOf(const MotionPattern& shipped, const ScalingLimits& limits);
+
+/// V of equation (1): box of the measured over box of the predicted trajectory; 1 on axes that are
+/// not scalable.
+Axes scalingVector(const std::vector<Pose2>& measured, const std::vector<Pose2>& predicted,
+                   const PatternRole& role, const ScalingLimits& limits);
+
+/// R * V: each pose's x, y and yaw times its factor, where the role allows it.
+std::vector<Pose2> scaled(const std::vector<Pose2>& trajectory, const Axes& factors,
+                          const PatternRole& role);
+
+/// Equation (2): (1 - w) M + w R, component by component; w = `memory` is the weight of the OLD
+/// prediction.
+/** Line 13 of the paper's Algorithm 1 has the two the other way round; they agree at w = 0.5 only.
+ *  Both trajectories have the same number of poses, yaw unwrapped. */
+std::vector<Pose2> smoothed(const std::vector<Pose2>& measured, const std::vector<Pose2>& predicted,
+                            double memory);
+
+}  // namespace tread::learner

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/learner/core/state_text.hpp"
+
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
+
+namespace tread::learner {
+namespace {
+
+constexpr const char* kHeader = "tread-learner-state 1";
+/// No state of a thousand patterns has more executions in its list than this.
+constexpr int64_t kMaxHandled = 10'000;
+
+/// FNV-1a, 64 bits: tells a damaged text from a whole one.
+uint64_t fingerprint(const std::string& text) {
+  uint64_t hash = 14695981039346656037ULL;
+  for (const char letter : text) {
+    hash ^= static_cast<unsigned char>(letter);
+    hash *= 1099511628211ULL;
+  }
+  return hash;
+}
+
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+void writeNumbers(std::ostringstream& out, const PoseCovariance& numbers) {
+  for (const double value : numbers) out << ' ' << number(value);
+}
+
+void writePattern(std::ostringstream& out, const MotionPattern& pattern,
+                  const EndResiduals& residuals) {
+  out << "pattern " << pattern.id << " learned " << pattern.times_learned << " poses "
+      << pattern.trajectory.size() << '\n';
+  out << "covariance";
+  writeNumbers(out, pattern.end_covariance);
+  out << "\nresiduals " << residuals.count;
+  writeNumbers(out, residuals.mean);
+  out << '\n';
+  for (const Pose2& pose : pattern.trajectory)
+    out << number(pose.x) << ' ' << number(pose.y) << ' ' << number(pose.yaw) << '\n';
+}
+
+std::string body(const LearnerState& state, const PatternSet& shipped, const RuleConfig& config) {
+  std::ostringstream out;
+  const PatternSetContent& content = state.set.content();
+  out << kHeader << '\n';
+  out << "shipped " << shipped.checksum() << '\n';
+  out << "rule " << ruleName(config.rule) << " memory " << number(config.memory) << '\n';
+  out << "version " << content.version << " parent " << content.parent_version << " utime "
+      << content.utime << '\n';
+  out << "handled " << state.handled.size() << '\n';
+  for (const auto& [run, execution] : state.handled) out << run << ' ' << execution << '\n';
+  out << "patterns " << content.patterns.size() << '\n';
+  for (const MotionPattern& pattern : content.patterns)
+    writePattern(out, pattern, state.residuals.at(pattern.id));
+  return out.str();
+}
+
+/// Reads words and numbers; once something is missing everything after fails, too.
+class Words {
+ public:
+  explicit Words(const std::string& text) : in_(text) {}
+
+  bool good() const { return good_; }
+  void require(bool condition) { good_ = good_ && condition; }
+  void expect(const char* word) {
+    std::string found;
+    good_ = good_ && (in_ >> found) && found == word;
+  }
+  std::string word() {
+    std::string found;
+    good_ = good_ && (in_ >> found);
+    return found;
+  }
+  int64_t integer() {
+    int64_t value = 0;
+    good_ = good_ && (in_ >> value);
+    return good_ ? value : 0;
+  }
+  /// By strtod, because streams do not read "nan".
+  double real() {
+    const std::string text = word();
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    good_ = good_ && end != text.c_str() && *end == '\0';
+    return value;
+  }
+  PoseCovariance numbers() {
+    PoseCovariance values{};
+    for (double& value : values) value = real();
+    return values;
+  }
+
+ private:
+  std::istringstream in_;
+  bool good_ = true;
+};
+
+/// One pattern's learned part, into the pattern of the shipped set.
+void readPattern(Words& words, MotionPattern& pattern, ResidualTable& residuals) {
+  words.expect("pattern");
+  words.require(words.integer() == pattern.id);
+  words.expect("learned");
+  pattern.times_learned = static_cast<int>(words.integer());
+  words.expect("poses");
+  words.require(words.integer() == static_cast<int64_t>(pattern.trajectory.size()));
+  words.expect("covariance");
+  pattern.end_covariance = words.numbers();
+  words.expect("residuals");
+  EndResiduals& entry = residuals[pattern.id];
+  entry.count = words.integer();
+  entry.mean = words.numbers();
+  for (Pose2& pose : pattern.trajectory) pose = {words.real(), words.real(), words.real()};
+}
+
+/// The text without its last line, if that line holds the fingerprint of the rest.
+std::optional<std::string> checkedBody(const std::string& text) {
+  const size_t end = text.rfind("end ");
+  if (end == std::string::npos || end == 0 || text[end - 1] != '\n') return std::nullopt;
+  uint64_t written = 0;
+  if (std::sscanf(text.c_str() + end, "end %" SCNx64, &written) != 1) return std::nullopt;
+  std::string content = text.substr(0, end);
+  if (fingerprint(content) != written) return std::nullopt;
+  return content;
+}
+
+}  // namespace
+
+std::string formatState(const LearnerState& state, const PatternSet& shipped,
+                        const RuleConfig& config) {
+  const std::string content = body(state, shipped, config);
+  char last[40];
+  std::snprintf(last, sizeof last, "end %016" PRIx64 "\n", fingerprint(content));
+  return content + last;
+}
+
+std::optional<LearnerState> parseState(const std::string& text, const PatternSet& shipped,
+                                       std::string& why) {
+  const auto checked = checkedBody(text);
+  if (!checked || checked->compare(0, std::string(kHeader).size(), kHeader) != 0) {
+    why = "is damaged";
+    return std::nullopt;
+  }
+  Words words(checked->substr(std::string(kHeader).size()));
+  words.expect("shipped");
+  if (words.integer() != shipped.checksum()) {
+    why = "belongs to another shipped pattern set";
+    return std::nullopt;
+  }
+  PatternSetContent content = shipped.content();
+  words.expect("rule");
+  words.word();
+  words.expect("memory");
+  words.real();
+  words.expect("version");
+  content.version = words.integer();
+  words.expect("parent");
+  content.parent_version = words.integer();
+  words.expect("utime");
+  content.utime = words.integer();
+  words.expect("handled");
+  std::vector<ExecutionKey> handled;
+  const int64_t listed = std::min(words.integer(), kMaxHandled);
+  for (int64_t i = 0; i < listed && words.good(); ++i) {
+    const int64_t run = words.integer();
+    handled.emplace_back(run, words.integer());
+  }
+  ResidualTable residuals;
+  words.expect("patterns");
+  words.require(words.integer() == static_cast<int64_t>(content.patterns.size()));
+  for (MotionPattern& pattern : content.patterns) readPattern(words, pattern, residuals);
+  if (!words.good()) {
+    why = "is damaged";
+    return std::nullopt;
+  }
+  auto set = PatternSet::make(std::move(content), why);
+  if (!set) {
+    why = "holds a wrong set: " + why;
+    return std::nullopt;
+  }
+  return LearnerState{std::move(*set), std::move(residuals), std::move(handled)};
+}
+
+}  // namespace tread::learner

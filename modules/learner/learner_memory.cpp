@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/learner/learner_memory.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+namespace tread::learner {
+namespace {
+
+constexpr const char* kSlots[2] = {"learner_state_1", "learner_state_2"};
+constexpr const char* kVersions = "learner_versions";
+/// Versions reserved at a time, and how many must be left before the next are.
+constexpr int64_t kReserve = 100;
+constexpr int64_t kReserveLeft = 50;
+/// Above a state whose reserve is lost.
+constexpr int64_t kWithoutReserve = 1000;
+/// Robot time for one version where nothing is known [us].
+constexpr int64_t kTimePerVersionUs = 100'000;
+
+}  // namespace
+
+std::optional<int64_t> LearnerMemory::storedReserve() const {
+  const auto content = store_.read(kVersions);
+  if (!content) return std::nullopt;
+  std::istringstream in(*content);
+  int64_t reserve = 0;
+  if (!(in >> reserve) || reserve < 1) return std::nullopt;
+  return reserve;
+}
+
+Recollection LearnerMemory::recall(const PatternSet& shipped, int64_t utime) {
+  Recollection found;
+  for (int slot = 0; slot < 2; ++slot) {
+    const auto content = store_.read(kSlots[slot]);
+    if (!content) continue;
+    std::string why;
+    auto state = parseState(*content, shipped, why);
+    if (!state) {
+      if (!found.problem.empty()) found.problem += "; ";
+      found.problem += std::string(kSlots[slot]) + " " + why;
+      continue;
+    }
+    if (found.state && found.state->set.version() >= state->set.version()) continue;
+    found.state = std::move(state);
+    next_slot_ = 1 - slot;
+  }
+  if (!found.problem.empty())
+    found.problem += found.state
+                         ? ": going on from version " + std::to_string(found.state->set.version())
+                         : ": starting from the shipped set";
+  const auto reserve = storedReserve();
+  const int64_t known = std::max(shipped.version(), found.state ? found.state->set.version() : 0);
+  if (reserve) {
+    found.first_version = std::max(*reserve, known) + 1;
+  } else if (found.state) {
+    found.first_version = std::max(known + kWithoutReserve, utime / kTimePerVersionUs);
+  } else {
+    found.first_version = std::max(shipped.version(), utime / kTimePerVersionUs);
+  }
+  return found;
+}
+
+std::optional<std::string> LearnerMemory::reserve(int64_t version) {
+  if (version + kReserveLeft <= reserved_) return std::nullopt;
+  const int64_t reserve = version + kReserve;
+  auto problem = store_.write(kVersions, std::to_string(reserve) + "\n");
+  if (!problem) reserved_ = reserve;
+  return problem;
+}
+
+std::optional<std::string> LearnerMemory::save(const std::string& state_text) {
+  auto problem = store_.write(kSlots[next_slot_], state_text);
+  if (!problem) next_slot_ = 1 - next_slot_;
+  return problem;
+}
+
+}  // namespace tread::learner

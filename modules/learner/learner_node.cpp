@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/learner/learner_node.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace tread::learner {
+namespace {
+
+constexpr double kUnknown = Measurement::kUnknown;
+/// A higher version than ours is believed when this many messages named it: one may be a broken
+/// one.
+constexpr int kBelievedAfter = 3;
+/// Nobody counts further than this [versions]: more than the robot's life in milliseconds.
+constexpr int64_t kHighestVersion = 1'000'000'000'000;
+/// How far above a higher version of a former life we go on.
+constexpr int64_t kAboveForeign = 100;
+
+void fill(double (&target)[3], const Pose2& pose) {
+  target[0] = pose.x;
+  target[1] = pose.y;
+  target[2] = pose.yaw;
+}
+
+ExecutionKey keyOf(const execution_record_t& record) {
+  return {record.record_run_id, record.record_execution_id};
+}
+
+learning_t blankReport(const execution_record_t& record, Rule rule) {
+  learning_t message{};
+  message.utime = record.ended;
+  message.learned_run_id = record.record_run_id;
+  message.learned_execution_id = record.record_execution_id;
+  message.learned_pattern_id = record.record_pattern_id;
+  message.learning_rule = ruleName(rule);
+  message.scored_version = record.record_set_version;
+  message.error_position = message.error_yaw = kUnknown;
+  message.error_position_after = message.error_yaw_after = kUnknown;
+  fill(message.measured_end, {kUnknown, kUnknown, kUnknown});
+  fill(message.predicted_end, {kUnknown, kUnknown, kUnknown});
+  fill(message.scaling, {kUnknown, kUnknown, kUnknown});
+  fill(message.measured_entry, {kUnknown, kUnknown, kUnknown});
+  message.path_length = message.slope = kUnknown;
+  return message;
+}
+
+/// A vehicle's largest speed that is not given is the largest of its patterns.
+LearnerNodeConfig withSpeed(LearnerNodeConfig config) {
+  if (config.limits.max_speed <= 0.0) config.limits.max_speed = largestSpeed(config.shipped);
+  return config;
+}
+
+}  // namespace
+
+std::string LearnerNodeConfig::effective() const {
+  std::ostringstream out;
+  const auto seconds = [](int64_t us) { return static_cast<double>(us) * 1e-6; };
+  out << "shipped_set: " << shipped.content().name << "\nshipped_checksum: " << shipped.checksum()
+      << "\nrule: " << ruleName(rule.rule) << "\nmemory: " << rule.memory
+      << "\nscaling:\n  min_box: [" << rule.scaling.min_box[0] << ", " << rule.scaling.min_box[1]
+      << ", " << rule.scaling.min_box[2] << "]\n  min_box_sigmas: " << rule.scaling.min_box_sigmas
+      << "\n  min_turn: " << rule.scaling.min_turn << "\n  min_length: " << rule.scaling.min_length
+      << "\n  min_factor: " << rule.scaling.min_factor
+      << "\n  max_factor: " << rule.scaling.max_factor << "\n  sign_sigmas: " << rule.sign_sigmas
+      << "\ngates:\n  max_gap: " << seconds(limits.max_gap_us)
+      << "\n  min_covered: " << limits.min_covered << "\n  max_speed: " << limits.max_speed
+      << "\n  speed_margin: " << limits.speed_margin << "\n  min_motion: " << limits.min_motion
+      << "\n  min_turn: " << limits.min_turn
+      << "\n  entry_window: " << seconds(limits.entry_window_us)
+      << "\n  entry_speed: " << limits.entry_speed
+      << "\n  entry_yaw_rate: " << limits.entry_yaw_rate << "\n  max_slope: " << limits.max_slope
+      << "\nperiod: " << seconds(period_us) << "\nsettle: " << seconds(settle_us)
+      << "\ngive_up: " << seconds(give_up_us) << "\nrepeat: " << seconds(repeat_us)
+      << "\ntrack_span: " << seconds(track_span_us)
+      << "\nremembered_versions: " << remembered_versions << "\n";
+  return out.str();
+}
+
+LearnerNode::LearnerNode(LearnerNodeConfig config, Bus& bus, Store& store)
+    : config_(withSpeed(std::move(config))),
+      bus_(bus),
+      learner_(config_.rule, config_.shipped),
+      memory_(store),
+      ins_(config_.track_span_us),
+      outbox_(bus),
+      health_(bus, "learner", config_.effective()) {
+  bus.subscribe<ins_t>(kIns, [this](const ins_t& ins) { ins_.add(ins); });
+  bus.subscribe<execution_t>(kExecution, [this](const execution_t& message) { hear(message); });
+  bus.subscribe<motor_t>(kMotor, [this](const motor_t& motor) { commands_.add(motor); });
+  // Not now(): it is not known before the first message.
+  start(bus.bootId());
+}
+
+void LearnerNode::start(int64_t boot_time) {
+  Recollection found = memory_.recall(config_.shipped, boot_time);
+  start_problem_ = found.problem;
+  versions_.emplace(config_.shipped.version(), config_.shipped);
+  if (found.state) {
+    executions_.remember(found.state->handled);
+    learner_.restore(std::move(found.state->set), std::move(found.state->residuals));
+    keepVersion();
+  }
+  if (found.first_version > learner_.set().version())
+    learner_.renumber(found.first_version, learner_.set().version());
+  adoptVersion();
+}
+
+void LearnerNode::step(int64_t utime) {
+  const int64_t horizon = utime - config_.settle_us;
+  ins_.settle(horizon);
+  for (auto end = executions_.nextEnd(); end; end = executions_.nextEnd()) {
+    const bool passed = ins_.history().newest() >= *end;
+    const bool hopeless = horizon >= *end + config_.give_up_us;
+    if (!passed && !hopeless) break;
+    const execution_record_t record = *executions_.takeEndedBy(*end);
+    // A former life of this process has reported what ended before, or nobody can measure it.
+    if (record.ended < ins_.begin()) {
+      health_.addToCounter("executions before the start");
+    } else {
+      handle(record);
+    }
+  }
+  if (utime >= next_repeat_ && outbox_.emptyOfSets()) {
+    outbox_.putSet(learner_.set());
+    next_repeat_ = utime + config_.repeat_us;
+  }
+  outbox_.step(utime);
+  reportHealth(utime);
+}
+
+void LearnerNode::hear(const execution_t& message) {
+  executions_.add(message);
+  int64_t highest = 0;
+  for (const execution_record_t& record : message.records)
+    highest = std::max(highest, record.record_set_version);
+  if (highest <= learner_.set().version() || highest > kHighestVersion) return;
+  if (++foreign_versions_[highest] >= kBelievedAfter) goAbove(highest);
+  // Broken messages may name any number; what was named once long ago is of no interest.
+  if (foreign_versions_.size() > 16) foreign_versions_.clear();
+}
+
+void LearnerNode::goAbove(int64_t version) {
+  foreign_versions_.clear();
+  health_.addToCounter("versions lost and gone above");
+  learner_.renumber(version + kAboveForeign, learner_.set().version());
+  adoptVersion();
+}
+
+void LearnerNode::handle(const execution_record_t& record) {
+  learning_t message = blankReport(record, config_.rule.rule);
+  message.seq = seq_learning_++;
+  message.result_version = learner_.set().version();
+  health_.addToCounter("executions");
+  const MotionPattern* pattern = learner_.set().find(record.record_pattern_id);
+  Measurement measurement;
+  if (pattern == nullptr) {
+    measurement.gate = Gate::kUnknownPattern;
+    measurement.reason =
+        "pattern " + std::to_string(record.record_pattern_id) + " is not in the set";
+  } else {
+    message.learned_pattern_name = pattern->name;
+    measurement = measureRecord(record, *pattern);
+    score(record, measurement, message);
+  }
+  message.accepted = measurement.fair();
+  message.gate_reason = measurement.reason;
+  health_.addToCounter(measurement.fair() ? "learnable"
+                                          : std::string("refused: ") + gateName(measurement.gate));
+  if (measurement.fair()) {
+    const Correction correction = learner_.learn(record.record_pattern_id, measurement,
+                                                 scoredError(record, measurement), record.ended);
+    message.changed = correction.changed;
+    message.gate_reason = correction.guards;
+    fill(message.scaling, {correction.scaling[0], correction.scaling[1], correction.scaling[2]});
+    if (correction.changed) {
+      start_problem_.clear();
+      adoptVersion();
+    }
+    message.result_version = learner_.set().version();
+    scoreAfter(measurement, record.record_pattern_id, message);
+  }
+  bus_.publish(kLearning, message);
+}
+
+Measurement LearnerNode::measureRecord(const execution_record_t& record,
+                                       const MotionPattern& pattern) const {
+  ExecutionCut cut;
+  cut.started = record.started;
+  cut.ended = record.ended;
+  cut.completed = record.outcome == execution_record_t::OUTCOME_COMPLETED;
+  cut.outcome_reason = record.outcome_reason;
+  const PatternSet& set = learner_.set();
+  cut.foreign_command = commands_.foreignCommand(keyOf(record), pattern, set.content().kind);
+  return measure(ins_.history(), cut, pattern, set.classNamed(pattern.entry_class),
+                 set.content().period_us, config_.limits);
+}
+
+const MotionPattern* LearnerNode::patternOf(int64_t version, int pattern_id) const {
+  const auto found = versions_.find(version);
+  return found == versions_.end() ? nullptr : found->second.find(pattern_id);
+}
+
+std::optional<Pose2> LearnerNode::scoredError(const execution_record_t& record,
+                                              const Measurement& measurement) const {
+  const MotionPattern* named = patternOf(record.record_set_version, record.record_pattern_id);
+  if (named == nullptr || !measurement.complete()) return std::nullopt;
+  return endError(measurement, *named);
+}
+
+void LearnerNode::score(const execution_record_t& record, const Measurement& measurement,
+                        learning_t& message) const {
+  fill(message.measured_entry,
+       {measurement.entry.v_x, measurement.entry.v_y, measurement.entry.omega});
+  message.slope = measurement.slope;
+  message.path_length = measurement.path_length;
+  if (measurement.complete()) fill(message.measured_end, measurement.trajectory.back());
+  const MotionPattern* named = patternOf(record.record_set_version, record.record_pattern_id);
+  if (named != nullptr) fill(message.predicted_end, named->end());
+  const auto error = scoredError(record, measurement);
+  if (!error) return;
+  message.error_position = std::hypot(error->x, error->y);
+  message.error_yaw = error->yaw;
+}
+
+void LearnerNode::scoreAfter(const Measurement& measurement, int pattern_id,
+                             learning_t& message) const {
+  const MotionPattern* now = learner_.set().find(pattern_id);
+  if (now == nullptr || !measurement.complete()) return;
+  const Pose2 error = endError(measurement, *now);
+  message.error_position_after = std::hypot(error.x, error.y);
+  message.error_yaw_after = error.yaw;
+}
+
+void LearnerNode::keepVersion() {
+  versions_.insert_or_assign(learner_.set().version(), learner_.set());
+  while (versions_.size() > static_cast<size_t>(config_.remembered_versions))
+    versions_.erase(versions_.begin());
+}
+
+std::string LearnerNode::stateText() const {
+  const LearnerState state{learner_.set(), learner_.residuals(), executions_.handled()};
+  return formatState(state, learner_.shipped(), config_.rule);
+}
+
+/// The newest version becomes the one that everybody uses: on disk first, then on the bus.
+void LearnerNode::adoptVersion() {
+  keepVersion();
+  const std::string text = stateText();
+  auto problem = memory_.reserve(learner_.set().version());
+  auto unsaved = memory_.save(text);
+  noteWrite(problem ? problem : unsaved);
+  outbox_.putSet(learner_.set());
+  outbox_.putState(learner_.set(), ruleName(config_.rule.rule), text);
+}
+
+void LearnerNode::noteWrite(const std::optional<std::string>& problem) {
+  write_problem_ = problem ? "learning in memory only: " + *problem : "";
+  if (problem) health_.addToCounter("states not written");
+}
+
+void LearnerNode::reportHealth(int64_t utime) {
+  const std::string& problem = write_problem_.empty() ? start_problem_ : write_problem_;
+  health_.setState(problem.empty() ? health_t::HEALTH_OK : health_t::HEALTH_DEGRADED, problem);
+  health_.setCounter("set version", learner_.set().version());
+  health_.setCounter("INS too late", ins_.tooLate());
+  health_.setCounter("INS without pose", ins_.withoutPose());
+  health_.setCounter("senseless execution records", executions_.senseless());
+  health_.step(utime);
+}
+
+}  // namespace tread::learner

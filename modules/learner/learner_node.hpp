@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/health.hpp"
+#include "common/store/store.hpp"
+#include "modules/learner/command_watch.hpp"
+#include "modules/learner/core/learner.hpp"
+#include "modules/learner/execution_queue.hpp"
+#include "modules/learner/ins_queue.hpp"
+#include "modules/learner/learner_memory.hpp"
+#include "modules/learner/outbox.hpp"
+
+namespace tread::learner {
+
+/// Configuration of the learner process; the shell reads the shipped set from its file.
+struct LearnerNodeConfig {
+  PatternSet shipped;  ///< where learning begins
+  RuleConfig rule;
+  MeasurementLimits limits;
+  int64_t period_us = 20'000;  ///< [us] between steps
+  int64_t settle_us =
+      200'000;  ///< [us] what is this old has arrived: INS latency and disorder of the bus
+  int64_t give_up_us = 2'000'000;  ///< [us] after its end an execution is judged without more INS
+  int64_t repeat_us = 2'000'000;   ///< [us] between repetitions of the set
+  int64_t track_span_us = 60'000'000;  ///< [us] of INS that is kept
+  int64_t remembered_versions = 50;    ///< sets kept to score executions with the version they name
+
+  explicit LearnerNodeConfig(PatternSet set) : shipped(std::move(set)) {}
+  /// The configuration with its defaults, for CONFIG.
+  std::string effective() const;
+};
+
+/// The learner process. INS, EXECUTION, MOTOR in; PATTERN_SET, LEARNER_STATE, LEARNING, HEALTH,
+/// CONFIG out.
+/** 1. Inputs wait until they are settle_us old and are then taken in the order of (utime, seq).
+ *  2. An execution is cut, gated and scored against the set version that its record names.
+ *  3. If the rule changes the set, state and set are written and published under the next version.
+ *  Each (run id, execution id) is handled once. Versions only go up: see LearnerMemory. */
+class LearnerNode : public Node {
+ public:
+  LearnerNode(LearnerNodeConfig config, Bus& bus, Store& store);
+
+  int64_t period() const override { return config_.period_us; }
+  void step(int64_t utime) override;
+
+  const PatternSet& set() const { return learner_.set(); }
+  /// The state as it is written to disk.
+  std::string stateText() const;
+
+ private:
+  void start(int64_t boot_time);
+  void hear(const execution_t& message);
+  void handle(const execution_record_t& record);
+  Measurement measureRecord(const execution_record_t& record, const MotionPattern& pattern) const;
+  void score(const execution_record_t& record, const Measurement& measurement,
+             learning_t& message) const;
+  void scoreAfter(const Measurement& measurement, int pattern_id, learning_t& message) const;
+  std::optional<Pose2> scoredError(const execution_record_t& record,
+                                   const Measurement& measurement) const;
+  const MotionPattern* patternOf(int64_t version, int pattern_id) const;
+  void keepVersion();
+  void goAbove(int64_t version);
+  void adoptVersion();
+  void noteWrite(const std::optional<std::string>& problem);
+  void reportHealth(int64_t utime);
+
+  LearnerNodeConfig config_;
+  Bus& bus_;
+  Learner learner_;
+  LearnerMemory memory_;
+  InsQueue ins_;
+  ExecutionQueue executions_;
+  CommandWatch commands_;
+  Outbox outbox_;
+  HealthReporter health_;
+  std::map<int64_t, PatternSet> versions_;  ///< the last sets by version
+  std::map<int64_t, int>
+      foreign_versions_;  ///< versions above ours that records named, and how often
+  std::string start_problem_;
+  std::string write_problem_;
+  int64_t next_repeat_ = 0;
+  int64_t seq_learning_ = 0;
+};
+
+}  // namespace tread::learner

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/learner/outbox.hpp"
+
+#include <algorithm>
+
+#include "common/messages/pattern_messages.hpp"
+
+namespace tread::learner {
+namespace {
+
+/// Bytes in a step of 20 ms; the rest of LCM's 100 kB is left to LEARNING and HEALTH.
+constexpr int kPortion = 60'000;
+constexpr size_t kStateBytes = 50'000;
+constexpr size_t kWaitingStates = 2;
+
+}  // namespace
+
+void Outbox::putSet(const PatternSet& set) {
+  const auto parts = toMessages(set);
+  sets_.assign(parts.begin(), parts.end());
+}
+
+void Outbox::putState(const PatternSet& set, const std::string& rule, const std::string& text) {
+  const auto last_parts = std::count_if(states_.begin(), states_.end(), [](const auto& part) {
+    return part.state_part + 1 == part.state_part_count;
+  });
+  if (static_cast<size_t>(last_parts) >= kWaitingStates) states_.clear();
+  const auto count = static_cast<int32_t>((text.size() + kStateBytes - 1) / kStateBytes);
+  for (int32_t part = 0; part < count; ++part) {
+    learner_state_t message{};
+    message.state_version = set.version();
+    message.state_part = part;
+    message.state_part_count = count;
+    message.rule_name = rule;
+    const std::string piece = text.substr(static_cast<size_t>(part) * kStateBytes, kStateBytes);
+    message.num_bytes = static_cast<int32_t>(piece.size());
+    message.state_bytes.assign(piece.begin(), piece.end());
+    states_.push_back(std::move(message));
+  }
+}
+
+void Outbox::step(int64_t utime) {
+  int left = kPortion;
+  while (!sets_.empty()) {
+    const int size = sets_.front().getEncodedSize();
+    if (size > left && left < kPortion) return;
+    sets_.front().seq = seq_set_++;
+    bus_.publish(kPatternSet, sets_.front());
+    sets_.pop_front();
+    left -= size;
+  }
+  while (!states_.empty()) {
+    const int size = states_.front().getEncodedSize();
+    if (size > left && left < kPortion) return;
+    states_.front().utime = utime;
+    states_.front().seq = seq_state_++;
+    bus_.publish(kLearnerState, states_.front());
+    states_.pop_front();
+    left -= size;
+  }
+}
+
+}  // namespace tread::learner
