@@ -11,30 +11,43 @@ namespace tread {
 /// Oriented rectangular footprint in the body frame [m], with the discs that cover it.
 class Footprint {
  public:
-  /// Reaches from -rear to +front along x and half_width to both sides; `margin` is added on all sides.
+  /// Reaches from -rear to +front along x and half_width to both sides; `margin` is added on all
+  /// sides. Throws std::invalid_argument unless it has a positive length and width.
   Footprint(double front, double rear, double half_width, double margin);
 
+  /// Extents with the margin [m].
   double front() const { return front_; }
   double rear() const { return rear_; }
   double halfWidth() const { return half_width_; }
-  /// Radius of the smallest disc around the body origin that contains it.
-  double circumscribed() const;
+  /// Radius of the smallest disc around the body origin that contains it [m].
+  double circumscribed() const { return circumscribed_; }
 
-  /// Whether the footprint at a pose overlaps no blocked cell: discs on the clearance field first, exact cells last.
-  /** Exact: a cell is blocked over its whole area; unknown cells block if `unknown_blocks` (as in the field). */
+  /// Whether the footprint at a pose overlaps no blocked cell: discs on the clearance field first,
+  /// exact cells last.
+  /** Exact: a cell is blocked over its whole area, and touching its border is no overlap; unknown
+   *  cells and all outside the grid block if `unknown_blocks`. `clearance` must be made from this
+   *  grid; one made with the other choice of `unknown_blocks` is not used (slower, same result).
+   *  False for a pose that is not finite. */
   bool isFree(const Grid& grid, const ClearanceField& clearance, const Pose2& T_map_body,
               bool unknown_blocks) const;
-  /// Cells (of the grid's lattice) that the footprint at a pose overlaps.
+  /// Cells (of the grid's lattice, also outside its window) that the footprint at a pose overlaps,
+  /// row by row.
   std::vector<CellIndex> cells(const Grid& grid, const Pose2& T_map_body) const;
   /// Number of blocked cells under the footprint: for escaping from a start in collision.
   int blockedCells(const Grid& grid, const Pose2& T_map_body, bool unknown_blocks) const;
 
  private:
+  enum class Verdict { kClear, kCollides, kUnsure };
+
+  Verdict judgeByDiscs(const ClearanceField& clearance, const Pose2& T_map_body) const;
+
   double front_;
   double rear_;
   double half_width_;
+  double circumscribed_;
   std::vector<double> disc_x_;  // centres of the covering discs along the body's x axis
   double disc_radius_;
+  double inscribed_radius_;  // discs of this radius around the same centres lie inside
 };
 
 }  // namespace tread

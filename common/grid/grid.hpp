@@ -18,14 +18,18 @@ inline constexpr Cell kCostMax = 100;
 inline constexpr Cell kObstacle = 254;
 inline constexpr Cell kUnknown = 255;
 
-inline bool isFree(Cell cell) { return cell <= kCostMax; }
+inline bool isFree(Cell cell) {
+  return cell <= kCostMax;
+}
 
 /// Index of a cell in map: the cell (0, 0) has its lower left corner in the origin of map.
 struct CellIndex {
   int x = 0;
   int y = 0;
 };
-inline bool operator==(CellIndex a, CellIndex b) { return a.x == b.x && a.y == b.y; }
+inline bool operator==(CellIndex a, CellIndex b) {
+  return a.x == b.x && a.y == b.y;
+}
 
 /// A rectangular window of occupancy cells whose indices are fixed in map.
 class Grid {
@@ -69,21 +73,48 @@ class Grid {
   std::vector<Cell> cells_;
 };
 
-/// Distance from each cell's centre to the nearest cell that is not free [m], to that cell's nearest border.
-/** Exact Euclidean distance transform (Felzenszwalb and Huttenlocher 2012), two passes. `unknown_blocks` decides
- *  whether unknown cells count as not free; outside the window everything counts as unknown. */
+/// Whether a cell may not be driven over: obstacles always, unknown cells where the caller says so.
+inline bool isBlocked(Cell cell, bool unknown_blocks) {
+  return !isFree(cell) && (cell != kUnknown || unknown_blocks);
+}
+
+/// Distance to the nearest blocked cell's area [m], for every point of a window.
+/** Exact Euclidean distance from each cell's centre (Felzenszwalb and Huttenlocher 2012, two
+ * passes, with the parabolas on the borders of cells instead of their centres). `unknown_blocks`
+ * decides whether unknown cells block; everything outside the window counts as unknown. */
 class ClearanceField {
  public:
+  /// The true distance [m] lies between the two.
+  struct Bounds {
+    double lower = 0.0;
+    double upper = 0.0;
+  };
+
   ClearanceField() = default;
   ClearanceField(const Grid& grid, bool unknown_blocks);
 
-  /// Clearance at a point of map [m]: a lower bound of the distance to the nearest blocked cell's area; 0 in a
-  /// blocked cell; outside the window 0 if unknown blocks, else the value of the nearest cell of the window.
-  double at(const Eigen::Vector2d& p_map) const;
+  /// Clearance at a point of map [m]: a lower bound of the distance to the nearest blocked cell's
+  /// area, at most 0.71 cells too low; 0 in a blocked cell; infinite if nothing blocks. Outside the
+  /// window 0 if unknown blocks, else the value of the window's nearest point; 0 for NaN.
+  double at(const Eigen::Vector2d& p_map) const { return bounds(p_map).lower; }
+
+  /// Both bounds of the clearance; outside the window the upper one is infinite.
+  Bounds bounds(const Eigen::Vector2d& p_map) const;
+
+  bool unknownBlocks() const { return unknown_blocks_; }
+
+  /// Whether any of the cells (first..last, row) is blocked, in constant time. At most 65535 cells.
+  bool anyBlocked(int row, int first, int last) const;
 
  private:
-  Grid window_;  // geometry only
-  std::vector<float> clearance_;
+  double outside(const Eigen::Vector2d& p_map) const;
+
+  double cell_size_ = 0.1;
+  CellIndex lower_;
+  int width_ = 0;
+  int height_ = 0;
+  std::vector<float> clearance_;  // from each cell's centre [m], row by row
+  std::vector<uint16_t> runs_;    // cells to the right, from each on, that are not blocked
   bool unknown_blocks_ = true;
 };
 
@@ -100,13 +131,14 @@ class TileMap {
  public:
   TileMap(double cell_size, int tile_cells) : cell_size_(cell_size), tile_cells_(tile_cells) {}
 
-  /// Takes a tile if it is not older than the one that is there. Returns whether any cell changed.
+  /// Takes a tile if it is not older than the one that is there and has the right number of cells.
+  /// Returns whether any cell changed; where no tile was, all cells were unknown.
   bool put(Tile tile);
   /// Drops tiles whose centre is farther than `radius` from a point [m].
   void forgetBeyond(const Eigen::Vector2d& p_map, double radius);
   /// A window of the map; what no tile covers is unknown.
   Grid window(CellIndex lower, int width, int height) const;
-  /// Age-checked: utime of the tile under a point, or 0.
+  /// utime of the tile under a point [us], or 0 if there is none.
   int64_t utimeAt(const Eigen::Vector2d& p_map) const;
   double cellSize() const { return cell_size_; }
   int tileCells() const { return tile_cells_; }

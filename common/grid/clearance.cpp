@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/grid/grid.hpp"
+
+namespace tread {
+namespace {
+
+// All lengths in this file are half cells: centres of cells lie on even, their borders on odd
+// numbers, and every squared distance is an integer that a float holds exactly.
+constexpr float kFar = 1e12f;
+
+/// Distance along y from each cell's centre to the nearest blocked cell's area in its column.
+/** Row by row over the whole width, so that the compiler can work on many columns at once. */
+std::vector<float> columnDistances(const std::vector<uint8_t>& blocked, int width, int height,
+                                   bool outside_blocks) {
+  const auto w = static_cast<size_t>(width);
+  const auto h = static_cast<size_t>(height);
+  constexpr float kNone = 1e6f;
+  std::vector<float> distance(w * h);
+  std::vector<float> steps(w, outside_blocks ? 0.0f : kNone);  // rows to the last blocked one
+  for (size_t y = 0; y < h; ++y)
+    for (size_t x = 0; x < w; ++x) {
+      steps[x] = blocked[y * w + x] ? 0.0f : steps[x] + 1.0f;
+      distance[y * w + x] = steps[x];
+    }
+  std::fill(steps.begin(), steps.end(), outside_blocks ? 0.0f : kNone);
+  for (size_t y = h; y-- > 0;)
+    for (size_t x = 0; x < w; ++x) {
+      steps[x] = blocked[y * w + x] ? 0.0f : steps[x] + 1.0f;
+      const float rows = std::min(distance[y * w + x], steps[x]);
+      distance[y * w + x] = rows >= kNone ? kFar : std::max(0.0f, 2.0f * rows - 1.0f);
+    }
+  return distance;
+}
+
+/// For each cell how many cells of its row, from it on to the right, are not blocked.
+std::vector<uint16_t> freeRuns(const std::vector<uint8_t>& blocked, int width, int height) {
+  const auto w = static_cast<size_t>(width);
+  std::vector<uint16_t> runs(blocked.size());
+  for (size_t row = 0; row < static_cast<size_t>(height); ++row) {
+    uint16_t run = 0;
+    for (size_t x = w; x-- > 0;) {
+      const size_t at = row * w + x;
+      run = blocked[at] ? uint16_t{0} : static_cast<uint16_t>(std::min(run + 1, 65535));
+      runs[at] = run;
+    }
+  }
+  return runs;
+}
+
+/// Lower envelope of parabolas (Felzenszwalb and Huttenlocher 2012, section 2) along one row.
+/** The parabolas stand on the borders between cells: the distance along x to the area of a cell is
+ *  that to the nearer one of its two borders. */
+class RowEnvelope {
+ public:
+  explicit RowEnvelope(int width) : vertex_(size_t(width) + 1), from_(size_t(width) + 2) {}
+
+  /// Squared distances to the blocked areas from the squared distances along y.
+  void transform(const float* along_y, int width, bool outside_blocks, float* squared) {
+    count_ = 0;
+    for (int border = 0; border <= width; ++border) {
+      const float outside = outside_blocks ? 0.0f : kFar;
+      const float left = border > 0 ? along_y[border - 1] : outside;
+      const float right = border < width ? along_y[border] : outside;
+      const float height = std::min(left, right);
+      if (height < kFar) add(static_cast<float>(2 * border - 1), height);
+    }
+    size_t k = 0;
+    for (int x = 0; x < width; ++x) {
+      squared[x] = along_y[x];
+      if (count_ == 0) continue;
+      const auto centre = static_cast<float>(2 * x);
+      while (k + 1 < count_ && from_[k + 1] < centre) ++k;
+      const float step = centre - vertex_[k].position;
+      squared[x] = std::min(squared[x], step * step + vertex_[k].height);
+    }
+  }
+
+ private:
+  struct Vertex {
+    float position;
+    float height;
+    double key;  // position^2 + height
+  };
+
+  void add(float position, float height) {
+    const Vertex next{position, height, double(position) * double(position) + double(height)};
+    double from = -std::numeric_limits<double>::infinity();
+    while (count_ > 0) {
+      const Vertex& last = vertex_[count_ - 1];
+      from = (next.key - last.key) / (2.0 * (double(position) - double(last.position)));
+      if (from > from_[count_ - 1]) break;
+      from = -std::numeric_limits<double>::infinity();
+      --count_;
+    }
+    vertex_[count_] = next;
+    from_[count_] = from;
+    ++count_;
+  }
+
+  std::vector<Vertex> vertex_;
+  std::vector<double> from_;
+  size_t count_ = 0;
+};
+
+}  // namespace
+
+ClearanceField::ClearanceField(const Grid& grid, bool unknown_blocks)
+    : cell_size_(grid.cellSize()),
+      lower_(grid.lower()),
+      width_(grid.width()),
+      height_(grid.height()),
+      unknown_blocks_(unknown_blocks) {
+  std::vector<uint8_t> blocked(grid.cells().size());
+  std::transform(grid.cells().begin(), grid.cells().end(), blocked.begin(),
+                 [&](Cell cell) { return static_cast<uint8_t>(isBlocked(cell, unknown_blocks)); });
+  runs_ = freeRuns(blocked, width_, height_);
+  clearance_ = columnDistances(blocked, width_, height_, unknown_blocks);
+  for (float& value : clearance_) value = value >= kFar ? kFar : value * value;
+  RowEnvelope envelope(width_);
+  std::vector<float> row(static_cast<size_t>(width_));
+  const auto half_cell = static_cast<float>(0.5 * cell_size_);
+  for (int y = 0; y < height_; ++y) {
+    float* const values = clearance_.data() + static_cast<size_t>(y) * row.size();
+    envelope.transform(values, width_, unknown_blocks, row.data());
+    for (size_t x = 0; x < row.size(); ++x)
+      values[x] =
+          row[x] >= kFar ? std::numeric_limits<float>::infinity() : std::sqrt(row[x]) * half_cell;
+  }
+}
+
+ClearanceField::Bounds ClearanceField::bounds(const Eigen::Vector2d& p_map) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const double x = p_map.x() / cell_size_ - lower_.x;
+  const double y = p_map.y() / cell_size_ - lower_.y;
+  const bool inside = x >= 0.0 && y >= 0.0 && x < width_ && y < height_;
+  if (!inside) return {outside(p_map), kInfinity};
+  const auto column = static_cast<int>(x);
+  const auto row = static_cast<int>(y);
+  const double value = double(clearance_[static_cast<size_t>(row) * static_cast<size_t>(width_) +
+                                         static_cast<size_t>(column)]);
+  const double dx = x - column - 0.5;
+  const double dy = y - row - 0.5;
+  if (value == 0.0 || value == kInfinity) return {value, value};
+  // A float may be off by half its last digit: both bounds stay bounds.
+  const double from_centre = std::sqrt(dx * dx + dy * dy) * cell_size_ + 6e-8 * value;
+  return {std::max(0.0, value - from_centre), value + from_centre};
+}
+
+bool ClearanceField::anyBlocked(int row, int first, int last) const {
+  const int y = row - lower_.y;
+  int x = first - lower_.x;
+  const int end = last - lower_.x;
+  if (x > end) return false;
+  const bool inside = y >= 0 && y < height_ && x >= 0 && end < width_;
+  if (!inside) {
+    if (unknown_blocks_) return true;
+    if (y < 0 || y >= height_ || end < 0 || x >= width_) return false;
+    x = std::max(x, 0);
+  }
+  const int length = std::min(end, width_ - 1) - x + 1;
+  return runs_[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)] <
+         length;
+}
+
+double ClearanceField::outside(const Eigen::Vector2d& p_map) const {
+  const bool finite = std::isfinite(p_map.x()) && std::isfinite(p_map.y());
+  if (unknown_blocks_ || width_ == 0 || height_ == 0 || !finite) return 0.0;
+  // The window is convex: the nearest point of it is nearer to everything inside.
+  const auto clamp = [&](double value, int lower, int size) {
+    const double inset = 0.5 * cell_size_;
+    return std::min(std::max(value, lower * cell_size_ + inset),
+                    (lower + size) * cell_size_ - inset);
+  };
+  return bounds({clamp(p_map.x(), lower_.x, width_), clamp(p_map.y(), lower_.y, height_)}).lower;
+}
+
+}  // namespace tread

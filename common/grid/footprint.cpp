@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/grid/footprint.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace tread {
+namespace {
+
+/// Less than this share of a cell is rounding, not overlap.
+constexpr double kTouch = 1e-8;
+
+/// The rows of cells that an oriented rectangle overlaps, each with its span of columns.
+/** A row's band cuts a convex piece out of the rectangle, so the cells between the ends of that
+ *  piece, and only they, overlap the rectangle. Lengths are cells, relative to the cell `base`. */
+class RowSpans {
+ public:
+  RowSpans(const Footprint& footprint, const Pose2& T_map_body, double cell_size)
+      : base_{static_cast<int>(std::floor(T_map_body.x / cell_size)),
+              static_cast<int>(std::floor(T_map_body.y / cell_size))} {
+    const double c = std::cos(T_map_body.yaw);
+    const double s = std::sin(T_map_body.yaw);
+    const double front = footprint.front() / cell_size;
+    const double rear = -footprint.rear() / cell_size;
+    const double w = footprint.halfWidth() / cell_size;
+    const double x = T_map_body.x / cell_size - base_.x;
+    const double y = T_map_body.y / cell_size - base_.y;
+    y_min_ = y + s * (s > 0.0 ? rear : front) - std::abs(c) * w;
+    y_max_ = y + s * (s > 0.0 ? front : rear) + std::abs(c) * w;
+    const double side = s > 0.0 ? w : -w;  // of the corner farthest to the left
+    y_leftmost_ = y + s * (c > 0.0 ? rear : front) + c * side;
+    y_rightmost_ = y + s * (c > 0.0 ? front : rear) - c * side;
+    // Front and rear: rear <= c dx + s dy <= front. Sides: -w <= c dy - s dx <= w.
+    if (std::abs(c) > kLevel) across_ = between(rear / c, front / c, -s / c, x, y);
+    if (std::abs(s) > kLevel) along_ = between(-w / s, w / s, c / s, x, y);
+  }
+
+  int firstRow() const { return base_.y + static_cast<int>(std::floor(y_min_ + kTouch)); }
+  int lastRow() const { return base_.y + static_cast<int>(std::ceil(y_max_ - kTouch)) - 1; }
+
+  struct Span {
+    int first;
+    int last;  // inclusive
+  };
+  Span span(int row) const {
+    const double low = std::max(static_cast<double>(row - base_.y), y_min_);
+    const double high = std::min(static_cast<double>(row - base_.y) + 1.0, y_max_);
+    const double y_left = std::min(std::max(y_leftmost_, low), high);
+    const double y_right = std::min(std::max(y_rightmost_, low), high);
+    const double left = std::max(across_.left + across_.slope * y_left,  //
+                                 along_.left + along_.slope * y_left);
+    const double right =
+        std::min(across_.right + across_.slope * y_right, along_.right + along_.slope * y_right);
+    return {base_.x + static_cast<int>(std::floor(left + kTouch)),
+            base_.x + static_cast<int>(std::ceil(right - kTouch)) - 1};
+  }
+
+ private:
+  /// Borders closer to level than this bound the rows only, not the columns.
+  static constexpr double kLevel = 1e-9;
+
+  /// Two parallel borders: left + slope y <= x <= right + slope y.
+  struct Strip {
+    double left = -1e9;
+    double right = 1e9;
+    double slope = 0.0;
+  };
+  static Strip between(double a, double b, double slope, double x, double y) {
+    const double offset = x - slope * y;
+    return {std::min(a, b) + offset, std::max(a, b) + offset, slope};
+  }
+
+  CellIndex base_;
+  Strip across_;
+  Strip along_;
+  double y_min_;
+  double y_max_;
+  double y_leftmost_;
+  double y_rightmost_;
+};
+
+/// Poses whose cells have no int number overlap nothing that could be asked for.
+bool isUsable(const Pose2& pose, double cell_size) {
+  const double reach = 1e9 * cell_size;
+  return std::abs(pose.x) < reach && std::abs(pose.y) < reach && std::isfinite(pose.yaw);
+}
+
+/// Calls visit(cell) for the cells that the footprint overlaps, row by row.
+template <class Visit>
+void visitCells(const Footprint& footprint, const Pose2& T_map_body, double cell_size,
+                const Visit& visit) {
+  const RowSpans rows(footprint, T_map_body, cell_size);
+  for (int y = rows.firstRow(); y <= rows.lastRow(); ++y) {
+    const RowSpans::Span span = rows.span(y);
+    for (int x = span.first; x <= span.last; ++x) visit(CellIndex{x, y});
+  }
+}
+
+}  // namespace
+
+Footprint::Footprint(double front, double rear, double half_width, double margin)
+    : front_(front + margin), rear_(rear + margin), half_width_(half_width + margin) {
+  const double length = front_ + rear_;
+  if (!(length > 0.0) || !(half_width_ > 0.0) || !std::isfinite(length + half_width_))
+    throw std::invalid_argument("footprint: length and width must be positive and finite");
+  circumscribed_ = std::hypot(std::max(std::abs(front_), std::abs(rear_)), half_width_);
+  // With one disc per half width the discs reach out by 12 % of it; more would hardly help.
+  const double count = std::min(8.0, std::max(1.0, std::ceil(length / half_width_)));
+  const double step = length / count;
+  for (double i = 0.5; i < count; ++i) disc_x_.push_back(-rear_ + i * step);
+  disc_radius_ = std::hypot(0.5 * step, half_width_);
+  inscribed_radius_ = std::min(0.5 * step, half_width_);
+}
+
+Footprint::Verdict Footprint::judgeByDiscs(const ClearanceField& clearance,
+                                           const Pose2& T_map_body) const {
+  const double c = std::cos(T_map_body.yaw);
+  const double s = std::sin(T_map_body.yaw);
+  bool clear = true;
+  for (const double x : disc_x_) {
+    const auto distance = clearance.bounds({T_map_body.x + c * x, T_map_body.y + s * x});
+    if (distance.upper < inscribed_radius_) return Verdict::kCollides;
+    clear = clear && distance.lower >= disc_radius_;
+  }
+  return clear ? Verdict::kClear : Verdict::kUnsure;
+}
+
+bool Footprint::isFree(const Grid& grid, const ClearanceField& clearance, const Pose2& T_map_body,
+                       bool unknown_blocks) const {
+  if (!isUsable(T_map_body, grid.cellSize())) return false;
+  if (unknown_blocks != clearance.unknownBlocks())
+    return blockedCells(grid, T_map_body, unknown_blocks) == 0;
+  if (clearance.at(T_map_body.position()) >= circumscribed_) return true;
+  const Verdict verdict = judgeByDiscs(clearance, T_map_body);
+  if (verdict != Verdict::kUnsure) return verdict == Verdict::kClear;
+  const RowSpans rows(*this, T_map_body, grid.cellSize());
+  for (int y = rows.firstRow(); y <= rows.lastRow(); ++y) {
+    const RowSpans::Span span = rows.span(y);
+    if (clearance.anyBlocked(y, span.first, span.last)) return false;
+  }
+  return true;
+}
+
+std::vector<CellIndex> Footprint::cells(const Grid& grid, const Pose2& T_map_body) const {
+  std::vector<CellIndex> covered;
+  if (!isUsable(T_map_body, grid.cellSize())) return covered;
+  visitCells(*this, T_map_body, grid.cellSize(), [&](CellIndex cell) { covered.push_back(cell); });
+  return covered;
+}
+
+int Footprint::blockedCells(const Grid& grid, const Pose2& T_map_body, bool unknown_blocks) const {
+  int count = 0;
+  if (!isUsable(T_map_body, grid.cellSize())) return count;
+  visitCells(*this, T_map_body, grid.cellSize(),
+             [&](CellIndex cell) { count += isBlocked(grid.at(cell), unknown_blocks) ? 1 : 0; });
+  return count;
+}
+
+}  // namespace tread
