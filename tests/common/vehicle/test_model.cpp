@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <cmath>
+#include <random>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "common/vehicle/model.hpp"
+
+using namespace tread;
+
+TEST_CASE("Every effect of the catalogue is off at zero and does something when it is on") {
+  VehicleModel model;
+  const TrackCommand tracks{0.4, 1.0};
+  const Twist2 plain = model.motionAt(tracks, {}).v_body;
+  CHECK(plain.v_x == Approx(0.7));
+  CHECK(plain.v_y == 0.0);
+  CHECK(plain.omega == Approx(0.6));
+  for (const Effect& effect : effectCatalogue()) {
+    for (const EffectParameter& parameter : effect.parameters) {
+      INFO(effect.name << "." << parameter.name);
+      CHECK(parameter.min <= 0.0);
+      CHECK(parameter.max > 0.0);
+      VehicleModel changed;
+      changed.effect(effect.name, parameter.name) = 0.1;
+      const Twist2 twist = changed.motionAt(tracks, {}).v_body;
+      CHECK((twist.v_x != plain.v_x || twist.v_y != plain.v_y || twist.omega != plain.omega));
+    }
+  }
+}
+
+TEST_CASE("Names of effects and parameters are unique and unknown ones are refused") {
+  std::set<std::string> names;
+  for (const Effect& effect : effectCatalogue()) CHECK(names.insert(effect.name).second);
+  VehicleModel model;
+  CHECK_THROWS_AS(model.effect("antigravity", "rate"), std::out_of_range);
+  CHECK_THROWS_AS(model.effect("crab", "rate"), std::out_of_range);
+}
+
+TEST_CASE("The motion follows the equations of the calibration") {
+  VehicleModel model;
+  model.gauge = 0.6;
+  model.forward_gain = 0.9541;
+  model.yaw_gain = 0.8885;
+  model.effect("sideslip", "lever") = 0.0465;
+  model.effect("yaw_pull", "rate") = 0.0102;
+  model.effect("crab", "angle") = 0.0442;
+  const ExecutionNoise noise{1.01, 0.97, -0.02};
+  const double v = 0.9541 * 1.01 * (0.6 + 1.1) / 2.0;
+  const double omega = 0.8885 * 0.97 * (1.1 - 0.6) / 0.6 + 0.0102;
+  const Twist2 twist = model.motionAt({0.6, 1.1}, noise).v_body;
+  CHECK(twist.v_x == Approx(v));
+  CHECK(twist.omega == Approx(omega));
+  CHECK(twist.v_y == Approx(v * std::tan(0.0442 - 0.02) + 0.0465 * omega));
+}
+
+TEST_CASE("Noise has the spread that it is given") {
+  std::mt19937_64 random(7);
+  const ExecutionSpread spread{0.044, 0.122, 0.025};
+  constexpr int kDraws = 20000;
+  double sum[3] = {};
+  double square[3] = {};
+  for (int i = 0; i < kDraws; ++i) {
+    const ExecutionNoise noise = drawNoise(spread, random);
+    const double off[3] = {noise.forward - 1.0, noise.yaw - 1.0, noise.crab};
+    for (int j = 0; j < 3; ++j) {
+      sum[j] += off[j];
+      square[j] += off[j] * off[j];
+    }
+  }
+  const double expected[3] = {spread.forward, spread.yaw, spread.crab};
+  for (int j = 0; j < 3; ++j) {
+    CHECK(std::abs(sum[j] / kDraws) < 0.03 * expected[j]);
+    CHECK(std::sqrt(square[j] / kDraws) == Approx(expected[j]).epsilon(0.02));
+  }
+}
+
+TEST_CASE("The same seed draws the same noise, another seed other noise") {
+  std::mt19937_64 first(3);
+  std::mt19937_64 second(3);
+  std::mt19937_64 other(4);
+  const ExecutionSpread spread{0.1, 0.1, 0.1};
+  for (int i = 0; i < 10; ++i) {
+    const ExecutionNoise a = drawNoise(spread, first);
+    const ExecutionNoise b = drawNoise(spread, second);
+    const ExecutionNoise c = drawNoise(spread, other);
+    CHECK((a.forward == b.forward && a.yaw == b.yaw && a.crab == b.crab));
+    CHECK((a.forward != c.forward && a.yaw != c.yaw && a.crab != c.crab));
+  }
+}
+
+TEST_CASE("Without spread every execution is the mean one") {
+  std::mt19937_64 random(1);
+  const ExecutionNoise noise = drawNoise({}, random);
+  CHECK(noise.forward == 1.0);
+  CHECK(noise.yaw == 1.0);
+  CHECK(noise.crab == 0.0);
+}

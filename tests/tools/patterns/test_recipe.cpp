@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <cmath>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "common/config/config_reader.hpp"
+#include "common/vehicle/model_file.hpp"
+#include "tools/patterns/recipe.hpp"
+#include "tools/patterns/table.hpp"
+
+using namespace tread;
+
+namespace {
+
+const std::string kModel =
+    "name: m\nkind: power\nfull_speed: 1\ngauge: 0.5\nlag: 0.1\nyaw_gain: 0.9\n"
+    "spread:\n  forward: 0.02\n";
+
+const std::string kRecipe =
+    "name: tiny\n"                                      // 1
+    "period: 0.05\n"                                    // 2
+    "classes:\n"                                        // 3
+    "  - name: rest\n"                                  // 4
+    "    steady: [0, 0]\n"                              // 5
+    "patterns:\n"                                       // 6
+    "  - name: turn_left\n"                             // 7
+    "    mirror: turn_right\n"                          // 8
+    "    entry: rest\n"                                 // 9
+    "    exit: rest\n"                                  // 10
+    "    commands: [[-0.5, 0.5, 0.2], [0, 0, 0.3]]\n";  // 11
+
+std::string with(const std::string& piece, const std::string& replacement) {
+  std::string text = kRecipe;
+  const size_t at = text.find(piece);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, piece.size(), replacement);
+}
+
+PatternSet made(const std::string& recipe, const std::string& model = kModel) {
+  return patterns::makeSet(ConfigReader::fromText(recipe, "r.yaml"), parseModel(model, "m.yaml"));
+}
+
+void expectError(const std::string& recipe, const std::string& place, const std::string& part) {
+  std::string message = "no error";
+  try {
+    made(recipe);
+  } catch (const ConfigError& error) {
+    message = error.what();
+  }
+  INFO(message);
+  CHECK(message.find("r.yaml:" + place + ": ") == 0);
+  CHECK(message.find(part) != std::string::npos);
+}
+
+}  // namespace
+
+TEST_CASE("A recipe makes a pattern and its mirror image, predicted by the model") {
+  const PatternSet set = made(kRecipe);
+  REQUIRE(set.patterns().size() == 2);
+  const MotionPattern& left = set.patterns()[0];
+  const MotionPattern& right = set.patterns()[1];
+  CHECK(left.id == 1);
+  CHECK(right.name == "turn_right");
+  REQUIRE(left.commands.size() == 10);
+  CHECK(left.commands[3].left == -0.5);
+  CHECK(right.commands[3].left == 0.5);
+  // A lag only delays: the whole angle is rate times time, up to what is left after three lags.
+  CHECK(left.end().yaw == Approx(0.9 * 2.0 * 0.2).epsilon(0.06));
+  CHECK(right.end().yaw == -left.end().yaw);
+  CHECK(set.version() == 1);
+  CHECK(set.content().utime == 0);
+}
+
+TEST_CASE("Predictions are whole micrometres and microradians") {
+  const PatternSet set = made(kRecipe);
+  for (const Pose2& pose : set.patterns()[0].trajectory)
+    CHECK(std::abs(pose.yaw * 1e6 - std::round(pose.yaw * 1e6)) < 1e-6);
+}
+
+TEST_CASE("A pattern that does not settle into its exit class is refused") {
+  expectError(with("[0, 0, 0.3]", "[0, 0, 0.25]"), "11", "held for 0.25 s; at least 0.3 s");
+  expectError(with(", [0, 0, 0.3]", ""), "11", "held for 0 s");
+}
+
+TEST_CASE("The delay of the model counts for settling, too") {
+  CHECK_THROWS_AS(made(kRecipe, kModel + "delay: 0.1\n"), ConfigError);
+}
+
+TEST_CASE("Bad recipes are refused with file, line and what is allowed") {
+  expectError(with("0.2]", "0.21]"), "11", "multiples of the period, 0.05 s");
+  expectError(with("0.2]", "0]"), "11", "multiples of the period");
+  expectError(with("[-0.5, 0.5,", "[-0.5, 1.5,"), "6", "command 1.5");
+  expectError(with("entry: rest", "entry: rist"), "9", "rest");
+  expectError(with("steady: [0, 0]", "steady: [0, 2]"), "5", "-1..1");
+  expectError(with("mirror: turn_right", "mirror: turn_left"), "6", "used twice");
+  expectError(with("period: 0.05", "period: 0.05\nfast: true"), "3", "fast");
+}
+
+TEST_CASE("The table shows each pattern on a line") {
+  const std::string table = patterns::table(made(kRecipe));
+  CHECK(table.find("tiny: version 1, 2 patterns, power, 50 ms a sample") == 0);
+  CHECK(table.find("turn_left") != std::string::npos);
+  CHECK(table.find("turn_right") != std::string::npos);
+}
