@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/geometry/se2.hpp"
+
+namespace tread::missions {
+
+/// How a mission ended. Every mission ends in exactly one of these.
+enum class Outcome {
+  kArrived,  ///< the robot stands within the goal's tolerances (checked against the true pose)
+  kRefused,  ///< the planner said that the goal is unreachable or that it is blocked for good
+  kIdle,     ///< nothing moved for too long
+  kStopped   ///< a failsafe kept it from going on, or the time ran out while driving
+};
+
+const char* nameOf(Outcome outcome);
+
+/// One execution of a pattern as the learner scored it, with the true surface under it.
+struct ScoredExecution {
+  double time = 0.0;  ///< [s] of its end since the start of the mission
+  std::string pattern;
+  std::string surface;          ///< true surface at its end; empty if it crossed a border
+  bool measured = false;        ///< accepted as a fair measurement
+  std::string refusal;          ///< why not
+  double error_position = 0.0;  ///< [m] at the end, against the set it was planned with
+  double error_yaw = 0.0;       ///< [rad] the same, wrapped
+  double path_length = 0.0;     ///< [m]
+  double turned = 0.0;          ///< [rad] |net yaw| measured
+};
+
+/// A change of the true surface under the robot.
+struct SurfaceChange {
+  double time = 0.0;  ///< [s]
+  std::string from;
+  std::string to;
+};
+
+/// The true pose at a time, for pictures.
+struct TrackPoint {
+  double time = 0.0;
+  Pose2 T_map_body;
+};
+
+/// What happened in one mission.
+struct MissionResult {
+  uint64_t seed = 0;
+  Outcome outcome = Outcome::kStopped;
+  std::string reason;          ///< in words; empty when arrived
+  int collisions = 0;          ///< contacts of the true footprint with true obstacles
+  double time = 0.0;           ///< [s] from the goal to the end
+  double distance = 0.0;       ///< [m] really driven
+  double straight_line = 0.0;  ///< [m] from start to goal
+  bool line_blocked = false;   ///< the straight line was not free
+  int completed = 0;           ///< patterns executed to their end
+  int aborted = 0;
+  int rearmed = 0;           ///< times the operator had to arm again
+  int64_t set_versions = 0;  ///< last version minus first
+  std::vector<SurfaceChange> surface_changes;
+  std::vector<ScoredExecution> executions;
+  std::vector<TrackPoint> track;
+
+  double detour() const { return straight_line > 0.0 ? distance / straight_line : 0.0; }
+};
+
+/// Errors of the executions with index first..last after each change of surface (1 = the first
+/// whole one after it).
+struct ErrorAfterChange {
+  std::string from;
+  std::string to;
+  int count = 0;
+  double position = 0.0;        ///< [m] mean error at the end of a pattern
+  double yaw = 0.0;             ///< [rad] mean absolute error
+  double position_per_m = 0.0;  ///< pooled: sum of errors over metres driven
+  double yaw_per_rad = 0.0;     ///< pooled: sum of errors over radians turned
+};
+
+/// Per pair of surfaces, sorted by name; pooled over all missions. Pair from "start" = before the
+/// first change.
+std::vector<ErrorAfterChange> errorsAfterChange(const std::vector<MissionResult>& results,
+                                                int first, int last);
+
+}  // namespace tread::missions

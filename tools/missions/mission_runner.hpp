@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "common/log/event_log.hpp"
+#include "tools/missions/mission_picture.hpp"
+#include "tools/missions/robot_system.hpp"
+
+namespace tread::missions {
+
+/// What is told while a mission runs, once per second of virtual time.
+struct Progress {
+  double time = 0.0;        ///< [s] since the start
+  double to_go = 0.0;       ///< [m] straight to the goal
+  std::string surface;      ///< true one
+  std::string plan;         ///< status of the planner in words
+  std::string pattern;      ///< being executed; empty = none
+  double last_error = 0.0;  ///< [m] position error of the last measured execution; NaN none
+};
+
+/// How missions are run.
+struct MissionOptions {
+  std::string rule = "collective";
+  FaultPlan faults;
+  LogWriter* log = nullptr;                       ///< every message, if given
+  std::function<void(const Progress&)> progress;  ///< may be empty
+};
+
+struct MissionRun {
+  MissionResult result;
+  MissionScene scene;
+  double virtual_time = 0.0;  ///< [s]
+  double cpu_time = 0.0;      ///< [s] of this thread
+};
+
+/// Drives one mission from the start to its end, everything included, in virtual time.
+/** The operator's part: the goal at 1 Hz, arming at the start, and arming again 2 s after a
+ * failsafe has disarmed. */
+MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOptions& options);
+
+}  // namespace tread::missions

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/missions/mission_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tread::missions {
+namespace {
+
+constexpr double kArrivedWithin =
+    0.8;                             ///< [m] of the true pose: tolerance of the goal and INS error
+constexpr double kIdleAfter = 60.0;  ///< [s] without moving 10 cm
+constexpr double kRefusedAfter = 15.0;  ///< [s] of blocked or unreachable without a break
+constexpr int64_t kSurfaceConfirmed =
+    1'000'000;  ///< [us] on a new surface before it counts as a change
+
+std::string wordsOf(int16_t status) {
+  switch (status) {
+    case plan_t::PLAN_IDLE:
+      return "idle";
+    case plan_t::PLAN_DRIVING:
+      return "driving";
+    case plan_t::PLAN_ARRIVED:
+      return "arrived";
+    case plan_t::PLAN_WAITING:
+      return "waiting";
+    case plan_t::PLAN_BLOCKED:
+      return "blocked";
+    case plan_t::PLAN_UNREACHABLE:
+      return "unreachable";
+    case plan_t::PLAN_STOPPED:
+      return "stopped";
+    default:
+      return "unknown";
+  }
+}
+
+}  // namespace
+
+MissionWatch::MissionWatch(RobotSystem& system, const MissionWorld& world)
+    : system_(system),
+      world_(world),
+      start_(system.bus().now()),
+      time_limit_(60.0 + 8.0 * world.straight_line),
+      moved_at_(start_),
+      last_pose_(system.robot().truth().T_map_body),
+      moved_from_(last_pose_),
+      map_(system.mapCellSize(), system.mapTileCells()) {
+  result_.straight_line = world.straight_line;
+  result_.line_blocked = world.line_blocked;
+  surface_ = system.robot().truth().surface;
+  surfaces_.push_back({start_, surface_});
+  for (const MotionPattern& pattern : system.patterns().patterns())
+    pattern_names_[pattern.id] = pattern.name;
+  listen(system.bus().outside());
+}
+
+void MissionWatch::listen(Bus& bus) {
+  bus.subscribe<plan_t>(kPlan, [this](const plan_t& message) { plan_ = message; });
+  bus.subscribe<motor_t>(kMotor, [this](const motor_t& message) { motor_ = message; });
+  bus.subscribe<execution_t>(kExecution, [this](const execution_t& message) { hear(message); });
+  bus.subscribe<learning_t>(kLearning, [this](const learning_t& message) { hear(message); });
+  bus.subscribe<plan_tree_t>(kPlanTree, [this](const plan_tree_t& message) { hear(message); });
+  bus.subscribe<map_tile_t>(kMap, [this](const map_tile_t& message) { hear(message); });
+  bus.subscribe<pattern_set_part_t>(kPatternSet, [this](const pattern_set_part_t& part) {
+    if (first_version_ == 0) first_version_ = part.set_version;
+    result_.set_versions = std::max(result_.set_versions, part.set_version - first_version_);
+  });
+}
+
+void MissionWatch::hear(const execution_t& message) {
+  for (const execution_record_t& record : message.records) {
+    execution_record_t& known = records_[{record.record_run_id, record.record_execution_id}];
+    if (known.outcome != record.outcome) {
+      if (record.outcome == execution_record_t::OUTCOME_COMPLETED) ++result_.completed;
+      if (record.outcome == execution_record_t::OUTCOME_ABORTED) ++result_.aborted;
+    }
+    known = record;
+  }
+}
+
+void MissionWatch::hear(const learning_t& message) {
+  ScoredExecution execution;
+  execution.time = seconds(message.utime);
+  execution.pattern = message.learned_pattern_name;
+  execution.measured = message.accepted && std::isfinite(message.error_position);
+  execution.refusal = message.accepted ? "" : message.gate_reason;
+  execution.error_position = message.error_position;
+  execution.error_yaw = message.error_yaw;
+  execution.path_length = message.path_length;
+  execution.turned = std::abs(message.measured_end[2]);
+  const auto record = records_.find({message.learned_run_id, message.learned_execution_id});
+  if (record != records_.end())
+    execution.surface = surfaceBetween(record->second.started, record->second.ended);
+  result_.executions.push_back(execution);
+}
+
+void MissionWatch::hear(const plan_tree_t& message) {
+  tree_.clear();
+  std::set<int> chosen(message.best.begin(), message.best.end());
+  for (int i = 0; i < message.num_nodes; ++i) {
+    const auto node = static_cast<size_t>(i);
+    const int parent = message.parent[node];
+    if (parent < 0 || parent >= message.num_nodes) continue;
+    const auto& from = message.node_pose[static_cast<size_t>(parent)];
+    const auto& to = message.node_pose[node];
+    tree_.push_back(
+        {{from[0], from[1]}, {to[0], to[1]}, chosen.count(i) > 0 && chosen.count(parent) > 0});
+  }
+}
+
+void MissionWatch::hear(const map_tile_t& message) {
+  Tile tile;
+  tile.tile_x = message.tile_x;
+  tile.tile_y = message.tile_y;
+  tile.utime = message.utime;
+  tile.cells = message.cells;
+  map_.put(std::move(tile));
+}
+
+void MissionWatch::step() {
+  const sim::RobotTruth& truth = system_.robot().truth();
+  const int64_t now = system_.bus().now();
+  const Pose2 step = between(last_pose_, truth.T_map_body);
+  result_.distance += std::hypot(step.x, step.y);
+  last_pose_ = truth.T_map_body;
+  if (result_.track.empty() || seconds(now) - result_.track.back().time > 0.2)
+    result_.track.push_back({seconds(now), truth.T_map_body});
+  const Pose2 since = between(moved_from_, truth.T_map_body);
+  if (std::hypot(since.x, since.y) > 0.1 || std::abs(since.yaw) > 0.1) {
+    moved_from_ = truth.T_map_body;
+    moved_at_ = now;
+  }
+  result_.collisions = static_cast<int>(truth.collisions.size());
+  followSurface();
+  judge();
+}
+
+void MissionWatch::followSurface() {
+  const std::string& present = system_.robot().truth().surface;
+  const int64_t now = system_.bus().now();
+  if (present == surface_) {
+    new_surface_.clear();
+    return;
+  }
+  if (present != new_surface_) {
+    new_surface_ = present;
+    new_surface_since_ = now;
+  }
+  if (now - new_surface_since_ < kSurfaceConfirmed) return;
+  result_.surface_changes.push_back({seconds(new_surface_since_), surface_, present});
+  surfaces_.push_back({new_surface_since_, present});
+  surface_ = present;
+  new_surface_.clear();
+}
+
+std::string MissionWatch::surfaceBetween(int64_t from, int64_t to) const {
+  std::string at_start;
+  for (const auto& [since, surface] : surfaces_) {
+    if (since <= from) at_start = surface;
+    if (since > from && since <= to) return {};
+  }
+  return !new_surface_.empty() && new_surface_since_ <= to ? std::string() : at_start;
+}
+
+double MissionWatch::toGo() const {
+  return (world_.T_map_goal.position() - last_pose_.position()).norm();
+}
+
+void MissionWatch::judge() {
+  const int64_t now = system_.bus().now();
+  result_.time = seconds(now);
+  const bool refused =
+      plan_.plan_status == plan_t::PLAN_BLOCKED || plan_.plan_status == plan_t::PLAN_UNREACHABLE;
+  if (!refused) refused_since_ = -1;
+  if (refused && refused_since_ < 0) refused_since_ = now;
+  if (plan_.plan_status == plan_t::PLAN_ARRIVED) {
+    if (toGo() <= kArrivedWithin) return end(Outcome::kArrived, "");
+    return end(Outcome::kStopped,
+               "the planner believes that it has arrived, the true pose says no");
+  }
+  if (refused_since_ >= 0 && static_cast<double>(now - refused_since_) * 1e-6 > kRefusedAfter)
+    return end(Outcome::kRefused, wordsOf(plan_.plan_status) + ": " + plan_.reason);
+  if (static_cast<double>(now - moved_at_) * 1e-6 > kIdleAfter)
+    return end(Outcome::kIdle, "nothing moved for a minute; planner " + wordsOf(plan_.plan_status) +
+                                   ": " + plan_.reason + "; bridge: " + motor_.state_reason);
+  if (result_.time > time_limit_)
+    return end(Outcome::kStopped,
+               "time ran out; planner " + wordsOf(plan_.plan_status) + ": " + plan_.reason);
+}
+
+void MissionWatch::end(Outcome outcome, const std::string& reason) {
+  result_.outcome = outcome;
+  result_.reason = reason;
+  ended_ = true;
+}
+
+Progress MissionWatch::progress() const {
+  Progress progress;
+  progress.time = result_.time;
+  progress.to_go = toGo();
+  progress.surface = surface_;
+  progress.plan =
+      wordsOf(plan_.plan_status) + (plan_.reason.empty() ? "" : " (" + plan_.reason + ")");
+  const auto record = records_.find({motor_.motor_run_id, motor_.execution_id});
+  if (motor_.execution_id != 0 && record != records_.end()) {
+    const auto name = pattern_names_.find(record->second.record_pattern_id);
+    if (name != pattern_names_.end()) progress.pattern = name->second;
+  }
+  progress.last_error = std::numeric_limits<double>::quiet_NaN();
+  for (auto it = result_.executions.rbegin(); it != result_.executions.rend(); ++it)
+    if (it->measured) {
+      progress.last_error = it->error_position;
+      break;
+    }
+  return progress;
+}
+
+}  // namespace tread::missions

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <map>
+#include <set>
+
+#include "tools/missions/mission_runner.hpp"
+
+namespace tread::missions {
+
+/// The referee: looks at the true world and at the bus, and says when and how a mission has ended.
+class MissionWatch {
+ public:
+  MissionWatch(RobotSystem& system, const MissionWorld& world);
+
+  /// Call every 50 ms of virtual time.
+  void step();
+  bool ended() const { return ended_; }
+  MissionResult result() const { return result_; }
+  Progress progress() const;
+  void fillScene(MissionScene& scene) const {
+    scene.map = map_;
+    scene.tree = tree_;
+  }
+
+ private:
+  void listen(Bus& bus);
+  void hear(const execution_t& message);
+  void hear(const learning_t& message);
+  void hear(const plan_tree_t& message);
+  void hear(const map_tile_t& message);
+  void followSurface();
+  std::string surfaceBetween(int64_t from, int64_t to) const;
+  void judge();
+  void end(Outcome outcome, const std::string& reason);
+  double seconds(int64_t utime) const { return static_cast<double>(utime - start_) * 1e-6; }
+  double toGo() const;
+
+  RobotSystem& system_;
+  const MissionWorld& world_;
+  int64_t start_;
+  double time_limit_;
+  MissionResult result_;
+  bool ended_ = false;
+  plan_t plan_{};
+  motor_t motor_{};
+  int64_t first_version_ = 0;
+  std::map<int, std::string> pattern_names_;
+  std::map<std::pair<int64_t, int64_t>, execution_record_t> records_;  ///< by run and execution id
+  std::vector<std::pair<int64_t, std::string>>
+      surfaces_;             ///< where the true surface became another
+  std::string surface_;      ///< present one, confirmed
+  std::string new_surface_;  ///< perhaps the next one
+  int64_t new_surface_since_ = 0;
+  int64_t refused_since_ = -1;
+  int64_t moved_at_;
+  Pose2 last_pose_;
+  Pose2 moved_from_;
+  TileMap map_;
+  std::vector<TreeEdge> tree_;
+};
+
+}  // namespace tread::missions

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/missions/mission_world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <random>
+
+namespace tread::missions {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kRobotLength = 1.30;
+constexpr double kRobotWidth = 0.68;
+/// Around start and goal: room to turn on the spot.
+constexpr double kFreeRadius = 2.2;
+
+/// Draws numbers in the same way on every machine (the standard's distributions do not).
+class Dice {
+ public:
+  explicit Dice(uint64_t seed) : engine_(seed) {}
+  double between(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1.0p-53;
+  }
+  int below(int count) { return static_cast<int>(engine_() % static_cast<uint64_t>(count)); }
+  bool chance(double probability) { return between(0.0, 1.0) < probability; }
+  double sign() { return chance(0.5) ? 1.0 : -1.0; }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// Obstacles in the frame of the way: start in the origin, goal on the x axis.
+struct Layout {
+  double length = 0.0;
+  std::vector<sim::Obstacle> obstacles;
+};
+
+double pointToSegment(const Vector2d& p, const Vector2d& a, const Vector2d& b) {
+  const Vector2d ab = b - a;
+  const double t = std::clamp((p - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0);
+  return (p - a - t * ab).norm();
+}
+
+/// Distance from a point to an obstacle; 0 inside.
+double distanceTo(const sim::Obstacle& obstacle, const Vector2d& p) {
+  if (obstacle.isDisc()) return std::max(0.0, (p - obstacle.centre).norm() - obstacle.radius);
+  double nearest = 1e9;
+  bool inside = true;
+  for (size_t i = 0; i < obstacle.corners.size(); ++i) {
+    const Vector2d& a = obstacle.corners[i];
+    const Vector2d& b = obstacle.corners[(i + 1) % obstacle.corners.size()];
+    nearest = std::min(nearest, pointToSegment(p, a, b));
+    const Vector2d ab = b - a;
+    if (ab.x() * (p - a).y() - ab.y() * (p - a).x() < 0.0) inside = false;
+  }
+  return inside ? 0.0 : nearest;
+}
+
+/// Distance between two obstacles; 0 where they touch at a corner.
+double gapBetween(const sim::Obstacle& a, const sim::Obstacle& b) {
+  if (a.isDisc()) return std::max(0.0, distanceTo(b, a.centre) - a.radius);
+  if (b.isDisc()) return gapBetween(b, a);
+  // Convex polygons that do not overlap are nearest at a corner of one of them.
+  double gap = 1e9;
+  for (const Vector2d& corner : a.corners) gap = std::min(gap, distanceTo(b, corner));
+  for (const Vector2d& corner : b.corners) gap = std::min(gap, distanceTo(a, corner));
+  return gap;
+}
+
+bool nearEnds(const Layout& layout, const sim::Obstacle& obstacle) {
+  return distanceTo(obstacle, {0.0, 0.0}) < kFreeRadius ||
+         distanceTo(obstacle, {layout.length, 0.0}) < kFreeRadius;
+}
+
+/// Adds a free-standing obstacle unless it would make a gap that is too narrow.
+bool addApart(Layout& layout, const sim::Obstacle& obstacle) {
+  if (nearEnds(layout, obstacle)) return false;
+  for (const sim::Obstacle& other : layout.obstacles)
+    if (gapBetween(obstacle, other) < kNarrowestGap) return false;
+  layout.obstacles.push_back(obstacle);
+  return true;
+}
+
+/// A wall across the way with one gap beside the straight line.
+bool addWall(Layout& layout, Dice& dice, double x) {
+  const double yaw = kPi / 2 + dice.between(-0.3, 0.3);
+  const double gap = dice.between(kNarrowestGap, 2.0);
+  const double gap_at = dice.sign() * dice.between(1.6, 4.5);
+  const double half = dice.between(7.0, 11.0);
+  const double thickness = dice.between(0.25, 0.5);
+  const double first = gap_at - gap / 2 + half;
+  const double second = half - gap_at - gap / 2;
+  const Pose2 middle{x, 0.0, yaw};
+  const Pose2 low = middle * Pose2{-half + first / 2, 0.0, 0.0};
+  const Pose2 high = middle * Pose2{half - second / 2, 0.0, 0.0};
+  const double height = dice.between(0.9, 1.6);
+  std::vector<sim::Obstacle> parts{sim::boxObstacle(low, first, thickness, height),
+                                   sim::boxObstacle(high, second, thickness, height)};
+  for (const sim::Obstacle& part : parts) {
+    if (nearEnds(layout, part)) return false;
+    for (const sim::Obstacle& other : layout.obstacles)
+      if (gapBetween(part, other) < 2.0) return false;
+  }
+  layout.obstacles.insert(layout.obstacles.end(), parts.begin(), parts.end());
+  return true;
+}
+
+/// A pocket that opens towards the start and lies on the straight line.
+bool addPocket(Layout& layout, Dice& dice, double x) {
+  const double width = dice.between(3.0, 5.0);
+  const double depth = dice.between(2.0, 4.0);
+  const Pose2 back{x, dice.between(-0.8, 0.8), dice.between(-0.3, 0.3)};
+  const double height = dice.between(0.9, 1.6);
+  const double thickness = 0.3;
+  // The sides overlap the back by its thickness, so that no slit is left.
+  std::vector<sim::Obstacle> parts{
+      sim::boxObstacle(back, thickness, width, height),
+      sim::boxObstacle(back * Pose2{-depth / 2, width / 2 - thickness / 2, 0.0}, depth + thickness,
+                       thickness, height),
+      sim::boxObstacle(back * Pose2{-depth / 2, -width / 2 + thickness / 2, 0.0}, depth + thickness,
+                       thickness, height)};
+  for (const sim::Obstacle& part : parts) {
+    if (nearEnds(layout, part)) return false;
+    for (const sim::Obstacle& other : layout.obstacles)
+      if (gapBetween(part, other) < 1.5) return false;
+  }
+  layout.obstacles.insert(layout.obstacles.end(), parts.begin(), parts.end());
+  return true;
+}
+
+void addBoulders(Layout& layout, Dice& dice) {
+  const int wanted = 20 + dice.below(26);
+  for (int i = 0, tries = 0; i < wanted && tries < 600; ++tries) {
+    const Vector2d at(dice.between(2.0, layout.length + 2.0), dice.between(-9.0, 9.0));
+    const double height = dice.between(0.8, 2.0);
+    const sim::Obstacle boulder =
+        dice.chance(0.6) ? sim::discObstacle(at, dice.between(0.15, 0.7), height)
+                         : sim::boxObstacle({at.x(), at.y(), dice.between(0.0, kPi)},
+                                            dice.between(0.4, 1.6), dice.between(0.3, 1.0), height);
+    if (addApart(layout, boulder)) ++i;
+  }
+}
+
+bool lineBlocked(const Layout& layout) {
+  for (double x = 0.0; x <= layout.length; x += 0.1)
+    for (const sim::Obstacle& obstacle : layout.obstacles)
+      if (sim::penetrationOf(obstacle, {kRobotLength, kRobotWidth}, {x, 0.0, 0.0}) > 0.0)
+        return true;
+  return false;
+}
+
+/// Whether a disc of the robot's half width plus 12 cm finds a way: necessary for the footprint to
+/// find one.
+bool hasWay(const Layout& layout) {
+  constexpr double kCell = 0.2;
+  constexpr double kSide = 14.0;
+  const int width = static_cast<int>((layout.length + 16.0) / kCell);
+  const int height = static_cast<int>(2.0 * kSide / kCell);
+  const auto centre = [&](int x, int y) {
+    return Vector2d(-8.0 + (x + 0.5) * kCell, -kSide + (y + 0.5) * kCell);
+  };
+  std::vector<char> closed(static_cast<size_t>(width * height), 0);
+  const auto blocked = [&](int x, int y) {
+    for (const sim::Obstacle& obstacle : layout.obstacles)
+      if (distanceTo(obstacle, centre(x, y)) < kRobotWidth / 2 + 0.12) return true;
+    return false;
+  };
+  const int start_x = static_cast<int>(8.0 / kCell), start_y = height / 2;
+  const int goal_x = static_cast<int>((layout.length + 8.0) / kCell);
+  std::deque<std::pair<int, int>> open{{start_x, start_y}};
+  closed[static_cast<size_t>(start_y * width + start_x)] = 1;
+  constexpr int kSteps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+  while (!open.empty()) {
+    const auto [x, y] = open.front();
+    open.pop_front();
+    if (x == goal_x && y == start_y) return true;
+    for (const auto& step : kSteps) {
+      const int nx = x + step[0], ny = y + step[1];
+      if (nx < 0 || ny < 0 || nx >= width || ny >= height) continue;
+      char& seen = closed[static_cast<size_t>(ny * width + nx)];
+      if (seen || blocked(nx, ny)) continue;
+      seen = 1;
+      open.emplace_back(nx, ny);
+    }
+  }
+  return false;
+}
+
+Layout drawLayout(Dice& dice) {
+  Layout layout;
+  layout.length = dice.between(25.0, 42.0);
+  const int barriers = 1 + dice.below(3);
+  for (int i = 0; i < barriers; ++i) {
+    const double share = (i + dice.between(0.3, 0.7)) / barriers;
+    const double x = 5.0 + share * (layout.length - 10.0);
+    if (dice.chance(0.65)) {
+      addWall(layout, dice, x);
+    } else {
+      addPocket(layout, dice, x);
+    }
+  }
+  addBoulders(layout, dice);
+  return layout;
+}
+
+void addSurfaces(MissionWorld& world, Dice& dice, double length, const Pose2& T_map_way) {
+  const std::vector<std::string> names{"cinder", "tarmac", "grass", "gravel"};
+  const int changes = 1 + dice.below(3);
+  int present = dice.below(4);
+  world.description.base_surface = names[static_cast<size_t>(present)];
+  for (int i = 0; i < changes; ++i) {
+    present = (present + 1 + dice.below(3)) % 4;
+    const double x = length * (i + 1 + dice.between(-0.15, 0.15)) / (changes + 1);
+    const double tilt = dice.between(-0.2, 0.2);
+    const Pose2 border = T_map_way * Pose2{x, 0.0, tilt};
+    sim::SurfaceRegion strip;
+    strip.surface = names[static_cast<size_t>(present)];
+    for (const Vector2d& corner :
+         {Vector2d(0, -80), Vector2d(120, -80), Vector2d(120, 80), Vector2d(0, 80)})
+      strip.corners.push_back(border * corner);
+    world.description.regions.push_back(strip);
+  }
+}
+
+void addTerrain(MissionWorld& world, Dice& dice) {
+  const int waves = 1 + dice.below(3);
+  for (int i = 0; i < waves; ++i) {
+    sim::TerrainWave wave;
+    const double k = 2.0 * kPi / dice.between(14.0, 35.0);
+    const double direction = dice.between(0.0, 2.0 * kPi);
+    wave.k = {k * std::cos(direction), k * std::sin(direction)};
+    // Together at most 5 % of slope.
+    wave.amplitude = dice.between(0.0, 0.05) / waves / k;
+    wave.phase = dice.between(0.0, 2.0 * kPi);
+    world.description.terrain.waves.push_back(wave);
+  }
+}
+
+sim::Obstacle moved(const sim::Obstacle& obstacle, const Pose2& T_map_way) {
+  sim::Obstacle result = obstacle;
+  result.centre = T_map_way * obstacle.centre;
+  for (Vector2d& corner : result.corners) corner = T_map_way * corner;
+  return result;
+}
+
+}  // namespace
+
+MissionWorld makeMissionWorld(uint64_t seed) {
+  // Neighbouring seeds must not give similar engines: spread them first (Weyl constant).
+  Dice dice(seed * 0x9e3779b97f4a7c15ull + 1);
+  MissionWorld world;
+  world.seed = seed;
+  Layout layout = drawLayout(dice);
+  const bool may_be_open = dice.chance(0.1);
+  while (!hasWay(layout) || (!may_be_open && !lineBlocked(layout))) layout = drawLayout(dice);
+  const Pose2 T_map_way{0.0, 0.0, dice.between(-kPi, kPi)};
+  world.T_map_start = T_map_way * Pose2{0.0, 0.0, dice.between(-0.8, 0.8)};
+  world.T_map_goal = T_map_way * Pose2{layout.length, 0.0, 0.0};
+  world.T_map_start.yaw = wrapAngle(world.T_map_start.yaw);
+  world.T_map_goal.yaw = wrapAngle(world.T_map_goal.yaw);
+  world.straight_line = layout.length;
+  world.description.name = "mission " + std::to_string(seed);
+  const double reach = layout.length + 30.0;
+  world.description.bounds = {{-reach, -reach}, {reach, reach}};
+  world.line_blocked = lineBlocked(layout);
+  for (const sim::Obstacle& obstacle : layout.obstacles)
+    world.description.obstacles.push_back(moved(obstacle, T_map_way));
+  addSurfaces(world, dice, layout.length, T_map_way);
+  addTerrain(world, dice);
+  return world;
+}
+
+}  // namespace tread::missions

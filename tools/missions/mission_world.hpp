@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+
+#include "modules/simulator/core/world.hpp"
+
+namespace tread::missions {
+
+/// What a mission takes place in: hard on purpose, the same for the same seed.
+/** At least 25 m from start to goal; walls whose only near gap lies off the straight line, pockets
+ * that open towards the start, scattered boulders; no gap between obstacles is narrower than the
+ * footprint plus 0.4 m; one to three changes of surface on the way; gentle slopes. A way of the
+ * footprint's width exists. */
+struct MissionWorld {
+  uint64_t seed = 0;
+  Pose2 T_map_start;
+  Pose2 T_map_goal;
+  double straight_line = 0.0;  ///< [m]
+  bool line_blocked = false;   ///< the footprint cannot drive the straight line
+  sim::WorldDescription description;
+};
+
+MissionWorld makeMissionWorld(uint64_t seed);
+
+/// Narrowest gap between obstacles that a mission may hold [m]: the footprint's width (0.68 m) plus
+/// 0.4 m.
+inline constexpr double kNarrowestGap = 1.08;
+
+}  // namespace tread::missions

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/missions/report.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <ostream>
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+
+namespace tread::missions {
+namespace {
+
+/// snprintf into a string: columns of a report are easier to read so than with stream manipulators.
+template <class... Arguments>
+std::string format(const char* pattern, Arguments... arguments) {
+  char text[400];
+  std::snprintf(text, sizeof text, pattern, arguments...);
+  return text;
+}
+
+int countOf(const Campaign& campaign, Outcome outcome) {
+  return static_cast<int>(
+      std::count_if(campaign.results.begin(), campaign.results.end(),
+                    [&](const MissionResult& r) { return r.outcome == outcome; }));
+}
+
+int collisionsOf(const Campaign& campaign) {
+  int collisions = 0;
+  for (const MissionResult& result : campaign.results) collisions += result.collisions;
+  return collisions;
+}
+
+void printShares(std::ostream& out, const Campaign& campaign) {
+  const auto total = static_cast<double>(std::max<size_t>(1, campaign.results.size()));
+  for (const Outcome outcome :
+       {Outcome::kArrived, Outcome::kRefused, Outcome::kIdle, Outcome::kStopped}) {
+    const int count = countOf(campaign, outcome);
+    out << format("%-9s %4d  %5.1f %%\n", nameOf(outcome), count, 100.0 * count / total);
+    std::map<std::string, int> reasons;
+    for (const MissionResult& result : campaign.results)
+      if (result.outcome == outcome && !result.reason.empty()) ++reasons[result.reason];
+    for (const auto& [reason, times] : reasons)
+      out << format("          %4d  %s\n", times, reason.c_str());
+  }
+}
+
+void printErrors(std::ostream& out, const Campaign& campaign, int first, int last) {
+  const auto errors = errorsAfterChange(campaign.results, first, last);
+  if (errors.empty()) return;
+  out << format("prediction error of patterns %d..%d after a change of surface, rule %s:\n", first,
+                last, campaign.rule.c_str());
+  out << "  from     to        count  position [m]  yaw [rad]  position [m/m]  yaw [rad/rad]\n";
+  for (const ErrorAfterChange& error : errors)
+    out << format("  %-8s %-8s %6d  %12.4f  %9.4f  %14.4f  %13.4f\n", error.from.c_str(),
+                  error.to.c_str(), error.count, error.position, error.yaw, error.position_per_m,
+                  error.yaw_per_rad);
+}
+
+nlohmann::ordered_json errorsJson(const Campaign& campaign, int first, int last) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const ErrorAfterChange& error : errorsAfterChange(campaign.results, first, last))
+    rows.push_back({{"from", error.from},
+                    {"to", error.to},
+                    {"count", error.count},
+                    {"position_m", error.position},
+                    {"yaw_rad", error.yaw},
+                    {"position_per_m", error.position_per_m},
+                    {"yaw_per_rad", error.yaw_per_rad}});
+  return rows;
+}
+
+nlohmann::ordered_json runJson(const MissionResult& result) {
+  nlohmann::ordered_json changes = nlohmann::ordered_json::array();
+  for (const SurfaceChange& change : result.surface_changes)
+    changes.push_back({{"time_s", change.time}, {"from", change.from}, {"to", change.to}});
+  return {{"seed", result.seed},
+          {"result", nameOf(result.outcome)},
+          {"reason", result.reason},
+          {"collisions", result.collisions},
+          {"time_s", result.time},
+          {"distance_m", result.distance},
+          {"straight_m", result.straight_line},
+          {"detour", result.detour()},
+          {"line_blocked", result.line_blocked},
+          {"surface_changes", result.surface_changes.size()},
+          {"changes", changes},
+          {"patterns", result.completed},
+          {"aborted", result.aborted},
+          {"rearmed", result.rearmed},
+          {"set_versions", result.set_versions}};
+}
+
+}  // namespace
+
+std::string lineOf(const MissionResult& result) {
+  return format(
+      "seed %-6llu %-8s %5.1f s  %5.1f m  detour %4.2f  patterns %3d  changes %zu  collisions "
+      "%d%s%s",
+      static_cast<unsigned long long>(result.seed), nameOf(result.outcome), result.time,
+      result.distance, result.detour(), result.completed, result.surface_changes.size(),
+      result.collisions, result.reason.empty() ? "" : "  ", result.reason.c_str());
+}
+
+void printSummary(std::ostream& out, const Campaign& campaign) {
+  printShares(out, campaign);
+  int blocked = 0;
+  for (const MissionResult& result : campaign.results) blocked += result.line_blocked ? 1 : 0;
+  out << format("collisions %d; straight line blocked in %d of %zu missions\n",
+                collisionsOf(campaign), blocked, campaign.results.size());
+  out << format("%.0f s of virtual time in %.0f s: %.1f times real time per core\n",
+                campaign.virtual_time, campaign.wall_time,
+                campaign.virtual_time / std::max(1e-9, campaign.cpu_time));
+  printErrors(out, campaign, 1, 3);
+  printErrors(out, campaign, 5, 15);
+}
+
+void writeJson(const std::string& path, const Campaign& campaign) {
+  nlohmann::ordered_json json;
+  json["missions"] = campaign.results.size();
+  json["arrived"] = countOf(campaign, Outcome::kArrived);
+  json["refused"] = countOf(campaign, Outcome::kRefused);
+  json["idle"] = countOf(campaign, Outcome::kIdle);
+  json["stopped"] = countOf(campaign, Outcome::kStopped);
+  json["collisions"] = collisionsOf(campaign);
+  json["virtual_s"] = campaign.virtual_time;
+  json["wall_s"] = campaign.wall_time;
+  json["cpu_s"] = campaign.cpu_time;
+  json["seed"] = campaign.seed;
+  json["rule"] = campaign.rule;
+  json["errors_1_to_3"] = errorsJson(campaign, 1, 3);
+  json["errors_5_to_15"] = errorsJson(campaign, 5, 15);
+  json["runs"] = nlohmann::ordered_json::array();
+  for (const MissionResult& result : campaign.results) json["runs"].push_back(runJson(result));
+  std::ofstream file(path);
+  file << json.dump(1) << '\n';
+  file.close();
+  if (!file) throw std::runtime_error(path + ": cannot write the report");
+}
+
+}  // namespace tread::missions

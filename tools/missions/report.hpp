@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "tools/missions/mission.hpp"
+
+namespace tread::missions {
+
+/// A run of missions as a whole.
+struct Campaign {
+  uint64_t seed = 0;
+  std::string rule;
+  double virtual_time = 0.0;  ///< [s] sum over the missions
+  double wall_time = 0.0;     ///< [s] from the first start to the last end
+  double cpu_time = 0.0;      ///< [s] sum over the missions of what each took of a core
+  std::vector<MissionResult> results;
+};
+
+/// One line per mission.
+std::string lineOf(const MissionResult& result);
+
+/// Shares with their reasons, collisions, speed, and prediction errors before and after changes of
+/// surface.
+void printSummary(std::ostream& out, const Campaign& campaign);
+
+/// The machine-readable report; throws std::runtime_error with one clear line if it cannot be
+/// written.
+void writeJson(const std::string& path, const Campaign& campaign);
+
+}  // namespace tread::missions
