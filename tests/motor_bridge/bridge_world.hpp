@@ -14,10 +14,10 @@ namespace tread::motor {
 /// A planner that drives for ever: always a running and a next slot, led by the execution log.
 class EndlessPlanner {
  public:
-  explicit EndlessPlanner(std::int64_t run_id = 1) : run_id_(run_id) {}
+  explicit EndlessPlanner(int64_t run_id = 1) : run_id_(run_id) {}
 
   /// Program of now [us], from what the bridge last reported.
-  Program plan(std::int64_t now, const ExecutionLog& log) {
+  Program plan(int64_t now, const ExecutionLog& log) {
     follow(log);
     Program program = makeProgram(now, running_, next_);
     program.run_id = run_id_;
@@ -49,8 +49,8 @@ class EndlessPlanner {
     return makeSlot(id_, commands, power, -power);
   }
 
-  std::int64_t run_id_;
-  std::int64_t id_ = 0;
+  int64_t run_id_;
+  int64_t id_ = 0;
   Slot running_;
   Slot next_;
 };
@@ -61,11 +61,11 @@ struct BridgeWorld {
   EndlessPlanner planner;
   DeviceReport device;
   BridgeOutput out;
-  std::int64_t now = 10'000'000;
+  int64_t now = 10'000'000;
   bool planner_alive = true;
   bool ins_alive = true;
 
-  static constexpr std::int64_t kStep = 10'000;
+  static constexpr int64_t kStep = 10'000;
 
   void step() {
     now += kStep;
@@ -77,8 +77,8 @@ struct BridgeWorld {
     }
     out = bridge.step(now, device);
   }
-  void run(std::int64_t us) {
-    for (const std::int64_t end = now + us; now < end;) {
+  void run(int64_t us) {
+    for (const int64_t end = now + us; now < end;) {
       step();
     }
   }

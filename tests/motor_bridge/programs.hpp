@@ -9,20 +9,19 @@
 namespace tread::motor {
 
 /// A slot of constant power; period 50 ms.
-inline Slot makeSlot(std::int64_t execution_id, int commands, double left = 0.5,
-                     double right = 0.5) {
+inline Slot makeSlot(int64_t execution_id, int commands, double left = 0.5, double right = 0.5) {
   Slot slot;
   slot.execution_id = execution_id;
-  slot.pattern_id = static_cast<std::int32_t>(100 + execution_id);
+  slot.pattern_id = static_cast<int32_t>(100 + execution_id);
   slot.set_version = 7;
   slot.kind = CommandKind::kPower;
   slot.period_us = 50'000;
-  slot.series.assign(static_cast<std::size_t>(commands), TrackCommand{left, right});
+  slot.series.assign(static_cast<size_t>(commands), TrackCommand{left, right});
   return slot;
 }
 
 /// A program of run 1 sent at utime.
-inline Program makeProgram(std::int64_t utime, const Slot& running, const Slot& next = {}) {
+inline Program makeProgram(int64_t utime, const Slot& running, const Slot& next = {}) {
   Program program;
   program.utime = utime;
   program.seq = utime;

@@ -12,8 +12,8 @@ using namespace tread::motor;
 namespace {
 
 /// Steps until the command is zero; returns how long it took [us].
-std::int64_t timeToZero(BridgeWorld& world) {
-  const std::int64_t from = world.now;
+int64_t timeToZero(BridgeWorld& world) {
+  const int64_t from = world.now;
   do {
     world.step();
   } while (!world.out.command.zero() && world.now - from < 10'000'000);
@@ -31,7 +31,7 @@ TEST_CASE("armed with a planner and an INS it drives, series joined to series wi
     REQUIRE_FALSE(world.out.command.zero());
   }
   const auto& records = world.bridge.executions().records();
-  for (std::size_t i = 0; i + 1 < records.size(); ++i) {
+  for (size_t i = 0; i + 1 < records.size(); ++i) {
     CHECK(records[i].end_utime == records[i + 1].start_utime);
     CHECK(records[i].end_utime - records[i].start_utime == 400'000);
     CHECK(records[i].commands_played == records[i].commands_total);
@@ -42,7 +42,7 @@ TEST_CASE("it gives the planner's commands, unchanged, with their execution and 
   BridgeWorld world;
   world.drive();
   world.run(10'000'000);
-  const std::int64_t since_start = world.now - world.last().start_utime;
+  const int64_t since_start = world.now - world.last().start_utime;
   CHECK(world.out.execution_id == world.last().execution_id);
   CHECK(world.out.command_index == since_start / 50'000);
   CHECK(world.out.run_id == 1);
@@ -63,7 +63,7 @@ TEST_CASE("a silent planner: zero one step after the lease, then ARM is needed")
   world.planner.commands = 200;
   world.drive();
   world.planner_alive = false;
-  const std::int64_t lease_end = world.now - world.now % 50'000 - 1'000 + 200'000;
+  const int64_t lease_end = world.now - world.now % 50'000 - 1'000 + 200'000;
   timeToZero(world);
   CHECK(world.now - lease_end <= BridgeWorld::kStep);
   CHECK(world.state() == State::kDisarmed);
@@ -207,7 +207,7 @@ TEST_CASE("a planner that talks about another execution does not keep the robot 
   world.planner.commands = 200;
   world.drive();
   world.planner_alive = false;
-  const std::int64_t from = world.now;
+  const int64_t from = world.now;
   while (world.state() == State::kDriving && world.now - from < 1'000'000) {
     world.step();
     world.bridge.receive(makeProgram(world.now, makeSlot(900, 20)), world.now);

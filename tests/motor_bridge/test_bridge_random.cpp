@@ -13,12 +13,12 @@ using namespace tread::motor;
 
 namespace {
 
-constexpr std::int64_t kStep = 10'000;
+constexpr int64_t kStep = 10'000;
 
 /// A bridge among peers that fail at random, and a witness who knows only what was delivered.
 class Chaos {
  public:
-  explicit Chaos(std::uint64_t seed) : random_(seed) {}
+  explicit Chaos(uint64_t seed) : random_(seed) {}
 
   void step() {
     now_ += kStep;
@@ -31,13 +31,13 @@ class Chaos {
     was_armed_ = isArmed(out.failsafe.state);
   }
 
-  std::int64_t driven() const { return driven_; }
-  std::int64_t stops() const { return stops_; }
+  int64_t driven() const { return driven_; }
+  int64_t stops() const { return stops_; }
   const Bridge& bridge() const { return bridge_; }
 
  private:
   struct Delivery {
-    std::int64_t due;
+    int64_t due;
     Program program;
   };
 
@@ -62,11 +62,11 @@ class Chaos {
       spoil(program);
       const int copies = chance(0.05) ? 0 : chance(0.05) ? 2 : 1;
       for (int i = 0; i < copies; ++i) {
-        const std::int64_t delay = chance(0.1) ? static_cast<std::int64_t>(random_() % 150'000) : 0;
+        const int64_t delay = chance(0.1) ? static_cast<int64_t>(random_() % 150'000) : 0;
         queue_.push_back({now_ + delay, program});
       }
     }
-    for (std::size_t i = 0; i < queue_.size();) {
+    for (size_t i = 0; i < queue_.size();) {
       if (queue_[i].due > now_) {
         ++i;
         continue;
@@ -75,7 +75,7 @@ class Chaos {
         newest_program_ = std::max(newest_program_, queue_[i].program.utime);
       }
       bridge_.receive(queue_[i].program, now_);
-      queue_.erase(queue_.begin() + static_cast<std::ptrdiff_t>(i));
+      queue_.erase(queue_.begin() + static_cast<ptrdiff_t>(i));
     }
   }
 
@@ -101,7 +101,7 @@ class Chaos {
         program.next = Slot{};
         break;
       case 5:
-        program.utime += static_cast<std::int64_t>(random_() % 10'000'000) - 5'000'000;
+        program.utime += static_cast<int64_t>(random_() % 10'000'000) - 5'000'000;
         break;
       default:
         slot.period_us = 1;
@@ -150,27 +150,27 @@ class Chaos {
   std::mt19937_64 random_;
   Bridge bridge_{BridgeConfig{}};
   DeviceReport device_;
-  std::int64_t run_id_ = 1;
+  int64_t run_id_ = 1;
   EndlessPlanner endless_{1};
   std::vector<Delivery> queue_;
-  std::int64_t now_ = 10'000'000;
-  std::int64_t newest_program_ = 0;
-  std::int64_t newest_ins_ = 0;
+  int64_t now_ = 10'000'000;
+  int64_t newest_program_ = 0;
+  int64_t newest_ins_ = 0;
   bool planner_silent_ = false;
   bool ins_silent_ = false;
   bool estop_ = false;
   bool was_armed_ = false;
   bool armed_request_ = false;
   BridgeOutput last_;
-  std::int64_t driven_ = 0;
-  std::int64_t stops_ = 0;
+  int64_t driven_ = 0;
+  int64_t stops_ = 0;
 };
 
 }  // namespace
 
 TEST_CASE(
     "ten hours among failing peers: it never moves without every condition, and moves again") {
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+  for (uint64_t seed = 1; seed <= 10; ++seed) {
     Chaos chaos(seed);
     for (int i = 0; i < 360'000; ++i) {
       chaos.step();

@@ -11,7 +11,7 @@ using namespace tread::motor;
 
 namespace {
 
-constexpr std::int64_t kStep = 10'000;
+constexpr int64_t kStep = 10'000;
 
 /// Drives a failsafe in virtual time; inputs are good unless a test says otherwise.
 struct Rig {
@@ -27,8 +27,8 @@ struct Rig {
     in.arm = in.disarm = false;
     in.series_end.clear();
   }
-  void run(std::int64_t us) {
-    for (const std::int64_t end = in.now + us; in.now < end;) {
+  void run(int64_t us) {
+    for (const int64_t end = in.now + us; in.now < end;) {
       step();
     }
   }
@@ -125,10 +125,10 @@ TEST_CASE("ARM while a fault stands is refused with that fault") {
 }
 
 TEST_CASE("the worst cause is the one that is named") {
-  for (std::size_t worst = 0; worst < kCauses.size(); ++worst) {
+  for (size_t worst = 0; worst < kCauses.size(); ++worst) {
     Rig rig;
     rig.drive();
-    for (std::size_t i = worst; i < kCauses.size(); ++i) {
+    for (size_t i = worst; i < kCauses.size(); ++i) {
       rig.in.*kCauses[i].reason = "cause " + std::to_string(i);
     }
     rig.step();
@@ -196,7 +196,7 @@ TEST_CASE(
   rig.drive();
   rig.in.playing = false;
   rig.step();
-  const std::int64_t stopped = rig.in.now;
+  const int64_t stopped = rig.in.now;
   while (rig.out.zero_fast) {
     rig.step();
   }
@@ -225,7 +225,7 @@ TEST_CASE("any sequence of inputs keeps the promises (ten hours of random scenar
     return static_cast<double>(random() >> 11) * 0x1.0p-53 < p;
   };
   Rig rig;
-  std::int64_t good_since = 0;
+  int64_t good_since = 0;
   for (int step = 0; step < 3'600'000; ++step) {
     const State before = rig.failsafe.state();
     bool good = true;

@@ -11,9 +11,9 @@ using namespace tread::motor;
 
 namespace {
 
-constexpr std::int64_t kNow = 10'000'000;
+constexpr int64_t kNow = 10'000'000;
 
-Refusal admit(ProgramGate& gate, const Program& program, std::int64_t now = kNow) {
+Refusal admit(ProgramGate& gate, const Program& program, int64_t now = kNow) {
   return gate.admit(program, now, true).refusal;
 }
 
@@ -100,7 +100,7 @@ TEST_CASE("the INS limit is three periods, at least 100 ms") {
 TEST_CASE("an INS that repeats its last measurement is as good as silent") {
   InsWatch watch({});
   CHECK(watch.fault(kNow) == "no INS yet");
-  for (std::int64_t t = 0; t <= 200'000; t += 20'000) {
+  for (int64_t t = 0; t <= 200'000; t += 20'000) {
     watch.receive({kNow, true}, kNow + t);
   }
   CHECK(watch.fault(kNow + 100'000).empty());

@@ -9,7 +9,7 @@ using namespace tread::motor;
 
 namespace {
 
-constexpr std::int64_t kStart = 5'000'000;
+constexpr int64_t kStart = 5'000'000;
 
 /// A player that started execution 1 (4 commands of 50 ms) at kStart, next as given.
 SeriesPlayer playing(const Slot& next = {}) {
@@ -26,14 +26,14 @@ TEST_CASE("each command is held for one period, to the microsecond") {
   SeriesPlayer player;
   player.beginRun(1);
   Slot slot = makeSlot(1, 4);
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (size_t i = 0; i < 4; ++i) {
     slot.series[i].left = 0.1 * static_cast<double>(i + 1);
   }
   player.offer(makeProgram(kStart, slot), kStart);
   player.start(kStart);
-  for (std::int64_t t = 0; t < 200'000; t += 1'000) {
+  for (int64_t t = 0; t < 200'000; t += 1'000) {
     CHECK_FALSE(player.advance(kStart + t).ended);
-    CHECK(player.give() == slot.series[static_cast<std::size_t>(t / 50'000)]);
+    CHECK(player.give() == slot.series[static_cast<size_t>(t / 50'000)]);
   }
   CHECK(player.advance(kStart + 200'000).ended);
   CHECK_FALSE(player.playing());
@@ -52,8 +52,8 @@ TEST_CASE("the next slot begins at the scheduled time even if the step is late")
 
 TEST_CASE("a chain of 1000 series does not drift, with steps that are always late") {
   SeriesPlayer player = playing(makeSlot(2, 4));
-  std::int64_t next_id = 2;
-  for (std::int64_t t = kStart; next_id <= 1000; t += 10'007) {
+  int64_t next_id = 2;
+  for (int64_t t = kStart; next_id <= 1000; t += 10'007) {
     if (player.advance(t).switched) {
       ++next_id;
       player.offer(makeProgram(t, makeSlot(next_id - 1, 4), makeSlot(next_id, 4)), t);
@@ -67,8 +67,8 @@ TEST_CASE("a chain of 1000 series does not drift, with steps that are always lat
 
 TEST_CASE("the log keeps the last eight executions with their times and outcome") {
   SeriesPlayer player = playing(makeSlot(2, 4));
-  for (std::int64_t id = 2; id <= 12; ++id) {
-    const std::int64_t t = kStart + (id - 1) * 200'000;
+  for (int64_t id = 2; id <= 12; ++id) {
+    const int64_t t = kStart + (id - 1) * 200'000;
     player.give();
     player.advance(t);
     player.offer(makeProgram(t, makeSlot(id, 4), makeSlot(id + 1, 4)), t);

@@ -11,7 +11,7 @@ Bridge::Bridge(const BridgeConfig& config)
       requests_(config.requests),
       failsafe_(config.times) {}
 
-void Bridge::receive(const Program& program, std::int64_t now) {
+void Bridge::receive(const Program& program, int64_t now) {
   const ProgramGate::Verdict verdict = gate_.admit(program, now, !isArmed(failsafe_.state()));
   if (verdict.refusal == Refusal::kBadSlot) {
     since_.program_fault = std::string("PROGRAM with ") + describe(verdict.slot_fault);
@@ -34,7 +34,7 @@ void Bridge::receive(const Program& program, std::int64_t now) {
   take(program, now);
 }
 
-void Bridge::take(const Program& program, std::int64_t now) {
+void Bridge::take(const Program& program, int64_t now) {
   const Offer offer = player_.offer(program, now);
   if (!agrees(offer)) {
     count(std::string("PROGRAM refused: ") + describe(offer));
@@ -48,7 +48,7 @@ void Bridge::take(const Program& program, std::int64_t now) {
   }
 }
 
-void Bridge::receive(const ArmRequest& request, std::int64_t now) {
+void Bridge::receive(const ArmRequest& request, int64_t now) {
   switch (requests_.judge(request, now, failsafe_.disarmedAt())) {
     case OperatorRequests::Verdict::kArm:
       since_.arm = true;
@@ -64,7 +64,7 @@ void Bridge::receive(const ArmRequest& request, std::int64_t now) {
   }
 }
 
-void Bridge::receive(const EstopRequest& request, std::int64_t now) {
+void Bridge::receive(const EstopRequest& request, int64_t now) {
   const bool taken = requests_.receive(request, now);
   since_.estop_cleared = taken && !request.engaged;
   if (!taken) {
@@ -72,11 +72,11 @@ void Bridge::receive(const EstopRequest& request, std::int64_t now) {
   }
 }
 
-void Bridge::receive(const InsNotice& notice, std::int64_t now) {
+void Bridge::receive(const InsNotice& notice, int64_t now) {
   ins_.receive(notice, now);
 }
 
-BridgeOutput Bridge::step(std::int64_t now, const DeviceReport& device) {
+BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
   const FailsafeInputs in = look(now, device);
   BridgeOutput out;
   out.failsafe = failsafe_.update(in);
@@ -97,21 +97,21 @@ BridgeOutput Bridge::step(std::int64_t now, const DeviceReport& device) {
   return out;
 }
 
-std::string Bridge::stallFault(std::int64_t now) const {
+std::string Bridge::stallFault(int64_t now) const {
   if (!last_step_ || (now >= *last_step_ && now - *last_step_ <= config_.max_stall_us)) {
     return "";
   }
   return "motor_bridge was held up for " + std::to_string((now - *last_step_) / 1000) + " ms";
 }
 
-std::string Bridge::leaseFault(std::int64_t now) const {
+std::string Bridge::leaseFault(int64_t now) const {
   if (gate_.leaseValid(now)) {
     return "";
   }
   return gate_.leaseAge(now) ? "no good PROGRAM within its lease" : "no PROGRAM yet";
 }
 
-std::string Bridge::moveSchedule(std::int64_t now, bool stalled) {
+std::string Bridge::moveSchedule(int64_t now, bool stalled) {
   if (!player_.playing() || stalled) {
     return "";
   }
@@ -127,7 +127,7 @@ std::string Bridge::moveSchedule(std::int64_t now, bool stalled) {
   return "";
 }
 
-FailsafeInputs Bridge::look(std::int64_t now, const DeviceReport& device) {
+FailsafeInputs Bridge::look(int64_t now, const DeviceReport& device) {
   FailsafeInputs in;
   in.now = now;
   in.bridge_fault = stallFault(now);
@@ -147,7 +147,7 @@ FailsafeInputs Bridge::look(std::int64_t now, const DeviceReport& device) {
   return in;
 }
 
-void Bridge::command(std::int64_t now, BridgeOutput& out) {
+void Bridge::command(int64_t now, BridgeOutput& out) {
   if (!out.failsafe.may_drive) {
     player_.abort(now, out.failsafe.reason);
     return;
@@ -162,9 +162,9 @@ void Bridge::command(std::int64_t now, BridgeOutput& out) {
   out.command_index = player_.index();
 }
 
-void Bridge::schedule(std::int64_t now, BridgeOutput& out) {
+void Bridge::schedule(int64_t now, BridgeOutput& out) {
   const bool fast = out.failsafe.may_drive || out.failsafe.zero_fast;
-  const std::int64_t interval = fast ? config_.command_interval_us : config_.idle_interval_us;
+  const int64_t interval = fast ? config_.command_interval_us : config_.idle_interval_us;
   out.send = !last_sent_ || out.command != sent_ || now - *last_sent_ >= interval;
   if (out.send) {
     last_sent_ = now;

@@ -18,10 +18,10 @@ namespace tread::motor {
 
 /// Everything the bridge can be told about its behaviour.
 struct BridgeConfig {
-  std::int64_t step_us = 10'000;              ///< step() is called this often [us]
-  std::int64_t command_interval_us = 20'000;  ///< a command is repeated this often [us]
-  std::int64_t idle_interval_us = 100'000;    ///< zero, a while after a stop [us]
-  std::int64_t max_stall_us = 100'000;        ///< longest gap between steps [us]
+  int64_t step_us = 10'000;              ///< step() is called this often [us]
+  int64_t command_interval_us = 20'000;  ///< a command is repeated this often [us]
+  int64_t idle_interval_us = 100'000;    ///< zero, a while after a stop [us]
+  int64_t max_stall_us = 100'000;        ///< longest gap between steps [us]
   GateLimits gate;
   InsLimits ins;
   RequestLimits requests;
@@ -34,9 +34,9 @@ struct BridgeOutput {
   TrackCommand command;                   ///< zero unless driving
   bool send = false;                      ///< the command is to be given to the controller now
   CommandKind kind = CommandKind::kNone;  ///< of the series played
-  std::int64_t run_id = 0;                ///< of the series played; 0 = none
-  std::int64_t execution_id = 0;          ///< being played; 0 = none
-  std::int32_t command_index = -1;        ///< in the series; -1 = none
+  int64_t run_id = 0;                     ///< of the series played; 0 = none
+  int64_t execution_id = 0;               ///< being played; 0 = none
+  int32_t command_index = -1;             ///< in the series; -1 = none
   bool hold_device_stop = false;          ///< the controller's own emergency stop is to be engaged
   bool release_device_stop = false;       ///< ... and to be released
 };
@@ -48,17 +48,17 @@ class Bridge {
   explicit Bridge(const BridgeConfig& config);
 
   /// Messages as they are received, now [us] on the clock that step() uses.
-  void receive(const Program& program, std::int64_t now);
-  void receive(const ArmRequest& request, std::int64_t now);
-  void receive(const EstopRequest& request, std::int64_t now);
-  void receive(const InsNotice& notice, std::int64_t now);
+  void receive(const Program& program, int64_t now);
+  void receive(const ArmRequest& request, int64_t now);
+  void receive(const EstopRequest& request, int64_t now);
+  void receive(const InsNotice& notice, int64_t now);
 
   /// Decides what the motors do from now [us] on.
-  BridgeOutput step(std::int64_t now, const DeviceReport& device);
+  BridgeOutput step(int64_t now, const DeviceReport& device);
 
   const ExecutionLog& executions() const { return player_.log(); }
   /// How often something was refused or noted, by its name in words.
-  const std::map<std::string, std::int64_t>& counters() const { return counters_; }
+  const std::map<std::string, int64_t>& counters() const { return counters_; }
 
  private:
   /// What happened since the last step.
@@ -72,13 +72,13 @@ class Bridge {
   };
 
   void count(const std::string& what) { ++counters_[what]; }
-  void take(const Program& program, std::int64_t now);
-  std::string stallFault(std::int64_t now) const;
-  std::string leaseFault(std::int64_t now) const;
-  std::string moveSchedule(std::int64_t now, bool stalled);
-  FailsafeInputs look(std::int64_t now, const DeviceReport& device);
-  void command(std::int64_t now, BridgeOutput& out);
-  void schedule(std::int64_t now, BridgeOutput& out);
+  void take(const Program& program, int64_t now);
+  std::string stallFault(int64_t now) const;
+  std::string leaseFault(int64_t now) const;
+  std::string moveSchedule(int64_t now, bool stalled);
+  FailsafeInputs look(int64_t now, const DeviceReport& device);
+  void command(int64_t now, BridgeOutput& out);
+  void schedule(int64_t now, BridgeOutput& out);
 
   BridgeConfig config_;
   ProgramGate gate_;
@@ -87,10 +87,10 @@ class Bridge {
   OperatorRequests requests_;
   Failsafe failsafe_;
   Since since_;
-  std::optional<std::int64_t> last_step_;
-  std::optional<std::int64_t> last_sent_;
+  std::optional<int64_t> last_step_;
+  std::optional<int64_t> last_sent_;
   TrackCommand sent_;
-  std::map<std::string, std::int64_t> counters_;
+  std::map<std::string, int64_t> counters_;
 };
 
 }  // namespace tread::motor

@@ -4,14 +4,14 @@
 
 namespace tread::motor {
 
-void ExecutionLog::begin(std::int64_t run_id, const Slot& slot, std::int64_t start_utime) {
+void ExecutionLog::begin(int64_t run_id, const Slot& slot, int64_t start_utime) {
   ExecutionRecord record;
   record.run_id = run_id;
   record.execution_id = slot.execution_id;
   record.pattern_id = slot.pattern_id;
   record.set_version = slot.set_version;
   record.start_utime = start_utime;
-  record.commands_total = static_cast<std::int32_t>(slot.series.size());
+  record.commands_total = static_cast<int32_t>(slot.series.size());
   records_.push_back(record);
   if (records_.size() > kCapacity) {
     records_.pop_front();
@@ -25,7 +25,7 @@ void ExecutionLog::countCommand() {
   }
 }
 
-void ExecutionLog::close(Outcome outcome, std::int64_t end_utime, const std::string& reason) {
+void ExecutionLog::close(Outcome outcome, int64_t end_utime, const std::string& reason) {
   if (!running()) {
     return;
   }

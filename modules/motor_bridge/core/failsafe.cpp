@@ -73,7 +73,7 @@ FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
   return out;
 }
 
-void Failsafe::enter(State state, const std::string& reason, std::int64_t now) {
+void Failsafe::enter(State state, const std::string& reason, int64_t now) {
   if (state_ == State::kDriving || !isArmed(state)) {
     zero_since_ = now;
   }
@@ -110,7 +110,7 @@ bool Failsafe::stopOnFault(const FailsafeInputs& in) {
 }
 
 std::string Failsafe::whyNotArm(const FailsafeInputs& in) const {
-  const std::int64_t healthy = healthy_since_ ? in.now - *healthy_since_ : 0;
+  const int64_t healthy = healthy_since_ ? in.now - *healthy_since_ : 0;
   if (healthy >= times_.healthy_before_arm_us) {
     return "";
   }

@@ -27,7 +27,7 @@ inline bool isArmed(State state) {
 
 /// What the failsafe looks at. Reasons are in words; empty = nothing wrong.
 struct FailsafeInputs {
-  std::int64_t now = 0;       ///< [us]
+  int64_t now = 0;            ///< [us]
   bool estop = false;         ///< an emergency stop is engaged
   std::string estop_reason;   ///< by whom and why
   std::string link_fault;     ///< no controller that was started up and answers
@@ -57,8 +57,8 @@ struct FailsafeOutputs {
 
 /// Times of the failsafe [us].
 struct FailsafeTimes {
-  std::int64_t healthy_before_arm_us = 1'000'000;  ///< inputs must be good this long
-  std::int64_t fast_zero_us = 1'000'000;           ///< zero at the command rate after a stop
+  int64_t healthy_before_arm_us = 1'000'000;  ///< inputs must be good this long
+  int64_t fast_zero_us = 1'000'000;           ///< zero at the command rate after a stop
 };
 
 /// The ranked state machine that decides whether the motors may turn. Pure: time is an input.
@@ -74,10 +74,10 @@ class Failsafe {
   State state() const { return state_; }
   const std::string& reason() const { return reason_; }
   /// When it last left the armed states [us]; a request given before counts for nothing.
-  std::int64_t disarmedAt() const { return disarmed_at_; }
+  int64_t disarmedAt() const { return disarmed_at_; }
 
  private:
-  void enter(State state, const std::string& reason, std::int64_t now);
+  void enter(State state, const std::string& reason, int64_t now);
   void watchHealth(const FailsafeInputs& in);
   bool stopOnFault(const FailsafeInputs& in);
   bool serveRequest(const FailsafeInputs& in);
@@ -87,9 +87,9 @@ class Failsafe {
   FailsafeTimes times_;
   State state_ = State::kDisarmed;
   std::string reason_ = "not armed yet";
-  std::optional<std::int64_t> healthy_since_;
-  std::optional<std::int64_t> zero_since_;
-  std::int64_t disarmed_at_ = 0;
+  std::optional<int64_t> healthy_since_;
+  std::optional<int64_t> zero_since_;
+  int64_t disarmed_at_ = 0;
   std::string refusal_;  ///< why the last request to arm was refused
 };
 

@@ -4,7 +4,7 @@
 
 namespace tread::motor {
 
-void InsWatch::receive(const InsNotice& notice, std::int64_t now) {
+void InsWatch::receive(const InsNotice& notice, int64_t now) {
   const bool future = notice.utime > now + limits_.max_future_us;
   const bool old = now - notice.utime > limits_.maxAge() + limits_.max_latency_us;
   const bool newer = !received_at_ || notice.utime > utime_;
@@ -16,7 +16,7 @@ void InsWatch::receive(const InsNotice& notice, std::int64_t now) {
   usable_ = notice.usable;
 }
 
-std::string InsWatch::fault(std::int64_t now) const {
+std::string InsWatch::fault(int64_t now) const {
   if (!received_at_) {
     return "no INS yet";
   }

@@ -11,18 +11,18 @@ namespace tread::motor {
 
 /// When the INS counts as lost.
 struct InsLimits {
-  std::int64_t period_us = 20'000;        ///< of the INS [us]
-  std::int64_t max_latency_us = 200'000;  ///< from measurement to receipt [us]
-  std::int64_t max_future_us = 50'000;    ///< clock difference allowed [us]
+  int64_t period_us = 20'000;        ///< of the INS [us]
+  int64_t max_latency_us = 200'000;  ///< from measurement to receipt [us]
+  int64_t max_future_us = 50'000;    ///< clock difference allowed [us]
 
   /// Longest silence allowed [us]: three periods, at least 100 ms.
-  std::int64_t maxAge() const { return std::max<std::int64_t>(3 * period_us, 100'000); }
+  int64_t maxAge() const { return std::max<int64_t>(3 * period_us, 100'000); }
 };
 
 /// One INS message as far as motion depends on it.
 struct InsNotice {
-  std::int64_t utime = 0;  ///< [us] of the measurement
-  bool usable = true;      ///< position and heading are known
+  int64_t utime = 0;   ///< [us] of the measurement
+  bool usable = true;  ///< position and heading are known
 };
 
 /// Watches that the INS goes on telling where the robot is.
@@ -33,14 +33,14 @@ class InsWatch {
   explicit InsWatch(const InsLimits& limits) : limits_(limits) {}
 
   /// A message received at now [us].
-  void receive(const InsNotice& notice, std::int64_t now);
+  void receive(const InsNotice& notice, int64_t now);
   /// What is wrong at now [us], in words; empty = nothing.
-  std::string fault(std::int64_t now) const;
+  std::string fault(int64_t now) const;
 
  private:
   InsLimits limits_;
-  std::optional<std::int64_t> received_at_;
-  std::int64_t utime_ = 0;
+  std::optional<int64_t> received_at_;
+  int64_t utime_ = 0;
   bool usable_ = false;
 };
 

@@ -6,12 +6,12 @@
 
 namespace tread::motor {
 
-bool OperatorRequests::timely(std::int64_t utime, std::int64_t now) const {
+bool OperatorRequests::timely(int64_t utime, int64_t now) const {
   return utime <= now + limits_.max_future_us && now - utime <= limits_.max_age_us;
 }
 
-OperatorRequests::Verdict OperatorRequests::judge(const ArmRequest& request, std::int64_t now,
-                                                  std::int64_t disarmed_at) {
+OperatorRequests::Verdict OperatorRequests::judge(const ArmRequest& request, int64_t now,
+                                                  int64_t disarmed_at) {
   if (!request.armed) {
     return Verdict::kDisarm;
   }
@@ -20,7 +20,7 @@ OperatorRequests::Verdict OperatorRequests::judge(const ArmRequest& request, std
   return timely(request.utime, now) && after_stop && !served ? Verdict::kArm : Verdict::kIgnored;
 }
 
-bool OperatorRequests::receive(const EstopRequest& request, std::int64_t now) {
+bool OperatorRequests::receive(const EstopRequest& request, int64_t now) {
   if (request.engaged) {
     engaged_ = true;
     engaged_utime_ = std::max(engaged_utime_, std::min(request.utime, now));

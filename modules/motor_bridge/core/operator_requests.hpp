@@ -9,7 +9,7 @@ namespace tread::motor {
 
 /// A request to arm or disarm, as sent.
 struct ArmRequest {
-  std::int64_t utime = 0;  ///< [us] when the operator gave it
+  int64_t utime = 0;  ///< [us] when the operator gave it
   bool armed = false;
   std::string by;
   std::string why;
@@ -17,7 +17,7 @@ struct ArmRequest {
 
 /// An emergency stop or its clearing, as sent.
 struct EstopRequest {
-  std::int64_t utime = 0;  ///< [us]
+  int64_t utime = 0;  ///< [us]
   bool engaged = true;
   std::string by;
   std::string why;
@@ -25,8 +25,8 @@ struct EstopRequest {
 
 /// How old or early a request may be [us].
 struct RequestLimits {
-  std::int64_t max_age_us = 1'500'000;  ///< requests are repeated for a second
-  std::int64_t max_future_us = 50'000;
+  int64_t max_age_us = 1'500'000;  ///< requests are repeated for a second
+  int64_t max_future_us = 50'000;
 };
 
 /// Sorts the operator's requests: an old permission counts for nothing, a stop always counts.
@@ -37,23 +37,23 @@ class OperatorRequests {
   /// What a request to arm or disarm is worth.
   enum class Verdict { kIgnored, kArm, kDisarm };
   /// Judges a request received at now [us]; one to arm must have been given after disarmed_at [us].
-  Verdict judge(const ArmRequest& request, std::int64_t now, std::int64_t disarmed_at);
+  Verdict judge(const ArmRequest& request, int64_t now, int64_t disarmed_at);
   /// A request to arm was served: its repetitions are worth nothing any more.
   void consume(const ArmRequest& request) { served_utime_ = request.utime; }
 
   /// An E-stop message received at now [us]. Returns false if it was ignored.
-  bool receive(const EstopRequest& request, std::int64_t now);
+  bool receive(const EstopRequest& request, int64_t now);
   bool estop() const { return engaged_; }
   /// Who stopped and why; empty if not engaged.
   const std::string& estopReason() const { return reason_; }
 
  private:
-  bool timely(std::int64_t utime, std::int64_t now) const;
+  bool timely(int64_t utime, int64_t now) const;
 
   RequestLimits limits_;
-  std::int64_t served_utime_ = -1;
+  int64_t served_utime_ = -1;
   bool engaged_ = false;
-  std::int64_t engaged_utime_ = 0;
+  int64_t engaged_utime_ = 0;
   std::string reason_;
 };
 

@@ -8,7 +8,7 @@
 namespace tread::motor {
 
 /// What a command means; the numbers are those of program_slot_t.
-enum class CommandKind : std::int16_t {
+enum class CommandKind : int16_t {
   kNone = 0,
   kPower = 1,       ///< share of full motor power, -1..1 [1]
   kTrackSpeed = 2,  ///< track speed [m/s]
@@ -28,15 +28,15 @@ struct TrackCommand {
 
 /// One pattern execution as ordered: a command series played at a fixed period.
 struct Slot {
-  std::int64_t execution_id = 0;  ///< counts up within a run; 0 = empty slot
-  std::int32_t pattern_id = 0;
-  std::int64_t set_version = 0;
+  int64_t execution_id = 0;  ///< counts up within a run; 0 = empty slot
+  int32_t pattern_id = 0;
+  int64_t set_version = 0;
   CommandKind kind = CommandKind::kNone;
-  std::int64_t period_us = 0;        ///< each command is held this long [us]
+  int64_t period_us = 0;             ///< each command is held this long [us]
   std::vector<TrackCommand> series;  ///< u_1 .. u_T
 
   bool empty() const { return execution_id == 0; }
-  std::int64_t durationUs() const { return period_us * static_cast<std::int64_t>(series.size()); }
+  int64_t durationUs() const { return period_us * static_cast<int64_t>(series.size()); }
 };
 
 /// True if both order the same commands for the same execution.
@@ -44,21 +44,21 @@ bool sameOrder(const Slot& a, const Slot& b);
 
 /// What the planner wants of the motors: complete state, sent at 20 Hz.
 struct Program {
-  std::int64_t utime = 0;  ///< [us] when it was sent
-  std::int64_t seq = 0;
-  std::int64_t run_id = 0;    ///< one per start of the planner: its boot utime
-  std::int64_t lease_us = 0;  ///< valid for this long [us]
+  int64_t utime = 0;  ///< [us] when it was sent
+  int64_t seq = 0;
+  int64_t run_id = 0;    ///< one per start of the planner: its boot utime
+  int64_t lease_us = 0;  ///< valid for this long [us]
   Slot running;
   Slot next;
 };
 
 /// What a slot must keep to.
 struct SlotLimits {
-  CommandKind kind = CommandKind::kPower;     ///< what the controller is set up for
-  double max_command = 1.0;                   ///< largest magnitude, in the units of the kind
-  std::int64_t step_us = 10'000;              ///< a period must be a multiple of this [us]
-  std::int64_t max_period_us = 200'000;       ///< [us]
-  std::int64_t max_duration_us = 60'000'000;  ///< of one series [us]
+  CommandKind kind = CommandKind::kPower;  ///< what the controller is set up for
+  double max_command = 1.0;                ///< largest magnitude, in the units of the kind
+  int64_t step_us = 10'000;                ///< a period must be a multiple of this [us]
+  int64_t max_period_us = 200'000;         ///< [us]
+  int64_t max_duration_us = 60'000'000;    ///< of one series [us]
 };
 
 /// What is wrong with a slot. Everything but kNone stops a moving robot.

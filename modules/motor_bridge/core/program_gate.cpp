@@ -26,7 +26,7 @@ const char* describe(Refusal refusal) {
   return "unknown";
 }
 
-Refusal ProgramGate::checkTime(const Program& program, std::int64_t now) const {
+Refusal ProgramGate::checkTime(const Program& program, int64_t now) const {
   if (program.lease_us <= 0) {
     return Refusal::kBadLease;
   }
@@ -47,8 +47,7 @@ bool ProgramGate::newer(const Program& program) const {
   return program.run_id != *run_id_ || program.seq > newest_seq_;
 }
 
-ProgramGate::Verdict ProgramGate::admit(const Program& program, std::int64_t now,
-                                        bool may_adopt_run) {
+ProgramGate::Verdict ProgramGate::admit(const Program& program, int64_t now, bool may_adopt_run) {
   Verdict verdict;
   verdict.refusal = checkTime(program, now);
   if (verdict.refusal == Refusal::kNone) {
@@ -69,21 +68,21 @@ ProgramGate::Verdict ProgramGate::admit(const Program& program, std::int64_t now
   return verdict;
 }
 
-void ProgramGate::renew(const Program& program, std::int64_t now) {
+void ProgramGate::renew(const Program& program, int64_t now) {
   renewed_at_ = now;
   renewed_utime_ = program.utime;
   lease_us_ = std::min(program.lease_us, limits_.lease_us);
 }
 
-std::optional<std::int64_t> ProgramGate::leaseAge(std::int64_t now) const {
+std::optional<int64_t> ProgramGate::leaseAge(int64_t now) const {
   if (!renewed_at_) {
     return std::nullopt;
   }
   return std::max(now - *renewed_at_, now - renewed_utime_);
 }
 
-bool ProgramGate::leaseValid(std::int64_t now) const {
-  const std::optional<std::int64_t> age = leaseAge(now);
+bool ProgramGate::leaseValid(int64_t now) const {
+  const std::optional<int64_t> age = leaseAge(now);
   return age && *age <= lease_us_;
 }
 

@@ -25,8 +25,8 @@ const char* describe(Refusal refusal);
 
 /// Limits on programs as they arrive.
 struct GateLimits {
-  std::int64_t lease_us = 200'000;      ///< upper limit of any lease [us]
-  std::int64_t max_future_us = 50'000;  ///< clock difference allowed [us]
+  int64_t lease_us = 200'000;      ///< upper limit of any lease [us]
+  int64_t max_future_us = 50'000;  ///< clock difference allowed [us]
   SlotLimits slot;
 };
 
@@ -43,26 +43,26 @@ class ProgramGate {
   };
 
   /// Checks a program received at now [us]; a new run is let in only if it may be adopted.
-  Verdict admit(const Program& program, std::int64_t now, bool may_adopt_run);
+  Verdict admit(const Program& program, int64_t now, bool may_adopt_run);
   /// An admitted program counts as a sign of life from now on.
-  void renew(const Program& program, std::int64_t now);
+  void renew(const Program& program, int64_t now);
   /// True while the last renewal is younger than the lease, by receipt and by utime.
-  bool leaseValid(std::int64_t now) const;
+  bool leaseValid(int64_t now) const;
   /// Age of the lease [us]: the larger one of the ages by receipt and by utime; nothing if never
   /// renewed.
-  std::optional<std::int64_t> leaseAge(std::int64_t now) const;
+  std::optional<int64_t> leaseAge(int64_t now) const;
 
  private:
-  Refusal checkTime(const Program& program, std::int64_t now) const;
+  Refusal checkTime(const Program& program, int64_t now) const;
   bool newer(const Program& program) const;
 
   GateLimits limits_;
-  std::optional<std::int64_t> run_id_;
-  std::int64_t newest_utime_ = 0;
-  std::int64_t newest_seq_ = 0;
-  std::optional<std::int64_t> renewed_at_;
-  std::int64_t renewed_utime_ = 0;
-  std::int64_t lease_us_ = 0;
+  std::optional<int64_t> run_id_;
+  int64_t newest_utime_ = 0;
+  int64_t newest_seq_ = 0;
+  std::optional<int64_t> renewed_at_;
+  int64_t renewed_utime_ = 0;
+  int64_t lease_us_ = 0;
 };
 
 }  // namespace tread::motor

@@ -28,9 +28,9 @@ std::optional<long> parseNumber(const std::string& text) {
 /// Numbers separated by colons; empty if one of them is none.
 std::vector<long> parseNumbers(const std::string& text) {
   std::vector<long> numbers;
-  std::size_t begin = 0;
+  size_t begin = 0;
   while (begin <= text.size()) {
-    const std::size_t end = std::min(text.find(':', begin), text.size());
+    const size_t end = std::min(text.find(':', begin), text.size());
     const std::optional<long> number = parseNumber(text.substr(begin, end - begin));
     if (!number) {
       return {};
@@ -42,7 +42,7 @@ std::vector<long> parseNumbers(const std::string& text) {
 }
 
 struct FlagName {
-  std::int32_t flag;
+  int32_t flag;
   const char* name;
 };
 
@@ -115,7 +115,7 @@ RoboteqReply parseReply(const std::string& line) {
     reply.kind = RoboteqReply::Kind::kRefused;
     return reply;
   }
-  const std::size_t equals = line.find('=');
+  const size_t equals = line.find('=');
   const bool keyed = equals != std::string::npos && equals > 0 && equals <= 8;
   const bool upper = keyed && std::all_of(line.begin(), line.begin() + static_cast<long>(equals),
                                           [](char c) { return c >= 'A' && c <= 'Z'; });
@@ -128,7 +128,7 @@ RoboteqReply parseReply(const std::string& line) {
   return reply;
 }
 
-std::string describeFaults(std::int32_t fault_flags, std::int32_t status_flags) {
+std::string describeFaults(int32_t fault_flags, int32_t status_flags) {
   std::string words;
   const auto add = [&words](const char* name) {
     words += words.empty() ? "controller: " : ", ";

@@ -38,19 +38,19 @@ std::vector<std::string> commandLines(const TrackCommand& command, const Roboteq
     discarded up to its end. */
 class RoboteqLines {
  public:
-  static constexpr std::size_t kMaxLine = 128;
+  static constexpr size_t kMaxLine = 128;
 
   /// Complete lines, empty ones left out.
   std::vector<std::string> push(std::string_view bytes);
   void clear();
-  std::int64_t overlong() const { return overlong_; }
-  std::int64_t garbageBytes() const { return garbage_; }
+  int64_t overlong() const { return overlong_; }
+  int64_t garbageBytes() const { return garbage_; }
 
  private:
   std::string line_;
   bool discarding_ = false;
-  std::int64_t overlong_ = 0;
-  std::int64_t garbage_ = 0;
+  int64_t overlong_ = 0;
+  int64_t garbage_ = 0;
 };
 
 /// One reply of the controller.
@@ -68,7 +68,7 @@ bool isEcho(const std::string& line);
 RoboteqReply parseReply(const std::string& line);
 
 /// Runtime fault flags of query ?FF (Roboteq manual, mrpt.md 9).
-enum FaultFlag : std::int32_t {
+enum FaultFlag : int32_t {
   kOverheat = 1,
   kOvervoltage = 2,
   kUndervoltage = 4,
@@ -80,16 +80,16 @@ enum FaultFlag : std::int32_t {
 };
 
 /// Status flags of query ?FS that matter here; the others tell how it is commanded.
-enum StatusFlag : std::int32_t {
+enum StatusFlag : int32_t {
   kPowerStageOff = 8,
   kStallDetected = 16,
   kAtLimit = 32,
 };
 
 /// Status flags that stop the robot.
-inline constexpr std::int32_t kStoppingStatus = kPowerStageOff | kStallDetected;
+inline constexpr int32_t kStoppingStatus = kPowerStageOff | kStallDetected;
 
 /// Flags in words, e.g. "controller: overheat, undervoltage"; empty if nothing stops the robot.
-std::string describeFaults(std::int32_t fault_flags, std::int32_t status_flags);
+std::string describeFaults(int32_t fault_flags, int32_t status_flags);
 
 }  // namespace tread::motor

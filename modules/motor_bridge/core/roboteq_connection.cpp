@@ -8,7 +8,7 @@ namespace tread::motor {
 namespace {
 
 /// Fault flags older than this are unknown [us]; they are read about ten times a second.
-constexpr std::int64_t kFlagsMaxAge = 1'000'000;
+constexpr int64_t kFlagsMaxAge = 1'000'000;
 
 }  // namespace
 
@@ -33,7 +33,7 @@ void RoboteqConnection::enter(Phase phase) {
   }
 }
 
-void RoboteqConnection::fail(const std::string& problem, std::int64_t now) {
+void RoboteqConnection::fail(const std::string& problem, int64_t now) {
   problem_ = problem;
   ++counters_["controller lost: " + problem];
   backoff_us_ = std::clamp(2 * backoff_us_, config_.backoff_min_us, config_.backoff_max_us);
@@ -43,14 +43,14 @@ void RoboteqConnection::fail(const std::string& problem, std::int64_t now) {
   sendZero(now);
 }
 
-void RoboteqConnection::sendZero(std::int64_t now) {
+void RoboteqConnection::sendZero(int64_t now) {
   for (const std::string& line : commandLines({}, config_.layout)) {
     send(line);
   }
   zero_at_ = now;
 }
 
-void RoboteqConnection::receive(std::string_view bytes, std::int64_t now) {
+void RoboteqConnection::receive(std::string_view bytes, int64_t now) {
   for (const std::string& line : lines_.push(bytes)) {
     const RoboteqReply reply = parseReply(line);
     if (isEcho(line)) {
@@ -69,13 +69,13 @@ void RoboteqConnection::receive(std::string_view bytes, std::int64_t now) {
   }
 }
 
-void RoboteqConnection::command(const TrackCommand& command, std::int64_t now) {
+void RoboteqConnection::command(const TrackCommand& command, int64_t now) {
   if (phase_ == Phase::kReady) {
     session_.command(command, now);
   }
 }
 
-std::string RoboteqConnection::poll(std::int64_t now) {
+std::string RoboteqConnection::poll(int64_t now) {
   if (phase_ == Phase::kBackoff && now >= retry_at_) {
     enter(Phase::kEcho);
   }
@@ -111,7 +111,7 @@ std::string RoboteqConnection::request() const {
   }
 }
 
-void RoboteqConnection::pollStartup(std::int64_t now) {
+void RoboteqConnection::pollStartup(int64_t now) {
   if (tries_ > 0 && now - asked_at_ < config_.reply_timeout_us) {
     return;
   }
@@ -121,14 +121,18 @@ void RoboteqConnection::pollStartup(std::int64_t now) {
   }
   ++tries_;
   asked_at_ = now;
-  if (phase_ == Phase::kZero) {
-    sendZero(now);
-  } else {
+  if (phase_ != Phase::kZero) {
     send(request());
+  }
+  // Zero also follows the very first line: it may complete half a command that a killed predecessor
+  // left in the controller. Its acknowledgement is mistaken for that of the watchdog's setting,
+  // which is read back anyway.
+  if (phase_ == Phase::kZero || phase_ == Phase::kEcho) {
+    sendZero(now);
   }
 }
 
-void RoboteqConnection::takeStartup(const RoboteqReply& reply, std::int64_t now) {
+void RoboteqConnection::takeStartup(const RoboteqReply& reply, int64_t now) {
   const bool expects_value = phase_ == Phase::kReadBack || phase_ == Phase::kIdentify;
   if (reply.kind == RoboteqReply::Kind::kRefused) {
     ++counters_["start-up requests refused"];
@@ -143,7 +147,7 @@ void RoboteqConnection::takeStartup(const RoboteqReply& reply, std::int64_t now)
   }
 }
 
-void RoboteqConnection::checkWatchdog(const RoboteqReply& reply, std::int64_t now) {
+void RoboteqConnection::checkWatchdog(const RoboteqReply& reply, int64_t now) {
   const std::string wanted = std::to_string(config_.watchdog_ms);
   if (reply.text == wanted) {
     advance(now);
@@ -152,7 +156,7 @@ void RoboteqConnection::checkWatchdog(const RoboteqReply& reply, std::int64_t no
   }
 }
 
-void RoboteqConnection::advance(std::int64_t now) {
+void RoboteqConnection::advance(int64_t now) {
   enter(static_cast<Phase>(static_cast<int>(phase_) + 1));
   if (phase_ == Phase::kReady) {
     backoff_us_ = 0;
@@ -163,7 +167,7 @@ void RoboteqConnection::advance(std::int64_t now) {
   }
 }
 
-DeviceReport RoboteqConnection::report(std::int64_t now) const {
+DeviceReport RoboteqConnection::report(int64_t now) const {
   DeviceReport report;
   const RoboteqTelemetry known = telemetry();
   if (phase_ == Phase::kClosed || phase_ == Phase::kBackoff) {
@@ -181,8 +185,8 @@ DeviceReport RoboteqConnection::report(std::int64_t now) const {
   return report;
 }
 
-std::map<std::string, std::int64_t> RoboteqConnection::counters() const {
-  std::map<std::string, std::int64_t> counters = counters_;
+std::map<std::string, int64_t> RoboteqConnection::counters() const {
+  std::map<std::string, int64_t> counters = counters_;
   for (const auto& [name, count] : session_.counters()) {
     counters[name] += count;
   }

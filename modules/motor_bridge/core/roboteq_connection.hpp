@@ -28,36 +28,36 @@ class RoboteqConnection {
   bool isOpen() const { return phase_ != Phase::kClosed; }
 
   /// Bytes from the controller, received at now [us].
-  void receive(std::string_view bytes, std::int64_t now);
+  void receive(std::string_view bytes, int64_t now);
   /// A command to be given now [us]; dropped unless the controller is ready.
-  void command(const TrackCommand& command, std::int64_t now);
+  void command(const TrackCommand& command, int64_t now);
   /// See RoboteqSession.
   void holdStop(bool hold) { session_.holdStop(hold); }
-  void releaseStop(std::int64_t now) { session_.releaseStop(now); }
+  void releaseStop(int64_t now) { session_.releaseStop(now); }
   /// Timeouts, queries and start-up; returns all bytes to be written now [us].
-  std::string poll(std::int64_t now);
+  std::string poll(int64_t now);
 
   /// Is the controller fit to be given commands?
-  DeviceReport report(std::int64_t now) const;
+  DeviceReport report(int64_t now) const;
   bool ready() const { return phase_ == Phase::kReady; }
   /// Unknown unless ready.
   RoboteqTelemetry telemetry() const { return ready() ? session_.telemetry() : RoboteqTelemetry{}; }
   const std::string& firmware() const { return firmware_; }
   /// What was counted, by its name in words.
-  std::map<std::string, std::int64_t> counters() const;
+  std::map<std::string, int64_t> counters() const;
 
  private:
   enum class Phase { kClosed, kEcho, kWatchdog, kReadBack, kZero, kIdentify, kReady, kBackoff };
 
   void enter(Phase phase);
-  void fail(const std::string& problem, std::int64_t now);
+  void fail(const std::string& problem, int64_t now);
   void send(const std::string& line) { output_ += line + "\r"; }
-  void sendZero(std::int64_t now);
+  void sendZero(int64_t now);
   std::string request() const;
-  void pollStartup(std::int64_t now);
-  void takeStartup(const RoboteqReply& reply, std::int64_t now);
-  void checkWatchdog(const RoboteqReply& reply, std::int64_t now);
-  void advance(std::int64_t now);
+  void pollStartup(int64_t now);
+  void takeStartup(const RoboteqReply& reply, int64_t now);
+  void checkWatchdog(const RoboteqReply& reply, int64_t now);
+  void advance(int64_t now);
 
   RoboteqConfig config_;
   RoboteqSession session_;
@@ -66,12 +66,12 @@ class RoboteqConnection {
   RoboteqLines lines_;
   std::string output_;
   std::string firmware_;
-  std::map<std::string, std::int64_t> counters_;
-  int tries_ = 0;              ///< of the present request
-  std::int64_t asked_at_ = 0;  ///< when the present request was sent
-  std::int64_t backoff_us_ = 0;
-  std::int64_t retry_at_ = 0;
-  std::int64_t zero_at_ = 0;  ///< last zero sent outside of a session
+  std::map<std::string, int64_t> counters_;
+  int tries_ = 0;         ///< of the present request
+  int64_t asked_at_ = 0;  ///< when the present request was sent
+  int64_t backoff_us_ = 0;
+  int64_t retry_at_ = 0;
+  int64_t zero_at_ = 0;  ///< last zero sent outside of a session
 };
 
 }  // namespace tread::motor

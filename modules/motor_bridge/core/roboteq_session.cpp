@@ -9,8 +9,8 @@ namespace {
 
 /// The controller's emergency stop and its release are repeated this often, and released this long
 /// [us].
-constexpr std::int64_t kStopRepeat = 100'000;
-constexpr std::int64_t kReleaseSpan = 1'000'000;
+constexpr int64_t kStopRepeat = 100'000;
+constexpr int64_t kReleaseSpan = 1'000'000;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ RoboteqSession::RoboteqSession(const RoboteqConfig& config)
   }
 }
 
-void RoboteqSession::begin(std::int64_t now) {
+void RoboteqSession::begin(int64_t now) {
   output_.clear();
   problem_.clear();
   telemetry_ = RoboteqTelemetry{};
@@ -35,7 +35,7 @@ void RoboteqSession::begin(std::int64_t now) {
   repeat_ = false;
 }
 
-void RoboteqSession::command(const TrackCommand& command, std::int64_t now) {
+void RoboteqSession::command(const TrackCommand& command, int64_t now) {
   // A fifth before the watchdog expires, because the line takes time, too.
   const bool silent = now - commanded_at_ > 800 * config_.watchdog_ms;
   if (silent && !command.zero()) {
@@ -44,7 +44,7 @@ void RoboteqSession::command(const TrackCommand& command, std::int64_t now) {
   give(silent ? TrackCommand{} : command, now);
 }
 
-void RoboteqSession::give(const TrackCommand& command, std::int64_t now) {
+void RoboteqSession::give(const TrackCommand& command, int64_t now) {
   given_ = command;
   repeat_ = false;
   commanded_at_ = now;
@@ -53,13 +53,13 @@ void RoboteqSession::give(const TrackCommand& command, std::int64_t now) {
   }
 }
 
-void RoboteqSession::sendCommand(const std::string& line, std::int64_t now) {
+void RoboteqSession::sendCommand(const std::string& line, int64_t now) {
   output_ += line + "\r";
   pending_.push_back({"", now});
   ++counters_["commands sent"];
 }
 
-void RoboteqSession::ask(const std::string& query, const std::string& key, std::int64_t now) {
+void RoboteqSession::ask(const std::string& query, const std::string& key, int64_t now) {
   output_ += query + "\r";
   pending_.push_back({key, now});
   queried_at_ = now;
@@ -73,13 +73,13 @@ void RoboteqSession::holdStop(bool hold) {
   }
 }
 
-void RoboteqSession::releaseStop(std::int64_t now) {
+void RoboteqSession::releaseStop(int64_t now) {
   hold_stop_ = false;
   release_now_ = true;
   release_until_ = now + kReleaseSpan;
 }
 
-std::string RoboteqSession::poll(std::int64_t now) {
+std::string RoboteqSession::poll(int64_t now) {
   while (!pending_.empty() && now - pending_.front().sent > config_.reply_timeout_us) {
     pending_.pop_front();
     ++counters_["replies missing"];
@@ -97,7 +97,7 @@ std::string RoboteqSession::poll(std::int64_t now) {
   return output;
 }
 
-void RoboteqSession::pollStop(std::int64_t now) {
+void RoboteqSession::pollStop(int64_t now) {
   if (!release_now_ && now - stop_sent_at_ < kStopRepeat) {
     return;
   }
@@ -112,7 +112,7 @@ void RoboteqSession::pollStop(std::int64_t now) {
   }
 }
 
-void RoboteqSession::pollQuery(std::int64_t now) {
+void RoboteqSession::pollQuery(int64_t now) {
   const bool waiting = std::any_of(pending_.begin(), pending_.end(),
                                    [](const Pending& asked) { return !asked.key.empty(); });
   if (waiting || now - queried_at_ < config_.query_interval_us) {
@@ -128,7 +128,7 @@ void RoboteqSession::pollQuery(std::int64_t now) {
   ask("?" + key, key, now);
 }
 
-void RoboteqSession::take(const RoboteqReply& reply, std::int64_t now) {
+void RoboteqSession::take(const RoboteqReply& reply, int64_t now) {
   switch (reply.kind) {
     case RoboteqReply::Kind::kAck:
       return takeAck(now);
@@ -141,7 +141,7 @@ void RoboteqSession::take(const RoboteqReply& reply, std::int64_t now) {
   }
 }
 
-void RoboteqSession::takeAck(std::int64_t now) {
+void RoboteqSession::takeAck(int64_t now) {
   const auto command = std::find_if(pending_.begin(), pending_.end(),
                                     [](const Pending& asked) { return asked.key.empty(); });
   if (command == pending_.end()) {
@@ -153,7 +153,7 @@ void RoboteqSession::takeAck(std::int64_t now) {
   acked_at_ = now;
 }
 
-void RoboteqSession::takeRefusal(std::int64_t now) {
+void RoboteqSession::takeRefusal(int64_t now) {
   if (pending_.empty()) {
     ++counters_["unexpected replies"];
     return;
@@ -168,7 +168,7 @@ void RoboteqSession::takeRefusal(std::int64_t now) {
   }
 }
 
-void RoboteqSession::takeValue(const RoboteqReply& reply, std::int64_t now) {
+void RoboteqSession::takeValue(const RoboteqReply& reply, int64_t now) {
   const auto asked = std::find_if(pending_.begin(), pending_.end(),
                                   [&reply](const Pending& p) { return p.key == reply.key; });
   if (asked == pending_.end()) {

@@ -16,14 +16,14 @@ namespace tread::motor {
 /// How to talk to the controller.
 struct RoboteqConfig {
   RoboteqLayout layout;
-  std::int64_t watchdog_ms = 250;           ///< of the controller, set and read back [ms]
-  std::int64_t reply_timeout_us = 100'000;  ///< a reply that takes longer is missing [us]
-  std::int64_t silence_limit_us = 250'000;  ///< longest time without an acknowledged command [us]
-  std::int64_t query_interval_us = 20'000;  ///< between two queries [us]
-  std::int64_t check_interval_us = 1'000'000;  ///< between two looks at the watchdog's setting [us]
-  std::int64_t stop_interval_us = 50'000;  ///< zero is repeated on a faulty link this often [us]
-  std::int64_t backoff_min_us = 100'000;   ///< before starting up again [us], doubling
-  std::int64_t backoff_max_us = 1'000'000;
+  int64_t watchdog_ms = 250;              ///< of the controller, set and read back [ms]
+  int64_t reply_timeout_us = 100'000;     ///< a reply that takes longer is missing [us]
+  int64_t silence_limit_us = 250'000;     ///< longest time without an acknowledged command [us]
+  int64_t query_interval_us = 20'000;     ///< between two queries [us]
+  int64_t check_interval_us = 1'000'000;  ///< between two looks at the watchdog's setting [us]
+  int64_t stop_interval_us = 50'000;      ///< zero is repeated on a faulty link this often [us]
+  int64_t backoff_min_us = 100'000;       ///< before starting up again [us], doubling
+  int64_t backoff_max_us = 1'000'000;
   int startup_tries = 3;  ///< of each request
 };
 
@@ -37,38 +37,38 @@ class RoboteqSession {
   explicit RoboteqSession(const RoboteqConfig& config);
 
   /// The controller has just acknowledged zero, at now [us].
-  void begin(std::int64_t now);
+  void begin(int64_t now);
   /// A reply received at now [us].
-  void take(const RoboteqReply& reply, std::int64_t now);
+  void take(const RoboteqReply& reply, int64_t now);
   /// A command to be given now [us].
-  void command(const TrackCommand& command, std::int64_t now);
+  void command(const TrackCommand& command, int64_t now);
   /// Holds the controller's own emergency stop (!EX) as long as true.
   void holdStop(bool hold);
   /// Releases the controller's emergency stop (!MG), repeated for a second while it is seen.
-  void releaseStop(std::int64_t now);
+  void releaseStop(int64_t now);
   /// Timeouts and queries; returns all bytes to be written now [us].
-  std::string poll(std::int64_t now);
+  std::string poll(int64_t now);
 
   /// Why the controller must be started up anew; empty = all is well.
   const std::string& problem() const { return problem_; }
   bool stopLatched() const { return (telemetry_.fault_flags & kEmergencyStop) != 0; }
   const RoboteqTelemetry& telemetry() const { return telemetry_; }
-  const std::map<std::string, std::int64_t>& counters() const { return counters_; }
+  const std::map<std::string, int64_t>& counters() const { return counters_; }
 
  private:
   struct Pending {
     std::string key;  ///< key of the value asked for; empty for a command
-    std::int64_t sent = 0;
+    int64_t sent = 0;
   };
 
-  void give(const TrackCommand& command, std::int64_t now);
-  void sendCommand(const std::string& line, std::int64_t now);
-  void ask(const std::string& query, const std::string& key, std::int64_t now);
-  void pollStop(std::int64_t now);
-  void pollQuery(std::int64_t now);
-  void takeAck(std::int64_t now);
-  void takeRefusal(std::int64_t now);
-  void takeValue(const RoboteqReply& reply, std::int64_t now);
+  void give(const TrackCommand& command, int64_t now);
+  void sendCommand(const std::string& line, int64_t now);
+  void ask(const std::string& query, const std::string& key, int64_t now);
+  void pollStop(int64_t now);
+  void pollQuery(int64_t now);
+  void takeAck(int64_t now);
+  void takeRefusal(int64_t now);
+  void takeValue(const RoboteqReply& reply, int64_t now);
   void checkWatchdog(const RoboteqReply& reply);
 
   RoboteqConfig config_;
@@ -76,21 +76,21 @@ class RoboteqSession {
   std::string output_;
   std::string problem_;
   RoboteqTelemetry telemetry_;
-  std::map<std::string, std::int64_t> counters_;
+  std::map<std::string, int64_t> counters_;
 
   std::deque<Pending> pending_;
-  std::size_t next_query_ = 0;
-  std::int64_t queried_at_ = 0;
-  std::int64_t checked_at_ = 0;
+  size_t next_query_ = 0;
+  int64_t queried_at_ = 0;
+  int64_t checked_at_ = 0;
   int watchdog_mismatches_ = 0;
-  std::int64_t acked_at_ = 0;
-  std::int64_t commanded_at_ = 0;
+  int64_t acked_at_ = 0;
+  int64_t commanded_at_ = 0;
   TrackCommand given_;
   bool repeat_ = false;  ///< the last command was refused
   bool hold_stop_ = false;
   bool release_now_ = false;
-  std::int64_t release_until_ = 0;
-  std::int64_t stop_sent_at_ = 0;
+  int64_t release_until_ = 0;
+  int64_t stop_sent_at_ = 0;
 };
 
 }  // namespace tread::motor

@@ -16,8 +16,7 @@ std::pair<double, double> toSides(const std::vector<long>& values, const Roboteq
 
 }  // namespace
 
-bool RoboteqTelemetry::take(const RoboteqReply& reply, const RoboteqLayout& layout,
-                            std::int64_t now) {
+bool RoboteqTelemetry::take(const RoboteqReply& reply, const RoboteqLayout& layout, int64_t now) {
   const std::vector<long>& values = reply.values;
   if (reply.key == "A" && values.size() >= 2) {
     const auto [left, right] = toSides(values, layout);
@@ -30,10 +29,10 @@ bool RoboteqTelemetry::take(const RoboteqReply& reply, const RoboteqLayout& layo
     speed_left = (layout.invert_left ? -left : left) / layout.rpm_per_mps;
     speed_right = (layout.invert_right ? -right : right) / layout.rpm_per_mps;
   } else if (reply.key == "FF" && values.size() == 1) {
-    fault_flags = static_cast<std::int32_t>(values[0]);
+    fault_flags = static_cast<int32_t>(values[0]);
     faults_read_at = now;
   } else if (reply.key == "FS" && values.size() == 1) {
-    status_flags = static_cast<std::int32_t>(values[0]);
+    status_flags = static_cast<int32_t>(values[0]);
     status_read_at = now;
   } else {
     return false;

@@ -17,14 +17,14 @@ struct RoboteqTelemetry {
   double current_right = std::numeric_limits<double>::quiet_NaN();
   double speed_left = std::numeric_limits<double>::quiet_NaN();  ///< track speed [m/s], + forward
   double speed_right = std::numeric_limits<double>::quiet_NaN();
-  std::int32_t fault_flags = 0;                ///< ?FF
-  std::int32_t status_flags = 0;               ///< ?FS
-  std::optional<std::int64_t> faults_read_at;  ///< [us]
-  std::optional<std::int64_t> status_read_at;  ///< [us]
+  int32_t fault_flags = 0;                ///< ?FF
+  int32_t status_flags = 0;               ///< ?FS
+  std::optional<int64_t> faults_read_at;  ///< [us]
+  std::optional<int64_t> status_read_at;  ///< [us]
 
   /// Takes the reply to a query, received at now [us]. False if it is not one of these or
   /// malformed.
-  bool take(const RoboteqReply& reply, const RoboteqLayout& layout, std::int64_t now);
+  bool take(const RoboteqReply& reply, const RoboteqLayout& layout, int64_t now);
 };
 
 }  // namespace tread::motor

@@ -31,7 +31,7 @@ const char* describe(Offer offer) {
   return "unknown";
 }
 
-void SeriesPlayer::beginRun(std::int64_t run_id) {
+void SeriesPlayer::beginRun(int64_t run_id) {
   if (run_id_) {
     executed_by_run_[*run_id_] = last_executed_;
   }
@@ -45,7 +45,7 @@ void SeriesPlayer::beginRun(std::int64_t run_id) {
   candidate_ = Program{};
 }
 
-Offer SeriesPlayer::offer(const Program& program, std::int64_t now) {
+Offer SeriesPlayer::offer(const Program& program, int64_t now) {
   candidate_ = Program{};
   if (program.running.empty()) {
     return Offer::kStop;
@@ -64,8 +64,8 @@ Offer SeriesPlayer::offerIdle(const Program& program) {
   return Offer::kAccepted;
 }
 
-Offer SeriesPlayer::offerPlaying(const Program& program, std::int64_t now) {
-  const std::int64_t running_id = program.running.execution_id;
+Offer SeriesPlayer::offerPlaying(const Program& program, int64_t now) {
+  const int64_t running_id = program.running.execution_id;
   if (running_id == current_.execution_id) {
     if (!sameOrder(program.running, current_)) {
       return Offer::kRunningAltered;
@@ -84,13 +84,13 @@ Offer SeriesPlayer::offerPlaying(const Program& program, std::int64_t now) {
   return Offer::kRunningUnknown;
 }
 
-SeriesPlayer::Advance SeriesPlayer::advance(std::int64_t now) {
+SeriesPlayer::Advance SeriesPlayer::advance(int64_t now) {
   Advance advance;
   while (playing() && now >= endUtime()) {
-    advance.skipped += static_cast<std::int32_t>(current_.series.size()) - given_;
-    const std::int64_t end = endUtime();
+    advance.skipped += static_cast<int32_t>(current_.series.size()) - given_;
+    const int64_t end = endUtime();
     log_.close(Outcome::kCompleted, end, "");
-    const std::int64_t ended_id = current_.execution_id;
+    const int64_t ended_id = current_.execution_id;
     current_ = Slot{};
     advance.ended = pending_.empty();
     if (!pending_.empty()) {
@@ -101,21 +101,21 @@ SeriesPlayer::Advance SeriesPlayer::advance(std::int64_t now) {
     }
   }
   if (playing()) {
-    index_ = static_cast<std::int32_t>((now - start_utime_) / current_.period_us);
+    index_ = static_cast<int32_t>((now - start_utime_) / current_.period_us);
     advance.skipped += index_ > given_ ? index_ - given_ : 0;
     given_ = index_ > given_ ? index_ : given_;
   }
   return advance;
 }
 
-void SeriesPlayer::start(std::int64_t now) {
+void SeriesPlayer::start(int64_t now) {
   const Program program = candidate_;
   candidate_ = Program{};
   begin(program.running, now);
   pending_ = program.next;
 }
 
-void SeriesPlayer::begin(const Slot& slot, std::int64_t start_utime) {
+void SeriesPlayer::begin(const Slot& slot, int64_t start_utime) {
   current_ = slot;
   pending_ = Slot{};
   previous_id_ = 0;
@@ -126,7 +126,7 @@ void SeriesPlayer::begin(const Slot& slot, std::int64_t start_utime) {
   log_.begin(run_id_.value_or(0), slot, start_utime);
 }
 
-void SeriesPlayer::abort(std::int64_t now, const std::string& reason) {
+void SeriesPlayer::abort(int64_t now, const std::string& reason) {
   log_.close(Outcome::kAborted, now, reason);
   current_ = Slot{};
   pending_ = Slot{};
@@ -138,7 +138,7 @@ TrackCommand SeriesPlayer::give() {
     log_.countCommand();
     given_ = index_ + 1;
   }
-  return current_.series[static_cast<std::size_t>(index_)];
+  return current_.series[static_cast<size_t>(index_)];
 }
 
 }  // namespace tread::motor

@@ -38,59 +38,59 @@ const char* describe(Offer offer);
 class SeriesPlayer {
  public:
   /// A planner may name a switch this much too early or too late [us]: two of its cycles.
-  static constexpr std::int64_t kSwitchTolerance = 100'000;
+  static constexpr int64_t kSwitchTolerance = 100'000;
 
   /// What happened while the schedule moved.
   struct Advance {
-    bool ended = false;        ///< the last series ended and nothing was pending
-    bool switched = false;     ///< the pending series began
-    std::int32_t skipped = 0;  ///< commands whose whole period passed between two calls
+    bool ended = false;     ///< the last series ended and nothing was pending
+    bool switched = false;  ///< the pending series began
+    int32_t skipped = 0;    ///< commands whose whole period passed between two calls
   };
 
   /// Executions of this run follow; only while idle. Returning to one of the last runs is harmless:
   /// what it had executed stays executed.
-  void beginRun(std::int64_t run_id);
-  std::optional<std::int64_t> runId() const { return run_id_; }
+  void beginRun(int64_t run_id);
+  std::optional<int64_t> runId() const { return run_id_; }
 
   /// Takes a checked program of the current run, received at now [us].
-  Offer offer(const Program& program, std::int64_t now);
+  Offer offer(const Program& program, int64_t now);
   /// Moves the schedule to now [us].
-  Advance advance(std::int64_t now);
+  Advance advance(int64_t now);
   /// True if the newest offer may start on this idle player.
   bool startable() const { return !playing() && !candidate_.running.empty(); }
   /// Starts the offered series at now [us]; needs startable().
-  void start(std::int64_t now);
+  void start(int64_t now);
   /// A series starts only with the step its program arrived in: later it would be an old opinion.
   void dropCandidate() { candidate_ = Program{}; }
   /// Ends the running series at now [us] and forgets what was pending.
-  void abort(std::int64_t now, const std::string& reason);
+  void abort(int64_t now, const std::string& reason);
   /// Command of the current period, counted as given to the controller; needs playing().
   TrackCommand give();
 
   bool playing() const { return !current_.empty(); }
   const Slot& current() const { return current_; }
   const Slot& pending() const { return pending_; }
-  std::int32_t index() const { return index_; }  ///< 0-based within the running series
+  int32_t index() const { return index_; }  ///< 0-based within the running series
   const ExecutionLog& log() const { return log_; }
 
  private:
   Offer offerIdle(const Program& program);
-  Offer offerPlaying(const Program& program, std::int64_t now);
-  void begin(const Slot& slot, std::int64_t start_utime);
-  std::int64_t endUtime() const { return start_utime_ + current_.durationUs(); }
+  Offer offerPlaying(const Program& program, int64_t now);
+  void begin(const Slot& slot, int64_t start_utime);
+  int64_t endUtime() const { return start_utime_ + current_.durationUs(); }
 
-  static constexpr std::size_t kRunsRemembered = 8;
+  static constexpr size_t kRunsRemembered = 8;
 
-  std::optional<std::int64_t> run_id_;
-  std::map<std::int64_t, std::int64_t> executed_by_run_;  ///< highest execution id of former runs
-  std::int64_t last_executed_ = 0;  ///< highest execution id begun in this run
-  std::int64_t previous_id_ = 0;    ///< execution that the current one was joined to; 0 = none
+  std::optional<int64_t> run_id_;
+  std::map<int64_t, int64_t> executed_by_run_;  ///< highest execution id of former runs
+  int64_t last_executed_ = 0;                   ///< highest execution id begun in this run
+  int64_t previous_id_ = 0;  ///< execution that the current one was joined to; 0 = none
   Slot current_;
   Slot pending_;
   Program candidate_;
-  std::int64_t start_utime_ = 0;
-  std::int32_t index_ = 0;
-  std::int32_t given_ = 0;  ///< commands of the current series up to this index are accounted for
+  int64_t start_utime_ = 0;
+  int32_t index_ = 0;
+  int32_t given_ = 0;  ///< commands of the current series up to this index are accounted for
   ExecutionLog log_;
 };
 
