@@ -11,7 +11,8 @@
 
 namespace tread {
 
-/// Byte stream to a device. Never blocks; a vanished line is closed at once and opened again by name with back-off.
+/// Byte stream to a device. Never blocks; a vanished line is closed at once and opened again by
+/// name with back-off.
 class Link {
  public:
   virtual ~Link() = default;
@@ -21,10 +22,12 @@ class Link {
 
   /// Bytes that are there now (0 = none at present), or nothing if the link is down or at its end.
   virtual std::optional<size_t> read(uint8_t* buffer, size_t capacity) = 0;
-  /// Writes all bytes or none; false if the line is down or full. A stale command is dropped, never queued.
+  /// Writes all bytes or none; false if the line is down or full. A stale command is dropped, never
+  /// queued.
   virtual bool write(const uint8_t* bytes, size_t size) = 0;
   virtual bool isOpen() const = 0;
-  /// Tries to open a closed link; attempts are spaced by a back-off of 100 ms growing to 1 s. True if open now.
+  /// Tries to open a closed link; attempts are spaced by a back-off of 100 ms growing to 1 s. True
+  /// if open now.
   virtual bool reopen(int64_t utime) = 0;
   /// Descriptor to poll, or -1.
   virtual int descriptor() const { return -1; }
@@ -34,12 +37,14 @@ class Link {
   virtual std::string problem() const = 0;
 };
 
-/// Opens a link from its address: tty:/dev/ttyUSB0?baud=115200 · tcp:host:port · udp:port (listens) · file:path (reads).
-/** Throws std::invalid_argument for a malformed address (one clear line); a device that is absent is not an
- *  error: the link is closed and reopen() tries again. */
+/// Opens a link from its address: tty:/dev/ttyUSB0?baud=115200 · tcp:host:port · udp:port (listens)
+/// · file:path (reads).
+/** Throws std::invalid_argument for a malformed address (one clear line); a device that is absent
+ * is not an error: the link is closed and reopen() tries again. */
 std::unique_ptr<Link> makeLink(const std::string& address);
 
-/// Two ends of an in-memory pipe, each direction holding at most `capacity` bytes. For virtual time and tests.
+/// Two ends of an in-memory pipe, each direction holding at most `capacity` bytes. For virtual time
+/// and tests.
 std::pair<std::unique_ptr<Link>, std::unique_ptr<Link>> makePipe(size_t capacity = 65536);
 
 /// Cuts or mends a pipe from either end, as pulling a plug does: unread bytes are gone.

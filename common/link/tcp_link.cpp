@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "common/link/descriptor_link.hpp"
+#include "common/link/kinds.hpp"
+
+namespace tread {
+namespace {
+
+constexpr int64_t kConnectDeadline = 1'000'000;  // [us]
+
+struct Endpoint {
+  sockaddr_storage address{};
+  socklen_t size = 0;
+};
+
+/// The addresses of a host, IPv4 first: instruments and emulators listen there.
+std::vector<Endpoint> lookUp(const std::string& host, uint16_t port, std::string& reason) {
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  hints.ai_flags = AI_NUMERICSERV;
+  addrinfo* found = nullptr;
+  const int error = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found);
+  if (error != 0) {
+    reason = "host " + host + " is unknown (" + ::gai_strerror(error) + ")";
+    return {};
+  }
+  std::vector<Endpoint> endpoints;
+  for (const addrinfo* entry = found; entry != nullptr; entry = entry->ai_next) {
+    Endpoint endpoint;
+    std::memcpy(&endpoint.address, entry->ai_addr, entry->ai_addrlen);
+    endpoint.size = entry->ai_addrlen;
+    endpoints.push_back(endpoint);
+  }
+  ::freeaddrinfo(found);
+  std::stable_partition(endpoints.begin(), endpoints.end(), [](const Endpoint& endpoint) {
+    return endpoint.address.ss_family == AF_INET;
+  });
+  return endpoints;
+}
+
+/// Commands leave at once, and a peer that is gone without a word is noticed within seconds.
+void tune(int fd) {
+  const auto set = [fd](int level, int option, int value) {
+    ::setsockopt(fd, level, option, &value, sizeof value);
+  };
+  set(IPPROTO_TCP, TCP_NODELAY, 1);
+  set(SOL_SOCKET, SO_KEEPALIVE, 1);
+  set(IPPROTO_TCP, TCP_KEEPIDLE, 2);   // [s]
+  set(IPPROTO_TCP, TCP_KEEPINTVL, 1);  // [s]
+  set(IPPROTO_TCP, TCP_KEEPCNT, 3);
+  set(IPPROTO_TCP, TCP_USER_TIMEOUT, 5000);  // [ms]
+}
+
+class TcpLink final : public DescriptorLink {
+ public:
+  explicit TcpLink(const LinkAddress& address)
+      : DescriptorLink(address.text), host_(address.host), port_(address.port) {
+    attempt();
+  }
+  ~TcpLink() override { abandon(); }
+
+  bool reopen(int64_t utime) override {
+    if (connecting_ < 0) {
+      const bool open = DescriptorLink::reopen(utime);
+      if (connecting_ >= 0) since_ = utime;
+      return open;
+    }
+    if (!since_ || utime < *since_) since_ = utime;
+    std::string reason;
+    if (isConnected(reason)) {
+      adopt(std::exchange(connecting_, -1));
+      return true;
+    }
+    if (reason.empty() && utime - *since_ > kConnectDeadline) reason = "no answer within 1 s";
+    if (!reason.empty()) {
+      abandon();
+      noteProblem(reason);
+    }
+    return false;
+  }
+
+ private:
+  int openDevice(std::string& reason) override {
+    if (endpoints_.empty()) endpoints_ = lookUp(host_, port_, reason);
+    // An address that refuses at once gives way to the host's next.
+    for (size_t tried = 0; tried < endpoints_.size(); ++tried) {
+      begin(reason);
+      if (connecting_ < 0) continue;
+      if (isConnected(reason)) return std::exchange(connecting_, -1);
+      if (reason.empty()) {
+        reason = "connecting";
+        return -1;
+      }
+      abandon();
+    }
+    return -1;
+  }
+
+  void begin(std::string& reason) {
+    reason.clear();
+    since_.reset();
+    const Endpoint& endpoint = endpoints_[next_++ % endpoints_.size()];
+    connecting_ =
+        ::socket(endpoint.address.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    if (connecting_ < 0) {
+      reason = systemReason(errno);
+      return;
+    }
+    tune(connecting_);
+    const auto* address = reinterpret_cast<const sockaddr*>(&endpoint.address);
+    if (::connect(connecting_, address, endpoint.size) == 0 || errno == EINPROGRESS) return;
+    reason = systemReason(errno);
+    abandon();
+  }
+
+  /// Whether the connection stands; a reason if it never will.
+  bool isConnected(std::string& reason) const {
+    pollfd entry{connecting_, POLLOUT, 0};
+    if (::poll(&entry, 1, 0) <= 0) return false;
+    int error = 0;
+    socklen_t size = sizeof error;
+    ::getsockopt(connecting_, SOL_SOCKET, SO_ERROR, &error, &size);
+    if (error != 0) reason = systemReason(error);
+    return error == 0;
+  }
+
+  void abandon() {
+    if (connecting_ >= 0) ::close(connecting_);
+    connecting_ = -1;
+  }
+
+  ssize_t writeSome(const uint8_t* bytes, size_t size) override {
+    return ::send(descriptor(), bytes, size, MSG_NOSIGNAL);
+  }
+
+  // A plain close would still send what is queued: half a command.
+  void dropQueued() override {
+    const linger at_once{1, 0};
+    ::setsockopt(descriptor(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+  }
+
+  std::string host_;
+  uint16_t port_;
+  std::vector<Endpoint> endpoints_;
+  size_t next_ = 0;
+  int connecting_ = -1;
+  std::optional<int64_t> since_;  // utime at which connecting began, where known
+};
+
+}  // namespace
+
+std::unique_ptr<Link> makeTcpLink(const LinkAddress& address) {
+  return std::make_unique<TcpLink>(address);
+}
+
+}  // namespace tread
