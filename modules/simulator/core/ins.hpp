@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/geometry/se2.hpp"
+#include "modules/simulator/core/body_pose.hpp"
+#include "modules/simulator/core/random.hpp"
+
+namespace tread::sim {
+
+/// An inertial navigation system with satellite positions, at the body origin. Noise is per sample,
+/// one sigma.
+struct InsParameters {
+  int64_t period_us = 20000;      ///< from measurement to measurement
+  int64_t latency_us = 20000;     ///< from measurement to output
+  double position_noise = 0.003;  ///< [m]
+  double position_bias = 0.02;    ///< wanders slowly, one sigma [m]
+  double height_noise = 0.005;    ///< [m]
+  double heading_noise = 0.001;   ///< [rad]
+  double heading_bias = 0.002;    ///< wanders slowly, one sigma [rad]
+  double attitude_noise = 0.001;  ///< of roll and pitch [rad]
+  double velocity_noise = 0.01;   ///< per axis [m/s]
+  double rate_noise = 0.002;      ///< per axis [rad/s]
+  double bias_time = 120.0;       ///< correlation time of both biases [s]
+};
+
+/// The truth that the INS senses.
+struct InsInput {
+  BodyPose body;
+  double yaw = 0.0;                                     ///< [rad], unwrapped
+  Eigen::Vector3d v_body = Eigen::Vector3d::Zero();     ///< [m/s]
+  Eigen::Vector3d rate_body = Eigen::Vector3d::Zero();  ///< about x, y, z [rad/s]
+};
+
+/// One measurement.
+struct InsSample {
+  int64_t utime = 0;                                    ///< of the measurement [us]
+  Eigen::Vector3d p_map = Eigen::Vector3d::Zero();      ///< of the body origin [m]
+  double yaw = 0.0;                                     ///< [rad], unwrapped, counter-clockwise
+  double pitch = 0.0;                                   ///< nose down positive [rad]
+  double roll = 0.0;                                    ///< left side up positive [rad]
+  Eigen::Vector3d v_body = Eigen::Vector3d::Zero();     ///< [m/s]
+  Eigen::Vector3d rate_body = Eigen::Vector3d::Zero();  ///< [rad/s]
+};
+
+/// Measures at a fixed rate and hands out what has passed the latency.
+class Ins {
+ public:
+  /// The first measurement is at `start_utime`.
+  Ins(const InsParameters& parameters, uint64_t seed, int64_t start_utime);
+
+  /// True if a measurement is due at a time: call measure() then.
+  bool due(int64_t utime) const { return utime >= next_; }
+  /// Takes the measurement that is due, from the present truth.
+  void measure(int64_t utime, const InsInput& truth);
+
+  /// Measurements that are out at a time, oldest first; each is given once.
+  std::vector<InsSample> takeSamples(int64_t utime);
+
+  const InsParameters& parameters() const { return parameters_; }
+
+ private:
+  Eigen::Vector3d noise3(double sigma);
+
+  InsParameters parameters_;
+  Gaussian gaussian_;
+  OrnsteinUhlenbeck bias_x_;
+  OrnsteinUhlenbeck bias_y_;
+  OrnsteinUhlenbeck bias_yaw_;
+  int64_t next_;
+  std::deque<InsSample> pending_;
+};
+
+}  // namespace tread::sim

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/simulator/core/obstacle.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace tread::sim {
+namespace {
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+using Corners = std::array<Eigen::Vector2d, 4>;
+
+Corners cornersOf(const Rectangle& rectangle, const Pose2& T_map_body) {
+  const double x = rectangle.length / 2.0;
+  const double y = rectangle.width / 2.0;
+  return {T_map_body * Eigen::Vector2d(x, y), T_map_body * Eigen::Vector2d(-x, y),
+          T_map_body * Eigen::Vector2d(-x, -y), T_map_body * Eigen::Vector2d(x, -y)};
+}
+
+/// Smallest of the corners' coordinates along an axis.
+template <typename Points>
+double lowest(const Points& points, const Eigen::Vector2d& axis) {
+  double low = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector2d& p : points) low = std::min(low, axis.dot(p));
+  return low;
+}
+
+/// Overlap of the points with the half planes inside the edges of a counter-clockwise polygon.
+template <typename Polygon, typename Points>
+double overlapAcrossEdges(const Polygon& polygon, const Points& points) {
+  double overlap = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d edge = polygon[(i + 1) % polygon.size()] - polygon[i];
+    const Eigen::Vector2d outward = Eigen::Vector2d(edge.y(), -edge.x()).normalized();
+    overlap = std::min(overlap, outward.dot(polygon[i]) - lowest(points, outward));
+  }
+  return overlap;
+}
+
+double discPenetration(const Obstacle& disc, const Rectangle& rectangle, const Pose2& T_map_body) {
+  const Eigen::Vector2d centre = inverse(T_map_body) * disc.centre;
+  const Eigen::Vector2d half(rectangle.length / 2.0, rectangle.width / 2.0);
+  const Eigen::Vector2d outside = centre.cwiseAbs() - half;
+  if (outside.maxCoeff() <= 0.0) return disc.radius - outside.maxCoeff();
+  return disc.radius - outside.cwiseMax(0.0).norm();
+}
+
+std::optional<Crossing> discCrossing(const Obstacle& disc, const Eigen::Vector2d& start,
+                                     const Eigen::Vector2d& direction) {
+  const Eigen::Vector2d to_centre = disc.centre - start;
+  const double along = to_centre.dot(direction);
+  const double across = cross(direction, to_centre);
+  const double square = disc.radius * disc.radius - across * across;
+  if (square < 0.0) return std::nullopt;
+  const double half = std::sqrt(square);
+  if (along + half < 0.0) return std::nullopt;
+  return Crossing{std::max(0.0, along - half), along + half};
+}
+
+std::optional<Crossing> polygonCrossing(const std::vector<Eigen::Vector2d>& corners,
+                                        const Eigen::Vector2d& start,
+                                        const Eigen::Vector2d& direction) {
+  Crossing crossing{0.0, std::numeric_limits<double>::infinity()};
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d edge = corners[(i + 1) % corners.size()] - corners[i];
+    // Inside is to the left of each edge: cross(edge, p - corner) >= 0.
+    const double distance = cross(edge, start - corners[i]);
+    const double rate = cross(edge, direction);
+    if (rate == 0.0) {
+      if (distance < 0.0) return std::nullopt;
+      continue;
+    }
+    const double at = -distance / rate;
+    if (rate > 0.0) {
+      crossing.enter = std::max(crossing.enter, at);
+    } else {
+      crossing.leave = std::min(crossing.leave, at);
+    }
+    if (crossing.enter > crossing.leave) return std::nullopt;
+  }
+  return crossing;
+}
+
+}  // namespace
+
+Obstacle boxObstacle(const Pose2& T_map_box, double length, double width, double height) {
+  const Corners corners = cornersOf({length, width}, T_map_box);
+  Obstacle box;
+  box.corners.assign(corners.begin(), corners.end());
+  box.height = height;
+  return box;
+}
+
+Obstacle discObstacle(const Eigen::Vector2d& centre, double radius, double height) {
+  Obstacle disc;
+  disc.centre = centre;
+  disc.radius = radius;
+  disc.height = height;
+  return disc;
+}
+
+std::optional<std::string> obstacleFault(const Obstacle& obstacle) {
+  if (!(obstacle.height > 0.0)) return "height must be above 0 m";
+  if (obstacle.isDisc()) {
+    if (!(obstacle.radius > 0.0)) return "a disc needs a radius above 0 m";
+    return std::nullopt;
+  }
+  const auto& corners = obstacle.corners;
+  if (corners.size() < 3) return "a polygon needs at least three corners";
+  double turned = 0.0;
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d edge = corners[(i + 1) % corners.size()] - corners[i];
+    const Eigen::Vector2d next =
+        corners[(i + 2) % corners.size()] - corners[(i + 1) % corners.size()];
+    if (!(cross(edge, next) > 0.0)) return "corners must be convex and counter-clockwise";
+    turned += std::atan2(cross(edge, next), edge.dot(next));
+  }
+  if (turned > 2.5 * kPi) return "the polygon's outline crosses itself";
+  return std::nullopt;
+}
+
+Extent extentOf(const Obstacle& obstacle) {
+  if (obstacle.isDisc()) {
+    const Eigen::Vector2d reach(obstacle.radius, obstacle.radius);
+    return {obstacle.centre - reach, obstacle.centre + reach};
+  }
+  Extent extent{obstacle.corners.front(), obstacle.corners.front()};
+  for (const Eigen::Vector2d& corner : obstacle.corners) {
+    extent.low = extent.low.cwiseMin(corner);
+    extent.high = extent.high.cwiseMax(corner);
+  }
+  return extent;
+}
+
+std::optional<Crossing> crossingOf(const Obstacle& obstacle, const Eigen::Vector2d& start,
+                                   const Eigen::Vector2d& direction) {
+  return obstacle.isDisc() ? discCrossing(obstacle, start, direction)
+                           : polygonCrossing(obstacle.corners, start, direction);
+}
+
+double penetrationOf(const Obstacle& obstacle, const Rectangle& rectangle,
+                     const Pose2& T_map_body) {
+  if (obstacle.isDisc()) return discPenetration(obstacle, rectangle, T_map_body);
+  // Separating axis theorem: two convex shapes touch if no edge of either separates them.
+  const Corners corners = cornersOf(rectangle, T_map_body);
+  return std::min(overlapAcrossEdges(obstacle.corners, corners),
+                  overlapAcrossEdges(corners, obstacle.corners));
+}
+
+}  // namespace tread::sim

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "modules/simulator/core/ins.hpp"
+#include "modules/simulator/core/laser.hpp"
+#include "modules/simulator/core/motion_noise.hpp"
+#include "modules/simulator/core/vehicle.hpp"
+#include "modules/simulator/core/world.hpp"
+
+namespace tread::sim {
+
+/// How a simulated robot is built.
+struct RobotSettings {
+  VehicleParameters vehicle;
+  LaserParameters laser;
+  InsParameters ins;
+  Pose2 start;               ///< T_map_body at the beginning
+  int64_t start_utime = 0;   ///< [us]
+  uint64_t seed = 1;         ///< of ground and instruments
+  bool motion_noise = true;  ///< false: the calibrated mean motion only
+};
+
+/// The footprint met an obstacle: one entry per encounter, ended by half a second without touch.
+struct CollisionEvent {
+  int64_t utime = 0;         ///< of the first touch [us]
+  size_t obstacle = 0;       ///< index in the world's description
+  double penetration = 0.0;  ///< deepest attempt [m]
+};
+
+/// What is really the case.
+struct RobotTruth {
+  int64_t utime = 0;                       ///< [us]
+  Pose2 T_map_body;                        ///< yaw unwrapped
+  Twist2 v_body;                           ///< in the tangent plane of the ground
+  BodyPose body;                           ///< place and attitude in space
+  std::string surface;                     ///< below the body origin
+  double distance = 0.0;                   ///< path length of the body origin so far [m]
+  std::vector<CollisionEvent> collisions;  ///< so far
+};
+
+/// World, vehicle and instruments, stepped together at 1 ms.
+/** An obstacle stops the body where it last stood free; the tracks go on turning until told
+ * otherwise. */
+class SimulatedRobot {
+ public:
+  SimulatedRobot(std::shared_ptr<const World> world, const RobotSettings& settings);
+
+  /// Power on the motors from now on, -1..1; what is not a number counts as zero.
+  void setPower(const MotorPower& power);
+
+  /// Simulates up to a time; less than 1 ms may be left for the next call.
+  void advanceTo(int64_t utime);
+
+  const RobotTruth& truth() const { return truth_; }
+  const TrackedVehicle& vehicle() const { return vehicle_; }
+  const World& world() const { return *world_; }
+  const RobotSettings& settings() const { return settings_; }
+
+  /// INS measurements that came out since the last call.
+  std::vector<InsSample> takeInsSamples() { return ins_.takeSamples(truth_.utime); }
+  /// Laser scans finished since the last call.
+  std::vector<LaserScan> takeScans() { return laser_.takeScans(); }
+
+ private:
+  void step();
+  void moveBody();
+  void settleOnPlane();
+  void checkCollision();
+  void updateGround();
+  void updateRates(double dt);
+
+  std::shared_ptr<const World> world_;
+  RobotSettings settings_;
+  TrackedVehicle vehicle_;
+  MotionNoise noise_;
+  Laser laser_;
+  Ins ins_;
+  MotorPower power_;
+  Ground ground_;
+  const SurfaceParameters* surface_ = nullptr;
+  /// The ground near the vehicle, renewed every 10 ms.
+  struct TangentPlane {
+    Eigen::Vector2d p_map = Eigen::Vector2d::Zero();
+    double height = 0.0;
+    Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
+  } plane_;
+  RobotTruth truth_;
+  Eigen::Vector3d rate_body_ = Eigen::Vector3d::Zero();
+  double pitch_before_ = 0.0;
+  double roll_before_ = 0.0;
+  Pose2 T_map_free_;  ///< where the body last stood free
+  int64_t last_touch_ = INT64_MIN;
+  int64_t steps_ = 0;
+};
+
+}  // namespace tread::sim
