@@ -63,6 +63,20 @@ TEST_CASE("a quiet line ends the epoch, a slow line does not") {
   CHECK(epoch->vtg);
 }
 
+TEST_CASE("where the last sentence is known, the epoch ends with it") {
+  const NmeaSentence last = Rot{};
+  EpochCollector collector(10'000, last.index());
+  feed(collector, ggaAt(5 * kSecond), 100);
+  feed(collector, Vtg{}, 200);
+  CHECK_FALSE(collector.next(300));
+  feed(collector, last, 300);
+  const auto epoch = collector.next(300);
+  REQUIRE(epoch);
+  CHECK(epoch->rot);
+  CHECK(epoch->vtg);
+  CHECK_FALSE(feed(collector, Rmc{5 * kSecond, {}, {}, {}, {}}, 400));
+}
+
 TEST_CASE("sentences without a time before the timed one belong to its epoch") {
   EpochCollector collector(10'000);
   for (int i = 0; i < 3; ++i) {
@@ -158,7 +172,8 @@ TEST_CASE("the arrival filter takes jitter out and never puts a measurement afte
     const int64_t device_time = i * int64_t{20'000};
     const double truth = static_cast<double>(device_time) * (1.0 + drift) + 5e6;
     const int64_t arrival = static_cast<int64_t>(truth + 1000.0 + delay(random));
-    const int64_t mapped = filter.add(device_time, arrival);
+    filter.add(device_time, arrival);
+    const int64_t mapped = filter.hostTime(device_time);
     CHECK(mapped <= arrival);
     if (i < 500) continue;
     worst = std::max(worst, std::abs(static_cast<double>(mapped) - truth - 1000.0));
@@ -175,6 +190,7 @@ TEST_CASE("a stalled reader does not move the measurement times") {
   for (int i = 0; i < 100; ++i) filter.add(i * 20'000, 7'000'000 + i * 20'000);
   // The process stood still for 2 s: all bytes are read at one instant.
   for (int i = 100; i < 200; ++i) {
-    CHECK(filter.add(i * 20'000, 7'000'000 + 200 * 20'000) == 7'000'000 + i * 20'000);
+    filter.add(i * 20'000, 7'000'000 + 200 * 20'000);
+    CHECK(filter.hostTime(i * 20'000) == 7'000'000 + i * 20'000);
   }
 }

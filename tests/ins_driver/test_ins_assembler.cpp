@@ -330,6 +330,21 @@ TEST_CASE("polling jitter does not become jitter of the measurement times") {
   }
 }
 
+TEST_CASE("a backlog read at one instant keeps its spacing and ends at its arrival") {
+  NmeaIns ins(withOrigin());
+  for (int i = 0; i < 150; ++i) {
+    const double t = kNoon + i * 0.02;
+    ins.push(gga(t) + pashr(t, 90.0), 10 * kSecond);
+  }
+  std::vector<InsEstimate> out;
+  while (const auto estimate = ins.next(10 * kSecond + 10'000)) out.push_back(*estimate);
+  REQUIRE(out.size() == 150);
+  for (int i = 0; i < 150; ++i) {
+    CHECK(out[static_cast<size_t>(i)].utime == 10 * kSecond - (149 - i) * 20'000);
+    CHECK(out[static_cast<size_t>(i)].status == kNoVelocity);
+  }
+}
+
 TEST_CASE("a device that tells no time is stamped with its arrival less the latency") {
   InsConfig config = withOrigin();
   config.latency_us = 3'000;

@@ -16,15 +16,13 @@ class ArrivalFilter {
  public:
   explicit ArrivalFilter(int64_t window_us) : window_us_(window_us) {}
 
-  /// Takes an arrival [us host] of a device time [us]; times must not run backwards (else reset()
-  /// first).
-  /** Returns the host time of the device time: at most `arrival`. */
-  int64_t add(int64_t device_time, int64_t arrival);
+  /// Takes an arrival [us host] of a device time [us]. A device time before the last one means that
+  /// the device's clock was set: what was known is forgotten.
+  void add(int64_t device_time, int64_t arrival);
+  /// Host time of a device time; for one that was added at most its arrival.
+  int64_t hostTime(int64_t device_time) const { return device_time + offset(); }
   /// Smallest offset in the window, 0 before the first arrival [us].
   int64_t offset() const { return samples_.empty() ? 0 : samples_.front().offset; }
-  bool empty() const { return samples_.empty(); }
-  /// The device's clock was set: forget.
-  void reset() { samples_.clear(); }
 
  private:
   struct Sample {

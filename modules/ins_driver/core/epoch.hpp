@@ -15,7 +15,7 @@ struct Epoch {
   std::optional<int64_t>
       device_time;             ///< as DeviceClock counts [us]; absent if no sentence told the time
   int64_t device_utc = -1;     ///< [us] since 1970-01-01; -1 before the device told a date
-  bool clock_was_set = false;  ///< the device's clock was set back since the epoch before
+  bool clock_was_set = false;  ///< the device's clock was set, back or forth, before this epoch
   std::optional<Gga> gga;
   std::optional<Rmc> rmc;
   std::optional<Vtg> vtg;

@@ -11,16 +11,22 @@ constexpr int64_t kMaxLateUs = 2'000'000;
 constexpr int kLateLimit = 10;
 /// An epoch whose sentences keep coming with an unchanged time ends after this.
 constexpr int64_t kMaxEpochUs = 500'000;
+/// The device's time went on by so much more than the host's from one epoch to the next: it was set
+/// forward.
+constexpr int64_t kClockStepUs = 1'000'000;
 
 }  // namespace
 
 bool EpochCollector::push(const NmeaSentence& sentence, int64_t arrival) {
   const std::optional<int64_t> time_of_day = timeOfDay(sentence);
-  if (!time_of_day) {
-    placeUntimed(sentence, arrival);
-    return true;
-  }
-  const int64_t device_time = clock_.timeOf(*time_of_day);
+  const bool in_time = !time_of_day || pushTimed(sentence, arrival, *time_of_day);
+  if (!time_of_day) placeUntimed(sentence, arrival);
+  if (in_time && last_type_ == sentence.index()) close();
+  return in_time;
+}
+
+bool EpochCollector::pushTimed(const NmeaSentence& sentence, int64_t arrival, int64_t time_of_day) {
+  const int64_t device_time = clock_.timeOf(time_of_day);
   switch (orderOf(device_time)) {
     case Order::kLate:
       ++late_in_a_row_;
@@ -87,7 +93,15 @@ void EpochCollector::open(int64_t arrival) {
 
 void EpochCollector::close() {
   if (!epoch_) return;
-  if (epoch_->device_time) epoch_->device_utc = clock_.utc(*epoch_->device_time);
+  if (epoch_->device_time) {
+    epoch_->device_utc = clock_.utc(*epoch_->device_time);
+    const int64_t ahead = *epoch_->device_time - last_device_time_.value_or(*epoch_->device_time);
+    if (ahead - (epoch_->arrival - last_arrival_) > kClockStepUs && last_device_time_) {
+      epoch_->clock_was_set = true;
+    }
+    last_device_time_ = epoch_->device_time;
+    last_arrival_ = epoch_->arrival;
+  }
   finished_.push_back(*epoch_);
   epoch_.reset();
 }

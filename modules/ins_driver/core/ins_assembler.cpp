@@ -60,22 +60,14 @@ std::optional<GeoOrigin> InsAssembler::origin() const {
   return frame_->origin();
 }
 
-void InsAssembler::startNewTrack() {
-  ++counts_.clock_steps;
-  new_track_ = true;
-  attitudes_.clear();
+void InsAssembler::observe(const Epoch& epoch) {
+  if (epoch.device_time) arrival_filter_.add(*epoch.device_time, epoch.arrival);
 }
 
-int64_t InsAssembler::measurementTime(const Epoch& epoch) {
-  if (!epoch.device_time) return epoch.arrival - config_.latency_us;
-  const int64_t offset = epoch.arrival - *epoch.device_time;
-  if (epoch.clock_was_set) {
-    startNewTrack();
-    arrival_filter_.reset();
-  } else if (!arrival_filter_.empty() && offset < arrival_filter_.offset() - kClockStepUs) {
-    startNewTrack();
-  }
-  return arrival_filter_.add(*epoch.device_time, epoch.arrival) - config_.latency_us;
+int64_t InsAssembler::measurementTime(const Epoch& epoch) const {
+  const int64_t without_delay =
+      epoch.device_time ? arrival_filter_.hostTime(*epoch.device_time) : epoch.arrival;
+  return without_delay - config_.latency_us;
 }
 
 bool InsAssembler::positionsAreExpected(int64_t utime) const {
@@ -99,6 +91,11 @@ bool InsAssembler::isPublished(const Epoch& epoch, int64_t utime) {
 
 std::optional<InsEstimate> InsAssembler::solve(const Epoch& epoch) {
   ++counts_.epochs;
+  if (epoch.clock_was_set) {
+    ++counts_.clock_steps;
+    new_track_ = true;
+    attitudes_.clear();
+  }
   InsEstimate estimate;
   estimate.utime = measurementTime(epoch);
   estimate.device_utc = epoch.device_utc;

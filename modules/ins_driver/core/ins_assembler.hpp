@@ -30,8 +30,12 @@ class InsAssembler {
  public:
   explicit InsAssembler(const InsConfig& config);
 
-  /// The estimate of an epoch; nothing if only the attitude was measured (it is kept for the next
-  /// position) or if its time is not after the last one.
+  /// Takes note of when an epoch arrived. To be called for all that are there before the first of
+  /// them is solved: after a pause the newest knows best how late the others are. Not beyond one
+  /// before which the device's clock was set.
+  void observe(const Epoch& epoch);
+  /// The estimate of an observed epoch; nothing if only the attitude was measured (it is kept for
+  /// the next position) or if its time is not after the last one.
   std::optional<InsEstimate> solve(const Epoch& epoch);
 
   /// The map's place on Earth once there is one: configured, or the first good fix.
@@ -41,10 +45,9 @@ class InsAssembler {
   double farDistance() const { return far_distance_; }
 
  private:
-  int64_t measurementTime(const Epoch& epoch);
+  int64_t measurementTime(const Epoch& epoch) const;
   bool positionsAreExpected(int64_t utime) const;
   bool isPublished(const Epoch& epoch, int64_t utime);
-  void startNewTrack();
   void setOrientation(const std::optional<Attitude>& attitude, InsEstimate& estimate) const;
   void setVelocity(const Epoch& epoch, InsEstimate& estimate) const;
   void setPosition(const Epoch& epoch, InsEstimate& estimate);

@@ -66,6 +66,9 @@ struct InsConfig {
   int64_t latency_us = 0;
   /// Silence on the line that ends an epoch [us].
   int64_t quiet_us = 10'000;
+  /// Index in NmeaSentence of the type that ends each epoch, so that the silence need not be
+  /// awaited.
+  std::optional<size_t> last_type;
   /// Longest time that an attitude is carried to a position measured after it [us].
   int64_t attitude_hold_us = 60'000;
   /// Window of the arrival filter [us].

@@ -53,9 +53,21 @@ void NmeaIns::take(std::string_view body) {
   if (isEmpty(sentence)) ++counts_.empty[sentence.index()];
 }
 
+void NmeaIns::observePending() {
+  while (observed_ < pending_.size()) {
+    if (observed_ > 0 && pending_[observed_].clock_was_set) return;
+    assembler_.observe(pending_[observed_++]);
+  }
+}
+
 std::optional<InsEstimate> NmeaIns::next(int64_t now) {
-  while (const std::optional<Epoch> epoch = collector_.next(now)) {
-    if (const std::optional<InsEstimate> estimate = assembler_.solve(*epoch)) return estimate;
+  while (std::optional<Epoch> epoch = collector_.next(now)) pending_.push_back(*epoch);
+  while (!pending_.empty()) {
+    observePending();
+    std::optional<InsEstimate> estimate = assembler_.solve(pending_.front());
+    pending_.pop_front();
+    --observed_;
+    if (estimate) return estimate;
   }
   return std::nullopt;
 }

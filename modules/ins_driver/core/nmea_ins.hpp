@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <deque>
 #include <optional>
 #include <string_view>
 
@@ -29,7 +30,8 @@ struct NmeaCounts {
 /** Bytes in, with the time at which they were read; then next() until it has nothing. */
 class NmeaIns {
  public:
-  explicit NmeaIns(const InsConfig& config) : collector_(config.quiet_us), assembler_(config) {}
+  explicit NmeaIns(const InsConfig& config)
+      : collector_(config.quiet_us, config.last_type), assembler_(config) {}
 
   /// Takes bytes that were read at `arrival` [us].
   void push(std::string_view bytes, int64_t arrival);
@@ -45,10 +47,13 @@ class NmeaIns {
 
  private:
   void take(std::string_view body);
+  void observePending();
 
   NmeaFramer framer_;
   EpochCollector collector_;
   InsAssembler assembler_;
+  std::deque<Epoch> pending_;
+  size_t observed_ = 0;  ///< how many of them the assembler has observed
   int64_t sentence_start_ = 0;
   int64_t arrival_ = 0;
   std::optional<int64_t> last_sentence_;

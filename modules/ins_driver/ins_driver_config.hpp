@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+
+#include "common/config/config_reader.hpp"
+#include "modules/ins_driver/core/ins_estimate.hpp"
+
+namespace tread::ins {
+
+/// Configuration of ins_driver, with its defaults.
+struct InsDriverConfig {
+  std::string address = "tty:/dev/ttyUSB0?baud=115200";  ///< of the NMEA 0183 device
+  std::string store = "state/ins_driver";                ///< folder that keeps the map's origin
+  InsConfig ins;
+  double silence = 1.0;       ///< [s] without what is expected after which health says so
+  int64_t period_us = 5'000;  ///< [us] between looks at the link
+  std::string effective;      ///< the whole as YAML, for CONFIG
+};
+
+/// Reads the configuration; throws ConfigError with file:line.
+InsDriverConfig readInsDriverConfig(ConfigReader& reader);
+
+/// Where the map frame lies on Earth, as text for the Store, and back.
+std::string originText(const GeoOrigin& origin);
+/// Throws ConfigError if the text is no origin.
+GeoOrigin originFrom(const std::string& text);
+
+}  // namespace tread::ins

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/ins_driver/ins_driver_node.hpp"
+
+#include <array>
+#include <cmath>
+#include <sstream>
+
+namespace tread::ins {
+namespace {
+
+constexpr bool same(int32_t core_bit, int32_t message_bit) {
+  return core_bit == message_bit;
+}
+static_assert(same(kNoPosition, ins_t::STATUS_NO_POSITION));
+static_assert(same(kNoHeading, ins_t::STATUS_NO_HEADING));
+static_assert(same(kGap, ins_t::STATUS_GAP));
+static_assert(same(kJump, ins_t::STATUS_JUMP));
+static_assert(same(kNoAttitude, ins_t::STATUS_NO_ATTITUDE));
+static_assert(same(kNoVelocity, ins_t::STATUS_NO_VELOCITY));
+
+/// A device that floods us is cut off here until the next step.
+constexpr size_t kMaxBytesPerStep = 65536;
+constexpr int64_t kCounterPeriodUs = 200'000;
+
+/// The configuration with the stored origin where none is configured.
+InsConfig withStoredOrigin(InsConfig ins, const Store& store, std::string& problem) {
+  if (ins.origin) return ins;
+  const std::optional<std::string> text = store.read(kOriginEntry);
+  if (!text) return ins;
+  try {
+    ins.origin = originFrom(*text);
+  } catch (const ConfigError& error) {
+    problem = std::string(error.what()) + "; the map starts anew at the first fix";
+  }
+  return ins;
+}
+
+void copy(const Eigen::Vector3d& from, double* to) {
+  for (int i = 0; i < 3; ++i) to[i] = from[i];
+}
+
+ins_t messageOf(const InsEstimate& estimate, int64_t seq) {
+  ins_t message{};
+  message.utime = estimate.utime;
+  message.seq = seq;
+  message.device_utc = estimate.device_utc;
+  copy(estimate.p_map_body, message.position);
+  message.orientation[0] = estimate.R_map_body.w();
+  message.orientation[1] = estimate.R_map_body.x();
+  message.orientation[2] = estimate.R_map_body.y();
+  message.orientation[3] = estimate.R_map_body.z();
+  copy(estimate.v_body, message.velocity);
+  copy(estimate.rate_body, message.rate);
+  copy(estimate.position_std, message.position_std);
+  copy(estimate.attitude_std, message.attitude_std);
+  message.ins_status = estimate.status;
+  message.satellites = estimate.satellites;
+  return message;
+}
+
+/// "cut short 3, wrong checksum 12".
+std::string listed(const RefusalCounts& refused) {
+  std::ostringstream text;
+  for (size_t i = 0; i < kRefusalCount; ++i) {
+    if (refused.of[i] == 0) continue;
+    text << (text.tellp() > 0 ? ", " : "") << name(static_cast<Refusal>(i)) << " " << refused.of[i];
+  }
+  return text.str();
+}
+
+std::string inSeconds(int64_t us) {
+  return std::to_string(us / 1'000'000) + "." + std::to_string(us / 100'000 % 10) + " s";
+}
+
+}  // namespace
+
+InsDriverNode::InsDriverNode(const InsDriverConfig& config, Bus& bus, Link& link, Store& store)
+    : config_(config),
+      bus_(bus),
+      link_(link),
+      store_(store),
+      ins_(withStoredOrigin(config.ins, store, origin_problem_)),
+      health_(bus, "ins_driver", config.effective),
+      origin_kept_(ins_.assembler().origin().has_value()),
+      silence_us_(std::llround(config.silence * 1e6)),
+      start_(bus.now()),
+      last_bytes_(bus.now()),
+      last_position_(bus.now()),
+      last_heading_(bus.now()) {}
+
+void InsDriverNode::step(int64_t utime) {
+  readLink(utime);
+  publishFinished(utime);
+  judge(utime);
+  reportCounters(utime);
+  health_.step(utime);
+}
+
+void InsDriverNode::readLink(int64_t utime) {
+  if (!link_.isOpen()) {
+    if (was_open_) loseLink();
+    if (!link_.reopen(utime)) return;
+  }
+  was_open_ = true;
+  std::array<uint8_t, 4096> buffer;
+  for (size_t total = 0; total < kMaxBytesPerStep;) {
+    const std::optional<size_t> size = link_.read(buffer.data(), buffer.size());
+    if (!size) return loseLink();
+    if (*size == 0) return;
+    last_bytes_ = utime;
+    ins_.push({reinterpret_cast<const char*>(buffer.data()), *size}, utime);
+    total += *size;
+  }
+}
+
+void InsDriverNode::loseLink() {
+  was_open_ = false;
+  ++link_losses_;
+  ins_.interrupt();
+}
+
+void InsDriverNode::publishFinished(int64_t utime) {
+  while (const std::optional<InsEstimate> estimate = ins_.next(utime)) {
+    if (!(estimate->status & kNoPosition)) {
+      last_position_ = utime;
+      too_far_before_ = epochs().too_far;
+    }
+    if (!(estimate->status & kNoHeading)) last_heading_ = utime;
+    bus_.publish(kIns, messageOf(*estimate, seq_++));
+  }
+  keepOrigin();
+}
+
+void InsDriverNode::keepOrigin() {
+  if (origin_kept_ || !origin()) return;
+  origin_kept_ = true;
+  const std::optional<std::string> problem = store_.write(kOriginEntry, originText(*origin()));
+  origin_problem_ =
+      problem ? "the map's origin could not be stored, a restart will move the map: " + *problem
+              : std::string{};
+}
+
+std::string InsDriverNode::lineProblem(int64_t utime) const {
+  const std::string address = link_.address() + ": ";
+  if (!link_.isOpen()) {
+    const std::string problem = link_.problem();
+    return problem.empty() ? address + "closed" : problem;
+  }
+  if (utime - last_bytes_ > silence_us_) {
+    return address + "no bytes for " + inSeconds(utime - last_bytes_) +
+           "; is the device powered and set to send NMEA?";
+  }
+  const int64_t without_sentence = utime - ins_.lastSentence().value_or(start_);
+  if (without_sentence <= silence_us_) return {};
+  const NmeaCounts counts = ins_.counts();
+  return address + "bytes, but no good sentence for " + inSeconds(without_sentence) +
+         " (stray bytes " + std::to_string(counts.stray_bytes) +
+         ", refused: " + listed(counts.refused) + "); check baud rate and output format";
+}
+
+std::string InsDriverNode::measurementProblem(int64_t utime) const {
+  if (utime - last_position_ > silence_us_) {
+    if (epochs().too_far > too_far_before_) {
+      return "the fix is " + std::to_string(std::llround(ins_.assembler().farDistance() / 1000.0)) +
+             " km from the map's origin; configure another origin or remove the stored " +
+             kOriginEntry;
+    }
+    return "no position for " + inSeconds(utime - last_position_) +
+           "; does the device have a fix, and does it send GGA?";
+  }
+  if (utime - last_heading_ > silence_us_) {
+    return "no heading for " + inSeconds(utime - last_heading_) +
+           "; does the device send HDT or PASHR?";
+  }
+  return origin_problem_;
+}
+
+void InsDriverNode::judge(int64_t utime) {
+  const std::string line = lineProblem(utime);
+  if (!line.empty()) {
+    health_.setState(health_t::HEALTH_FAILED, line);
+    return;
+  }
+  const std::string measurement = measurementProblem(utime);
+  if (measurement.empty()) {
+    health_.setState(health_t::HEALTH_OK, "");
+  } else {
+    health_.setState(health_t::HEALTH_DEGRADED, link_.address() + ": " + measurement);
+  }
+}
+
+void InsDriverNode::reportCounters(int64_t utime) {
+  if (utime < next_counters_) return;
+  next_counters_ = utime + kCounterPeriodUs;
+  const NmeaCounts line = counts();
+  health_.setCounter("bytes", line.bytes);
+  health_.setCounter("stray bytes", line.stray_bytes);
+  health_.setCounter("sentences", line.sentences);
+  health_.setCounter("decoded", line.decoded);
+  for (size_t i = 0; i < kSentenceTypes; ++i) {
+    if (line.of_type[i] > 0) health_.setCounter(kSentenceNames[i], line.of_type[i]);
+    const std::string empty = std::string(kSentenceNames[i]) + " without a value";
+    if (line.empty[i] > 0) health_.setCounter(empty, line.empty[i]);
+  }
+  for (size_t i = 0; i < kRefusalCount; ++i) {
+    const std::string refused = std::string("refused: ") + name(static_cast<Refusal>(i));
+    if (line.refused.of[i] > 0) health_.setCounter(refused, line.refused.of[i]);
+  }
+  const AssemblerCounts& epoch = epochs();
+  health_.setCounter("epochs", epoch.epochs);
+  health_.setCounter("published", epoch.published);
+  health_.setCounter("gaps", epoch.gaps);
+  health_.setCounter("jumps", epoch.jumps);
+  health_.setCounter("device clock set", epoch.clock_steps);
+  health_.setCounter("refused: time not after the last", epoch.not_newer);
+  health_.setCounter("refused: far from the origin", epoch.too_far);
+  health_.setCounter("link losses", link_losses_);
+}
+
+}  // namespace tread::ins

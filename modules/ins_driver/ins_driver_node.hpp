@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/health.hpp"
+#include "common/link/link.hpp"
+#include "common/store/store.hpp"
+#include "modules/ins_driver/core/nmea_ins.hpp"
+#include "modules/ins_driver/ins_driver_config.hpp"
+
+namespace tread::ins {
+
+/// Entry of the Store that keeps the map's place on Earth, so that a restart keeps the map frame.
+inline constexpr const char* kOriginEntry = "ins_origin";
+
+/// Publishes INS from an NMEA 0183 device, and HEALTH with every refusal and its reason.
+/** The map's origin is the configured one, else the stored one, else the first good fix, which is
+ * then stored. */
+class InsDriverNode : public Node {
+ public:
+  InsDriverNode(const InsDriverConfig& config, Bus& bus, Link& link, Store& store);
+
+  int64_t period() const override { return config_.period_us; }
+  void step(int64_t utime) override;
+
+  /// What came over the line so far.
+  NmeaCounts counts() const { return ins_.counts(); }
+  /// What became of it.
+  const AssemblerCounts& epochs() const { return ins_.assembler().counts(); }
+  std::optional<GeoOrigin> origin() const { return ins_.assembler().origin(); }
+
+ private:
+  void readLink(int64_t utime);
+  void loseLink();
+  void publishFinished(int64_t utime);
+  void keepOrigin();
+  void judge(int64_t utime);
+  std::string lineProblem(int64_t utime) const;
+  std::string measurementProblem(int64_t utime) const;
+  void reportCounters(int64_t utime);
+
+  InsDriverConfig config_;
+  Bus& bus_;
+  Link& link_;
+  Store& store_;
+  std::string origin_problem_;  ///< before ins_: filled while its configuration is made
+  NmeaIns ins_;
+  HealthReporter health_;
+  bool origin_kept_;
+  bool was_open_ = false;
+  int64_t link_losses_ = 0;
+  int64_t seq_ = 0;
+  int64_t too_far_before_ = 0;  ///< refused positions at the time of the last good one
+  int64_t silence_us_;
+  int64_t start_;
+  int64_t last_bytes_;
+  int64_t last_position_;
+  int64_t last_heading_;
+  int64_t next_counters_ = 0;
+};
+
+}  // namespace tread::ins

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <random>
+#include <vector>
+
+#include "common/bus/virtual_bus.hpp"
+#include "common/messages/ins_messages.hpp"
+#include "modules/ins_driver/ins_driver_node.hpp"
+#include "tests/ins_driver/nmea_lines.hpp"
+
+using namespace tread;
+using namespace tread::ins;
+
+namespace {
+
+constexpr double kDeg = kPi / 180.0;
+constexpr int64_t kSecond = 1'000'000;
+
+InsDriverConfig configured(const std::string& yaml = "{}") {
+  ConfigReader reader = ConfigReader::fromText(yaml, "test");
+  return readInsDriverConfig(reader);
+}
+
+/// The driver on the virtual bus, and a device at the other end of its line.
+class Rig {
+ public:
+  explicit Rig(const InsDriverConfig& config = configured(), FaultPlan faults = {})
+      : bus(1, std::move(faults)), config_(config) {
+    std::tie(device, robot) = makePipe();
+    bus.outside().subscribe<ins_t>(kIns, [this](const ins_t& m) { track.push_back(m); });
+    bus.outside().subscribe<health_t>(kHealth, [this](const health_t& m) { health = m; });
+    bus.outside().subscribe<config_t>(kConfig,
+                                      [this](const config_t& m) { config_text = m.config_text; });
+    bus.addNode("ins_driver", [this](Bus& end) {
+      return std::make_unique<InsDriverNode>(config_, end, *robot, store);
+    });
+  }
+
+  void say(const std::string& bytes) {
+    device->write(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
+  }
+  /// 50 Hz of positions and attitudes for this long, driving east at 1 m/s.
+  void drive(double seconds) {
+    const int epochs = static_cast<int>(std::lround(seconds * 50.0));
+    for (int i = 0; i < epochs; ++i) {
+      const double time_of_day = 43200.0 + static_cast<double>(bus.now()) * 1e-6;
+      say(gga(time_of_day, static_cast<double>(bus.now()) * 1e-6) + pashr(time_of_day, 90.0) +
+          vtg(90.0, 3.6));
+      bus.runUntil(bus.now() + 20'000);
+    }
+  }
+  void wait(double seconds) { bus.runUntil(bus.now() + std::llround(seconds * 1e6)); }
+  int64_t counter(const std::string& name) const {
+    for (const counter_t& counter : health.counters) {
+      if (counter.counter_name == name) return counter.counted;
+    }
+    return -1;
+  }
+  bool healthSays(const std::string& words) const {
+    return health.health_reason.find(words) != std::string::npos;
+  }
+
+  VirtualBus bus;
+  std::unique_ptr<Link> device;
+  std::unique_ptr<Link> robot;
+  MemoryStore store;
+  std::vector<ins_t> track;
+  health_t health{};
+  std::string config_text;
+
+ private:
+  InsDriverConfig config_;
+};
+
+}  // namespace
+
+TEST_CASE("the driver publishes every epoch as INS, with the map's origin at the first fix") {
+  Rig rig;
+  rig.drive(4.0);
+  rig.wait(1.0);
+  REQUIRE(rig.track.size() == 200);
+  for (size_t i = 0; i < rig.track.size(); ++i) {
+    CHECK(rig.track[i].seq == static_cast<int64_t>(i));
+    if (i > 0) CHECK(rig.track[i].utime - rig.track[i - 1].utime == 20'000);
+    CHECK(rig.track[i].ins_status == ins_t::STATUS_GOOD);
+  }
+  const auto pose = planarPose(rig.track.back());
+  REQUIRE(pose);
+  CHECK(pose->x == Approx(199 * 0.02).margin(0.01));
+  CHECK(pose->yaw == Approx(0.0).margin(1e-9));
+  CHECK(rig.track.back().velocity[0] == Approx(1.0).margin(1e-6));
+  CHECK(rig.track.back().satellites == 12);
+  CHECK(rig.health.process == "ins_driver");
+  CHECK(rig.counter("GGA") == 200);
+  CHECK(rig.counter("PASHR") == 200);
+  CHECK(rig.counter("decoded") == 600);
+  CHECK(rig.counter("published") == 200);
+  CHECK(rig.config_text.find("standstill_speed") != std::string::npos);
+}
+
+TEST_CASE("an INS message leaves within a step and the quiet time of its epoch") {
+  Rig rig;
+  int64_t worst = 0;
+  rig.bus.setTap([&](int64_t utime, const char* channel, const uint8_t*, size_t) {
+    if (std::string(channel) == kIns.name) {
+      worst = std::max(worst, utime % 20'000);  // epochs are at multiples of 20 ms here
+    }
+  });
+  rig.drive(2.0);
+  CHECK(worst <= 15'000);
+}
+
+TEST_CASE("where the last sentence is known, an INS message leaves within a step") {
+  Rig rig(configured("last_sentence: VTG"));
+  int64_t worst = 0;
+  rig.bus.setTap([&](int64_t utime, const char* channel, const uint8_t*, size_t) {
+    if (std::string(channel) == kIns.name) worst = std::max(worst, utime % 20'000);
+  });
+  rig.drive(2.0);
+  CHECK(rig.track.size() == 100);
+  CHECK(worst <= 5'000);
+}
+
+TEST_CASE("a restart keeps the map frame") {
+  Rig rig;
+  rig.drive(2.0);
+  const double before = rig.track.back().position[0];
+  rig.bus.restart("ins_driver");
+  rig.drive(1.0);
+  CHECK(rig.track.back().position[0] == Approx(before + 1.0).margin(0.01));
+  REQUIRE(rig.store.read(kOriginEntry));
+  // Without the store it would start anew.
+  rig.store.remove(kOriginEntry);
+  rig.bus.restart("ins_driver");
+  rig.drive(1.0);
+  CHECK(rig.track.back().position[0] < 1.1);
+}
+
+TEST_CASE("a configured origin is taken before any fix and never stored") {
+  Rig rig(configured("origin: {latitude: 42.0955622, longitude: -88.0340185, altitude: 200}"));
+  rig.drive(1.0);
+  CHECK(rig.track.front().position[0] == Approx(1.0).margin(0.01));  // the clock starts at 1 s
+  CHECK(rig.track.front().position[2] == Approx(21.0).margin(0.001));
+  CHECK_FALSE(rig.store.read(kOriginEntry));
+}
+
+TEST_CASE("an unreadable stored origin is said and replaced") {
+  Rig rig;
+  rig.store.write(kOriginEntry, "latitude: forty");
+  rig.bus.restart("ins_driver");
+  rig.wait(0.5);
+  CHECK(rig.health.health_state == health_t::HEALTH_DEGRADED);
+  CHECK(rig.healthSays("stored map origin:1"));
+  rig.drive(0.5);
+  CHECK(rig.track.size() == 25);
+  CHECK(originFrom(*rig.store.read(kOriginEntry)).point.latitude == Approx(42.0955622 * kDeg));
+}
+
+TEST_CASE("a store that cannot be written is degraded health, not silence") {
+  Rig rig;
+  rig.store.failWith("disk full");
+  rig.drive(3.0);
+  CHECK(rig.health.health_state == health_t::HEALTH_DEGRADED);
+  CHECK(rig.healthSays("disk full"));
+}
+
+TEST_CASE("silence is one clear line in health, and its end is heard") {
+  Rig rig;
+  rig.drive(2.0);
+  rig.wait(3.0);
+  CHECK(rig.health.health_state == health_t::HEALTH_FAILED);
+  CHECK(rig.healthSays("no bytes for"));
+  CHECK(rig.health.health_reason.find('\n') == std::string::npos);
+  const size_t before = rig.track.size();
+  rig.drive(2.0);
+  CHECK(rig.track.size() == before + 100);
+  CHECK((rig.track[before].ins_status & ins_t::STATUS_GAP) != 0);
+  CHECK(rig.health.health_state == health_t::HEALTH_OK);
+}
+
+TEST_CASE("garbage is one clear line in health, and good lines after it are decoded") {
+  Rig rig;
+  std::mt19937_64 random(4);
+  for (int i = 0; i < 300; ++i) {
+    std::string garbage(2000, '\0');
+    for (char& byte : garbage) byte = static_cast<char>(random() & 0xFF);
+    rig.say(garbage);
+    rig.wait(0.01);
+  }
+  CHECK(rig.track.empty());
+  CHECK(rig.health.health_state == health_t::HEALTH_FAILED);
+  CHECK(rig.healthSays("no good sentence"));
+  CHECK(rig.healthSays("baud rate"));
+  CHECK(rig.counter("stray bytes") > 100'000);
+  CHECK(rig.counter("refused: not printable") > 100);
+  rig.drive(2.0);
+  rig.wait(0.1);
+  CHECK(rig.track.size() == 100);
+  CHECK(rig.health.health_state == health_t::HEALTH_OK);
+}
+
+TEST_CASE("refusals are counted in health by their reason") {
+  Rig rig;
+  rig.drive(0.5);
+  rig.say("$GPHDT,274.07,T*04\r\n$GPHDT,274.07,T\r\n$GPGSV,1,1,00*79\r\n");
+  rig.drive(1.5);
+  CHECK(rig.counter("refused: wrong checksum") == 1);
+  CHECK(rig.counter("refused: no checksum") == 1);
+  CHECK(rig.counter("refused: unknown sentence") == 1);
+  CHECK(rig.health.health_state == health_t::HEALTH_OK);
+}
+
+TEST_CASE("a cut line is reopened with back-off and the track goes on as after a gap") {
+  Rig rig;
+  rig.drive(2.0);
+  setPipeConnected(*rig.device, false);
+  rig.wait(3.0);
+  CHECK(rig.health.health_state == health_t::HEALTH_FAILED);
+  CHECK_FALSE(rig.health.health_reason.empty());
+  CHECK(rig.counter("link losses") == 1);
+  const size_t before = rig.track.size();
+  setPipeConnected(*rig.device, true);
+  rig.device->reopen(rig.bus.now());
+  rig.wait(1.1);  // the back-off grows to 1 s
+  rig.drive(2.0);
+  CHECK(rig.track.size() == before + 100);
+  CHECK((rig.track[before].ins_status & ins_t::STATUS_GAP) != 0);
+  CHECK(rig.track.back().position[0] > rig.track[before - 1].position[0]);
+  CHECK(rig.health.health_state == health_t::HEALTH_OK);
+}
+
+TEST_CASE("a lost fix and a lost heading are degraded health with their remedy") {
+  Rig rig;
+  rig.drive(1.0);
+  for (int i = 0; i < 100; ++i) {
+    const double t = 43200.0 + static_cast<double>(rig.bus.now()) * 1e-6;
+    rig.say(gga(t, 0.0, 0.0, 0) + pashr(t, 90.0));
+    rig.bus.runUntil(rig.bus.now() + 20'000);
+  }
+  CHECK((rig.track.back().ins_status & ins_t::STATUS_NO_POSITION) != 0);
+  CHECK(rig.health.health_state == health_t::HEALTH_DEGRADED);
+  CHECK(rig.healthSays("no position"));
+  for (int i = 0; i < 100; ++i) {
+    rig.say(gga(43200.0 + static_cast<double>(rig.bus.now()) * 1e-6, 5.0));
+    rig.bus.runUntil(rig.bus.now() + 20'000);
+  }
+  CHECK((rig.track.back().ins_status & ins_t::STATUS_NO_HEADING) != 0);
+  CHECK(rig.healthSays("no heading"));
+}
+
+TEST_CASE("a fix at another site than the stored origin is told with its distance") {
+  Rig rig;
+  rig.store.write(kOriginEntry, "latitude: 43.0955622\nlongitude: -88.0340185\naltitude: 200\n");
+  rig.bus.restart("ins_driver");
+  rig.drive(3.0);
+  CHECK(rig.health.health_state == health_t::HEALTH_DEGRADED);
+  CHECK(rig.healthSays("111 km from the map's origin"));
+  CHECK(rig.healthSays(kOriginEntry));
+}
+
+TEST_CASE("the same bytes give the same messages") {
+  const auto run = [] {
+    Rig rig;
+    std::vector<std::vector<uint8_t>> bytes;
+    rig.bus.setTap([&](int64_t, const char*, const uint8_t* data, size_t size) {
+      bytes.emplace_back(data, data + size);
+    });
+    std::mt19937_64 random(8);
+    for (int i = 0; i < 100; ++i) {
+      rig.drive(0.02);
+      rig.say(std::string(random() % 50, static_cast<char>(random() & 0xFF)));
+    }
+    return bytes;
+  };
+  CHECK(run() == run());
+}
+
+TEST_CASE("the configuration is checked: unknown keys, ranges and wrong types name their line") {
+  const auto problem = [](const std::string& yaml) -> std::string {
+    try {
+      configured(yaml);
+      return "";
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+  };
+  CHECK(problem("antena: [0, 0, 0]").find("antena") != std::string::npos);
+  CHECK(problem("antenna: [0, 0]").find("test:1") != std::string::npos);
+  CHECK(problem("max_speed: 1000").find("test:1") != std::string::npos);
+  CHECK(problem("max_speed: fast").find("test:1") != std::string::npos);
+  CHECK(problem("origin: {latitude: 42}").find("longitude") != std::string::npos);
+  CHECK(problem("{}").empty());
+}
+
+TEST_CASE("the map's origin survives being written and read to a tenth of a millimetre") {
+  const GeoOrigin origin{{42.0955622 * kDeg, -88.0340185 * kDeg}, 221.921, 0.3};
+  const GeoOrigin again = originFrom(originText(origin));
+  CHECK(std::abs(again.point.latitude - origin.point.latitude) * 6.4e6 < 1e-4);
+  CHECK(std::abs(again.point.longitude - origin.point.longitude) * 6.4e6 < 1e-4);
+  CHECK(again.altitude == origin.altitude);
+  CHECK(again.yaw == origin.yaw);
+}

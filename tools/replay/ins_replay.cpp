@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/replay/ins_replay.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+#include <stdexcept>
+
+#include "common/bus/virtual_bus.hpp"
+#include "common/messages/ins_messages.hpp"
+#include "modules/ins_driver/core/nmea_log.hpp"
+#include "modules/ins_driver/ins_driver_node.hpp"
+
+namespace tread {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / kPi;
+/// After the last bytes, so that the last epoch ends and HEALTH tells the final counts.
+constexpr int64_t kAfterwardsUs = 200'000;
+/// A burst larger than this is played in pieces, as a line would deliver it.
+constexpr size_t kPieceBytes = 4096;
+constexpr int64_t kPieceUs = 5'000;
+
+void play(const std::string& log, VirtualBus& bus, Link& device) {
+  const int64_t start = bus.now();
+  for (const ins::NmeaBurst& burst : ins::scheduleNmeaLog(log)) {
+    bus.runUntil(std::max(bus.now(), start + burst.utime));
+    for (size_t at = 0; at < burst.bytes.size(); at += kPieceBytes) {
+      if (at > 0) bus.runUntil(bus.now() + kPieceUs);
+      const std::string_view piece = burst.bytes.substr(at, kPieceBytes);
+      device.write(reinterpret_cast<const uint8_t*>(piece.data()), piece.size());
+    }
+  }
+  bus.runUntil(bus.now() + kAfterwardsUs);
+}
+
+void findPoses(InsReplay& replay) {
+  for (const ins_t& message : replay.track) {
+    if (!planarPose(message)) continue;
+    ++replay.poses;
+    if (!replay.first_pose) replay.first_pose = message;
+    replay.last_pose = message;
+  }
+}
+
+void writePose(std::ostream& out, const char* which, const std::optional<ins_t>& message) {
+  out << which << " pose: ";
+  const auto pose = message ? planarPose(*message) : std::nullopt;
+  if (!pose) {
+    out << "none\n";
+    return;
+  }
+  out << "x " << pose->x << " m, y " << pose->y << " m, z " << message->position[2] << " m, yaw "
+      << pose->yaw * kDegPerRad << " deg, UTC " << static_cast<double>(message->device_utc) * 1e-6
+      << " s\n";
+}
+
+}  // namespace
+
+InsReplay replayIns(const std::string& log, const ins::InsDriverConfig& config) {
+  InsReplay replay;
+  VirtualBus bus(0);
+  MemoryStore store;
+  auto [device, robot] = makePipe();
+  bus.outside().subscribe<ins_t>(kIns,
+                                 [&](const ins_t& message) { replay.track.push_back(message); });
+  bus.outside().subscribe<health_t>(
+      kHealth, [&](const health_t& health) { replay.health = health.health_reason; });
+  Link& robot_end = *robot;
+  bus.addNode("ins_driver", [&](Bus& end) {
+    return std::make_unique<ins::InsDriverNode>(config, end, robot_end, store);
+  });
+  play(log, bus, *device);
+  const auto& node = dynamic_cast<ins::InsDriverNode&>(*bus.node("ins_driver"));
+  replay.counts = node.counts();
+  replay.epochs = node.epochs();
+  replay.origin = node.origin();
+  findPoses(replay);
+  return replay;
+}
+
+InsReplay replayInsFile(const std::string& path, const ins::InsDriverConfig& config) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream content;
+  if (!file || !(content << file.rdbuf())) {
+    throw std::runtime_error(path + ": cannot be read, or is empty");
+  }
+  return replayIns(content.str(), config);
+}
+
+std::string reportOf(const InsReplay& replay) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(3);
+  const ins::NmeaCounts& counts = replay.counts;
+  out << "sentences in: " << counts.sentences << " (" << counts.bytes << " bytes, "
+      << counts.stray_bytes << " of them in no sentence)\ndecoded: " << counts.decoded;
+  for (size_t i = 0; i < ins::kSentenceTypes; ++i) {
+    if (counts.of_type[i] == 0) continue;
+    out << ", " << ins::kSentenceNames[i] << " " << counts.of_type[i];
+    if (counts.empty[i] > 0) out << " (" << counts.empty[i] << " without a value)";
+  }
+  out << "\nrefused: " << counts.refused.total();
+  for (size_t i = 0; i < ins::kRefusalCount; ++i) {
+    if (counts.refused.of[i] == 0) continue;
+    out << ", " << ins::name(static_cast<ins::Refusal>(i)) << " " << counts.refused.of[i];
+  }
+  out << "\nINS messages: " << replay.track.size() << ", with position and heading " << replay.poses
+      << ", gaps " << replay.epochs.gaps << ", jumps " << replay.epochs.jumps << "\n";
+  writePose(out, "first", replay.first_pose);
+  writePose(out, "last", replay.last_pose);
+  return out.str();
+}
+
+}  // namespace tread
