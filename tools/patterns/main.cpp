@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <cstdio>
 #include <exception>
 #include <fstream>
 #include <iostream>
@@ -30,9 +31,7 @@ void make(const std::string& recipe, const std::string& model, const std::string
   std::cout << tread::patterns::table(set);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app{"Makes and shows motion patterns."};
   app.require_subcommand(1);
   std::string recipe;
@@ -46,14 +45,20 @@ int main(int argc, char** argv) {
   CLI::App* show_command = app.add_subcommand("show", "print a pattern file as a table");
   show_command->add_option("FILE", file, "pattern file (YAML)")->required();
   CLI11_PARSE(app, argc, argv);
+  if (make_command->parsed())
+    make(recipe, model, output);
+  else
+    std::cout << tread::patterns::table(tread::readPatternFile(file));
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    if (make_command->parsed())
-      make(recipe, model, output);
-    else
-      std::cout << tread::patterns::table(tread::readPatternFile(file));
+    return run(argc, argv);
   } catch (const std::exception& error) {
-    std::cerr << "tread-patterns: " << error.what() << '\n';
+    std::fprintf(stderr, "tread-patterns: %s\n", error.what());
     return 1;
   }
-  return 0;
 }

@@ -48,6 +48,7 @@ MotionClass readClass(ConfigReader& reader, const VehicleModel& model) {
 const MotionClass& classNamed(ConfigReader& reader, const std::string& key,
                               const std::vector<MotionClass>& classes) {
   std::vector<std::string> names;
+  names.reserve(classes.size());
   for (const MotionClass& motion : classes) names.push_back(motion.name);
   std::string name;
   reader.choice(key, name, names, true);
