@@ -93,6 +93,12 @@ void Picture::text(double x, double y, const std::string& line, double size, Col
   cairo_show_text(surface_->context, line.c_str());
 }
 
+void Picture::fill(Box box, Colour colour) {
+  setColour(surface_->context, colour);
+  cairo_rectangle(surface_->context, box.x, box.y, box.width, box.height);
+  cairo_fill(surface_->context);
+}
+
 Panel::Panel(Picture& picture, Box box, Axes axes)
     : picture_(picture), box_(box), axes_(std::move(axes)) {
   if (!(axes_.x_max > axes_.x_min)) axes_.x_max = axes_.x_min + 1.0;

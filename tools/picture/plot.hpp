@@ -63,6 +63,7 @@ class Picture {
   /// Text with its left end at (x, y) [pixels].
   void text(double x, double y, const std::string& line, double size = 13.0, Colour colour = kBlack,
             bool bold = false);
+  void fill(Box box, Colour colour);
 
  private:
   friend class Panel;
