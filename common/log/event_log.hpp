@@ -2,13 +2,14 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <exception>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "common/bus/bus.hpp"
+#include "common/bus/channels.hpp"
 
 namespace tread {
 
@@ -30,6 +31,9 @@ class LogWriter {
 
   /// Appends an event; throws std::runtime_error when the disk is full.
   void write(int64_t utime, const std::string& channel, const uint8_t* bytes, size_t size);
+  /// Hands over what is buffered; throws std::runtime_error when the disk is full. The destructor
+  /// does the same, but cannot complain.
+  void flush();
 
   /// Encodes and appends a message at its own utime.
   template <class Message>
@@ -44,7 +48,8 @@ class LogWriter {
   std::unique_ptr<File> file_;
 };
 
-/// Reads LCM event logs from front to back; a damaged or truncated log gives what is whole, and says so.
+/// Reads LCM event logs from front to back; a damaged or truncated log gives what is whole, and
+/// says so.
 class LogReader {
  public:
   explicit LogReader(const std::string& path);
@@ -54,7 +59,8 @@ class LogReader {
 
   /// The next event; false at the end.
   bool next(LogEvent& event);
-  /// One clear line if the log ends in the middle of an event or holds damaged bytes; empty if it is whole.
+  /// One clear line if the log ends in the middle of an event or holds damaged bytes; empty if it
+  /// is whole.
   const std::string& problem() const;
 
  private:

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <system_error>
+
+#include "common/log/event_log.hpp"
+#include "common/log/log_format.hpp"
+
+namespace tread {
+
+// Own reader: lcm::LogFile looks for the next sync word without a word about what it skipped, and
+// allocates whatever length a damaged header names.
+struct LogReader::File {
+  explicit File(const std::string& log_path);
+  ~File() { ::close(fd); }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  /// A part of the log in memory, or nullptr if the log does not hold it.
+  const uint8_t* view(uint64_t from, size_t count);
+  /// Whether a sync word lies here, or as much of one as the log still has.
+  bool isSync(uint64_t at);
+  /// Whether an event may begin here: sync word, possible lengths, the next event or the end after.
+  bool fits(uint64_t at, size_t& channel_size, size_t& message_size);
+  /// Whether the event that begins here is whole; its lengths, then.
+  bool measure(uint64_t at, size_t& channel_size, size_t& message_size);
+  /// Goes to the next whole event after this place, or to the end.
+  void skipDamage();
+  void describe();
+
+  std::string path;
+  int fd = -1;
+  uint64_t size = 0;      // [bytes] of the log
+  uint64_t position = 0;  // of the next event
+  std::vector<uint8_t> window;
+  uint64_t window_start = 0;
+  uint64_t skipped = 0;  // [bytes]
+  uint64_t places = 0;
+  uint64_t first_damage = 0;
+  uint64_t events = 0;
+  bool cut_off = false;  // the log ends in the middle of an event
+  std::string problem;
+};
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& path, int error) {
+  throw std::runtime_error("log " + path + ": cannot be read (" +
+                           std::generic_category().message(error) + "); check the path");
+}
+
+}  // namespace
+
+LogReader::File::File(const std::string& log_path) : path(log_path) {
+  fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat entry {};
+  if (fd < 0 || ::fstat(fd, &entry) != 0) refuse(path, errno);
+  if (!S_ISREG(entry.st_mode)) {
+    ::close(fd);
+    refuse(path, S_ISDIR(entry.st_mode) ? EISDIR : ESPIPE);
+  }
+  size = static_cast<uint64_t>(entry.st_size);
+}
+
+const uint8_t* LogReader::File::view(uint64_t from, size_t count) {
+  constexpr size_t kWindow = 1 << 20;  // [bytes]
+  if (from > size || count > size - from) return nullptr;
+  if (from < window_start || from + count > window_start + window.size()) {
+    window.resize(std::min<uint64_t>(std::max(count, kWindow), size - from));
+    window_start = from;
+    size_t filled = 0;
+    while (filled < window.size()) {
+      const ssize_t got = ::pread(fd, window.data() + filled, window.size() - filled,
+                                  static_cast<off_t>(from + filled));
+      if (got < 0 && errno == EINTR) continue;
+      if (got <= 0) break;
+      filled += static_cast<size_t>(got);
+    }
+    // The file has become shorter, or the disk does not give more of it: this is its end now.
+    if (filled < window.size()) size = from + filled;
+    window.resize(filled);
+  }
+  return count <= window.size() - (from - window_start) ? window.data() + (from - window_start)
+                                                        : nullptr;
+}
+
+bool LogReader::File::isSync(uint64_t at) {
+  const auto left = static_cast<size_t>(std::min<uint64_t>(4, at < size ? size - at : 0));
+  const uint8_t* const word = view(at, left);
+  if (left == 0 || word == nullptr) return false;
+  for (size_t i = 0; i < left; ++i)
+    if (word[i] != static_cast<uint8_t>(kLogSync >> (24 - 8 * i))) return false;
+  return true;
+}
+
+bool LogReader::File::measure(uint64_t at, size_t& channel_size, size_t& message_size) {
+  if (!fits(at, channel_size, message_size)) return false;
+  // A damaged length may by chance lead to a later event; then others lie in what it spans.
+  const uint64_t end = at + kLogHeaderSize + channel_size + message_size;
+  uint8_t sync[4];
+  putBigEndian<4>(sync, kLogSync);
+  for (uint64_t from = at + 1;; ++from) {
+    const uint8_t* const bytes = view(at, static_cast<size_t>(end - at));
+    if (bytes == nullptr) return false;
+    const auto* const begin = bytes + (from - at);
+    const auto* const found = static_cast<const uint8_t*>(
+        ::memmem(begin, static_cast<size_t>(end - from), sync, sizeof sync));
+    if (found == nullptr) return true;
+    from = at + static_cast<uint64_t>(found - bytes);
+    size_t inner_channel = 0;
+    size_t inner_message = 0;
+    if (fits(from, inner_channel, inner_message)) return false;
+  }
+}
+
+bool LogReader::File::fits(uint64_t at, size_t& channel_size, size_t& message_size) {
+  const uint8_t* const header = view(at, kLogHeaderSize);
+  if (header == nullptr || getBigEndian<4>(header) != kLogSync) return false;
+  const auto name = getBigEndian<4>(header + 20);
+  const auto message = getBigEndian<4>(header + 24);
+  const uint64_t end = at + kLogHeaderSize + name + message;
+  if (name == 0 || name > kLongestChannel || message > INT32_MAX || end > size) return false;
+  channel_size = static_cast<size_t>(name);
+  message_size = static_cast<size_t>(message);
+  // Else a length is damaged, and the message is not whole.
+  return end == size || isSync(end);
+}
+
+void LogReader::File::skipDamage() {
+  const uint64_t from = position;
+  const bool began = isSync(from);
+  size_t channel_size = 0;
+  size_t message_size = 0;
+  do {
+    ++position;
+  } while (position < size && !(isSync(position) && measure(position, channel_size, message_size)));
+  cut_off = position >= size && began;
+  if (places++ == 0) first_damage = from;
+  skipped += position - from;
+}
+
+void LogReader::File::describe() {
+  if (places == 0) return;
+  problem = "log " + path + ": ";
+  if (events == 0 && position >= size) {
+    problem += "no whole event in it; is this an LCM log?";
+    return;
+  }
+  problem += std::to_string(skipped) + " bytes left out at " + std::to_string(places) +
+             (places == 1 ? " place" : " places") + ", the first at byte " +
+             std::to_string(first_damage) +
+             (cut_off ? "; the log ends in the middle of an event" : "; they are damaged");
+}
+
+LogReader::LogReader(const std::string& path) : file_(std::make_unique<File>(path)) {}
+LogReader::~LogReader() = default;
+
+bool LogReader::next(LogEvent& event) {
+  size_t channel_size = 0;
+  size_t message_size = 0;
+  while (file_->position < file_->size &&
+         !file_->measure(file_->position, channel_size, message_size)) {
+    file_->skipDamage();
+    file_->describe();
+  }
+  if (file_->position >= file_->size) return false;
+  const uint8_t* const bytes =
+      file_->view(file_->position, kLogHeaderSize + channel_size + message_size);
+  if (bytes == nullptr) return false;
+  const uint8_t* const name = bytes + kLogHeaderSize;
+  event.utime = static_cast<int64_t>(getBigEndian<8>(bytes + 12));
+  event.channel.assign(reinterpret_cast<const char*>(name), channel_size);
+  event.bytes.assign(name + channel_size, name + channel_size + message_size);
+  file_->position += kLogHeaderSize + channel_size + message_size;
+  ++file_->events;
+  return true;
+}
+
+const std::string& LogReader::problem() const {
+  return file_->problem;
+}
+
+}  // namespace tread
