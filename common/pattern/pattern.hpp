@@ -24,6 +24,13 @@ struct TrackCommand {
   double right = 0.0;
 };
 
+inline bool operator==(const TrackCommand& a, const TrackCommand& b) {
+  return a.left == b.left && a.right == b.right;
+}
+inline bool operator!=(const TrackCommand& a, const TrackCommand& b) {
+  return !(a == b);
+}
+
 /// A steady motion in which patterns begin and end (a trim): what came before decides what a
 /// pattern does.
 struct MotionClass {

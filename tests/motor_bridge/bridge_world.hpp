@@ -3,57 +3,17 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
-#include <utility>
+#include <optional>
 
 #include "modules/motor_bridge/core/bridge.hpp"
-#include "tests/motor_bridge/programs.hpp"
+#include "tests/motor_bridge/endless_planner.hpp"
 
 namespace tread::motor {
 
-/// A planner that drives for ever: always a running and a next slot, led by the execution log.
-class EndlessPlanner {
- public:
-  explicit EndlessPlanner(int64_t run_id = 1) : run_id_(run_id) {}
-
-  /// Program of now [us], from what the bridge last reported.
-  Program plan(int64_t now, const ExecutionLog& log) {
-    follow(log);
-    Program program = makeProgram(now, running_, next_);
-    program.run_id = run_id_;
-    return program;
-  }
-  /// Commands of the slots from now on; 8 commands of 50 ms by default.
-  int commands = 8;
-
- private:
-  void follow(const ExecutionLog& log) {
-    if (running_.empty()) {
-      running_ = fresh();
-      next_ = fresh();
-    }
-    if (log.records().empty() || log.records().back().run_id != run_id_) {
-      return;
-    }
-    const ExecutionRecord& last = log.records().back();
-    if (last.outcome != Outcome::kRunning && last.execution_id >= running_.execution_id) {
-      running_ = fresh();
-      next_ = fresh();
-    } else if (last.execution_id == next_.execution_id) {
-      running_ = std::exchange(next_, fresh());
-    }
-  }
-  Slot fresh() {
-    ++id_;
-    const double power = 0.2 + 0.01 * static_cast<double>(id_ % 50);
-    return makeSlot(id_, commands, power, -power);
-  }
-
-  int64_t run_id_;
-  int64_t id_ = 0;
-  Slot running_;
-  Slot next_;
-};
+/// The newest record of a log, if any.
+inline std::optional<ExecutionRecord> newest(const ExecutionLog& log) {
+  return log.records().empty() ? std::nullopt : std::optional(log.records().back());
+}
 
 /// A bridge with a planner at 20 Hz and an INS at 50 Hz in virtual time; each may fall silent.
 struct BridgeWorld {
@@ -73,7 +33,7 @@ struct BridgeWorld {
       bridge.receive(InsNotice{now - 5'000, true}, now);
     }
     if (planner_alive && now % 50'000 == 0) {
-      bridge.receive(planner.plan(now - 1'000, bridge.executions()), now);
+      bridge.receive(planner.plan(now - 1'000, newest(bridge.executions())), now);
     }
     out = bridge.step(now, device);
   }

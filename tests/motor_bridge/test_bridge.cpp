@@ -7,6 +7,7 @@
 
 #include "tests/motor_bridge/bridge_world.hpp"
 
+using namespace tread;
 using namespace tread::motor;
 
 namespace {
@@ -16,7 +17,7 @@ int64_t timeToZero(BridgeWorld& world) {
   const int64_t from = world.now;
   do {
     world.step();
-  } while (!world.out.command.zero() && world.now - from < 10'000'000);
+  } while (!isZero(world.out.command) && world.now - from < 10'000'000);
   return world.now - from;
 }
 
@@ -28,7 +29,7 @@ TEST_CASE("armed with a planner and an INS it drives, series joined to series wi
   REQUIRE(world.state() == State::kDriving);
   for (int i = 0; i < 6'000; ++i) {
     world.step();
-    REQUIRE_FALSE(world.out.command.zero());
+    REQUIRE_FALSE(isZero(world.out.command));
   }
   const auto& records = world.bridge.executions().records();
   for (size_t i = 0; i + 1 < records.size(); ++i) {
@@ -53,7 +54,7 @@ TEST_CASE("without ARM nothing ever moves") {
   BridgeWorld world;
   for (int i = 0; i < 60'000; ++i) {
     world.step();
-    REQUIRE(world.out.command.zero());
+    REQUIRE(isZero(world.out.command));
   }
   CHECK(world.bridge.executions().records().empty());
 }
@@ -84,7 +85,7 @@ TEST_CASE(
   BridgeWorld world;
   world.drive();
   world.planner_alive = false;
-  Program last = world.planner.plan(world.now, world.bridge.executions());
+  Program last = world.planner.plan(world.now, newest(world.bridge.executions()));
   last.next = Slot{};
   world.bridge.receive(last, world.now);
   while (world.last().outcome == Outcome::kRunning) {
@@ -92,7 +93,7 @@ TEST_CASE(
     last.utime = world.now;
     world.bridge.receive(last, world.now);
   }
-  CHECK(world.out.command.zero());
+  CHECK(isZero(world.out.command));
   CHECK(world.now == world.last().end_utime);
   CHECK(world.last().outcome == Outcome::kCompleted);
   CHECK(world.state() == State::kStopping);
@@ -152,7 +153,7 @@ TEST_CASE("E-stop, link fault and device fault stop in the next step") {
   }
   world.device = {};
   world.run(1'200'000);
-  CHECK(world.out.command.zero());
+  CHECK(isZero(world.out.command));
   world.arm();
   world.run(200'000);
   CHECK(world.state() == State::kDriving);
@@ -163,7 +164,7 @@ TEST_CASE("one bad slot in one program stops, whichever slot it is") {
     for (int fault = 0; fault < 4; ++fault) {
       BridgeWorld world;
       world.drive();
-      Program program = world.planner.plan(world.now + 1, world.bridge.executions());
+      Program program = world.planner.plan(world.now + 1, newest(world.bridge.executions()));
       Slot& slot = in_next ? program.next : program.running;
       if (fault == 0) slot.series[1].left = std::numeric_limits<double>::quiet_NaN();
       if (fault == 1) slot.series[1].left = 1.5;
@@ -196,7 +197,8 @@ TEST_CASE("two planners at once can never be armed") {
   EndlessPlanner second(2);
   for (int i = 0; i < 1'000; ++i) {
     world.run(50'000);
-    world.bridge.receive(second.plan(world.now + 1, world.bridge.executions()), world.now + 1);
+    world.bridge.receive(second.plan(world.now + 1, newest(world.bridge.executions())),
+                         world.now + 1);
     world.arm();
     CHECK(world.state() == State::kDisarmed);
   }
@@ -222,9 +224,9 @@ TEST_CASE("a bridge that was held up stops and says so") {
   world.drive();
   world.now += 200'000;
   world.bridge.receive(InsNotice{world.now, true}, world.now);
-  world.bridge.receive(world.planner.plan(world.now, world.bridge.executions()), world.now);
+  world.bridge.receive(world.planner.plan(world.now, newest(world.bridge.executions())), world.now);
   world.step();
-  CHECK(world.out.command.zero());
+  CHECK(isZero(world.out.command));
   CHECK(world.state() == State::kFault);
   CHECK(world.reason() == "motor_bridge was held up for 210 ms");
 }

@@ -9,6 +9,7 @@
 
 #include "tests/motor_bridge/bridge_world.hpp"
 
+using namespace tread;
 using namespace tread::motor;
 
 namespace {
@@ -58,7 +59,7 @@ class Chaos {
 
   void planner() {
     if (!planner_silent_ && now_ % 50'000 == 0) {
-      Program program = endless_.plan(now_ - 1'000, bridge_.executions());
+      Program program = endless_.plan(now_ - 1'000, newest(bridge_.executions()));
       spoil(program);
       const int copies = chance(0.05) ? 0 : chance(0.05) ? 2 : 1;
       for (int i = 0; i < copies; ++i) {
@@ -132,7 +133,7 @@ class Chaos {
   }
 
   void witness(const BridgeOutput& out) {
-    const bool zero = out.command.zero();
+    const bool zero = isZero(out.command);
     const bool fault = !device_.link_fault.empty() || !device_.device_fault.empty();
     const bool lease = now_ - newest_program_ <= 200'000;
     const bool ins = now_ - newest_ins_ <= 100'000;
@@ -143,7 +144,7 @@ class Chaos {
     REQUIRE((out.execution_id == 0 || last_.execution_id == 0 ||
              out.execution_id >= last_.execution_id));
     driven_ += zero ? 0 : kStep;
-    stops_ += zero && !last_.command.zero();
+    stops_ += zero && !isZero(last_.command);
     last_ = out;
   }
 

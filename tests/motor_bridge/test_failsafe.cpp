@@ -7,6 +7,7 @@
 
 #include "modules/motor_bridge/core/failsafe.hpp"
 
+using namespace tread;
 using namespace tread::motor;
 
 namespace {

@@ -7,6 +7,7 @@
 
 #include "tests/motor_bridge/programs.hpp"
 
+using namespace tread;
 using namespace tread::motor;
 
 TEST_CASE("a slot within its limits has no fault, and an empty slot neither") {
@@ -28,7 +29,7 @@ TEST_CASE("every fault of a slot is found and named") {
     expected = SlotFault::kBadId;
   }
   SECTION("no kind") {
-    slot.kind = CommandKind::kNone;
+    slot.kind = kNoCommand;
     expected = SlotFault::kUnknownKind;
   }
   SECTION("a kind the controller is not set up for") {

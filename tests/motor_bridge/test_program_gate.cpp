@@ -7,6 +7,7 @@
 #include "modules/motor_bridge/core/program_gate.hpp"
 #include "tests/motor_bridge/programs.hpp"
 
+using namespace tread;
 using namespace tread::motor;
 
 namespace {

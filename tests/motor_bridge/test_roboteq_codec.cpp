@@ -7,6 +7,7 @@
 #include "modules/motor_bridge/core/roboteq_codec.hpp"
 #include "modules/motor_bridge/core/roboteq_telemetry.hpp"
 
+using namespace tread;
 using namespace tread::motor;
 using Lines = std::vector<std::string>;
 

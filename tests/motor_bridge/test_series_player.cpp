@@ -5,6 +5,7 @@
 #include "modules/motor_bridge/core/series_player.hpp"
 #include "tests/motor_bridge/programs.hpp"
 
+using namespace tread;
 using namespace tread::motor;
 
 namespace {

@@ -31,14 +31,14 @@ struct BridgeConfig {
 /// What a step decided.
 struct BridgeOutput {
   FailsafeOutputs failsafe;
-  TrackCommand command;                   ///< zero unless driving
-  bool send = false;                      ///< the command is to be given to the controller now
-  CommandKind kind = CommandKind::kNone;  ///< of the series played
-  int64_t run_id = 0;                     ///< of the series played; 0 = none
-  int64_t execution_id = 0;               ///< being played; 0 = none
-  int32_t command_index = -1;             ///< in the series; -1 = none
-  bool hold_device_stop = false;          ///< the controller's own emergency stop is to be engaged
-  bool release_device_stop = false;       ///< ... and to be released
+  TrackCommand command;              ///< zero unless driving
+  bool send = false;                 ///< the command is to be given to the controller now
+  CommandKind kind = kNoCommand;     ///< of the series played
+  int64_t run_id = 0;                ///< of the series played; 0 = none
+  int64_t execution_id = 0;          ///< being played; 0 = none
+  int32_t command_index = -1;        ///< in the series; -1 = none
+  bool hold_device_stop = false;     ///< the controller's own emergency stop is to be engaged
+  bool release_device_stop = false;  ///< ... and to be released
 };
 
 /// The last process before the motors, without its wires: messages in, commands out, time as an

@@ -39,7 +39,7 @@ SlotFault checkSlot(const Slot& slot, const SlotLimits& limits) {
   if (slot.execution_id < 0) {
     return SlotFault::kBadId;
   }
-  if (slot.kind == CommandKind::kNone || slot.kind != limits.kind) {
+  if (slot.kind == kNoCommand || slot.kind != limits.kind) {
     return SlotFault::kUnknownKind;
   }
   if (slot.period_us <= 0 || slot.period_us > limits.max_period_us ||

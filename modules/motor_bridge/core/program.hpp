@@ -5,33 +5,24 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/pattern/pattern.hpp"
+
 namespace tread::motor {
 
-/// What a command means; the numbers are those of program_slot_t.
-enum class CommandKind : int16_t {
-  kNone = 0,
-  kPower = 1,       ///< share of full motor power, -1..1 [1]
-  kTrackSpeed = 2,  ///< track speed [m/s]
-};
+/// No command: the kind of an empty slot.
+inline constexpr CommandKind kNoCommand{};
 
-/// One command for both tracks, in the units of its CommandKind; + forward.
-struct TrackCommand {
-  double left = 0.0;
-  double right = 0.0;
-
-  bool zero() const { return left == 0.0 && right == 0.0; }
-  bool operator==(const TrackCommand& other) const {
-    return left == other.left && right == other.right;
-  }
-  bool operator!=(const TrackCommand& other) const { return !(*this == other); }
-};
+/// True for the command that stops both tracks.
+inline bool isZero(const TrackCommand& command) {
+  return command == TrackCommand{};
+}
 
 /// One pattern execution as ordered: a command series played at a fixed period.
 struct Slot {
   int64_t execution_id = 0;  ///< counts up within a run; 0 = empty slot
   int32_t pattern_id = 0;
   int64_t set_version = 0;
-  CommandKind kind = CommandKind::kNone;
+  CommandKind kind = kNoCommand;
   int64_t period_us = 0;             ///< each command is held this long [us]
   std::vector<TrackCommand> series;  ///< u_1 .. u_T
 

@@ -33,8 +33,8 @@ void RoboteqConnection::enter(Phase phase) {
   }
 }
 
-void RoboteqConnection::fail(const std::string& problem, int64_t now) {
-  problem_ = problem;
+void RoboteqConnection::fail(const std::string& problem, int64_t now, const std::string& detail) {
+  problem_ = problem + detail;
   ++counters_["controller lost: " + problem];
   backoff_us_ = std::clamp(2 * backoff_us_, config_.backoff_min_us, config_.backoff_max_us);
   retry_at_ = now + backoff_us_;
@@ -152,7 +152,8 @@ void RoboteqConnection::checkWatchdog(const RoboteqReply& reply, int64_t now) {
   if (reply.text == wanted) {
     advance(now);
   } else {
-    fail("its watchdog reads " + reply.text + " ms instead of " + wanted, now);
+    fail("its watchdog did not take its setting", now,
+         ": it reads " + reply.text + " ms instead of " + wanted);
   }
 }
 

@@ -50,7 +50,7 @@ class RoboteqConnection {
   enum class Phase { kClosed, kEcho, kWatchdog, kReadBack, kZero, kIdentify, kReady, kBackoff };
 
   void enter(Phase phase);
-  void fail(const std::string& problem, int64_t now);
+  void fail(const std::string& problem, int64_t now, const std::string& detail = "");
   void send(const std::string& line) { output_ += line + "\r"; }
   void sendZero(int64_t now);
   std::string request() const;

@@ -38,7 +38,7 @@ void RoboteqSession::begin(int64_t now) {
 void RoboteqSession::command(const TrackCommand& command, int64_t now) {
   // A fifth before the watchdog expires, because the line takes time, too.
   const bool silent = now - commanded_at_ > 800 * config_.watchdog_ms;
-  if (silent && !command.zero()) {
+  if (silent && !isZero(command)) {
     ++counters_["zero before resuming"];
   }
   give(silent ? TrackCommand{} : command, now);

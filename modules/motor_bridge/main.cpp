@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/bus/lcm_bus.hpp"
+#include "common/bus/shell.hpp"
+#include "modules/motor_bridge/motor_bridge_node.hpp"
+
+namespace {
+
+using namespace tread;
+using namespace tread::motor;
+
+void run(const ShellArguments& arguments, const std::atomic<bool>& stop) {
+  ConfigReader reader = arguments.config_path.empty()
+                            ? ConfigReader::fromText("{}", "defaults")
+                            : ConfigReader::fromFile(arguments.config_path);
+  const MotorBridgeConfig config = readMotorBridgeConfig(reader);
+  LcmBus bus(arguments.lcm_url, TimeSource::kHost);
+  const std::unique_ptr<Link> link = makeLink(config.address);
+  MotorBridgeNode node(config, bus, *link);
+  bus.run(node, stop);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runShell(argc, argv, "tread-motor-bridge",
+                  "Plays PROGRAM on a Roboteq controller and stops by itself.", run);
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+
+#include "common/config/config_reader.hpp"
+#include "modules/motor_bridge/core/bridge.hpp"
+#include "modules/motor_bridge/core/roboteq_session.hpp"
+
+namespace tread::motor {
+
+/// Configuration of motor_bridge, with its defaults.
+struct MotorBridgeConfig {
+  std::string address = "tty:/dev/ttyACM0?baud=115200";  ///< of the Roboteq controller
+  BridgeConfig bridge;
+  RoboteqConfig controller;
+  std::string effective;  ///< the whole as YAML, for CONFIG
+};
+
+/// Reads the configuration; throws ConfigError with file:line.
+/** No value switches a safeguard off: the lease, the INS limit and the controller's watchdog can
+    only be made stricter than their defaults, or slightly longer where the hardware needs it. */
+MotorBridgeConfig readMotorBridgeConfig(ConfigReader& reader);
+
+}  // namespace tread::motor

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/motor_bridge/motor_bridge_node.hpp"
+
+#include <array>
+
+#include "modules/motor_bridge/motor_messages.hpp"
+
+namespace tread::motor {
+namespace {
+
+constexpr int64_t kMotorPeriod = 50'000;       // 20 Hz, and on every change
+constexpr int64_t kExecutionPeriod = 200'000;  // 5 Hz, and on every change
+constexpr int64_t kCounterPeriod = 500'000;
+/// A line that took no bytes is tried again after this time [us].
+constexpr int64_t kFullLinePause = 100'000;
+/// A device that floods us is cut off here until the next step.
+constexpr size_t kMaxBytesPerStep = 16384;
+constexpr int kShutdownZeros = 3;
+
+const std::string kShutdown = "the end of motor_bridge";
+
+bool sameToReaders(const BridgeOutput& a, const BridgeOutput& b) {
+  return !a.failsafe.changed && a.command == b.command && a.execution_id == b.execution_id &&
+         a.command_index == b.command_index && a.failsafe.state == b.failsafe.state &&
+         a.failsafe.reason == b.failsafe.reason;
+}
+
+}  // namespace
+
+MotorBridgeNode::MotorBridgeNode(const MotorBridgeConfig& config, Bus& bus, Link& link)
+    : config_(config),
+      bus_(bus),
+      link_(link),
+      bridge_(config.bridge),
+      connection_(config.controller),
+      health_(bus, "motor_bridge", config.effective) {
+  listen();
+}
+
+void MotorBridgeNode::listen() {
+  bus_.subscribe<program_t>(kProgram, [this](const program_t& message) {
+    bridge_.receive(fromMessage(message), bus_.now());
+  });
+  bus_.subscribe<ins_t>(
+      kIns, [this](const ins_t& message) { bridge_.receive(fromMessage(message), bus_.now()); });
+  bus_.subscribe<arm_t>(kArm, [this](const arm_t& message) {
+    bridge_.receive(
+        ArmRequest{message.utime, message.armed != 0, message.armed_by, message.arm_reason},
+        bus_.now());
+  });
+  bus_.subscribe<estop_t>(kEstop, [this](const estop_t& message) {
+    bridge_.receive(
+        EstopRequest{message.utime, message.engaged != 0, message.estop_by, message.estop_reason},
+        bus_.now());
+  });
+}
+
+void MotorBridgeNode::step(int64_t utime) {
+  readLink(utime);
+  drive(utime);
+  publishMotor(utime);
+  publishExecutions(utime);
+  judge();
+  reportCounters(utime);
+  health_.step(utime);
+}
+
+void MotorBridgeNode::readLink(int64_t utime) {
+  if (!link_.isOpen()) {
+    connection_.close(link_.problem());
+    if (!link_.reopen(utime)) {
+      return;
+    }
+  }
+  if (!connection_.isOpen() && utime >= next_open_) {
+    connection_.open();
+  }
+  std::array<uint8_t, 1024> buffer;
+  for (size_t total = 0; total < kMaxBytesPerStep;) {
+    const std::optional<size_t> size = link_.read(buffer.data(), buffer.size());
+    if (!size) {
+      connection_.close(link_.problem());
+      return;
+    }
+    if (*size == 0) {
+      return;
+    }
+    connection_.receive({reinterpret_cast<const char*>(buffer.data()), *size}, utime);
+    total += *size;
+  }
+}
+
+void MotorBridgeNode::drive(int64_t utime) {
+  output_ = bridge_.step(utime, connection_.report(utime));
+  connection_.holdStop(output_.hold_device_stop);
+  if (output_.release_device_stop) {
+    connection_.releaseStop(utime);
+  }
+  if (output_.send) {
+    connection_.command(output_.command, utime);
+  }
+  writeLink(connection_.poll(utime), utime);
+}
+
+void MotorBridgeNode::writeLink(const std::string& bytes, int64_t utime) {
+  if (bytes.empty() || link_.write(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size())) {
+    return;
+  }
+  connection_.close(link_.isOpen() ? "nobody reads the line" : link_.problem());
+  next_open_ = utime + kFullLinePause;
+}
+
+void MotorBridgeNode::publishMotor(int64_t utime) {
+  if (utime < next_motor_ && sameToReaders(output_, published_)) {
+    return;
+  }
+  motor_t message = toMessage(output_, connection_.telemetry());
+  message.utime = utime;
+  message.seq = seq_motor_++;
+  bus_.publish(kMotor, message);
+  published_ = output_;
+  next_motor_ = utime + kMotorPeriod;
+}
+
+void MotorBridgeNode::publishExecutions(int64_t utime) {
+  const ExecutionLog& log = bridge_.executions();
+  if (utime < next_execution_ && log.revision() == published_revision_) {
+    return;
+  }
+  execution_t message{};
+  message.utime = utime;
+  message.seq = seq_execution_++;
+  for (const ExecutionRecord& record : log.records()) {
+    message.records.push_back(toMessage(record));
+  }
+  message.num_records = static_cast<int32_t>(message.records.size());
+  bus_.publish(kExecution, message);
+  published_revision_ = log.revision();
+  next_execution_ = utime + kExecutionPeriod;
+}
+
+void MotorBridgeNode::judge() {
+  const FailsafeOutputs& failsafe = output_.failsafe;
+  if (!connection_.ready()) {
+    health_.setState(health_t::HEALTH_FAILED, link_.address() + ": " + failsafe.standing_fault);
+  } else if (!failsafe.standing_fault.empty()) {
+    health_.setState(health_t::HEALTH_DEGRADED, failsafe.standing_fault);
+  } else if (failsafe.state == State::kFault || failsafe.state == State::kEstopped) {
+    health_.setState(health_t::HEALTH_DEGRADED, failsafe.reason);
+  } else {
+    health_.setState(health_t::HEALTH_OK, "");
+  }
+}
+
+void MotorBridgeNode::reportCounters(int64_t utime) {
+  if (utime < next_counters_) {
+    return;
+  }
+  next_counters_ = utime + kCounterPeriod;
+  for (const auto& [name, count] : bridge_.counters()) {
+    health_.setCounter(name, count);
+  }
+  for (const auto& [name, count] : connection_.counters()) {
+    health_.setCounter(name, count);
+  }
+}
+
+void MotorBridgeNode::shutdown(int64_t utime) {
+  bridge_.receive(ArmRequest{utime, false, kShutdown, ""}, utime);
+  readLink(utime);
+  drive(utime);
+  // Whatever the connection thinks of the controller: zero cannot hurt.
+  for (const std::string& line : commandLines({}, config_.controller.layout)) {
+    for (int i = 0; i < kShutdownZeros; ++i) {
+      writeLink(line + "\r", utime);
+    }
+  }
+  next_motor_ = next_execution_ = utime;
+  publishMotor(utime);
+  publishExecutions(utime);
+}
+
+}  // namespace tread::motor

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/health.hpp"
+#include "common/link/link.hpp"
+#include "modules/motor_bridge/core/bridge.hpp"
+#include "modules/motor_bridge/core/roboteq_connection.hpp"
+#include "modules/motor_bridge/motor_bridge_config.hpp"
+
+namespace tread::motor {
+
+/// The motor_bridge process. PROGRAM, ARM, ESTOP, INS in; the controller, MOTOR, EXECUTION, HEALTH,
+/// CONFIG out.
+/** The only process that may make the motors turn, and the only one that compares utime with the
+    host clock: give it a bus whose now() is CLOCK_MONOTONIC. It steps every 10 ms, so that series
+    of 50 ms begin, change and end on a step. */
+class MotorBridgeNode : public Node {
+ public:
+  MotorBridgeNode(const MotorBridgeConfig& config, Bus& bus, Link& link);
+
+  int64_t period() const override { return config_.bridge.step_us; }
+  void step(int64_t utime) override;
+  /// Disarms and gives zero, several times: a lost byte must not leave the motors running.
+  void shutdown(int64_t utime) override;
+
+  const Bridge& bridge() const { return bridge_; }
+  const RoboteqConnection& connection() const { return connection_; }
+
+ private:
+  void listen();
+  void readLink(int64_t utime);
+  void writeLink(const std::string& bytes, int64_t utime);
+  void drive(int64_t utime);
+  void publishMotor(int64_t utime);
+  void publishExecutions(int64_t utime);
+  void judge();
+  void reportCounters(int64_t utime);
+
+  MotorBridgeConfig config_;
+  Bus& bus_;
+  Link& link_;
+  Bridge bridge_;
+  RoboteqConnection connection_;
+  HealthReporter health_;
+  BridgeOutput output_;     ///< of this step
+  BridgeOutput published_;  ///< of the last MOTOR
+  uint64_t published_revision_ = 0;
+  int64_t seq_motor_ = 0;
+  int64_t seq_execution_ = 0;
+  int64_t next_motor_ = 0;
+  int64_t next_execution_ = 0;
+  int64_t next_counters_ = 0;
+  int64_t next_open_ = 0;
+};
+
+}  // namespace tread::motor

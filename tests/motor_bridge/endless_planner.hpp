@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "modules/motor_bridge/core/execution_log.hpp"
+#include "tests/motor_bridge/programs.hpp"
+
+namespace tread::motor {
+
+/// A planner that drives for ever: always a running and a next slot, led by what was executed.
+class EndlessPlanner {
+ public:
+  explicit EndlessPlanner(int64_t run_id = 1) : run_id_(run_id) {}
+
+  /// Program of now [us], from the newest execution the bridge reported.
+  Program plan(int64_t now, const std::optional<ExecutionRecord>& last) {
+    if (running_.empty()) {
+      running_ = fresh();
+      next_ = fresh();
+    }
+    if (last && last->run_id == run_id_) {
+      follow(*last);
+    }
+    Program program = makeProgram(now, running_, endless ? next_ : Slot{});
+    program.run_id = run_id_;
+    return program;
+  }
+  int commands = 8;     ///< of the slots from now on, of 50 ms each
+  bool endless = true;  ///< false: never names a next slot
+
+ private:
+  void follow(const ExecutionRecord& last) {
+    if (last.outcome != Outcome::kRunning && last.execution_id >= running_.execution_id) {
+      running_ = fresh();
+      next_ = fresh();
+    } else if (last.execution_id == next_.execution_id) {
+      running_ = std::exchange(next_, fresh());
+    }
+  }
+  Slot fresh() {
+    ++id_;
+    const double power = 0.2 + 0.01 * static_cast<double>(id_ % 50);
+    return makeSlot(id_, commands, power, -power);
+  }
+
+  int64_t run_id_;
+  int64_t id_ = 0;
+  Slot running_;
+  Slot next_;
+};
+
+}  // namespace tread::motor

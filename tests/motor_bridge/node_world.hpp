@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/bus/virtual_bus.hpp"
+#include "modules/motor_bridge/motor_bridge_node.hpp"
+#include "tests/motor_bridge/endless_planner.hpp"
+#include "tests/motor_bridge/scripted_roboteq.hpp"
+
+namespace tread::motor {
+
+/// The planner's side of the bus: EXECUTION in, PROGRAM out at 20 Hz.
+class PlannerNode : public Node {
+ public:
+  explicit PlannerNode(Bus& bus) : bus_(bus), planner(bus.bootId()) {
+    bus_.subscribe<execution_t>(kExecution, [this](const execution_t& message) {
+      if (message.num_records > 0) take(message.records.back());
+    });
+  }
+  int64_t period() const override { return 50'000; }
+  void step(int64_t utime) override {
+    const Program program = planner.plan(utime, last_);
+    program_t message{};
+    message.utime = utime;
+    message.seq = seq_++;
+    message.run_id = program.run_id;
+    message.lease = 200'000;
+    message.running = toMessage(program.running);
+    message.next = toMessage(program.next);
+    bus_.publish(kProgram, message);
+  }
+
+ private:
+  void take(const execution_record_t& record) {
+    ExecutionRecord last;
+    last.run_id = record.record_run_id;
+    last.execution_id = record.record_execution_id;
+    last.outcome = static_cast<Outcome>(record.outcome);
+    last_ = last;
+  }
+  static program_slot_t toMessage(const Slot& slot) {
+    program_slot_t message{};
+    message.execution_id = slot.execution_id;
+    message.slot_pattern_id = slot.pattern_id;
+    message.slot_set_version = slot.set_version;
+    message.command_kind = static_cast<int16_t>(slot.kind);
+    message.period = static_cast<int32_t>(slot.period_us);
+    message.num_commands = static_cast<int32_t>(slot.series.size());
+    for (const TrackCommand& command : slot.series) {
+      message.left.push_back(static_cast<float>(command.left));
+      message.right.push_back(static_cast<float>(command.right));
+    }
+    return message;
+  }
+
+  Bus& bus_;
+  std::optional<ExecutionRecord> last_;
+  int64_t seq_ = 0;
+
+ public:
+  EndlessPlanner planner;
+};
+
+/// An INS at 50 Hz with 8 ms latency.
+class InsNode : public Node {
+ public:
+  explicit InsNode(Bus& bus) : bus_(bus) {}
+  int64_t period() const override { return 20'000; }
+  void step(int64_t utime) override {
+    ins_t message{};
+    message.utime = utime - 8'000;
+    message.seq = seq_++;
+    message.orientation[0] = 1.0;
+    bus_.publish(kIns, message);
+  }
+
+ private:
+  Bus& bus_;
+  int64_t seq_ = 0;
+};
+
+/// The controller on the other end of the line, looked at every millisecond.
+class ControllerNode : public Node {
+ public:
+  ControllerNode(ScriptedRoboteq& device, Link& link, std::vector<int64_t>& moving)
+      : device_(device), link_(link), moving_(moving) {}
+  int64_t period() const override { return 1'000; }
+  void step(int64_t utime) override {
+    uint8_t buffer[512];
+    std::string heard;
+    if (link_.isOpen() || link_.reopen(utime)) {
+      while (const std::optional<size_t> size = link_.read(buffer, sizeof buffer)) {
+        if (*size == 0) break;
+        heard.append(reinterpret_cast<const char*>(buffer), *size);
+      }
+    }
+    device_.write(heard, utime);
+    const std::string said = device_.read();
+    if (!said.empty()) link_.write(reinterpret_cast<const uint8_t*>(said.data()), said.size());
+    if (!device_.stands(utime)) moving_.push_back(utime);
+  }
+
+ private:
+  ScriptedRoboteq& device_;
+  Link& link_;
+  std::vector<int64_t>& moving_;
+};
+
+/// Everything that motor_bridge meets, on the virtual bus.
+struct NodeWorld {
+  ScriptedRoboteq device;
+  std::vector<int64_t> moving;  ///< milliseconds in which the motors turned [us]
+  std::pair<std::unique_ptr<Link>, std::unique_ptr<Link>> pipe = makePipe();
+  VirtualBus bus;
+  motor_t motor{};
+  execution_t execution{};
+  health_t health{};
+  config_t config{};
+  int64_t motors = 0;
+  int64_t executions = 0;
+
+  explicit NodeWorld(uint64_t seed = 1, const FaultPlan& faults = {}, const NodeTiming& timing = {})
+      : bus(seed, faults) {
+    bus.addNode("controller", [this](Bus&) {
+      return std::make_unique<ControllerNode>(device, *pipe.second, moving);
+    });
+    bus.addNode(
+        "motor_bridge",
+        [this](Bus& end) {
+          return std::make_unique<MotorBridgeNode>(MotorBridgeConfig{}, end, *pipe.first);
+        },
+        timing);
+    bus.addNode("planner", [](Bus& end) { return std::make_unique<PlannerNode>(end); },
+                {3'000, 1'000});
+    bus.addNode("ins", [](Bus& end) { return std::make_unique<InsNode>(end); });
+    watch();
+  }
+
+  void watch() {
+    Bus& outside = bus.outside();
+    outside.subscribe<motor_t>(kMotor, [this](const motor_t& m) {
+      motor = m;
+      ++motors;
+    });
+    outside.subscribe<execution_t>(kExecution, [this](const execution_t& m) {
+      execution = m;
+      ++executions;
+    });
+    outside.subscribe<health_t>(kHealth, [this](const health_t& m) { health = m; });
+    outside.subscribe<config_t>(kConfig, [this](const config_t& m) { config = m; });
+  }
+
+  int64_t now() const { return bus.now(); }
+  void run(int64_t us) { bus.runUntil(bus.now() + us); }
+  void say(bool armed) {
+    arm_t message{};
+    message.utime = now();
+    message.armed = armed;
+    message.armed_by = "operator";
+    bus.outside().publish(kArm, message);
+  }
+  void estop(bool engaged) {
+    estop_t message{};
+    message.utime = now();
+    message.engaged = engaged;
+    message.estop_by = "operator";
+    message.estop_reason = "person in front";
+    bus.outside().publish(kEstop, message);
+  }
+  /// Runs until the motors turn.
+  void drive() {
+    run(1'700'000);
+    say(true);
+    run(300'000);
+  }
+  bool drives() const { return motor.bridge_state == motor_t::STATE_DRIVING && stoodFor() < 5'000; }
+  /// Since the motors last turned [us].
+  int64_t stoodFor() const { return moving.empty() ? INT64_MAX : now() - moving.back(); }
+  /// Runs and returns when the motors last turned in that time, counted from its begin [us].
+  int64_t lastMotionWithin(int64_t us) {
+    const int64_t begin = now();
+    run(us);
+    return moving.empty() ? 0 : std::max<int64_t>(0, moving.back() - begin);
+  }
+  MotorBridgeNode& bridge() { return *static_cast<MotorBridgeNode*>(bus.node("motor_bridge")); }
+  PlannerNode& planner() { return *static_cast<PlannerNode*>(bus.node("planner")); }
+  int64_t counter(const std::string& name) const {
+    for (const counter_t& counter : health.counters) {
+      if (counter.counter_name == name) return counter.counted;
+    }
+    return 0;
+  }
+};
+
+}  // namespace tread::motor
