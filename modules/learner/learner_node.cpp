@@ -219,7 +219,7 @@ void LearnerNode::score(const execution_record_t& record, const Measurement& mea
   const MotionPattern* named = patternOf(record.record_set_version, record.record_pattern_id);
   if (named != nullptr) fill(message.predicted_end, named->end());
   const auto error = scoredError(record, measurement);
-  if (!error) return;
+  if (!error || !measurement.fair()) return;
   message.error_position = std::hypot(error->x, error->y);
   message.error_yaw = error->yaw;
 }

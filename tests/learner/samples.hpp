@@ -13,7 +13,6 @@
 namespace tread::learner::samples {
 
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-inline constexpr PoseCovariance kUnknownCovariance{kNan, kNan, kNan, kNan, kNan, kNan};
 
 /// Ids of the patterns of smallSet().
 enum Id { kStraight = 1, kLeft = 2, kRight = 3, kSpin = 4, kReverse = 5 };
@@ -33,7 +32,6 @@ inline MotionPattern pattern(int id, const std::string& name, const TrackCommand
   made.entry_class = made.exit_class = "cruise";
   made.commands.assign(trajectory.size(), command);
   made.trajectory = std::move(trajectory);
-  made.end_covariance = kUnknownCovariance;
   return made;
 }
 

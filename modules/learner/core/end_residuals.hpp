@@ -30,7 +30,7 @@ void addResidual(EndResiduals& residuals, const Pose2& error, const ResidualLimi
 /// What may be told to the planner: NaN until enough was seen.
 PoseCovariance covarianceOf(const EndResiduals& residuals, const ResidualLimits& limits);
 
-/// Whether every number of a covariance is known.
+/// Whether a covariance says anything: all numbers finite, no variance zero.
 bool isKnown(const PoseCovariance& covariance);
 
 }  // namespace tread::learner

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "tools/import/csv_table.hpp"
+#include "tools/import/drive_log.hpp"
+
+using namespace tread;
+using namespace tread::importer;
+
+namespace {
+
+struct Arguments {
+  std::string format;
+  std::string sessions;
+  std::string session;
+  std::string csv;
+  std::string log;
+  ExecutionLayout layout;
+};
+
+Recording read(const Arguments& arguments, const Session& session) {
+  if (arguments.format == "steps") return readSteps(arguments.csv, session);
+  if (arguments.format == "aligned") return readAligned(arguments.csv, session);
+  return readContinuous(arguments.csv, session);
+}
+
+void run(const Arguments& arguments) {
+  const std::string name = arguments.session.empty()
+                               ? std::filesystem::path(arguments.csv).stem().string()
+                               : arguments.session;
+  const Session session = readSession(arguments.sessions, name);
+  const Recording recording = read(arguments, session);
+  LogCounts counts;
+  const auto events = makeLog(recording, session, arguments.format, arguments.layout, counts);
+  LogWriter writer(arguments.log);
+  for (const LogEvent& event : events)
+    writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
+  std::printf(
+      "%s: %zu commands, %zu executions completed, %zu aborted, %zu INS, %zu MOTOR, %.0f s\n",
+      arguments.log.c_str(), recording.runs.size(), counts.completed, counts.aborted, counts.ins,
+      counts.motor, counts.duration);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app{"Turns a recording of a drive (CSV) into an LCM log: INS, MOTOR, EXECUTION, MARK"};
+  app.add_option("--format", arguments.format, "which kind of CSV file")
+      ->required()
+      ->check(CLI::IsMember({"steps", "aligned", "continuous"}));
+  app.add_option("--sessions", arguments.sessions, "sessions.csv: radius, baseline, pose lag")
+      ->required();
+  app.add_option("--session", arguments.session, "row of sessions.csv; default: the file's name");
+  app.add_option("csv", arguments.csv, "recording")->required();
+  app.add_option("-o,--output", arguments.log, "LCM log to write")->required();
+  app.add_option("--offset", arguments.layout.offset,
+                 "first execution this long after the command began [s]")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
+  app.add_option("--length", arguments.layout.length, "of an execution [s]")
+      ->check(CLI::Range(0.1, 50.0))
+      ->capture_default_str();
+  app.add_option("--executions", arguments.layout.executions, "per command")
+      ->check(CLI::Range(1, 9))
+      ->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    run(arguments);
+  } catch (const std::exception& problem) {
+    std::cerr << "tread-import: " << problem.what() << "\n";
+    return 1;
+  }
+  return 0;
+}

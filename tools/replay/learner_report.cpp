@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/replay/learner_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <functional>
+#include <set>
+#include <sstream>
+
+namespace tread::replay {
+namespace {
+
+constexpr double kDegrees = 180.0 / kPi;
+
+double mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2.0;
+}
+
+using Belongs = std::function<bool(const learning_t&)>;
+
+std::vector<learning_t> filtered(const std::vector<learning_t>& learned, const Belongs& belongs) {
+  std::vector<learning_t> result;
+  std::copy_if(learned.begin(), learned.end(), std::back_inserter(result), belongs);
+  return result;
+}
+
+std::string line(const char* format, ...) __attribute__((format(printf, 1, 2)));
+std::string line(const char* format, ...) {
+  char text[240];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+/// One group of executions: a line per run.
+void writeGroup(std::ostream& out, const std::string& name, const std::vector<LearnerRun>& runs,
+                const Belongs& belongs) {
+  bool first = true;
+  for (const LearnerRun& run : runs) {
+    const ErrorSummary errors = summarise(filtered(run.learned, belongs));
+    if (errors.count == 0) return;
+    const std::string count = first ? line("%4zu", errors.count) : "    ";
+    out << line("  %-22s %s  %-22s %7.3f %7.3f   %7.2f %7.2f\n", first ? name.c_str() : "",
+                count.c_str(), run.title.c_str(), errors.position_mean, errors.position_median,
+                errors.yaw_mean * kDegrees, errors.yaw_median * kDegrees);
+    first = false;
+  }
+}
+
+void writeHead(std::ostream& out, const std::string& what) {
+  out << "\nprediction error at the end of each execution, by " << what << "\n"
+      << line("  %-22s %4s  %-22s %15s   %15s\n", "", "n", "", "position [m]", "|yaw| [deg]")
+      << line("  %-22s %4s  %-22s %7s %7s   %7s %7s\n", "", "", "", "mean", "median", "mean",
+              "median");
+}
+
+void writeIntake(std::ostream& out, const DriveLog& log, const LearnerRun& run) {
+  const auto accepted = std::count_if(run.learned.begin(), run.learned.end(),
+                                      [](const learning_t& l) { return l.accepted; });
+  const size_t scored = summarise(run.learned).count;
+  out << log.name << ": " << log.executions.size() << " executions in, " << accepted
+      << " measured, " << (static_cast<int64_t>(run.learned.size()) - accepted) << " refused\n";
+  for (const auto& [name, count] : run.counters)
+    if (name.rfind("refused: ", 0) == 0) out << line("  %5ld %s\n", long{count}, name.c_str());
+  if (static_cast<int64_t>(scored) != accepted)
+    out << "  of the measured ones " << scored
+        << " have a measured end; only those are in the errors below\n";
+  if (run.learned.size() != log.executions.size())
+    out << "  " << log.executions.size() - run.learned.size() << " before the first INS message\n";
+  if (log.skipped > 0)
+    out << "  " << log.skipped << " messages of other types on our channels were skipped\n";
+  if (!log.problem.empty()) out << "  " << log.problem << "\n";
+}
+
+/// Which guards held corrections back, and how often.
+void writeGuards(std::ostream& out, const LearnerRun& run) {
+  std::map<std::string, int> guards;
+  for (const learning_t& learned : run.learned) {
+    if (!learned.accepted) continue;
+    std::istringstream parts(learned.gate_reason);
+    for (std::string guard; std::getline(parts, guard, ';');)
+      ++guards[guard.substr(guard.find_first_not_of(' '))];
+  }
+  if (guards.empty()) return;
+  out << "\nguards of '" << run.title << "'\n";
+  for (const auto& [guard, count] : guards) out << line("  %5d %s\n", count, guard.c_str());
+}
+
+/// On how many executions a run predicted better than the first one.
+void writeComparison(std::ostream& out, const std::vector<LearnerRun>& runs) {
+  const std::vector<learning_t>& base = runs.front().learned;
+  for (size_t r = 1; r < runs.size(); ++r) {
+    size_t position = 0;
+    size_t yaw = 0;
+    size_t all = 0;
+    for (size_t i = 0; i < std::min(base.size(), runs[r].learned.size()); ++i) {
+      const learning_t& other = runs[r].learned[i];
+      if (!std::isfinite(base[i].error_position) || !std::isfinite(other.error_position)) continue;
+      ++all;
+      position += other.error_position < base[i].error_position ? 1 : 0;
+      yaw += std::abs(other.error_yaw) < std::abs(base[i].error_yaw) ? 1 : 0;
+    }
+    out << line("  '%s' is nearer than '%s' in %zu of %zu positions and %zu of %zu yaws\n",
+                runs[r].title.c_str(), runs.front().title.c_str(), position, all, yaw, all);
+  }
+}
+
+}  // namespace
+
+ErrorSummary summarise(const std::vector<learning_t>& learned) {
+  std::vector<double> position;
+  std::vector<double> yaw;
+  for (const learning_t& one : learned) {
+    if (!one.accepted || !std::isfinite(one.error_position)) continue;
+    position.push_back(one.error_position);
+    yaw.push_back(std::abs(one.error_yaw));
+  }
+  return {position.size(), mean(position), median(position), mean(yaw), median(yaw)};
+}
+
+std::string commandClass(const MotionPattern& pattern) {
+  double left = 0.0;
+  double right = 0.0;
+  for (const TrackCommand& command : pattern.commands) {
+    left += command.left;
+    right += command.right;
+  }
+  const double sum = std::abs(left) + std::abs(right);
+  if (sum < 0.02 * static_cast<double>(pattern.commands.size())) return "standing";
+  if (left * right < 0.0) return "counter-rotating";
+  const std::string direction = left + right > 0.0 ? "forward" : "reverse";
+  return std::abs(right - left) <= 0.1 * sum ? direction : direction + " turn";
+}
+
+std::string reportOf(const DriveLog& log, const PatternSet& set,
+                     const std::vector<LearnerRun>& runs) {
+  std::ostringstream out;
+  writeIntake(out, log, runs.front());
+  writeHead(out, "surface");
+  std::set<std::string> surfaces;
+  for (const learning_t& learned : runs.front().learned)
+    surfaces.insert(log.surfaceAt(learned.utime));
+  for (const std::string& surface : surfaces)
+    writeGroup(out, surface, runs,
+               [&](const learning_t& l) { return log.surfaceAt(l.utime) == surface; });
+  writeHead(out, "command");
+  for (const std::string name :
+       {"forward", "forward turn", "counter-rotating", "reverse turn", "reverse", "standing"})
+    writeGroup(out, name, runs, [&](const learning_t& l) {
+      const MotionPattern* pattern = set.find(l.learned_pattern_id);
+      return pattern != nullptr && commandClass(*pattern) == name;
+    });
+  out << "\n";
+  writeComparison(out, runs);
+  if (runs.size() > 1) writeGuards(out, runs.back());
+  return out.str();
+}
+
+}  // namespace tread::replay

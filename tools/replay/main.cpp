@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <limits>
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+
+#include "common/pattern/pattern_file.hpp"
+#include "common/vehicle/model_file.hpp"
+#include "tools/replay/learner_report.hpp"
+
+using namespace tread;
+
+namespace {
+
+/// Where results go beside the terminal.
+struct Output {
+  std::string report;
+  std::string picture;
+};
+
+void addOutput(CLI::App& command, Output& output) {
+  command.add_option("--report", output.report, "also write the report into this file");
+  command.add_option("--picture", output.picture, "also draw a picture (PNG)");
+}
+
+void say(const std::string& report, const Output& output) {
+  std::fputs(report.c_str(), stdout);
+  if (output.report.empty()) return;
+  std::ofstream file(output.report);
+  if (!(file << report) || !file.flush())
+    throw std::runtime_error(output.report + ": cannot be written");
+}
+
+struct LearnerArguments {
+  std::string log;
+  std::string model;
+  std::string patterns;
+  std::string rule = "collective";
+  double memory = 0.5;
+  double max_gap = 0.3;
+  double max_speed = 0.0;
+  double entry_speed = 0.4;
+  double entry_yaw_rate = 0.5;
+  bool any_entry = false;
+  Output output;
+};
+
+learner::LearnerNodeConfig configOf(const LearnerArguments& arguments, const PatternSet& set) {
+  learner::LearnerNodeConfig config(set);
+  config.rule.memory = arguments.memory;
+  config.limits.max_gap_us = std::llround(arguments.max_gap * 1e6);
+  config.limits.max_speed = arguments.max_speed;
+  config.limits.entry_speed = arguments.entry_speed;
+  config.limits.entry_yaw_rate = arguments.entry_yaw_rate;
+  // A model that is wrong about a steady turn is wrong about the twist in which it is entered, too.
+  if (arguments.any_entry || !arguments.model.empty())
+    config.limits.entry_speed = config.limits.entry_yaw_rate =
+        std::numeric_limits<double>::infinity();
+  return config;
+}
+
+void replayLearner(const LearnerArguments& arguments) {
+  const replay::DriveLog log = replay::readDriveLog(arguments.log);
+  const PatternSet set = arguments.model.empty()
+                             ? readPatternFile(arguments.patterns)
+                             : replay::predictedSet(log, readModelFile(arguments.model));
+  learner::LearnerNodeConfig config = configOf(arguments, set);
+  std::vector<replay::LearnerRun> runs;
+  config.rule.rule = learner::Rule::kOff;
+  runs.push_back(replay::runLearner(log, config, replay::Commitment::kAhead, "off"));
+  config.rule.rule = *learner::ruleNamed(arguments.rule);
+  if (config.rule.rule != learner::Rule::kOff) {
+    runs.push_back(replay::runLearner(log, config, replay::Commitment::kAhead, arguments.rule));
+    runs.push_back(
+        replay::runLearner(log, config, replay::Commitment::kPrompt, arguments.rule + ", prompt"));
+  }
+  std::string report = replay::reportOf(log, set, runs);
+  report +=
+      "\nEach execution is scored with the newest set when it began, as a planner knows it;\n"
+      "'prompt': with the newest when it ended, when all before it were learned.\n";
+  if (std::isinf(config.limits.entry_speed)) report += "The gate on the entry twist was off.\n";
+  say(report, arguments.output);
+  if (!arguments.output.picture.empty())
+    replay::drawReport(log, set, runs, arguments.output.picture);
+}
+
+void addLearner(CLI::App& app, LearnerArguments& arguments) {
+  CLI::App& command = *app.add_subcommand("learner", "a log of executions through the learner");
+  command.add_option("log", arguments.log, "LCM log with INS, MOTOR and EXECUTION")->required();
+  auto* source = command.add_option_group("prediction", "where the first predictions come from");
+  source->add_option("--model", arguments.model,
+                     "vehicle model file: predicts a pattern for each pattern id of the log");
+  source->add_option("--patterns", arguments.patterns, "pattern file");
+  source->require_option(1);
+  command.add_option("--rule", arguments.rule, "beside 'off'")
+      ->check(CLI::IsMember({"off", "single", "collective"}))
+      ->capture_default_str();
+  command.add_option("--memory", arguments.memory, "weight of the old prediction")
+      ->check(CLI::Range(0.0, 0.999))
+      ->capture_default_str();
+  command.add_option("--max-gap", arguments.max_gap, "longest INS gap of a fair measurement [s]")
+      ->check(CLI::Range(0.01, 5.0))
+      ->capture_default_str();
+  command.add_option("--max-speed", arguments.max_speed, "of the vehicle [m/s]; 0 = of the set")
+      ->check(CLI::Range(0.0, 20.0))
+      ->capture_default_str();
+  command.add_option("--entry-speed", arguments.entry_speed, "allowed off the entry class [m/s]")
+      ->capture_default_str();
+  command.add_option("--entry-yaw-rate", arguments.entry_yaw_rate, "the same for yaw [rad/s]")
+      ->capture_default_str();
+  command.add_flag("--any-entry", arguments.any_entry,
+                   "no gate on the entry twist (always so with --model)");
+  addOutput(command, arguments.output);
+  command.callback([&arguments] { replayLearner(arguments); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  LearnerArguments learner_arguments;
+  CLI::App app{"Recorded logs through the real nodes, on the virtual bus"};
+  app.require_subcommand(1);
+  addLearner(app, learner_arguments);
+  try {
+    CLI11_PARSE(app, argc, argv);
+  } catch (const std::exception& problem) {
+    std::cerr << "tread-replay: " << problem.what() << "\n";
+    return 1;
+  }
+  return 0;
+}
