@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <random>
+
+#include "tests/ins_driver/ins_bench.hpp"
+
+using namespace tread;
+using namespace tread::ins;
+
+TEST_CASE("a position between two attitudes takes the last one, carried on by its rate") {
+  Bench bench(withOrigin());
+  for (int i = 0; i <= 2; ++i) bench.at(i * 40'000, pashr(kNoon + i * 0.04, 10.0 + i, 1.0));
+  bench.at(100'000, gga(kNoon + 0.1));
+  CHECK(bench.angles().yaw == Approx((90.0 - 12.5) * kDeg).margin(1e-6));
+  CHECK(bench.angles().roll == Approx(1.0 * kDeg).margin(1e-6));
+  CHECK(bench.last().attitude_std.z() == Approx(std::hypot(0.3, 0.5) * kDeg));
+  CHECK(bench.ins.assembler().counts().carried == 1);
+  // Too old an attitude is not carried.
+  bench.at(300'000, gga(kNoon + 0.3));
+  CHECK(bench.last().status & kNoHeading);
+}
+
+TEST_CASE(
+    "instants with attitude alone are published when asked for, or when positions stay away") {
+  for (const bool wanted : {true, false}) {
+    InsConfig config = withOrigin();
+    config.attitude_epochs = wanted;
+    Bench bench(config);
+    for (int i = 0; i < 10; ++i) {
+      const double t = i * 0.04;
+      bench.at(i * 40'000, (i % 5 == 0 ? gga(kNoon + t) : "") + pashr(kNoon + t, 10.0));
+    }
+    CHECK(bench.out.size() == (wanted ? 10 : 2));
+    for (int i = 0; i < 50; ++i)
+      bench.at(2'000'000 + i * 40'000, pashr(kNoon + 2 + i * 0.04, 10.0));
+    CHECK(bench.out.size() == (wanted ? 60 : 52));
+    CHECK(bench.last().status == (kNoPosition | kNoVelocity));
+  }
+}
+
+TEST_CASE("more than three periods of silence are a gap, once") {
+  Bench bench(withOrigin());
+  int64_t utime = 0;
+  double t = kNoon;
+  for (int i = 0; i < 10; ++i, utime += 20'000, t += 0.02) {
+    bench.at(utime, gga(t) + pashr(t, 0.0));
+    CHECK_FALSE(bench.last().status & kGap);
+  }
+  utime += 60'000;
+  t += 0.06;
+  bench.at(utime, gga(t) + pashr(t, 0.0));
+  CHECK(bench.last().status & kGap);
+  bench.at(utime + 20'000, gga(t + 0.02) + pashr(t + 0.02, 0.0));
+  CHECK_FALSE(bench.last().status & kGap);
+  CHECK(bench.ins.assembler().counts().gaps == 1);
+}
+
+TEST_CASE("a position that the vehicle cannot have reached is a jump, once") {
+  InsConfig config = withOrigin();
+  config.max_speed = 5.0;
+  config.jump_slack = 0.3;
+  Bench bench(config);
+  double east = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    if (i == 10) east += 2.0;
+    const double t = kNoon + i * 0.1;
+    bench.at(i * 100'000, gga(t, east) + pashr(t, 90.0));
+    CHECK(((bench.last().status & kJump) != 0) == (i == 10));
+    east += 0.4;
+  }
+}
+
+TEST_CASE("a device clock that is set, back or forth, is a jump and times run on") {
+  Bench bench(withOrigin());
+  int64_t utime = 5 * kSecond;
+  const auto run = [&](double from) {
+    for (int i = 0; i < 20; ++i, utime += 100'000) {
+      const double t = from + i * 0.1;
+      bench.at(utime, gga(t) + pashr(t, 90.0));
+    }
+  };
+  run(kNoon);
+  run(kNoon - 600.0);
+  run(kNoon + 600.0);
+  REQUIRE(bench.out.size() == 60);
+  for (size_t i = 0; i < bench.out.size(); ++i) {
+    CAPTURE(i);
+    CHECK(bench.out[i].utime == 5 * kSecond + static_cast<int64_t>(i) * 100'000);
+    CHECK(((bench.out[i].status & kJump) != 0) == (i == 20 || i == 40));
+  }
+  CHECK(bench.ins.assembler().counts().clock_steps == 2);
+}
+
+TEST_CASE("polling jitter does not become jitter of the measurement times") {
+  InsConfig config = withOrigin();
+  config.latency_us = 3'000;
+  Bench bench(config);
+  std::mt19937_64 random(9);
+  for (int i = 0; i < 1000; ++i) {
+    const double t = kNoon + i * 0.02;
+    const int64_t jitter = i == 0 ? 0 : static_cast<int64_t>(random() % 4000);
+    bench.at(kSecond + i * 20'000 + jitter, gga(t) + pashr(t, 90.0));
+    const int64_t error = bench.last().utime - (kSecond + i * 20'000 - 3'000);
+    CHECK(error >= 0);
+    CHECK(error < 50);  // [us], of jitter up to 4000
+  }
+}
+
+TEST_CASE("a backlog read at one instant keeps its spacing and ends at its arrival") {
+  NmeaIns ins(withOrigin());
+  for (int i = 0; i < 150; ++i) {
+    const double t = kNoon + i * 0.02;
+    ins.push(gga(t) + pashr(t, 90.0), 10 * kSecond);
+  }
+  std::vector<InsEstimate> out;
+  while (const auto estimate = ins.next(10 * kSecond + 10'000)) out.push_back(*estimate);
+  REQUIRE(out.size() == 150);
+  for (int i = 0; i < 150; ++i) {
+    CHECK(out[static_cast<size_t>(i)].utime == 10 * kSecond - (149 - i) * 20'000);
+    CHECK(out[static_cast<size_t>(i)].status == kNoVelocity);
+  }
+}
+
+TEST_CASE("a device that tells no time is stamped with its arrival less the latency") {
+  InsConfig config = withOrigin();
+  config.latency_us = 3'000;
+  Bench bench(config);
+  bench.at(kSecond, hdt(90.0));
+  CHECK(bench.last().utime == kSecond - 3'000);
+  CHECK(bench.last().device_utc == -1);
+  bench.at(kSecond + 100'000, line("GPGGA,,4205.7,N,08802.0,W,4,12,1.0,221,M,,M,,") + hdt(90.0));
+  CHECK(bench.last().utime == kSecond + 97'000);
+  CHECK_FALSE(bench.last().status & kNoPosition);
+}
