@@ -11,6 +11,7 @@
 #include "common/bus/virtual_bus.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 #include "tests/motor_bridge/endless_planner.hpp"
+#include "tests/motor_bridge/messages.hpp"
 #include "tests/motor_bridge/scripted_roboteq.hpp"
 
 namespace tread::motor {
@@ -19,49 +20,17 @@ namespace tread::motor {
 class PlannerNode : public Node {
  public:
   explicit PlannerNode(Bus& bus) : bus_(bus), planner(bus.bootId()) {
-    bus_.subscribe<execution_t>(kExecution, [this](const execution_t& message) {
-      if (message.num_records > 0) take(message.records.back());
-    });
+    bus_.subscribe<execution_t>(kExecution,
+                                [this](const execution_t& message) { last_ = newest(message); });
   }
   int64_t period() const override { return 50'000; }
   void step(int64_t utime) override {
-    const Program program = planner.plan(utime, last_);
-    program_t message{};
-    message.utime = utime;
-    message.seq = seq_++;
-    message.run_id = program.run_id;
-    message.lease = 200'000;
-    message.running = toMessage(program.running);
-    message.next = toMessage(program.next);
-    bus_.publish(kProgram, message);
+    bus_.publish(kProgram, toMessage(planner.plan(utime, last_)));
   }
 
  private:
-  void take(const execution_record_t& record) {
-    ExecutionRecord last;
-    last.run_id = record.record_run_id;
-    last.execution_id = record.record_execution_id;
-    last.outcome = static_cast<Outcome>(record.outcome);
-    last_ = last;
-  }
-  static program_slot_t toMessage(const Slot& slot) {
-    program_slot_t message{};
-    message.execution_id = slot.execution_id;
-    message.slot_pattern_id = slot.pattern_id;
-    message.slot_set_version = slot.set_version;
-    message.command_kind = static_cast<int16_t>(slot.kind);
-    message.period = static_cast<int32_t>(slot.period_us);
-    message.num_commands = static_cast<int32_t>(slot.series.size());
-    for (const TrackCommand& command : slot.series) {
-      message.left.push_back(static_cast<float>(command.left));
-      message.right.push_back(static_cast<float>(command.right));
-    }
-    return message;
-  }
-
   Bus& bus_;
   std::optional<ExecutionRecord> last_;
-  int64_t seq_ = 0;
 
  public:
   EndlessPlanner planner;
@@ -72,13 +41,7 @@ class InsNode : public Node {
  public:
   explicit InsNode(Bus& bus) : bus_(bus) {}
   int64_t period() const override { return 20'000; }
-  void step(int64_t utime) override {
-    ins_t message{};
-    message.utime = utime - 8'000;
-    message.seq = seq_++;
-    message.orientation[0] = 1.0;
-    bus_.publish(kIns, message);
-  }
+  void step(int64_t utime) override { bus_.publish(kIns, makeIns(utime - 8'000, seq_++)); }
 
  private:
   Bus& bus_;

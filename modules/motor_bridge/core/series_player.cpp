@@ -77,7 +77,7 @@ Offer SeriesPlayer::offerPlaying(const Program& program, int64_t now) {
   if (names_pending && endUtime() - now <= kSwitchTolerance) {
     return Offer::kPlannerAhead;
   }
-  const bool names_previous = running_id == previous_id_ && sameOrder(program.next, current_);
+  const bool names_previous = previous_id_ != 0 && running_id == previous_id_;
   if (names_previous && now - start_utime_ <= kSwitchTolerance) {
     return Offer::kPlannerBehind;
   }

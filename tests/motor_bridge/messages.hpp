@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <optional>
+
+#include <tread/execution_t.hpp>
+#include <tread/ins_t.hpp>
+#include <tread/program_t.hpp>
+
+#include "modules/motor_bridge/core/execution_log.hpp"
+#include "modules/motor_bridge/core/program.hpp"
+
+namespace tread::motor {
+
+/// A slot as the planner sends it.
+inline program_slot_t toMessage(const Slot& slot) {
+  program_slot_t message{};
+  message.execution_id = slot.execution_id;
+  message.slot_pattern_id = slot.pattern_id;
+  message.slot_set_version = slot.set_version;
+  message.command_kind = static_cast<int16_t>(slot.kind);
+  message.period = static_cast<int32_t>(slot.period_us);
+  message.num_commands = static_cast<int32_t>(slot.series.size());
+  for (const TrackCommand& command : slot.series) {
+    message.left.push_back(static_cast<float>(command.left));
+    message.right.push_back(static_cast<float>(command.right));
+  }
+  return message;
+}
+
+inline program_t toMessage(const Program& program) {
+  program_t message{};
+  message.utime = program.utime;
+  message.seq = program.seq;
+  message.run_id = program.run_id;
+  message.lease = static_cast<int32_t>(program.lease_us);
+  message.running = toMessage(program.running);
+  message.next = toMessage(program.next);
+  return message;
+}
+
+/// A good measurement at the origin.
+inline ins_t makeIns(int64_t utime, int64_t seq) {
+  ins_t message{};
+  message.utime = utime;
+  message.seq = seq;
+  message.orientation[0] = 1.0;
+  return message;
+}
+
+/// The newest record, as far as a planner needs it.
+inline std::optional<ExecutionRecord> newest(const execution_t& message) {
+  if (message.records.empty()) return std::nullopt;
+  const execution_record_t& newest = message.records.back();
+  ExecutionRecord record;
+  record.run_id = newest.record_run_id;
+  record.execution_id = newest.record_execution_id;
+  record.outcome = static_cast<Outcome>(newest.outcome);
+  return record;
+}
+
+}  // namespace tread::motor

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// The real process on a pseudo-terminal and real LCM: what happens to the motors when it is told to
+// end, killed, or held up.
+#include <fcntl.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include <catch2/catch.hpp>
+
+#include "common/bus/lcm_bus.hpp"
+#include "tests/motor_bridge/endless_planner.hpp"
+#include "tests/motor_bridge/messages.hpp"
+#include "tests/motor_bridge/scripted_roboteq.hpp"
+
+using namespace tread;
+using namespace tread::motor;
+
+namespace {
+
+/// The master's side of a pseudo-terminal in raw mode.
+class Terminal {
+ public:
+  Terminal() : master_(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
+    REQUIRE(master_ >= 0);
+    REQUIRE(grantpt(master_) == 0);
+    REQUIRE(unlockpt(master_) == 0);
+    termios settings{};
+    tcgetattr(master_, &settings);
+    cfmakeraw(&settings);
+    tcsetattr(master_, TCSANOW, &settings);
+  }
+  ~Terminal() { close(master_); }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  std::string name() const { return ptsname(master_); }
+  std::string read() {
+    char buffer[1024];
+    const ssize_t size = ::read(master_, buffer, sizeof buffer);
+    return size > 0 ? std::string(buffer, static_cast<size_t>(size)) : std::string();
+  }
+  void write(const std::string& text) {
+    if (!text.empty()) CHECK(::write(master_, text.data(), text.size()) >= 0);
+  }
+
+ private:
+  int master_;
+};
+
+/// tread-motor-bridge as a child process.
+class Process {
+ public:
+  Process(const std::string& config, const std::string& url) : pid_(fork()) {
+    if (pid_ == 0) {
+      const std::string program = TREAD_BIN_DIR "/tread-motor-bridge";
+      execl(program.c_str(), program.c_str(), "--config", config.c_str(), "--lcm-url", url.c_str(),
+            nullptr);
+      _exit(127);
+    }
+  }
+  ~Process() {
+    if (pid_ > 0 && !ended_) {
+      kill(pid_, SIGKILL);
+      waitpid(pid_, nullptr, 0);
+    }
+  }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  void send(int signal) const { kill(pid_, signal); }
+  bool ended() {
+    ended_ = ended_ || waitpid(pid_, &status_, WNOHANG) == pid_;
+    return ended_;
+  }
+  int status() const { return status_; }
+
+ private:
+  pid_t pid_;
+  bool ended_ = false;
+  int status_ = -1;
+};
+
+/// A planner, an INS, an operator and a controller in real time around the process.
+class Rig {
+ public:
+  Rig() : url_("udpm://239.255.76.67:" + std::to_string(20000 + getpid() % 20000) + "?ttl=0") {
+    config_ = "/tmp/tread_motor_bridge_" + std::to_string(getpid()) + ".yaml";
+    std::ofstream(config_) << "address: tty:" << terminal_.name() << "\n";
+    bus_ = std::make_unique<LcmBus>(url_, TimeSource::kHost);
+    bus_->subscribe<motor_t>(kMotor, [this](const motor_t& m) { motor_ = m; });
+    bus_->subscribe<execution_t>(kExecution, [this](const execution_t& m) { last_ = newest(m); });
+    process_ = std::make_unique<Process>(config_, url_);
+  }
+  ~Rig() { unlink(config_.c_str()); }
+
+  /// Lets everything run for a time [us], looked at about every millisecond.
+  void run(int64_t us) {
+    for (const int64_t end = bus_->now() + us; bus_->now() < end;) turn();
+  }
+  /// Arms until the motors turn, for at most 20 s.
+  bool drive() {
+    for (int i = 0; i < 80 && !turning(); ++i) {
+      arm_t arm{};
+      arm.utime = bus_->now();
+      arm.armed = true;
+      arm.armed_by = "test";
+      bus_->publish(kArm, arm);
+      run(250'000);
+    }
+    return turning();
+  }
+  bool turning() { return !device.stands(bus_->now()); }
+  /// Time until the motors stand [us], at most a second.
+  int64_t timeToZero() {
+    const int64_t begin = bus_->now();
+    while (turning() && bus_->now() < begin + 1'000'000) turn();
+    return bus_->now() - begin;
+  }
+  Process& process() { return *process_; }
+  const motor_t& motor() const { return motor_; }
+  ScriptedRoboteq device;
+
+ private:
+  void turn() {
+    bus_->handle(1);
+    const int64_t now = bus_->now();
+    device.write(terminal_.read(), now);
+    terminal_.write(device.read());
+    if (now >= next_ins_) {
+      bus_->publish(kIns, makeIns(now, seq_++));
+      next_ins_ = now + 20'000;
+    }
+    if (now >= next_program_) {
+      bus_->publish(kProgram, toMessage(planner_.plan(now, last_)));
+      next_program_ = now + 50'000;
+    }
+  }
+
+  Terminal terminal_;
+  std::string url_;
+  std::string config_;
+  std::unique_ptr<LcmBus> bus_;
+  std::unique_ptr<Process> process_;
+  EndlessPlanner planner_;
+  std::optional<ExecutionRecord> last_;
+  motor_t motor_{};
+  int64_t seq_ = 0;
+  int64_t next_ins_ = 0;
+  int64_t next_program_ = 0;
+};
+
+/// A rig that drives, or nothing where LCM has no network.
+std::unique_ptr<Rig> driving() {
+  std::unique_ptr<Rig> rig;
+  try {
+    rig = std::make_unique<Rig>();
+  } catch (const std::runtime_error& error) {
+    WARN("skipped: " << error.what());
+    return nullptr;
+  }
+  REQUIRE(rig->drive());
+  return rig;
+}
+
+/// For a busy machine, on top of what virtual time shows [us].
+constexpr int64_t kSlack = 50'000;
+
+}  // namespace
+
+TEST_CASE("SIGTERM and SIGINT: zero, then exit 0") {
+  for (const int signal : {SIGTERM, SIGINT}) {
+    const std::unique_ptr<Rig> rig = driving();
+    if (!rig) return;
+    rig->process().send(signal);
+    CHECK(rig->timeToZero() <= 20'000 + kSlack);
+    CHECK(rig->device.heard.back() == "!M 0 0");
+    for (int i = 0; i < 100 && !rig->process().ended(); ++i) rig->run(20'000);
+    REQUIRE(rig->process().ended());
+    CHECK(rig->process().status() == 0);
+  }
+}
+
+TEST_CASE("SIGKILL: the controller's watchdog stops the motors") {
+  const std::unique_ptr<Rig> rig = driving();
+  if (!rig) return;
+  rig->process().send(SIGKILL);
+  CHECK(rig->timeToZero() <= 250'000 + kSlack);
+}
+
+TEST_CASE("SIGSTOP and SIGCONT: stopped by the watchdog, and nothing moves until armed again") {
+  const std::unique_ptr<Rig> rig = driving();
+  if (!rig) return;
+  rig->process().send(SIGSTOP);
+  CHECK(rig->timeToZero() <= 250'000 + kSlack);
+  rig->run(500'000);
+  rig->process().send(SIGCONT);
+  for (int i = 0; i < 200; ++i) {
+    rig->run(5'000);
+    REQUIRE_FALSE(rig->turning());
+  }
+  CHECK(rig->device.resumed == 0);
+  CHECK(rig->motor().bridge_state == motor_t::STATE_FAULT);
+  CHECK(rig->drive());
+}
