@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace tread::learner {
 namespace {
@@ -53,30 +52,6 @@ LearnerNodeConfig withSpeed(LearnerNodeConfig config) {
 }
 
 }  // namespace
-
-std::string LearnerNodeConfig::effective() const {
-  std::ostringstream out;
-  const auto seconds = [](int64_t us) { return static_cast<double>(us) * 1e-6; };
-  out << "shipped_set: " << shipped.content().name << "\nshipped_checksum: " << shipped.checksum()
-      << "\nrule: " << ruleName(rule.rule) << "\nmemory: " << rule.memory
-      << "\nscaling:\n  min_box: [" << rule.scaling.min_box[0] << ", " << rule.scaling.min_box[1]
-      << ", " << rule.scaling.min_box[2] << "]\n  min_box_sigmas: " << rule.scaling.min_box_sigmas
-      << "\n  min_turn: " << rule.scaling.min_turn << "\n  min_length: " << rule.scaling.min_length
-      << "\n  min_factor: " << rule.scaling.min_factor
-      << "\n  max_factor: " << rule.scaling.max_factor << "\n  sign_sigmas: " << rule.sign_sigmas
-      << "\ngates:\n  max_gap: " << seconds(limits.max_gap_us)
-      << "\n  min_covered: " << limits.min_covered << "\n  max_speed: " << limits.max_speed
-      << "\n  speed_margin: " << limits.speed_margin << "\n  min_motion: " << limits.min_motion
-      << "\n  min_turn: " << limits.min_turn
-      << "\n  entry_window: " << seconds(limits.entry_window_us)
-      << "\n  entry_speed: " << limits.entry_speed
-      << "\n  entry_yaw_rate: " << limits.entry_yaw_rate << "\n  max_slope: " << limits.max_slope
-      << "\nperiod: " << seconds(period_us) << "\nsettle: " << seconds(settle_us)
-      << "\ngive_up: " << seconds(give_up_us) << "\nrepeat: " << seconds(repeat_us)
-      << "\ntrack_span: " << seconds(track_span_us)
-      << "\nremembered_versions: " << remembered_versions << "\n";
-  return out.str();
-}
 
 LearnerNode::LearnerNode(LearnerNodeConfig config, Bus& bus, Store& store)
     : config_(withSpeed(std::move(config))),

@@ -13,28 +13,11 @@
 #include "modules/learner/core/learner.hpp"
 #include "modules/learner/execution_queue.hpp"
 #include "modules/learner/ins_queue.hpp"
+#include "modules/learner/learner_config.hpp"
 #include "modules/learner/learner_memory.hpp"
 #include "modules/learner/outbox.hpp"
 
 namespace tread::learner {
-
-/// Configuration of the learner process; the shell reads the shipped set from its file.
-struct LearnerNodeConfig {
-  PatternSet shipped;  ///< where learning begins
-  RuleConfig rule;
-  MeasurementLimits limits;
-  int64_t period_us = 20'000;  ///< [us] between steps
-  int64_t settle_us =
-      200'000;  ///< [us] what is this old has arrived: INS latency and disorder of the bus
-  int64_t give_up_us = 2'000'000;  ///< [us] after its end an execution is judged without more INS
-  int64_t repeat_us = 2'000'000;   ///< [us] between repetitions of the set
-  int64_t track_span_us = 60'000'000;  ///< [us] of INS that is kept
-  int64_t remembered_versions = 50;    ///< sets kept to score executions with the version they name
-
-  explicit LearnerNodeConfig(PatternSet set) : shipped(std::move(set)) {}
-  /// The configuration with its defaults, for CONFIG.
-  std::string effective() const;
-};
 
 /// The learner process. INS, EXECUTION, MOTOR in; PATTERN_SET, LEARNER_STATE, LEARNING, HEALTH,
 /// CONFIG out.

@@ -240,3 +240,11 @@ TEST_CASE("an end that was not measured adds nothing to the covariance") {
   for (int i = 0; i < 10; ++i) learner.learn(kLeft, fair(arc({0.8, 0.0, 0.5})), {}, 1);
   REQUIRE(std::isnan(learner.set().find(kLeft)->end_covariance[0]));
 }
+
+TEST_CASE("a shipped covariance without spread in one axis is still one, without any it is none") {
+  MotionPattern straight = smallContent().patterns[0];
+  straight.end_covariance = {7e-4, 0.0, 0.0, 1e-3, 0.0, 0.0};
+  REQUIRE(residualsOf(straight, {}).count == ResidualLimits{}.shipped_count);
+  straight.end_covariance.fill(0.0);
+  REQUIRE(residualsOf(straight, {}).count == 0);
+}

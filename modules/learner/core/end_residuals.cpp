@@ -11,8 +11,8 @@ namespace tread::learner {
 bool isKnown(const PoseCovariance& covariance) {
   const bool finite = std::all_of(covariance.begin(), covariance.end(),
                                   [](double element) { return std::isfinite(element); });
-  // Nothing is certain: zero variance comes from a model that tells of no spread.
-  return finite && covariance[0] > 0.0 && covariance[3] > 0.0 && covariance[5] > 0.0;
+  // Nothing is certain: all variances zero come from a model that tells of no spread.
+  return finite && (covariance[0] > 0.0 || covariance[3] > 0.0 || covariance[5] > 0.0);
 }
 
 EndResiduals residualsOf(const MotionPattern& shipped, const ResidualLimits& limits) {

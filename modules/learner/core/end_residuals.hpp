@@ -30,7 +30,7 @@ void addResidual(EndResiduals& residuals, const Pose2& error, const ResidualLimi
 /// What may be told to the planner: NaN until enough was seen.
 PoseCovariance covarianceOf(const EndResiduals& residuals, const ResidualLimits& limits);
 
-/// Whether a covariance says anything: all numbers finite, no variance zero.
+/// Whether a covariance says anything: all numbers finite, not all variances zero.
 bool isKnown(const PoseCovariance& covariance);
 
 }  // namespace tread::learner

@@ -136,7 +136,7 @@ bool Learner::turnsTheOtherWay(const MotionPattern& pattern, const Pose2& measur
     if (!role.scalable[static_cast<size_t>(axis)] || measured * predicted >= 0.0) return false;
     const double assumed =
         config_.relative_noise[axis] * std::abs(predicted) + config_.absolute_noise[axis];
-    const double sigma = std::isfinite(variance) ? std::sqrt(variance) : assumed;
+    const double sigma = variance > 0.0 ? std::sqrt(variance) : assumed;
     return std::abs(measured - predicted) > config_.sign_sigmas * sigma;
   };
   const bool back = opposite(0, measured_end.x, pattern.end().x, known[0]);

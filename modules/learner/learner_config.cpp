@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/learner/learner_config.hpp"
+
+#include <cmath>
+#include <sstream>
+
+#include "common/pattern/pattern_file.hpp"
+
+namespace tread::learner {
+namespace {
+
+void seconds(ConfigReader& reader, const std::string& key, int64_t& value_us, Range range) {
+  double value = static_cast<double>(value_us) * 1e-6;
+  reader.number(key, value, range, "s");
+  value_us = std::llround(value * 1e6);
+}
+
+void readScaling(ConfigReader& reader, RuleConfig& rule) {
+  ConfigReader section = reader.section("scaling");
+  ScalingLimits& limits = rule.scaling;
+  std::vector<double> box{limits.min_box[0], limits.min_box[1], limits.min_box[2]};
+  section.numbers("min_box", box, 3, {0.001, 1.0}, "m, m, rad");
+  limits.min_box = {box[0], box[1], box[2]};
+  section.number("min_box_sigmas", limits.min_box_sigmas, {0.0, 10.0}, "1");
+  section.number("min_turn", limits.min_turn, {0.0, 1.0}, "rad");
+  section.number("min_length", limits.min_length, {0.0, 1.0}, "m");
+  section.number("min_factor", limits.min_factor, {0.1, 1.0}, "1");
+  section.number("max_factor", limits.max_factor, {1.0, 10.0}, "1");
+  section.number("sign_sigmas", rule.sign_sigmas, {0.0, 10.0}, "1");
+}
+
+void readGates(ConfigReader& reader, MeasurementLimits& limits) {
+  ConfigReader gates = reader.section("gates");
+  seconds(gates, "max_gap", limits.max_gap_us, {0.01, 5.0});
+  gates.number("min_covered", limits.min_covered, {0.1, 1.0}, "1");
+  gates.number("max_speed", limits.max_speed, {0.0, 20.0}, "m/s");
+  gates.number("speed_margin", limits.speed_margin, {1.0, 10.0}, "1");
+  gates.number("min_motion", limits.min_motion, {0.0, 1.0}, "m");
+  gates.number("min_turn", limits.min_turn, {0.0, 1.0}, "rad");
+  seconds(gates, "entry_window", limits.entry_window_us, {0.01, 2.0});
+  gates.number("entry_speed", limits.entry_speed, {0.01, 40.0}, "m/s");
+  gates.number("entry_yaw_rate", limits.entry_yaw_rate, {0.01, 40.0}, "rad/s");
+  gates.number("max_slope", limits.max_slope, {0.0, 1.6}, "rad");
+}
+
+}  // namespace
+
+LearnerNodeConfig readLearnerConfig(ConfigReader& reader) {
+  std::string patterns;
+  reader.text("patterns", patterns, true);
+  LearnerNodeConfig config(readPatternFile(patterns));
+  reader.text("store", config.store);
+  std::string rule = ruleName(config.rule.rule);
+  reader.choice("rule", rule, {"off", "single", "collective"});
+  config.rule.rule = *ruleNamed(rule);
+  // w = 1 would never learn and never say why: `off` is the word for that.
+  reader.number("memory", config.rule.memory, {0.0, 0.999}, "1");
+  readScaling(reader, config.rule);
+  readGates(reader, config.limits);
+  seconds(reader, "period", config.period_us, {0.005, 0.1});
+  seconds(reader, "settle", config.settle_us, {0.0, 2.0});
+  seconds(reader, "give_up", config.give_up_us, {0.1, 30.0});
+  seconds(reader, "repeat", config.repeat_us, {0.2, 5.0});
+  seconds(reader, "track_span", config.track_span_us, {5.0, 600.0});
+  reader.integer("remembered_versions", config.remembered_versions, {2, 1000}, "1");
+  reader.finish();
+  return config;
+}
+
+std::string LearnerNodeConfig::effective() const {
+  std::ostringstream out;
+  const auto seconds = [](int64_t us) { return static_cast<double>(us) * 1e-6; };
+  out << "shipped_set: " << shipped.content().name << "\nshipped_checksum: " << shipped.checksum()
+      << "\nrule: " << ruleName(rule.rule) << "\nmemory: " << rule.memory
+      << "\nscaling:\n  min_box: [" << rule.scaling.min_box[0] << ", " << rule.scaling.min_box[1]
+      << ", " << rule.scaling.min_box[2] << "]\n  min_box_sigmas: " << rule.scaling.min_box_sigmas
+      << "\n  min_turn: " << rule.scaling.min_turn << "\n  min_length: " << rule.scaling.min_length
+      << "\n  min_factor: " << rule.scaling.min_factor
+      << "\n  max_factor: " << rule.scaling.max_factor << "\n  sign_sigmas: " << rule.sign_sigmas
+      << "\ngates:\n  max_gap: " << seconds(limits.max_gap_us)
+      << "\n  min_covered: " << limits.min_covered << "\n  max_speed: " << limits.max_speed
+      << "\n  speed_margin: " << limits.speed_margin << "\n  min_motion: " << limits.min_motion
+      << "\n  min_turn: " << limits.min_turn
+      << "\n  entry_window: " << seconds(limits.entry_window_us)
+      << "\n  entry_speed: " << limits.entry_speed
+      << "\n  entry_yaw_rate: " << limits.entry_yaw_rate << "\n  max_slope: " << limits.max_slope
+      << "\nperiod: " << seconds(period_us) << "\nsettle: " << seconds(settle_us)
+      << "\ngive_up: " << seconds(give_up_us) << "\nrepeat: " << seconds(repeat_us)
+      << "\ntrack_span: " << seconds(track_span_us)
+      << "\nremembered_versions: " << remembered_versions << "\n";
+  return out.str();
+}
+
+}  // namespace tread::learner
