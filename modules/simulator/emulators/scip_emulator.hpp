@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "modules/simulator/core/laser.hpp"
+
+namespace tread::sim {
+
+/// The range finder as it describes itself (PP and VV).
+struct ScipSettings {
+  std::string model = "UTM-30LX-EW (emulated)";
+  std::string serial_number = "T0000001";
+  int range_min_mm = 100;      ///< DMIN
+  int range_max_mm = 15000;    ///< DMAX
+  int steps_per_turn = 720;    ///< ARES
+  int first_step = 0;          ///< AMIN
+  int last_step = 540;         ///< AMAX
+  int front_step = 270;        ///< AFRT
+  int turns_per_minute = 600;  ///< SCAN
+};
+
+/// Settings that fit a simulated laser.
+ScipSettings scipSettingsOf(const LaserParameters& laser);
+
+/// What is wrong with the device or its line.
+struct ScipFaults {
+  bool silent = false;    ///< hears and says nothing
+  bool garbage = false;   ///< random bytes between scans
+  bool bad_sums = false;  ///< one byte of each scan is another: its sum does not fit
+};
+
+/// A laser range finder that speaks SCIP 2.0, byte by byte; good behind TCP or a serial line.
+/** Commands end with LF or CR: QT RS BM HS SS TM PP VV II GD MD and SCIP2.0. An answer is the
+   command's echo, a status with its sum, lines each with a sum, and an empty line. Ranges are three
+   characters (18 bits, mm); 65533 stands for nothing hit, 1 for no measurement. MD switches the
+   laser on. */
+class ScipEmulator {
+ public:
+  ScipEmulator(const ScipSettings& settings, uint64_t seed);
+
+  /// Bytes from the robot.
+  void receive(std::string_view bytes, int64_t utime);
+  /// A scan that the device has just finished.
+  void add(const LaserScan& scan);
+  /// Bytes to the robot since the last call.
+  std::string transmit(int64_t utime);
+  /// The line was closed and opened again: unread commands are gone, streaming stops.
+  void reconnect();
+
+  void setFaults(const ScipFaults& faults) { faults_ = faults; }
+
+ private:
+  /// A measurement request: GD or MD with its fields.
+  struct Request {
+    std::string command;  ///< as received, without the count
+    std::string note;     ///< text after ';'
+    int first = 0;
+    int last = 0;
+    int cluster = 1;
+    int interval = 0;  ///< scans left out between two
+    int count = 0;     ///< scans left; 0 = without end
+    bool endless = true;
+  };
+
+  void runLine(const std::string& line, int64_t utime);
+  void answer(const std::string& line, const std::string& status,
+              const std::vector<std::string>& lines = {});
+  void startMeasuring(const std::string& line);
+  void measureOnce(const std::string& line);
+  std::string parseRequest(const std::string& line, Request& request) const;
+  std::string rangesOf(const LaserScan& scan, const Request& request) const;
+  void appendScan(std::string& out, const LaserScan& scan, const Request& request) const;
+  std::vector<std::string> versionLines() const;
+  std::vector<std::string> parameterLines() const;
+  std::vector<std::string> stateLines(int64_t utime) const;
+
+  ScipSettings settings_;
+  ScipFaults faults_;
+  std::mt19937_64 random_;
+  std::string line_;
+  std::string out_;
+  bool laser_on_ = false;
+  std::optional<Request> streaming_;
+  int skipped_ = 0;
+  std::optional<LaserScan> newest_;
+};
+
+/// Sum character of SCIP 2.0: the low six bits of the sum of all bytes, plus 0x30.
+char scipSum(std::string_view bytes);
+/// A number in characters of six bits each, plus 0x30, most significant first.
+std::string scipEncode(uint32_t value, int characters);
+
+}  // namespace tread::sim
