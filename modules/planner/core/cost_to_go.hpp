@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "modules/planner/core/passage_map.hpp"
+
+namespace tread::planner {
+
+/// Where to go: pose in map and how near is near enough.
+struct Goal {
+  int64_t id = 0;
+  Pose2 T_map_goal;
+  double position_tolerance = 0.5;  ///< [m] > 0
+  double yaw_tolerance = 4.0;       ///< [rad] > 0; pi or more = any heading
+};
+
+/// What makes a way long for the cost to go.
+struct FieldConfig {
+  double inflation = 0.34;     ///< [m] with less room than this nobody passes: half the width
+  double wide = 0.7;           ///< [m] with this much room a way is as good as open ground
+  double tight_weight = 1.0;   ///< [1] how much longer a way counts that is just passable; 0 = none
+  double detour_weight = 8.0;  ///< [1] how much longer a way counts where nobody got through
+  double area_margin = 12.0;   ///< [m] around vehicle and goal; grows where that is not enough
+  double max_area = 120.0;     ///< [m] longest side of the area
+  double reach = 14.0;         ///< [m] around the vehicle that must be filled in
+};
+
+/// A place to go round, because nobody got through.
+struct Detour {
+  Eigen::Vector2d p_map{0.0, 0.0};
+  double radius = 0.6;  ///< [m]
+};
+
+/// Length of the shortest way to the goal from everywhere, around all that is known [m].
+/** Fast marching (first order, upwind) from the goal over coarse cells: obstacles are grown by half the vehicle's
+ *  width, unknown is passable. With all weights 0 the length over the best speed of a pattern set bounds the time
+ *  to go from below, but for the discretisation: see kShare. Filled in bucket by bucket and no farther than the
+ *  surroundings of the vehicle. */
+class CostToGo {
+ public:
+  /// Lengths times this are below the true length (first-order error and coarse cells; tested).
+  static constexpr double kShare = 0.92;
+
+  CostToGo() = default;
+  CostToGo(const PassageMap& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
+           const std::vector<Detour>& detours, const FieldConfig& config);
+
+  bool empty() const { return length_.empty(); }
+  /// Way from a point to the rim of the goal's tolerance [m]; infinite if there is none.
+  /** Interpolated between coarse cells. On ground that is blocked: from the best cell within half a metre. */
+  double length(const Eigen::Vector2d& p_map) const;
+  /// Way from a point until the way to the goal leaves what is known [m]; capped at 10 m.
+  double untilUnknown(const Eigen::Vector2d& p_map) const;
+  /// Unit vector along the way to the goal at a point; zero at the goal or where there is no way.
+  Eigen::Vector2d direction(const Eigen::Vector2d& p_map) const;
+  /// Points down the way to the goal, a step apart, at most `count`.
+  std::vector<Eigen::Vector2d> descend(const Eigen::Vector2d& p_map, double step, int count) const;
+  /// No way from the vehicle to the goal in all that is known, unknown being passable.
+  bool unreachable() const { return unreachable_; }
+  /// The goal itself lies on obstacles.
+  bool goalBlocked() const { return goal_blocked_; }
+  /// Whether a point lies well within the area that was worked out.
+  bool covers(const Eigen::Vector2d& p_map, double reach) const;
+  /// Number of coarse cells filled in, for measuring.
+  int filled() const { return filled_; }
+
+ private:
+  struct Front;
+  void layOut(const PassageMap& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
+              double margin, const FieldConfig& config);
+  void paint(const PassageMap& map, const std::vector<Detour>& detours, const FieldConfig& config);
+  bool seed(const Goal& goal, Front& front);
+  bool march(const Goal& goal, const Eigen::Vector2d& p_vehicle, const FieldConfig& config);
+  void relax(int cell, Front& front);
+  void settle(int cell);
+  double lengthNearby(const Eigen::Vector2d& p_map) const;
+  int cellAt(const Eigen::Vector2d& p_map) const;
+  Eigen::Vector2d centreOf(int cell) const;
+  float valueOf(int x, int y) const;
+
+  double size_ = 0.2;
+  int lower_x_ = 0;
+  int lower_y_ = 0;
+  int width_ = 0;
+  int height_ = 0;
+  std::vector<float> slowness_;  // [m of way per m]; infinite where blocked
+  std::vector<uint8_t> unknown_;
+  std::vector<float> length_;
+  std::vector<float> until_unknown_;
+  std::vector<float> way_x_;  // unit vector towards the goal
+  std::vector<float> way_y_;
+  std::vector<uint8_t> settled_;
+  float cut_ = 0.0F;  // beyond this nothing was filled in
+  bool cut_short_ = false;
+  bool touched_border_ = false;
+  bool unreachable_ = false;
+  bool goal_blocked_ = false;
+  int filled_ = 0;
+};
+
+}  // namespace tread::planner

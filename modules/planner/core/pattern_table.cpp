@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/planner/core/pattern_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tread::planner {
+namespace {
+
+/// Slower than this counts as standing [m/s, rad/s].
+constexpr double kStanding = 0.02;
+
+double distanceBetween(const Pose2& a, const Pose2& b) { return std::hypot(b.x - a.x, b.y - a.y); }
+
+SweepPose sweepPose(const Pose2& pose, double time) {
+  return {pose, std::cos(pose.yaw), std::sin(pose.yaw), time};
+}
+
+/// A pose between two: the twist that joins them, followed for a part of the way.
+Pose2 partOf(const Pose2& from, const Pose2& to, double share) {
+  return from * integrate(twistTo(between(from, to), 1.0), share);
+}
+
+/// Larger standard deviation of the position at the end, as a variance; `default_sigma` if unknown.
+double endVariance(const MotionPattern& pattern, double default_sigma) {
+  const double largest = std::max(pattern.end_covariance[0], pattern.end_covariance[3]);
+  return std::isfinite(largest) ? std::max(0.0, largest) : default_sigma * default_sigma;
+}
+
+}  // namespace
+
+std::vector<SweepPose> sampleSweep(const std::vector<Pose2>& trajectory, double period,
+                                   SweepStep step) {
+  std::vector<SweepPose> sweep;
+  Pose2 last;  // the start
+  for (size_t i = 0; i < trajectory.size(); ++i) {
+    const bool is_end = i + 1 == trajectory.size();
+    const Pose2& after = trajectory[is_end ? i : i + 1];
+    const bool next_too_far = distanceBetween(last, after) > step.distance ||
+                              std::abs(after.yaw - last.yaw) > step.turn;
+    if (!is_end && !next_too_far) continue;
+    const Pose2& here = trajectory[i];
+    const double steps = std::max(distanceBetween(last, here) / step.distance,
+                                  std::abs(here.yaw - last.yaw) / step.turn);
+    const int pieces = std::max(1, static_cast<int>(std::ceil(steps - 1e-9)));
+    const double last_time = sweep.empty() ? 0.0 : sweep.back().time;
+    const double time = period * static_cast<double>(i + 1);
+    for (int k = 1; k <= pieces; ++k) {
+      const double share = static_cast<double>(k) / pieces;
+      const Pose2 pose = k == pieces ? here : partOf(last, here, share);
+      sweep.push_back(sweepPose(pose, last_time + share * (time - last_time)));
+    }
+    last = here;
+  }
+  return sweep;
+}
+
+PatternTable::PatternTable(PatternSet set, SweepStep step, double default_sigma)
+    : set_(std::move(set)), rest_class_(findRestClass()) {
+  for (const MotionPattern& pattern : set_.patterns()) {
+    patterns_.push_back(prepare(pattern, step, default_sigma));
+    const TablePattern& entry = patterns_.back();
+    best_speed_ = std::max(best_speed_, pattern.pathLength() / entry.duration);
+    best_turn_rate_ = std::max(best_turn_rate_, std::abs(pattern.end().yaw) / entry.duration);
+  }
+  from_.resize(set_.content().classes.size());
+  stops_.resize(from_.size());
+  for (const TablePattern& entry : patterns_) {
+    from_[static_cast<size_t>(entry.entry)].push_back(&entry);
+    if (entry.exit == rest_class_) stops_[static_cast<size_t>(entry.entry)].push_back(&entry);
+  }
+}
+
+TablePattern PatternTable::prepare(const MotionPattern& pattern, SweepStep step,
+                                   double default_sigma) const {
+  TablePattern entry;
+  entry.pattern = &pattern;
+  entry.entry = classIndex(pattern.entry_class);
+  entry.exit = classIndex(pattern.exit_class);
+  entry.duration = set_.periodSeconds() * static_cast<double>(pattern.commands.size());
+  entry.reverses = pattern.end().x < -kStanding;
+  entry.sweep = sampleSweep(pattern.trajectory, set_.periodSeconds(), step);
+  Eigen::Vector2d lower(0.0, 0.0), upper(0.0, 0.0);
+  for (const SweepPose& at : entry.sweep) {
+    lower = lower.cwiseMin(at.pose.position());
+    upper = upper.cwiseMax(at.pose.position());
+  }
+  entry.centre = (lower + upper) / 2.0;
+  entry.radius = entry.centre.norm();
+  for (const SweepPose& at : entry.sweep)
+    entry.radius = std::max(entry.radius, (at.pose.position() - entry.centre).norm());
+  entry.variance = endVariance(pattern, default_sigma);
+  return entry;
+}
+
+const TablePattern* PatternTable::find(int id) const {
+  const auto found = std::find_if(patterns_.begin(), patterns_.end(),
+                                  [id](const TablePattern& entry) { return entry.id() == id; });
+  return found == patterns_.end() ? nullptr : &*found;
+}
+
+int PatternTable::classIndex(const std::string& name) const {
+  const auto& classes = set_.content().classes;
+  for (size_t i = 0; i < classes.size(); ++i)
+    if (classes[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
+int PatternTable::findRestClass() const {
+  const auto& classes = set_.content().classes;
+  for (size_t i = 0; i < classes.size(); ++i) {
+    const Twist2& twist = classes[i].twist;
+    if (std::hypot(twist.v_x, twist.v_y) < kStanding && std::abs(twist.omega) < kStanding)
+      return static_cast<int>(i);
+  }
+  return -1;
+}
+
+std::string PatternTable::defect() const {
+  if (rest_class_ < 0) return "the pattern set has no class of standing";
+  if (from(rest_class_).empty()) return "the pattern set has no pattern that begins at rest";
+  for (int i = 0; i < classCount(); ++i) {
+    const bool entered = std::any_of(patterns_.begin(), patterns_.end(),
+                                     [i](const TablePattern& entry) { return entry.exit == i; });
+    if (i != rest_class_ && entered && stopsFrom(i).empty())
+      return "the pattern set has no pattern that stops from class " + motionClass(i).name;
+  }
+  return best_speed_ > 0.0 ? "" : "no pattern of the set moves";
+}
+
+}  // namespace tread::planner

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/pattern/pattern.hpp"
+
+namespace tread::planner {
+
+/// A pose along a pattern, relative to its start, with its turn worked out.
+struct SweepPose {
+  Pose2 pose;
+  double cos_yaw = 1.0;
+  double sin_yaw = 0.0;
+  double time = 0.0;  ///< [s] from the start of the pattern
+};
+
+/// A pattern as the search wants it.
+struct TablePattern {
+  const MotionPattern* pattern = nullptr;
+  int entry = 0;          ///< index of the entry class in the set
+  int exit = 0;           ///< index of the exit class
+  double duration = 0.0;  ///< [s]
+  bool reverses = false;  ///< ends behind its start
+  std::vector<SweepPose> sweep;  ///< poses to check, without the start, at most a step apart
+  Eigen::Vector2d centre{0.0, 0.0};  ///< of a disc that holds all positions, relative to the start
+  double radius = 0.0;               ///< [m] of that disc
+  double variance = 0.0;             ///< [m2] added to the pose's uncertainty in one direction
+
+  int id() const { return pattern->id; }
+  const SweepPose& end() const { return sweep.back(); }
+};
+
+/// How finely a pattern is sampled for collision checks.
+struct SweepStep {
+  double distance = 0.10;  ///< [m]
+  double turn = 0.105;     ///< [rad]
+};
+
+/// All patterns of a set prepared for searching: sampled once, turned and moved while searching.
+/** Nothing is assumed about where patterns end: the learner may bend them at will. */
+class PatternTable {
+ public:
+  PatternTable(PatternSet set, SweepStep step, double default_sigma);
+  PatternTable(const PatternTable&) = delete;  // its lists point into itself
+  PatternTable& operator=(const PatternTable&) = delete;
+
+  const PatternSet& set() const { return set_; }
+  const std::vector<TablePattern>& patterns() const { return patterns_; }
+  /// Patterns that begin in a class, in the order of the set.
+  const std::vector<const TablePattern*>& from(int motion_class) const {
+    return from_[static_cast<size_t>(motion_class)];
+  }
+  /// Those of them that end at rest.
+  const std::vector<const TablePattern*>& stopsFrom(int motion_class) const {
+    return stops_[static_cast<size_t>(motion_class)];
+  }
+  /// The pattern of that id or nullptr.
+  const TablePattern* find(int id) const;
+  /// Index of the class in which the vehicle stands; -1 if the set has none.
+  int restClass() const { return rest_class_; }
+  int classCount() const { return static_cast<int>(from_.size()); }
+  const MotionClass& motionClass(int index) const {
+    return set_.content().classes[static_cast<size_t>(index)];
+  }
+  int classIndex(const std::string& name) const;
+  /// Greatest path length over duration of a pattern [m/s]: nothing in the set is faster.
+  double bestSpeed() const { return best_speed_; }
+  /// Greatest turn over duration of a pattern [rad/s].
+  double bestTurnRate() const { return best_turn_rate_; }
+  /// Why nobody can drive with this set, in words; empty if one can.
+  std::string defect() const;
+
+ private:
+  TablePattern prepare(const MotionPattern& pattern, SweepStep step, double default_sigma) const;
+  int findRestClass() const;
+
+  PatternSet set_;
+  std::vector<TablePattern> patterns_;
+  std::vector<std::vector<const TablePattern*>> from_;
+  std::vector<std::vector<const TablePattern*>> stops_;
+  int rest_class_ = -1;
+  double best_speed_ = 0.0;
+  double best_turn_rate_ = 0.0;
+};
+
+/// Poses along a trajectory of equal periods, the origin left out, neighbours at most a step apart.
+std::vector<SweepPose> sampleSweep(const std::vector<Pose2>& trajectory, double period,
+                                   SweepStep step);
+
+}  // namespace tread::planner

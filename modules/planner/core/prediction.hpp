@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <vector>
+
+#include "modules/planner/core/pattern_table.hpp"
+#include "modules/planner/core/surroundings.hpp"
+
+namespace tread::planner {
+
+/// A pose expected at a time from now on.
+struct ExpectedPose {
+  Pose2 T_map_body;
+  double time = 0.0;  ///< [s] from the measurement that it is based on
+};
+
+/// What is left of a pattern, laid on the newest measured pose.
+struct Prediction {
+  std::vector<ExpectedPose> ahead;  ///< poses still to come, the end last
+  Pose2 T_map_end;
+  double time_left = 0.0;  ///< [s] from the measurement to the end
+  double variance = 0.0;   ///< [m2] of the end's position
+};
+
+/// Pose along a trajectory of equal periods, `time` [s] after its start; held at both ends.
+Pose2 poseAlong(const std::vector<Pose2>& trajectory, double period, double time);
+
+/// What is left of a pattern that has been running for `time` [s] when the vehicle was measured at a pose.
+/** A negative time: it will begin that much later; until then the vehicle keeps the twist of its entry class. */
+Prediction predict(const Pose2& T_map_body, double time, const TablePattern& pattern,
+                   const PatternTable& table);
+
+/// Time until the first of the poses that is not free with a margin level [s]; nothing if all are free.
+std::optional<double> firstConflict(const Surroundings& surroundings,
+                                    const std::vector<ExpectedPose>& poses, int level);
+
+}  // namespace tread::planner

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/planner/core/supervisor.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace tread::planner {
+namespace {
+
+/// After so many patterns in a row a recovery has helped.
+constexpr int kRecovered = 6;
+/// How far down the way to the goal the narrowest place is looked for [m].
+constexpr double kDetourLook = 3.0;
+constexpr double kDetourStep = 0.2;
+/// Nearer than this to the vehicle nothing is made a detour [m].
+constexpr double kDetourNear = 0.8;
+
+}  // namespace
+
+Supervisor::Supervisor(const PlannerConfig& config, int64_t run_id)
+    : config_(config),
+      world_(config.world),
+      search_(config.search),
+      book_(run_id),
+      progress_(config.policy.patience) {}
+
+void Supervisor::takeSet(const PatternSet& set) {
+  table_ = std::make_shared<const PatternTable>(set, config_.sweep, config_.default_sigma);
+}
+
+Decision Supervisor::step(const Situation& s, const StopPredicate& stop) {
+  stop_ = stop;
+  planned_ = false;
+  prediction_.reset();
+  if (s.pose) standstill_.take(*s.pose);
+  noteGoal(s);
+  followBridge(s);
+  const Supplies supplies{world_.newestUtime(),
+                          table_ ? table_->defect() : "no PATTERN_SET yet"};
+  act(s, judge(s, supplies, config_.ages));
+  Decision decision;
+  decision.planned = planned_;
+  decision.report = report(s);
+  return decision;
+}
+
+void Supervisor::act(const Situation& s, const Readiness& ready) {
+  if (ready.level == Readiness::Level::kStop) {
+    if (mode_ == Mode::kDriving) halt(s, ready.reason);
+    nothing_since_.reset();
+    progress_.restart(s.now);
+    if (!s.goal && ready.status == PlanStatus::kWaiting) return say(PlanStatus::kIdle, "");
+    return say(ready.status, ready.reason);
+  }
+  world_.lookAround(s.pose->T_map_body);
+  if (s.goal) world_.lookAhead(s.pose->T_map_body, *s.goal, s.now);
+  if (s.goal && ready.level == Readiness::Level::kGo && !arrived_) watchProgress(s);
+  if (mode_ == Mode::kSettling) settle(s);
+  if (mode_ == Mode::kDriving) drive(s, ready);
+  if (mode_ == Mode::kStanding) stand(s, ready);
+}
+
+void Supervisor::noteGoal(const Situation& s) {
+  std::optional<int64_t> id;
+  if (s.goal) id = s.goal->id;
+  if (id == goal_id_) return;
+  goal_id_ = id;
+  arrived_ = false;
+  nothing_since_.reset();
+  recovery_.restart();
+  world_.forgetDetours();
+  progress_.restart(s.now);
+  last_plan_ = 0;
+  planned_ = true;
+}
+
+void Supervisor::followBridge(const Situation& s) {
+  switch (book_.follow(s)) {
+    case ProgramBook::Event::kNone:
+      return;
+    case ProgramBook::Event::kSwitched: {
+      const bool as_planned =
+          !plan_.empty() && plan_.front().pattern_id == book_.running().pattern_id;
+      if (as_planned) plan_.erase(plan_.begin());
+      else plan_.clear();
+      last_plan_ = 0;
+      if (++switches_ >= kRecovered) recovery_.restart();
+      ++counters_["patterns joined"];
+      return;
+    }
+    case ProgramBook::Event::kEnded:
+      ++counters_["came to rest"];
+      break;
+    case ProgramBook::Event::kAborted:
+      ++counters_["aborted by the bridge: " + book_.abortReason()];
+      break;
+    case ProgramBook::Event::kNeverStarted:
+      ++counters_[book_.abortReason()];
+      break;
+  }
+  mode_ = Mode::kSettling;
+  settling_since_ = s.now;
+  plan_.clear();
+}
+
+void Supervisor::halt(const Situation& s, const std::string& why) {
+  book_.stop();
+  plan_.clear();
+  mode_ = Mode::kSettling;
+  settling_since_ = s.now;
+  planned_ = true;
+  ++counters_["stopped at once"];
+  say(PlanStatus::kBlocked, "stopped at once: " + why);
+}
+
+void Supervisor::settle(const Situation& s) {
+  const bool too_long = s.now - settling_since_ > config_.policy.settle_limit;
+  if (!standstill_.stands(settling_since_) && !too_long) return;
+  mode_ = Mode::kStanding;
+  last_plan_ = 0;
+}
+
+SearchResult Supervisor::searchFrom(const Situation& s, const Pose2& start, int motion_class,
+                                    double variance, int expansions) {
+  SearchProblem problem;
+  problem.T_map_start = start;
+  problem.start_class = motion_class;
+  problem.start_variance = variance;
+  problem.patterns = table_.get();
+  problem.surroundings = &world_.surroundings();
+  problem.cost_to_go = &world_.costToGo();
+  problem.goal = *s.goal;
+  for (const PlanStep& step : plan_) problem.committed.push_back(step.pattern_id);
+  const SearchResult result = search_.run(
+      problem, [&](int count) { return count >= expansions || (stop_ && stop_(count)); });
+  last_plan_ = s.now;
+  planned_ = true;
+  expansions_ = result.expansions;
+  time_to_go_ = result.end == SearchEnd::kNothing ? std::numeric_limits<double>::quiet_NaN()
+                                                  : result.time_to_go;
+  ++counters_["plans"];
+  counters_["expansions"] += result.expansions;
+  return result;
+}
+
+bool Supervisor::sayUnreachable() {
+  if (!world_.costToGo().unreachable()) return false;
+  time_to_go_ = std::numeric_limits<double>::quiet_NaN();
+  say(PlanStatus::kUnreachable, world_.costToGo().goalBlocked()
+                                    ? "the goal lies on obstacles"
+                                    : "obstacles enclose the goal or the vehicle");
+  return true;
+}
+
+void Supervisor::watchProgress(const Situation& s) {
+  const double way = world_.costToGo().length(s.pose->T_map_body.position());
+  if (!std::isfinite(way) || !progress_.stuck(way, s.now)) return;
+  ++counters_["no progress: a way given up"];
+  addDetour(s);
+}
+
+void Supervisor::addDetour(const Situation& s) {
+  if (static_cast<int>(world_.detours()) >= config_.policy.detours) {
+    world_.forgetDetours();
+    return;
+  }
+  const Eigen::Vector2d p = s.pose->T_map_body.position();
+  std::optional<Eigen::Vector2d> narrowest;
+  double least = std::numeric_limits<double>::infinity();
+  const int points = static_cast<int>(kDetourLook / kDetourStep);
+  for (const Eigen::Vector2d& at : world_.costToGo().descend(p, kDetourStep, points)) {
+    const double clearance = world_.surroundings().clearance(at);
+    if ((at - p).norm() < kDetourNear || clearance >= least) continue;
+    least = clearance;
+    narrowest = at;
+  }
+  if (narrowest) world_.addDetour(*narrowest);
+}
+
+void Supervisor::say(PlanStatus status, const std::string& reason) {
+  planned_ = planned_ || status != status_;
+  status_ = status;
+  reason_ = reason;
+}
+
+const TablePattern* Supervisor::runningPattern() const {
+  const TablePattern* newest = table_->find(book_.running().pattern_id);
+  // The learner bends trajectories, never commands: another length is another pattern.
+  const bool same = newest != nullptr && newest->pattern->commands.size() ==
+                                             book_.running().pattern().commands.size();
+  return same ? newest : nullptr;
+}
+
+PlanReport Supervisor::report(const Situation& s) const {
+  PlanReport report;
+  report.status = status_;
+  report.reason = reason_;
+  report.utime = s.pose ? s.pose->utime : 0;
+  report.goal_id = s.goal ? s.goal->id : 0;
+  report.set_version = table_ ? table_->set().version() : 0;
+  report.time_to_go = mode_ == Mode::kDriving ? time_to_go_
+                                              : std::numeric_limits<double>::quiet_NaN();
+  report.expansions = planned_ ? expansions_ : 0;
+  double time = 0.0;
+  if (!book_.running().empty() && prediction_) {
+    time = prediction_->time_left;
+    report.execution_ids.push_back(book_.running().execution_id);
+    report.steps.push_back({book_.running().pattern_id, prediction_->T_map_end, 0, time,
+                            prediction_->variance});
+  }
+  for (size_t i = 0; i < plan_.size(); ++i) {
+    const bool handed_over = i == 0 && plan_[i].pattern_id == book_.next().pattern_id;
+    report.execution_ids.push_back(handed_over ? book_.next().execution_id : 0);
+    report.steps.push_back(plan_[i]);
+    report.steps.back().time += time;
+  }
+  return report;
+}
+
+}  // namespace tread::planner

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "modules/planner/core/motion_watch.hpp"
+#include "modules/planner/core/prediction.hpp"
+#include "modules/planner/core/program_book.hpp"
+#include "modules/planner/core/readiness.hpp"
+#include "modules/planner/core/recovery.hpp"
+#include "modules/planner/core/search.hpp"
+#include "modules/planner/core/world.hpp"
+
+namespace tread::planner {
+
+/// When what is done.
+struct PolicyConfig {
+  int64_t plan_period = 200'000;   ///< [us] between two plans while driving
+  int64_t blocked_period = 500'000;  ///< [us] between two looks while standing with nothing free
+  int64_t freeze = 130'000;        ///< [us] before its start the next pattern is not replaced
+  int64_t stop_lead = 700'000;     ///< [us] before a collision the vehicle is stopped
+  double coast_time = 0.3;         ///< [s] at its speed the vehicle coasts on after a stop
+  int64_t settle_limit = 3'000'000;  ///< [us] after which a stopped vehicle counts as standing
+  int64_t patience = 25'000'000;   ///< [us] without progress until a way is given up
+  int64_t recovery_wait = 1'500'000;  ///< [us] with nothing free until a recovery is tried
+  int recoveries = 4;              ///< tries until the goal counts as blocked
+  int detours = 6;                 ///< ways given up until it counts as blocked
+  int driving_expansions = 3000;   ///< per plan
+  int standing_expansions = 15000; ///< per plan
+};
+
+/// All that the planner can be told about its behaviour.
+struct PlannerConfig {
+  WorldConfig world;
+  SearchConfig search;
+  PolicyConfig policy;
+  AgeLimits ages;
+  SweepStep sweep;
+  double default_sigma = 0.05;  ///< [m] error at the end of a pattern of unknown covariance
+};
+
+/// What a step decided beside the program.
+struct Decision {
+  bool planned = false;  ///< a new plan was made, or something changed that viewers want to know
+  PlanReport report;
+};
+
+/// The planner without its wires: what to hand over to the motor bridge, from all that is known.
+/** Call takeSet() and world().put() as things come, then step() at 20 Hz. It
+    1. learns from MOTOR and EXECUTION what became of what it handed over;
+    2. judges the inputs, and empties the program or lets the vehicle come to rest;
+    3. checks what is under way against the newest map: a running pattern that will hit something is stopped in
+       time, a next one is replaced;
+    4. plans from where the running pattern is expected to end, and hands over the next one; with no plan the next
+       one is the one that stops;
+    5. standing, plans from where it stands; with no plan waits, tries to get out, and says that it is blocked. */
+class Supervisor {
+ public:
+  Supervisor(const PlannerConfig& config, int64_t run_id);
+
+  /// From the next step on plans are made with this set; what is handed over keeps its version.
+  void takeSet(const PatternSet& set);
+  World& world() { return world_; }
+
+  /// `stop` may end a search early (a deadline); the configured expansions end it in any case.
+  Decision step(const Situation& situation, const StopPredicate& stop);
+
+  const ProgramBook& program() const { return book_; }
+  const Search& search() const { return search_; }
+  /// How often something noteworthy happened, by its name in words.
+  const std::map<std::string, int64_t>& counters() const { return counters_; }
+
+ private:
+  enum class Mode { kStanding, kDriving, kSettling };
+
+  void followBridge(const Situation& s);
+  void noteGoal(const Situation& s);
+  void act(const Situation& s, const Readiness& ready);
+  void settle(const Situation& s);
+  void halt(const Situation& s, const std::string& why);
+  // Driving.
+  void drive(const Situation& s, const Readiness& ready);
+  Prediction predictRunning(const Situation& s) const;
+  bool frozen(const Situation& s) const;
+  bool nextCollides(const Prediction& running) const;
+  void planNext(const Situation& s, const Readiness& ready, const Prediction& running);
+  void searchNext(const Situation& s, const Prediction& running);
+  bool stopNext(const Prediction& running);
+  void keepClear(const Situation& s, const Prediction& running);
+  std::vector<ExpectedPose> posesAfter(const Prediction& running) const;
+  std::optional<double> conflict(const Pose2& here, const std::vector<ExpectedPose>& poses) const;
+  // Standing.
+  void stand(const Situation& s, const Readiness& ready);
+  void planStart(const Situation& s);
+  void begin(const Situation& s, const std::vector<PlanStep>& steps);
+  void noPlan(const Situation& s, const std::string& why);
+  void tryRecovery(const Situation& s);
+  // Both.
+  SearchResult searchFrom(const Situation& s, const Pose2& start, int motion_class,
+                          double variance, int expansions);
+  bool sayUnreachable();
+  void watchProgress(const Situation& s);
+  void addDetour(const Situation& s);
+  void say(PlanStatus status, const std::string& reason);
+  const TablePattern* runningPattern() const;
+  PlanReport report(const Situation& s) const;
+
+  PlannerConfig config_;
+  World world_;
+  Search search_;
+  ProgramBook book_;
+  std::shared_ptr<const PatternTable> table_;
+  StandstillWatch standstill_;
+  ProgressWatch progress_;
+  Recovery recovery_;
+  StopPredicate stop_;
+
+  Mode mode_ = Mode::kSettling;
+  int64_t settling_since_ = 0;
+  int64_t last_plan_ = 0;
+  std::optional<int64_t> goal_id_;
+  bool arrived_ = false;
+  int switches_ = 0;                      ///< patterns joined since the last recovery
+  std::optional<int64_t> nothing_since_;  ///< standing, and nothing was free since then
+  std::vector<PlanStep> plan_;            ///< from the end of the running pattern on
+  std::optional<Prediction> prediction_;  ///< of the running pattern in this step
+  double time_to_go_ = 0.0;
+  int expansions_ = 0;
+  bool planned_ = false;
+  PlanStatus status_ = PlanStatus::kIdle;
+  std::string reason_;
+  std::map<std::string, int64_t> counters_;
+};
+
+}  // namespace tread::planner

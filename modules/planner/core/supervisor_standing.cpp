@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <cmath>
+
+#include "modules/planner/core/supervisor.hpp"
+
+namespace tread::planner {
+namespace {
+
+bool within(const Goal& goal, const Pose2& pose) {
+  const Pose2& at = goal.T_map_goal;
+  return std::hypot(pose.x - at.x, pose.y - at.y) <= goal.position_tolerance &&
+         (goal.yaw_tolerance >= kPi ||
+          std::abs(wrapAngle(pose.yaw - at.yaw)) <= goal.yaw_tolerance);
+}
+
+}  // namespace
+
+void Supervisor::stand(const Situation& s, const Readiness& ready) {
+  if (ready.level != Readiness::Level::kGo) {
+    nothing_since_.reset();
+    return say(ready.status, ready.reason);
+  }
+  if (!arrived_ && within(*s.goal, s.pose->T_map_body)) {
+    arrived_ = true;
+    ++counters_["arrived"];
+  }
+  if (arrived_) return say(PlanStatus::kArrived, "");
+  const int64_t period =
+      nothing_since_ ? config_.policy.blocked_period : config_.policy.plan_period;
+  if (s.now - last_plan_ >= period) planStart(s);
+}
+
+void Supervisor::planStart(const Situation& s) {
+  if (sayUnreachable()) {
+    last_plan_ = s.now;
+    return;
+  }
+  plan_.clear();
+  const SearchResult result = searchFrom(s, s.pose->T_map_body, table_->restClass(), 0.0,
+                                         config_.policy.standing_expansions);
+  if (result.steps.empty()) return noPlan(s, result.reason);
+  nothing_since_.reset();
+  begin(s, result.steps);
+  say(PlanStatus::kDriving, "");
+}
+
+void Supervisor::begin(const Situation& s, const std::vector<PlanStep>& steps) {
+  book_.begin(table_->set(), steps.front().pattern_id, s.now);
+  plan_.assign(steps.begin() + 1, steps.end());
+  if (!plan_.empty()) book_.setNext(table_->set(), plan_.front().pattern_id);
+  mode_ = Mode::kDriving;
+  prediction_ = predictRunning(s);
+  if (plan_.empty()) stopNext(*prediction_);
+}
+
+void Supervisor::noPlan(const Situation& s, const std::string& why) {
+  nothing_since_ = nothing_since_.value_or(s.now);
+  say(PlanStatus::kBlocked, why);
+  if (s.now - *nothing_since_ < config_.policy.recovery_wait) return;
+  if (recovery_.tries() < config_.policy.recoveries) return tryRecovery(s);
+  if (static_cast<int>(world_.detours()) >= config_.policy.detours) return;
+  addDetour(s);
+  recovery_.restart();
+}
+
+void Supervisor::tryRecovery(const Situation& s) {
+  const std::vector<int> ids =
+      recovery_.propose(*table_, world_.surroundings(), s.pose->T_map_body);
+  if (ids.empty()) return say(PlanStatus::kBlocked, "boxed in: no move is free");
+  ++counters_["recovery moves"];
+  switches_ = 0;
+  std::vector<PlanStep> steps;
+  PlanStep last;
+  last.T_map_end = s.pose->T_map_body;
+  for (const int id : ids) {
+    const TablePattern& pattern = *table_->find(id);
+    last = {id, last.T_map_end * pattern.end().pose, pattern.exit, last.time + pattern.duration,
+            last.variance + pattern.variance};
+    steps.push_back(last);
+  }
+  nothing_since_.reset();
+  begin(s, steps);
+  say(PlanStatus::kBlocked, "trying to get out");
+}
+
+}  // namespace tread::planner

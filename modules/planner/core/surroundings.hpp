@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "common/grid/footprint.hpp"
+#include "common/grid/grid.hpp"
+#include "modules/planner/core/pattern_table.hpp"
+
+namespace tread::planner {
+
+/// The vehicle's rectangle in the body frame [m].
+struct FootprintSize {
+  double front = 0.65;       ///< from the body origin forward
+  double rear = 0.65;        ///< and backward
+  double half_width = 0.34;  ///< to both sides
+};
+
+/// How much room is kept around the footprint [m].
+struct Margins {
+  double check = 0.02;    ///< when what is already under way is checked again
+  double plan = 0.04;     ///< when the next pattern is chosen
+  double growth = 0.5;    ///< [1] of the standard deviation that has gathered along the plan
+  double largest = 0.08;  ///< never more than this, so that narrow gaps stay open
+};
+
+/// Blocked cells under the footprint, without margin.
+struct Overlap {
+  int obstacles = 0;
+  int blocked = 0;  ///< obstacles and unknown
+
+  bool none() const { return blocked == 0; }
+  bool within(const Overlap& other) const {
+    return obstacles <= other.obstacles && blocked <= other.blocked;
+  }
+};
+
+/// What is around the vehicle at one moment: asked whether poses and patterns are free. Unknown is not free.
+class Surroundings {
+ public:
+  Surroundings(Grid grid, const FootprintSize& size, const Margins& margins);
+
+  const Grid& grid() const { return grid_; }
+  const Margins& margins() const { return margins_; }
+
+  /// Distance from a point to the nearest cell that is not free [m], a lower bound.
+  double clearance(const Eigen::Vector2d& p_map) const { return field_.at(p_map); }
+  /// Levels of margin, rising: none, that for checking, that for planning, and more.
+  static constexpr int kBare = 0;
+  static constexpr int kCheck = 1;
+  static constexpr int kPlan = 2;
+  static constexpr int kLevels = 6;
+  double marginOf(int level) const { return level_margins_[static_cast<size_t>(level)]; }
+  /// Level for a pose whose position is known with this variance [m2]; kPlan or above.
+  int level(double variance) const;
+  /// Whether the footprint with the margin of a level is free at a pose.
+  bool isFree(const Pose2& T_map_body, int level) const;
+  /// Highest level, at most `wanted`, at which a pose is free; -1 if it is not free at all.
+  int freeLevel(const Pose2& T_map_body, int wanted) const;
+  /// Whether every pose of a pattern is free, begun at a pose.
+  bool sweepFree(const Pose2& T_map_start, const TablePattern& pattern, int level) const;
+  /// Blocked cells under the footprint: for leaving a place that is not free.
+  Overlap overlap(const Pose2& T_map_body) const;
+  /// Overlap at the end if no pose of the pattern overlaps more than its start does; else nothing.
+  std::optional<Overlap> escape(const Pose2& T_map_start, const Overlap& at_start,
+                                const TablePattern& pattern) const;
+
+ private:
+  Grid grid_;
+  ClearanceField field_;
+  Margins margins_;
+  std::vector<Footprint> levels_;
+  std::vector<double> level_margins_;
+};
+
+}  // namespace tread::planner

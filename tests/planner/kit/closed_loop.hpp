@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "modules/planner/core/supervisor.hpp"
+#include "tests/planner/kit/playground.hpp"
+#include "tests/planner/kit/sample_patterns.hpp"
+
+namespace tread::planner::testkit {
+
+/// Plays slots at their period and joins them without a gap; what motor_bridge does, without its care.
+class ToyBridge {
+ public:
+  /// What the planner wants, received at now [us].
+  void receive(int64_t run_id, const Slot& running, const Slot& next, int64_t now);
+  /// The command of now.
+  TrackCommand step(int64_t now);
+  void setArmed(bool armed) { armed_ = armed; }
+
+  BridgeReading reading() const { return reading_; }
+  const std::vector<ExecutionReading>& executions() const { return executions_; }
+  int64_t executionId() const { return current_.execution_id; }
+  int begun() const { return begun_; }
+
+ private:
+  void begin(const Slot& slot, int64_t started);
+  void close(int64_t now, ExecutionReading::Outcome outcome, const std::string& reason);
+
+  bool armed_ = true;
+  int64_t run_id_ = 0;
+  int64_t last_id_ = 0;
+  int begun_ = 0;
+  int64_t started_ = 0;
+  Slot current_;
+  Slot pending_;
+  BridgeReading reading_;
+  std::vector<ExecutionReading> executions_;
+};
+
+/// How much the ground differs from what was learned: standard deviations, drawn for each execution.
+struct GroundErrors {
+  double gain = 0.05;       ///< [1] of the distance
+  double turn = 0.05;       ///< [1] of the turn
+  double drift = 0.02;      ///< [rad] sideways
+  double turn_bias = 1.0;   ///< [1] all turns are so much wider than learned
+  double pose_noise = 0.003;  ///< [m], and a third of it in radians
+};
+
+/// What came of a closed-loop drive.
+struct DriveOutcome {
+  PlanStatus status = PlanStatus::kIdle;
+  std::string reason;
+  double time = 0.0;             ///< [s]
+  double distance = 0.0;         ///< [m]
+  double least_clearance = 0.0;  ///< [m] between footprint and obstacles; 0 = touched
+  int patterns = 0;
+  int collisions = 0;  ///< steps in which the footprint touched something
+  double planner_seconds = 0.0;  ///< of the host, all steps together
+  double worst_step = 0.0;       ///< [s] of the host
+  std::map<std::string, int64_t> counters;
+};
+
+/// Options of a drive.
+struct DriveOptions {
+  PlannerConfig config;
+  GroundErrors errors;
+  uint64_t seed = 1;
+  double time_limit = 300.0;    ///< [s]
+  bool whole_map_known = false;
+  int64_t latency = 20'000;     ///< [us] from measurement to planner, and from planner to bridge
+  /// Called each 50 ms with the time [s] and the true pose; may change the world or the set.
+  std::function<void(double, const Pose2&, Supervisor&, Playground&)> on_step;
+};
+
+/// Drives a mission in virtual time: kinematic vehicle, toy mapping, toy bridge, the real supervisor.
+DriveOutcome driveMission(Mission mission, const PatternSet& set, const DriveOptions& options);
+
+}  // namespace tread::planner::testkit
