@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "tests/tools/import/drive_samples.hpp"
+#include "tools/import/csv_table.hpp"
+#include "tools/import/drive_log.hpp"
+
+using namespace tread;
+using namespace tread::importer;
+using namespace tread::samples;
+
+namespace {
+
+struct Imported {
+  std::vector<LogEvent> events;
+  std::vector<ins_t> ins;
+  std::vector<motor_t> motor;
+  std::vector<execution_record_t> executions;  ///< the last word on each
+  LogCounts counts;
+};
+
+Imported imported(const Recording& recording, const Session& session, const std::string& format) {
+  Imported result;
+  result.events = makeLog(recording, session, format, {}, result.counts);
+  result.ins = messagesOn(kIns, result.events);
+  result.motor = messagesOn(kMotor, result.events);
+  for (const execution_t& message : messagesOn(kExecution, result.events)) {
+    REQUIRE(message.records.size() <= 8);
+    const execution_record_t& last = message.records.back();
+    if (last.outcome != execution_record_t::OUTCOME_RUNNING) result.executions.push_back(last);
+  }
+  return result;
+}
+
+Imported importedSteps() {
+  const Folder folder("import_steps");
+  const std::string csv = folder.file("drive.csv", kStepsHeader + stepRows(3) + stepRows(4));
+  const Session session = readSession(folder.file("sessions.csv", sessions(242)), "drive");
+  return imported(readSteps(csv, session), session, "steps");
+}
+
+/// What reading a steps file with this content throws.
+std::string complaint(const std::string& content, int rows = 242) {
+  const Folder folder("import_bad");
+  try {
+    const Session session = readSession(folder.file("sessions.csv", sessions(rows)), "drive");
+    readSteps(folder.file("drive.csv", content), session);
+  } catch (const ImportError& error) {
+    const std::string text = error.what();
+    return text.substr(text.find("drive.csv"));
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("steps: a fix is an INS message only where it is new, at the time it was measured") {
+  const Imported log = importedSteps();
+  REQUIRE(log.ins.size() == 2 * 61);
+  // The robot was at x after t seconds; the pose came 0.2 s late. Log time of the step's start from
+  // MOTOR.
+  const int64_t onset = log.motor.front().utime;
+  for (size_t i = 0; i < 61; ++i) {
+    REQUIRE(log.ins[i].utime == onset + static_cast<int64_t>(i) * 100'000 - 200'000);
+    REQUIRE(log.ins[i].position[0] == Approx(0.1 * static_cast<double>(i)));
+  }
+  // The gyro is not late: at the pose's time it read that time (the sample writes t as the rate).
+  REQUIRE(log.ins[20].rate[2] == Approx(1.8));
+  REQUIRE(std::isnan(log.ins[20].velocity[0]));
+  REQUIRE((log.ins[20].ins_status & ins_t::STATUS_NO_ATTITUDE) != 0);
+}
+
+TEST_CASE("steps: steps are never chained, a silence and a jump lie between them") {
+  const Imported log = importedSteps();
+  REQUIRE((log.ins[0].ins_status & ins_t::STATUS_JUMP) != 0);
+  REQUIRE((log.ins[60].ins_status & ins_t::STATUS_JUMP) == 0);
+  REQUIRE((log.ins[61].ins_status & ins_t::STATUS_JUMP) != 0);
+  REQUIRE((log.ins[61].ins_status & ins_t::STATUS_GAP) != 0);
+  REQUIRE(log.ins[61].utime - log.ins[60].utime >= 2'000'000);
+}
+
+TEST_CASE("steps: commands and track speeds are metres per second at the rim") {
+  const Imported log = importedSteps();
+  REQUIRE(log.motor.size() == 242);
+  REQUIRE(log.motor[0].command_left == 1.0F);
+  REQUIRE(log.motor[0].command_right == 2.0F);
+  REQUIRE(log.motor[0].track_speed_left == Approx(0.95));
+  REQUIRE(log.motor[0].motor_command_kind == 2);
+  REQUIRE(std::isnan(log.motor[0].battery_voltage));
+}
+
+TEST_CASE(
+    "steps: two executions per command at the stated offset, with ids that follow from the file") {
+  const Imported log = importedSteps();
+  REQUIRE(log.executions.size() == 4);
+  const int64_t onset = log.motor.front().utime;
+  const int64_t expected_ids[4] = {11, 12, 21, 22};
+  const int expected_patterns[4] = {3, 3, 4, 4};
+  for (size_t i = 0; i < 4; ++i) {
+    REQUIRE(log.executions[i].record_execution_id == expected_ids[i]);
+    REQUIRE(log.executions[i].record_pattern_id == expected_patterns[i]);
+    REQUIRE(log.executions[i].outcome == execution_record_t::OUTCOME_COMPLETED);
+    REQUIRE(log.executions[i].commands_total == 40);
+    REQUIRE(log.executions[i].commands_played == 40);
+    REQUIRE(log.executions[i].ended - log.executions[i].started == 2'000'000);
+  }
+  REQUIRE(log.executions[0].started == onset + 1'200'000);
+  REQUIRE(log.executions[1].started == onset + 3'200'000);
+  // MOTOR names the execution and counts its commands from 0 to 39.
+  REQUIRE(log.motor[23].execution_id == 0);
+  REQUIRE(log.motor[24].execution_id == 11);
+  REQUIRE(log.motor[24].command_index == 0);
+  REQUIRE(log.motor[63].command_index == 39);
+  REQUIRE(log.motor[64].execution_id == 12);
+  REQUIRE(log.motor[64].command_index == 0);
+}
+
+TEST_CASE("the log says on which ground it was driven, and is the same every time") {
+  const Imported log = importedSteps();
+  const auto marks = messagesOn(kMark, log.events);
+  REQUIRE(marks.at(0).mark_kind == "surface");
+  REQUIRE(marks.at(0).mark_value == "gravel");
+  const Imported again = importedSteps();
+  REQUIRE(again.events.size() == log.events.size());
+  for (size_t i = 0; i < log.events.size(); ++i) {
+    REQUIRE(again.events[i].utime == log.events[i].utime);
+    REQUIRE(again.events[i].bytes == log.events[i].bytes);
+    if (i > 0) REQUIRE(log.events[i].utime >= log.events[i - 1].utime);
+  }
+}
+
+TEST_CASE("aligned: poses as they are, but none inside a long ICP gap") {
+  const Folder folder("import_aligned");
+  const std::string csv = folder.file("drive.csv", kAlignedHeader + alignedRows(1));
+  const Session session = readSession(folder.file("sessions.csv", sessions(1)), "drive");
+  const Imported log = imported(readAligned(csv, session), session, "aligned");
+  REQUIRE(log.ins.size() == 111 - 9);
+  REQUIRE(log.ins[0].utime == log.motor[0].utime);
+  int64_t longest = 0;
+  for (size_t i = 1; i < log.ins.size(); ++i)
+    longest = std::max(longest, log.ins[i].utime - log.ins[i - 1].utime);
+  REQUIRE(longest == 500'000);
+  REQUIRE(log.executions.size() == 2);
+}
+
+TEST_CASE("continuous: the operator's part, the battery and the commands of body speeds") {
+  const Folder folder("import_continuous");
+  const std::string csv = folder.file("drive.csv", kContinuousHeader + continuousRows());
+  const Session session = readSession(folder.file("sessions.csv", sessions(1)), "drive");
+  const Imported log = imported(readContinuous(csv, session), session, "continuous");
+  REQUIRE(log.motor.size() == 260);
+  REQUIRE(log.motor[0].bridge_state == motor_t::STATE_DISARMED);
+  REQUIRE(log.motor[50].bridge_state == motor_t::STATE_DRIVING);
+  REQUIRE(std::isnan(log.motor[59].battery_voltage));
+  REQUIRE(log.motor[60].battery_voltage == 48.5F);
+  REQUIRE(log.motor[60].current_right == 5.0F);
+  // v = 1 m/s, w = 0.5 rad/s over a baseline of 1 m.
+  REQUIRE(log.motor[200].command_left == 0.75F);
+  REQUIRE(log.motor[200].command_right == 1.25F);
+  REQUIRE(log.ins[0].device_utc == Approx((1.7e9 + 0.05 - 0.2) * 1e6));
+  REQUIRE((log.ins[0].ins_status & ins_t::STATUS_NO_ATTITUDE) == 0);
+}
+
+TEST_CASE("continuous: a command that the operator cut short leaves its execution aborted") {
+  const Folder folder("import_operator");
+  const std::string csv = folder.file("drive.csv", kContinuousHeader + continuousRows());
+  const Session session = readSession(folder.file("sessions.csv", sessions(1)), "drive");
+  const Imported log = imported(readContinuous(csv, session), session, "continuous");
+  REQUIRE(log.executions.size() == 4);
+  REQUIRE(log.executions[0].outcome == execution_record_t::OUTCOME_COMPLETED);
+  REQUIRE(log.executions[1].outcome == execution_record_t::OUTCOME_ABORTED);
+  REQUIRE(log.executions[1].outcome_reason == "the operator took over");
+  REQUIRE(log.executions[1].commands_played == 16);
+  REQUIRE(log.executions[2].record_pattern_id == 2);
+  REQUIRE(log.counts.completed == 3);
+  REQUIRE(log.counts.aborted == 1);
+}
+
+TEST_CASE("a bad file is one line with file and line") {
+  const std::string good = stepRows(3) + stepRows(4);
+  REQUIRE(complaint(kStepsHeader + good) == "");
+  REQUIRE(complaint(kStepsHeader + good.substr(0, good.size() - 20)) ==
+          "drive.csv:243: 11 columns, the header has 16; is the file truncated?");
+  REQUIRE(complaint(kStepsHeader + stepRows(3)) ==
+          "drive.csv:122: the file ends after 121 rows, sessions.csv says 242; is the file "
+          "truncated?");
+  std::string nan = kStepsHeader + good;
+  nan.replace(nan.find("0.1000,0.0"), 6, "nan");
+  REQUIRE(complaint(nan) == "drive.csv:4: column x_m is 'nan'; a finite number is needed");
+  std::string missing = kStepsHeader + good;
+  missing.replace(missing.find("pose_new"), 8, "pose_old");
+  REQUIRE(complaint(missing) == "drive.csv:1: no column pose_new; is this another --format?");
+  REQUIRE(complaint(kStepsHeader) ==
+          "drive.csv:1: no rows after the header; is the file truncated?");
+  std::string swapped = kStepsHeader + good;
+  swapped.replace(swapped.find("3,0,0.100"), 9, "3,0,0.010");
+  REQUIRE(complaint(swapped) ==
+          "drive.csv:4: t_s does not grow within the step; are the rows in order?");
+}
+
+TEST_CASE("a session that is not known is refused, and so is a file that is not there") {
+  const Folder folder("import_session");
+  const std::string path = folder.file("sessions.csv", sessions(1));
+  REQUIRE_THROWS_WITH(readSession(path, "other"), Catch::Contains("no session other"));
+  REQUIRE_THROWS_WITH(readSession(folder.file("none.csv"), "drive"),
+                      Catch::Contains("cannot be read"));
+}
+
+TEST_CASE("real recordings become logs in all their formats") {
+  const char* recordings = std::getenv("TREAD_RECORDINGS");
+  const std::string drive = std::string(recordings ? recordings : "") + "/drive/";
+  if (!std::filesystem::exists(drive + "sessions.csv")) {
+    WARN("skipped: no recordings in " + drive);
+    return;
+  }
+  const Session grass = readSession(drive + "sessions.csv", "warthog_grass_20240920a");
+  const Imported steps =
+      imported(readSteps(drive + "steps/warthog_grass_20240920a.csv", grass), grass, "steps");
+  REQUIRE(steps.executions.size() == 198);
+  REQUIRE(steps.counts.aborted == 0);
+  const Session raw = readSession(drive + "sessions.csv", "warthog_grass_20240729c");
+  const std::string name = "/warthog_grass_20240729c.csv";
+  const Imported aligned = imported(readAligned(drive + "aligned" + name, raw), raw, "aligned");
+  const Imported whole =
+      imported(readContinuous(drive + "continuous" + name, raw), raw, "continuous");
+  REQUIRE(aligned.executions.size() == 40);
+  REQUIRE(whole.executions.size() == 40);
+  REQUIRE(whole.motor.back().battery_voltage == Approx(48.25).margin(0.5));
+}

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+
+#include "common/vehicle/model_file.hpp"
+#include "tests/tools/replay/synthetic_drive.hpp"
+#include "tools/import/csv_table.hpp"
+#include "tools/replay/learner_report.hpp"
+
+using namespace tread;
+using namespace tread::replay;
+using namespace tread::samples;
+
+namespace {
+
+/// The ground halves every turn; the model that predicts does not know.
+const VehicleModel kTruth = plainModel(0.9, 0.5);
+const VehicleModel kModel = plainModel(1.0, 1.0);
+
+learner::LearnerNodeConfig configFor(const PatternSet& set, learner::Rule rule) {
+  learner::LearnerNodeConfig config(set);
+  config.rule.rule = rule;
+  config.limits.entry_speed = config.limits.entry_yaw_rate =
+      std::numeric_limits<double>::infinity();
+  return config;
+}
+
+LearnerRun runOf(const DriveLog& log, learner::Rule rule,
+                 Commitment commitment = Commitment::kAhead) {
+  return runLearner(log, configFor(predictedSet(log, kModel), rule), commitment,
+                    learner::ruleName(rule));
+}
+
+/// Mean of the last part of a run.
+ErrorSummary lateErrors(const LearnerRun& run) {
+  return summarise({run.learned.begin() + static_cast<std::ptrdiff_t>(run.learned.size() / 2),
+                    run.learned.end()});
+}
+
+}  // namespace
+
+TEST_CASE("a model predicts one pattern per command step of a log, from the commands applied") {
+  const DriveLog log = syntheticLog(syntheticRecording(kTruth, 5));
+  REQUIRE(log.executions.size() == 10);
+  REQUIRE(log.surfaceAt(log.executions[0].ended) == "ice");
+  const PatternSet set = predictedSet(log, kModel);
+  REQUIRE(set.patterns().size() == 5);
+  REQUIRE(set.content().period_us == 50'000);
+  for (const MotionPattern& pattern : set.patterns()) {
+    REQUIRE(pattern.commands.size() == 40);
+    const TrackCommand& command = pattern.commands.front();
+    // Single precision in MOTOR.
+    REQUIRE(pattern.end().yaw == Approx(2.0 * (command.right - command.left)).margin(1e-6));
+  }
+}
+
+TEST_CASE("a model of the other kind of command is refused with one line") {
+  const DriveLog log = syntheticLog(syntheticRecording(kTruth, 2));
+  VehicleModel power = kModel;
+  power.kind = CommandKind::kPower;
+  REQUIRE_THROWS_WITH(predictedSet(log, power), Catch::Contains("not of the kind of model"));
+}
+
+TEST_CASE("off scores the model itself on every execution") {
+  const DriveLog log = syntheticLog(syntheticRecording(kTruth, 8));
+  const LearnerRun run = runOf(log, learner::Rule::kOff);
+  REQUIRE(run.learned.size() == 16);
+  const PatternSet set = predictedSet(log, kModel);
+  for (const learning_t& learned : run.learned) {
+    REQUIRE(learned.accepted);
+    const double predicted = set.find(learned.learned_pattern_id)->end().yaw;
+    REQUIRE(learned.error_yaw == Approx(-0.5 * predicted).margin(1e-4));
+  }
+}
+
+TEST_CASE("collective carries what one command taught to commands that were never executed") {
+  const DriveLog log = syntheticLog(syntheticRecording(kTruth, 40));
+  const ErrorSummary off = lateErrors(runOf(log, learner::Rule::kOff));
+  const ErrorSummary collective = lateErrors(runOf(log, learner::Rule::kCollective));
+  REQUIRE(off.count == 40);
+  REQUIRE(collective.yaw_mean < 0.3 * off.yaw_mean);
+  REQUIRE(collective.position_mean < off.position_mean);
+}
+
+TEST_CASE("single helps a command that comes twice only if the first was learned in time") {
+  const DriveLog log = syntheticLog(syntheticRecording(kTruth, 10));
+  const ErrorSummary off = summarise(runOf(log, learner::Rule::kOff).learned);
+  const ErrorSummary ahead = summarise(runOf(log, learner::Rule::kSingle).learned);
+  const ErrorSummary prompt =
+      summarise(runOf(log, learner::Rule::kSingle, Commitment::kPrompt).learned);
+  // The second execution of a command begins when the first ends: its set was chosen before.
+  REQUIRE(ahead.yaw_mean == Approx(off.yaw_mean));
+  REQUIRE(prompt.yaw_mean == Approx(0.75 * off.yaw_mean).epsilon(0.01));
+}
+
+TEST_CASE("the same log gives the same run, to the bit") {
+  const DriveLog log = syntheticLog(syntheticRecording(kTruth, 10));
+  const LearnerRun first = runOf(log, learner::Rule::kCollective);
+  const LearnerRun second = runOf(log, learner::Rule::kCollective);
+  REQUIRE(first.learned.size() == second.learned.size());
+  for (size_t i = 0; i < first.learned.size(); ++i) {
+    REQUIRE(first.learned[i].error_position == second.learned[i].error_position);
+    REQUIRE(first.learned[i].result_version == second.learned[i].result_version);
+  }
+}
+
+TEST_CASE("the report says what came in, what was refused and why, and the errors side by side") {
+  importer::Recording recording = syntheticRecording(kTruth, 6);
+  // The INS is silent for half a second in the first execution of step 2.
+  recording.fixes.erase(
+      std::remove_if(recording.fixes.begin(), recording.fixes.end(),
+                     [](const auto& fix) { return fix.time > 18.0 && fix.time < 18.5; }),
+      recording.fixes.end());
+  const DriveLog log = syntheticLog(recording);
+  const PatternSet set = predictedSet(log, kModel);
+  const std::string report =
+      reportOf(log, set, {runOf(log, learner::Rule::kOff), runOf(log, learner::Rule::kCollective)});
+  INFO(report);
+  REQUIRE(report.find("synthetic: 12 executions in, 11 measured, 1 refused\n") == 0);
+  REQUIRE(report.find("1 refused: INS gap") != std::string::npos);
+  REQUIRE(report.find("  ice                      11  off") != std::string::npos);
+  REQUIRE(report.find("collective") != std::string::npos);
+  REQUIRE(report.find("forward turn") != std::string::npos);
+}
+
+TEST_CASE("the report is also a picture") {
+  const DriveLog log = syntheticLog(syntheticRecording(kTruth, 6));
+  const std::string path =
+      (std::filesystem::temp_directory_path() / "tread_learner_replay.png").string();
+  drawReport(log, predictedSet(log, kModel),
+             {runOf(log, learner::Rule::kOff), runOf(log, learner::Rule::kCollective)}, path);
+  REQUIRE(std::filesystem::file_size(path) > 5000);
+  std::filesystem::remove(path);
+}
+
+TEST_CASE("commands are told apart by what they ask for") {
+  const auto classOf = [](double left, double right) {
+    MotionPattern pattern;
+    pattern.commands.assign(10, {left, right});
+    return commandClass(pattern);
+  };
+  REQUIRE(classOf(1.0, 1.0) == "forward");
+  REQUIRE(classOf(0.6, 1.0) == "forward turn");
+  REQUIRE(classOf(-0.5, 1.0) == "counter-rotating");
+  REQUIRE(classOf(-1.0, -0.5) == "reverse turn");
+  REQUIRE(classOf(-1.0, -1.0) == "reverse");
+  REQUIRE(classOf(0.0, 0.0) == "standing");
+}
+
+TEST_CASE("foreign messages in a log are skipped and counted") {
+  importer::Session session;
+  session.pose_rate = 20.0;
+  importer::LogCounts counts;
+  auto events = importer::makeLog(syntheticRecording(kTruth, 2), session, "steps", {}, counts);
+  LogEvent foreign;
+  foreign.utime = events[5].utime;
+  foreign.channel = "INS";
+  foreign.bytes = {1, 2, 3};
+  events.push_back(foreign);
+  foreign.channel = "POSE";
+  events.push_back(foreign);
+  const DriveLog log = toDriveLog("foreign", events);
+  REQUIRE(log.skipped == 1);
+  REQUIRE(log.executions.size() == 4);
+}
+
+TEST_CASE("a log without executions is refused with what to do") {
+  const std::string path =
+      (std::filesystem::temp_directory_path() / "tread_empty_drive.log").string();
+  { LogWriter writer(path); }
+  REQUIRE_THROWS_WITH(readDriveLog(path), Catch::Contains("tread-import makes one"));
+  std::filesystem::remove(path);
+  REQUIRE_THROWS(readDriveLog("/nowhere/at/all.log"));
+}
+
+TEST_CASE("real grass goes through the learner") {
+  const char* recordings = std::getenv("TREAD_RECORDINGS");
+  const std::string drive = std::string(recordings ? recordings : "") + "/drive/";
+  if (!std::filesystem::exists(drive + "sessions.csv")) {
+    WARN("skipped: no recordings in " + drive);
+    return;
+  }
+  const auto session = importer::readSession(drive + "sessions.csv", "warthog_grass_20240729c");
+  importer::LogCounts counts;
+  const DriveLog log = toDriveLog(
+      session.name,
+      importer::makeLog(importer::readSteps(drive + "steps/warthog_grass_20240729c.csv", session),
+                        session, "steps", {}, counts));
+  const PatternSet set = predictedSet(
+      log, readModelFile(std::string(TREAD_SOURCE_DIR) + "/config/models/warthog_asphalt.yaml"));
+  const LearnerRun off =
+      runLearner(log, configFor(set, learner::Rule::kOff), Commitment::kAhead, "off");
+  const LearnerRun collective =
+      runLearner(log, configFor(set, learner::Rule::kCollective), Commitment::kAhead, "collective");
+  REQUIRE(off.learned.size() == 40);
+  REQUIRE(summarise(off.learned).count >= 35);
+  REQUIRE(summarise(collective.learned).count == summarise(off.learned).count);
+  REQUIRE(summarise(collective.learned).yaw_mean < summarise(off.learned).yaw_mean);
+}
