@@ -92,7 +92,8 @@ void LcmBus::run(Node& node, const std::atomic<bool>& stop) {
   int64_t next_step = hostNow();
   while (!stop) {
     const int64_t wait = next_step - hostNow();
-    handle(static_cast<int>(std::max<int64_t>(0, wait / 1000)));
+    // Rounded up: a rest below a millisecond would be waited for without sleeping.
+    handle(static_cast<int>(std::max<int64_t>(0, (wait + 999) / 1000)));
     const int64_t started = hostNow();
     if (started < next_step) continue;
     node.step(now());

@@ -35,6 +35,8 @@ int runShell(
   }
   std::signal(SIGINT, requestStop);
   std::signal(SIGTERM, requestStop);
+  // A device that goes away while it is written to must not end the process.
+  std::signal(SIGPIPE, SIG_IGN);
   try {
     body(arguments, g_stop);
   } catch (const std::exception& error) {

@@ -34,6 +34,12 @@ class Device : public mrpt::hwdrivers::CHokuyoURG {
     m_disable_firmware_timestamp = true;
     logging_enable_console_output = false;
   }
+  /// The library's destructor speaks to the device and waits for ever where it is gone: without a
+  /// stream and an address it has nobody to speak to.
+  ~Device() override {
+    m_ip_dir.clear();
+    m_stream.reset();
+  }
   ScipGeometry geometry() const {
     return {m_sensor_info.scan_first, m_sensor_info.scan_last, m_sensor_info.scan_front,
             m_sensor_info.scans_per_360deg};

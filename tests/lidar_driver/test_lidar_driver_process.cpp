@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// The real process with MRPT's driver inside, against the emulated range finder on a real socket.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+#include "common/bus/lcm_bus.hpp"
+#include "tests/lidar_driver/scip_server.hpp"
+#include "tests/system/process.hpp"
+
+using namespace tread;
+using namespace tread::testing;
+
+namespace {
+
+/// The process, a bus that hears it, and its configuration file.
+class Driven {
+ public:
+  explicit Driven(const std::string& address) {
+    const std::string url = ownLcmUrl();
+    bus_ = std::make_unique<LcmBus>(url, TimeSource::kHost);
+    bus_->subscribe<scan_t>(kScan, [this](const scan_t& scan) {
+      last = scan;
+      ++scans;
+    });
+    bus_->subscribe<health_t>(kHealth, [this](const health_t& message) { health = message; });
+    file_ = "lidar_" + std::to_string(getpid()) + ".yaml";
+    std::ofstream(file_) << "address: " << address << "\nrange_max: 12\n";
+    process = std::make_unique<Process>(
+        "tread-lidar-driver", std::vector<std::string>{"--config", file_, "--lcm-url", url});
+  }
+  ~Driven() { std::remove(file_.c_str()); }
+
+  /// Listens until the condition holds, at most so many seconds.
+  template <class Condition>
+  bool until(Condition condition, double seconds) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() > end) return false;
+      bus_->handle(20);
+    }
+    return true;
+  }
+
+  int scans = 0;
+  scan_t last{};
+  health_t health{};
+  std::unique_ptr<Process> process;
+
+ private:
+  std::unique_ptr<LcmBus> bus_;
+  std::string file_;
+};
+
+bool haveMulticast() {
+  try {
+    const LcmBus bus(ownLcmUrl(), TimeSource::kHost);
+    return true;
+  } catch (const std::runtime_error& error) {
+    WARN("skipped: " << error.what());
+    return false;
+  }
+}
+
+bool says(const health_t& health, const std::string& words) {
+  return health.health_state == health_t::HEALTH_FAILED &&
+         health.health_reason.find(words) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "scans of a SCIP device come out with the device's own geometry, and SIGTERM ends the "
+    "process") {
+  if (!haveMulticast()) return;
+  ScipServer server(ScipServer::Manner::kGood);
+  Driven driven(server.address());
+  REQUIRE(driven.until([&] { return driven.scans >= 8; }, 20));
+  REQUIRE(driven.last.num_beams == 541);
+  REQUIRE(driven.last.angle_first == Approx(-0.75 * M_PI));
+  REQUIRE(driven.last.angle_step == Approx(M_PI / 360));
+  REQUIRE(driven.last.ranges[0] == Approx(3.0));
+  REQUIRE(std::isinf(driven.last.ranges[270]));
+  REQUIRE(driven.last.ranges[540] == Approx(5.0));
+  REQUIRE(driven.last.range_max == 12.0);
+  REQUIRE(driven.last.duration > 0);
+  driven.process->signal(SIGTERM);
+  REQUIRE(driven.process->waitFor(5));
+  REQUIRE(driven.process->exitCode() == 0);
+}
+
+TEST_CASE("a range finder that goes away and comes back is connected again") {
+  if (!haveMulticast()) return;
+  auto server = std::make_unique<ScipServer>(ScipServer::Manner::kGood);
+  const int port = server->port();
+  Driven driven(server->address());
+  REQUIRE(driven.until([&] { return driven.scans >= 3; }, 20));
+  server.reset();
+  REQUIRE(driven.until([&] { return says(driven.health, "no scan for"); }, 20));
+  const int before = driven.scans;
+  ScipServer again(ScipServer::Manner::kGood, port);
+  REQUIRE(driven.until([&] { return driven.scans >= before + 3; }, 30));
+}
+
+TEST_CASE("a peer that accepts and closes at once does not catch the process") {
+  if (!haveMulticast()) return;
+  ScipServer server(ScipServer::Manner::kCloses);
+  Driven driven(server.address());
+  REQUIRE(driven.until([&] { return says(driven.health, "does not answer SCIP 2.0"); }, 20));
+  REQUIRE(driven.process->running());
+  REQUIRE(server.connections() < 60);
+  driven.process->signal(SIGINT);
+  REQUIRE(driven.process->waitFor(8));
+  REQUIRE(driven.process->exitCode() == 0);
+}
+
+TEST_CASE("a silent device, a deaf port and a mistyped key are each one clear line") {
+  if (!haveMulticast()) return;
+  SECTION("silent") {
+    ScipServer server(ScipServer::Manner::kSilent);
+    Driven driven(server.address());
+    REQUIRE(driven.until([&] { return says(driven.health, "does not answer SCIP 2.0"); }, 20));
+  }
+  SECTION("nobody listens") {
+    int port = 0;
+    { port = ScipServer(ScipServer::Manner::kGood).port(); }
+    Driven driven("tcp:127.0.0.1:" + std::to_string(port));
+    REQUIRE(driven.until([&] { return says(driven.health, "cannot connect"); }, 20));
+  }
+  SECTION("mistyped key") {
+    const std::string file = "lidar_typo_" + std::to_string(getpid());
+    std::ofstream(file + ".yaml") << "adress: tcp:127.0.0.1:1\n";
+    Process process("tread-lidar-driver", {"--config", file + ".yaml"}, file + ".txt");
+    REQUIRE(process.waitFor(10));
+    REQUIRE(process.exitCode() == 1);
+    std::ifstream output(file + ".txt");
+    std::string line;
+    std::getline(output, line);
+    REQUIRE(line.find(file + ".yaml:1") != std::string::npos);
+    REQUIRE(line.find("adress") != std::string::npos);
+    std::remove((file + ".yaml").c_str());
+    std::remove((file + ".txt").c_str());
+  }
+}
+
+TEST_CASE("random bytes between scans cost some scans and nothing else") {
+  if (!haveMulticast()) return;
+  ScipServer server(ScipServer::Manner::kGarbage);
+  Driven driven(server.address());
+  driven.until([&] { return driven.scans >= 3; }, 10);
+  REQUIRE(driven.process->running());
+  driven.process->signal(SIGTERM);
+  REQUIRE(driven.process->waitFor(10));
+}
