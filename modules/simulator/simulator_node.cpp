@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/simulator/simulator_node.hpp"
+
+#include <array>
+
+namespace tread::sim {
+namespace {
+
+/// What people want to know of a simulation, as YAML.
+std::string describe(const SimulatedDevices& devices) {
+  const WorldDescription& world = devices.robot().world().description();
+  return "world: \"" + world.name + "\"\nseed: " + std::to_string(devices.robot().settings().seed) +
+         "\nobstacles: " + std::to_string(world.obstacles.size()) +
+         "\nregions: " + std::to_string(world.regions.size()) + "\n";
+}
+
+}  // namespace
+
+SimulatorNode::SimulatorNode(SimulatedDevices& devices, Bus& bus, const DeviceLines& lines)
+    : devices_(devices), lines_(lines), health_(bus, "simulator", describe(devices)) {}
+
+void SimulatorNode::step(int64_t utime) {
+  devices_.advanceTo(utime);
+  devices_.ins().receive(hear(lines_.ins, utime), utime);
+  devices_.motor().receive(hear(lines_.motor, utime), utime);
+  say(lines_.ins, devices_.ins().transmit(utime));
+  say(lines_.motor, devices_.motor().transmit(utime));
+  if (lines_.laser != nullptr) {
+    const bool open = lines_.laser->isOpen();
+    if (open && !laser_connected_) devices_.laser().reconnect();
+    laser_connected_ = open;
+    devices_.laser().receive(hear(*lines_.laser, utime), utime);
+    say(*lines_.laser, devices_.laser().transmit(utime));
+  }
+  const RobotTruth& truth = devices_.robot().truth();
+  health_.setCounter("collisions", static_cast<int64_t>(truth.collisions.size()));
+  health_.step(utime);
+}
+
+std::string SimulatorNode::hear(Link& line, int64_t utime) {
+  if (!line.isOpen() && !line.reopen(utime)) return {};
+  std::string bytes;
+  std::array<uint8_t, 512> buffer;
+  while (const auto count = line.read(buffer.data(), buffer.size())) {
+    if (*count == 0) break;
+    bytes.append(reinterpret_cast<const char*>(buffer.data()), *count);
+  }
+  return bytes;
+}
+
+void SimulatorNode::say(Link& line, const std::string& bytes) {
+  if (bytes.empty()) return;
+  if (!line.write(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size())) {
+    health_.addToCounter("bytes lost: line full or down", static_cast<int64_t>(bytes.size()));
+  }
+}
+
+}  // namespace tread::sim

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/simulator/world_file.hpp"
+
+#include <cstdio>
+#include <fstream>
+
+#include "common/config/config_reader.hpp"
+
+namespace tread::sim {
+namespace {
+
+constexpr Range kPlace{-100000.0, 100000.0};  // [m]
+constexpr Range kSize{0.001, 10000.0};        // [m]
+constexpr Range kAngle{-10.0, 10.0};          // [rad]
+
+std::vector<Eigen::Vector2d> readCorners(ConfigReader& reader) {
+  std::vector<std::vector<double>> rows;
+  reader.table("corners", rows, 2, kPlace, "m");
+  std::vector<Eigen::Vector2d> corners;
+  for (const auto& row : rows) corners.emplace_back(row[0], row[1]);
+  return corners;
+}
+
+Eigen::Vector2d readPoint(ConfigReader& reader, const std::string& key) {
+  std::vector<double> values;
+  reader.numbers(key, values, 2, kPlace, "m", true);
+  return {values[0], values[1]};
+}
+
+SurfaceParameters readSurface(ConfigReader& reader) {
+  std::vector<std::string> known;
+  for (const SurfaceParameters& surface : builtInSurfaces()) known.push_back(surface.name);
+  std::string name, like = "grass";
+  reader.text("name", name, true);
+  reader.choice("like", like, known);
+  SurfaceParameters surface = *builtInSurface(like);
+  surface.name = name;
+  reader.number("friction", surface.friction, {0.01, 2.0}, "");
+  reader.number("shear_displacement", surface.shear_displacement, {0.004, 0.5}, "m");
+  reader.number("lateral_displacement", surface.lateral_displacement, {0.004, 0.5}, "m");
+  reader.number("resistance_constant", surface.resistance_constant, {0.0, 0.3}, "");
+  reader.number("resistance_viscous", surface.resistance_viscous, {0.0, 1.0}, "s/m");
+  reader.number("pressure_offset", surface.pressure_offset, {-0.1, 0.1}, "m");
+  reader.number("spread_forward", surface.spread.forward, {0.0, 0.3}, "");
+  reader.number("spread_yaw", surface.spread.yaw, {0.0, 0.5}, "");
+  reader.number("spread_heading", surface.spread.heading, {0.0, 0.3}, "rad");
+  return surface;
+}
+
+SurfaceRegion readRegion(ConfigReader& reader) {
+  SurfaceRegion region;
+  reader.text("surface", region.surface, true);
+  std::vector<double> strip;
+  reader.numbers("strip", strip, 4, kPlace, "m");
+  double width = 2.0;
+  reader.number("width", width, kSize, "m");
+  region.corners = readCorners(reader);
+  if (strip.empty() == region.corners.empty()) {
+    throw reader.error("surface", "give either corners or a strip from x, y to x, y");
+  }
+  if (strip.empty()) return region;
+  const Eigen::Vector2d from(strip[0], strip[1]), to(strip[2], strip[3]);
+  if ((to - from).norm() < 0.001) throw reader.error("strip", "its two ends must differ");
+  return stripRegion(region.surface, from, to, width);
+}
+
+Obstacle readObstacle(ConfigReader& reader) {
+  Obstacle obstacle;
+  std::vector<double> box;
+  double length = 1.0, width = 1.0;
+  reader.numbers("box", box, 3, kPlace, "m, m, rad");
+  reader.number("length", length, kSize, "m");
+  reader.number("width", width, kSize, "m");
+  reader.number("height", obstacle.height, {0.05, 100.0}, "m");
+  reader.number("radius", obstacle.radius, kSize, "m");
+  const bool disc = reader.has("disc");
+  if (disc) obstacle.centre = readPoint(reader, "disc");
+  obstacle.corners = readCorners(reader);
+  const int shapes = (box.empty() ? 0 : 1) + (disc ? 1 : 0) + (obstacle.corners.empty() ? 0 : 1);
+  const std::string any = disc ? "disc" : box.empty() ? "corners" : "box";
+  if (shapes != 1) throw reader.error(any, "an obstacle is one of box, disc or corners");
+  if (!box.empty())
+    obstacle.corners = boxObstacle({box[0], box[1], box[2]}, length, width, 1.0).corners;
+  reader.text("name", obstacle.name);
+  if (const auto fault = obstacleFault(obstacle)) throw reader.error(any, *fault);
+  return obstacle;
+}
+
+Terrain readTerrain(ConfigReader reader) {
+  Terrain terrain;
+  for (ConfigReader& item : reader.sections("waves")) {
+    TerrainWave wave;
+    std::vector<double> k;
+    item.number("amplitude", wave.amplitude, {-20.0, 20.0}, "m", true);
+    item.numbers("k", k, 2, {-20.0, 20.0}, "rad/m", true);
+    item.number("phase", wave.phase, kAngle, "rad");
+    wave.k = {k[0], k[1]};
+    terrain.waves.push_back(wave);
+  }
+  for (ConfigReader& item : reader.sections("bumps")) {
+    TerrainBump bump;
+    bump.centre = readPoint(item, "centre");
+    item.number("height", bump.height, {-20.0, 20.0}, "m", true);
+    item.number("radius", bump.radius, {0.1, 1000.0}, "m", true);
+    terrain.bumps.push_back(bump);
+  }
+  return terrain;
+}
+
+WorldDescription readWorld(ConfigReader reader) {
+  WorldDescription world;
+  reader.text("name", world.name);
+  std::vector<double> bounds{world.bounds.low.x(), world.bounds.low.y(), world.bounds.high.x(),
+                             world.bounds.high.y()};
+  reader.numbers("bounds", bounds, 4, kPlace, "m");
+  world.bounds = {{bounds[0], bounds[1]}, {bounds[2], bounds[3]}};
+  reader.text("base_surface", world.base_surface);
+  for (ConfigReader& item : reader.sections("surfaces"))
+    world.surfaces.push_back(readSurface(item));
+  for (ConfigReader& item : reader.sections("regions")) world.regions.push_back(readRegion(item));
+  world.terrain = readTerrain(reader.section("terrain"));
+  for (ConfigReader& item : reader.sections("obstacles")) {
+    world.obstacles.push_back(readObstacle(item));
+  }
+  reader.finish();
+  if (const auto fault = worldFault(world)) throw reader.error("base_surface", *fault);
+  return world;
+}
+
+/// Shortest text that reads back to the same number.
+std::string number(double value) {
+  char text[40];
+  for (int digits = 6; digits <= 17; ++digits) {
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
+    if (std::stod(text) == value) break;
+  }
+  return text;
+}
+
+std::string point(const Eigen::Vector2d& p) {
+  return "[" + number(p.x()) + ", " + number(p.y()) + "]";
+}
+
+std::string points(const std::vector<Eigen::Vector2d>& corners) {
+  std::string text = "[";
+  for (const Eigen::Vector2d& corner : corners) {
+    text += (text.size() > 1 ? ", " : "") + point(corner);
+  }
+  return text + "]";
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+std::string formatSurface(const SurfaceParameters& surface) {
+  return "  - name: " + quoted(surface.name) + "\n    friction: " + number(surface.friction) +
+         "\n    shear_displacement: " + number(surface.shear_displacement) +
+         "\n    lateral_displacement: " + number(surface.lateral_displacement) +
+         "\n    resistance_constant: " + number(surface.resistance_constant) +
+         "\n    resistance_viscous: " + number(surface.resistance_viscous) +
+         "\n    pressure_offset: " + number(surface.pressure_offset) +
+         "\n    spread_forward: " + number(surface.spread.forward) +
+         "\n    spread_yaw: " + number(surface.spread.yaw) +
+         "\n    spread_heading: " + number(surface.spread.heading) + "\n";
+}
+
+std::string formatTerrain(const Terrain& terrain) {
+  std::string text = "terrain:\n";
+  if (!terrain.waves.empty()) text += "  waves:\n";
+  for (const TerrainWave& wave : terrain.waves) {
+    text += "    - {amplitude: " + number(wave.amplitude) + ", k: " + point(wave.k) +
+            ", phase: " + number(wave.phase) + "}\n";
+  }
+  if (!terrain.bumps.empty()) text += "  bumps:\n";
+  for (const TerrainBump& bump : terrain.bumps) {
+    text += "    - {centre: " + point(bump.centre) + ", height: " + number(bump.height) +
+            ", radius: " + number(bump.radius) + "}\n";
+  }
+  return text;
+}
+
+std::string formatObstacle(const Obstacle& obstacle) {
+  std::string text = obstacle.isDisc() ? "  - {disc: " + point(obstacle.centre) +
+                                             ", radius: " + number(obstacle.radius)
+                                       : "  - {corners: " + points(obstacle.corners);
+  text += ", height: " + number(obstacle.height);
+  if (!obstacle.name.empty()) text += ", name: " + quoted(obstacle.name);
+  return text + "}\n";
+}
+
+}  // namespace
+
+WorldDescription readWorld(const std::string& path) {
+  return readWorld(ConfigReader::fromFile(path));
+}
+
+WorldDescription parseWorld(const std::string& text, const std::string& name) {
+  return readWorld(ConfigReader::fromText(text, name));
+}
+
+std::string formatWorld(const WorldDescription& world) {
+  const Extent& bounds = world.bounds;
+  std::string text = "# A world of the simulator. Metres and radians; later regions lie on top.\n";
+  text += "name: " + quoted(world.name) + "\nbounds: [" + number(bounds.low.x()) + ", " +
+          number(bounds.low.y()) + ", " + number(bounds.high.x()) + ", " + number(bounds.high.y()) +
+          "]\nbase_surface: " + quoted(world.base_surface) + "\n";
+  if (!world.surfaces.empty()) text += "surfaces:\n";
+  for (const SurfaceParameters& surface : world.surfaces) text += formatSurface(surface);
+  if (!world.regions.empty()) text += "regions:\n";
+  for (const SurfaceRegion& region : world.regions) {
+    text +=
+        "  - {surface: " + quoted(region.surface) + ", corners: " + points(region.corners) + "}\n";
+  }
+  if (!world.terrain.flat()) text += formatTerrain(world.terrain);
+  if (!world.obstacles.empty()) text += "obstacles:\n";
+  for (const Obstacle& obstacle : world.obstacles) text += formatObstacle(obstacle);
+  return text;
+}
+
+void writeWorld(const std::string& path, const WorldDescription& world) {
+  std::ofstream file(path);
+  file << formatWorld(world);
+  file.close();
+  if (!file) throw std::runtime_error(path + ": cannot be written; check folder and permissions");
+}
+
+}  // namespace tread::sim
