@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <iomanip>
+#include <sstream>
 
 #include "modules/learner/core/scaling.hpp"
 
@@ -18,10 +19,11 @@ constexpr double kExpectedMotion = 0.10;
 /// A PoseTrack decides about gaps itself; here they are judged for the whole execution.
 constexpr int64_t kAnyGap = std::numeric_limits<int64_t>::max();
 
-std::string text(const char* format, double a, double b) {
-  char line[160];
-  std::snprintf(line, sizeof line, format, a, b);
-  return line;
+/// A number with so many decimals.
+std::string fixed(double value, int decimals) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(decimals) << value;
+  return out.str();
 }
 
 double seconds(int64_t us) {
@@ -53,7 +55,8 @@ class Cutter {
     checkMotion();
     checkEntry(entry_class);
     if (result_.slope > limits_.max_slope)
-      close(Gate::kSlope, text("slope %.3f rad, allowed %.3f", result_.slope, limits_.max_slope));
+      close(Gate::kSlope,
+            "slope " + fixed(result_.slope, 3) + " rad, allowed " + fixed(limits_.max_slope, 3));
     return result_;
   }
 
@@ -72,8 +75,8 @@ class Cutter {
     const int64_t took = cut_.ended - cut_.started;
     const double longest = seconds(duration()) / limits_.min_covered;
     if (took <= 0 || seconds(took) > longest)
-      close(Gate::kRecord, text("the record says that it took %.3f s; the pattern takes %.3f s",
-                                seconds(took), seconds(duration())));
+      close(Gate::kRecord, "the record says that it took " + fixed(seconds(took), 3) +
+                               " s; the pattern takes " + fixed(seconds(duration()), 3) + " s");
   }
 
   /// M at started + (t + 1) periods, as far as the record and the track go.
@@ -131,12 +134,13 @@ class Cutter {
     if (result_.covered > 0) {
       const auto gap = track_->longestGap(cut_.started, sampleTime(result_.covered - 1));
       if (gap && *gap > limits_.max_gap_us)
-        close(Gate::kInsGap, text("INS silent for %.3f s, allowed %.3f s", seconds(*gap),
-                                  seconds(limits_.max_gap_us)));
+        close(Gate::kInsGap, "INS silent for " + fixed(seconds(*gap), 3) + " s, allowed " +
+                                 fixed(seconds(limits_.max_gap_us), 3) + " s");
     }
     if (share < limits_.min_covered)
-      close(Gate::kCoveredTime, text("the INS covers %.0f %% of the execution, needed %.0f %%",
-                                     100.0 * share, 100.0 * limits_.min_covered));
+      close(Gate::kCoveredTime, "the INS covers " + fixed(100.0 * share, 0) +
+                                    " % of the execution, needed " +
+                                    fixed(100.0 * limits_.min_covered, 0) + " %");
   }
 
   void checkMotion() {
@@ -146,15 +150,17 @@ class Cutter {
     const double fastest = fastestSpeed();
     const double allowed = limits_.speed_margin * limits_.max_speed;
     if (fastest > allowed)
-      close(Gate::kSpeed, text("measured %.2f m/s, possible %.2f m/s", fastest, allowed));
+      close(Gate::kSpeed,
+            "measured " + fixed(fastest, 2) + " m/s, possible " + fixed(allowed, 2) + " m/s");
     const Axes moved = boundingBox(result_.trajectory);
     const Axes expected = boundingBox(pattern_.trajectory);
     const bool should_move = (expected >= kExpectedMotion).any();
     const bool stood = moved[0] < limits_.min_motion && moved[1] < limits_.min_motion &&
                        moved[2] < limits_.min_turn;
     if (should_move && stood)
-      close(Gate::kNoMotion, text("the robot did not move; %.2f m and %.2f rad were predicted",
-                                  std::max(expected[0], expected[1]), expected[2]));
+      close(Gate::kNoMotion, "the robot did not move; " +
+                                 fixed(std::max(expected[0], expected[1]), 2) + " m and " +
+                                 fixed(expected[2], 2) + " rad were predicted");
   }
 
   double fastestSpeed() const {
@@ -179,8 +185,8 @@ class Cutter {
                                   std::abs(result_.entry.v_y - entry_class.twist.v_y));
     const double turn = std::abs(result_.entry.omega - entry_class.twist.omega);
     if (speed > limits_.entry_speed || turn > limits_.entry_yaw_rate)
-      close(Gate::kEntryTwist, "entered " + text("%.2f m/s and %.2f rad/s", speed, turn) +
-                                   " off its entry class " + entry_class.name);
+      close(Gate::kEntryTwist, "entered " + fixed(speed, 2) + " m/s and " + fixed(turn, 2) +
+                                   " rad/s off its entry class " + entry_class.name);
   }
 
   const TrackHistory& history_;

@@ -3,10 +3,10 @@
 #include "modules/learner/core/state_text.hpp"
 
 #include <algorithm>
-#include <cinttypes>
-#include <cstdio>
-#include <cstdlib>
+#include <array>
+#include <charconv>
 #include <sstream>
+#include <system_error>
 
 namespace tread::learner {
 namespace {
@@ -25,10 +25,17 @@ uint64_t fingerprint(const std::string& text) {
   return hash;
 }
 
+/// The shortest text that reads back as the same number, whatever the locale.
 std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
+  std::array<char, 40> text;
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), result.ptr};
+}
+
+std::string hexadecimal(uint64_t value) {
+  std::array<char, 20> text;
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value, 16);
+  return {text.data(), result.ptr};
 }
 
 void writeNumbers(std::ostringstream& out, const PoseCovariance& numbers) {
@@ -46,6 +53,10 @@ void writePattern(std::ostringstream& out, const MotionPattern& pattern,
   out << '\n';
   for (const Pose2& pose : pattern.trajectory)
     out << number(pose.x) << ' ' << number(pose.y) << ' ' << number(pose.yaw) << '\n';
+}
+
+std::string lastLine(const std::string& content) {
+  return "end " + hexadecimal(fingerprint(content)) + "\n";
 }
 
 std::string body(const LearnerState& state, const PatternSet& shipped, const RuleConfig& config) {
@@ -85,12 +96,11 @@ class Words {
     good_ = good_ && (in_ >> value);
     return good_ ? value : 0;
   }
-  /// By strtod, because streams do not read "nan".
   double real() {
     const std::string text = word();
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    good_ = good_ && end != text.c_str() && *end == '\0';
+    double value = 0.0;
+    const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+    good_ = good_ && result.ec == std::errc() && result.ptr == text.data() + text.size();
     return value;
   }
   PoseCovariance numbers() {
@@ -125,10 +135,8 @@ void readPattern(Words& words, MotionPattern& pattern, ResidualTable& residuals)
 std::optional<std::string> checkedBody(const std::string& text) {
   const size_t end = text.rfind("end ");
   if (end == std::string::npos || end == 0 || text[end - 1] != '\n') return std::nullopt;
-  uint64_t written = 0;
-  if (std::sscanf(text.c_str() + end, "end %" SCNx64, &written) != 1) return std::nullopt;
   std::string content = text.substr(0, end);
-  if (fingerprint(content) != written) return std::nullopt;
+  if (text.substr(end) != lastLine(content)) return std::nullopt;
   return content;
 }
 
@@ -137,9 +145,7 @@ std::optional<std::string> checkedBody(const std::string& text) {
 std::string formatState(const LearnerState& state, const PatternSet& shipped,
                         const RuleConfig& config) {
   const std::string content = body(state, shipped, config);
-  char last[40];
-  std::snprintf(last, sizeof last, "end %016" PRIx64 "\n", fingerprint(content));
-  return content + last;
+  return content + lastLine(content);
 }
 
 std::optional<LearnerState> parseState(const std::string& text, const PatternSet& shipped,
