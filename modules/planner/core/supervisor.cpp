@@ -93,10 +93,10 @@ void Supervisor::followBridge(const Situation& s) {
       ++counters_["came to rest"];
       break;
     case ProgramBook::Event::kAborted:
-      ++counters_["aborted by the bridge: " + book_.abortReason()];
+      ++counters_["aborted by the bridge"];
       break;
     case ProgramBook::Event::kNeverStarted:
-      ++counters_[book_.abortReason()];
+      ++counters_["not begun by the bridge"];
       break;
   }
   mode_ = Mode::kSettling;

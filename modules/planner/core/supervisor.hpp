@@ -42,6 +42,9 @@ struct PlannerConfig {
   AgeLimits ages;
   SweepStep sweep;
   double default_sigma = 0.05;  ///< [m] error at the end of a pattern of unknown covariance
+  int64_t lease = 200'000;      ///< [us] the motors stop when nothing newer came for this long
+  int64_t deadline = 30'000;    ///< [us] after which a search is cut off on the robot
+  std::string effective;        ///< the whole as YAML, for CONFIG
 };
 
 /// What a step decided beside the program.

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/planner/permission.hpp"
+
+#include <algorithm>
+
+namespace tread::planner {
+
+void Permission::revoke(int64_t utime) {
+  armed_ = false;
+  revoked_ = std::max(revoked_, utime);
+}
+
+void Permission::take(const arm_t& message, int64_t now) {
+  if (!message.armed) return revoke(std::min(message.utime, now));
+  const bool timely = message.utime <= now + kMaxFuture && now - message.utime <= kMaxAge;
+  if (timely && message.utime > revoked_ && !estopped_) armed_ = true;
+}
+
+void Permission::take(const estop_t& message) {
+  if (message.utime < estop_utime_) return;
+  estop_utime_ = message.utime;
+  estopped_ = message.engaged;
+  if (estopped_) revoke(message.utime);
+}
+
+void Permission::take(const BridgeReading& bridge) {
+  if (bridge_armed_ && !bridge.armed()) revoke(bridge.utime);
+  bridge_armed_ = bridge.armed();
+}
+
+}  // namespace tread::planner

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/planner/planner_config.hpp"
+
+#include <cmath>
+
+namespace tread::planner {
+namespace {
+
+void seconds(ConfigReader& reader, const std::string& key, int64_t& value_us, Range range) {
+  double value = static_cast<double>(value_us) * 1e-6;
+  reader.number(key, value, range, "s");
+  value_us = std::llround(value * 1e6);
+}
+
+void count(ConfigReader& reader, const std::string& key, int& value, Range range) {
+  int64_t wide = value;
+  reader.integer(key, wide, range, "1");
+  value = static_cast<int>(wide);
+}
+
+void readFootprint(ConfigReader reader, FootprintSize& size) {
+  reader.number("front", size.front, {0.05, 10.0}, "m");
+  reader.number("rear", size.rear, {0.05, 10.0}, "m");
+  reader.number("half_width", size.half_width, {0.05, 5.0}, "m");
+}
+
+void readMargins(ConfigReader reader, Margins& margins) {
+  reader.number("check", margins.check, {0.0, 1.0}, "m");
+  reader.number("plan", margins.plan, {0.0, 1.0}, "m");
+  reader.number("growth", margins.growth, {0.0, 3.0}, "1");
+  reader.number("largest", margins.largest, {0.0, 2.0}, "m");
+  if (margins.check > margins.plan) throw reader.error("check", "must not be more than plan");
+  if (margins.largest < margins.plan) throw reader.error("largest", "must not be less than plan");
+}
+
+void readMap(ConfigReader reader, WorldConfig& world) {
+  reader.number("window", world.window, {5.0, 100.0}, "m");
+  reader.number("keep_radius", world.passage.keep_radius, {10.0, 500.0}, "m");
+  reader.number("room_cap", world.passage.room_cap, {0.1, 5.0}, "m");
+  count(reader, "coarse", world.passage.coarse, {1, 8});
+}
+
+void readField(ConfigReader reader, WorldConfig& world) {
+  FieldConfig& field = world.field;
+  field.inflation = world.footprint.half_width;
+  reader.number("inflation", field.inflation, {0.0, 5.0}, "m");
+  reader.number("wide", field.wide, {0.0, 5.0}, "m");
+  reader.number("tight_weight", field.tight_weight, {0.0, 20.0}, "1");
+  reader.number("detour_weight", field.detour_weight, {0.0, 100.0}, "1");
+  reader.number("area_margin", field.area_margin, {2.0, 100.0}, "m");
+  reader.number("max_area", field.max_area, {20.0, 1000.0}, "m");
+  reader.number("reach", field.reach, {5.0, 100.0}, "m");
+  seconds(reader, "period", world.field_period, {0.05, 10.0});
+}
+
+void readSearch(ConfigReader reader, SearchConfig& search) {
+  reader.number("cell", search.cell, {0.02, 1.0}, "m");
+  count(reader, "heading_bins", search.heading_bins, {8, 255});
+  reader.number("bound_share", search.bound_share, {0.1, 1.0}, "1");
+  reader.number("bound_weight", search.bound_weight, {1.0, 10.0}, "1");
+  reader.number("turn_weight", search.turn_weight, {0.0, 5.0}, "1");
+  reader.number("reverse_penalty", search.reverse_penalty, {0.0, 20.0}, "1");
+  reader.number("stop_penalty", search.stop_penalty, {0.0, 20.0}, "s");
+  reader.number("near_penalty", search.near_penalty, {0.0, 20.0}, "1");
+  reader.number("near_distance", search.near_distance, {0.05, 5.0}, "m");
+  reader.number("switch_penalty", search.switch_penalty, {0.0, 20.0}, "s");
+  reader.number("horizon", search.horizon, {1.0, 60.0}, "s");
+  reader.number("frontier", search.frontier, {0.5, 20.0}, "m");
+  reader.number("least_progress", search.least_progress, {0.0, 10.0}, "s");
+  count(reader, "escape_patterns", search.escape_patterns, {0, 10});
+  reader.number("goal_share", search.goal_share, {0.1, 1.0}, "1");
+}
+
+void readPolicy(ConfigReader reader, PolicyConfig& policy) {
+  seconds(reader, "plan_period", policy.plan_period, {0.05, 2.0});
+  seconds(reader, "blocked_period", policy.blocked_period, {0.05, 10.0});
+  seconds(reader, "freeze", policy.freeze, {0.05, 1.0});
+  seconds(reader, "stop_lead", policy.stop_lead, {0.1, 5.0});
+  reader.number("coast_time", policy.coast_time, {0.0, 3.0}, "s");
+  seconds(reader, "settle_limit", policy.settle_limit, {0.5, 30.0});
+  seconds(reader, "patience", policy.patience, {2.0, 600.0});
+  seconds(reader, "recovery_wait", policy.recovery_wait, {0.1, 60.0});
+  count(reader, "recoveries", policy.recoveries, {0, 100});
+  count(reader, "detours", policy.detours, {0, 100});
+  count(reader, "driving_expansions", policy.driving_expansions, {100, 1e6});
+  count(reader, "standing_expansions", policy.standing_expansions, {100, 1e6});
+}
+
+/// The limits can be made stricter, or a little wider; none can be switched off.
+void readAges(ConfigReader reader, AgeLimits& ages) {
+  seconds(reader, "pose", ages.pose, {0.02, 0.3});
+  seconds(reader, "bridge", ages.bridge, {0.1, 1.0});
+  seconds(reader, "map_slow", ages.map_slow, {0.2, 5.0});
+  seconds(reader, "map_stop", ages.map_stop, {0.5, 10.0});
+  seconds(reader, "pattern_set", ages.pattern_set, {2.5, 30.0});
+}
+
+}  // namespace
+
+PlannerConfig readPlannerConfig(ConfigReader& reader) {
+  PlannerConfig config;
+  readFootprint(reader.section("footprint"), config.world.footprint);
+  readMargins(reader.section("margins"), config.world.margins);
+  readMap(reader.section("map"), config.world);
+  readField(reader.section("field"), config.world);
+  readSearch(reader.section("search"), config.search);
+  readPolicy(reader.section("policy"), config.policy);
+  readAges(reader.section("ages"), config.ages);
+  ConfigReader sweep = reader.section("sweep");
+  sweep.number("distance", config.sweep.distance, {0.01, 0.5}, "m");
+  sweep.number("turn", config.sweep.turn, {0.01, 0.5}, "rad");
+  reader.number("default_sigma", config.default_sigma, {0.0, 1.0}, "m");
+  seconds(reader, "lease", config.lease, {0.1, 0.2});
+  seconds(reader, "deadline", config.deadline, {0.005, 0.045});
+  reader.finish();
+  config.effective = reader.effective();
+  return config;
+}
+
+}  // namespace tread::planner

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include "common/config/config_reader.hpp"
+#include "modules/planner/core/supervisor.hpp"
+
+namespace tread::planner {
+
+/// Reads the configuration; throws ConfigError with file:line.
+PlannerConfig readPlannerConfig(ConfigReader& reader);
+
+}  // namespace tread::planner

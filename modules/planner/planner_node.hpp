@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include "common/bus/health.hpp"
+#include "common/messages/pattern_messages.hpp"
+#include "modules/planner/permission.hpp"
+#include "modules/planner/planner_config.hpp"
+
+namespace tread::planner {
+
+/// Plans towards GOAL on MAP with the newest PATTERN_SET, and tells the motor bridge in PROGRAM what to play.
+/** PROGRAM at 20 Hz whatever happens, empty when the robot shall stand; PLAN at 5 Hz and with each plan; PLAN_TREE
+ *  at most once a second. Comes up disarmed: it drives when ARM was seen after its start and MOTOR says armed. */
+class PlannerNode : public Node {
+ public:
+  PlannerNode(const PlannerConfig& config, Bus& bus);
+
+  int64_t period() const override { return 50'000; }
+  void step(int64_t utime) override;
+  /// Empties the program.
+  void shutdown(int64_t utime) override;
+
+  const Supervisor& supervisor() const { return supervisor_; }
+
+ private:
+  void subscribe();
+  void take(const ins_t& message);
+  void take(const map_tile_t& message);
+  void take(const goal_t& message);
+  void take(const pattern_set_part_t& message);
+  void take(const motor_t& message);
+  void take(const execution_t& message);
+  void publishProgram(int64_t utime);
+  void publishPlan(int64_t utime, const Decision& decision, int64_t search_time);
+  void publishTree(const PlanReport& report);
+  void publishHealth(int64_t utime, const PlanReport& report);
+
+  PlannerConfig config_;
+  Bus& bus_;
+  HealthReporter health_;
+  Supervisor supervisor_;
+  PatternSetAssembler sets_;
+  Permission permission_;
+  Situation situation_;
+  int64_t executions_utime_ = 0;
+  int64_t next_plan_ = 0;
+  int64_t next_tree_ = 0;
+  int64_t seq_program_ = 0;
+  int64_t seq_plan_ = 0;
+  int64_t seq_tree_ = 0;
+};
+
+}  // namespace tread::planner
