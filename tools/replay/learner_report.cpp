@@ -100,6 +100,18 @@ void writeGuards(std::ostream& out, const LearnerRun& run) {
   for (const auto& [guard, count] : guards) out << line("  %5d %s\n", count, guard.c_str());
 }
 
+/// The result in one line.
+std::string resultLine(const DriveLog& log, const std::vector<LearnerRun>& runs) {
+  std::string result = log.name + ": mean prediction error of " +
+                       std::to_string(summarise(runs.front().learned).count) + " executions: ";
+  for (const LearnerRun& run : runs) {
+    const ErrorSummary errors = summarise(run.learned);
+    result += line("%s%s %.3f m %.1f deg", &run == &runs.front() ? "" : "; ", run.title.c_str(),
+                   errors.position_mean, errors.yaw_mean * kDegrees);
+  }
+  return result + "\n";
+}
+
 /// On how many executions a run predicted better than the first one.
 void writeComparison(std::ostream& out, const std::vector<LearnerRun>& runs) {
   const std::vector<learning_t>& base = runs.front().learned;
@@ -167,6 +179,7 @@ std::string reportOf(const DriveLog& log, const PatternSet& set,
   out << "\n";
   writeComparison(out, runs);
   if (runs.size() > 1) writeGuards(out, runs.back());
+  out << "\n" << resultLine(log, runs);
   return out.str();
 }
 

@@ -11,6 +11,7 @@
 
 #include "common/pattern/pattern_file.hpp"
 #include "common/vehicle/model_file.hpp"
+#include "tools/replay/ins_picture.hpp"
 #include "tools/replay/learner_report.hpp"
 
 using namespace tread;
@@ -34,6 +35,29 @@ void say(const std::string& report, const Output& output) {
   std::ofstream file(output.report);
   if (!(file << report) || !file.flush())
     throw std::runtime_error(output.report + ": cannot be written");
+}
+
+struct InsArguments {
+  std::string log;
+  std::string config;
+  Output output;
+};
+
+void replayInsLog(const InsArguments& arguments) {
+  ConfigReader reader = arguments.config.empty() ? ConfigReader::fromText("{}", "defaults")
+                                                 : ConfigReader::fromFile(arguments.config);
+  const InsReplay replay = replayInsFile(arguments.log, ins::readInsDriverConfig(reader));
+  say(arguments.log + "\n" + reportOf(replay), arguments.output);
+  if (!arguments.output.picture.empty())
+    drawTrack(replay, arguments.log + " through ins_driver", arguments.output.picture);
+}
+
+void addIns(CLI::App& app, InsArguments& arguments) {
+  CLI::App& command = *app.add_subcommand("ins", "an NMEA 0183 log through ins_driver");
+  command.add_option("log", arguments.log, "what a device said, as bytes")->required();
+  command.add_option("--config", arguments.config, "configuration of ins_driver");
+  addOutput(command, arguments.output);
+  command.callback([&arguments] { replayInsLog(arguments); });
 }
 
 struct LearnerArguments {
@@ -79,11 +103,11 @@ void replayLearner(const LearnerArguments& arguments) {
     runs.push_back(
         replay::runLearner(log, config, replay::Commitment::kPrompt, arguments.rule + ", prompt"));
   }
-  std::string report = replay::reportOf(log, set, runs);
-  report +=
-      "\nEach execution is scored with the newest set when it began, as a planner knows it;\n"
+  std::string notes =
+      "Each execution is scored with the newest set when it began, as a planner knows it;\n"
       "'prompt': with the newest when it ended, when all before it were learned.\n";
-  if (std::isinf(config.limits.entry_speed)) report += "The gate on the entry twist was off.\n";
+  if (std::isinf(config.limits.entry_speed)) notes += "The gate on the entry twist was off.\n";
+  const std::string report = notes + "\n" + replay::reportOf(log, set, runs);
   say(report, arguments.output);
   if (!arguments.output.picture.empty())
     replay::drawReport(log, set, runs, arguments.output.picture);
@@ -123,9 +147,11 @@ void addLearner(CLI::App& app, LearnerArguments& arguments) {
 
 int main(int argc, char** argv) {
   LearnerArguments learner_arguments;
+  InsArguments ins_arguments;
   CLI::App app{"Recorded logs through the real nodes, on the virtual bus"};
   app.require_subcommand(1);
   addLearner(app, learner_arguments);
+  addIns(app, ins_arguments);
   try {
     CLI11_PARSE(app, argc, argv);
   } catch (const std::exception& problem) {
