@@ -10,7 +10,8 @@
 
 namespace tread {
 
-/// The pose of a plausible INS message in the plane; nothing if position or heading is missing or not finite.
+/// The pose of a plausible INS message in the plane; nothing if position or heading is missing or
+/// not finite.
 std::optional<Pose2> planarPose(const ins_t& ins);
 
 /// T_map_body of a plausible INS message; nothing as above.
@@ -19,7 +20,8 @@ std::optional<Eigen::Isometry3d> spatialPose(const ins_t& ins);
 /// Body twist in the plane, or nothing if the device does not measure it.
 std::optional<Twist2> planarTwist(const ins_t& ins);
 
-/// Inclination of the ground under the robot [rad], from roll and pitch; nothing if attitude is missing.
+/// Inclination of the ground under the robot [rad], from roll and pitch; nothing if attitude is
+/// missing.
 std::optional<double> inclination(const ins_t& ins);
 
 }  // namespace tread

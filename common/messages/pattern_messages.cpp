@@ -37,7 +37,7 @@ std::vector<pattern_set_part_t> toMessages(const PatternSet& set) {
   for (size_t i = 0; i < set.patterns().size(); ++i) {
     const MotionPattern& pattern = set.patterns()[i];
     pattern_set_part_t part = partOf(set, i);
-    const auto fillClass = [&](const std::string& name, double (&twist)[3], double (&steady)[2]) {
+    const auto fillClass = [&](const std::string& name, double(&twist)[3], double(&steady)[2]) {
       const MotionClass& motion = set.classNamed(name);
       twist[0] = motion.twist.v_x;
       twist[1] = motion.twist.v_y;
@@ -50,7 +50,8 @@ std::vector<pattern_set_part_t> toMessages(const PatternSet& set) {
     part.num_samples = static_cast<int32_t>(pattern.commands.size());
     for (const TrackCommand& command : pattern.commands)
       part.command.push_back({command.left, command.right});
-    for (const Pose2& pose : pattern.trajectory) part.trajectory.push_back({pose.x, pose.y, pose.yaw});
+    for (const Pose2& pose : pattern.trajectory)
+      part.trajectory.push_back({pose.x, pose.y, pose.yaw});
     parts.push_back(std::move(part));
   }
   return parts;
