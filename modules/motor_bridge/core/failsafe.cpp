@@ -98,9 +98,8 @@ bool Failsafe::stopOnFault(const FailsafeInputs& in) {
   if (!fault) {
     return false;
   }
-  if (isArmed(state_)) {
-    enter(fault->state, fault->reason, in.now);
-  } else if (fault->state > state_ && fault->state == State::kEstopped) {
+  const bool worse = fault->state == State::kEstopped && state_ != State::kEstopped;
+  if (isArmed(state_) || worse) {
     enter(fault->state, fault->reason, in.now);
   }
   if (in.arm) {

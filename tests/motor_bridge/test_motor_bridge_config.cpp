@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include "modules/motor_bridge/motor_bridge_config.hpp"
+
+using namespace tread;
+using namespace tread::motor;
+
+namespace {
+
+MotorBridgeConfig read(const std::string& text) {
+  ConfigReader reader = ConfigReader::fromText(text, "bridge.yaml");
+  return readMotorBridgeConfig(reader);
+}
+
+/// The one line that refuses a text; empty if it is accepted.
+std::string refusal(const std::string& text) {
+  try {
+    read(text);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("without a word the bridge has its defaults, and says all of them") {
+  const MotorBridgeConfig config = read("{}");
+  CHECK(config.bridge.step_us == 10'000);
+  CHECK(config.bridge.gate.lease_us == 200'000);
+  CHECK(config.bridge.gate.slot.kind == CommandKind::kPower);
+  CHECK(config.bridge.gate.slot.max_command == 1.0);
+  CHECK(config.controller.watchdog_ms == 250);
+  for (const char* key : {"address", "lease", "ins_period", "watchdog", "left_channel"}) {
+    CHECK(config.effective.find(key) != std::string::npos);
+  }
+}
+
+TEST_CASE("everything about the controller's wiring can be told") {
+  const MotorBridgeConfig config = read(R"(
+address: tcp:127.0.0.1:4000
+step: 0.005
+command_interval: 0.025
+lease: 0.1
+ins_period: 0.01
+command_kind: track_speed
+full_scale: 2.5
+max_command: 2.0
+controller:
+  watchdog: 0.2
+  both_in_one_line: false
+  left_channel: 2
+  invert_left: true
+  invert_right: false
+  rpm_per_mps: 400
+)");
+  CHECK(config.bridge.gate.slot.step_us == 5'000);
+  CHECK(config.bridge.command_interval_us == 25'000);
+  CHECK(config.bridge.gate.slot.kind == CommandKind::kTrackSpeed);
+  CHECK(config.bridge.gate.slot.max_command == 2.0);
+  CHECK(config.controller.layout.full_scale == 2.5);
+  CHECK(config.controller.layout.left_channel == 2);
+  CHECK(config.controller.layout.invert_left);
+  CHECK_FALSE(config.controller.layout.both_in_one_line);
+  CHECK(config.controller.layout.rpm_per_mps == 400.0);
+  CHECK(config.controller.watchdog_ms == 200);
+}
+
+TEST_CASE("no safeguard can be switched off, and every refusal is one line with its place") {
+  for (const char* text :
+       {"lease: 0", "lease: 1.0", "ins_period: 0", "ins_period: 10", "controller: {watchdog: 0}",
+        "controller: {watchdog: 65}", "step: 0", "command_interval: 1", "max_command: 2",
+        "command_kind: torque", "command_kind: track_speed", "watchdog: 0.25",
+        "controller: {left_channel: 3}", "command_interval: 0.025", "lease: .nan"}) {
+    const std::string line = refusal(text);
+    INFO(text << " -> " << line);
+    CHECK(line.rfind("bridge.yaml:1", 0) == 0);
+    CHECK(line.find('\n') == std::string::npos);
+  }
+}

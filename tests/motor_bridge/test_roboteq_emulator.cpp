@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// Against the emulated controller, which was written from the protocol's documents by somebody
+// else.
+#include <cmath>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include "modules/motor_bridge/core/bridge.hpp"
+#include "modules/motor_bridge/core/roboteq_connection.hpp"
+#include "modules/simulator/emulators/roboteq_emulator.hpp"
+#include "tests/motor_bridge/endless_planner.hpp"
+
+using namespace tread;
+using namespace tread::motor;
+
+namespace {
+
+/// Bridge, connection and emulated controller in steps of 10 ms; the line is paced at 115200 baud.
+struct EmulatedRig {
+  Bridge bridge{BridgeConfig{}};
+  RoboteqConnection connection;
+  sim::RoboteqEmulator device;
+  EndlessPlanner planner;
+  BridgeOutput out;
+  int64_t now = 10'000'000;
+  int64_t last_motion = 0;
+  bool planner_alive = true;
+  bool bridge_alive = true;
+
+  explicit EmulatedRig(const RoboteqConfig& config = {}, const sim::RoboteqSettings& settings = {})
+      : connection(config), device(settings) {
+    connection.open();
+  }
+
+  void step() {
+    for (int i = 0; i < 10; ++i) {
+      now += 1'000;
+      if (turning()) last_motion = now;
+    }
+    if (!bridge_alive) return;
+    if (now % 20'000 == 0) bridge.receive(InsNotice{now - 5'000, true}, now);
+    if (planner_alive && now % 50'000 == 0) {
+      const auto& log = bridge.executions().records();
+      const auto last = log.empty() ? std::nullopt : std::optional(log.back());
+      bridge.receive(planner.plan(now - 1'000, last), now);
+    }
+    connection.receive(device.transmit(now), now);
+    out = bridge.step(now, connection.report(now));
+    connection.holdStop(out.hold_device_stop);
+    if (out.release_device_stop) connection.releaseStop(now);
+    if (out.send) connection.command(out.command, now);
+    device.receive(connection.poll(now), now);
+  }
+  void run(int64_t us) {
+    for (const int64_t end = now + us; now < end;) step();
+  }
+  void drive() {
+    run(1'600'000);
+    bridge.receive(ArmRequest{now, true, "operator", "go"}, now);
+    run(400'000);
+  }
+  bool turning() {
+    const std::array<double, 2> power = device.output(now);
+    return power[0] != 0.0 || power[1] != 0.0;
+  }
+  int64_t lastMotionWithin(int64_t us) {
+    const int64_t begin = now;
+    run(us);
+    return std::max<int64_t>(0, last_motion - begin);
+  }
+  int64_t count(const std::string& name) const {
+    const auto counters = connection.counters();
+    const auto found = counters.find(name);
+    return found == counters.end() ? 0 : found->second;
+  }
+  State state() const { return out.failsafe.state; }
+};
+
+}  // namespace
+
+TEST_CASE("emulated controller: started up, it gets what is played, and every line is answered") {
+  sim::RoboteqSettings settings;
+  settings.encoders = true;
+  RoboteqConfig config;
+  config.layout.rpm_per_mps = settings.rpm_per_speed;
+  EmulatedRig rig(config, settings);
+  sim::RoboteqMeasurements measured;
+  measured.battery_voltage = 24.3;
+  measured.motor_current = {5.5, 6.5};
+  measured.track_speed = {0.8, -0.4};
+  rig.device.measure(measured);
+  rig.drive();
+  rig.run(10'000'000);
+  REQUIRE(rig.state() == State::kDriving);
+  CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command.left).margin(0.0006));
+  CHECK(rig.device.output(rig.now)[1] == Approx(rig.out.command.right).margin(0.0006));
+  const RoboteqTelemetry telemetry = rig.connection.telemetry();
+  CHECK(telemetry.battery_voltage == Approx(24.3));
+  CHECK(telemetry.current_left == Approx(5.5));
+  CHECK(telemetry.speed_left == Approx(0.8).margin(0.002));
+  CHECK(telemetry.speed_right == Approx(-0.4).margin(0.002));
+  CHECK(rig.count("replies missing") == 0);
+  CHECK(rig.count("unexpected replies") == 0);
+  CHECK(rig.count("unreadable lines") == 0);
+  CHECK(rig.count("commands refused") == 0);
+  CHECK(rig.count("start-ups") == 1);
+}
+
+TEST_CASE(
+    "emulated controller without encoders: two-line commands, refused speed queries stop nobody") {
+  RoboteqConfig config;
+  config.layout.both_in_one_line = false;
+  config.layout.rpm_per_mps = 400.0;
+  EmulatedRig rig(config);
+  rig.drive();
+  rig.run(5'000'000);
+  CHECK(rig.state() == State::kDriving);
+  CHECK(rig.turning());
+  CHECK(rig.count("queries refused") > 10);
+  CHECK(std::isnan(rig.connection.telemetry().speed_left));
+}
+
+TEST_CASE("emulated controller: planner dead, bridge dead, controller silent: zero in time") {
+  EmulatedRig rig;
+  rig.planner.commands = 200;
+  rig.drive();
+  REQUIRE(rig.turning());
+  SECTION("planner") {
+    rig.planner_alive = false;
+    CHECK(rig.lastMotionWithin(2'000'000) <= 215'000);
+  }
+  SECTION("bridge") {
+    rig.bridge_alive = false;
+    CHECK(rig.lastMotionWithin(2'000'000) <= 252'000);
+  }
+  SECTION("controller") {
+    rig.device.setSilent(true);
+    CHECK(rig.lastMotionWithin(2'000'000) <= 252'000);
+    CHECK(rig.state() == State::kFault);
+    rig.device.setSilent(false);
+    rig.run(3'000'000);
+    CHECK(rig.now - rig.last_motion >= 4'000'000);
+    rig.drive();
+    CHECK(rig.state() == State::kDriving);
+  }
+}
+
+TEST_CASE("emulated controller: reboot and brown-out stop; afterwards it drives only after ARM") {
+  EmulatedRig rig;
+  rig.drive();
+  SECTION("reboot") {
+    rig.device.reboot(rig.now);
+    CHECK(rig.lastMotionWithin(3'000'000) <= 10'000);
+    CHECK(rig.state() == State::kFault);
+    CHECK(rig.count("start-ups") == 2);
+  }
+  SECTION("brown-out") {
+    rig.device.setBrownOut(true);
+    rig.run(1'000'000);
+    CHECK(rig.state() == State::kFault);
+    CHECK(rig.out.failsafe.reason.rfind("controller: undervoltage", 0) == 0);
+    rig.device.setBrownOut(false);
+    rig.last_motion = 0;
+    rig.run(3'000'000);
+    CHECK(rig.last_motion == 0);
+  }
+  rig.drive();
+  CHECK(rig.state() == State::kDriving);
+  CHECK(rig.turning());
+}
+
+TEST_CASE("emulated controller: its emergency stop is held and released, and nothing jumps") {
+  EmulatedRig rig;
+  rig.drive();
+  rig.bridge.receive(EstopRequest{rig.now, true, "operator", "person"}, rig.now);
+  CHECK(rig.lastMotionWithin(2'000'000) <= 15'000);
+  CHECK(rig.connection.report(rig.now).stop_latched);
+  CHECK(rig.state() == State::kEstopped);
+  rig.bridge.receive(EstopRequest{rig.now, false, "operator", "clear"}, rig.now);
+  rig.last_motion = 0;
+  rig.run(2'000'000);
+  CHECK_FALSE(rig.connection.report(rig.now).stop_latched);
+  CHECK(rig.last_motion == 0);
+  rig.drive();
+  CHECK(rig.state() == State::kDriving);
+}
+
+TEST_CASE("emulated controller: lost and cut replies at random for ten minutes stop nobody") {
+  std::mt19937_64 random(3);
+  EmulatedRig rig;
+  rig.drive();
+  for (int i = 0; i < 600; ++i) {
+    rig.run(1'000'000);
+    if (random() % 2 == 0) {
+      rig.device.loseReplies(static_cast<int>(1 + random() % 3));
+    } else {
+      rig.device.cutReply();
+    }
+  }
+  CHECK(rig.state() == State::kDriving);
+  CHECK(rig.count("start-ups") == 1);
+  CHECK(rig.count("replies missing") > 300);
+}
