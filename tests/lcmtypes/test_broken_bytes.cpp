@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <chrono>
+
+#include <catch2/catch.hpp>
+
+#include "type_samples.hpp"
+
+namespace tread {
+
+TEST_CASE("a message that ends early is no message, wherever it ends") {
+  testing::forEachType([](const auto& sample) {
+    using Message = std::decay_t<decltype(sample)>;
+    const auto whole = testing::encode(sample);
+    for (size_t size = 0; size < whole.size(); ++size) {
+      // A vector of just this size, so that a sanitizer sees a read beyond it.
+      const std::vector<uint8_t> bytes(whole.begin(), whole.begin() + static_cast<long>(size));
+      Message message{};
+      CHECK_FALSE(testing::decode(bytes, message));
+    }
+  });
+}
+
+TEST_CASE("bytes left over make it no message") {
+  testing::forEachType([](const auto& sample) {
+    using Message = std::decay_t<decltype(sample)>;
+    auto bytes = testing::encode(sample);
+    bytes.push_back(0);
+    Message message{};
+    CHECK_FALSE(testing::decode(bytes, message));
+  });
+}
+
+TEST_CASE("a broken byte anywhere costs neither memory nor time") {
+  const auto start = std::chrono::steady_clock::now();
+  testing::forEachType([](const auto& sample) {
+    using Message = std::decay_t<decltype(sample)>;
+    const auto whole = testing::encode(sample);
+    for (size_t at = 0; at < whole.size(); ++at) {
+      for (const int value : {0x00, 0x01, 0x7F, 0x80, 0xFF}) {
+        auto bytes = whole;
+        bytes[at] = static_cast<uint8_t>(value);
+        Message message{};
+        testing::decode(bytes, message);
+      }
+    }
+  });
+  // Before lengths were bounded, one such byte could cost 50 GB and minutes.
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));
+}
+
+}  // namespace tread

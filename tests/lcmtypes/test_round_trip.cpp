@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "type_samples.hpp"
+
+namespace tread {
+
+TEST_CASE("every type round-trips, byte for byte") {
+  testing::forEachType([](const auto& sample) {
+    using Message = std::decay_t<decltype(sample)>;
+    INFO(Message::getTypeName());
+    const auto bytes = testing::encode(sample);
+    REQUIRE_FALSE(bytes.empty());
+    Message decoded{};
+    REQUIRE(testing::decode(bytes, decoded));
+    CHECK(testing::encode(decoded) == bytes);
+  });
+}
+
+TEST_CASE("an empty message of every type round-trips, too") {
+  testing::forEachType([](const auto& sample) {
+    using Message = std::decay_t<decltype(sample)>;
+    INFO(Message::getTypeName());
+    const auto bytes = testing::encode(Message{});
+    Message decoded{};
+    REQUIRE(testing::decode(bytes, decoded));
+    CHECK(testing::encode(decoded) == bytes);
+    CHECK(bytes != testing::encode(sample));
+  });
+}
+
+TEST_CASE("decoded fields have the values that were sent") {
+  program_t program{};
+  REQUIRE(testing::decode(testing::encode(testing::sampleOf<program_t>()), program));
+  CHECK(program.lease == 200'000);
+  CHECK(program.running.execution_id == 51);
+  CHECK(program.next.execution_id == 62);
+  CHECK(program.next.right == std::vector<float>{-0.5F, -0.75F, -1.0F});
+  map_tile_t tile{};
+  REQUIRE(testing::decode(testing::encode(testing::sampleOf<map_tile_t>()), tile));
+  CHECK(tile.cells[2] == map_tile_t::CELL_OBSTACLE);
+  CHECK(tile.cells[3] == map_tile_t::CELL_UNKNOWN);
+  scan_t scan{};
+  REQUIRE(testing::decode(testing::encode(testing::sampleOf<scan_t>()), scan));
+  CHECK(std::isinf(scan.ranges[1]));
+  CHECK(std::isnan(scan.ranges[2]));
+  CHECK(scan.points[0][1] == -2.0F);
+}
+
+TEST_CASE("all fingerprints differ, so that no type is taken for another") {
+  // LCM leaves a type's name out of its fingerprint: two types of equal fields would have one.
+  std::map<int64_t, std::string> types;
+  testing::forEachType([&](const auto& sample) {
+    using Message = std::decay_t<decltype(sample)>;
+    const auto [entry, fresh] = types.emplace(Message::getHash(), Message::getTypeName());
+    INFO(Message::getTypeName() << " and " << entry->second);
+    CHECK(fresh);
+  });
+}
+
+TEST_CASE("no type decodes as another") {
+  testing::forEachType([](const auto& sent) {
+    const auto bytes = testing::encode(sent);
+    testing::forEachType([&](const auto& sample) {
+      using Message = std::decay_t<decltype(sample)>;
+      Message received{};
+      const bool same = std::is_same_v<Message, std::decay_t<decltype(sent)>>;
+      CHECK(testing::decode(bytes, received) == same);
+    });
+  });
+}
+
+TEST_CASE("these tests know every type of lcmtypes") {
+  std::set<std::string> tested;
+  testing::forEachType(
+      [&](const auto& sample) { tested.insert(std::decay_t<decltype(sample)>::getTypeName()); });
+  std::set<std::string> written;
+  const std::filesystem::path folder = std::string(TREAD_SOURCE_DIR) + "/lcmtypes/tread";
+  for (const auto& file : std::filesystem::directory_iterator(folder))
+    if (file.path().extension() == ".lcm") written.insert(file.path().stem().string());
+  CHECK(tested == written);
+}
+
+}  // namespace tread
