@@ -233,6 +233,26 @@ TEST_CASE("a bridge that needs 5 ms for a step still stops within the budget") {
   CHECK(world.lastMotionWithin(2'000'000) <= 250'000);
 }
 
+TEST_CASE("long reasons are cut, so that MOTOR and EXECUTION always fit their channels") {
+  NodeWorld world;
+  world.drive();
+  for (int i = 0; i < 10; ++i) {
+    estop_t stop{};
+    stop.utime = world.now();
+    stop.engaged = true;
+    stop.estop_by = "operator";
+    stop.estop_reason = std::string(900, 'x');
+    world.bus.outside().publish(kEstop, stop);
+    world.run(1'000'000);
+    world.estop(false);
+    world.drive();
+    REQUIRE(world.drives());
+  }
+  CHECK(world.bus.statistics("motor_bridge").oversized == 0);
+  CHECK(world.execution.num_records == 8);
+  CHECK(world.execution.records[0].outcome_reason.size() == 120);
+}
+
 TEST_CASE("refusals are counted in HEALTH with their reasons") {
   FaultPlan faults;
   faults.messages.push_back({"PROGRAM", "motor_bridge", 0.0, 0.5});
