@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include "modules/mapping/core/ground_model.hpp"
+#include "modules/mapping/core/voxel_map.hpp"
+
+namespace tread::mapping {
+
+/// What counts as an obstacle for this robot.
+struct JudgeConfig {
+  double step = 0.15;          ///< [m] above the ground: lower things are driven over
+  double robot_height = 1.20;  ///< [m] above the ground: higher things are driven under
+};
+
+/// Says what a column is, by heights above the ground of its voxels' centres.
+/** With ground g, doubt u, and the band from g + step to g + robot_height:
+ *  1. Obstacle: something occupied in the band, and above g + step + u.
+ *  2. In doubt (occupied in the band, but no higher than g + step + u: perhaps the ground itself):
+ *     free if the space above it in the band was seen free, else unknown. Driving nearer ends the
+ *     doubt.
+ *  3. Free: something in the band, widened by u, was seen free. Otherwise unknown.
+ *  The ground is no higher than the lowest voxel that was seen: that lowers g by up to u and a
+ *  cell. */
+class ColumnJudge {
+ public:
+  ColumnJudge(const JudgeConfig& config, double cell_size)
+      : config_(config), cell_size_(cell_size) {}
+
+  Cell judge(const Column& column, int lower_z, const GroundHeight& ground) const;
+
+ private:
+  uint64_t band(double from, double to, int lower_z) const;
+
+  JudgeConfig config_;
+  double cell_size_;
+};
+
+}  // namespace tread::mapping

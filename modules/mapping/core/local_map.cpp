@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/mapping/core/local_map.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "common/geometry/se3.hpp"
+
+namespace tread::mapping {
+namespace {
+
+/// OctoMap numbers 2^15 voxels to each side of the origin.
+constexpr double kMostCells = 32000.0;
+/// A new stand counts after so much way or height: rocking on the spot tells nothing new.
+constexpr double kStandDistance = 0.2;
+constexpr double kStandHeight = 0.05;
+/// The window moves when the robot is this many tiles off its middle; less makes it restless.
+constexpr double kOffMiddle = 0.75;
+/// Returns so close to the footprint are the robot's own [m].
+constexpr double kOwnBodyMargin = 0.05;
+
+bool isNewStand(const GroundPlane& stand, const GroundPlane& last) {
+  const Eigen::Vector3d step = stand.p_map - last.p_map;
+  return step.head<2>().norm() > kStandDistance || std::abs(step.z()) > kStandHeight;
+}
+
+/// Poses between two poses: position linearly, orientation the short way round.
+class Between {
+ public:
+  Between(const Eigen::Isometry3d& first, const Eigen::Isometry3d& last)
+      : p_first_(first.translation()),
+        p_step_(last.translation() - first.translation()),
+        R_first_(first.linear()),
+        R_last_(last.linear()) {}
+
+  Eigen::Isometry3d at(double share) const {
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.linear() = R_first_.slerp(share, R_last_).toRotationMatrix();
+    T.translation() = p_first_ + share * p_step_;
+    return T;
+  }
+
+ private:
+  Eigen::Vector3d p_first_;
+  Eigen::Vector3d p_step_;
+  Eigen::Quaterniond R_first_;
+  Eigen::Quaterniond R_last_;
+};
+
+}  // namespace
+
+LocalMap::LocalMap(const LocalMapConfig& config)
+    : config_(config),
+      voxels_(config.voxels, config.tile_cells * config.window_tiles),
+      ground_(config.ground, config.voxels.cell_size, config.tile_cells * config.window_tiles),
+      judge_(config.judge, config.voxels.cell_size),
+      footprint_(config.robot.front, config.robot.rear, config.robot.half_width, 0.0),
+      trust_(config.tile_cells * config.window_tiles),
+      tiles_(config.window_tiles),
+      tile_of_cell_(trust_.size()) {
+  if (config.tile_cells < 1 || config.window_tiles < 2 ||
+      config.tile_cells % GroundModel::kPatchCells != 0)
+    throw std::invalid_argument(
+        "local map: tile_cells must be a multiple of 8 and window_tiles 2 or more");
+  for (size_t i = 0; i < tile_of_cell_.size(); ++i) {
+    const CellIndex cell = trust_.indexOf(i);
+    tile_of_cell_[i] = static_cast<uint32_t>(
+        tiles_.offset({cell.x / config.tile_cells, cell.y / config.tile_cells}));
+  }
+}
+
+LocalMap::Refusal LocalMap::insert(const Sweep& sweep) {
+  if (sweep.utime <= utime_) return Refusal::kNotNewer;
+  const auto plane = planeUnder(sweep.T_map_body_last);
+  if (!plane) return Refusal::kToppled;
+  const double reach = kMostCells * config_.voxels.cell_size - config_.clearing_range;
+  if (!(plane->p_map.cwiseAbs().maxCoeff() < reach)) return Refusal::kTooFar;
+  utime_ = sweep.utime;
+  const bool moved = place(sweep.T_map_body_last);
+  learnGround(*plane, moved);
+  voxels_.insert(raysOf(sweep));
+  for (const size_t offset : voxels_.touched()) tileOf(offset).utime = utime_;
+  for (const size_t offset : voxels_.changed()) judge(offset);
+  standAt(planar(plane->p_map, Eigen::Quaterniond(sweep.T_map_body_last.linear())));
+  return Refusal::kNone;
+}
+
+bool LocalMap::place(const Eigen::Isometry3d& T_map_body) {
+  const Eigen::Vector3d& p_map = T_map_body.translation();
+  const double side = config_.tile_cells * config_.voxels.cell_size;
+  const double half = 0.5 * config_.window_tiles;
+  const Eigen::Vector2d at = p_map.head<2>() / side;
+  const Eigen::Vector2d middle(tiles_.lower().x + half, tiles_.lower().y + half);
+  const double z = p_map.z() / config_.voxels.cell_size;
+  const double off_z = std::abs(z - voxels_.lowerZ() - kColumnHeight / 2);
+  const bool fresh = grid_.empty();
+  if (!fresh && (at - middle).cwiseAbs().maxCoeff() < kOffMiddle && off_z < kColumnHeight / 6)
+    return false;
+  const CellIndex lower{static_cast<int>(std::lround(at.x() - half)),
+                        static_cast<int>(std::lround(at.y() - half))};
+  moveWindow(lower, static_cast<int>(std::floor(z)) - kColumnHeight / 2);
+  if (fresh) vouchForStart(p_map.head<2>());
+  return true;
+}
+
+void LocalMap::moveWindow(CellIndex lower, int lower_z) {
+  const CellIndex lower_cell{lower.x * config_.tile_cells, lower.y * config_.tile_cells};
+  voxels_.moveTo(lower_cell, lower_z);
+  ground_.moveTo(lower_cell);
+  trust_.moveTo(lower_cell);
+  tiles_.moveTo(lower);
+  under_robot_.clear();
+  Grid moved(config_.voxels.cell_size, lower_cell, trust_.side(), trust_.side());
+  for (size_t i = 0; i < trust_.size(); ++i) {
+    trust_[i].under_robot = false;
+    moved.cells()[i] = grid_.at(trust_.indexOf(i));
+  }
+  grid_ = std::move(moved);
+}
+
+void LocalMap::learnGround(const GroundPlane& plane, bool window_moved) {
+  if (!window_moved && !isNewStand(plane, *last_stand_)) return;
+  last_stand_ = plane;
+  const std::vector<CellIndex> changed = ground_.learn(plane);
+  if (window_moved) {
+    for (size_t i = 0; i < trust_.size(); ++i) judge(i);
+  } else {
+    for (const CellIndex patch : changed) judgePatch(patch);
+  }
+}
+
+void LocalMap::vouchForStart(const Eigen::Vector2d& p_map) {
+  for (size_t i = 0; i < trust_.size(); ++i)
+    trust_[i].stood_on =
+        (grid_.centre(trust_.indexOf(i)) - p_map).norm() < config_.start_free_radius;
+}
+
+void LocalMap::standAt(const Pose2& T_map_body) {
+  std::vector<size_t> left = std::move(under_robot_);
+  under_robot_.clear();
+  for (const size_t offset : left) trust_[offset].under_robot = false;
+  const Pose2 T_body_map = inverse(T_map_body);
+  for (const CellIndex cell : footprint_.cells(grid_, T_map_body)) {
+    const Eigen::Vector2d p_body = T_body_map * grid_.centre(cell);
+    const bool inside = p_body.x() < config_.robot.front && p_body.x() > -config_.robot.rear &&
+                        std::abs(p_body.y()) < config_.robot.half_width;
+    if (!inside || !trust_.contains(cell)) continue;
+    const size_t offset = trust_.offset(cell);
+    trust_[offset] = {true, true};
+    under_robot_.push_back(offset);
+    tileOf(offset).utime = utime_;
+  }
+  for (const size_t offset : left) judge(offset);
+  for (const size_t offset : under_robot_) judge(offset);
+}
+
+bool LocalMap::isOwnBody(const Eigen::Vector3d& p_body) const {
+  const RobotSize& robot = config_.robot;
+  return p_body.x() < robot.front + kOwnBodyMargin && p_body.x() > -robot.rear - kOwnBodyMargin &&
+         std::abs(p_body.y()) < robot.half_width + kOwnBodyMargin &&
+         p_body.z() < config_.judge.robot_height;
+}
+
+const std::vector<Ray>& LocalMap::raysOf(const Sweep& sweep) {
+  const Between body(sweep.T_map_body_first, sweep.T_map_body_last);
+  rays_.clear();
+  for (const Beam& beam : sweep.beams) {
+    if (beam.hit && isOwnBody(sweep.T_body_sensor * beam.end)) continue;
+    const double range = beam.end.norm();
+    const bool marks = beam.hit && range <= config_.marking_range;
+    const double reach = marks ? range : std::min(range, config_.clearing_range);
+    if (!(range > 0.0)) continue;
+    const Eigen::Isometry3d T_map_sensor = body.at(beam.share) * sweep.T_body_sensor;
+    rays_.push_back({T_map_sensor.translation(),
+                     T_map_sensor * Eigen::Vector3d(beam.end * (reach / range)), marks});
+  }
+  return rays_;
+}
+
+void LocalMap::judge(size_t offset) {
+  const Trust& trust = trust_[offset];
+  Cell cell = kFree;
+  if (!trust.under_robot) {
+    const Column& column = voxels_.columns()[offset];
+    cell = judge_.judge(column, voxels_.lowerZ(), ground_.at(trust_.indexOf(offset)));
+    if (cell == kUnknown && trust.stood_on) cell = kFree;
+  }
+  if (grid_.cells()[offset] == cell) return;
+  grid_.cells()[offset] = cell;
+  TileState& tile = tileOf(offset);
+  tile.changed = true;
+  tile.utime = utime_;
+}
+
+void LocalMap::judgePatch(CellIndex lower) {
+  for (int y = 0; y < GroundModel::kPatchCells; ++y)
+    for (int x = 0; x < GroundModel::kPatchCells; ++x)
+      judge(trust_.offset({lower.x + x, lower.y + y}));
+}
+
+LocalMap::TileState& LocalMap::tileOf(size_t offset) {
+  return tiles_[tile_of_cell_[offset]];
+}
+
+std::vector<CellIndex> LocalMap::seenTiles() const {
+  std::vector<CellIndex> seen;
+  for (size_t i = 0; i < tiles_.size(); ++i)
+    if (tiles_[i].utime > 0) seen.push_back(tiles_.indexOf(i));
+  return seen;
+}
+
+std::vector<CellIndex> LocalMap::takeChangedTiles() {
+  std::vector<CellIndex> changed;
+  for (size_t i = 0; i < tiles_.size(); ++i) {
+    if (tiles_[i].changed) changed.push_back(tiles_.indexOf(i));
+    tiles_[i].changed = false;
+  }
+  return changed;
+}
+
+Tile LocalMap::tile(CellIndex index) const {
+  Tile tile{index.x, index.y, tiles_.at(index).utime, {}};
+  const int side = config_.tile_cells;
+  tile.cells.reserve(static_cast<size_t>(side) * static_cast<size_t>(side));
+  for (int y = 0; y < side; ++y) {
+    const auto row =
+        grid_.cells().begin() +
+        static_cast<std::ptrdiff_t>(grid_.offset({index.x * side, index.y * side + y}));
+    tile.cells.insert(tile.cells.end(), row, row + side);
+  }
+  return tile;
+}
+
+}  // namespace tread::mapping

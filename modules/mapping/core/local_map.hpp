@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/grid/footprint.hpp"
+#include "modules/mapping/core/column_judge.hpp"
+#include "modules/mapping/core/ground_model.hpp"
+#include "modules/mapping/core/sweep.hpp"
+#include "modules/mapping/core/voxel_map.hpp"
+
+namespace tread::mapping {
+
+/// The robot's rectangle in the body frame [m].
+struct RobotSize {
+  double front = 0.65;       ///< from the body origin forward
+  double rear = 0.65;        ///< and backward
+  double half_width = 0.34;  ///< to both sides
+};
+
+/// Everything that shapes the local map.
+struct LocalMapConfig {
+  VoxelConfig voxels;
+  GroundConfig ground;
+  JudgeConfig judge;
+  RobotSize robot;
+  int tile_cells = 32;             ///< a multiple of GroundModel::kPatchCells
+  int window_tiles = 8;            ///< tiles per side of the window
+  double marking_range = 10.0;     ///< [m] returns from farther away mark nothing
+  double clearing_range = 10.0;    ///< [m] beams clear no farther
+  double start_free_radius = 1.0;  ///< [m] around the body origin where a map begins
+};
+
+/// A rolling map of the robot's surroundings: free, obstacle or unknown, from sweeps and poses.
+/** 1. Each beam becomes a ray in map with the body's pose at that beam's time; returns from the
+ *     robot itself are left out.
+ *  2. The rays go into the voxels (VoxelMap), the robot's stand into the ground (GroundModel).
+ *  3. Columns are judged again (ColumnJudge) where their voxels or their ground changed.
+ *  Free without having been seen are: the cells under the robot (even if something was marked
+ *  there: the robot stands in it); the cells that it stood on before, and, where a map begins, all
+ *  within start_free_radius, because a range finder that looks over its own robot sees neither
+ *  what is beside nor behind it and the robot could not turn on the spot. In these an obstacle
+ *  that is seen wins. Whoever starts the robot, or mapping anew, vouches for that radius. */
+class LocalMap {
+ public:
+  /// Throws std::invalid_argument if tile_cells is no multiple of the patches or sizes are not
+  /// positive.
+  explicit LocalMap(const LocalMapConfig& config);
+
+  /// Why a sweep was not taken.
+  enum class Refusal { kNone, kNotNewer, kToppled, kTooFar };
+  /// Takes a sweep, or says why not: not newer than the one before; the robot lies on its side;
+  /// farther from the origin of map than OctoMap can number (32000 cells).
+  Refusal insert(const Sweep& sweep);
+
+  const Grid& grid() const { return grid_; }
+  const LocalMapConfig& config() const { return config_; }
+  const VoxelMap& voxels() const { return voxels_; }
+  GroundHeight groundAt(CellIndex cell) const { return ground_.at(cell); }
+
+  /// Indices of the tiles of the window of which something was seen, row by row.
+  std::vector<CellIndex> seenTiles() const;
+  /// Those that changed since they were last asked for.
+  std::vector<CellIndex> takeChangedTiles();
+  /// Content of a tile of the window.
+  Tile tile(CellIndex index) const;
+
+ private:
+  struct TileState {
+    int64_t utime = 0;  // of the newest sweep that touched it
+    bool changed = false;
+  };
+  /// Cells that are free without having been seen.
+  struct Trust {
+    bool stood_on = false;  // or vouched for
+    bool under_robot = false;
+  };
+
+  bool place(const Eigen::Isometry3d& T_map_body);
+  void moveWindow(CellIndex lower, int lower_z);
+  void learnGround(const GroundPlane& plane, bool window_moved);
+  void vouchForStart(const Eigen::Vector2d& p_map);
+  void standAt(const Pose2& T_map_body);
+  const std::vector<Ray>& raysOf(const Sweep& sweep);
+  bool isOwnBody(const Eigen::Vector3d& p_body) const;
+  void judge(size_t offset);
+  void judgePatch(CellIndex lower);
+  TileState& tileOf(size_t offset);
+
+  LocalMapConfig config_;
+  VoxelMap voxels_;
+  GroundModel ground_;
+  ColumnJudge judge_;
+  Footprint footprint_;
+  Grid grid_;
+  Window<Trust> trust_;
+  Window<TileState> tiles_;
+  std::vector<uint32_t> tile_of_cell_;     // offset of the tile of each cell
+  std::vector<size_t> under_robot_;        // offsets of these cells
+  std::optional<GroundPlane> last_stand_;  // set with the first sweep
+  std::vector<Ray> rays_;
+  int64_t utime_ = 0;
+};
+
+}  // namespace tread::mapping

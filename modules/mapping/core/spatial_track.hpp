@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include <Eigen/Geometry>
+
+namespace tread::mapping {
+
+/// The recent poses of the body in space, interpolated between, never extrapolated.
+class SpatialTrack {
+ public:
+  enum class Verdict {
+    kTaken,
+    kNotNewer,  ///< not newer than the last pose: refused
+    kJump       ///< farther from the last pose than the robot can move: the track begins anew
+  };
+
+  /// Keeps poses that are at most `span_us` older than the newest. A step is a jump if it is longer
+  /// than half a metre beyond what `top_speed` [m/s] allows.
+  SpatialTrack(int64_t span_us, double top_speed) : span_us_(span_us), top_speed_(top_speed) {}
+
+  Verdict push(int64_t utime, const Eigen::Isometry3d& T_map_body);
+  void clear() { poses_.clear(); }
+
+  /// Pose at a time between two kept poses at most `max_gap_us` apart; else nothing.
+  std::optional<Eigen::Isometry3d> at(int64_t utime, int64_t max_gap_us) const;
+
+  bool empty() const { return poses_.empty(); }
+  /// [us] of the newest pose; 0 if there is none.
+  int64_t newest() const { return poses_.empty() ? 0 : poses_.back().utime; }
+
+ private:
+  struct TimedPose {
+    int64_t utime;
+    Eigen::Vector3d p_map;
+    Eigen::Quaterniond R_map_body;
+  };
+
+  int64_t span_us_;
+  double top_speed_;
+  std::deque<TimedPose> poses_;
+};
+
+}  // namespace tread::mapping

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <octomap/OcTree.h>
+
+#include "modules/mapping/core/window.hpp"
+
+namespace tread::mapping {
+
+/// How evidence about a voxel adds up; probabilities of being occupied (OctoMap's sensor model).
+struct VoxelConfig {
+  double cell_size = 0.1;  ///< [m]
+  double hit = 0.80;       ///< after one hit
+  double miss = 0.40;      ///< after one beam that passed
+  double clamp_min = 0.12;
+  double clamp_max = 0.88;  ///< with this and `miss`, five passing scans clear any voxel
+};
+
+/// Number of voxels in a column: as many as a word has bits.
+inline constexpr int kColumnHeight = 64;
+
+/// What the tree holds of one column of voxels: bit i stands for the voxel lower_z + i.
+struct Column {
+  uint64_t known = 0;     ///< some beam ended in it or passed it
+  uint64_t occupied = 0;  ///< more likely occupied than not
+  uint64_t settled = 0;   ///< at the clamp of its state: more of the same changes nothing
+
+  uint64_t free() const { return known & ~occupied; }
+};
+
+/// A beam in map.
+struct Ray {
+  Eigen::Vector3d from;  ///< p_map [m]
+  Eigen::Vector3d to;    ///< p_map of the return, or of the end of what was seen free [m]
+  bool hit = false;
+};
+
+/// Rolling octomap::OcTree with a bit image of its leafs, column by column.
+/** The tree holds the evidence, the image says what it comes to: both always agree, and nothing of
+ *  the tree lies outside of the window. Inner nodes are not kept up to date (lazy evaluation). */
+class VoxelMap {
+ public:
+  VoxelMap(const VoxelConfig& config, int side_cells);
+  VoxelMap(const VoxelMap&) = delete;
+  VoxelMap& operator=(const VoxelMap&) = delete;
+
+  /// Moves the window: its lower left column and its lowest voxel, as indices fixed in map.
+  void moveTo(CellIndex lower, int lower_z);
+
+  /// Takes the rays of one scan; hits win over passing beams, each voxel counts once.
+  /** Same result as octomap::OcTree::insertPointCloud() within the window. This is the one place
+   *  that writes into the tree. */
+  void insert(const std::vector<Ray>& rays);
+
+  /// Columns that the last insert() passed or hit.
+  const std::vector<size_t>& touched() const { return touched_; }
+  /// Columns in which the last insert() changed what is known or occupied.
+  const std::vector<size_t>& changed() const { return changed_; }
+
+  const Window<Column>& columns() const { return columns_; }
+  int lowerZ() const { return lower_z_; }
+  const octomap::OcTree& tree() const { return tree_; }
+
+ private:
+  /// What one scan says about a column.
+  struct Marks {
+    uint64_t passed = 0;
+    uint64_t hit = 0;
+  };
+
+  octomap::OcTreeKey keyOf(CellIndex column, int bit) const;
+  void mark(const octomap::OcTreeKey& key, uint64_t Marks::*kind);
+  void apply(size_t offset);
+  void update(size_t offset, uint64_t bits, bool hit);
+
+  octomap::OcTree tree_;
+  Window<Column> columns_;
+  int lower_z_ = 0;
+  std::vector<Marks> marks_;
+  std::vector<size_t> touched_;
+  std::vector<size_t> changed_;
+  octomap::KeyRay keys_;
+};
+
+}  // namespace tread::mapping

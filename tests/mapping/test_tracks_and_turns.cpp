@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <set>
+
+#include "common/geometry/se3.hpp"
+#include "modules/mapping/core/spatial_track.hpp"
+#include "modules/mapping/core/tile_turns.hpp"
+
+using namespace tread;
+using namespace tread::mapping;
+
+namespace {
+
+std::vector<CellIndex> tiles(int count) {
+  std::vector<CellIndex> list;
+  for (int i = 0; i < count; ++i) list.push_back({i % 8, i / 8});
+  return list;
+}
+
+}  // namespace
+
+TEST_CASE("a pose in space is interpolated between its neighbours and never extrapolated") {
+  SpatialTrack track(1'000'000, 10.0);
+  REQUIRE(track.push(100'000, isometryFrom({0, 0, 0}, {0.0, 0.0, 0.0})) ==
+          SpatialTrack::Verdict::kTaken);
+  REQUIRE(track.push(120'000, isometryFrom({0.02, 0.01, 0.004}, {0.1, 0.05, 0.0})) ==
+          SpatialTrack::Verdict::kTaken);
+  const auto middle = track.at(110'000, 50'000);
+  REQUIRE(middle);
+  REQUIRE(middle->translation().isApprox(Eigen::Vector3d(0.01, 0.005, 0.002), 1e-9));
+  const auto angles = yawPitchRoll(Eigen::Quaterniond(middle->linear()));
+  REQUIRE(angles.yaw == Approx(0.05).margin(1e-4));
+  REQUIRE(angles.pitch == Approx(0.025).margin(1e-3));
+  REQUIRE(track.at(100'000, 50'000));
+  REQUIRE(track.at(120'000, 0));
+  REQUIRE_FALSE(track.at(99'999, 50'000));
+  REQUIRE_FALSE(track.at(120'001, 50'000));
+  REQUIRE_FALSE(track.at(110'000, 10'000));
+}
+
+TEST_CASE("a track refuses what is not newer, begins anew at a jump and forgets what is old") {
+  SpatialTrack track(1'000'000, 10.0);
+  const auto at = [](double x) { return isometryFrom({x, 0, 0}, {}); };
+  track.push(100'000, at(0.0));
+  REQUIRE(track.push(100'000, at(0.0)) == SpatialTrack::Verdict::kNotNewer);
+  REQUIRE(track.push(200'000, at(1.4)) == SpatialTrack::Verdict::kTaken);
+  REQUIRE(track.push(300'000, at(4.0)) == SpatialTrack::Verdict::kJump);
+  REQUIRE_FALSE(track.at(250'000, 1'000'000));
+  REQUIRE(track.newest() == 300'000);
+  track.push(1'250'000, at(4.0));
+  track.push(1'350'000, at(4.0));
+  REQUIRE_FALSE(track.at(310'000, 1'000'000));
+}
+
+TEST_CASE("changed tiles are sent first, all others in turn") {
+  TileTurns turns(7);
+  const auto seen = tiles(64);
+  std::set<std::pair<int, int>> sent;
+  for (int cycle = 0; cycle < 10; ++cycle) {
+    const std::vector<CellIndex> changed{{3, 3}, {4, 3}};
+    turns.begin(seen, changed);
+    REQUIRE(turns.take() == CellIndex{3, 3});
+    REQUIRE(turns.take() == CellIndex{4, 3});
+    for (int i = 0; i < 7; ++i) {
+      const CellIndex tile = turns.take();
+      sent.insert({tile.x, tile.y});
+    }
+    REQUIRE(turns.empty());
+  }
+  REQUIRE(sent.size() == 62);
+}
+
+TEST_CASE("what a cycle could not send stays first, once, as long as it may be sent") {
+  TileTurns turns(0);
+  const auto seen = tiles(16);
+  turns.begin(seen, {{1, 0}, {2, 0}, {3, 0}});
+  REQUIRE(turns.take() == CellIndex{1, 0});
+  turns.begin(seen, {{0, 1}, {3, 0}});
+  REQUIRE(turns.take() == CellIndex{2, 0});
+  REQUIRE(turns.take() == CellIndex{3, 0});
+  REQUIRE(turns.take() == CellIndex{0, 1});
+  REQUIRE(turns.empty());
+  turns.begin(seen, {{5, 1}, {6, 1}});
+  turns.begin({{6, 1}}, {});
+  REQUIRE(turns.take() == CellIndex{6, 1});
+  REQUIRE(turns.empty());
+}
