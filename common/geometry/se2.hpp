@@ -68,7 +68,9 @@ inline Pose2 integrate(const Twist2& twist, double dt) {
   const double turn = twist.omega * dt;
   // Taylor series below 1e-6 rad: the quotients lose their digits there.
   const double sin_over = std::abs(turn) < 1e-6 ? 1.0 - turn * turn / 6.0 : std::sin(turn) / turn;
-  const double cos_over = std::abs(turn) < 1e-6 ? turn / 2.0 : (1.0 - std::cos(turn)) / turn;
+  // 1 - cos(turn) = 2 sin^2(turn / 2), which keeps the digits that the difference loses.
+  const double sin_half = std::sin(turn / 2.0);
+  const double cos_over = std::abs(turn) < 1e-6 ? turn / 2.0 : 2.0 * sin_half * sin_half / turn;
   return {dt * (sin_over * twist.v_x - cos_over * twist.v_y),
           dt * (cos_over * twist.v_x + sin_over * twist.v_y), turn};
 }
