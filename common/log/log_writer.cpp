@@ -24,6 +24,7 @@ struct LogWriter::File {
                               "); check space and permissions");
   }
   void put(const void* bytes, size_t size) {
+    if (size == 0) return;  // an empty message may come with a null pointer
     if (error != 0 || std::fwrite(bytes, 1, size, stream) != size)
       throw failure("cannot be written");
   }
