@@ -40,18 +40,32 @@ TEST_CASE("a pose in space is interpolated between its neighbours and never extr
   REQUIRE_FALSE(track.at(110'000, 10'000));
 }
 
-TEST_CASE("a track refuses what is not newer, begins anew at a jump and forgets what is old") {
+TEST_CASE("a track refuses what is not newer and forgets what is old") {
+  SpatialTrack track(1'000'000, 10.0);
+  const auto pose = isometryFrom({1, 2, 3}, {});
+  track.push(100'000, pose);
+  REQUIRE(track.push(100'000, pose) == SpatialTrack::Verdict::kNotNewer);
+  for (int64_t utime = 200'000; utime < 1'400'000; utime += 100'000) track.push(utime, pose);
+  REQUIRE_FALSE(track.at(250'000, 1'000'000));
+  REQUIRE(track.at(350'000, 1'000'000));
+}
+
+TEST_CASE("a single pose far off is forgotten, three that agree are a jump") {
   SpatialTrack track(1'000'000, 10.0);
   const auto at = [](double x) { return isometryFrom({x, 0, 0}, {}); };
+  using Verdict = SpatialTrack::Verdict;
   track.push(100'000, at(0.0));
-  REQUIRE(track.push(100'000, at(0.0)) == SpatialTrack::Verdict::kNotNewer);
-  REQUIRE(track.push(200'000, at(1.4)) == SpatialTrack::Verdict::kTaken);
-  REQUIRE(track.push(300'000, at(4.0)) == SpatialTrack::Verdict::kJump);
-  REQUIRE_FALSE(track.at(250'000, 1'000'000));
-  REQUIRE(track.newest() == 300'000);
-  track.push(1'250'000, at(4.0));
-  track.push(1'350'000, at(4.0));
-  REQUIRE_FALSE(track.at(310'000, 1'000'000));
+  REQUIRE(track.push(120'000, at(0.69)) == Verdict::kTaken);
+  REQUIRE(track.push(140'000, at(50.0)) == Verdict::kDoubted);
+  REQUIRE(track.push(160'000, at(0.7)) == Verdict::kTaken);
+  REQUIRE(track.at(140'000, 50'000)->translation().x() == Approx(0.695));
+  REQUIRE(track.push(180'000, at(50.0)) == Verdict::kDoubted);
+  REQUIRE(track.push(200'000, at(90.0)) == Verdict::kDoubted);
+  REQUIRE(track.push(220'000, at(90.1)) == Verdict::kDoubted);
+  REQUIRE(track.newest() == 160'000);
+  REQUIRE(track.push(240'000, at(90.2)) == Verdict::kJump);
+  REQUIRE(track.at(230'000, 50'000)->translation().x() == Approx(90.15));
+  REQUIRE_FALSE(track.at(160'000, 50'000));
 }
 
 TEST_CASE("changed tiles are sent first, all others in turn") {

@@ -7,24 +7,45 @@
 namespace tread::mapping {
 namespace {
 
-constexpr double kJumpMargin = 0.5;
+/// Steps may be so much longer than the top speed allows: noise of the INS [m].
+constexpr double kStepMargin = 0.5;
+/// So many doubted poses that agree with each other are believed.
+constexpr size_t kEnoughDoubted = 3;
 
 }  // namespace
 
+void SpatialTrack::clear() {
+  poses_.clear();
+  doubted_.clear();
+}
+
+bool SpatialTrack::follows(const TimedPose& next, const TimedPose& before) const {
+  const double dt = static_cast<double>(next.utime - before.utime) * 1e-6;
+  return dt > 0.0 && (next.p_map - before.p_map).norm() <= top_speed_ * dt + kStepMargin;
+}
+
 SpatialTrack::Verdict SpatialTrack::push(int64_t utime, const Eigen::Isometry3d& T_map_body) {
-  Verdict verdict = Verdict::kTaken;
-  if (!poses_.empty()) {
-    if (utime <= poses_.back().utime) return Verdict::kNotNewer;
-    const double dt = static_cast<double>(utime - poses_.back().utime) * 1e-6;
-    const double way = (T_map_body.translation() - poses_.back().p_map).norm();
-    if (way > top_speed_ * dt + kJumpMargin) {
-      verdict = Verdict::kJump;
-      poses_.clear();
-    }
-  }
-  poses_.push_back({utime, T_map_body.translation(), Eigen::Quaterniond(T_map_body.linear())});
-  while (poses_.front().utime < utime - span_us_) poses_.pop_front();
-  return verdict;
+  if (!poses_.empty() && utime <= poses_.back().utime) return Verdict::kNotNewer;
+  const TimedPose pose{utime, T_map_body.translation(), Eigen::Quaterniond(T_map_body.linear())};
+  if (!poses_.empty() && !follows(pose, poses_.back())) return doubt(pose);
+  doubted_.clear();
+  append(pose);
+  return Verdict::kTaken;
+}
+
+SpatialTrack::Verdict SpatialTrack::doubt(const TimedPose& pose) {
+  if (!doubted_.empty() && !follows(pose, doubted_.back())) doubted_.clear();
+  doubted_.push_back(pose);
+  if (doubted_.size() < kEnoughDoubted) return Verdict::kDoubted;
+  poses_.clear();
+  for (const TimedPose& believed : doubted_) append(believed);
+  doubted_.clear();
+  return Verdict::kJump;
+}
+
+void SpatialTrack::append(const TimedPose& pose) {
+  poses_.push_back(pose);
+  while (poses_.front().utime < pose.utime - span_us_) poses_.pop_front();
 }
 
 std::optional<Eigen::Isometry3d> SpatialTrack::at(int64_t utime, int64_t max_gap_us) const {

@@ -16,15 +16,17 @@ class SpatialTrack {
   enum class Verdict {
     kTaken,
     kNotNewer,  ///< not newer than the last pose: refused
-    kJump       ///< farther from the last pose than the robot can move: the track begins anew
+    kDoubted,   ///< farther from the last pose than the robot can move: kept aside for now
+    kJump       ///< the poses that were doubted agree with each other: the track begins anew
   };
 
-  /// Keeps poses that are at most `span_us` older than the newest. A step is a jump if it is longer
-  /// than half a metre beyond what `top_speed` [m/s] allows.
+  /// Keeps poses that are at most `span_us` older than the newest. A step is doubted if it is
+  /// longer than half a metre beyond what `top_speed` [m/s] allows; three in a row that agree are a
+  /// jump, while a single one is forgotten as soon as the track goes on.
   SpatialTrack(int64_t span_us, double top_speed) : span_us_(span_us), top_speed_(top_speed) {}
 
   Verdict push(int64_t utime, const Eigen::Isometry3d& T_map_body);
-  void clear() { poses_.clear(); }
+  void clear();
 
   /// Pose at a time between two kept poses at most `max_gap_us` apart; else nothing.
   std::optional<Eigen::Isometry3d> at(int64_t utime, int64_t max_gap_us) const;
@@ -40,9 +42,14 @@ class SpatialTrack {
     Eigen::Quaterniond R_map_body;
   };
 
+  bool follows(const TimedPose& next, const TimedPose& before) const;
+  Verdict doubt(const TimedPose& pose);
+  void append(const TimedPose& pose);
+
   int64_t span_us_;
   double top_speed_;
   std::deque<TimedPose> poses_;
+  std::deque<TimedPose> doubted_;
 };
 
 }  // namespace tread::mapping

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/mapping/mapping_config.hpp"
+
+namespace tread::mapping {
+namespace {
+
+void readGrid(ConfigReader& reader, LocalMapConfig& map) {
+  int64_t tile_cells = map.tile_cells;
+  int64_t window_tiles = map.window_tiles;
+  reader.number("cell_size", map.voxels.cell_size, {0.02, 0.5}, "m");
+  reader.integer("tile_cells", tile_cells, {8, 128}, "cells");
+  reader.integer("window_tiles", window_tiles, {2, 32}, "tiles");
+  if (tile_cells % GroundModel::kPatchCells != 0)
+    throw reader.error("tile_cells", "must be a multiple of 8");
+  if (tile_cells * window_tiles > 1024)
+    throw reader.error("window_tiles", "window_tiles x tile_cells must not be above 1024 cells");
+  map.tile_cells = static_cast<int>(tile_cells);
+  map.window_tiles = static_cast<int>(window_tiles);
+}
+
+void readMap(ConfigReader& reader, LocalMapConfig& map) {
+  reader.number("marking_range", map.marking_range, {0.5, 100.0}, "m");
+  reader.number("clearing_range", map.clearing_range, {0.5, 100.0}, "m");
+  reader.number("start_free_radius", map.start_free_radius, {0.0, 5.0}, "m");
+  reader.number("step", map.judge.step, {0.02, 1.0}, "m");
+  reader.number("robot_height", map.judge.robot_height, {0.1, 5.0}, "m");
+  if (map.judge.robot_height <= map.judge.step)
+    throw reader.error("robot_height", "must be above step");
+  ConfigReader footprint = reader.section("footprint");
+  footprint.number("front", map.robot.front, {0.05, 5.0}, "m");
+  footprint.number("rear", map.robot.rear, {0.05, 5.0}, "m");
+  footprint.number("half_width", map.robot.half_width, {0.05, 3.0}, "m");
+  ConfigReader evidence = reader.section("evidence");
+  evidence.number("hit", map.voxels.hit, {0.51, 0.99}, "");
+  evidence.number("miss", map.voxels.miss, {0.01, 0.49}, "");
+  evidence.number("clamp_min", map.voxels.clamp_min, {0.01, 0.49}, "");
+  evidence.number("clamp_max", map.voxels.clamp_max, {0.51, 0.99}, "");
+  ConfigReader ground = reader.section("ground");
+  ground.number("height_noise", map.ground.height_noise, {0.001, 1.0}, "m");
+  ground.number("slope_noise", map.ground.slope_noise, {0.0, 1.0}, "");
+  ground.number("curvature", map.ground.curvature, {0.0, 1.0}, "1/m");
+  ground.number("slope_doubt", map.ground.slope_doubt, {0.0, 1.0}, "");
+}
+
+}  // namespace
+
+MappingConfig readMappingConfig(ConfigReader& reader) {
+  MappingConfig config;
+  readGrid(reader, config.map);
+  readMap(reader, config.map);
+  reader.number("publish_period", config.publish_period, {0.02, 2.0}, "s");
+  reader.number("refresh_period", config.refresh_period, {0.2, 60.0}, "s");
+  reader.number("max_ins_gap", config.max_ins_gap, {0.005, 2.0}, "s");
+  reader.number("max_wait", config.max_wait, {0.02, 5.0}, "s");
+  reader.number("top_speed", config.top_speed, {0.1, 50.0}, "m/s");
+  reader.number("silence", config.silence, {0.1, 60.0}, "s");
+  reader.finish();
+  config.effective = reader.effective();
+  return config;
+}
+
+}  // namespace tread::mapping
