@@ -66,6 +66,7 @@ void readSearch(ConfigReader reader, SearchConfig& search) {
   reader.number("near_distance", search.near_distance, {0.05, 5.0}, "m");
   reader.number("switch_penalty", search.switch_penalty, {0.0, 20.0}, "s");
   reader.number("horizon", search.horizon, {1.0, 60.0}, "s");
+  reader.number("least_rate", search.least_rate, {0.0, 1.0}, "1");
   reader.number("frontier", search.frontier, {0.5, 20.0}, "m");
   reader.number("least_progress", search.least_progress, {0.0, 10.0}, "s");
   count(reader, "escape_patterns", search.escape_patterns, {0, 10});

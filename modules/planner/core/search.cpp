@@ -16,6 +16,8 @@ constexpr int kAskEvery = 16;
 constexpr double kCellSlack = 0.15;
 /// Nearer to the goal than this its heading counts, farther off that of the way [m].
 constexpr double kNearGoal = 1.0;
+/// Where progress is slow the search looks so many times the horizon ahead.
+constexpr float kLookAhead = 2.0F;
 /// Share of the cost that counts against a leaf when the search is cut off.
 constexpr float kLeafCost = 0.25F;
 
@@ -36,7 +38,7 @@ SearchResult Search::run(const SearchProblem& problem, const StopPredicate& stop
     node.expanded = true;
     if (isGoal(node)) return finish(index, SearchEnd::kGoal);
     if (isFarEnough(node)) return finish(index, SearchEnd::kHorizon);
-    if (node.time < static_cast<float>(config_.horizon)) expand(index);
+    if (node.time < kLookAhead * static_cast<float>(config_.horizon)) expand(index);
     if (expansions_ % kAskEvery == 0 && stop(expansions_))
       return finish(bestLeaf(), SearchEnd::kProgress);
   }
@@ -51,6 +53,7 @@ void Search::begin(const SearchProblem& problem) {
   expansions_ = 0;
   speed_ = problem.patterns->bestSpeed();
   turn_rate_ = std::max(1e-3, problem.patterns->bestTurnRate());
+  way_at_start_ = problem.cost_to_go->length(problem.T_map_start.position());
   Node root{};
   root.x = problem.T_map_start.x;
   root.y = problem.T_map_start.y;
@@ -210,8 +213,11 @@ bool Search::isFarEnough(const Node& node) const {
   if (node.depth == 0 || node.level < 0) return false;
   const float gained = nodes_.front().to_go - node.to_go;
   if (gained < static_cast<float>(config_.least_progress)) return false;
-  return node.time >= static_cast<float>(config_.horizon) ||
-         problem_->cost_to_go->untilUnknown({node.x, node.y}) < config_.frontier;
+  const Eigen::Vector2d p(node.x, node.y);
+  if (problem_->cost_to_go->untilUnknown(p) < config_.frontier) return true;
+  const auto time = static_cast<double>(node.time);
+  const double gained_way = way_at_start_ - problem_->cost_to_go->length(p);
+  return time >= config_.horizon && gained_way >= config_.least_rate * speed_ * time;
 }
 
 int Search::bestLeaf() const {

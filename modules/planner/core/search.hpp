@@ -26,6 +26,8 @@ struct SearchConfig {
   double near_distance = 0.9;     ///< [m] of clearance from which on nothing is near
   double switch_penalty = 0.6;    ///< [s] for leaving the plan that was made before
   double horizon = 9.0;           ///< [s] farther ahead nothing needs to be planned
+  double least_rate = 0.3;        ///< [1] of the best speed that a plan to the horizon must gain on the way to go;
+                                  ///< below that it is looked ahead twice as far
   double frontier = 2.5;          ///< [m] before the unknown a plan may end
   double least_progress = 0.3;    ///< [s] of time to go that a plan must gain
   int escape_patterns = 3;        ///< so many patterns may be needed to leave blocked ground
@@ -152,6 +154,7 @@ class Search {
   std::vector<int> leaf_to_root_;
   mutable std::vector<int> branch_;
   int expansions_ = 0;
+  double way_at_start_ = 0.0;
   double speed_ = 1.0;
   double turn_rate_ = 1.0;
 };

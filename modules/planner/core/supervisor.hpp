@@ -69,6 +69,7 @@ class Supervisor {
   /// From the next step on plans are made with this set; what is handed over keeps its version.
   void takeSet(const PatternSet& set);
   World& world() { return world_; }
+  const CostToGo& costToGo() const { return world_.costToGo(); }
 
   /// `stop` may end a search early (a deadline); the configured expansions end it in any case.
   Decision step(const Situation& situation, const StopPredicate& stop);

@@ -3,8 +3,8 @@
 #include "tests/planner/kit/closed_loop.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <deque>
 #include <limits>
 
@@ -127,7 +127,7 @@ class Drive {
       drift_ = normal(options_.errors.drift);
     }
     const Pose2 before = state_.pose;
-    state_ = moveOn(state_, command, static_cast<double>(kTick) * 1e-6, TrackModel{}, gain_, turn_,
+    state_ = moveOn(state_, command, static_cast<double>(kTick) * 1e-6, options_.vehicle, gain_, turn_,
                     drift_);
     const Pose2 moved = between(before, state_.pose);
     const double dt = static_cast<double>(kTick) * 1e-6;
@@ -166,11 +166,11 @@ class Drive {
 
   void plan() {
     const Situation s = situation();
-    const auto before = std::chrono::steady_clock::now();
+    const std::clock_t before = std::clock();
     const Decision decision = supervisor_.step(s, nullptr);
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - before;
-    outcome_.planner_seconds += took.count();
-    outcome_.worst_step = std::max(outcome_.worst_step, took.count());
+    const double took = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+    outcome_.planner_seconds += took;
+    outcome_.worst_step = std::max(outcome_.worst_step, took);
     outcome_.status = decision.report.status;
     outcome_.reason = decision.report.reason;
     orders_.push_back({now_ + options_.latency, supervisor_.program().running(),
@@ -180,6 +180,8 @@ class Drive {
     outcome_.least_clearance = std::min(outcome_.least_clearance, clearance);
     if (clearance <= 0.0) ++outcome_.collisions;
     done_ = decision.report.status == PlanStatus::kArrived;
+    if (options_.on_decision)
+      options_.on_decision(static_cast<double>(now_ - kStart) * 1e-6, decision);
     if (options_.on_step)
       options_.on_step(static_cast<double>(now_ - kStart) * 1e-6, state_.pose, supervisor_,
                        mission_.ground);

@@ -58,8 +58,8 @@ struct DriveOutcome {
   double least_clearance = 0.0;  ///< [m] between footprint and obstacles; 0 = touched
   int patterns = 0;
   int collisions = 0;  ///< steps in which the footprint touched something
-  double planner_seconds = 0.0;  ///< of the host, all steps together
-  double worst_step = 0.0;       ///< [s] of the host
+  double planner_seconds = 0.0;  ///< of the processor, all steps together
+  double worst_step = 0.0;       ///< [s] of the processor
   std::map<std::string, int64_t> counters;
 };
 
@@ -67,12 +67,14 @@ struct DriveOutcome {
 struct DriveOptions {
   PlannerConfig config;
   GroundErrors errors;
+  TrackModel vehicle;
   uint64_t seed = 1;
   double time_limit = 300.0;    ///< [s]
   bool whole_map_known = false;
   int64_t latency = 20'000;     ///< [us] from measurement to planner, and from planner to bridge
   /// Called each 50 ms with the time [s] and the true pose; may change the world or the set.
   std::function<void(double, const Pose2&, Supervisor&, Playground&)> on_step;
+  std::function<void(double, const Decision&)> on_decision;
 };
 
 /// Drives a mission in virtual time: kinematic vehicle, toy mapping, toy bridge, the real supervisor.

@@ -40,6 +40,19 @@ double enter(const Box& box, const Eigen::Vector2d& p_map, double angle) {
   return from <= to ? from : std::numeric_limits<double>::infinity();
 }
 
+/// Cells whose centre is nearer than this to a box become obstacles.
+void markNear(const std::vector<Box>& boxes, double distance, Grid& grid) {
+  for (const Box& box : boxes) {
+    const double reach = std::hypot(box.half_length, box.half_width) + distance;
+    const Eigen::Vector2d p = box.T_map_box.position();
+    const CellIndex from = grid.indexOf(p - Eigen::Vector2d(reach, reach));
+    const CellIndex to = grid.indexOf(p + Eigen::Vector2d(reach, reach));
+    for (int y = from.y; y <= to.y; ++y)
+      for (int x = from.x; x <= to.x; ++x)
+        if (distanceTo(box, grid.centre({x, y})) <= distance) grid.set({x, y}, kObstacle);
+  }
+}
+
 std::vector<Eigen::Vector2d> rim(const Box& box, double step) {
   std::vector<Eigen::Vector2d> points;
   const auto side = [&](double x0, double y0, double x1, double y1) {
@@ -100,42 +113,28 @@ Grid Playground::paint(double cell_size, const Eigen::Vector2d& lower,
                         static_cast<int>(std::floor(lower.y() / cell_size))};
   Grid grid(cell_size, first, static_cast<int>(std::ceil((upper.x() - lower.x()) / cell_size)),
             static_cast<int>(std::ceil((upper.y() - lower.y()) / cell_size)));
-  for (int y = 0; y < grid.height(); ++y) {
-    for (int x = 0; x < grid.width(); ++x) {
-      const CellIndex cell{first.x + x, first.y + y};
-      const bool any = std::any_of(boxes_.begin(), boxes_.end(), [&](const Box& box) {
-        return distanceTo(box, grid.centre(cell)) <= 0.5 * cell_size;
-      });
-      grid.set(cell, any ? kObstacle : kFree);
-    }
-  }
+  std::fill(grid.cells().begin(), grid.cells().end(), kFree);
+  markNear(boxes_, 0.5 * cell_size, grid);
   return grid;
 }
 
 bool Playground::connected(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                            double radius) const {
-  const double cell = 0.1;
-  const Eigen::Vector2d margin(15.0, 15.0);
-  const Grid grid(cell, Grid(cell, {}, 0, 0).indexOf(from.cwiseMin(to) - margin),
-                  static_cast<int>((std::abs(to.x() - from.x()) + 30.0) / cell),
-                  static_cast<int>((std::abs(to.y() - from.y()) + 30.0) / cell));
-  std::vector<bool> seen(grid.cells().size(), false);
+  Grid grid = Playground{}.paint(0.1, from.cwiseMin(to) - Eigen::Vector2d(15.0, 15.0),
+                                 from.cwiseMax(to) + Eigen::Vector2d(15.0, 15.0));
+  markNear(boxes_, radius, grid);
   std::deque<CellIndex> open{grid.indexOf(from)};
   const CellIndex goal = grid.indexOf(to);
   while (!open.empty()) {
-    const CellIndex cell_now = open.front();
+    const CellIndex here = open.front();
     open.pop_front();
-    if (cell_now == goal) return true;
+    if (here == goal) return true;
     const int steps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     for (const auto& [dx, dy] : steps) {
-      const CellIndex next{cell_now.x + dx, cell_now.y + dy};
-      if (!grid.contains(next) || seen[grid.offset(next)]) continue;
-      seen[grid.offset(next)] = true;
-      const Eigen::Vector2d p = grid.centre(next);
-      const bool blocked = std::any_of(boxes_.begin(), boxes_.end(), [&](const Box& box) {
-        return distanceTo(box, p) < radius;
-      });
-      if (!blocked) open.push_back(next);
+      const CellIndex next{here.x + dx, here.y + dy};
+      if (grid.at(next) != kFree) continue;
+      grid.set(next, kUnknown);  // seen
+      open.push_back(next);
     }
   }
   return false;

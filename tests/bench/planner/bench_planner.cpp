@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <benchmark/benchmark.h>
+
+#include "modules/planner/core/search.hpp"
+#include "modules/planner/core/world.hpp"
+#include "tests/planner/kit/playground.hpp"
+#include "tests/planner/kit/sample_patterns.hpp"
+
+namespace {
+
+using namespace tread;
+using namespace tread::planner;
+using namespace tread::planner::testkit;
+
+/// A mission with its map wholly known.
+struct Scene {
+  explicit Scene(uint64_t seed)
+      : mission(randomMission(seed)),
+        map(ToyMapping::kCell, ToyMapping::kTileCells, PassageConfig{}) {
+    const Grid grid = mission.ground.paint(ToyMapping::kCell, {-16.0, -16.0}, {48.0, 16.0});
+    tiles = tilesOf(grid, ToyMapping::kTileCells, 1);
+    for (const Tile& tile : tiles) map.put(tile);
+    map.refresh();
+  }
+  Grid window() const { return map.window({-120, -120}, 240, 240); }
+  CostToGo field() const {
+    return CostToGo(map, mission.goal, mission.T_map_start.position(), {}, FieldConfig{});
+  }
+
+  Mission mission;
+  std::vector<Tile> tiles;
+  PassageMap map;
+};
+
+void cutSurroundings(benchmark::State& state) {
+  const Scene scene(3);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(Surroundings(scene.window(), FootprintSize{}, Margins{}));
+}
+BENCHMARK(cutSurroundings)->Unit(benchmark::kMicrosecond);
+
+void takeAndRefreshTile(benchmark::State& state) {
+  Scene scene(3);
+  Tile tile = scene.tiles[scene.tiles.size() / 2];
+  for (auto _ : state) {
+    ++tile.utime;
+    tile.cells[500] = tile.cells[500] == kObstacle ? kFree : kObstacle;
+    scene.map.put(tile);
+    scene.map.refresh();
+  }
+}
+BENCHMARK(takeAndRefreshTile)->Unit(benchmark::kMicrosecond);
+
+void wayToGo(benchmark::State& state) {
+  const Scene scene(3);
+  int64_t filled = 0;
+  for (auto _ : state) filled += scene.field().filled();
+  state.counters["cells/s"] =
+      benchmark::Counter(static_cast<double>(filled), benchmark::Counter::kIsRate);
+}
+BENCHMARK(wayToGo)->Unit(benchmark::kMicrosecond);
+
+void preparePatterns(benchmark::State& state) {
+  const PatternSet set = samplePatterns();
+  for (auto _ : state) benchmark::DoNotOptimize(PatternTable(set, SweepStep{}, 0.05));
+}
+BENCHMARK(preparePatterns)->Unit(benchmark::kMicrosecond);
+
+/// Searches through many worlds; with an unreachable horizon all expansions of the budget are spent.
+void search(benchmark::State& state) {
+  const bool exhaust = state.range(0) != 0;
+  const PatternTable table(samplePatterns(), SweepStep{}, 0.05);
+  std::vector<Scene> scenes;
+  for (uint64_t seed = 1; seed <= 10; ++seed) scenes.emplace_back(seed);
+  std::vector<Surroundings> around;
+  std::vector<CostToGo> fields;
+  for (const Scene& scene : scenes) {
+    around.emplace_back(scene.window(), FootprintSize{}, Margins{});
+    fields.push_back(scene.field());
+  }
+  SearchConfig config;
+  if (exhaust) config.horizon = 1000.0;
+  Search engine(config);
+  int64_t expansions = 0;
+  size_t turn = 0;
+  for (auto _ : state) {
+    const size_t i = turn++ % scenes.size();
+    SearchProblem problem;
+    problem.T_map_start = scenes[i].mission.T_map_start;
+    problem.start_class = table.restClass();
+    problem.patterns = &table;
+    problem.surroundings = &around[i];
+    problem.cost_to_go = &fields[i];
+    problem.goal = scenes[i].mission.goal;
+    const SearchResult result = engine.run(problem, [](int count) { return count >= 20000; });
+    expansions += result.expansions;
+  }
+  state.counters["expansions/s"] =
+      benchmark::Counter(static_cast<double>(expansions), benchmark::Counter::kIsRate);
+  state.counters["expansions"] = benchmark::Counter(static_cast<double>(expansions),
+                                                    benchmark::Counter::kAvgIterations);
+}
+BENCHMARK(search)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->MinTime(2.0);
+
+}  // namespace
