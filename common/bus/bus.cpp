@@ -5,6 +5,12 @@
 #include <sstream>
 
 namespace tread {
+namespace {
+
+/// Nobody publishes this often; a higher seq is that of a broken message.
+constexpr int64_t kLargestSeq = 1'000'000'000'000;
+
+}  // namespace
 
 void Bus::deliver(const RawHandler& handler, const char* channel, const uint8_t* bytes,
                   size_t size) {
@@ -19,7 +25,9 @@ void Bus::deliver(const RawHandler& handler, const char* channel, const uint8_t*
 void Bus::noteReceipt(const ChannelSpec& spec, int64_t utime, int64_t seq) {
   ++statistics_.received;
   onReceipt(utime);
-  if (spec.max_age_ms > 0 && now() - utime > spec.max_age_ms * int64_t{1000}) ++statistics_.late;
+  // Differences are taken so that the numbers of a broken message cannot overflow.
+  if (spec.max_age_ms > 0 && utime < now() - spec.max_age_ms * int64_t{1000}) ++statistics_.late;
+  if (seq < 0 || seq > kLargestSeq) return;
   const auto [last, first] = last_seq_.try_emplace(spec.name, seq);
   // A publisher that starts again counts from its beginning: no loss. Several publishers share
   // HEALTH, CONFIG, ARM, ESTOP and MARK, so a gap says nothing there.

@@ -9,18 +9,18 @@ namespace {
 constexpr size_t kRemembered = 64;
 /// No queue of waiting executions is this long unless somebody sends nonsense.
 constexpr size_t kMaxWaiting = 64;
-/// An execution does not end later than this after the message that tells of its end [us].
+/// An execution that is over does not end later than this after now [us].
 constexpr int64_t kMaxAheadUs = 1'000'000;
 
 }  // namespace
 
-void ExecutionQueue::add(const execution_t& message) {
+void ExecutionQueue::add(const execution_t& message, int64_t now) {
   for (const execution_record_t& record : message.records) {
     if (record.outcome == execution_record_t::OUTCOME_RUNNING) continue;
     const ExecutionKey key{record.record_run_id, record.record_execution_id};
     if (known_.count(key) > 0) continue;
-    const bool sense = record.started > 0 && record.ended >= record.started &&
-                       record.ended <= message.utime + kMaxAheadUs;
+    const bool sense =
+        record.started > 0 && record.ended >= record.started && record.ended <= now + kMaxAheadUs;
     if (!sense || waiting_.size() >= kMaxWaiting) {
       ++senseless_;
       continue;

@@ -20,7 +20,8 @@ namespace tread::learner {
 class ExecutionQueue {
  public:
   /// Takes a message; executions that still run are left for a later one.
-  void add(const execution_t& message);
+  /** `now` [us]: what ends far behind it is a broken record. */
+  void add(const execution_t& message, int64_t now);
 
   /// The one that ended first if it ended by `horizon` [us]; it counts as handled from now on.
   std::optional<execution_record_t> takeEndedBy(int64_t horizon);

@@ -12,10 +12,16 @@ namespace {
 
 /// Ten seconds at 100 Hz; more than that cannot be waiting for its turn.
 constexpr size_t kMaxWaiting = 1000;
+/// No clock of the robot is this far ahead of another [us].
+constexpr int64_t kMaxAheadUs = 1'000'000;
 
 }  // namespace
 
-void InsQueue::add(const ins_t& ins) {
+void InsQueue::add(const ins_t& ins, int64_t now) {
+  if (ins.utime <= 0 || ins.utime > now + kMaxAheadUs) {
+    ++senseless_;
+    return;
+  }
   if (begin_ == INT64_MIN) begin_ = ins.utime;
   if (ins.utime <= settled_ || waiting_.size() >= kMaxWaiting) {
     ++too_late_;

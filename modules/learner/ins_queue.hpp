@@ -18,13 +18,15 @@ class InsQueue {
  public:
   explicit InsQueue(int64_t span_us) : history_(span_us) {}
 
-  void add(const ins_t& ins);
+  /// `now` [us]: a time far from it is that of a broken message.
+  void add(const ins_t& ins, int64_t now);
   /// Moves everything up to `horizon` [us] into the track.
   void settle(int64_t horizon);
 
   /// Time of the first INS message that was heard [us]; INT64_MIN before it.
   int64_t begin() const { return begin_; }
   const TrackHistory& history() const { return history_; }
+  int64_t senseless() const { return senseless_; }       ///< its time cannot be
   int64_t tooLate() const { return too_late_; }          ///< came after its time had been settled
   int64_t withoutPose() const { return without_pose_; }  ///< no position or no heading
 
@@ -36,6 +38,7 @@ class InsQueue {
   int64_t settled_ = INT64_MIN;
   int64_t begin_ = INT64_MIN;
   bool jumped_ = false;
+  int64_t senseless_ = 0;
   int64_t too_late_ = 0;
   int64_t without_pose_ = 0;
 };

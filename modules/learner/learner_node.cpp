@@ -61,7 +61,7 @@ LearnerNode::LearnerNode(LearnerNodeConfig config, Bus& bus, Store& store)
       ins_(config_.track_span_us),
       outbox_(bus),
       health_(bus, "learner", config_.effective()) {
-  bus.subscribe<ins_t>(kIns, [this](const ins_t& ins) { ins_.add(ins); });
+  bus.subscribe<ins_t>(kIns, [this](const ins_t& ins) { ins_.add(ins, bus_.now()); });
   bus.subscribe<execution_t>(kExecution, [this](const execution_t& message) { hear(message); });
   bus.subscribe<motor_t>(kMotor, [this](const motor_t& motor) { commands_.add(motor); });
   // Not now(): it is not known before the first message.
@@ -106,7 +106,7 @@ void LearnerNode::step(int64_t utime) {
 }
 
 void LearnerNode::hear(const execution_t& message) {
-  executions_.add(message);
+  executions_.add(message, bus_.now());
   int64_t highest = 0;
   for (const execution_record_t& record : message.records)
     highest = std::max(highest, record.record_set_version);
@@ -240,6 +240,7 @@ void LearnerNode::reportHealth(int64_t utime) {
   health_.setState(problem.empty() ? health_t::HEALTH_OK : health_t::HEALTH_DEGRADED, problem);
   health_.setCounter("set version", learner_.set().version());
   health_.setCounter("INS too late", ins_.tooLate());
+  health_.setCounter("INS at senseless times", ins_.senseless());
   health_.setCounter("INS without pose", ins_.withoutPose());
   health_.setCounter("senseless execution records", executions_.senseless());
   health_.step(utime);
