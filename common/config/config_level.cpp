@@ -193,7 +193,7 @@ std::string ConfigReader::Level::scalar(const YAML::Node& node, const std::strin
                                         const std::string& wanted, bool quotes_allowed) const {
   if (!node.IsScalar())
     throw errorAt(at, name + " is " + kindOf(node) + "; " + wanted + " is needed");
-  const std::string tag = node.Tag();
+  const std::string& tag = node.Tag();
   const bool quoted = tag == "!";
   if (!quoted && tag != "?" && !tag.empty())
     throw errorAt(at, name + " has the tag " + shown(tag) + "; " + wanted + " is needed");

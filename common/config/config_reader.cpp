@@ -26,6 +26,7 @@ std::string listAnswer(const std::vector<double>& values) {
   std::vector<std::string> words;
   if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
     return "";
+  words.reserve(values.size());
   for (const double value : values) words.push_back(formatNumber(value));
   return "[" + joinWords(words) + "]";
 }
@@ -106,6 +107,16 @@ void ConfigReader::text(const std::string& key, std::string& value, bool require
   level_->answer(key, formatText(value));
 }
 
+void ConfigReader::path(const std::string& key, std::string& value, bool required) {
+  if (const auto* entry = level_->ask(key, required)) {
+    value = level_->scalar(entry->value, level_->path(key), Level::lineOf(*entry), "a path", true);
+    const size_t slash = level_->source->name.rfind('/');
+    if (slash != std::string::npos && value.compare(0, 1, "/") != 0)
+      value = level_->source->name.substr(0, slash + 1) + value;
+  }
+  level_->answer(key, formatText(value));
+}
+
 void ConfigReader::choice(const std::string& key, std::string& value,
                           const std::vector<std::string>& allowed, bool required) {
   if (const auto* entry = level_->ask(key, required)) {
@@ -168,6 +179,7 @@ void ConfigReader::texts(const std::string& key, std::vector<std::string>& value
     values = std::move(read);
   }
   std::vector<std::string> words;
+  words.reserve(values.size());
   for (const std::string& value : values) words.push_back(formatText(value));
   level_->answer(key, "[" + joinWords(words) + "]");
 }
@@ -204,6 +216,7 @@ std::vector<ConfigReader> ConfigReader::sections(const std::string& key, bool re
 
 std::vector<std::string> ConfigReader::keys() const {
   std::vector<std::string> names;
+  names.reserve(level_->entries.size());
   for (const auto& entry : level_->entries) names.push_back(entry.key);
   return names;
 }

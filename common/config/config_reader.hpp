@@ -52,6 +52,8 @@ class ConfigReader {
                bool required = false);
   void flag(const std::string& key, bool& value, bool required = false);
   void text(const std::string& key, std::string& value, bool required = false);
+  /// A file's path; a relative one in a file is taken from that file's folder.
+  void path(const std::string& key, std::string& value, bool required = false);
   void choice(const std::string& key, std::string& value, const std::vector<std::string>& allowed,
               bool required = false);
   /// A list of numbers; `size` 0 = any length.

@@ -48,7 +48,7 @@ void readGates(ConfigReader& reader, MeasurementLimits& limits) {
 
 LearnerNodeConfig readLearnerConfig(ConfigReader& reader) {
   std::string patterns;
-  reader.text("patterns", patterns, true);
+  reader.path("patterns", patterns, true);
   LearnerNodeConfig config(readPatternFile(patterns));
   reader.text("store", config.store);
   std::string rule = ruleName(config.rule.rule);

@@ -29,7 +29,7 @@ struct Arguments {
   std::optional<uint64_t> show;
   std::string picture = "mission.png";
   std::string log;
-  std::string robot = TREAD_CONFIG_DIR "/robots/teodor.yaml";
+  std::string robot = TREAD_CONFIG_DIR "/robots/teodor";
   bool live = false;
 };
 
@@ -45,7 +45,7 @@ void define(CLI::App& app, Arguments& arguments) {
   app.add_option("--show", arguments.show, "draw the mission with this seed");
   app.add_option("--picture", arguments.picture, "file of that picture (PNG)");
   app.add_option("--log", arguments.log, "record the mission with seed --seed as an LCM log");
-  app.add_option("--robot", arguments.robot, "robot file");
+  app.add_option("--robot", arguments.robot, "folder with the robot's configuration files");
   app.add_flag("--live", arguments.live, "tell each second of virtual time");
 }
 

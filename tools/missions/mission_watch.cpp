@@ -47,7 +47,7 @@ MissionWatch::MissionWatch(RobotSystem& system, const MissionWorld& world)
       moved_at_(start_),
       last_pose_(system.robot().truth().T_map_body),
       moved_from_(last_pose_),
-      map_(system.mapCellSize(), system.mapTileCells()) {
+      map_(0.1, 32) {
   result_.straight_line = world.straight_line;
   result_.line_blocked = world.line_blocked;
   surface_ = system.robot().truth().surface;

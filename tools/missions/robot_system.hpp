@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "common/bus/virtual_bus.hpp"
+#include "common/link/link.hpp"
+#include "common/store/store.hpp"
+#include "modules/ins_driver/ins_driver_config.hpp"
+#include "modules/learner/learner_node.hpp"
+#include "modules/lidar_driver/lidar_driver_node.hpp"
+#include "modules/mapping/mapping_node.hpp"
+#include "modules/motor_bridge/motor_bridge_config.hpp"
+#include "modules/planner/planner_node.hpp"
+#include "modules/simulator/emulators/simulated_devices.hpp"
+
+namespace tread::missions {
+
+/// The configurations of all processes of one robot, as the files of its folder have them.
+struct RobotConfig {
+  explicit RobotConfig(learner::LearnerNodeConfig learner_config)
+      : learner(std::move(learner_config)) {}
+
+  learner::LearnerNodeConfig learner;  ///< with the shipped pattern set
+  ins::InsDriverConfig ins_driver;
+  lidar::LidarDriverConfig lidar_driver;
+  mapping::MappingConfig mapping;
+  planner::PlannerConfig planner;
+  motor::MotorBridgeConfig motor_bridge;
+  std::map<std::string, NodeTiming> timing;  ///< how long each node computes, as a model
+};
+
+/// Reads a robot's folder (config/robots/teodor: one file a process); throws ConfigError with one
+/// clear line.
+RobotConfig readRobot(const std::string& folder);
+
+/// The whole robot and its world on a virtual bus: real nodes, real device bytes, real messages.
+/** Device lines are in-memory pipes between drivers and emulators; the laser's scans enter behind
+ * the range finder's library (lidar::ScanSource). Links, stores and the simulated robot outlive a
+ * node that is killed. */
+class RobotSystem {
+ public:
+  RobotSystem(const RobotConfig& config, const sim::WorldDescription& world,
+              const Pose2& T_map_start, uint64_t seed, const std::string& rule,
+              const FaultPlan& faults);
+  ~RobotSystem();
+
+  VirtualBus& bus() { return *bus_; }
+  const sim::SimulatedRobot& robot() const { return devices_->robot(); }
+  sim::SimulatedDevices& devices() { return *devices_; }
+  /// Cuts or mends a device's line: "ins" or "motor".
+  void connect(const std::string& device, bool connected);
+  const PatternSet& patterns() const { return config_.learner.shipped; }
+  MemoryStore& learnerStore() { return learner_store_; }
+
+ private:
+  class SimulatedScans;
+  void addRobotNodes();
+  void add(const std::string& name, VirtualBus::Factory factory);
+
+  RobotConfig config_;
+  std::unique_ptr<Link> ins_line_, ins_device_;      ///< both ends of the INS line
+  std::unique_ptr<Link> motor_line_, motor_device_;  ///< both ends of the motor controller's line
+  std::unique_ptr<sim::SimulatedDevices> devices_;
+  std::unique_ptr<SimulatedScans> scans_;
+  MemoryStore ins_store_;
+  MemoryStore learner_store_;
+  std::unique_ptr<VirtualBus> bus_;  ///< last: its nodes refer to the rest
+};
+
+}  // namespace tread::missions
