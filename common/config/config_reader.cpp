@@ -160,6 +160,7 @@ void ConfigReader::table(const std::string& key, std::vector<std::vector<double>
     rows = std::move(read);
   }
   std::vector<std::string> written;
+  written.reserve(rows.size());
   for (const auto& row : rows) written.push_back(listAnswer(row));
   level_->answer(key, "[" + joinWords(written) + "]");
 }

@@ -52,15 +52,9 @@ std::optional<size_t> DescriptorLink::read(uint8_t* buffer, size_t capacity) {
   } while (count < 0 && errno == EINTR);
   if (count > 0) return static_cast<size_t>(count);
   // Nothing read, EIO and POLLHUP are three ways of different devices to say the same: gone.
-  if (count == 0) {
-    hangUp("the other end hung up");
-  } else if (!isBusy(errno)) {
-    hangUp(systemReason(errno));
-  } else if ((pollFor(fd_, POLLIN, 0) & (POLLHUP | POLLERR | POLLNVAL)) != 0) {
-    hangUp("the other end hung up");
-  } else {
-    return 0;
-  }
+  const bool busy = count < 0 && isBusy(errno);
+  if (busy && (pollFor(fd_, POLLIN, 0) & (POLLHUP | POLLERR | POLLNVAL)) == 0) return 0;
+  hangUp(count < 0 && !busy ? systemReason(errno) : "the other end hung up");
   return std::nullopt;
 }
 

@@ -60,17 +60,13 @@ class TtyLink final : public DescriptorLink {
   int openDevice(std::string& reason) override {
     // By name each time: a device that comes back may have another number behind its symlink.
     const int fd = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    if (fd < 0) {
-      reason = systemReason(errno);
-    } else if (::isatty(fd) == 0) {
+    if (fd >= 0 && ::isatty(fd) == 0) {
       reason = "not a terminal; name a serial device";
-    } else if (!claim(fd)) {
-      reason = errno == EWOULDBLOCK ? "in use by another program" : systemReason(errno);
-    } else if (!configure(fd, speed_)) {
-      reason = systemReason(errno);
-    } else {
+    } else if (fd >= 0 && claim(fd) && configure(fd, speed_)) {
       ::tcflush(fd, TCIOFLUSH);
       return fd;
+    } else {
+      reason = errno == EWOULDBLOCK ? "in use by another program" : systemReason(errno);
     }
     if (fd >= 0) ::close(fd);
     return -1;

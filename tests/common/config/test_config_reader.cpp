@@ -158,6 +158,24 @@ TEST_CASE("CRLF, a byte order mark and a section without content are no errors")
   CHECK(b == "y");
 }
 
+TEST_CASE("a relative path in a file is taken from that file's folder") {
+  ConfigReader reader =
+      ConfigReader::fromText("a: x.yaml\nb: /etc/y.yaml\nc: ../z\n", "config/r.yaml");
+  std::string a;
+  std::string b;
+  std::string c;
+  std::string absent = "as it was";
+  reader.path("a", a);
+  reader.path("b", b);
+  reader.path("c", c);
+  reader.path("d", absent);
+  reader.finish();
+  CHECK(a == "config/x.yaml");
+  CHECK(b == "/etc/y.yaml");
+  CHECK(c == "config/../z");
+  CHECK(absent == "as it was");
+}
+
 TEST_CASE("a file is read from disk, an absent one and a folder are one clear line") {
   const std::string path = "/tmp/tread_config_" + std::to_string(::getpid()) + ".yaml";
   std::ofstream(path) << "lease: 0.5\n";
