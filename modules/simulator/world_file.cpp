@@ -18,6 +18,7 @@ std::vector<Eigen::Vector2d> readCorners(ConfigReader& reader) {
   std::vector<std::vector<double>> rows;
   reader.table("corners", rows, 2, kPlace, "m");
   std::vector<Eigen::Vector2d> corners;
+  corners.reserve(rows.size());
   for (const auto& row : rows) corners.emplace_back(row[0], row[1]);
   return corners;
 }

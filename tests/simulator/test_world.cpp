@@ -260,6 +260,19 @@ TEST_CASE("a description that makes no world is refused with place and reason") 
   CHECK_THROWS_WITH(World(star), Catch::Contains("obstacle 1"));
 }
 
+TEST_CASE("worlds of any size can be built and asked") {
+  WorldDescription description;
+  description.bounds = {{-90000.0, -90000.0}, {90000.0, 90000.0}};
+  description.obstacles = {discObstacle({-90000.0, -90000.0}, 1.0, 1.0),
+                           discObstacle({90000.0, 90000.0}, 1.0, 1.0)};
+  description.terrain.waves = {{0.5, {1e-3, 0.0}, 0.0}};
+  const World world(description);
+  CHECK(world.collision({}, {90000.5, 90000.0, 0.0}));
+  CHECK_FALSE(world.collision({}, {0.0, 0.0, 0.0}));
+  const Eigen::Vector3d start(89990.0, 90000.0, world.height({90000.0, 90000.0}) + 0.5);
+  CHECK(*world.castRay(start, {1.0, 0.0, 0.0}, 15.0) == Approx(9.0).margin(0.01));
+}
+
 TEST_CASE("a surface of a world's own replaces the built-in one of the same name") {
   WorldDescription description;
   SurfaceParameters wet = *builtInSurface("grass");

@@ -6,13 +6,21 @@
 #include <cmath>
 
 namespace tread::sim {
+namespace {
 
-HeightTable::HeightTable(const Terrain& terrain, const Extent& area, double spacing)
-    : low_(area.low), spacing_(spacing) {
+constexpr double kMostSamples = 4e6;
+
+}  // namespace
+
+HeightTable::HeightTable(const Terrain& terrain, const Extent& area, double wanted_spacing)
+    : low_(area.low) {
+  const double spacing =
+      std::max(wanted_spacing, std::sqrt((area.high - area.low).prod() / kMostSamples));
+  spacing_ = spacing;
   const Eigen::Vector2d size = (area.high - area.low) / spacing;
   columns_ = static_cast<int>(std::ceil(size.x())) + 2;
   rows_ = static_cast<int>(std::ceil(size.y())) + 2;
-  heights_.reserve(static_cast<size_t>(columns_ * rows_));
+  heights_.reserve(static_cast<size_t>(columns_) * static_cast<size_t>(rows_));
   for (int y = 0; y < rows_; ++y) {
     for (int x = 0; x < columns_; ++x) {
       heights_.push_back(terrain.height(low_ + spacing * Eigen::Vector2d(x, y)));

@@ -13,7 +13,8 @@ namespace tread::sim {
 class HeightTable {
  public:
   HeightTable() = default;
-  /// Samples the terrain over an area; outside of it the border's height continues.
+  /// Samples the terrain over an area; outside of it the border's height continues. Very large
+  /// areas are sampled more coarsely.
   HeightTable(const Terrain& terrain, const Extent& area, double spacing);
 
   bool empty() const { return heights_.empty(); }
@@ -24,7 +25,10 @@ class HeightTable {
   double steepestSlope() const { return steepest_; }
 
  private:
-  double at(int x, int y) const { return heights_[static_cast<size_t>(y * columns_ + x)]; }
+  double at(int x, int y) const {
+    return heights_[static_cast<size_t>(y) * static_cast<size_t>(columns_) +
+                    static_cast<size_t>(x)];
+  }
 
   Eigen::Vector2d low_ = Eigen::Vector2d::Zero();
   double spacing_ = 0.25;

@@ -3,6 +3,11 @@
 #include "modules/simulator/core/obstacle_grid.hpp"
 
 namespace tread::sim {
+namespace {
+
+constexpr double kMostCells = 1e6;
+
+}  // namespace
 
 ObstacleGrid::ObstacleGrid(const std::vector<Obstacle>& obstacles, double cell_edge)
     : edge_(cell_edge) {
@@ -16,20 +21,22 @@ ObstacleGrid::ObstacleGrid(const std::vector<Obstacle>& obstacles, double cell_e
   }
   // A rim of one millimetre keeps shapes that end on a cell border inside the grid.
   low_ = all.low.array() - 1e-3;
+  edge_ = std::max(edge_, std::sqrt((all.high - all.low).prod() / kMostCells));
+  edge_ = std::max(edge_, (all.high - all.low).maxCoeff() / kMostCells);
   columns_ = column(all.high.x() + 1e-3) + 1;
   rows_ = row(all.high.y() + 1e-3) + 1;
 
-  std::vector<std::vector<uint32_t>> cells(static_cast<size_t>(columns_ * rows_));
+  std::vector<std::vector<uint32_t>> cells(cell(0, rows_));
   for (uint32_t i = 0; i < extents.size(); ++i) {
     for (int y = row(extents[i].low.y()); y <= row(extents[i].high.y()); ++y) {
       for (int x = column(extents[i].low.x()); x <= column(extents[i].high.x()); ++x) {
-        cells[static_cast<size_t>(y * columns_ + x)].push_back(i);
+        cells[cell(x, y)].push_back(i);
       }
     }
   }
-  for (const auto& cell : cells) {
+  for (const auto& list : cells) {
     starts_.push_back(static_cast<uint32_t>(indices_.size()));
-    indices_.insert(indices_.end(), cell.begin(), cell.end());
+    indices_.insert(indices_.end(), list.begin(), list.end());
   }
   starts_.push_back(static_cast<uint32_t>(indices_.size()));
 }

@@ -17,7 +17,8 @@ namespace tread::sim {
 class ObstacleGrid {
  public:
   ObstacleGrid() = default;
-  /// Takes the extents of the obstacles (kept by the caller, same order). Cell edge [m].
+  /// Takes the extents of the obstacles (kept by the caller, same order). Cell edge [m]; wider
+  /// where the obstacles spread over kilometres.
   ObstacleGrid(const std::vector<Obstacle>& obstacles, double cell_edge);
 
   /// Calls visit(index) for the obstacles whose extent may touch a box; some may come more than
@@ -47,7 +48,10 @@ class ObstacleGrid {
   int column(double x) const { return static_cast<int>(std::floor((x - low_.x()) / edge_)); }
   int row(double y) const { return static_cast<int>(std::floor((y - low_.y()) / edge_)); }
   /// First index of a cell's list; lists of a row lie one after the other.
-  uint32_t begin(int x, int y) const { return starts_[static_cast<size_t>(y * columns_ + x)]; }
+  uint32_t begin(int x, int y) const { return starts_[cell(x, y)]; }
+  size_t cell(int x, int y) const {
+    return static_cast<size_t>(y) * static_cast<size_t>(columns_) + static_cast<size_t>(x);
+  }
 
   double edge_ = 1.0;
   Eigen::Vector2d low_ = Eigen::Vector2d::Zero();
@@ -64,28 +68,28 @@ void ObstacleGrid::visitAlong(const Eigen::Vector2d& start, const Eigen::Vector2
   const Crossing inside = clip(start, direction, range);
   if (inside.enter > inside.leave) return;
   const Eigen::Vector2d entry = start + inside.enter * direction;
-  int cell[2] = {std::clamp(column(entry.x()), 0, columns_ - 1),
-                 std::clamp(row(entry.y()), 0, rows_ - 1)};
+  int at[2] = {std::clamp(column(entry.x()), 0, columns_ - 1),
+               std::clamp(row(entry.y()), 0, rows_ - 1)};
   const int size[2] = {columns_, rows_};
   int step[2];
   double next[2], per_cell[2];
   for (int axis = 0; axis < 2; ++axis) {
     const double d = direction[axis];
     step[axis] = d > 0.0 ? 1 : -1;
-    const double border = low_[axis] + (cell[axis] + (d > 0.0 ? 1 : 0)) * edge_;
+    const double border = low_[axis] + (at[axis] + (d > 0.0 ? 1 : 0)) * edge_;
     next[axis] = d == 0.0 ? std::numeric_limits<double>::infinity() : (border - start[axis]) / d;
     per_cell[axis] = d == 0.0 ? std::numeric_limits<double>::infinity() : edge_ / std::abs(d);
   }
   for (double distance = inside.enter; distance <= inside.leave;) {
     const int axis = next[0] < next[1] ? 0 : 1;
     bool found = false;
-    for (uint32_t i = begin(cell[0], cell[1]); i < begin(cell[0] + 1, cell[1]); ++i) {
+    for (uint32_t i = begin(at[0], at[1]); i < begin(at[0] + 1, at[1]); ++i) {
       found |= visit(indices_[i], next[axis]);
     }
     if (found) return;
     distance = next[axis];
-    cell[axis] += step[axis];
-    if (cell[axis] < 0 || cell[axis] >= size[axis]) return;
+    at[axis] += step[axis];
+    if (at[axis] < 0 || at[axis] >= size[axis]) return;
     next[axis] += per_cell[axis];
   }
 }

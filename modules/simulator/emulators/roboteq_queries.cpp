@@ -24,7 +24,7 @@ int rounded(double value) {
 }  // namespace
 
 std::optional<std::string> RoboteqFirmware::runQuery(const std::string& text) {
-  const auto reply = answer(roboteqWords(text));
+  auto reply = answer(roboteqWords(text));
   if (!reply) return std::nullopt;
   const bool known = std::find(history_.begin(), history_.end(), text) != history_.end();
   if (!known) history_.push_back(text);
