@@ -12,8 +12,8 @@
 namespace tread::planner {
 
 /// Whether the operator allows this run of the planner to drive.
-/** A permission counts if it was given after the planner's start and after the last stop that took it away: an order
- *  to disarm, an emergency stop, or a motor bridge that is not armed any more. */
+/** A permission counts if it was given after the planner's start and after the last stop that took
+ * it away: an order to disarm, an emergency stop, or a motor bridge that is not armed any more. */
 class Permission {
  public:
   explicit Permission(int64_t start) : revoked_(start) {}
@@ -26,8 +26,8 @@ class Permission {
   bool estopped() const { return estopped_; }
 
  private:
-  static constexpr int64_t kMaxAge = 1'500'000;    ///< [us] ARM is repeated for a second
-  static constexpr int64_t kMaxFuture = 50'000;    ///< [us]
+  static constexpr int64_t kMaxAge = 1'500'000;  ///< [us] ARM is repeated for a second
+  static constexpr int64_t kMaxFuture = 50'000;  ///< [us]
   void revoke(int64_t utime);
 
   int64_t revoked_;  ///< [us] permissions given before count for nothing

@@ -33,12 +33,14 @@ BridgeReading::State stateFrom(int16_t state) {
 
 std::optional<Goal> goalFrom(const goal_t& message) {
   const double* pose = message.goal_pose;
-  const bool finite = std::abs(pose[0]) < kFarthest && std::abs(pose[1]) < kFarthest &&
-                      std::isfinite(pose[2]);
+  const bool finite =
+      std::abs(pose[0]) < kFarthest && std::abs(pose[1]) < kFarthest && std::isfinite(pose[2]);
   const bool tolerant = message.position_tolerance > 0.0 && message.yaw_tolerance > 0.0 &&
                         std::isfinite(message.position_tolerance);
   if (!finite || !tolerant || message.goal_id == 0) return std::nullopt;
-  return Goal{message.goal_id, {pose[0], pose[1], pose[2]}, message.position_tolerance,
+  return Goal{message.goal_id,
+              {pose[0], pose[1], pose[2]},
+              message.position_tolerance,
               message.yaw_tolerance};
 }
 

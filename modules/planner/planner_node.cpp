@@ -27,8 +27,8 @@ void PlannerNode::subscribe() {
   bus_.subscribe<ins_t>(kIns, [this](const ins_t& message) { take(message); });
   bus_.subscribe<map_tile_t>(kMap, [this](const map_tile_t& message) { take(message); });
   bus_.subscribe<goal_t>(kGoal, [this](const goal_t& message) { take(message); });
-  bus_.subscribe<pattern_set_part_t>(
-      kPatternSet, [this](const pattern_set_part_t& message) { take(message); });
+  bus_.subscribe<pattern_set_part_t>(kPatternSet,
+                                     [this](const pattern_set_part_t& message) { take(message); });
   bus_.subscribe<motor_t>(kMotor, [this](const motor_t& message) { take(message); });
   bus_.subscribe<execution_t>(kExecution, [this](const execution_t& message) { take(message); });
   bus_.subscribe<arm_t>(kArm,
@@ -60,8 +60,7 @@ void PlannerNode::take(const goal_t& message) {
 void PlannerNode::take(const pattern_set_part_t& message) {
   const int64_t refused = sets_.refused();
   const std::optional<PatternSet> set = sets_.add(message);
-  if (sets_.refused() > refused)
-    return health_.addToCounter("PATTERN_SET refused");
+  if (sets_.refused() > refused) return health_.addToCounter("PATTERN_SET refused");
   situation_.set_received = bus_.now();
   if (!set) return;
   supervisor_.takeSet(*set);
@@ -85,8 +84,8 @@ void PlannerNode::step(int64_t utime) {
   situation_.armed_by_operator = permission_.armed();
   situation_.estopped = permission_.estopped();
   const int64_t started = bus_.now();
-  const Decision decision = supervisor_.step(
-      situation_, [&](int) { return bus_.now() - started > config_.deadline; });
+  const Decision decision =
+      supervisor_.step(situation_, [&](int) { return bus_.now() - started > config_.deadline; });
   publishProgram(utime);
   publishPlan(utime, decision, bus_.now() - started);
   publishHealth(utime, decision.report);

@@ -9,9 +9,11 @@
 
 namespace tread::planner {
 
-/// Plans towards GOAL on MAP with the newest PATTERN_SET, and tells the motor bridge in PROGRAM what to play.
-/** PROGRAM at 20 Hz whatever happens, empty when the robot shall stand; PLAN at 5 Hz and with each plan; PLAN_TREE
- *  at most once a second. Comes up disarmed: it drives when ARM was seen after its start and MOTOR says armed. */
+/// Plans towards GOAL on MAP with the newest PATTERN_SET, and tells the motor bridge in PROGRAM
+/// what to play.
+/** PROGRAM at 20 Hz whatever happens, empty when the robot shall stand; PLAN at 5 Hz and with each
+ * plan; PLAN_TREE at most once a second. Comes up disarmed: it drives when ARM was seen after its
+ * start and MOTOR says armed. */
 class PlannerNode : public Node {
  public:
   PlannerNode(const PlannerConfig& config, Bus& bus);

@@ -32,8 +32,8 @@ PassageMap mapOf(const Grid& grid) {
   return map;
 }
 
-/// Shortest way of a point that keeps a distance from obstacles, over the fine cells and 16 directions: an upper
-/// bound of the true one that is at most 3 % longer.
+/// Shortest way of a point that keeps a distance from obstacles, over the fine cells and 16
+/// directions: an upper bound of the true one that is at most 3 % longer.
 std::vector<double> waysTo(const Grid& grid, const ClearanceField& room, double radius,
                            CellIndex goal) {
   std::vector<double> way(grid.cells().size(), std::numeric_limits<double>::infinity());

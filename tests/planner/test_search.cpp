@@ -50,7 +50,8 @@ bool sweepCollides(const Grid& grid, const Pose2& start, const TablePattern& pat
   return false;
 }
 
-/// Cheapest time over the lattice of whole metres and quarter turns, by brute force; infinite if there is none.
+/// Cheapest time over the lattice of whole metres and quarter turns, by brute force; infinite if
+/// there is none.
 double bruteForce(const Grid& grid, const PatternTable& table, const Goal& goal, double margin) {
   using State = std::tuple<int, int, int>;
   std::map<State, double> best;
@@ -178,7 +179,8 @@ TEST_CASE("Patterns join only in the class in which the one before ended") {
   }
 }
 
-TEST_CASE("A gap of the vehicle's width and 0.4 m is passed, from straight ahead and from the side") {
+TEST_CASE(
+    "A gap of the vehicle's width and 0.4 m is passed, from straight ahead and from the side") {
   for (const double y : {0.0, 1.5, -2.5}) {
     for (const double heading : {0.0, 0.5, -0.9}) {
       Playground ground;
@@ -210,7 +212,8 @@ TEST_CASE("From the end of a pocket the plan leads out and around") {
   CHECK(result.end == SearchEnd::kGoal);
 }
 
-TEST_CASE("A search that is cut off returns the best that it has, nearer to the goal and stoppable") {
+TEST_CASE(
+    "A search that is cut off returns the best that it has, nearer to the goal and stoppable") {
   const Mission mission = randomMission(8);
   const Grid grid = mission.ground.paint(0.1, {-6.4, -12.8}, {38.4, 12.8});
   const SearchBench bench(grid, samplePatterns(), mission.goal);
@@ -268,7 +271,9 @@ TEST_CASE("From a start on blocked ground only patterns that do not make it wors
   CHECK(bench.surroundings.overlap(result.steps.front().T_map_end).none());
 }
 
-TEST_CASE("With its nose on blocked ground the vehicle does not go on, but gets off it in a few patterns") {
+TEST_CASE(
+    "With its nose on blocked ground the vehicle does not go on, but gets off it in a few "
+    "patterns") {
   Playground ground;
   Grid grid = ground.paint(0.1, {-6.4, -6.4}, {12.8, 6.4});
   for (int y = -4; y <= 4; ++y) grid.set({5, y}, kObstacle);

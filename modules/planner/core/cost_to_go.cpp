@@ -156,8 +156,7 @@ void CostToGo::settle(int cell) {
   ++filled_;
   const int x = cell % width_;
   const int y = cell / width_;
-  touched_border_ =
-      touched_border_ || x == 0 || y == 0 || x == width_ - 1 || y == height_ - 1;
+  touched_border_ = touched_border_ || x == 0 || y == 0 || x == width_ - 1 || y == height_ - 1;
   float best = length_[index];
   float until = kUnknownCap;
   Eigen::Vector2f way(0.0F, 0.0F);

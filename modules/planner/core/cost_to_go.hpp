@@ -35,10 +35,10 @@ struct Detour {
 };
 
 /// Length of the shortest way to the goal from everywhere, around all that is known [m].
-/** Fast marching (first order, upwind) from the goal over coarse cells: obstacles are grown by half the vehicle's
- *  width, unknown is passable. With all weights 0 the length over the best speed of a pattern set bounds the time
- *  to go from below, but for the discretisation: see kShare. Filled in bucket by bucket and no farther than the
- *  surroundings of the vehicle. */
+/** Fast marching (first order, upwind) from the goal over coarse cells: obstacles are grown by half
+ * the vehicle's width, unknown is passable. With all weights 0 the length over the best speed of a
+ * pattern set bounds the time to go from below, but for the discretisation: see kShare. Filled in
+ * bucket by bucket and no farther than the surroundings of the vehicle. */
 class CostToGo {
  public:
   /// Lengths times this are below the true length (first-order error and coarse cells; tested).
@@ -50,7 +50,8 @@ class CostToGo {
 
   bool empty() const { return length_.empty(); }
   /// Way from a point to the rim of the goal's tolerance [m]; infinite if there is none.
-  /** Interpolated between coarse cells. On ground that is blocked: from the best cell within half a metre. */
+  /** Interpolated between coarse cells. On ground that is blocked: from the best cell within half a
+   * metre. */
   double length(const Eigen::Vector2d& p_map) const;
   /// Way from a point until the way to the goal leaves what is known [m]; capped at 10 m.
   double untilUnknown(const Eigen::Vector2d& p_map) const;

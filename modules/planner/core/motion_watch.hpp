@@ -9,7 +9,8 @@
 
 namespace tread::planner {
 
-/// Knows when the vehicle has come to a stand: by its twist, or by its poses where no twist is measured.
+/// Knows when the vehicle has come to a stand: by its twist, or by its poses where no twist is
+/// measured.
 class StandstillWatch {
  public:
   /// Takes the newest pose; the same again is no news.
@@ -32,7 +33,8 @@ class ProgressWatch {
 
   void restart(int64_t now);
   /// Takes the way to go [m]. Returns true if there was no progress for too long, and begins anew.
-  /** A way that has become much longer is a dead end that was seen: patience begins anew, but only so often. */
+  /** A way that has become much longer is a dead end that was seen: patience begins anew, but only
+   * so often. */
   bool stuck(double way_to_go, int64_t now);
 
  private:

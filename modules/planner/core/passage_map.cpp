@@ -11,7 +11,9 @@ namespace {
 /// Room that differs by less than this changes nobody's way [m].
 constexpr float kSameRoom = 0.005F;
 
-int floorDivide(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+int floorDivide(int a, int b) {
+  return a >= 0 ? a / b : -((b - 1 - a) / b);
+}
 
 size_t at(int row, int width, int column) {
   return static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column);
@@ -48,8 +50,7 @@ bool PassageMap::put(Tile tile) {
   dirty_[key] = std::max(dirty_[key], change);
   if (change != Change::kObstacles) return true;
   for (int dy = -1; dy <= 1; ++dy)
-    for (int dx = -1; dx <= 1; ++dx)
-      dirty_[{key.first + dx, key.second + dy}] = Change::kObstacles;
+    for (int dx = -1; dx <= 1; ++dx) dirty_[{key.first + dx, key.second + dy}] = Change::kObstacles;
   return true;
 }
 

@@ -20,17 +20,20 @@ struct PassageConfig {
 
 /// Coarse cells of one tile.
 struct PassageTile {
-  std::vector<float> room;        ///< [m] greatest distance to an obstacle in the cell, capped
-  std::vector<uint8_t> unknown;   ///< 1 where at least half of the cell is unknown
+  std::vector<float> room;       ///< [m] greatest distance to an obstacle in the cell, capped
+  std::vector<uint8_t> unknown;  ///< 1 where at least half of the cell is unknown
 };
 
-/// Everything of the map that was seen, also where mapping has forgotten it, with the room for passing.
-/** Dead ends stay known after the local map has moved on. Here unknown is passable: it may be free. */
+/// Everything of the map that was seen, also where mapping has forgotten it, with the room for
+/// passing.
+/** Dead ends stay known after the local map has moved on. Here unknown is passable: it may be free.
+ */
 class PassageMap {
  public:
   PassageMap(double cell_size, int tile_cells, const PassageConfig& config);
 
-  /// Takes a tile. What it does not know keeps what was known before. Returns whether anything changed.
+  /// Takes a tile. What it does not know keeps what was known before. Returns whether anything
+  /// changed.
   bool put(Tile tile);
   /// Cells of which nothing was seen are free from now on: the vehicle stands on them.
   void markFree(const std::vector<CellIndex>& cells);

@@ -11,7 +11,9 @@ namespace {
 /// Slower than this counts as standing [m/s, rad/s].
 constexpr double kStanding = 0.02;
 
-double distanceBetween(const Pose2& a, const Pose2& b) { return std::hypot(b.x - a.x, b.y - a.y); }
+double distanceBetween(const Pose2& a, const Pose2& b) {
+  return std::hypot(b.x - a.x, b.y - a.y);
+}
 
 SweepPose sweepPose(const Pose2& pose, double time) {
   return {pose, std::cos(pose.yaw), std::sin(pose.yaw), time};
@@ -37,8 +39,8 @@ std::vector<SweepPose> sampleSweep(const std::vector<Pose2>& trajectory, double 
   for (size_t i = 0; i < trajectory.size(); ++i) {
     const bool is_end = i + 1 == trajectory.size();
     const Pose2& after = trajectory[is_end ? i : i + 1];
-    const bool next_too_far = distanceBetween(last, after) > step.distance ||
-                              std::abs(after.yaw - last.yaw) > step.turn;
+    const bool next_too_far =
+        distanceBetween(last, after) > step.distance || std::abs(after.yaw - last.yaw) > step.turn;
     if (!is_end && !next_too_far) continue;
     const Pose2& here = trajectory[i];
     const double steps = std::max(distanceBetween(last, here) / step.distance,

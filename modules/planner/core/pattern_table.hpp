@@ -21,11 +21,11 @@ struct SweepPose {
 /// A pattern as the search wants it.
 struct TablePattern {
   const MotionPattern* pattern = nullptr;
-  int entry = 0;          ///< index of the entry class in the set
-  int exit = 0;           ///< index of the exit class
-  double duration = 0.0;  ///< [s]
-  bool reverses = false;  ///< ends behind its start
-  std::vector<SweepPose> sweep;  ///< poses to check, without the start, at most a step apart
+  int entry = 0;                     ///< index of the entry class in the set
+  int exit = 0;                      ///< index of the exit class
+  double duration = 0.0;             ///< [s]
+  bool reverses = false;             ///< ends behind its start
+  std::vector<SweepPose> sweep;      ///< poses to check, without the start, at most a step apart
   Eigen::Vector2d centre{0.0, 0.0};  ///< of a disc that holds all positions, relative to the start
   double radius = 0.0;               ///< [m] of that disc
   double variance = 0.0;             ///< [m2] added to the pose's uncertainty in one direction

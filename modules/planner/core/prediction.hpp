@@ -26,12 +26,15 @@ struct Prediction {
 /// Pose along a trajectory of equal periods, `time` [s] after its start; held at both ends.
 Pose2 poseAlong(const std::vector<Pose2>& trajectory, double period, double time);
 
-/// What is left of a pattern that has been running for `time` [s] when the vehicle was measured at a pose.
-/** A negative time: it will begin that much later; until then the vehicle keeps the twist of its entry class. */
+/// What is left of a pattern that has been running for `time` [s] when the vehicle was measured at
+/// a pose.
+/** A negative time: it will begin that much later; until then the vehicle keeps the twist of its
+ * entry class. */
 Prediction predict(const Pose2& T_map_body, double time, const TablePattern& pattern,
                    const PatternTable& table);
 
-/// Time until the first of the poses that is not free with a margin level [s]; nothing if all are free.
+/// Time until the first of the poses that is not free with a margin level [s]; nothing if all are
+/// free.
 std::optional<double> firstConflict(const Surroundings& surroundings,
                                     const std::vector<ExpectedPose>& poses, int level);
 

@@ -63,9 +63,9 @@ bool ProgramBook::adopt(int64_t execution_id, int64_t started) {
     turnPage(next_, started);
     return true;
   }
-  const auto found =
-      std::find_if(replaced_.begin(), replaced_.end(),
-                   [&](const Slot& slot) { return slot.execution_id == execution_id; });
+  const auto found = std::find_if(replaced_.begin(), replaced_.end(), [&](const Slot& slot) {
+    return slot.execution_id == execution_id;
+  });
   if (found == replaced_.end()) return false;
   turnPage(*found, started);
   return true;
@@ -98,7 +98,8 @@ ProgramBook::Event ProgramBook::readExecutions(const Situation& situation) {
     started_ = record.started;
   }
   confirmed_ = confirmed_ || begun;
-  // The bridge ended a pattern and began none of ours at once: it stands, whatever was handed over as next.
+  // The bridge ended a pattern and began none of ours at once: it stands, whatever was handed over
+  // as next.
   return completed ? leave(Event::kEnded, "") : event;
 }
 
@@ -108,8 +109,8 @@ ProgramBook::Event ProgramBook::readMotor(const Situation& situation) {
   if (bridge.run_id == run_id_ && bridge.execution_id != 0) {
     if (bridge.execution_id == running_.execution_id) {
       if (!confirmed_)
-        started_ = bridge.utime -
-                   running_.set->content().period_us * std::max(0, bridge.command_index);
+        started_ =
+            bridge.utime - running_.set->content().period_us * std::max(0, bridge.command_index);
       confirmed_ = true;
     } else if (bridge.execution_id > running_.execution_id &&
                adopt(bridge.execution_id, confirmed_ ? ends() : bridge.utime)) {

@@ -26,8 +26,8 @@ struct Slot {
 };
 
 /// Keeps account of what was handed over and of what the bridge made of it.
-/** The bridge joins `next` to `running` by itself; the book turns the page when MOTOR or EXECUTION says so or, should
- *  they be late, when the running pattern must have ended. */
+/** The bridge joins `next` to `running` by itself; the book turns the page when MOTOR or EXECUTION
+ * says so or, should they be late, when the running pattern must have ended. */
 class ProgramBook {
  public:
   explicit ProgramBook(int64_t run_id) : run_id_(run_id) {}
@@ -68,7 +68,8 @@ class ProgramBook {
   int64_t last_id_ = 0;
   Slot running_;
   Slot next_;
-  std::deque<Slot> replaced_;  ///< handed over as next and replaced: the bridge may have been quicker
+  std::deque<Slot>
+      replaced_;  ///< handed over as next and replaced: the bridge may have been quicker
   int64_t previous_id_ = 0;
   int64_t handed_over_ = 0;
   int64_t started_ = 0;

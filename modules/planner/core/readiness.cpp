@@ -38,15 +38,15 @@ Readiness judgeSupplies(const Situation& s, const Supplies& supplies, const AgeL
   return {};
 }
 
-Readiness judgePermission(const Situation& s, const AgeLimits& limits) {
+Readiness judgePermission(const Situation& s, const Supplies& supplies, const AgeLimits& limits) {
   if (s.estopped) return {Level::kStop, PlanStatus::kStopped, "E-stop is engaged"};
   if (!s.bridge) return waiting(Level::kStop, "no MOTOR yet");
   if (s.now - s.bridge->utime > limits.bridge)
     return waiting(Level::kStop, oldAs("MOTOR", s.now - s.bridge->utime));
   if (!s.bridge->armed())
-    return {Level::kStop, PlanStatus::kStopped, "motor_bridge: " + s.bridge->reason};
-  if (!s.armed_by_operator)
-    return waiting(Level::kStop, "not armed since the planner's start");
+    return {Level::kStop, supplies.was_armed ? PlanStatus::kStopped : PlanStatus::kWaiting,
+            "motor_bridge: " + s.bridge->reason};
+  if (!s.armed_by_operator) return waiting(Level::kStop, "not armed since the planner's start");
   return {};
 }
 
@@ -54,7 +54,7 @@ Readiness judgePermission(const Situation& s, const AgeLimits& limits) {
 
 Readiness judge(const Situation& situation, const Supplies& supplies, const AgeLimits& limits) {
   Readiness found = judgeSenses(situation, supplies, limits);
-  if (found.level == Level::kGo) found = judgePermission(situation, limits);
+  if (found.level == Level::kGo) found = judgePermission(situation, supplies, limits);
   if (found.level == Level::kGo) found = judgeSupplies(situation, supplies, limits);
   return found;
 }

@@ -22,8 +22,10 @@ struct Readiness {
 
 /// What map and patterns are like, beside the situation.
 struct Supplies {
-  int64_t map_utime = 0;  ///< [us] of the newest scan in the map; 0 = none
+  int64_t map_utime = 0;                          ///< [us] of the newest scan in the map; 0 = none
   std::string set_defect = "no PATTERN_SET yet";  ///< why the set is of no use; empty = good
+  bool was_armed =
+      false;  ///< the bridge was armed since the start: what it does not allow now was taken away
 };
 
 /// Judges the inputs: the worst of what is wrong decides.

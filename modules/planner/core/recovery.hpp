@@ -13,8 +13,8 @@ namespace tread::planner {
 class Recovery {
  public:
   /// Ids of patterns that lead from rest to rest over free ground; empty if there are none.
-  /** Every call prefers another kind: backing out, turning one way, turning the other way. On blocked ground only
-   *  moves that overlap no more than the vehicle does already. */
+  /** Every call prefers another kind: backing out, turning one way, turning the other way. On
+   * blocked ground only moves that overlap no more than the vehicle does already. */
   std::vector<int> propose(const PatternTable& table, const Surroundings& surroundings,
                            const Pose2& T_map_body);
   int tries() const { return tries_; }

@@ -63,8 +63,8 @@ void Search::begin(const SearchProblem& problem) {
   root.parent = -1;
   root.motion_class = static_cast<int8_t>(problem.start_class);
   const Surroundings& around = *problem.surroundings;
-  root.level =
-      static_cast<int8_t>(around.freeLevel(problem.T_map_start, around.level(problem.start_variance)));
+  root.level = static_cast<int8_t>(
+      around.freeLevel(problem.T_map_start, around.level(problem.start_variance)));
   if (root.level < 0) root.overlap = around.overlap(problem.T_map_start);
   nodes_.push_back(root);
   push(0);
@@ -195,8 +195,7 @@ float Search::toGo(const Pose2& pose) const {
     const double cosine = along.x() * std::cos(pose.yaw) + along.y() * std::sin(pose.yaw);
     turn = std::acos(std::clamp(cosine, -1.0, 1.0));
   }
-  return static_cast<float>(config_.bound_weight * bound +
-                            config_.turn_weight * turn / turn_rate_);
+  return static_cast<float>(config_.bound_weight * bound + config_.turn_weight * turn / turn_rate_);
 }
 
 bool Search::isGoal(const Node& node) const {
@@ -238,11 +237,10 @@ int Search::bestLeaf() const {
 uint64_t Search::keyOf(const Node& node) const {
   const double turns = node.yaw / (2.0 * kPi);
   const double share = turns - std::floor(turns);
-  const auto heading =
-      static_cast<uint64_t>(share * config_.heading_bins + 0.5) %
-      static_cast<uint64_t>(config_.heading_bins);
-  return cellBits(node.x, config_.cell) | cellBits(node.y, config_.cell) << 20U |
-         heading << 40U | static_cast<uint64_t>(node.motion_class) << 56U;
+  const auto heading = static_cast<uint64_t>(share * config_.heading_bins + 0.5) %
+                       static_cast<uint64_t>(config_.heading_bins);
+  return cellBits(node.x, config_.cell) | cellBits(node.y, config_.cell) << 20U | heading << 40U |
+         static_cast<uint64_t>(node.motion_class) << 56U;
 }
 
 SearchResult Search::finish(int leaf, SearchEnd end) {

@@ -15,23 +15,23 @@ namespace tread::planner {
 
 /// How the search weighs and when it is content.
 struct SearchConfig {
-  double cell = 0.15;             ///< [m] side of a cell of the search space
-  int heading_bins = 48;          ///< of a full turn
-  double bound_share = 1.0;       ///< [1] of the way to go that counts; CostToGo::kShare for a bound
-  double bound_weight = 1.3;      ///< [1] 1 = shortest time, more = found sooner
-  double turn_weight = 0.8;       ///< [1] of the time to turn towards the way to go; 0 for a bound
-  double reverse_penalty = 0.5;   ///< [1] of the time spent reversing
-  double stop_penalty = 0.5;      ///< [s] for coming to rest on the way
-  double near_penalty = 0.5;      ///< [1] of the time spent as near to something as possible
-  double near_distance = 0.9;     ///< [m] of clearance from which on nothing is near
-  double switch_penalty = 0.6;    ///< [s] for leaving the plan that was made before
-  double horizon = 9.0;           ///< [s] farther ahead nothing needs to be planned
-  double least_rate = 0.3;        ///< [1] of the best speed that a plan to the horizon must gain on the way to go;
-                                  ///< below that it is looked ahead twice as far
-  double frontier = 2.5;          ///< [m] before the unknown a plan may end
-  double least_progress = 0.3;    ///< [s] of time to go that a plan must gain
-  int escape_patterns = 3;        ///< so many patterns may be needed to leave blocked ground
-  double goal_share = 0.7;        ///< [1] of the goal's tolerance that is aimed for
+  double cell = 0.15;            ///< [m] side of a cell of the search space
+  int heading_bins = 48;         ///< of a full turn
+  double bound_share = 1.0;      ///< [1] of the way to go that counts; CostToGo::kShare for a bound
+  double bound_weight = 1.3;     ///< [1] 1 = shortest time, more = found sooner
+  double turn_weight = 0.8;      ///< [1] of the time to turn towards the way to go; 0 for a bound
+  double reverse_penalty = 0.5;  ///< [1] of the time spent reversing
+  double stop_penalty = 0.5;     ///< [s] for coming to rest on the way
+  double near_penalty = 0.5;     ///< [1] of the time spent as near to something as possible
+  double near_distance = 0.9;    ///< [m] of clearance from which on nothing is near
+  double switch_penalty = 0.6;   ///< [s] for leaving the plan that was made before
+  double horizon = 9.0;          ///< [s] farther ahead nothing needs to be planned
+  double least_rate = 0.3;  ///< [1] of the best speed that a plan to the horizon must gain on the
+                            ///< way to go; below that it is looked ahead twice as far
+  double frontier = 2.5;        ///< [m] before the unknown a plan may end
+  double least_progress = 0.3;  ///< [s] of time to go that a plan must gain
+  int escape_patterns = 3;      ///< so many patterns may be needed to leave blocked ground
+  double goal_share = 0.7;      ///< [1] of the goal's tolerance that is aimed for
 };
 
 /// What to search for.
@@ -69,11 +69,11 @@ struct PlanStep {
 struct SearchResult {
   SearchEnd end = SearchEnd::kNothing;
   std::vector<PlanStep> steps;
-  double cost = 0.0;         ///< [s] of the steps, with penalties
-  double time_to_go = 0.0;   ///< [s] the steps, and from there on the bound
-  double way_to_go = 0.0;    ///< [m] from the end of the plan
+  double cost = 0.0;        ///< [s] of the steps, with penalties
+  double time_to_go = 0.0;  ///< [s] the steps, and from there on the bound
+  double way_to_go = 0.0;   ///< [m] from the end of the plan
   int expansions = 0;
-  std::string reason;        ///< why there is nothing, in words
+  std::string reason;  ///< why there is nothing, in words
 };
 
 /// A node of the search tree, for drawing.
@@ -85,15 +85,17 @@ struct TreeNode {
 };
 
 /// A* over joinable patterns that collide with nothing.
-/** 1. A node is a continuous pose, an exit class and a time; of the nodes in one cell, heading bin and class only
- *     the cheapest is expanded.
- *  2. Nodes are checked when they are taken, not when they are made: the pattern's sweep with a margin that grows
- *     with the uncertainty gathered, and, unless at rest, that a pattern to stop is free from there. So whatever is
- *     returned can stop after each of its patterns.
- *  3. Cost is time and penalties; the bound is the way to go at the best speed of the set. With weight 1, share
- *     CostToGo::kShare and no turn weight the plan to a goal is the cheapest there is at the resolution.
+/** 1. A node is a continuous pose, an exit class and a time; of the nodes in one cell, heading bin
+ * and class only the cheapest is expanded.
+ *  2. Nodes are checked when they are taken, not when they are made: the pattern's sweep with a
+ * margin that grows with the uncertainty gathered, and, unless at rest, that a pattern to stop is
+ * free from there. So whatever is returned can stop after each of its patterns.
+ *  3. Cost is time and penalties; the bound is the way to go at the best speed of the set. With
+ * weight 1, share CostToGo::kShare and no turn weight the plan to a goal is the cheapest there is
+ * at the resolution.
  *  4. It ends at the goal (at rest), at the horizon, near the unknown, or when it is told to.
- *  5. From a start that is not free only patterns that never overlap more than the start does are taken. */
+ *  5. From a start that is not free only patterns that never overlap more than the start does are
+ * taken. */
 class Search {
  public:
   explicit Search(const SearchConfig& config) : config_(config) {}
@@ -118,7 +120,7 @@ class Search {
     int16_t depth;
     int16_t on_plan;  // patterns in common with the committed plan; -1 = left it
     int8_t motion_class;
-    int8_t level;     // margin with which its end is free; -1 while on blocked ground
+    int8_t level;  // margin with which its end is free; -1 while on blocked ground
     bool expanded;
     Overlap overlap;  // on blocked ground
 

@@ -53,7 +53,8 @@ struct Situation {
   std::optional<BridgeReading> bridge;
   std::vector<ExecutionReading> executions;  ///< the last ones, oldest first
   std::optional<Goal> goal;
-  bool armed_by_operator = false;  ///< ARM was seen since the start and since the last stop that needs it
+  bool armed_by_operator =
+      false;  ///< ARM was seen since the start and since the last stop that needs it
   bool estopped = false;
   int64_t set_received = 0;  ///< [us] when a part of a pattern set came last; 0 = never
 };
@@ -84,11 +85,12 @@ struct PlanReport {
 
 /// The limits of the inputs' ages [us].
 struct AgeLimits {
-  int64_t pose = 150'000;         ///< older: the program is emptied
-  int64_t bridge = 500'000;       ///< older: the same
-  int64_t map_slow = 2'000'000;   ///< older: no new patterns but one that stops
-  int64_t map_stop = 5'000'000;   ///< older: the program is emptied
-  int64_t pattern_set = 5'000'000;  ///< older: the learner is lost, no new patterns but one that stops
+  int64_t pose = 150'000;        ///< older: the program is emptied
+  int64_t bridge = 500'000;      ///< older: the same
+  int64_t map_slow = 2'000'000;  ///< older: no new patterns but one that stops
+  int64_t map_stop = 5'000'000;  ///< older: the program is emptied
+  int64_t pattern_set =
+      5'000'000;  ///< older: the learner is lost, no new patterns but one that stops
 };
 
 }  // namespace tread::planner

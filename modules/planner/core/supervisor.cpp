@@ -36,8 +36,9 @@ Decision Supervisor::step(const Situation& s, const StopPredicate& stop) {
   if (s.pose) standstill_.take(*s.pose);
   noteGoal(s);
   followBridge(s);
-  const Supplies supplies{world_.newestUtime(),
-                          table_ ? table_->defect() : "no PATTERN_SET yet"};
+  was_armed_ = was_armed_ || (s.bridge && s.bridge->armed());
+  const Supplies supplies{world_.newestUtime(), table_ ? table_->defect() : "no PATTERN_SET yet",
+                          was_armed_};
   act(s, judge(s, supplies, config_.ages));
   Decision decision;
   decision.planned = planned_;
@@ -82,8 +83,10 @@ void Supervisor::followBridge(const Situation& s) {
     case ProgramBook::Event::kSwitched: {
       const bool as_planned =
           !plan_.empty() && plan_.front().pattern_id == book_.running().pattern_id;
-      if (as_planned) plan_.erase(plan_.begin());
-      else plan_.clear();
+      if (as_planned)
+        plan_.erase(plan_.begin());
+      else
+        plan_.clear();
       last_plan_ = 0;
       if (++switches_ >= kRecovered) recovery_.restart();
       ++counters_["patterns joined"];
@@ -187,8 +190,8 @@ void Supervisor::say(PlanStatus status, const std::string& reason) {
 const TablePattern* Supervisor::runningPattern() const {
   const TablePattern* newest = table_->find(book_.running().pattern_id);
   // The learner bends trajectories, never commands: another length is another pattern.
-  const bool same = newest != nullptr && newest->pattern->commands.size() ==
-                                             book_.running().pattern().commands.size();
+  const bool same = newest != nullptr &&
+                    newest->pattern->commands.size() == book_.running().pattern().commands.size();
   return same ? newest : nullptr;
 }
 
@@ -199,15 +202,15 @@ PlanReport Supervisor::report(const Situation& s) const {
   report.utime = s.pose ? s.pose->utime : 0;
   report.goal_id = s.goal ? s.goal->id : 0;
   report.set_version = table_ ? table_->set().version() : 0;
-  report.time_to_go = mode_ == Mode::kDriving ? time_to_go_
-                                              : std::numeric_limits<double>::quiet_NaN();
+  report.time_to_go =
+      mode_ == Mode::kDriving ? time_to_go_ : std::numeric_limits<double>::quiet_NaN();
   report.expansions = planned_ ? expansions_ : 0;
   double time = 0.0;
   if (!book_.running().empty() && prediction_) {
     time = prediction_->time_left;
     report.execution_ids.push_back(book_.running().execution_id);
-    report.steps.push_back({book_.running().pattern_id, prediction_->T_map_end, 0, time,
-                            prediction_->variance});
+    report.steps.push_back(
+        {book_.running().pattern_id, prediction_->T_map_end, 0, time, prediction_->variance});
   }
   for (size_t i = 0; i < plan_.size(); ++i) {
     const bool handed_over = i == 0 && plan_[i].pattern_id == book_.next().pattern_id;

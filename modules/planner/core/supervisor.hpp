@@ -20,18 +20,18 @@ namespace tread::planner {
 
 /// When what is done.
 struct PolicyConfig {
-  int64_t plan_period = 200'000;   ///< [us] between two plans while driving
-  int64_t blocked_period = 500'000;  ///< [us] between two looks while standing with nothing free
-  int64_t freeze = 130'000;        ///< [us] before its start the next pattern is not replaced
-  int64_t stop_lead = 700'000;     ///< [us] before a collision the vehicle is stopped
-  double coast_time = 0.3;         ///< [s] at its speed the vehicle coasts on after a stop
-  int64_t settle_limit = 3'000'000;  ///< [us] after which a stopped vehicle counts as standing
-  int64_t patience = 25'000'000;   ///< [us] without progress until a way is given up
+  int64_t plan_period = 200'000;      ///< [us] between two plans while driving
+  int64_t blocked_period = 500'000;   ///< [us] between two looks while standing with nothing free
+  int64_t freeze = 130'000;           ///< [us] before its start the next pattern is not replaced
+  int64_t stop_lead = 700'000;        ///< [us] before a collision the vehicle is stopped
+  double coast_time = 0.3;            ///< [s] at its speed the vehicle coasts on after a stop
+  int64_t settle_limit = 3'000'000;   ///< [us] after which a stopped vehicle counts as standing
+  int64_t patience = 25'000'000;      ///< [us] without progress until a way is given up
   int64_t recovery_wait = 1'500'000;  ///< [us] with nothing free until a recovery is tried
-  int recoveries = 4;              ///< tries until the goal counts as blocked
-  int detours = 6;                 ///< ways given up until it counts as blocked
-  int driving_expansions = 3000;   ///< per plan
-  int standing_expansions = 15000; ///< per plan
+  int recoveries = 4;                 ///< tries until the goal counts as blocked
+  int detours = 6;                    ///< ways given up until it counts as blocked
+  int driving_expansions = 3000;      ///< per plan
+  int standing_expansions = 15000;    ///< per plan
 };
 
 /// All that the planner can be told about its behaviour.
@@ -57,11 +57,12 @@ struct Decision {
 /** Call takeSet() and world().put() as things come, then step() at 20 Hz. It
     1. learns from MOTOR and EXECUTION what became of what it handed over;
     2. judges the inputs, and empties the program or lets the vehicle come to rest;
-    3. checks what is under way against the newest map: a running pattern that will hit something is stopped in
-       time, a next one is replaced;
-    4. plans from where the running pattern is expected to end, and hands over the next one; with no plan the next
-       one is the one that stops;
-    5. standing, plans from where it stands; with no plan waits, tries to get out, and says that it is blocked. */
+    3. checks what is under way against the newest map: a running pattern that will hit something is
+   stopped in time, a next one is replaced;
+    4. plans from where the running pattern is expected to end, and hands over the next one; with no
+   plan the next one is the one that stops;
+    5. standing, plans from where it stands; with no plan waits, tries to get out, and says that it
+   is blocked. */
 class Supervisor {
  public:
   Supervisor(const PlannerConfig& config, int64_t run_id);
@@ -105,8 +106,8 @@ class Supervisor {
   void noPlan(const Situation& s, const std::string& why);
   void tryRecovery(const Situation& s);
   // Both.
-  SearchResult searchFrom(const Situation& s, const Pose2& start, int motion_class,
-                          double variance, int expansions);
+  SearchResult searchFrom(const Situation& s, const Pose2& start, int motion_class, double variance,
+                          int expansions);
   bool sayUnreachable();
   void watchProgress(const Situation& s);
   void addDetour(const Situation& s);
@@ -128,6 +129,7 @@ class Supervisor {
   int64_t settling_since_ = 0;
   int64_t last_plan_ = 0;
   std::optional<int64_t> goal_id_;
+  bool was_armed_ = false;
   bool arrived_ = false;
   int switches_ = 0;                      ///< patterns joined since the last recovery
   std::optional<int64_t> nothing_since_;  ///< standing, and nothing was free since then

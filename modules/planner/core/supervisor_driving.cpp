@@ -94,8 +94,10 @@ void Supervisor::searchNext(const Situation& s, const Prediction& running) {
     return say(PlanStatus::kBlocked, stops ? "stopping: " + result.reason : result.reason);
   }
   plan_ = result.steps;
-  if (plan_.empty()) book_.clearNext();
-  else book_.setNext(table_->set(), plan_.front().pattern_id);
+  if (plan_.empty())
+    book_.clearNext();
+  else
+    book_.setNext(table_->set(), plan_.front().pattern_id);
   say(PlanStatus::kDriving, "");
 }
 

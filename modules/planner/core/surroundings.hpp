@@ -37,7 +37,8 @@ struct Overlap {
   }
 };
 
-/// What is around the vehicle at one moment: asked whether poses and patterns are free. Unknown is not free.
+/// What is around the vehicle at one moment: asked whether poses and patterns are free. Unknown is
+/// not free.
 class Surroundings {
  public:
   Surroundings(Grid grid, const FootprintSize& size, const Margins& margins);

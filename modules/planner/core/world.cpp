@@ -57,8 +57,8 @@ bool World::sameGoal(const Goal& goal) const {
 void World::lookAhead(const Pose2& T_map_body, const Goal& goal, int64_t now) {
   if (field_goal_ && field_goal_->id != goal.id) forgetDetours();
   const Eigen::Vector2d p = T_map_body.position();
-  const bool covered = sameGoal(goal) && cost_to_go_.covers(p, kFieldSlack) &&
-                       (p - p_field_).norm() < kFieldSlack;
+  const bool covered =
+      sameGoal(goal) && cost_to_go_.covers(p, kFieldSlack) && (p - p_field_).norm() < kFieldSlack;
   if (covered && now - field_time_ < config_.field_period) return;
   map_->refresh();
   field_time_ = now;

@@ -17,8 +17,8 @@ struct WorldConfig {
   Margins margins;
   PassageConfig passage;
   FieldConfig field;
-  double window = 24.0;              ///< [m] side of the surroundings
-  int64_t field_period = 400'000;    ///< [us] the way to go is worked out no more often than this
+  double window = 24.0;            ///< [m] side of the surroundings
+  int64_t field_period = 400'000;  ///< [us] the way to go is worked out no more often than this
 };
 
 /// The map as it was received, and what is derived from it when it is needed.
@@ -26,7 +26,8 @@ class World {
  public:
   explicit World(const WorldConfig& config) : config_(config) {}
 
-  /// Takes a tile; a map of another cell size replaces what is there. False if the tile is malformed.
+  /// Takes a tile; a map of another cell size replaces what is there. False if the tile is
+  /// malformed.
   bool put(Tile tile, double cell_size, int tile_cells);
   bool empty() const { return !map_ || map_->empty(); }
   /// [us] of the newest scan in the map; 0 if there is none.

@@ -67,7 +67,8 @@ void preparePatterns(benchmark::State& state) {
 }
 BENCHMARK(preparePatterns)->Unit(benchmark::kMicrosecond);
 
-/// Searches through many worlds; with an unreachable horizon all expansions of the budget are spent.
+/// Searches through many worlds; with an unreachable horizon all expansions of the budget are
+/// spent.
 void search(benchmark::State& state) {
   const bool exhaust = state.range(0) != 0;
   const PatternTable table(samplePatterns(), SweepStep{}, 0.05);
@@ -98,8 +99,8 @@ void search(benchmark::State& state) {
   }
   state.counters["expansions/s"] =
       benchmark::Counter(static_cast<double>(expansions), benchmark::Counter::kIsRate);
-  state.counters["expansions"] = benchmark::Counter(static_cast<double>(expansions),
-                                                    benchmark::Counter::kAvgIterations);
+  state.counters["expansions"] =
+      benchmark::Counter(static_cast<double>(expansions), benchmark::Counter::kAvgIterations);
 }
 BENCHMARK(search)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->MinTime(2.0);
 

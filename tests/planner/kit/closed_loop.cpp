@@ -13,7 +13,8 @@ namespace tread::planner::testkit {
 void ToyBridge::receive(int64_t run_id, const Slot& running, const Slot& next, int64_t now) {
   run_id_ = run_id;
   if (running.empty() || !armed_) {
-    if (!current_.empty()) close(now, ExecutionReading::Outcome::kAborted, "stopped by the planner");
+    if (!current_.empty())
+      close(now, ExecutionReading::Outcome::kAborted, "stopped by the planner");
     current_ = pending_ = {};
     return;
   }
@@ -61,8 +62,7 @@ TrackCommand ToyBridge::step(int64_t now) {
   reading_.run_id = run_id_;
   reading_.execution_id = current_.execution_id;
   if (current_.empty()) return {0.0, 0.0};
-  reading_.command_index =
-      static_cast<int>((now - started_) / current_.set->content().period_us);
+  reading_.command_index = static_cast<int>((now - started_) / current_.set->content().period_us);
   return current_.pattern().commands[static_cast<size_t>(reading_.command_index)];
 }
 
@@ -127,8 +127,8 @@ class Drive {
       drift_ = normal(options_.errors.drift);
     }
     const Pose2 before = state_.pose;
-    state_ = moveOn(state_, command, static_cast<double>(kTick) * 1e-6, options_.vehicle, gain_, turn_,
-                    drift_);
+    state_ = moveOn(state_, command, static_cast<double>(kTick) * 1e-6, options_.vehicle, gain_,
+                    turn_, drift_);
     const Pose2 moved = between(before, state_.pose);
     const double dt = static_cast<double>(kTick) * 1e-6;
     twist_ = {moved.x / dt, moved.y / dt, moved.yaw / dt};
@@ -139,8 +139,8 @@ class Drive {
 
   void map() {
     if (options_.whole_map_known) {
-      Tile tick{1000, 1000, now_, std::vector<Cell>(ToyMapping::kTileCells * ToyMapping::kTileCells,
-                                                    kUnknown)};
+      Tile tick{1000, 1000, now_,
+                std::vector<Cell>(ToyMapping::kTileCells * ToyMapping::kTileCells, kUnknown)};
       supervisor_.world().put(tick, ToyMapping::kCell, ToyMapping::kTileCells);
       return;
     }
@@ -173,8 +173,8 @@ class Drive {
     outcome_.worst_step = std::max(outcome_.worst_step, took);
     outcome_.status = decision.report.status;
     outcome_.reason = decision.report.reason;
-    orders_.push_back({now_ + options_.latency, supervisor_.program().running(),
-                       supervisor_.program().next()});
+    orders_.push_back(
+        {now_ + options_.latency, supervisor_.program().running(), supervisor_.program().next()});
     const double clearance =
         mission_.ground.clearance(options_.config.world.footprint, state_.pose);
     outcome_.least_clearance = std::min(outcome_.least_clearance, clearance);

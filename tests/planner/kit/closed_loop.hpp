@@ -11,7 +11,8 @@
 
 namespace tread::planner::testkit {
 
-/// Plays slots at their period and joins them without a gap; what motor_bridge does, without its care.
+/// Plays slots at their period and joins them without a gap; what motor_bridge does, without its
+/// care.
 class ToyBridge {
  public:
   /// What the planner wants, received at now [us].
@@ -40,12 +41,13 @@ class ToyBridge {
   std::vector<ExecutionReading> executions_;
 };
 
-/// How much the ground differs from what was learned: standard deviations, drawn for each execution.
+/// How much the ground differs from what was learned: standard deviations, drawn for each
+/// execution.
 struct GroundErrors {
-  double gain = 0.05;       ///< [1] of the distance
-  double turn = 0.05;       ///< [1] of the turn
-  double drift = 0.02;      ///< [rad] sideways
-  double turn_bias = 1.0;   ///< [1] all turns are so much wider than learned
+  double gain = 0.05;         ///< [1] of the distance
+  double turn = 0.05;         ///< [1] of the turn
+  double drift = 0.02;        ///< [rad] sideways
+  double turn_bias = 1.0;     ///< [1] all turns are so much wider than learned
   double pose_noise = 0.003;  ///< [m], and a third of it in radians
 };
 
@@ -57,7 +59,7 @@ struct DriveOutcome {
   double distance = 0.0;         ///< [m]
   double least_clearance = 0.0;  ///< [m] between footprint and obstacles; 0 = touched
   int patterns = 0;
-  int collisions = 0;  ///< steps in which the footprint touched something
+  int collisions = 0;            ///< steps in which the footprint touched something
   double planner_seconds = 0.0;  ///< of the processor, all steps together
   double worst_step = 0.0;       ///< [s] of the processor
   std::map<std::string, int64_t> counters;
@@ -69,15 +71,16 @@ struct DriveOptions {
   GroundErrors errors;
   TrackModel vehicle;
   uint64_t seed = 1;
-  double time_limit = 300.0;    ///< [s]
+  double time_limit = 300.0;  ///< [s]
   bool whole_map_known = false;
-  int64_t latency = 20'000;     ///< [us] from measurement to planner, and from planner to bridge
+  int64_t latency = 20'000;  ///< [us] from measurement to planner, and from planner to bridge
   /// Called each 50 ms with the time [s] and the true pose; may change the world or the set.
   std::function<void(double, const Pose2&, Supervisor&, Playground&)> on_step;
   std::function<void(double, const Decision&)> on_decision;
 };
 
-/// Drives a mission in virtual time: kinematic vehicle, toy mapping, toy bridge, the real supervisor.
+/// Drives a mission in virtual time: kinematic vehicle, toy mapping, toy bridge, the real
+/// supervisor.
 DriveOutcome driveMission(Mission mission, const PatternSet& set, const DriveOptions& options);
 
 }  // namespace tread::planner::testkit

@@ -10,7 +10,9 @@
 namespace tread::planner::testkit {
 namespace {
 
-int floorDivide(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+int floorDivide(int a, int b) {
+  return a >= 0 ? a / b : -((b - 1 - a) / b);
+}
 
 /// Signed distance from a point to a box: negative inside.
 double distanceTo(const Box& box, const Eigen::Vector2d& p_map) {
@@ -74,8 +76,7 @@ std::vector<Eigen::Vector2d> rim(const Box& box, double step) {
 
 }  // namespace
 
-void Playground::addWall(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
-                         double thickness) {
+void Playground::addWall(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double thickness) {
   const Eigen::Vector2d along = to - from;
   const Eigen::Vector2d middle = (from + to) / 2.0;
   add({{middle.x(), middle.y(), std::atan2(along.y(), along.x())},
@@ -162,7 +163,8 @@ void ToyMapping::note(CellIndex cell, int evidence) {
   const std::pair<int, int> key{floorDivide(cell.x, kTileCells), floorDivide(cell.y, kTileCells)};
   std::vector<int8_t>& cells = evidence_[key];
   if (cells.empty()) cells.assign(kTileCells * kTileCells, 0);
-  const int index = (cell.y - key.second * kTileCells) * kTileCells + cell.x - key.first * kTileCells;
+  const int index =
+      (cell.y - key.second * kTileCells) * kTileCells + cell.x - key.first * kTileCells;
   int8_t& value = cells[static_cast<size_t>(index)];
   value = static_cast<int8_t>(std::clamp(value + evidence, -6, 12));
   touched_[key] = true;

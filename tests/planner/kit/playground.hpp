@@ -49,7 +49,8 @@ struct Mission {
   Goal goal;
 };
 
-/// A walled yard with cross walls whose gaps may be as narrow as the footprint and 0.4 m, boxes and a pocket.
+/// A walled yard with cross walls whose gaps may be as narrow as the footprint and 0.4 m, boxes and
+/// a pocket.
 /** The goal is at least 25 m away, and a way of that width exists. */
 Mission randomMission(uint64_t seed);
 

@@ -6,7 +6,8 @@
 
 namespace tread::planner::testkit {
 
-/// Track speed follows power with a first-order lag; the body turns by the difference of the tracks.
+/// Track speed follows power with a first-order lag; the body turns by the difference of the
+/// tracks.
 struct TrackModel {
   double top_speed = 1.10;  ///< [m/s] at full power
   double gauge = 0.60;      ///< [m]
@@ -20,7 +21,8 @@ struct TrackState {
   double right = 0.0;
 };
 
-/// Moves it on by dt under a power command. `gain` and `turn_gain` [1] are what the ground makes of it.
+/// Moves it on by dt under a power command. `gain` and `turn_gain` [1] are what the ground makes of
+/// it.
 TrackState moveOn(TrackState state, TrackCommand power, double dt, const TrackModel& model,
                   double gain = 1.0, double turn_gain = 1.0, double drift = 0.0);
 

@@ -10,8 +10,8 @@ namespace tread::planner::testkit {
 
 /// A place, wholly known, with everything that a search wants of it.
 struct SearchBench {
-  SearchBench(const Grid& grid, const PatternSet& set, const Goal& aim,
-              const Margins& margins = {}, const FieldConfig& field = {})
+  SearchBench(const Grid& grid, const PatternSet& set, const Goal& aim, const Margins& margins = {},
+              const FieldConfig& field = {})
       : map(grid.cellSize(), 32, PassageConfig{}),
         surroundings(grid, FootprintSize{}, margins),
         table(set, SweepStep{}, 0.05) {

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include "common/bus/virtual_bus.hpp"
+#include "modules/planner/planner_node.hpp"
+#include "tests/planner/kit/toy_robot.hpp"
+
+using namespace tread;
+using namespace tread::planner;
+using namespace tread::planner::testkit;
+
+namespace {
+
+/// The planner node and a toy robot on a virtual bus, and somebody who listens.
+struct Yard {
+  explicit Yard(FaultPlan faults = {}) : bus(7, std::move(faults)), start(bus.now()) {
+    bus.addNode("robot", [](Bus& end) { return std::make_unique<ToyRobot>(end); });
+    bus.addNode("planner",
+                [](Bus& end) { return std::make_unique<PlannerNode>(PlannerConfig{}, end); },
+                {8'000, 3'000});
+    bus.outside().subscribe<plan_t>(kPlan, [this](const plan_t& message) {
+      plan = message;
+      ++plans;
+    });
+    bus.outside().subscribe<plan_tree_t>(kPlanTree,
+                                         [this](const plan_tree_t& message) { tree = message; });
+    bus.outside().subscribe<program_t>(kProgram, [this](const program_t& message) {
+      longest_silence = std::max(longest_silence, message.utime - last_program);
+      last_program = message.utime;
+      ++programs;
+      if (message.running.execution_id != 0) run_id = message.run_id;
+    });
+    bus.outside().subscribe<health_t>(kHealth, [this](const health_t& message) {
+      if (message.process == "planner") health = message;
+    });
+  }
+
+  void sendGoal(double x, double tolerance = 0.5) {
+    goal_t message{};
+    message.utime = bus.now();
+    message.seq = seq++;
+    message.goal_id = 1;
+    message.goal_pose[0] = x;
+    message.position_tolerance = tolerance;
+    message.yaw_tolerance = 4.0;
+    bus.outside().publish(kGoal, message);
+  }
+
+  void arm(bool armed = true) {
+    arm_t message{};
+    message.utime = bus.now();
+    message.seq = seq++;
+    message.armed = armed;
+    message.armed_by = "test";
+    bus.outside().publish(kArm, message);
+  }
+
+  void estop(bool engaged) {
+    estop_t message{};
+    message.utime = bus.now();
+    message.seq = seq++;
+    message.engaged = engaged;
+    bus.outside().publish(kEstop, message);
+  }
+
+  void run(double seconds) { bus.runUntil(bus.now() + static_cast<int64_t>(seconds * 1e6)); }
+  ToyRobot& robot() { return *dynamic_cast<ToyRobot*>(bus.node("robot")); }
+
+  VirtualBus bus;
+  int64_t start;
+  int64_t seq = 0;
+  plan_t plan{};
+  plan_tree_t tree{};
+  health_t health{};
+  int plans = 0;
+  int programs = 0;
+  int64_t run_id = 0;
+  int64_t last_program = 0;
+  int64_t longest_silence = 0;
+};
+
+}  // namespace
+
+TEST_CASE(
+    "Armed and given a goal the node drives the robot there, joining patterns without a gap") {
+  Yard yard;
+  yard.run(1.5);
+  yard.sendGoal(10.0);
+  yard.arm();
+  yard.run(3.0);
+  CHECK(yard.plan.plan_status == plan_t::PLAN_DRIVING);
+  CHECK(yard.robot().speed() > 0.8);
+  yard.run(20.0);
+  CHECK(yard.plan.plan_status == plan_t::PLAN_ARRIVED);
+  CHECK(std::abs(yard.robot().pose().x - 10.0) < 0.5);
+  CHECK(yard.robot().aborted() == 0);
+  const auto& records = yard.robot().records();
+  REQUIRE(records.size() > 5);
+  for (size_t i = 1; i < records.size(); ++i) {
+    CHECK(records[i].record_execution_id > records[i - 1].record_execution_id);
+    if (i < records.size() / 2) CHECK(records[i].started == records[i - 1].ended);
+  }
+}
+
+TEST_CASE("PROGRAM comes at 20 Hz whatever happens, PLAN at 5 Hz, PLAN_TREE with the plan") {
+  Yard yard;
+  yard.run(5.0);
+  CHECK(yard.programs >= 98);
+  CHECK(yard.programs <= 101);
+  CHECK(yard.plans >= 24);
+  CHECK(yard.plan.plan_status == plan_t::PLAN_IDLE);
+  yard.sendGoal(10.0);
+  yard.arm();
+  yard.run(4.0);
+  CHECK(yard.longest_silence <= 60'000 + yard.start);
+  REQUIRE(yard.tree.num_nodes > 3);
+  CHECK(yard.tree.parent[0] == -1);
+  REQUIRE(yard.tree.num_best > 1);
+  REQUIRE(yard.plan.num_patterns > 2);
+  CHECK(yard.plan.set_version == 1);
+  CHECK(yard.health.health_state == health_t::HEALTH_OK);
+}
+
+TEST_CASE("The node comes up disarmed: a permission from before its start counts for nothing") {
+  Yard yard;
+  yard.run(1.0);
+  yard.sendGoal(10.0);
+  yard.arm();
+  yard.run(3.0);
+  REQUIRE(yard.robot().speed() > 0.5);
+  const int64_t old_run = yard.run_id;
+  yard.bus.restart("planner");
+  yard.sendGoal(10.0);
+  yard.run(4.0);
+  CHECK(std::abs(yard.robot().speed()) < 0.01);
+  CHECK(yard.plan.plan_status == plan_t::PLAN_WAITING);
+  CHECK(yard.health.health_state == health_t::HEALTH_DEGRADED);
+  CHECK(yard.health.health_reason == "not armed since the planner's start");
+  // The toy bridge remembers ids of the old run: only the new run's id matters here.
+  yard.arm();
+  yard.run(0.3);
+  CHECK(yard.run_id > old_run);
+}
+
+TEST_CASE("Disarming and an emergency stop empty the program in the next step") {
+  for (const bool estop : {true, false}) {
+    Yard yard;
+    yard.run(1.0);
+    yard.sendGoal(10.0);
+    yard.arm();
+    yard.run(3.0);
+    REQUIRE(yard.robot().program().running.execution_id != 0);
+    if (estop)
+      yard.estop(true);
+    else
+      yard.arm(false);
+    yard.run(0.1);
+    CHECK(yard.robot().program().running.execution_id == 0);
+    CHECK(yard.robot().program().next.execution_id == 0);
+    yard.run(1.0);
+    CHECK(yard.robot().program().running.execution_id == 0);
+    if (estop) {
+      CHECK(yard.plan.plan_status == plan_t::PLAN_STOPPED);
+      yard.estop(false);
+      yard.run(1.0);
+      CHECK(yard.robot().program().running.execution_id == 0);
+    }
+    yard.arm();
+    yard.run(2.0);
+    CHECK(yard.robot().program().running.execution_id != 0);
+  }
+}
+
+TEST_CASE("Without INS the node empties the program and says how old it is") {
+  Yard yard;
+  yard.run(1.0);
+  yard.sendGoal(10.0);
+  yard.arm();
+  yard.run(3.0);
+  yard.robot().ins_alive = false;
+  yard.run(0.3);
+  CHECK(yard.robot().program().running.execution_id == 0);
+  CHECK(yard.plan.reason.find("INS is") == 0);
+}
+
+TEST_CASE(
+    "With a third of MOTOR, EXECUTION and INS lost it still arrives, and nothing is aborted") {
+  FaultPlan faults;
+  for (const char* channel : {"MOTOR", "EXECUTION", "INS", "MAP", "PATTERN_SET"}) {
+    MessageFault fault;
+    fault.channel = channel;
+    fault.drop = 0.33;
+    faults.messages.push_back(fault);
+  }
+  Yard yard(faults);
+  yard.run(4.0);
+  yard.sendGoal(10.0);
+  yard.arm();
+  yard.run(30.0);
+  CHECK(yard.plan.plan_status == plan_t::PLAN_ARRIVED);
+  CHECK(yard.robot().aborted() == 0);
+}
+
+TEST_CASE("Messages that make no sense are counted and change nothing") {
+  Yard yard;
+  yard.run(1.5);
+  yard.sendGoal(std::numeric_limits<double>::quiet_NaN());
+  yard.sendGoal(10.0, -1.0);
+  map_tile_t tile{};
+  tile.utime = yard.bus.now();
+  tile.tile_cells = 32;
+  tile.cell_size = std::numeric_limits<double>::quiet_NaN();
+  yard.bus.outside().publish(kMap, tile);
+  yard.run(2.0);
+  CHECK(yard.plan.plan_status == plan_t::PLAN_IDLE);
+  std::map<std::string, int64_t> counters;
+  for (const counter_t& counter : yard.health.counters)
+    counters[counter.counter_name] = counter.counted;
+  CHECK(counters["GOAL refused: pose or tolerances make no sense"] == 2);
+  CHECK(counters["MAP refused: sizes make no sense"] == 1);
+}
+
+TEST_CASE("A configuration is read with its ranges, and mistakes are named at file and line") {
+  ConfigReader good = ConfigReader::fromText(
+      "footprint: {front: 0.8, rear: 0.7, half_width: 0.5}\n"
+      "search: {horizon: 6}\npolicy: {plan_period: 0.25}\n",
+      "planner.yaml");
+  const PlannerConfig config = readPlannerConfig(good);
+  CHECK(config.world.footprint.half_width == 0.5);
+  CHECK(config.world.field.inflation == 0.5);
+  CHECK(config.search.horizon == 6.0);
+  CHECK(config.policy.plan_period == 250'000);
+  CHECK(config.effective.find("switch_penalty") != std::string::npos);
+  const auto refusal = [](const std::string& text) {
+    ConfigReader reader = ConfigReader::fromText(text, "planner.yaml");
+    try {
+      readPlannerConfig(reader);
+    } catch (const ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(refusal("search: {horizn: 6}\n").find("planner.yaml:1") == 0);
+  CHECK(refusal("margins:\n  plan: -1\n").find("planner.yaml:2") == 0);
+  CHECK(refusal("margins:\n  check: 0.3\n").find("must not be more than plan") !=
+        std::string::npos);
+}

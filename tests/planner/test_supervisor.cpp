@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include "tests/planner/kit/closed_loop.hpp"
+
+using namespace tread;
+using namespace tread::planner;
+using namespace tread::planner::testkit;
+
+namespace {
+
+constexpr int64_t kSecond = 1'000'000;
+
+/// A supervisor with an ideal robot: poses come true exactly, MOTOR and EXECUTION are prompt.
+class Rig {
+ public:
+  explicit Rig(const Playground& ground = {}) : supervisor_(PlannerConfig{}, 77) {
+    supervisor_.takeSet(samplePatterns());
+    paint(ground);
+    situation_.armed_by_operator = true;
+    situation_.goal = Goal{1, {12.0, 0.0, 0.0}, 0.5, 4.0};
+  }
+
+  void paint(const Playground& ground) {
+    ++painted_;
+    for (Tile& tile : tilesOf(ground.paint(0.1, {-9.6, -9.6}, {16.0, 9.6}), 32, 1 + painted_))
+      supervisor_.world().put(std::move(tile), 0.1, 32);
+  }
+
+  /// Runs for a time [s]; `tamper` may spoil the situation of each step.
+  Decision run(double seconds, const std::function<void(Situation&)>& tamper = nullptr) {
+    Decision decision;
+    const int64_t end = now_ + static_cast<int64_t>(seconds * 1e6);
+    for (; now_ < end; now_ += 10'000) {
+      state_ = moveOn(state_, bridge_.step(now_), 0.01, TrackModel{});
+      if (now_ % 50'000 != 0) continue;
+      decision = step(tamper);
+    }
+    return decision;
+  }
+
+  Decision step(const std::function<void(Situation&)>& tamper) {
+    if (maps_) freshMap();
+    situation_.now = now_;
+    const double speed = (state_.left + state_.right) / 2.0;
+    situation_.pose = PoseReading{
+        now_, state_.pose, Twist2{speed, 0.0, (state_.right - state_.left) / TrackModel{}.gauge}};
+    situation_.bridge = bridge_.reading();
+    situation_.executions = bridge_.executions();
+    situation_.set_received = now_;
+    Situation seen = situation_;
+    if (tamper) tamper(seen);
+    const Decision decision = supervisor_.step(seen, nullptr);
+    bridge_.receive(77, supervisor_.program().running(), supervisor_.program().next(), now_);
+    return decision;
+  }
+
+  /// From now on no new scans enter the map.
+  void stopMapping() { maps_ = false; }
+  double speed() const { return (state_.left + state_.right) / 2.0; }
+  const Pose2& pose() const { return state_.pose; }
+  const MotionPattern& running() const { return supervisor_.program().running().pattern(); }
+  const MotionPattern& next() const { return supervisor_.program().next().pattern(); }
+  Supervisor& supervisor() { return supervisor_; }
+  Situation& situation() { return situation_; }
+  ToyBridge& bridge() { return bridge_; }
+  int64_t now() const { return now_; }
+
+ private:
+  void freshMap() {
+    Tile tile{500, 500, now_, std::vector<Cell>(32 * 32, kFree)};
+    supervisor_.world().put(std::move(tile), 0.1, 32);
+  }
+
+  Supervisor supervisor_;
+  ToyBridge bridge_;
+  TrackState state_;
+  Situation situation_;
+  int64_t now_ = 10 * kSecond;
+  int64_t painted_ = 0;
+  bool maps_ = true;
+};
+
+}  // namespace
+
+TEST_CASE(
+    "From rest the chain begins with a pattern that begins at rest, and the next is there at "
+    "once") {
+  Rig rig;
+  const Decision decision = rig.run(0.4);
+  CHECK(decision.report.status == PlanStatus::kDriving);
+  REQUIRE(!rig.supervisor().program().running().empty());
+  CHECK(rig.running().entry_class == "rest");
+  REQUIRE(!rig.supervisor().program().next().empty());
+  CHECK(rig.next().entry_class == rig.running().exit_class);
+}
+
+TEST_CASE(
+    "Whatever runs, something that stops is next or follows: the series never ends at speed") {
+  Rig rig;
+  bool always = true;
+  for (int i = 0; i < 400; ++i) {
+    rig.run(0.05);
+    const ProgramBook& program = rig.supervisor().program();
+    if (program.running().empty() || rig.running().exit_class == "rest") continue;
+    const bool soon_over = program.confirmed() && program.ends() - rig.now() < 130'000;
+    always = always && (!program.next().empty() || !soon_over);
+  }
+  CHECK(always);
+  CHECK(rig.run(0.05).report.status == PlanStatus::kArrived);
+}
+
+TEST_CASE("Arrived, it stands and says so until there is another goal") {
+  Rig rig;
+  CHECK(rig.run(18.0).report.status == PlanStatus::kArrived);
+  CHECK(rig.run(2.0).report.status == PlanStatus::kArrived);
+  CHECK(std::abs(rig.speed()) < 1e-3);
+  rig.situation().goal = Goal{2, {6.0, 4.0, 0.0}, 0.5, 4.0};
+  CHECK(rig.run(1.0).report.status == PlanStatus::kDriving);
+}
+
+TEST_CASE("Without a goal it is idle; a goal taken back lets it finish and stop") {
+  Rig rig;
+  rig.run(3.0);
+  CHECK(rig.speed() > 0.9);
+  rig.situation().goal.reset();
+  const Decision decision = rig.run(4.0);
+  CHECK(decision.report.status == PlanStatus::kIdle);
+  CHECK(std::abs(rig.speed()) < 1e-3);
+  CHECK(rig.supervisor().counters().count("stopped at once") == 0);
+}
+
+TEST_CASE("It does not drive unless the bridge is armed and the operator's permission was seen") {
+  Rig rig;
+  rig.situation().armed_by_operator = false;
+  Decision decision = rig.run(1.0);
+  CHECK(decision.report.status == PlanStatus::kWaiting);
+  CHECK(decision.report.reason == "not armed since the planner's start");
+  CHECK(rig.supervisor().program().running().empty());
+  rig.situation().armed_by_operator = true;
+  rig.bridge().setArmed(false);
+  decision = rig.run(1.0);
+  CHECK(decision.report.status == PlanStatus::kStopped);
+  CHECK(rig.supervisor().program().running().empty());
+}
+
+TEST_CASE("An INS that falls silent empties the program within 150 ms and a step") {
+  Rig rig;
+  rig.run(3.0);
+  const int64_t last = rig.now();
+  const auto silent = [&](Situation& s) { s.pose->utime = std::min(s.pose->utime, last); };
+  rig.run(0.15, silent);
+  CHECK(!rig.supervisor().program().running().empty());
+  const Decision decision = rig.run(0.1, silent);
+  CHECK(rig.supervisor().program().running().empty());
+  CHECK(decision.report.status == PlanStatus::kWaiting);
+  CHECK(decision.report.reason.find("INS is") == 0);
+}
+
+TEST_CASE("A map without new scans: it comes to rest after 2 s by a stop pattern, and says why") {
+  Rig rig;
+  rig.situation().goal->T_map_goal.x = 40.0;
+  rig.run(3.0);
+  rig.stopMapping();
+  CHECK(rig.run(1.5).report.status == PlanStatus::kDriving);
+  const Decision decision = rig.run(3.0);
+  CHECK(std::abs(rig.speed()) < 0.01);
+  CHECK(decision.report.status == PlanStatus::kWaiting);
+  CHECK(decision.report.reason.find("MAP is") == 0);
+  CHECK(rig.supervisor().counters().count("stopped at once") == 0);
+}
+
+TEST_CASE("Without the learner it drives on for 5 s and then stops with that reason") {
+  Rig rig;
+  rig.situation().goal->T_map_goal.x = 40.0;
+  const int64_t lost = rig.now() + 2 * kSecond;
+  const auto tamper = [&](Situation& s) { s.set_received = std::min(s.set_received, lost); };
+  CHECK(rig.run(6.5, tamper).report.status == PlanStatus::kDriving);
+  CHECK(rig.speed() > 0.9);
+  const Decision decision = rig.run(3.5, tamper);
+  CHECK(std::abs(rig.speed()) < 0.01);
+  CHECK(decision.report.reason.find("the learner is lost") == 0);
+}
+
+TEST_CASE("A wall that appears close ahead while driving: the running pattern is stopped in time") {
+  Rig rig;
+  rig.situation().goal->T_map_goal.x = 14.0;
+  rig.run(3.5);
+  REQUIRE(rig.speed() > 0.9);
+  Playground ground;
+  const double x = rig.pose().x + 0.65 + 0.75;
+  ground.addWall({x + 0.1, -9.0}, {x + 0.1, 9.0});
+  rig.paint(ground);
+  const Decision decision = rig.run(0.1);
+  CHECK(decision.report.status == PlanStatus::kBlocked);
+  CHECK(decision.report.reason.find("stopped at once: something is in the way") == 0);
+  CHECK(rig.supervisor().program().running().empty());
+  rig.run(1.0);
+  CHECK(rig.pose().x + 0.65 < x);
+}
+
+TEST_CASE("A wall that only the next pattern would hit replaces the next, the running goes on") {
+  Rig rig;
+  rig.situation().goal->T_map_goal.x = 14.0;
+  rig.run(3.5);
+  const int64_t before = rig.supervisor().program().running().execution_id;
+  Playground ground;
+  const double x = rig.pose().x + 0.65 + 1.9;
+  ground.addWall({x + 0.1, -9.0}, {x + 0.1, 9.0});
+  rig.paint(ground);
+  rig.run(0.1);
+  CHECK(rig.supervisor().program().running().execution_id >= before);
+  CHECK(!rig.supervisor().program().running().empty());
+  rig.run(2.0);
+  CHECK(rig.pose().x + 0.65 < x);
+}
+
+TEST_CASE("After an abort it waits until the vehicle stands, then begins again from rest") {
+  Rig rig;
+  rig.run(3.0);
+  rig.bridge().setArmed(false);
+  rig.run(0.1);
+  rig.bridge().setArmed(true);
+  rig.run(0.1);
+  CHECK(rig.speed() > 0.1);
+  CHECK(rig.supervisor().program().running().empty());
+  rig.run(1.5);
+  REQUIRE(!rig.supervisor().program().running().empty());
+  const ProgramBook& program = rig.supervisor().program();
+  CHECK((rig.running().entry_class == "rest" || program.running().execution_id > 5));
+}
+
+TEST_CASE("Boxed in it says that it is blocked, and drives when it is let out") {
+  Playground ground;
+  ground.addWall({-1.0, -0.7}, {1.0, -0.7}, 0.1);
+  ground.addWall({-1.0, 0.7}, {1.0, 0.7}, 0.1);
+  ground.addWall({-1.0, -0.7}, {-1.0, 0.7}, 0.1);
+  Playground closed = ground;
+  closed.addWall({1.0, -0.7}, {1.0, 0.7}, 0.1);
+  Rig rig(closed);
+  Decision decision = rig.run(3.0);
+  CHECK((decision.report.status == PlanStatus::kUnreachable ||
+         decision.report.status == PlanStatus::kBlocked));
+  CHECK(!decision.report.reason.empty());
+  CHECK(std::abs(rig.pose().x) < 0.01);
+  rig.paint(ground);
+  decision = rig.run(3.0);
+  CHECK(decision.report.status == PlanStatus::kDriving);
+}
+
+TEST_CASE("Where no plan is found the vehicle tries to get out before it calls itself blocked") {
+  // In front a passage that a point at half the vehicle's width can pass but the vehicle cannot.
+  Playground ground;
+  ground.addWall({1.6, -9.0}, {1.6, -0.40}, 0.2);
+  ground.addWall({1.6, 0.40}, {1.6, 9.0}, 0.2);
+  ground.addWall({-1.5, -9.0}, {-1.5, 9.0});
+  for (double x = 2.0; x < 4.0; x += 0.1) ground.addWall({x, 0.36}, {x, 9.0}, 0.1);
+  Rig rig(ground);
+  rig.run(30.0);
+  CHECK(rig.supervisor().counters().count("recovery moves") == 1);
+}
+
+TEST_CASE("Plans are reported with the ids under which they were handed over") {
+  Rig rig;
+  rig.run(2.0);
+  Decision decision;
+  while (!decision.planned) decision = rig.run(0.05);
+  const ProgramBook& program = rig.supervisor().program();
+  REQUIRE(decision.report.steps.size() >= 3);
+  REQUIRE(decision.report.execution_ids.size() == decision.report.steps.size());
+  CHECK(decision.report.execution_ids[0] == program.running().execution_id);
+  CHECK(decision.report.execution_ids[1] == program.next().execution_id);
+  CHECK(decision.report.execution_ids[2] == 0);
+  CHECK(decision.report.set_version == 1);
+  CHECK(decision.report.time_to_go > 5.0);
+  CHECK(decision.report.time_to_go < 20.0);
+}
