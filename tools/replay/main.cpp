@@ -13,6 +13,7 @@
 #include "common/vehicle/model_file.hpp"
 #include "tools/replay/ins_picture.hpp"
 #include "tools/replay/learner_report.hpp"
+#include "tools/replay/mapping_picture.hpp"
 
 using namespace tread;
 
@@ -58,6 +59,25 @@ void addIns(CLI::App& app, InsArguments& arguments) {
   command.add_option("--config", arguments.config, "configuration of ins_driver");
   addOutput(command, arguments.output);
   command.callback([&arguments] { replayInsLog(arguments); });
+}
+
+struct MappingArguments {
+  std::string log;
+  Output output;
+};
+
+void replayMappingLog(const MappingArguments& arguments) {
+  const MappingReplay replay = replayMapping(readMappingRecording(arguments.log));
+  say(reportOf(replay), arguments.output);
+  if (!arguments.output.picture.empty()) drawMap(replay, arguments.output.picture);
+}
+
+void addMapping(CLI::App& app, MappingArguments& arguments) {
+  CLI::App& command = *app.add_subcommand("mapping", "range scans with poses through mapping");
+  command.add_option("log", arguments.log, "CARMEN log (*.log.gz, *.clf) or LCM log of an MBot")
+      ->required();
+  addOutput(command, arguments.output);
+  command.callback([&arguments] { replayMappingLog(arguments); });
 }
 
 struct LearnerArguments {
@@ -148,10 +168,12 @@ void addLearner(CLI::App& app, LearnerArguments& arguments) {
 int main(int argc, char** argv) {
   LearnerArguments learner_arguments;
   InsArguments ins_arguments;
+  MappingArguments mapping_arguments;
   CLI::App app{"Recorded logs through the real nodes, on the virtual bus"};
   app.require_subcommand(1);
   addLearner(app, learner_arguments);
   addIns(app, ins_arguments);
+  addMapping(app, mapping_arguments);
   try {
     CLI11_PARSE(app, argc, argv);
   } catch (const std::exception& problem) {

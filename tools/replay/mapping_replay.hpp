@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/geometry/track.hpp"
+#include "common/grid/grid.hpp"
+#include "tools/replay/mapping_recording.hpp"
+
+namespace tread {
+
+/// What mapping made of a recording.
+struct MappingReplay {
+  std::string name;
+  TileMap map{0.1, 32};          ///< all that was ever known, also after the window had moved on
+  std::vector<TimedPose> track;  ///< of the body
+  int64_t scans = 0;             ///< in the recording
+  int64_t skipped = 0;           ///< not whole in the recording
+  std::map<std::string, int64_t> counters;  ///< mapping's own, from its last HEALTH
+  int64_t tiles = 0;                        ///< messages on MAP
+  double duration = 0.0;                    ///< [s] of the recording
+  std::string health;  ///< line of HEALTH at the end of the scans; empty if all is well
+  Grid window;         ///< the whole map
+};
+
+/// Plays a recording to the real mapping node on the virtual bus. Same recording, same result.
+MappingReplay replayMapping(const MappingRecording& recording);
+
+/// Reads a recording by its name: *.log.gz and *.clf as CARMEN text, other logs as the MBot's.
+MappingRecording readMappingRecording(const std::string& path);
+
+/// Scans in, taken, refused with reasons; the way, the area known: a few lines of text.
+std::string reportOf(const MappingReplay& replay);
+
+}  // namespace tread
