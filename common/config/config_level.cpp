@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/config/one_document.hpp"
 #include "common/config/scalars.hpp"
 
 namespace tread {
@@ -47,16 +48,6 @@ std::optional<double> goodNumber(const YAML::Node& node, Range range) {
   return value && *value >= range.min && *value <= range.max ? value : std::nullopt;
 }
 
-std::vector<YAML::Node> loadDocuments(const std::string& text, const std::string& name) {
-  try {
-    return YAML::LoadAll(text);
-  } catch (const YAML::Exception& e) {
-    const std::string where = e.mark.is_null() ? "" : ":" + std::to_string(e.mark.line + 1);
-    throw ConfigError(name + where + ": " + e.msg +
-                      "; check indentation, quotes and brackets at and above this line");
-  }
-}
-
 }  // namespace
 
 ConfigSource::ConfigSource(std::string file_name, std::string file_text)
@@ -89,13 +80,7 @@ std::shared_ptr<ConfigReader::Level> ConfigReader::Level::parse(std::string text
   // yaml-cpp takes a byte order mark off; without it, offsets in this copy agree with its marks.
   if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) text.erase(0, 3);
   const auto source = std::make_shared<ConfigSource>(name, std::move(text));
-  const std::vector<YAML::Node> documents = loadDocuments(source->text, name);
-  if (documents.size() > 1) {
-    const int second = lineFrom(documents[1].Mark(), 1);
-    throw ConfigError(name + ":" + std::to_string(second) +
-                      ": a second document begins here (---); one is allowed");
-  }
-  return of(source, "", documents.empty() ? YAML::Node() : documents.front(), 1);
+  return of(source, "", loadOneDocument(source->text, name), 1);
 }
 
 std::shared_ptr<ConfigReader::Level> ConfigReader::Level::of(
@@ -163,6 +148,11 @@ ConfigReader::Level::Answer& ConfigReader::Level::answer(const std::string& key,
   return *found;
 }
 
+std::string ConfigReader::Level::path(const std::string& key) const {
+  // A key may come from the file, with anything in it; a message stays one line.
+  return prefix + formatText(key);
+}
+
 ConfigError ConfigReader::Level::errorAt(int at, const std::string& problem) const {
   return ConfigError(source->name + ":" + std::to_string(at) + ": " + problem);
 }
@@ -180,7 +170,7 @@ ConfigError ConfigReader::Level::unknown(const Entry& entry) const {
   std::vector<std::string> known;
   for (const Answer& answer : answers) known.push_back(answer.key);
   const auto meant = nearestSpelling(entry.key, known);
-  std::string problem = "unknown key " + path(shown(entry.key));
+  std::string problem = "unknown key " + prefix + shown(entry.key);
   if (meant) problem += "; is " + *meant + " meant?";
   return errorAt(entry.line, problem + "; known here: " + joinWords(known));
 }

@@ -57,7 +57,7 @@ struct ConfigReader::Level {
   void know(const std::string& key);
 
   /// Name of a key with its sections, for messages.
-  std::string path(const std::string& key) const { return prefix + key; }
+  std::string path(const std::string& key) const;
   ConfigError errorAt(int line, const std::string& problem) const;
   ConfigError missing(const std::string& key) const;
   ConfigError unknown(const Entry& entry) const;

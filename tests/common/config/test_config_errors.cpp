@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <functional>
 #include <limits>
+#include <random>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -142,7 +143,7 @@ TEST_CASE("a duplicate key is refused with both lines") {
 
 TEST_CASE("a second document is refused") {
   CHECK(lease("lease: 0.2\n---\nlease: 0.3\n") ==
-        "r.yaml:3: a second document begins here (---); one is allowed");
+        "r.yaml:2: a second document begins here; one is allowed, without --- or brackets between");
   CHECK_THAT(lease("lease: 0.2\n---\n"), Contains("a second document"));
 }
 
@@ -190,6 +191,42 @@ TEST_CASE("lists name the item that is wrong, by its own line") {
              Contains("r.yaml:3: required key regions[1].kind is missing; is kin meant?"));
   CHECK_THAT(refusal("regions: {a: 1}\n", read), Contains("regions is not a list"));
   CHECK_THAT(refusal("regions: [3]\n", read), Contains("regions[0] is a single value"));
+}
+
+TEST_CASE("any damage to a file is read or refused in one line, never more") {
+  const std::string whole =
+      "lease: 0.2\nname: \"a robot\"\ngains: [1, 2]\ngate:\n  max_gap: 0.5\nregions:\n"
+      "  - {kind: 'grass', friction: 0.7}\n  - kind: tarmac\n    friction: 0.9\n";
+  const std::string marks = "\n\t :-[]{}'\"#&*!|>%@`,?0e.~x\\";
+  std::mt19937_64 random(31);
+  int refused = 0;
+  for (int round = 0; round < 5000; ++round) {
+    std::string text = whole;
+    for (size_t i = 0; i < 1 + random() % 3; ++i) {
+      const size_t at = random() % text.size();
+      if (random() % 3 == 0) text.erase(at, 1 + random() % 5);
+      if (!text.empty()) text.insert(random() % text.size(), 1, marks[random() % marks.size()]);
+    }
+    // refusal() checks that what is thrown is a ConfigError of one line.
+    const std::string said = refusal(text, [](ConfigReader& reader) {
+      double number = 0.0;
+      std::string word;
+      std::vector<double> gains;
+      reader.number("lease", number, {0, 1}, "s");
+      reader.text("name", word);
+      reader.numbers("gains", gains, 2, {0, 9}, "1");
+      for (const std::string& key : reader.keys())
+        if (key[0] == 'g' && key != "gains")
+          reader.section(key).number("max_gap", number, {0, 1}, "s");
+      for (ConfigReader& region : reader.sections("regions")) {
+        region.text("kind", word, true);
+        region.number("friction", number, {0, 1}, "1");
+      }
+      reader.effective();
+    });
+    refused += said != "nothing was refused";
+  }
+  CHECK(refused > 2000);
 }
 
 TEST_CASE("checks across keys point at the line of a key") {
