@@ -50,6 +50,7 @@ void readField(ConfigReader reader, WorldConfig& world) {
   reader.number("detour_weight", field.detour_weight, {0.0, 100.0}, "1");
   reader.number("area_margin", field.area_margin, {2.0, 100.0}, "m");
   reader.number("max_area", field.max_area, {20.0, 1000.0}, "m");
+  reader.number("max_distance", field.max_distance, {10.0, 1000.0}, "m");
   reader.number("reach", field.reach, {5.0, 100.0}, "m");
   seconds(reader, "period", world.field_period, {0.05, 10.0});
 }

@@ -106,7 +106,7 @@ TEST_CASE("The way leads around a wall, and follows it down to the goal") {
   for (const auto& p : points) CHECK(!ground.isObstacle(p));
 }
 
-TEST_CASE("An enclosed goal is unreachable at once, a goal on obstacles too") {
+TEST_CASE("An enclosed goal is unreachable at once; so is one on obstacles and one far away") {
   Playground ground;
   ground.addWall({8.0, -2.0}, {12.0, -2.0});
   ground.addWall({12.0, -2.0}, {12.0, 2.0});
@@ -116,13 +116,16 @@ TEST_CASE("An enclosed goal is unreachable at once, a goal on obstacles too") {
   const PassageMap map = mapOf(ground.paint(kCell, {-6.4, -9.6}, {25.6, 9.6}));
   const CostToGo enclosed(map, {1, {10.0, 0.0, 0.0}, 0.3, 4.0}, {0.0, 0.0}, {}, plain());
   CHECK(enclosed.unreachable());
-  CHECK(!enclosed.goalBlocked());
+  CHECK(enclosed.problem() == "obstacles enclose the goal or the vehicle");
   CHECK(std::isinf(enclosed.length({0.0, 0.0})));
   // The box around the goal is small: little needs to be looked at to know.
   CHECK(enclosed.filled() < 500);
   const CostToGo blocked(map, {1, {20.0, 0.0, 0.0}, 0.3, 4.0}, {0.0, 0.0}, {}, plain());
   CHECK(blocked.unreachable());
-  CHECK(blocked.goalBlocked());
+  CHECK(blocked.problem() == "the goal lies on obstacles");
+  const CostToGo far(map, {1, {1e5, 0.0, 0.0}, 0.3, 4.0}, {0.0, 0.0}, {}, plain());
+  CHECK(far.problem().find("the goal is farther away than 150 m") == 0);
+  CHECK(std::isinf(far.length({0.0, 0.0})));
 }
 
 TEST_CASE("Unknown ground may be free: the way leads through it, and tells where it begins") {

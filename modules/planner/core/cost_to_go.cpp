@@ -13,6 +13,8 @@ constexpr float kNoWay = std::numeric_limits<float>::infinity();
 constexpr float kUnknownCap = 10.0F;
 /// Cells whose lengths differ by less than this may be settled in any order [m].
 constexpr float kBucket = 0.05F;
+/// Around vehicle and goal there is at least so much of the area, however far apart they are [m].
+constexpr double kLeastMargin = 8.0;
 /// Where the vehicle's own cell is too near to something, the best cell this near counts [m].
 constexpr double kNearby = 0.5;
 
@@ -47,14 +49,21 @@ struct CostToGo::Front {
 
 CostToGo::CostToGo(const PassageMap& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
                    const std::vector<Detour>& detours, const FieldConfig& config) {
+  const double distance = (goal.T_map_goal.position() - p_vehicle).norm();
+  if (!(distance <= config.max_distance)) {
+    problem_ = "the goal is farther away than " + std::to_string(std::lround(config.max_distance)) +
+               " m: give nearer ones on the way";
+    return;
+  }
   for (double margin = config.area_margin;; margin *= 2.0) {
     layOut(map, goal, p_vehicle, margin, config);
     paint(map, detours, config);
-    if (march(goal, p_vehicle, config) || goal_blocked_) return;
+    if (march(goal, p_vehicle, config)) return;
     const double longest = size_ * std::max(width_, height_);
-    if (!touched_border_ || longest >= config.max_area - size_) break;
+    if (goal_blocked_ || !touched_border_ || longest >= config.max_area - size_) break;
   }
-  unreachable_ = true;
+  problem_ =
+      goal_blocked_ ? "the goal lies on obstacles" : "obstacles enclose the goal or the vehicle";
 }
 
 void CostToGo::layOut(const PassageMap& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
@@ -65,7 +74,7 @@ void CostToGo::layOut(const PassageMap& map, const Goal& goal, const Eigen::Vect
   const Eigen::Vector2d needed = (p_goal - p_vehicle).cwiseAbs() / 2.0;
   const Eigen::Vector2d half = (needed + Eigen::Vector2d::Constant(margin))
                                    .cwiseMin(config.max_area / 2.0)
-                                   .cwiseMax(needed + Eigen::Vector2d::Constant(2.0));
+                                   .cwiseMax(needed + Eigen::Vector2d::Constant(kLeastMargin));
   lower_x_ = static_cast<int>(std::floor((middle.x() - half.x()) / size_));
   lower_y_ = static_cast<int>(std::floor((middle.y() - half.y()) / size_));
   width_ = static_cast<int>(std::ceil(2.0 * half.x() / size_));
@@ -130,7 +139,6 @@ bool CostToGo::march(const Goal& goal, const Eigen::Vector2d& p_vehicle,
                      const FieldConfig& config) {
   Front front;
   goal_blocked_ = !seed(goal, front);
-  unreachable_ = goal_blocked_;
   if (goal_blocked_) return false;
   const auto further = static_cast<float>(config.reach);
   float stop_at = kNoWay;
@@ -207,6 +215,7 @@ void CostToGo::relax(int cell, Front& front) {
 }
 
 double CostToGo::length(const Eigen::Vector2d& p_map) const {
+  if (empty()) return static_cast<double>(kNoWay);
   const double gx = p_map.x() / size_ - lower_x_ - 0.5;
   const double gy = p_map.y() / size_ - lower_y_ - 0.5;
   const int x = static_cast<int>(std::floor(gx));
@@ -246,12 +255,14 @@ double CostToGo::lengthNearby(const Eigen::Vector2d& p_map) const {
 }
 
 double CostToGo::untilUnknown(const Eigen::Vector2d& p_map) const {
+  if (empty()) return 0.0;
   const auto cell = static_cast<size_t>(cellAt(p_map));
   if (settled_[cell] != 0) return static_cast<double>(until_unknown_[cell]);
   return unknown_[cell] != 0 ? 0.0 : static_cast<double>(kUnknownCap);
 }
 
 Eigen::Vector2d CostToGo::direction(const Eigen::Vector2d& p_map) const {
+  if (empty()) return {0.0, 0.0};
   const auto cell = static_cast<size_t>(cellAt(p_map));
   return {static_cast<double>(way_x_[cell]), static_cast<double>(way_y_[cell])};
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "modules/planner/core/passage_map.hpp"
@@ -24,8 +25,9 @@ struct FieldConfig {
   double tight_weight = 1.0;   ///< [1] how much longer a way counts that is just passable; 0 = none
   double detour_weight = 8.0;  ///< [1] how much longer a way counts where nobody got through
   double area_margin = 12.0;   ///< [m] around vehicle and goal; grows where that is not enough
-  double max_area = 120.0;     ///< [m] longest side of the area
-  double reach = 14.0;         ///< [m] around the vehicle that must be filled in
+  double max_area = 120.0;     ///< [m] longest side of the area, unless the goal is farther off
+  double max_distance = 150.0;  ///< [m] goals farther off are refused
+  double reach = 14.0;          ///< [m] around the vehicle that must be filled in
 };
 
 /// A place to go round, because nobody got through.
@@ -59,10 +61,10 @@ class CostToGo {
   Eigen::Vector2d direction(const Eigen::Vector2d& p_map) const;
   /// Points down the way to the goal, a step apart, at most `count`.
   std::vector<Eigen::Vector2d> descend(const Eigen::Vector2d& p_map, double step, int count) const;
-  /// No way from the vehicle to the goal in all that is known, unknown being passable.
-  bool unreachable() const { return unreachable_; }
-  /// The goal itself lies on obstacles.
-  bool goalBlocked() const { return goal_blocked_; }
+  /// Why there is no way from the vehicle to the goal in all that is known, unknown being passable;
+  /// empty if there is one.
+  const std::string& problem() const { return problem_; }
+  bool unreachable() const { return !problem_.empty(); }
   /// Whether a point lies well within the area that was worked out.
   bool covers(const Eigen::Vector2d& p_map, double reach) const;
   /// Number of coarse cells filled in, for measuring.
@@ -97,8 +99,8 @@ class CostToGo {
   float cut_ = 0.0F;  // beyond this nothing was filled in
   bool cut_short_ = false;
   bool touched_border_ = false;
-  bool unreachable_ = false;
   bool goal_blocked_ = false;
+  std::string problem_;
   int filled_ = 0;
 };
 

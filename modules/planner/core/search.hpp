@@ -28,7 +28,7 @@ struct SearchConfig {
   double horizon = 9.0;          ///< [s] farther ahead nothing needs to be planned
   double least_rate = 0.3;  ///< [1] of the best speed that a plan to the horizon must gain on the
                             ///< way to go; below that it is looked ahead twice as far
-  double frontier = 2.5;        ///< [m] before the unknown a plan may end
+  double frontier = 2.5;    ///< [m] before the unknown a plan may end
   double least_progress = 0.3;  ///< [s] of time to go that a plan must gain
   int escape_patterns = 3;      ///< so many patterns may be needed to leave blocked ground
   double goal_share = 0.7;      ///< [1] of the goal's tolerance that is aimed for

@@ -135,6 +135,7 @@ SearchResult Supervisor::searchFrom(const Situation& s, const Pose2& start, int 
   problem.cost_to_go = &world_.costToGo();
   problem.goal = *s.goal;
   for (const PlanStep& step : plan_) problem.committed.push_back(step.pattern_id);
+  searched_table_ = table_;
   const SearchResult result = search_.run(
       problem, [&](int count) { return count >= expansions || (stop_ && stop_(count)); });
   last_plan_ = s.now;
@@ -150,9 +151,7 @@ SearchResult Supervisor::searchFrom(const Situation& s, const Pose2& start, int 
 bool Supervisor::sayUnreachable() {
   if (!world_.costToGo().unreachable()) return false;
   time_to_go_ = std::numeric_limits<double>::quiet_NaN();
-  say(PlanStatus::kUnreachable, world_.costToGo().goalBlocked()
-                                    ? "the goal lies on obstacles"
-                                    : "obstacles enclose the goal or the vehicle");
+  say(PlanStatus::kUnreachable, world_.costToGo().problem());
   return true;
 }
 

@@ -120,6 +120,8 @@ class Supervisor {
   Search search_;
   ProgramBook book_;
   std::shared_ptr<const PatternTable> table_;
+  /// Of the last search: its tree, which is drawn later, points into it.
+  std::shared_ptr<const PatternTable> searched_table_;
   StandstillWatch standstill_;
   ProgressWatch progress_;
   Recovery recovery_;
