@@ -36,6 +36,7 @@ void readMargins(ConfigReader reader, Margins& margins) {
 
 void readMap(ConfigReader reader, WorldConfig& world) {
   reader.number("window", world.window, {5.0, 100.0}, "m");
+  seconds(reader, "window_period", world.window_period, {0.02, 0.5});
   reader.number("keep_radius", world.passage.keep_radius, {10.0, 500.0}, "m");
   reader.number("room_cap", world.passage.room_cap, {0.1, 5.0}, "m");
   count(reader, "coarse", world.passage.coarse, {1, 8});

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int64_t kPlanRepeat = 200'000;    // [us]
 constexpr int64_t kTreeRepeat = 1'000'000;  // [us]
+constexpr int64_t kMaxFuture = 100'000;     // [us] by which a utime may be ahead
 constexpr size_t kTreeNodes = 600;          // drawn at most: 15 kB
 
 }  // namespace
@@ -36,7 +37,15 @@ void PlannerNode::subscribe() {
   bus_.subscribe<estop_t>(kEstop, [this](const estop_t& message) { permission_.take(message); });
 }
 
+/// A time that has not come yet would look fresh for ever.
+bool PlannerNode::fromFuture(int64_t utime, const char* channel) {
+  if (utime <= bus_.now() + kMaxFuture) return false;
+  health_.addToCounter(std::string(channel) + " refused: from the future");
+  return true;
+}
+
 void PlannerNode::take(const ins_t& message) {
+  if (fromFuture(message.utime, "INS")) return;
   const std::optional<Pose2> pose = planarPose(message);
   if (!pose) return health_.addToCounter("INS without a pose");
   if (situation_.pose && message.utime <= situation_.pose->utime)
@@ -45,6 +54,7 @@ void PlannerNode::take(const ins_t& message) {
 }
 
 void PlannerNode::take(const map_tile_t& message) {
+  if (fromFuture(message.utime, "MAP")) return;
   std::optional<Tile> tile = tileFrom(message);
   if (!tile || !supervisor_.world().put(std::move(*tile), message.cell_size, message.tile_cells))
     health_.addToCounter("MAP refused: sizes make no sense");
@@ -68,12 +78,14 @@ void PlannerNode::take(const pattern_set_part_t& message) {
 }
 
 void PlannerNode::take(const motor_t& message) {
+  if (fromFuture(message.utime, "MOTOR")) return;
   if (situation_.bridge && message.utime < situation_.bridge->utime) return;
   situation_.bridge = readingFrom(message);
   permission_.take(*situation_.bridge);
 }
 
 void PlannerNode::take(const execution_t& message) {
+  if (fromFuture(message.utime, "EXECUTION")) return;
   if (message.utime < executions_utime_) return;
   executions_utime_ = message.utime;
   situation_.executions = readingsFrom(message);

@@ -215,6 +215,8 @@ TEST_CASE("Messages that make no sense are counted and change nothing") {
   tile.tile_cells = 32;
   tile.cell_size = std::numeric_limits<double>::quiet_NaN();
   yard.bus.outside().publish(kMap, tile);
+  tile.utime += 60'000'000;
+  yard.bus.outside().publish(kMap, tile);
   yard.run(2.0);
   CHECK(yard.plan.plan_status == plan_t::PLAN_IDLE);
   std::map<std::string, int64_t> counters;
@@ -222,6 +224,7 @@ TEST_CASE("Messages that make no sense are counted and change nothing") {
     counters[counter.counter_name] = counter.counted;
   CHECK(counters["GOAL refused: pose or tolerances make no sense"] == 2);
   CHECK(counters["MAP refused: sizes make no sense"] == 1);
+  CHECK(counters["MAP refused: from the future"] == 1);
 }
 
 TEST_CASE("A configuration is read with its ranges, and mistakes are named at file and line") {

@@ -15,8 +15,8 @@ namespace tread::planner {
 
 /// How the search weighs and when it is content.
 struct SearchConfig {
-  double cell = 0.15;            ///< [m] side of a cell of the search space
-  int heading_bins = 48;         ///< of a full turn
+  double cell = 0.12;            ///< [m] side of a cell of the search space
+  int heading_bins = 60;         ///< of a full turn
   double bound_share = 1.0;      ///< [1] of the way to go that counts; CostToGo::kShare for a bound
   double bound_weight = 1.3;     ///< [1] 1 = shortest time, more = found sooner
   double turn_weight = 0.8;      ///< [1] of the time to turn towards the way to go; 0 for a bound

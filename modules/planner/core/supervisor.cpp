@@ -13,6 +13,8 @@ constexpr int kRecovered = 6;
 /// How far down the way to the goal the narrowest place is looked for [m].
 constexpr double kDetourLook = 3.0;
 constexpr double kDetourStep = 0.2;
+/// A way that was given up is mentioned for so long [us].
+constexpr int64_t kNoteTime = 5'000'000;
 /// Nearer than this to the vehicle nothing is made a detour [m].
 constexpr double kDetourNear = 0.8;
 
@@ -54,7 +56,7 @@ void Supervisor::act(const Situation& s, const Readiness& ready) {
     if (!s.goal && ready.status == PlanStatus::kWaiting) return say(PlanStatus::kIdle, "");
     return say(ready.status, ready.reason);
   }
-  world_.lookAround(s.pose->T_map_body);
+  world_.lookAround(s.pose->T_map_body, s.now);
   if (s.goal) world_.lookAhead(s.pose->T_map_body, *s.goal, s.now);
   if (s.goal && ready.level == Readiness::Level::kGo && !arrived_) watchProgress(s);
   if (mode_ == Mode::kSettling) settle(s);
@@ -72,6 +74,7 @@ void Supervisor::noteGoal(const Situation& s) {
   recovery_.restart();
   world_.forgetDetours();
   progress_.restart(s.now);
+  note_until_ = 0;
   last_plan_ = 0;
   planned_ = true;
 }
@@ -159,6 +162,9 @@ void Supervisor::watchProgress(const Situation& s) {
   const double way = world_.costToGo().length(s.pose->T_map_body.position());
   if (!std::isfinite(way) || !progress_.stuck(way, s.now)) return;
   ++counters_["no progress: a way given up"];
+  note_ = "no progress for " + std::to_string(config_.policy.patience / 1'000'000) +
+          " s: looking for another way";
+  note_until_ = s.now + kNoteTime;
   addDetour(s);
 }
 
@@ -178,6 +184,10 @@ void Supervisor::addDetour(const Situation& s) {
     narrowest = at;
   }
   if (narrowest) world_.addDetour(*narrowest);
+}
+
+void Supervisor::sayDriving(const Situation& s) {
+  say(PlanStatus::kDriving, s.now < note_until_ ? note_ : "");
 }
 
 void Supervisor::say(PlanStatus status, const std::string& reason) {

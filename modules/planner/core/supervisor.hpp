@@ -111,6 +111,7 @@ class Supervisor {
   bool sayUnreachable();
   void watchProgress(const Situation& s);
   void addDetour(const Situation& s);
+  void sayDriving(const Situation& s);
   void say(PlanStatus status, const std::string& reason);
   const TablePattern* runningPattern() const;
   PlanReport report(const Situation& s) const;
@@ -142,6 +143,8 @@ class Supervisor {
   bool planned_ = false;
   PlanStatus status_ = PlanStatus::kIdle;
   std::string reason_;
+  std::string note_;  ///< what is worth knowing although it drives
+  int64_t note_until_ = 0;
   std::map<std::string, int64_t> counters_;
 };
 

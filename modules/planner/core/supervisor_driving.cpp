@@ -98,7 +98,7 @@ void Supervisor::searchNext(const Situation& s, const Prediction& running) {
     book_.clearNext();
   else
     book_.setNext(table_->set(), plan_.front().pattern_id);
-  say(PlanStatus::kDriving, "");
+  sayDriving(s);
 }
 
 bool Supervisor::stopNext(const Prediction& running) {

@@ -42,7 +42,7 @@ void Supervisor::planStart(const Situation& s) {
   if (result.steps.empty()) return noPlan(s, result.reason);
   nothing_since_.reset();
   begin(s, result.steps);
-  say(PlanStatus::kDriving, "");
+  sayDriving(s);
 }
 
 void Supervisor::begin(const Situation& s, const std::vector<PlanStep>& steps) {

@@ -32,11 +32,14 @@ void World::freeUnder(const Pose2& T_map_body) {
   map_->markFree(bare.cells(Grid(map_->cellSize(), {}, 0, 0), T_map_body));
 }
 
-void World::lookAround(const Pose2& T_map_body) {
+void World::lookAround(const Pose2& T_map_body, int64_t now) {
   freeUnder(T_map_body);
   const Eigen::Vector2d p = T_map_body.position();
   const bool moved = (p - p_window_).norm() > kWindowSlack;
-  if (surroundings_ && window_revision_ == map_->revision() && !moved) return;
+  const bool due = window_revision_ < 0 || now - window_time_ >= config_.window_period;
+  const bool changed = window_revision_ != map_->revision() && due;
+  if (surroundings_ && !changed && !moved) return;
+  window_time_ = now;
   map_->forgetBeyond(p);
   const double cell = map_->cellSize();
   const int cells = static_cast<int>(std::ceil(config_.window / cell));

@@ -17,8 +17,9 @@ struct WorldConfig {
   Margins margins;
   PassageConfig passage;
   FieldConfig field;
-  double window = 24.0;            ///< [m] side of the surroundings
-  int64_t field_period = 400'000;  ///< [us] the way to go is worked out no more often than this
+  double window = 24.0;             ///< [m] side of the surroundings
+  int64_t window_period = 100'000;  ///< [us] the surroundings are cut no more often than this
+  int64_t field_period = 400'000;   ///< [us] the way to go is worked out no more often than this
 };
 
 /// The map as it was received, and what is derived from it when it is needed.
@@ -35,7 +36,7 @@ class World {
 
   /// Brings the surroundings up to date, if the map changed or the vehicle went on. Needs a map.
   /** Unknown ground under the vehicle becomes free: it stands there. */
-  void lookAround(const Pose2& T_map_body);
+  void lookAround(const Pose2& T_map_body, int64_t now);
   /// Brings the way to the goal up to date. Needs lookAround().
   void lookAhead(const Pose2& T_map_body, const Goal& goal, int64_t now);
   /// Makes a place cost more from now on, until the goal changes.
@@ -56,6 +57,7 @@ class World {
   std::optional<Surroundings> surroundings_;
   Eigen::Vector2d p_window_{0.0, 0.0};
   int64_t window_revision_ = -1;
+  int64_t window_time_ = 0;
   CostToGo cost_to_go_;
   std::optional<Goal> field_goal_;
   int64_t field_revision_ = -1;
