@@ -42,6 +42,7 @@ SurfaceParameters readSurface(ConfigReader& reader) {
   reader.number("lateral_displacement", surface.lateral_displacement, {0.004, 0.5}, "m");
   reader.number("resistance_constant", surface.resistance_constant, {0.0, 0.3}, "");
   reader.number("resistance_viscous", surface.resistance_viscous, {0.0, 1.0}, "s/m");
+  reader.number("scrub_resistance", surface.scrub_resistance, {0.0, 5.0}, "s/m");
   reader.number("pressure_offset", surface.pressure_offset, {-0.1, 0.1}, "m");
   reader.number("spread_forward", surface.spread.forward, {0.0, 0.3}, "");
   reader.number("spread_yaw", surface.spread.yaw, {0.0, 0.5}, "");
@@ -166,6 +167,7 @@ std::string formatSurface(const SurfaceParameters& surface) {
          "\n    lateral_displacement: " + number(surface.lateral_displacement) +
          "\n    resistance_constant: " + number(surface.resistance_constant) +
          "\n    resistance_viscous: " + number(surface.resistance_viscous) +
+         "\n    scrub_resistance: " + number(surface.scrub_resistance) +
          "\n    pressure_offset: " + number(surface.pressure_offset) +
          "\n    spread_forward: " + number(surface.spread.forward) +
          "\n    spread_yaw: " + number(surface.spread.yaw) +

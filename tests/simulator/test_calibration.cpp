@@ -3,8 +3,10 @@
 // The calibration of the four surfaces: the dynamic vehicle against the model of the calibration
 // file, whose equations are written down here once more (reference/calibration.yaml, block
 // "symmetric").
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -133,6 +135,22 @@ TEST_CASE("the five patterns end within 3 percent of the calibration on each sur
       CHECK(std::abs(pathLength(driven) / length - 1.0) < 0.03);
       CHECK(std::abs(yaw) < 0.03);
       CHECK(largest < 0.03);
+    }
+  }
+}
+
+TEST_CASE(
+    "turns in place, which the calibration does not cover, stay within 15 percent of its model") {
+  for (const CalibratedSurface& reference : kSurfaces) {
+    const SurfaceParameters surface = *builtInSurface(reference.name);
+    for (const double power : {0.35, 0.4, 0.6}) {
+      TrackedVehicle vehicle{VehicleParameters{}};
+      const Ground ground = levelGround(surface);
+      for (int i = 0; i < 2000; ++i) vehicle.step({-power, power}, ground, kStep);
+      const double wanted = reference.g_psi * 2.0 * 1.10 * power / 0.60;
+      INFO(reference.name << " at " << power);
+      CHECK(vehicle.velocity().omega == Approx(wanted).epsilon(0.15));
+      CHECK(std::abs(vehicle.velocity().v_x) < 0.12);
     }
   }
 }

@@ -24,6 +24,7 @@ struct SurfaceParameters {
   double lateral_displacement = 0.1;  ///< the same across the track [m]
   double resistance_constant = 0.01;  ///< rolling resistance over normal force at any speed [1]
   double resistance_viscous = 0.05;   ///< rolling resistance over normal force per speed [s/m]
+  double scrub_resistance = 1.0;      ///< against sideways slip, over normal force and speed [s/m]
   double pressure_offset = 0.0;       ///< centre of pressure ahead of the patch's middle [m]
   MotionSpread spread;
 };

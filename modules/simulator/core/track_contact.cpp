@@ -39,7 +39,8 @@ TrackForce TrackContact::step(const TrackGeometry& geometry, const Surfaces& sur
     const double u_x = (along_[i] + damping * slip_along_[i]) / surface.shear_displacement;
     const double u_y = (across_[i] + damping * slip_across_[i]) / surface.lateral_displacement;
     const double shear = surface.friction * normal / std::sqrt(1.0 + u_x * u_x + u_y * u_y);
-    const double across = -shear * u_y;
+    // Ground heaped up beside the track: pushed aside, not sheared, so friction does not limit it.
+    const double across = -shear * u_y - normal * surface.scrub_resistance * slip_across_[i];
     total.along -= shear * u_x;
     total.across += across;
     total.resistance -= normal * surface.resistance_viscous * speed_over_ground;

@@ -14,9 +14,9 @@ namespace tread::sim {
 /** Body origin on the ground midway between the tracks, x forward, y left. */
 struct VehicleParameters {
   double mass = 400.0;           ///< [kg]
-  double yaw_inertia = 32.0;     ///< about the centre of mass, tracks included [kg m^2]
-  double gauge = 0.42;           ///< between the middles of the tracks [m]
-  double contact_length = 0.60;  ///< of each track on the ground [m]
+  double yaw_inertia = 34.0;     ///< about the centre of mass, tracks included [kg m^2]
+  double gauge = 0.43;           ///< between the middles of the tracks [m]
+  double contact_length = 0.56;  ///< of each track on the ground [m]
   double centre = -0.08;      ///< x_body of the middle of the contact patches and of the mass [m]
   double mass_height = 0.35;  ///< of the centre of mass above the ground [m]
   double length = 1.30;       ///< footprint [m]
