@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 
 #include <CLI/CLI.hpp>
 
@@ -46,9 +45,7 @@ void run(const Arguments& arguments) {
       counts.motor, counts.duration);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int parseAndRun(int argc, char** argv) {
   Arguments arguments;
   CLI::App app{"Turns a recording of a drive (CSV) into an LCM log: INS, MOTOR, EXECUTION, MARK"};
   app.add_option("--format", arguments.format, "which kind of CSV file")
@@ -70,11 +67,17 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 9))
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
+  run(arguments);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    run(arguments);
+    return parseAndRun(argc, argv);
   } catch (const std::exception& problem) {
-    std::cerr << "tread-import: " << problem.what() << "\n";
+    std::fprintf(stderr, "tread-import: %s\n", problem.what());
     return 1;
   }
-  return 0;
 }

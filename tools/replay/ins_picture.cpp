@@ -52,6 +52,7 @@ void drawTrack(const InsReplay& replay, const std::string& title, const std::str
   const picture::Panel::Axes axes = axesAround(poses);
   picture::Panel panel(canvas, {80, 60, 780, 760}, axes);
   std::vector<Eigen::Vector2d> track;
+  track.reserve(poses.size());
   for (const Pose2& pose : poses) track.push_back(pose.position());
   picture::Style line;
   line.colour = picture::kBlue;

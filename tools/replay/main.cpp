@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <iostream>
 #include <limits>
 #include <stdexcept>
 
@@ -163,9 +162,7 @@ void addLearner(CLI::App& app, LearnerArguments& arguments) {
   command.callback([&arguments] { replayLearner(arguments); });
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int parseAndRun(int argc, char** argv) {
   LearnerArguments learner_arguments;
   InsArguments ins_arguments;
   MappingArguments mapping_arguments;
@@ -174,11 +171,17 @@ int main(int argc, char** argv) {
   addLearner(app, learner_arguments);
   addIns(app, ins_arguments);
   addMapping(app, mapping_arguments);
+  CLI11_PARSE(app, argc, argv);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    CLI11_PARSE(app, argc, argv);
+    return parseAndRun(argc, argv);
   } catch (const std::exception& problem) {
-    std::cerr << "tread-replay: " << problem.what() << "\n";
+    std::fprintf(stderr, "tread-replay: %s\n", problem.what());
     return 1;
   }
-  return 0;
 }

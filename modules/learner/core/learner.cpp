@@ -53,7 +53,7 @@ Pose2 endError(const Measurement& measurement, const MotionPattern& predicted) {
 }
 
 Learner::Learner(RuleConfig config, PatternSet shipped)
-    : config_(config), shipped_(std::move(shipped)), set_(shipped_) {
+    : config_(std::move(config)), shipped_(std::move(shipped)), set_(shipped_) {
   if (!(config_.memory >= 0.0 && config_.memory < 1.0))
     throw std::invalid_argument("learner: memory must be in 0 <= memory < 1");
   for (const MotionPattern& pattern : shipped_.patterns()) {
