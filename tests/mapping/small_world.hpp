@@ -57,12 +57,18 @@ struct RangeFinder {
     const double angle = field_of_view * (static_cast<double>(i) / (beams - 1) - 0.5);
     const Eigen::Vector3d direction(std::cos(angle), std::sin(angle), 0.0);
     const Eigen::Isometry3d T_map_sensor = T_map_body * T_body_sensor;
-    double range = 0.05;
-    while (range < range_max && !world.isSolid(T_map_sensor * Eigen::Vector3d(direction * range)))
-      range += 0.02;
+    const auto isSolidAt = [&](double r) {
+      return world.isSolid(T_map_sensor * Eigen::Vector3d(direction * r));
+    };
+    double range = 0.05;  // nothing in these worlds is thinner than the step
+    while (range < range_max && !isSolidAt(range)) range += 0.1;
     const bool hit = range < range_max;
-    return {direction * (hit ? range - 0.01 : range_max), static_cast<double>(i) / (beams - 1),
-            hit};
+    double clear = range - 0.1;
+    while (hit && range - clear > 0.01) {
+      const double middle = 0.5 * (clear + range);
+      (isSolidAt(middle) ? range : clear) = middle;
+    }
+    return {direction * (hit ? range : range_max), static_cast<double>(i) / (beams - 1), hit};
   }
 
   Sweep sweep(const SmallWorld& world, int64_t utime, const Eigen::Isometry3d& T_map_body) const {

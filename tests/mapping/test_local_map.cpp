@@ -258,12 +258,14 @@ TEST_CASE("the window follows the robot and forgets what is far") {
   REQUIRE(mapper.at(2.05, 2.05) == kUnknown);
   REQUIRE(mapper.at(38.0, 0.0) == kFree);
   size_t leafs = 0;
+  size_t outside = 0;
   for (auto leaf = mapper.map.voxels().tree().begin_leafs();
        leaf != mapper.map.voxels().tree().end_leafs(); ++leaf) {
     const auto cell = mapper.map.grid().indexOf({leaf.getX(), leaf.getY()});
-    REQUIRE(mapper.map.grid().contains(cell));
+    outside += mapper.map.grid().contains(cell) ? 0 : 1;
     ++leafs;
   }
+  REQUIRE(outside == 0);
   REQUIRE(leafs > 10000);
 }
 
