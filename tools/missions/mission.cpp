@@ -3,7 +3,9 @@
 #include "tools/missions/mission.hpp"
 
 #include <cmath>
+#include <limits>
 #include <map>
+#include <tuple>
 
 namespace tread::missions {
 
@@ -59,7 +61,47 @@ void addMission(const MissionResult& result, int first, int last,
   }
 }
 
+using Executions = std::vector<const ScoredExecution*>;
+
+/// Measured executions that lie wholly on one stretch of surface: after change `index - 1`, before
+/// change `index`.
+Executions stretch(const MissionResult& result, size_t index) {
+  const auto& changes = result.surface_changes;
+  const double from = index == 0 ? -1.0 : changes[index - 1].time;
+  const double to =
+      index < changes.size() ? changes[index].time : std::numeric_limits<double>::infinity();
+  Executions executions;
+  for (const ScoredExecution& execution : result.executions)
+    if (execution.measured && !execution.surface.empty() && execution.time > from &&
+        execution.time <= to)
+      executions.push_back(&execution);
+  return executions;
+}
+
+/// Means over the executions with index first..last (1-based), clipped to what there is.
+std::pair<double, double> meanErrors(const Executions& executions, size_t first, size_t last) {
+  double position = 0.0, yaw = 0.0;
+  int count = 0;
+  for (size_t i = first; i <= last && i <= executions.size(); ++i, ++count) {
+    position += executions[i - 1]->error_position;
+    yaw += std::abs(executions[i - 1]->error_yaw);
+  }
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  return count == 0 ? std::make_pair(none, none) : std::make_pair(position / count, yaw / count);
+}
+
 }  // namespace
+
+ErrorAroundChange errorsAround(const MissionResult& result, size_t change) {
+  const Executions before = stretch(result, change);
+  const Executions after = stretch(result, change + 1);
+  ErrorAroundChange errors;
+  const size_t first = before.size() > 5 ? before.size() - 4 : 1;
+  std::tie(errors.before_position, errors.before_yaw) = meanErrors(before, first, before.size());
+  std::tie(errors.after_position, errors.after_yaw) = meanErrors(after, 1, 3);
+  std::tie(errors.settled_position, errors.settled_yaw) = meanErrors(after, 5, 15);
+  return errors;
+}
 
 std::vector<ErrorAfterChange> errorsAfterChange(const std::vector<MissionResult>& results,
                                                 int first, int last) {

@@ -79,6 +79,19 @@ struct ErrorAfterChange {
   double yaw_per_rad = 0.0;     ///< pooled: sum of errors over radians turned
 };
 
+/// Mean errors around one change of surface in one mission; NaN where nothing was measured.
+struct ErrorAroundChange {
+  double before_position = 0.0;   ///< [m] the last five executions on the old surface
+  double before_yaw = 0.0;        ///< [rad]
+  double after_position = 0.0;    ///< [m] the first three on the new one
+  double after_yaw = 0.0;         ///< [rad]
+  double settled_position = 0.0;  ///< [m] the fifth to the fifteenth on the new one
+  double settled_yaw = 0.0;       ///< [rad]
+};
+
+/// `change` is an index into surface_changes.
+ErrorAroundChange errorsAround(const MissionResult& result, size_t change);
+
 /// Per pair of surfaces, sorted by name; pooled over all missions. Pair from "start" = before the
 /// first change.
 std::vector<ErrorAfterChange> errorsAfterChange(const std::vector<MissionResult>& results,

@@ -109,7 +109,7 @@ void drawWay(Picture& picture, const MissionResult& result, const MissionScene& 
   drawTrack(panel, result);
   panel.dot(scene.world.T_map_start.position(), kGreen, 7.0);
   panel.dot(scene.world.T_map_goal.position(), kRed, 7.0);
-  panel.legendEntry({kOrange, 2.5, false, "last plan"});
+  panel.legendEntry({kOrange, 2.5, false, "a plan on the way"});
   panel.legendEntry({kSkyBlue, 1.0, false, "its tree"});
   panel.legendEntry({kGreen, 6.0, false, "start"});
   panel.legendEntry({kRed, 6.0, false, "goal"});

@@ -21,7 +21,7 @@ struct TreeEdge {
 struct MissionScene {
   MissionWorld world;
   TileMap map{0.1, 32};        ///< what mapping published
-  std::vector<TreeEdge> tree;  ///< of the last plan that had one
+  std::vector<TreeEdge> tree;  ///< of a plan on the way
 };
 
 /// Draws world, map, surfaces, true track, last tree, and the prediction error of each execution.

@@ -98,6 +98,8 @@ void MissionWatch::hear(const learning_t& message) {
 }
 
 void MissionWatch::hear(const plan_tree_t& message) {
+  // The last plans before the goal are short; the one worth drawing was made on the way.
+  if (!tree_.empty() && toGo() < 10.0) return;
   tree_.clear();
   std::set<int> chosen(message.best.begin(), message.best.end());
   for (int i = 0; i < message.num_nodes; ++i) {

@@ -54,10 +54,20 @@ void printErrors(std::ostream& out, const Campaign& campaign, int first, int las
   out << format("prediction error of patterns %d..%d after a change of surface, rule %s:\n", first,
                 last, campaign.rule.c_str());
   out << "  from     to        count  position [m]  yaw [rad]  position [m/m]  yaw [rad/rad]\n";
+  ErrorAfterChange all;
+  for (const ErrorAfterChange& error : errors) {
+    if (error.from == "start") continue;
+    all.count += error.count;
+    all.position += error.count * error.position;
+    all.yaw += error.count * error.yaw;
+  }
   for (const ErrorAfterChange& error : errors)
     out << format("  %-8s %-8s %6d  %12.4f  %9.4f  %14.4f  %13.4f\n", error.from.c_str(),
                   error.to.c_str(), error.count, error.position, error.yaw, error.position_per_m,
                   error.yaw_per_rad);
+  if (all.count > 0)
+    out << format("  %-17s %6d  %12.4f  %9.4f\n", "all changes", all.count,
+                  all.position / all.count, all.yaw / all.count);
 }
 
 nlohmann::ordered_json errorsJson(const Campaign& campaign, int first, int last) {
@@ -75,8 +85,19 @@ nlohmann::ordered_json errorsJson(const Campaign& campaign, int first, int last)
 
 nlohmann::ordered_json runJson(const MissionResult& result) {
   nlohmann::ordered_json changes = nlohmann::ordered_json::array();
-  for (const SurfaceChange& change : result.surface_changes)
-    changes.push_back({{"time_s", change.time}, {"from", change.from}, {"to", change.to}});
+  for (size_t i = 0; i < result.surface_changes.size(); ++i) {
+    const SurfaceChange& change = result.surface_changes[i];
+    const ErrorAroundChange errors = errorsAround(result, i);
+    changes.push_back({{"time_s", change.time},
+                       {"from", change.from},
+                       {"to", change.to},
+                       {"before_m", errors.before_position},
+                       {"before_rad", errors.before_yaw},
+                       {"after_m", errors.after_position},
+                       {"after_rad", errors.after_yaw},
+                       {"settled_m", errors.settled_position},
+                       {"settled_rad", errors.settled_yaw}});
+  }
   return {{"seed", result.seed},
           {"result", nameOf(result.outcome)},
           {"reason", result.reason},
