@@ -46,6 +46,14 @@ struct TrackPoint {
   Pose2 T_map_body;
 };
 
+/// A contact of the true footprint with a true obstacle.
+struct Contact {
+  double time = 0.0;         ///< [s] of the first touch
+  std::string pattern;       ///< being executed; empty = none
+  Pose2 T_map_body;          ///< where the body was when it was seen
+  double penetration = 0.0;  ///< [m] deepest attempt
+};
+
 /// What happened in one mission.
 struct MissionResult {
   uint64_t seed = 0;
@@ -63,6 +71,7 @@ struct MissionResult {
   std::vector<SurfaceChange> surface_changes;
   std::vector<ScoredExecution> executions;
   std::vector<TrackPoint> track;
+  std::vector<Contact> contacts;  ///< one per collision
 
   double detour() const { return straight_line > 0.0 ? distance / straight_line : 0.0; }
 };

@@ -109,6 +109,9 @@ void drawWay(Picture& picture, const MissionResult& result, const MissionScene& 
   drawTrack(panel, result);
   panel.dot(scene.world.T_map_start.position(), kGreen, 7.0);
   panel.dot(scene.world.T_map_goal.position(), kRed, 7.0);
+  for (const Contact& contact : result.contacts)
+    panel.dot(contact.T_map_body.position(), kPink, 6.0);
+  if (!result.contacts.empty()) panel.legendEntry({kPink, 6.0, false, "contact"});
   panel.legendEntry({kOrange, 2.5, false, "a plan on the way"});
   panel.legendEntry({kSkyBlue, 1.0, false, "its tree"});
   panel.legendEntry({kGreen, 6.0, false, "start"});

@@ -135,9 +135,30 @@ void MissionWatch::step() {
     moved_from_ = truth.T_map_body;
     moved_at_ = now;
   }
-  result_.collisions = static_cast<int>(truth.collisions.size());
+  noteContacts();
   followSurface();
   judge();
+}
+
+void MissionWatch::noteContacts() {
+  const sim::RobotTruth& truth = system_.robot().truth();
+  for (size_t i = result_.contacts.size(); i < truth.collisions.size(); ++i) {
+    Contact contact;
+    contact.time = seconds(truth.collisions[i].utime);
+    contact.pattern = presentPattern();
+    contact.T_map_body = truth.T_map_body;
+    result_.contacts.push_back(contact);
+  }
+  for (size_t i = 0; i < result_.contacts.size(); ++i)
+    result_.contacts[i].penetration = truth.collisions[i].penetration;
+  result_.collisions = static_cast<int>(truth.collisions.size());
+}
+
+std::string MissionWatch::presentPattern() const {
+  const auto record = records_.find({motor_.motor_run_id, motor_.execution_id});
+  if (motor_.execution_id == 0 || record == records_.end()) return {};
+  const auto name = pattern_names_.find(record->second.record_pattern_id);
+  return name == pattern_names_.end() ? std::string() : name->second;
 }
 
 void MissionWatch::followSurface() {
@@ -206,11 +227,7 @@ Progress MissionWatch::progress() const {
   progress.surface = surface_;
   progress.plan =
       wordsOf(plan_.plan_status) + (plan_.reason.empty() ? "" : " (" + plan_.reason + ")");
-  const auto record = records_.find({motor_.motor_run_id, motor_.execution_id});
-  if (motor_.execution_id != 0 && record != records_.end()) {
-    const auto name = pattern_names_.find(record->second.record_pattern_id);
-    if (name != pattern_names_.end()) progress.pattern = name->second;
-  }
+  progress.pattern = presentPattern();
   progress.last_error = std::numeric_limits<double>::quiet_NaN();
   for (auto it = result_.executions.rbegin(); it != result_.executions.rend(); ++it)
     if (it->measured) {

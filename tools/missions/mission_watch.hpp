@@ -30,6 +30,8 @@ class MissionWatch {
   void hear(const learning_t& message);
   void hear(const plan_tree_t& message);
   void hear(const map_tile_t& message);
+  void noteContacts();
+  std::string presentPattern() const;
   void followSurface();
   std::string surfaceBetween(int64_t from, int64_t to) const;
   void judge();

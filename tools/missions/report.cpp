@@ -98,6 +98,14 @@ nlohmann::ordered_json runJson(const MissionResult& result) {
                        {"settled_m", errors.settled_position},
                        {"settled_rad", errors.settled_yaw}});
   }
+  nlohmann::ordered_json contacts = nlohmann::ordered_json::array();
+  for (const Contact& contact : result.contacts)
+    contacts.push_back({{"time_s", contact.time},
+                        {"pattern", contact.pattern},
+                        {"x_m", contact.T_map_body.x},
+                        {"y_m", contact.T_map_body.y},
+                        {"yaw_rad", contact.T_map_body.yaw},
+                        {"penetration_m", contact.penetration}});
   return {{"seed", result.seed},
           {"result", nameOf(result.outcome)},
           {"reason", result.reason},
@@ -109,6 +117,7 @@ nlohmann::ordered_json runJson(const MissionResult& result) {
           {"line_blocked", result.line_blocked},
           {"surface_changes", result.surface_changes.size()},
           {"changes", changes},
+          {"contacts", contacts},
           {"patterns", result.completed},
           {"aborted", result.aborted},
           {"rearmed", result.rearmed},
