@@ -40,7 +40,8 @@ struct Channel : ChannelSpec {};
 
 inline constexpr Channel<ins_t> kIns{{"INS", "ins_t", "ins_driver", 50, 100, 400}};
 inline constexpr Channel<scan_t> kScan{{"SCAN", "scan_t", "lidar_driver", 10, 250, 60000}};
-inline constexpr Channel<map_tile_t> kMap{{"MAP", "map_tile_t", "mapping", 5, 2000, 20000}};
+// A tile of what is out of sight is old and still true: no limit.
+inline constexpr Channel<map_tile_t> kMap{{"MAP", "map_tile_t", "mapping", 5, 0, 20000}};
 inline constexpr Channel<goal_t> kGoal{{"GOAL", "goal_t", "tread-goal", 1, 3000, 200}};
 inline constexpr Channel<plan_t> kPlan{{"PLAN", "plan_t", "planner", 5, 1000, 20000}};
 inline constexpr Channel<plan_tree_t> kPlanTree{
