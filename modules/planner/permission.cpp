@@ -17,11 +17,13 @@ void Permission::take(const arm_t& message, int64_t now) {
   if (timely && message.utime > revoked_ && !estopped_) armed_ = true;
 }
 
-void Permission::take(const estop_t& message) {
-  if (message.utime < estop_utime_) return;
-  estop_utime_ = message.utime;
+void Permission::take(const estop_t& message, int64_t now) {
+  // A stop counts whatever its time says; only clearing must be newer than what it clears.
+  const int64_t utime = std::min(message.utime, now);
+  if (!message.engaged && utime < estop_utime_) return;
+  estop_utime_ = std::max(estop_utime_, utime);
   estopped_ = message.engaged;
-  if (estopped_) revoke(message.utime);
+  if (estopped_) revoke(utime);
 }
 
 void Permission::take(const BridgeReading& bridge) {

@@ -19,7 +19,7 @@ class Permission {
   explicit Permission(int64_t start) : revoked_(start) {}
 
   void take(const arm_t& message, int64_t now);
-  void take(const estop_t& message);
+  void take(const estop_t& message, int64_t now);
   void take(const BridgeReading& bridge);
 
   bool armed() const { return armed_; }

@@ -34,7 +34,8 @@ void PlannerNode::subscribe() {
   bus_.subscribe<execution_t>(kExecution, [this](const execution_t& message) { take(message); });
   bus_.subscribe<arm_t>(kArm,
                         [this](const arm_t& message) { permission_.take(message, bus_.now()); });
-  bus_.subscribe<estop_t>(kEstop, [this](const estop_t& message) { permission_.take(message); });
+  bus_.subscribe<estop_t>(
+      kEstop, [this](const estop_t& message) { permission_.take(message, bus_.now()); });
 }
 
 /// A time that has not come yet would look fresh for ever.

@@ -20,10 +20,10 @@ struct FootprintSize {
 
 /// How much room is kept around the footprint [m].
 struct Margins {
-  double check = 0.02;    ///< when what is already under way is checked again
-  double plan = 0.04;     ///< when the next pattern is chosen
+  double check = 0.03;    ///< when what is already under way is checked again
+  double plan = 0.05;     ///< when the next pattern is chosen
   double growth = 0.5;    ///< [1] of the standard deviation that has gathered along the plan
-  double largest = 0.08;  ///< never more than this, so that narrow gaps stay open
+  double largest = 0.09;  ///< never more than this, so that narrow gaps stay open
 };
 
 /// Blocked cells under the footprint, without margin.
