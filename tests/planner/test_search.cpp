@@ -7,6 +7,7 @@
 #include <queue>
 #include <tuple>
 
+#include "common/pattern/pattern_file.hpp"
 #include "tests/planner/kit/search_bench.hpp"
 
 using namespace tread;
@@ -180,20 +181,25 @@ TEST_CASE("Patterns join only in the class in which the one before ended") {
 }
 
 TEST_CASE(
-    "A gap of the vehicle's width and 0.4 m is passed, from straight ahead and from the side") {
-  for (const double y : {0.0, 1.5, -2.5}) {
-    for (const double heading : {0.0, 0.5, -0.9}) {
-      Playground ground;
-      ground.addWall({6.0, -8.0}, {6.0, -0.54}, 0.4);
-      ground.addWall({6.0, 0.54}, {6.0, 8.0}, 0.4);
-      const Grid grid = ground.paint(0.1, {-8.0, -8.0}, {14.4, 8.0});
-      const SearchBench bench(grid, samplePatterns(), {1, {11.0, 0.0, 0.0}, 0.5, 4.0});
-      SearchConfig config;
-      config.horizon = 1000.0;
-      Search search(config);
-      const SearchResult result = search.run(bench.problem({0.0, y, heading}), after(15'000));
-      INFO("y " << y << " heading " << heading << " expansions " << result.expansions);
-      CHECK(result.end == SearchEnd::kGoal);
+    "A gap of the vehicle's width and 0.4 m is passed, from straight ahead and from the side, "
+    "with the patterns of the tests and with the shipped ones") {
+  const PatternSet shipped = readPatternFile(TREAD_SOURCE_DIR "/config/patterns/teodor.yaml");
+  Playground ground;
+  ground.addWall({6.0, -8.0}, {6.0, -0.54}, 0.4);
+  ground.addWall({6.0, 0.54}, {6.0, 8.0}, 0.4);
+  const Grid grid = ground.paint(0.1, {-8.0, -8.0}, {14.4, 8.0});
+  SearchConfig config;
+  config.horizon = 1000.0;
+  for (const PatternSet& set : {samplePatterns(), shipped}) {
+    const SearchBench bench(grid, set, {1, {11.0, 0.0, 0.0}, 0.5, 4.0});
+    for (const double y : {0.0, 1.5, -2.5}) {
+      for (const double heading : {0.0, 0.5, -0.9}) {
+        Search search(config);
+        const SearchResult result = search.run(bench.problem({0.0, y, heading}), after(15'000));
+        INFO(set.content().name << " y " << y << " heading " << heading << " expansions "
+                                << result.expansions);
+        CHECK(result.end == SearchEnd::kGoal);
+      }
     }
   }
 }
