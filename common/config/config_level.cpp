@@ -75,12 +75,14 @@ std::string formatRange(Range range, const std::string& unit) {
   return "any finite number" + (unit.empty() || unit == "1" ? "" : " [" + unit + "]");
 }
 
-std::shared_ptr<ConfigReader::Level> ConfigReader::Level::parse(std::string text,
-                                                                const std::string& name) {
+std::shared_ptr<ConfigReader::Level> ConfigReader::Level::parse(
+    std::string text, const std::string& name, const std::vector<std::string>& overrides) {
   // yaml-cpp takes a byte order mark off; without it, offsets in this copy agree with its marks.
   if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) text.erase(0, 3);
   const auto source = std::make_shared<ConfigSource>(name, std::move(text));
-  return of(source, "", loadOneDocument(source->text, name), 1);
+  YAML::Node root = loadOneDocument(source->text, name);
+  for (const std::string& words : overrides) applyOverride(*source, words, root);
+  return of(source, "", root, 1);
 }
 
 std::shared_ptr<ConfigReader::Level> ConfigReader::Level::of(
@@ -154,7 +156,7 @@ std::string ConfigReader::Level::path(const std::string& key) const {
 }
 
 ConfigError ConfigReader::Level::errorAt(int at, const std::string& problem) const {
-  return ConfigError(source->name + ":" + std::to_string(at) + ": " + problem);
+  return ConfigError(source->place(at) + ": " + problem);
 }
 
 ConfigError ConfigReader::Level::missing(const std::string& key) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 // Inner part of config_reader.cpp, which alone includes it: yaml-cpp stays out of other headers.
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,11 +19,22 @@ struct ConfigSource {
   ConfigSource(std::string file_name, std::string file_text);
   /// Offset of a mark in the text; columns count bytes.
   size_t offsetOf(const YAML::Mark& mark) const;
+  /// Takes in lines that stand for one override; the number (1-based) of the first of them.
+  int append(const std::string& lines, const std::string& override_words);
+  /// Where a line is, for messages: file:line, or the override that brought it.
+  std::string place(int line) const;
+  /// Whether a line (1-based) came from an override, not from the file.
+  bool isOverride(int line) const { return file_lines > 0 && line > file_lines; }
 
   std::string name;
   std::string text;
   std::vector<size_t> line_starts;
+  int file_lines = 0;                    ///< 0 = no override yet
+  std::map<int, std::string> overrides;  ///< by their last line
 };
+
+/// Puts "key=value" or "section.key=value" into the tree of a file; throws ConfigError.
+void applyOverride(ConfigSource& source, const std::string& words, YAML::Node& root);
 
 /// One map of the file with what was asked of it.
 struct ConfigReader::Level {
@@ -42,7 +54,8 @@ struct ConfigReader::Level {
   };
 
   /// Parses a whole text: one document, a map (or nothing at all).
-  static std::shared_ptr<Level> parse(std::string text, const std::string& name);
+  static std::shared_ptr<Level> parse(std::string text, const std::string& name,
+                                      const std::vector<std::string>& overrides);
   /// The level of a map node; null counts as an empty map.
   static std::shared_ptr<Level> of(std::shared_ptr<const ConfigSource> source,
                                    const std::string& prefix, const YAML::Node& map, int line);

@@ -38,7 +38,8 @@ ConfigReader::ConfigReader(ConfigReader&&) noexcept = default;
 ConfigReader& ConfigReader::operator=(ConfigReader&&) noexcept = default;
 ConfigReader::~ConfigReader() = default;
 
-ConfigReader ConfigReader::fromFile(const std::string& path) {
+ConfigReader ConfigReader::fromFile(const std::string& path,
+                                    const std::vector<std::string>& overrides) {
   std::error_code none;
   if (std::filesystem::is_directory(path, none))
     throw ConfigError(path + ": is a folder; a YAML file is needed");
@@ -49,11 +50,12 @@ ConfigReader ConfigReader::fromFile(const std::string& path) {
   std::ostringstream text;
   text << file.rdbuf();
   if (file.bad()) throw ConfigError(path + ": reading failed (" + std::strerror(errno) + ")");
-  return fromText(text.str(), path);
+  return fromText(text.str(), path, overrides);
 }
 
-ConfigReader ConfigReader::fromText(const std::string& text, const std::string& name) {
-  return ConfigReader(Level::parse(text, name));
+ConfigReader ConfigReader::fromText(const std::string& text, const std::string& name,
+                                    const std::vector<std::string>& overrides) {
+  return ConfigReader(Level::parse(text, name, overrides));
 }
 
 bool ConfigReader::has(const std::string& key) const {
@@ -109,9 +111,11 @@ void ConfigReader::text(const std::string& key, std::string& value, bool require
 
 void ConfigReader::path(const std::string& key, std::string& value, bool required) {
   if (const auto* entry = level_->ask(key, required)) {
-    value = level_->scalar(entry->value, level_->path(key), Level::lineOf(*entry), "a path", true);
+    const int line = Level::lineOf(*entry);
+    value = level_->scalar(entry->value, level_->path(key), line, "a path", true);
     const size_t slash = level_->source->name.rfind('/');
-    if (slash != std::string::npos && value.compare(0, 1, "/") != 0)
+    if (slash != std::string::npos && value.compare(0, 1, "/") != 0 &&
+        !level_->source->isOverride(line))
       value = level_->source->name.substr(0, slash + 1) + value;
   }
   level_->answer(key, formatText(value));

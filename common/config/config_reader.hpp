@@ -37,9 +37,14 @@ struct Range {
  */
 class ConfigReader {
  public:
-  static ConfigReader fromFile(const std::string& path);
+  /** An override is "key=value" or "section.key=value", the value as it would stand in the file; it
+   * replaces what is there and is told as "--set key=value" in messages. A relative path in it is
+   * taken from the working directory. */
+  static ConfigReader fromFile(const std::string& path,
+                               const std::vector<std::string>& overrides = {});
   /// `name` stands for the file in messages.
-  static ConfigReader fromText(const std::string& text, const std::string& name);
+  static ConfigReader fromText(const std::string& text, const std::string& name,
+                               const std::vector<std::string>& overrides = {});
 
   ConfigReader(ConfigReader&&) noexcept;
   ConfigReader& operator=(ConfigReader&&) noexcept;

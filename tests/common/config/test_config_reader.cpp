@@ -189,4 +189,57 @@ TEST_CASE("a file is read from disk, an absent one and a folder are one clear li
   CHECK_THROWS_WITH(ConfigReader::fromFile("/tmp"), "/tmp: is a folder; a YAML file is needed");
 }
 
+TEST_CASE("an override on the command line replaces, adds, and reaches into sections") {
+  ConfigReader reader =
+      ConfigReader::fromText("lease: 0.3\ngate:\n  max_gap: 0.2\nmap: b.yaml\n", "robots/a.yaml",
+                             {"lease=0.4", "gate.max_gap=0.7", "gate.why='so: and so'",
+                              "new=x/y.yaml", "list=[1, 2]", "lease=0.5", "deep.er=7"});
+  double lease = 0;
+  double gap = 0;
+  double deep = 0;
+  std::string why;
+  std::string map;
+  std::string fresh;
+  std::vector<double> list;
+  reader.number("lease", lease, {0, 1}, "s");
+  ConfigReader gate = reader.section("gate");
+  gate.number("max_gap", gap, {0, 1}, "s");
+  gate.text("why", why);
+  reader.path("map", map);
+  reader.path("new", fresh);
+  reader.numbers("list", list, 2, {0, 9}, "1");
+  ConfigReader inner = reader.section("deep");
+  inner.number("er", deep, {0, 9}, "1");
+  reader.finish();
+  CHECK(lease == 0.5);
+  CHECK(gap == 0.7);
+  CHECK(deep == 7);
+  CHECK(why == "so: and so");
+  CHECK(map == "robots/b.yaml");
+  CHECK(fresh == "x/y.yaml");  // as typed: from the working directory
+  CHECK(list == std::vector<double>{1, 2});
+}
+
+TEST_CASE("an override is told as what was typed, never as a line of the file") {
+  const auto read = [](const std::string& override_words) {
+    ConfigReader reader = ConfigReader::fromText("lease: 0.3", "a.yaml", {override_words});
+    double lease = 0;
+    reader.number("lease", lease, {0.0, 1.0}, "s");
+    std::string map;
+    reader.path("map", map);
+    reader.finish();
+    return std::to_string(lease).substr(0, lease < 1 ? 3 : 1) + " " + map;
+  };
+  CHECK(read("lease=1") == "1 ");
+  CHECK(read("map=b/c") == "0.3 b/c");
+  CHECK_THROWS_WITH(read("lease=2"), "--set lease=2: lease is 2 s; allowed 0..1 s");
+  CHECK_THROWS_WITH(read("leese=2"),
+                    Catch::StartsWith("--set leese=2: unknown key leese; is lease meant?"));
+  CHECK_THROWS_WITH(read("lease"), Catch::StartsWith("--set lease: write key=value"));
+  CHECK_THROWS_WITH(read("=2"), Catch::Contains("write key=value"));
+  CHECK_THROWS_WITH(read("a..b=2"), Catch::Contains("write key=value"));
+  CHECK_THROWS_WITH(read("map=[1"), Catch::StartsWith("--set map=[1: the value is no YAML"));
+  CHECK_THROWS_WITH(read("map='x"), Catch::StartsWith("--set map='x"));
+}
+
 }  // namespace tread
