@@ -30,6 +30,7 @@ void readMargins(ConfigReader reader, Margins& margins) {
   reader.number("plan", margins.plan, {0.0, 1.0}, "m");
   reader.number("growth", margins.growth, {0.0, 3.0}, "1");
   reader.number("largest", margins.largest, {0.0, 2.0}, "m");
+  reader.number("regain", margins.regain, {0.0, 1.0}, "1");
   if (margins.check > margins.plan) throw reader.error("check", "must not be more than plan");
   if (margins.largest < margins.plan) throw reader.error("largest", "must not be less than plan");
 }

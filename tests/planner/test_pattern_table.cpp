@@ -6,6 +6,8 @@
 
 #include "modules/planner/core/pattern_table.hpp"
 #include "modules/planner/core/prediction.hpp"
+#include "modules/planner/core/surroundings.hpp"
+#include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
 
 using namespace tread;
@@ -85,4 +87,58 @@ TEST_CASE("Before a pattern begins the vehicle keeps the twist of its entry clas
   const Prediction prediction = predict(Pose2{}, -0.1, straight, table);
   CHECK(prediction.T_map_end.x == Approx(straight.pattern->end().x + 0.11).margin(1e-6));
   CHECK(prediction.time_left == Approx(1.1));
+}
+
+TEST_CASE("What is left of a running pattern is scaled by how much of it has come true") {
+  const PatternTable table(samplePatterns(), SweepStep{}, 0.05);
+  const double period = table.set().periodSeconds();
+  for (const TablePattern& pattern : table.patterns()) {
+    const double half = pattern.duration / 2.0;
+    const Pose2 expected = poseAlong(pattern.pattern->trajectory, period, half);
+    const Fulfilment as_promised = compare(expected, half, pattern, period);
+    CHECK(as_promised.way == Approx(1.0));
+    CHECK(as_promised.turn == Approx(1.0));
+    const Prediction plain = predict(expected, half, pattern, table);
+    CHECK(plain.T_map_end.yaw == Approx(pattern.end().pose.yaw).margin(1e-9));
+    CHECK(plain.T_map_end.x == Approx(pattern.end().pose.x).margin(1e-9));
+    // Ground that turns the vehicle half as far again will go on to do so, doubt subtracted.
+    const Fulfilment more =
+        compare({expected.x, expected.y, 1.5 * expected.yaw}, half, pattern, period);
+    CHECK(more.turn >= 1.0);
+    CHECK(more.turn <= 1.5);
+    const double rest_of_turn = pattern.end().pose.yaw - expected.yaw;
+    const Prediction wider = predict(expected, half, pattern, table, more);
+    CHECK(wider.T_map_end.yaw - expected.yaw == Approx(more.turn * rest_of_turn).margin(1e-9));
+  }
+}
+
+TEST_CASE("A start without margin may go on only where room is gained") {
+  // A wall along the vehicle's left side, a centimetre from its outline.
+  const FootprintSize body;
+  Playground ground;
+  ground.addWall({-3.0, body.half_width + 0.12}, {5.0, body.half_width + 0.12}, 0.2);
+  const Surroundings around(ground.paint(0.01, {-3.0, -3.0}, {5.0, 3.0}), body, Margins{});
+  const Pose2 start{0.0, 0.0, 0.0};
+  const int level = around.freeLevel(start, Surroundings::kPlan);
+  REQUIRE(level >= Surroundings::kBare);
+  REQUIRE(level < Surroundings::kCheck);
+  const PatternTable table(samplePatterns(), SweepStep{}, 0.05);
+  int along = 0;
+  int away = 0;
+  for (const TablePattern& pattern : table.patterns()) {
+    const Pose2& end = pattern.end().pose;
+    const bool regains = around.sweepRegains(start, level, pattern, Surroundings::kPlan);
+    if (std::abs(end.x) > 0.9 && std::abs(end.y) < 0.01) {
+      ++along;
+      CHECK(around.sweepFree(start, pattern, level));  // nothing is touched, yet no room is gained
+      CHECK_FALSE(regains);
+    }
+    if (regains) {
+      ++away;
+      CHECK(around.sweepFree(start, pattern, level));
+      if (pattern.end().reach > 0.25) CHECK(around.freeLevel(end, Surroundings::kPlan) > level);
+    }
+  }
+  CHECK(along > 0);
+  CHECK(away > 0);
 }

@@ -11,17 +11,29 @@ namespace {
 /// Slower than this counts as standing [m/s, rad/s].
 constexpr double kStanding = 0.02;
 
+/// How far from the body's origin its outline is, about: what a turn moves [m].
+constexpr double kArm = 0.7;
+
 double distanceBetween(const Pose2& a, const Pose2& b) {
   return std::hypot(b.x - a.x, b.y - a.y);
 }
 
 SweepPose sweepPose(const Pose2& pose, double time) {
-  return {pose, std::cos(pose.yaw), std::sin(pose.yaw), time};
+  return {pose, std::cos(pose.yaw), std::sin(pose.yaw), time, 0.0};
 }
 
 /// A pose between two: the twist that joins them, followed for a part of the way.
 Pose2 partOf(const Pose2& from, const Pose2& to, double share) {
   return from * integrate(twistTo(between(from, to), 1.0), share);
+}
+
+void addReach(std::vector<SweepPose>& sweep) {
+  SweepPose before;
+  for (SweepPose& at : sweep) {
+    at.reach = before.reach + distanceBetween(before.pose, at.pose) +
+               kArm * std::abs(at.pose.yaw - before.pose.yaw);
+    before = at;
+  }
 }
 
 /// Larger standard deviation of the position at the end, as a variance; `default_sigma` if unknown.
@@ -55,6 +67,7 @@ std::vector<SweepPose> sampleSweep(const std::vector<Pose2>& trajectory, double 
     }
     last = here;
   }
+  addReach(sweep);
   return sweep;
 }
 

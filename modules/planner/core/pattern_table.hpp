@@ -15,7 +15,8 @@ struct SweepPose {
   Pose2 pose;
   double cos_yaw = 1.0;
   double sin_yaw = 0.0;
-  double time = 0.0;  ///< [s] from the start of the pattern
+  double time = 0.0;   ///< [s] from the start of the pattern
+  double reach = 0.0;  ///< [m] that a point of the outline has moved since then, about
 };
 
 /// A pattern as the search wants it.

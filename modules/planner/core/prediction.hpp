@@ -23,15 +23,29 @@ struct Prediction {
   double variance = 0.0;   ///< [m2] of the end's position
 };
 
+/// How much of what a running pattern promised has come true so far, each about 1.
+struct Fulfilment {
+  double way = 1.0;
+  double turn = 1.0;
+};
+
+/// Compares the motion since the start of a running pattern with what was expected of it up to
+/// `time` [s].
+/** Little motion tells little: the ratios are drawn towards 1 by as much motion as INS noise and a
+ * moment's disturbance may make. Within 0.6 and 1.6. */
+Fulfilment compare(const Pose2& T_start_now, double time, const TablePattern& pattern,
+                   double period);
+
 /// Pose along a trajectory of equal periods, `time` [s] after its start; held at both ends.
 Pose2 poseAlong(const std::vector<Pose2>& trajectory, double period, double time);
 
 /// What is left of a pattern that has been running for `time` [s] when the vehicle was measured at
 /// a pose.
-/** A negative time: it will begin that much later; until then the vehicle keeps the twist of its
- * entry class. */
+/** What is left is scaled by what has come true so far: on ground that turns the vehicle more than
+ * expected it will go on to do so. A negative time: it will begin that much later; until then the
+ * vehicle keeps the twist of its entry class. */
 Prediction predict(const Pose2& T_map_body, double time, const TablePattern& pattern,
-                   const PatternTable& table);
+                   const PatternTable& table, const Fulfilment& so_far = {});
 
 /// Time until the first of the poses that is not free with a margin level [s]; nothing if all are
 /// free.

@@ -40,13 +40,16 @@ double worth(const Move& move, int number) {
   }
 }
 
-bool isFree(const Move& move, const Surroundings& around, const Pose2& start) {
-  const int level = around.freeLevel(start, Surroundings::kPlan);
+/// Whether a move is free; if `regains`, only with more and more margin on its way.
+bool isFree(const Move& move, const Surroundings& around, const Pose2& start, bool regains) {
+  int level = around.freeLevel(start, Surroundings::kPlan);
   Overlap overlap = around.overlap(start);
   Pose2 pose = start;
   for (const TablePattern* pattern : move.patterns) {
     if (level >= 0) {
-      if (!around.sweepFree(pose, *pattern, level)) return false;
+      const int wanted = regains ? Surroundings::kPlan : level;
+      if (!around.sweepRegains(pose, level, *pattern, wanted)) return false;
+      level = around.freeLevel(pose * pattern->end().pose, wanted);
     } else {
       const std::optional<Overlap> after = around.escape(pose, overlap, *pattern);
       if (!after) return false;
@@ -66,11 +69,13 @@ std::vector<int> Recovery::propose(const PatternTable& table, const Surroundings
   std::stable_sort(moves.begin(), moves.end(), [number](const Move& a, const Move& b) {
     return worth(a, number) > worth(b, number);
   });
-  for (const Move& move : moves) {
-    if (!isFree(move, surroundings, T_map_body)) continue;
-    std::vector<int> ids;
-    for (const TablePattern* pattern : move.patterns) ids.push_back(pattern->id());
-    return ids;
+  for (const bool regains : {true, false}) {
+    for (const Move& move : moves) {
+      if (!isFree(move, surroundings, T_map_body, regains)) continue;
+      std::vector<int> ids;
+      for (const TablePattern* pattern : move.patterns) ids.push_back(pattern->id());
+      return ids;
+    }
   }
   return {};
 }

@@ -111,10 +111,12 @@ bool Search::freeFromParent(Node& node) const {
     return true;
   }
   const int wanted = around.level(static_cast<double>(node.variance));
-  const int level = std::min(wanted, static_cast<int>(parent.level));
-  if (!around.sweepFree(start, *node.by, level)) return false;
-  const bool roomier = level < wanted && around.isFree(node.pose(), wanted);
-  node.level = static_cast<int8_t>(roomier ? wanted : level);
+  if (parent.level >= wanted) {
+    node.level = static_cast<int8_t>(wanted);
+    return around.sweepFree(start, *node.by, wanted);
+  }
+  if (!around.sweepRegains(start, parent.level, *node.by, wanted)) return false;
+  node.level = static_cast<int8_t>(around.freeLevel(node.pose(), wanted));
   return true;
 }
 

@@ -35,7 +35,10 @@ Decision Supervisor::step(const Situation& s, const StopPredicate& stop) {
   stop_ = stop;
   planned_ = false;
   prediction_.reset();
-  if (s.pose) standstill_.take(*s.pose);
+  if (s.pose) {
+    standstill_.take(*s.pose);
+    track_.push(s.pose->utime, s.pose->T_map_body);
+  }
   noteGoal(s);
   followBridge(s);
   was_armed_ = was_armed_ || (s.bridge && s.bridge->armed());

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/geometry/track.hpp"
 #include "modules/planner/core/motion_watch.hpp"
 #include "modules/planner/core/prediction.hpp"
 #include "modules/planner/core/program_book.hpp"
@@ -82,6 +83,7 @@ class Supervisor {
 
  private:
   enum class Mode { kStanding, kDriving, kSettling };
+  static constexpr int64_t kTrackSpan = 5'000'000;  ///< [us]
 
   void followBridge(const Situation& s);
   void noteGoal(const Situation& s);
@@ -97,6 +99,7 @@ class Supervisor {
   void searchNext(const Situation& s, const Prediction& running);
   bool stopNext(const Prediction& running);
   void keepClear(const Situation& s, const Prediction& running);
+  bool stoppingIsBetter(const Situation& s, const std::vector<ExpectedPose>& poses) const;
   std::vector<ExpectedPose> posesAfter(const Prediction& running) const;
   std::optional<double> conflict(const Pose2& here, const std::vector<ExpectedPose>& poses) const;
   // Standing.
@@ -123,6 +126,7 @@ class Supervisor {
   std::shared_ptr<const PatternTable> table_;
   /// Of the last search: its tree, which is drawn later, points into it.
   std::shared_ptr<const PatternTable> searched_table_;
+  PoseTrack track_{kTrackSpan};
   StandstillWatch standstill_;
   ProgressWatch progress_;
   Recovery recovery_;

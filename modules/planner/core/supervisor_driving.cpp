@@ -9,6 +9,8 @@ namespace tread::planner {
 namespace {
 
 constexpr double kMicro = 1e-6;
+/// Poses this far apart are still interpolated [us].
+constexpr int64_t kTrackGap = 150'000;
 /// Steps in which coasting on is checked [s].
 constexpr double kCoastStep = 0.1;
 
@@ -27,9 +29,16 @@ void Supervisor::drive(const Situation& s, const Readiness& ready) {
 }
 
 Prediction Supervisor::predictRunning(const Situation& s) const {
-  const double time =
-      book_.confirmed() ? static_cast<double>(s.pose->utime - book_.started()) * kMicro : 0.0;
-  return predict(s.pose->T_map_body, time, *runningPattern(), *table_);
+  const TablePattern& pattern = *runningPattern();
+  const Pose2& here = s.pose->T_map_body;
+  if (!book_.confirmed()) return predict(here, 0.0, pattern, *table_);
+  const double time = static_cast<double>(s.pose->utime - book_.started()) * kMicro;
+  const std::optional<Pose2> start = track_.at(book_.started(), kTrackGap);
+  const std::optional<Pose2> now = track_.at(s.pose->utime, kTrackGap);
+  Fulfilment so_far;
+  if (start && now && time > 0.0)
+    so_far = compare(between(*start, *now), time, pattern, table_->set().periodSeconds());
+  return predict(here, time, pattern, *table_, so_far);
 }
 
 bool Supervisor::frozen(const Situation& s) const {
@@ -127,6 +136,25 @@ bool Supervisor::stopNext(const Prediction& running) {
   return true;
 }
 
+/// Whether a stop now keeps more margin than going on. What is nearer than the stopping distance
+/// may be reached either way; then the better way is the one that keeps clear, and at equal margin
+/// to stand is better.
+bool Supervisor::stoppingIsBetter(const Situation& s,
+                                  const std::vector<ExpectedPose>& poses) const {
+  if (!s.pose->twist) return true;
+  const Surroundings& around = world_.surroundings();
+  const auto worst = [&](const std::vector<ExpectedPose>& way) {
+    int level = Surroundings::kCheck;
+    for (const ExpectedPose& at : way)
+      level = std::min(level, around.freeLevel(at.T_map_body, level));
+    return level;
+  };
+  std::vector<ExpectedPose> coast;
+  for (double t = kCoastStep; t <= config_.policy.coast_time + 1e-9; t += kCoastStep)
+    coast.push_back({s.pose->T_map_body * integrate(*s.pose->twist, t), t});
+  return worst(coast) >= worst(poses);
+}
+
 void Supervisor::keepClear(const Situation& s, const Prediction& running) {
   const double age = static_cast<double>(s.now - s.pose->utime) * kMicro;
   const double lead = static_cast<double>(config_.policy.stop_lead) * kMicro;
@@ -135,6 +163,10 @@ void Supervisor::keepClear(const Situation& s, const Prediction& running) {
   poses.insert(poses.end(), after.begin(), after.end());
   const std::optional<double> found = conflict(s.pose->T_map_body, poses);
   if (!found || *found - age > lead) return;
+  if (!stoppingIsBetter(s, poses)) {
+    ++counters_["went on: a stop would have kept less clear"];
+    return;
+  }
   halt(s, "something is in the way in " + seconds(*found - age));
 }
 

@@ -24,6 +24,8 @@ struct Margins {
   double plan = 0.05;     ///< when the next pattern is chosen
   double growth = 0.5;    ///< [1] of the standard deviation that has gathered along the plan
   double largest = 0.09;  ///< never more than this, so that narrow gaps stay open
+  double regain =
+      0.08;  ///< [1] where the vehicle begins with less, it must keep so much more per metre
 };
 
 /// Blocked cells under the footprint, without margin.
@@ -48,11 +50,11 @@ class Surroundings {
 
   /// Distance from a point to the nearest cell that is not free [m], a lower bound.
   double clearance(const Eigen::Vector2d& p_map) const { return field_.at(p_map); }
-  /// Levels of margin, rising: none, that for checking, that for planning, and more.
+  /// Levels of margin, rising: none, that for checking, that for planning, and more between them.
   static constexpr int kBare = 0;
-  static constexpr int kCheck = 1;
-  static constexpr int kPlan = 2;
-  static constexpr int kLevels = 6;
+  static constexpr int kCheck = 2;
+  static constexpr int kPlan = 4;
+  static constexpr int kLevels = 8;
   double marginOf(int level) const { return level_margins_[static_cast<size_t>(level)]; }
   /// Level for a pose whose position is known with this variance [m2]; kPlan or above.
   int level(double variance) const;
@@ -62,6 +64,11 @@ class Surroundings {
   int freeLevel(const Pose2& T_map_body, int wanted) const;
   /// Whether every pose of a pattern is free, begun at a pose.
   bool sweepFree(const Pose2& T_map_start, const TablePattern& pattern, int level) const;
+  /// The same for a start that is free only at a lower level than `wanted`: the farther from there,
+  /// the more margin to obstacles must be kept, up to the wanted one. To the unknown the start's
+  /// own margin is enough: what was never seen beside the vehicle is no reason to stay.
+  bool sweepRegains(const Pose2& T_map_start, int start_level, const TablePattern& pattern,
+                    int wanted) const;
   /// Blocked cells under the footprint: for leaving a place that is not free.
   Overlap overlap(const Pose2& T_map_body) const;
   /// Overlap at the end if no pose of the pattern overlaps more than its start does; else nothing.
@@ -69,6 +76,10 @@ class Surroundings {
                                 const TablePattern& pattern) const;
 
  private:
+  int levelWithin(double margin) const;
+  bool touchesObstacle(const Pose2& T_map_body, int level) const;
+  bool isFarFromAll(const Pose2& T_map_start, const TablePattern& pattern, int level) const;
+
   Grid grid_;
   ClearanceField field_;
   Margins margins_;
