@@ -2,8 +2,16 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/mapping/mapping_config.hpp"
 
+#include <cstdio>
+
 namespace tread::mapping {
 namespace {
+
+std::string metres(double length) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", length);
+  return text;
+}
 
 void readGrid(ConfigReader& reader, LocalMapConfig& map) {
   int64_t tile_cells = map.tile_cells;
@@ -27,6 +35,13 @@ void readMap(ConfigReader& reader, LocalMapConfig& map) {
   reader.number("robot_height", map.judge.robot_height, {0.1, 5.0}, "m");
   if (map.judge.robot_height <= map.judge.step)
     throw reader.error("robot_height", "must be above step");
+  const double highest = kVoxelsAboveGround * map.voxels.cell_size;
+  if (map.judge.robot_height > highest)
+    throw reader.error("robot_height", "a robot of " + metres(map.judge.robot_height) +
+                                           " m needs larger cells: the map keeps " +
+                                           std::to_string(kVoxelsAboveGround) +
+                                           " of them above the ground, which is " +
+                                           metres(highest) + " m");
   ConfigReader footprint = reader.section("footprint");
   footprint.number("front", map.robot.front, {0.05, 5.0}, "m");
   footprint.number("rear", map.robot.rear, {0.05, 5.0}, "m");

@@ -60,7 +60,16 @@ MappingNode::MappingNode(const MappingConfig& config, Bus& bus)
   bus.subscribe<scan_t>(kScan, [this](const scan_t& message) { hear(message); });
 }
 
+/// A bus that follows the messages' time does not know it before the first one: what counts silence
+/// begins then.
+void MappingNode::startClock() {
+  if (heard_) return;
+  heard_ = true;
+  last_scan_ = last_ins_ = last_taken_ = bus_.now();
+}
+
 void MappingNode::hear(const ins_t& message) {
+  startClock();
   const auto T_map_body = spatialPose(message);
   if (!T_map_body) return health_.addToCounter("INS without pose");
   if (message.utime > bus_.now() + kFarthestAhead)
@@ -83,6 +92,7 @@ void MappingNode::beginNewMap() {
 }
 
 void MappingNode::hear(const scan_t& message) {
+  startClock();
   last_scan_ = bus_.now();
   std::string reason;
   auto scan = readScan(message, reason);

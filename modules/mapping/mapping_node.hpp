@@ -28,6 +28,7 @@ class MappingNode : public Node {
   /// What becomes of the first scan in the queue.
   enum class Fate { kWaits, kDone };
 
+  void startClock();
   void hear(const ins_t& message);
   void hear(const scan_t& message);
   void beginNewMap();
@@ -47,6 +48,7 @@ class MappingNode : public Node {
   TileTurns turns_;
   int64_t next_cycle_ = 0;
   int64_t seq_ = 0;
+  bool heard_ = false;  // anything yet: only then the robot's time is known
   int64_t last_scan_;   // [us] when the last SCAN came in
   int64_t last_ins_;    // [us] when the last INS with a pose came in
   int64_t last_taken_;  // [us] when the last scan went into the map

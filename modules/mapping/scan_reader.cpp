@@ -3,6 +3,7 @@
 #include "modules/mapping/scan_reader.hpp"
 
 #include <cmath>
+#include <cstdint>
 
 #include "common/geometry/se2.hpp"
 
@@ -21,7 +22,10 @@ std::optional<Eigen::Isometry3d> sensorPose(const scan_t& message) {
                                        message.sensor_orientation[2],
                                        message.sensor_orientation[3]);
   const double off_unit = std::abs(orientation.norm() - 1.0);
-  if (!(position.cwiseAbs().maxCoeff() < kFarthestMount) || !(off_unit < 1e-3)) return std::nullopt;
+  // maxCoeff() overlooks a NaN that is not in the first place.
+  if (!position.allFinite() || position.cwiseAbs().maxCoeff() >= kFarthestMount ||
+      !(off_unit < 1e-3))
+    return std::nullopt;
   Eigen::Isometry3d T_body_sensor = Eigen::Isometry3d::Identity();
   T_body_sensor.linear() = orientation.normalized().toRotationMatrix();
   T_body_sensor.translation() = position;
@@ -32,7 +36,8 @@ std::optional<Eigen::Isometry3d> sensorPose(const scan_t& message) {
 const char* faultOf(const scan_t& message) {
   const auto beams = static_cast<size_t>(message.num_beams);
   const auto points = static_cast<size_t>(message.num_points);
-  if (message.utime <= 0) return "no time";
+  // The end of the sweep must be a time, too.
+  if (message.utime <= 0 || message.utime > INT64_MAX - kLongestSweep) return "no time";
   if (message.duration < 0 || message.duration > kLongestSweep) return "duration out of 0..1 s";
   if (message.num_beams < 0 || message.num_points < 0 ||
       message.num_beams + message.num_points == 0 || message.num_beams > kMostBeams ||

@@ -88,6 +88,31 @@ class Instruments : public Node {
   int64_t seq_ = 0;
 };
 
+/// A bus whose time is unknown at first, as that of a process that follows the messages' time.
+class FollowingBus : public Bus {
+ public:
+  int64_t now() const override { return time; }
+  int64_t bootId() const override { return 1; }
+  void tell(const ins_t& message) {
+    std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
+    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    deliver(handlers_.at(kIns.name), kIns.name, bytes.data(), bytes.size());
+  }
+
+  int64_t time = 0;
+  health_t health{};  // the last that was sent
+
+ protected:
+  bool send(const char* channel, const uint8_t* bytes, size_t size) override {
+    if (std::string(channel) == kHealth.name) health.decode(bytes, 0, static_cast<int>(size));
+    return true;
+  }
+  void listen(const char* channel, RawHandler handler) override { handlers_[channel] = handler; }
+
+ private:
+  std::map<std::string, RawHandler> handlers_;
+};
+
 /// The node, its instruments and who listens.
 struct Rig {
   explicit Rig(const FaultPlan& faults = {}, uint64_t seed = 1) : bus(seed, faults) {
@@ -183,6 +208,20 @@ TEST_CASE("a scan without INS around it is dropped and counted, and the map goes
   REQUIRE(rig.counted("scans refused: gap in INS at its time") <= 7);  // those that waited
 }
 
+TEST_CASE("silence is counted from when the robot's time is known, not from zero") {
+  FollowingBus bus;
+  MappingNode node(MappingConfig{}, bus);
+  bus.time = 20'000;
+  node.step(bus.time);
+  // The robot has run for six days.
+  bus.time = 500'000'000'000;
+  bus.tell(insAt(bus.time, 1, Eigen::Isometry3d::Identity()));
+  node.step(bus.time);
+  bus.time += 2'500'000;
+  node.step(bus.time);
+  REQUIRE(bus.health.health_reason.find("for 2 s: no SCAN comes") != std::string::npos);
+}
+
 TEST_CASE("no scans: mapping says so in one line") {
   Rig rig;
   rig.instruments().scans_work = false;
@@ -235,6 +274,9 @@ TEST_CASE("scans with foreign lengths, NaN or absurd numbers are refused with th
       {[](scan_t& s) { s.range_min = kNan; },
        "range limits are not 0 <= range_min < range_max <= 1000 m"},
       {[](scan_t& s) { s.sensor_position[0] = kNan; }, "sensor pose is no pose"},
+      {[](scan_t& s) { s.sensor_position[1] = kNan; }, "sensor pose is no pose"},
+      {[](scan_t& s) { s.sensor_position[2] = kNan; }, "sensor pose is no pose"},
+      {[](scan_t& s) { s.sensor_orientation[3] = kNan; }, "sensor pose is no pose"},
       {[](scan_t& s) { s.sensor_orientation[0] = 0.0; }, "sensor pose is no pose"},
       {[](scan_t& s) { s.ranges.resize(90); }, "not as many beams as it says"},
       {[](scan_t& s) {
@@ -244,7 +286,8 @@ TEST_CASE("scans with foreign lengths, NaN or absurd numbers are refused with th
        "no beams, or too many"},
       {[](scan_t& s) { s.num_points = -3; }, "no beams, or too many"},
       {[](scan_t& s) { s.num_beams = 20'000'000; }, "no beams, or too many"},
-      {[](scan_t& s) { s.utime = -1; }, "no time"}};
+      {[](scan_t& s) { s.utime = -1; }, "no time"},
+      {[](scan_t& s) { s.utime = INT64_MAX; }, "no time"}};
   const scan_t good = scanAt(1'000'000, 0, SmallWorld{}, Eigen::Isometry3d::Identity());
   std::string refusal;
   REQUIRE(readScan(good, refusal));
@@ -350,6 +393,11 @@ TEST_CASE(
   REQUIRE_THROWS_WITH(readMappingConfig(odd), Catch::Contains("mapping.yaml:1"));
   ConfigReader low = ConfigReader::fromText("robot_height: 0.12\n", "mapping.yaml");
   REQUIRE_THROWS_WITH(readMappingConfig(low), Catch::Contains("must be above step"));
+  ConfigReader fine = ConfigReader::fromText("cell_size: 0.05\n", "mapping.yaml");
+  REQUIRE_THROWS_WITH(readMappingConfig(fine),
+                      Catch::Contains("mapping.yaml") &&
+                          Catch::Contains("a robot of 1.20 m needs larger cells") &&
+                          Catch::Contains("1.10 m"));
 }
 
 TEST_CASE("the same scans give the same bytes on MAP") {

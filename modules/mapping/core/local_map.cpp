@@ -95,7 +95,7 @@ bool LocalMap::place(const Eigen::Isometry3d& T_map_body) {
   const double z = p_map.z() / config_.voxels.cell_size;
   const double off_z = std::abs(z - voxels_.lowerZ() - kColumnHeight / 2);
   const bool fresh = grid_.empty();
-  if (!fresh && (at - middle).cwiseAbs().maxCoeff() < kOffMiddle && off_z < kColumnHeight / 6)
+  if (!fresh && (at - middle).cwiseAbs().maxCoeff() < kOffMiddle && off_z < kMostOffHeight)
     return false;
   const CellIndex lower{static_cast<int>(std::lround(at.x() - half)),
                         static_cast<int>(std::lround(at.y() - half))};

@@ -14,6 +14,11 @@
 
 namespace tread::mapping {
 
+/// The window's middle follows the robot's height only when it is this many voxels off.
+inline constexpr int kMostOffHeight = kColumnHeight / 6;
+/// Voxels of a column that are above the robot's ground at any time; what is higher is not kept.
+inline constexpr int kVoxelsAboveGround = kColumnHeight / 2 - kMostOffHeight;
+
 /// The robot's rectangle in the body frame [m].
 struct RobotSize {
   double front = 0.65;       ///< from the body origin forward
