@@ -55,7 +55,8 @@ void parseTcp(LinkAddress& address, const std::string& rest) {
   address.port = portOf(address, rest.substr(colon + 1));
 }
 
-void parseUdp(LinkAddress& address, const std::string& rest) {
+/// A port, or a number to listen on and a port.
+void parseListener(LinkAddress& address, const std::string& rest) {
   const size_t colon = rest.rfind(':');
   if (colon != std::string::npos) address.host = rest.substr(0, colon);
   address.port = portOf(address, colon == std::string::npos ? rest : rest.substr(colon + 1));
@@ -75,9 +76,16 @@ LinkAddress parseLinkAddress(const std::string& text) {
   } else if (kind == "tcp" && colon != std::string::npos) {
     address.kind = LinkAddress::Kind::kTcp;
     parseTcp(address, rest);
+  } else if (kind == "tcp-server" && colon != std::string::npos) {
+    address.kind = LinkAddress::Kind::kTcpServer;
+    parseListener(address, rest);
   } else if (kind == "udp" && colon != std::string::npos) {
     address.kind = LinkAddress::Kind::kUdp;
-    parseUdp(address, rest);
+    parseListener(address, rest);
+  } else if (kind == "pty" && colon != std::string::npos) {
+    address.kind = LinkAddress::Kind::kPty;
+    address.path = rest;
+    if (rest.empty()) refuse(text, "the name is missing; write pty:path of a link to make");
   } else if (kind == "file" && colon != std::string::npos) {
     address.kind = LinkAddress::Kind::kFile;
     address.path = rest;
@@ -85,7 +93,7 @@ LinkAddress parseLinkAddress(const std::string& text) {
   } else {
     refuse(text,
            "unknown kind; allowed tty:/dev/ttyUSB0?baud=115200, tcp:host:port, udp:port, "
-           "file:path");
+           "file:path, and for emulators pty:path, tcp-server:port");
   }
   return address;
 }

@@ -9,12 +9,12 @@ namespace tread {
 
 /// A link's address in parts.
 struct LinkAddress {
-  enum class Kind { kTty, kTcp, kUdp, kFile };
+  enum class Kind { kTty, kPty, kTcp, kTcpServer, kUdp, kFile };
   Kind kind = Kind::kTty;
   std::string text;   ///< as configured
-  std::string path;   ///< tty and file
-  std::string host;   ///< tcp: name or number; udp: number to listen on, empty = all
-  uint16_t port = 0;  ///< tcp and udp
+  std::string path;   ///< tty, pty and file
+  std::string host;   ///< tcp: name or number; tcp-server, udp: number to listen on, empty = all
+  uint16_t port = 0;  ///< tcp, tcp-server and udp
   int baud = 115200;  ///< tty [1/s]
 };
 

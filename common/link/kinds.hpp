@@ -11,6 +11,12 @@ namespace tread {
 
 /// A serial line or pseudo-terminal, raw, 8 data bits, no parity, one stop bit, no flow control.
 std::unique_ptr<Link> makeTtyLink(const LinkAddress& address);
+/// A new pseudo-terminal whose other side is found behind a symlink: an emulated serial device.
+/** The symlink (and its folder) is made here and taken away with the link. Bytes that nobody reads
+ * stay until the line is full, then are lost; who opens the other side drops them. */
+std::unique_ptr<Link> makePtyLink(const LinkAddress& address);
+/// A TCP server with one client at a time: an emulated device. Open while a client is connected.
+std::unique_ptr<Link> makeTcpServerLink(const LinkAddress& address);
 /// A client of a TCP server. Connecting goes on over several reopen() calls and is given up after
 /// one second.
 /** A host's name is looked up once, which may block: on a robot write its number. */

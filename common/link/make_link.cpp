@@ -11,6 +11,10 @@ std::unique_ptr<Link> makeLink(const std::string& address) {
   switch (parsed.kind) {
     case LinkAddress::Kind::kTty:
       return makeTtyLink(parsed);
+    case LinkAddress::Kind::kPty:
+      return makePtyLink(parsed);
+    case LinkAddress::Kind::kTcpServer:
+      return makeTcpServerLink(parsed);
     case LinkAddress::Kind::kTcp:
       return makeTcpLink(parsed);
     case LinkAddress::Kind::kUdp:

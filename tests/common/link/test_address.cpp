@@ -22,6 +22,9 @@ TEST_CASE("addresses are taken apart") {
   CHECK(parseLinkAddress("tcp:[::1]:80").host == "::1");
   CHECK(parseLinkAddress("udp:5000").port == 5000);
   CHECK(parseLinkAddress("udp:127.0.0.1:5000").host == "127.0.0.1");
+  CHECK(parseLinkAddress("pty:devices/ins").path == "devices/ins");
+  CHECK(parseLinkAddress("tcp-server:10940").port == 10940);
+  CHECK(parseLinkAddress("tcp-server:127.0.0.1:10940").host == "127.0.0.1");
   CHECK(parseLinkAddress("file:/tmp/a:b").path == "/tmp/a:b");
 }
 
@@ -37,6 +40,9 @@ TEST_CASE("a malformed address is one clear line with what is allowed") {
                           "tty:/dev/x?baud=",
                           "tty:/dev/x?baud=9601",
                           "tty:/dev/x?baud=9600x",
+                          "pty:",
+                          "tcp-server:",
+                          "tcp-server:0",
                           "tcp:",
                           "tcp:host",
                           "tcp::5",
