@@ -24,7 +24,12 @@ void Bus::deliver(const RawHandler& handler, const char* channel, const uint8_t*
 
 void Bus::noteReceipt(const ChannelSpec& spec, int64_t utime, int64_t seq) {
   ++statistics_.received;
-  onReceipt(utime);
+  // What may be old by its nature (a tile of the map) does not tell the time.
+  if (spec.max_age_ms > 0 && !onReceipt(utime)) {
+    ++statistics_.jumps;
+    statistics_.last_refusal = std::string(spec.name) + ": utime " + std::to_string(utime) +
+                               " is not of the present; is its publisher's clock CLOCK_MONOTONIC?";
+  }
   // Differences are taken so that the numbers of a broken message cannot overflow.
   if (spec.max_age_ms > 0 && utime < now() - spec.max_age_ms * int64_t{1000}) ++statistics_.late;
   if (seq < 0 || seq > kLargestSeq) return;

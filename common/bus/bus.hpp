@@ -18,6 +18,7 @@ struct BusStatistics {
   int64_t undecodable = 0;   ///< of a foreign or broken type
   int64_t lost = 0;          ///< missing by seq
   int64_t late = 0;          ///< older than their channel's maximum age on receipt
+  int64_t jumps = 0;         ///< their utime was too far ahead to be followed
   int64_t failed = 0;        ///< handler threw
   int64_t oversized = 0;     ///< own messages above the channel's max_bytes: not sent
   std::string last_refusal;  ///< the newest refusal in one line: channel, what, size
@@ -80,8 +81,9 @@ class Bus {
 
   virtual bool send(const char* channel, const uint8_t* bytes, size_t size) = 0;
   virtual void listen(const char* channel, RawHandler handler) = 0;
-  /// A good message with this utime came in.
-  virtual void onReceipt(int64_t /*utime*/) {}
+  /// A good message with this utime came in, on a channel that promises to be fresh. False if it
+  /// cannot be of the present.
+  virtual bool onReceipt(int64_t /*utime*/) { return true; }
 
   /// Runs a raw handler behind the exception firewall: nothing may pass through LCM's C frames.
   void deliver(const RawHandler& handler, const char* channel, const uint8_t* bytes, size_t size);
@@ -146,7 +148,8 @@ class Node {
   virtual int64_t period() const = 0;
   /// Takes the latest messages, checks age and sense, calls the core, publishes.
   virtual void step(int64_t utime) = 0;
-  /// Makes outputs safe before the process ends (SIGINT, SIGTERM). Not called when it is killed.
+  /// Makes outputs safe before the process ends (SIGINT, SIGTERM, a step that threw). Not called
+  /// when it is killed.
   virtual void shutdown(int64_t /*utime*/) {}
 };
 

@@ -66,6 +66,12 @@ void HealthReporter::publishHealth(int64_t utime) {
     counter.counted = value;
     health.counters.push_back(counter);
   }
+  if (statistics.jumps > 0) {
+    counter_t jumps;
+    jumps.counter_name = "time jumps refused";
+    jumps.counted = statistics.jumps;
+    health.counters.push_back(jumps);
+  }
   health.num_counters = static_cast<int32_t>(health.counters.size());
   const CycleTimes cycles = bus_.takeCycleTimes();
   health.cycle_mean = cycles.mean_us;

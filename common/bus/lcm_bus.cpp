@@ -11,6 +11,8 @@
 namespace tread {
 namespace {
 
+constexpr int kQueueCapacity = 1000;
+
 int64_t hostNow() {
   using std::chrono::duration_cast;
   using std::chrono::microseconds;
@@ -35,9 +37,11 @@ struct LcmBus::Subscription {
   }
 };
 
-LcmBus::LcmBus(const std::string& url, TimeSource time_source)
-    : lcm_(std::make_unique<lcm::LCM>(url)), time_source_(time_source), boot_id_(hostNow()) {
-  newest_host_ = boot_id_;
+LcmBus::LcmBus(const std::string& url, TimeSource time_source, int64_t max_jump_us)
+    : lcm_(std::make_unique<lcm::LCM>(url)),
+      time_source_(time_source),
+      boot_id_(hostNow()),
+      followed_(boot_id_, max_jump_us) {
   // getFileno() runs LCM's self-test now instead of at the first subscription (lcm.md, row 14).
   if (!lcm_->good() || lcm_->getFileno() < 0)
     throw std::runtime_error(
@@ -50,7 +54,7 @@ LcmBus::~LcmBus() = default;
 
 int64_t LcmBus::now() const {
   if (time_source_ == TimeSource::kHost) return hostNow();
-  return newest_utime_ + (hostNow() - newest_host_);
+  return followed_.now(hostNow());
 }
 
 int64_t LcmBus::utc() const {
@@ -59,11 +63,8 @@ int64_t LcmBus::utc() const {
   return duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-void LcmBus::onReceipt(int64_t utime) {
-  // Time follows the newest message; an old one says nothing about the present.
-  if (utime <= now()) return;
-  newest_utime_ = utime;
-  newest_host_ = hostNow();
+bool LcmBus::onReceipt(int64_t utime) {
+  return time_source_ == TimeSource::kHost || followed_.hear(utime, hostNow());
 }
 
 bool LcmBus::send(const char* channel, const uint8_t* bytes, size_t size) {
@@ -78,16 +79,28 @@ void LcmBus::listen(const char* channel, RawHandler handler) {
   if (subscription == nullptr)
     throw std::runtime_error(std::string("LCM does not let us subscribe to ") + channel);
   // LCM drops the newest when its queue is full (lcm.md, row 6): never let it get full.
-  subscription->setQueueCapacity(1000);
+  subscription->setQueueCapacity(kQueueCapacity);
 }
 
 void LcmBus::handle(int timeout_ms) {
   if (lcm_->handleTimeout(timeout_ms) <= 0) return;
-  while (lcm_->handleTimeout(0) > 0) {
+  // A channel's queue at a time: messages that come faster than they are handled must not keep a
+  // node from its step.
+  for (int i = 0; i < kQueueCapacity && lcm_->handleTimeout(0) > 0; ++i) {
   }
 }
 
 void LcmBus::run(Node& node, const std::atomic<bool>& stop) {
+  try {
+    runSteps(node, stop);
+  } catch (...) {
+    node.shutdown(now());
+    throw;
+  }
+  node.shutdown(now());
+}
+
+void LcmBus::runSteps(Node& node, const std::atomic<bool>& stop) {
   const int64_t period = node.period();
   int64_t next_step = hostNow();
   while (!stop) {
@@ -101,7 +114,6 @@ void LcmBus::run(Node& node, const std::atomic<bool>& stop) {
     // A step that came too late is not made up for: stay on the grid.
     next_step += period * std::max<int64_t>(1, (hostNow() - next_step) / period + 1);
   }
-  node.shutdown(now());
 }
 
 void LcmBus::noteCycle(int64_t microseconds) {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "common/bus/bus.hpp"
+#include "common/bus/followed_time.hpp"
 
 namespace lcm {
 class LCM;
@@ -16,7 +17,8 @@ namespace tread {
 /// Where a process takes its time from.
 enum class TimeSource {
   kHost,   ///< CLOCK_MONOTONIC: processes with a device, which stamp what they measure
-  kFollow  ///< newest utime received plus steady time since: all others, so that replay works
+  kFollow  ///< newest utime received plus steady time since: all others, so that replay works; see
+           ///< FollowedTime
 };
 
 /// Bus over real LCM.
@@ -24,8 +26,12 @@ enum class TimeSource {
  *  -fsanitize=vptr crashes in lcm-cpp, so the sanitizer preset switches that check off. */
 class LcmBus : public Bus {
  public:
+  /// A message whose utime is further ahead does not move the followed time by itself [us]: as much
+  /// as nodes let a message be ahead.
+  static constexpr int64_t kMaxJump = 100'000;
+
   /// Throws std::runtime_error with one clear line if LCM cannot be used.
-  LcmBus(const std::string& url, TimeSource time_source);
+  LcmBus(const std::string& url, TimeSource time_source, int64_t max_jump_us = kMaxJump);
   ~LcmBus() override;
 
   int64_t now() const override;
@@ -34,26 +40,26 @@ class LcmBus : public Bus {
   CycleTimes takeCycleTimes() override;
 
   /// Runs the node until `stop` becomes true: messages as they come, step() at its period; then
-  /// shutdown().
+  /// shutdown(), also where a step throws, which then goes on to the caller.
   void run(Node& node, const std::atomic<bool>& stop);
-  /// Handles what comes within the timeout [ms]; for tools.
+  /// Waits for a message up to the timeout [ms] and handles it and those behind it; for tools.
   void handle(int timeout_ms);
 
  protected:
   bool send(const char* channel, const uint8_t* bytes, size_t size) override;
   void listen(const char* channel, RawHandler handler) override;
-  void onReceipt(int64_t utime) override;
+  bool onReceipt(int64_t utime) override;
 
  private:
   struct Subscription;
+  void runSteps(Node& node, const std::atomic<bool>& stop);
   void noteCycle(int64_t microseconds);
 
   std::unique_ptr<lcm::LCM> lcm_;
   std::vector<std::unique_ptr<Subscription>> subscriptions_;
   TimeSource time_source_;
-  int64_t newest_utime_ = 0;
-  int64_t newest_host_ = 0;
   int64_t boot_id_;
+  FollowedTime followed_;
   int64_t cycles_ = 0;
   int64_t cycle_sum_ = 0;
   int64_t cycle_max_ = 0;

@@ -6,6 +6,7 @@
 
 #include <thread>
 
+#include "common/bus/health.hpp"
 #include "common/bus/lcm_bus.hpp"
 
 using namespace tread;
@@ -36,6 +37,22 @@ class Pinger : public Node {
   Bus& bus_;
 };
 
+/// A bus in memory that follows the time of MOTOR messages.
+struct Follower {
+  Follower() {
+    bus.subscribe<motor_t>(kMotor, [](const motor_t&) {});
+  }
+  void hear(const std::vector<int64_t>& utimes) {
+    for (const int64_t utime : utimes) {
+      motor_t motor{};
+      motor.utime = utime;
+      bus.publish(kMotor, motor);
+    }
+    bus.handle(100);
+  }
+  LcmBus bus{"memq://", TimeSource::kFollow};
+};
+
 }  // namespace
 
 TEST_CASE("over real LCM a node steps at its period, is heard, and shuts down cleanly") {
@@ -63,19 +80,87 @@ TEST_CASE("over real LCM a node steps at its period, is heard, and shuts down cl
 }
 
 TEST_CASE("a process without a device follows the time of the messages") {
+  Follower follower;
+  const int64_t ahead = follower.bus.now() + 500'000'000'000;
+  follower.hear({ahead, ahead + 20'000, ahead + 40'000});
+  REQUIRE(follower.bus.now() >= ahead + 40'000);
+  REQUIRE(follower.bus.now() < ahead + 60'000'000);
+  follower.hear({5});  // an old message does not turn time back
+  REQUIRE(follower.bus.now() >= ahead + 40'000);
+  REQUIRE(follower.bus.statistics().jumps == 0);
+}
+
+TEST_CASE("one message from the far future does not move the time of those that follow it") {
+  Follower follower;
+  const int64_t start = 1'000'000'000;
+  follower.hear({start, start + 20'000, start + 40'000});
+  for (const int64_t wrong : {start + 3'600'000'000, INT64_MAX, INT64_MIN, int64_t{-1}}) {
+    follower.hear({wrong});
+    REQUIRE(follower.bus.now() >= start + 40'000);
+    REQUIRE(follower.bus.now() < start + 60'000'000);
+  }
+  REQUIRE(follower.bus.statistics().jumps == 4);
+  REQUIRE(follower.bus.statistics().last_refusal.find("MOTOR: utime -1 is not of the present") ==
+          0);
+  health_t health{};
+  follower.bus.subscribe<health_t>(kHealth, [&](const health_t& message) { health = message; });
+  HealthReporter(follower.bus, "test", "").step(follower.bus.now());
+  follower.bus.handle(100);
+  REQUIRE(health.counters.size() == 1);
+  REQUIRE(health.counters[0].counter_name == "time jumps refused");
+  REQUIRE(health.counters[0].counted == 4);
+}
+
+TEST_CASE("a message that may be old by its nature does not tell the time") {
   LcmBus bus("memq://", TimeSource::kFollow);
   bus.subscribe<mark_t>(kMark, [](const mark_t&) {});
-  const int64_t ahead = bus.now() + 500'000'000'000;
-  mark_t mark{};
-  mark.utime = ahead;
-  bus.publish(kMark, mark);
+  for (int64_t utime = 1'000'000'000; utime < 1'000'000'010; ++utime) {
+    mark_t mark{};
+    mark.utime = utime;
+    bus.publish(kMark, mark);
+  }
   bus.handle(100);
-  REQUIRE(bus.now() >= ahead);
-  REQUIRE(bus.now() < ahead + 60'000'000);
-  mark.utime = 5;  // an old message does not turn time back
-  bus.publish(kMark, mark);
-  bus.handle(100);
-  REQUIRE(bus.now() >= ahead);
+  REQUIRE(bus.now() < 900'000'000);
+}
+
+TEST_CASE("handlers that never run dry do not keep a node from its steps") {
+  class Counting : public Node {
+   public:
+    explicit Counting(std::atomic<bool>& stop) : stop_(stop) {}
+    int64_t period() const override { return 1'000; }
+    void step(int64_t /*utime*/) override { stop_ = ++steps == 3; }
+    int steps = 0;
+
+   private:
+    std::atomic<bool>& stop_;
+  };
+  LcmBus bus("memq://", TimeSource::kHost);
+  std::atomic<bool> stop{false};
+  Counting node(stop);
+  constexpr int kFlood = 200'000;
+  int heard = 0;
+  bus.subscribe<mark_t>(kMark, [&](const mark_t& mark) {
+    if (++heard < kFlood) bus.publish(kMark, mark);
+  });
+  bus.publish(kMark, mark_t{});
+  bus.run(node, stop);
+  REQUIRE(node.steps == 3);
+  REQUIRE(heard < kFlood);
+}
+
+TEST_CASE("a node that fails in a step makes its outputs safe before the process ends") {
+  class Failing : public Node {
+   public:
+    int64_t period() const override { return 1'000; }
+    void step(int64_t /*utime*/) override { throw std::runtime_error("broken"); }
+    void shutdown(int64_t /*utime*/) override { shut_down = true; }
+    bool shut_down = false;
+  };
+  LcmBus bus("memq://", TimeSource::kHost);
+  Failing node;
+  const std::atomic<bool> stop{false};
+  REQUIRE_THROWS_WITH(bus.run(node, stop), "broken");
+  REQUIRE(node.shut_down);
 }
 
 TEST_CASE("a foreign type over LCM is counted and does not reach the handler") {
