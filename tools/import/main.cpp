@@ -39,6 +39,7 @@ void run(const Arguments& arguments) {
   LogWriter writer(arguments.log);
   for (const LogEvent& event : events)
     writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
+  writer.flush();
   std::printf(
       "%s: %zu commands, %zu executions completed, %zu aborted, %zu INS, %zu MOTOR, %.0f s\n",
       arguments.log.c_str(), recording.runs.size(), counts.completed, counts.aborted, counts.ins,

@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "common/bus/channels.hpp"
 #include "common/config/config_reader.hpp"
+#include "tools/missions/robot_system.hpp"
 
 namespace tread::missions {
 namespace {
@@ -19,8 +21,12 @@ int64_t toMicroseconds(double seconds) {
 MessageFault readMessageFault(ConfigReader& reader) {
   MessageFault fault;
   double reorder_s = 0.1, delay_s = 0.0, from_s = 0.0, until_s = 1e6;
-  reader.text("channel", fault.channel);
-  reader.text("receiver", fault.receiver);
+  std::vector<std::string> channels{"*"};
+  for (const ChannelSpec& channel : kChannels) channels.push_back(channel.name);
+  reader.choice("channel", fault.channel, channels);
+  std::vector<std::string> receivers = robotNodes();
+  receivers.push_back("*");
+  reader.choice("receiver", fault.receiver, receivers);
   reader.number("drop", fault.drop, kShare, "1");
   reader.number("duplicate", fault.duplicate, kShare, "1");
   reader.number("corrupt", fault.corrupt, kShare, "1");
@@ -39,9 +45,7 @@ MessageFault readMessageFault(ConfigReader& reader) {
 NodeFault readNodeFault(ConfigReader& reader) {
   NodeFault fault;
   double kill_at_s = 0.0, restart_after_s = -1.0;
-  reader.choice("node", fault.node,
-                {"ins_driver", "lidar_driver", "mapping", "planner", "learner", "motor_bridge"},
-                true);
+  reader.choice("node", fault.node, robotNodes(), true);
   reader.number("kill_at_s", kill_at_s, kTime, "s", true);
   reader.number("restart_after_s", restart_after_s, {-1.0, 1e6}, "s, negative = never");
   fault.kill_at = toMicroseconds(kill_at_s);

@@ -91,7 +91,7 @@ class Campaigner {
         const std::lock_guard<std::mutex> lock(mutex_);
         campaign.virtual_time += run.virtual_time;
         campaign.cpu_time += run.cpu_time;
-        std::cout << lineOf(run.result) << std::endl;
+        std::cout << lineOf(run.result) << '\n' << crossingsOf(run.result) << std::flush;
         campaign.results[static_cast<size_t>(i)] = std::move(run.result);
       }
     } catch (...) {
@@ -110,6 +110,7 @@ class Campaigner {
     if (!arguments_.log.empty() && seed == arguments_.seed)
       options.log = &log.emplace(arguments_.log);
     MissionRun run = runMission(robot_, seed, options);
+    if (log) log->flush();
     if (arguments_.show == seed) {
       drawMission(arguments_.picture, run.result, run.scene);
       const std::lock_guard<std::mutex> lock(mutex_);

@@ -41,9 +41,8 @@ void addMission(const MissionResult& result, int first, int last,
   std::pair<std::string, std::string> pair{"start", ""};
   int index = 0;
   for (const ScoredExecution& execution : result.executions) {
-    while (change < result.surface_changes.size() &&
-           result.surface_changes[change].time <= execution.time) {
-      pair = {result.surface_changes[change].from, result.surface_changes[change].to};
+    while (change < result.crossings.size() && result.crossings[change].time <= execution.time) {
+      pair = {result.crossings[change].from, result.crossings[change].to};
       index = 0;
       ++change;
     }
@@ -66,7 +65,7 @@ using Executions = std::vector<const ScoredExecution*>;
 /// Measured executions that lie wholly on one stretch of surface: after change `index - 1`, before
 /// change `index`.
 Executions stretch(const MissionResult& result, size_t index) {
-  const auto& changes = result.surface_changes;
+  const auto& changes = result.crossings;
   const double from = index == 0 ? -1.0 : changes[index - 1].time;
   const double to =
       index < changes.size() ? changes[index].time : std::numeric_limits<double>::infinity();

@@ -33,8 +33,8 @@ struct ScoredExecution {
   double turned = 0.0;          ///< [rad] |net yaw| measured
 };
 
-/// A change of the true surface under the robot.
-struct SurfaceChange {
+/// A change of the true surface under the robot. Who turns round on a border crosses it again.
+struct Crossing {
   double time = 0.0;  ///< [s]
   std::string from;
   std::string to;
@@ -68,7 +68,8 @@ struct MissionResult {
   int aborted = 0;
   int rearmed = 0;           ///< times the operator had to arm again
   int64_t set_versions = 0;  ///< last version minus first
-  std::vector<SurfaceChange> surface_changes;
+  int surface_changes = 0;   ///< that the world has between start and goal, driven or not
+  std::vector<Crossing> crossings;
   std::vector<ScoredExecution> executions;
   std::vector<TrackPoint> track;
   std::vector<Contact> contacts;  ///< one per collision
@@ -98,7 +99,7 @@ struct ErrorAroundChange {
   double settled_yaw = 0.0;       ///< [rad]
 };
 
-/// `change` is an index into surface_changes.
+/// `change` is an index into crossings.
 ErrorAroundChange errorsAround(const MissionResult& result, size_t change);
 
 /// Per pair of surfaces, sorted by name; pooled over all missions. Pair from "start" = before the

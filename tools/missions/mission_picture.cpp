@@ -55,7 +55,7 @@ void drawSurfaces(Panel& panel, const MissionWorld& world, const Bounds& bounds)
     panel.polygon(region.corners, surfaceColour(region.surface));
 }
 
-/// Cells that mapping knows: obstacles dark, free ground a little lighter than unknown.
+/// What mapping published: obstacles dark; free and unknown cells do not hide the world.
 void drawMap(Panel& panel, const TileMap& map) {
   for (const auto& [index, tile] : map.tiles()) {
     const CellIndex lower{index.first * map.tileCells(), index.second * map.tileCells()};
@@ -133,7 +133,7 @@ void drawErrors(Picture& picture, Box box, const std::string& title, const std::
     panel.line({{execution.time, 0.0}, {execution.time, value}}, {kSkyBlue, 1.5, false, ""});
     panel.dot({execution.time, value}, kBlue, 3.0);
   }
-  for (const SurfaceChange& change : result.surface_changes) {
+  for (const Crossing& change : result.crossings) {
     panel.verticalLine(change.time, {kRed, 1.2, true, ""});
     panel.text({change.time, 1.05 * largest}, " " + change.to, kRed);
   }

@@ -47,9 +47,10 @@ MissionWatch::MissionWatch(RobotSystem& system, const MissionWorld& world)
       moved_at_(start_),
       last_pose_(system.robot().truth().T_map_body),
       moved_from_(last_pose_),
-      map_(0.1, 32) {
+      map_(system.map().voxels.cell_size, system.map().tile_cells) {
   result_.straight_line = world.straight_line;
   result_.line_blocked = world.line_blocked;
+  result_.surface_changes = world.surface_changes;
   surface_ = system.robot().truth().surface;
   surfaces_.push_back({start_, surface_});
   for (const MotionPattern& pattern : system.patterns().patterns())
@@ -173,7 +174,7 @@ void MissionWatch::followSurface() {
     new_surface_since_ = now;
   }
   if (now - new_surface_since_ < kSurfaceConfirmed) return;
-  result_.surface_changes.push_back({seconds(new_surface_since_), surface_, present});
+  result_.crossings.push_back({seconds(new_surface_since_), surface_, present});
   surfaces_.push_back({new_surface_since_, present});
   surface_ = present;
   new_surface_.clear();

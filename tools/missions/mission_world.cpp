@@ -209,6 +209,7 @@ Layout drawLayout(Dice& dice) {
 void addSurfaces(MissionWorld& world, Dice& dice, double length, const Pose2& T_map_way) {
   const std::vector<std::string> names{"cinder", "tarmac", "grass", "gravel"};
   const int changes = 1 + dice.below(3);
+  world.surface_changes = changes;
   int present = dice.below(4);
   world.description.base_surface = names[static_cast<size_t>(present)];
   for (int i = 0; i < changes; ++i) {

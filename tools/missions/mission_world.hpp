@@ -19,6 +19,7 @@ struct MissionWorld {
   Pose2 T_map_goal;
   double straight_line = 0.0;  ///< [m]
   bool line_blocked = false;   ///< the footprint cannot drive the straight line
+  int surface_changes = 0;     ///< borders between surfaces that the straight line crosses: 1 to 3
   sim::WorldDescription description;
 };
 

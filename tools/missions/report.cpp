@@ -3,6 +3,7 @@
 #include "tools/missions/report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <map>
@@ -70,6 +71,12 @@ void printErrors(std::ostream& out, const Campaign& campaign, int first, int las
                   all.position / all.count, all.yaw / all.count);
 }
 
+/// Position and yaw error; a dash where nothing was measured.
+std::string errorText(double position, double yaw) {
+  if (!std::isfinite(position)) return "-";
+  return format("%.3f m %.3f rad", position, yaw);
+}
+
 nlohmann::ordered_json errorsJson(const Campaign& campaign, int first, int last) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const ErrorAfterChange& error : errorsAfterChange(campaign.results, first, last))
@@ -84,19 +91,19 @@ nlohmann::ordered_json errorsJson(const Campaign& campaign, int first, int last)
 }
 
 nlohmann::ordered_json runJson(const MissionResult& result) {
-  nlohmann::ordered_json changes = nlohmann::ordered_json::array();
-  for (size_t i = 0; i < result.surface_changes.size(); ++i) {
-    const SurfaceChange& change = result.surface_changes[i];
+  nlohmann::ordered_json crossings = nlohmann::ordered_json::array();
+  for (size_t i = 0; i < result.crossings.size(); ++i) {
+    const Crossing& crossing = result.crossings[i];
     const ErrorAroundChange errors = errorsAround(result, i);
-    changes.push_back({{"time_s", change.time},
-                       {"from", change.from},
-                       {"to", change.to},
-                       {"before_m", errors.before_position},
-                       {"before_rad", errors.before_yaw},
-                       {"after_m", errors.after_position},
-                       {"after_rad", errors.after_yaw},
-                       {"settled_m", errors.settled_position},
-                       {"settled_rad", errors.settled_yaw}});
+    crossings.push_back({{"time_s", crossing.time},
+                         {"from", crossing.from},
+                         {"to", crossing.to},
+                         {"before_m", errors.before_position},
+                         {"before_rad", errors.before_yaw},
+                         {"after_m", errors.after_position},
+                         {"after_rad", errors.after_yaw},
+                         {"settled_m", errors.settled_position},
+                         {"settled_rad", errors.settled_yaw}});
   }
   nlohmann::ordered_json contacts = nlohmann::ordered_json::array();
   for (const Contact& contact : result.contacts)
@@ -115,8 +122,8 @@ nlohmann::ordered_json runJson(const MissionResult& result) {
           {"straight_m", result.straight_line},
           {"detour", result.detour()},
           {"line_blocked", result.line_blocked},
-          {"surface_changes", result.surface_changes.size()},
-          {"changes", changes},
+          {"surface_changes", result.surface_changes},
+          {"crossings", crossings},
           {"contacts", contacts},
           {"patterns", result.completed},
           {"aborted", result.aborted},
@@ -128,11 +135,26 @@ nlohmann::ordered_json runJson(const MissionResult& result) {
 
 std::string lineOf(const MissionResult& result) {
   return format(
-      "seed %-6llu %-8s %5.1f s  %5.1f m  detour %4.2f  patterns %3d  changes %zu  collisions "
-      "%d%s%s",
+      "seed %-6llu %-8s %5.1f s  %5.1f m  detour %4.2f  patterns %3d  crossings %zu of %d  "
+      "collisions %d%s%s",
       static_cast<unsigned long long>(result.seed), nameOf(result.outcome), result.time,
-      result.distance, result.detour(), result.completed, result.surface_changes.size(),
-      result.collisions, result.reason.empty() ? "" : "  ", result.reason.c_str());
+      result.distance, result.detour(), result.completed, result.crossings.size(),
+      result.surface_changes, result.collisions, result.reason.empty() ? "" : "  ",
+      result.reason.c_str());
+}
+
+std::string crossingsOf(const MissionResult& result) {
+  std::string lines;
+  for (size_t i = 0; i < result.crossings.size(); ++i) {
+    const Crossing& crossing = result.crossings[i];
+    const ErrorAroundChange errors = errorsAround(result, i);
+    lines += format("  %6.1f s  %-6s to %-6s  error before / after / settled: ", crossing.time,
+                    crossing.from.c_str(), crossing.to.c_str());
+    lines += errorText(errors.before_position, errors.before_yaw) + " / " +
+             errorText(errors.after_position, errors.after_yaw) + " / " +
+             errorText(errors.settled_position, errors.settled_yaw) + '\n';
+  }
+  return lines;
 }
 
 void printSummary(std::ostream& out, const Campaign& campaign) {
@@ -166,7 +188,8 @@ void writeJson(const std::string& path, const Campaign& campaign) {
   json["runs"] = nlohmann::ordered_json::array();
   for (const MissionResult& result : campaign.results) json["runs"].push_back(runJson(result));
   std::ofstream file(path);
-  file << json.dump(1) << '\n';
+  // A reason comes from a message, which may have been broken: its bytes need not be UTF-8.
+  file << json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
   file.close();
   if (!file) throw std::runtime_error(path + ": cannot write the report");
 }

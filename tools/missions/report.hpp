@@ -23,12 +23,19 @@ struct Campaign {
 /// One line per mission.
 std::string lineOf(const MissionResult& result);
 
+/// A line for each time the robot crossed from one surface to another, with the mean prediction
+/// error before, just after and later (see ErrorAroundChange); empty if it never did.
+std::string crossingsOf(const MissionResult& result);
+
 /// Shares with their reasons, collisions, speed, and prediction errors before and after changes of
 /// surface.
 void printSummary(std::ostream& out, const Campaign& campaign);
 
 /// The machine-readable report; throws std::runtime_error with one clear line if it cannot be
 /// written.
+/** Of each run, `surface_changes` counts the borders that lie between start and goal (1 to 3), and
+ * `crossings` lists what the robot crossed: more where it turned round on a border, fewer where it
+ * never came so far. */
 void writeJson(const std::string& path, const Campaign& campaign);
 
 }  // namespace tread::missions

@@ -20,6 +20,21 @@ std::map<std::string, NodeTiming> usualTiming() {
           {"planner", {15'000, 3'100}}, {"learner", {1'000, 5'300}},  {"motor_bridge", {100, 700}}};
 }
 
+/// The faults with "every receiver" spelled out.
+FaultPlan onTheRobot(const FaultPlan& faults) {
+  FaultPlan spelled;
+  spelled.nodes = faults.nodes;
+  for (MessageFault fault : faults.messages) {
+    const bool all = fault.receiver == "*";
+    if (!all) spelled.messages.push_back(fault);
+    for (const std::string& node : all ? robotNodes() : std::vector<std::string>{}) {
+      fault.receiver = node;
+      spelled.messages.push_back(fault);
+    }
+  }
+  return spelled;
+}
+
 template <class Config, class Read>
 Config readFile(const std::string& path, Read read) {
   ConfigReader reader = ConfigReader::fromFile(path);
@@ -55,6 +70,12 @@ class RobotSystem::SimulatedScans : public lidar::ScanSource {
   sim::SimulatedDevices& devices_;
 };
 
+const std::vector<std::string>& robotNodes() {
+  static const std::vector<std::string> kNames{"ins_driver", "lidar_driver", "mapping",
+                                               "planner",    "learner",      "motor_bridge"};
+  return kNames;
+}
+
 RobotConfig readRobot(const std::string& folder) {
   RobotConfig config(
       readFile<learner::LearnerNodeConfig>(folder + "/learner.yaml", learner::readLearnerConfig));
@@ -75,7 +96,7 @@ RobotConfig readRobot(const std::string& folder) {
 RobotSystem::RobotSystem(const RobotConfig& config, const sim::WorldDescription& world,
                          const Pose2& T_map_start, uint64_t seed, const std::string& rule,
                          const FaultPlan& faults)
-    : config_(config), bus_(std::make_unique<VirtualBus>(seed, faults)) {
+    : config_(config), bus_(std::make_unique<VirtualBus>(seed, onTheRobot(faults))) {
   config_.learner.rule.rule = *learner::ruleNamed(rule);
   std::tie(ins_line_, ins_device_) = makePipe();
   std::tie(motor_line_, motor_device_) = makePipe();

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/bus/virtual_bus.hpp"
 #include "common/link/link.hpp"
@@ -33,6 +34,9 @@ struct RobotConfig {
   std::map<std::string, NodeTiming> timing;  ///< how long each node computes, as a model
 };
 
+/// Names of the robot's processes on the bus.
+const std::vector<std::string>& robotNodes();
+
 /// Reads a robot's folder (config/robots/teodor: one file a process); throws ConfigError with one
 /// clear line.
 RobotConfig readRobot(const std::string& folder);
@@ -40,7 +44,8 @@ RobotConfig readRobot(const std::string& folder);
 /// The whole robot and its world on a virtual bus: real nodes, real device bytes, real messages.
 /** Device lines are in-memory pipes between drivers and emulators; the laser's scans enter behind
  * the range finder's library (lidar::ScanSource). Links, stores and the simulated robot outlive a
- * node that is killed. */
+ * node that is killed. Faults of messages to every receiver are those to every process of the
+ * robot: whoever watches from outside hears all as it was said. */
 class RobotSystem {
  public:
   RobotSystem(const RobotConfig& config, const sim::WorldDescription& world,
@@ -54,6 +59,7 @@ class RobotSystem {
   /// Cuts or mends a device's line: "ins" or "motor".
   void connect(const std::string& device, bool connected);
   const PatternSet& patterns() const { return config_.learner.shipped; }
+  const mapping::LocalMapConfig& map() const { return config_.mapping.map; }
   MemoryStore& learnerStore() { return learner_store_; }
 
  private:

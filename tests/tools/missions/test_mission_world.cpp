@@ -35,6 +35,19 @@ TEST_CASE("mission worlds are hard: far goals, blocked lines, changing ground, a
     REQUIRE(world.description.terrain.steepestSlope() <= 0.051);
     REQUIRE_FALSE(sim::worldFault(world.description));
     const sim::World real(world.description);
+    // Surfaces change on the straight line as often as the world says.
+    int changes = 0;
+    std::string under = real.surface(world.T_map_start.position()).name;
+    for (double share = 0.0; share <= 1.0; share += 0.002) {
+      const Eigen::Vector2d p =
+          (1.0 - share) * world.T_map_start.position() + share * world.T_map_goal.position();
+      if (real.surface(p).name == under) continue;
+      under = real.surface(p).name;
+      ++changes;
+    }
+    REQUIRE(changes == world.surface_changes);
+    REQUIRE(changes >= 1);
+    REQUIRE(changes <= 3);
     for (double yaw = 0.0; yaw < 6.3; yaw += 0.3) {
       const Pose2 start{world.T_map_start.x, world.T_map_start.y, yaw};
       const Pose2 goal{world.T_map_goal.x, world.T_map_goal.y, yaw};

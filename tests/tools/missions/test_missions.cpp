@@ -128,7 +128,7 @@ TEST_CASE("a mission drives from start to goal over changing ground without touc
     CHECK(run.result.reason.empty());
     CHECK(run.result.collisions == 0);
     CHECK(run.result.distance > run.result.straight_line - 1.5);
-    CHECK(run.result.surface_changes.size() >= 1);
+    CHECK(run.result.crossings.size() >= 1);
     CHECK(run.result.set_versions > 10);
     int measured = 0;
     for (const ScoredExecution& execution : run.result.executions)
@@ -266,20 +266,47 @@ TEST_CASE("a report says what happened, in text and in JSON") {
   campaign.virtual_time = run.virtual_time;
   campaign.cpu_time = campaign.wall_time = run.cpu_time;
   campaign.results.push_back(run.result);
+  // As a broken message may have left it: no UTF-8.
+  campaign.results.back().reason = "bro\xff\xc0ken";
   CHECK(run.result.set_versions == 0);
   std::ostringstream text;
   printSummary(text, campaign);
   CHECK(text.str().find("arrived      1  100.0 %") != std::string::npos);
+  const std::string crossings = crossingsOf(run.result);
+  CHECK(std::count(crossings.begin(), crossings.end(), '\n') ==
+        static_cast<std::ptrdiff_t>(run.result.crossings.size()));
+  CHECK(crossings.find(run.result.crossings.at(0).to) != std::string::npos);
   const std::string path = "test_missions_" + std::to_string(getpid()) + ".json";
   writeJson(path, campaign);
   const std::string json = bytesOf(path);
   std::remove(path.c_str());
-  for (const char* key :
-       {"missions", "arrived", "refused", "idle", "stopped", "collisions", "virtual_s", "wall_s",
-        "seed", "runs", "result", "reason", "time_s", "distance_m", "detour", "surface_changes"})
+  for (const char* key : {"missions", "arrived", "refused", "idle", "stopped", "collisions",
+                          "virtual_s", "wall_s", "seed", "runs", "result", "reason", "time_s",
+                          "distance_m", "detour", "surface_changes", "crossings"})
     CHECK(json.find('"' + std::string(key) + "\":") != std::string::npos);
   CHECK_THROWS_WITH(writeJson("/nowhere/report.json", campaign),
                     Catch::Contains("/nowhere/report.json"));
+}
+
+TEST_CASE("faults of every receiver are the robot's: the referee hears all as it was said") {
+  FaultPlan faults;
+  MessageFault fault;
+  fault.channel = "LEARNING";  // nobody on the robot hears it
+  fault.drop = 0.5;
+  fault.corrupt = 0.5;
+  faults.messages.push_back(fault);
+  Bench clean(8), faulty(8, faults);
+  clean.run(12.0);
+  faulty.run(12.0);
+  const auto expected = clean.watch.result().executions;
+  const auto heard = faulty.watch.result().executions;
+  REQUIRE(expected.size() >= 5);
+  REQUIRE(heard.size() == expected.size());
+  for (size_t i = 0; i < heard.size(); ++i) {
+    CHECK(heard[i].time == expected[i].time);
+    CHECK(heard[i].measured == expected[i].measured);
+    if (heard[i].measured) CHECK(heard[i].error_position == expected[i].error_position);
+  }
 }
 
 TEST_CASE("a mistyped fault file is one line with file and line") {
@@ -289,5 +316,10 @@ TEST_CASE("a mistyped fault file is one line with file and line") {
   std::ofstream(path) << "nodes:\n  - node: planer\n    kill_at_s: 10\n";
   CHECK_THROWS_WITH(readFaultFile(path),
                     Catch::Contains(path + ":2") && Catch::Contains("planner"));
+  std::ofstream(path) << "messages:\n  - channel: INSS\n";
+  CHECK_THROWS_WITH(readFaultFile(path), Catch::Contains(path + ":2") && Catch::Contains("SCAN"));
+  std::ofstream(path) << "messages:\n  - channel: INS\n    receiver: planer\n";
+  CHECK_THROWS_WITH(readFaultFile(path),
+                    Catch::Contains(path + ":3") && Catch::Contains("planner"));
   std::remove(path.c_str());
 }

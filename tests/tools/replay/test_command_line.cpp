@@ -70,6 +70,17 @@ TEST_CASE("a truncated recording is one line, and no log is left behind") {
   REQUIRE_FALSE(std::filesystem::exists(log));
 }
 
+TEST_CASE("a log that does not fit on the disk is one line, not a success") {
+  const Folder folder("command_line_full");
+  const std::string csv = folder.file("drive.csv", kStepsHeader + stepRows(1) + stepRows(2));
+  const Outcome import =
+      call("tread-import --format steps --sessions " + folder.file("sessions.csv", sessions(242)) +
+           " " + csv + " -o /dev/full");
+  REQUIRE(import.code == 1);
+  REQUIRE(lines(import.said) == 1);
+  REQUIRE(import.said.find("/dev/full: cannot be written") != std::string::npos);
+}
+
 TEST_CASE("bad arguments of tread-replay are one clear line each") {
   const Outcome missing = call("tread-replay learner /nowhere.log --model " + kModel);
   REQUIRE(missing.code == 1);
