@@ -159,6 +159,20 @@ TEST_CASE("E-stop, link fault and device fault stop in the next step") {
   CHECK(world.state() == State::kDriving);
 }
 
+TEST_CASE("clearing an E-stop twice within a step releases the controller's own, too") {
+  BridgeWorld world;
+  world.drive();
+  world.bridge.receive(EstopRequest{world.now, true, "operator", "person"}, world.now);
+  world.step();
+  REQUIRE(world.state() == State::kEstopped);
+  for (int copy = 0; copy < 2; ++copy) {
+    world.bridge.receive(EstopRequest{world.now, false, "operator", "gone"}, world.now);
+  }
+  world.step();
+  CHECK(world.out.release_device_stop);
+  CHECK_FALSE(world.out.hold_device_stop);
+}
+
 TEST_CASE("one bad slot in one program stops, whichever slot it is") {
   for (const bool in_next : {false, true}) {
     for (int fault = 0; fault < 4; ++fault) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <limits>
+
 #include <catch2/catch.hpp>
 
 #include "modules/motor_bridge/core/ins_watch.hpp"
@@ -152,4 +154,16 @@ TEST_CASE("an E-stop stamped in the far future can still be cleared") {
   requests.receive({kNow * 100, true, "broken clock", "?"}, kNow);
   CHECK(requests.estop());
   CHECK(requests.receive({kNow + 1, false, "operator", "clear"}, kNow + 1));
+}
+
+TEST_CASE("the smallest utime of all is old, not new: no difference overflows") {
+  constexpr int64_t kBeginning = std::numeric_limits<int64_t>::min();
+  ProgramGate gate({});
+  CHECK(admit(gate, makeProgram(kBeginning, makeSlot(1, 4))) == Refusal::kTooOld);
+  InsWatch watch({});
+  watch.receive({kBeginning, true}, kNow);
+  CHECK(watch.fault(kNow) == "no INS yet");
+  OperatorRequests requests({});
+  CHECK(requests.judge({kBeginning, true, "operator", "go"}, kNow, kBeginning) ==
+        OperatorRequests::Verdict::kIgnored);
 }

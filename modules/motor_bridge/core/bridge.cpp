@@ -66,8 +66,9 @@ void Bridge::receive(const ArmRequest& request, int64_t now) {
 
 void Bridge::receive(const EstopRequest& request, int64_t now) {
   const bool taken = requests_.receive(request, now);
-  since_.estop_cleared = taken && !request.engaged;
-  if (!taken) {
+  if (taken) {
+    since_.estop_cleared = !request.engaged;
+  } else {
     count("ESTOP clearing ignored: nothing to clear, or too old");
   }
 }

@@ -6,7 +6,7 @@ namespace tread::motor {
 
 void InsWatch::receive(const InsNotice& notice, int64_t now) {
   const bool future = notice.utime > now + limits_.max_future_us;
-  const bool old = now - notice.utime > limits_.maxAge() + limits_.max_latency_us;
+  const bool old = notice.utime < now - limits_.maxAge() - limits_.max_latency_us;
   const bool newer = !received_at_ || notice.utime > utime_;
   if (future || old || !newer) {
     return;

@@ -7,7 +7,7 @@
 namespace tread::motor {
 
 bool OperatorRequests::timely(int64_t utime, int64_t now) const {
-  return utime <= now + limits_.max_future_us && now - utime <= limits_.max_age_us;
+  return utime <= now + limits_.max_future_us && utime >= now - limits_.max_age_us;
 }
 
 OperatorRequests::Verdict OperatorRequests::judge(const ArmRequest& request, int64_t now,

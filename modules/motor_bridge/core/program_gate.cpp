@@ -33,7 +33,8 @@ Refusal ProgramGate::checkTime(const Program& program, int64_t now) const {
   if (program.utime > now + limits_.max_future_us) {
     return Refusal::kFromFuture;
   }
-  if (now - program.utime > std::min(program.lease_us, limits_.lease_us)) {
+  // The difference to any utime would overflow: compare with a time near now.
+  if (program.utime < now - std::min(program.lease_us, limits_.lease_us)) {
     return Refusal::kTooOld;
   }
   return newer(program) ? Refusal::kNone : Refusal::kOutOfOrder;
