@@ -14,7 +14,7 @@ bool isFinite(const Pose2& pose) {
 }  // namespace
 
 bool PoseTrack::push(int64_t utime, const Pose2& T_map_body) {
-  if (!isFinite(T_map_body)) return false;
+  if (utime < 0 || !isFinite(T_map_body)) return false;
   Pose2 continuous = T_map_body;
   if (!poses_.empty()) {
     if (utime <= poses_.back().utime) return false;

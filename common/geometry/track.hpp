@@ -26,7 +26,8 @@ class PoseTrack {
   explicit PoseTrack(int64_t span_us) : span_us_(span_us) {}
 
   /// Appends a pose; yaw may be wrapped, the nearest turn to the predecessor is taken.
-  /** Returns false (and keeps the track) if it is not newer than the last pose or not finite. */
+  /** Returns false (and keeps the track) if it is not newer than the last pose, its time negative
+   * or the pose not finite. */
   bool push(int64_t utime, const Pose2& T_map_body);
 
   /// Pose at a time between two kept poses at most `max_gap_us` apart (SE(2) interpolation); else

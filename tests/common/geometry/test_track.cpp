@@ -94,6 +94,14 @@ TEST_CASE("a track that is not finite at its very first pose stays empty") {
   CHECK(track.poses().empty());
 }
 
+TEST_CASE("a time before all clocks is refused: no difference of times overflows") {
+  PoseTrack track(kSpan);
+  CHECK_FALSE(track.push(std::numeric_limits<int64_t>::min(), {0, 0, 0}));
+  CHECK_FALSE(track.push(-1, {0, 0, 0}));
+  CHECK(track.poses().empty());
+  CHECK(track.push(0, {0, 0, 0}));
+}
+
 TEST_CASE("poses older than the span are let go") {
   PoseTrack track(1'000'000);
   for (int64_t utime = 0; utime <= 5'000'000; utime += 100'000) track.push(utime, {0, 0, 0});
