@@ -70,15 +70,26 @@ class HokuyoSource::Worker {
   Worker(const std::string& address, double latency)
       : address_(address), latency_us_(static_cast<int64_t>(latency * 1e6)), alive_(hostNow()) {
     std::tie(host_, port_) = split(address);
-    thread_ = std::thread([this] { run(); });
   }
-  ~Worker() {
+
+  static std::shared_ptr<Worker> start(const std::string& address, double latency) {
+    const auto worker = std::make_shared<Worker>(address, latency);
+    worker->thread_ = std::thread([worker] {
+      worker->run();
+      worker->ended_ = true;
+    });
+    return worker;
+  }
+  /// A thread that is stuck inside the library cannot be joined: it keeps the worker, until the
+  /// process ends.
+  void end() {
+    constexpr int kPatience = 300;  // [10 ms]
     stop_ = true;
-    // A thread that is stuck inside the library cannot be joined; the process is about to end.
-    if (secondsSinceAlive() > 5.0) {
-      thread_.detach();
-    } else {
+    for (int i = 0; i < kPatience && !ended_; ++i) pause(10);
+    if (ended_) {
       thread_.join();
+    } else {
+      thread_.detach();
     }
   }
 
@@ -185,6 +196,7 @@ class HokuyoSource::Worker {
   int64_t last_scan_ = 0;
   std::atomic<int64_t> alive_;
   std::atomic<bool> stop_{false};
+  std::atomic<bool> ended_{false};
   mutable std::mutex mutex_;
   std::vector<RangeScan> scans_;
   std::string problem_;
@@ -192,8 +204,10 @@ class HokuyoSource::Worker {
 };
 
 HokuyoSource::HokuyoSource(const std::string& address, double latency)
-    : worker_(std::make_unique<Worker>(address, latency)) {}
-HokuyoSource::~HokuyoSource() = default;
+    : worker_(Worker::start(address, latency)) {}
+HokuyoSource::~HokuyoSource() {
+  worker_->end();
+}
 std::vector<RangeScan> HokuyoSource::take(int64_t /*utime*/) {
   return worker_->take();
 }

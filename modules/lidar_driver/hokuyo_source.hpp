@@ -21,6 +21,7 @@ class HokuyoSource : public ScanSource {
   /// `address` is tcp:host:port; throws std::invalid_argument with one clear line if it is not.
   /// `latency` [s] from the last beam to the arrival of its bytes.
   HokuyoSource(const std::string& address, double latency);
+  /// Waits for the library to come back, but not for ever.
   ~HokuyoSource() override;
 
   std::vector<RangeScan> take(int64_t utime) override;
@@ -30,7 +31,8 @@ class HokuyoSource : public ScanSource {
 
  private:
   class Worker;
-  std::unique_ptr<Worker> worker_;
+  /// Shared with its thread, which may be stuck in the library when this source goes.
+  std::shared_ptr<Worker> worker_;
 };
 
 }  // namespace tread::lidar

@@ -23,6 +23,8 @@ LidarDriverConfig readLidarDriverConfig(ConfigReader& reader) {
   reader.number("silence", config.silence, {0.1, 60.0}, "s");
   reader.number("range_min", config.limits.range_min, {0.0, 10.0}, "m");
   reader.number("range_max", config.limits.range_max, {0.5, 300.0}, "m");
+  if (config.limits.range_min >= config.limits.range_max)
+    throw reader.error("range_max", "must be above range_min");
   reader.integer("max_beams", max_beams, {2, 10000}, "beams");
   reader.integer("beam_stride", stride, {1, 20}, "beams");
   reader.finish();
@@ -45,12 +47,13 @@ LidarDriverNode::LidarDriverNode(const LidarDriverConfig& config, Bus& bus, Scan
 
 void LidarDriverNode::step(int64_t utime) {
   for (const RangeScan& raw : source_.take(utime)) {
-    last_scan_ = utime;
     const auto scan = check_.accept(raw);
+    last_refusal_ = check_.refusal();
     if (scan) {
+      last_scan_ = utime;
       publish(*scan);
     } else {
-      health_.addToCounter("refused: " + check_.refusal());
+      health_.addToCounter("refused: " + last_refusal_);
     }
   }
   judgeDevice(utime);
@@ -82,9 +85,17 @@ void LidarDriverNode::judgeDevice(int64_t utime) {
   const double silent = static_cast<double>(utime - last_scan_) * 1e-6;
   if (silent < config_.silence) return health_.setState(health_t::HEALTH_OK, "");
   std::ostringstream line;
-  line << config_.address << ": no scan for " << static_cast<int64_t>(silent) << " s";
+  const bool refused = !last_refusal_.empty();
+  line << config_.address << ": no " << (refused ? "good " : "") << "scan for "
+       << static_cast<int64_t>(silent) << " s";
   const std::string problem = source_.problem();
-  line << (problem.empty() ? "; is the device powered and scanning?" : "; " + problem);
+  if (!problem.empty()) {
+    line << "; " << problem;
+  } else if (refused) {
+    line << "; the last one was refused: " << last_refusal_;
+  } else {
+    line << "; is the device powered and scanning?";
+  }
   health_.setState(health_t::HEALTH_FAILED, line.str());
 }
 

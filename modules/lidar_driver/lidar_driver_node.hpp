@@ -45,7 +45,8 @@ class LidarDriverNode : public Node {
   HealthReporter health_;
   Eigen::Quaterniond R_body_sensor_;
   int64_t seq_ = 0;
-  int64_t last_scan_;
+  int64_t last_scan_;         ///< [us] when the last good one came
+  std::string last_refusal_;  ///< of a scan since then; empty if there was none
 };
 
 }  // namespace tread::lidar

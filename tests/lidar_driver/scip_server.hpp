@@ -27,7 +27,8 @@ class ScipServer {
     kGood,     ///< answers and scans
     kSilent,   ///< accepts and says nothing
     kGarbage,  ///< random bytes between the scans
-    kCloses    ///< accepts and closes at once
+    kCloses,   ///< accepts and closes at once
+    kOnce      ///< good to the first who comes, closes at once on all others
   };
 
   /// Listens on `port` of the loopback, 0 = any free one.
@@ -77,7 +78,9 @@ class ScipServer {
       ++connections_;
       const int on = 1;
       setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-      if (manner_ != Manner::kCloses) talk(client);
+      const bool closes =
+          manner_ == Manner::kCloses || (manner_ == Manner::kOnce && connections_ > 1);
+      if (!closes) talk(client);
       close(client);
     }
   }

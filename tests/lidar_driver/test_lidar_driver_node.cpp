@@ -74,6 +74,30 @@ TEST_CASE("a silent range finder is told in one line and forgotten when it speak
   REQUIRE(health.back().health_state == health_t::HEALTH_OK);
 }
 
+TEST_CASE("a range finder whose every scan is refused is not well, and the reason is told") {
+  VirtualBus bus(1);
+  ScriptedSource source;
+  LidarDriverConfig config;
+  config.limits.max_beams = 50;
+  std::vector<health_t> health;
+  bus.outside().subscribe<health_t>(kHealth, [&](const health_t& m) { health.push_back(m); });
+  bus.addNode("lidar_driver",
+              [&](Bus& end) { return std::make_unique<LidarDriverNode>(config, end, source); });
+  for (int i = 1; i <= 25; ++i) {
+    source.next = {scanAt(bus.now())};
+    bus.runUntil(bus.now() + 100'000);
+  }
+  REQUIRE(health.back().health_state == health_t::HEALTH_FAILED);
+  REQUIRE(health.back().health_reason ==
+          "tcp:192.168.0.10:10940: no good scan for 2 s; the last one was refused: too many beams");
+}
+
+TEST_CASE("ranges that leave nothing between them are refused in one line") {
+  ConfigReader reader = ConfigReader::fromText("range_min: 5\nrange_max: 5\n", "lidar.yaml");
+  REQUIRE_THROWS_WITH(readLidarDriverConfig(reader),
+                      Catch::Contains("lidar.yaml:2") && Catch::Contains("range_max"));
+}
+
 TEST_CASE("a mistyped key of lidar_driver's configuration is one line with file and line") {
   ConfigReader reader = ConfigReader::fromText("latency: 0.01\nrange_maks: 20\n", "lidar.yaml");
   REQUIRE_THROWS_WITH(readLidarDriverConfig(reader),

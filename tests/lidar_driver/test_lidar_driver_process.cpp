@@ -118,6 +118,16 @@ TEST_CASE("a peer that accepts and closes at once does not catch the process") {
   REQUIRE(driven.process->exitCode() == 0);
 }
 
+TEST_CASE("SIGTERM ends the process also while the library hangs on a peer that closes") {
+  if (!haveMulticast()) return;
+  // The first connection is our probe; after it the library calls this peer without end.
+  ScipServer server(ScipServer::Manner::kOnce);
+  Driven driven(server.address());
+  REQUIRE(driven.until([&] { return server.connections() >= 3; }, 20));
+  driven.process->signal(SIGTERM);
+  REQUIRE(driven.process->waitFor(8));
+}
+
 TEST_CASE("a silent device, a deaf port and a mistyped key are each one clear line") {
   if (!haveMulticast()) return;
   SECTION("silent") {
