@@ -32,14 +32,24 @@ void Bus::noteReceipt(const ChannelSpec& spec, int64_t utime, int64_t seq) {
   }
   // Differences are taken so that the numbers of a broken message cannot overflow.
   if (spec.max_age_ms > 0 && utime < now() - spec.max_age_ms * int64_t{1000}) ++statistics_.late;
-  if (seq < 0 || seq > kLargestSeq) return;
-  const auto [last, first] = last_seq_.try_emplace(spec.name, seq);
-  // A publisher that starts again counts from its beginning: no loss. Several publishers share
-  // HEALTH, CONFIG, ARM, ESTOP and MARK, so a gap says nothing there.
+  // Several publishers share HEALTH, CONFIG, ESTOP and MARK, so a gap says nothing there.
   const bool one_publisher = std::string(spec.publisher).find("every") == std::string::npos &&
                              std::string(spec.publisher) != "anyone";
-  if (!first && one_publisher && seq > last->second + 1) statistics_.lost += seq - last->second - 1;
-  last->second = seq;
+  if (one_publisher && seq >= 0 && seq <= kLargestSeq) noteLoss(spec, utime, seq);
+}
+
+void Bus::noteLoss(const ChannelSpec& spec, int64_t utime, int64_t seq) {
+  const auto [known, first] = newest_.try_emplace(spec.name, Newest{seq, utime});
+  Newest& newest = known->second;
+  if (first || seq == newest.seq) return;
+  if (seq < newest.seq && utime < newest.utime) {
+    // It was overtaken on its way, and counted as lost then.
+    if (statistics_.lost > 0) --statistics_.lost;
+    return;
+  }
+  // A publisher that starts again counts from its beginning: no loss.
+  if (seq > newest.seq + 1) statistics_.lost += seq - newest.seq - 1;
+  newest = {seq, utime};
 }
 
 void Bus::noteUndecodable(const ChannelSpec& spec, size_t size) {

@@ -101,11 +101,17 @@ class Bus {
     return false;
   }
   void noteReceipt(const ChannelSpec& spec, int64_t utime, int64_t seq);
+  void noteLoss(const ChannelSpec& spec, int64_t utime, int64_t seq);
   void noteUndecodable(const ChannelSpec& spec, size_t size);
   bool refuseOversized(const ChannelSpec& spec, int size);
 
   BusStatistics statistics_;
-  std::map<std::string, int64_t> last_seq_;
+  /// The newest message of a channel, to count what is missing.
+  struct Newest {
+    int64_t seq;
+    int64_t utime;
+  };
+  std::map<std::string, Newest> newest_;
   std::vector<uint8_t> buffer_;
 };
 

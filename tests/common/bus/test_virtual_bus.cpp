@@ -198,6 +198,20 @@ TEST_CASE("losses are counted by seq; a publisher that starts again is no loss")
   REQUIRE(bus.outside().statistics().lost == 2);
 }
 
+TEST_CASE("messages that overtake each other are no loss") {
+  VirtualBus bus(1);
+  bus.outside().subscribe<motor_t>(kMotor, [](const motor_t&) {});
+  for (const int64_t seq : {5, 7, 6, 8, 8, 10, 11, 9, 12}) {
+    motor_t motor{};
+    motor.utime = seq * 20'000;
+    motor.seq = seq;
+    bus.outside().publish(kMotor, motor);
+  }
+  bus.runUntil(bus.now() + 1000);
+  REQUIRE(bus.outside().statistics().received == 9);
+  REQUIRE(bus.outside().statistics().lost == 0);
+}
+
 TEST_CASE("a mailbox keeps the newest message and knows its age") {
   VirtualBus bus(1);
   Latest<mark_t> mark(bus.outside(), kMark);
