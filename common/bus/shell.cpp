@@ -2,8 +2,12 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/bus/shell.hpp"
 
+#include <sys/prctl.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <iostream>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -17,16 +21,39 @@ void requestStop(int /*signal*/) {
   g_stop = true;
 }
 
-}  // namespace
+struct Arguments {
+  std::string config_path;
+  std::string lcm_url;
+  std::vector<std::string> overrides;
+  bool check = false;
+  bool with_parent = false;
+};
 
-int runShell(
-    int argc, char** argv, const std::string& name, const std::string& description,
-    const std::function<void(const ShellArguments&, const std::atomic<bool>& stop)>& body) {
-  CLI::App app{description, name};
-  ShellArguments arguments;
+void describe(CLI::App& app, Arguments& arguments) {
   app.add_option("--config", arguments.config_path, "configuration file (YAML)");
+  app.add_option("--set", arguments.overrides, "KEY=VALUE: replaces a value of the configuration")
+      ->expected(1)
+      ->take_all();
   app.add_option("--lcm-url", arguments.lcm_url,
                  "LCM provider, for instance udpm://239.255.76.67:7667?ttl=0");
+  app.add_flag("--check", arguments.check, "only read the configuration");
+  app.add_flag("--with-parent", arguments.with_parent, "end when the starting process is gone");
+}
+
+void endWithParent(pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGINT);
+  // It may be gone already.
+  if (::getppid() != parent) g_stop = true;
+}
+
+}  // namespace
+
+int runShell(int argc, char** argv, const std::string& name, const std::string& description,
+             const ShellPreparation& prepare) {
+  const pid_t parent = ::getppid();
+  CLI::App app{description, name};
+  Arguments arguments;
+  describe(app, arguments);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -37,8 +64,14 @@ int runShell(
   std::signal(SIGTERM, requestStop);
   // A device that goes away while it is written to must not end the process.
   std::signal(SIGPIPE, SIG_IGN);
+  if (arguments.with_parent) endWithParent(parent);
   try {
-    body(arguments, g_stop);
+    ConfigReader reader =
+        arguments.config_path.empty()
+            ? ConfigReader::fromText("{}", "defaults (no --config)", arguments.overrides)
+            : ConfigReader::fromFile(arguments.config_path, arguments.overrides);
+    const ShellBody body = prepare(reader);
+    if (!arguments.check) body(arguments.lcm_url, g_stop);
   } catch (const std::exception& error) {
     std::cerr << name << ": " << error.what() << std::endl;
     return 1;

@@ -6,18 +6,22 @@
 #include <functional>
 #include <string>
 
+#include "common/config/config_reader.hpp"
+
 namespace tread {
 
-/// What every process takes from its command line.
-struct ShellArguments {
-  std::string config_path;  ///< --config; empty = defaults
-  std::string lcm_url;      ///< --lcm-url; empty = LCM_DEFAULT_URL or LCM's own default
-};
+/// What a process does once its configuration is read: runs on this LCM provider (empty =
+/// LCM_DEFAULT_URL or LCM's own default) until `stop`.
+using ShellBody = std::function<void(const std::string& lcm_url, const std::atomic<bool>& stop)>;
+/// Reads the configuration, all of it, without opening anything; throws ConfigError.
+using ShellPreparation = std::function<ShellBody(ConfigReader& reader)>;
 
-/// The main function of a process: reads --config, --lcm-url and --help, turns SIGINT and SIGTERM
-/// into `stop`, and ends with one clear line and code 1 where the body throws. Usage errors end
-/// with code 2.
+/// The main function of a process.
+/** Command line: --config FILE, --set KEY=VALUE (again and again), --lcm-url URL, --check (only
+ * reads the configuration), --with-parent (ends as by SIGINT when the process that started it is
+ * gone: a supervisor that is killed leaves nothing driving), --help. SIGINT and SIGTERM become
+ * `stop`. Where something throws, one clear line and code 1; usage errors end with code 2. */
 int runShell(int argc, char** argv, const std::string& name, const std::string& description,
-             const std::function<void(const ShellArguments&, const std::atomic<bool>& stop)>& body);
+             const ShellPreparation& prepare);
 
 }  // namespace tread

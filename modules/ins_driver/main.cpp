@@ -2,27 +2,28 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/shell.hpp"
+#include "common/link/address.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"
 
 namespace {
 
 using namespace tread;
 
-void run(const ShellArguments& arguments, const std::atomic<bool>& stop) {
-  ConfigReader reader = arguments.config_path.empty()
-                            ? ConfigReader::fromText("{}", "defaults")
-                            : ConfigReader::fromFile(arguments.config_path);
+ShellBody prepare(ConfigReader& reader) {
   const ins::InsDriverConfig config = ins::readInsDriverConfig(reader);
-  LcmBus bus(arguments.lcm_url, TimeSource::kHost);
-  const std::unique_ptr<Link> link = makeLink(config.address);
-  FileStore store(config.store);
-  ins::InsDriverNode node(config, bus, *link, store);
-  bus.run(node, stop);
+  parseLinkAddress(config.address);  // throws where it makes no sense
+  return [config](const std::string& lcm_url, const std::atomic<bool>& stop) {
+    LcmBus bus(lcm_url, TimeSource::kHost);
+    const std::unique_ptr<Link> link = makeLink(config.address);
+    FileStore store(config.store);
+    ins::InsDriverNode node(config, bus, *link, store);
+    bus.run(node, stop);
+  };
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   return runShell(argc, argv, "tread-ins-driver",
-                  "Publishes INS from a device that speaks NMEA 0183.", run);
+                  "Publishes INS from a device that speaks NMEA 0183.", prepare);
 }

@@ -33,21 +33,20 @@ class GuardedSource : public ScanSource {
   HokuyoSource& source_;
 };
 
-void run(const ShellArguments& arguments, const std::atomic<bool>& stop) {
-  ConfigReader reader = arguments.config_path.empty()
-                            ? ConfigReader::fromText("{}", "defaults")
-                            : ConfigReader::fromFile(arguments.config_path);
+ShellBody prepare(ConfigReader& reader) {
   const LidarDriverConfig config = readLidarDriverConfig(reader);
-  LcmBus bus(arguments.lcm_url, TimeSource::kHost);
-  HokuyoSource device(config.address, config.latency);
-  GuardedSource source(device);
-  LidarDriverNode node(config, bus, source);
-  bus.run(node, stop);
+  return [config](const std::string& lcm_url, const std::atomic<bool>& stop) {
+    LcmBus bus(lcm_url, TimeSource::kHost);
+    HokuyoSource device(config.address, config.latency);
+    GuardedSource source(device);
+    LidarDriverNode node(config, bus, source);
+    bus.run(node, stop);
+  };
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   return runShell(argc, argv, "tread-lidar-driver",
-                  "Publishes SCAN from a SCIP 2.0 range finder over TCP.", run);
+                  "Publishes SCAN from a SCIP 2.0 range finder over TCP.", prepare);
 }

@@ -8,19 +8,18 @@ namespace {
 
 using namespace tread;
 
-void run(const ShellArguments& arguments, const std::atomic<bool>& stop) {
-  ConfigReader reader = arguments.config_path.empty()
-                            ? ConfigReader::fromText("{}", "defaults")
-                            : ConfigReader::fromFile(arguments.config_path);
+ShellBody prepare(ConfigReader& reader) {
   const mapping::MappingConfig config = mapping::readMappingConfig(reader);
-  LcmBus bus(arguments.lcm_url, TimeSource::kFollow);
-  mapping::MappingNode node(config, bus);
-  bus.run(node, stop);
+  return [config](const std::string& lcm_url, const std::atomic<bool>& stop) {
+    LcmBus bus(lcm_url, TimeSource::kFollow);
+    mapping::MappingNode node(config, bus);
+    bus.run(node, stop);
+  };
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   return runShell(argc, argv, "tread-mapping", "Makes MAP, the local grid, from SCAN and INS.",
-                  run);
+                  prepare);
 }

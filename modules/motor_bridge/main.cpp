@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/shell.hpp"
+#include "common/link/address.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 
 namespace {
@@ -9,20 +10,20 @@ namespace {
 using namespace tread;
 using namespace tread::motor;
 
-void run(const ShellArguments& arguments, const std::atomic<bool>& stop) {
-  ConfigReader reader = arguments.config_path.empty()
-                            ? ConfigReader::fromText("{}", "defaults")
-                            : ConfigReader::fromFile(arguments.config_path);
+ShellBody prepare(ConfigReader& reader) {
   const MotorBridgeConfig config = readMotorBridgeConfig(reader);
-  LcmBus bus(arguments.lcm_url, TimeSource::kHost);
-  const std::unique_ptr<Link> link = makeLink(config.address);
-  MotorBridgeNode node(config, bus, *link);
-  bus.run(node, stop);
+  parseLinkAddress(config.address);  // throws where it makes no sense
+  return [config](const std::string& lcm_url, const std::atomic<bool>& stop) {
+    LcmBus bus(lcm_url, TimeSource::kHost);
+    const std::unique_ptr<Link> link = makeLink(config.address);
+    MotorBridgeNode node(config, bus, *link);
+    bus.run(node, stop);
+  };
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   return runShell(argc, argv, "tread-motor-bridge",
-                  "Plays PROGRAM on a Roboteq controller and stops by itself.", run);
+                  "Plays PROGRAM on a Roboteq controller and stops by itself.", prepare);
 }

@@ -8,14 +8,13 @@ namespace {
 
 using namespace tread;
 
-void run(const ShellArguments& arguments, const std::atomic<bool>& stop) {
-  ConfigReader reader = arguments.config_path.empty()
-                            ? ConfigReader::fromText("{}", "defaults")
-                            : ConfigReader::fromFile(arguments.config_path);
+ShellBody prepare(ConfigReader& reader) {
   const planner::PlannerConfig config = planner::readPlannerConfig(reader);
-  LcmBus bus(arguments.lcm_url, TimeSource::kFollow);
-  planner::PlannerNode node(config, bus);
-  bus.run(node, stop);
+  return [config](const std::string& lcm_url, const std::atomic<bool>& stop) {
+    LcmBus bus(lcm_url, TimeSource::kFollow);
+    planner::PlannerNode node(config, bus);
+    bus.run(node, stop);
+  };
 }
 
 }  // namespace
@@ -23,5 +22,5 @@ void run(const ShellArguments& arguments, const std::atomic<bool>& stop) {
 int main(int argc, char** argv) {
   return runShell(argc, argv, "tread-planner",
                   "Plans sequences of motion patterns to the goal and hands them to the motors.",
-                  run);
+                  prepare);
 }

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/simulator/simulator_node.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace tread::sim {
@@ -17,11 +18,15 @@ std::string describe(const SimulatedDevices& devices) {
 
 }  // namespace
 
-SimulatorNode::SimulatorNode(SimulatedDevices& devices, Bus& bus, const DeviceLines& lines)
-    : devices_(devices), lines_(lines), health_(bus, "simulator", describe(devices)) {}
+SimulatorNode::SimulatorNode(SimulatedDevices& devices, Bus& bus, const DeviceLines& lines,
+                             TruthRecord* record)
+    : devices_(devices),
+      lines_(lines),
+      record_(record),
+      health_(bus, "simulator", describe(devices)) {}
 
 void SimulatorNode::step(int64_t utime) {
-  devices_.advanceTo(utime);
+  advanceTo(utime);
   devices_.ins().receive(hear(lines_.ins, utime), utime);
   devices_.motor().receive(hear(lines_.motor, utime), utime);
   say(lines_.ins, devices_.ins().transmit(utime));
@@ -36,6 +41,16 @@ void SimulatorNode::step(int64_t utime) {
   const RobotTruth& truth = devices_.robot().truth();
   health_.setCounter("collisions", static_cast<int64_t>(truth.collisions.size()));
   health_.step(utime);
+}
+
+void SimulatorNode::advanceTo(int64_t utime) {
+  if (record_ == nullptr) return devices_.advanceTo(utime);
+  // In steps, so that the record is as fine after a pause of the host.
+  for (int64_t t = devices_.robot().truth().utime; t < utime;) {
+    t = std::min(t + period(), utime);
+    devices_.advanceTo(t);
+    record_->note(devices_.robot().truth(), devices_.motor().output(t));
+  }
 }
 
 std::string SimulatorNode::hear(Link& line, int64_t utime) {

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <fstream>
+
+#include "common/bus/lcm_bus.hpp"
+#include "common/bus/shell.hpp"
+#include "modules/simulator/simulator_config.hpp"
+#include "modules/simulator/simulator_node.hpp"
+#include "modules/simulator/world_file.hpp"
+
+namespace {
+
+using namespace tread;
+using namespace tread::sim;
+
+std::ofstream openRecord(const std::string& path) {
+  if (path.empty()) return {};
+  std::ofstream file(path);
+  if (!file) throw std::runtime_error(path + ": the record of the truth cannot be written");
+  return file;
+}
+
+ShellBody prepare(ConfigReader& reader) {
+  const SimulatorConfig config = readSimulatorConfig(reader);
+  const auto world = std::make_shared<const World>(readWorld(config.world));
+  return [config, world](const std::string& lcm_url, const std::atomic<bool>& stop) {
+    LcmBus bus(lcm_url, TimeSource::kHost);
+    SimulatorSettings settings = config.settings;
+    settings.robot.start_utime = bus.now();
+    settings.ins.utc_at_zero = bus.utc() - bus.now();
+    SimulatedDevices devices(world, settings);
+    const std::unique_ptr<Link> ins = makeLink(config.ins);
+    const std::unique_ptr<Link> motor = makeLink(config.motor);
+    const std::unique_ptr<Link> laser = makeLink(config.laser);
+    std::ofstream file = openRecord(config.record);
+    TruthRecord record(file);
+    SimulatorNode node(devices, bus, DeviceLines{*ins, *motor, laser.get()},
+                       file.is_open() ? &record : nullptr);
+    bus.run(node, stop);
+  };
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runShell(argc, argv, "tread-simulator",
+                  "The simulated robot behind its devices' protocols: INS and motor controller on "
+                  "pseudo-terminals, range finder on a TCP port.",
+                  prepare);
+}

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/simulator/truth_record.hpp"
+
+#include <cstdio>
+
+namespace tread::sim {
+namespace {
+
+constexpr int64_t kRowEvery = 20'000;     // [us]
+constexpr int64_t kFlushEvery = 500'000;  // [us]
+
+}  // namespace
+
+TruthRecord::TruthRecord(std::ostream& out) : out_(out) {
+  out_ << "utime_us,x_m,y_m,yaw_rad,v_mps,left,right,surface,contacts,distance_m\n";
+}
+
+void TruthRecord::note(const RobotTruth& truth, const std::array<double, 2>& power) {
+  const bool due = last_row_ == INT64_MIN || truth.utime - last_row_ >= kRowEvery;
+  if (!due && power == power_) return;
+  power_ = power;
+  last_row_ = truth.utime;
+  char row[256];
+  std::snprintf(row, sizeof row, "%lld,%.4f,%.4f,%.5f,%.4f,%.3f,%.3f,%s,%zu,%.3f\n",
+                static_cast<long long>(truth.utime), truth.T_map_body.x, truth.T_map_body.y,
+                truth.T_map_body.yaw, truth.v_body.v_x, power[0], power[1], truth.surface.c_str(),
+                truth.collisions.size(), truth.distance);
+  out_ << row;
+  if (last_flush_ != INT64_MIN && truth.utime - last_flush_ < kFlushEvery) return;
+  last_flush_ = truth.utime;
+  out_.flush();
+}
+
+}  // namespace tread::sim
