@@ -42,7 +42,8 @@ void Bus::noteLoss(const ChannelSpec& spec, int64_t utime, int64_t seq) {
   const auto [known, first] = newest_.try_emplace(spec.name, Newest{seq, utime});
   Newest& newest = known->second;
   if (first || seq == newest.seq) return;
-  if (seq < newest.seq && utime < newest.utime) {
+  // What may be old by its nature does not tell a late message from a publisher's new beginning.
+  if (spec.max_age_ms > 0 && seq < newest.seq && utime < newest.utime) {
     // It was overtaken on its way, and counted as lost then.
     if (statistics_.lost > 0) --statistics_.lost;
     return;

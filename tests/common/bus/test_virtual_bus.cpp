@@ -212,6 +212,19 @@ TEST_CASE("messages that overtake each other are no loss") {
   REQUIRE(bus.outside().statistics().lost == 0);
 }
 
+TEST_CASE("a publisher of old truths that starts again is not taken for late messages") {
+  VirtualBus bus(1);
+  bus.outside().subscribe<map_tile_t>(kMap, [](const map_tile_t&) {});
+  for (const int64_t seq : {100, 102, 0, 1, 2}) {
+    map_tile_t tile{};
+    tile.utime = seq * 20'000;
+    tile.seq = seq;
+    bus.outside().publish(kMap, tile);
+  }
+  bus.runUntil(bus.now() + 1000);
+  REQUIRE(bus.outside().statistics().lost == 1);
+}
+
 TEST_CASE("a mailbox keeps the newest message and knows its age") {
   VirtualBus bus(1);
   Latest<mark_t> mark(bus.outside(), kMark);
