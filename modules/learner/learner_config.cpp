@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/learner/learner_config.hpp"
 
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -9,6 +11,13 @@
 
 namespace tread::learner {
 namespace {
+
+/// The shortest text that reads back as the same number: a replay takes it from CONFIG.
+std::string number(double value) {
+  std::array<char, 40> text;
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), result.ptr};
+}
 
 void seconds(ConfigReader& reader, const std::string& key, int64_t& value_us, Range range) {
   double value = static_cast<double>(value_us) * 1e-6;
@@ -50,6 +59,12 @@ LearnerNodeConfig readLearnerConfig(ConfigReader& reader) {
   std::string patterns;
   reader.path("patterns", patterns, true);
   LearnerNodeConfig config(readPatternFile(patterns));
+  readLearnerSettings(reader, config);
+  reader.finish();
+  return config;
+}
+
+void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config) {
   reader.text("store", config.store);
   std::string rule = ruleName(config.rule.rule);
   reader.choice("rule", rule, {"off", "single", "collective"});
@@ -64,30 +79,33 @@ LearnerNodeConfig readLearnerConfig(ConfigReader& reader) {
   seconds(reader, "repeat", config.repeat_us, {0.2, 5.0});
   seconds(reader, "track_span", config.track_span_us, {5.0, 600.0});
   reader.integer("remembered_versions", config.remembered_versions, {2, 1000}, "1");
-  reader.finish();
-  return config;
 }
 
 std::string LearnerNodeConfig::effective() const {
   std::ostringstream out;
-  const auto seconds = [](int64_t us) { return static_cast<double>(us) * 1e-6; };
+  const auto seconds = [](int64_t us) { return number(static_cast<double>(us) * 1e-6); };
+  const Axes& box = rule.scaling.min_box;
   out << "shipped_set: " << shipped.content().name << "\nshipped_checksum: " << shipped.checksum()
-      << "\nrule: " << ruleName(rule.rule) << "\nmemory: " << rule.memory
-      << "\nscaling:\n  min_box: [" << rule.scaling.min_box[0] << ", " << rule.scaling.min_box[1]
-      << ", " << rule.scaling.min_box[2] << "]\n  min_box_sigmas: " << rule.scaling.min_box_sigmas
-      << "\n  min_turn: " << rule.scaling.min_turn << "\n  min_length: " << rule.scaling.min_length
-      << "\n  min_factor: " << rule.scaling.min_factor
-      << "\n  max_factor: " << rule.scaling.max_factor << "\n  sign_sigmas: " << rule.sign_sigmas
+      << "\nrule: " << ruleName(rule.rule) << "\nmemory: " << number(rule.memory)
+      << "\nscaling:\n  min_box: [" << number(box[0]) << ", " << number(box[1]) << ", "
+      << number(box[2]) << "]\n  min_box_sigmas: " << number(rule.scaling.min_box_sigmas)
+      << "\n  min_turn: " << number(rule.scaling.min_turn)
+      << "\n  min_length: " << number(rule.scaling.min_length)
+      << "\n  min_factor: " << number(rule.scaling.min_factor)
+      << "\n  max_factor: " << number(rule.scaling.max_factor)
+      << "\n  sign_sigmas: " << number(rule.sign_sigmas)
       << "\ngates:\n  max_gap: " << seconds(limits.max_gap_us)
-      << "\n  min_covered: " << limits.min_covered << "\n  max_speed: " << limits.max_speed
-      << "\n  speed_margin: " << limits.speed_margin << "\n  min_motion: " << limits.min_motion
-      << "\n  min_turn: " << limits.min_turn
+      << "\n  min_covered: " << number(limits.min_covered)
+      << "\n  max_speed: " << number(limits.max_speed)
+      << "\n  speed_margin: " << number(limits.speed_margin)
+      << "\n  min_motion: " << number(limits.min_motion)
+      << "\n  min_turn: " << number(limits.min_turn)
       << "\n  entry_window: " << seconds(limits.entry_window_us)
-      << "\n  entry_speed: " << limits.entry_speed
-      << "\n  entry_yaw_rate: " << limits.entry_yaw_rate << "\n  max_slope: " << limits.max_slope
-      << "\nperiod: " << seconds(period_us) << "\nsettle: " << seconds(settle_us)
-      << "\ngive_up: " << seconds(give_up_us) << "\nrepeat: " << seconds(repeat_us)
-      << "\ntrack_span: " << seconds(track_span_us)
+      << "\n  entry_speed: " << number(limits.entry_speed)
+      << "\n  entry_yaw_rate: " << number(limits.entry_yaw_rate)
+      << "\n  max_slope: " << number(limits.max_slope) << "\nperiod: " << seconds(period_us)
+      << "\nsettle: " << seconds(settle_us) << "\ngive_up: " << seconds(give_up_us)
+      << "\nrepeat: " << seconds(repeat_us) << "\ntrack_span: " << seconds(track_span_us)
       << "\nremembered_versions: " << remembered_versions << "\n";
   return out.str();
 }

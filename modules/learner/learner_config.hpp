@@ -32,4 +32,7 @@ struct LearnerNodeConfig {
 /// Reads the configuration and the pattern file that it names; throws ConfigError with file:line.
 LearnerNodeConfig readLearnerConfig(ConfigReader& reader);
 
+/// Reads everything but the pattern file, over what `config` holds; does not finish() the reader.
+void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config);
+
 }  // namespace tread::learner

@@ -82,6 +82,15 @@ void LearnerNode::start(int64_t boot_time) {
   adoptVersion();
 }
 
+void LearnerNode::resume(LearnerState state, const std::vector<PatternSet>& earlier) {
+  versions_.clear();
+  versions_.emplace(config_.shipped.version(), config_.shipped);
+  for (const PatternSet& set : earlier) versions_.insert_or_assign(set.version(), set);
+  executions_.remember(state.handled);
+  learner_.restore(std::move(state.set), std::move(state.residuals));
+  adoptVersion();
+}
+
 void LearnerNode::step(int64_t utime) {
   const int64_t horizon = utime - config_.settle_us;
   ins_.settle(horizon);

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/health.hpp"
@@ -28,6 +29,10 @@ namespace tread::learner {
 class LearnerNode : public Node {
  public:
   LearnerNode(LearnerNodeConfig config, Bus& bus, Store& store);
+
+  /// Goes on as exactly that version, without a new number: for replay, to begin where a log does.
+  /** `earlier`: sets before it that executions may still name. Call before the first step. */
+  void resume(LearnerState state, const std::vector<PatternSet>& earlier);
 
   int64_t period() const override { return config_.period_us; }
   void step(int64_t utime) override;

@@ -97,8 +97,9 @@ void PlannerNode::step(int64_t utime) {
   situation_.armed_by_operator = permission_.armed();
   situation_.estopped = permission_.estopped();
   const int64_t started = bus_.now();
-  const Decision decision =
-      supervisor_.step(situation_, [&](int) { return bus_.now() - started > config_.deadline; });
+  const Decision decision = supervisor_.step(situation_, [&](int expansions) {
+    return stop_ ? stop_(expansions) : bus_.now() - started > config_.deadline;
+  });
   publishProgram(utime);
   publishPlan(utime, decision, bus_.now() - started);
   publishHealth(utime, decision.report);

@@ -22,6 +22,9 @@ class PlannerNode : public Node {
   void step(int64_t utime) override;
   /// Empties the program.
   void shutdown(int64_t utime) override;
+  /// Ends searches by this instead of by the deadline: for replay, where a count of expansions
+  /// does.
+  void setStop(StopPredicate stop) { stop_ = std::move(stop); }
 
   const Supervisor& supervisor() const { return supervisor_; }
 
@@ -46,6 +49,7 @@ class PlannerNode : public Node {
   PatternSetAssembler sets_;
   Permission permission_;
   Situation situation_;
+  StopPredicate stop_;  ///< empty = the deadline
   int64_t executions_utime_ = 0;
   int64_t next_plan_ = 0;
   int64_t next_tree_ = 0;

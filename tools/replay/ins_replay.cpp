@@ -108,6 +108,7 @@ std::string reportOf(const InsReplay& replay) {
   }
   out << "\nINS messages: " << replay.track.size() << ", with position and heading " << replay.poses
       << ", gaps " << replay.epochs.gaps << ", jumps " << replay.epochs.jumps << "\n";
+  if (!replay.health.empty()) out << "HEALTH at the end: " << replay.health << "\n";
   writePose(out, "first", replay.first_pose);
   writePose(out, "last", replay.last_pose);
   return out.str();

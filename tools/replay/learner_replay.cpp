@@ -3,6 +3,7 @@
 #include "tools/replay/learner_replay.hpp"
 
 #include <algorithm>
+#include <sstream>
 
 #include "common/bus/virtual_bus.hpp"
 
@@ -67,6 +68,20 @@ LearnerRun runLearner(const DriveLog& log, const learner::LearnerNodeConfig& con
   // Executions without INS at their end are given up after a while; HEALTH follows within a second.
   bus.runUntil(bus.now() + config.settle_us + config.give_up_us + 2 * kSecond);
   return run;
+}
+
+std::string processConfig(const learner::LearnerNodeConfig& config, const std::string& rule,
+                          const std::string& patterns) {
+  // A file cannot say "no limit": nothing that drives is off by this much [m/s, rad/s].
+  constexpr double kNoLimit = 40.0;
+  std::ostringstream out;
+  out << "# made by tread-replay learner --write-config\npatterns: \"" << patterns
+      << "\"\nstore: state/replayed_learner\nrule: " << rule << "\nmemory: " << config.rule.memory
+      << "\ngates:\n  max_gap: " << static_cast<double>(config.limits.max_gap_us) * 1e-6
+      << "\n  max_speed: " << config.limits.max_speed
+      << "\n  entry_speed: " << std::min(config.limits.entry_speed, kNoLimit)
+      << "\n  entry_yaw_rate: " << std::min(config.limits.entry_yaw_rate, kNoLimit) << "\n";
+  return out.str();
 }
 
 }  // namespace tread::replay

@@ -29,4 +29,9 @@ struct LearnerRun {
 LearnerRun runLearner(const DriveLog& log, const learner::LearnerNodeConfig& config,
                       Commitment commitment, const std::string& title);
 
+/// Configuration file for tread-learner that does with a played log what runLearner() does: this
+/// rule, the gates of `config`, the pattern file of this name.
+std::string processConfig(const learner::LearnerNodeConfig& config, const std::string& rule,
+                          const std::string& patterns);
+
 }  // namespace tread::replay

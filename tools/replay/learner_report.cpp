@@ -84,6 +84,7 @@ void writeIntake(std::ostream& out, const DriveLog& log, const LearnerRun& run) 
   if (log.skipped > 0)
     out << "  " << log.skipped << " messages of other types on our channels were skipped\n";
   if (!log.problem.empty()) out << "  " << log.problem << "\n";
+  if (!run.health.empty()) out << "  HEALTH at the end: " << run.health << "\n";
 }
 
 /// Which guards held corrections back, and how often.

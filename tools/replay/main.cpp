@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <stdexcept>
@@ -13,6 +14,8 @@
 #include "tools/replay/ins_picture.hpp"
 #include "tools/replay/learner_report.hpp"
 #include "tools/replay/mapping_picture.hpp"
+#include "tools/replay/recipe.hpp"
+#include "tools/replay/robot_commands.hpp"
 
 using namespace tread;
 
@@ -79,8 +82,29 @@ void addMapping(CLI::App& app, MappingArguments& arguments) {
   command.callback([&arguments] { replayMappingLog(arguments); });
 }
 
+struct PlannerArguments {
+  std::string log;
+  std::string config;
+  Output output;
+  bool different = false;
+};
+
+void addPlanner(CLI::App& app, PlannerArguments& arguments) {
+  CLI::App& command = *app.add_subcommand(
+      "planner", "the log of a running robot through the planner; compares, code 1 if different");
+  command.add_option("log", arguments.log, "LCM log")->required();
+  command.add_option("--config", arguments.config, "configuration of the planner; else the log's");
+  command.add_option("--report", arguments.output.report, "also write the report into this file");
+  command.callback([&arguments] {
+    const replay::Verdict verdict = replay::replayRobotPlanner(arguments.log, arguments.config);
+    say(verdict.report, arguments.output);
+    arguments.different = !verdict.equal;
+  });
+}
+
 struct LearnerArguments {
   std::string log;
+  std::string config;
   std::string model;
   std::string patterns;
   std::string rule = "collective";
@@ -90,7 +114,10 @@ struct LearnerArguments {
   double entry_speed = 0.4;
   double entry_yaw_rate = 0.5;
   bool any_entry = false;
+  std::string write_patterns;
+  std::string write_config;
   Output output;
+  bool different = false;
 };
 
 learner::LearnerNodeConfig configOf(const LearnerArguments& arguments, const PatternSet& set) {
@@ -107,11 +134,36 @@ learner::LearnerNodeConfig configOf(const LearnerArguments& arguments, const Pat
   return config;
 }
 
+void writeText(const std::string& path, const std::string& text) {
+  std::ofstream file(path);
+  if (!(file << text) || !file.flush()) throw std::runtime_error(path + ": cannot be written");
+}
+
+/// What tread-learner needs to do the same with the same log.
+void writeForProcess(const LearnerArguments& arguments, const PatternSet& set) {
+  if (arguments.write_patterns.empty()) {
+    if (arguments.write_config.empty()) return;
+    throw std::runtime_error("--write-config needs --write-patterns, the file that it names");
+  }
+  writeText(arguments.write_patterns, formatPatterns(set));
+  if (arguments.write_config.empty()) return;
+  writeText(arguments.write_config,
+            replay::processConfig(configOf(arguments, set), arguments.rule,
+                                  std::filesystem::absolute(arguments.write_patterns).string()));
+}
+
+void compareLearner(LearnerArguments& arguments) {
+  const replay::Verdict verdict = replay::replayRobotLearner(arguments.log, arguments.config);
+  say(verdict.report, arguments.output);
+  arguments.different = !verdict.equal;
+}
+
 void replayLearner(const LearnerArguments& arguments) {
   const replay::DriveLog log = replay::readDriveLog(arguments.log);
   const PatternSet set = arguments.model.empty()
                              ? readPatternFile(arguments.patterns)
                              : replay::predictedSet(log, readModelFile(arguments.model));
+  writeForProcess(arguments, set);
   learner::LearnerNodeConfig config = configOf(arguments, set);
   std::vector<replay::LearnerRun> runs;
   config.rule.rule = learner::Rule::kOff;
@@ -133,13 +185,18 @@ void replayLearner(const LearnerArguments& arguments) {
 }
 
 void addLearner(CLI::App& app, LearnerArguments& arguments) {
-  CLI::App& command = *app.add_subcommand("learner", "a log of executions through the learner");
+  CLI::App& command = *app.add_subcommand("learner",
+                                          "a log of executions through the learner; without "
+                                          "--model and --patterns the log of a running "
+                                          "robot, whose sets are compared: code 1 if different");
   command.add_option("log", arguments.log, "LCM log with INS, MOTOR and EXECUTION")->required();
+  command.add_option("--config", arguments.config,
+                     "configuration of the learner for a robot's log; else the log's");
   auto* source = command.add_option_group("prediction", "where the first predictions come from");
   source->add_option("--model", arguments.model,
                      "vehicle model file: predicts a pattern for each pattern id of the log");
   source->add_option("--patterns", arguments.patterns, "pattern file");
-  source->require_option(1);
+  source->require_option(0, 1);
   command.add_option("--rule", arguments.rule, "beside 'off'")
       ->check(CLI::IsMember({"off", "single", "collective"}))
       ->capture_default_str();
@@ -158,21 +215,50 @@ void addLearner(CLI::App& app, LearnerArguments& arguments) {
       ->capture_default_str();
   command.add_flag("--any-entry", arguments.any_entry,
                    "no gate on the entry twist (always so with --model)");
+  command.add_option("--write-patterns", arguments.write_patterns,
+                     "write the set that learning begins with into a pattern file");
+  command.add_option("--write-config", arguments.write_config,
+                     "write a configuration with it and these gates for tread-learner");
   addOutput(command, arguments.output);
-  command.callback([&arguments] { replayLearner(arguments); });
+  command.callback([&arguments] {
+    if (arguments.model.empty() && arguments.patterns.empty()) return compareLearner(arguments);
+    replayLearner(arguments);
+  });
+}
+
+struct RecipeArguments {
+  std::string process;
+  std::string log;
+};
+
+void addRecipe(CLI::App& app, RecipeArguments& arguments) {
+  app.add_option("--recipe", arguments.process,
+                 "print the lcm-logplayer command that plays LOG to this running process")
+      ->check(CLI::IsMember(replay::playableProcesses()));
+  app.add_option("LOG", arguments.log, "of --recipe");
+  app.callback([&app, &arguments] {
+    if (!app.get_subcommands().empty()) return;
+    if (arguments.process.empty() || arguments.log.empty())
+      throw std::runtime_error("a command is needed, or --recipe PROCESS LOG; see --help");
+    std::fputs(replay::recipeFor(arguments.process, arguments.log).c_str(), stdout);
+  });
 }
 
 int parseAndRun(int argc, char** argv) {
   LearnerArguments learner_arguments;
+  PlannerArguments planner_arguments;
   InsArguments ins_arguments;
   MappingArguments mapping_arguments;
+  RecipeArguments recipe_arguments;
   CLI::App app{"Recorded logs through the real nodes, on the virtual bus"};
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
+  addRecipe(app, recipe_arguments);
   addLearner(app, learner_arguments);
+  addPlanner(app, planner_arguments);
   addIns(app, ins_arguments);
   addMapping(app, mapping_arguments);
   CLI11_PARSE(app, argc, argv);
-  return 0;
+  return learner_arguments.different || planner_arguments.different ? 1 : 0;
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ struct MappingRecording {
   std::vector<ins_t> poses;       ///< in order of time
   std::vector<scan_t> scans;      ///< in order of time
   int64_t skipped = 0;            ///< lines or messages of the recording that were not whole
+  std::string problem;            ///< one clear line if the file is damaged; what is whole was read
   mapping::MappingConfig config;  ///< that fits its robot and its surroundings
 };
 

@@ -42,7 +42,8 @@ std::optional<LaserLine> parse(const std::string& line) {
   return laser;
 }
 
-std::vector<std::string> linesOf(const std::string& path) {
+/// `problem`: one clear line if the file ends too early.
+std::vector<std::string> linesOf(const std::string& path, std::string& problem) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (!file) throw std::runtime_error(path + ": cannot be opened");
   std::string text;
@@ -51,6 +52,11 @@ std::vector<std::string> linesOf(const std::string& path) {
   while ((got = gzread(file.get(), buffer, sizeof(buffer))) > 0)
     text.append(buffer, static_cast<size_t>(got));
   if (got < 0) throw std::runtime_error(path + ": is damaged: its compressed bytes do not unpack");
+  // A file that is cut off gives what it has, and this error.
+  int error = Z_OK;
+  gzerror(file.get(), &error);
+  if (error == Z_BUF_ERROR)
+    problem = path + ": ends in the middle of its compressed bytes; is the file truncated?";
   std::vector<std::string> lines;
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) lines.push_back(std::move(line));
@@ -119,7 +125,7 @@ MappingRecording readCarmenLog(const std::string& path) {
   recording.config = outdoorConfig();
   Pose2 last;
   int64_t utime = kStartUs;
-  for (const std::string& line : linesOf(path)) {
+  for (const std::string& line : linesOf(path, recording.problem)) {
     if (line.compare(0, 7, "FLASER ") != 0) continue;
     const auto laser = parse(line);
     if (!laser) {

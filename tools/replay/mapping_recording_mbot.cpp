@@ -127,6 +127,7 @@ MappingRecording readMbotLog(const std::string& path) {
       recording.scans.push_back(*scan);
     }
   }
+  recording.problem = log.problem();
   if (recording.scans.empty())
     throw std::runtime_error(path + ": holds no LIDAR message of the MBot's type");
   return recording;

@@ -79,6 +79,7 @@ MappingReplay replayMapping(const MappingRecording& recording) {
   replay.name = recording.name;
   replay.scans = static_cast<int64_t>(recording.scans.size());
   replay.skipped = recording.skipped;
+  replay.problem = recording.problem;
   replay.map = TileMap(recording.config.map.voxels.cell_size, recording.config.map.tile_cells);
   VirtualBus bus(0);
   bool playing = true;
@@ -119,6 +120,8 @@ std::string reportOf(const MappingReplay& replay) {
   out << std::fixed << std::setprecision(1);
   out << replay.name << ": " << replay.scans << " scans, " << replay.skipped
       << " records not whole, " << replay.duration << " s, " << wayOf(replay.track) << " m\n";
+  if (!replay.problem.empty()) out << "  " << replay.problem << '\n';
+  if (!replay.health.empty()) out << "  HEALTH at the end: " << replay.health << '\n';
   for (const auto& [name, counted] : replay.counters)
     out << "  " << name << ": " << counted << '\n';
   out << "  map: " << static_cast<double>(count([](Cell cell) { return isFree(cell); })) * cell_area

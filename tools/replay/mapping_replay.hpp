@@ -19,6 +19,7 @@ struct MappingReplay {
   std::vector<TimedPose> track;  ///< of the body
   int64_t scans = 0;             ///< in the recording
   int64_t skipped = 0;           ///< not whole in the recording
+  std::string problem;           ///< one clear line if the recording is damaged
   std::map<std::string, int64_t> counters;  ///< mapping's own, from its last HEALTH
   int64_t tiles = 0;                        ///< messages on MAP
   double duration = 0.0;                    ///< [s] of the recording

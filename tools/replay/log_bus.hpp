@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/bus/bus.hpp"
+#include "common/log/event_log.hpp"
+
+namespace tread::replay {
+
+/// The bus of one node that hears a log: time is what the replay says, and nothing is lost.
+/** What the node publishes is kept and reaches nobody, so it never hears its own past. */
+class LogBus : public Bus {
+ public:
+  explicit LogBus(int64_t boot_id) : now_(boot_id), boot_id_(boot_id) {}
+
+  int64_t now() const override { return now_; }
+  int64_t bootId() const override { return boot_id_; }
+  void setNow(int64_t utime) { now_ = utime; }
+
+  /// Hands an event to the node's handlers.
+  void hear(const LogEvent& event);
+  bool hears(const std::string& channel) const { return handlers_.count(channel) > 0; }
+  /// The channels that the node has subscribed to, sorted.
+  std::vector<std::string> heard() const;
+
+  /// What the node has published since the last call; the time is that of publishing.
+  std::vector<LogEvent> takePublished() { return std::move(published_); }
+
+ protected:
+  bool send(const char* channel, const uint8_t* bytes, size_t size) override;
+  void listen(const char* channel, RawHandler handler) override;
+
+ private:
+  int64_t now_;
+  int64_t boot_id_;
+  std::map<std::string, std::vector<RawHandler>> handlers_;
+  std::vector<LogEvent> published_;
+};
+
+}  // namespace tread::replay

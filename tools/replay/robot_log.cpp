@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/replay/robot_log.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+namespace tread::replay {
+namespace {
+
+constexpr int64_t kTransportUs = 20;  ///< of a message on the virtual bus
+/// A broken message may claim any time: nobody is this far from what the log says [us].
+constexpr int64_t kLargestLead = 5'000'000;
+/// A running robot says something this often [us]: a longer silence is a recorder's clock being
+/// set.
+constexpr int64_t kLongestSilence = 1'000'000;
+
+struct Stamp {
+  int64_t utime;
+  int64_t seq;
+};
+
+template <class Message>
+bool stampAs(const LogEvent& event, const Channel<Message>& channel, Stamp& stamp) {
+  Message message;
+  if (!decode(event, channel, message)) return false;
+  stamp = {message.utime, message.seq};
+  return true;
+}
+
+/// Time and number of an event on a channel that one process publishes with the time of sending or
+/// of a measurement just made.
+std::optional<Stamp> stampOf(const LogEvent& event) {
+  Stamp stamp{};
+  if (stampAs(event, kIns, stamp) || stampAs(event, kMotor, stamp) ||
+      stampAs(event, kExecution, stamp) || stampAs(event, kProgram, stamp))
+    return stamp;
+  return std::nullopt;
+}
+
+/// Follows the robot's clock through a log.
+class Clock {
+ public:
+  int64_t heard(const LogEvent& event, const std::optional<Stamp>& stamp) {
+    if (now_ != 0) now_ += std::clamp<int64_t>(event.utime - last_recorded_, 0, kLongestSilence);
+    last_recorded_ = event.utime;
+    if (stamp) follow(stamp->utime);
+    heard_ = std::max(heard_, now_);
+    return heard_;
+  }
+
+ private:
+  void follow(int64_t utime) {
+    const int64_t lead = utime - now_;
+    if (now_ == 0 || (lead > 0 && lead < kLargestLead) || lead < -kLongestSilence) now_ = utime;
+  }
+
+  int64_t now_ = 0;
+  int64_t heard_ = 0;
+  int64_t last_recorded_ = 0;
+};
+
+void noteSeq(const LogEvent& event, const Stamp& stamp, std::map<std::string, int64_t>& last,
+             std::map<std::string, int64_t>& missing) {
+  const auto [known, first] = last.try_emplace(event.channel, stamp.seq);
+  const int64_t gap = stamp.seq - known->second - 1;
+  // Who starts again counts from the beginning; a gap of thousands is a broken number.
+  if (!first && gap > 0 && gap < 100'000) missing[event.channel] += gap;
+  known->second = stamp.seq;
+}
+
+bool inVirtualTime(const std::vector<LogEvent>& events) {
+  for (const LogEvent& event : events) {
+    health_t health;
+    if (decode(event, kHealth, health)) return health.utc < 0;
+  }
+  return false;
+}
+
+}  // namespace
+
+RobotLog toRobotLog(const std::string& name, std::vector<LogEvent> events) {
+  RobotLog log;
+  log.name = name;
+  log.virtual_time = inVirtualTime(events);
+  Clock clock;
+  std::map<std::string, int64_t> last;
+  for (LogEvent& event : events) {
+    config_t config;
+    if (decode(event, kConfig, config))
+      log.configs.emplace(config.config_process, config.config_text);
+    const std::optional<Stamp> stamp = stampOf(event);
+    if (stamp) noteSeq(event, *stamp, last, log.missing);
+    const int64_t heard = log.virtual_time ? event.utime + kTransportUs : clock.heard(event, stamp);
+    log.events.push_back({std::move(event), heard});
+  }
+  // What was said before the first stamp was heard at its time.
+  const auto first = std::find_if(log.events.begin(), log.events.end(),
+                                  [](const TimedEvent& event) { return event.heard != 0; });
+  for (auto early = log.events.begin(); first != log.events.end() && early != first; ++early)
+    early->heard = first->heard;
+  return log;
+}
+
+RobotLog readRobotLog(const std::string& path) {
+  LogReader reader(path);
+  std::vector<LogEvent> events;
+  for (LogEvent event; reader.next(event);) {
+    const bool ours = std::any_of(kChannels.begin(), kChannels.end(), [&](const ChannelSpec& spec) {
+      return event.channel == spec.name;
+    });
+    if (ours && event.channel != kScan.name && event.channel != kPlanTree.name)
+      events.push_back(event);
+  }
+  RobotLog log = toRobotLog(std::filesystem::path(path).filename().string(), std::move(events));
+  log.problem = reader.problem();
+  if (log.events.empty())
+    throw std::runtime_error(path + ": no event on any of our channels" +
+                             (log.problem.empty() ? "" : "; " + log.problem));
+  return log;
+}
+
+}  // namespace tread::replay

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/replay/robot_planner.hpp"
+
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include "modules/planner/planner_node.hpp"
+#include "tools/replay/log_bus.hpp"
+#include "tools/replay/plan_difference.hpp"
+
+namespace tread::replay {
+namespace {
+
+/// Two messages of one step are nearer than this [us]; the last PROGRAM of a planner that was told
+/// to stop comes outside its steps.
+constexpr int64_t kHalfStep = 25'000;
+
+/// One step of a planner: what it said in it.
+struct Step {
+  program_t program;
+  std::optional<plan_t> plan;
+};
+
+/// One start of a planner.
+struct Life {
+  int64_t run_id = 0;
+  bool from_start = false;
+  std::vector<Step> steps;
+};
+
+std::vector<Life> livesIn(const RobotLog& log) {
+  std::vector<Life> lives;
+  for (const TimedEvent& timed : log.events) {
+    program_t program;
+    plan_t plan;
+    if (decode(timed.event, kProgram, program)) {
+      if (lives.empty() || lives.back().run_id != program.run_id)
+        lives.push_back({program.run_id, program.seq == 0, {}});
+      lives.back().steps.push_back({program, std::nullopt});
+    } else if (!lives.empty() && decode(timed.event, kPlan, plan)) {
+      lives.back().steps.back().plan = plan;
+    }
+  }
+  for (Life& life : lives) {
+    const size_t count = life.steps.size();
+    if (count > 1 &&
+        life.steps[count - 1].program.utime - life.steps[count - 2].program.utime < kHalfStep)
+      life.steps.pop_back();
+  }
+  return lives;
+}
+
+/// The count of expansions at which the robot's deadline ended the search of a step; 0 = it did
+/// not.
+int32_t cutOf(const Step& step, int64_t deadline) {
+  return step.plan && step.plan->search_time > deadline ? step.plan->expansions : 0;
+}
+
+/// What the node said in a step, and all of it to `all`.
+Step said(LogBus& bus, std::vector<LogEvent>& all) {
+  Step step{};
+  for (LogEvent& event : bus.takePublished()) {
+    plan_t plan;
+    if (event.channel == kProgram.name) decode(event, kProgram, step.program);
+    if (decode(event, kPlan, plan)) step.plan = plan;
+    all.push_back(std::move(event));
+  }
+  return step;
+}
+
+/// A life of the real planner, from the log.
+std::vector<Step> replayed(const RobotLog& log, const Life& life,
+                           const planner::PlannerConfig& config, std::vector<LogEvent>& all) {
+  LogBus bus(life.run_id);
+  planner::PlannerNode node(config, bus);
+  int32_t cut = 0;
+  node.setStop([&cut](int expansions) { return cut > 0 && expansions >= cut; });
+  auto event = log.events.begin();
+  while (event != log.events.end() && life.from_start && event->heard < life.run_id) ++event;
+  std::vector<Step> steps;
+  for (const Step& step : life.steps) {
+    const int64_t utime = step.program.utime;
+    for (; event != log.events.end() && event->heard < utime; ++event) {
+      bus.setNow(event->heard);
+      bus.hear(event->event);
+    }
+    cut = cutOf(step, config.deadline);
+    bus.setNow(utime);
+    node.step(utime);
+    steps.push_back(said(bus, all));
+  }
+  return steps;
+}
+
+void note(PlannerCheck& check, const std::string& difference) {
+  if (check.first_difference.empty()) check.first_difference = difference;
+}
+
+void compare(const Step& log, const Step& replay, PlannerCheck& check) {
+  const std::string program = differenceOf(log.program, replay.program);
+  ++(program.empty() ? check.programs_equal : check.programs_different);
+  if (log.plan && replay.plan) {
+    const std::string plan = differenceOf(*log.plan, *replay.plan);
+    ++(plan.empty() ? check.plans_equal : check.plans_different);
+    if (!plan.empty()) note(check, plan);
+  } else if (log.plan) {
+    ++check.plans_only_in_log;
+  } else if (replay.plan) {
+    ++check.plans_only_in_replay;
+  }
+  if (!program.empty()) note(check, program);
+}
+
+std::vector<LogEvent> replayAll(const RobotLog& log, const std::vector<Life>& lives,
+                                const planner::PlannerConfig& config, PlannerCheck* check) {
+  std::vector<LogEvent> all;
+  for (const Life& life : lives) {
+    const std::vector<Step> steps = replayed(log, life, config, all);
+    if (check == nullptr) continue;
+    check->steps += static_cast<int64_t>(steps.size());
+    if (!life.from_start) continue;
+    ++check->compared;
+    for (size_t i = 0; i < steps.size(); ++i) {
+      if (cutOf(life.steps[i], config.deadline) > 0) ++check->searches_cut;
+      compare(life.steps[i], steps[i], *check);
+    }
+  }
+  return all;
+}
+
+bool sameBytes(const std::vector<LogEvent>& a, const std::vector<LogEvent>& b) {
+  bool same = a.size() == b.size();
+  for (size_t i = 0; same && i < a.size(); ++i)
+    same = a[i].utime == b[i].utime && a[i].channel == b[i].channel && a[i].bytes == b[i].bytes;
+  return same;
+}
+
+}  // namespace
+
+planner::PlannerConfig plannerConfigOf(const RobotLog& log) {
+  const auto text = log.configs.find("planner");
+  if (text == log.configs.end())
+    throw std::runtime_error(log.name +
+                             ": no CONFIG of the planner; give its configuration with --config");
+  ConfigReader reader = ConfigReader::fromText(text->second, log.name + ", CONFIG of the planner");
+  return planner::readPlannerConfig(reader);
+}
+
+PlannerCheck checkPlanner(const RobotLog& log, const planner::PlannerConfig& config) {
+  const std::vector<Life> lives = livesIn(log);
+  if (lives.empty()) throw std::runtime_error(log.name + ": no PROGRAM, so no planner was running");
+  PlannerCheck check;
+  check.name = log.name;
+  check.lives = static_cast<int>(lives.size());
+  const std::vector<LogEvent> first = replayAll(log, lives, config, &check);
+  check.same_twice = sameBytes(first, replayAll(log, lives, config, nullptr));
+  if (check.compared < check.lives)
+    check.notes.push_back(
+        "the log begins in the middle of a planner's life, which cannot be compared: its "
+        "permission "
+        "and its numbers are not known");
+  for (const auto& [channel, missing] : log.missing)
+    check.notes.push_back("the log misses " + std::to_string(missing) + " messages on " + channel);
+  if (!log.problem.empty()) check.notes.push_back(log.problem);
+  return check;
+}
+
+std::string reportOf(const PlannerCheck& check) {
+  std::ostringstream out;
+  out << check.name << ": " << check.lives << (check.lives == 1 ? " planner, " : " planners, ")
+      << check.steps << " steps, " << check.searches_cut
+      << " searches cut by the deadline on the robot (replayed with the same count)\n";
+  for (const std::string& line : check.notes) out << "  " << line << "\n";
+  out << "  replayed twice: " << (check.same_twice ? "the same bytes" : "NOT the same bytes")
+      << "\n  PROGRAM: " << check.programs_equal << " equal, " << check.programs_different
+      << " different\n  PLAN: " << check.plans_equal << " equal, " << check.plans_different
+      << " different, " << check.plans_only_in_log << " only in the log, "
+      << check.plans_only_in_replay << " only in the replay\n";
+  if (!check.first_difference.empty())
+    out << "  first difference: " << check.first_difference << "\n";
+  out << check.name << ": planner "
+      << (check.compared == 0 ? "not compared"
+          : check.equal()     ? "EQUAL"
+                              : "DIFFERENT")
+      << "\n";
+  return out.str();
+}
+
+}  // namespace tread::replay
