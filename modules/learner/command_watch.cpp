@@ -35,9 +35,10 @@ std::string CommandWatch::foreignCommand(const ExecutionKey& execution,
     if (index >= pattern.commands.size())
       return "the motors got more commands than the pattern has";
     const TrackCommand& command = pattern.commands[index];
-    const double off =
-        std::max(std::abs(given.left - command.left), std::abs(given.right - command.right));
-    if (off <= kTolerance) continue;
+    // Both by themselves: a NaN in one of them must not hide behind the other.
+    if (std::abs(given.left - command.left) <= kTolerance &&
+        std::abs(given.right - command.right) <= kTolerance)
+      continue;
     char line[160];
     std::snprintf(line, sizeof line,
                   "command %zu was (%.3f, %.3f) on the motors, (%.3f, %.3f) in the pattern", index,

@@ -15,18 +15,24 @@ constexpr int64_t kReserve = 100;
 constexpr int64_t kReserveLeft = 50;
 /// Above a state whose reserve is lost.
 constexpr int64_t kWithoutReserve = 1000;
+/// No version is higher: a larger number is not one of ours.
+constexpr int64_t kHighestReserve = 1'000'000'000'000;
 /// Robot time for one version where nothing is known [us].
 constexpr int64_t kTimePerVersionUs = 100'000;
 
 }  // namespace
 
-std::optional<int64_t> LearnerMemory::storedReserve() const {
+std::optional<int64_t> LearnerMemory::storedReserve(std::string& problem) const {
   const auto content = store_.read(kVersions);
   if (!content) return std::nullopt;
   std::istringstream in(*content);
   int64_t reserve = 0;
-  if (!(in >> reserve) || reserve < 1) return std::nullopt;
-  return reserve;
+  // The whole entry must be the number: half a number would be a lower one.
+  const bool whole = (in >> reserve) && (in >> std::ws).eof();
+  if (whole && reserve >= 1 && reserve <= kHighestReserve) return reserve;
+  if (!problem.empty()) problem += "; ";
+  problem += std::string(kVersions) + " is damaged: versions go on far above";
+  return std::nullopt;
 }
 
 Recollection LearnerMemory::recall(const PatternSet& shipped, int64_t utime) {
@@ -49,7 +55,7 @@ Recollection LearnerMemory::recall(const PatternSet& shipped, int64_t utime) {
     found.problem += found.state
                          ? ": going on from version " + std::to_string(found.state->set.version())
                          : ": starting from the shipped set";
-  const auto reserve = storedReserve();
+  const auto reserve = storedReserve(found.problem);
   const int64_t known = std::max(shipped.version(), found.state ? found.state->set.version() : 0);
   if (reserve) {
     found.first_version = std::max(*reserve, known) + 1;

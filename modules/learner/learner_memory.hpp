@@ -37,7 +37,8 @@ class LearnerMemory {
   std::optional<std::string> save(const std::string& state_text);
 
  private:
-  std::optional<int64_t> storedReserve() const;
+  /// Nothing where it is missing, or damaged, which is added to `problem`.
+  std::optional<int64_t> storedReserve(std::string& problem) const;
 
   Store& store_;
   int64_t reserved_ = 0;

@@ -140,6 +140,23 @@ TEST_CASE("an execution whose motors got other commands than its pattern has is 
           "command 0 was (0.700, 0.500) on the motors, (0.700, 1.000) in the pattern");
 }
 
+TEST_CASE("a command on the motors that is no number is another command, whichever side it is") {
+  const double nan = std::nan("");
+  const PatternSet set = smallSet();
+  const MotionPattern& left = *set.find(kLeft);
+  for (const bool on_left : {false, true}) {
+    motor_t motor{};
+    motor.motor_run_id = 5;
+    motor.execution_id = 1;
+    motor.motor_command_kind = static_cast<int16_t>(CommandKind::kPower);
+    motor.command_left = static_cast<float>(on_left ? nan : left.commands[0].left);
+    motor.command_right = static_cast<float>(on_left ? left.commands[0].right : nan);
+    CommandWatch watch;
+    watch.add(motor);
+    REQUIRE_FALSE(watch.foreignCommand({5, 1}, left, CommandKind::kPower).empty());
+  }
+}
+
 TEST_CASE("a pattern that is not in the set is refused") {
   Driving driving;
   driving.patterns = {99};

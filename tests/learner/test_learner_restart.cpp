@@ -124,6 +124,21 @@ TEST_CASE("with both states damaged the learner starts from the shipped set, abo
   REQUIRE(bench.health.health_reason.empty());
 }
 
+TEST_CASE("a damaged reserve of versions is one clear line, and versions still go up") {
+  for (const std::string content : {"9223372036854775807\n", "1#1\n", "", "-5\n"}) {
+    CAPTURE(content);
+    Bench bench;
+    bench.run(10.0);
+    const int64_t published = bench.node().set().version();
+    bench.bus.kill("learner");
+    bench.store.write("learner_versions", content);
+    bench.bus.restart("learner");
+    REQUIRE(bench.node().set().version() > published + 100);
+    bench.run(0.1);
+    REQUIRE(bench.health.health_reason == "learner_versions is damaged: versions go on far above");
+  }
+}
+
 TEST_CASE("a state of another shipped set is not used") {
   Bench bench;
   bench.run(10.0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <zlib.h>
 #include <catch2/catch.hpp>
 
 #include <cstdlib>
@@ -93,6 +94,39 @@ TEST_CASE("logs that cannot be read are one clear line") {
   REQUIRE_THROWS_WITH(readMappingRecording(gz.path()), Catch::Contains("is damaged"));
   const TestFile empty("empty.log", "");
   REQUIRE_THROWS_AS(readMappingRecording(empty.path()), std::runtime_error);
+}
+
+TEST_CASE("a recording that ends too early is played as far as it goes, and the report says so") {
+  const TestFile whole("whole.log.gz", "");
+  const std::string text = carmenDrive(12.03, 40);
+  gzFile packed = gzopen(whole.path().c_str(), "wb");
+  REQUIRE(gzwrite(packed, text.data(), static_cast<unsigned>(text.size())) > 0);
+  REQUIRE(gzclose(packed) == Z_OK);
+  REQUIRE(readMappingRecording(whole.path()).problem.empty());
+  std::filesystem::resize_file(whole.path(), std::filesystem::file_size(whole.path()) * 2 / 3);
+  MappingRecording cut = readMappingRecording(whole.path());
+  REQUIRE(cut.scans.size() < 40);
+  REQUIRE(cut.problem.find("is the file truncated?") != std::string::npos);
+  cut.scans.resize(1);
+  REQUIRE(reportOf(replayMapping(cut)).find(cut.problem) != std::string::npos);
+}
+
+TEST_CASE("an MBot log that is cut off says so") {
+  const TestFile file("mbot_cut.log", "");
+  {
+    LogWriter log(file.path());
+    std::vector<uint8_t> scan{0x89, 0xdc, 0x5b, 0x87, 0x9a, 0x50, 0x56, 0xcf};
+    scan.resize(8 + 8, 0);  // utime
+    scan.insert(scan.end(), {0, 0, 0, 2});
+    scan.resize(scan.size() + 4 * 8, 0);  // two ranges, angles, times, intensities
+    log.write(1'000'000, "LIDAR", scan.data(), scan.size());
+    log.write(1'100'000, "LIDAR", scan.data(), scan.size());
+  }
+  REQUIRE(readMbotLog(file.path()).problem.empty());
+  std::filesystem::resize_file(file.path(), std::filesystem::file_size(file.path()) - 5);
+  const MappingRecording cut = readMbotLog(file.path());
+  REQUIRE(cut.scans.size() == 1);
+  REQUIRE_FALSE(cut.problem.empty());
 }
 
 TEST_CASE("foreign messages on the MBot's channels are skipped and counted") {
