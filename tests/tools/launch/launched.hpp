@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/system/process.hpp"
+
+namespace tread::testing {
+
+/// True as soon as `condition` is, false after so many seconds.
+inline bool within(double seconds, const std::function<bool()>& condition) {
+  const auto deadline = std::chrono::steady_clock::now() +
+                        std::chrono::milliseconds(static_cast<int64_t>(1000.0 * seconds));
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return true;
+}
+
+inline std::string contentOf(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A launch file with stand-ins in a folder of its own, and what tread-launch makes of it.
+class Launched {
+ public:
+  /// `natures` are those of the stand-ins p0, p1, ...: good, deaf, brief, wrong. The last process
+  /// is a foreign one, which knows nothing of its parent.
+  explicit Launched(const std::vector<std::string>& natures)
+      : folder(std::filesystem::temp_directory_path() /
+               ("tread_launch_" + std::to_string(getpid()) + "_" + std::to_string(count()))) {
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    std::ofstream file(folder / "trial.yaml");
+    file << "name: trial\nlcm_url: " << ownLcmUrl() << "\nprocesses:\n";
+    for (size_t i = 0; i < natures.size(); ++i) {
+      const std::string name = "p" + std::to_string(i);
+      std::ofstream(folder / (name + ".txt")) << natures[i];
+      file << "  - {name: " << name << ", program: " << TREAD_STAND_IN << ", config: " << name
+           << ".txt, arguments: [\"{run}\"], stop_time: 2}\n";
+    }
+    file << "  - {name: other, program: sleep, arguments: [\"1000\"], foreign: true}\n";
+  }
+  ~Launched() {
+    for (const int pid : pids()) kill(pid, SIGKILL);
+    std::filesystem::remove_all(folder);
+  }
+  Launched(const Launched&) = delete;
+  Launched& operator=(const Launched&) = delete;
+
+  std::vector<std::string> arguments(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{(folder / "trial.yaml").string(), "--run", run().string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  std::filesystem::path run() const { return folder / "run"; }
+  std::filesystem::path output() const { return folder / "output.txt"; }
+  std::string said() const { return contentOf(output()); }
+  bool says(const std::string& text, double seconds = 20.0) const {
+    return within(seconds, [&] { return said().find(text) != std::string::npos; });
+  }
+
+  /// All processes that work in the run folder, supervisor apart.
+  std::vector<int> pids() const {
+    std::vector<int> found;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+      const std::string name = entry.path().filename().string();
+      if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+      std::error_code gone;
+      const auto place = std::filesystem::read_symlink(entry.path() / "cwd", gone);
+      if (gone || place != run()) continue;
+      if (std::stoi(name) != supervisor()) found.push_back(std::stoi(name));
+    }
+    return found;
+  }
+  /// The one whose command has this word; 0 if none.
+  int pidOf(const std::string& word) const {
+    for (const int pid : pids())
+      if (contentOf("/proc/" + std::to_string(pid) + "/cmdline").find(word) != std::string::npos)
+        return pid;
+    return 0;
+  }
+  int supervisor() const {
+    const std::string text = contentOf(run() / "supervisord.pid");
+    return text.empty() ? 0 : std::stoi(text);
+  }
+
+  const std::filesystem::path folder;
+
+ private:
+  static int count() {
+    static int number = 0;
+    return number++;
+  }
+};
+
+}  // namespace tread::testing

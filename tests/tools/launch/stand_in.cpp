@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// Stands in for a process of the robot: takes the same options, does nothing, and ends as told.
+// With a configuration of one word: "good", "wrong" (its --check fails), "deaf" (never ends by
+// itself), "brief" (ends at once).
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <sys/prctl.h>
+#include <unistd.h>
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  std::string nature = "good";
+  bool check = false;
+  bool with_parent = false;
+  for (size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "--config" && i + 1 < words.size()) std::ifstream(words[i + 1]) >> nature;
+    check |= words[i] == "--check";
+    with_parent |= words[i] == "--with-parent";
+  }
+  if (check) {
+    if (nature == "wrong") std::puts("planner.yaml:3: lease is 9 s; allowed 0.05..1 s");
+    return nature == "wrong" ? 1 : 0;
+  }
+  if (nature == "brief") return 4;
+  if (with_parent) prctl(PR_SET_PDEATHSIG, SIGINT);
+  sigset_t waited;
+  sigemptyset(&waited);
+  sigaddset(&waited, SIGINT);
+  sigaddset(&waited, SIGTERM);
+  sigprocmask(SIG_BLOCK, &waited, nullptr);
+  for (const std::string& word : words) std::printf("%s ", word.c_str());
+  std::printf("\nruns as %d in %s\n", getpid(), getcwd(nullptr, 0));
+  std::fflush(stdout);
+  int number = 0;
+  do sigwait(&waited, &number);
+  while (nature == "deaf");
+  std::printf("ends by signal %d\n", number);
+  return 0;
+}

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tread::launch {
+
+/// Something that is missing, and the command that mends it.
+struct Finding {
+  bool critical = true;  ///< false: starting makes sense all the same
+  std::string problem;
+  std::string remedy;
+};
+
+/// "NAME: PROBLEM; mend: REMEDY", and "advice" before what is not critical. One line.
+std::string findingLine(const std::string& launch_name, const Finding& finding);
+bool anyCritical(const std::vector<Finding>& findings);
+
+/// An LCM URL in parts, as liblcm 1.3.1 reads it.
+struct LcmAddress {
+  std::string provider = "udpm";
+  std::string group = "239.255.76.67";
+  uint16_t port = 7667;
+  int ttl = 0;
+  int64_t receive_buffer = 0;  ///< byte; 0 = the kernel's default
+};
+
+/// Takes an LCM URL apart; nothing if it cannot be read.
+std::optional<LcmAddress> parseLcmUrl(const std::string& url);
+
+/// What the host says about multicast.
+struct NetworkFacts {
+  std::string route_device;  ///< that multicast to the group leaves by; empty = no route
+  bool loopback_up = false;
+  bool loopback_multicast = false;
+  bool delivered = false;  ///< a datagram to the group came back
+  int64_t rmem_max = 0;    ///< net.core.rmem_max [byte]
+};
+
+/// The device of an answer of `ip route get GROUP`; empty if there is no route.
+std::string routeDevice(const std::string& answer);
+
+/// With ttl 0 messages must stay on the loopback device: there they also survive an unplugged
+/// network cable.
+std::vector<Finding> checkNetwork(const LcmAddress& address, const NetworkFacts& facts);
+
+/// One process: what the host says about its program, configuration and device.
+struct ProcessFacts {
+  std::string name;
+  std::string program;  ///< as in the launch file
+  bool program_found = false;
+  std::string config;  ///< path; empty = none
+  bool config_readable = true;
+  int check_code = 0;          ///< exit code of the program's --check
+  std::string check_line;      ///< what it said
+  std::string device;          ///< path of a tty; empty = none
+  bool device_present = true;  ///< and may be read and written
+};
+
+std::vector<Finding> checkProcess(const ProcessFacts& facts);
+
+/// The tty that a process will open: of its last `--set address=`, else the configuration's
+/// address; empty if there is none or if it lies in the run folder, where a process makes it.
+std::string deviceOf(const std::vector<std::string>& arguments, const std::string& config_address,
+                     const std::string& run);
+
+/// What the host says about the run folder.
+struct FolderFacts {
+  std::string path;
+  bool writable = false;
+  int64_t free_bytes = 0;
+  size_t longest_socket = 0;  ///< byte
+  int owner = 0;              ///< pid of the tread-launch that runs in it; 0 = none
+  bool occupied = false;      ///< somebody runs in it
+};
+
+std::vector<Finding> checkFolder(const FolderFacts& facts);
+
+/// A program that the host must have, and its Debian package.
+Finding missingTool(const std::string& tool, const std::string& package);
+
+}  // namespace tread::launch
