@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include "tools/operator/call.hpp"
+#include "tools/operator/drive_progress.hpp"
+
+namespace tread::operators {
+
+/// Where to go, and how exactly.
+struct GoalRequest {
+  Pose2 T_map_goal;
+  double position_tolerance = 0.6;  ///< [m]
+  double yaw_tolerance = kPi;       ///< [rad]; pi = any heading
+  /// [s] for which blocked or unreachable may last before the call gives up.
+  double patience = 30.0;
+};
+
+/// Repeats GOAL until the planner has arrived or gives up for good.
+class GoalCall : public Call {
+ public:
+  /// `goal_id` must be new to the planner.
+  GoalCall(Bus& bus, const GoalRequest& request, int64_t goal_id, SurfaceNames surface_names);
+
+  CallResult step(int64_t utime) override;
+  std::string words(int64_t utime) const override;
+  /// Sends goal 0: the planner stops.
+  void cancel(int64_t utime) override;
+
+ private:
+  void send(int64_t utime, int64_t goal_id);
+  bool isOurs(const plan_t& plan) const { return plan.goal_id == goal_id_; }
+
+  Bus& bus_;
+  GoalRequest request_;
+  int64_t goal_id_;
+  DriveProgress progress_;
+  int64_t begun_ = -1;
+  int64_t next_ = 0;
+  int64_t stuck_since_ = -1;
+  int64_t seq_ = 0;
+};
+
+}  // namespace tread::operators
