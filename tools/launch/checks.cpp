@@ -140,12 +140,15 @@ std::vector<Finding> checkProcess(const ProcessFacts& facts) {
                                  ? "--check ended with code " + std::to_string(facts.check_code)
                                  : facts.check_line),
                         facts.config.empty() ? "correct the launch file" : "edit " + facts.config});
-  if (!facts.device.empty() && !facts.device_present)
-    findings.push_back({false,
-                        facts.name + ": device " + facts.device +
-                            " is absent or not ours to use; it is tried again and again",
-                        "plug it in; or usermod -a -G dialout USER  (as root); or change address" +
-                            (facts.config.empty() ? "" : " in " + facts.config)});
+  const std::string device = facts.name + ": device " + facts.device;
+  if (facts.device.empty()) return findings;
+  if (!facts.device_present)
+    findings.push_back({false, device + " is absent; it is tried again and again",
+                        "plug it in, or change address" +
+                            (facts.config.empty() ? std::string() : " in " + facts.config)});
+  else if (!facts.device_usable)
+    findings.push_back({false, device + " may not be read and written",
+                        "usermod -a -G dialout USER  (as root), then log in again"});
   return findings;
 }
 

@@ -55,10 +55,11 @@ struct ProcessFacts {
   bool program_found = false;
   std::string config;  ///< path; empty = none
   bool config_readable = true;
-  int check_code = 0;          ///< exit code of the program's --check
-  std::string check_line;      ///< what it said
-  std::string device;          ///< path of a tty; empty = none
-  bool device_present = true;  ///< and may be read and written
+  int check_code = 0;      ///< exit code of the program's --check
+  std::string check_line;  ///< what it said
+  std::string device;      ///< path of a tty; empty = none
+  bool device_present = true;
+  bool device_usable = true;  ///< may be read and written
 };
 
 std::vector<Finding> checkProcess(const ProcessFacts& facts);

@@ -63,7 +63,8 @@ ProcessFacts processFacts(const LaunchProcess& process, const std::string& lcm_u
   const std::string address =
       process.config.empty() || !facts.config_readable ? "" : configuredAddress(process.config);
   facts.device = deviceOf(process.arguments, address, settings.run);
-  facts.device_present = facts.device.empty() || access(facts.device.c_str(), R_OK | W_OK) == 0;
+  facts.device_present = access(facts.device.c_str(), F_OK) == 0;
+  facts.device_usable = access(facts.device.c_str(), R_OK | W_OK) == 0;
   return facts;
 }
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/launch/supervision.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -28,6 +29,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr timespec kPatience{0, 50'000'000};
+constexpr int kCallsAtStart = 60;  // one each 50 ms
+constexpr int kCallsAfterEnd = 3;
 constexpr double kLongestStop = 120.0;  // s
 
 double secondsSince(Clock::time_point start) {
@@ -41,7 +44,7 @@ std::string oneDecimal(double seconds) {
 }
 
 /// Supervisord looks at its processes once a second, or when somebody calls: a call that says
-/// nothing makes it restart and stop in a twentieth of the time.
+/// nothing makes it start, restart and stop at once.
 void call(const std::string& socket_path) {
   sockaddr_un address{};
   if (socket_path.size() >= sizeof address.sun_path) return;
@@ -87,7 +90,7 @@ class Run {
   pid_t supervisor_ = -1;
   bool stopping_ = false;
   bool ended_ = false;
-  int calls_left_ = 0;
+  int calls_left_ = kCallsAtStart;
   int status_ = 0;
 };
 
@@ -152,7 +155,8 @@ void Run::tell() {
   for (const std::string& line : log_.newLines()) {
     const auto event = parseSupervisorLine(line);
     if (!event) continue;
-    if (event->kind == SupervisorEvent::Kind::kEnded) calls_left_ = 3;
+    if (event->kind == SupervisorEvent::Kind::kEnded)
+      calls_left_ = std::max(calls_left_, kCallsAfterEnd);
     if (const auto told = narrator_.tell(*event, secondsSince(start_)))
       std::cout << *told << std::endl;
   }

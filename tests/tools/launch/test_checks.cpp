@@ -62,7 +62,8 @@ TEST_CASE("a good host has nothing to mend") {
   LcmAddress address;
   address.ttl = 1;
   CHECK(checkNetwork(address, wide).empty());
-  CHECK(checkProcess({"planner", "tread-planner", true, "p.yaml", true, 0, "", "", true}).empty());
+  CHECK(checkProcess({"planner", "tread-planner", true, "p.yaml", true, 0, "", "", true, true})
+            .empty());
   CHECK(checkFolder({"/run", true, 1'000'000'000'000, 20, 0, false}).empty());
 }
 
@@ -108,7 +109,7 @@ TEST_CASE("the route is read from what ip says") {
 }
 
 TEST_CASE("a process's program, configuration and device are named when they are missing") {
-  ProcessFacts facts{"planner", "tread-planner", false, "p.yaml", true, 0, "", "", true};
+  ProcessFacts facts{"planner", "tread-planner", false, "p.yaml", true, 0, "", "", true, true};
   CHECK(oneLine(checkProcess(facts)) ==
         "robot: planner: there is no program tread-planner; mend: tools/build\n");
   facts.program_found = true;
@@ -125,6 +126,9 @@ TEST_CASE("a process's program, configuration and device are named when they are
   CHECK_FALSE(anyCritical(checkProcess(facts)));
   CHECK_THAT(oneLine(checkProcess(facts)),
              StartsWith("robot: advice: planner: device /dev/ttyUSB0 is absent"));
+  facts.device_present = true;
+  facts.device_usable = false;
+  CHECK_THAT(oneLine(checkProcess(facts)), Contains("usermod -a -G dialout"));
 }
 
 TEST_CASE("the device is that of the last --set, else of the configuration, and a tty") {

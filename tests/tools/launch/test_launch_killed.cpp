@@ -7,8 +7,8 @@
 #include "tools/launch/run_lock.hpp"
 
 using namespace tread::testing;
-using tread::launch::RunLock;
 using Catch::Contains;
+using tread::launch::RunLock;
 
 TEST_CASE("a killed supervisor leaves no process behind, not even one that does not listen") {
   const Launched launched({"good", "deaf"});
