@@ -73,7 +73,8 @@ void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config) {
   reader.number("memory", config.rule.memory, {0.0, 0.999}, "1");
   readScaling(reader, config.rule);
   readGates(reader, config.limits);
-  seconds(reader, "period", config.period_us, {0.005, 0.1});
+  // Not shorter: the outbox sends a portion a step, and LCM loses more than 100 kB in 20 ms.
+  seconds(reader, "period", config.period_us, {0.02, 0.1});
   seconds(reader, "settle", config.settle_us, {0.0, 2.0});
   seconds(reader, "give_up", config.give_up_us, {0.1, 30.0});
   seconds(reader, "repeat", config.repeat_us, {0.2, 5.0});

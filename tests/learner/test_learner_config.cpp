@@ -46,6 +46,8 @@ TEST_CASE("a mistyped key, rule or value of the learner is one line with file an
   REQUIRE_THROWS_WITH(read("memry: 0.3\n"), StartsWith("learner.yaml:2: unknown key memry"));
   REQUIRE_THROWS_WITH(read("rule: colective\n"), StartsWith("learner.yaml:2: "));
   REQUIRE_THROWS_WITH(read("memory: 1.0\n"), StartsWith("learner.yaml:2: "));
+  // Below 20 ms the set would be sent faster than LCM can take it.
+  REQUIRE_THROWS_WITH(read("period: 0.01\n"), StartsWith("learner.yaml:2: "));
 }
 
 TEST_CASE("the effective configuration is itself YAML and names the shipped set") {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -28,7 +29,16 @@ Recording read(const Arguments& arguments, const Session& session) {
   return readContinuous(arguments.csv, session);
 }
 
+/// A command is held for a period of the recording, so an execution is a whole number of them.
+void checkLength(double length) {
+  const double commands = length / kPeriod;
+  if (std::abs(commands - std::round(commands)) > 1e-6)
+    throw ImportError("--length: " + std::to_string(length) +
+                      " s is no multiple of 0.05 s, the recordings' period");
+}
+
 void run(const Arguments& arguments) {
+  checkLength(arguments.layout.length);
   const std::string name = arguments.session.empty()
                                ? std::filesystem::path(arguments.csv).stem().string()
                                : arguments.session;

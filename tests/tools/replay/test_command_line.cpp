@@ -81,6 +81,17 @@ TEST_CASE("a log that does not fit on the disk is one line, not a success") {
   REQUIRE(import.said.find("/dev/full: cannot be written") != std::string::npos);
 }
 
+TEST_CASE("executions of a length that is no whole number of commands are refused") {
+  const Folder folder("command_line_length");
+  const std::string csv = folder.file("drive.csv", kStepsHeader + stepRows(1) + stepRows(2));
+  const Outcome import =
+      call("tread-import --format steps --length 0.12 --sessions " +
+           folder.file("sessions.csv", sessions(242)) + " " + csv + " -o " + folder.file("x.log"));
+  REQUIRE(import.code == 1);
+  REQUIRE(lines(import.said) == 1);
+  REQUIRE(import.said.find("--length") != std::string::npos);
+}
+
 TEST_CASE("bad arguments of tread-replay are one clear line each") {
   const Outcome missing = call("tread-replay learner /nowhere.log --model " + kModel);
   REQUIRE(missing.code == 1);
