@@ -13,7 +13,7 @@ void Permission::revoke(int64_t utime) {
 
 void Permission::take(const arm_t& message, int64_t now) {
   if (!message.armed) return revoke(std::min(message.utime, now));
-  const bool timely = message.utime <= now + kMaxFuture && now - message.utime <= kMaxAge;
+  const bool timely = message.utime <= now + kMaxFuture && message.utime >= now - kMaxAge;
   if (timely && message.utime > revoked_ && !estopped_) armed_ = true;
 }
 

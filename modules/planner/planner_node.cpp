@@ -38,15 +38,17 @@ void PlannerNode::subscribe() {
       kEstop, [this](const estop_t& message) { permission_.take(message, bus_.now()); });
 }
 
-/// A time that has not come yet would look fresh for ever.
-bool PlannerNode::fromFuture(int64_t utime, const char* channel) {
-  if (utime <= bus_.now() + kMaxFuture) return false;
-  health_.addToCounter(std::string(channel) + " refused: from the future");
+/// A time that has not come yet would look fresh for ever, and so would one whose age overflows.
+bool PlannerNode::senselessTime(int64_t utime, const char* channel) {
+  const bool future = utime > bus_.now() + kMaxFuture;
+  if (utime > 0 && !future) return false;
+  health_.addToCounter(std::string(channel) +
+                       (future ? " refused: from the future" : " refused: no such time"));
   return true;
 }
 
 void PlannerNode::take(const ins_t& message) {
-  if (fromFuture(message.utime, "INS")) return;
+  if (senselessTime(message.utime, "INS")) return;
   const std::optional<Pose2> pose = planarPose(message);
   if (!pose) return health_.addToCounter("INS without a pose");
   if (situation_.pose && message.utime <= situation_.pose->utime)
@@ -55,7 +57,7 @@ void PlannerNode::take(const ins_t& message) {
 }
 
 void PlannerNode::take(const map_tile_t& message) {
-  if (fromFuture(message.utime, "MAP")) return;
+  if (senselessTime(message.utime, "MAP")) return;
   std::optional<Tile> tile = tileFrom(message);
   if (!tile || !supervisor_.world().put(std::move(*tile), message.cell_size, message.tile_cells))
     health_.addToCounter("MAP refused: sizes make no sense");
@@ -79,14 +81,14 @@ void PlannerNode::take(const pattern_set_part_t& message) {
 }
 
 void PlannerNode::take(const motor_t& message) {
-  if (fromFuture(message.utime, "MOTOR")) return;
+  if (senselessTime(message.utime, "MOTOR")) return;
   if (situation_.bridge && message.utime < situation_.bridge->utime) return;
   situation_.bridge = readingFrom(message);
   permission_.take(*situation_.bridge);
 }
 
 void PlannerNode::take(const execution_t& message) {
-  if (fromFuture(message.utime, "EXECUTION")) return;
+  if (senselessTime(message.utime, "EXECUTION")) return;
   if (message.utime < executions_utime_) return;
   executions_utime_ = message.utime;
   situation_.executions = readingsFrom(message);

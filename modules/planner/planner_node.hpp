@@ -30,7 +30,7 @@ class PlannerNode : public Node {
 
  private:
   void subscribe();
-  bool fromFuture(int64_t utime, const char* channel);
+  bool senselessTime(int64_t utime, const char* channel);
   void take(const ins_t& message);
   void take(const map_tile_t& message);
   void take(const goal_t& message);

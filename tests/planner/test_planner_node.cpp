@@ -227,6 +227,45 @@ TEST_CASE("Messages that make no sense are counted and change nothing") {
   CHECK(counters["MAP refused: from the future"] == 1);
 }
 
+TEST_CASE("A time before all clocks is refused: no age overflows, and nothing is allowed by it") {
+  VirtualBus bus(7);
+  bus.addNode("planner",
+              [](Bus& end) { return std::make_unique<PlannerNode>(PlannerConfig{}, end); });
+  plan_t plan{};
+  std::map<std::string, int64_t> counters;
+  bus.outside().subscribe<plan_t>(kPlan, [&](const plan_t& message) { plan = message; });
+  bus.outside().subscribe<health_t>(kHealth, [&](const health_t& message) {
+    for (const counter_t& counter : message.counters)
+      counters[counter.counter_name] = counter.counted;
+  });
+  const auto send = [&bus](const auto& channel, auto message, int64_t utime) {
+    message.utime = utime;
+    bus.outside().publish(channel, message);
+  };
+  ins_t ins{};
+  ins.orientation[0] = 1.0;
+  arm_t arm{};
+  arm.armed = true;
+  goal_t goal{};
+  goal.goal_id = 1;
+  goal.position_tolerance = 0.5;
+  goal.yaw_tolerance = 4.0;
+  for (const int64_t utime : {std::numeric_limits<int64_t>::min(), int64_t{-1}, int64_t{0}}) {
+    send(kIns, ins, utime);
+    send(kMotor, motor_t{}, utime);
+    send(kExecution, execution_t{}, utime);
+    send(kArm, arm, utime);
+    send(kGoal, goal, bus.now());
+    bus.runUntil(bus.now() + 1'000'000);
+    CHECK(plan.plan_status == plan_t::PLAN_WAITING);
+    CHECK(plan.reason == "no usable INS yet");
+  }
+  bus.runUntil(bus.now() + 1'000'000);
+  CHECK(counters["INS refused: no such time"] == 3);
+  CHECK(counters["MOTOR refused: no such time"] == 3);
+  CHECK(counters["EXECUTION refused: no such time"] == 3);
+}
+
 TEST_CASE("A configuration is read with its ranges, and mistakes are named at file and line") {
   ConfigReader good = ConfigReader::fromText(
       "footprint: {front: 0.8, rear: 0.7, half_width: 0.5}\n"
