@@ -9,7 +9,7 @@ namespace {
 
 bool hasPosition(const ins_t& ins) {
   return (ins.ins_status & ins_t::STATUS_NO_POSITION) == 0 && std::isfinite(ins.position[0]) &&
-         std::isfinite(ins.position[1]) && std::isfinite(ins.position[2]);
+         std::isfinite(ins.position[1]);
 }
 
 std::optional<Eigen::Quaterniond> orientation(const ins_t& ins) {
@@ -32,7 +32,7 @@ std::optional<Pose2> planarPose(const ins_t& ins) {
 
 std::optional<Eigen::Isometry3d> spatialPose(const ins_t& ins) {
   const auto R_map_body = orientation(ins);
-  if (!hasPosition(ins) || !R_map_body) return std::nullopt;
+  if (!hasPosition(ins) || !std::isfinite(ins.position[2]) || !R_map_body) return std::nullopt;
   Eigen::Isometry3d T_map_body = Eigen::Isometry3d::Identity();
   T_map_body.linear() = R_map_body->toRotationMatrix();
   T_map_body.translation() = Eigen::Vector3d(ins.position[0], ins.position[1], ins.position[2]);

@@ -14,7 +14,8 @@ namespace tread {
 /// not finite.
 std::optional<Pose2> planarPose(const ins_t& ins);
 
-/// T_map_body of a plausible INS message; nothing as above.
+/// T_map_body of a plausible INS message; nothing as above, or if the height is missing (a device
+/// that speaks RMC only).
 std::optional<Eigen::Isometry3d> spatialPose(const ins_t& ins);
 
 /// Body twist in the plane, or nothing if the device does not measure it.

@@ -66,7 +66,6 @@ TEST_CASE("what the device does not know gives nothing, whether told by status o
   const std::vector<Change> no_pose{[](auto& m) { m.ins_status = ins_t::STATUS_NO_POSITION; },
                                     [](auto& m) { m.ins_status = ins_t::STATUS_NO_HEADING; },
                                     [](auto& m) { m.position[1] = kNan; },
-                                    [](auto& m) { m.position[2] = kInf; },
                                     [](auto& m) { m.orientation[0] = kNan; },
                                     [](auto& m) { m.orientation[3] = kInf; },
                                     [](auto& m) { m.orientation[0] += 0.5; },
@@ -92,6 +91,18 @@ TEST_CASE("what the device does not know gives nothing, whether told by status o
   flat.ins_status = ins_t::STATUS_NO_ATTITUDE;
   CHECK_FALSE(inclination(flat));
   CHECK(planarPose(flat));
+}
+
+TEST_CASE("a device that tells no height has a pose in the plane, but none in space") {
+  for (const double height : {kNan, kInf}) {
+    ins_t ins = messageAt(1.0, 0.0, 0.0);
+    ins.position[2] = height;
+    const auto pose = planarPose(ins);
+    REQUIRE(pose);
+    CHECK(pose->x == 3.0);
+    CHECK(pose->yaw == Approx(1.0));
+    CHECK_FALSE(spatialPose(ins));
+  }
 }
 
 TEST_CASE("a gap or a jump does not hide the pose; what to do about it is the reader's choice") {
