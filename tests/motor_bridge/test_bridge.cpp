@@ -261,6 +261,19 @@ TEST_CASE("disarming and late copies of an old ARM") {
   CHECK(world.state() == State::kDisarmed);
 }
 
+TEST_CASE("an ARM given before the bridge started does not arm it, one given after it does") {
+  BridgeWorld world;
+  const int64_t before = world.now - 100'000;
+  world.step();
+  const int64_t after = world.now + 1;
+  world.run(1'200'000);
+  for (const int64_t given : {before, after}) {
+    world.bridge.receive(ArmRequest{given, true, "operator", "go"}, world.now);
+    world.step();
+    CHECK(isArmed(world.state()) == (given == after));
+  }
+}
+
 TEST_CASE("commands leave at 50 Hz, on every change, and zero at 10 Hz a while after a stop") {
   BridgeWorld world;
   world.drive();

@@ -51,7 +51,7 @@ FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
   const std::string reason_before = reason_;
   const std::string refusal_before = refusal_;
   if (!zero_since_) {
-    zero_since_ = in.now;
+    zero_since_ = disarmed_at_ = in.now;
   }
   watchHealth(in);
   // A fault or a request leaves nothing to decide: the next series waits for the next step, so that

@@ -73,7 +73,8 @@ class Failsafe {
 
   State state() const { return state_; }
   const std::string& reason() const { return reason_; }
-  /// When it last left the armed states [us]; a request given before counts for nothing.
+  /// When it last left the armed states, or was first updated [us]; a request given before counts
+  /// for nothing.
   int64_t disarmedAt() const { return disarmed_at_; }
 
  private:
