@@ -107,6 +107,11 @@ TEST_CASE("telemetry in SI units, left and right by the layout") {
   CHECK(telemetry.take(parseReply("FF=5"), layout, 6));
   CHECK(telemetry.fault_flags == 5);
   CHECK(telemetry.faults_read_at == 6);
+  for (const char* line : {"FF=4294967296", "FF=65536", "FF=-1", "FF=99999999999999999999"})
+    CHECK_FALSE(telemetry.take(parseReply(line), layout, 7));
+  CHECK_FALSE(telemetry.take(parseReply("FS=4294967296"), layout, 7));
+  CHECK_FALSE(telemetry.status_read_at);
+  CHECK(telemetry.faults_read_at == 6);
   CHECK_FALSE(telemetry.take(parseReply("A=1"), layout, 7));
   CHECK_FALSE(telemetry.take(parseReply("FF="), layout, 7));
   CHECK_FALSE(telemetry.take(parseReply("XY=1"), layout, 7));

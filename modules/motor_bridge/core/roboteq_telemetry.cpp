@@ -14,6 +14,12 @@ std::pair<double, double> toSides(const std::vector<long>& values, const Roboteq
   return layout.left_channel == 1 ? std::pair(one, two) : std::pair(two, one);
 }
 
+/// Flags are at most 16 bits: what is beyond them is a garbled line, and cut off could read as "no
+/// fault".
+bool areFlags(const std::vector<long>& values) {
+  return values.size() == 1 && values[0] >= 0 && values[0] <= 0xffff;
+}
+
 }  // namespace
 
 bool RoboteqTelemetry::take(const RoboteqReply& reply, const RoboteqLayout& layout, int64_t now) {
@@ -28,10 +34,10 @@ bool RoboteqTelemetry::take(const RoboteqReply& reply, const RoboteqLayout& layo
     const auto [left, right] = toSides(values, layout);
     speed_left = (layout.invert_left ? -left : left) / layout.rpm_per_mps;
     speed_right = (layout.invert_right ? -right : right) / layout.rpm_per_mps;
-  } else if (reply.key == "FF" && values.size() == 1) {
+  } else if (reply.key == "FF" && areFlags(values)) {
     fault_flags = static_cast<int32_t>(values[0]);
     faults_read_at = now;
-  } else if (reply.key == "FS" && values.size() == 1) {
+  } else if (reply.key == "FS" && areFlags(values)) {
     status_flags = static_cast<int32_t>(values[0]);
     status_read_at = now;
   } else {
