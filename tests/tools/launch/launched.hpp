@@ -39,7 +39,7 @@ class Launched {
  public:
   /// `natures` are those of the stand-ins p0, p1, ...: good, deaf, brief, wrong. The last process
   /// is a foreign one, which knows nothing of its parent.
-  explicit Launched(const std::vector<std::string>& natures)
+  explicit Launched(const std::vector<std::string>& natures, const std::string& stand_in)
       : folder(std::filesystem::temp_directory_path() /
                ("tread_launch_" + std::to_string(getpid()) + "_" + std::to_string(count()))) {
     std::filesystem::remove_all(folder);
@@ -49,7 +49,7 @@ class Launched {
     for (size_t i = 0; i < natures.size(); ++i) {
       const std::string name = "p" + std::to_string(i);
       std::ofstream(folder / (name + ".txt")) << natures[i];
-      file << "  - {name: " << name << ", program: " << TREAD_STAND_IN << ", config: " << name
+      file << "  - {name: " << name << ", program: " << stand_in << ", config: " << name
            << ".txt, arguments: [\"{run}\"], stop_time: 2}\n";
     }
     file << "  - {name: other, program: sleep, arguments: [\"1000\"], foreign: true}\n";

@@ -11,7 +11,7 @@ using Catch::Contains;
 using tread::launch::RunLock;
 
 TEST_CASE("a killed supervisor leaves no process behind, not even one that does not listen") {
-  const Launched launched({"good", "deaf"});
+  const Launched launched({"good", "deaf"}, TREAD_STAND_IN);
   Process launch("tread-launch", launched.arguments(), launched.output());
   REQUIRE(launched.says("processes run after"));
   kill(launched.supervisor(), SIGKILL);
@@ -23,7 +23,7 @@ TEST_CASE("a killed supervisor leaves no process behind, not even one that does 
 }
 
 TEST_CASE("a killed tread-launch takes its supervisor and all processes with it") {
-  const Launched launched({"good", "good"});
+  const Launched launched({"good", "good"}, TREAD_STAND_IN);
   Process launch("tread-launch", launched.arguments(), launched.output());
   REQUIRE(launched.says("processes run after"));
   launch.signal(SIGKILL);
@@ -39,7 +39,7 @@ TEST_CASE("a killed tread-launch takes its supervisor and all processes with it"
 }
 
 TEST_CASE("with tread-launch and supervisor killed at once, each process sees that alone") {
-  const Launched launched({"good", "good"});
+  const Launched launched({"good", "good"}, TREAD_STAND_IN);
   Process launch("tread-launch", launched.arguments(), launched.output());
   REQUIRE(launched.says("processes run after"));
   const int supervisor = launched.supervisor();
@@ -50,7 +50,7 @@ TEST_CASE("with tread-launch and supervisor killed at once, each process sees th
 }
 
 TEST_CASE("a process that does not stop is killed after its stop time") {
-  const Launched launched({"deaf"});
+  const Launched launched({"deaf"}, TREAD_STAND_IN);
   Process launch("tread-launch", launched.arguments(), launched.output());
   REQUIRE(launched.says("processes run after"));
   launch.signal(SIGINT);

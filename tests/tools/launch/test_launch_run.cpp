@@ -21,7 +21,7 @@ CommandOutcome call(const Launched& launched, const std::vector<std::string>& mo
 }  // namespace
 
 TEST_CASE("processes start, one that is killed comes back, and all are gone after the stop") {
-  const Launched launched({"good", "good"});
+  const Launched launched({"good", "good"}, TREAD_STAND_IN);
   Process launch("tread-launch", launched.arguments(), launched.output());
   REQUIRE(launched.says("trial: all 3 processes run after"));
   CHECK(launched.pids().size() == 3);
@@ -47,7 +47,7 @@ TEST_CASE("processes start, one that is killed comes back, and all are gone afte
 }
 
 TEST_CASE("a second launch in the same folder is refused with one line, and the first goes on") {
-  const Launched launched({"good"});
+  const Launched launched({"good"}, TREAD_STAND_IN);
   Process launch("tread-launch", launched.arguments(), launched.output());
   REQUIRE(launched.says("processes run after"));
   const CommandOutcome second = call(launched, {});
@@ -66,7 +66,7 @@ TEST_CASE("a second launch in the same folder is refused with one line, and the 
 }
 
 TEST_CASE("two runs in one folder, one after another") {
-  const Launched launched({"good"});
+  const Launched launched({"good"}, TREAD_STAND_IN);
   for (int i = 0; i < 2; ++i) {
     std::filesystem::remove(launched.output());
     Process launch("tread-launch", launched.arguments(), launched.output());
@@ -79,7 +79,7 @@ TEST_CASE("two runs in one folder, one after another") {
 }
 
 TEST_CASE("a process that ends at once is tried again, told twice, and does not stop the others") {
-  const Launched launched({"good", "brief"});
+  const Launched launched({"good", "brief"}, TREAD_STAND_IN);
   Process launch("tread-launch", launched.arguments(), launched.output());
   CHECK(launched.says("trial: p1 ended (exit status 4; not expected)"));
   CHECK(launched.says("trial: p1 ended again (exit status 4; not expected)"));
@@ -89,7 +89,7 @@ TEST_CASE("a process that ends at once is tried again, told twice, and does not 
 }
 
 TEST_CASE("start-up checks name what is wrong and nothing is started") {
-  const Launched launched({"wrong"});
+  const Launched launched({"wrong"}, TREAD_STAND_IN);
   const CommandOutcome check = call(launched, {"--check"});
   CHECK(check.code == 1);
   CHECK_THAT(check.output, Contains("trial: p0: planner.yaml:3: lease is 9 s; allowed 0.05..1 s; "
@@ -106,7 +106,7 @@ TEST_CASE("start-up checks name what is wrong and nothing is started") {
 }
 
 TEST_CASE("one process alone can be started for systemd") {
-  const Launched launched({"good", "good"});
+  const Launched launched({"good", "good"}, TREAD_STAND_IN);
   Process launch("tread-launch", launched.arguments({"--only", "p1"}), launched.output());
   CHECK(launched.says("runs as"));
   CHECK(launched.pids().size() == 1);
