@@ -11,6 +11,7 @@ namespace tread::operators {
 enum class CallResult { kGoesOn, kDone, kRefused };
 
 /// Something that the operator asks of the robot, repeated until the robot shows that it did it.
+/** It listens to its bus and so must live until the bus is no longer handled. */
 class Call {
  public:
   virtual ~Call() = default;
