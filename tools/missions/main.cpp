@@ -112,7 +112,7 @@ class Campaigner {
     MissionRun run = runMission(robot_, seed, options);
     if (log) log->flush();
     if (arguments_.show == seed) {
-      drawMission(arguments_.picture, run.result, run.scene);
+      picture::drawDrive(arguments_.picture, driveSceneOf(run.result, run.scene));
       const std::lock_guard<std::mutex> lock(mutex_);
       std::cout << "picture: " << arguments_.picture << std::endl;
     }

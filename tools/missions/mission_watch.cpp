@@ -101,17 +101,7 @@ void MissionWatch::hear(const learning_t& message) {
 void MissionWatch::hear(const plan_tree_t& message) {
   // The last plans before the goal are short; the one worth drawing was made on the way.
   if (!tree_.empty() && toGo() < 10.0) return;
-  tree_.clear();
-  std::set<int> chosen(message.best.begin(), message.best.end());
-  for (int i = 0; i < message.num_nodes; ++i) {
-    const auto node = static_cast<size_t>(i);
-    const int parent = message.parent[node];
-    if (parent < 0 || parent >= message.num_nodes) continue;
-    const auto& from = message.node_pose[static_cast<size_t>(parent)];
-    const auto& to = message.node_pose[node];
-    tree_.push_back(
-        {{from[0], from[1]}, {to[0], to[1]}, chosen.count(i) > 0 && chosen.count(parent) > 0});
-  }
+  tree_ = picture::edgesOf(message);
 }
 
 void MissionWatch::hear(const map_tile_t& message) {

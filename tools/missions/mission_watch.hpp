@@ -60,7 +60,7 @@ class MissionWatch {
   Pose2 last_pose_;
   Pose2 moved_from_;
   TileMap map_;
-  std::vector<TreeEdge> tree_;
+  std::vector<picture::TreeEdge> tree_;
 };
 
 }  // namespace tread::missions
