@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include <mrpt/comms/CClientTCPSocket.h>
 #include <mrpt/hwdrivers/CHokuyoURG.h>
 
 #include "common/link/link.hpp"
@@ -39,6 +40,11 @@ class Device : public mrpt::hwdrivers::CHokuyoURG {
   ~Device() override {
     m_ip_dir.clear();
     m_stream.reset();
+  }
+  /// The library would connect again by itself, without a probe.
+  bool isConnected() const {
+    const auto socket = std::dynamic_pointer_cast<mrpt::comms::CClientTCPSocket>(m_stream);
+    return socket && socket->isConnected();
   }
   ScipGeometry geometry() const {
     return {m_sensor_info.scan_first, m_sensor_info.scan_last, m_sensor_info.scan_front,
@@ -144,10 +150,10 @@ class HokuyoSource::Worker {
       const ScipGeometry geometry = device.geometry();
       if (const auto wrong = geometry.problem()) return setProblem(*wrong);
       setProblem("");
+      last_scan_ = hostNow();  // silence counts from here, whatever was before
       while (!stop_) {
         alive_ = hostNow();
-        bool hardware_error = false;
-        if (!readScan(device, geometry, hardware_error) && hardware_error)
+        if (!device.isConnected() || !readScan(device, geometry))
           return setProblem("the device stopped answering; connecting again");
       }
     } catch (const std::exception& error) {
@@ -156,14 +162,13 @@ class HokuyoSource::Worker {
     }
   }
 
-  bool readScan(Device& device, const ScipGeometry& geometry, bool& hardware_error) {
+  /// False if the device is lost: it reports an error, or has been silent for a second.
+  bool readScan(Device& device, const ScipGeometry& geometry) {
     bool there_is_one = false;
+    bool hardware_error = false;
     mrpt::obs::CObservation2DRangeScan observation;
     device.doProcessSimple(there_is_one, observation, hardware_error);
-    if (!there_is_one) {
-      if (hostNow() - last_scan_ > 1'000'000 && last_scan_ > 0) hardware_error = true;
-      return false;
-    }
+    if (!there_is_one) return !hardware_error && hostNow() - last_scan_ <= 1'000'000;
     last_scan_ = hostNow();
     RangeScan scan;
     scan.duration_us = static_cast<int64_t>(geometry.shareOfTurn() * device.turnSeconds() * 1e6);
@@ -175,7 +180,7 @@ class HokuyoSource::Worker {
     const size_t beams = observation.getScanSize();
     if (beams != static_cast<size_t>(geometry.last_step - geometry.first_step + 1)) {
       setProblem("a scan has " + std::to_string(beams) + " beams, not what AMIN and AMAX say");
-      return false;
+      return true;
     }
     for (size_t i = 0; i < beams; ++i) scan.ranges.push_back(observation.getScanRange(i));
     const std::lock_guard<std::mutex> lock(mutex_);

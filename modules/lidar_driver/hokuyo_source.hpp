@@ -14,8 +14,9 @@ namespace tread::lidar {
  * on arrival;
  *  - its aperture is one step too wide and ignores AFRT: recomputed (ScipGeometry);
  *  - with a peer that accepts and closes at once initialize() never returns: each connection is
- * first probed with one command of our own; if it still happens while running, stuckFor() grows and
- * the process ends, so that its supervisor starts it again. */
+ * first probed with one command of our own, and a lost one is not left to the library, which would
+ * connect again without that; if it still happens, stuckFor() grows and the process ends, so that
+ * its supervisor starts it again. */
 class HokuyoSource : public ScanSource {
  public:
   /// `address` is tcp:host:port; throws std::invalid_argument with one clear line if it is not.

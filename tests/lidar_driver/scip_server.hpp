@@ -28,7 +28,8 @@ class ScipServer {
     kSilent,   ///< accepts and says nothing
     kGarbage,  ///< random bytes between the scans
     kCloses,   ///< accepts and closes at once
-    kOnce      ///< good to the first who comes, closes at once on all others
+    kOnce,     ///< good to the first who comes, closes at once on all others
+    kLazy      ///< answers the first two who come, scans only for those after them
   };
 
   /// Listens on `port` of the loopback, 0 = any free one.
@@ -99,7 +100,8 @@ class ScipServer {
         if (size <= 0) return;
         device.receive({buffer, static_cast<size_t>(size)}, now());
       }
-      if (now() >= next_scan) {
+      const bool scans = manner_ != Manner::kLazy || connections_ > 2;
+      if (scans && now() >= next_scan) {
         device.add(scan());
         next_scan += 100'000;
       }

@@ -106,6 +106,15 @@ TEST_CASE("a range finder that goes away and comes back is connected again") {
   REQUIRE(driven.until([&] { return driven.scans >= before + 3; }, 30));
 }
 
+TEST_CASE("a range finder that starts up and never scans is connected again") {
+  if (!haveMulticast()) return;
+  // The first connection is our probe, the second the library's.
+  ScipServer server(ScipServer::Manner::kLazy);
+  Driven driven(server.address());
+  REQUIRE(driven.until([&] { return driven.scans >= 3; }, 20));
+  REQUIRE(server.connections() > 2);
+}
+
 TEST_CASE("a peer that accepts and closes at once does not catch the process") {
   if (!haveMulticast()) return;
   ScipServer server(ScipServer::Manner::kCloses);
@@ -126,6 +135,7 @@ TEST_CASE("SIGTERM ends the process also while the library hangs on a peer that 
   REQUIRE(driven.until([&] { return server.connections() >= 3; }, 20));
   driven.process->signal(SIGTERM);
   REQUIRE(driven.process->waitFor(8));
+  REQUIRE(driven.process->exitCode() == 0);
 }
 
 TEST_CASE("a silent device, a deaf port and a mistyped key are each one clear line") {
