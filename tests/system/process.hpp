@@ -16,10 +16,12 @@ namespace tread::testing {
 /// A program of the house run as a user runs it; killed at the end of the test if it still lives.
 class Process {
  public:
-  /// Starts build/<preset>/bin/<program>; its output goes to `output_file` (appended).
+  /// Starts build/<preset>/bin/<program>, or a program by its full path; its output goes to
+  /// `output_file` (appended).
   Process(const std::string& program, std::vector<std::string> arguments,
           const std::string& output_file = "/dev/null") {
-    std::string path = std::string(TREAD_BIN_DIR) + "/" + program;
+    std::string path =
+        program.front() == '/' ? program : std::string(TREAD_BIN_DIR) + "/" + program;
     std::vector<char*> words{path.data()};
     for (std::string& argument : arguments) words.push_back(argument.data());
     words.push_back(nullptr);
