@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "common/pattern/pattern_file.hpp"
@@ -50,7 +51,19 @@ void readGates(ConfigReader& reader, MeasurementLimits& limits) {
   seconds(gates, "entry_window", limits.entry_window_us, {0.01, 2.0});
   gates.number("entry_speed", limits.entry_speed, {0.01, 40.0}, "m/s");
   gates.number("entry_yaw_rate", limits.entry_yaw_rate, {0.01, 40.0}, "rad/s");
+  bool any_entry = false;
+  gates.flag("any_entry", any_entry);
+  if (any_entry)
+    limits.entry_speed = limits.entry_yaw_rate = std::numeric_limits<double>::infinity();
   gates.number("max_slope", limits.max_slope, {0.0, 1.6}, "rad");
+}
+
+/// A file cannot say "infinite".
+std::string entryGate(const MeasurementLimits& limits) {
+  if (std::isinf(limits.entry_speed) && std::isinf(limits.entry_yaw_rate))
+    return "\n  any_entry: true";
+  return "\n  entry_speed: " + number(limits.entry_speed) +
+         "\n  entry_yaw_rate: " + number(limits.entry_yaw_rate);
 }
 
 }  // namespace
@@ -101,9 +114,7 @@ std::string LearnerNodeConfig::effective() const {
       << "\n  speed_margin: " << number(limits.speed_margin)
       << "\n  min_motion: " << number(limits.min_motion)
       << "\n  min_turn: " << number(limits.min_turn)
-      << "\n  entry_window: " << seconds(limits.entry_window_us)
-      << "\n  entry_speed: " << number(limits.entry_speed)
-      << "\n  entry_yaw_rate: " << number(limits.entry_yaw_rate)
+      << "\n  entry_window: " << seconds(limits.entry_window_us) << entryGate(limits)
       << "\n  max_slope: " << number(limits.max_slope) << "\nperiod: " << seconds(period_us)
       << "\nsettle: " << seconds(settle_us) << "\ngive_up: " << seconds(give_up_us)
       << "\nrepeat: " << seconds(repeat_us) << "\ntrack_span: " << seconds(track_span_us)

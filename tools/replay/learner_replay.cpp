@@ -3,6 +3,7 @@
 #include "tools/replay/learner_replay.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "common/bus/virtual_bus.hpp"
@@ -21,7 +22,7 @@ class Player {
 
   void play(const LogEvent& event) {
     bus_.runUntil(std::max(bus_.now(), event.utime));
-    if (event.channel != kExecution.name)
+    if (event.channel != kExecution.name || commitment_ == Commitment::kRecorded)
       return bus_.inject(event.channel.c_str(), event.bytes.data(), event.bytes.size());
     execution_t message;
     if (!decode(event, kExecution, message)) return;
@@ -72,15 +73,16 @@ LearnerRun runLearner(const DriveLog& log, const learner::LearnerNodeConfig& con
 
 std::string processConfig(const learner::LearnerNodeConfig& config, const std::string& rule,
                           const std::string& patterns) {
-  // A file cannot say "no limit": nothing that drives is off by this much [m/s, rad/s].
-  constexpr double kNoLimit = 40.0;
   std::ostringstream out;
   out << "# made by tread-replay learner --write-config\npatterns: \"" << patterns
       << "\"\nstore: state/replayed_learner\nrule: " << rule << "\nmemory: " << config.rule.memory
       << "\ngates:\n  max_gap: " << static_cast<double>(config.limits.max_gap_us) * 1e-6
-      << "\n  max_speed: " << config.limits.max_speed
-      << "\n  entry_speed: " << std::min(config.limits.entry_speed, kNoLimit)
-      << "\n  entry_yaw_rate: " << std::min(config.limits.entry_yaw_rate, kNoLimit) << "\n";
+      << "\n  max_speed: " << config.limits.max_speed << "\n";
+  if (std::isinf(config.limits.entry_speed))
+    out << "  any_entry: true\n";
+  else
+    out << "  entry_speed: " << config.limits.entry_speed
+        << "\n  entry_yaw_rate: " << config.limits.entry_yaw_rate << "\n";
   return out.str();
 }
 

@@ -13,8 +13,9 @@ namespace tread::replay {
 
 /// Which set an execution is scored with.
 enum class Commitment {
-  kAhead,   ///< the newest when it began: what a planner knew, who commits the successor early
-  kPrompt,  ///< the newest when it ended: corrections of all executions before it are known
+  kAhead,     ///< the newest when it began: what a planner knew, who commits the successor early
+  kPrompt,    ///< the newest when it ended: corrections of all executions before it are known
+  kRecorded,  ///< the one that the log names, as a running learner hears it
 };
 
 /// One run of the learner over a log.

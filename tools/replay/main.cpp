@@ -13,6 +13,7 @@
 #include "common/vehicle/model_file.hpp"
 #include "tools/replay/ins_picture.hpp"
 #include "tools/replay/learner_report.hpp"
+#include "tools/replay/live_run.hpp"
 #include "tools/replay/mapping_picture.hpp"
 #include "tools/replay/recipe.hpp"
 #include "tools/replay/robot_commands.hpp"
@@ -116,6 +117,7 @@ struct LearnerArguments {
   bool any_entry = false;
   std::string write_patterns;
   std::string write_config;
+  std::string live;
   Output output;
   bool different = false;
 };
@@ -178,7 +180,11 @@ void replayLearner(const LearnerArguments& arguments) {
       "Each execution is scored with the newest set when it began, as a planner knows it;\n"
       "'prompt': with the newest when it ended, when all before it were learned.\n";
   if (std::isinf(config.limits.entry_speed)) notes += "The gate on the entry twist was off.\n";
-  const std::string report = notes + "\n" + replay::reportOf(log, set, runs);
+  std::string report = notes + "\n" + replay::reportOf(log, set, runs);
+  if (!arguments.live.empty())
+    report += replay::reportOf(replay::compareLive(
+        replay::readRobotLog(arguments.live), log,
+        replay::runLearner(log, config, replay::Commitment::kRecorded, arguments.rule)));
   say(report, arguments.output);
   if (!arguments.output.picture.empty())
     replay::drawReport(log, set, runs, arguments.output.picture);
@@ -219,6 +225,10 @@ void addLearner(CLI::App& app, LearnerArguments& arguments) {
                      "write the set that learning begins with into a pattern file");
   command.add_option("--write-config", arguments.write_config,
                      "write a configuration with it and these gates for tread-learner");
+  command.add_option(
+      "--live", arguments.live,
+      "lcm-logger's log of a run in which lcm-logplayer played LOG to tread-learner: "
+      "compare what it heard and reported");
   addOutput(command, arguments.output);
   command.callback([&arguments] {
     if (arguments.model.empty() && arguments.patterns.empty()) return compareLearner(arguments);

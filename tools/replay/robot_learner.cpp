@@ -14,6 +14,7 @@
 #include "modules/learner/learner_node.hpp"
 #include "tools/replay/learner_lives.hpp"
 #include "tools/replay/log_bus.hpp"
+#include "tools/replay/recipe.hpp"
 #include "tools/replay/set_difference.hpp"
 
 namespace tread::replay {
@@ -21,6 +22,9 @@ namespace {
 
 /// The replay goes on so long after the log: what was under way comes out [us].
 constexpr int64_t kAfterwards = 100'000;
+
+/// A recording or a life may end while a version is under way.
+constexpr int64_t kUnderWay = 1;
 
 using ExecutionKey = std::pair<int64_t, int64_t>;
 
@@ -107,8 +111,14 @@ void compareSets(const SetParts& log, const SetParts& replay, LearnerCheck& chec
     ++(difference.empty() ? check.versions_equal : check.versions_different);
     if (!difference.empty()) note(check, difference);
   }
-  for (const auto& [version, parts] : replay)
-    if (log.count(version) == 0) ++check.versions_only_in_replay;
+  if (log.empty()) return;
+  const int64_t last = log.rbegin()->first;
+  for (const auto& [version, parts] : replay) {
+    if (log.count(version) > 0) continue;
+    ++check.versions_only_in_replay;
+    if (version > last + kUnderWay)
+      note(check, "version " + std::to_string(version) + ": in the replay, not in the log");
+  }
 }
 
 void compareLearned(const std::map<ExecutionKey, learning_t>& log,
@@ -124,6 +134,10 @@ void compareLearned(const std::map<ExecutionKey, learning_t>& log,
     const std::string difference = differenceOf(learned, found->second);
     ++(difference.empty() ? check.learning_equal : check.learning_different);
     if (!difference.empty()) note(check, difference);
+  }
+  for (const auto& [key, learned] : replay) {
+    if (log.count(key) == 0) ++check.learning_only_in_replay;
+    if (learned.accepted) ++check.measured;
   }
 }
 
@@ -216,7 +230,8 @@ LearnerCheck checkLearner(const RobotLog& log, const learner::LearnerNodeConfig&
   }
   compareSets(in_log.sets, first.sets, check);
   compareLearned(in_log.learned, first.learned, check);
-  for (const char* channel : {"INS", "MOTOR", "EXECUTION"})
+  check.notes.push_back(intakeLine(log, "learner", playedChannels("learner")));
+  for (const char* channel : {"INS", "MOTOR", "EXECUTION", "PATTERN_SET", "LEARNING"})
     if (const auto missing = log.missing.find(channel); missing != log.missing.end())
       check.notes.push_back("the log misses " + std::to_string(missing->second) + " messages on " +
                             channel);
@@ -235,7 +250,9 @@ std::string reportOf(const LearnerCheck& check) {
       << check.versions_different << " different, " << check.versions_only_in_log
       << " only in the log, " << check.versions_only_in_replay << " only in the replay\n"
       << "  LEARNING: " << check.learning_equal << " executions equal, " << check.learning_different
-      << " different, " << check.learning_only_in_log << " only in the log\n";
+      << " different, " << check.learning_only_in_log << " only in the log, "
+      << check.learning_only_in_replay << " only in the replay, which measured " << check.measured
+      << "\n";
   if (!check.first_difference.empty())
     out << "  first difference: " << check.first_difference << "\n";
   out << check.name << ": learner " << (check.equal() ? "EQUAL" : "DIFFERENT") << "\n";

@@ -23,10 +23,12 @@ struct LearnerCheck {
   int64_t versions_equal = 0;
   int64_t versions_different = 0;
   int64_t versions_only_in_log = 0;
-  int64_t versions_only_in_replay = 0;  ///< the log does not hold them; what follows is compared
+  int64_t versions_only_in_replay = 0;  ///< the recorder lost them, or recorded no further
   int64_t learning_equal = 0;
   int64_t learning_different = 0;
   int64_t learning_only_in_log = 0;
+  int64_t learning_only_in_replay = 0;
+  int64_t measured = 0;          ///< executions that the replay measured; the others were refused
   std::string first_difference;  ///< in words; empty = none
   bool same_twice = true;        ///< a second replay published the same bytes
   std::vector<std::string> notes;

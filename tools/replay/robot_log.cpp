@@ -39,6 +39,15 @@ std::optional<Stamp> stampOf(const LogEvent& event) {
   return std::nullopt;
 }
 
+/// Number of an event on a channel of one publisher.
+std::optional<Stamp> numberOf(const LogEvent& event) {
+  Stamp stamp{};
+  if (stampAs(event, kPatternSet, stamp) || stampAs(event, kLearning, stamp) ||
+      stampAs(event, kMap, stamp) || stampAs(event, kPlan, stamp))
+    return stamp;
+  return stampOf(event);
+}
+
 /// Follows the robot's clock through a log.
 class Clock {
  public:
@@ -91,7 +100,7 @@ RobotLog toRobotLog(const std::string& name, std::vector<LogEvent> events) {
     if (decode(event, kConfig, config))
       log.configs.emplace(config.config_process, config.config_text);
     const std::optional<Stamp> stamp = stampOf(event);
-    if (stamp) noteSeq(event, *stamp, last, log.missing);
+    if (const auto number = numberOf(event)) noteSeq(event, *number, last, log.missing);
     const int64_t heard = log.virtual_time ? event.utime + kTransportUs : clock.heard(event, stamp);
     log.events.push_back({std::move(event), heard});
   }
@@ -101,6 +110,37 @@ RobotLog toRobotLog(const std::string& name, std::vector<LogEvent> events) {
   for (auto early = log.events.begin(); first != log.events.end() && early != first; ++early)
     early->heard = first->heard;
   return log;
+}
+
+Intake intakeOf(const RobotLog& log, const std::string& process,
+                const std::vector<std::string>& channels) {
+  Intake intake;
+  std::map<int64_t, std::pair<health_t, int64_t>> first;  // by boot id, with the count until then
+  std::map<int64_t, std::pair<health_t, int64_t>> last;
+  int64_t count = 0;
+  for (const TimedEvent& timed : log.events) {
+    health_t health;
+    if (decode(timed.event, kHealth, health) && health.process == process) {
+      first.emplace(health.boot_id, std::make_pair(health, count));
+      last.insert_or_assign(health.boot_id, std::make_pair(health, count));
+    }
+    if (std::find(channels.begin(), channels.end(), timed.event.channel) != channels.end()) ++count;
+  }
+  for (const auto& [boot_id, end] : last) {
+    const auto& [health, count_then] = first.at(boot_id);
+    intake.heard += end.first.received - health.received;
+    intake.lost += end.first.lost - health.lost;
+    intake.in_log += end.second - count_then;
+  }
+  return intake;
+}
+
+std::string intakeLine(const RobotLog& log, const std::string& process,
+                       const std::vector<std::string>& channels) {
+  const Intake intake = intakeOf(log, process, channels);
+  return "by its HEALTH the " + process + " heard " + std::to_string(intake.heard) +
+         " messages and knows of " + std::to_string(intake.lost) + " lost; the log holds " +
+         std::to_string(intake.in_log) + " of the same time";
 }
 
 RobotLog readRobotLog(const std::string& path) {

@@ -31,6 +31,19 @@ struct RobotLog {
   std::map<std::string, int64_t> missing;
 };
 
+/// What a process counted itself (HEALTH), against what the log holds between its first and its
+/// last HEALTH there, over all its starts.
+struct Intake {
+  int64_t heard = 0;  ///< messages by its own count
+  int64_t lost = 0;   ///< that it knows of, by seq
+  int64_t in_log = 0;
+};
+Intake intakeOf(const RobotLog& log, const std::string& process,
+                const std::vector<std::string>& channels);
+/// The same in a line.
+std::string intakeLine(const RobotLog& log, const std::string& process,
+                       const std::vector<std::string>& channels);
+
 /// Reads a log. Throws std::runtime_error with one clear line if it cannot be read or holds nothing
 /// of ours.
 RobotLog readRobotLog(const std::string& path);

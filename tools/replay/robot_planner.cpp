@@ -9,6 +9,7 @@
 #include "modules/planner/planner_node.hpp"
 #include "tools/replay/log_bus.hpp"
 #include "tools/replay/plan_difference.hpp"
+#include "tools/replay/recipe.hpp"
 
 namespace tread::replay {
 namespace {
@@ -161,6 +162,7 @@ PlannerCheck checkPlanner(const RobotLog& log, const planner::PlannerConfig& con
         "the log begins in the middle of a planner's life, which cannot be compared: its "
         "permission "
         "and its numbers are not known");
+  check.notes.push_back(intakeLine(log, "planner", playedChannels("planner")));
   for (const auto& [channel, missing] : log.missing)
     check.notes.push_back("the log misses " + std::to_string(missing) + " messages on " + channel);
   if (!log.problem.empty()) check.notes.push_back(log.problem);
