@@ -87,16 +87,18 @@ class HokuyoSource::Worker {
     return worker;
   }
   /// A thread that is stuck inside the library cannot be joined: it keeps the worker, until the
-  /// process ends.
-  void end() {
+  /// process ends. False then.
+  bool end() {
     constexpr int kPatience = 300;  // [10 ms]
     stop_ = true;
+    if (!thread_.joinable()) return ended_;
     for (int i = 0; i < kPatience && !ended_; ++i) pause(10);
-    if (ended_) {
-      thread_.join();
-    } else {
+    if (!ended_) {
       thread_.detach();
+      return false;
     }
+    thread_.join();
+    return true;
   }
 
   std::vector<RangeScan> take() {
@@ -211,7 +213,10 @@ class HokuyoSource::Worker {
 HokuyoSource::HokuyoSource(const std::string& address, double latency)
     : worker_(Worker::start(address, latency)) {}
 HokuyoSource::~HokuyoSource() {
-  worker_->end();
+  end();
+}
+bool HokuyoSource::end() {
+  return worker_->end();
 }
 std::vector<RangeScan> HokuyoSource::take(int64_t /*utime*/) {
   return worker_->take();

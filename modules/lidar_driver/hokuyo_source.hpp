@@ -22,8 +22,11 @@ class HokuyoSource : public ScanSource {
   /// `address` is tcp:host:port; throws std::invalid_argument with one clear line if it is not.
   /// `latency` [s] from the last beam to the arrival of its bytes.
   HokuyoSource(const std::string& address, double latency);
-  /// Waits for the library to come back, but not for ever.
+  /// As end().
   ~HokuyoSource() override;
+  /// Waits for the library to come back, but not for ever. False if it did not: its thread runs on,
+  /// and the process must end without the destructors of static objects, which that thread may use.
+  bool end();
 
   std::vector<RangeScan> take(int64_t utime) override;
   std::string problem() const override;

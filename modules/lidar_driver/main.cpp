@@ -13,10 +13,13 @@ namespace {
 using namespace tread;
 using namespace tread::lidar;
 
-/// Ends the process when the library hangs for good: only a new process helps then.
+/// Ends the process when the library hangs for good: only a new process helps then. Tells `stuck`
+/// whether it hangs at the end.
 class GuardedSource : public ScanSource {
  public:
-  explicit GuardedSource(HokuyoSource& source) : source_(source) {}
+  GuardedSource(const LidarDriverConfig& config, bool& stuck)
+      : source_(config.address, config.latency), stuck_(stuck) {}
+  ~GuardedSource() override { stuck_ = !source_.end(); }
   std::vector<RangeScan> take(int64_t utime) override {
     if (source_.stuckFor() > 20.0) {
       std::cerr
@@ -30,15 +33,15 @@ class GuardedSource : public ScanSource {
   std::string problem() const override { return source_.problem(); }
 
  private:
-  HokuyoSource& source_;
+  HokuyoSource source_;
+  bool& stuck_;
 };
 
-ShellBody prepare(ConfigReader& reader) {
+ShellBody prepare(ConfigReader& reader, bool& stuck) {
   const LidarDriverConfig config = readLidarDriverConfig(reader);
-  return [config](const std::string& lcm_url, const std::atomic<bool>& stop) {
+  return [config, &stuck](const std::string& lcm_url, const std::atomic<bool>& stop) {
     LcmBus bus(lcm_url, TimeSource::kHost);
-    HokuyoSource device(config.address, config.latency);
-    GuardedSource source(device);
+    GuardedSource source(config, stuck);
     LidarDriverNode node(config, bus, source);
     bus.run(node, stop);
   };
@@ -47,6 +50,10 @@ ShellBody prepare(ConfigReader& reader) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runShell(argc, argv, "tread-lidar-driver",
-                  "Publishes SCAN from a SCIP 2.0 range finder over TCP.", prepare);
+  bool stuck = false;
+  const int code = runShell(argc, argv, "tread-lidar-driver",
+                            "Publishes SCAN from a SCIP 2.0 range finder over TCP.",
+                            [&stuck](ConfigReader& reader) { return prepare(reader, stuck); });
+  if (stuck) std::_Exit(code);
+  return code;
 }
