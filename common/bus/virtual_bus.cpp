@@ -3,6 +3,7 @@
 #include "common/bus/virtual_bus.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <optional>
 #include <queue>
 #include <random>
@@ -104,7 +105,7 @@ class VirtualBus::Core {
     int64_t bootId() const override { return boot_id_; }
     bool hears(const std::string& channel) const { return handlers_.count(channel) > 0; }
     void arrive(const Letter& letter) {
-      // Index loop: a handler may subscribe.
+      // Index loop and deque: a handler may subscribe, and must not be moved while it runs.
       const auto found = handlers_.find(letter.channel);
       if (found == handlers_.end()) return;
       for (size_t i = 0; i < found->second.size(); ++i)
@@ -125,7 +126,7 @@ class VirtualBus::Core {
     Core& core_;
     size_t station_;
     int64_t boot_id_;
-    std::map<std::string, std::vector<RawHandler>> handlers_;
+    std::map<std::string, std::deque<RawHandler>> handlers_;
   };
 
   struct Station {

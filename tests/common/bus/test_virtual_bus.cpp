@@ -176,6 +176,19 @@ TEST_CASE("a handler that throws is counted and the bus goes on") {
   REQUIRE(bus.outside().statistics().failed == 2);
 }
 
+TEST_CASE("a handler may subscribe while it runs") {
+  VirtualBus bus(1);
+  int heard = 0;
+  int subscribed = 0;
+  bus.outside().subscribe<mark_t>(kMark, [&](const mark_t&) {
+    for (; subscribed < 20; ++subscribed)
+      bus.outside().subscribe<mark_t>(kMark, [&heard](const mark_t&) { ++heard; });
+  });
+  bus.outside().publish(kMark, mark_t{});
+  bus.runUntil(bus.now() + 1000);
+  REQUIRE(heard == 20);
+}
+
 TEST_CASE("a message above its channel's limit is not sent and its publisher is told") {
   VirtualBus bus(1);
   arm_t arm{};
