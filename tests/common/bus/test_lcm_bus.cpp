@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <thread>
 
 #include "common/bus/health.hpp"
@@ -28,6 +29,7 @@ class Pinger : public Node {
     mark.utime = utime;
     mark.seq = steps++;
     bus_.publish(kMark, mark);
+    std::this_thread::sleep_for(std::chrono::microseconds(500));
   }
   void shutdown(int64_t /*utime*/) override { shut_down = true; }
   int steps = 0;
@@ -76,7 +78,10 @@ TEST_CASE("over real LCM a node steps at its period, is heard, and shuts down cl
   runner.join();
   REQUIRE(heard >= 50);
   REQUIRE(pinger.shut_down);
-  REQUIRE(speaker->takeCycleTimes().max_us >= 0);
+  const CycleTimes times = speaker->takeCycleTimes();
+  REQUIRE(times.mean_us >= 500);
+  REQUIRE(times.max_us >= times.mean_us);
+  REQUIRE(speaker->takeCycleTimes().max_us == 0);  // counted from the last call on
 }
 
 TEST_CASE("a process without a device follows the time of the messages") {
