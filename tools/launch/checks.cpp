@@ -12,7 +12,6 @@
 namespace tread::launch {
 namespace {
 
-constexpr int64_t kWantedBuffer = 2097152;       // holds a burst of maps
 constexpr int64_t kWantedSpace = 2'000'000'000;  // an hour or so of logs
 constexpr int64_t kNeededSpace = 20'000'000;     // for the states and some lines of log
 constexpr const char* kRouteRemedy =
@@ -93,6 +92,7 @@ std::vector<Finding> checkNetwork(const LcmAddress& address, const NetworkFacts&
          "--lcm-url udpm://239.255.76.67:7667?ttl=0"});
     return findings;
   }
+  if (!facts.can_ask) return {missingTool("ip", "iproute2")};
   const bool local = address.ttl == 0;
   const size_t before = findings.size();
   if (facts.route_device.empty())
@@ -115,9 +115,9 @@ std::vector<Finding> checkNetwork(const LcmAddress& address, const NetworkFacts&
          "a datagram sent to " + address.group + " by " + facts.route_device + " did not come back",
          "look for a packet filter: nft list ruleset  (as root)"});
   const int64_t wanted = std::max(kWantedBuffer, address.receive_buffer);
-  if (facts.rmem_max < wanted)
+  if (facts.receive_buffer < wanted)
     findings.push_back({false,
-                        "net.core.rmem_max is " + std::to_string(facts.rmem_max) +
+                        "net.core.rmem_max is " + std::to_string(facts.receive_buffer) +
                             ", so bursts of messages are lost",
                         "sysctl -w net.core.rmem_max=" + std::to_string(wanted) +
                             "  (as root; for good: config/sysctl/60-tread.conf)"});

@@ -20,6 +20,9 @@ struct Finding {
 std::string findingLine(const std::string& launch_name, const Finding& finding);
 bool anyCritical(const std::vector<Finding>& findings);
 
+/// A program that the host must have, and its Debian package.
+Finding missingTool(const std::string& tool, const std::string& package);
+
 /// An LCM URL in parts, as liblcm 1.3.1 reads it.
 struct LcmAddress {
   std::string provider = "udpm";
@@ -32,13 +35,17 @@ struct LcmAddress {
 /// Takes an LCM URL apart; nothing if it cannot be read.
 std::optional<LcmAddress> parseLcmUrl(const std::string& url);
 
+/// A burst of map tiles fits into such a receive buffer [byte].
+constexpr int64_t kWantedBuffer = 2097152;
+
 /// What the host says about multicast.
 struct NetworkFacts {
+  bool can_ask = true;       ///< there is the program ip
   std::string route_device;  ///< that multicast to the group leaves by; empty = no route
   bool loopback_up = false;
   bool loopback_multicast = false;
-  bool delivered = false;  ///< a datagram to the group came back
-  int64_t rmem_max = 0;    ///< net.core.rmem_max [byte]
+  bool delivered = false;      ///< a datagram to the group came back
+  int64_t receive_buffer = 0;  ///< the largest one that the kernel grants, net.core.rmem_max [byte]
 };
 
 /// The device of an answer of `ip route get GROUP`; empty if there is no route.
@@ -80,8 +87,5 @@ struct FolderFacts {
 };
 
 std::vector<Finding> checkFolder(const FolderFacts& facts);
-
-/// A program that the host must have, and its Debian package.
-Finding missingTool(const std::string& tool, const std::string& package);
 
 }  // namespace tread::launch

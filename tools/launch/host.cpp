@@ -2,21 +2,16 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/launch/host.hpp"
 
-#include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
 #include <stdexcept>
 
-#include <fcntl.h>
-#include <poll.h>
-#include <signal.h>
 #include <sys/statvfs.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "tools/launch/multicast.hpp"
+#include "tools/launch/run_command.hpp"
 #include "tools/launch/run_lock.hpp"
 
 namespace tread::launch {
@@ -68,51 +63,7 @@ ProcessFacts processFacts(const LaunchProcess& process, const std::string& lcm_u
   return facts;
 }
 
-/// Reads what a command says until it ends or the time is over.
-std::string readAll(int descriptor, std::chrono::steady_clock::time_point deadline) {
-  std::string output;
-  char piece[1024];
-  for (;;) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
-        deadline - std::chrono::steady_clock::now());
-    pollfd waiting{descriptor, POLLIN, 0};
-    if (left.count() <= 0 || poll(&waiting, 1, static_cast<int>(left.count())) <= 0) break;
-    const ssize_t size = read(descriptor, piece, sizeof piece);
-    if (size <= 0) break;
-    output.append(piece, static_cast<size_t>(size));
-  }
-  return output;
-}
-
 }  // namespace
-
-CommandOutcome runCommand(const std::vector<std::string>& words, double seconds) {
-  std::vector<char*> arguments;
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return {127, "no pipe"};
-  const pid_t child = fork();
-  if (child == 0) {
-    dup2(ends[1], 1);
-    dup2(ends[1], 2);
-    execvp(arguments[0], arguments.data());
-    _exit(127);
-  }
-  close(ends[1]);
-  CommandOutcome outcome;
-  const auto deadline = std::chrono::steady_clock::now() +
-                        std::chrono::milliseconds(static_cast<int64_t>(1000.0 * seconds));
-  outcome.output = readAll(ends[0], deadline);
-  close(ends[0]);
-  const bool late = std::chrono::steady_clock::now() >= deadline;
-  if (late) kill(child, SIGKILL);
-  int status = 0;
-  if (child < 0 || waitpid(child, &status, 0) != child) return {127, "could not be started"};
-  outcome.code = late ? 124 : WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  if (late) outcome.output = "took more than " + std::to_string(static_cast<int>(seconds)) + " s";
-  return outcome;
-}
 
 std::string ownFolder() {
   return fs::read_symlink("/proc/self/exe").parent_path().string();
@@ -132,7 +83,7 @@ std::string findProgram(const std::string& word, const std::string& bin) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin");
   for (std::string folder; std::getline(folders, folder, ':');)
-    if (!folder.empty() && isProgram(folder + "/" + word)) return folder + "/" + word;
+    if (std::string file = folder.append("/").append(word); isProgram(file)) return file;
   return "";
 }
 

@@ -11,15 +11,6 @@
 
 namespace tread::launch {
 
-/// How a command ended and what it said on both outputs.
-struct CommandOutcome {
-  int code = -1;  ///< 127 = could not be started, 124 = took too long
-  std::string output;
-};
-
-/// Runs a command to its end, at most so many seconds.
-CommandOutcome runCommand(const std::vector<std::string>& words, double seconds);
-
 /// The folder of the program that runs.
 std::string ownFolder();
 

@@ -15,6 +15,7 @@
 
 #include "tools/launch/host.hpp"
 #include "tools/launch/log_rotation.hpp"
+#include "tools/launch/run_command.hpp"
 
 namespace {
 
@@ -47,10 +48,7 @@ void declare(CLI::App& app, Options& options) {
   // 1.3.1 knows no -l, though its help says so.
   if (!options.lcm_url.empty()) words.push_back("--lcm-url=" + options.lcm_url);
   words.push_back(options.file);
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  execvp(arguments[0], arguments.data());
+  tread::launch::becomeProgram(words);
   throw std::runtime_error(kNoLogger);
 }
 

@@ -15,6 +15,7 @@
 #include <CLI/CLI.hpp>
 
 #include "tools/launch/host.hpp"
+#include "tools/launch/run_command.hpp"
 #include "tools/launch/supervision.hpp"
 
 namespace {
@@ -40,6 +41,7 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--set", options.values,
                  "KEY=VALUE: replaces one of the file's values; a relative path is taken from the "
                  "file's folder")
+      ->expected(1)
       ->take_all();
   auto* check = app.add_flag("--check", options.check, "only the start-up checks");
   auto* status = app.add_flag("--status", options.status, "what runs in the run folder");
@@ -80,11 +82,8 @@ void setEnvironment(const LaunchFile& launch) {
   for (const auto& [key, value] : launch.environment) setenv(key.c_str(), value.c_str(), 1);
 }
 
-[[noreturn]] void become(std::vector<std::string> words) {
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  execvp(arguments[0], arguments.data());
+[[noreturn]] void become(const std::vector<std::string>& words) {
+  becomeProgram(words);
   throw std::runtime_error(words.front() + ": cannot be started");
 }
 

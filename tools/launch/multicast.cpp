@@ -2,16 +2,19 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/launch/multicast.hpp"
 
-#include <fstream>
+#include <algorithm>
+#include <cstring>
 
 #include <arpa/inet.h>
 #include <net/if.h>
 #include <netinet/in.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include "tools/launch/host.hpp"
+#include "tools/launch/run_command.hpp"
 
 namespace tread::launch {
 namespace {
@@ -55,17 +58,36 @@ bool delivered(const LcmAddress& address) {
   return poll(&waiting, 1, 200) == 1;
 }
 
+/// Of this process's network namespace; sysfs may show another one.
+unsigned int loopbackFlags() {
+  const Socket socket;
+  ifreq request{};
+  std::strcpy(request.ifr_name, "lo");
+  if (ioctl(socket.get(), SIOCGIFFLAGS, &request) != 0) return 0;
+  return static_cast<unsigned short>(request.ifr_flags);
+}
+
+/// How much of a wanted receive buffer the kernel grants; it doubles what it is asked for.
+int64_t grantedBuffer(int64_t wanted) {
+  const Socket socket;
+  int size = static_cast<int>(std::min<int64_t>(wanted, 1 << 30));
+  setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &size, sizeof size);
+  socklen_t length = sizeof size;
+  getsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &size, &length);
+  return size / 2;
+}
+
 }  // namespace
 
 NetworkFacts networkFacts(const LcmAddress& address) {
   NetworkFacts facts;
+  facts.can_ask = !findProgram("ip", "").empty();
   facts.route_device = routeDevice(runCommand({"ip", "route", "get", address.group}, 5.0).output);
-  unsigned int flags = 0;
-  std::ifstream("/sys/class/net/lo/flags") >> std::hex >> flags;
+  const unsigned int flags = loopbackFlags();
   facts.loopback_up = (flags & IFF_UP) != 0;
   facts.loopback_multicast = (flags & IFF_MULTICAST) != 0;
   if (address.provider == "udpm") facts.delivered = delivered(address);
-  std::ifstream("/proc/sys/net/core/rmem_max") >> facts.rmem_max;
+  facts.receive_buffer = grantedBuffer(std::max(kWantedBuffer, address.receive_buffer));
   return facts;
 }
 

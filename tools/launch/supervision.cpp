@@ -3,6 +3,7 @@
 #include "tools/launch/supervision.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -99,6 +100,7 @@ void Run::begin(const RunLock& lock) {
   sigemptyset(&waited_);
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGCHLD}) sigaddset(&waited_, number);
   sigprocmask(SIG_BLOCK, &waited_, &before);
+  std::signal(SIGPIPE, SIG_IGN);  // whoever reads what we say may leave
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   const pid_t parent = getpid();
   supervisor_ = fork();
@@ -116,6 +118,7 @@ void Run::becomeSupervisor(int lock, const sigset_t& mask, pid_t parent) const {
     dup2(lock, 3);
   else
     fcntl(lock, F_SETFD, 0);
+  std::signal(SIGPIPE, SIG_DFL);
   sigprocmask(SIG_SETMASK, &mask, nullptr);
   execlp("supervisord", "supervisord", "--configuration", paths_.config.c_str(), nullptr);
   std::perror("tread-launch: supervisord");
@@ -195,7 +198,11 @@ int stopRun(const std::string& name, const RunPaths& paths) {
     return 0;
   }
   const auto start = Clock::now();
-  if (pid > 0) kill(pid, SIGTERM);
+  if (pid > 0 && kill(pid, SIGTERM) != 0) {
+    std::cerr << name << ": pid " << pid << " is not ours to stop (" << std::strerror(errno)
+              << "); stop it as the user who started it" << std::endl;
+    return 1;
+  }
   while (RunLock::isHeld(paths.lock)) {
     if (secondsSince(start) > kLongestStop) {
       std::cerr << name << ": still runs after " << oneDecimal(kLongestStop)

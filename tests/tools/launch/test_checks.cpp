@@ -19,7 +19,7 @@ NetworkFacts goodNetwork() {
   facts.loopback_up = true;
   facts.loopback_multicast = true;
   facts.delivered = true;
-  facts.rmem_max = 4194304;
+  facts.receive_buffer = 4194304;
   return facts;
 }
 
@@ -88,6 +88,10 @@ TEST_CASE("multicast that is missing, elsewhere, off or filtered gives one line 
         "robot: the loopback device lo has multicast off" + remedy);
   facts.loopback_up = false;
   CHECK(oneLine(checkNetwork({}, facts)) == "robot: the loopback device lo is down" + remedy);
+  facts.can_ask = false;
+  CHECK(
+      oneLine(checkNetwork({}, facts)) ==
+      "robot: there is no program ip; mend: tools/setup, or apt-get install iproute2  (as root)\n");
   LcmAddress memory;
   memory.provider = "memq";
   CHECK_THAT(oneLine(checkNetwork(memory, facts)), Contains("memq does not connect"));
@@ -95,7 +99,7 @@ TEST_CASE("multicast that is missing, elsewhere, off or filtered gives one line 
 
 TEST_CASE("a small receive buffer is an advice, not an obstacle") {
   NetworkFacts facts = goodNetwork();
-  facts.rmem_max = 212992;
+  facts.receive_buffer = 212992;
   const auto findings = checkNetwork({}, facts);
   CHECK_FALSE(anyCritical(findings));
   CHECK_THAT(oneLine(findings), StartsWith("robot: advice: net.core.rmem_max is 212992") &&

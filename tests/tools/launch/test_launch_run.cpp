@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/tools/launch/launched.hpp"
-#include "tools/launch/host.hpp"
+#include "tools/launch/run_command.hpp"
 
 using namespace tread::testing;
 using Catch::Contains;

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "tests/tools/launch/launched.hpp"
-#include "tools/launch/host.hpp"
 #include "tools/launch/launch_file.hpp"
+#include "tools/launch/run_command.hpp"
 
 using namespace tread;
 using namespace tread::testing;
