@@ -46,7 +46,7 @@ std::vector<int> workersIn(const fs::path& run) {
 
 }  // namespace
 
-TEST_CASE("the shipped launch files pass the start-up checks; absent instruments are an advice") {
+TEST_CASE("the shipped launch files pass the start-up checks, absent instruments are an advice") {
   const Place place;
   const CommandOutcome robot =
       runCommand({std::string(TREAD_BIN_DIR) + "/tread-launch", kLaunch + "robot.yaml", "--run",
