@@ -4,15 +4,19 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <iterator>
 #include <string>
 
 namespace tread::replay {
 
-/// Compares messages field by field, to the bit, and remembers the first field that differs.
+/// Compares messages field by field and remembers the first field that differs.
 class Comparison {
  public:
+  /// Numbers may differ by `tolerance`; 0 = to the bit.
+  explicit Comparison(double tolerance = 0.0) : tolerance_(tolerance) {}
+
   template <class Value>
   void field(const std::string& name, const Value& log, const Value& replay) {
     if (!found_.empty() || same(log, replay)) return;
@@ -40,12 +44,15 @@ class Comparison {
   static std::string text(const std::string& value) { return "'" + value + "'"; }
 
   /// To the bit, so that an unknown value (NaN) equals itself.
-  static bool same(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+  bool same(double a, double b) const {
+    return std::memcmp(&a, &b, sizeof a) == 0 || std::abs(a - b) < tolerance_;
+  }
   template <class Value>
-  static bool same(const Value& a, const Value& b) {
+  bool same(const Value& a, const Value& b) const {
     return a == b;
   }
 
+  double tolerance_;
   std::string found_;
 };
 

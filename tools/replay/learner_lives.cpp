@@ -115,9 +115,7 @@ LearnerLife lifeOf(const RobotLog& log, const Snapshot& snapshot, const PatternS
   const int64_t boot_id = bootIdAfter(log, snapshot.event);
   const bool from_start = snapshot.seq == 0;
   const int64_t version = state->set.version();
-  LearnerLife life{0,          log.events.size(), boot_id,
-                   from_start, std::move(*state), log.events[snapshot.event].heard,
-                   {}};
+  LearnerLife life{0, log.events.size(), boot_id, from_start, std::move(*state), {}};
   if (from_start) life.first_event = firstHeard(log, snapshot.event, boot_id);
   life.earlier = from_start ? storedSet(life.state.set) : setsBefore(log, snapshot.event, version);
   return life;

@@ -17,7 +17,6 @@ struct LearnerLife {
   int64_t boot_id = 0;
   bool from_start = false;          ///< the log holds its start
   learner::LearnerState state;      ///< the first that the log holds
-  int64_t state_heard = 0;          ///< [us] when that was published
   std::vector<PatternSet> earlier;  ///< versions before it that executions may still name
 };
 

@@ -12,12 +12,13 @@ namespace tread::replay {
 
 /// The log of a robot's drive through the learner: what it holds, what came out, how they compare.
 /** The learner begins as the first LEARNER_STATE of each of its lives in the log says, and hears
- * INS, MOTOR and EXECUTION. Compared, to the bit: PATTERN_SET part by part and version by version,
- * LEARNING per execution. */
+ * INS, MOTOR and EXECUTION. Compared: PATTERN_SET part by part and version by version, LEARNING per
+ * execution; to the bit where the log holds the learner's start. */
 struct LearnerCheck {
   std::string name;
   int lives = 0;           ///< starts of the learner, with the one under way when the log begins
   bool from_start = true;  ///< the log holds the start of the first life
+  double tolerance = 0.0;  ///< of numbers; 0 = to the bit
   int64_t first_version = 0;
   int64_t last_version = 0;
   int64_t versions_equal = 0;

@@ -10,8 +10,10 @@ namespace tread::replay {
 namespace {
 
 constexpr int64_t kTransportUs = 20;  ///< of a message on the virtual bus
-/// A broken message may claim any time: nobody is this far from what the log says [us].
+/// A broken message may claim any time: nobody is this far from what the log says [us], unless
+/// so many say it in a row.
 constexpr int64_t kLargestLead = 5'000'000;
+constexpr int kBelievedAfter = 5;
 /// A running robot says something this often [us]: a longer silence is a recorder's clock being
 /// set.
 constexpr int64_t kLongestSilence = 1'000'000;
@@ -52,7 +54,8 @@ std::optional<Stamp> numberOf(const LogEvent& event) {
 class Clock {
  public:
   int64_t heard(const LogEvent& event, const std::optional<Stamp>& stamp) {
-    if (now_ != 0) now_ += std::clamp<int64_t>(event.utime - last_recorded_, 0, kLongestSilence);
+    const int64_t passed = event.utime - last_recorded_;
+    if (now_ != 0 && passed > 0 && passed < kLongestSilence) now_ += passed;
     last_recorded_ = event.utime;
     if (stamp) follow(stamp->utime);
     heard_ = std::max(heard_, now_);
@@ -62,12 +65,15 @@ class Clock {
  private:
   void follow(int64_t utime) {
     const int64_t lead = utime - now_;
-    if (now_ == 0 || (lead > 0 && lead < kLargestLead) || lead < -kLongestSilence) now_ = utime;
+    const bool sane = lead > -kLongestSilence && lead < kLargestLead;
+    doubted_ = sane ? 0 : doubted_ + 1;
+    if (now_ == 0 || doubted_ >= kBelievedAfter || (sane && lead > 0)) now_ = utime;
   }
 
   int64_t now_ = 0;
   int64_t heard_ = 0;
   int64_t last_recorded_ = 0;
+  int doubted_ = 0;  ///< stamps in a row that are far from now_
 };
 
 void noteSeq(const LogEvent& event, const Stamp& stamp, std::map<std::string, int64_t>& last,

@@ -28,8 +28,9 @@ void compareSamples(Comparison& compare, const pattern_set_part_t& log,
 
 }  // namespace
 
-std::string differenceOf(const pattern_set_part_t& log, const pattern_set_part_t& replay) {
-  Comparison compare;
+std::string differenceOf(const pattern_set_part_t& log, const pattern_set_part_t& replay,
+                         double tolerance) {
+  Comparison compare(tolerance);
   compare.field("pattern id", int64_t{log.set_pattern_id}, int64_t{replay.set_pattern_id});
   compare.field("pattern name", log.pattern_name, replay.pattern_name);
   compareSamples(compare, log, replay);
@@ -47,14 +48,15 @@ std::string differenceOf(const pattern_set_part_t& log, const pattern_set_part_t
   compare.field("command kind", int64_t{log.set_command_kind}, int64_t{replay.set_command_kind});
   compare.field("newest measurement [us]", log.utime, replay.utime);
   compare.field("parent version", log.parent_version, replay.parent_version);
-  compare.field("checksum (another pattern differs)", log.set_checksum, replay.set_checksum);
+  if (tolerance == 0.0)
+    compare.field("checksum (another pattern differs)", log.set_checksum, replay.set_checksum);
   if (compare.found().empty()) return {};
   return "version " + std::to_string(log.set_version) + ", pattern " +
          std::to_string(log.set_pattern_id) + " '" + log.pattern_name + "', " + compare.found();
 }
 
-std::string differenceOf(const learning_t& log, const learning_t& replay) {
-  Comparison compare;
+std::string differenceOf(const learning_t& log, const learning_t& replay, double tolerance) {
+  Comparison compare(tolerance);
   compare.field("accepted", bool{log.accepted != 0}, bool{replay.accepted != 0});
   compare.field("reason", log.gate_reason, replay.gate_reason);
   compare.field("pattern", int64_t{log.learned_pattern_id}, int64_t{replay.learned_pattern_id});

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <set>
+
+#include "common/store/store.hpp"
+#include "modules/learner/learner_node.hpp"
+#include "modules/mapping/mapping_node.hpp"
+#include "modules/planner/planner_node.hpp"
+#include "tests/tools/replay/driven_log.hpp"
+#include "tools/replay/log_bus.hpp"
+#include "tools/replay/recipe.hpp"
+#include "tools/replay/robot_learner.hpp"
+#include "tools/replay/robot_planner.hpp"
+
+using namespace tread;
+using namespace tread::replay;
+using namespace tread::samples;
+
+namespace {
+
+const std::string kPatterns = TREAD_SOURCE_DIR "/config/patterns";
+
+const std::vector<LogEvent>& plainDrive() {
+  static const std::vector<LogEvent> kEvents = drivenLog(30.0);
+  return kEvents;
+}
+
+LearnerCheck learnerCheck(std::vector<LogEvent> events) {
+  const RobotLog log = toRobotLog("drive", std::move(events));
+  const LearnerCheck check = checkLearner(log, learnerConfigOf(log, kPatterns));
+  UNSCOPED_INFO(reportOf(check));
+  return check;
+}
+
+PlannerCheck plannerCheck(std::vector<LogEvent> events) {
+  const RobotLog log = toRobotLog("drive", std::move(events));
+  const PlannerCheck check = checkPlanner(log, plannerConfigOf(log));
+  UNSCOPED_INFO(reportOf(check));
+  return check;
+}
+
+FaultPlan killed(const std::string& node) {
+  FaultPlan faults;
+  faults.nodes.push_back({node, 17'000'000, 1'000'000});
+  return faults;
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// As lcm-logger would have written it on a host whose UTC is set forward in the drive.
+std::vector<LogEvent> recordedInUtc(std::vector<LogEvent> events) {
+  rewrite<health_t>(events, kHealth, [](health_t& health) {
+    health.utc = 1'700'000'000'000'000;
+    return true;
+  });
+  for (size_t i = 0; i < events.size(); ++i)
+    events[i].utime += 1'700'000'000'000'000 + (i > events.size() / 2 ? 3'600'000'000 : 0);
+  return events;
+}
+
+}  // namespace
+
+TEST_CASE("a robot's log through the learner gives the sets of the log, twice") {
+  const LearnerCheck check = learnerCheck(plainDrive());
+  REQUIRE(check.from_start);
+  REQUIRE(check.versions_equal >= 10);
+  REQUIRE(check.learning_equal >= 10);
+  REQUIRE(check.same_twice);
+  REQUIRE(check.equal());
+}
+
+TEST_CASE("a recorder whose clock is UTC, and is set forward by an hour, changes nothing") {
+  REQUIRE(learnerCheck(recordedInUtc(plainDrive())).equal());
+}
+
+TEST_CASE("a log that begins in the middle is replayed from its first state") {
+  std::vector<LogEvent> events = plainDrive();
+  events.erase(events.begin(), events.begin() + static_cast<std::ptrdiff_t>(events.size() / 2));
+  const LearnerCheck check = learnerCheck(std::move(events));
+  REQUIRE_FALSE(check.from_start);
+  REQUIRE(check.versions_equal >= 4);
+  REQUIRE(check.equal());
+}
+
+TEST_CASE("a learner that was killed and started again is replayed in both lives") {
+  const LearnerCheck check = learnerCheck(drivenLog(30.0, killed("learner")));
+  REQUIRE(check.lives == 2);
+  REQUIRE(check.versions_equal >= 10);
+  REQUIRE(check.equal());
+}
+
+TEST_CASE("a changed sample of a set is named with version, pattern, sample and both values") {
+  std::vector<LogEvent> events = plainDrive();
+  int64_t version = 0;
+  rewrite<pattern_set_part_t>(events, kPatternSet, [&version](pattern_set_part_t& part) {
+    if (version == 0) version = part.set_version + 5;
+    if (part.set_version != version || part.part != 3) return false;
+    part.trajectory[2][1] = 0.125;
+    return true;
+  });
+  const LearnerCheck check = learnerCheck(std::move(events));
+  REQUIRE(check.versions_different == 1);
+  REQUIRE(contains(check.first_difference, "version " + std::to_string(version) + ", pattern "));
+  REQUIRE(contains(check.first_difference, "trajectory sample 3 y [m]: log 0.125, replay "));
+  REQUIRE_FALSE(check.equal());
+}
+
+TEST_CASE("an INS message that the robot had heard otherwise makes other sets") {
+  std::vector<LogEvent> events = plainDrive();
+  const int64_t from = events[events.size() / 2].utime;
+  rewrite<ins_t>(events, kIns, [from](ins_t& ins) {
+    if (ins.utime < from) return false;
+    ins.position[0] += 1e-9 * static_cast<double>(ins.utime - from);
+    return true;
+  });
+  const LearnerCheck check = learnerCheck(std::move(events));
+  REQUIRE(check.versions_equal >= 3);
+  REQUIRE(check.versions_different >= 1);
+  REQUIRE(check.same_twice);
+  REQUIRE_FALSE(check.equal());
+}
+
+TEST_CASE("messages that the recorder lost are counted, and what the learner counted is beside") {
+  std::vector<LogEvent> events = plainDrive();
+  int count = 0;
+  events.erase(std::remove_if(events.begin(), events.end(),
+                              [&count](const LogEvent& event) {
+                                return event.channel == kMotor.name && ++count % 100 == 50;
+                              }),
+               events.end());
+  const RobotLog log = toRobotLog("drive", std::move(events));
+  REQUIRE(log.missing.at("MOTOR") == count / 100 + (count % 100 >= 50 ? 1 : 0));
+  const Intake intake = intakeOf(log, "learner", playedChannels("learner"));
+  REQUIRE(intake.lost == 0);
+  REQUIRE(intake.heard > intake.in_log);
+}
+
+TEST_CASE("a log without the learner's state or configuration is refused with one line") {
+  std::vector<LogEvent> events = plainDrive();
+  const auto without = [&events](const char* channel) {
+    events.erase(
+        std::remove_if(events.begin(), events.end(),
+                       [channel](const LogEvent& event) { return event.channel == channel; }),
+        events.end());
+  };
+  without(kLearnerState.name);
+  REQUIRE_THROWS_WITH(learnerCheck(events), Catch::Contains("no whole LEARNER_STATE"));
+  without(kConfig.name);
+  REQUIRE_THROWS_WITH(learnerCheck(events), Catch::Contains("no CONFIG of the learner"));
+  REQUIRE_THROWS_WITH(plannerCheck(events), Catch::Contains("no CONFIG of the planner"));
+}
+
+TEST_CASE("a robot's log through the planner gives the programs and plans of the log, twice") {
+  const PlannerCheck check = plannerCheck(plainDrive());
+  REQUIRE(check.programs_equal >= 590);
+  REQUIRE(check.plans_equal >= 100);
+  REQUIRE(check.same_twice);
+  REQUIRE(check.equal());
+}
+
+TEST_CASE("a planner that was killed and started again is replayed in both lives") {
+  const PlannerCheck check = plannerCheck(drivenLog(24.0, killed("planner")));
+  REQUIRE(check.lives == 2);
+  REQUIRE(check.compared == 2);
+  REQUIRE(check.equal());
+}
+
+TEST_CASE("another goal than the planner had heard makes other plans, and the first is named") {
+  std::vector<LogEvent> events = plainDrive();
+  rewrite<goal_t>(events, kGoal, [](goal_t& goal) {
+    goal.goal_pose[1] += 3.0;
+    return true;
+  });
+  const PlannerCheck check = plannerCheck(std::move(events));
+  REQUIRE(check.plans_different > 0);
+  REQUIRE(check.same_twice);
+  REQUIRE(contains(check.first_difference, ": log "));
+}
+
+TEST_CASE("a search that the deadline cut on the robot is cut at the same count") {
+  std::vector<LogEvent> events = plainDrive();
+  rewrite<plan_t>(events, kPlan, [](plan_t& plan) {
+    plan.search_time = 60'000;  // as if each had been cut where it ended
+    return true;
+  });
+  const PlannerCheck check = plannerCheck(std::move(events));
+  REQUIRE(check.searches_cut > 10);
+  REQUIRE(check.equal());
+}
+
+TEST_CASE("the channels of a recipe are those that the node hears, and none of its own") {
+  const missions::RobotConfig robot = missions::readRobot(TREAD_SOURCE_DIR "/config/robots/teodor");
+  const auto check = [](const std::string& process, const LogBus& bus) {
+    std::vector<std::string> played = playedChannels(process);
+    std::sort(played.begin(), played.end());
+    REQUIRE(played == bus.heard());
+    for (const ChannelSpec& channel : kChannels)
+      if (channel.publisher == process)
+        REQUIRE(std::count(played.begin(), played.end(), channel.name) == 0);
+  };
+  MemoryStore store;
+  LogBus bus(1);
+  const learner::LearnerNode learner(robot.learner, bus, store);
+  check("learner", bus);
+  LogBus planner_bus(1);
+  const planner::PlannerNode planner(robot.planner, planner_bus);
+  check("planner", planner_bus);
+  LogBus mapping_bus(1);
+  const mapping::MappingNode mapping(robot.mapping, mapping_bus);
+  check("mapping", mapping_bus);
+  REQUIRE(channelFilter("learner") == "^(INS|MOTOR|EXECUTION)$");
+}
