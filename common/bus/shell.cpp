@@ -62,6 +62,8 @@ int runShell(int argc, char** argv, const std::string& name, const std::string& 
   }
   std::signal(SIGINT, requestStop);
   std::signal(SIGTERM, requestStop);
+  // A terminal that is closed, unless nohup says that the process outlives it.
+  if (std::signal(SIGHUP, requestStop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   // A device that goes away while it is written to must not end the process.
   std::signal(SIGPIPE, SIG_IGN);
   if (arguments.with_parent) endWithParent(parent);

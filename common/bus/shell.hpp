@@ -19,8 +19,9 @@ using ShellPreparation = std::function<ShellBody(ConfigReader& reader)>;
 /// The main function of a process.
 /** Command line: --config FILE, --set KEY=VALUE (again and again), --lcm-url URL, --check (only
  * reads the configuration), --with-parent (ends as by SIGINT when the process that started it is
- * gone: a supervisor that is killed leaves nothing driving), --help. SIGINT and SIGTERM become
- * `stop`. Where something throws, one clear line and code 1; usage errors end with code 2. */
+ * gone: a supervisor that is killed leaves nothing driving), --help. SIGINT, SIGTERM and SIGHUP (a
+ * closed terminal; not under nohup) become `stop`. Where something throws, one clear line and code
+ * 1; usage errors end with code 2. */
 int runShell(int argc, char** argv, const std::string& name, const std::string& description,
              const ShellPreparation& prepare);
 

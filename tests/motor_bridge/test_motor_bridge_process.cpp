@@ -174,8 +174,8 @@ constexpr int64_t kSlack = 50'000;
 
 }  // namespace
 
-TEST_CASE("SIGTERM and SIGINT: zero, then exit 0") {
-  for (const int signal : {SIGTERM, SIGINT}) {
+TEST_CASE("SIGTERM, SIGINT and a closed terminal: zero, then exit 0") {
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
     const std::unique_ptr<Rig> rig = driving();
     if (!rig) return;
     rig->process().send(signal);
