@@ -11,7 +11,7 @@
 #include "common/bus/lcm_bus.hpp"
 #include "common/geometry/se2.hpp"
 #include "tests/system/process.hpp"
-#include "tests/system/truth_file.hpp"
+#include "tests/system/zero_after.hpp"
 #include "tools/operator/permission_call.hpp"
 
 namespace tread::testing {
@@ -58,7 +58,7 @@ class RobotRun {
   int64_t newestSet() const { return newest_set_; }
   /// Health by process name, newest.
   const std::map<std::string, health_t>& health() const { return health_; }
-  std::vector<TruthRow> truth() const { return readTruth(folder_ + "/truth.csv"); }
+  std::vector<sim::TruthRow> truth() const { return sim::readTruthRecord(folder_ + "/truth.csv"); }
   const std::string& folder() const { return folder_; }
   const std::string& url() const { return url_; }
   /// Where a process keeps its state.

@@ -39,7 +39,7 @@ double standsAfter(RobotRun& run, int64_t from, double seconds) {
 void needsArming(RobotRun& run) {
   const int64_t from = run.now();
   run.wait(3.0);
-  for (const TruthRow& row : run.truth()) {
+  for (const sim::TruthRow& row : run.truth()) {
     if (row.utime > from) REQUIRE(row.motorsAtZero());
   }
   REQUIRE(run.arm(20.0));
@@ -131,7 +131,7 @@ TEST_CASE("all lines to the devices closed and opened again: stop, come back, dr
   CHECK(run.motor().message().bridge_state != motor_t::STATE_DRIVING);
   run.start("simulator");
   run.wait(3.0);
-  for (const TruthRow& row : run.truth()) REQUIRE(row.motorsAtZero());
+  for (const sim::TruthRow& row : run.truth()) REQUIRE(row.motorsAtZero());
   REQUIRE(run.arm(30.0));
   CHECK(run.until(30.0, [&] { return run.driving(); }));
   INFO(run.plan().message().reason << "; " << run.motor().message().state_reason);

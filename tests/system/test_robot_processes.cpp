@@ -49,7 +49,7 @@ TEST_CASE("started in the wrong order, the robot drives to its goal and touches 
   const auto truth = run.truth();
   REQUIRE(!truth.empty());
   CHECK(truth.back().contacts == 0);
-  CHECK(std::hypot(truth.back().x - 6.0, truth.back().y - 2.0) < 0.8);
+  CHECK(std::hypot(truth.back().T_map_body.x - 6.0, truth.back().T_map_body.y - 2.0) < 0.8);
   CHECK(truth.back().motorsAtZero());
 }
 
@@ -71,7 +71,7 @@ TEST_CASE(
   }));
   run.wait(3.0);
   CHECK(run.newestSet() >= learned);
-  for (const TruthRow& row : run.truth()) {
+  for (const sim::TruthRow& row : run.truth()) {
     if (row.utime > again) CHECK(row.motorsAtZero());
   }
   REQUIRE(run.arm(10.0));

@@ -143,9 +143,14 @@ void drawErrors(Picture& picture, Box box, const std::string& title, const std::
     panel.line({{at.time, 0.0}, {at.time, value}}, {kSkyBlue, 1.5, false, ""});
     panel.dot({at.time, value}, kBlue, 3.0);
   }
+  double height = 1.07;
+  double last = -1e9;
   for (const BorderCrossing& crossing : scene.crossings) {
     panel.verticalLine(crossing.time, {kRed, 1.2, true, ""});
-    panel.text({crossing.time, 1.05 * largest}, " " + crossing.to, kRed);
+    // Names that would overlap step down.
+    height = crossing.time - last < 0.16 * scene.duration ? height - 0.07 : 1.07;
+    last = crossing.time;
+    panel.text({crossing.time, height * largest}, " " + crossing.to, kRed);
   }
   panel.finish();
 }

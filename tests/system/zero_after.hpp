@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "modules/simulator/truth_record.hpp"
+
+namespace tread::testing {
+
+/// When the motors went to zero after a time, to stay there for at least `hold` [us]; nothing if
+/// they have not yet.
+std::optional<int64_t> zeroAfter(const std::vector<sim::TruthRow>& rows, int64_t utime,
+                                 int64_t hold);
+
+}  // namespace tread::testing

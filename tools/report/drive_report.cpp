@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/report/drive_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace tread::report {
+namespace {
+
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+double mean(const DriveRecord& drive, double picture::PatternError::*error) {
+  double sum = 0.0;
+  for (const picture::PatternError& at : drive.errors) sum += std::abs(at.*error);
+  return sum / static_cast<double>(std::max<size_t>(1, drive.errors.size()));
+}
+
+std::string latencyLine(const char* name, const Durations& durations) {
+  if (durations.count() == 0) return formatted("  %-22s none\n", name);
+  return formatted("  %-22s p50 %7.1f ms  p99 %7.1f ms  of %zu\n", name, durations.quantile(0.5),
+                   durations.quantile(0.99), durations.count());
+}
+
+/// Borders that the robot crossed, from the true surface along the way; short visits left out.
+std::vector<picture::BorderCrossing> crossingsOf(const DriveRecord& drive,
+                                                 const SimulationTruth& truth) {
+  constexpr double kVisit = 0.5;  // [s]
+  std::vector<picture::BorderCrossing> crossings;
+  std::string present;
+  std::string perhaps;
+  double since = 0.0;
+  for (const sim::TruthRow& row : truth.rows) {
+    if (row.utime < drive.begun || row.utime > drive.ended) continue;
+    const double time = static_cast<double>(row.utime - drive.begun) * 1e-6;
+    if (present.empty()) present = row.surface;
+    if (row.surface != perhaps) since = time;
+    perhaps = row.surface;
+    if (perhaps == present || time - since < kVisit) continue;
+    present = perhaps;
+    crossings.push_back({since, present});
+  }
+  return crossings;
+}
+
+}  // namespace
+
+std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth) {
+  if (!drive.has_goal) return "no goal in this log";
+  std::string line =
+      drive.arrived
+          ? formatted("arrived after %.1f s and %.1f m (straight line %.1f m)", drive.seconds(),
+                      drive.distance(), drive.straightLine())
+          : formatted("NOT ARRIVED after %.1f s and %.1f m", drive.seconds(), drive.distance());
+  if (!drive.arrived && !drive.last_status.empty()) line += ": " + drive.last_status;
+  line += formatted("; %d patterns driven, %d aborted, %d stops", drive.completed, drive.aborted,
+                    drive.stops);
+  if (!truth.rows.empty()) line += formatted("; contacts %d", truth.rows.back().contacts);
+  return line;
+}
+
+std::string wordsOf(const DriveRecord& drive, const SimulationTruth& truth) {
+  std::string words = resultLine(drive, truth) + "\n";
+  words += formatted("prediction error at a pattern's end: mean %.3f m, %.2f deg over %zu measured",
+                     mean(drive, &picture::PatternError::position),
+                     mean(drive, &picture::PatternError::yaw) * 180.0 / kPi, drive.errors.size());
+  words += formatted(" (%d refused)\n", drive.refused);
+  words += "latency, as the logger received:\n";
+  words += latencyLine("INS to learner's set", drive.latencies.insToSet());
+  words += latencyLine("set to plan", drive.latencies.setToPlan());
+  words += latencyLine("scan to tile", drive.latencies.scanToTile());
+  if (!drive.problem.empty()) words += "the log: " + drive.problem + "\n";
+  return words;
+}
+
+picture::DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth) {
+  picture::DriveScene scene;
+  scene.title = resultLine(drive, truth);
+  if (truth.world) {
+    scene.base_surface = truth.world->base_surface;
+    for (const sim::SurfaceRegion& region : truth.world->regions)
+      scene.patches.push_back({region.surface, region.corners});
+    for (const sim::Obstacle& obstacle : truth.world->obstacles)
+      scene.obstacles.push_back({obstacle.corners, obstacle.centre, obstacle.radius});
+  }
+  if (drive.map) scene.map = *drive.map;
+  scene.tree = drive.tree;
+  scene.track = drive.track;
+  if (!drive.track.empty()) scene.T_map_start = drive.track.front().T_map_body;
+  scene.T_map_goal = drive.T_map_goal;
+  scene.errors = drive.errors;
+  scene.crossings = crossingsOf(drive, truth);
+  scene.duration = drive.seconds();
+  int contacts = 0;
+  for (const sim::TruthRow& row : truth.rows) {
+    if (row.contacts > contacts) scene.contacts.push_back(row.T_map_body.position());
+    contacts = row.contacts;
+  }
+  return scene;
+}
+
+}  // namespace tread::report

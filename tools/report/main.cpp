@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "modules/simulator/world_file.hpp"
+#include "tools/report/drive_report.hpp"
+
+namespace {
+
+using namespace tread;
+using namespace tread::report;
+
+struct Arguments {
+  std::vector<std::string> logs;
+  std::string world;
+  std::string truth;
+  std::string picture;
+};
+
+int run(const Arguments& arguments) {
+  const DriveRecord drive = readDrive(arguments.logs);
+  SimulationTruth truth;
+  if (!arguments.world.empty()) truth.world = sim::readWorld(arguments.world);
+  if (!arguments.truth.empty()) truth.rows = sim::readTruthRecord(arguments.truth);
+  std::cout << wordsOf(drive, truth);
+  if (!arguments.picture.empty()) {
+    picture::drawDrive(arguments.picture, sceneOf(drive, truth));
+    std::cout << "picture: " << arguments.picture << std::endl;
+  }
+  const bool touched = !truth.rows.empty() && truth.rows.back().contacts > 0;
+  return drive.arrived && !touched ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Tells and draws a drive from its LCM log: result, prediction errors, latencies. Exit code 1 "
+      "where the robot did not arrive or touched something.",
+      "tread-report"};
+  Arguments arguments;
+  app.add_option("logs", arguments.logs, "LCM log; several are parts of one recording, in order")
+      ->required();
+  app.add_option("--world", arguments.world, "world file of a simulation: ground and obstacles");
+  app.add_option("--truth", arguments.truth, "record of tread-simulator (--set record=FILE)");
+  app.add_option("--picture", arguments.picture, "file of the picture (PNG)");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    return run(arguments);
+  } catch (const std::exception& error) {
+    std::cerr << "tread-report: " << error.what() << std::endl;
+    return 1;
+  }
+}
