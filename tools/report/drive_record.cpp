@@ -10,10 +10,8 @@
 namespace tread::report {
 namespace {
 
-/// The last plans before the goal are short, those over open ground straight; the one worth
-/// drawing was made on the way [m], around something.
+/// The last plans before the goal are short; the richest one made farther away [m] is drawn.
 constexpr double kNear = 8.0;
-constexpr size_t kBushy = 150;       // branches
 constexpr double kTrackStep = 0.05;  // [m]
 
 bool mayDrive(int16_t state) {
@@ -75,8 +73,7 @@ class Reader {
   }
   void hear(const plan_tree_t& tree) {
     std::vector<picture::TreeEdge> edges = picture::edgesOf(tree);
-    const bool worth = toGo() > kNear && edges.size() >= kBushy;
-    if (worth || edges.size() > drive_.tree.size()) drive_.tree = std::move(edges);
+    if (toGo() > kNear && edges.size() >= drive_.tree.size()) drive_.tree = std::move(edges);
   }
   void hear(const map_tile_t& message) {
     if (!drive_.map) drive_.map = std::make_unique<TileMap>(message.cell_size, message.tile_cells);

@@ -32,7 +32,7 @@ struct DriveRecord {
   int stops = 0;                              ///< times that a permission to drive was lost
   std::vector<picture::PatternError> errors;  ///< time since begun
   std::vector<picture::DriveMoment> track;    ///< as the INS measured, time since begun
-  std::vector<picture::TreeEdge> tree;        ///< of the last plan far from the goal
+  std::vector<picture::TreeEdge> tree;        ///< the richest one on the way
   std::unique_ptr<TileMap> map;
   Latencies latencies;
 
