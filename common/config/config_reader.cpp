@@ -70,6 +70,12 @@ void ConfigReader::number(const std::string& key, double& value, Range range,
   level_->answer(key, numberAnswer(value));
 }
 
+void ConfigReader::seconds(const std::string& key, int64_t& value_us, Range range, bool required) {
+  double value = static_cast<double>(value_us) * 1e-6;
+  number(key, value, range, "s", required);
+  value_us = std::llround(value * 1e6);
+}
+
 void ConfigReader::integer(const std::string& key, int64_t& value, Range range,
                            const std::string& unit, bool required) {
   if (const auto* entry = level_->ask(key, required)) {

@@ -53,6 +53,8 @@ class ConfigReader {
   bool has(const std::string& key) const;
   void number(const std::string& key, double& value, Range range, const std::string& unit,
               bool required = false);
+  /// A time: `range` and what the file says in seconds, the value in whole microseconds.
+  void seconds(const std::string& key, int64_t& value_us, Range range, bool required = false);
   void integer(const std::string& key, int64_t& value, Range range, const std::string& unit,
                bool required = false);
   void flag(const std::string& key, bool& value, bool required = false);

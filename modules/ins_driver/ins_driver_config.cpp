@@ -25,12 +25,6 @@ GeoOrigin readOrigin(ConfigReader& reader) {
   return origin;
 }
 
-void seconds(ConfigReader& reader, const std::string& key, int64_t& value_us, Range range) {
-  double value = static_cast<double>(value_us) * 1e-6;
-  reader.number(key, value, range, "s");
-  value_us = std::llround(value * 1e6);
-}
-
 void readMounting(ConfigReader& reader, InsConfig& ins) {
   std::vector<double> antenna(3, 0.0);
   std::vector<double> angles(3, 0.0);
@@ -41,10 +35,10 @@ void readMounting(ConfigReader& reader, InsConfig& ins) {
 }
 
 void readTiming(ConfigReader& reader, InsConfig& ins) {
-  seconds(reader, "latency", ins.latency_us, {0.0, 1.0});
-  seconds(reader, "quiet", ins.quiet_us, {0.001, 0.2});
-  seconds(reader, "attitude_hold", ins.attitude_hold_us, {0.0, 0.5});
-  seconds(reader, "offset_window", ins.offset_window_us, {1.0, 600.0});
+  reader.seconds("latency", ins.latency_us, {0.0, 1.0});
+  reader.seconds("quiet", ins.quiet_us, {0.001, 0.2});
+  reader.seconds("attitude_hold", ins.attitude_hold_us, {0.0, 0.5});
+  reader.seconds("offset_window", ins.offset_window_us, {1.0, 600.0});
   double rate = 0.0;
   reader.number("rate", rate, {0.0, 200.0}, "Hz");
   ins.period_us = rate > 0.0 ? std::llround(1e6 / rate) : 0;
@@ -82,7 +76,7 @@ InsDriverConfig readInsDriverConfig(ConfigReader& reader) {
     ins.origin = readOrigin(origin);
   }
   reader.number("silence", config.silence, {0.1, 60.0}, "s");
-  seconds(reader, "period", config.period_us, {0.001, 0.1});
+  reader.seconds("period", config.period_us, {0.001, 0.1});
   reader.finish();
   config.effective = reader.effective();
   return config;

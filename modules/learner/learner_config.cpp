@@ -4,7 +4,6 @@
 
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <limits>
 #include <sstream>
 
@@ -18,12 +17,6 @@ std::string number(double value) {
   std::array<char, 40> text;
   const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
   return {text.data(), result.ptr};
-}
-
-void seconds(ConfigReader& reader, const std::string& key, int64_t& value_us, Range range) {
-  double value = static_cast<double>(value_us) * 1e-6;
-  reader.number(key, value, range, "s");
-  value_us = std::llround(value * 1e6);
 }
 
 void readScaling(ConfigReader& reader, RuleConfig& rule) {
@@ -42,13 +35,13 @@ void readScaling(ConfigReader& reader, RuleConfig& rule) {
 
 void readGates(ConfigReader& reader, MeasurementLimits& limits) {
   ConfigReader gates = reader.section("gates");
-  seconds(gates, "max_gap", limits.max_gap_us, {0.01, 5.0});
+  gates.seconds("max_gap", limits.max_gap_us, {0.01, 5.0});
   gates.number("min_covered", limits.min_covered, {0.1, 1.0}, "1");
   gates.number("max_speed", limits.max_speed, {0.0, 20.0}, "m/s");
   gates.number("speed_margin", limits.speed_margin, {1.0, 10.0}, "1");
   gates.number("min_motion", limits.min_motion, {0.0, 1.0}, "m");
   gates.number("min_turn", limits.min_turn, {0.0, 1.0}, "rad");
-  seconds(gates, "entry_window", limits.entry_window_us, {0.01, 2.0});
+  gates.seconds("entry_window", limits.entry_window_us, {0.01, 2.0});
   gates.number("entry_speed", limits.entry_speed, {0.01, 40.0}, "m/s");
   gates.number("entry_yaw_rate", limits.entry_yaw_rate, {0.01, 40.0}, "rad/s");
   bool any_entry = false;
@@ -87,11 +80,11 @@ void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config) {
   readScaling(reader, config.rule);
   readGates(reader, config.limits);
   // Not shorter: the outbox sends a portion a step, and LCM loses more than 100 kB in 20 ms.
-  seconds(reader, "period", config.period_us, {0.02, 0.1});
-  seconds(reader, "settle", config.settle_us, {0.0, 2.0});
-  seconds(reader, "give_up", config.give_up_us, {0.1, 30.0});
-  seconds(reader, "repeat", config.repeat_us, {0.2, 5.0});
-  seconds(reader, "track_span", config.track_span_us, {5.0, 600.0});
+  reader.seconds("period", config.period_us, {0.02, 0.1});
+  reader.seconds("settle", config.settle_us, {0.0, 2.0});
+  reader.seconds("give_up", config.give_up_us, {0.1, 30.0});
+  reader.seconds("repeat", config.repeat_us, {0.2, 5.0});
+  reader.seconds("track_span", config.track_span_us, {5.0, 600.0});
   reader.integer("remembered_versions", config.remembered_versions, {2, 1000}, "1");
 }
 

@@ -2,23 +2,15 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/motor_bridge/motor_bridge_config.hpp"
 
-#include <cmath>
-
 namespace tread::motor {
 namespace {
 
-void seconds(ConfigReader& reader, const std::string& key, int64_t& value_us, Range range) {
-  double value = static_cast<double>(value_us) * 1e-6;
-  reader.number(key, value, range, "s");
-  value_us = std::llround(value * 1e6);
-}
-
 void readTimes(ConfigReader& reader, BridgeConfig& bridge) {
-  seconds(reader, "step", bridge.step_us, {0.001, 0.02});
-  seconds(reader, "command_interval", bridge.command_interval_us, {0.01, 0.05});
-  seconds(reader, "lease", bridge.gate.lease_us, {0.05, 0.2});
-  seconds(reader, "ins_period", bridge.ins.period_us, {0.002, 0.1});
-  seconds(reader, "ins_max_latency", bridge.ins.max_latency_us, {0.0, 0.5});
+  reader.seconds("step", bridge.step_us, {0.001, 0.02});
+  reader.seconds("command_interval", bridge.command_interval_us, {0.01, 0.05});
+  reader.seconds("lease", bridge.gate.lease_us, {0.05, 0.2});
+  reader.seconds("ins_period", bridge.ins.period_us, {0.002, 0.1});
+  reader.seconds("ins_max_latency", bridge.ins.max_latency_us, {0.0, 0.5});
   if (bridge.command_interval_us % bridge.step_us != 0) {
     throw reader.error("command_interval", "must be a multiple of step");
   }
@@ -43,7 +35,7 @@ void readController(ConfigReader reader, RoboteqConfig& controller) {
   RoboteqLayout& layout = controller.layout;
   int64_t watchdog_us = 1000 * controller.watchdog_ms;
   // Zero is repeated every 0.1 s: a shorter watchdog would expire while the robot stands.
-  seconds(reader, "watchdog", watchdog_us, {0.15, 0.25});
+  reader.seconds("watchdog", watchdog_us, {0.15, 0.25});
   controller.watchdog_ms = watchdog_us / 1000;
   reader.flag("both_in_one_line", layout.both_in_one_line);
   int64_t left_channel = layout.left_channel;

@@ -2,16 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/planner/planner_config.hpp"
 
-#include <cmath>
-
 namespace tread::planner {
 namespace {
-
-void seconds(ConfigReader& reader, const std::string& key, int64_t& value_us, Range range) {
-  double value = static_cast<double>(value_us) * 1e-6;
-  reader.number(key, value, range, "s");
-  value_us = std::llround(value * 1e6);
-}
 
 void count(ConfigReader& reader, const std::string& key, int& value, Range range) {
   int64_t wide = value;
@@ -37,7 +29,7 @@ void readMargins(ConfigReader reader, Margins& margins) {
 
 void readMap(ConfigReader reader, WorldConfig& world) {
   reader.number("window", world.window, {5.0, 100.0}, "m");
-  seconds(reader, "window_period", world.window_period, {0.02, 0.5});
+  reader.seconds("window_period", world.window_period, {0.02, 0.5});
   reader.number("keep_radius", world.passage.keep_radius, {10.0, 500.0}, "m");
   reader.number("room_cap", world.passage.room_cap, {0.1, 5.0}, "m");
   count(reader, "coarse", world.passage.coarse, {1, 8});
@@ -54,7 +46,7 @@ void readField(ConfigReader reader, WorldConfig& world) {
   reader.number("max_area", field.max_area, {20.0, 1000.0}, "m");
   reader.number("max_distance", field.max_distance, {10.0, 1000.0}, "m");
   reader.number("reach", field.reach, {5.0, 100.0}, "m");
-  seconds(reader, "period", world.field_period, {0.05, 10.0});
+  reader.seconds("period", world.field_period, {0.05, 10.0});
 }
 
 void readSearch(ConfigReader reader, SearchConfig& search) {
@@ -77,14 +69,14 @@ void readSearch(ConfigReader reader, SearchConfig& search) {
 }
 
 void readPolicy(ConfigReader reader, PolicyConfig& policy) {
-  seconds(reader, "plan_period", policy.plan_period, {0.05, 2.0});
-  seconds(reader, "blocked_period", policy.blocked_period, {0.05, 10.0});
-  seconds(reader, "freeze", policy.freeze, {0.05, 1.0});
-  seconds(reader, "stop_lead", policy.stop_lead, {0.1, 5.0});
+  reader.seconds("plan_period", policy.plan_period, {0.05, 2.0});
+  reader.seconds("blocked_period", policy.blocked_period, {0.05, 10.0});
+  reader.seconds("freeze", policy.freeze, {0.05, 1.0});
+  reader.seconds("stop_lead", policy.stop_lead, {0.1, 5.0});
   reader.number("coast_time", policy.coast_time, {0.0, 3.0}, "s");
-  seconds(reader, "settle_limit", policy.settle_limit, {0.5, 30.0});
-  seconds(reader, "patience", policy.patience, {2.0, 600.0});
-  seconds(reader, "recovery_wait", policy.recovery_wait, {0.1, 60.0});
+  reader.seconds("settle_limit", policy.settle_limit, {0.5, 30.0});
+  reader.seconds("patience", policy.patience, {2.0, 600.0});
+  reader.seconds("recovery_wait", policy.recovery_wait, {0.1, 60.0});
   count(reader, "recoveries", policy.recoveries, {0, 100});
   count(reader, "detours", policy.detours, {0, 100});
   count(reader, "driving_expansions", policy.driving_expansions, {100, 1e6});
@@ -93,11 +85,11 @@ void readPolicy(ConfigReader reader, PolicyConfig& policy) {
 
 /// The limits can be made stricter, or a little wider; none can be switched off.
 void readAges(ConfigReader reader, AgeLimits& ages) {
-  seconds(reader, "pose", ages.pose, {0.02, 0.3});
-  seconds(reader, "bridge", ages.bridge, {0.1, 1.0});
-  seconds(reader, "map_slow", ages.map_slow, {0.2, 5.0});
-  seconds(reader, "map_stop", ages.map_stop, {0.5, 10.0});
-  seconds(reader, "pattern_set", ages.pattern_set, {2.5, 30.0});
+  reader.seconds("pose", ages.pose, {0.02, 0.3});
+  reader.seconds("bridge", ages.bridge, {0.1, 1.0});
+  reader.seconds("map_slow", ages.map_slow, {0.2, 5.0});
+  reader.seconds("map_stop", ages.map_stop, {0.5, 10.0});
+  reader.seconds("pattern_set", ages.pattern_set, {2.5, 30.0});
 }
 
 }  // namespace
@@ -115,8 +107,8 @@ PlannerConfig readPlannerConfig(ConfigReader& reader) {
   sweep.number("distance", config.sweep.distance, {0.01, 0.5}, "m");
   sweep.number("turn", config.sweep.turn, {0.01, 0.5}, "rad");
   reader.number("default_sigma", config.default_sigma, {0.0, 1.0}, "m");
-  seconds(reader, "lease", config.lease, {0.1, 0.2});
-  seconds(reader, "deadline", config.deadline, {0.005, 0.045});
+  reader.seconds("lease", config.lease, {0.1, 0.2});
+  reader.seconds("deadline", config.deadline, {0.005, 0.045});
   reader.finish();
   config.effective = reader.effective();
   return config;

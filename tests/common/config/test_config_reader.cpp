@@ -19,6 +19,7 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 /// A configuration with one of everything.
 struct Everything {
   double lease = 0.2;
+  int64_t hold = 150'000;
   int64_t port = 7667;
   bool echo = true;
   std::string device = "tty:/dev/ttyUSB0?baud=115200";
@@ -33,6 +34,7 @@ struct Everything {
 
 void readEverything(ConfigReader& reader, Everything& c) {
   reader.number("lease", c.lease, {0.05, 1.0}, "s");
+  reader.seconds("hold", c.hold, {0.001, 10.0});
   reader.integer("port", c.port, {1, 65535}, "1");
   reader.flag("echo", c.echo);
   reader.text("device", c.device);
@@ -61,6 +63,7 @@ TEST_CASE("an empty file leaves every default") {
     ConfigReader reader = ConfigReader::fromText(text, "robot.yaml");
     readEverything(reader, c);
     CHECK(c.lease == 0.2);
+    CHECK(c.hold == 150'000);
     CHECK(c.rule == "off");
     CHECK(c.region_names.empty());
   }
@@ -68,13 +71,15 @@ TEST_CASE("an empty file leaves every default") {
 
 TEST_CASE("every kind of value is read") {
   const char* text =
-      "lease: 0.25\nport: 8000\necho: false\ndevice: \"tcp:localhost:10940\"\nrule: collective\n"
+      "lease: 0.25\nhold: 0.0290004\nport: 8000\necho: false\ndevice: "
+      "\"tcp:localhost:10940\"\nrule: collective\n"
       "gains: [1, -2e-1]\npolygon:\n  - [1, 2]\n  - [3, 4]\nnames: [a, 'b c']\n"
       "gate: {max_gap: 0.5}\nregions:\n  - name: grass\n    friction: 0.7\n  - {name: tarmac}\n";
   Everything c;
   ConfigReader reader = ConfigReader::fromText(text, "robot.yaml");
   readEverything(reader, c);
   CHECK(c.lease == 0.25);
+  CHECK(c.hold == 29'000);  // to the nearest microsecond
   CHECK(c.port == 8000);
   CHECK_FALSE(c.echo);
   CHECK(c.device == "tcp:localhost:10940");
@@ -100,6 +105,7 @@ TEST_CASE("the effective configuration reads back to the same values and the sam
   ConfigReader again = ConfigReader::fromText(text, "b");
   readEverything(again, second);
   CHECK(second.lease == first.lease);
+  CHECK(second.hold == first.hold);
   CHECK(second.gains == first.gains);
   CHECK(second.polygon == first.polygon);
   CHECK(second.names == first.names);
