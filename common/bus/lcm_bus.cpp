@@ -8,17 +8,12 @@
 
 #include <lcm/lcm-cpp.hpp>
 
+#include "common/bus/host_clock.hpp"
+
 namespace tread {
 namespace {
 
 constexpr int kQueueCapacity = 1000;
-
-int64_t hostNow() {
-  using std::chrono::duration_cast;
-  using std::chrono::microseconds;
-  // steady_clock is CLOCK_MONOTONIC on Linux.
-  return duration_cast<microseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 }  // namespace
 

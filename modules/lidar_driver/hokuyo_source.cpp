@@ -11,16 +11,11 @@
 #include <mrpt/comms/CClientTCPSocket.h>
 #include <mrpt/hwdrivers/CHokuyoURG.h>
 
+#include "common/bus/host_clock.hpp"
 #include "common/link/link.hpp"
 
 namespace tread::lidar {
 namespace {
-
-int64_t hostNow() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 void pause(int milliseconds) {
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
@@ -57,26 +52,22 @@ class Device : public mrpt::hwdrivers::CHokuyoURG {
   }
 };
 
-/// host and port of tcp:host:port.
-std::pair<std::string, unsigned int> split(const std::string& address) {
-  const size_t colon = address.rfind(':');
-  const bool formed = address.compare(0, 4, "tcp:") == 0 && colon != std::string::npos && colon > 4;
-  const std::string digits = formed ? address.substr(colon + 1) : std::string();
-  if (digits.empty() || digits.size() > 5 ||
-      digits.find_first_not_of("0123456789") != std::string::npos || std::stoi(digits) > 65535)
-    throw std::invalid_argument("'" + address +
-                                "' is not an address of a range finder; write tcp:host:port");
-  return {address.substr(4, colon - 4), static_cast<unsigned int>(std::stoi(digits))};
-}
-
 }  // namespace
+
+LinkAddress rangeFinderAddress(const std::string& text) {
+  LinkAddress address = parseLinkAddress(text);
+  if (address.kind != LinkAddress::Kind::kTcp)
+    throw std::invalid_argument("'" + text +
+                                "' is not an address of a range finder; write tcp:host:port");
+  return address;
+}
 
 class HokuyoSource::Worker {
  public:
   Worker(const std::string& address, double latency)
-      : address_(address), latency_us_(static_cast<int64_t>(latency * 1e6)), alive_(hostNow()) {
-    std::tie(host_, port_) = split(address);
-  }
+      : address_(rangeFinderAddress(address)),
+        latency_us_(static_cast<int64_t>(latency * 1e6)),
+        alive_(hostNow()) {}
 
   static std::shared_ptr<Worker> start(const std::string& address, double latency) {
     const auto worker = std::make_shared<Worker>(address, latency);
@@ -122,7 +113,7 @@ class HokuyoSource::Worker {
 
   /// One command of our own: is there a SCIP device at all, and does it keep the connection?
   bool answersScip() {
-    const std::unique_ptr<Link> link = makeLink(address_);
+    const std::unique_ptr<Link> link = makeLink(address_.text);
     std::string heard;
     bool asked = false;
     for (int i = 0; i < 100 && !stop_; ++i, pause(10)) {
@@ -146,7 +137,7 @@ class HokuyoSource::Worker {
 
   void drive() {
     try {
-      Device device(host_, port_);
+      Device device(address_.host, address_.port);
       // Private in the class itself, public in its base.
       static_cast<mrpt::hwdrivers::CGenericSensor&>(device).initialize();
       const ScipGeometry geometry = device.geometry();
@@ -196,9 +187,7 @@ class HokuyoSource::Worker {
     problem_ = problem;
   }
 
-  std::string address_;
-  std::string host_;
-  unsigned int port_ = 0;
+  LinkAddress address_;
   int64_t latency_us_;
   int64_t last_scan_ = 0;
   std::atomic<int64_t> alive_;

@@ -4,9 +4,14 @@
 
 #include <memory>
 
+#include "common/link/address.hpp"
 #include "modules/lidar_driver/scan_source.hpp"
 
 namespace tread::lidar {
+
+/// A range finder's address in parts; throws std::invalid_argument with one clear line if it is not
+/// tcp:host:port.
+LinkAddress rangeFinderAddress(const std::string& text);
 
 /// A SCIP 2.0 range finder over TCP, through mrpt::hwdrivers::CHokuyoURG in a thread of its own.
 /** What that class does in 2.5.8 and how it is met:
@@ -19,7 +24,7 @@ namespace tread::lidar {
  * its supervisor starts it again. */
 class HokuyoSource : public ScanSource {
  public:
-  /// `address` is tcp:host:port; throws std::invalid_argument with one clear line if it is not.
+  /// `address` as for rangeFinderAddress();
   /// `latency` [s] from the last beam to the arrival of its bytes.
   HokuyoSource(const std::string& address, double latency);
   /// As end().

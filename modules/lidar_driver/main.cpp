@@ -39,6 +39,7 @@ class GuardedSource : public ScanSource {
 
 ShellBody prepare(ConfigReader& reader, bool& stuck) {
   const LidarDriverConfig config = readLidarDriverConfig(reader);
+  rangeFinderAddress(config.address);  // throws where it makes no sense
   return [config, &stuck](const std::string& lcm_url, const std::atomic<bool>& stop) {
     LcmBus bus(lcm_url, TimeSource::kHost);
     GuardedSource source(config, stuck);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -16,6 +15,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "common/bus/host_clock.hpp"
 #include "modules/simulator/emulators/scip_emulator.hpp"
 
 namespace tread::testing {
@@ -60,12 +60,6 @@ class ScipServer {
   int connections() const { return connections_; }
 
  private:
-  static int64_t now() {
-    return std::chrono::duration_cast<std::chrono::microseconds>(
-               std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-  }
-
   static bool readable(int descriptor, int milliseconds) {
     pollfd ready{descriptor, POLLIN, 0};
     return poll(&ready, 1, milliseconds) > 0;
@@ -92,20 +86,20 @@ class ScipServer {
     faults.silent = manner_ == Manner::kSilent;
     faults.garbage = manner_ == Manner::kGarbage;
     device.setFaults(faults);
-    int64_t next_scan = now();
+    int64_t next_scan = hostNow();
     while (!stop_) {
       if (readable(client, 2)) {
         char buffer[512];
         const ssize_t size = read(client, buffer, sizeof buffer);
         if (size <= 0) return;
-        device.receive({buffer, static_cast<size_t>(size)}, now());
+        device.receive({buffer, static_cast<size_t>(size)}, hostNow());
       }
       const bool scans = manner_ != Manner::kLazy || connections_ > 2;
-      if (scans && now() >= next_scan) {
+      if (scans && hostNow() >= next_scan) {
         device.add(scan());
         next_scan += 100'000;
       }
-      const std::string answer = device.transmit(now());
+      const std::string answer = device.transmit(hostNow());
       if (!answer.empty() && send(client, answer.data(), answer.size(), MSG_NOSIGNAL) < 0) return;
     }
   }

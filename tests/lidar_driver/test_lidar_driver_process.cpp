@@ -165,6 +165,14 @@ TEST_CASE("a silent device, a deaf port and a mistyped key are each one clear li
     std::remove((file + ".yaml").c_str());
     std::remove((file + ".txt").c_str());
   }
+  SECTION("not an address of a range finder, told by --check already") {
+    for (const char* address : {"tty:/dev/ttyACM0", "tcp:host", "tcp:host:99999"}) {
+      Process process("tread-lidar-driver",
+                      {"--check", "--set", std::string("address=") + address});
+      REQUIRE(process.waitFor(10));
+      REQUIRE(process.exitCode() == 1);
+    }
+  }
 }
 
 TEST_CASE("random bytes between scans cost some scans and nothing else") {
