@@ -45,6 +45,11 @@ TEST_CASE("a track refuses what is not newer and forgets what is old") {
   const auto pose = isometryFrom({1, 2, 3}, {});
   track.push(100'000, pose);
   REQUIRE(track.push(100'000, pose) == SpatialTrack::Verdict::kNotNewer);
+  // A time before all clocks, of which no difference may be taken.
+  SpatialTrack empty(1'000'000, 10.0);
+  for (const int64_t utime : {INT64_MIN, int64_t{-1}})
+    REQUIRE(empty.push(utime, pose) == SpatialTrack::Verdict::kNotNewer);
+  REQUIRE(empty.empty());
   for (int64_t utime = 200'000; utime < 1'400'000; utime += 100'000) track.push(utime, pose);
   REQUIRE_FALSE(track.at(250'000, 1'000'000));
   REQUIRE(track.at(350'000, 1'000'000));

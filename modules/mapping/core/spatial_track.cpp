@@ -25,7 +25,7 @@ bool SpatialTrack::follows(const TimedPose& next, const TimedPose& before) const
 }
 
 SpatialTrack::Verdict SpatialTrack::push(int64_t utime, const Eigen::Isometry3d& T_map_body) {
-  if (!poses_.empty() && utime <= poses_.back().utime) return Verdict::kNotNewer;
+  if (utime < 0 || (!poses_.empty() && utime <= newest())) return Verdict::kNotNewer;
   const TimedPose pose{utime, T_map_body.translation(), Eigen::Quaterniond(T_map_body.linear())};
   if (!poses_.empty() && !follows(pose, poses_.back())) return doubt(pose);
   doubted_.clear();

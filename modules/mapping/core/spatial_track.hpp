@@ -15,7 +15,7 @@ class SpatialTrack {
  public:
   enum class Verdict {
     kTaken,
-    kNotNewer,  ///< not newer than the last pose: refused
+    kNotNewer,  ///< not newer than the last pose, or a negative time: refused
     kDoubted,   ///< farther from the last pose than the robot can move: kept aside for now
     kJump       ///< the poses that were doubted agree with each other: the track begins anew
   };
