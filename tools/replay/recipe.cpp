@@ -49,7 +49,7 @@ std::string recipeFor(const std::string& process, const std::string& log) {
   std::string own;
   for (const ChannelSpec& channel : kChannels)
     if (channel.publisher == process) own += (own.empty() ? "" : ", ") + std::string(channel.name);
-  const std::string url = "'udpm://239.255.76.67:7668?ttl=0'";
+  const std::string url = "'udpm://239.255.76.67:7669?ttl=0'";
   return "# a bus of its own (LCM tells buses apart by port only), and a state of its own in "
          "--config\n"
          "tread-" +
