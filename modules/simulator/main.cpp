@@ -14,7 +14,7 @@ using namespace tread;
 using namespace tread::sim;
 
 std::ofstream openRecord(const std::string& path) {
-  if (path.empty()) return {};
+  if (path == "none") return {};
   std::ofstream file(path);
   if (!file) throw std::runtime_error(path + ": the record of the truth cannot be written");
   return file;

@@ -16,8 +16,8 @@ struct SimulatorConfig {
   std::string ins = "pty:devices/ins";
   std::string motor = "pty:devices/motor";
   std::string laser = "tcp-server:127.0.0.1:10940";
-  std::string record;     ///< path of the truth as CSV; empty = none
-  std::string effective;  ///< as YAML text
+  std::string record = "none";  ///< path of the truth as CSV, or none
+  std::string effective;        ///< as YAML text
 };
 
 /// Reads it strictly; throws ConfigError with file:line.
