@@ -138,7 +138,7 @@ TEST_CASE("what nohup started outlives its terminal") {
   CHECK(process.waitFor(5));
 }
 
-TEST_CASE("--with-parent ends the process when its parent is killed, and only then") {
+TEST_CASE("with --with-parent a process ends when its parent is killed, and only then") {
   for (const bool with_parent : {true, false}) {
     const std::string url = ownLcmUrl();
     const auto bus = listenTo(url);
@@ -151,7 +151,8 @@ TEST_CASE("--with-parent ends the process when its parent is killed, and only th
   }
 }
 
-TEST_CASE("--check reads the configuration and nothing more: code 0, or 1 with one line") {
+TEST_CASE(
+    "checking (--check) reads the configuration and nothing more: code 0, or 1 with one line") {
   const std::string file = "shell_" + std::to_string(getpid()) + ".yaml";
   std::ofstream(file) << "silence: 2\n";
   const Ending good = run({"--config", file, "--check"});
