@@ -132,7 +132,7 @@ TEST_CASE("hemi.log: 215 epochs, of which 21 hold a fix and 4 a heading") {
   CHECK(headings == 4);
 }
 
-TEST_CASE("bt451.log: indoors, then outdoors; no heading, so never a pose") {
+TEST_CASE("bt451.log: indoors, then outdoors, no heading, so never a pose") {
   const auto log = recording("ins/nmea/bt451.log");
   if (!log) {
     WARN("skipped: bt451.log is not here (TREAD_RECORDINGS)");

@@ -162,7 +162,7 @@ TEST_CASE("ROT is clockwise degrees a minute, and only with status A") {
   CHECK_FALSE(good<Rot>("GPROT,,").yaw_rate);
 }
 
-TEST_CASE("ZDA holds time and date; leap days and leap seconds exist where the calendar has them") {
+TEST_CASE("ZDA holds time and date, leap days and leap seconds exist where the calendar has them") {
   const Zda zda = good<Zda>("GPZDA,193913.00,07,09,2018,00,00");
   CHECK(zda.time_of_day == microseconds(19, 39, 13, 0));
   CHECK(daysSinceEpoch(*zda.date) == 17781);

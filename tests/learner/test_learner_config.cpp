@@ -19,7 +19,7 @@ LearnerNodeConfig read(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("a learner configuration needs only its patterns; the rest has defaults") {
+TEST_CASE("a learner configuration needs only its patterns, the rest has defaults") {
   const LearnerNodeConfig config = read("");
   REQUIRE(config.shipped.content().name == "teodor");
   REQUIRE(config.rule.rule == Rule::kCollective);

@@ -192,7 +192,7 @@ TEST_CASE("one bad slot in one program stops, whichever slot it is") {
   }
 }
 
-TEST_CASE("a planner that was restarted while driving is a reason to stop; armed again it drives") {
+TEST_CASE("a planner that was restarted while driving is a reason to stop, armed again it drives") {
   BridgeWorld world;
   world.drive();
   world.planner = EndlessPlanner(2);

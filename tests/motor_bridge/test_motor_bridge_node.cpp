@@ -7,7 +7,7 @@
 using namespace tread;
 using namespace tread::motor;
 
-TEST_CASE("armed, it drives; MOTOR, EXECUTION, HEALTH and CONFIG come at their rates") {
+TEST_CASE("armed, it drives, MOTOR, EXECUTION, HEALTH and CONFIG come at their rates") {
   NodeWorld world;
   world.drive();
   REQUIRE(world.drives());
@@ -110,7 +110,7 @@ TEST_CASE("E-stop: zero at once, held in the controller, until cleared and armed
   CHECK(world.drives());
 }
 
-TEST_CASE("the controller's own E-stop button: a fault; ARM releases it, the next ARM drives") {
+TEST_CASE("the controller's own E-stop button: a fault, ARM releases it, the next ARM drives") {
   NodeWorld world;
   world.drive();
   world.device.fault_flags = 16;
@@ -167,7 +167,7 @@ TEST_CASE("controller switched off and on: noticed, started up anew with its wat
 }
 
 TEST_CASE(
-    "motor_bridge killed: the controller's watchdog stops; restarted it is disarmed, zero first") {
+    "motor_bridge killed: the controller's watchdog stops, restarted it is disarmed, zero first") {
   NodeWorld world;
   world.drive();
   world.bus.kill("motor_bridge");

@@ -137,7 +137,7 @@ TEST_CASE("permission to drive must be fresh, newer than the last stop, and is u
   CHECK(requests.judge({0, false, "anyone", "stop"}, kNow, kNow) == Verdict::kDisarm);
 }
 
-TEST_CASE("an E-stop always counts; its clearing must be fresh and newer") {
+TEST_CASE("an E-stop always counts, its clearing must be fresh and newer") {
   OperatorRequests requests({});
   requests.receive({0, true, "nobody", "clock is wrong"}, kNow);
   CHECK(requests.estop());

@@ -80,7 +80,7 @@ TEST_CASE("replies are recognised, and what is none is said to be other") {
   CHECK_FALSE(isEcho("FF=0"));
 }
 
-TEST_CASE("fault flags in words; flags that only describe stop nobody") {
+TEST_CASE("fault flags in words, flags that only describe stop nobody") {
   CHECK(describeFaults(0, 1 | 2 | 4 | 32 | 128).empty());
   CHECK(describeFaults(1 | 4, 0) == "controller: overheat, undervoltage");
   CHECK(describeFaults(16, 8) == "controller: emergency stop, power stage off");

@@ -147,7 +147,7 @@ TEST_CASE("emulated controller: planner dead, bridge dead, controller silent: ze
   }
 }
 
-TEST_CASE("emulated controller: reboot and brown-out stop; afterwards it drives only after ARM") {
+TEST_CASE("emulated controller: reboot and brown-out stop, afterwards it drives only after ARM") {
   EmulatedRig rig;
   rig.drive();
   SECTION("reboot") {

@@ -121,7 +121,7 @@ TEST_CASE("A boulder that appears ahead is not driven into") {
   }
 }
 
-TEST_CASE("Sets are exchanged between cycles; what was handed over keeps its version") {
+TEST_CASE("Sets are exchanged between cycles, what was handed over keeps its version") {
   Mission mission = slalom();
   DriveOptions options;
   int64_t version = 1;

@@ -106,7 +106,7 @@ TEST_CASE("The way leads around a wall, and follows it down to the goal") {
   for (const auto& p : points) CHECK(!ground.isObstacle(p));
 }
 
-TEST_CASE("An enclosed goal is unreachable at once; so is one on obstacles and one far away") {
+TEST_CASE("An enclosed goal is unreachable at once, so is one on obstacles and one far away") {
   Playground ground;
   ground.addWall({8.0, -2.0}, {12.0, -2.0});
   ground.addWall({12.0, -2.0}, {12.0, 2.0});

@@ -120,7 +120,7 @@ TEST_CASE("Arrived, it stands and says so until there is another goal") {
   CHECK(rig.run(1.0).report.status == PlanStatus::kDriving);
 }
 
-TEST_CASE("Without a goal it is idle; a goal taken back lets it finish and stop") {
+TEST_CASE("Without a goal it is idle, a goal taken back lets it finish and stop") {
   Rig rig;
   rig.run(3.0);
   CHECK(rig.speed() > 0.9);

@@ -81,7 +81,7 @@ TEST_CASE("both channels in one line, one channel alone, stop of one or all") {
   CHECK(line.output() == Output{0.0, 0.0});
 }
 
-TEST_CASE("only commands feed the watchdog; queries and settings do not") {
+TEST_CASE("only commands feed the watchdog, queries and settings do not") {
   Terminal line;
   line.quiet();
   CHECK(line.ask("^RWD 250\r") == "+\r");

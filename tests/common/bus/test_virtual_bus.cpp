@@ -197,7 +197,7 @@ TEST_CASE("a message above its channel's limit is not sent and its publisher is 
   REQUIRE(bus.outside().statistics().oversized == 1);
 }
 
-TEST_CASE("losses are counted by seq; a publisher that starts again is no loss") {
+TEST_CASE("losses are counted by seq, a publisher that starts again is no loss") {
   VirtualBus bus(1);
   bus.outside().subscribe<motor_t>(kMotor, [](const motor_t&) {});
   for (const int64_t seq : {5, 6, 9, 0, 1}) {

@@ -42,7 +42,7 @@ TEST_CASE(
   REQUIRE(window.at({7, -5}) == 15);
 }
 
-TEST_CASE("older tiles and tiles of the wrong size are refused; equal content is no change") {
+TEST_CASE("older tiles and tiles of the wrong size are refused, equal content is no change") {
   TileMap map(0.1, 4);
   REQUIRE(map.put(tileOf(0, 0, 10, kFree)));
   REQUIRE_FALSE(map.put(tileOf(0, 0, 9, kObstacle)));

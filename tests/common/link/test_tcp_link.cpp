@@ -107,7 +107,7 @@ TEST_CASE("a hang-up is noticed at once and the link comes back to a new server"
   CHECK(std::string(heard) == "again");
 }
 
-TEST_CASE("a reader that stops reading fills the line; the link never blocks nor splits") {
+TEST_CASE("a reader that stops reading fills the line, the link never blocks nor splits") {
   Server server;
   int64_t utime = 1'000'000;
   const auto link = makeLink(server.link());

@@ -125,7 +125,7 @@ TEST_CASE("a write to an unplugged device closes the link") {
   CHECK_FALSE(link->isOpen());
 }
 
-TEST_CASE("a device that does not read never blocks; half a command ends with a hang-up") {
+TEST_CASE("a device that does not read never blocks, half a command ends with a hang-up") {
   const Device device;
   const auto link = makeLink(device.link());
   const std::string command = "!M -1000 -1000 and what makes it long and of odd size\r";

@@ -105,7 +105,7 @@ TEST_CASE("a device that tells no height has a pose in the plane, but none in sp
   }
 }
 
-TEST_CASE("a gap or a jump does not hide the pose; what to do about it is the reader's choice") {
+TEST_CASE("a gap or a jump does not hide the pose, what to do about it is the reader's choice") {
   ins_t ins = messageAt(1.0, 0.0, 0.0);
   ins.ins_status = ins_t::STATUS_GAP | ins_t::STATUS_JUMP;
   CHECK(planarPose(ins));

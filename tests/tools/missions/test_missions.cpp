@@ -138,7 +138,7 @@ TEST_CASE("a mission drives from start to goal over changing ground without touc
 }
 
 TEST_CASE(
-    "the same seed twice gives the same log, byte for byte, also with faults; another seed "
+    "the same seed twice gives the same log, byte for byte, also with faults, another seed "
     "another") {
   const std::string first = recordedMission(22, lossyBus());
   REQUIRE(first.size() > 1'000'000);
