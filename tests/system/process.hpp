@@ -60,6 +60,7 @@ class Process {
     return true;
   }
   int exitCode() const { return exit_code_; }
+  pid_t pid() const { return pid_; }
 
  private:
   pid_t pid_ = -1;

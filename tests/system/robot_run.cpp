@@ -92,6 +92,15 @@ void RobotRun::start(const std::string& name) {
       std::make_unique<Process>(program, argumentsOf(name), folder_ + "/" + name + ".log");
 }
 
+void RobotRun::startBehind(const std::vector<std::string>& wrapper, const std::string& name) {
+  const std::string program = std::string(TREAD_BIN_DIR) + "/tread-" + name;
+  std::vector<std::string> words(wrapper.begin() + 1, wrapper.end());
+  words.push_back(program);
+  for (std::string& word : argumentsOf(name)) words.push_back(word);
+  processes_[name] =
+      std::make_unique<Process>(wrapper.front(), words, folder_ + "/" + name + ".log");
+}
+
 void RobotRun::startAll() {
   for (const std::string& name : names()) start(name);
 }

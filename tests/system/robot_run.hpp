@@ -29,10 +29,13 @@ class RobotRun {
   /// Names of the processes, as they are started by startAll().
   static const std::vector<std::string>& names();
   void start(const std::string& name);
+  /// The same as the last word of another command, which must become it (exec).
+  void startBehind(const std::vector<std::string>& wrapper, const std::string& name);
   void startAll();
   /// Sends a signal; SIGKILL waits for the end.
   void signal(const std::string& name, int number);
   bool running(const std::string& name);
+  pid_t pid(const std::string& name) const { return processes_.at(name)->pid(); }
   /// Ends a process by SIGINT and returns its exit code; -1 if it does not end within 5 s.
   int end(const std::string& name);
   void endAll();

@@ -141,4 +141,58 @@ TEST_CASE("all lines to the devices closed and opened again: stop, come back, dr
   }
 }
 
+TEST_CASE("a full disk stops neither the robot nor its learning, and is told; room again is used") {
+  // A disk of its own for the learner's state, in a mount namespace.
+  const std::vector<std::string> isolate =
+      ::getuid() == 0
+          ? std::vector<std::string>{"/usr/bin/unshare", "--mount"}
+          : std::vector<std::string>{"/usr/bin/unshare", "--user", "--map-root-user", "--mount"};
+  {
+    std::vector<std::string> words(isolate.begin() + 1, isolate.end());
+    words.push_back("true");
+    Process attempt(isolate.front(), words);
+    if (!attempt.waitFor(5.0) || attempt.exitCode() != 0) {
+      WARN("skipped: no mount namespace is allowed here");
+      return;
+    }
+  }
+  RobotRun run(kField, "[-20, 0, 0]");
+  const std::string disk = run.folder() + "/state";
+  std::filesystem::create_directories(disk);
+  std::vector<std::string> wrapper = isolate;
+  wrapper.insert(
+      wrapper.end(),
+      {"/bin/sh", "-c", "mount -t tmpfs -o size=256k tread " + disk + " && exec \"$@\"", "sh"});
+  for (const std::string& name : RobotRun::names()) {
+    if (name == "learner")
+      run.startBehind(wrapper, name);
+    else
+      run.start(name);
+  }
+  run.setGoal(30.0, 0.0);
+  REQUIRE(run.arm(20.0));
+  const auto learnsOn = [&run] {
+    const int64_t set = run.newestSet();
+    return run.until(20.0, [&] { return run.newestSet() > set; });
+  };
+  REQUIRE(learnsOn());
+  const auto onDisk = [&](const std::string& command) {
+    std::vector<std::string> words{"--target", std::to_string(run.pid("learner")), "--mount"};
+    if (::getuid() != 0) words.insert(words.end(), {"--user", "--preserve-credentials"});
+    words.insert(words.end(), {"/bin/sh", "-c", command});
+    Process inside("/usr/bin/nsenter", words);
+    return inside.waitFor(5.0) && inside.exitCode() == 0;
+  };
+  REQUIRE(onDisk("head -c 1M /dev/zero > " + disk + "/filler || true"));
+  CHECK(learnsOn());
+  CHECK(learnsOn());
+  const auto state = [&run] { return run.health().at("learner"); };
+  CHECK(run.until(5.0, [&] { return state().health_state != health_t::HEALTH_OK; }));
+  CHECK_THAT(state().health_reason, Catch::Contains("No space left"));
+  CHECK(run.driving());
+  REQUIRE(onDisk("rm " + disk + "/filler"));
+  CHECK(learnsOn());
+  CHECK(run.until(10.0, [&] { return state().health_state == health_t::HEALTH_OK; }));
+}
+
 }  // namespace tread::testing
