@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/ins_driver/ins_driver_node.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <sstream>
@@ -90,28 +91,32 @@ InsDriverNode::InsDriverNode(const InsDriverConfig& config, Bus& bus, Link& link
       last_heading_(bus.now()) {}
 
 void InsDriverNode::step(int64_t utime) {
-  readLink(utime);
-  publishFinished(utime);
-  judge(utime);
-  reportCounters(utime);
-  health_.step(utime);
+  const int64_t now = readLink(utime);
+  publishFinished(now);
+  judge(now);
+  reportCounters(now);
+  health_.step(now);
 }
 
-void InsDriverNode::readLink(int64_t utime) {
+int64_t InsDriverNode::readLink(int64_t utime) {
   if (!link_.isOpen()) {
     if (was_open_) loseLink();
-    if (!link_.reopen(utime)) return;
+    if (!link_.reopen(utime)) return utime;
   }
   was_open_ = true;
   std::array<uint8_t, 4096> buffer;
   for (size_t total = 0; total < kMaxBytesPerStep;) {
     const std::optional<size_t> size = link_.read(buffer.data(), buffer.size());
-    if (!size) return loseLink();
-    if (*size == 0) return;
+    // The time after reading: a process that was held up since its step began would else take
+    // bytes as received before they were sent, and the clock filter would believe it for seconds.
+    utime = std::max(utime, bus_.now());
+    if (!size) loseLink();
+    if (size.value_or(0) == 0) break;
     last_bytes_ = utime;
     ins_.push({reinterpret_cast<const char*>(buffer.data()), *size}, utime);
     total += *size;
   }
+  return utime;
 }
 
 void InsDriverNode::loseLink() {

@@ -34,7 +34,8 @@ class InsDriverNode : public Node {
   std::optional<GeoOrigin> origin() const { return ins_.assembler().origin(); }
 
  private:
-  void readLink(int64_t utime);
+  /// Returns the time at which it had read.
+  int64_t readLink(int64_t utime);
   void loseLink();
   void publishFinished(int64_t utime);
   void keepOrigin();

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include <functional>
 #include <random>
 #include <vector>
 
@@ -74,7 +75,85 @@ class Rig {
   InsDriverConfig config_;
 };
 
+/// The bus of a process whose clock goes on inside a step.
+class HostBus : public Bus {
+ public:
+  int64_t now() const override { return time; }
+  int64_t bootId() const override { return 1; }
+
+  int64_t time = 10 * kSecond;
+  std::vector<ins_t> track;
+
+ protected:
+  bool send(const char* channel, const uint8_t* bytes, size_t size) override {
+    ins_t message;
+    if (std::string(channel) == "INS" && message.decode(bytes, 0, static_cast<int>(size)) > 0)
+      track.push_back(message);
+    return true;
+  }
+  void listen(const char* /*channel*/, RawHandler /*handler*/) override {}
+};
+
+/// A line on whose first read the process is held up.
+class HeldUpLink : public Link {
+ public:
+  HeldUpLink(Link& link, std::function<void()> hold_up)
+      : link_(link), hold_up_(std::move(hold_up)) {}
+  std::optional<size_t> read(uint8_t* buffer, size_t capacity) override {
+    if (armed) hold_up_();
+    armed = false;
+    return link_.read(buffer, capacity);
+  }
+  bool write(const uint8_t* bytes, size_t size) override { return link_.write(bytes, size); }
+  bool isOpen() const override { return link_.isOpen(); }
+  bool reopen(int64_t utime) override { return link_.reopen(utime); }
+  const std::string& address() const override { return link_.address(); }
+  std::string problem() const override { return link_.problem(); }
+
+  bool armed = false;
+
+ private:
+  Link& link_;
+  std::function<void()> hold_up_;
+};
+
 }  // namespace
+
+TEST_CASE("a process that is held up before it reads does not take bytes as older than they are") {
+  HostBus bus;
+  auto [device, robot] = makePipe();
+  const auto epoch = [&bus, &device = device] {
+    const double seconds = static_cast<double>(bus.time) * 1e-6;
+    const std::string bytes =
+        gga(43200.0 + seconds, seconds) + pashr(43200.0 + seconds, 90.0) + vtg(90.0, 3.6);
+    device->write(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
+  };
+  HeldUpLink line(*robot, [&] {
+    for (int i = 0; i < 8; ++i) {
+      bus.time += 20'000;
+      epoch();
+    }
+  });
+  MemoryStore store;
+  InsDriverNode node(configured(), bus, line, store);
+  const auto drive = [&](int epochs) {
+    for (int i = 0; i < epochs; ++i) {
+      epoch();
+      node.step(bus.time);
+      bus.time += 20'000;
+    }
+  };
+  drive(100);
+  line.armed = true;
+  drive(100);
+  REQUIRE(bus.track.size() > 150);
+  // A metre a second to the east: the place tells the true time of a measurement.
+  const ins_t& first = bus.track.front();
+  for (const ins_t& m : bus.track) {
+    const double elapsed = static_cast<double>(m.utime - first.utime) * 1e-6;
+    CHECK(elapsed == Approx(m.position[0] - first.position[0]).margin(0.005));
+  }
+}
 
 TEST_CASE("the driver publishes every epoch as INS, with the map's origin at the first fix") {
   Rig rig;
