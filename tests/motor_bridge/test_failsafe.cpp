@@ -156,7 +156,8 @@ TEST_CASE("an E-stop wins over everything, latches, and needs clearing and then 
   CHECK(rig.out.arm_refused);
   rig.in.estop = false;
   rig.run(5'000'000);
-  CHECK(rig.out.state == State::kEstopped);
+  CHECK(rig.out.state == State::kDisarmed);
+  CHECK(rig.out.reason == "E-stop cleared");
   rig.in.arm = true;
   rig.step();
   CHECK(rig.out.state == State::kArmed);

@@ -104,7 +104,7 @@ TEST_CASE("E-stop: zero at once, held in the controller, until cleared and armed
   world.estop(false);
   world.run(2'000'000);
   CHECK((world.device.fault_flags & 16) == 0);
-  CHECK(world.motor.bridge_state == motor_t::STATE_ESTOP);
+  CHECK(world.motor.bridge_state == motor_t::STATE_DISARMED);
   world.say(true);
   world.run(300'000);
   CHECK(world.drives());

@@ -54,6 +54,8 @@ FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
     zero_since_ = disarmed_at_ = in.now;
   }
   watchHealth(in);
+  // Cleared is not armed; but people must see that it is cleared.
+  if (state_ == State::kEstopped && !in.estop) enter(State::kDisarmed, "E-stop cleared", in.now);
   // A fault or a request leaves nothing to decide: the next series waits for the next step, so that
   // at least one zero lies between.
   if (!stopOnFault(in) && !serveRequest(in)) {

@@ -15,7 +15,7 @@ enum class State : int {
   kStopping = 2,  ///< armed; a series ended normally, zero is repeated at the command rate
   kDisarmed = 3,  ///< needs ARM: not armed yet, disarmed, or stopped by the failsafe
   kFault = 4,     ///< needs ARM: stopped by a fault of the controller or of the link to it
-  kEstopped = 5,  ///< needs the E-stop cleared, then ARM
+  kEstopped = 5,  ///< until the E-stop is cleared; then disarmed
 };
 
 /// The state as a word.
