@@ -15,7 +15,8 @@ constexpr double kNear = 8.0;
 constexpr double kTrackStep = 0.05;  // [m]
 
 bool mayDrive(int16_t state) {
-  return state == motor_t::STATE_ARMED || state == motor_t::STATE_DRIVING;
+  return state == motor_t::STATE_ARMED || state == motor_t::STATE_DRIVING ||
+         state == motor_t::STATE_STOPPING;
 }
 
 /// Takes in a log event by event.
@@ -101,7 +102,7 @@ class Reader {
   }
   void hear(const motor_t& motor) {
     const bool may = mayDrive(motor.bridge_state);
-    if (may_drive_ && !may && !drive_.arrived) ++drive_.stops;
+    if (may_drive_ && !may && !drive_.arrived) ++drive_.disarmed;
     may_drive_ = may;
   }
 

@@ -59,8 +59,8 @@ std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth) {
                       drive.distance(), drive.straightLine())
           : formatted("NOT ARRIVED after %.1f s and %.1f m", drive.seconds(), drive.distance());
   if (!drive.arrived && !drive.last_status.empty()) line += ": " + drive.last_status;
-  line += formatted("; %d patterns driven, %d aborted, %d stops", drive.completed, drive.aborted,
-                    drive.stops);
+  line += formatted("; %d patterns driven, %d aborted, disarmed %d times", drive.completed,
+                    drive.aborted, drive.disarmed);
   if (!truth.rows.empty()) line += formatted("; contacts %d", truth.rows.back().contacts);
   return line;
 }
