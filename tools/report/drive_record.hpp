@@ -29,7 +29,7 @@ struct DriveRecord {
   int completed = 0;        ///< executions
   int aborted = 0;
   int refused = 0;                            ///< executions that were no fair measurement
-  int stops = 0;                              ///< times that a permission to drive was lost
+  int disarmed = 0;                           ///< times that a permission to drive was lost
   std::vector<picture::PatternError> errors;  ///< time since begun
   std::vector<picture::DriveMoment> track;    ///< as the INS measured, time since begun
   std::vector<picture::TreeEdge> tree;        ///< the richest one on the way
