@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tools/operator/drive_progress.hpp"
+
 namespace tread::missions {
 namespace {
 
@@ -15,27 +17,6 @@ constexpr double kIdleAfter = 60.0;  ///< [s] without moving 10 cm
 constexpr double kRefusedAfter = 15.0;  ///< [s] of blocked or unreachable without a break
 constexpr int64_t kSurfaceConfirmed =
     1'000'000;  ///< [us] on a new surface before it counts as a change
-
-std::string wordsOf(int16_t status) {
-  switch (status) {
-    case plan_t::PLAN_IDLE:
-      return "idle";
-    case plan_t::PLAN_DRIVING:
-      return "driving";
-    case plan_t::PLAN_ARRIVED:
-      return "arrived";
-    case plan_t::PLAN_WAITING:
-      return "waiting";
-    case plan_t::PLAN_BLOCKED:
-      return "blocked";
-    case plan_t::PLAN_UNREACHABLE:
-      return "unreachable";
-    case plan_t::PLAN_STOPPED:
-      return "stopped";
-    default:
-      return "unknown";
-  }
-}
 
 }  // namespace
 
@@ -196,13 +177,15 @@ void MissionWatch::judge() {
                "the planner believes that it has arrived, the true pose says no");
   }
   if (refused_since_ >= 0 && static_cast<double>(now - refused_since_) * 1e-6 > kRefusedAfter)
-    return end(Outcome::kRefused, wordsOf(plan_.plan_status) + ": " + plan_.reason);
+    return end(Outcome::kRefused, operators::statusWord(plan_.plan_status) + ": " + plan_.reason);
   if (static_cast<double>(now - moved_at_) * 1e-6 > kIdleAfter)
-    return end(Outcome::kIdle, "nothing moved for a minute; planner " + wordsOf(plan_.plan_status) +
-                                   ": " + plan_.reason + "; bridge: " + motor_.state_reason);
+    return end(Outcome::kIdle, "nothing moved for a minute; planner " +
+                                   operators::statusWord(plan_.plan_status) + ": " + plan_.reason +
+                                   "; bridge: " + motor_.state_reason);
   if (result_.time > time_limit_)
-    return end(Outcome::kStopped,
-               "time ran out; planner " + wordsOf(plan_.plan_status) + ": " + plan_.reason);
+    return end(
+        Outcome::kStopped,
+        "time ran out; planner " + operators::statusWord(plan_.plan_status) + ": " + plan_.reason);
 }
 
 void MissionWatch::end(Outcome outcome, const std::string& reason) {
@@ -216,8 +199,8 @@ Progress MissionWatch::progress() const {
   progress.time = result_.time;
   progress.to_go = toGo();
   progress.surface = surface_;
-  progress.plan =
-      wordsOf(plan_.plan_status) + (plan_.reason.empty() ? "" : " (" + plan_.reason + ")");
+  progress.plan = operators::statusWord(plan_.plan_status) +
+                  (plan_.reason.empty() ? "" : " (" + plan_.reason + ")");
   progress.pattern = presentPattern();
   progress.last_error = std::numeric_limits<double>::quiet_NaN();
   for (auto it = result_.executions.rbegin(); it != result_.executions.rend(); ++it)

@@ -13,46 +13,62 @@ struct Asker {
   std::string why;
 };
 
-/// Arms or disarms: repeats ARM until MOTOR shows it.
-class ArmCall : public Call {
+/// A request to the motor bridge, repeated until MOTOR shows that it was served.
+class PermissionCall : public Call {
  public:
-  ArmCall(Bus& bus, Asker asker, bool arm, double patience);
-
   CallResult step(int64_t utime) override;
   std::string words(int64_t utime) const override;
 
+ protected:
+  /// `patience` [s] for which it is repeated; `repeat` [us] between two.
+  PermissionCall(Bus& bus, double patience, int64_t repeat);
+
+  virtual void send(Bus& bus, int64_t utime, int64_t seq) = 0;
+  /// Whether a bridge in this state (motor_t::STATE_*) has served the request.
+  virtual bool served(int16_t bridge_state) const = 0;
+  virtual std::string wordsWhenServed() const = 0;
+  virtual std::string wordsWhenNot() const = 0;
+
  private:
-  bool shown() const;
+  bool shown(int64_t utime) const;
 
   Bus& bus_;
-  Asker asker_;
-  bool arm_;
   int64_t patience_;  ///< [us]
+  int64_t repeat_;    ///< [us]
   Latest<motor_t> motor_;
   int64_t begun_ = -1;
   int64_t next_ = 0;
   int64_t seq_ = 0;
 };
 
-/// Engages or clears the emergency stop: repeats ESTOP until MOTOR shows it.
-class StopCall : public Call {
+/// Arms or disarms.
+class ArmCall : public PermissionCall {
+ public:
+  ArmCall(Bus& bus, Asker asker, bool arm, double patience);
+
+ private:
+  void send(Bus& bus, int64_t utime, int64_t seq) override;
+  bool served(int16_t bridge_state) const override;
+  std::string wordsWhenServed() const override;
+  std::string wordsWhenNot() const override;
+
+  Asker asker_;
+  bool arm_;
+};
+
+/// Engages or clears the emergency stop.
+class StopCall : public PermissionCall {
  public:
   StopCall(Bus& bus, Asker asker, bool engage, double patience);
 
-  CallResult step(int64_t utime) override;
-  std::string words(int64_t utime) const override;
-
  private:
-  bool shown() const;
+  void send(Bus& bus, int64_t utime, int64_t seq) override;
+  bool served(int16_t bridge_state) const override;
+  std::string wordsWhenServed() const override;
+  std::string wordsWhenNot() const override;
 
-  Bus& bus_;
   Asker asker_;
   bool engage_;
-  int64_t patience_;  ///< [us]
-  Latest<motor_t> motor_;
-  int64_t begun_ = -1;
-  int64_t next_ = 0;
-  int64_t seq_ = 0;
 };
 
 }  // namespace tread::operators
