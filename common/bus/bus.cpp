@@ -24,6 +24,7 @@ void Bus::deliver(const RawHandler& handler, const char* channel, const uint8_t*
 
 void Bus::noteReceipt(const ChannelSpec& spec, int64_t utime, int64_t seq) {
   ++statistics_.received;
+  statistics_.newest = {spec.name, utime, seq};
   // What may be old by its nature (a tile of the map) does not tell the time.
   if (spec.max_age_ms > 0 && !onReceipt(utime)) {
     ++statistics_.jumps;

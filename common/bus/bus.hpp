@@ -12,9 +12,17 @@
 
 namespace tread {
 
+/// Which message it was.
+struct Receipt {
+  std::string channel;  ///< empty = none
+  int64_t utime = 0;    ///< [us]
+  int64_t seq = -1;
+};
+
 /// What a bus endpoint counted since its start. Every refusal is here; none is silent.
 struct BusStatistics {
   int64_t received = 0;      ///< messages that reached a handler
+  Receipt newest;            ///< the newest of them, in the order of receipt
   int64_t undecodable = 0;   ///< of a foreign or broken type
   int64_t lost = 0;          ///< missing by seq
   int64_t late = 0;          ///< older than their channel's maximum age on receipt

@@ -18,6 +18,8 @@ class FollowedTime {
 
   /// Present time [us]; before the first time is believed, the time since construction.
   int64_t now(int64_t host) const { return utime_ + (host - host_); }
+  /// Whether a time is believed yet.
+  bool started() const { return started_; }
   /// A message of this utime came in. False if it was refused.
   bool hear(int64_t utime, int64_t host);
 

@@ -108,20 +108,25 @@ void PlannerNode::step(int64_t utime) {
 }
 
 void PlannerNode::shutdown(int64_t utime) {
-  program_t empty{};
-  empty.utime = utime;
-  empty.seq = seq_program_++;
-  empty.run_id = supervisor_.program().runId();
-  empty.lease = static_cast<int32_t>(config_.lease);
-  bus_.publish(kProgram, empty);
+  bus_.publish(kProgram, emptyProgram(utime));
 }
 
-void PlannerNode::publishProgram(int64_t utime) {
+program_t PlannerNode::emptyProgram(int64_t utime) {
   program_t message{};
   message.utime = utime;
   message.seq = seq_program_++;
   message.run_id = supervisor_.program().runId();
   message.lease = static_cast<int32_t>(config_.lease);
+  const BusStatistics& statistics = bus_.statistics();
+  message.inputs_heard = statistics.received;
+  message.newest_input = statistics.newest.channel;
+  message.newest_input_utime = statistics.newest.utime;
+  message.newest_input_seq = statistics.newest.seq;
+  return message;
+}
+
+void PlannerNode::publishProgram(int64_t utime) {
+  program_t message = emptyProgram(utime);
   message.running = toMessage(supervisor_.program().running());
   message.next = toMessage(supervisor_.program().next());
   bus_.publish(kProgram, message);

@@ -37,6 +37,8 @@ class PlannerNode : public Node {
   void take(const pattern_set_part_t& message);
   void take(const motor_t& message);
   void take(const execution_t& message);
+  /// A program that lets the robot stand, with what was heard until now.
+  program_t emptyProgram(int64_t utime);
   void publishProgram(int64_t utime);
   void publishPlan(int64_t utime, const Decision& decision, int64_t search_time);
   void publishTree(const PlanReport& report);

@@ -42,6 +42,10 @@ TEST_CASE("decoded fields have the values that were sent") {
   CHECK(program.running.execution_id == 51);
   CHECK(program.next.execution_id == 62);
   CHECK(program.next.right == std::vector<float>{-0.5F, -0.75F, -1.0F});
+  CHECK(program.inputs_heard == 63);
+  CHECK(program.newest_input == "INS");
+  CHECK(program.newest_input_utime == 1'000'012);
+  CHECK(program.newest_input_seq == 12);
   map_tile_t tile{};
   REQUIRE(testing::decode(testing::encode(testing::sampleOf<map_tile_t>()), tile));
   CHECK(tile.cells[2] == map_tile_t::CELL_OBSTACLE);

@@ -317,6 +317,10 @@ inline program_t sampleOf<program_t>() {
   m.running = sampleOf<program_slot_t>();
   m.next = sampleOf<program_slot_t>();
   m.next.execution_id = 62;
+  m.inputs_heard = 63;
+  m.newest_input = "INS";
+  m.newest_input_utime = 1'000'012;
+  m.newest_input_seq = 12;
   return m;
 }
 

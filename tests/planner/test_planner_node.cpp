@@ -146,6 +146,39 @@ TEST_CASE("The node comes up disarmed: a permission from before its start counts
   CHECK(yard.run_id > old_run);
 }
 
+TEST_CASE("PROGRAM says what the planner had heard, a broken message does not count") {
+  VirtualBus bus(1);
+  bus.addNode("planner",
+              [](Bus& end) { return std::make_unique<PlannerNode>(PlannerConfig{}, end); });
+  const Latest<program_t> program(bus.outside(), kProgram);
+  const auto run = [&bus] { bus.runUntil(bus.now() + 100'000); };
+  run();
+  CHECK(program.message().inputs_heard == 0);
+  CHECK(program.message().newest_input.empty());
+  CHECK(program.message().newest_input_seq == -1);
+  arm_t arm{};
+  arm.utime = bus.now();
+  bus.outside().publish(kArm, arm);
+  goal_t goal{};
+  goal.utime = bus.now() - 7;
+  goal.seq = 41;
+  bus.outside().publish(kGoal, goal);
+  const uint8_t broken = 1;
+  bus.inject(kMotor.name, &broken, 1);
+  run();
+  CHECK(program.message().inputs_heard == 2);
+  CHECK(program.message().newest_input == "GOAL");
+  CHECK(program.message().newest_input_utime == goal.utime);
+  CHECK(program.message().newest_input_seq == 41);
+  bus.node("planner")->shutdown(bus.now());
+  run();
+  CHECK(program.message().inputs_heard == 2);
+  bus.restart("planner");
+  run();
+  CHECK(program.message().inputs_heard == 0);
+  CHECK(program.message().newest_input.empty());
+}
+
 TEST_CASE("Disarming and an emergency stop empty the program in the next step") {
   for (const bool estop : {true, false}) {
     Yard yard;

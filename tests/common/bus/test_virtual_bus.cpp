@@ -208,6 +208,8 @@ TEST_CASE("losses are counted by seq, a publisher that starts again is no loss")
   }
   bus.runUntil(bus.now() + 1000);
   REQUIRE(bus.outside().statistics().received == 5);
+  REQUIRE(bus.outside().statistics().newest.channel == "MOTOR");
+  REQUIRE(bus.outside().statistics().newest.seq == 1);
   REQUIRE(bus.outside().statistics().lost == 2);
 }
 
