@@ -3,10 +3,11 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "common/bus/bus.hpp"
+#include "common/bus/lcm_bus.hpp"
 #include "common/log/event_log.hpp"
 
 namespace tread::replay {
@@ -17,9 +18,13 @@ class LogBus : public Bus {
  public:
   explicit LogBus(int64_t boot_id) : now_(boot_id), boot_id_(boot_id) {}
 
-  int64_t now() const override { return now_; }
+  int64_t now() const override { return knowsTime() ? now_ : start_->now(now_); }
   int64_t bootId() const override { return boot_id_; }
   void setNow(int64_t utime) { now_ = utime; }
+  /// From here as a process on a real host that has just started: it does not know the time before
+  /// it has heard enough to believe it.
+  void forgetTime() { start_.emplace(now_, LcmBus::kMaxJump); }
+  bool knowsTime() const { return !start_ || start_->started(); }
 
   /// Hands an event to the node's handlers.
   void hear(const LogEvent& event);
@@ -33,10 +38,12 @@ class LogBus : public Bus {
  protected:
   bool send(const char* channel, const uint8_t* bytes, size_t size) override;
   void listen(const char* channel, RawHandler handler) override;
+  bool onReceipt(int64_t utime) override { return knowsTime() || start_->hear(utime, now_); }
 
  private:
   int64_t now_;
   int64_t boot_id_;
+  std::optional<FollowedTime> start_;
   std::map<std::string, std::vector<RawHandler>> handlers_;
   std::vector<LogEvent> published_;
 };

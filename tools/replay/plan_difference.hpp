@@ -9,7 +9,7 @@
 namespace tread::replay {
 
 /// The first field in which two programs differ, in words; empty if they are equal to the bit.
-/// `seq` is not compared.
+/// Neither `seq` nor what the planner had heard is compared.
 std::string differenceOf(const program_t& log, const program_t& replay);
 
 /// The same for two plans; neither `seq` nor `search_time` is compared.

@@ -10,26 +10,18 @@
 #include "modules/planner/planner_node.hpp"
 #include "tools/replay/log_bus.hpp"
 #include "tools/replay/plan_difference.hpp"
+#include "tools/replay/planner_inputs.hpp"
 #include "tools/replay/recipe.hpp"
 
 namespace tread::replay {
 namespace {
 
-/// Two messages of one step are nearer than this [us]; the last PROGRAM of a planner that was told
-/// to stop comes outside its steps.
-constexpr int64_t kHalfStep = 25'000;
-
 /// Steps in a row [1]: more than this is not a loss but a broken number.
 constexpr int64_t kMostLost = 100;
-/// By so much the recorder may hear later than the planner [us].
-constexpr int64_t kJitter = 40'000;
 
 /// One step of a planner: what it said in it.
-struct Step {
-  program_t program;
+struct Step : ToldStep {
   std::optional<plan_t> plan;
-  bool lost =
-      false;  ///< the recorder has not got its PROGRAM: the time lies between its neighbours
 };
 
 /// One start of a planner.
@@ -37,6 +29,7 @@ struct Life {
   int64_t run_id = 0;
   bool from_start = false;
   std::vector<Step> steps;
+  Hearing hearing;
 };
 
 /// The planner also stepped where the recorder lost its PROGRAM.
@@ -53,6 +46,22 @@ void addLost(std::vector<Step>& steps, const program_t& next) {
   }
 }
 
+/// A planner that is told to stop empties the program, which is no step. What looks like it is not
+/// compared.
+void dropFarewell(std::vector<Step>& steps) {
+  const Step& last = steps.back();
+  if (steps.size() > 1 && last.program.running.num_commands == 0 && !last.plan) steps.pop_back();
+}
+
+/// Why a log has no planner that can be replayed.
+std::string noPlanner(const RobotLog& log) {
+  for (const TimedEvent& timed : log.events)
+    if (timed.event.channel == kProgram.name)
+      return ": its PROGRAM is not this version's program_t (the log is older or newer); replay it "
+             "with the version of Tread that recorded it";
+  return ": no PROGRAM, so no planner was running";
+}
+
 std::vector<Life> livesIn(const RobotLog& log) {
   std::vector<Life> lives;
   for (const TimedEvent& timed : log.events) {
@@ -60,19 +69,24 @@ std::vector<Life> livesIn(const RobotLog& log) {
     plan_t plan;
     if (decode(timed.event, kProgram, program)) {
       if (lives.empty() || lives.back().run_id != program.run_id)
-        lives.push_back({program.run_id, program.seq == 0, {}});
+        lives.push_back({program.run_id, program.seq == 0, {}, {}});
       addLost(lives.back().steps, program);
-      lives.back().steps.push_back({program, std::nullopt});
+      lives.back().steps.push_back({{program, false}, std::nullopt});
     } else if (!lives.empty() && decode(timed.event, kPlan, plan)) {
       lives.back().steps.back().plan = plan;
     }
   }
-  for (Life& life : lives) {
-    const size_t count = life.steps.size();
-    if (count > 1 &&
-        life.steps[count - 1].program.utime - life.steps[count - 2].program.utime < kHalfStep)
-      life.steps.pop_back();
-  }
+  for (Life& life : lives) dropFarewell(life.steps);
+  return lives;
+}
+
+/// The planners of the log, and what each had heard before its steps.
+std::vector<Life> heardLives(const RobotLog& log, const planner::PlannerConfig& config) {
+  std::vector<Life> lives = livesIn(log);
+  if (lives.empty()) throw std::runtime_error(log.name + noPlanner(log));
+  const std::vector<PlannerInput> inputs = plannerInputs(log, config);
+  for (Life& life : lives)
+    life.hearing = hearingOf(log, inputs, {life.steps.begin(), life.steps.end()});
   return lives;
 }
 
@@ -94,43 +108,30 @@ Step said(LogBus& bus, std::vector<LogEvent>& all) {
   return step;
 }
 
-/// Whether the planner had heard an event before a step. `newest_ins` [us]: the newest it had
-/// heard.
-/** A recorder on a busy host hears a little earlier or later than the planner. PLAN names the INS
- * that the planner had, and so settles which. */
-bool before(const TimedEvent& timed, const Step& step, int64_t& newest_ins) {
-  const int64_t utime = step.program.utime;
-  ins_t ins;
-  const bool is_ins = decode(timed.event, kIns, ins);
-  bool heard = timed.heard < utime;
-  if (step.plan && step.plan->utime > 0) {
-    const bool missing = newest_ins < step.plan->utime && timed.heard < utime + kJitter;
-    heard = is_ins ? ins.utime <= step.plan->utime : heard || missing;
-  }
-  if (heard && is_ins) newest_ins = std::max(newest_ins, ins.utime);
-  return heard;
-}
-
 /// A life of the real planner, from the log.
 std::vector<Step> replayed(const RobotLog& log, const Life& life,
                            const planner::PlannerConfig& config, std::vector<LogEvent>& all) {
+  const Hearing& hearing = life.hearing;
   LogBus bus(life.run_id);
+  if (!log.virtual_time && life.from_start) bus.forgetTime();
   planner::PlannerNode node(config, bus);
   int32_t cut = 0;
   node.setStop([&cut](int expansions) { return cut > 0 && expansions >= cut; });
-  auto event = log.events.begin();
-  while (event != log.events.end() && life.from_start && event->heard < life.run_id) ++event;
   std::vector<Step> steps;
-  int64_t newest_ins = 0;
-  for (const Step& step : life.steps) {
-    const int64_t utime = step.program.utime;
-    for (; event != log.events.end() && before(*event, step, newest_ins); ++event) {
-      bus.setNow(std::min(event->heard, utime));
-      bus.hear(event->event);
+  size_t input = hearing.from;
+  int64_t last = 0;
+  for (size_t i = 0; i < life.steps.size(); ++i) {
+    const int64_t utime = life.steps[i].program.utime;
+    for (; input < hearing.until[i]; ++input) {
+      const TimedEvent& timed = log.events[hearing.inputs[input].event];
+      const bool knows = bus.knowsTime();
+      bus.setNow(knows ? std::min(std::max(timed.heard, last), utime) : timed.heard);
+      bus.hear(timed.event);
     }
-    cut = cutOf(step, config.deadline);
-    bus.setNow(utime);
+    cut = cutOf(life.steps[i], config.deadline);
+    if (bus.knowsTime()) bus.setNow(utime);
     node.step(utime);
+    last = utime;
     steps.push_back(said(bus, all));
   }
   return steps;
@@ -149,6 +150,7 @@ void compare(const Step& log, const Step& replay, PlannerCheck& check) {
     if (!plan.empty()) note(check, plan);
   } else if (log.plan) {
     ++check.plans_only_in_log;
+    note(check, "PLAN on INS of " + std::to_string(log.plan->utime) + " us: only in the log");
   } else if (replay.plan) {
     ++check.plans_only_in_replay;
   }
@@ -182,8 +184,7 @@ bool sameBytes(const std::vector<LogEvent>& a, const std::vector<LogEvent>& b) {
 
 std::string verdictOf(const PlannerCheck& check) {
   if (check.compared == 0) return "not compared";
-  if (!check.equal()) return "DIFFERENT";
-  return check.first_difference.empty() ? "EQUAL" : "EQUAL in every PROGRAM";
+  return check.equal() ? "EQUAL" : "DIFFERENT";
 }
 
 }  // namespace
@@ -198,11 +199,9 @@ planner::PlannerConfig plannerConfigOf(const RobotLog& log) {
 }
 
 PlannerCheck checkPlanner(const RobotLog& log, const planner::PlannerConfig& config) {
-  const std::vector<Life> lives = livesIn(log);
-  if (lives.empty()) throw std::runtime_error(log.name + ": no PROGRAM, so no planner was running");
+  const std::vector<Life> lives = heardLives(log, config);
   PlannerCheck check;
   check.name = log.name;
-  check.virtual_time = log.virtual_time;
   check.lives = static_cast<int>(lives.size());
   const std::vector<LogEvent> first = replayAll(log, lives, config, &check);
   check.same_twice = sameBytes(first, replayAll(log, lives, config, nullptr));
@@ -211,6 +210,7 @@ PlannerCheck checkPlanner(const RobotLog& log, const planner::PlannerConfig& con
         "the log begins in the middle of a planner's life, which cannot be compared: its "
         "permission "
         "and its numbers are not known");
+  for (const Life& life : lives) check.notes.push_back(hearingLine(life.hearing));
   check.notes.push_back(intakeLine(log, "planner", playedChannels("planner")));
   for (const auto& [channel, missing] : log.missing)
     check.notes.push_back("the log misses " + std::to_string(missing) + " messages on " + channel);

@@ -12,9 +12,9 @@ namespace tread::replay {
 
 /// The log of a robot's drive through the planner: what it holds, what came out, how they compare.
 /** The planner steps when the log's planner did (utime of PROGRAM) and has then heard what that one
- * had heard. Searches end by a count of expansions: the configured one, or that of the log's PLAN
- * where the deadline cut the search on the robot. Compared per step, to the bit: PROGRAM and PLAN
- * without seq and search_time. */
+ * had heard (newest_input, inputs_heard). Searches end by a count of expansions: the configured
+ * one, or that of the log's PLAN where the deadline cut the search on the robot. Compared per step,
+ * to the bit: PROGRAM and PLAN without seq and search_time. */
 struct PlannerCheck {
   std::string name;
   int lives = 0;     ///< planners in the log
@@ -31,14 +31,10 @@ struct PlannerCheck {
   bool same_twice = true;        ///< a second replay published the same bytes
   std::vector<std::string> notes;
 
-  bool virtual_time = false;
-
-  /// Whether the replay says what the log says, and says it twice.
-  /** In virtual time each PROGRAM and PLAN must be equal. On a real host each PROGRAM must be,
-   * which is what was driven; which of two messages a step had heard is not in the log, so a PLAN
-   * in a thousand may differ, and is counted. */
+  /// Whether the replay says what the log says, and says it twice. A PLAN that only the replay has
+  /// is one that the recorder lost.
   bool equal() const {
-    return same_twice && programs_different == 0 && (first_difference.empty() || !virtual_time);
+    return same_twice && programs_different == 0 && plans_different == 0 && plans_only_in_log == 0;
   }
 };
 

@@ -52,6 +52,28 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+/// The message that was the newest a planner had heard before a step; events.end() if none was.
+std::vector<LogEvent>::iterator newestOf(std::vector<LogEvent>& events, const program_t& program) {
+  return std::find_if(events.begin(), events.end(), [&program](const LogEvent& event) {
+    motor_t motor;  // each type begins with fingerprint, utime and seq
+    execution_t execution;
+    const auto is = [&](const auto& message) {
+      return message.utime == program.newest_input_utime && message.seq == program.newest_input_seq;
+    };
+    return event.channel == program.newest_input &&
+           ((decode(event, kMotor, motor) && is(motor)) ||
+            (decode(event, kExecution, execution) && is(execution)));
+  });
+}
+
+std::vector<program_t> programsOf(const std::vector<LogEvent>& events) {
+  std::vector<program_t> programs;
+  program_t program;
+  for (const LogEvent& event : events)
+    if (decode(event, kProgram, program)) programs.push_back(program);
+  return programs;
+}
+
 /// As lcm-logger would have written it on a host whose UTC is set forward in the drive.
 std::vector<LogEvent> recordedInUtc(std::vector<LogEvent> events) {
   rewrite<health_t>(events, kHealth, [](health_t& health) {
@@ -161,6 +183,95 @@ TEST_CASE("a robot's log through the planner gives the programs and plans of the
   REQUIRE(check.plans_equal >= 100);
   REQUIRE(check.same_twice);
   REQUIRE(check.equal());
+}
+
+TEST_CASE(
+    "a message that was recorded on the other side of a step counts where the planner heard it") {
+  std::vector<LogEvent> events = plainDrive();
+  int later = 0;
+  int earlier = 0;
+  for (const program_t& program : programsOf(events)) {
+    const auto newest = newestOf(events, program);
+    if (newest == events.end()) continue;
+    // As if the recorder had got it just after the step began; or the next one just before.
+    if (later <= earlier) {
+      newest->utime = program.utime + 100;
+      ++later;
+    } else {
+      const auto next = std::find_if(newest + 1, events.end(), [](const LogEvent& event) {
+        return event.channel == kMotor.name || event.channel == kExecution.name;
+      });
+      if (next == events.end()) continue;
+      next->utime = program.utime - 100;
+      ++earlier;
+    }
+  }
+  REQUIRE(later > 20);
+  REQUIRE(earlier > 20);
+  const PlannerCheck check = plannerCheck(std::move(events));
+  REQUIRE(check.programs_equal >= 590);
+  REQUIRE(check.equal());
+}
+
+TEST_CASE("two messages that recorder and planner heard in different orders are put right") {
+  std::vector<LogEvent> events = plainDrive();
+  int swapped = 0;
+  for (const program_t& program : programsOf(events)) {
+    const auto newest = newestOf(events, program);
+    if (newest == events.end() || newest->channel != kMotor.name) continue;
+    const auto other = newest + (program.seq % 2 == 0 ? 1 : -1);
+    if (other->channel != kIns.name && other->channel != kExecution.name) continue;
+    std::iter_swap(newest, other);
+    std::swap(newest->utime, other->utime);
+    ++swapped;
+  }
+  REQUIRE(swapped > 20);
+  const PlannerCheck check = plannerCheck(std::move(events));
+  REQUIRE(contains(reportOf(check), std::to_string(swapped) + " pairs in the other order"));
+  REQUIRE(check.equal());
+}
+
+TEST_CASE("what the recorder lost, and what the planner did not hear, is told beside the verdict") {
+  std::vector<LogEvent> events = plainDrive();
+  int motors = 0;
+  events.erase(std::remove_if(events.begin(), events.end(),
+                              [&motors](const LogEvent& event) {
+                                return event.channel == kMotor.name && ++motors % 200 == 100;
+                              }),
+               events.end());
+  const PlannerCheck check = plannerCheck(std::move(events));
+  REQUIRE(contains(reportOf(check), "; " + std::to_string((motors + 100) / 200) +
+                                        " that it heard are not in the log"));
+  REQUIRE(check.programs_equal >= 580);
+
+  FaultPlan faults;
+  MessageFault fault;
+  fault.channel = kMotor.name;
+  fault.receiver = "planner";
+  fault.drop = 0.02;
+  faults.messages.push_back(fault);
+  const PlannerCheck deaf = plannerCheck(drivenLog(20.0, faults));
+  REQUIRE(contains(reportOf(deaf), " of the log it did not hear"));
+  REQUIRE(deaf.programs_equal >= 350);
+}
+
+TEST_CASE("a log that begins in the middle of a planner's life is stepped, not compared") {
+  std::vector<LogEvent> events = plainDrive();
+  events.erase(events.begin(), events.begin() + static_cast<std::ptrdiff_t>(events.size() / 3));
+  const PlannerCheck check = plannerCheck(std::move(events));
+  REQUIRE(check.compared == 0);
+  REQUIRE(check.steps > 300);
+  REQUIRE(check.same_twice);
+  REQUIRE(contains(reportOf(check), "planner not compared"));
+  REQUIRE_FALSE(contains(reportOf(check), "that it heard are not in the log"));
+}
+
+TEST_CASE("a log whose PROGRAM is of another version is refused with one line") {
+  std::vector<LogEvent> events = plainDrive();
+  for (LogEvent& event : events)
+    if (event.channel == kProgram.name) event.bytes[0] ^= 1;
+  REQUIRE_THROWS_WITH(plannerCheck(std::move(events)),
+                      Catch::Contains("is not this version's program_t") && !Catch::Contains("\n"));
 }
 
 TEST_CASE("a planner that was killed and started again is replayed in both lives") {
