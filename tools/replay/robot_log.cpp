@@ -32,11 +32,11 @@ bool stampAs(const LogEvent& event, const Channel<Message>& channel, Stamp& stam
 }
 
 /// Time and number of an event on a channel that one process publishes with the time of sending or
-/// of a measurement just made.
+/// of a measurement just made. Not PROGRAM: a planner that has just started does not know the time.
 std::optional<Stamp> stampOf(const LogEvent& event) {
   Stamp stamp{};
   if (stampAs(event, kIns, stamp) || stampAs(event, kMotor, stamp) ||
-      stampAs(event, kExecution, stamp) || stampAs(event, kProgram, stamp))
+      stampAs(event, kExecution, stamp))
     return stamp;
   return std::nullopt;
 }
@@ -45,7 +45,8 @@ std::optional<Stamp> stampOf(const LogEvent& event) {
 std::optional<Stamp> numberOf(const LogEvent& event) {
   Stamp stamp{};
   if (stampAs(event, kPatternSet, stamp) || stampAs(event, kLearning, stamp) ||
-      stampAs(event, kMap, stamp) || stampAs(event, kPlan, stamp))
+      stampAs(event, kMap, stamp) || stampAs(event, kPlan, stamp) ||
+      stampAs(event, kProgram, stamp))
     return stamp;
   return stampOf(event);
 }

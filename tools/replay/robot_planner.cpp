@@ -184,7 +184,9 @@ bool sameBytes(const std::vector<LogEvent>& a, const std::vector<LogEvent>& b) {
 
 std::string verdictOf(const PlannerCheck& check) {
   if (check.compared == 0) return "not compared";
-  return check.equal() ? "EQUAL" : "DIFFERENT";
+  if (check.equal()) return "EQUAL";
+  return check.lacking > 0 ? "DIFFERENT, but it had heard messages that the log lacks"
+                           : "DIFFERENT";
 }
 
 }  // namespace
@@ -210,7 +212,10 @@ PlannerCheck checkPlanner(const RobotLog& log, const planner::PlannerConfig& con
         "the log begins in the middle of a planner's life, which cannot be compared: its "
         "permission "
         "and its numbers are not known");
-  for (const Life& life : lives) check.notes.push_back(hearingLine(life.hearing));
+  for (const Life& life : lives) {
+    check.lacking += life.hearing.lacking;
+    check.notes.push_back(hearingLine(life.hearing));
+  }
   check.notes.push_back(intakeLine(log, "planner", playedChannels("planner")));
   for (const auto& [channel, missing] : log.missing)
     check.notes.push_back("the log misses " + std::to_string(missing) + " messages on " + channel);

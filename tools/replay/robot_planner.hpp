@@ -28,6 +28,7 @@ struct PlannerCheck {
   int64_t plans_only_in_log = 0;
   int64_t plans_only_in_replay = 0;
   std::string first_difference;  ///< in words; empty = none
+  int64_t lacking = 0;           ///< messages that the planners had heard and the log lacks
   bool same_twice = true;        ///< a second replay published the same bytes
   std::vector<std::string> notes;
 
