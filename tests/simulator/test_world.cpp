@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/simulator/core/world.hpp"
+#include "tests/effort.hpp"
 
 namespace tread::sim {
 namespace {
@@ -78,7 +79,7 @@ TEST_CASE("level rays hit what a test of every edge of every obstacle hits") {
   const std::vector<Obstacle> obstacles = randomObstacles(random, 150);
   const World world(flatWorld(obstacles));
   int hits = 0;
-  for (int trial = 0; trial < 1000; ++trial) {
+  for (int trial = 0; trial < testing::effort(1000); ++trial) {
     const Eigen::Vector2d start(uniform(random, -24, 24), uniform(random, -24, 24));
     const double angle = uniform(random, -4, 4);
     const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
@@ -128,7 +129,7 @@ TEST_CASE("beams meet sloping ground where a fine march along the beam meets it"
   const World world(description);
   Random random(2);
   int hits = 0, missed = 0;
-  for (int trial = 0; trial < 500; ++trial) {
+  for (int trial = 0; trial < testing::effort(500); ++trial) {
     const Eigen::Vector2d p(uniform(random, -10, 10), uniform(random, -10, 10));
     const Eigen::Vector3d start(p.x(), p.y(), world.height(p) + 0.5);
     const double yaw = uniform(random, -4, 4), pitch = uniform(random, -0.15, 0.1);
@@ -178,7 +179,7 @@ TEST_CASE("footprint and obstacle touch exactly when some point belongs to both"
   const World world(flatWorld(obstacles));
   const Rectangle footprint;
   int touches = 0, near = 0;
-  for (int trial = 0; trial < 1500; ++trial) {
+  for (int trial = 0; trial < testing::effort(1500); ++trial) {
     const Pose2 pose{uniform(random, -20, 20), uniform(random, -20, 20), uniform(random, -4, 4)};
     bool wanted = false;
     double margin = std::numeric_limits<double>::infinity();
