@@ -67,7 +67,7 @@ struct MissionResult {
   int completed = 0;           ///< patterns executed to their end
   int aborted = 0;
   int rearmed = 0;           ///< times the operator had to arm again
-  int64_t set_versions = 0;  ///< last version minus first
+  int64_t set_versions = 0;  ///< sets published after the first
   int surface_changes = 0;   ///< that the world has between start and goal, driven or not
   std::vector<Crossing> crossings;
   std::vector<ScoredExecution> executions;

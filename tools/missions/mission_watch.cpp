@@ -47,8 +47,8 @@ void MissionWatch::listen(Bus& bus) {
   bus.subscribe<plan_tree_t>(kPlanTree, [this](const plan_tree_t& message) { hear(message); });
   bus.subscribe<map_tile_t>(kMap, [this](const map_tile_t& message) { hear(message); });
   bus.subscribe<pattern_set_part_t>(kPatternSet, [this](const pattern_set_part_t& part) {
-    if (first_version_ == 0) first_version_ = part.set_version;
-    result_.set_versions = std::max(result_.set_versions, part.set_version - first_version_);
+    versions_.insert(part.set_version);
+    result_.set_versions = static_cast<int64_t>(versions_.size()) - 1;
   });
 }
 

@@ -47,7 +47,7 @@ class MissionWatch {
   bool ended_ = false;
   plan_t plan_{};
   motor_t motor_{};
-  int64_t first_version_ = 0;
+  std::set<int64_t> versions_;  ///< of pattern sets that were published
   std::map<int, std::string> pattern_names_;
   std::map<std::pair<int64_t, int64_t>, execution_record_t> records_;  ///< by run and execution id
   std::vector<std::pair<int64_t, std::string>>

@@ -153,7 +153,12 @@ PatternSet predictedSet(const DriveLog& log, const VehicleModel& model) {
     if (record.outcome != execution_record_t::OUTCOME_COMPLETED || record.commands_total < 1 ||
         applied == log.commands.end() || !known.insert(record.record_pattern_id).second)
       continue;
-    content.period_us = (record.ended - record.started) / record.commands_total;
+    const int64_t period = (record.ended - record.started) / record.commands_total;
+    if (!content.patterns.empty() && period != content.period_us)
+      throw std::runtime_error(log.name + ": its executions have commands of different periods (" +
+                               std::to_string(content.period_us) + " and " +
+                               std::to_string(period) + " us); a pattern set has one");
+    content.period_us = period;
     addPattern(content, model, record.record_pattern_id,
                seriesOf(applied->second, record.commands_total));
   }

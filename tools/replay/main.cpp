@@ -216,8 +216,10 @@ void addLearner(CLI::App& app, LearnerArguments& arguments) {
       ->check(CLI::Range(0.0, 20.0))
       ->capture_default_str();
   command.add_option("--entry-speed", arguments.entry_speed, "allowed off the entry class [m/s]")
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command.add_option("--entry-yaw-rate", arguments.entry_yaw_rate, "the same for yaw [rad/s]")
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command.add_flag("--any-entry", arguments.any_entry,
                    "no gate on the entry twist (always so with --model)");
