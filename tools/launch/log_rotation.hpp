@@ -8,8 +8,6 @@ namespace tread::launch {
 
 /// Moves FILE.0 to FILE.1, FILE.1 to FILE.2 and so on, up to the first gap, so that FILE.0 is free;
 /// what would become FILE.<keep> is removed. Throws std::filesystem::filesystem_error.
-/** lcm-logger 1.3.1 --rotate does this each time a file is full, but not at its start: there it
- * overwrites FILE.0, the newest log of the run before. */
 void makeRoomForLog(const std::string& file, int keep);
 
 }  // namespace tread::launch

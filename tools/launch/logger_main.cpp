@@ -1,25 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <stdexcept>
 #include <string>
-#include <vector>
 
 #include <sys/prctl.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 
-#include "tools/launch/host.hpp"
-#include "tools/launch/log_rotation.hpp"
-#include "tools/launch/run_command.hpp"
+#include "tools/launch/recorder.hpp"
 
 namespace {
 
-constexpr const char* kNoLogger = "there is no lcm-logger (apt-get install liblcm-bin)";
+// A signal handler can reach nothing but a global; it lives in this file only.
+std::atomic<bool> g_stop{false};
+
+void requestStop(int /*signal*/) {
+  g_stop = true;
+}
 
 struct Options {
   std::string file;
@@ -41,36 +43,31 @@ void declare(CLI::App& app, Options& options) {
   app.add_flag("--with-parent", options.with_parent, "end when the starting process is gone");
 }
 
-[[noreturn]] void becomeLogger(const Options& options) {
-  std::vector<std::string> words{"lcm-logger", "--quiet",
-                                 "--rotate=" + std::to_string(options.keep),
-                                 "--split-mb=" + std::to_string(options.split_mb)};
-  // 1.3.1 knows no -l, though its help says so.
-  if (!options.lcm_url.empty()) words.push_back("--lcm-url=" + options.lcm_url);
-  words.push_back(options.file);
-  tread::launch::becomeProgram(words);
-  throw std::runtime_error(kNoLogger);
-}
-
 int run(int argc, char** argv) {
   const pid_t parent = getppid();
-  CLI::App app{"Records all messages with lcm-logger, rotated; no earlier log is overwritten.",
+  CLI::App app{"Records all messages as LCM event logs, rotated; no earlier log is overwritten.",
                "tread-logger"};
   Options options;
   declare(app, options);
   CLI11_PARSE(app, argc, argv);
-  if (options.check) {
-    if (tread::launch::findProgram("lcm-logger", "").empty()) throw std::runtime_error(kNoLogger);
-    return 0;
-  }
+  if (options.check) return 0;
+  std::signal(SIGINT, requestStop);
+  std::signal(SIGTERM, requestStop);
+  std::signal(SIGHUP, requestStop);
   if (options.with_parent) {
-    prctl(PR_SET_PDEATHSIG, SIGINT);  // stays in force for what we become
+    prctl(PR_SET_PDEATHSIG, SIGINT);
     if (getppid() != parent) return 0;
   }
   const auto folder = std::filesystem::path(options.file).parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder);
-  tread::launch::makeRoomForLog(options.file, options.keep);
-  becomeLogger(options);
+  tread::launch::RecorderSettings settings;
+  settings.file = options.file;
+  settings.lcm_url = options.lcm_url;
+  settings.keep = options.keep;
+  settings.split = 1'000'000LL * options.split_mb;
+  tread::launch::Recorder recorder(settings);
+  recorder.run(g_stop);
+  return 0;
 }
 
 }  // namespace

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <csignal>
+#include <filesystem>
+
+#include <catch2/catch.hpp>
+
+#include "common/bus/host_clock.hpp"
+#include "common/bus/lcm_bus.hpp"
+#include "common/log/event_log.hpp"
+#include "tests/system/process.hpp"
+
+namespace tread::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Folder {
+  Folder() { fs::create_directories(path); }
+  ~Folder() {
+    std::error_code none;
+    fs::remove_all(path, none);
+  }
+  std::string path = fs::temp_directory_path() / ("tread_recorder_" + std::to_string(::getpid()));
+};
+
+/// The seq of all MARK messages of a log, in order.
+std::vector<int64_t> marksOf(const std::string& path) {
+  std::vector<int64_t> seqs;
+  LogReader log(path);
+  LogEvent event;
+  mark_t mark;
+  while (log.next(event))
+    if (decode(event, kMark, mark)) seqs.push_back(mark.seq);
+  CHECK(log.problem().empty());
+  return seqs;
+}
+
+/// Publishes MARK messages, one each millisecond.
+class Speaker {
+ public:
+  explicit Speaker(const std::string& url) : bus_(url, TimeSource::kHost) {}
+  void say(int count, size_t size = 20) {
+    for (int i = 0; i < count; ++i) {
+      mark_t mark{};
+      mark.utime = hostNow();
+      mark.seq = said++;
+      mark.mark_value = std::string(size, 'x');
+      bus_.publish(kMark, mark);
+      ::usleep(1000);
+    }
+  }
+  int64_t said = 0;
+
+ private:
+  LcmBus bus_;
+};
+
+/// Speaks until the recorder hears.
+void meet(Speaker& speaker, const std::string& file) {
+  for (int i = 0; i < 100; ++i) {
+    speaker.say(20);
+    if (fs::exists(file) && fs::file_size(file) > 0) return;
+  }
+  FAIL("the recorder writes nothing");
+}
+
+}  // namespace
+
+TEST_CASE("a recorder that gets no processor for half a second has lost nothing afterwards") {
+  const Folder folder;
+  const std::string url = ownLcmUrl() + "&recv_buf_size=2097152";
+  const std::string file = folder.path + "/robot.lcmlog";
+  Process recorder("tread-logger", {file, "--lcm-url", url});
+  Speaker speaker(url);
+  meet(speaker, file + ".0");
+  const int64_t from = speaker.said;
+  for (int i = 0; i < 3; ++i) {
+    recorder.signal(SIGSTOP);
+    speaker.say(400);
+    recorder.signal(SIGCONT);
+    speaker.say(50);
+  }
+  recorder.signal(SIGINT);
+  REQUIRE(recorder.waitFor(5.0));
+  CHECK(recorder.exitCode() == 0);
+  const std::vector<int64_t> marks = marksOf(file + ".0");
+  REQUIRE(!marks.empty());
+  CHECK(marks.front() <= from);
+  CHECK(marks.back() == speaker.said - 1);
+  for (size_t i = 1; i < marks.size(); ++i) REQUIRE(marks[i] == marks[i - 1] + 1);
+}
+
+TEST_CASE("a full file moves up and the next one goes on without a gap") {
+  const Folder folder;
+  const std::string url = ownLcmUrl() + "&recv_buf_size=2097152";
+  const std::string file = folder.path + "/robot.lcmlog";
+  Process recorder("tread-logger", {file, "--split-mb", "1", "--keep", "3", "--lcm-url", url});
+  Speaker speaker(url);
+  meet(speaker, file + ".0");
+  // Larger than MARK may be is refused by our bus, so many small ones.
+  for (int i = 0; i < 60 && !fs::exists(file + ".1"); ++i) speaker.say(100, 900);
+  speaker.say(400, 900);
+  recorder.signal(SIGINT);
+  REQUIRE(recorder.waitFor(5.0));
+  REQUIRE(fs::exists(file + ".1"));
+  CHECK(fs::file_size(file + ".1") > 900'000);
+  const std::vector<int64_t> older = marksOf(file + ".1");
+  const std::vector<int64_t> newer = marksOf(file + ".0");
+  REQUIRE(!older.empty());
+  REQUIRE(!newer.empty());
+  CHECK(newer.front() == older.back() + 1);
+  CHECK(newer.back() == speaker.said - 1);
+}
+
+TEST_CASE("a recorder that cannot write says so in one line") {
+  const Folder folder;
+  const std::string words = folder.path + "/words.txt";
+  Process recorder("tread-logger", {"/proc/no/log", "--lcm-url", ownLcmUrl()}, words);
+  REQUIRE(recorder.waitFor(5.0));
+  CHECK(recorder.exitCode() == 1);
+}
+
+}  // namespace tread::testing

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "common/log/event_log.hpp"
+
+namespace lcm {
+class LCM;
+}
+
+namespace tread::launch {
+
+/// Where a recorder writes, and how much it keeps.
+struct RecorderSettings {
+  std::string file;  ///< FILE.0 is the newest, FILE.1 the one before
+  std::string lcm_url;
+  int keep = 20;                 ///< files
+  int64_t split = 200'000'000;   ///< [bytes] of a file
+  double retry = 1.0;            ///< [s] between attempts after the disk was full
+  int64_t reserve = 10'000'000;  ///< [bytes] that must be free to begin again
+};
+
+/// Records every message of a bus as LCM event logs, rotated.
+/** lcm-logger 1.3.1 keeps 30 messages while it waits for a busy host's processor and loses the rest
+ * without a word; here a hundred thousand wait. A full disk ends no recording: it is told once, and
+ * a new file begins when there is room. */
+class Recorder {
+ public:
+  /// Throws std::runtime_error with one clear line if LCM or the file cannot be used.
+  explicit Recorder(const RecorderSettings& settings);
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// Until `stop`; then what has arrived is written, too.
+  void run(const std::atomic<bool>& stop);
+  /// Messages that a full disk cost.
+  int64_t lost() const { return lost_; }
+
+ private:
+  void take(const std::string& channel, const uint8_t* bytes, size_t size);
+  void begin();
+  void care(int64_t now);
+  void giveUp(const std::string& why);
+
+  RecorderSettings settings_;
+  std::unique_ptr<lcm::LCM> lcm_;
+  std::unique_ptr<LogWriter> writer_;  ///< null while the disk is full
+  int64_t written_ = 0;                ///< [bytes] in this file
+  int64_t next_care_ = 0;              ///< [us]
+  int64_t next_try_ = 0;               ///< [us]
+  int64_t lost_ = 0;
+};
+
+}  // namespace tread::launch
