@@ -17,6 +17,8 @@ namespace tread::planner {
 class Permission {
  public:
   explicit Permission(int64_t start) : revoked_(start) {}
+  /// As if started at this time.
+  void restart(int64_t utime) { revoke(utime); }
 
   void take(const arm_t& message, int64_t now);
   void take(const estop_t& message, int64_t now);

@@ -94,7 +94,18 @@ void PlannerNode::take(const execution_t& message) {
   situation_.executions = readingsFrom(message);
 }
 
+void PlannerNode::followTime(int64_t utime) {
+  // A process that only hears the time does not know it at first, and may be frozen later: what it
+  // noted before such a jump has no age, and who armed then did not arm this run.
+  const bool jumped = stepped_ && std::abs(utime - *stepped_) > kTimeJump;
+  stepped_ = utime;
+  if (!jumped) return;
+  if (situation_.set_received != 0) situation_.set_received = utime;
+  permission_.restart(utime);
+}
+
 void PlannerNode::step(int64_t utime) {
+  followTime(utime);
   situation_.now = utime;
   situation_.armed_by_operator = permission_.armed();
   situation_.estopped = permission_.estopped();

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <optional>
+
 #include "common/bus/health.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "modules/planner/permission.hpp"
@@ -29,7 +31,10 @@ class PlannerNode : public Node {
   const Supervisor& supervisor() const { return supervisor_; }
 
  private:
+  static constexpr int64_t kTimeJump = 1'000'000;  ///< [us] between two steps
+
   void subscribe();
+  void followTime(int64_t utime);
   bool senselessTime(int64_t utime, const char* channel);
   void take(const ins_t& message);
   void take(const map_tile_t& message);
@@ -49,6 +54,7 @@ class PlannerNode : public Node {
   HealthReporter health_;
   Supervisor supervisor_;
   PatternSetAssembler sets_;
+  std::optional<int64_t> stepped_;  ///< utime of the last step
   Permission permission_;
   Situation situation_;
   StopPredicate stop_;  ///< empty = the deadline

@@ -146,6 +146,23 @@ TEST_CASE("The node comes up disarmed: a permission from before its start counts
   CHECK(yard.run_id > old_run);
 }
 
+TEST_CASE("When the time jumps, as at the start of a real process, an earlier permission is void") {
+  // A process that only hears the time starts near zero.
+  Permission permission(300'000);
+  arm_t arm{};
+  arm.armed = true;
+  arm.utime = 1'000'000'000;
+  permission.take(arm, arm.utime + 100'000);
+  REQUIRE(permission.armed());
+  permission.restart(arm.utime + 150'000);
+  CHECK_FALSE(permission.armed());
+  permission.take(arm, arm.utime + 200'000);
+  CHECK_FALSE(permission.armed());
+  arm.utime += 200'000;
+  permission.take(arm, arm.utime);
+  CHECK(permission.armed());
+}
+
 TEST_CASE("PROGRAM says what the planner had heard, a broken message does not count") {
   VirtualBus bus(1);
   bus.addNode("planner",
