@@ -10,6 +10,7 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -34,6 +35,15 @@ inline std::string contentOf(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+/// What is wrong, line by line. Advice is left out: a host may have little disk or small buffers.
+inline std::vector<std::string> withoutAdvice(const std::string& output) {
+  std::istringstream all(output);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(all, line);)
+    if (line.find(": advice: ") == std::string::npos) lines.push_back(line);
+  return lines;
+}
+
 /// A launch file with stand-ins in a folder of its own, and what tread-launch makes of it.
 class Launched {
  public:
@@ -52,7 +62,8 @@ class Launched {
       file << "  - {name: " << name << ", program: " << stand_in << ", config: " << name
            << ".txt, arguments: [\"{run}\"], stop_time: 2}\n";
     }
-    file << "  - {name: other, program: sleep, arguments: [\"1000\"], foreign: true}\n";
+    file << "  - {name: other, program: sleep, arguments: [\"1000\"], foreign: true, "
+            "stop_time: 2}\n";
   }
   ~Launched() {
     for (const int pid : pids()) kill(pid, SIGKILL);
