@@ -34,7 +34,8 @@ class Socket {
   int descriptor_;
 };
 
-/// Whether a datagram to the group, sent as LCM sends it, comes back within a fifth of a second.
+/// Whether a datagram to the group, sent as LCM sends it, comes back within a second; a busy
+/// host may need a good part of it.
 bool delivered(const LcmAddress& address) {
   const Socket socket;
   sockaddr_in place{};
@@ -55,7 +56,7 @@ bool delivered(const LcmAddress& address) {
   if (sendto(socket.get(), word, sizeof word, 0, generic, sizeof place) != sizeof word)
     return false;
   pollfd waiting{socket.get(), POLLIN, 0};
-  return poll(&waiting, 1, 200) == 1;
+  return poll(&waiting, 1, 1000) == 1;
 }
 
 /// Of this process's network namespace; sysfs may show another one.
