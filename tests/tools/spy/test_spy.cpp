@@ -142,6 +142,7 @@ TEST_CASE("tread-spy starts, finds our types and ends when it is told to") {
   }
   INFO(said);
   REQUIRE(said.find("tread-lcmtypes.jar") != std::string::npos);
+  REQUIRE(said.find("Found ") != std::string::npos);
   // The types of the channels and those within them.
   int types = 0;
   REQUIRE(std::sscanf(said.c_str() + said.find("Found "), "Found %d LCM types", &types) == 1);
@@ -161,5 +162,19 @@ TEST_CASE("tread-spy without a display says so in one line") {
   REQUIRE(spy.exitCode() == 1);
   const std::string said = contentOf(folder.file("spy"));
   REQUIRE(said.find("there is no display") != std::string::npos);
+  REQUIRE(said.find('\n') == said.size() - 1);
+}
+
+TEST_CASE("tread-spy whose types are not built says so in one line and starts no spy") {
+  const Folder folder;
+  std::filesystem::create_directories(folder.file("bin"));
+  std::filesystem::copy(TREAD_SOURCE_DIR "/tools/tread-spy", folder.file("bin"));
+  setenv("DISPLAY", ":0", 1);
+  Process spy(folder.file("bin/tread-spy"), {}, folder.file("spy"));
+  unsetenv("DISPLAY");
+  REQUIRE(spy.waitFor(10));
+  REQUIRE(spy.exitCode() == 1);
+  const std::string said = contentOf(folder.file("spy"));
+  REQUIRE(said.find("tread-lcmtypes.jar is not built") != std::string::npos);
   REQUIRE(said.find('\n') == said.size() - 1);
 }
