@@ -37,9 +37,8 @@ RobotRun::RobotRun(const std::string& world, const std::string& start_pose)
   fs::create_directories(folder_);
   std::ofstream(folder_ + "/world.yaml") << world;
   bus_.subscribe<health_t>(kHealth, [this](const health_t& m) { health_[m.process] = m; });
-  bus_.subscribe<pattern_set_part_t>(kPatternSet, [this](const pattern_set_part_t& m) {
-    newest_set_ = std::max(newest_set_, m.set_version);
-  });
+  bus_.subscribe<pattern_set_part_t>(
+      kPatternSet, [this](const pattern_set_part_t& m) { last_set_ = m.set_version; });
 }
 
 RobotRun::~RobotRun() {
@@ -115,9 +114,9 @@ bool RobotRun::running(const std::string& name) {
   return found != processes_.end() && found->second->running();
 }
 
-int RobotRun::end(const std::string& name) {
+int RobotRun::end(const std::string& name, int number) {
   Process& process = *processes_.at(name);
-  process.signal(SIGINT);
+  process.signal(number);
   return process.waitFor(5.0) ? process.exitCode() : -1;
 }
 
@@ -163,6 +162,21 @@ void RobotRun::sendGoal() {
   ++goal_.seq;
   bus_.publish(kGoal, goal_);
   next_goal_ = now() + 1'000'000;
+}
+
+bool RobotRun::armed() const {
+  const int16_t state = motor_.message().bridge_state;
+  return motor_.any() && (state == motor_t::STATE_ARMED || state == motor_t::STATE_DRIVING ||
+                          state == motor_t::STATE_STOPPING);
+}
+
+bool RobotRun::untilDriving(double seconds, const std::function<bool()>& condition) {
+  const int64_t deadline = now() + static_cast<int64_t>(seconds * 1e6);
+  while (now() < deadline) {
+    if (until(0.2, condition)) return true;
+    if (motor_.any() && !armed() && arm()) ++armed_again_;
+  }
+  return false;
 }
 
 bool RobotRun::driving() const {

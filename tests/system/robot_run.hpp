@@ -36,8 +36,8 @@ class RobotRun {
   void signal(const std::string& name, int number);
   bool running(const std::string& name);
   pid_t pid(const std::string& name) const { return processes_.at(name)->pid(); }
-  /// Ends a process by SIGINT and returns its exit code; -1 if it does not end within 5 s.
-  int end(const std::string& name);
+  /// Ends a process by a signal and returns its exit code; -1 if it does not end within 5 s.
+  int end(const std::string& name, int number = SIGINT);
   void endAll();
 
   /// Handles messages until a condition holds; false after so many seconds.
@@ -58,7 +58,15 @@ class RobotRun {
   const Latest<program_t>& program() const { return program_; }
   const Latest<ins_t>& ins() const { return ins_; }
   bool driving() const;
-  int64_t newestSet() const { return newest_set_; }
+  /// Version of the set that was published last; 0 after forgetSet() until the next one comes.
+  int64_t lastSet() const { return last_set_; }
+  void forgetSet() { last_set_ = 0; }
+  /// Whether the permission to drive is there.
+  bool armed() const;
+  /// Until a condition holds, arming again whenever a busy machine's stall has disarmed the robot;
+  /// each time is counted.
+  bool untilDriving(double seconds, const std::function<bool()>& condition);
+  int armedAgain() const { return armed_again_; }
   /// Health by process name, newest.
   const std::map<std::string, health_t>& health() const { return health_; }
   std::vector<sim::TruthRow> truth() const { return sim::readTruthRecord(folder_ + "/truth.csv"); }
@@ -82,7 +90,8 @@ class RobotRun {
   Latest<program_t> program_;
   Latest<ins_t> ins_;
   std::map<std::string, health_t> health_;
-  int64_t newest_set_ = 0;
+  int64_t last_set_ = 0;
+  int armed_again_ = 0;
   std::map<std::string, std::unique_ptr<Process>> processes_;
   std::vector<std::unique_ptr<operators::Call>> calls_;  ///< the bus knows them to its end
   goal_t goal_{};

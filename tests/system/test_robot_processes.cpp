@@ -14,11 +14,10 @@ TEST_CASE("every process starts alone, tells its health, and ends with code 0") 
     for (const int how : {SIGINT, SIGTERM}) {
       RobotRun run(kYard, "[-6, 0, 0]");
       run.start(name);
-      INFO(name << " by signal " << how << "\n" << run.output(name));
+      INFO(name << " by signal " << how);
       CHECK(run.until(10.0, [&] { return run.health().count(name) == 1; }));
       CHECK(run.running(name));
-      run.signal(name, how);
-      CHECK(run.end(name) == 0);
+      CHECK(run.end(name, how) == 0);
     }
   }
 }
@@ -32,15 +31,10 @@ TEST_CASE("started in the wrong order, the robot drives to its goal and touches 
   }
   run.setGoal(6.0, 2.0);
   REQUIRE(run.arm(20.0));
-  int armed_again = 0;
-  const auto arrived = [&] {
-    // A busy machine may hold an INS message back long enough to stop the robot: arm again.
-    if (run.motor().message().bridge_state == motor_t::STATE_DISARMED && run.arm()) ++armed_again;
-    return run.plan().message().plan_status == plan_t::PLAN_ARRIVED;
-  };
-  CHECK(run.until(90.0, arrived));
-  INFO("armed again " << armed_again << " times");
-  CHECK(armed_again <= 3);
+  CHECK(run.untilDriving(90.0,
+                         [&] { return run.plan().message().plan_status == plan_t::PLAN_ARRIVED; }));
+  INFO("armed again " << run.armedAgain() << " times");
+  CHECK(run.armedAgain() <= 3);
   for (const std::string& name : names) {
     INFO(name << ": " << run.output(name));
     CHECK(run.running(name));
@@ -59,10 +53,11 @@ TEST_CASE(
   run.startAll();
   run.setGoal(15.0, 0.0);
   REQUIRE(run.arm(20.0));
-  const int64_t first = run.newestSet();
-  REQUIRE(run.until(30.0, [&] { return run.newestSet() >= first + 3; }));
-  const int64_t learned = run.newestSet();
+  const int64_t first = run.lastSet();
+  REQUIRE(run.untilDriving(30.0, [&] { return run.lastSet() >= first + 3; }));
+  const int64_t learned = run.lastSet();
   run.endAll();
+  run.forgetSet();
   const int64_t again = run.now();
   run.startAll();
   // The goal still comes each second; without arming nothing may move.
@@ -70,12 +65,12 @@ TEST_CASE(
     return run.motor().message().utime > again && run.plan().message().utime > again;
   }));
   run.wait(3.0);
-  CHECK(run.newestSet() >= learned);
+  CHECK(run.lastSet() >= learned);
   for (const sim::TruthRow& row : run.truth()) {
     if (row.utime > again) CHECK(row.motorsAtZero());
   }
   REQUIRE(run.arm(10.0));
-  CHECK(run.until(20.0, [&] { return run.newestSet() > learned; }));
+  CHECK(run.untilDriving(20.0, [&] { return run.lastSet() > learned; }));
 }
 
 }  // namespace tread::testing

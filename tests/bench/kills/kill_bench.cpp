@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "tests/system/robot_run.hpp"
+#include "tests/system/stall_watch.hpp"
 #include "tests/system/worlds.hpp"
 
 namespace {
@@ -27,6 +28,7 @@ struct Kill {
   int signal = SIGKILL;
   double stands = -1.0;        ///< [s] from the reference to motors at zero; -1 = never
   double from_kill = -1.0;     ///< [s] the same from the kill itself
+  double stall = 0.0;          ///< [s] that the machine itself stood still meanwhile
   bool moved_unasked = false;  ///< before it was armed again
   bool set_lost = false;       ///< the set's version went back
 };
@@ -44,9 +46,11 @@ class KillBench {
     kill.process = process;
     kill.signal = signal;
     driveOff();
-    const int64_t set = run_.newestSet();
-    const int64_t killed = run_.now();
+    const int64_t set = run_.lastSet();
+    const StallWatch watch;
     run_.signal(process, signal);
+    const int64_t killed = run_.now();
+    run_.wait(0.05);  // what it said before is heard now
     const int64_t reference = referenceOf(process, killed);
     std::optional<int64_t> zero;
     run_.until(10.0, [&] {
@@ -58,6 +62,8 @@ class KillBench {
       kill.from_kill = seconds(killed, *zero);
       kill.stands = std::max(0.0, seconds(reference, *zero));
     }
+    kill.stall = watch.longest();
+    run_.forgetSet();
     if (signal == SIGKILL)
       run_.start(process);
     else
@@ -66,7 +72,8 @@ class KillBench {
     run_.wait(2.5);
     for (const sim::TruthRow& row : run_.truth())
       kill.moved_unasked |= row.utime > restarted && !row.motorsAtZero();
-    kill.set_lost = run_.newestSet() < set;
+    run_.until(10.0, [this] { return run_.lastSet() != 0; });
+    kill.set_lost = run_.lastSet() < set;
     return kill;
   }
 
@@ -165,9 +172,10 @@ int main(int argc, char** argv) {
       const auto& [process, signal] = ways[static_cast<size_t>(i) % ways.size()];
       kills.push_back(bench.kill(process, signal));
       const Kill& kill = kills.back();
-      std::printf("%3d %-12s %s  %4.0f ms after the kill%s%s\n", i + 1, process.c_str(),
-                  signal == SIGKILL ? "SIGKILL" : "SIGSTOP", 1e3 * kill.from_kill,
-                  kill.moved_unasked ? "  MOVED UNASKED" : "", kill.set_lost ? "  SET LOST" : "");
+      std::printf("%3d %-12s %s  %4.0f ms after the kill, machine's stall %.0f ms%s%s\n", i + 1,
+                  process.c_str(), signal == SIGKILL ? "SIGKILL" : "SIGSTOP", 1e3 * kill.from_kill,
+                  1e3 * kill.stall, kill.moved_unasked ? "  MOVED UNASKED" : "",
+                  kill.set_lost ? "  SET LOST" : "");
       std::fflush(stdout);
     }
     print(kills);
