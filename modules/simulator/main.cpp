@@ -20,6 +20,14 @@ std::ofstream openRecord(const std::string& path) {
   return file;
 }
 
+/// A line that cannot be offered: another simulator may be at its end. That nobody uses it yet is
+/// no fault.
+void mustOffer(const Link& line) {
+  const std::string problem = line.problem();
+  if (!problem.empty() && problem.find("nobody has connected") == std::string::npos)
+    throw std::runtime_error(problem + "; is another simulator running?");
+}
+
 ShellBody prepare(ConfigReader& reader) {
   const SimulatorConfig config = readSimulatorConfig(reader);
   const auto world = std::make_shared<const World>(readWorld(config.world));
@@ -32,6 +40,7 @@ ShellBody prepare(ConfigReader& reader) {
     const std::unique_ptr<Link> ins = makeLink(config.ins);
     const std::unique_ptr<Link> motor = makeLink(config.motor);
     const std::unique_ptr<Link> laser = makeLink(config.laser);
+    for (const Link* line : {ins.get(), motor.get(), laser.get()}) mustOffer(*line);
     std::ofstream file = openRecord(config.record);
     TruthRecord record(file);
     SimulatorNode node(devices, bus, DeviceLines{*ins, *motor, laser.get()},

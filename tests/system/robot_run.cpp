@@ -66,7 +66,7 @@ std::vector<std::string> RobotRun::argumentsOf(const std::string& name) const {
     set("start", start_pose_);
     set("ins", "pty:" + device("ins"));
     set("motor", "pty:" + device("motor"));
-    set("laser", "tcp-server:127.0.0.1:" + laser);
+    set("laser", laserAddress());
     set("record", folder_ + "/truth.csv");
     return words;
   }

@@ -72,6 +72,7 @@ class RobotRun {
   std::vector<sim::TruthRow> truth() const { return sim::readTruthRecord(folder_ + "/truth.csv"); }
   const std::string& folder() const { return folder_; }
   const std::string& url() const { return url_; }
+  std::string laserAddress() const { return "tcp-server:127.0.0.1:" + std::to_string(laser_port_); }
   /// Where a process keeps its state.
   std::string state(const std::string& process) const { return folder_ + "/state/" + process; }
   std::string output(const std::string& name) const;

@@ -22,6 +22,21 @@ TEST_CASE("every process starts alone, tells its health, and ends with code 0") 
   }
 }
 
+TEST_CASE("a second simulator on the same lines says so and ends") {
+  RobotRun run(kYard, "[-6, 0, 0]");
+  run.start("simulator");
+  REQUIRE(run.until(10.0, [&] { return run.health().count("simulator") == 1; }));
+  const std::string port = run.laserAddress();
+  Process second("tread-simulator",
+                 {"--lcm-url", run.url(), "--set", "world=" + run.folder() + "/world.yaml", "--set",
+                  "ins=pty:" + run.folder() + "/ins2", "--set",
+                  "motor=pty:" + run.folder() + "/motor2", "--set", "laser=" + port},
+                 run.folder() + "/second.log");
+  REQUIRE(second.waitFor(10.0));
+  CHECK(second.exitCode() == 1);
+  CHECK_THAT(run.output("second"), Catch::Contains(port) && Catch::Contains("another simulator"));
+}
+
 TEST_CASE("started in the wrong order, the robot drives to its goal and touches nothing") {
   RobotRun run(kYard, "[-6, 0, 0]");
   const auto& names = RobotRun::names();

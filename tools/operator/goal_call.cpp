@@ -10,6 +10,14 @@ namespace {
 
 constexpr int64_t kRepeat = 1'000'000;  // [us]
 
+/// A robot that lost its permission on the way does not go on by itself [us].
+constexpr int64_t kDisarmedPatience = 2'000'000;
+
+bool mayDrive(int16_t state) {
+  return state == motor_t::STATE_ARMED || state == motor_t::STATE_DRIVING ||
+         state == motor_t::STATE_STOPPING;
+}
+
 bool isStuck(int16_t status) {
   return status == plan_t::PLAN_BLOCKED || status == plan_t::PLAN_UNREACHABLE;
 }
@@ -42,6 +50,7 @@ CallResult GoalCall::step(int64_t utime) {
     send(utime, goal_id_);
     next_ = utime + kRepeat;
   }
+  if (lostPermission(utime)) return CallResult::kRefused;
   if (!progress_.plan().any() || !isOurs(progress_.plan().message())) return CallResult::kGoesOn;
   const int16_t status = progress_.plan().message().plan_status;
   if (status == plan_t::PLAN_ARRIVED) return CallResult::kDone;
@@ -52,10 +61,24 @@ CallResult GoalCall::step(int64_t utime) {
                                                               : CallResult::kGoesOn;
 }
 
+/// Was armed, and is not any more for a while. Before the first arming the goal just waits.
+bool GoalCall::lostPermission(int64_t utime) {
+  if (!progress_.motor().any()) return false;
+  const bool may = mayDrive(progress_.motor().message().bridge_state);
+  was_armed_ = was_armed_ || may;
+  if (may || !was_armed_) disarmed_since_ = -1;
+  if (!may && was_armed_ && disarmed_since_ < 0) disarmed_since_ = utime;
+  return disarmed_since_ >= 0 && utime - disarmed_since_ > kDisarmedPatience;
+}
+
 std::string GoalCall::words(int64_t utime) const {
   char time[32];
   std::snprintf(time, sizeof time, "%5.0f s  ", static_cast<double>(utime - begun_) * 1e-6);
-  return (begun_ < 0 ? std::string() : time) + progress_.line(utime);
+  std::string words = (begun_ < 0 ? std::string() : time) + progress_.line(utime);
+  if (disarmed_since_ >= 0)
+    words += "; not armed any more (" + progress_.motor().message().state_reason +
+             "): tread-arm, then again";
+  return words;
 }
 
 void GoalCall::cancel(int64_t utime) {

@@ -16,7 +16,8 @@ struct GoalRequest {
   double patience = 30.0;
 };
 
-/// Repeats GOAL until the planner has arrived or gives up for good.
+/// Repeats GOAL until the planner has arrived, gives up for good, or the permission to drive is
+/// lost on the way.
 class GoalCall : public Call {
  public:
   /// `goal_id` must be new to the planner.
@@ -29,6 +30,7 @@ class GoalCall : public Call {
 
  private:
   void send(int64_t utime, int64_t goal_id);
+  bool lostPermission(int64_t utime);
   bool isOurs(const plan_t& plan) const { return plan.goal_id == goal_id_; }
 
   Bus& bus_;
@@ -38,6 +40,8 @@ class GoalCall : public Call {
   int64_t begun_ = -1;
   int64_t next_ = 0;
   int64_t stuck_since_ = -1;
+  bool was_armed_ = false;
+  int64_t disarmed_since_ = -1;  ///< [us]; -1 = armed, or never was
   int64_t seq_ = 0;
 };
 

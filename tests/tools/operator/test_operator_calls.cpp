@@ -143,4 +143,20 @@ TEST_CASE("a goal is repeated each second, ends with the arrival, and gives up w
   CHECK(scene.stand->goals.back().goal_id == 0);
 }
 
+TEST_CASE("a permission that is lost on the way ends the call with the bridge's reason") {
+  Scene scene;
+  GoalCall call(scene.desk, {}, 5, {});
+  const int64_t begun = scene.bus.now();
+  const auto result = scene.run(call, 10.0, [&](int64_t now) {
+    scene.stand->plan(now, 5, plan_t::PLAN_DRIVING);
+    // Not armed yet, then armed, then lost; a moment's loss alone would be none.
+    const double t = static_cast<double>(now - begun) * 1e-6;
+    const bool armed = t > 3.0 && t < 4.0;
+    scene.stand->motor(now, armed ? motor_t::STATE_DRIVING : motor_t::STATE_FAULT, "INS is stale");
+  });
+  CHECK(result == CallResult::kRefused);
+  CHECK(scene.bus.now() - begun > 5'900'000);
+  CHECK_THAT(call.words(scene.bus.now()), Catch::Contains("not armed any more (INS is stale)"));
+}
+
 }  // namespace tread::operators
