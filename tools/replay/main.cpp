@@ -160,7 +160,7 @@ void compareLearner(LearnerArguments& arguments) {
   arguments.different = !verdict.equal;
 }
 
-void replayLearner(const LearnerArguments& arguments) {
+void replayLearner(LearnerArguments& arguments) {
   const replay::DriveLog log = replay::readDriveLog(arguments.log);
   const PatternSet set = arguments.model.empty()
                              ? readPatternFile(arguments.patterns)
@@ -181,10 +181,13 @@ void replayLearner(const LearnerArguments& arguments) {
       "'prompt': with the newest when it ended, when all before it were learned.\n";
   if (std::isinf(config.limits.entry_speed)) notes += "The gate on the entry twist was off.\n";
   std::string report = notes + "\n" + replay::reportOf(log, set, runs);
-  if (!arguments.live.empty())
-    report += replay::reportOf(replay::compareLive(
+  if (!arguments.live.empty()) {
+    const replay::LiveComparison live = replay::compareLive(
         replay::readRobotLog(arguments.live), log,
-        replay::runLearner(log, config, replay::Commitment::kRecorded, arguments.rule)));
+        replay::runLearner(log, config, replay::Commitment::kRecorded, arguments.rule));
+    report += replay::reportOf(live);
+    arguments.different = !live.sameReports();
+  }
   say(report, arguments.output);
   if (!arguments.output.picture.empty())
     replay::drawReport(log, set, runs, arguments.output.picture);
@@ -230,7 +233,7 @@ void addLearner(CLI::App& app, LearnerArguments& arguments) {
   command.add_option(
       "--live", arguments.live,
       "lcm-logger's log of a run in which lcm-logplayer played LOG to tread-learner: "
-      "compare what it heard and reported");
+      "compare what it heard and reported; code 1 if different");
   addOutput(command, arguments.output);
   command.callback([&arguments] {
     if (arguments.model.empty() && arguments.patterns.empty()) return compareLearner(arguments);

@@ -23,9 +23,6 @@ namespace {
 /// The replay goes on so long after the log: what was under way comes out [us].
 constexpr int64_t kAfterwards = 100'000;
 
-/// A recording or a life may end while a version is under way.
-constexpr int64_t kUnderWay = 1;
-
 /// Yaw is unwrapped from the first INS on: a replay that begins later rounds otherwise.
 constexpr double kMiddleTolerance = 1e-9;
 
@@ -36,16 +33,43 @@ struct Said {
   SetParts sets;
   std::map<ExecutionKey, learning_t> learned;
   std::vector<LogEvent> events;
+  /// Said by the replay when the log's learner, or the recorder, may have been gone.
+  std::set<int64_t> late_versions;
+  std::set<ExecutionKey> late_learned;
 
   void take(const LogEvent& event) {
     pattern_set_part_t part;
     if (decode(event, kPatternSet, part)) sets[part.set_version].emplace(part.part, part);
     learning_t learning;
-    if (decode(event, kLearning, learning))
-      learned.emplace(ExecutionKey{learning.learned_run_id, learning.learned_execution_id},
-                      learning);
+    if (decode(event, kLearning, learning)) learned.emplace(keyOf(learning), learning);
+  }
+  void takeLate(const LogEvent& event) {
+    pattern_set_part_t part;
+    if (decode(event, kPatternSet, part) && sets.count(part.set_version) == 0)
+      late_versions.insert(part.set_version);
+    learning_t learning;
+    if (decode(event, kLearning, learning) && learned.count(keyOf(learning)) == 0)
+      late_learned.insert(keyOf(learning));
+  }
+
+ private:
+  static ExecutionKey keyOf(const learning_t& learning) {
+    return {learning.learned_run_id, learning.learned_execution_id};
   }
 };
+
+/// When the log heard the learner for the last time in a life; 0 if never.
+int64_t lastWordOf(const RobotLog& log, const LearnerLife& life) {
+  for (size_t i = life.end_event; i-- > life.first_event;) {
+    const LogEvent& event = log.events[i].event;
+    health_t health;
+    if (event.channel == kLearning.name || event.channel == kPatternSet.name ||
+        event.channel == kLearnerState.name ||
+        (decode(event, kHealth, health) && health.process == "learner"))
+      return log.events[i].heard;
+  }
+  return 0;
+}
 
 void playLife(const RobotLog& log, const LearnerLife& life,
               const learner::LearnerNodeConfig& config, Said& said) {
@@ -67,7 +91,9 @@ void playLife(const RobotLog& log, const LearnerLife& life,
     bus.hear(timed.event);
   }
   if (life.end_event == log.events.size()) stepUntil(log.events.back().heard + kAfterwards);
+  const int64_t late = lastWordOf(log, life) - node.period();
   for (LogEvent& event : bus.takePublished()) {
+    if (event.utime > late) said.takeLate(event);
     said.take(event);
     said.events.push_back(std::move(event));
   }
@@ -96,38 +122,55 @@ void note(LearnerCheck& check, const std::string& difference) {
   if (check.first_difference.empty()) check.first_difference = difference;
 }
 
-void compareSets(const SetParts& log, const SetParts& replay, LearnerCheck& check) {
-  for (const auto& [version, parts] : log) {
-    const auto found = replay.find(version);
-    if (found == replay.end()) {
+/// What only the replay has is a difference, but for as much as the log is known to lack.
+void noteOnlyInReplay(const std::vector<std::string>& names, const RobotLog& log,
+                      const std::string& channel, LearnerCheck& check) {
+  const auto missing = log.missing.find(channel);
+  const int64_t lost = missing == log.missing.end() ? 0 : missing->second;
+  if (static_cast<int64_t>(names.size()) > lost)
+    note(check, names.front() + ": in the replay, not in the log");
+}
+
+std::string partsDifference(const std::map<int32_t, pattern_set_part_t>& log,
+                            const std::map<int32_t, pattern_set_part_t>& replay, double tolerance) {
+  for (const auto& [number, part] : log) {
+    const auto other = replay.find(number);
+    if (other == replay.end())
+      return "version " + std::to_string(part.set_version) + ", part " + std::to_string(number) +
+             ": in the log, not in the replay";
+    const std::string difference = differenceOf(part, other->second, tolerance);
+    if (!difference.empty()) return difference;
+  }
+  return "";
+}
+
+void compareSets(const RobotLog& log, const Said& in_log, const Said& replay, LearnerCheck& check) {
+  for (const auto& [version, parts] : in_log.sets) {
+    const auto found = replay.sets.find(version);
+    if (found == replay.sets.end()) {
       ++check.versions_only_in_log;
       note(check, "version " + std::to_string(version) + ": in the log, not in the replay");
       continue;
     }
-    std::string difference;
-    for (const auto& [number, part] : parts) {
-      const auto other = found->second.find(number);
-      if (difference.empty() && other != found->second.end())
-        difference = differenceOf(part, other->second, check.tolerance);
-    }
+    const std::string difference = partsDifference(parts, found->second, check.tolerance);
     ++(difference.empty() ? check.versions_equal : check.versions_different);
     if (!difference.empty()) note(check, difference);
   }
-  if (log.empty()) return;
-  const int64_t last = log.rbegin()->first;
-  for (const auto& [version, parts] : replay) {
-    if (log.count(version) > 0) continue;
+  std::vector<std::string> only_in_replay;
+  for (const auto& [version, parts] : replay.sets) {
+    if (in_log.sets.count(version) > 0) continue;
     ++check.versions_only_in_replay;
-    if (version > last + kUnderWay)
-      note(check, "version " + std::to_string(version) + ": in the replay, not in the log");
+    if (replay.late_versions.count(version) == 0)
+      only_in_replay.push_back("version " + std::to_string(version));
   }
+  noteOnlyInReplay(only_in_replay, log, kPatternSet.name, check);
 }
 
-void compareLearned(const std::map<ExecutionKey, learning_t>& log,
-                    const std::map<ExecutionKey, learning_t>& replay, LearnerCheck& check) {
-  for (const auto& [key, learned] : log) {
-    const auto found = replay.find(key);
-    if (found == replay.end()) {
+void compareLearned(const RobotLog& log, const Said& in_log, const Said& replay,
+                    LearnerCheck& check) {
+  for (const auto& [key, learned] : in_log.learned) {
+    const auto found = replay.learned.find(key);
+    if (found == replay.learned.end()) {
       ++check.learning_only_in_log;
       note(check, "LEARNING of execution " + std::to_string(key.second) +
                       ": in the log, not in the replay");
@@ -137,10 +180,15 @@ void compareLearned(const std::map<ExecutionKey, learning_t>& log,
     ++(difference.empty() ? check.learning_equal : check.learning_different);
     if (!difference.empty()) note(check, difference);
   }
-  for (const auto& [key, learned] : replay) {
-    if (log.count(key) == 0) ++check.learning_only_in_replay;
+  std::vector<std::string> only_in_replay;
+  for (const auto& [key, learned] : replay.learned) {
     if (learned.accepted) ++check.measured;
+    if (in_log.learned.count(key) > 0) continue;
+    ++check.learning_only_in_replay;
+    if (replay.late_learned.count(key) == 0)
+      only_in_replay.push_back("LEARNING of execution " + std::to_string(key.second));
   }
+  noteOnlyInReplay(only_in_replay, log, kLearning.name, check);
 }
 
 bool sameBytes(const std::vector<LogEvent>& a, const std::vector<LogEvent>& b) {
@@ -231,8 +279,8 @@ LearnerCheck checkLearner(const RobotLog& log, const learner::LearnerNodeConfig&
     check.first_version = in_log.sets.begin()->first;
     check.last_version = in_log.sets.rbegin()->first;
   }
-  compareSets(in_log.sets, first.sets, check);
-  compareLearned(in_log.learned, first.learned, check);
+  compareSets(log, in_log, first, check);
+  compareLearned(log, in_log, first, check);
   check.notes.push_back(intakeLine(log, "learner", playedChannels("learner")));
   for (const char* channel : {"INS", "MOTOR", "EXECUTION", "PATTERN_SET", "LEARNING"})
     if (const auto missing = log.missing.find(channel); missing != log.missing.end())

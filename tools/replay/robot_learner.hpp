@@ -34,7 +34,8 @@ struct LearnerCheck {
   bool same_twice = true;        ///< a second replay published the same bytes
   std::vector<std::string> notes;
 
-  /// Whether the replay says what the log says, and says it twice.
+  /// Whether the replay says what the log says, and says it twice. The replay may say more: as many
+  /// messages as the log lacks by seq, and what comes after the learner's last word in the log.
   bool equal() const;
 };
 

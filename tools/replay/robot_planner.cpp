@@ -161,11 +161,13 @@ std::vector<LogEvent> replayAll(const RobotLog& log, const std::vector<Life>& li
                                 const planner::PlannerConfig& config, PlannerCheck* check) {
   std::vector<LogEvent> all;
   for (const Life& life : lives) {
-    const std::vector<Step> steps = replayed(log, life, config, all);
+    std::vector<Step> steps = replayed(log, life, config, all);
     if (check == nullptr) continue;
     check->steps += static_cast<int64_t>(steps.size());
     if (!life.from_start) continue;
     ++check->compared;
+    // A life, or its recording, may end between PROGRAM and PLAN.
+    if (!life.steps.back().plan) steps.back().plan.reset();
     for (size_t i = 0; i < steps.size(); ++i) {
       if (life.steps[i].lost) continue;
       if (cutOf(life.steps[i], config.deadline) > 0) ++check->searches_cut;
@@ -205,6 +207,8 @@ PlannerCheck checkPlanner(const RobotLog& log, const planner::PlannerConfig& con
   PlannerCheck check;
   check.name = log.name;
   check.lives = static_cast<int>(lives.size());
+  if (const auto lost = log.missing.find(kPlan.name); lost != log.missing.end())
+    check.plans_lost = lost->second;
   const std::vector<LogEvent> first = replayAll(log, lives, config, &check);
   check.same_twice = sameBytes(first, replayAll(log, lives, config, nullptr));
   if (check.compared < check.lives)

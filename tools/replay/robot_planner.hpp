@@ -27,15 +27,17 @@ struct PlannerCheck {
   int64_t plans_different = 0;
   int64_t plans_only_in_log = 0;
   int64_t plans_only_in_replay = 0;
+  int64_t plans_lost = 0;        ///< PLANs that the log lacks, by seq
   std::string first_difference;  ///< in words; empty = none
   int64_t lacking = 0;           ///< messages that the planners had heard and the log lacks
   bool same_twice = true;        ///< a second replay published the same bytes
   std::vector<std::string> notes;
 
-  /// Whether the replay says what the log says, and says it twice. A PLAN that only the replay has
-  /// is one that the recorder lost.
+  /// Whether the replay says what the log says, and says it twice. Of the PLANs that only the
+  /// replay has the recorder lost as many as seq tells; nothing compared is not equal.
   bool equal() const {
-    return same_twice && programs_different == 0 && plans_different == 0 && plans_only_in_log == 0;
+    return same_twice && programs_equal > 0 && programs_different == 0 && plans_different == 0 &&
+           plans_only_in_log == 0 && plans_only_in_replay <= plans_lost;
   }
 };
 

@@ -76,6 +76,27 @@ std::vector<program_t> programsOf(const std::vector<LogEvent>& events) {
   return programs;
 }
 
+/// Takes so many messages of a channel out of the middle of the log; their seq shows it, or does
+/// not.
+template <class Message>
+void lose(std::vector<LogEvent>& events, const Channel<Message>& channel, int count, bool shown) {
+  const std::string name = channel.name;
+  auto lost =
+      std::find_if(events.begin() + static_cast<std::ptrdiff_t>(events.size() / 2), events.end(),
+                   [&name](const LogEvent& event) { return event.channel == name; });
+  for (int left = count; left > 0; --left) {
+    REQUIRE(lost != events.end());
+    lost = std::find_if(events.erase(lost), events.end(),
+                        [&name](const LogEvent& event) { return event.channel == name; });
+  }
+  int64_t seq = 0;
+  if (!shown)
+    rewrite<Message>(events, channel, [&seq](Message& message) {
+      message.seq = seq++;
+      return true;
+    });
+}
+
 /// As lcm-logger would have written it on a host whose UTC is set forward in the drive.
 std::vector<LogEvent> recordedInUtc(std::vector<LogEvent> events) {
   rewrite<health_t>(events, kHealth, [](health_t& health) {
@@ -132,6 +153,45 @@ TEST_CASE("a changed sample of a set is named with version, pattern, sample and 
   REQUIRE(contains(check.first_difference, "version " + std::to_string(version) + ", pattern "));
   REQUIRE(contains(check.first_difference, "trajectory sample 3 y [m]: log 0.125, replay "));
   REQUIRE_FALSE(check.equal());
+}
+
+TEST_CASE("a part of a set that the replay lacks is a difference") {
+  std::vector<LogEvent> events = plainDrive();
+  int64_t version = 0;
+  rewrite<pattern_set_part_t>(events, kPatternSet, [&version](pattern_set_part_t& part) {
+    if (version == 0) version = part.set_version + 5;
+    if (part.set_version != version || part.part != 3) return false;
+    part.part = 1000;
+    return true;
+  });
+  const LearnerCheck check = learnerCheck(std::move(events));
+  REQUIRE(contains(check.first_difference, ", part 1000: in the log, not in the replay"));
+  REQUIRE_FALSE(check.equal());
+}
+
+TEST_CASE("a LEARNING that only the replay has is a difference unless seq shows that it was lost") {
+  std::vector<LogEvent> events = plainDrive();
+  const bool shown = GENERATE(true, false);
+  lose(events, kLearning, 1, shown);
+  const LearnerCheck check = learnerCheck(std::move(events));
+  REQUIRE(check.learning_only_in_replay == 1);
+  REQUIRE(check.equal() == shown);
+}
+
+TEST_CASE("a PLAN that only the replay has is a difference unless seq shows that it was lost") {
+  std::vector<LogEvent> events = plainDrive();
+  const bool shown = GENERATE(true, false);
+  lose(events, kPlan, 2, shown);
+  const PlannerCheck check = plannerCheck(std::move(events));
+  REQUIRE(check.plans_only_in_replay == 2);
+  REQUIRE(check.equal() == shown);
+}
+
+TEST_CASE("a recording that ends between PROGRAM and PLAN is compared up to there") {
+  std::vector<LogEvent> events = plainDrive();
+  while (events.back().channel != kPlan.name) events.pop_back();
+  while (events.back().channel != kProgram.name) events.pop_back();
+  REQUIRE(plannerCheck(std::move(events)).equal());
 }
 
 TEST_CASE("an INS message that the robot had heard otherwise makes other sets") {
@@ -266,6 +326,7 @@ TEST_CASE("a log that begins in the middle of a planner's life is stepped, not c
   REQUIRE(check.steps > 300);
   REQUIRE(check.same_twice);
   REQUIRE(contains(reportOf(check), "planner not compared"));
+  REQUIRE_FALSE(check.equal());
   REQUIRE_FALSE(contains(reportOf(check), "that it heard are not in the log"));
 }
 
