@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <arpa/inet.h>
+#include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
@@ -76,6 +77,10 @@ TEST_CASE("a TCP link talks both ways") {
 }
 
 TEST_CASE("a host's name is looked up, and an address that refuses gives way to the next") {
+  if (::gethostbyname("localhost") == nullptr) {
+    WARN("skipped: this machine does not know localhost; /etc/hosts is missing");
+    return;
+  }
   Server server;
   int64_t utime = 1'000'000;
   const auto link = makeLink(server.link("localhost"));
