@@ -13,9 +13,9 @@ namespace tread {
 
 /// Byte stream to a device. A vanished line is closed at once and opened again by name with
 /// back-off.
-/** Nothing waits for the device, with two exceptions: the rest of a half taken write, 20 ms at most,
- * and the look-up of a TCP host that is given by name, which takes as long as the resolver does: on
- * a robot write its number. */
+/** Nothing waits for the device, with two exceptions: the rest of a half taken write, 20 ms at
+ * most, and the look-up of a TCP host that is given by name, which takes as long as the resolver
+ * does: on a robot write its number. */
 class Link {
  public:
   virtual ~Link() = default;

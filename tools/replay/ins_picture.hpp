@@ -8,7 +8,8 @@
 
 namespace tread {
 
-/// The track of an INS log in the map, with headings; throws std::runtime_error if it cannot be written.
+/// The track of an INS log in the map, with headings; throws std::runtime_error if it cannot be
+/// written.
 void drawTrack(const InsReplay& replay, const std::string& title, const std::string& path);
 
 }  // namespace tread
