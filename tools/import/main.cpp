@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/config/command_line.hpp"
 #include "tools/import/csv_table.hpp"
 #include "tools/import/drive_log.hpp"
 
@@ -77,7 +78,7 @@ int parseAndRun(int argc, char** argv) {
   app.add_option("--executions", arguments.layout.executions, "per command")
       ->check(CLI::Range(1, 9))
       ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   run(arguments);
   return 0;
 }

@@ -14,6 +14,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/config/command_line.hpp"
 #include "tools/launch/host.hpp"
 #include "tools/launch/run_command.hpp"
 #include "tools/launch/supervision.hpp"
@@ -38,9 +39,10 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--run", options.settings.run,
                  "folder for states and logs; default ~/.local/state/tread/NAME");
   app.add_option("--lcm-url", options.settings.lcm_url, "LCM provider, instead of the file's");
-  app.add_option("--set", options.values,
-                 "KEY=VALUE: replaces one of the file's values; a relative path is taken from the "
-                 "file's folder")
+  app.add_option(
+         "--set", options.values,
+         "KEY=VALUE: replaces one of the file's values; where it is a relative path, program "
+         "and config take it from the file's folder, arguments from the run folder")
       ->expected(1)
       ->take_all();
   auto* check = app.add_flag("--check", options.check, "only the start-up checks");
@@ -139,7 +141,7 @@ int run(int argc, char** argv) {
   CLI::App app{"Starts, watches and restarts the processes of a launch file.", "tread-launch"};
   Options options;
   declare(app, options);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   complete(options);
   ConfigReader reader = ConfigReader::fromFile(options.settings.file);
   const LaunchFile launch = readLaunchFile(reader, options.settings);

@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/config/command_line.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/vehicle/model_file.hpp"
@@ -44,7 +45,7 @@ int run(int argc, char** argv) {
   std::string file;
   CLI::App* show_command = app.add_subcommand("show", "print a pattern file as a table");
   show_command->add_option("FILE", file, "pattern file (YAML)")->required();
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   if (make_command->parsed())
     make(recipe, model, output);
   else

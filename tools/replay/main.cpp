@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/config/command_line.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/replay/ins_picture.hpp"
@@ -254,7 +255,7 @@ void addRecipe(CLI::App& app, RecipeArguments& arguments) {
   app.callback([&app, &arguments] {
     if (!app.get_subcommands().empty()) return;
     if (arguments.process.empty() || arguments.log.empty())
-      throw std::runtime_error("a command is needed, or --recipe PROCESS LOG; see --help");
+      throw CLI::ParseError("a command is needed, or --recipe PROCESS LOG", 2);
     std::fputs(replay::recipeFor(arguments.process, arguments.log).c_str(), stdout);
   });
 }
@@ -272,7 +273,7 @@ int parseAndRun(int argc, char** argv) {
   addPlanner(app, planner_arguments);
   addIns(app, ins_arguments);
   addMapping(app, mapping_arguments);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return learner_arguments.different || planner_arguments.different ? 1 : 0;
 }
 

@@ -102,7 +102,9 @@ TEST_CASE("bad arguments of tread-replay are one clear line each") {
   REQUIRE(missing.code == 1);
   REQUIRE(lines(missing.said) == 1);
   REQUIRE(missing.said.find("/nowhere.log") != std::string::npos);
-  REQUIRE(call("tread-replay learner /nowhere.log").code != 0);
-  REQUIRE(call("tread-replay learner x --rule best --model " + kModel).code != 0);
-  REQUIRE(call("tread-replay").code != 0);
+  REQUIRE(call("tread-replay learner /nowhere.log").code == 1);
+  REQUIRE(call("tread-replay learner x --rule best --model " + kModel).code == 2);
+  REQUIRE(call("tread-replay").code == 2);
+  REQUIRE(call("tread-replay --no-such-option").code == 2);
+  REQUIRE(call("tread-import --no-such-option").code == 2);
 }
