@@ -12,6 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/config/command_line.hpp"
 #include "tools/launch/recorder.hpp"
 
 namespace {
@@ -49,11 +50,12 @@ int run(int argc, char** argv) {
                "tread-logger"};
   Options options;
   declare(app, options);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   if (options.check) return 0;
   std::signal(SIGINT, requestStop);
   std::signal(SIGTERM, requestStop);
-  std::signal(SIGHUP, requestStop);
+  // A terminal that is closed, unless nohup says that the process outlives it.
+  if (std::signal(SIGHUP, requestStop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   if (options.with_parent) {
     prctl(PR_SET_PDEATHSIG, SIGINT);
     if (getppid() != parent) return 0;

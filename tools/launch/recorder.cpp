@@ -18,6 +18,7 @@ namespace {
 constexpr int kQueue = 100'000;          // messages
 constexpr int64_t kCareEvery = 250'000;  // [us] between flushes
 constexpr int kWaitMs = 100;
+constexpr int kMostFailures = 10;  // of LCM in a row
 constexpr int64_t kOverhead = 60;  // [bytes] of an event beside its message, about
 
 int64_t utcNow() {
@@ -94,11 +95,18 @@ void Recorder::care(int64_t now) {
 }
 
 void Recorder::run(const std::atomic<bool>& stop) {
+  int failures = 0;
   while (!stop) {
     // A queue's length at a time, so that a flood does not keep the disk waiting.
-    if (lcm_->handleTimeout(kWaitMs) > 0)
+    const int handled = lcm_->handleTimeout(kWaitMs);
+    if (handled > 0)
       for (int i = 0; i < kQueue && lcm_->handleTimeout(0) > 0; ++i) {
       }
+    // A signal fails it once.
+    failures = handled < 0 ? failures + 1 : 0;
+    if (failures >= kMostFailures)
+      throw std::runtime_error(
+          "LCM fails again and again, so nothing more can be recorded; start again");
     if (const int64_t now = hostNow(); now >= next_care_) care(now);
   }
   for (int i = 0; i < kQueue && lcm_->handleTimeout(0) > 0; ++i) {

@@ -59,6 +59,12 @@ void call(const std::string& socket_path) {
   close(caller);
 }
 
+/// As nohup leaves it: this process outlives its terminal.
+bool ignoresHangup() {
+  struct sigaction now {};
+  return sigaction(SIGHUP, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+}
+
 /// One run of supervisord.
 class Run {
  public:
@@ -98,7 +104,8 @@ class Run {
 void Run::begin(const RunLock& lock) {
   sigset_t before;
   sigemptyset(&waited_);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGCHLD}) sigaddset(&waited_, number);
+  for (const int number : {SIGINT, SIGTERM, SIGCHLD}) sigaddset(&waited_, number);
+  if (!ignoresHangup()) sigaddset(&waited_, SIGHUP);
   sigprocmask(SIG_BLOCK, &waited_, &before);
   std::signal(SIGPIPE, SIG_IGN);  // whoever reads what we say may leave
   prctl(PR_SET_CHILD_SUBREAPER, 1);

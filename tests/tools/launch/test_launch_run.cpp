@@ -78,6 +78,21 @@ TEST_CASE("two runs in one folder, one after another") {
   }
 }
 
+TEST_CASE("under nohup all goes on when the terminal closes") {
+  const Launched launched({"good"}, TREAD_STAND_IN);
+  std::vector<std::string> words{"-c", "trap '' HUP; exec \"$0\" \"$@\"",
+                                 std::string(TREAD_BIN_DIR) + "/tread-launch"};
+  for (const std::string& word : launched.arguments()) words.push_back(word);
+  Process launch("/bin/sh", words, launched.output());
+  REQUIRE(launched.says("processes run after"));
+  launch.signal(SIGHUP);
+  CHECK_FALSE(launched.says("stopping", 0.5));
+  CHECK(launch.running());
+  launch.signal(SIGINT);
+  REQUIRE(launch.waitFor(10));
+  CHECK(launch.exitCode() == 0);
+}
+
 TEST_CASE("a process that ends at once is tried again, told twice, and does not stop the others") {
   const Launched launched({"good", "brief"}, TREAD_STAND_IN);
   Process launch("tread-launch", launched.arguments(), launched.output());
@@ -100,6 +115,7 @@ TEST_CASE("start-up checks name what is wrong and nothing is started") {
   std::filesystem::remove(launched.folder / "p0.txt");
   CHECK_THAT(call(launched, {"--check"}).output, Contains("p0.txt cannot be read"));
   std::ofstream(launched.folder / "p0.txt") << "good";
+  CHECK(call(launched, {"--no-such-option"}).code == 2);
   const CommandOutcome good = call(launched, {"--check"});
   CHECK(good.code == 0);
   CHECK_THAT(good.output, Contains("trial: ready to start"));

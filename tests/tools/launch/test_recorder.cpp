@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include <csignal>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include <catch2/catch.hpp>
 
@@ -119,6 +121,29 @@ TEST_CASE("a recorder that cannot write says so in one line") {
   Process recorder("tread-logger", {"/proc/no/log", "--lcm-url", ownLcmUrl()}, words);
   REQUIRE(recorder.waitFor(5.0));
   CHECK(recorder.exitCode() == 1);
+  std::ifstream file(words);
+  const std::string said{std::istreambuf_iterator<char>(file), {}};
+  CHECK_THAT(said, Catch::StartsWith("tread-logger: ") && Catch::Contains("/proc/no"));
+  CHECK(said.find('\n') == said.size() - 1);
+  Process misused("tread-logger", {"--no-such-option"});
+  REQUIRE(misused.waitFor(5.0));
+  CHECK(misused.exitCode() == 2);
+}
+
+TEST_CASE("a recorder under nohup goes on when its terminal closes") {
+  const Folder folder;
+  const std::string url = ownLcmUrl();
+  const std::string file = folder.path + "/robot.lcmlog";
+  Process recorder("/bin/sh",
+                   {"-c", "trap '' HUP; exec \"$0\" \"$@\"",
+                    std::string(TREAD_BIN_DIR) + "/tread-logger", file, "--lcm-url", url});
+  Speaker speaker(url);
+  meet(speaker, file + ".0");
+  recorder.signal(SIGHUP);
+  CHECK_FALSE(recorder.waitFor(0.5));
+  recorder.signal(SIGINT);
+  REQUIRE(recorder.waitFor(5.0));
+  CHECK(recorder.exitCode() == 0);
 }
 
 }  // namespace tread::testing
