@@ -27,6 +27,7 @@ std::vector<std::string> LogFollower::newLines() {
   std::vector<std::string> lines;
   readRest(lines);
   if (const ino_t inode = inodeOf(path_); inode != 0 && inode != inode_) {
+    readRest(lines);  // what was written between the reading and the renaming
     inode_ = inode;
     file_ = std::ifstream(path_);
     readRest(lines);
