@@ -76,6 +76,17 @@ TEST_CASE("systemd has nothing to say against the installed units") {
   CHECK(outcome.output.empty());
 }
 
+TEST_CASE(
+    "stopped in the reverse order of their start, the motors are the first and the log the last") {
+  const Installed installed;
+  const auto unit = [&](const std::string& name) { return contentOf(installed.units / name); };
+  CHECK_THAT(unit("tread@.service"), Catch::Contains("\nAfter=tread-route.service tread-logger") &&
+                                         Catch::Contains("\nBefore=tread-motor-bridge.service\n"));
+  CHECK_THAT(unit("tread-motor-bridge.service"),
+             Catch::Contains("\nAfter=tread-route.service tread-logger.service\n") &&
+                 Catch::Contains("--only motor-bridge\n"));
+}
+
 TEST_CASE("a misspelt key, a wrong value and a missing program in a unit are caught") {
   const Installed installed;
   SECTION("key") {
