@@ -46,7 +46,7 @@ TEST_CASE("with tread-launch and supervisor killed at once, each process sees th
   launch.signal(SIGSTOP);  // it could help otherwise
   kill(supervisor, SIGKILL);
   launch.signal(SIGKILL);
-  CHECK(within(3, [&] { return launched.pids().empty(); }));
+  CHECK(within(10, [&] { return launched.pids().empty(); }));
 }
 
 TEST_CASE("a process that does not stop is killed after its stop time") {

@@ -102,7 +102,7 @@ TEST_CASE("the simulated robot starts, records, and leaves no process when its s
   Process launch("tread-launch", place.simulated(), output);
   REQUIRE(says("simulated: all 8 processes run after"));
   kill(std::stoi(contentOf(run / "supervisord.pid")), SIGKILL);
-  CHECK(launch.waitFor(8));
+  CHECK(launch.waitFor(20));
   CHECK(workersIn(run).empty());
   CHECK(fs::exists(run / "log/robot.lcmlog.1"));
 }
