@@ -93,7 +93,8 @@ struct PlannerArguments {
 
 void addPlanner(CLI::App& app, PlannerArguments& arguments) {
   CLI::App& command = *app.add_subcommand(
-      "planner", "the log of a running robot through the planner; code 1 if different or not compared");
+      "planner",
+      "the log of a running robot through the planner; code 1 if different or not compared");
   command.add_option("log", arguments.log, "LCM log")->required();
   command.add_option("--config", arguments.config, "configuration of the planner; else the log's");
   command.add_option("--report", arguments.output.report, "also write the report into this file");
