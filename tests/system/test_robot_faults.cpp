@@ -158,7 +158,7 @@ TEST_CASE("all lines to the devices closed and opened again: stop, come back, dr
   }
 }
 
-TEST_CASE("a full disk stops neither the robot nor its learning, and is told; room again is used") {
+TEST_CASE("a full disk stops neither the robot nor its learning, and is told, room again is used") {
   // A disk of its own for the learner's state, in a mount namespace.
   const std::vector<std::string> isolate =
       ::getuid() == 0
