@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <unistd.h>
+
 #include <cstdarg>
 #include <cstdio>
 #include <filesystem>
@@ -18,7 +20,8 @@ namespace tread::samples {
 class Folder {
  public:
   explicit Folder(const std::string& name)
-      : path_(std::filesystem::temp_directory_path() / ("tread_" + name)) {
+      : path_(std::filesystem::temp_directory_path() /
+              ("tread_" + std::to_string(::getpid()) + "_" + name)) {
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }
