@@ -3,6 +3,7 @@
 #include "tools/replay/learner_lives.hpp"
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "common/messages/pattern_messages.hpp"
@@ -121,11 +122,44 @@ LearnerLife lifeOf(const RobotLog& log, const Snapshot& snapshot, const PatternS
   return life;
 }
 
+/// Whether a life may be replayed from its state: every execution that it will handle must name a
+/// set that the log holds, or it would be scored with nothing.
+bool namesKnownSets(const RobotLog& log, const LearnerLife& life) {
+  std::set<int64_t> known;
+  for (const PatternSet& set : life.earlier) known.insert(set.version());
+  const std::set<learner::ExecutionKey> handled(life.state.handled.begin(),
+                                                life.state.handled.end());
+  for (const TimedEvent& timed : log.events) {
+    execution_t message;
+    if (!decode(timed.event, kExecution, message)) continue;
+    for (const execution_record_t& record : message.records) {
+      const learner::ExecutionKey key{record.record_run_id, record.record_execution_id};
+      const bool is_known = known.count(record.record_set_version) > 0 ||
+                            record.record_set_version >= life.state.set.version();
+      if (!is_known && handled.count(key) == 0) return false;
+    }
+  }
+  return true;
+}
+
+/// The first state of a log that begins in the middle from which all can be replayed; the first of
+/// all if there is none.
+std::vector<Snapshot> withoutLame(const RobotLog& log, std::vector<Snapshot> snapshots,
+                                  const PatternSet& shipped) {
+  for (size_t i = 0; i < snapshots.size() && snapshots[i].seq > 0; ++i) {
+    if (i > 0 && snapshots[i].seq <= snapshots[i - 1].seq) break;
+    if (!namesKnownSets(log, lifeOf(log, snapshots[i], shipped))) continue;
+    snapshots.erase(snapshots.begin(), snapshots.begin() + static_cast<std::ptrdiff_t>(i));
+    break;
+  }
+  return snapshots;
+}
+
 }  // namespace
 
 std::vector<LearnerLife> learnerLives(const RobotLog& log, const PatternSet& shipped) {
   std::vector<LearnerLife> lives;
-  for (const Snapshot& snapshot : beginningsOf(snapshotsOf(log))) {
+  for (const Snapshot& snapshot : beginningsOf(withoutLame(log, snapshotsOf(log), shipped))) {
     LearnerLife life = lifeOf(log, snapshot, shipped);
     if (!lives.empty()) lives.back().end_event = life.first_event;
     lives.push_back(std::move(life));

@@ -123,15 +123,17 @@ TEST_CASE("a recorder whose clock is UTC, and is set forward by an hour, changes
   REQUIRE(learnerCheck(recordedInUtc(plainDrive())).equal());
 }
 
-// Known to fail on most drives: a state in the middle of a log does not hold all that the learner
-// remembers, and its later sets then differ by millimetres. The report says DIFFERENT.
-TEST_CASE("a log that begins in the middle is replayed from its first state", "[!mayfail]") {
-  std::vector<LogEvent> events = plainDrive();
-  events.erase(events.begin(), events.begin() + static_cast<std::ptrdiff_t>(events.size() / 2));
-  const LearnerCheck check = learnerCheck(std::move(events));
-  REQUIRE_FALSE(check.from_start);
-  REQUIRE(check.versions_equal >= 4);
-  REQUIRE(check.equal());
+TEST_CASE("a log that begins in the middle is replayed from the first state that can be replayed") {
+  // Executions may name a set from before the cut: states that would need it are passed over.
+  for (const size_t share : {2, 3, 4}) {
+    std::vector<LogEvent> events = plainDrive();
+    events.erase(events.begin(),
+                 events.begin() + static_cast<std::ptrdiff_t>(events.size() / share));
+    const LearnerCheck check = learnerCheck(std::move(events));
+    REQUIRE_FALSE(check.from_start);
+    REQUIRE(check.versions_equal >= 4);
+    REQUIRE(check.equal());
+  }
 }
 
 TEST_CASE("a learner that was killed and started again is replayed in both lives") {
