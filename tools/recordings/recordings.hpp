@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "common/pattern/pattern.hpp"
+
+// Recordings: what patterns really did, executed many times on one surface each (RP_S, section V.A
+// of the paper). A book of recordings is a folder:
+//   patterns.yaml    the pattern set that was executed (commands, classes; predictions do not
+//                    matter)
+//   SURFACE.csv      a surface: pattern,execution,sample,x_m,y_m,yaw_rad; sample counts from 1, the
+//                    pose after that command relative to the start, yaw unwrapped. The rows of an
+//                    execution stand together; executions of a pattern have rising numbers from 1,
+//                    with gaps where some were taken out by hand. Lines that begin with # are
+//                    comments. Every pattern has at least one execution on every surface.
+namespace tread::recordings {
+
+/// A book cannot be read or used: what() is one line "file:line: what is wrong; what to do".
+class RecordingError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// One execution: a pose after each command, as many as the pattern has.
+using Execution = std::vector<Pose2>;
+
+/// All executions on one surface.
+struct SurfaceRecordings {
+  std::string surface;
+  std::vector<std::vector<Execution>> executions;  ///< by pattern, in the order of the set
+};
+
+/// Recordings of one pattern set on several surfaces.
+struct RecordingBook {
+  PatternSet patterns;
+  std::vector<SurfaceRecordings> surfaces;
+};
+
+/// Reads a folder, its surfaces sorted by name; throws RecordingError.
+RecordingBook readBook(const std::string& folder);
+/// Writes a folder, which is made if needed; files of other surfaces there stay. Throws
+/// RecordingError.
+void writeBook(const std::string& folder, const RecordingBook& book);
+
+/// What averaging left out of one pattern, and why.
+struct AverageNote {
+  std::string pattern;
+  int used = 0;
+  bool by_twist = false;              ///< body twists were averaged, not poses: the turn is strong
+  std::vector<std::string> rejected;  ///< a line for each execution that was left out
+};
+
+/// When an execution is no fair one, and how few are too few.
+struct AverageLimits {
+  double strong_turn = 0.5;  ///< [rad] from here on twists are averaged
+  double max_speed = 0.0;    ///< [m/s] of a step, over 0.1 s; 0 = 1.5 times the median's largest
+  int min_executions = 3;    ///< fewer fair ones are refused
+};
+
+/// IP_S: the set with averaged trajectories and the recorded spread of each end as its covariance.
+/** Strong turns are averaged as body twists sample by sample, because the mean of poses is shorter
+ * than any of them. The spread is about the mean of the end poses (n - 1). An execution of another
+ * length, with a number that is not finite, an impossible speed or a jump of yaw is left out and
+ * noted, one note a pattern in the order of the set. Name, version and classes stay; times_learned
+ * is 0. Throws RecordingError if a pattern has too few. */
+PatternSet averageSet(const PatternSet& patterns, const SurfaceRecordings& recordings,
+                      const AverageLimits& limits, std::vector<AverageNote>& notes);
+
+}  // namespace tread::recordings
