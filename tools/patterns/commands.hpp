@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+// The subcommands of tread-patterns. Each adds itself to the program and does its work in its
+// callback, once the whole command line is read; what it throws ends the program with its one line
+// and 1.
+namespace tread::patterns {
+
+CLI::App* addMake(CLI::App& app);
+CLI::App* addShow(CLI::App& app);
+
+}  // namespace tread::patterns
