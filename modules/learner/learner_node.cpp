@@ -74,7 +74,8 @@ void LearnerNode::start(int64_t boot_time) {
   versions_.emplace(config_.shipped.version(), config_.shipped);
   if (found.state) {
     executions_.remember(found.state->handled);
-    learner_.restore(std::move(found.state->set), std::move(found.state->residuals));
+    learner_.restore(std::move(found.state->set), std::move(found.state->residuals),
+                     found.state->memory);
     keepVersion();
   }
   if (found.first_version > learner_.set().version())
@@ -87,7 +88,7 @@ void LearnerNode::resume(LearnerState state, const std::vector<PatternSet>& earl
   versions_.emplace(config_.shipped.version(), config_.shipped);
   for (const PatternSet& set : earlier) versions_.insert_or_assign(set.version(), set);
   executions_.remember(state.handled);
-  learner_.restore(std::move(state.set), std::move(state.residuals));
+  learner_.restore(std::move(state.set), std::move(state.residuals), state.memory);
   adoptVersion();
 }
 
@@ -157,7 +158,8 @@ void LearnerNode::handle(const execution_record_t& record) {
                                                  scoredError(record, measurement), record.ended);
     message.changed = correction.changed;
     message.gate_reason = correction.guards;
-    fill(message.scaling, {correction.scaling[0], correction.scaling[1], correction.scaling[2]});
+    const Axes& V = correction.note.scaling;
+    fill(message.scaling, {V[0], V[1], V[2]});
     if (correction.changed) {
       start_problem_.clear();
       adoptVersion();
@@ -224,7 +226,8 @@ void LearnerNode::keepVersion() {
 }
 
 std::string LearnerNode::stateText() const {
-  const LearnerState state{learner_.set(), learner_.residuals(), executions_.handled()};
+  const LearnerState state{learner_.set(), learner_.residuals(), learner_.memory(),
+                           config_.rule.rule, executions_.handled()};
   return formatState(state, learner_.shipped(), config_.rule);
 }
 

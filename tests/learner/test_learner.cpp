@@ -76,9 +76,9 @@ TEST_CASE("collective scales all others by V and smooths them: Algorithm 1 with 
   Learner learner(config(Rule::kCollective), smallSet());
   const PatternSet before = learner.set();
   const Correction correction = learner.learn(kLeft, scaledLeft(0.9, 1.2, 1.4), {}, 77);
-  REQUIRE(correction.scaling[0] == Approx(0.9));
-  REQUIRE(correction.scaling[1] == Approx(1.2));
-  REQUIRE(correction.scaling[2] == Approx(1.4));
+  REQUIRE(correction.note.scaling[0] == Approx(0.9));
+  REQUIRE(correction.note.scaling[1] == Approx(1.2));
+  REQUIRE(correction.note.scaling[2] == Approx(1.4));
   // (1 - w) R V + w R: factors 0.7 * 0.9 + 0.3 and so on.
   const Pose2 right = learner.set().find(kRight)->end();
   const Pose2 right_before = before.find(kRight)->end();
@@ -102,7 +102,7 @@ TEST_CASE("a one-dimensional pattern updates only itself") {
     for (Pose2& pose : trajectory) pose = {0.8 * pose.x, pose.y + 0.01, 0.8 * pose.yaw};
     const Correction correction = learner.learn(id, fair(trajectory), {}, 1);
     REQUIRE(correction.changed);
-    REQUIRE(std::isnan(correction.scaling[0]));
+    REQUIRE(std::isnan(correction.note.scaling[0]));
     REQUIRE(correction.guards.find("one-dimensional") != std::string::npos);
     for (const MotionPattern& other : before.patterns())
       REQUIRE(sameTrajectory(learner.set(), before, other.id) == (other.id != id));
@@ -114,7 +114,7 @@ TEST_CASE("a turn to the other side beyond the noise updates only itself and is 
   const PatternSet before = learner.set();
   const Correction correction = learner.learn(kLeft, fair(arc({0.9, 0.0, -0.4})), {}, 1);
   REQUIRE(correction.changed);
-  REQUIRE(std::isnan(correction.scaling[2]));
+  REQUIRE(std::isnan(correction.note.scaling[2]));
   REQUIRE(correction.guards.find("turned the other way") != std::string::npos);
   REQUIRE(sameTrajectory(learner.set(), before, kRight));
   REQUIRE_FALSE(sameTrajectory(learner.set(), before, kLeft));
@@ -124,7 +124,7 @@ TEST_CASE("motion backwards instead of forwards gives no V") {
   Learner learner(config(Rule::kCollective), smallSet());
   const Correction correction = learner.learn(kLeft, fair(arc({-0.5, 0.0, 0.5})), {}, 1);
   REQUIRE(correction.guards.find("moved the other way") != std::string::npos);
-  REQUIRE(std::isnan(correction.scaling[0]));
+  REQUIRE(std::isnan(correction.note.scaling[0]));
 }
 
 TEST_CASE("an opposite sign within the noise still gives V") {
@@ -132,8 +132,9 @@ TEST_CASE("an opposite sign within the noise still gives V") {
   // A weak left turn of 0.06 rad; three sigma of what is assumed without recordings are 0.074 rad.
   content.patterns[1].trajectory = arc({0.9, 0.05, 0.06});
   Learner learner(config(Rule::kCollective), checked(content));
-  REQUIRE(std::isfinite(learner.learn(kLeft, fair(arc({0.9, 0.05, -0.01})), {}, 1).scaling[0]));
-  REQUIRE(std::isnan(learner.learn(kLeft, fair(arc({0.9, 0.05, -0.5})), {}, 2).scaling[0]));
+  REQUIRE(
+      std::isfinite(learner.learn(kLeft, fair(arc({0.9, 0.05, -0.01})), {}, 1).note.scaling[0]));
+  REQUIRE(std::isnan(learner.learn(kLeft, fair(arc({0.9, 0.05, -0.5})), {}, 2).note.scaling[0]));
 }
 
 TEST_CASE("patterns without a usable axis stay as they are") {

@@ -13,6 +13,25 @@ namespace {
 
 constexpr PatternRole kAllAxes{{true, true, true}, true};
 
+/// V of equation (1) from two trajectories.
+Axes quotient(const std::vector<Pose2>& measured, const std::vector<Pose2>& predicted,
+              const PatternRole& role = kAllAxes) {
+  return scalingVector(boundingBox(measured), boundingBox(predicted), role, {});
+}
+
+/// Poses in a form that is changed in place.
+struct Numbers {
+  explicit Numbers(const std::vector<Pose2>& poses) { fill(poses, numbers); }
+  Trajectory trajectory() {
+    return {numbers.data(), static_cast<Eigen::Index>(numbers.size() / 3), 3};
+  }
+  ConstTrajectory fixed() const {
+    return {numbers.data(), static_cast<Eigen::Index>(numbers.size() / 3), 3};
+  }
+  Pose2 end() const { return posesOf(fixed()).back(); }
+  std::vector<double> numbers;
+};
+
 }  // namespace
 
 TEST_CASE("the bounding box contains the start pose") {
@@ -30,7 +49,7 @@ TEST_CASE("the bounding box contains the start pose") {
 TEST_CASE("equation (1): V is the quotient of length, width and yaw interval") {
   const std::vector<Pose2> predicted{{0.5, 0.1, 0.3}, {1.0, 0.4, 0.8}};
   const std::vector<Pose2> measured{{0.4, 0.2, 0.4}, {0.8, 0.6, 1.2}};
-  const Axes V = scalingVector(measured, predicted, kAllAxes, {});
+  const Axes V = quotient(measured, predicted);
   REQUIRE(V[0] == Approx(0.8));
   REQUIRE(V[1] == Approx(1.5));
   REQUIRE(V[2] == Approx(1.5));
@@ -39,19 +58,19 @@ TEST_CASE("equation (1): V is the quotient of length, width and yaw interval") {
 TEST_CASE("a double lane change is compared by its width, not by its lateral end") {
   const std::vector<Pose2> predicted{{0.5, 0.4, 0.6}, {1.0, 0.001, 0.0}};
   const std::vector<Pose2> measured{{0.5, 0.5, 0.6}, {1.0, 0.02, 0.0}};
-  REQUIRE(scalingVector(measured, predicted, kAllAxes, {})[1] == Approx(1.25));
+  REQUIRE(quotient(measured, predicted)[1] == Approx(1.25));
 }
 
 TEST_CASE("factors stay between one half and two, whatever was measured") {
   const std::vector<Pose2> predicted{{1.0, 0.3, 0.2}};
-  const Axes V = scalingVector({{0.1, 3.0, 0.5}}, predicted, kAllAxes, {});
+  const Axes V = quotient({{0.1, 3.0, 0.5}}, predicted);
   REQUIRE(V[0] == 0.5);
   REQUIRE(V[1] == 2.0);
   REQUIRE(V[2] == 2.0);
 }
 
 TEST_CASE("a box that has shrunk to nothing is not divided by") {
-  const Axes V = scalingVector({{1.0, 0.1, 0.1}}, {{0.0, 0.0, 0.0}}, kAllAxes, {});
+  const Axes V = quotient({{1.0, 0.1, 0.1}}, {{0.0, 0.0, 0.0}});
   REQUIRE((V == 1.0).all());
 }
 
@@ -60,11 +79,13 @@ TEST_CASE("an axis whose box is noise in the shipped set keeps the factor one fo
   const MotionPattern weak = pattern(1, "weak", {1.0, 1.0}, {{1.0, 0.019, 0.029}});
   const PatternRole role = roleOf(weak, {});
   REQUIRE(role.scalable == std::array<bool, 3>{true, false, false});
-  const Axes V = scalingVector({{1.2, 0.3, 0.3}}, weak.trajectory, role, {});
+  const Axes V = quotient({{1.2, 0.3, 0.3}}, weak.trajectory, role);
   REQUIRE(V[0] == Approx(1.2));
   REQUIRE(V[1] == 1.0);
   REQUIRE(V[2] == 1.0);
-  const Pose2 end = scaled(weak.trajectory, {1.5, 1.5, 1.5}, role).back();
+  Numbers numbers(weak.trajectory);
+  scale({1.5, 1.5, 1.5}, role, numbers.trajectory());
+  const Pose2 end = numbers.end();
   REQUIRE(end.x == Approx(1.5));
   REQUIRE(end.y == 0.019);
   REQUIRE(end.yaw == 0.029);
@@ -88,8 +109,11 @@ TEST_CASE("straight and in-place patterns are one-dimensional, arcs are not") {
 TEST_CASE("equation (2): memory is the weight of the old prediction") {
   // w = 0.3: 0.7 of the measurement and 0.3 of the prediction; the paper's line 13 would give the
   // reverse.
-  const auto result = smoothed({{1.0, 0.5, 1.0}}, {{0.0, 0.1, -1.0}}, 0.3);
-  REQUIRE(result.back().x == Approx(0.7));
-  REQUIRE(result.back().y == Approx(0.38));
-  REQUIRE(result.back().yaw == Approx(0.4));
+  Numbers measured({{1.0, 0.5, 1.0}});
+  Numbers predicted({{0.0, 0.1, -1.0}});
+  smooth(measured.fixed(), 0.3, predicted.trajectory());
+  const Pose2 end = predicted.end();
+  REQUIRE(end.x == Approx(0.7));
+  REQUIRE(end.y == Approx(0.38));
+  REQUIRE(end.yaw == Approx(0.4));
 }

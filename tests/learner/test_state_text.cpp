@@ -21,7 +21,11 @@ LearnerState learnedState() {
   for (int i = 0; i < 12; ++i)
     learner.learn(i % 2 == 0 ? kLeft : kStraight, fair(arc({any(random), 0.01, 0.4 * any(random)})),
                   Pose2{0.1 * any(random), -0.02, 0.3}, 1000 + i);
-  return {learner.set(), learner.residuals(), {{7, 1}, {7, 2}, {-9'000'000'000, 3}}};
+  return {learner.set(),
+          learner.residuals(),
+          {0.1, -2.5e-300, 1.0 / 3.0},
+          Rule::kCollective,
+          {{7, 1}, {7, 2}, {-9'000'000'000, 3}}};
 }
 
 bool sameBits(double a, double b) {
@@ -40,6 +44,8 @@ TEST_CASE("a state restores bit for bit") {
   REQUIRE(restored->set.checksum() == state.set.checksum());
   REQUIRE(restored->set.version() == state.set.version());
   REQUIRE(restored->handled == state.handled);
+  REQUIRE(restored->memory == state.memory);
+  REQUIRE(restored->rule == state.rule);
   for (const MotionPattern& pattern : state.set.patterns()) {
     const MotionPattern& again = *restored->set.find(pattern.id);
     REQUIRE(again.times_learned == pattern.times_learned);

@@ -3,48 +3,39 @@
 #include "modules/learner/core/learner.hpp"
 
 #include <cmath>
-#include <stdexcept>
 
 namespace tread::learner {
 namespace {
 
-void append(std::string& guards, const std::string& guard) {
-  if (!guards.empty()) guards += "; ";
-  guards += guard;
+void append(std::string& text, const std::string& more) {
+  if (!text.empty()) text += "; ";
+  text += more;
 }
 
-/// Names the axes of a pattern that hold nothing but noise.
-std::string heldAxes(const PatternRole& role) {
+/// The guards of a note in words.
+std::string guardsOf(const RuleNote& note) {
   static const char* const kNames[3] = {"x", "y", "yaw"};
+  std::string guards;
+  if (note.one_dimensional) append(guards, "one-dimensional: own update only");
+  if (note.moved_back)
+    append(guards, "moved the other way: own update only, the ground may have changed");
+  if (note.turned_back)
+    append(guards, "turned the other way: own update only, the ground may have changed");
   std::string held;
   for (size_t axis = 0; axis < 3; ++axis)
-    if (!role.scalable[axis]) held += (held.empty() ? "" : ", ") + std::string(kNames[axis]);
-  return held;
+    if (note.held[axis]) held += (held.empty() ? "" : ", ") + std::string(kNames[axis]);
+  if (!held.empty()) append(guards, "no factor for " + held + ": box too small");
+  return guards;
 }
 
-bool anyScalable(const PatternRole& role) {
-  return role.scalable[0] || role.scalable[1] || role.scalable[2];
+void write(const ConstTrajectory& from, std::vector<Pose2>& to) {
+  for (size_t t = 0; t < to.size(); ++t) {
+    const auto row = static_cast<Eigen::Index>(t);
+    to[t] = {from(row, 0), from(row, 1), from(row, 2)};
+  }
 }
 
 }  // namespace
-
-const char* ruleName(Rule rule) {
-  switch (rule) {
-    case Rule::kOff:
-      return "off";
-    case Rule::kSingle:
-      return "single";
-    case Rule::kCollective:
-      return "collective";
-  }
-  return "off";
-}
-
-std::optional<Rule> ruleNamed(const std::string& name) {
-  for (const Rule rule : {Rule::kOff, Rule::kSingle, Rule::kCollective})
-    if (name == ruleName(rule)) return rule;
-  return std::nullopt;
-}
 
 Pose2 endError(const Measurement& measurement, const MotionPattern& predicted) {
   const Pose2& m = measurement.trajectory.back();
@@ -53,18 +44,24 @@ Pose2 endError(const Measurement& measurement, const MotionPattern& predicted) {
 }
 
 Learner::Learner(RuleConfig config, PatternSet shipped)
-    : config_(std::move(config)), shipped_(std::move(shipped)), set_(shipped_) {
-  if (!(config_.memory >= 0.0 && config_.memory < 1.0))
-    throw std::invalid_argument("learner: memory must be in 0 <= memory < 1");
+    : config_(std::move(config)),
+      shipped_(std::move(shipped)),
+      set_(shipped_),
+      rule_(makeRule(config_, shipped_)),
+      before_(rule_->clone()) {
   for (const MotionPattern& pattern : shipped_.patterns()) {
-    roles_[pattern.id] = roleOf(pattern, config_.scaling);
+    index_.emplace(pattern.id, index_.size());
     residuals_[pattern.id] = residualsOf(pattern, config_.residuals);
   }
 }
 
-void Learner::restore(PatternSet set, ResidualTable residuals) {
+bool Learner::restore(PatternSet set, ResidualTable residuals, const std::vector<double>& memory) {
   set_ = std::move(set);
   residuals_ = std::move(residuals);
+  if (rule_->restore(TrajectoryTable(set_.patterns()), memory)) return true;
+  std::string why;
+  if (auto anew = PatternSet::make(predicted(), why)) set_ = *anew;
+  return false;
 }
 
 void Learner::renumber(int64_t version, int64_t parent) {
@@ -75,36 +72,47 @@ void Learner::renumber(int64_t version, int64_t parent) {
   if (auto renumbered = PatternSet::make(std::move(content), why)) set_ = *renumbered;
 }
 
+PatternSetContent Learner::predicted() const {
+  PatternSetContent content = set_.content();
+  std::vector<double> numbers;
+  for (size_t p = 0; p < content.patterns.size(); ++p) {
+    MotionPattern& pattern = content.patterns[p];
+    const auto samples = static_cast<Eigen::Index>(pattern.trajectory.size());
+    numbers.resize(static_cast<size_t>(3 * samples));
+    rule_->predict(p, Trajectory(numbers.data(), samples, 3));
+    write(ConstTrajectory(numbers.data(), samples, 3), pattern.trajectory);
+    if (const auto covariance = rule_->endCovariance(p)) pattern.end_covariance = *covariance;
+  }
+  return content;
+}
+
 Correction Learner::learn(int pattern_id, const Measurement& measurement,
                           const std::optional<Pose2>& end_error, int64_t utime) {
   Correction correction;
-  const MotionPattern* executed = set_.find(pattern_id);
-  if (config_.rule == Rule::kOff || executed == nullptr || !measurement.fair()) return correction;
-  std::optional<Axes> factors;
-  if (config_.rule == Rule::kCollective)
-    factors = scalingFrom(*executed, measurement, correction.guards);
-  if (factors) correction.scaling = *factors;
+  const MotionPattern* pattern = set_.find(pattern_id);
+  if (config_.rule == Rule::kOff || pattern == nullptr || !measurement.fair()) return correction;
+  if (measurement.trajectory.size() != pattern->trajectory.size()) return correction;
+  const size_t executed = index_.at(pattern_id);
+  before_->assign(*rule_);
+  fill(measurement.trajectory, measured_);
+  const auto samples = static_cast<Eigen::Index>(measurement.trajectory.size());
+  rule_->learn(executed, ConstTrajectory(measured_.data(), samples, 3), correction.note);
+  correction.guards = guardsOf(correction.note);
 
-  PatternSetContent content = set_.content();
   EndResiduals residuals = residuals_[pattern_id];
   if (end_error) addResidual(residuals, *end_error, config_.residuals);
-  for (MotionPattern& pattern : content.patterns) {
-    const std::vector<Pose2> predicted = pattern.trajectory;
-    if (pattern.id == pattern_id) {
-      pattern.trajectory = smoothed(measurement.trajectory, predicted, config_.memory);
-      pattern.end_covariance = covarianceOf(residuals, config_.residuals);
-      ++pattern.times_learned;
-    } else if (factors && anyScalable(roles_[pattern.id])) {
-      const auto derived = scaled(predicted, *factors, roles_[pattern.id]);
-      pattern.trajectory = smoothed(derived, predicted, config_.memory);
-    }
-  }
+  PatternSetContent content = predicted();
+  MotionPattern& learned = content.patterns[executed];
+  ++learned.times_learned;
+  if (!rule_->endCovariance(executed))
+    learned.end_covariance = covarianceOf(residuals, config_.residuals);
   content.parent_version = content.version;
   ++content.version;
   content.utime = utime;
   std::string why;
   const auto next = PatternSet::make(std::move(content), why);
   if (!next) {
+    rule_->assign(*before_);
     append(correction.guards, "not learned, the set would be wrong: " + why);
     return correction;
   }
@@ -112,38 +120,6 @@ Correction Learner::learn(int pattern_id, const Measurement& measurement,
   residuals_[pattern_id] = residuals;
   correction.changed = true;
   return correction;
-}
-
-std::optional<Axes> Learner::scalingFrom(const MotionPattern& pattern,
-                                         const Measurement& measurement,
-                                         std::string& guards) const {
-  const PatternRole& role = roles_.at(pattern.id);
-  if (!role.gives_scaling) {
-    append(guards, "one-dimensional: own update only");
-    return std::nullopt;
-  }
-  if (turnsTheOtherWay(pattern, measurement.trajectory.back(), guards)) return std::nullopt;
-  const std::string held = heldAxes(role);
-  if (!held.empty()) append(guards, "no factor for " + held + ": box too small");
-  return scalingVector(measurement.trajectory, pattern.trajectory, role, config_.scaling);
-}
-
-bool Learner::turnsTheOtherWay(const MotionPattern& pattern, const Pose2& measured_end,
-                               std::string& guards) const {
-  const PatternRole& role = roles_.at(pattern.id);
-  const PoseCovariance known = covarianceOf(residuals_.at(pattern.id), config_.residuals);
-  const auto opposite = [&](int axis, double measured, double predicted, double variance) {
-    if (!role.scalable[static_cast<size_t>(axis)] || measured * predicted >= 0.0) return false;
-    const double assumed =
-        config_.relative_noise[axis] * std::abs(predicted) + config_.absolute_noise[axis];
-    const double sigma = variance > 0.0 ? std::sqrt(variance) : assumed;
-    return std::abs(measured - predicted) > config_.sign_sigmas * sigma;
-  };
-  const bool back = opposite(0, measured_end.x, pattern.end().x, known[0]);
-  const bool turned = opposite(2, measured_end.yaw, pattern.end().yaw, known[5]);
-  if (back) append(guards, "moved the other way: own update only, the ground may have changed");
-  if (turned) append(guards, "turned the other way: own update only, the ground may have changed");
-  return back || turned;
 }
 
 }  // namespace tread::learner

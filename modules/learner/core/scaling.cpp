@@ -30,6 +30,14 @@ Axes boundingBox(const std::vector<Pose2>& trajectory) {
   return high - low;
 }
 
+Axes boundingBox(const ConstTrajectory& trajectory) {
+  Axes box;
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    box[axis] = std::max(trajectory.col(axis).maxCoeff(), 0.0) -
+                std::min(trajectory.col(axis).minCoeff(), 0.0);
+  return box;
+}
+
 PatternRole roleOf(const MotionPattern& shipped, const ScalingLimits& limits) {
   const Axes box = boundingBox(shipped.trajectory);
   const Axes variance = variances(shipped.end_covariance);
@@ -43,42 +51,24 @@ PatternRole roleOf(const MotionPattern& shipped, const ScalingLimits& limits) {
   return role;
 }
 
-Axes scalingVector(const std::vector<Pose2>& measured, const std::vector<Pose2>& predicted,
-                   const PatternRole& role, const ScalingLimits& limits) {
-  const Axes new_box = boundingBox(measured);
-  const Axes old_box = boundingBox(predicted);
+Axes scalingVector(const Axes& new_box, const Axes& old_box, const PatternRole& role,
+                   const ScalingLimits& limits) {
   Axes factors = Axes::Ones();
   for (int axis = 0; axis < 3; ++axis) {
     if (!role.scalable[static_cast<size_t>(axis)] || old_box[axis] < kTiniestBox) continue;
-    factors[axis] = std::clamp(new_box[axis] / old_box[axis], limits.min_factor, limits.max_factor);
+    factors[axis] = std::clamp(new_box[axis] / old_box[axis], limits.min_factor,
+                               limits.max_factor);  // equation (1)
   }
   return factors;
 }
 
-std::vector<Pose2> scaled(const std::vector<Pose2>& trajectory, const Axes& factors,
-                          const PatternRole& role) {
-  Axes applied = Axes::Ones();
+void scale(const Axes& factors, const PatternRole& role, Trajectory predicted) {
   for (int axis = 0; axis < 3; ++axis)
-    if (role.scalable[static_cast<size_t>(axis)]) applied[axis] = factors[axis];
-  std::vector<Pose2> result;
-  result.reserve(trajectory.size());
-  for (const Pose2& pose : trajectory)
-    result.push_back({pose.x * applied[0], pose.y * applied[1], pose.yaw * applied[2]});
-  return result;
+    if (role.scalable[static_cast<size_t>(axis)]) predicted.col(axis) *= factors[axis];
 }
 
-std::vector<Pose2> smoothed(const std::vector<Pose2>& measured, const std::vector<Pose2>& predicted,
-                            double memory) {
-  const double fresh = 1.0 - memory;
-  std::vector<Pose2> result;
-  result.reserve(predicted.size());
-  for (size_t t = 0; t < predicted.size(); ++t) {
-    const Pose2& m = measured[t];
-    const Pose2& r = predicted[t];
-    result.push_back(
-        {fresh * m.x + memory * r.x, fresh * m.y + memory * r.y, fresh * m.yaw + memory * r.yaw});
-  }
-  return result;
+void smooth(const ConstTrajectory& measured, double memory, Trajectory predicted) {
+  predicted = (1.0 - memory) * measured + memory * predicted;  // equation (2)
 }
 
 }  // namespace tread::learner

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "common/pattern/pattern.hpp"
+#include "modules/learner/core/trajectory_table.hpp"
 
 // The arithmetic of collective motion pattern scaling (paper, section IV):
 //   1. the box around a trajectory and its start, and the interval of its yaw;
@@ -35,6 +36,7 @@ struct ScalingLimits {
 /// Length and width [m] of the box around the start pose and all poses, and the interval of yaw
 /// [rad].
 Axes boundingBox(const std::vector<Pose2>& trajectory);
+Axes boundingBox(const ConstTrajectory& trajectory);
 
 /// What a pattern may give to the others and take from them.
 struct PatternRole {
@@ -46,20 +48,18 @@ struct PatternRole {
 /// where that is known.
 PatternRole roleOf(const MotionPattern& shipped, const ScalingLimits& limits);
 
-/// V of equation (1): box of the measured over box of the predicted trajectory; 1 on axes that are
-/// not scalable.
-Axes scalingVector(const std::vector<Pose2>& measured, const std::vector<Pose2>& predicted,
-                   const PatternRole& role, const ScalingLimits& limits);
+/// Box over box, axis by axis, within the limits; 1 on axes that are not scalable.
+/** V of equation (1) where the boxes are those of the measured and the predicted trajectory. */
+Axes scalingVector(const Axes& new_box, const Axes& old_box, const PatternRole& role,
+                   const ScalingLimits& limits);
 
-/// R * V: each pose's x, y and yaw times its factor, where the role allows it.
-std::vector<Pose2> scaled(const std::vector<Pose2>& trajectory, const Axes& factors,
-                          const PatternRole& role);
+/// R * V in place: each pose's x, y and yaw times its factor, where the role allows it.
+void scale(const Axes& factors, const PatternRole& role, Trajectory predicted);
 
-/// Equation (2): (1 - w) M + w R, component by component; w = `memory` is the weight of the OLD
-/// prediction.
+/// Equation (2) in place: (1 - w) M + w R, component by component; w = `memory` is the weight of
+/// the OLD prediction.
 /** Line 13 of the paper's Algorithm 1 has the two the other way round; they agree at w = 0.5 only.
  *  Both trajectories have the same number of poses, yaw unwrapped. */
-std::vector<Pose2> smoothed(const std::vector<Pose2>& measured, const std::vector<Pose2>& predicted,
-                            double memory);
+void smooth(const ConstTrajectory& measured, double memory, Trajectory predicted);
 
 }  // namespace tread::learner

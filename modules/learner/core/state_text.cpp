@@ -11,9 +11,11 @@
 namespace tread::learner {
 namespace {
 
-constexpr const char* kHeader = "tread-learner-state 1";
+constexpr const char* kHeader = "tread-learner-state 2";
 /// No state of a thousand patterns has more executions in its list than this.
 constexpr int64_t kMaxHandled = 10'000;
+/// No rule remembers more numbers than this.
+constexpr int64_t kMaxMemory = 100'000'000;
 
 /// FNV-1a, 64 bits: tells a damaged text from a whole one.
 uint64_t fingerprint(const std::string& text) {
@@ -72,6 +74,8 @@ std::string body(const LearnerState& state, const PatternSet& shipped, const Rul
   out << "patterns " << content.patterns.size() << '\n';
   for (const MotionPattern& pattern : content.patterns)
     writePattern(out, pattern, state.residuals.at(pattern.id));
+  out << "memory " << state.memory.size() << '\n';
+  for (const double value : state.memory) out << number(value) << '\n';
   return out.str();
 }
 
@@ -163,7 +167,8 @@ std::optional<LearnerState> parseState(const std::string& text, const PatternSet
   }
   PatternSetContent content = shipped.content();
   words.expect("rule");
-  words.word();
+  const auto rule = ruleNamed(words.word());
+  words.require(rule.has_value());
   words.expect("memory");
   words.real();
   words.expect("version");
@@ -183,6 +188,11 @@ std::optional<LearnerState> parseState(const std::string& text, const PatternSet
   words.expect("patterns");
   words.require(words.integer() == static_cast<int64_t>(content.patterns.size()));
   for (MotionPattern& pattern : content.patterns) readPattern(words, pattern, residuals);
+  words.expect("memory");
+  const int64_t numbers = words.integer();
+  words.require(numbers >= 0 && numbers <= kMaxMemory);
+  std::vector<double> memory;
+  for (int64_t i = 0; i < numbers && words.good(); ++i) memory.push_back(words.real());
   if (!words.good()) {
     why = "is damaged";
     return std::nullopt;
@@ -192,7 +202,8 @@ std::optional<LearnerState> parseState(const std::string& text, const PatternSet
     why = "holds a wrong set: " + why;
     return std::nullopt;
   }
-  return LearnerState{std::move(*set), std::move(residuals), std::move(handled)};
+  return LearnerState{std::move(*set), std::move(residuals), std::move(memory), *rule,
+                      std::move(handled)};
 }
 
 }  // namespace tread::learner

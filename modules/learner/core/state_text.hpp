@@ -18,6 +18,8 @@ using ExecutionKey = std::pair<int64_t, int64_t>;
 struct LearnerState {
   PatternSet set;                     ///< newest version
   ResidualTable residuals;            ///< by pattern id
+  std::vector<double> memory;         ///< of the rule, beside the set
+  Rule rule = Rule::kOff;             ///< whose memory it is
   std::vector<ExecutionKey> handled;  ///< the executions handled last, oldest first
 };
 

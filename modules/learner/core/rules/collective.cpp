@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/learner/core/rules/collective.hpp"
+
+#include <cmath>
+
+namespace tread::learner {
+
+ScalingGuards::ScalingGuards(const RuleConfig& config, const PatternSet& shipped)
+    : relative_noise_(config.relative_noise),
+      absolute_noise_(config.absolute_noise),
+      sign_sigmas_(config.sign_sigmas) {
+  for (const MotionPattern& pattern : shipped.patterns()) {
+    roles_.push_back(roleOf(pattern, config.scaling));
+    const PoseCovariance& covariance = pattern.end_covariance;
+    variances_.emplace_back(covariance[0], covariance[3], covariance[5]);
+  }
+}
+
+bool ScalingGuards::opposite(size_t executed, int axis, double measured, double predicted) const {
+  if (!roles_[executed].scalable[static_cast<size_t>(axis)] || measured * predicted >= 0.0)
+    return false;
+  const double variance = variances_[executed][axis];
+  const double assumed = relative_noise_[axis] * std::abs(predicted) + absolute_noise_[axis];
+  const double sigma = variance > 0.0 ? std::sqrt(variance) : assumed;
+  return std::abs(measured - predicted) > sign_sigmas_ * sigma;
+}
+
+bool ScalingGuards::allow(size_t executed, const ConstTrajectory& measured,
+                          const Pose2& predicted_end, RuleNote& note) const {
+  const PatternRole& role = roles_[executed];
+  const Eigen::Index last = measured.rows() - 1;
+  note.one_dimensional = !role.gives_scaling;
+  if (note.one_dimensional) return false;
+  note.moved_back = opposite(executed, 0, measured(last, 0), predicted_end.x);
+  note.turned_back = opposite(executed, 2, measured(last, 2), predicted_end.yaw);
+  if (note.moved_back || note.turned_back) return false;
+  for (size_t axis = 0; axis < 3; ++axis) note.held[axis] = !role.scalable[axis];
+  return true;
+}
+
+void Collective::learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) {
+  const bool gives = guards_.allow(executed, measured, table_.end(executed), note);
+  if (gives)
+    note.scaling = scalingVector(boundingBox(measured), boundingBox(table_.of(executed)),
+                                 guards_.role(executed), limits_);  // equation (1)
+  smooth(measured, memory_, table_.change(executed));               // equation (2)
+  if (!gives) return;
+  // Equation (2) with M = V R: one factor for each axis.
+  const Axes blended = (1.0 - memory_) * note.scaling + memory_;
+  for (size_t p = 0; p < table_.patterns(); ++p)
+    if (p != executed) scale(blended, guards_.role(p), table_.change(p));
+}
+
+}  // namespace tread::learner

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "modules/learner/core/end_residuals.hpp"
+#include "modules/learner/core/scaling.hpp"
+
+namespace tread::learner {
+
+/// What is made of a measurement.
+enum class Rule {
+  kOff,          ///< nothing: the set never changes
+  kSingle,       ///< the executed pattern is smoothed towards M (the paper's predecessor)
+  kCollective,   ///< and all others by V: equations (1) and (2), Algorithm 1
+  kTelescoping,  ///< all others by the change of the executed pattern's own box: no drift
+  kLocalFilter,  ///< a Kalman filter of what the ground does to body twists
+  kBank,         ///< remembered surfaces over that filter
+};
+
+/// All of them, in the order in which reports list them.
+const std::vector<Rule>& allRules();
+/// off, single, collective, telescoping, local_filter, bank.
+const char* ruleName(Rule rule);
+/// The rule of that name, or nothing.
+std::optional<Rule> ruleNamed(const std::string& name);
+/// All names, for messages and command lines.
+std::vector<std::string> ruleNames();
+
+/// Noise of one execution on unchanged ground: standard deviations of its mean body twist.
+struct TwistNoise {
+  double forward = 0.03;      ///< [1] of |v_x|
+  double lateral = 0.03;      ///< [1] of v_y over |v_x|
+  double yaw = 0.08;          ///< [1] of |omega|
+  double floor_speed = 0.01;  ///< [m/s] added to the first two
+  double floor_yaw = 0.01;    ///< [rad/s] added to the third
+};
+
+/// Parameters of the local filter; the header of the rule has the equations.
+struct FilterConfig {
+  std::optional<TwistNoise> noise;  ///< nothing = from the shipped set's covariances, else default
+  double noise_factor = 1.1;        ///< [1] on the noise
+  double hazard = 0.12;             ///< [1] probability of a change of ground before an execution
+  /// Standard deviations of one change: forward gain [1], yaw gain [1], sideslip [s], turn loss
+  /// [s], yaw by speed [s/m], yaw bias [rad/m], crab [1].
+  std::array<double, 7> common{0.10, 0.20, 0.15, 0.15, 0.08, 0.02, 0.02};
+  /// Of a pattern's own residual: of v_x, of v_y over v_x, of omega [1].
+  std::array<double, 3> residual{0.08, 0.06, 0.12};
+  double common_factor = 0.7;  ///< [1] on `common`
+  double steady = 0.3;         ///< [1] covariance at the start over that of a change
+  double drift = 0.01;         ///< [1] covariance added before each execution, the same
+};
+
+/// Parameters of the bank of remembered surfaces.
+struct BankConfig {
+  double hazard = 0.25;         ///< [1] probability that the surface changes before an execution
+  double unknown_prior = 0.3;   ///< [1] that the next one is not in the bank
+  int settled_after = 10;       ///< executions without a change before a surface is stored
+  double settled_change = 0.5;  ///< [1] probability of a change that counts as one
+  int capacity = 16;            ///< surfaces; the one that was met longest ago makes room
+};
+
+/// The rule of learning and its guards.
+struct RuleConfig {
+  Rule rule = Rule::kCollective;
+  double memory = 0.5;  ///< w of equation (2): weight of the OLD prediction, 0 <= w < 1
+  ScalingLimits scaling;
+  ResidualLimits residuals;
+  double sign_sigmas = 3.0;  ///< how far beyond the noise M and R must disagree in sign
+  /// [1] of a prediction's end where no covariance is known
+  Axes relative_noise{0.03, 0.03, 0.08};
+  Axes absolute_noise{0.02, 0.02, 0.02};  ///< [m, m, rad] added to it
+  FilterConfig filter;
+  BankConfig bank;
+};
+
+}  // namespace tread::learner
