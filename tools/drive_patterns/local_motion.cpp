@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/drive_patterns/local_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "tools/drive_patterns/drive_error.hpp"
+#include "tools/drive_patterns/robust_fit.hpp"
+
+namespace tread::drive_patterns {
+namespace {
+
+/// Beyond the farthest neighbour, so that it counts a little, too.
+constexpr double kBandwidth = 1.1;
+/// Residuals below these are never called large: m/s, m/s, rad/s and the same per second.
+constexpr double kSmall[6] = {0.01, 0.01, 0.01, 0.01, 0.01, 0.01};
+
+struct Neighbour {
+  double distance;
+  const SteadyWindow* window;
+};
+
+/// All windows, the nearest first; a tie is decided by session, step and window.
+std::vector<Neighbour> byDistance(const std::vector<SteadyWindow>& windows,
+                                  const BodyCommand& command, const BodyCommand& reach) {
+  std::vector<Neighbour> sorted;
+  sorted.reserve(windows.size());
+  for (const SteadyWindow& window : windows)
+    sorted.push_back({std::hypot((window.command.v - command.v) / reach.v,
+                                 (window.command.w - command.w) / reach.w),
+                      &window});
+  std::sort(sorted.begin(), sorted.end(), [](const Neighbour& a, const Neighbour& b) {
+    return std::tie(a.distance, a.window->session, a.window->step, a.window->window) <
+           std::tie(b.distance, b.window->session, b.window->step, b.window->window);
+  });
+  return sorted;
+}
+
+TwistProfile regressed(const std::vector<Neighbour>& neighbours, const BodyCommand& command,
+                       const BodyCommand& reach) {
+  const auto n = static_cast<Eigen::Index>(neighbours.size());
+  const double bandwidth = kBandwidth * std::max(neighbours.back().distance, 1e-6);
+  Eigen::MatrixXd A(n, 3);
+  Eigen::MatrixXd targets(n, 6);
+  Eigen::VectorXd prior(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Neighbour& near = neighbours[static_cast<size_t>(i)];
+    A.row(i) << 1.0, (near.window->command.v - command.v) / reach.v,
+        (near.window->command.w - command.w) / reach.w;
+    targets.row(i) = near.window->profile.vector().transpose();
+    prior[i] = std::pow(1.0 - std::pow(near.distance / bandwidth, 3), 3);
+  }
+  Eigen::Matrix<double, 6, 1> mean;
+  for (Eigen::Index c = 0; c < 6; ++c)
+    mean[c] = huberFit(A, targets.col(c), prior, {1, kSmall[c]})[0];
+  return TwistProfile::of(mean);
+}
+
+/// The other window of a step, or nullptr.
+const SteadyWindow* partnerOf(const std::vector<SteadyWindow>& windows, const SteadyWindow& first) {
+  for (const SteadyWindow& window : windows)
+    if (window.session == first.session && window.step == first.step &&
+        window.window > first.window)
+      return &window;
+  return nullptr;
+}
+
+std::vector<TwistProfile> deviationsOf(const std::vector<SteadyWindow>& windows,
+                                       const std::vector<Neighbour>& sorted, size_t wanted) {
+  std::vector<TwistProfile> deviations;
+  for (const Neighbour& near : sorted) {
+    if (deviations.size() == wanted) break;
+    const SteadyWindow* partner = partnerOf(windows, *near.window);
+    if (partner == nullptr) continue;
+    deviations.push_back(TwistProfile::of(
+        (near.window->profile.vector() - partner->profile.vector()) / std::sqrt(2.0)));
+  }
+  return deviations;
+}
+
+}  // namespace
+
+LocalMotion localMotion(const std::vector<SteadyWindow>& windows, const BodyCommand& command,
+                        const PatternRecipe& recipe) {
+  const auto needed = static_cast<size_t>(recipe.neighbours);
+  if (windows.size() < needed)
+    throw DriveError("only " + std::to_string(windows.size()) + " steady windows; " +
+                     std::to_string(needed) + " are needed around each pattern's command");
+  std::vector<Neighbour> sorted = byDistance(windows, command, recipe.reach());
+  LocalMotion motion;
+  motion.deviations = deviationsOf(windows, sorted, static_cast<size_t>(recipe.deviations));
+  if (motion.deviations.size() < static_cast<size_t>(recipe.deviations))
+    throw DriveError("only " + std::to_string(motion.deviations.size()) +
+                     " steps with both steady windows; " + std::to_string(recipe.deviations) +
+                     " are needed to tell how executions differ");
+  sorted.resize(needed);
+  motion.mean = regressed(sorted, command, recipe.reach());
+  motion.reach = sorted.back().distance;
+  motion.windows = needed;
+  return motion;
+}
+
+std::vector<TwistProfile> recordedProfiles(const LocalMotion& motion) {
+  std::vector<TwistProfile> profiles;
+  const Eigen::Matrix<double, 6, 1> mean = motion.mean.vector();
+  for (const TwistProfile& deviation : motion.deviations) {
+    profiles.push_back(TwistProfile::of(mean + deviation.vector()));
+    profiles.push_back(TwistProfile::of(mean - deviation.vector()));
+  }
+  return profiles;
+}
+
+}  // namespace tread::drive_patterns

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/geometry/se2.hpp"
+
+// The body twist over a steady window of T seconds as a line in time:
+//   v_x(t) = v_x + v_x' (t - T/2), the same for v_y and omega, so that
+//   yaw(t) = yaw_0 + integral of omega (quadratic in t), and
+//   p(t)   = p_0 + integral of R(yaw(s)) (v_x(s), v_y(s)) ds.
+// Given yaw(t) the second is linear in p_0, v_x, v_x', v_y, v_y': two robust linear least squares.
+// Units: m, rad, s. Source: learning.md of the project's reference, section 6.
+namespace tread::drive_patterns {
+
+/// A pose at a time within its window [s].
+struct WindowPose {
+  double time = 0.0;
+  Pose2 T_map_body;  ///< yaw unwrapped
+};
+
+/// Mean and change of the body twist over a window.
+struct TwistProfile {
+  Twist2 mean;   ///< [m/s, m/s, rad/s] at the middle of the window
+  Twist2 slope;  ///< per second
+
+  /// v_x, v_y, omega, and their slopes.
+  Eigen::Matrix<double, 6, 1> vector() const;
+  static TwistProfile of(const Eigen::Matrix<double, 6, 1>& vector);
+  /// The twist `time` seconds after the beginning of a window of `duration`.
+  Twist2 at(double time, double duration) const;
+  /// What the mirrored robot would do.
+  TwistProfile mirrored() const;
+};
+
+/// When poses are no fair window, and what noise of a pose is small.
+struct SmoothingLimits {
+  double max_gap = 0.4;          ///< [s] between poses, and to either end of the window
+  int min_poses = 6;             ///< in a window
+  double yaw_noise = 0.005;      ///< [rad] residuals below it are never called large
+  double position_noise = 0.01;  ///< [m] the same
+};
+
+/// Why a window cannot be smoothed, in words; empty if it can.
+std::string windowProblem(const std::vector<WindowPose>& poses, double duration,
+                          const SmoothingLimits& limits);
+
+/// The profile that fits the poses of a window best. windowProblem() must be empty.
+TwistProfile smoothed(const std::vector<WindowPose>& poses, double duration,
+                      const SmoothingLimits& limits);
+
+/// Poses after each of `samples` periods, relative to the start: the profile integrated.
+std::vector<Pose2> integrated(const TwistProfile& profile, size_t samples, double period);
+
+}  // namespace tread::drive_patterns
