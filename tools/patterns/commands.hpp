@@ -10,6 +10,10 @@
 namespace tread::patterns {
 
 CLI::App* addMake(CLI::App& app);
+CLI::App* addRecord(CLI::App& app);
+CLI::App* addAverage(CLI::App& app);
 CLI::App* addShow(CLI::App& app);
+CLI::App* addCheck(CLI::App& app);
+CLI::App* addMirror(CLI::App& app);
 
 }  // namespace tread::patterns

@@ -11,7 +11,11 @@ int main(int argc, char** argv) {
     CLI::App app{"Makes, records, averages, shows and checks motion patterns."};
     app.require_subcommand(1);
     tread::patterns::addMake(app);
+    tread::patterns::addRecord(app);
+    tread::patterns::addAverage(app);
     tread::patterns::addShow(app);
+    tread::patterns::addCheck(app);
+    tread::patterns::addMirror(app);
     return tread::parseCommandLine(app, argc, argv).value_or(0);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "tread-patterns: %s\n", error.what());

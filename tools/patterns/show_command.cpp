@@ -2,10 +2,14 @@
 // Copyright (c) 2026 The Tread authors
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/pattern/pattern_file.hpp"
 #include "tools/patterns/commands.hpp"
+#include "tools/patterns/comparison.hpp"
+#include "tools/patterns/output.hpp"
+#include "tools/patterns/set_picture.hpp"
 #include "tools/patterns/table.hpp"
 
 namespace tread::patterns {
@@ -13,18 +17,34 @@ namespace {
 
 struct Options {
   std::string file;
+  std::string other;
+  std::string picture;
 };
 
 void show(const Options& options) {
-  std::cout << table(readPatternFile(options.file));
+  const PatternSet set = readPatternFile(options.file);
+  std::vector<PicturedSet> pictured{{options.file, set}};
+  if (options.other.empty()) {
+    std::cout << table(set);
+  } else {
+    const PatternSet other = readPatternFile(options.other);
+    std::cout << comparison(set, options.file, other, options.other);
+    pictured.push_back({options.other, other});
+  }
+  if (options.picture.empty()) return;
+  refuseToReplace(options.picture, {options.file, options.other});
+  drawSets(pictured, options.picture);
 }
 
 }  // namespace
 
 CLI::App* addShow(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("show", "print a pattern file as a table");
+  CLI::App* command = app.add_subcommand("show", "print a pattern file as a table, or compare two");
   command->add_option("FILE", options->file, "pattern file (YAML)")->required();
+  command->add_option("--compare", options->other, "another pattern file: how its ends differ");
+  command->add_option("--picture", options->picture,
+                      "PNG to write: all trajectories with the spread of their ends");
   command->callback([options] { show(*options); });
   return command;
 }

@@ -69,6 +69,17 @@ void requireReadable(const SurfaceRecordings& surface, const PatternSet& set) {
   }
 }
 
+/// A file that holds the same set already keeps the comments that people wrote into it.
+void writePatterns(const std::string& path, const PatternSet& patterns) {
+  std::error_code failure;
+  if (fs::exists(path, failure)) try {
+      if (readPatternFile(path).checksum() == patterns.checksum()) return;
+    } catch (const std::exception&) {
+      // What cannot be read is replaced.
+    }
+  writeText(path, formatPatterns(patterns));
+}
+
 }  // namespace
 
 RecordingBook readBook(const std::string& folder) try {
@@ -96,7 +107,7 @@ void writeBook(const std::string& folder, const RecordingBook& book) try {
   fs::create_directories(folder, failure);
   if (!fs::is_directory(folder, failure))
     throw RecordingError(folder + ": this folder cannot be made; check the name and rights");
-  writeText(pathIn(folder, kPatterns), formatPatterns(book.patterns));
+  writePatterns(pathIn(folder, kPatterns), book.patterns);
   for (const SurfaceRecordings& surface : book.surfaces)
     writeText(pathIn(folder, surface.surface + ".csv"), formatSurface(surface, book.patterns));
 } catch (const RecordingError&) {

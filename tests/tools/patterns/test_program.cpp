@@ -1,56 +1,83 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <sys/wait.h>
-#include <unistd.h>
+#include "tests/tools/patterns/patterns_program.hpp"
 
-#include <array>
-#include <cstdio>
-#include <filesystem>
-#include <string>
-#include <utility>
-
-#include <catch2/catch.hpp>
-
-namespace {
-
-/// Exit status and what a command line prints, errors included.
-std::pair<int, std::string> run(const std::string& arguments) {
-  const std::string command = std::string(TREAD_BIN_DIR) + "/tread-patterns " + arguments + " 2>&1";
-  FILE* pipe = popen(command.c_str(), "r");
-  REQUIRE(pipe != nullptr);
-  std::string printed;
-  std::array<char, 512> buffer{};
-  while (fgets(buffer.data(), static_cast<int>(buffer.size()), pipe) != nullptr)
-    printed += buffer.data();
-  const int status = pclose(pipe);
-  return {WEXITSTATUS(status), printed};
-}
-
-const std::string kConfig = std::string(TREAD_SOURCE_DIR) + "/config/";
-
-}  // namespace
+using namespace tread::patterns::samples;
 
 TEST_CASE("tread-patterns makes a file that it can show") {
-  const auto file = std::filesystem::temp_directory_path() /
-                    ("tread-patterns-" + std::to_string(getpid()) + ".yaml");
-  const auto made = run("make " + kConfig + "patterns/recipes/teodor.yaml --model " + kConfig +
-                        "models/teodor_grass.yaml -o " + file.string());
-  INFO(made.second);
-  CHECK(made.first == 0);
-  const auto shown = run("show " + file.string());
-  CHECK(shown.first == 0);
-  CHECK(shown.second == made.second);
-  CHECK(shown.second.find("hard_left") != std::string::npos);
-  std::filesystem::remove(file);
+  const Folder folder;
+  const Run made = run("make " + kConfig + "patterns/recipes/teodor.yaml --model " + kGrass +
+                       " -o " + folder.path("set.yaml"));
+  INFO(made.printed);
+  CHECK(made.status == 0);
+  const Run shown = run("show " + folder.path("set.yaml"));
+  CHECK(shown.status == 0);
+  CHECK(shown.printed == made.printed);
+  CHECK(shown.says("hard_left"));
 }
 
 TEST_CASE("tread-patterns says in one line what is wrong") {
-  const auto missing = run("show no/such/file.yaml");
-  CHECK(missing.first == 1);
-  CHECK(missing.second.find("tread-patterns: no/such/file.yaml") == 0);
-  CHECK(missing.second.find('\n') == missing.second.size() - 1);
-  const auto unwritable = run("make " + kConfig + "patterns/recipes/teodor.yaml --model " +
-                              kConfig + "models/teodor_grass.yaml -o /no/such/folder/set.yaml");
-  CHECK(unwritable.first == 1);
-  CHECK(unwritable.second.find("cannot be written") != std::string::npos);
+  const Run missing = run("show no/such/file.yaml");
+  CHECK(missing.status == 1);
+  CHECK(missing.printed.find("tread-patterns: no/such/file.yaml") == 0);
+  CHECK(missing.printed.find('\n') == missing.printed.size() - 1);
+  const Run unwritable = run("make " + kConfig + "patterns/recipes/teodor.yaml --model " + kGrass +
+                             " -o /no/such/folder/set.yaml");
+  CHECK(unwritable.status == 1);
+  CHECK(unwritable.says("cannot be written"));
+}
+
+TEST_CASE("A wrong command line ends with code 2 and writes nothing") {
+  const Folder folder;
+  CHECK(run("").status == 2);
+  CHECK(run("fly").status == 2);
+  CHECK(run("show").status == 2);
+  CHECK(run("mirror " + kSet + " -o " + folder.path("x.yaml") + " --patern left").status == 2);
+  CHECK_FALSE(std::filesystem::exists(folder.path("x.yaml")));
+  CHECK(run("--help").status == 0);
+  CHECK(run("record --help").status == 0);
+}
+
+TEST_CASE("Two sets are compared, and drawn into a picture") {
+  const Folder folder;
+  REQUIRE(run("make " + kConfig + "patterns/recipes/teodor.yaml --model " + kGrass + " -o " +
+              folder.path("grass.yaml"))
+              .status == 0);
+  const Run shown = run("show " + kSet + " --compare " + folder.path("grass.yaml") + " --picture " +
+                        folder.path("both.png"));
+  INFO(shown.printed);
+  CHECK(shown.status == 0);
+  CHECK(shown.says("The heading differs most in 'sharp_left': a turns 91.9 deg, b 115.0 deg."));
+  CHECK(folder.text("both.png").substr(1, 3) == "PNG");
+  const Run over = run("show " + kSet + " --picture " + kSet);
+  CHECK(over.status == 1);
+  CHECK(over.says("this is the input"));
+  CHECK(run("show " + kSet).status == 0);
+}
+
+TEST_CASE("A file is checked: ok, or one line with file and line") {
+  const Folder folder;
+  const Run good = run("check " + kSet);
+  CHECK(good.status == 0);
+  CHECK(good.printed == kSet + ": ok, 23 patterns, 3 classes, version 1\n");
+  std::ofstream(folder.path("bad.yaml")) << "name: bad\nkind: wind\nperiod_us: 50000\n";
+  const Run bad = run("check " + folder.path("bad.yaml"));
+  CHECK(bad.status == 1);
+  CHECK(bad.printed.find("tread-patterns: " + folder.path("bad.yaml") + ":2: ") == 0);
+  CHECK(bad.printed.find('\n') == bad.printed.size() - 1);
+}
+
+TEST_CASE("A set is mirrored into another file, never over itself") {
+  const Folder folder;
+  const Run complete = run("mirror " + kSet + " -o " + folder.path("same.yaml"));
+  CHECK(complete.status == 0);
+  CHECK(complete.says("every pattern that turns has its mirror image already"));
+  const Run itself =
+      run("mirror " + folder.path("same.yaml") + " -o " + folder.path("./same.yaml"));
+  CHECK(itself.status == 1);
+  CHECK(itself.says("this is the input"));
+  const Run straight =
+      run("mirror " + kSet + " -o " + folder.path("x.yaml") + " --pattern straight");
+  CHECK(straight.status == 1);
+  CHECK(straight.says("its own mirror image"));
 }

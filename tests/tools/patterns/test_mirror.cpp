@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "common/pattern/pattern_file.hpp"
+#include "tests/tools/patterns/few_patterns.hpp"
+#include "tools/patterns/mirror.hpp"
+
+using namespace tread;
+using namespace tread::patterns;
+
+TEST_CASE("The name of a mirror image exchanges left and right, words only") {
+  CHECK(mirroredName("left") == "right");
+  CHECK(mirroredName("turn_right_90") == "turn_left_90");
+  CHECK(mirroredName("left then right") == "right then left");
+  CHECK(mirroredName("upright") == "upright_mirrored");
+  CHECK(mirroredName("bow") == "bow_mirrored");
+}
+
+TEST_CASE("A mirror image has y, yaw and their covariances with x negated") {
+  const MotionPattern left = *samples::withoutRight().findByName("left");
+  const MotionPattern right = mirrored(left);
+  CHECK(right.name == "right");
+  CHECK(right.commands[0].left == left.commands[0].right);
+  CHECK(right.commands[0].right == left.commands[0].left);
+  CHECK(right.end().x == left.end().x);
+  CHECK(right.end().y == -left.end().y);
+  CHECK(right.end().yaw == -left.end().yaw);
+  CHECK(right.end_covariance == PoseCovariance{1e-4, -2e-5, -3e-5, 4e-4, 5e-5, 6e-4});
+}
+
+TEST_CASE("Mirroring adds what is missing, once") {
+  std::vector<std::string> notes;
+  const PatternSet once = withMirrors(samples::withoutRight(), std::nullopt, notes);
+  CHECK(notes == std::vector<std::string>{"pattern 'right' added with id 5"});
+  REQUIRE(once.findByName("right") != nullptr);
+  const PatternSet twice = withMirrors(once, std::nullopt, notes);
+  CHECK(notes.empty());
+  CHECK(twice.checksum() == once.checksum());
+}
+
+TEST_CASE("A mirror image of the shipped set's patterns is the shipped partner") {
+  const PatternSet shipped =
+      readPatternFile(std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor.yaml");
+  for (const MotionPattern& pattern : shipped.patterns()) {
+    INFO(pattern.name);
+    const MotionPattern* partner = mirrorPartner(shipped, pattern);
+    CHECK((partner != nullptr) == true);
+    if (!turns(pattern)) continue;
+    const MotionPattern image = mirrored(pattern);
+    CHECK(image.name == partner->name);
+    for (size_t t = 0; t < image.trajectory.size(); ++t) {
+      CHECK(image.trajectory[t].y == partner->trajectory[t].y);
+      CHECK(image.trajectory[t].yaw == partner->trajectory[t].yaw);
+    }
+  }
+}
+
+TEST_CASE("What cannot be mirrored is refused by name and noted in passing") {
+  std::vector<std::string> notes;
+  const PatternSet set = samples::withoutRight();
+  CHECK_THROWS_WITH(withMirrors(set, "lift", notes), "no pattern 'lift' in set 'few'");
+  CHECK_THROWS_WITH(withMirrors(set, "straight", notes), Catch::Contains("its own mirror image"));
+  const PatternSet taken =
+      samples::setOf({samples::pattern(1, "left", {0.4, 0.5}, {0.5, 0.0, 0.1}),
+                      samples::pattern(2, "right", {0.5, 0.3}, {0.4, 0.0, -0.2})});
+  CHECK_THROWS_WITH(withMirrors(taken, "left", notes), Catch::Contains("belongs to a pattern"));
+  CHECK(withMirrors(taken, std::nullopt, notes).patterns().size() == 2);
+  CHECK(notes.size() == 2);
+  PatternSetContent turning = set.content();
+  turning.classes[0].steady = {0.4, 0.5};
+  std::string why;
+  const PatternSet turns_always = *PatternSet::make(turning, why);
+  CHECK_THROWS_WITH(withMirrors(turns_always, "left", notes),
+                    Catch::Contains("class 'cruise' turns"));
+}

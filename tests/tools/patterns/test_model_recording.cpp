@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "common/pattern/pattern_file.hpp"
+#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/prediction.hpp"
+#include "tools/patterns/model_recording.hpp"
+
+using namespace tread;
+using namespace tread::patterns;
+
+namespace {
+
+const std::string kConfig = std::string(TREAD_SOURCE_DIR) + "/config/";
+
+PatternSet shipped() {
+  return readPatternFile(kConfig + "patterns/teodor.yaml");
+}
+
+VehicleModel grass() {
+  return readModelFile(kConfig + "models/teodor_grass.yaml");
+}
+
+bool same(const recordings::Execution& a, const recordings::Execution& b) {
+  for (size_t t = 0; t < a.size(); ++t)
+    if (a[t].x != b[t].x || a[t].y != b[t].y || a[t].yaw != b[t].yaw) return false;
+  return a.size() == b.size();
+}
+
+}  // namespace
+
+TEST_CASE("What a model recorded averages to what the model predicts, ends scattered as it says") {
+  const PatternSet set = shipped();
+  ModelRecording how;
+  how.executions = 400;
+  const auto recorded = recordModel(set, grass(), "grass", how);
+  std::vector<recordings::AverageNote> notes;
+  const PatternSet averaged = recordings::averageSet(set, recorded, {}, notes);
+  for (const MotionPattern& pattern : averaged.patterns()) {
+    INFO(pattern.name);
+    MotionPattern predicted = pattern;
+    predict(grass(), set.periodSeconds(), set.classNamed(pattern.entry_class), predicted);
+    CHECK(std::hypot(pattern.end().x - predicted.end().x, pattern.end().y - predicted.end().y) <
+          0.012);
+    CHECK(std::abs(pattern.end().yaw - predicted.end().yaw) < 0.025);
+    // INS noise comes on top: 3 mm and 1 mrad.
+    CHECK(pattern.end_covariance[0] ==
+          Approx(predicted.end_covariance[0] + 9e-6).epsilon(0.4).margin(4e-6));
+    CHECK(pattern.end_covariance[5] ==
+          Approx(predicted.end_covariance[5] + 1e-6).epsilon(0.3).margin(1e-6));
+  }
+}
+
+TEST_CASE("The same seed records the same; another seed or surface does not") {
+  ModelRecording how;
+  how.executions = 2;
+  const auto first = recordModel(shipped(), grass(), "grass", how);
+  CHECK(
+      same(first.executions[3][1], recordModel(shipped(), grass(), "grass", how).executions[3][1]));
+  CHECK_FALSE(
+      same(first.executions[3][1], recordModel(shipped(), grass(), "lawn", how).executions[3][1]));
+  how.seed = 2;
+  CHECK_FALSE(
+      same(first.executions[3][1], recordModel(shipped(), grass(), "grass", how).executions[3][1]));
+}
+
+TEST_CASE("Patterns of one vehicle are not recorded on the model of another") {
+  const VehicleModel warthog = readModelFile(kConfig + "models/warthog_nominal.yaml");
+  CHECK_THROWS_WITH(recordModel(shipped(), warthog, "x", {}),
+                    Catch::Contains("the patterns command power, the model takes track speed"));
+}

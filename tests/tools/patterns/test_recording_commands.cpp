@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tests/tools/patterns/patterns_program.hpp"
+
+using namespace tread::patterns::samples;
+
+namespace {
+
+Run record(const Folder& folder, const std::string& more, const std::string& set = kSet) {
+  return run("record " + set + " --book " + folder.path("book") + " --model " + kGrass + " " +
+             more);
+}
+
+}  // namespace
+
+TEST_CASE("tread-patterns records surfaces into a book and averages one into a set") {
+  const Folder folder;
+  const Run first = record(folder, "--surface grass -n 20");
+  INFO(first.printed);
+  REQUIRE(first.status == 0);
+  CHECK(first.says("book/grass.csv: 20 executions of each of 23 patterns\n"));
+  const Run again = record(folder, "--surface grass -n 20 --seed 2");
+  CHECK(again.says("in the place of what was there"));
+  CHECK(record(folder, "--surface lawn -n 3").status == 0);
+  const Run averaged =
+      run("average " + folder.path("book") + " grass -o " + folder.path("grass.yaml"));
+  INFO(averaged.printed);
+  CHECK(averaged.status == 0);
+  CHECK(averaged.says("left: 20 executions averaged by pose\n"));
+  CHECK(averaged.says("hard_left: 20 executions averaged by twist (a strong turn)\n"));
+  CHECK(averaged.says("teodor_grass: version 1, 23 patterns"));
+  const Run checked = run("check " + folder.path("grass.yaml"));
+  CHECK(checked.status == 0);
+  CHECK(checked.says("grass.yaml: ok, 23 patterns"));
+}
+
+TEST_CASE("An average says which executions it rejected and why") {
+  const Folder folder;
+  REQUIRE(record(folder, "--surface grass -n 4").status == 0);
+  std::string text = folder.text("book/grass.csv");
+  const size_t at = text.find("straight,2,5,");
+  REQUIRE(at != std::string::npos);
+  text.replace(at, text.find('\n', at) - at, "straight,2,5,40,0,0");
+  std::ofstream(folder.path("book/grass.csv"), std::ios::binary) << text;
+  const Run averaged =
+      run("average " + folder.path("book") + " grass -o " + folder.path("grass.yaml"));
+  INFO(averaged.printed);
+  CHECK(averaged.status == 0);
+  CHECK(
+      averaged.says("straight: 3 executions averaged by pose, 1 rejected:\n  execution 2: it "
+                    "moves at "));
+}
+
+TEST_CASE("Recording and averaging refuse what makes no sense with one line") {
+  const Folder folder;
+  REQUIRE(record(folder, "--surface grass -n 2").status == 0);
+  const Run few = run("average " + folder.path("book") + " grass -o " + folder.path("x.yaml"));
+  CHECK(few.status == 1);
+  CHECK(few.says("pattern 'straight' has 2 fair executions of 2; at least 3 are needed"));
+  CHECK_FALSE(std::filesystem::exists(folder.path("x.yaml")));
+  const Run unknown = run("average " + folder.path("book") + " sand -o " + folder.path("x.yaml"));
+  CHECK(unknown.status == 1);
+  CHECK(unknown.says("no surface 'sand'; recorded are grass"));
+  const Run over = run("average " + folder.path("book") + " grass --min-executions 1 -o " +
+                       folder.path("book/patterns.yaml"));
+  CHECK(over.status == 1);
+  CHECK(over.says("this is the input"));
+  REQUIRE(run("make " + kConfig + "patterns/recipes/teodor.yaml --model " + kGrass + " -o " +
+              folder.path("same.yaml"))
+              .status == 0);
+  CHECK(record(folder, "--surface lawn -n 2", folder.path("same.yaml")).status == 0);
+  REQUIRE(run("mirror " + kSet + " -o " + folder.path("other.yaml")).status == 0);
+  CHECK(record(folder, "--surface s -n 0").status == 2);
+  CHECK(record(folder, "").status == 2);
+  CHECK(run("record " + kSet + " --book " + folder.path("b") + " --surface a/b --model " + kGrass)
+            .status == 1);
+}
+
+TEST_CASE("A book stays one of the patterns that it began with") {
+  const Folder folder;
+  REQUIRE(record(folder, "--surface grass -n 2").status == 0);
+  const std::string patterns = folder.text("book/patterns.yaml");
+  std::string other = folder.text("book/patterns.yaml");
+  const size_t at = other.find("name: straight");
+  REQUIRE(at != std::string::npos);
+  other.replace(at, 14, "name: forwards");
+  std::ofstream(folder.path("other.yaml")) << other;
+  const Run refused = record(folder, "--surface lawn -n 2", folder.path("other.yaml"));
+  CHECK(refused.status == 1);
+  CHECK(
+      refused.says("book/patterns.yaml: this book is of another set ('straight' in the place of "
+                   "'forwards'); record into another folder"));
+  CHECK(folder.text("book/patterns.yaml") == patterns);
+}

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+
+#include "common/vehicle/model.hpp"
+#include "tools/recordings/recordings.hpp"
+
+namespace tread::patterns {
+
+/// How a model's executions are measured.
+struct ModelRecording {
+  int executions = 30;     ///< of each pattern
+  double position = 3e-3;  ///< [m] standard deviation of each sample's x and y
+  double yaw = 1e-3;       ///< [rad]
+  uint64_t seed = 1;
+};
+
+/// Executes each pattern of a set on a vehicle model, entered in the steady motion of its entry
+/// class, with the model's spread and INS noise on each sample; the start is known without error.
+/** Each pattern on each surface has a random series of its own, by its id and the surface's name:
+ * other patterns and their order change nothing. Throws std::runtime_error if the set commands
+ * another kind than the model's. */
+recordings::SurfaceRecordings recordModel(const PatternSet& set, const VehicleModel& model,
+                                          const std::string& surface, const ModelRecording& how);
+
+}  // namespace tread::patterns
