@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/experiment/campaign.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <stdexcept>
+
+#include "common/config/scalars.hpp"
+#include "tools/drive_patterns/drive_book.hpp"
+#include "tools/experiment/seeds.hpp"
+#include "tools/experiment/transition_world.hpp"
+
+namespace tread::experiment {
+namespace {
+
+namespace fs = std::filesystem;
+using recordings::RecordingBook;
+
+std::vector<std::string> split(const std::string& words) {
+  std::vector<std::string> parts(1);
+  for (const char letter : words) {
+    if (letter == ',')
+      parts.emplace_back();
+    else
+      parts.back() += letter;
+  }
+  return parts;
+}
+
+void checkRules(const std::vector<std::string>& rules) {
+  const std::vector<std::string> known = contestantNames();
+  if (rules.empty()) throw std::invalid_argument("--rules: none; known are " + joinWords(known));
+  for (const std::string& rule : rules) {
+    if (std::find(known.begin(), known.end(), rule) == known.end())
+      throw std::invalid_argument("--rules: there is no rule '" + rule + "'; known are " +
+                                  joinWords(known));
+    if (std::count(rules.begin(), rules.end(), rule) > 1)
+      throw std::invalid_argument("--rules: '" + rule + "' is there twice; each rule once");
+  }
+}
+
+RecordingBook bookOfFolder(const Request& request, Campaign& campaign) {
+  const fs::path folder(request.recordings);
+  if (fs::exists(folder / "sessions.csv")) {
+    drive_patterns::DriveRequest drives;
+    drives.folder = request.recordings;
+    drives.robot = request.robot;
+    drives.sessions = request.sessions;
+    drive_patterns::DriveBook made = drive_patterns::makeDriveBook(drives);
+    campaign.notes = made.notes;
+    campaign.source += ", " + made.robot;
+    return std::move(made.book);
+  }
+  if (!request.robot.empty() || !request.sessions.empty())
+    throw std::invalid_argument(request.recordings +
+                                ": --robot and --sessions choose among drives; there is no "
+                                "sessions.csv here");
+  if (!fs::exists(folder / "patterns.yaml"))
+    throw std::invalid_argument(request.recordings +
+                                ": neither sessions.csv (drives) nor patterns.yaml (a book of "
+                                "recordings) is there");
+  return recordings::readBook(request.recordings);
+}
+
+/// Names of patterns as indices into the set.
+Sequence sequenceOf(const std::vector<std::string>& names, const PatternSet& set) {
+  Sequence sequence;
+  std::vector<std::string> known;
+  for (const MotionPattern& pattern : set.patterns()) known.push_back(pattern.name);
+  for (const std::string& name : names) {
+    const auto place = std::find(known.begin(), known.end(), name);
+    if (place == known.end())
+      throw std::invalid_argument("sequence " + joinWords(names) + ": there is no pattern '" +
+                                  name + "'; the patterns are " + joinWords(known));
+    sequence.push_back(static_cast<size_t>(place - known.begin()));
+  }
+  return sequence;
+}
+
+/// Runs book after book.
+class Runner {
+ public:
+  Runner(const Request& request, const std::function<void(double)>& progress)
+      : progress_(progress) {
+    campaign_.request = request;
+    checkRules(request.rules);
+    campaign_.settings.rules = campaign_.setting.rules = request.rules;
+    campaign_.settings.config.memory = request.memory;
+    campaign_.settings.repetitions = request.repetitions;
+    campaign_.settings.threads = request.threads;
+    campaign_.settings.change_inside = request.change_inside;
+    campaign_.setting.books = static_cast<size_t>(request.books);
+  }
+
+  Campaign run() {
+    if (campaign_.request.world.empty())
+      runFolder();
+    else
+      runWorld();
+    campaign_.tables = combined(campaign_.books);
+    return std::move(campaign_);
+  }
+
+ private:
+  void runFolder() {
+    const Request& request = campaign_.request;
+    if (request.books != 1 || request.length != 1)
+      throw std::invalid_argument(
+          "--books and --length need a --world, which can be recorded anew");
+    campaign_.source = "recordings " + fs::path(request.recordings).filename().string();
+    const RecordingBook book = bookOfFolder(request, campaign_);
+    chooseSequences(book.patterns, {{"left", "left", "right"}, {"right", "right", "left"}});
+    runBook(book, 0);
+  }
+
+  void runWorld() {
+    const Request& request = campaign_.request;
+    if (!request.robot.empty() || !request.sessions.empty())
+      throw std::invalid_argument("--robot and --sessions choose among --recordings");
+    const TransitionWorld world = readTransitionWorld(request.world);
+    campaign_.source = "world " + world.name;
+    campaign_.setting.paper_reference = world.paper_reference;
+    for (int book = 0; book < request.books; ++book) {
+      const auto number = static_cast<uint64_t>(book);
+      const RecordingBook recorded = record(world, request.seed + number, request.length);
+      if (book == 0) chooseSequences(recorded.patterns, world.sequences);
+      runBook(recorded, number);
+    }
+  }
+
+  void chooseSequences(const PatternSet& set, std::vector<std::vector<std::string>> usual) {
+    if (!campaign_.request.sequences.empty()) {
+      usual.clear();
+      for (const std::string& words : campaign_.request.sequences) usual.push_back(split(words));
+    }
+    for (const std::vector<std::string>& names : usual)
+      campaign_.settings.sequences.push_back(sequenceOf(names, set));
+  }
+
+  void runBook(const RecordingBook& book, uint64_t number) {
+    std::vector<std::string> notes;
+    std::vector<Ground> grounds = groundsOf(book, notes);
+    campaign_.notes.insert(campaign_.notes.end(), notes.begin(), notes.end());
+    campaign_.settings.seed = campaign_.request.seed + number;
+    const auto begun = std::chrono::steady_clock::now();
+    const auto books = static_cast<double>(campaign_.request.books);
+    ExperimentErrors errors =
+        runExperiment(grounds, campaign_.settings, [&](size_t done, size_t all) {
+          const double part = static_cast<double>(done) / static_cast<double>(all);
+          if (progress_) progress_((static_cast<double>(number) + part) / books);
+        });
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begun;
+    campaign_.seconds += passed.count();
+    campaign_.books.push_back(tablesOf(errors, campaign_.settings, grounds));
+    if (number > 0) return;
+    for (const Ground& ground : grounds) campaign_.setting.surfaces.push_back(ground.surface);
+    campaign_.grounds = std::move(grounds);
+    campaign_.first = std::move(errors);
+  }
+
+  Campaign campaign_;
+  std::function<void(double)> progress_;
+};
+
+}  // namespace
+
+Campaign runCampaign(const Request& request, const std::function<void(double)>& progress) {
+  return Runner(request, progress).run();
+}
+
+}  // namespace tread::experiment

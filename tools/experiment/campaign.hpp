@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/experiment/text_tables.hpp"
+
+namespace tread::experiment {
+
+/// What the command line asks for.
+struct Request {
+  std::string world;                   ///< file; else `recordings` is used
+  std::string recordings;              ///< folder
+  std::string robot;                   ///< of a folder of drives
+  std::vector<std::string> sessions;   ///< of it; empty = all that are comparable
+  std::vector<std::string> sequences;  ///< "left,left,right"; empty = those of the world
+  std::vector<std::string> rules;
+  int64_t repetitions = 30'000;
+  double memory = 0.5;  ///< [1] w of equation (2)
+  uint64_t seed = 1;
+  int threads = 1;
+  int books = 1;   ///< of a world: sets of recordings, from seeds that count up
+  int length = 1;  ///< of a world: each command is held so many times as long
+  bool change_inside = false;
+};
+
+/// All that came of a request.
+struct Campaign {
+  Request request;
+  Setting setting;
+  ExperimentSettings settings;
+  std::string source;              ///< the world or folder, in words
+  std::vector<std::string> notes;  ///< about the recordings
+  std::vector<Tables> books;
+  Tables tables;                ///< of all books together
+  std::vector<Ground> grounds;  ///< of the first book
+  ExperimentErrors first;       ///< of it, for the pictures
+  double seconds = 0.0;         ///< of the trials, without recording
+};
+
+/// Runs everything; throws an exception with one line for what cannot be done. progress(share of
+/// the work that is done, 0..1).
+Campaign runCampaign(const Request& request, const std::function<void(double)>& progress);
+
+/// Writes all files into a folder, which is made if needed.
+void writeCampaign(const std::string& folder, const Campaign& campaign);
+
+/// Text of report.html; pictures are PNG bytes.
+std::string htmlOf(const Campaign& campaign, const std::string& figure4_png,
+                   const std::string& figure5_png);
+
+}  // namespace tread::experiment

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/experiment/experiment.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "tools/experiment/seeds.hpp"
+
+namespace tread::experiment {
+namespace {
+
+// A fixed number of parts, each with seeds of its own: threads have no influence on numbers.
+constexpr size_t kSequenceParts = 12;
+constexpr size_t kSideParts = 4;
+constexpr size_t kBins = 80;
+constexpr double kBinsReach = 3.5;  // times the mean error without learning
+
+enum class Trial : uint64_t { kSequences, kAllPatterns, kDevelopment, kLong };
+
+/// Repetitions of what is not in the tables.
+int64_t sideRepetitions(const ExperimentSettings& settings) {
+  return std::max(std::min<int64_t>(settings.repetitions, 500), settings.repetitions / 10);
+}
+
+/// Of the part-th of `parts`.
+int64_t share(int64_t repetitions, size_t part, size_t parts) {
+  const auto p = static_cast<int64_t>(part), n = static_cast<int64_t>(parts);
+  return repetitions * (p + 1) / n - repetitions * p / n;
+}
+
+/// Bins for the errors of single executions, from those without learning.
+std::pair<Histogram, Histogram> binsFor(const Ground& from, const Ground& to,
+                                        const std::vector<Sequence>& sequences) {
+  double position = 0.0, orientation = 0.0, metres = 0.0, radians = 0.0;
+  for (const Sequence& sequence : sequences)
+    for (const size_t pattern : sequence) {
+      const Executions& executions = to.executions[pattern];
+      for (size_t i = 0; i < executions.size(); ++i) {
+        const Outcome& outcome = executions.outcome(i);
+        const Pose2& predicted = from.averaged_ends[pattern];
+        position += (predicted.position() - outcome.end.position()).norm();
+        orientation += std::abs(wrapAngle(predicted.yaw - outcome.end.yaw));
+        metres += outcome.metres;
+        radians += outcome.radians;
+      }
+    }
+  const auto bins = [](double error, double covered) {
+    const double mean = covered > 0.0 && error > 0.0 ? error / covered : 1.0;
+    return Histogram{kBinsReach * mean / static_cast<double>(kBins),
+                     std::vector<double>(kBins, 0.0)};
+  };
+  return {bins(position, metres), bins(orientation, radians)};
+}
+
+/// All trials as tasks, their results in places of their own, put together in order afterwards.
+class Schedule {
+ public:
+  Schedule(const std::vector<Ground>& grounds, const ExperimentSettings& settings)
+      : grounds_(grounds), settings_(settings) {
+    for (size_t from = 0; from < grounds.size(); ++from)
+      for (size_t to = 0; to < grounds.size(); ++to)
+        if (from != to) parts_.push_back({from, to, {}, {}, {}});
+    long_parts_.resize(grounds.size());
+    for (TransitionParts& parts : parts_) addTransition(parts);
+    for (size_t s = 0; s < grounds.size(); ++s) addLong(s);
+  }
+
+  const std::vector<std::function<void()>>& tasks() const { return tasks_; }
+  ExperimentErrors errors() const;
+
+ private:
+  struct TransitionParts {
+    size_t from, to;
+    std::vector<std::optional<SequenceErrors>> sequences;
+    std::vector<std::vector<Errors>> all_patterns;
+    std::vector<std::vector<Errors>> development;
+  };
+
+  Lineup lineup(size_t from, size_t to, size_t part) const {
+    return Lineup(settings_.rules, settings_.config, grounds_, from, to,
+                  seedOf({settings_.seed, 1, from, to, part}));
+  }
+  TrialSite site(size_t from, size_t to, Trial trial, size_t part, int64_t repetitions) const {
+    return {grounds_[from], grounds_[to], settings_.change_inside && from != to, repetitions,
+            seedOf({settings_.seed, 2, from, to, static_cast<uint64_t>(trial), part})};
+  }
+  void addTransition(TransitionParts& parts);
+  void addSide(TransitionParts& parts, size_t part);
+  void addLong(size_t surface);
+
+  const std::vector<Ground>& grounds_;
+  const ExperimentSettings& settings_;
+  std::vector<TransitionParts> parts_;
+  std::vector<std::vector<Errors>> long_parts_;
+  std::vector<std::function<void()>> tasks_;
+};
+
+void Schedule::addTransition(TransitionParts& parts) {
+  parts.sequences.resize(kSequenceParts);
+  parts.all_patterns.resize(kSideParts);
+  parts.development.resize(kSideParts);
+  for (size_t part = 0; part < kSequenceParts; ++part)
+    tasks_.push_back([this, &parts, part] {
+      Lineup rules = lineup(parts.from, parts.to, part);
+      const auto bins = binsFor(grounds_[parts.from], grounds_[parts.to], settings_.sequences);
+      parts.sequences[part] =
+          driveSequences(rules,
+                         site(parts.from, parts.to, Trial::kSequences, part,
+                              share(settings_.repetitions, part, kSequenceParts)),
+                         settings_.sequences, bins.first, bins.second);
+    });
+  for (size_t part = 0; part < kSideParts; ++part) addSide(parts, part);
+}
+
+void Schedule::addSide(TransitionParts& parts, size_t part) {
+  tasks_.push_back([this, &parts, part] {
+    Lineup rules = lineup(parts.from, parts.to, part);
+    const int64_t repetitions = share(sideRepetitions(settings_), part, kSideParts);
+    parts.all_patterns[part] =
+        driveAllPatterns(rules, site(parts.from, parts.to, Trial::kAllPatterns, part, repetitions),
+                         settings_.sequences, settings_.all_patterns_after);
+    parts.development[part] =
+        driveDevelopment(rules, site(parts.from, parts.to, Trial::kDevelopment, part, repetitions),
+                         settings_.sequences, settings_.development);
+  });
+}
+
+void Schedule::addLong(size_t surface) {
+  long_parts_[surface].resize(kSideParts);
+  for (size_t part = 0; part < kSideParts; ++part)
+    tasks_.push_back([this, surface, part] {
+      Lineup rules = lineup(surface, surface, part);
+      const int64_t drives = std::max<int64_t>(8, sideRepetitions(settings_) / 30);
+      long_parts_[surface][part] = driveLong(
+          rules, site(surface, surface, Trial::kLong, part, share(drives, part, kSideParts)));
+    });
+}
+
+void addHistograms(std::vector<Histogram>& sums, const std::vector<Histogram>& more) {
+  for (size_t i = 0; i < sums.size(); ++i)
+    for (size_t bin = 0; bin < sums[i].counts.size(); ++bin)
+      sums[i].counts[bin] += more[i].counts[bin];
+}
+
+std::vector<Errors> sum(const std::vector<std::vector<Errors>>& parts) {
+  std::vector<Errors> sums = parts.front();
+  for (size_t part = 1; part < parts.size(); ++part)
+    for (size_t i = 0; i < sums.size(); ++i) sums[i].add(parts[part][i]);
+  return sums;
+}
+
+ExperimentErrors Schedule::errors() const {
+  ExperimentErrors all;
+  for (const TransitionParts& parts : parts_) {
+    SequenceErrors sums = *parts.sequences.front();
+    for (size_t part = 1; part < parts.sequences.size(); ++part) {
+      sums.errors.add(parts.sequences[part]->errors);
+      addHistograms(sums.position, parts.sequences[part]->position);
+      addHistograms(sums.orientation, parts.sequences[part]->orientation);
+    }
+    all.transitions.push_back(
+        {parts.from, parts.to, std::move(sums), sum(parts.all_patterns), sum(parts.development)});
+  }
+  for (const std::vector<Errors>& parts : long_parts_) {
+    Errors sums = parts.front();
+    for (size_t part = 1; part < parts.size(); ++part) sums.add(parts[part]);
+    all.unchanged.push_back(std::move(sums));
+  }
+  return all;
+}
+
+}  // namespace
+
+size_t ExperimentSettings::ruleIndex(const std::string& name) const {
+  return static_cast<size_t>(std::find(rules.begin(), rules.end(), name) - rules.begin());
+}
+
+ExperimentErrors runExperiment(const std::vector<Ground>& grounds,
+                               const ExperimentSettings& settings, const Progress& progress) {
+  const Schedule schedule(grounds, settings);
+  runTasks(schedule.tasks(), settings.threads, progress);
+  return schedule.errors();
+}
+
+}  // namespace tread::experiment

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/pattern/pattern.hpp"
+#include "modules/learner/core/trajectory_table.hpp"
+#include "tools/recordings/recordings.hpp"
+
+namespace tread::experiment {
+
+/// What one execution came to.
+struct Outcome {
+  Pose2 end;             ///< last pose relative to the start, yaw unwrapped
+  double metres = 0.0;   ///< length of the path from the start through all poses
+  double radians = 0.0;  ///< |net yaw|
+};
+
+/// All executions of one pattern on one surface (RP_S), one behind the other in memory.
+class Executions {
+ public:
+  Executions(const std::vector<recordings::Execution>& executions, size_t samples);
+
+  size_t size() const { return outcomes_.size(); }
+  size_t samples() const { return samples_; }
+  learner::ConstTrajectory of(size_t i) const {
+    return {numbers_.data() + 3 * samples_ * i, static_cast<Eigen::Index>(samples_), 3};
+  }
+  const Outcome& outcome(size_t i) const { return outcomes_[i]; }
+
+ private:
+  size_t samples_;
+  std::vector<double> numbers_;
+  std::vector<Outcome> outcomes_;
+};
+
+/// One surface of an experiment.
+struct Ground {
+  std::string surface;
+  PatternSet averaged;               ///< IP_S
+  std::vector<Pose2> averaged_ends;  ///< of it, by pattern
+  std::vector<Executions> executions;
+};
+
+/// The last pose of a trajectory and what was covered on the way.
+Outcome outcomeOf(const learner::ConstTrajectory& trajectory);
+
+/// Averages a book surface by surface and lays its recordings out for the experiment.
+/** Throws recordings::RecordingError with one line if a pattern has too few executions or there is
+ * one surface only; lines about what was left out go to `notes`. */
+std::vector<Ground> groundsOf(const recordings::RecordingBook& book,
+                              std::vector<std::string>& notes);
+
+}  // namespace tread::experiment

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <unistd.h>
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <system_error>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+
+#include "common/config/command_line.hpp"
+#include "tools/experiment/campaign.hpp"
+
+namespace {
+
+using tread::experiment::Campaign;
+using tread::experiment::Request;
+
+struct Arguments {
+  Request request;
+  std::string out;
+};
+
+/// A bar on stderr, where somebody looks at it.
+void showProgress(double share) {
+  static const bool looked_at = isatty(STDERR_FILENO) != 0;
+  if (!looked_at) return;
+  constexpr int kWidth = 50;
+  const int done = static_cast<int>(share * kWidth);
+  std::fprintf(stderr, "\r[%s%s] %3.0f %%", std::string(static_cast<size_t>(done), '#').c_str(),
+               std::string(static_cast<size_t>(kWidth - done), ' ').c_str(), 100.0 * share);
+  if (share >= 1.0) std::fputc('\n', stderr);
+  std::fflush(stderr);
+}
+
+void define(CLI::App& command, Arguments& arguments) {
+  Request& request = arguments.request;
+  auto* source = command.add_option_group("surfaces", "where the recordings come from");
+  source->add_option("--world", request.world, "world of transitions (config/worlds), simulated");
+  source->add_option("--recordings", request.recordings,
+                     "folder of recordings (patterns.yaml) or of drives (sessions.csv)");
+  source->require_option(1);
+  command.add_option("--robot", request.robot, "drives: part of the robot's name");
+  command.add_option("--sessions", request.sessions, "drives: only these sessions")->delimiter(',');
+  command.add_option("--rules", request.rules, "rules to compare")
+      ->delimiter(',')
+      ->capture_default_str();
+  command.add_option("--sequence", request.sequences,
+                     "test sequence, patterns with commas between; once for each sequence");
+  command.add_option("--repetitions", request.repetitions, "of each transition")
+      ->check(CLI::Range(2, 100'000'000))
+      ->capture_default_str();
+  command.add_option("--memory", request.memory, "w: weight of the old prediction")
+      ->check(CLI::Range(0.0, 0.999))
+      ->capture_default_str();
+  command.add_option("--seed", request.seed, "of recordings and trials")->capture_default_str();
+  command.add_option("--threads", request.threads, "no influence on any number")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command.add_option("--books", request.books, "world: so many sets of recordings")
+      ->check(CLI::Range(1, 10'000))
+      ->capture_default_str();
+  command.add_option("--length", request.length, "world: each command held so many times as long")
+      ->check(CLI::Range(1, 20))
+      ->capture_default_str();
+  command.add_flag("--change-inside", request.change_inside,
+                   "the ground changes in the middle of the first execution");
+  command.add_option("--out", arguments.out, "folder for tables, pictures and report.html");
+}
+
+/// Before anything is computed: a folder that cannot be made should not cost the whole run.
+void makeFolder(const std::string& folder) {
+  if (folder.empty()) return;
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure || access(folder.c_str(), W_OK) != 0)
+    throw std::runtime_error(folder + ": cannot be made or written; check --out");
+}
+
+void run(const Arguments& arguments) {
+  makeFolder(arguments.out);
+  const Campaign campaign = tread::experiment::runCampaign(arguments.request, showProgress);
+  for (const std::string& note : campaign.notes) std::cerr << note << '\n';
+  if (!arguments.out.empty()) tread::experiment::writeCampaign(arguments.out, campaign);
+  std::cout << textOfErrors(campaign.tables, campaign.setting) << '\n'
+            << textOfReductions(campaign.tables, campaign.setting) << '\n'
+            << textOfAgreement(campaign.tables, campaign.setting) << '\n'
+            << textOfKeyFigures(campaign.tables, campaign.setting);
+  std::fprintf(stderr, "%s: %zu transitions, %.2f s of trials on %d threads\n",
+               campaign.source.c_str(), campaign.first.transitions.size(), campaign.seconds,
+               arguments.request.threads);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Experiments with rules of learning.", "tread-experiment"};
+  app.require_subcommand(1);
+  Arguments arguments;
+  arguments.request.rules = {"off",          "single", "collective", "telescoping",
+                             "local_filter", "bank",   "omniscient"};
+  arguments.request.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  CLI::App* transitions = app.add_subcommand(
+      "transitions", "section V of the paper: what rules err after a change of surface");
+  define(*transitions, arguments);
+  if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
+  try {
+    run(arguments);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "tread-experiment: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/experiment/text_tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "tools/experiment/paper_numbers.hpp"
+
+namespace tread::experiment {
+namespace {
+
+const char* const kQuantities[] = {kPosition, kOrientation};
+
+std::string formatted(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string padded(const std::string& text, size_t width) {
+  return text.size() < width ? text + std::string(width - text.size(), ' ') : text;
+}
+
+std::string centred(const std::string& text, size_t width) {
+  if (text.size() >= width) return text;
+  const size_t left = (width - text.size()) / 2;
+  return padded(std::string(left, ' ') + text, width);
+}
+
+/// The paper's columns first, then what else was compared.
+std::vector<std::string> columnsOf(const Setting& setting) {
+  std::vector<std::string> columns;
+  const auto has = [](const std::vector<std::string>& list, const std::string& rule) {
+    return std::find(list.begin(), list.end(), rule) != list.end();
+  };
+  for (const std::string& rule : paperRules())
+    if (has(setting.rules, rule)) columns.push_back(rule);
+  for (const std::string& rule : setting.rules)
+    if (!has(columns, rule)) columns.push_back(rule);
+  return columns;
+}
+
+constexpr size_t kRowHead = 22;
+
+/// Head and body of a Table I; cell(from, to, quantity, column) gives six characters.
+template <class Cell>
+std::string grid(const Setting& setting, size_t columns, const Cell& cell) {
+  const size_t group = 7 * columns + 2;
+  std::string text = padded("from \\ to", kRowHead);
+  for (const std::string& to : setting.surfaces) text += "| " + centred(to, group - 2);
+  text += "\n" + std::string(kRowHead, ' ');
+  for (size_t s = 0; s < setting.surfaces.size(); ++s) {
+    text += "|";
+    for (size_t c = 0; c < columns; ++c)
+      text += "    " + std::string(1, static_cast<char>('a' + c)) + "  ";
+    text += " ";
+  }
+  text += "\n";
+  for (const std::string& from : setting.surfaces)
+    for (const char* quantity : kQuantities) {
+      const std::string name = std::string(quantity) == kPosition ? from : "";
+      text += padded(padded(name, 10) + quantity, kRowHead);
+      for (const std::string& to : setting.surfaces) {
+        text += "|";
+        for (size_t c = 0; c < columns; ++c) text += " " + cell(from, to, quantity, c);
+        text += " ";
+      }
+      text += "\n";
+    }
+  return text;
+}
+
+std::string paperGrid(const Setting& setting) {
+  std::string notes;
+  std::string text =
+      grid(setting, 4,
+           [&](const std::string& from, const std::string& to, const std::string& quantity,
+               size_t column) {
+             const PaperCell* cell = paperCell(from, to, quantity);
+             if (cell == nullptr) return std::string("  -   ");
+             const std::string doubt = doubtOfError(*cell, column);
+             const bool told = notes.find(doubt) != std::string::npos;
+             if (!doubt.empty() && !told)
+               notes += "  ? " + from + " -> " + to + ", " + quantity + ": " + doubt + "\n";
+             return formatted("%5.3f", cell->errors[column]) + (doubt.empty() ? " " : "?");
+           });
+  return text + notes;
+}
+
+std::string reductionCell(const Row* row, const Setting& setting, const std::string& paper) {
+  if (row == nullptr) return "-";
+  const Estimate& e = row->estimate;
+  std::string text = formatted("%.1f", e.value);
+  if (setting.books > 1)
+    text += " +-" + formatted("%.1f", row->spread);
+  else
+    text += " [" + formatted("%.1f", e.low) + ", " + formatted("%.1f", e.high) + "]";
+  return paper.empty() ? text : text + " (" + paper + ")";
+}
+
+std::string reductionGrid(const Tables& tables, const Setting& setting, const std::string& rule,
+                          const std::string& against, bool with_paper) {
+  constexpr size_t kWidth = 27;
+  std::string text = padded("from \\ to", kRowHead);
+  for (const std::string& to : setting.surfaces) text += centred(to, kWidth);
+  text += "\n";
+  for (const std::string& from : setting.surfaces)
+    for (const char* quantity : kQuantities) {
+      const std::string name = std::string(quantity) == kPosition ? from : "";
+      text += padded(padded(name, 10) + quantity, kRowHead);
+      for (const std::string& to : setting.surfaces) {
+        const PaperCell* cell = with_paper ? paperCell(from, to, quantity) : nullptr;
+        std::string paper;
+        if (cell != nullptr)
+          paper = formatted("%.1f", cell->reduction) + (doubtOfReduction(*cell).empty() ? "" : "?");
+        const Row* row = find(tables.reductions, from, to, quantity, rule, against);
+        text += centred(reductionCell(row, setting, paper), kWidth);
+      }
+      text += "\n";
+    }
+  return text;
+}
+
+std::string spreadNote(const Tables& tables, const Setting& setting) {
+  if (setting.books < 2) return "";
+  double largest[2] = {0.0, 0.0};
+  for (const Row& row : tables.errors)
+    if (row.from != row.to) {
+      double& most = largest[row.quantity == kPosition ? 0 : 1];
+      most = std::max(most, row.spread);
+    }
+  return "Means over " + std::to_string(setting.books) +
+         " books of recordings; largest deviation of a cell from book to book: position " +
+         formatted("%.4f", largest[0]) + ", orientation " + formatted("%.4f", largest[1]) + ".\n";
+}
+
+}  // namespace
+
+double median(std::vector<double> values) {
+  if (values.empty()) return Estimate{}.value;
+  std::sort(values.begin(), values.end());
+  const size_t n = values.size();
+  return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2.0;
+}
+
+std::string textOfErrors(const Tables& tables, const Setting& setting) {
+  const std::vector<std::string> columns = columnsOf(setting);
+  std::string text =
+      "TABLE I: errors of all transitions; position per driven metre, orientation per radian "
+      "turned.\n";
+  for (size_t c = 0; c < columns.size(); ++c)
+    text += std::string(c == 0 ? "" : "  ") + static_cast<char>('a' + c) + ") " + columns[c];
+  text += "\n\n";
+  text += grid(setting, columns.size(),
+               [&](const std::string& from, const std::string& to, const std::string& quantity,
+                   size_t column) {
+                 const Row* row = find(tables.errors, from, to, quantity, columns[column]);
+                 return row == nullptr ? std::string("  -   ")
+                                       : formatted("%5.3f", row->estimate.value) + " ";
+               });
+  text += spreadNote(tables, setting);
+  if (setting.paper_reference)
+    text +=
+        "\nThe paper's Table I, ? = doubtful:  a) off  b) single  c) collective  d) "
+        "omniscient\n\n" +
+        paperGrid(setting);
+  return text;
+}
+
+std::string textOfReductions(const Tables& tables, const Setting& setting) {
+  std::string text = "TABLE II: error reductions in per cent";
+  text += setting.books > 1 ? " (mean +- deviation from book to book" : " [paired 99 % interval";
+  text += setting.books > 1 ? ")" : "]";
+  if (setting.paper_reference) text += " (the paper's; ? = doubtful)";
+  text += "\n";
+  for (const char* against : {"single", "off"})
+    for (const std::string& rule : learningRules(setting.rules)) {
+      if (find(tables.reductions, setting.surfaces[0], setting.surfaces[1], kPosition, rule,
+               against) == nullptr)
+        continue;
+      const bool papers =
+          setting.paper_reference && rule == "collective" && std::string(against) == "single";
+      text += "\n" + rule + " against " + against + "\n" +
+              reductionGrid(tables, setting, rule, against, papers);
+      for (const PaperCell& cell : paperCells())
+        if (papers && !doubtOfReduction(cell).empty())
+          text += "  ? " + std::string(cell.from) + " -> " + cell.to + ", " + cell.quantity + ": " +
+                  doubtOfReduction(cell) + "\n";
+    }
+  return text;
+}
+
+std::string textOfAgreement(const Tables& tables, const Setting& setting) {
+  if (!setting.paper_reference) return "";
+  const std::optional<Agreement> agreement = agreementWithPaper(tables);
+  if (!agreement) return "";
+  std::string text =
+      "RMS deviation from the paper's Table I (cinder -> tarmac orientation left out):\n";
+  const auto line = [&](const char* name, const std::array<double, 4>& rms) {
+    text += "  " + padded(name, 12);
+    for (size_t c = 0; c < 4; ++c)
+      text += std::string("  ") + static_cast<char>('a' + c) + formatted(" %.4f", rms[c]);
+    text += "\n";
+  };
+  line(kPosition, agreement->position_rms);
+  line(kOrientation, agreement->orientation_rms);
+  const std::string of = "/" + std::to_string(agreement->cells);
+  if (agreement->cells > 0)
+    text += "Signs of Table II: orientation " + std::to_string(agreement->orientation_signs) + of +
+            ", position " + std::to_string(agreement->position_signs) + of +
+            " (all printed cells counted)\n";
+  return text;
+}
+
+}  // namespace tread::experiment

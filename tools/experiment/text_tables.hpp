@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/experiment/tables.hpp"
+
+namespace tread::experiment {
+
+/// What a text about an experiment must know beside its numbers.
+struct Setting {
+  std::vector<std::string> surfaces;
+  std::vector<std::string> rules;
+  bool paper_reference = false;
+  size_t books = 1;
+};
+
+/// Table I in the paper's layout: rows from, groups of columns to; a, b, c, d as in the paper,
+/// further rules after them; the paper's numbers below.
+std::string textOfErrors(const Tables& tables, const Setting& setting);
+/// Table II: collective against single as in the paper, then each other rule.
+std::string textOfReductions(const Tables& tables, const Setting& setting);
+/// RMS deviations and signs; empty where nothing can be compared.
+std::string textOfAgreement(const Tables& tables, const Setting& setting);
+/// Medians by rule over all transitions: reductions, all patterns, unchanged ground.
+std::string textOfKeyFigures(const Tables& tables, const Setting& setting);
+
+/// The median; NaN of nothing.
+double median(std::vector<double> values);
+
+}  // namespace tread::experiment

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/experiment/trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tread::experiment {
+namespace {
+
+using learner::ConstTrajectory;
+
+constexpr int kSettling = 60;  // executions before the long run counts
+constexpr int kLongRun = 240;  // executions that count
+
+double positionError(const Pose2& predicted, const Pose2& driven) {
+  const double dx = predicted.x - driven.x;
+  const double dy = predicted.y - driven.y;
+  return std::sqrt(dx * dx + dy * dy);
+}
+
+double orientationError(const Pose2& predicted, const Pose2& driven) {
+  const double difference = std::abs(predicted.yaw - driven.yaw);
+  return difference <= kPi ? difference : std::abs(wrapAngle(difference));
+}
+
+/// Executions by chance, and what all rules made of them since the last clear().
+class Drive {
+ public:
+  Drive(Lineup& lineup, const TrialSite& site)
+      : lineup_(lineup),
+        site_(site),
+        random_(site.seed),
+        position_(lineup.size()),
+        orientation_(lineup.size()) {
+    for (const Executions& executions : site.to.executions)
+      joined_.resize(std::max(joined_.size(), 3 * executions.samples()));
+  }
+
+  void clear() {
+    metres_ = radians_ = 0.0;
+    std::fill(position_.begin(), position_.end(), 0.0);
+    std::fill(orientation_.begin(), orientation_.end(), 0.0);
+  }
+  void addTo(Errors& errors) const {
+    errors.position.add(metres_, position_.data());
+    errors.orientation.add(radians_, orientation_.data());
+  }
+
+  /// One execution on the new surface; each(rule, position error, orientation error, outcome).
+  template <class Each>
+  void execute(size_t pattern, bool learn, const Each& each) {
+    const Executions& executions = site_.to.executions[pattern];
+    const size_t index = drawIndex(random_, executions.size());
+    judge(pattern, executions.of(index), executions.outcome(index), learn, each);
+  }
+  void execute(size_t pattern, bool learn) {
+    execute(pattern, learn, [](size_t, double, double, const Outcome&) {});
+  }
+
+  /// Any pattern, by chance.
+  size_t any() { return drawIndex(random_, site_.to.executions.size()); }
+
+  /// The first one after the transition.
+  template <class Each>
+  void executeFirst(size_t pattern, bool learn, const Each& each) {
+    if (!site_.change_inside) return execute(pattern, learn, each);
+    const ConstTrajectory measured = joinedAt(pattern);
+    judge(pattern, measured, outcomeOf(measured), learn, each);
+  }
+  void executeFirst(size_t pattern, bool learn) {
+    executeFirst(pattern, learn, [](size_t, double, double, const Outcome&) {});
+  }
+
+ private:
+  template <class Each>
+  void judge(size_t pattern, const ConstTrajectory& measured, const Outcome& outcome, bool learn,
+             const Each& each) {
+    metres_ += outcome.metres;
+    radians_ += outcome.radians;
+    for (size_t i = 0; i < lineup_.size(); ++i) {
+      const Pose2 predicted = lineup_.predictEnd(i, pattern);
+      const double position = positionError(predicted, outcome.end);
+      const double orientation = orientationError(predicted, outcome.end);
+      position_[i] += position;
+      orientation_[i] += orientation;
+      each(i, position, orientation, outcome);
+      if (learn) lineup_.learn(i, pattern, measured);
+    }
+  }
+
+  /// First half of an execution on the old surface, continued by the second half of one on the new.
+  ConstTrajectory joinedAt(size_t pattern) {
+    const Executions& before = site_.from.executions[pattern];
+    const Executions& after = site_.to.executions[pattern];
+    const ConstTrajectory first = before.of(drawIndex(random_, before.size()));
+    const ConstTrajectory second = after.of(drawIndex(random_, after.size()));
+    const Eigen::Index samples = first.rows(), half = samples / 2;
+    learner::Trajectory joined(joined_.data(), samples, 3);
+    joined.topRows(half) = first.topRows(half);
+    const auto poseAt = [](const ConstTrajectory& of, Eigen::Index row) {
+      return row < 0 ? Pose2{} : Pose2{of(row, 0), of(row, 1), of(row, 2)};
+    };
+    const Pose2 T_start_change = poseAt(first, half - 1);
+    const Pose2 T_other_change = poseAt(second, half - 1);
+    for (Eigen::Index row = half; row < samples; ++row) {
+      const Pose2 pose = T_start_change * between(T_other_change, poseAt(second, row));
+      joined.row(row) << pose.x, pose.y, pose.yaw;
+    }
+    return {joined_.data(), samples, 3};
+  }
+
+  Lineup& lineup_;
+  const TrialSite& site_;
+  std::mt19937_64 random_;
+  double metres_ = 0.0;
+  double radians_ = 0.0;
+  std::vector<double> position_;
+  std::vector<double> orientation_;
+  std::vector<double> joined_;
+};
+
+}  // namespace
+
+SequenceErrors driveSequences(Lineup& lineup, const TrialSite& site,
+                              const std::vector<Sequence>& sequences, Histogram position_bins,
+                              Histogram orientation_bins) {
+  SequenceErrors result{Errors(lineup.size()), std::vector<Histogram>(lineup.size(), position_bins),
+                        std::vector<Histogram>(lineup.size(), orientation_bins)};
+  const auto count = [&](size_t i, double position, double orientation, const Outcome& outcome) {
+    result.position[i].add(position / outcome.metres);
+    result.orientation[i].add(orientation / outcome.radians);
+  };
+  Drive drive(lineup, site);
+  for (int64_t repetition = 0; repetition < site.repetitions; ++repetition) {
+    drive.clear();
+    for (const Sequence& sequence : sequences) {
+      lineup.reset();
+      // What the last one teaches is not asked for any more.
+      drive.executeFirst(sequence[0], sequence.size() > 1, count);
+      for (size_t j = 1; j < sequence.size(); ++j)
+        drive.execute(sequence[j], j + 1 < sequence.size(), count);
+    }
+    drive.addTo(result.errors);
+  }
+  return result;
+}
+
+std::vector<Errors> driveAllPatterns(Lineup& lineup, const TrialSite& site,
+                                     const std::vector<Sequence>& sequences,
+                                     const std::vector<int>& executions) {
+  std::vector<Errors> result(executions.size(), Errors(lineup.size()));
+  Drive drive(lineup, site);
+  for (int64_t repetition = 0; repetition < site.repetitions; ++repetition) {
+    for (const Sequence& sequence : sequences) {
+      lineup.reset();
+      int driven = 0;
+      for (size_t k = 0; k < executions.size(); ++k) {
+        for (; driven < executions[k]; ++driven) {
+          const size_t pattern = sequence[static_cast<size_t>(driven) % sequence.size()];
+          if (driven == 0)
+            drive.executeFirst(pattern, true);
+          else
+            drive.execute(pattern, true);
+        }
+        drive.clear();
+        for (size_t p = 0; p < site.to.executions.size(); ++p) drive.execute(p, false);
+        drive.addTo(result[k]);
+      }
+    }
+  }
+  return result;
+}
+
+std::vector<Errors> driveDevelopment(Lineup& lineup, const TrialSite& site,
+                                     const std::vector<Sequence>& sequences, size_t executions) {
+  std::vector<Errors> result(executions, Errors(lineup.size()));
+  const Sequence& sequence = sequences.front();
+  Drive drive(lineup, site);
+  for (int64_t repetition = 0; repetition < site.repetitions; ++repetition) {
+    lineup.reset();
+    for (size_t j = 0; j < executions; ++j) {
+      drive.clear();
+      const size_t pattern = sequence[j % sequence.size()];
+      if (j == 0)
+        drive.executeFirst(pattern, true);
+      else
+        drive.execute(pattern, true);
+      drive.addTo(result[j]);
+    }
+  }
+  return result;
+}
+
+Errors driveLong(Lineup& lineup, const TrialSite& site) {
+  Errors result(lineup.size());
+  Drive drive(lineup, site);
+  for (int64_t repetition = 0; repetition < site.repetitions; ++repetition) {
+    lineup.reset();
+    for (int j = 0; j < kSettling + kLongRun; ++j) {
+      if (j == kSettling) drive.clear();
+      drive.execute(drive.any(), true);
+    }
+    drive.addTo(result);
+  }
+  return result;
+}
+
+}  // namespace tread::experiment
