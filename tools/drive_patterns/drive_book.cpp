@@ -129,6 +129,26 @@ SessionChoice fittedChoice(const std::vector<DriveSession>& sessions, const std:
   return again;
 }
 
+/// One clear line if sessions of too few surfaces were chosen.
+void requireSurfaces(const DriveRequest& request, const std::string& robot,
+                     const std::vector<DriveSession>& sessions, const SessionChoice& choice,
+                     const std::vector<std::string>& notes) {
+  const size_t needed = std::max<size_t>(1, request.min_surfaces);
+  const std::vector<std::string> chosen = surfacesOf(choice.taken);
+  if (chosen.size() >= needed) return;
+  std::vector<DriveSession> all;
+  for (const DriveSession& session : sessions)
+    if (session.robot == robot) all.push_back(session);
+  const std::vector<std::string> driven = surfacesOf(all);
+  if (driven.size() == 1 && needed > 1)
+    throw DriveError(request.folder + ": " + robot + " was driven on one surface only ('" +
+                     driven.front() + "'); learning from one to another needs two");
+  throw DriveError(request.folder + ": " + std::to_string(chosen.size()) + " surface(s) of " +
+                   robot + " have comparable sessions" +
+                   (chosen.empty() ? "" : " (" + joined(chosen) + ")") + ", " +
+                   std::to_string(needed) + " are needed; " + joined(notes));
+}
+
 std::vector<SurfaceWindows> readSurfaces(const DriveRequest& request, const SessionChoice& choice) {
   std::vector<SurfaceWindows> surfaces;
   for (const std::string& name : surfacesOf(choice.taken)) {
@@ -200,12 +220,7 @@ DriveBook makeDriveBook(const DriveRequest& asked) {
                                    ? fittedChoice(sessions, robot, request, notes)
                                    : namedSessions(sessions, robot, request.sessions);
   for (const std::string& line : choice.left_out) notes.push_back("session left out: " + line);
-  const std::vector<std::string> surfaces = surfacesOf(choice.taken);
-  if (surfaces.size() < request.min_surfaces)
-    throw DriveError(request.folder + ": " + std::to_string(surfaces.size()) + " surface(s) of " +
-                     robot + " with comparable sessions" +
-                     (surfaces.empty() ? "" : " (" + joined(surfaces) + ")") + ", " +
-                     std::to_string(request.min_surfaces) + " are needed; " + joined(notes));
+  requireSurfaces(request, robot, sessions, choice, notes);
   DriveBook drives =
       bookOf(readSurfaces(request, choice), request.recipe, choice.baseline, request.min_surfaces);
   drives.robot = robot;

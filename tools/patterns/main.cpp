@@ -5,6 +5,7 @@
 
 #include "common/config/command_line.hpp"
 #include "tools/patterns/commands.hpp"
+#include "tools/patterns/from_recordings_command.hpp"
 
 int main(int argc, char** argv) {
   try {
@@ -12,6 +13,7 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     tread::patterns::addMake(app);
     tread::patterns::addRecord(app);
+    tread::patterns::addFromRecordings(app);
     tread::patterns::addAverage(app);
     tread::patterns::addShow(app);
     tread::patterns::addCheck(app);

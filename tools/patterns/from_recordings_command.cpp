@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/patterns/from_recordings_command.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/log/event_log.hpp"
+#include "common/pattern/pattern_file.hpp"
+#include "tools/drive_patterns/drive_book.hpp"
+#include "tools/drive_patterns/drive_error.hpp"
+#include "tools/drive_patterns/execution_log.hpp"
+#include "tools/patterns/output.hpp"
+
+namespace tread::patterns {
+namespace {
+
+namespace fs = std::filesystem;
+using drive_patterns::DriveBook;
+using drive_patterns::DriveError;
+
+struct Options {
+  drive_patterns::DriveRequest request;
+  bool one_surface = false;
+  std::string recipe;
+  std::string book;
+  std::string log;
+  std::string from;
+  std::string to;
+  drive_patterns::ExecutionLogRequest executions;
+};
+
+/// Surfaces of another book in the folder would be read as if they were of this one.
+void refuseForeignSurfaces(const std::string& folder, const DriveBook& drives) {
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
+    if (entry.path().extension() != ".csv") continue;
+    const std::string name = entry.path().stem().string();
+    const bool ours = std::any_of(drives.surfaces.begin(), drives.surfaces.end(),
+                                  [&](const auto& surface) { return surface.surface == name; });
+    if (!ours)
+      throw DriveError(entry.path().string() +
+                       ": a surface of another book; give an empty folder with -o");
+  }
+}
+
+/// The surface that is called so, or so in part.
+size_t surfaceCalled(const DriveBook& drives, const std::string& name, const std::string& option) {
+  std::string known;
+  std::vector<size_t> meant;
+  for (size_t i = 0; i < drives.surfaces.size(); ++i) {
+    const std::string& surface = drives.surfaces[i].surface;
+    if (surface == name) return i;
+    if (surface.find(name) != std::string::npos) meant.push_back(i);
+    known += (i == 0 ? "" : ", ") + surface;
+  }
+  if (!name.empty() && meant.size() == 1) return meant.front();
+  throw DriveError(option + " '" + name + "': name one of the surfaces " + known);
+}
+
+void writeLog(const Options& options, const DriveBook& drives) {
+  const size_t from = surfaceCalled(drives, options.from, "--from");
+  const size_t to = surfaceCalled(drives, options.to, "--to");
+  const auto events = drive_patterns::executionLog(drive_patterns::averagedSet(drives, from),
+                                                   drives.book.surfaces[from],
+                                                   drives.book.surfaces[to], options.executions);
+  LogWriter writer(options.log);
+  for (const LogEvent& event : events)
+    writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
+  writer.flush();
+  const std::string shipped =
+      (fs::path(options.book) / (drives.surfaces[from].surface + ".yaml")).string();
+  std::printf(
+      "\n%s: %d executions on %s, then %d on %s; its shipped set is %s. Try:\n"
+      "  tread-replay learner %s --patterns %s\n",
+      options.log.c_str(), options.executions.executions, drives.surfaces[from].surface.c_str(),
+      options.executions.executions, drives.surfaces[to].surface.c_str(), shipped.c_str(),
+      options.log.c_str(), shipped.c_str());
+}
+
+void fromRecordings(const Options& options) {
+  drive_patterns::DriveRequest request = options.request;
+  if (!options.recipe.empty()) {
+    request.recipe = drive_patterns::readRecipe(ConfigReader::fromFile(options.recipe));
+    request.fit_recipe = false;
+  }
+  if (options.one_surface) request.min_surfaces = 1;
+  const DriveBook drives = drive_patterns::makeDriveBook(request);
+  refuseForeignSurfaces(options.book, drives);
+  recordings::writeBook(options.book, drives.book);
+  for (size_t i = 0; i < drives.surfaces.size(); ++i)
+    writeOutput((fs::path(options.book) / (drives.surfaces[i].surface + ".yaml")).string(),
+                formatPatterns(drive_patterns::averagedSet(drives, i)), {options.recipe});
+  std::fputs(drive_patterns::reportOf(drives).c_str(), stdout);
+  std::printf("\n%s: patterns.yaml, recordings (SURFACE.csv) and averaged sets (SURFACE.yaml)\n",
+              options.book.c_str());
+  if (!options.log.empty()) writeLog(options, drives);
+}
+
+void addLogOptions(CLI::App& command, Options& options) {
+  auto* log = command.add_option("--log", options.log,
+                                 "LCM log of executions on one surface, then on another");
+  auto* from = command.add_option("--from", options.from, "surface that is known");
+  auto* to = command.add_option("--to", options.to, "surface that is new");
+  log->needs(from)->needs(to);
+  from->needs(log);
+  to->needs(log);
+  command.add_option("--executions", options.executions.executions, "on each of the two")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str()
+      ->needs(log);
+  command.add_option("--seed", options.executions.seed, "draws which recordings, in which order")
+      ->capture_default_str()
+      ->needs(log);
+}
+
+}  // namespace
+
+CLI::App* addFromRecordings(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "from-recordings", "build comparable patterns per surface from recorded drives");
+  command
+      ->add_option("DIR", options->request.folder,
+                   "folder with sessions.csv, steps_quality.csv and steps/")
+      ->required();
+  command->add_option("--robot", options->request.robot, "part of the robot's name");
+  command
+      ->add_option("--sessions", options->request.sessions,
+                   "exactly these, separated by commas; else all that are comparable")
+      ->delimiter(',');
+  command->add_option("--recipe", options->recipe,
+                      "which patterns (YAML, see config/patterns/recipes/drive.yaml)");
+  command->add_flag("--one-surface", options->one_surface, "a book of a single surface will do");
+  command->add_option("-o,--output", options->book, "folder of recordings to write")->required();
+  addLogOptions(*command, *options);
+  command->callback([options] { fromRecordings(*options); });
+  return command;
+}
+
+}  // namespace tread::patterns
