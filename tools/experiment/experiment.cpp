@@ -14,8 +14,8 @@ namespace {
 // A fixed number of parts, each with seeds of its own: threads have no influence on numbers.
 constexpr size_t kSequenceParts = 12;
 constexpr size_t kSideParts = 4;
-constexpr size_t kBins = 80;
-constexpr double kBinsReach = 3.5;  // times the mean error without learning
+constexpr size_t kBins = 50;
+constexpr double kBinsReach = 2.5;  // times the mean error without learning
 
 enum class Trial : uint64_t { kSequences, kAllPatterns, kDevelopment, kLong };
 

@@ -34,9 +34,22 @@ Style styleOf(const std::string& rule) {
   Style style;
   style.colour = colour == colours.end() ? picture::kBlack : colour->second;
   style.dashed = rule == "off" || rule == kOmniscient;
-  style.width = style.dashed ? 1.5 : 2.0;
-  style.label = rule;
+  // Collective and telescoping scaling are often the same to a line's width: both show.
+  style.width = style.dashed ? 1.5 : rule == "telescoping" ? 5.0 : 2.0;
   return style;
+}
+
+/// Names of the rules in a line below the title, away from the curves.
+void drawLegend(Picture& picture, const std::vector<std::string>& rules) {
+  double x = kLeft[0];
+  for (const std::string& rule : rules) {
+    const Style style = styleOf(rule);
+    const double height = std::max(2.0, style.width);
+    picture.fill({x, 47.0, style.dashed ? 9.0 : 26.0, height}, style.colour);
+    if (style.dashed) picture.fill({x + 15.0, 47.0, 9.0, height}, style.colour);
+    picture.text(x + 32.0, 52.0, rule, 12.0);
+    x += 60.0 + 7.5 * static_cast<double>(rule.size());
+  }
 }
 
 double largest(const std::vector<Points>& curves) {
@@ -51,8 +64,10 @@ void drawCurves(Picture& picture, Box box, Panel::Axes axes, const std::vector<P
                 const std::vector<std::string>& rules) {
   axes.y_max = 1.08 * largest(curves);
   Panel panel(picture, box, axes);
-  for (size_t i = 0; i < curves.size(); ++i)
-    if (!curves[i].empty()) panel.line(curves[i], styleOf(rules[i]));
+  for (const bool wide : {true, false})
+    for (size_t i = 0; i < curves.size(); ++i)
+      if (!curves[i].empty() && (styleOf(rules[i]).width > 2.0) == wide)
+        panel.line(curves[i], styleOf(rules[i]));
   panel.finish();
 }
 
@@ -106,7 +121,8 @@ std::string wordsOf(const TransitionErrors& transition, const std::vector<Ground
 
 void drawDevelopment(const std::string& path, const TransitionErrors& transition,
                      const ExperimentSettings& settings, const std::string& words) {
-  Picture picture(kWidth, 780, "From " + words + ": error over executions, without a reset");
+  Picture picture(kWidth, 785, "From " + words + ": error over executions, without a reset");
+  drawLegend(picture, settings.rules);
   const double last = static_cast<double>(transition.development.size());
   const char* units[] = {"per driven metre [m/m]", "per radian turned [rad/rad]"};
   for (int column = 0; column < 2; ++column) {
@@ -115,13 +131,13 @@ void drawDevelopment(const std::string& path, const TransitionErrors& transition
     };
     const std::string name = column == 0 ? "Position" : "Orientation";
     Panel::Axes axes{name + " error", "execution after the change", units[column], 1.0, last};
-    drawCurves(picture, {kLeft[column], 70.0, kPanelWidth, 270.0}, axes,
+    drawCurves(picture, {kLeft[column], 95.0, kPanelWidth, 270.0}, axes,
                overExecutions(
                    transition, settings.rules.size(),
                    [&](const Errors& errors, size_t rule) { return of(errors).error(rule).value; }),
                settings.rules);
     axes.title = name + " error: standard deviation";
-    drawCurves(picture, {kLeft[column], 440.0, kPanelWidth, 270.0}, axes,
+    drawCurves(picture, {kLeft[column], 460.0, kPanelWidth, 270.0}, axes,
                overExecutions(
                    transition, settings.rules.size(),
                    [&](const Errors& errors, size_t rule) { return of(errors).deviation(rule); }),
@@ -132,7 +148,8 @@ void drawDevelopment(const std::string& path, const TransitionErrors& transition
 
 void drawDistributions(const std::string& path, const TransitionErrors& transition,
                        const ExperimentSettings& settings, const std::string& words) {
-  Picture picture(kWidth, 440, "From " + words + ": errors over the test sequences");
+  Picture picture(kWidth, 450, "From " + words + ": errors over the test sequences");
+  drawLegend(picture, settings.rules);
   for (int column = 0; column < 2; ++column) {
     const std::vector<Histogram>& histograms =
         column == 0 ? transition.sequences.position : transition.sequences.orientation;
@@ -142,7 +159,7 @@ void drawDistributions(const std::string& path, const TransitionErrors& transiti
                      column == 0 ? "error per driven metre [m/m]" : "error per radian [rad/rad]",
                      "executions [%]"};
     axes.x_max = histograms.front().width * static_cast<double>(histograms.front().counts.size());
-    drawCurves(picture, {kLeft[column], 70.0, kPanelWidth, 300.0}, axes, curves, settings.rules);
+    drawCurves(picture, {kLeft[column], 95.0, kPanelWidth, 300.0}, axes, curves, settings.rules);
   }
   picture.save(path);
 }

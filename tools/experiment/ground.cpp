@@ -19,25 +19,15 @@ Outcome outcomeOf(const learner::ConstTrajectory& trajectory) {
   return outcome;
 }
 
-namespace {
-
-bool isWhole(const recordings::Execution& execution, size_t samples) {
-  return execution.size() == samples &&
-         std::all_of(execution.begin(), execution.end(), [](const Pose2& pose) {
-           return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
-         });
-}
-
-}  // namespace
-
-Executions::Executions(const std::vector<recordings::Execution>& executions, size_t samples)
+Executions::Executions(const std::vector<recordings::Execution>& executions, size_t samples,
+                       const std::vector<size_t>& left_out)
     : samples_(samples) {
   numbers_.reserve(executions.size() * samples * 3);
-  for (const recordings::Execution& execution : executions) {
-    if (!isWhole(execution, samples)) continue;
-    for (const Pose2& pose : execution) numbers_.push_back(pose.x);
-    for (const Pose2& pose : execution) numbers_.push_back(pose.y);
-    for (const Pose2& pose : execution) numbers_.push_back(pose.yaw);
+  for (size_t i = 0; i < executions.size(); ++i) {
+    if (std::binary_search(left_out.begin(), left_out.end(), i)) continue;
+    for (const Pose2& pose : executions[i]) numbers_.push_back(pose.x);
+    for (const Pose2& pose : executions[i]) numbers_.push_back(pose.y);
+    for (const Pose2& pose : executions[i]) numbers_.push_back(pose.yaw);
   }
   for (size_t i = 0; i < numbers_.size() / (3 * samples); ++i)
     outcomes_.push_back(outcomeOf(of(i)));
@@ -56,7 +46,8 @@ Ground groundOf(const recordings::RecordingBook& book, const recordings::Surface
   for (size_t p = 0; p < surface.executions.size(); ++p) {
     const MotionPattern& pattern = ground.averaged.patterns()[p];
     ground.averaged_ends.push_back(pattern.end());
-    ground.executions.emplace_back(surface.executions[p], pattern.commands.size());
+    ground.executions.emplace_back(surface.executions[p], pattern.commands.size(),
+                                   averaging[p].left_out);
   }
   return ground;
 }

@@ -21,7 +21,9 @@ struct Outcome {
 /// All executions of one pattern on one surface (RP_S), one behind the other in memory.
 class Executions {
  public:
-  Executions(const std::vector<recordings::Execution>& executions, size_t samples);
+  /// All but those in `left_out`, indices in ascending order; the others have `samples` poses.
+  Executions(const std::vector<recordings::Execution>& executions, size_t samples,
+             const std::vector<size_t>& left_out);
 
   size_t size() const { return outcomes_.size(); }
   size_t samples() const { return samples_; }
@@ -49,7 +51,8 @@ Outcome outcomeOf(const learner::ConstTrajectory& trajectory);
 
 /// Averages a book surface by surface and lays its recordings out for the experiment.
 /** Throws recordings::RecordingError with one line if a pattern has too few executions or there is
- * one surface only; lines about what was left out go to `notes`. */
+ * one surface only. What is no fair execution is neither averaged nor driven; a line for each goes
+ * to `notes`. */
 std::vector<Ground> groundsOf(const recordings::RecordingBook& book,
                               std::vector<std::string>& notes);
 

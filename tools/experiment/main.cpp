@@ -89,7 +89,7 @@ void run(const Arguments& arguments) {
   std::cout << textOfErrors(campaign.tables, campaign.setting) << '\n'
             << textOfReductions(campaign.tables, campaign.setting) << '\n'
             << textOfAgreement(campaign.tables, campaign.setting) << '\n'
-            << textOfKeyFigures(campaign.tables, campaign.setting);
+            << textOfKeyFigures(campaign.tables, campaign.setting) << std::flush;
   std::fprintf(stderr, "%s: %zu transitions, %.2f s of trials on %d threads\n",
                campaign.source.c_str(), campaign.first.transitions.size(), campaign.seconds,
                arguments.request.threads);

@@ -99,10 +99,12 @@ Fair fairOnes(const std::vector<Execution>& executions, const MotionPattern& pat
   Fair fair;
   for (size_t e = 0; e < executions.size(); ++e) {
     const std::string why = fault(executions[e], pattern, period, max_speed);
-    if (why.empty())
+    if (why.empty()) {
       fair.push_back(&executions[e]);
-    else
-      note.rejected.push_back("execution " + std::to_string(e + 1) + ": " + why);
+      continue;
+    }
+    note.rejected.push_back("execution " + std::to_string(e + 1) + ": " + why);
+    note.left_out.push_back(e);
   }
   return fair;
 }

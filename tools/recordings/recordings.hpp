@@ -52,6 +52,7 @@ struct AverageNote {
   int used = 0;
   bool by_twist = false;              ///< body twists were averaged, not poses: the turn is strong
   std::vector<std::string> rejected;  ///< a line for each execution that was left out
+  std::vector<size_t> left_out;       ///< the same executions by index, from 0
 };
 
 /// When an execution is no fair one, and how few are too few.
