@@ -13,6 +13,18 @@ namespace {
 using importer::CsvTable;
 using importer::ImportError;
 
+/// Columns that a table must have; further ones do not matter.
+void requireColumns(const CsvTable& table, const std::string& path,
+                    const std::vector<std::string>& names) {
+  for (const std::string& name : names) try {
+      table.column(name);
+    } catch (const ImportError&) {
+      std::string all;
+      for (const std::string& each : names) all += (all.empty() ? "" : ", ") + each;
+      throw ImportError(path + ":1: no column " + name + "; needed are " + all);
+    }
+}
+
 double within(const CsvTable& table, size_t row, const std::string& name, double min, double max) {
   const double value = table.number(row, table.column(name));
   if (value < min || value > max)
@@ -35,6 +47,7 @@ DriveSession sessionOf(const CsvTable& table, size_t row) {
 
 void readSteps(const std::string& path, std::vector<DriveSession>& sessions) {
   const CsvTable table(path);
+  requireColumns(table, path, {"session", "step", "cmd_left_rad_s", "cmd_right_rad_s", "ok"});
   const size_t name = table.column("session");
   const size_t step = table.column("step");
   const size_t left = table.column("cmd_left_rad_s");
@@ -130,7 +143,10 @@ TrackCommand trackCommand(const BodyCommand& command, double baseline) {
 }
 
 std::vector<DriveSession> readSessions(const std::string& folder) {
-  const CsvTable table(folder + "/sessions.csv");
+  const std::string path = folder + "/sessions.csv";
+  const CsvTable table(path);
+  requireColumns(table, path,
+                 {"session", "robot", "surface", "wheel_radius_m", "baseline_m", "pose_lag_s"});
   std::vector<DriveSession> sessions;
   for (size_t row = 0; row < table.rows(); ++row) sessions.push_back(sessionOf(table, row));
   readSteps(folder + "/steps_quality.csv", sessions);
@@ -139,7 +155,9 @@ std::vector<DriveSession> readSessions(const std::string& folder) {
 
 SessionWindows readWindows(const std::string& folder, const DriveSession& session, double baseline,
                            double duration, const SmoothingLimits& limits) {
-  const CsvTable table(folder + "/steps/" + session.name + ".csv");
+  const std::string path = folder + "/steps/" + session.name + ".csv";
+  const CsvTable table(path);
+  requireColumns(table, path, {"step", "window", "t_s", "x_m", "y_m", "yaw_rad", "pose_new"});
   const StepColumns columns(table);
   WindowReader reader(session, baseline, duration, limits);
   for (size_t row = 0; row < table.rows();) {
