@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstddef>
+
+namespace tread::experiment::testing {
+
+/// Allocations of this program so far, of all threads.
+std::size_t allocations();
+
+}  // namespace tread::experiment::testing

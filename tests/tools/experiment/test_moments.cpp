@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include "tests/effort.hpp"
+#include "tools/experiment/moments.hpp"
+#include "tools/experiment/tables.hpp"
+
+namespace tread::experiment {
+namespace {
+
+using testing::effort;
+
+/// Paired trials: rule 0 errs by 0.2 of what is covered in the mean, rule 1 by 0.8 of rule 0.
+RatioMoments trials(uint64_t seed, int repetitions) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> standard;
+  RatioMoments moments(2);
+  for (int i = 0; i < repetitions; ++i) {
+    const double covered = 6.0 + 0.3 * standard(random);
+    const double first = 1.2 + 0.4 * standard(random);
+    const double errors[] = {first, 0.8 * first + 0.1 * standard(random)};
+    moments.add(covered, errors);
+  }
+  return moments;
+}
+
+bool holds(const Estimate& estimate, double truth) {
+  return estimate.low <= truth && truth <= estimate.high;
+}
+
+}  // namespace
+
+TEST_CASE("a 99 per cent interval covers the truth about 99 times of 100") {
+  const int experiments = effort(2000);
+  int errors = 0, ratios = 0;
+  for (int i = 0; i < experiments; ++i) {
+    const RatioMoments moments = trials(static_cast<uint64_t>(i), 300);
+    if (holds(moments.error(0), 0.2)) ++errors;
+    if (holds(moments.ratio(1, 0), 0.8)) ++ratios;
+  }
+  CHECK(errors > 0.98 * experiments);
+  CHECK(ratios > 0.98 * experiments);
+  CHECK(ratios < experiments);
+}
+
+TEST_CASE("pairing makes the interval of a reduction narrow") {
+  const RatioMoments moments = trials(1, 3000);
+  const Estimate paired = moments.ratio(1, 0);
+  const double relative = (moments.error(1).high - moments.error(1).value) / moments.error(1).value;
+  CHECK(paired.high - paired.value < 0.6 * relative * paired.value);
+}
+
+TEST_CASE("parts added are the whole") {
+  RatioMoments sum = trials(1, 100);
+  sum.add(trials(2, 50));
+  CHECK(sum.repetitions() == 150.0);
+  CHECK(sum.deviation(0) == Approx(0.4 / 6.0).epsilon(0.2));
+}
+
+TEST_CASE("a histogram counts what is in its reach, and nothing else") {
+  Histogram bins{0.1, std::vector<double>(3, 0.0)};
+  for (const double value : {0.0, 0.05, 0.25, 0.31, 1e9}) bins.add(value);
+  bins.add(std::numeric_limits<double>::quiet_NaN());
+  bins.add(std::numeric_limits<double>::infinity());
+  CHECK(bins.counts == std::vector<double>{2.0, 0.0, 1.0});
+}
+
+TEST_CASE("Student's quantile falls to the normal one") {
+  CHECK(student99(2) == Approx(63.657));
+  CHECK(student99(20) == Approx(2.861));
+  CHECK(student99(30) > student99(31));
+  CHECK(student99(100000) == Approx(kNormal99).epsilon(1e-4));
+}
+
+TEST_CASE("several books become a mean, its interval and the deviation between them") {
+  const auto bookWith = [](double value) {
+    Tables tables;
+    Row row;
+    row.estimate = {value, value - 1.0, value + 1.0};
+    tables.errors = {row};
+    return tables;
+  };
+  const Row row = combined({bookWith(1.0), bookWith(2.0), bookWith(3.0)}).errors.front();
+  CHECK(row.estimate.value == Approx(2.0));
+  CHECK(row.spread == Approx(1.0));
+  CHECK(row.estimate.high - row.estimate.value == Approx(9.925 / std::sqrt(3.0)));
+  const Row alone = combined({bookWith(5.0)}).errors.front();
+  CHECK(alone.estimate.high == 6.0);
+  CHECK(std::isnan(alone.spread));
+}
+
+}  // namespace tread::experiment

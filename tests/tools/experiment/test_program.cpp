@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include <catch2/catch.hpp>
+
+#include "tests/tools/experiment/small_world.hpp"
+
+namespace tread::experiment {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace testing;
+
+/// A folder of this test's own, gone with it.
+struct Folder {
+  Folder() : path(fs::temp_directory_path() / ("tread-experiment-" + std::to_string(getpid()))) {
+    fs::create_directories(path);
+  }
+  ~Folder() { fs::remove_all(path); }
+  std::string operator/(const std::string& name) const { return (path / name).string(); }
+  fs::path path;
+};
+
+std::pair<int, std::string> run(const std::string& arguments) {
+  const std::string command =
+      std::string(TREAD_BIN_DIR) + "/tread-experiment transitions " + arguments + " 2>&1";
+  FILE* pipe = popen(command.c_str(), "r");
+  REQUIRE(pipe != nullptr);
+  std::string printed;
+  std::array<char, 512> buffer{};
+  while (fgets(buffer.data(), static_cast<int>(buffer.size()), pipe) != nullptr)
+    printed += buffer.data();
+  const int status = pclose(pipe);
+  return {WEXITSTATUS(status), printed};
+}
+
+std::vector<std::string> linesOf(const std::string& path) {
+  std::ifstream file(path);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  return lines;
+}
+
+std::string contentOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+const std::string kFour = " --rules off,single,collective,omniscient --repetitions 100 --threads 2";
+
+void refuses(const std::string& arguments, const std::string& words) {
+  const auto [code, printed] = run(arguments);
+  INFO(arguments << "\n" << printed);
+  CHECK(code == 1);
+  CHECK(printed.find("tread-experiment: ") == 0);
+  CHECK(printed.find(words) != std::string::npos);
+  CHECK(printed.find('\n') == printed.size() - 1);
+}
+
+}  // namespace
+
+TEST_CASE("one command writes all tables, pictures and the report of a world") {
+  const Folder folder;
+  const std::string out = folder / "out";
+  const auto [code, printed] =
+      run("--world " + kWorlds + "transitions_symmetric.yaml" + kFour + " --out " + out);
+  INFO(printed);
+  REQUIRE(code == 0);
+  for (const char* words : {"TABLE I:", "TABLE II:", "RMS deviation", "Signs of Table II", "KEY"})
+    CHECK(printed.find(words) != std::string::npos);
+
+  const auto table1 = linesOf(out + "/table1.csv");
+  REQUIRE(table1.size() == 1 + 12 * 2 * 4);
+  CHECK(table1[0] == "from,to,quantity,rule,error,low,high");
+  CHECK(table1[1].find("cinder,tarmac,position,off,0.") == 0);
+  const auto table2 = linesOf(out + "/table2.csv");
+  CHECK(table2[0] == "from,to,quantity,rule,against,reduction_percent,low,high");
+  CHECK(table2[1].find("cinder,tarmac,position,collective,single,") == 0);
+  REQUIRE(table2.size() == 1 + 12 * 2 * 3);
+  const auto all = linesOf(out + "/all_patterns.csv");
+  CHECK(all[0] == "from,to,quantity,rule,k,error");
+  CHECK(all.size() == 1 + 12 * 2 * 4 * 4);
+  const auto unchanged = linesOf(out + "/unchanged.csv");
+  CHECK(unchanged[0] == "surface,quantity,rule,ratio");
+  CHECK(unchanged.size() == 1 + 4 * 2 * 4);
+
+  for (const char* picture : {"/figure4.png", "/figure5.png"})
+    CHECK(contentOf(out + picture).substr(1, 3) == "PNG");
+  const std::string report = contentOf(out + "/report.html");
+  CHECK(report.find("data:image/png;base64,iVBORw0KGgo") != std::string::npos);
+  CHECK(report.find("src=\"http") == std::string::npos);
+  CHECK(contentOf(out + "/table1.txt").find("probably a misprint") != std::string::npos);
+  CHECK(contentOf(out + "/table2.txt").find("collective against single") != std::string::npos);
+}
+
+TEST_CASE("several books give means with their spread, and each book's numbers") {
+  const Folder folder;
+  write(folder / "small.yaml", kSmallWorld);
+  const auto [code, printed] =
+      run("--world " + (folder / "small.yaml") + kFour +
+          " --books 3 --length 2 --change-inside --out " + (folder / "out"));
+  INFO(printed);
+  REQUIRE(code == 0);
+  CHECK(printed.find("Means over 3 books") != std::string::npos);
+  CHECK(printed.find("paper") == std::string::npos);
+  const auto books = linesOf(folder / "out/books.csv");
+  CHECK(books[0] == "table,seed,from,to,quantity,rule,against,k,value");
+  CHECK(books.size() == 1 + 3 * (2 * 2 * 4 + 2 * 2 * 3 + 2 * 2 * 4 * 4 + 2 * 2 * 4));
+}
+
+TEST_CASE("a folder of recordings gives the same tables as the world that they come from") {
+  const Folder folder;
+  write(folder / "small.yaml", kSmallWorld);
+  recordings::writeBook(folder / "book", record(readTransitionWorld(folder / "small.yaml"), 1));
+  REQUIRE(run("--world " + (folder / "small.yaml") + kFour + " --out " + (folder / "a")).first ==
+          0);
+  REQUIRE(run("--recordings " + (folder / "book") + kFour + " --out " + (folder / "b")).first == 0);
+  CHECK(linesOf(folder / "a/table1.csv").size() == linesOf(folder / "b/table1.csv").size());
+  // Surfaces of a folder are in the order of their names.
+  CHECK(contentOf(folder / "b/table1.csv").find("ice,road,position,off,") != std::string::npos);
+}
+
+TEST_CASE("the real recordings are compared by one command") {
+  const char* recordings = std::getenv("TREAD_RECORDINGS");
+  const fs::path drive = fs::path(recordings == nullptr ? "" : recordings) / "drive";
+  if (!fs::exists(drive / "sessions.csv")) {
+    WARN("no recorded drives here; set TREAD_RECORDINGS");
+    return;
+  }
+  const auto [code, printed] = run("--recordings " + drive.string() + " --robot warthog" + kFour);
+  INFO(printed);
+  CHECK(code == 0);
+  CHECK(printed.find("asphalt") != std::string::npos);
+  CHECK(printed.find("The paper's") == std::string::npos);
+}
+
+TEST_CASE("what cannot be done is one clear line") {
+  const Folder folder;
+  const std::string world = "--world " + kWorlds + "transitions_symmetric.yaml ";
+  refuses(world + "--rules off,magic", "there is no rule 'magic'; known are off");
+  refuses(world + "--rules off,off", "twice");
+  refuses(world + kFour + " --sequence left,port", "there is no pattern 'port'");
+  refuses(world + kFour + " --robot husky", "--robot");
+  refuses(world + kFour + " --out /proc/nowhere", "/proc/nowhere");
+  refuses("--world " + kWorlds + "demo.yaml", "simulator");
+  refuses("--world " + (folder / "none.yaml"), "none.yaml");
+  refuses("--recordings " + (folder / "none"), "neither sessions.csv");
+  refuses("--recordings " + folder.path.string() + " --books 2", "--world");
+
+  recordings::RecordingBook book = record(parseTransitionWorld(kSmallWorld, "small"), 1);
+  book.surfaces[1].executions[1].resize(2);
+  recordings::writeBook(folder / "few", book);
+  refuses("--recordings " + (folder / "few") + kFour, "at least 3");
+  book.surfaces.resize(1);
+  recordings::writeBook(folder / "one", book);
+  refuses("--recordings " + (folder / "one") + kFour, "two surfaces");
+  refuses("--recordings " + (folder / "one") + " --robot husky" + kFour, "sessions.csv");
+}
+
+TEST_CASE("a wrong command line ends with code 2") {
+  CHECK(run("").first == 2);
+  CHECK(run("--world a --recordings b").first == 2);
+  CHECK(run("--world a --memory 1").first == 2);
+  CHECK(run("--world a --repetitions 0").first == 2);
+  CHECK(run("--help").first == 0);
+}
+
+}  // namespace tread::experiment
