@@ -37,9 +37,9 @@ std::string windowsLine(const SurfaceSummary& surface) {
 std::string motionLine(const std::string& name, const LocalMotion& motion) {
   const Twist2& mean = motion.mean.mean;
   const Twist2 spread = spreadOf(motion);
-  return line("  %-14s %7.3f %7.3f %7.3f   %6.3f %6.3f %6.3f   %7zu %6.2f %10zu\n", name.c_str(),
-              mean.v_x, mean.v_y, mean.omega, spread.v_x, spread.v_y, spread.omega, motion.windows,
-              motion.reach, 2 * motion.deviations.size());
+  return line("  %-14s %7.3f %7.3f %7.3f   %6.3f %6.3f %6.3f   %7zu %6.2f %10zu %6zu\n",
+              name.c_str(), mean.v_x, mean.v_y, mean.omega, spread.v_x, spread.v_y, spread.omega,
+              motion.windows, motion.reach, 2 * motion.deviations.size(), motion.implausible);
 }
 
 }  // namespace
@@ -50,8 +50,8 @@ std::string reportOf(const DriveBook& drives) {
   const std::vector<MotionPattern>& patterns = drives.book.patterns.patterns();
   for (const SurfaceSummary& surface : drives.surfaces) {
     text += "\n" + windowsLine(surface);
-    text += line("  %-14s %23s   %20s   %7s %6s %10s\n", "pattern", "v_x m/s, v_y m/s, w r/s",
-                 "spread of executions", "windows", "reach", "recordings");
+    text += line("  %-14s %23s   %20s   %7s %6s %10s %6s\n", "pattern", "v_x m/s, v_y m/s, w r/s",
+                 "spread of executions", "windows", "reach", "recordings", "unfit");
     for (size_t p = 0; p < patterns.size(); ++p)
       text += motionLine(patterns[p].name, surface.motions[p]);
   }

@@ -14,6 +14,9 @@ namespace {
 
 /// Beyond the farthest neighbour, so that it counts a little, too.
 constexpr double kBandwidth = 1.1;
+/// Differences beyond so many robust standard deviations are no motion of a vehicle.
+constexpr double kPlausible = 3.5;
+constexpr double kMadToSigma = 1.4826;  // of a normal distribution
 /// Residuals below these are never called large: m/s, m/s, rad/s and the same per second.
 constexpr double kSmall[6] = {0.01, 0.01, 0.01, 0.01, 0.01, 0.01};
 
@@ -67,17 +70,44 @@ const SteadyWindow* partnerOf(const std::vector<SteadyWindow>& windows, const St
   return nullptr;
 }
 
-std::vector<TwistProfile> deviationsOf(const std::vector<SteadyWindow>& windows,
-                                       const std::vector<Neighbour>& sorted, size_t wanted) {
-  std::vector<TwistProfile> deviations;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+/// (c_1 - c_2) / sqrt(2) of each step of which both windows are there, in the order of `sorted`.
+std::vector<Vector6> differencesOf(const std::vector<SteadyWindow>& windows,
+                                   const std::vector<Neighbour>& sorted) {
+  std::vector<Vector6> differences;
   for (const Neighbour& near : sorted) {
-    if (deviations.size() == wanted) break;
     const SteadyWindow* partner = partnerOf(windows, *near.window);
-    if (partner == nullptr) continue;
-    deviations.push_back(TwistProfile::of(
-        (near.window->profile.vector() - partner->profile.vector()) / std::sqrt(2.0)));
+    if (partner != nullptr)
+      differences.push_back((near.window->profile.vector() - partner->profile.vector()) /
+                            std::sqrt(2.0));
   }
-  return deviations;
+  return differences;
+}
+
+/// What a component's difference may be at most.
+Vector6 plausibleDifference(const std::vector<Vector6>& differences) {
+  Vector6 bound;
+  for (Eigen::Index c = 0; c < 6; ++c) {
+    Eigen::VectorXd sizes(static_cast<Eigen::Index>(differences.size()));
+    for (size_t i = 0; i < differences.size(); ++i)
+      sizes[static_cast<Eigen::Index>(i)] = std::abs(differences[i][c]);
+    bound[c] = kPlausible * std::max(kSmall[c], kMadToSigma * medianOf(sizes));
+  }
+  return bound;
+}
+
+void addDeviations(const std::vector<SteadyWindow>& windows, const std::vector<Neighbour>& sorted,
+                   size_t wanted, LocalMotion& motion) {
+  const std::vector<Vector6> differences = differencesOf(windows, sorted);
+  const Vector6 bound = plausibleDifference(differences);
+  for (const Vector6& difference : differences) {
+    if (motion.deviations.size() == wanted) return;
+    if ((difference.cwiseAbs() - bound).maxCoeff() > 0.0)
+      ++motion.implausible;
+    else
+      motion.deviations.push_back(TwistProfile::of(difference));
+  }
 }
 
 }  // namespace
@@ -90,10 +120,11 @@ LocalMotion localMotion(const std::vector<SteadyWindow>& windows, const BodyComm
                      std::to_string(needed) + " are needed around each pattern's command");
   std::vector<Neighbour> sorted = byDistance(windows, command, recipe.reach());
   LocalMotion motion;
-  motion.deviations = deviationsOf(windows, sorted, static_cast<size_t>(recipe.deviations));
+  addDeviations(windows, sorted, static_cast<size_t>(recipe.deviations), motion);
   if (motion.deviations.size() < static_cast<size_t>(recipe.deviations))
     throw DriveError("only " + std::to_string(motion.deviations.size()) +
-                     " steps with both steady windows; " + std::to_string(recipe.deviations) +
+                     " steps with two steady windows that agree; " +
+                     std::to_string(recipe.deviations) +
                      " are needed to tell how executions differ");
   sorted.resize(needed);
   motion.mean = regressed(sorted, command, recipe.reach());

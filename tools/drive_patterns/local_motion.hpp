@@ -15,7 +15,10 @@
 //      the command itself;
 //   3. deviations of executions: (c_1 - c_2) / sqrt(2) of the two windows of one step, whose
 //      commands are the same: its variance is that of one window about its step. Both signs are
-//      used, so that deviations have no mean.
+//      used, so that deviations have no mean. A step is left out if a component of its difference
+//      is beyond 3.5 robust standard deviations (1.4826 median) of all steps of the surface: speed
+//      that changes by metres per second under a constant command is a failure of the lidar's
+//      poses.
 // Source: learning.md of the project's reference, section 6.
 namespace tread::drive_patterns {
 
@@ -23,13 +26,14 @@ namespace tread::drive_patterns {
 struct LocalMotion {
   TwistProfile mean;
   std::vector<TwistProfile> deviations;  ///< one sign; add and subtract
-  double reach = 0.0;                    ///< [1] distance of the farthest window used
-  size_t windows = 0;                    ///< that the mean comes from
+  size_t implausible = 0;  ///< steps passed over for deviations: their windows disagree
+  double reach = 0.0;      ///< [1] distance of the farthest window used
+  size_t windows = 0;      ///< that the mean comes from
 };
 
 /// The motion for a command; `reach` holds the largest |v| and |w| of the patterns.
 /** Throws DriveError if there are fewer than `least` windows, or fewer than `deviations` steps of
- * which both windows are there. */
+ * which both windows are there and agree. */
 LocalMotion localMotion(const std::vector<SteadyWindow>& windows, const BodyCommand& command,
                         const PatternRecipe& recipe);
 

@@ -66,6 +66,16 @@ TEST_CASE("recordings vary about the mean as the windows of one step do, with bo
   CHECK(std::sqrt(square) == Approx(0.1 / std::sqrt(3.0) * std::sqrt(2.0)).epsilon(0.3));
 }
 
+TEST_CASE("a step in which the poses failed tells nothing of how executions differ") {
+  auto windows = drawnWindows(kGround, 60, 0.05, 5);
+  for (size_t i = 0; i < windows.size(); i += 16) windows[i].profile.slope.v_x += 2.0;
+  const LocalMotion motion = localMotion(windows, {2.5, 1.5}, defaultRecipe());
+  CHECK(motion.deviations.size() == 15);
+  CHECK(motion.implausible > 0);
+  for (const TwistProfile& deviation : motion.deviations)
+    CHECK(std::abs(deviation.slope.v_x) < 0.1);
+}
+
 TEST_CASE("mirrored drives make mirrored patterns") {
   const Ground skewed = [](const BodyCommand& command) {
     return TwistProfile{
@@ -128,7 +138,8 @@ TEST_CASE("too few windows, or too few surfaces, are one clear line") {
         "1 comparable surface(s) 'a', 2 are needed (surface 'b' left out: only 16 steady windows; "
         "30 are needed around each pattern's command)");
   CHECK(complaint({{"a", {}, many, {}}, {"b", {}, halves, {}}}, defaultRecipe())
-            .find("only 0 steps with both steady windows; 15 are needed") != std::string::npos);
+            .find("only 0 steps with two steady windows that agree; 15 are needed") !=
+        std::string::npos);
   CHECK(complaint({{"a b", {}, many, {}}, {"a (b)", {}, many, {}}}, defaultRecipe()) ==
         "two surfaces would both be called 'a_b'; rename one in sessions.csv");
 }
