@@ -121,7 +121,9 @@ class Runner {
       throw std::invalid_argument("--robot and --sessions choose among --recordings");
     const TransitionWorld world = readTransitionWorld(request.world);
     campaign_.source = "world " + world.name;
-    campaign_.setting.paper_reference = world.paper_reference;
+    // The paper's numbers are for patterns of one second and changes between patterns.
+    campaign_.setting.paper_reference =
+        world.paper_reference && request.length == 1 && !request.change_inside;
     for (int book = 0; book < request.books; ++book) {
       const auto number = static_cast<uint64_t>(book);
       const RecordingBook recorded = record(world, request.seed + number, request.length);

@@ -31,8 +31,9 @@ void writeCampaign(const std::string& folder, const Campaign& campaign) {
   recordings::writeText(path("unchanged.csv"), csvOfUnchanged(tables));
   if (campaign.books.size() > 1)
     recordings::writeText(path("books.csv"), csvOfBooks(campaign.books, campaign.request.seed));
-  recordings::writeText(path("table1.txt"), textOfErrors(tables, campaign.setting) + "\n" +
-                                                textOfAgreement(tables, campaign.setting));
+  recordings::writeText(path("table1.txt"),
+                        textOfErrors(tables, campaign.setting) + "\n" +
+                            textOfAgreement(tables, campaign.setting, campaign.books));
   recordings::writeText(path("table2.txt"), textOfReductions(tables, campaign.setting));
   recordings::writeText(path("report.html"),
                         htmlOf(campaign, recordings::readText(path("figure4.png")),

@@ -179,8 +179,8 @@ std::string Writer::errors() const {
   text += "</tr></thead><tbody>\n";
   for (const std::string& from : setting_.surfaces)
     for (const char* quantity : kQuantities) text += errorRow(from, quantity);
-  return text + "</tbody></table></div>\n<pre>" + escaped(textOfAgreement(tables_, setting_)) +
-         "</pre>\n";
+  return text + "</tbody></table></div>\n<pre>" +
+         escaped(textOfAgreement(tables_, setting_, campaign_.books)) + "</pre>\n";
 }
 
 std::string Writer::reductionCell(const Row* row, bool with_paper) const {
@@ -282,8 +282,9 @@ std::string Writer::notes() const {
 std::string Writer::html(const std::string& figure4, const std::string& figure5) const {
   const size_t shown = transitionOfFigures(campaign_.first, campaign_.settings, campaign_.grounds);
   const std::string words = wordsOf(campaign_.first.transitions[shown], campaign_.grounds);
-  std::string text = kHead + about() + "<pre>" + escaped(textOfKeyFigures(tables_, setting_)) +
-                     "</pre>\n" + errors() + reductions();
+  std::string text = kHead + about() + "<pre>" +
+                     escaped(textOfKeyFigures(tables_, setting_, campaign_.books)) + "</pre>\n" +
+                     errors() + reductions();
   text += "<h2>Figure 4: from " + escaped(words) + ", error over executions</h2>\n" +
           picture(figure4, "error over executions");
   text += "<h2>Figure 5: from " + escaped(words) + ", error distributions</h2>\n" +

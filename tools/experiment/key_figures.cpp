@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -21,74 +22,100 @@ std::vector<double> ratios(const std::vector<Row>& rows, const std::string& quan
   return values;
 }
 
-/// "12.3" per cent less in the median, or "-".
-std::string medianReduction(const std::vector<double>& values) {
-  if (values.empty()) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", 100.0 * (1.0 - median(values)));
-  return text;
+double largest(const std::vector<double>& values) {
+  return values.empty() ? median(values) : *std::max_element(values.begin(), values.end());
 }
 
-/// "+4" per cent more in the worst transition, or "-".
-std::string worst(const std::vector<double>& values) {
-  if (values.empty()) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, "%+.1f",
-                100.0 * (*std::max_element(values.begin(), values.end()) - 1.0));
-  return text;
+/// What is told of a rule; position and orientation of each in turn.
+struct Figures {
+  std::array<double, 2> sequences;        ///< [%] median reduction against single
+  std::array<double, 2> sequences_worst;  ///< [%] more than off in the worst transition
+  std::array<double, 2> all_after_10;     ///< the same over all patterns
+  std::array<double, 2> all_after_3_worst;
+  std::array<double, 2> unchanged;  ///< [1] of the omniscient error, median over surfaces
+  std::array<double, 2> unchanged_worst;
+};
+
+Figures figuresOf(const Tables& tables, const std::string& rule) {
+  Figures figures{};
+  for (size_t i = 0; i < 2; ++i) {
+    const std::string quantity = i == 0 ? kPosition : kOrientation;
+    const auto less = [&](const std::vector<Row>& rows, int k) {
+      return 100.0 * (1.0 - median(ratios(rows, quantity, rule, "single", k)));
+    };
+    const auto more = [&](const std::vector<Row>& rows, int k) {
+      return 100.0 * (largest(ratios(rows, quantity, rule, "off", k)) - 1.0);
+    };
+    figures.sequences[i] = less(tables.errors, 0);
+    figures.sequences_worst[i] = more(tables.errors, 0);
+    figures.all_after_10[i] = less(tables.all_patterns, 10);
+    figures.all_after_3_worst[i] = more(tables.all_patterns, 3);
+    std::vector<double> costs;
+    for (const Row& row : tables.unchanged)
+      if (row.quantity == quantity && row.rule == rule) costs.push_back(row.estimate.value);
+    figures.unchanged[i] = median(costs);
+    figures.unchanged_worst[i] = largest(costs);
+  }
+  return figures;
 }
 
-std::string cost(const Tables& tables, const std::string& quantity, const std::string& rule) {
-  std::vector<double> values;
-  for (const Row& row : tables.unchanged)
-    if (row.quantity == quantity && row.rule == rule) values.push_back(row.estimate.value);
-  if (values.empty()) return "-";
-  char text[48];
-  std::snprintf(text, sizeof text, "%.3f (%.3f)", median(values),
-                *std::max_element(values.begin(), values.end()));
-  return text;
-}
-
-std::string rowOf(const Tables& tables, const std::string& rule) {
-  const auto both = [](const auto& cell) {
-    return cell(std::string(kPosition)) + " / " + cell(std::string(kOrientation));
+/// Deviation of each figure from book to book.
+Figures spreadOf(const std::vector<Tables>& books, const std::string& rule) {
+  std::vector<Figures> all;
+  for (const Tables& book : books) all.push_back(figuresOf(book, rule));
+  const auto deviation = [&](std::array<double, 2> Figures::*figure, size_t i) {
+    double mean = 0.0, squares = 0.0;
+    for (const Figures& one : all) mean += (one.*figure)[i] / static_cast<double>(all.size());
+    for (const Figures& one : all) squares += std::pow((one.*figure)[i] - mean, 2);
+    return std::sqrt(squares / static_cast<double>(all.size() - 1));
   };
-  const std::string sequence = both([&](const std::string& quantity) {
-    return medianReduction(ratios(tables.errors, quantity, rule, "single", 0));
-  });
-  const std::string sequence_worst = both([&](const std::string& quantity) {
-    return worst(ratios(tables.errors, quantity, rule, "off", 0));
-  });
-  const std::string all_10 = both([&](const std::string& quantity) {
-    return medianReduction(ratios(tables.all_patterns, quantity, rule, "single", 10));
-  });
-  const std::string all_3 = both([&](const std::string& quantity) {
-    return worst(ratios(tables.all_patterns, quantity, rule, "off", 3));
-  });
-  const std::string unchanged =
-      both([&](const std::string& quantity) { return cost(tables, quantity, rule); });
+  Figures spread{};
+  for (const auto figure :
+       {&Figures::sequences, &Figures::sequences_worst, &Figures::all_after_10,
+        &Figures::all_after_3_worst, &Figures::unchanged, &Figures::unchanged_worst})
+    for (size_t i = 0; i < 2; ++i) (spread.*figure)[i] = deviation(figure, i);
+  return spread;
+}
+
+std::string formatted(const char* format, double value) {
+  if (!std::isfinite(value)) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string rowOf(const std::string& name, const Figures& figures, bool with_sign) {
+  const char* more = with_sign ? "%+.1f" : "%.1f";
+  const auto pair = [](const std::array<double, 2>& both, const char* format) {
+    return formatted(format, both[0]) + " / " + formatted(format, both[1]);
+  };
   char line[200];
-  std::snprintf(line, sizeof line, "%-13s %15s %17s %15s %17s  %s\n", rule.c_str(),
-                sequence.c_str(), sequence_worst.c_str(), all_10.c_str(), all_3.c_str(),
-                unchanged.c_str());
+  std::snprintf(
+      line, sizeof line, "%-13s %15s %15s %15s %15s %16s %16s\n", name.c_str(),
+      pair(figures.sequences, "%.1f").c_str(), pair(figures.sequences_worst, more).c_str(),
+      pair(figures.all_after_10, "%.1f").c_str(), pair(figures.all_after_3_worst, more).c_str(),
+      pair(figures.unchanged, "%.3f").c_str(), pair(figures.unchanged_worst, "%.3f").c_str());
   return line;
 }
 
 }  // namespace
 
-std::string textOfKeyFigures(const Tables& tables, const Setting& setting) {
+std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
+                             const std::vector<Tables>& books) {
   std::string text =
-      "KEY FIGURES, position / orientation. Reductions [%] against single, median over "
-      "transitions; worst\n"
-      "transition [%] against off (+ = worse than no learning); test sequences, then errors over "
-      "all patterns\n"
-      "after 10 and after 3 executions; long-run error on an unchanged surface over the omniscient "
-      "one,\nmedian (worst) over surfaces.\n\n";
+      "KEY FIGURES, position / orientation. Reductions [%] against single: median over "
+      "transitions. "
+      "Against\noff [%]: the worst transition, + = worse than no learning. Test sequences; errors "
+      "over all patterns after\n10 and after 3 executions; error in the long run on an unchanged "
+      "surface over the omniscient one.\n\n";
   char head[200];
-  std::snprintf(head, sizeof head, "%-13s %15s %17s %15s %17s  %s\n", "rule", "sequences",
-                "worst vs off", "all after 10", "all 3, vs off", "unchanged");
+  std::snprintf(head, sizeof head, "%-13s %15s %15s %15s %15s %16s %16s\n", "rule", "sequences",
+                "worst to off", "all after 10", "all 3 to off", "unchanged", "worst surface");
   text += head;
-  for (const std::string& rule : setting.rules) text += rowOf(tables, rule);
+  for (const std::string& rule : setting.rules) text += rowOf(rule, figuresOf(tables, rule), true);
+  if (books.size() < 2) return text;
+  text += "deviation from book to book\n";
+  for (const std::string& rule : setting.rules) text += rowOf(rule, spreadOf(books, rule), false);
   return text;
 }
 

@@ -88,8 +88,8 @@ void run(const Arguments& arguments) {
   if (!arguments.out.empty()) tread::experiment::writeCampaign(arguments.out, campaign);
   std::cout << textOfErrors(campaign.tables, campaign.setting) << '\n'
             << textOfReductions(campaign.tables, campaign.setting) << '\n'
-            << textOfAgreement(campaign.tables, campaign.setting) << '\n'
-            << textOfKeyFigures(campaign.tables, campaign.setting) << std::flush;
+            << textOfAgreement(campaign.tables, campaign.setting, campaign.books) << '\n'
+            << textOfKeyFigures(campaign.tables, campaign.setting, campaign.books) << std::flush;
   std::fprintf(stderr, "%s: %zu transitions, %.2f s of trials on %d threads\n",
                campaign.source.c_str(), campaign.first.transitions.size(), campaign.seconds,
                arguments.request.threads);

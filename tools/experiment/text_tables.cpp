@@ -123,6 +123,37 @@ std::string reductionGrid(const Tables& tables, const Setting& setting, const st
   return text;
 }
 
+std::string rmsLine(const std::string& name, const std::array<double, 4>& rms) {
+  std::string line = "  " + padded(name, 12);
+  for (size_t c = 0; c < 4; ++c)
+    line += std::string("  ") + static_cast<char>('a' + c) + formatted(" %.4f", rms[c]);
+  return line + "\n";
+}
+
+/// The largest deviations and the fewest and most signs of single books.
+std::string booksLines(const std::vector<Tables>& books) {
+  Agreement most = *agreementWithPaper(books.front()), fewest = most;
+  for (const Tables& book : books) {
+    const Agreement one = *agreementWithPaper(book);
+    for (size_t c = 0; c < 4; ++c) {
+      most.position_rms[c] = std::max(most.position_rms[c], one.position_rms[c]);
+      most.orientation_rms[c] = std::max(most.orientation_rms[c], one.orientation_rms[c]);
+    }
+    most.position_signs = std::max(most.position_signs, one.position_signs);
+    most.orientation_signs = std::max(most.orientation_signs, one.orientation_signs);
+    fewest.position_signs = std::min(fewest.position_signs, one.position_signs);
+    fewest.orientation_signs = std::min(fewest.orientation_signs, one.orientation_signs);
+  }
+  std::string text = "Of single books at most:\n" + rmsLine(kPosition, most.position_rms) +
+                     rmsLine(kOrientation, most.orientation_rms);
+  if (most.cells > 0)
+    text += "  signs: orientation " + std::to_string(fewest.orientation_signs) + " to " +
+            std::to_string(most.orientation_signs) + ", position " +
+            std::to_string(fewest.position_signs) + " to " + std::to_string(most.position_signs) +
+            "\n";
+  return text;
+}
+
 std::string spreadNote(const Tables& tables, const Setting& setting) {
   if (setting.books < 2) return "";
   double largest[2] = {0.0, 0.0};
@@ -192,26 +223,20 @@ std::string textOfReductions(const Tables& tables, const Setting& setting) {
   return text;
 }
 
-std::string textOfAgreement(const Tables& tables, const Setting& setting) {
-  if (!setting.paper_reference) return "";
+std::string textOfAgreement(const Tables& tables, const Setting& setting,
+                            const std::vector<Tables>& books) {
   const std::optional<Agreement> agreement = agreementWithPaper(tables);
-  if (!agreement) return "";
+  if (!setting.paper_reference || !agreement) return "";
   std::string text =
-      "RMS deviation from the paper's Table I (cinder -> tarmac orientation left out):\n";
-  const auto line = [&](const char* name, const std::array<double, 4>& rms) {
-    text += "  " + padded(name, 12);
-    for (size_t c = 0; c < 4; ++c)
-      text += std::string("  ") + static_cast<char>('a' + c) + formatted(" %.4f", rms[c]);
-    text += "\n";
-  };
-  line(kPosition, agreement->position_rms);
-  line(kOrientation, agreement->orientation_rms);
-  const std::string of = "/" + std::to_string(agreement->cells);
+      "RMS deviation from the paper's Table I (cinder -> tarmac orientation left out):\n" +
+      rmsLine(kPosition, agreement->position_rms) +
+      rmsLine(kOrientation, agreement->orientation_rms);
   if (agreement->cells > 0)
-    text += "Signs of Table II: orientation " + std::to_string(agreement->orientation_signs) + of +
-            ", position " + std::to_string(agreement->position_signs) + of +
-            " (all printed cells counted)\n";
-  return text;
+    text += "Signs of Table II, all printed cells counted: orientation " +
+            std::to_string(agreement->orientation_signs) + "/" + std::to_string(agreement->cells) +
+            ", position " + std::to_string(agreement->position_signs) + "/" +
+            std::to_string(agreement->cells) + "\n";
+  return books.size() < 2 ? text : text + booksLines(books);
 }
 
 }  // namespace tread::experiment

@@ -22,10 +22,13 @@ struct Setting {
 std::string textOfErrors(const Tables& tables, const Setting& setting);
 /// Table II: collective against single as in the paper, then each other rule.
 std::string textOfReductions(const Tables& tables, const Setting& setting);
-/// RMS deviations and signs; empty where nothing can be compared.
-std::string textOfAgreement(const Tables& tables, const Setting& setting);
-/// Medians by rule over all transitions: reductions, all patterns, unchanged ground.
-std::string textOfKeyFigures(const Tables& tables, const Setting& setting);
+/// RMS deviations and signs, and those of single books; empty where nothing can be compared.
+std::string textOfAgreement(const Tables& tables, const Setting& setting,
+                            const std::vector<Tables>& books);
+/// Medians and worst cases by rule: reductions, all patterns, unchanged ground; with several books
+/// the deviation between them.
+std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
+                             const std::vector<Tables>& books);
 
 /// The median; NaN of nothing.
 double median(std::vector<double> values);

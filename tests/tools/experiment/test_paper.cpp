@@ -71,7 +71,7 @@ TEST_CASE("numbers of other surfaces are not compared with the paper") {
   settings.repetitions = 50;
   const Tables tables = tablesOf(runExperiment(grounds, settings, {}), settings, grounds);
   CHECK_FALSE(agreementWithPaper(tables));
-  CHECK(textOfAgreement(tables, {{"ice", "road"}, settings.rules, true, 1}).empty());
+  CHECK(textOfAgreement(tables, {{"ice", "road"}, settings.rules, true, 1}, {}).empty());
 }
 
 }  // namespace tread::experiment
