@@ -39,9 +39,14 @@ DriveSession sessionOf(const CsvTable& table, size_t row) {
   session.name = table.text(row, table.column("session"));
   session.robot = table.text(row, table.column("robot"));
   session.surface = table.text(row, table.column("surface"));
-  session.wheel_radius = within(table, row, "wheel_radius_m", 0.01, 2.0);
-  session.baseline = within(table, row, "baseline_m", 0.05, 5.0);
-  session.pose_lag = within(table, row, "pose_lag_s", 0.0, 2.0);
+  // A session without its numbers is of no use, but the others are.
+  try {
+    session.wheel_radius = within(table, row, "wheel_radius_m", 0.01, 2.0);
+    session.baseline = within(table, row, "baseline_m", 0.05, 5.0);
+    session.pose_lag = within(table, row, "pose_lag_s", 0.0, 2.0);
+  } catch (const ImportError& error) {
+    session.problem = error.what();
+  }
   return session;
 }
 
@@ -57,12 +62,16 @@ void readSteps(const std::string& path, std::vector<DriveSession>& sessions) {
     const auto session = std::find_if(sessions.begin(), sessions.end(), [&](const DriveSession& s) {
       return s.name == table.text(row, name);
     });
-    if (session == sessions.end())
-      throw table.error(row, "session " + table.text(row, name) + " is not in sessions.csv");
+    if (session == sessions.end() || !session->problem.empty()) continue;
+    // What is not fit for use may lack numbers, too.
+    if (table.text(row, ok) != "1") {
+      session->steps.push_back({table.integer(row, step), {}, false});
+      continue;
+    }
     const double radius = session->wheel_radius;
     session->steps.push_back({table.integer(row, step),
                               {radius * table.number(row, left), radius * table.number(row, right)},
-                              table.integer(row, ok) == 1});
+                              true});
   }
 }
 
@@ -78,41 +87,49 @@ struct StepColumns {
   size_t step, window, time, x, y, yaw, fresh;
 };
 
-/// Poses of the rows (first, last) that are new.
-std::vector<WindowPose> posesOf(const CsvTable& table, const StepColumns& columns, size_t first,
-                                size_t last) {
+/// Poses of a window, by their time in the part of it that is used.
+struct SettledPoses {
   std::vector<WindowPose> poses;
-  const double begin = table.number(first, columns.time);
-  double before = begin;
+  double duration = 0.0;  ///< [s] of that part
+};
+
+/// New poses of the rows (first, last) that were measured after `settle`.
+SettledPoses posesOf(const CsvTable& table, const StepColumns& columns, size_t first, size_t last,
+                     double lag, double duration, double settle) {
+  const double logged = table.number(first, columns.time);
+  const double begin = std::max(logged - lag, settle);
+  SettledPoses settled;
+  settled.duration = logged + duration - lag - begin;
+  double before = logged;
   for (size_t row = first + 1; row < last; ++row) {
     const double time = table.number(row, columns.time);
     if (time <= before)
       throw table.error(row, "t_s does not grow within the window; are the rows in order?");
     before = time;
-    if (table.integer(row, columns.fresh) == 0) continue;
-    poses.push_back({time - begin,
-                     {table.number(row, columns.x), table.number(row, columns.y),
-                      table.number(row, columns.yaw)}});
+    const double measured = time - lag - begin;
+    if (table.integer(row, columns.fresh) == 0 || measured < -1e-9) continue;
+    settled.poses.push_back({measured,
+                             {table.number(row, columns.x), table.number(row, columns.y),
+                              table.number(row, columns.yaw)}});
   }
-  return poses;
+  return settled;
 }
 
 /// Sorts windows into those used and those left out.
 class WindowReader {
  public:
-  WindowReader(const DriveSession& session, double baseline, double duration,
-               const SmoothingLimits& limits)
-      : session_(session), baseline_(baseline), duration_(duration), limits_(limits) {}
+  WindowReader(const DriveSession& session, double baseline, const SmoothingLimits& limits)
+      : session_(session), baseline_(baseline), limits_(limits) {}
 
-  void take(int step_number, int window, const std::vector<WindowPose>& poses) {
+  void take(int step_number, int window, const SettledPoses& settled) {
     const auto step = std::find_if(session_.steps.begin(), session_.steps.end(),
                                    [&](const CommandStep& s) { return s.number == step_number; });
     if (step == session_.steps.end()) return leaveOut("step is not in steps_quality.csv");
     if (!step->ok) return leaveOut("step is not ok in steps_quality.csv");
-    const std::string problem = windowProblem(poses, duration_, limits_);
+    const std::string problem = windowProblem(settled.poses, settled.duration, limits_);
     if (!problem.empty()) return leaveOut(problem);
     result.used.push_back({session_.name, step_number, window, bodyCommand(step->tracks, baseline_),
-                           smoothed(poses, duration_, limits_)});
+                           smoothed(settled.poses, settled.duration, limits_)});
   }
 
   SessionWindows result;
@@ -122,7 +139,6 @@ class WindowReader {
 
   const DriveSession& session_;
   double baseline_;
-  double duration_;
   const SmoothingLimits& limits_;
 };
 
@@ -159,7 +175,7 @@ SessionWindows readWindows(const std::string& folder, const DriveSession& sessio
   const CsvTable table(path);
   requireColumns(table, path, {"step", "window", "t_s", "x_m", "y_m", "yaw_rad", "pose_new"});
   const StepColumns columns(table);
-  WindowReader reader(session, baseline, duration, limits);
+  WindowReader reader(session, baseline, limits);
   for (size_t row = 0; row < table.rows();) {
     const int step = table.integer(row, columns.step);
     const int window = table.integer(row, columns.window);
@@ -167,7 +183,9 @@ SessionWindows readWindows(const std::string& folder, const DriveSession& sessio
     while (last < table.rows() && table.integer(last, columns.step) == step &&
            table.integer(last, columns.window) == window)
       ++last;
-    if (window == 1 || window == 2) reader.take(step, window, posesOf(table, columns, row, last));
+    if (window == 1 || window == 2)
+      reader.take(step, window,
+                  posesOf(table, columns, row, last, session.pose_lag, duration, limits.settle));
     row = last;
   }
   return std::move(reader.result);

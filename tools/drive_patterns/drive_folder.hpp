@@ -29,6 +29,7 @@ struct DriveSession {
   double wheel_radius = 0.0;  ///< [m]
   double baseline = 0.0;      ///< [m] by which (v, w) became wheel speeds
   double pose_lag = 0.0;      ///< [s] poses are logged this long after they were measured
+  std::string problem;        ///< why its row cannot be used, in words; empty if it can
   std::vector<CommandStep> steps;
 
   size_t okSteps() const;
@@ -52,7 +53,8 @@ struct SessionWindows {
 /// Reads steps/SESSION.csv and smooths its steady windows; commands by the reference baseline.
 /** A window's poses are its own rows with a new pose; the first row is not used, because windows
  * were joined there. They were measured one pose lag before they were logged, so that a window of
- * [t, t + T] tells of [t - lag, t + T - lag]. Throws importer::ImportError. */
+ * [t, t + T] tells of [t - lag, t + T - lag]; what of it lies before the motion has settled is not
+ * used. The profile is centred on the rest. Throws importer::ImportError. */
 SessionWindows readWindows(const std::string& folder, const DriveSession& session, double baseline,
                            double duration, const SmoothingLimits& limits);
 

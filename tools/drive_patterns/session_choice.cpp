@@ -67,6 +67,7 @@ const DriveSession& ofUsualGeometry(const std::vector<DriveSession>& sessions, d
 /// Why a session's commands are not enough, in words; empty if they are.
 std::string commandProblem(const DriveSession& session, const BodyCommand& needed,
                            const ComparableLimits& limits) {
+  if (!session.problem.empty()) return session.problem;
   if (session.okSteps() < limits.min_steps)
     return "has " + std::to_string(session.okSteps()) + " ok steps, needed " +
            std::to_string(limits.min_steps);
@@ -156,7 +157,9 @@ SessionChoice namedSessions(const std::vector<DriveSession>& sessions, const std
   SessionChoice choice;
   for (const DriveSession& session : sessions) {
     if (session.robot != robot) continue;
-    if (std::find(names.begin(), names.end(), session.name) != names.end())
+    const bool named = std::find(names.begin(), names.end(), session.name) != names.end();
+    if (named && !session.problem.empty()) throw DriveError(session.problem);
+    if (named)
       choice.taken.push_back(session);
     else
       choice.left_out.push_back(leftOut(session, "was not asked for"));
