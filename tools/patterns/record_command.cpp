@@ -7,6 +7,7 @@
 #include "common/pattern/pattern_file.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/patterns/commands.hpp"
+#include "tools/patterns/live_run.hpp"
 #include "tools/patterns/model_recording.hpp"
 #include "tools/recordings/book_update.hpp"
 
@@ -18,18 +19,66 @@ struct Options {
   std::string book;
   std::string surface;
   std::string model;
+  bool live = false;
+  int executions = 30;
   ModelRecording how;
+  LiveRecording live_how;
+  std::string lcm_url;
 };
+
+constexpr const char* kFooter =
+    "On the robot (--live) it takes the planner's place: no tread-planner may run; tread-launch\n"
+    "FILE --only ... starts the rest. Nothing is driven before tread-arm allows it; it stops "
+    "where\n"
+    "INS, MOTOR or the permission go, and goes on once it is armed again. It sees no obstacles: a\n"
+    "circle of --room metres around where it begins must be free. It turns back in time where the\n"
+    "set has patterns that turn; beyond the room it stops and asks to be driven back. Executions\n"
+    "that are no fair measurements are refused with the reason and driven again. Ctrl-C stops the\n"
+    "robot; what was recorded until then is kept beside the book as SURFACE.csv.part.";
 
 void record(const Options& options) {
   const PatternSet set = readPatternFile(options.patterns);
   recordings::requireSamePatterns(options.book, set);
-  const recordings::SurfaceRecordings surface =
-      recordModel(set, readModelFile(options.model), options.surface, options.how);
+  recordings::SurfaceRecordings surface{options.surface, {}};
+  if (options.live) {
+    LiveRecording how = options.live_how;
+    how.executions = options.executions;
+    surface.executions =
+        recordLive(set, how, options.lcm_url, options.book + "/" + options.surface + ".csv.part");
+  } else {
+    ModelRecording how = options.how;
+    how.executions = options.executions;
+    surface = recordModel(set, readModelFile(options.model), options.surface, how);
+  }
   const bool replaced = recordings::addToBook(options.book, set, surface);
-  std::cout << options.book << "/" << options.surface << ".csv: " << options.how.executions
+  std::cout << options.book << "/" << options.surface << ".csv: " << options.executions
             << " executions of each of " << set.patterns().size() << " patterns"
-            << (replaced ? ", in the place of what was there" : "") << '\n';
+            << (replaced ? ", in the place of what was there" : "") << std::endl;
+}
+
+void addModelOptions(CLI::App& command, ModelRecording& how) {
+  command.add_option("--seed", how.seed, "with --model: of its spread and noise")
+      ->capture_default_str();
+  command
+      .add_option("--ins-position", how.position,
+                  "with --model: m, standard deviation of each measured sample")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 10.0));
+  command.add_option("--ins-yaw", how.yaw, "with --model: rad, the same for yaw")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 3.0));
+}
+
+void addLiveOptions(CLI::App& command, LiveRecording& how, std::string& lcm_url) {
+  command.add_option("--room", how.room, "with --live: m around where it begins that must be free")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 1000.0));
+  command
+      .add_option("--give-up-after", how.give_up_after,
+                  "with --live: refusals of one pattern in a row")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  command.add_option("--lcm-url", lcm_url, "with --live: LCM provider");
 }
 
 }  // namespace
@@ -38,23 +87,20 @@ CLI::App* addRecord(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "record", "execute each pattern many times and store what it did as a surface of a book");
+  command->footer(kFooter);
   command->add_option("PATTERNS", options->patterns, "pattern file (YAML)")->required();
   command->add_option("--book", options->book, "folder of recordings; made if needed")->required();
   command->add_option("--surface", options->surface, "name of the surface, replaced if recorded")
       ->required();
-  command->add_option("--model", options->model, "vehicle model (YAML) that executes")->required();
-  ModelRecording& how = options->how;
-  command->add_option("-n,--executions", how.executions, "of each pattern")
+  CLI::Option_group* source = command->add_option_group("source", "who executes, one of");
+  source->add_option("--model", options->model, "a vehicle model (YAML)");
+  source->add_flag("--live", options->live, "the robot, or the simulated one, over LCM");
+  source->require_option(1);
+  command->add_option("-n,--executions", options->executions, "of each pattern")
       ->capture_default_str()
       ->check(CLI::Range(1, 100'000));
-  command->add_option("--seed", how.seed, "of the model's spread and noise")->capture_default_str();
-  command
-      ->add_option("--ins-position", how.position, "m, standard deviation of each measured sample")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 10.0));
-  command->add_option("--ins-yaw", how.yaw, "rad, the same for yaw")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 3.0));
+  addModelOptions(*command, options->how);
+  addLiveOptions(*command, options->live_how, options->lcm_url);
   command->callback([options] { record(*options); });
   return command;
 }

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/patterns/live_recorder.hpp"
+
+namespace tread::patterns {
+
+/// Runs a LiveRecorder over real LCM to its end and prints what it says; the executions by pattern.
+/** Throws std::runtime_error if it fails or is interrupted (SIGINT, SIGTERM, SIGHUP), after the
+ * robot was told to stop; what was recorded until then is written to `part`, as far as it goes. */
+std::vector<std::vector<recordings::Execution>> recordLive(const PatternSet& set,
+                                                           const LiveRecording& how,
+                                                           const std::string& lcm_url,
+                                                           const std::string& part);
+
+}  // namespace tread::patterns
