@@ -62,9 +62,14 @@ size_t surfaceCalled(const DriveBook& drives, const std::string& name, const std
   throw DriveError(option + " '" + name + "': name one of the surfaces " + known);
 }
 
-void writeLog(const Options& options, const DriveBook& drives) {
-  const size_t from = surfaceCalled(drives, options.from, "--from");
-  const size_t to = surfaceCalled(drives, options.to, "--to");
+/// The two surfaces of a log, as indices into the book.
+struct Transition {
+  size_t from = 0;
+  size_t to = 0;
+};
+
+void writeLog(const Options& options, const DriveBook& drives, const Transition& transition) {
+  const auto& [from, to] = transition;
   const auto events = drive_patterns::executionLog(drive_patterns::averagedSet(drives, from),
                                                    drives.book.surfaces[from],
                                                    drives.book.surfaces[to], options.executions);
@@ -72,14 +77,22 @@ void writeLog(const Options& options, const DriveBook& drives) {
   for (const LogEvent& event : events)
     writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
   writer.flush();
-  const std::string shipped =
-      (fs::path(options.book) / (drives.surfaces[from].surface + ".yaml")).string();
+  const std::string& known = drives.surfaces[from].surface;
+  const std::string shipped = (fs::path(options.book) / (known + ".yaml")).string();
   std::printf(
       "\n%s: %d executions on %s, then %d on %s; its shipped set is %s. Try:\n"
       "  tread-replay learner %s --patterns %s\n",
-      options.log.c_str(), options.executions.executions, drives.surfaces[from].surface.c_str(),
+      options.log.c_str(), options.executions.executions, known.c_str(),
       options.executions.executions, drives.surfaces[to].surface.c_str(), shipped.c_str(),
       options.log.c_str(), shipped.c_str());
+}
+
+void writeBook(const Options& options, const DriveBook& drives) {
+  refuseForeignSurfaces(options.book, drives);
+  recordings::writeBook(options.book, drives.book);
+  for (size_t i = 0; i < drives.surfaces.size(); ++i)
+    writeOutput((fs::path(options.book) / (drives.surfaces[i].surface + ".yaml")).string(),
+                formatPatterns(drive_patterns::averagedSet(drives, i)), {options.recipe});
 }
 
 void fromRecordings(const Options& options) {
@@ -90,15 +103,15 @@ void fromRecordings(const Options& options) {
   }
   if (options.one_surface) request.min_surfaces = 1;
   const DriveBook drives = drive_patterns::makeDriveBook(request);
-  refuseForeignSurfaces(options.book, drives);
-  recordings::writeBook(options.book, drives.book);
-  for (size_t i = 0; i < drives.surfaces.size(); ++i)
-    writeOutput((fs::path(options.book) / (drives.surfaces[i].surface + ".yaml")).string(),
-                formatPatterns(drive_patterns::averagedSet(drives, i)), {options.recipe});
+  Transition transition;
+  if (!options.log.empty())
+    transition = {surfaceCalled(drives, options.from, "--from"),
+                  surfaceCalled(drives, options.to, "--to")};
+  writeBook(options, drives);
   std::fputs(drive_patterns::reportOf(drives).c_str(), stdout);
   std::printf("\n%s: patterns.yaml, recordings (SURFACE.csv) and averaged sets (SURFACE.yaml)\n",
               options.book.c_str());
-  if (!options.log.empty()) writeLog(options, drives);
+  if (!options.log.empty()) writeLog(options, drives, transition);
 }
 
 void addLogOptions(CLI::App& command, Options& options) {
