@@ -100,7 +100,7 @@ void LiveRecorder::take(const program_t& message) {
   if (message.run_id == book_.runId() || senseless(message.utime, bus_.now())) return;
   silent_ = true;
   fail("another planner speaks on PROGRAM (its run is " + std::to_string(message.run_id) +
-       "); end it first: tread-launch --only starts the robot without tread-planner");
+       "); end it first; config/launch/recording.yaml starts the robot without one");
 }
 
 void LiveRecorder::followTime(int64_t utime) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <system_error>
 
 #include "common/pattern/pattern_file.hpp"
 #include "common/vehicle/model_file.hpp"
@@ -27,30 +29,32 @@ struct Options {
 };
 
 constexpr const char* kFooter =
-    "On the robot (--live) it takes the planner's place: no tread-planner may run; tread-launch\n"
-    "FILE --only ... starts the rest. Nothing is driven before tread-arm allows it; it stops "
-    "where\n"
-    "INS, MOTOR or the permission go, and goes on once it is armed again. It sees no obstacles: a\n"
-    "circle of --room metres around where it begins must be free. It turns back in time where the\n"
-    "set has patterns that turn; beyond the room it stops and asks to be driven back. Executions\n"
-    "that are no fair measurements are refused with the reason and driven again. Ctrl-C stops the\n"
-    "robot; what was recorded until then is kept beside the book as SURFACE.csv.part.";
+    "On the robot (--live) it takes the planner's place: no tread-planner may run; start the rest\n"
+    "with tread-launch config/launch/recording.yaml (or simulated_recording.yaml). Nothing is\n"
+    "driven before tread-arm allows it; it stops where INS, MOTOR or the permission go, and goes\n"
+    "on once it is armed again. It sees no obstacles: a circle of --room metres around where it\n"
+    "begins must be free. It turns back in time where the set has patterns that turn, with left\n"
+    "and right in turns; beyond the room it stops and asks to be driven back. Executions that are\n"
+    "no fair measurements are refused with the reason and driven again. Ctrl-C stops the robot;\n"
+    "what was recorded until then is kept beside the surfaces as SURFACE.csv.part.";
 
 void record(const Options& options) {
   const PatternSet set = readPatternFile(options.patterns);
   recordings::requireSamePatterns(options.book, set);
   recordings::SurfaceRecordings surface{options.surface, {}};
+  const std::string part = options.book + "/" + options.surface + ".csv.part";
   if (options.live) {
     LiveRecording how = options.live_how;
     how.executions = options.executions;
-    surface.executions =
-        recordLive(set, how, options.lcm_url, options.book + "/" + options.surface + ".csv.part");
+    surface.executions = recordLive(set, how, options.lcm_url, part);
   } else {
     ModelRecording how = options.how;
     how.executions = options.executions;
     surface = recordModel(set, readModelFile(options.model), options.surface, how);
   }
   const bool replaced = recordings::addToBook(options.book, set, surface);
+  std::error_code failure;
+  if (options.live) std::filesystem::remove(part, failure);
   std::cout << options.book << "/" << options.surface << ".csv: " << options.executions
             << " executions of each of " << set.patterns().size() << " patterns"
             << (replaced ? ", in the place of what was there" : "") << std::endl;
