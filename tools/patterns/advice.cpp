@@ -13,9 +13,9 @@
 namespace tread::patterns {
 namespace {
 
-constexpr double kSpeedOff = 0.10;  // [m/s] at the end; a quarter of what the learner's gate allows
-constexpr double kTurnOff = 0.15;   // [rad/s]
-constexpr double kShareOff = 0.05;  // [1] of the class's own speed or rate, if that is more
+constexpr double kSpeedOff = 0.15;  // [m/s] at the end; a third of what the learner's gate allows
+constexpr double kTurnOff = 0.20;   // [rad/s]
+constexpr double kShareOff = 0.10;  // [1] of the class's own speed or rate, if that is more
 constexpr double kEndSpan = 0.1;    // [s] over which the twist at the end is taken
 
 template <typename... Values>
@@ -93,7 +93,7 @@ void adviseEnd(const PatternSet& set, const MotionPattern& pattern,
   if (speed_off <= speed_limit && turn_off <= turn_limit) return;
   advice.push_back(line(
       "pattern '%s' ends with %.2f m/s, %.2f m/s to the left and %.2f rad/s; its exit class '%s' "
-      "has %.2f, %.2f and %.2f: hold the class's steady command longer",
+      "has %.2f, %.2f and %.2f: what follows begins otherwise than it was predicted",
       pattern.name.c_str(), end.v_x, end.v_y, end.omega, pattern.exit_class.c_str(), wanted.v_x,
       wanted.v_y, wanted.omega));
 }

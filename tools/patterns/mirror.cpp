@@ -24,13 +24,21 @@ double negated(double value) {
   return value == 0.0 ? 0.0 : -value;
 }
 
+/// The class that is this one with left and right exchanged: itself where it goes straight.
+const MotionClass* mirrorClass(const PatternSet& set, const std::string& name) {
+  const MotionClass& motion = set.classNamed(name);
+  if (motion.steady.left == motion.steady.right) return &motion;
+  for (const MotionClass& other : set.content().classes)
+    if (other.steady.left == motion.steady.right && other.steady.right == motion.steady.left)
+      return &other;
+  return nullptr;
+}
+
 /// Why a pattern that turns cannot be mirrored; empty if it can.
 std::string obstacle(const PatternSet& set, const MotionPattern& pattern) {
-  for (const std::string& name : {pattern.entry_class, pattern.exit_class}) {
-    const TrackCommand& steady = set.classNamed(name).steady;
-    if (steady.left != steady.right)
+  for (const std::string& name : {pattern.entry_class, pattern.exit_class})
+    if (mirrorClass(set, name) == nullptr)
       return "class '" + name + "' turns, and its mirror image is no class of the set";
-  }
   const std::string name = mirroredName(pattern.name);
   if (set.findByName(name) != nullptr)
     return "the name '" + name + "' belongs to a pattern that is not its mirror image";
@@ -86,11 +94,14 @@ std::string mirroredName(const std::string& name) {
 }
 
 const MotionPattern* mirrorPartner(const PatternSet& set, const MotionPattern& pattern) {
+  const MotionClass* entry = mirrorClass(set, pattern.entry_class);
+  const MotionClass* exit = mirrorClass(set, pattern.exit_class);
+  if (entry == nullptr || exit == nullptr) return nullptr;
   const auto isImage = [](const TrackCommand& a, const TrackCommand& b) {
     return a.left == b.right && a.right == b.left;
   };
   for (const MotionPattern& other : set.patterns())
-    if (other.entry_class == pattern.entry_class && other.exit_class == pattern.exit_class &&
+    if (other.entry_class == entry->name && other.exit_class == exit->name &&
         std::equal(other.commands.begin(), other.commands.end(), pattern.commands.begin(),
                    pattern.commands.end(), isImage))
       return &other;
@@ -109,6 +120,18 @@ MotionPattern mirrored(const MotionPattern& pattern) {
   return image;
 }
 
+namespace {
+
+/// The mirror image, between the mirror images of its classes.
+MotionPattern imageIn(const PatternSet& set, const MotionPattern& pattern) {
+  MotionPattern image = mirrored(pattern);
+  image.entry_class = mirrorClass(set, pattern.entry_class)->name;
+  image.exit_class = mirrorClass(set, pattern.exit_class)->name;
+  return image;
+}
+
+}  // namespace
+
 PatternSet withMirrors(const PatternSet& set, const std::optional<std::string>& only,
                        std::vector<std::string>& notes) {
   notes.clear();
@@ -120,7 +143,7 @@ PatternSet withMirrors(const PatternSet& set, const std::optional<std::string>& 
     if (const std::string why = obstacle(set, pattern); !why.empty())
       notes.push_back(quoted(pattern.name) + " not mirrored: " + why);
     else
-      add(content, mirrored(pattern), notes);
+      add(content, imageIn(set, pattern), notes);
   }
   std::string why;
   auto result = PatternSet::make(std::move(content), why);

@@ -16,8 +16,8 @@ bool turns(const MotionPattern& pattern);
 /// The name of the mirror image: the words left and right exchanged, else with _mirrored behind it.
 std::string mirroredName(const std::string& name);
 
-/// The pattern of the set that is this one with left and right exchanged (same classes, commands
-/// exchanged), or nullptr.
+/// The pattern of the set that is this one with left and right exchanged, in its commands and in
+/// the steady commands of its classes, or nullptr.
 const MotionPattern* mirrorPartner(const PatternSet& set, const MotionPattern& pattern);
 
 /// Left and right exchanged: commands, name, y, yaw and their signs in the covariance; never
@@ -27,7 +27,8 @@ MotionPattern mirrored(const MotionPattern& pattern);
 /// The set with the mirror image of every pattern that turns and has no partner, or of the named
 /// one only; `notes` tells what was added and what could not be.
 /** Throws std::runtime_error if the named pattern is not there, has a partner, goes straight or is
- * between classes that turn, and if a name that is needed belongs to another pattern. */
+ * between classes that turn and have no mirror image in the set, and if a name that is needed
+ * belongs to another pattern. */
 PatternSet withMirrors(const PatternSet& set, const std::optional<std::string>& only,
                        std::vector<std::string>& notes);
 

@@ -20,11 +20,13 @@ using picture::Panel;
 // Squared Mahalanobis distance that 95 % of a normal distribution in the plane stay below.
 constexpr double kChi2Of95 = 5.991;
 constexpr double kPanelWidth = 470.0, kPanelHeight = 400.0;  // [pixels]
-constexpr double kSpaceX = 80.0, kSpaceY = 95.0;             // [pixels] around a panel
-constexpr double kTick = 18.0;         // [pixels] length of the mark of the end heading
-constexpr double kLetter = 5.8;        // [pixels] width of a letter of a label, about
-constexpr double kLabelHeight = 12.0;  // [pixels]
-constexpr double kLabelSize = 10.0;    // [points]
+constexpr double kWideWidth = 860.0, kWideHeight = 680.0;    // [pixels] of a panel for all
+constexpr size_t kMostPanels = 4;
+constexpr double kSpaceX = 80.0, kSpaceY = 95.0;  // [pixels] around a panel
+constexpr double kTick = 18.0;                    // [pixels] length of the mark of the end heading
+constexpr double kLetter = 5.8;                   // [pixels] width of a letter of a label, about
+constexpr double kLabelHeight = 12.0;             // [pixels]
+constexpr double kLabelSize = 10.0;               // [points]
 
 using Points = std::vector<Eigen::Vector2d>;
 
@@ -94,29 +96,31 @@ class LabelPlaces {
   std::vector<std::pair<Eigen::Vector2d, double>> taken_;
 };
 
-/// The trajectories that begin in one class.
+/// The trajectories that begin in one class, or all of them.
 class ClassPanel {
  public:
-  ClassPanel(const std::vector<PicturedSet>& sets, std::string entry_class)
-      : sets_(sets), entry_class_(std::move(entry_class)) {
+  /// An empty class means all; the box is in pixels.
+  ClassPanel(const std::vector<PicturedSet>& sets, std::string entry_class, Box box)
+      : sets_(sets), entry_class_(std::move(entry_class)), box_(box) {
     for (const PicturedSet& each : sets_)
-      for (const MotionPattern* pattern : each.set.startingIn(entry_class_)) include(*pattern);
+      for (const MotionPattern* pattern : shownOf(each.set)) include(*pattern);
     // A turn on the spot still needs room for its heading.
     const Eigen::Vector2d middle = (bounds_.low + bounds_.high) / 2.0;
     const Eigen::Vector2d half =
         ((bounds_.high - bounds_.low) / 2.0).cwiseMax(Eigen::Vector2d(0.1, 0.1));
     const double scale =
-        std::max(half.x() / (kPanelWidth / 2.0 - 75.0), half.y() / (kPanelHeight / 2.0 - 35.0));
+        std::max(half.x() / (box_.width / 2.0 - 75.0), half.y() / (box_.height / 2.0 - 35.0));
     metres_per_pixel_ = scale;
     // Names stand to the right of the ends.
     middle_ = middle + Eigen::Vector2d(35.0 * scale, 0.0);
   }
 
-  void draw(picture::Picture& picture, Box box) {
-    const Eigen::Vector2d half(box.width / 2.0 * metres_per_pixel_,
-                               box.height / 2.0 * metres_per_pixel_);
-    const std::string title = "beginning in " + entry_class_;
-    Panel panel(picture, box,
+  void draw(picture::Picture& picture) {
+    const Eigen::Vector2d half(box_.width / 2.0 * metres_per_pixel_,
+                               box_.height / 2.0 * metres_per_pixel_);
+    const std::string title =
+        entry_class_.empty() ? "each in its own entry motion" : "beginning in " + entry_class_;
+    Panel panel(picture, box_,
                 {title, "forward [m]", "left [m]", middle_.x() - half.x(), middle_.x() + half.x(),
                  middle_.y() - half.y(), middle_.y() + half.y(), false});
     panel.line({{-1e3, 0.0}, {1e3, 0.0}}, {picture::kLightGrey, 1.0, false, ""});
@@ -131,6 +135,13 @@ class ClassPanel {
   }
 
  private:
+  std::vector<const MotionPattern*> shownOf(const PatternSet& set) const {
+    if (!entry_class_.empty()) return set.startingIn(entry_class_);
+    std::vector<const MotionPattern*> all;
+    for (const MotionPattern& pattern : set.patterns()) all.push_back(&pattern);
+    return all;
+  }
+
   void include(const MotionPattern& pattern) {
     for (const Eigen::Vector2d& point : pathOf(pattern)) bounds_.add(point);
     for (const Eigen::Vector2d& point : endEllipse(pattern)) bounds_.add(point);
@@ -150,7 +161,7 @@ class ClassPanel {
   }
 
   void drawSet(Panel& panel, size_t s) const {
-    const auto patterns = sets_[s].set.startingIn(entry_class_);
+    const auto patterns = shownOf(sets_[s].set);
     for (size_t p = 0; p < patterns.size(); ++p) {
       Colour colour = colourOf(s, p);
       const Points ellipse = endEllipse(*patterns[p]);
@@ -169,10 +180,9 @@ class ClassPanel {
   void drawLabels(Panel& panel) const {
     LabelPlaces places;
     for (const PicturedSet& each : sets_)
-      for (const MotionPattern* pattern : each.set.startingIn(entry_class_))
-        blockPath(*pattern, places);
+      for (const MotionPattern* pattern : shownOf(each.set)) blockPath(*pattern, places);
     for (size_t s = 0; s < sets_.size(); ++s) {
-      const auto patterns = sets_[s].set.startingIn(entry_class_);
+      const auto patterns = shownOf(sets_[s].set);
       for (size_t p = 0; p < patterns.size(); ++p) {
         if (s > 0 && sets_[0].set.findByName(patterns[p]->name) != nullptr) continue;
         const Colour colour = sets_.size() > 1 ? picture::kBlack : colourOf(s, p);
@@ -215,38 +225,44 @@ class ClassPanel {
 
   const std::vector<PicturedSet>& sets_;
   std::string entry_class_;
+  Box box_;
   Bounds bounds_;
   Eigen::Vector2d middle_{0.0, 0.0};
   double metres_per_pixel_ = 1.0;
 };
 
-/// Classes in which patterns begin, in the order in which the sets name them.
-std::vector<std::string> entryClasses(const std::vector<PicturedSet>& sets) {
+/// Classes in which patterns begin, in the order in which the sets name them; one empty name for
+/// all together where they are too many for a panel each.
+std::vector<std::string> panelClasses(const std::vector<PicturedSet>& sets) {
   std::vector<std::string> names;
   for (const PicturedSet& each : sets)
     for (const MotionPattern& pattern : each.set.patterns())
       if (std::find(names.begin(), names.end(), pattern.entry_class) == names.end())
         names.push_back(pattern.entry_class);
-  return names;
+  return names.size() > kMostPanels ? std::vector<std::string>{""} : names;
 }
 
 }  // namespace
 
 void drawSets(const std::vector<PicturedSet>& sets, const std::string& path) {
-  const std::vector<std::string> classes = entryClasses(sets);
-  const size_t columns = classes.size() <= 3 ? classes.size() : classes.size() <= 4 ? 2 : 3;
+  const std::vector<std::string> classes = panelClasses(sets);
+  const bool together = classes.front().empty();
+  const double width = together ? kWideWidth : kPanelWidth;
+  const double height = together ? kWideHeight : kPanelHeight;
+  const size_t columns = std::min<size_t>(classes.size(), classes.size() == 4 ? 2 : 3);
   const size_t rows = (classes.size() + columns - 1) / columns;
   std::string title = sets.front().label;
   if (sets.size() > 1) title += " and " + sets.back().label;
+  const double total_height = static_cast<double>(rows) * (height + kSpaceY);
   picture::Picture picture(
-      static_cast<int>(static_cast<double>(columns) * (kPanelWidth + kSpaceX) + 20.0),
-      static_cast<int>(static_cast<double>(rows) * (kPanelHeight + kSpaceY) + 50.0), title);
+      static_cast<int>(static_cast<double>(columns) * (width + kSpaceX) + 20.0),
+      static_cast<int>(total_height + 50.0), title);
   for (size_t i = 0; i < classes.size(); ++i) {
-    const double x = 65.0 + static_cast<double>(i % columns) * (kPanelWidth + kSpaceX);
-    const double y = 75.0 + static_cast<double>(i / columns) * (kPanelHeight + kSpaceY);
-    ClassPanel(sets, classes[i]).draw(picture, {x, y, kPanelWidth, kPanelHeight});
+    const double x = 65.0 + static_cast<double>(i % columns) * (width + kSpaceX);
+    const double y = 75.0 + static_cast<double>(i / columns) * (height + kSpaceY);
+    ClassPanel(sets, classes[i], {x, y, width, height}).draw(picture);
   }
-  picture.text(65.0, 85.0 + static_cast<double>(rows) * (kPanelHeight + kSpaceY) - 50.0,
+  picture.text(65.0, total_height + 35.0,
                "Start at the dot, heading to the right. At each end: heading, and the ellipse that "
                "holds 95 % of the ends.",
                11.0, picture::kGrey);

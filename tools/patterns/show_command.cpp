@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/pattern/pattern_file.hpp"
 #include "tools/patterns/commands.hpp"
@@ -21,15 +23,21 @@ struct Options {
   std::string picture;
 };
 
+/// The file's name, with its folder only where the other file has the same name.
+std::string labelOf(const std::string& file, const std::string& other) {
+  const auto name = std::filesystem::path(file).filename();
+  return name == std::filesystem::path(other).filename() ? file : name.string();
+}
+
 void show(const Options& options) {
   const PatternSet set = readPatternFile(options.file);
-  std::vector<PicturedSet> pictured{{options.file, set}};
+  std::vector<PicturedSet> pictured{{labelOf(options.file, options.other), set}};
   if (options.other.empty()) {
     std::cout << table(set);
   } else {
     const PatternSet other = readPatternFile(options.other);
     std::cout << comparison(set, options.file, other, options.other);
-    pictured.push_back({options.other, other});
+    pictured.push_back({labelOf(options.other, options.file), other});
   }
   if (options.picture.empty()) return;
   refuseToReplace(options.picture, {options.file, options.other});

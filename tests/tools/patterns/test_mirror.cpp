@@ -77,3 +77,26 @@ TEST_CASE("What cannot be mirrored is refused by name and noted in passing") {
   CHECK_THROWS_WITH(withMirrors(turns_always, "left", notes),
                     Catch::Contains("class 'cruise' turns"));
 }
+
+TEST_CASE("Between classes that turn, the mirror image is between their mirror images") {
+  PatternSetContent content;
+  content.name = "turning";
+  content.period_us = 100'000;
+  content.classes = {{"left", {0.5, 0.0, 0.2}, {0.4, 0.6}},
+                     {"right", {0.5, 0.0, -0.2}, {0.6, 0.4}}};
+  content.patterns = {
+      samples::pattern(1, "left", {0.4, 0.6}, {0.5, 0.0, 0.2}, "left", "left"),
+      samples::pattern(2, "hold", {0.6, 0.4}, {0.5, 0.0, -0.2}, "right", "right"),
+      samples::pattern(3, "swing_left", {0.3, 0.6}, {0.5, 0.0, 0.2}, "right", "left")};
+  std::string why;
+  const PatternSet set = PatternSet::make(content, why).value();
+  REQUIRE(mirrorPartner(set, set.patterns()[0]) != nullptr);
+  CHECK(mirrorPartner(set, set.patterns()[0])->name == "hold");
+  std::vector<std::string> notes;
+  const PatternSet mirrored_set = withMirrors(set, std::nullopt, notes);
+  CHECK(notes.size() == 1);
+  const MotionPattern* image = mirrored_set.findByName("swing_right");
+  REQUIRE(image != nullptr);
+  CHECK(image->entry_class == "left");
+  CHECK(image->exit_class == "right");
+}
