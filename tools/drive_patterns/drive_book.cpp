@@ -109,24 +109,34 @@ BodyCommand commonReach(const std::vector<DriveSession>& sessions, const std::st
 /// What the largest commands of the patterns are of the largest that were driven, if made to fit.
 constexpr double kFittedShare = 0.6;
 
-/// The recipe with smaller commands if too few surfaces were driven with as large ones; says so.
-SessionChoice fittedChoice(const std::vector<DriveSession>& sessions, const std::string& robot,
-                           DriveRequest& request, std::vector<std::string>& notes) {
-  SessionChoice choice =
-      comparableSessions(sessions, robot, request.recipe.reach(), request.comparable);
-  if (surfacesOf(choice.taken).size() >= request.min_surfaces || !request.fit_recipe) return choice;
-  const BodyCommand driven = commonReach(sessions, robot, request.min_surfaces, request.comparable);
+/// Makes the recipe's commands smaller if they are larger than those that were driven; says so.
+bool fitRecipe(DriveRequest& request, const BodyCommand& driven, std::vector<std::string>& notes) {
   const BodyCommand reach = request.recipe.reach();
-  if (driven.v <= 0.0 || driven.w <= 0.0) return choice;
+  const bool reached = driven.v >= reach.v && driven.w >= reach.w;
+  if (!request.fit_recipe || reached || driven.v <= 0.0 || driven.w <= 0.0) return false;
   const double v_factor = std::min(1.0, kFittedShare * driven.v / reach.v);
   const double w_factor = std::min(1.0, kFittedShare * driven.w / reach.w);
-  const PatternRecipe fitted = scaledRecipe(request.recipe, v_factor, w_factor);
-  SessionChoice again = comparableSessions(sessions, robot, fitted.reach(), request.comparable);
-  if (surfacesOf(again.taken).size() < request.min_surfaces) return choice;
   notes.push_back("the robot was driven too slowly for the recipe: v times " +
                   std::to_string(v_factor) + ", w times " + std::to_string(w_factor));
-  request.recipe = fitted;
-  return again;
+  request.recipe = scaledRecipe(request.recipe, v_factor, w_factor);
+  return true;
+}
+
+/// The sessions that are compared, and a recipe that fits them.
+SessionChoice chosenSessions(const std::vector<DriveSession>& sessions, const std::string& robot,
+                             DriveRequest& request, std::vector<std::string>& notes) {
+  const ComparableLimits& limits = request.comparable;
+  if (!request.sessions.empty()) {
+    SessionChoice named = namedSessions(sessions, robot, request.sessions);
+    const size_t surfaces = surfacesOf(named.taken).size();
+    fitRecipe(request, commonReach(named.taken, robot, surfaces, limits), notes);
+    return named;
+  }
+  SessionChoice choice = comparableSessions(sessions, robot, request.recipe.reach(), limits);
+  if (surfacesOf(choice.taken).size() >= request.min_surfaces) return choice;
+  if (!fitRecipe(request, commonReach(sessions, robot, request.min_surfaces, limits), notes))
+    return choice;
+  return comparableSessions(sessions, robot, request.recipe.reach(), limits);
 }
 
 /// One clear line if sessions of too few surfaces were chosen.
@@ -216,9 +226,7 @@ DriveBook makeDriveBook(const DriveRequest& asked) {
   const std::vector<DriveSession> sessions = readSessions(request.folder);
   const std::string robot = chooseRobot(sessions, request.robot);
   std::vector<std::string> notes;
-  const SessionChoice choice = request.sessions.empty()
-                                   ? fittedChoice(sessions, robot, request, notes)
-                                   : namedSessions(sessions, robot, request.sessions);
+  const SessionChoice choice = chosenSessions(sessions, robot, request, notes);
   for (const std::string& line : choice.left_out) notes.push_back("session left out: " + line);
   requireSurfaces(request, robot, sessions, choice, notes);
   DriveBook drives =

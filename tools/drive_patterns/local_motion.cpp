@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <tuple>
 
 #include "tools/drive_patterns/drive_error.hpp"
@@ -85,12 +86,13 @@ std::vector<Vector6> differencesOf(const std::vector<SteadyWindow>& windows,
   return differences;
 }
 
-/// What a component's difference may be at most.
-Vector6 plausibleDifference(const std::vector<Vector6>& differences) {
+/// What a component's difference may be at most, from the `count` nearest steps.
+Vector6 plausibleDifference(const std::vector<Vector6>& differences, size_t count) {
   Vector6 bound;
+  count = std::min(count, differences.size());
   for (Eigen::Index c = 0; c < 6; ++c) {
-    Eigen::VectorXd sizes(static_cast<Eigen::Index>(differences.size()));
-    for (size_t i = 0; i < differences.size(); ++i)
+    Eigen::VectorXd sizes(static_cast<Eigen::Index>(count));
+    for (size_t i = 0; i < count; ++i)
       sizes[static_cast<Eigen::Index>(i)] = std::abs(differences[i][c]);
     bound[c] = kPlausible * std::max(kSmall[c], kMadToSigma * medianOf(sizes));
   }
@@ -100,7 +102,8 @@ Vector6 plausibleDifference(const std::vector<Vector6>& differences) {
 void addDeviations(const std::vector<SteadyWindow>& windows, const std::vector<Neighbour>& sorted,
                    size_t wanted, LocalMotion& motion) {
   const std::vector<Vector6> differences = differencesOf(windows, sorted);
-  const Vector6 bound = plausibleDifference(differences);
+  const Vector6 bound = plausibleDifference(differences, 2 * wanted)
+                            .cwiseMax(plausibleDifference(differences, differences.size()));
   for (const Vector6& difference : differences) {
     if (motion.deviations.size() == wanted) return;
     if ((difference.cwiseAbs() - bound).maxCoeff() > 0.0)
@@ -108,6 +111,21 @@ void addDeviations(const std::vector<SteadyWindow>& windows, const std::vector<N
     else
       motion.deviations.push_back(TwistProfile::of(difference));
   }
+}
+
+/// A command that is larger than any that was driven would be a guess.
+void requireWithin(const std::vector<SteadyWindow>& windows, const BodyCommand& command) {
+  BodyCommand driven;
+  for (const SteadyWindow& window : windows) {
+    driven.v = std::max(driven.v, std::abs(window.command.v));
+    driven.w = std::max(driven.w, std::abs(window.command.w));
+  }
+  if (driven.v >= std::abs(command.v) && driven.w >= std::abs(command.w)) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "its commands reach %.2f m/s and %.2f rad/s, a pattern has %.2f and %.2f", driven.v,
+                driven.w, command.v, command.w);
+  throw DriveError(text);
 }
 
 }  // namespace
@@ -118,6 +136,7 @@ LocalMotion localMotion(const std::vector<SteadyWindow>& windows, const BodyComm
   if (windows.size() < needed)
     throw DriveError("only " + std::to_string(windows.size()) + " steady windows; " +
                      std::to_string(needed) + " are needed around each pattern's command");
+  requireWithin(windows, command);
   std::vector<Neighbour> sorted = byDistance(windows, command, recipe.reach());
   LocalMotion motion;
   addDeviations(windows, sorted, static_cast<size_t>(recipe.deviations), motion);

@@ -16,9 +16,9 @@
 //   3. deviations of executions: (c_1 - c_2) / sqrt(2) of the two windows of one step, whose
 //      commands are the same: its variance is that of one window about its step. Both signs are
 //      used, so that deviations have no mean. A step is left out if a component of its difference
-//      is beyond 3.5 robust standard deviations (1.4826 median) of all steps of the surface: speed
-//      that changes by metres per second under a constant command is a failure of the lidar's
-//      poses.
+//      is beyond 3.5 robust standard deviations (1.4826 median), both of all steps and of the
+//      nearest (twice as many as are used): speed that changes by metres per second under a
+//      constant command is a failure of the lidar's poses.
 // Source: learning.md of the project's reference, section 6.
 namespace tread::drive_patterns {
 
@@ -32,8 +32,8 @@ struct LocalMotion {
 };
 
 /// The motion for a command; `reach` holds the largest |v| and |w| of the patterns.
-/** Throws DriveError if there are fewer than `least` windows, or fewer than `deviations` steps of
- * which both windows are there and agree. */
+/** Throws DriveError if there are fewer windows than neighbours wanted, fewer than `deviations`
+ * steps of which both windows are there and agree, or none with as large a command. */
 LocalMotion localMotion(const std::vector<SteadyWindow>& windows, const BodyCommand& command,
                         const PatternRecipe& recipe);
 

@@ -119,7 +119,12 @@ TEST_CASE("a robot that was driven slowly gets smaller commands, and the report 
   CHECK(straight.left > 0.2);
   CHECK(straight.left < 0.3);
   CHECK(drives.notes.front().find("the robot was driven too slowly for the recipe") == 0);
+  request.sessions = {"two", "one"};
+  CHECK(makeDriveBook(request).book.patterns.checksum() == drives.book.patterns.checksum());
   request.fit_recipe = false;
+  CHECK(complaint(request).find("surface 'soft' left out: its commands reach 0.") !=
+        std::string::npos);
+  request.sessions.clear();
   CHECK(complaint(request).find(": 0 surface(s) of Snail have comparable sessions, 2 are needed; "
                                 "session left out: one (hard): commands reach") == 0);
 }
