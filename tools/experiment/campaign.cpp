@@ -158,6 +158,11 @@ class Runner {
     campaign_.books.push_back(tablesOf(errors, campaign_.settings, grounds));
     if (number > 0) return;
     for (const Ground& ground : grounds) campaign_.setting.surfaces.push_back(ground.surface);
+    const auto& rules = campaign_.settings.rules;
+    if (std::find(rules.begin(), rules.end(), "bank") != rules.end())
+      for (size_t home = 0; home < grounds.size(); ++home)
+        campaign_.tours.push_back(tourOfBank(campaign_.settings.config, grounds, home,
+                                             seedOf({campaign_.settings.seed, home})));
     campaign_.grounds = std::move(grounds);
     campaign_.first = std::move(errors);
   }
@@ -167,6 +172,23 @@ class Runner {
 };
 
 }  // namespace
+
+std::string textOfTours(const Campaign& campaign) {
+  if (campaign.tours.empty()) return "";
+  std::string text =
+      "THE BANK before a transition: it begins empty, drives the other surfaces in random order, "
+      "then the one\nthat the transition starts from. One of the tours of each:\n";
+  for (const std::vector<TourLeg>& legs : campaign.tours) {
+    text += "  from " + legs.back().surface + ":";
+    for (const TourLeg& leg : legs)
+      text += " " + leg.surface + " (" + std::to_string(leg.executions) + " executions, " +
+              (leg.stored_after > 0 ? "stored after " + std::to_string(leg.stored_after)
+                                    : std::string("not stored")) +
+              ")";
+    text += "\n";
+  }
+  return text;
+}
 
 Campaign runCampaign(const Request& request, const std::function<void(double)>& progress) {
   return Runner(request, progress).run();

@@ -34,15 +34,19 @@ struct Campaign {
   std::string source;              ///< the world or folder, in words
   std::vector<std::string> notes;  ///< about the recordings
   std::vector<Tables> books;
-  Tables tables;                ///< of all books together
-  std::vector<Ground> grounds;  ///< of the first book
-  ExperimentErrors first;       ///< of it, for the pictures
-  double seconds = 0.0;         ///< of the trials, without recording
+  Tables tables;                            ///< of all books together
+  std::vector<Ground> grounds;              ///< of the first book
+  ExperimentErrors first;                   ///< of it, for the pictures
+  std::vector<std::vector<TourLeg>> tours;  ///< of the rule bank, by surface it comes home to
+  double seconds = 0.0;                     ///< of the trials, without recording
 };
 
 /// Runs everything; throws an exception with one line for what cannot be done. progress(share of
 /// the work that is done, 0..1).
 Campaign runCampaign(const Request& request, const std::function<void(double)>& progress);
+
+/// What the bank met before the transitions; empty without that rule.
+std::string textOfTours(const Campaign& campaign);
 
 /// Writes all files into a folder, which is made if needed.
 void writeCampaign(const std::string& folder, const Campaign& campaign);

@@ -283,8 +283,9 @@ std::string Writer::html(const std::string& figure4, const std::string& figure5)
   const size_t shown = transitionOfFigures(campaign_.first, campaign_.settings, campaign_.grounds);
   const std::string words = wordsOf(campaign_.first.transitions[shown], campaign_.grounds);
   std::string text = kHead + about() + "<pre>" +
-                     escaped(textOfKeyFigures(tables_, setting_, campaign_.books)) + "</pre>\n" +
-                     errors() + reductions();
+                     escaped(textOfKeyFigures(tables_, setting_, campaign_.books) + "\n" +
+                             textOfTours(campaign_)) +
+                     "</pre>\n" + errors() + reductions();
   text += "<h2>Figure 4: from " + escaped(words) + ", error over executions</h2>\n" +
           picture(figure4, "error over executions");
   text += "<h2>Figure 5: from " + escaped(words) + ", error distributions</h2>\n" +

@@ -14,29 +14,20 @@ using learner::Rule;
 constexpr int kLeg = 40;          // executions on each surface of a tour
 constexpr int kLongestLeg = 120;  // if the surface is still unknown by then
 
-/// Drives random patterns on a surface until it is known, for a leg at least.
-void driveLeg(LearningRule& rule, const Ground& ground, std::mt19937_64& random) {
+TourLeg driveLeg(LearningRule& rule, const Ground& ground, std::mt19937_64& random) {
+  TourLeg leg{ground.surface};
   bool known = false;
-  for (int i = 0; i < kLeg || (!known && i < kLongestLeg); ++i) {
+  while (leg.executions < kLeg || (!known && leg.executions < kLongestLeg)) {
     const size_t pattern = drawIndex(random, ground.executions.size());
     const Executions& executions = ground.executions[pattern];
     learner::RuleNote note;
     rule.learn(pattern, executions.of(drawIndex(random, executions.size())), note);
-    known = known || note.surface_stored || note.surface > 0;
+    ++leg.executions;
+    if (note.surface_stored && leg.stored_after == 0) leg.stored_after = leg.executions;
+    // At first it may still be taken for the surface before.
+    known = leg.stored_after > 0 || (leg.executions >= kLeg && note.surface > 0);
   }
-}
-
-/// All surfaces but `home` and `unseen` in random order, then home.
-void tour(LearningRule& rule, const std::vector<Ground>& grounds, size_t home, size_t unseen,
-          uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::vector<size_t> others;
-  for (size_t s = 0; s < grounds.size(); ++s)
-    if (s != home && s != unseen) others.push_back(s);
-  for (size_t left = others.size(); left > 1; --left)
-    std::swap(others[left - 1], others[drawIndex(random, left)]);
-  for (const size_t surface : others) driveLeg(rule, grounds[surface], random);
-  driveLeg(rule, grounds[home], random);
+  return leg;
 }
 
 std::unique_ptr<LearningRule> made(const std::string& name, learner::RuleConfig config,
@@ -48,6 +39,26 @@ std::unique_ptr<LearningRule> made(const std::string& name, learner::RuleConfig 
 }
 
 }  // namespace
+
+std::vector<TourLeg> driveTour(LearningRule& rule, const std::vector<Ground>& grounds, size_t home,
+                               size_t unseen, uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::vector<size_t> others;
+  for (size_t s = 0; s < grounds.size(); ++s)
+    if (s != home && s != unseen) others.push_back(s);
+  for (size_t left = others.size(); left > 1; --left)
+    std::swap(others[left - 1], others[drawIndex(random, left)]);
+  std::vector<TourLeg> legs;
+  for (const size_t surface : others) legs.push_back(driveLeg(rule, grounds[surface], random));
+  legs.push_back(driveLeg(rule, grounds[home], random));
+  return legs;
+}
+
+std::vector<TourLeg> tourOfBank(const learner::RuleConfig& config,
+                                const std::vector<Ground>& grounds, size_t home, uint64_t seed) {
+  const auto rule = made(learner::ruleName(Rule::kBank), config, grounds[home].averaged);
+  return driveTour(*rule, grounds, home, grounds.size(), seed);
+}
 
 std::vector<std::string> contestantNames() {
   std::vector<std::string> names = learner::ruleNames();
@@ -67,9 +78,9 @@ Lineup::Lineup(const std::vector<std::string>& names, const learner::RuleConfig&
       one.fixed = &grounds[to].averaged_ends;
     } else {
       one.start = made(name, config, grounds[from].averaged);
-      if (name == bank) tour(*one.start, grounds, from, grounds.size(), tour_seed);
+      if (name == bank) driveTour(*one.start, grounds, from, grounds.size(), tour_seed);
       // On an unchanged surface nothing was met before: the bank is empty.
-      if (name == kBankUnseen && from != to) tour(*one.start, grounds, from, to, tour_seed);
+      if (name == kBankUnseen && from != to) driveTour(*one.start, grounds, from, to, tour_seed);
       one.state = one.start->clone();
     }
     contestants_.push_back(std::move(one));

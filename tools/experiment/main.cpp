@@ -89,7 +89,8 @@ void run(const Arguments& arguments) {
   std::cout << textOfErrors(campaign.tables, campaign.setting) << '\n'
             << textOfReductions(campaign.tables, campaign.setting) << '\n'
             << textOfAgreement(campaign.tables, campaign.setting, campaign.books) << '\n'
-            << textOfKeyFigures(campaign.tables, campaign.setting, campaign.books) << std::flush;
+            << textOfKeyFigures(campaign.tables, campaign.setting, campaign.books) << '\n'
+            << textOfTours(campaign) << std::flush;
   std::fprintf(stderr, "%s: %zu transitions, %.2f s of trials on %d threads\n",
                campaign.source.c_str(), campaign.first.transitions.size(), campaign.seconds,
                arguments.request.threads);

@@ -17,6 +17,7 @@ std::size_t allocations() {
 }
 }  // namespace tread::experiment::testing
 
+#ifndef TREAD_INSTRUMENTED  // sanitizers bring their own
 void* operator new(std::size_t size) {
   count.fetch_add(1, std::memory_order_relaxed);
   if (void* memory = std::malloc(size)) return memory;
@@ -28,3 +29,4 @@ void operator delete(void* memory) noexcept {
 void operator delete(void* memory, std::size_t) noexcept {
   std::free(memory);
 }
+#endif
