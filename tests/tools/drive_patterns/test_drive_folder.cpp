@@ -198,7 +198,7 @@ TEST_CASE("files that are missing, damaged or of another layout are one clear li
         "/steps/one.csv:3: t_s does not grow within the window; are the rows in order?");
 }
 
-TEST_CASE("a recipe says which patterns; what it gets wrong is told with its line") {
+TEST_CASE("a recipe says which patterns are built, and what it gets wrong is told with its line") {
   const PatternRecipe shipped = readRecipe(ConfigReader::fromFile(
       std::string(TREAD_SOURCE_DIR) + "/config/patterns/recipes/drive.yaml"));
   const PatternRecipe built_in = defaultRecipe();
