@@ -40,15 +40,16 @@ std::string readText(const std::string& path) {
 }
 
 void writeText(const std::string& path, const std::string& text) {
-  const fs::path target = targetOf(path);
   std::error_code failure;
   bool written = false;
-  if (fs::exists(target, failure) && !fs::is_regular_file(target, failure)) {
-    written = !fs::is_directory(target, failure) && writePlainly(target, text);
+  if (fs::exists(path, failure) && !fs::is_regular_file(path, failure)) {
+    written = !fs::is_directory(path, failure) && writePlainly(path, text);
   } else {
+    const fs::path target = targetOf(path);
     const fs::path fresh = target.parent_path() / ("." + target.filename().string() + "." +
                                                    std::to_string(::getpid()) + ".tmp");
     written = writePlainly(fresh, text);
+    failure.clear();
     if (written) fs::rename(fresh, target, failure);
     written = written && !failure;
     if (!written) fs::remove(fresh, failure);

@@ -216,7 +216,7 @@ TEST_CASE("Beyond the room it stops at once, and arming there does not help") {
   CHECK(drive.motor().execution_id == 0);
 }
 
-TEST_CASE("An INS that is lost stops the drive; the execution is refused and driven again") {
+TEST_CASE("An INS that is lost stops the drive, and the execution is refused and driven again") {
   LiveRecording how;
   how.executions = 2;
   RecordedDrive drive(fewPatterns(), how);

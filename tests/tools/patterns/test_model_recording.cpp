@@ -56,7 +56,7 @@ TEST_CASE("What a model recorded averages to what the model predicts, ends scatt
   }
 }
 
-TEST_CASE("The same seed records the same; another seed or surface does not") {
+TEST_CASE("The same seed records the same, another seed or surface does not") {
   ModelRecording how;
   how.executions = 2;
   const auto first = recordModel(shipped(), grass(), "grass", how);

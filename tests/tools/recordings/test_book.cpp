@@ -8,6 +8,7 @@
 
 #include "common/pattern/pattern_file.hpp"
 #include "tests/tools/recordings/samples.hpp"
+#include "tools/recordings/text_file.hpp"
 
 using namespace tread;
 using namespace tread::recordings;
@@ -139,4 +140,24 @@ TEST_CASE("A book of four surfaces, five patterns and 300 executions is read wit
 #endif
   INFO("120000 poses read in " << took.count() << " s");
   CHECK(took.count() < 20.0);
+}
+
+TEST_CASE("A file is written whole or not at all, through links and into pipes") {
+  const Folder folder;
+  folder.write("old", "old");
+  std::filesystem::create_symlink(folder.path("old"), folder.path("link"));
+  writeText(folder.path("link"), "new");
+  CHECK(std::filesystem::is_symlink(folder.path("link")));
+  CHECK(readText(folder.path("old")) == "new");
+  writeText("/dev/null", "nothing");
+  CHECK(std::filesystem::is_character_file("/dev/null"));
+  CHECK_THROWS_WITH(writeText(folder.path("no/such/file"), "x"),
+                    Catch::Contains("cannot be written"));
+  CHECK_THROWS_WITH(writeText(folder.path(), "x"), Catch::Contains("cannot be written"));
+  size_t files = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder.path())) {
+    CHECK(file.path().extension() != ".tmp");
+    ++files;
+  }
+  CHECK(files == 2);
 }
