@@ -4,10 +4,8 @@
 
 #include <atomic>
 #include <csignal>
-#include <filesystem>
 #include <iostream>
 #include <stdexcept>
-#include <system_error>
 
 #include "common/bus/lcm_bus.hpp"
 #include "tools/recordings/surface_csv.hpp"
@@ -45,8 +43,6 @@ std::string keepPart(const std::string& path, const PatternSet& set, const LiveR
   size_t executions = 0;
   for (const auto& of_pattern : recorder.recorded()) executions += of_pattern.size();
   if (executions == 0) return "";
-  std::error_code failure;
-  std::filesystem::create_directories(std::filesystem::path(path).parent_path(), failure);
   recordings::writeText(path, recordings::formatSurface({"", recorder.recorded()}, set));
   return "; the " + std::to_string(executions) + " executions until then are in " + path;
 }

@@ -40,7 +40,7 @@ constexpr const char* kFooter =
 
 void record(const Options& options) {
   const PatternSet set = readPatternFile(options.patterns);
-  recordings::requireSamePatterns(options.book, set);
+  recordings::requireAddable(options.book, set, options.surface);
   recordings::SurfaceRecordings surface{options.surface, {}};
   const std::string part = options.book + "/" + options.surface + ".csv.part";
   if (options.live) {

@@ -2,8 +2,10 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/recordings/book_update.hpp"
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <filesystem>
-#include <optional>
 #include <system_error>
 
 #include "common/pattern/pattern_file.hpp"
@@ -33,8 +35,6 @@ std::string executedDifference(const PatternSet& book, const PatternSet& execute
   return "";
 }
 
-}  // namespace
-
 void requireSamePatterns(const std::string& folder, const PatternSet& executed) {
   const std::string path = (fs::path(folder) / "patterns.yaml").string();
   std::error_code failure;
@@ -50,9 +50,34 @@ void requireSamePatterns(const std::string& folder, const PatternSet& executed) 
                          "); record into another folder");
 }
 
+}  // namespace
+
+void requireSurfaceName(const std::string& name) {
+  const bool bad = name.empty() || name.front() == '.' || name.find('/') != std::string::npos ||
+                   std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' '; });
+  if (bad)
+    throw RecordingError("surface '" + name + "': its name is that of its file; it must not be " +
+                         "empty, begin with a dot or hold a slash");
+}
+
+void requireAddable(const std::string& folder, const PatternSet& executed,
+                    const std::string& surface) {
+  requireSurfaceName(surface);
+  for (const MotionPattern& pattern : executed.patterns())
+    if (pattern.name.find(',') != std::string::npos || pattern.name.front() == '#')
+      throw RecordingError("pattern '" + pattern.name +
+                           "' has a comma or a leading # in its name, which its table of " +
+                           "recordings could not hold; rename it");
+  requireSamePatterns(folder, executed);
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (!fs::is_directory(folder, failure) || ::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw RecordingError(folder + ": cannot be made or written to; check the name and rights");
+}
+
 bool addToBook(const std::string& folder, const PatternSet& executed,
                const SurfaceRecordings& surface) {
-  requireSamePatterns(folder, executed);
+  requireAddable(folder, executed, surface.surface);
   std::error_code failure;
   const bool was_there = fs::exists(fs::path(folder) / (surface.surface + ".csv"), failure);
   const std::string patterns = (fs::path(folder) / "patterns.yaml").string();

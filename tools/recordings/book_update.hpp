@@ -8,10 +8,15 @@
 
 namespace tread::recordings {
 
-/// Refuses a folder that is a book of other patterns: order, names, classes, commands, kind and
-/// period must be the same, since recordings count only for what was executed.
-/** A folder that is no book yet is fine. Throws RecordingError. */
-void requireSamePatterns(const std::string& folder, const PatternSet& executed);
+/// Refuses what is no name of a surface: it is that of its file.
+void requireSurfaceName(const std::string& name);
+
+/// Refuses what could not be added later, before anything is driven for it: a bad name, a folder
+/// that cannot be made or written to, a book of other patterns.
+/** Order, names, classes, commands, kind and period must be the same, since recordings count only
+ * for what was executed; a folder that is no book yet is fine. Throws RecordingError. */
+void requireAddable(const std::string& folder, const PatternSet& executed,
+                    const std::string& surface);
 
 /// Adds a surface to a book, or replaces it; the folder becomes a book of this set if it is none.
 /** patterns.yaml of a book that is there stays as it is. Returns whether the surface was there

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "common/pattern/pattern_file.hpp"
+#include "tools/recordings/book_update.hpp"
 #include "tools/recordings/surface_csv.hpp"
 #include "tools/recordings/text_file.hpp"
 
@@ -31,14 +32,6 @@ std::vector<fs::path> surfaceFiles(const std::string& folder) {
       files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
-}
-
-void requireSurfaceName(const std::string& name) {
-  const bool bad = name.empty() || name.front() == '.' || name.find('/') != std::string::npos ||
-                   std::any_of(name.begin(), name.end(), [](char c) { return c < ' '; });
-  if (bad)
-    throw RecordingError("surface '" + name + "': its name is that of its file; it must not be " +
-                         "empty, begin with a dot or hold a slash");
 }
 
 bool isWhole(const Execution& poses, size_t samples) {

@@ -72,8 +72,14 @@ TEST_CASE("Recording and averaging refuse what makes no sense with one line") {
   REQUIRE(run("mirror " + kSet + " -o " + folder.path("other.yaml")).status == 0);
   CHECK(record(folder, "--surface s -n 0").status == 2);
   CHECK(record(folder, "").status == 2);
-  CHECK(run("record " + kSet + " --book " + folder.path("b") + " --surface a/b --model " + kGrass)
-            .status == 1);
+  const std::string bad = "record " + kSet + " --book " + folder.path("b") + " --surface a/b ";
+  CHECK(run(bad + "--model " + kGrass).status == 1);
+  // Before it drives for an hour, not afterwards.
+  const Run live = run(bad + "--live");
+  CHECK(live.status == 1);
+  CHECK(live.says("surface 'a/b': its name is that of its file"));
+  CHECK(run(bad + "--live --model " + kGrass).status == 2);
+  CHECK(run("record " + kSet + " --live --book /proc/none --surface x").status == 1);
 }
 
 TEST_CASE("A book stays one of the patterns that it began with") {
