@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -13,6 +14,8 @@
 #include "modules/learner/core/trajectory_table.hpp"
 
 namespace tread::learner {
+
+class SurfaceBank;
 
 /// What a rule made of one measurement. Plain numbers, so that learning allocates nothing.
 struct RuleNote {
@@ -52,6 +55,11 @@ class LearningRule {
   /// Becomes what `other` is, without allocating; both are of the same rule and shipped set.
   virtual void assign(const LearningRule& other) = 0;
   virtual std::unique_ptr<LearningRule> clone() const = 0;
+
+  /// The surfaces that the rule remembers, or nullptr if it remembers none by nature.
+  virtual const SurfaceBank* bank() const { return nullptr; }
+  /// Takes over surfaces of the same shipped set; on which of them it stands is not known then.
+  virtual void adoptBank(const SurfaceBank&) {}
 
   /// What the rule knows beside the predictions, for the state file; may be empty.
   virtual std::vector<double> memory() const { return {}; }

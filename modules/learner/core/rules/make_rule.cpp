@@ -2,7 +2,9 @@
 // Copyright (c) 2026 The Tread authors
 #include <stdexcept>
 
+#include "modules/learner/core/rules/bank.hpp"
 #include "modules/learner/core/rules/collective.hpp"
+#include "modules/learner/core/rules/local_filter.hpp"
 #include "modules/learner/core/rules/off.hpp"
 #include "modules/learner/core/rules/single.hpp"
 #include "modules/learner/core/rules/telescoping.hpp"
@@ -22,8 +24,9 @@ std::unique_ptr<LearningRule> makeRule(const RuleConfig& config, const PatternSe
     case Rule::kTelescoping:
       return std::make_unique<Telescoping>(config, shipped);
     case Rule::kLocalFilter:
+      return std::make_unique<LocalFilter>(config.filter, shipped);
     case Rule::kBank:
-      break;
+      return std::make_unique<Bank>(config, shipped);
   }
   throw std::invalid_argument("learner: unknown rule");
 }

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "modules/learner/core/rules/ground_model.hpp"
+
+namespace tread::learner {
+
+/// The mean twist of one execution.
+struct TwistSample {
+  size_t pattern = 0;
+  Eigen::Vector3d mean_twist = Eigen::Vector3d::Zero();
+};
+
+/// What is stored of a surface: a state of the ground model, how often it was driven, how noisy.
+struct RememberedSurface {
+  Eigen::VectorXd x;           ///< corrections, see GroundModel
+  std::vector<double> driven;  ///< executions of each pattern that are in it
+  /// [1] variance of one execution over the ground model's, for v_x, v_y and omega.
+  Eigen::Vector3d noise = Eigen::Vector3d::Ones();
+  int64_t last_met = 0;  ///< in executions that the rule has learned from since it began
+
+  double executions() const;
+};
+
+/// A stored surface with what follows from it; immutable, so that copies of a bank share it.
+class KnownSurface {
+ public:
+  /** Covariance of x, with R_p the ground model's noise times the surface's own:
+   *    P = (Q^-1 + sum_p driven_p H_p' R_p^-1 H_p)^-1
+   * driven cut to a total of 200: ground changes with the weather. */
+  KnownSurface(const GroundModel& model, RememberedSurface stored);
+
+  const RememberedSurface& stored() const { return stored_; }
+  const Eigen::VectorXd& mean() const { return stored_.x; }
+  const Eigen::MatrixXd& covariance() const { return P_; }
+  /// Logarithm of the density of an execution on this surface.
+  double logLikelihood(const GroundModel& model, const TwistSample& sample) const;
+  /// This surface after some executions that were on it: a Kalman update each.
+  std::shared_ptr<const KnownSurface> after(const GroundModel& model,
+                                            const std::vector<TwistSample>& samples,
+                                            int64_t now) const;
+
+ private:
+  RememberedSurface stored_;
+  Eigen::MatrixXd P_;
+  std::vector<Eigen::Matrix3d> spreads_;  ///< H P H' + R of each pattern
+};
+
+/// Surfaces that were met and settled.
+class SurfaceBank {
+ public:
+  /// The ground model's noise counts for so many executions, and is never wrong by more than this.
+  static constexpr double kNoisePrior = 5.0;
+  static constexpr double kLeastNoise = 0.05;
+  static constexpr double kMostNoise = 20.0;
+
+  explicit SurfaceBank(std::shared_ptr<const GroundModel> model) : model_(std::move(model)) {}
+
+  size_t size() const { return surfaces_.size(); }
+  const KnownSurface& operator[](size_t i) const { return *surfaces_[i]; }
+  double logLikelihood(size_t surface, const TwistSample& sample) const {
+    return surfaces_[surface]->logLikelihood(*model_, sample);
+  }
+
+  /// Adds one; if the bank is full it takes the place of the one that was met longest ago. Returns
+  /// its place.
+  size_t store(RememberedSurface surface, size_t capacity);
+  /// Executions that were on this surface.
+  void refine(size_t surface, const std::vector<TwistSample>& samples, int64_t now) {
+    surfaces_[surface] = surfaces_[surface]->after(*model_, samples, now);
+  }
+
+  /// Whether two are the same surface, met twice: log N(d; 0, P_i + P_j) - log N(d; 0, P_i + P_j +
+  /// Q) with d = x_i - x_j is above zero.
+  bool alike(size_t i, size_t j) const;
+  /// Makes one of two, in the place of the first; the places above the second move down.
+  /** x = P (P_i^-1 x_i + P_j^-1 x_j), P^-1 = P_i^-1 + P_j^-1 - Q^-1: what both know, the common
+   * prior once. */
+  void merge(size_t i, size_t j);
+
+  /// Numbers, all of them finite; restore() returns false and changes nothing if they do not fit.
+  void save(std::vector<double>& memory) const;
+  bool restore(const std::vector<double>& memory, size_t& at);
+
+ private:
+  std::shared_ptr<const GroundModel> model_;
+  std::vector<std::shared_ptr<const KnownSurface>> surfaces_;
+};
+
+}  // namespace tread::learner
