@@ -35,8 +35,9 @@ struct RuleNote {
 
 /// A rule of learning: predictions of all patterns of a set, corrected by measurements.
 /** Patterns are named by their index in the shipped set. Same input, same bits; learn() and the
- * predictions allocate nothing. Trajectories hold T x 3 numbers: x, y [m], yaw [rad, unwrapped] in
- * the start frame, one row a sample. */
+ * predictions allocate nothing, but for the bank, which does when it judges a block of executions.
+ * Trajectories hold T x 3 numbers: x, y [m], yaw [rad, unwrapped] in the start frame, one row a
+ * sample. */
 class LearningRule {
  public:
   virtual ~LearningRule() = default;

@@ -35,16 +35,16 @@ struct TwistNoise {
   double forward = 0.03;      ///< [1] of |v_x|
   double lateral = 0.03;      ///< [1] of v_y over |v_x|
   double yaw = 0.08;          ///< [1] of |omega|
-  double floor_speed = 0.02;  ///< [m/s] added to the first two
-  double floor_yaw = 0.02;    ///< [rad/s] added to the third
+  double floor_speed = 0.01;  ///< [m/s] added to the first two
+  double floor_yaw = 0.01;    ///< [rad/s] added to the third
 };
 
 /// Parameters of the local filter; the header of the rule has the equations.
 struct FilterConfig {
   TwistNoise noise;           ///< expected where nothing was recorded
-  double recorded = 0.5;      ///< [1] share of the recorded spread of ends in the noise
+  double recorded = 0.3;      ///< [1] share of the recorded spread of ends in the noise
   double noise_factor = 1.2;  ///< [1] on the noise's standard deviations
-  double caution = 1.8;       ///< [1] the same once more on unknown ground: tails are heavy
+  double caution = 2.1;       ///< [1] the same once more on unknown ground: tails are heavy
   double hazard = 0.05;       ///< [1] probability of a change of ground before an execution
   /// Standard deviations of one change: forward gain [1], yaw gain [1], sideslip [s], turn loss
   /// [s], yaw by speed [s/m], yaw bias [rad/m], crab [1].
@@ -52,13 +52,13 @@ struct FilterConfig {
   /// Of a pattern's own residual: of v_x, of v_y over v_x, of omega [1].
   std::array<double, 3> residual{0.08, 0.06, 0.12};
   double common_factor = 0.7;  ///< [1] on `common`
-  double steady = 1.5;         ///< [1] covariance at the start over that of a change
-  double drift = 0.01;         ///< [1] covariance added before each execution, the same
+  double steady = 1.7;  ///< [1] covariance at the start, and in the long run unobserved, over Q
+  double drift = 0.01;  ///< [1] share by which P tends there before each execution
 };
 
 /// Parameters of the bank of remembered surfaces.
 struct BankConfig {
-  double hazard = 0.22;         ///< [1] probability that the surface changes before an execution
+  double hazard = 0.28;         ///< [1] probability that the surface changes before an execution
   double unknown_prior = 0.15;  ///< [1] that the next one is not in the bank
   int settled_after = 10;       ///< executions without a change that make a block
   double new_margin = 3.0;      ///< [1] of log density, by which a block must be likelier as new
