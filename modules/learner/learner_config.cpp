@@ -33,6 +33,27 @@ void readScaling(ConfigReader& reader, RuleConfig& rule) {
   section.number("sign_sigmas", rule.sign_sigmas, {0.0, 10.0}, "1");
 }
 
+void readFilter(ConfigReader& reader, FilterConfig& filter) {
+  ConfigReader section = reader.section("filter");
+  section.number("forward_noise", filter.noise.forward, {0.001, 1.0}, "1");
+  section.number("lateral_noise", filter.noise.lateral, {0.001, 1.0}, "1");
+  section.number("yaw_noise", filter.noise.yaw, {0.001, 1.0}, "1");
+  section.number("recorded", filter.recorded, {0.0, 1.0}, "1");
+  section.number("caution", filter.caution, {1.0, 10.0}, "1");
+  section.number("hazard", filter.hazard, {0.0, 0.9}, "1");
+  section.number("steady", filter.steady, {0.01, 10.0}, "1");
+  section.number("drift", filter.drift, {0.0, 0.5}, "1");
+}
+
+void readBank(ConfigReader& reader, BankConfig& bank) {
+  ConfigReader section = reader.section("bank");
+  section.number("hazard", bank.hazard, {0.001, 0.9}, "1");
+  section.number("unknown_prior", bank.unknown_prior, {0.001, 1.0}, "1");
+  section.integer("settled_after", bank.settled_after, {3, 100}, "1");
+  section.number("new_margin", bank.new_margin, {0.0, 100.0}, "1");
+  section.integer("capacity", bank.capacity, {1, 64}, "1");
+}
+
 void readGates(ConfigReader& reader, MeasurementLimits& limits) {
   ConfigReader gates = reader.section("gates");
   gates.seconds("max_gap", limits.max_gap_us, {0.01, 5.0});
@@ -73,11 +94,13 @@ LearnerNodeConfig readLearnerConfig(ConfigReader& reader) {
 void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config) {
   reader.text("store", config.store);
   std::string rule = ruleName(config.rule.rule);
-  reader.choice("rule", rule, {"off", "single", "collective"});
+  reader.choice("rule", rule, ruleNames());
   config.rule.rule = *ruleNamed(rule);
   // w = 1 would never learn and never say why: `off` is the word for that.
   reader.number("memory", config.rule.memory, {0.0, 0.999}, "1");
   readScaling(reader, config.rule);
+  readFilter(reader, config.rule.filter);
+  readBank(reader, config.rule.bank);
   readGates(reader, config.limits);
   // Not shorter: the outbox sends a portion a step, and LCM loses more than 100 kB in 20 ms.
   reader.seconds("period", config.period_us, {0.02, 0.1});
@@ -101,6 +124,18 @@ std::string LearnerNodeConfig::effective() const {
       << "\n  min_factor: " << number(rule.scaling.min_factor)
       << "\n  max_factor: " << number(rule.scaling.max_factor)
       << "\n  sign_sigmas: " << number(rule.sign_sigmas)
+      << "\nfilter:\n  forward_noise: " << number(rule.filter.noise.forward)
+      << "\n  lateral_noise: " << number(rule.filter.noise.lateral)
+      << "\n  yaw_noise: " << number(rule.filter.noise.yaw)
+      << "\n  recorded: " << number(rule.filter.recorded)
+      << "\n  caution: " << number(rule.filter.caution)
+      << "\n  hazard: " << number(rule.filter.hazard)
+      << "\n  steady: " << number(rule.filter.steady) << "\n  drift: " << number(rule.filter.drift)
+      << "\nbank:\n  hazard: " << number(rule.bank.hazard)
+      << "\n  unknown_prior: " << number(rule.bank.unknown_prior)
+      << "\n  settled_after: " << rule.bank.settled_after
+      << "\n  new_margin: " << number(rule.bank.new_margin)
+      << "\n  capacity: " << rule.bank.capacity
       << "\ngates:\n  max_gap: " << seconds(limits.max_gap_us)
       << "\n  min_covered: " << number(limits.min_covered)
       << "\n  max_speed: " << number(limits.max_speed)

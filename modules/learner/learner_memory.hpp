@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/store/store.hpp"
+#include "modules/learner/core/bank_text.hpp"
 #include "modules/learner/core/state_text.hpp"
 
 namespace tread::learner {
@@ -18,7 +19,8 @@ struct Recollection {
 };
 
 /// The learner's files. Entries: learner_state_1 and _2, written in turn so that the one before is
-/// kept, and learner_versions, a number that no published version exceeds.
+/// kept, learner_versions, a number that no published version exceeds, and surface_bank, the
+/// remembered surfaces.
 /** The rule of versions: learner_versions is written ahead, a hundred at a time, before they are
  * used. A start begins above it, because the last versions may have been published from memory
  * while the disk was full. Without it, above the newest state by a thousand; without that, too, at
@@ -36,6 +38,14 @@ class LearnerMemory {
   /// written.
   std::optional<std::string> save(const std::string& state_text);
 
+  /// Reads the remembered surfaces into `bank`; true if there were any.
+  /** What cannot be read is set aside under another name, never overwritten: `problem` says so, one
+   * clear line. */
+  bool recallBank(const PatternSet& shipped, SurfaceBank& bank, std::string& problem);
+  /// Writes the remembered surfaces if they are others than last time. One clear line if they could
+  /// not be written.
+  std::optional<std::string> saveBank(const std::string& bank_text);
+
  private:
   /// Nothing where it is missing, or damaged, which is added to `problem`.
   std::optional<int64_t> storedReserve(std::string& problem) const;
@@ -43,6 +53,8 @@ class LearnerMemory {
   Store& store_;
   int64_t reserved_ = 0;
   int next_slot_ = 0;
+  std::string bank_text_;       ///< as it is in the store
+  std::string bank_in_danger_;  ///< why it must not be written; empty = it may
 };
 
 }  // namespace tread::learner

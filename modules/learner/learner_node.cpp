@@ -42,6 +42,7 @@ learning_t blankReport(const execution_record_t& record, Rule rule) {
   fill(message.scaling, {kUnknown, kUnknown, kUnknown});
   fill(message.measured_entry, {kUnknown, kUnknown, kUnknown});
   message.path_length = message.slope = kUnknown;
+  message.ground_changed = message.surface_probability = kUnknown;
   return message;
 }
 
@@ -78,9 +79,20 @@ void LearnerNode::start(int64_t boot_time) {
                      found.state->memory);
     keepVersion();
   }
+  recallBank();
   if (found.first_version > learner_.set().version())
     learner_.renumber(found.first_version, learner_.set().version());
   adoptVersion();
+}
+
+/// The surfaces of the file, if they were met later than those of the state.
+void LearnerNode::recallBank() {
+  if (learner_.rule().bank() == nullptr) return;
+  const SurfaceBank& of_state = *learner_.rule().bank();
+  SurfaceBank stored = of_state;
+  if (memory_.recallBank(config_.shipped, stored, start_problem_) &&
+      stored.newest() > of_state.newest())
+    learner_.adoptBank(stored);
 }
 
 void LearnerNode::resume(LearnerState state, const std::vector<PatternSet>& earlier) {
@@ -158,6 +170,10 @@ void LearnerNode::handle(const execution_record_t& record) {
                                                  scoredError(record, measurement), record.ended);
     message.changed = correction.changed;
     message.gate_reason = correction.guards;
+    message.change_reason = correction.reason;
+    message.ground_changed = correction.note.change_probability;
+    message.surface = correction.note.surface;
+    message.surface_probability = correction.note.surface_probability;
     const Axes& V = correction.note.scaling;
     fill(message.scaling, {V[0], V[1], V[2]});
     if (correction.changed) {
@@ -237,7 +253,12 @@ void LearnerNode::adoptVersion() {
   const std::string text = stateText();
   auto problem = memory_.reserve(learner_.set().version());
   auto unsaved = memory_.save(text);
-  noteWrite(problem ? problem : unsaved);
+  if (!problem) problem = unsaved;
+  if (const SurfaceBank* bank = learner_.rule().bank()) {
+    auto unsaved_bank = memory_.saveBank(formatBank(*bank, learner_.shipped()));
+    if (!problem) problem = unsaved_bank;
+  }
+  noteWrite(problem);
   outbox_.putSet(learner_.set());
   outbox_.putState(learner_.set(), ruleName(config_.rule.rule), text);
 }
@@ -251,6 +272,8 @@ void LearnerNode::reportHealth(int64_t utime) {
   const std::string& problem = write_problem_.empty() ? start_problem_ : write_problem_;
   health_.setState(problem.empty() ? health_t::HEALTH_OK : health_t::HEALTH_DEGRADED, problem);
   health_.setCounter("set version", learner_.set().version());
+  if (const SurfaceBank* bank = learner_.rule().bank())
+    health_.setCounter("surfaces remembered", static_cast<int64_t>(bank->size()));
   health_.setCounter("INS too late", ins_.tooLate());
   health_.setCounter("INS at senseless times", ins_.senseless());
   health_.setCounter("INS without pose", ins_.withoutPose());

@@ -38,11 +38,16 @@ class LearnerNode : public Node {
   void step(int64_t utime) override;
 
   const PatternSet& set() const { return learner_.set(); }
+  /// How many surfaces the rule remembers.
+  size_t rememberedSurfaces() const {
+    return learner_.rule().bank() == nullptr ? 0 : learner_.rule().bank()->size();
+  }
   /// The state as it is written to disk.
   std::string stateText() const;
 
  private:
   void start(int64_t boot_time);
+  void recallBank();
   void hear(const execution_t& message);
   void handle(const execution_record_t& record);
   Measurement measureRecord(const execution_record_t& record, const MotionPattern& pattern) const;

@@ -177,6 +177,10 @@ inline learning_t sampleOf<learning_t>() {
     m.measured_entry[i] = -1.0 * i;
   }
   m.path_length = 2.75;
+  m.change_reason = "as surface 2";
+  m.ground_changed = 0.625;
+  m.surface = 2;
+  m.surface_probability = 0.875;
   m.slope = 0.03125;
   return m;
 }

@@ -24,7 +24,7 @@ LearnerState learnedState() {
   return {learner.set(),
           learner.residuals(),
           {0.1, -2.5e-300, 1.0 / 3.0},
-          Rule::kCollective,
+          RuleConfig{}.rule,
           {{7, 1}, {7, 2}, {-9'000'000'000, 3}}};
 }
 

@@ -18,6 +18,7 @@ struct Correction {
   bool changed = false;
   RuleNote note;
   std::string guards;  ///< which guards held it back, in words; empty = none
+  std::string reason;  ///< what the rule took it for, in words; empty if nothing changed
 };
 
 /// What has been learned, beside the set itself.
@@ -51,6 +52,8 @@ class Learner {
   /// What the rule knows beside the set, for the state file.
   std::vector<double> memory() const { return rule_->memory(); }
   const LearningRule& rule() const { return *rule_; }
+  /// Takes over remembered surfaces of this shipped set; the version stays.
+  void adoptBank(const SurfaceBank& bank);
 
   /// The same content under a higher version number, with `parent`.
   void renumber(int64_t version, int64_t parent);

@@ -3,10 +3,9 @@
 #include "modules/learner/core/state_text.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <sstream>
-#include <system_error>
+
+#include "modules/learner/core/sealed_text.hpp"
 
 namespace tread::learner {
 namespace {
@@ -16,29 +15,6 @@ constexpr const char* kHeader = "tread-learner-state 2";
 constexpr int64_t kMaxHandled = 10'000;
 /// No rule remembers more numbers than this.
 constexpr int64_t kMaxMemory = 100'000'000;
-
-/// FNV-1a, 64 bits: tells a damaged text from a whole one.
-uint64_t fingerprint(const std::string& text) {
-  uint64_t hash = 14695981039346656037ULL;
-  for (const char letter : text) {
-    hash ^= static_cast<unsigned char>(letter);
-    hash *= 1099511628211ULL;
-  }
-  return hash;
-}
-
-/// The shortest text that reads back as the same number, whatever the locale.
-std::string number(double value) {
-  std::array<char, 40> text;
-  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
-  return {text.data(), result.ptr};
-}
-
-std::string hexadecimal(uint64_t value) {
-  std::array<char, 20> text;
-  const auto result = std::to_chars(text.data(), text.data() + text.size(), value, 16);
-  return {text.data(), result.ptr};
-}
 
 void writeNumbers(std::ostringstream& out, const PoseCovariance& numbers) {
   for (const double value : numbers) out << ' ' << number(value);
@@ -55,10 +31,6 @@ void writePattern(std::ostringstream& out, const MotionPattern& pattern,
   out << '\n';
   for (const Pose2& pose : pattern.trajectory)
     out << number(pose.x) << ' ' << number(pose.y) << ' ' << number(pose.yaw) << '\n';
-}
-
-std::string lastLine(const std::string& content) {
-  return "end " + hexadecimal(fingerprint(content)) + "\n";
 }
 
 std::string body(const LearnerState& state, const PatternSet& shipped, const RuleConfig& config) {
@@ -79,44 +51,11 @@ std::string body(const LearnerState& state, const PatternSet& shipped, const Rul
   return out.str();
 }
 
-/// Reads words and numbers; once something is missing everything after fails, too.
-class Words {
- public:
-  explicit Words(const std::string& text) : in_(text) {}
-
-  bool good() const { return good_; }
-  void require(bool condition) { good_ = good_ && condition; }
-  void expect(const char* word) {
-    std::string found;
-    good_ = good_ && (in_ >> found) && found == word;
-  }
-  std::string word() {
-    std::string found;
-    good_ = good_ && (in_ >> found);
-    return found;
-  }
-  int64_t integer() {
-    int64_t value = 0;
-    good_ = good_ && (in_ >> value);
-    return good_ ? value : 0;
-  }
-  double real() {
-    const std::string text = word();
-    double value = 0.0;
-    const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-    good_ = good_ && result.ec == std::errc() && result.ptr == text.data() + text.size();
-    return value;
-  }
-  PoseCovariance numbers() {
-    PoseCovariance values{};
-    for (double& value : values) value = real();
-    return values;
-  }
-
- private:
-  std::istringstream in_;
-  bool good_ = true;
-};
+PoseCovariance readNumbers(Words& words) {
+  PoseCovariance values{};
+  for (double& value : values) value = words.real();
+  return values;
+}
 
 /// One pattern's learned part, into the pattern of the shipped set.
 void readPattern(Words& words, MotionPattern& pattern, ResidualTable& residuals) {
@@ -127,21 +66,12 @@ void readPattern(Words& words, MotionPattern& pattern, ResidualTable& residuals)
   words.expect("poses");
   words.require(words.integer() == static_cast<int64_t>(pattern.trajectory.size()));
   words.expect("covariance");
-  pattern.end_covariance = words.numbers();
+  pattern.end_covariance = readNumbers(words);
   words.expect("residuals");
   EndResiduals& entry = residuals[pattern.id];
   entry.count = words.integer();
-  entry.mean = words.numbers();
+  entry.mean = readNumbers(words);
   for (Pose2& pose : pattern.trajectory) pose = {words.real(), words.real(), words.real()};
-}
-
-/// The text without its last line, if that line holds the fingerprint of the rest.
-std::optional<std::string> checkedBody(const std::string& text) {
-  const size_t end = text.rfind("end ");
-  if (end == std::string::npos || end == 0 || text[end - 1] != '\n') return std::nullopt;
-  std::string content = text.substr(0, end);
-  if (text.substr(end) != lastLine(content)) return std::nullopt;
-  return content;
 }
 
 }  // namespace
@@ -149,12 +79,12 @@ std::optional<std::string> checkedBody(const std::string& text) {
 std::string formatState(const LearnerState& state, const PatternSet& shipped,
                         const RuleConfig& config) {
   const std::string content = body(state, shipped, config);
-  return content + lastLine(content);
+  return sealed(content);
 }
 
 std::optional<LearnerState> parseState(const std::string& text, const PatternSet& shipped,
                                        std::string& why) {
-  const auto checked = checkedBody(text);
+  const auto checked = unsealed(text);
   if (!checked || checked->compare(0, std::string(kHeader).size(), kHeader) != 0) {
     why = "is damaged";
     return std::nullopt;

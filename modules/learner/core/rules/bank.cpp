@@ -183,7 +183,7 @@ void Bank::learn(size_t executed, const ConstTrajectory& measured, RuleNote& not
   // Who leaves a known surface for an unknown one leaves from there.
   for (size_t k = 0; k < surfaces_.size(); ++k)
     if (weights_[k + 1] > kSure) filter_.restartAt(surfaces_[k].mean(), config_.unknown_share);
-  if (static_cast<int>(block_.size()) >= config_.settled_after) closeBlock(note);
+  if (static_cast<int64_t>(block_.size()) >= config_.settled_after) closeBlock(note);
   mix();
   const auto likeliest = std::max_element(weights_.begin(), weights_.end());
   note.surface = static_cast<int>(likeliest - weights_.begin());

@@ -60,16 +60,16 @@ struct FilterConfig {
 struct BankConfig {
   double hazard = 0.28;         ///< [1] probability that the surface changes before an execution
   double unknown_prior = 0.15;  ///< [1] that the next one is not in the bank
-  int settled_after = 10;       ///< executions without a change that make a block
+  int64_t settled_after = 10;   ///< executions without a change that make a block
   double new_margin = 3.0;      ///< [1] of log density, by which a block must be likelier as new
   double settled_change = 0.5;  ///< [1] probability of a change that counts as one
   double unknown_share = 0.4;   ///< [1] of Q: how far an unknown surface is from the known one
-  int capacity = 16;            ///< surfaces; the one that was met longest ago makes room
+  int64_t capacity = 16;        ///< surfaces; the one that was met longest ago makes room
 };
 
 /// The rule of learning and its guards.
 struct RuleConfig {
-  Rule rule = Rule::kCollective;
+  Rule rule = Rule::kBank;
   double memory = 0.5;  ///< w of equation (2): weight of the OLD prediction, 0 <= w < 1
   ScalingLimits scaling;
   ResidualLimits residuals;

@@ -98,6 +98,12 @@ std::shared_ptr<const KnownSurface> KnownSurface::after(const GroundModel& model
   return std::make_shared<const KnownSurface>(model, std::move(next));
 }
 
+int64_t SurfaceBank::newest() const {
+  int64_t newest = 0;
+  for (const auto& known : surfaces_) newest = std::max(newest, known->stored().last_met);
+  return newest;
+}
+
 size_t SurfaceBank::store(RememberedSurface surface, size_t capacity) {
   auto known = std::make_shared<const KnownSurface>(*model_, std::move(surface));
   if (surfaces_.size() < capacity) {

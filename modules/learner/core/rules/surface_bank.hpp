@@ -63,6 +63,8 @@ class SurfaceBank {
 
   size_t size() const { return surfaces_.size(); }
   const KnownSurface& operator[](size_t i) const { return *surfaces_[i]; }
+  /// The largest last_met; 0 if there is none.
+  int64_t newest() const;
   double logLikelihood(size_t surface, const TwistSample& sample) const {
     return surfaces_[surface]->logLikelihood(*model_, sample);
   }
