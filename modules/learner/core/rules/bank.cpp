@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "modules/learner/core/rules/local_filter.hpp"
 
@@ -45,14 +46,17 @@ Bank::Bank(const RuleConfig& config, const PatternSet& shipped)
 void Bank::weigh(double log_unknown) {
   const size_t known = surfaces_.size();
   logs_[0] = log_unknown;
-  const double highest = *std::max_element(logs_.begin(), logs_.end());
   const double prior_known =
       known > 0 ? (1.0 - config_.unknown_prior) / static_cast<double>(known) : 0.0;
-  double total = 0.0;
+  double highest = -std::numeric_limits<double>::infinity();  // of those that are possible
   for (size_t k = 0; k <= known; ++k) {
     const double prior = k > 0 ? prior_known : (known > 0 ? config_.unknown_prior : 1.0);
     weights_[k] = (1.0 - config_.hazard) * weights_[k] + config_.hazard * prior;
-    weights_[k] *= std::exp(logs_[k] - highest);
+    if (weights_[k] > 0.0) highest = std::max(highest, logs_[k]);
+  }
+  double total = 0.0;
+  for (size_t k = 0; k <= known; ++k) {
+    if (weights_[k] > 0.0) weights_[k] *= std::exp(logs_[k] - highest);
     total += weights_[k];
   }
   for (double& weight : weights_) weight /= total;
@@ -121,7 +125,7 @@ void Bank::storeBlock(RuleNote& note) {
     known_.push_back(0.0);
     weights_.push_back(0.0);
   }
-  // What was stored before in this place is forgotten with its weight.
+  // What was stored before in this place is forgotten; the new one has its weight, too.
   weights_[place + 1] += weights_[0];
   weights_[0] = 0.0;
   std::fill(known_.begin(), known_.end(), 0.0);
@@ -146,10 +150,12 @@ void Bank::closeBlock(RuleNote& note) {
     refineKnown();
   }
   clearBlock();
-  mergeAlike();
+  // A block that proves to be a surface that is stored already is not a new one.
+  if (mergeAlike()) note.surface_stored = false;
 }
 
-void Bank::mergeAlike() {
+bool Bank::mergeAlike() {
+  bool merged = false;
   for (size_t i = 0; i < surfaces_.size(); ++i) {
     for (size_t j = surfaces_.size() - 1; j > i; --j) {
       // Only what was met just now can have become alike.
@@ -157,12 +163,14 @@ void Bank::mergeAlike() {
         continue;
       if (!surfaces_.alike(i, j)) continue;
       surfaces_.merge(i, j);
+      merged = true;
       known_[i] += known_[j];
       weights_[i + 1] += weights_[j + 1];
       known_.erase(known_.begin() + static_cast<std::ptrdiff_t>(j));
       weights_.erase(weights_.begin() + static_cast<std::ptrdiff_t>(j) + 1);
     }
   }
+  return merged;
 }
 
 void Bank::mix() {
@@ -171,8 +179,10 @@ void Bank::mix() {
 }
 
 void Bank::learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) {
+  const Eigen::Vector3d mean_twist = meanTwist(measured, model_->period());
+  if (!mean_twist.allFinite()) return;  // beyond all numbers
   ++clock_;
-  const TwistSample sample{executed, meanTwist(measured, model_->period())};
+  const TwistSample sample{executed, plausible(mean_twist)};
   logs_.resize(surfaces_.size() + 1);
   for (size_t k = 0; k < surfaces_.size(); ++k) logs_[k + 1] = surfaces_.logLikelihood(k, sample);
   weigh(filter_.update(executed, sample.mean_twist));
@@ -200,19 +210,19 @@ Pose2 Bank::predictEnd(size_t pattern) const {
 
 std::optional<PoseCovariance> Bank::endCovariance(size_t pattern) const {
   const auto& J = model_->profile(pattern).endResponse();
+  const Eigen::Matrix3d& lever = model_->profile(pattern).endLever();
   const Correction10 mean = model_->correctionOf(mean_, pattern);
   const auto away = [&](const Eigen::VectorXd& x) -> Eigen::Matrix3d {
     const Eigen::Vector3d moved = J * (model_->correctionOf(x, pattern) - mean);
     return moved * moved.transpose();
   };
-  const Eigen::Matrix3d& execution = model_->endNoise(pattern);
-  Eigen::Matrix3d covariance = execution;
-  covariance +=
-      weights_[0] * (away(filter_.mean()) +
+  Eigen::Matrix3d covariance =
+      weights_[0] * (away(filter_.mean()) + model_->endNoise(pattern) +
                      J * model_->covarianceOf(filter_.covariance(), pattern) * J.transpose());
   for (size_t k = 0; k < surfaces_.size(); ++k)
     covariance += weights_[k + 1] *
                   (away(surfaces_[k].mean()) +
+                   lever * surfaces_[k].executionNoise(*model_, pattern) * lever.transpose() +
                    J * model_->covarianceOf(surfaces_[k].covariance(), pattern) * J.transpose());
   return upperTriangle(0.5 * (covariance + covariance.transpose()));
 }
@@ -239,51 +249,6 @@ void Bank::adoptBank(const SurfaceBank& bank) {
     clock_ = std::max(clock_, surfaces_[k].stored().last_met);
   clearBlock();
   mix();
-}
-
-std::vector<double> Bank::memory() const {
-  std::vector<double> memory;
-  filter_.save(memory);
-  surfaces_.save(memory);
-  memory.insert(memory.end(), weights_.begin(), weights_.end());
-  memory.insert(memory.end(), known_.begin(), known_.end());
-  memory.insert(memory.end(), {block_log_known_, static_cast<double>(clock_),
-                               static_cast<double>(block_.size())});
-  for (const Entry& entry : block_)
-    memory.insert(memory.end(), {static_cast<double>(entry.sample.pattern),
-                                 entry.sample.mean_twist[0], entry.sample.mean_twist[1],
-                                 entry.sample.mean_twist[2], static_cast<double>(entry.surface)});
-  return memory;
-}
-
-bool Bank::restore(const TrajectoryTable&, const std::vector<double>& memory) {
-  for (const double number : memory)
-    if (!std::isfinite(number)) return false;
-  Bank bank = *this;
-  size_t at = 0;
-  if (!bank.filter_.restore(memory, at) || !bank.surfaces_.restore(memory, at)) return false;
-  const size_t known = bank.surfaces_.size();
-  if (memory.size() < at + 2 * known + 4) return false;
-  bank.weights_.assign(known + 1, 0.0);
-  for (double& weight : bank.weights_) weight = memory[at++];
-  bank.known_.assign(known, 0.0);
-  for (double& weight : bank.known_) weight = memory[at++];
-  bank.block_log_known_ = memory[at++];
-  bank.clock_ = static_cast<int64_t>(memory[at++]);
-  const double entries = memory[at++];
-  if (!(entries >= 0.0) || static_cast<double>(memory.size() - at) != 5.0 * entries) return false;
-  bank.block_.clear();
-  while (at < memory.size()) {
-    const Entry entry{
-        {static_cast<size_t>(memory[at]), {memory[at + 1], memory[at + 2], memory[at + 3]}},
-        static_cast<size_t>(memory[at + 4])};
-    if (entry.sample.pattern >= model_->patterns() || entry.surface > known) return false;
-    bank.block_.push_back(entry);
-    at += 5;
-  }
-  assign(bank);
-  mix();
-  return true;
 }
 
 }  // namespace tread::learner

@@ -51,8 +51,11 @@ class Bank : public LearningRule {
   /// Log density of the block if it is a new surface; the block filter learns it.
   double judgeAsNew();
   double judgeAsNew(const Eigen::Vector3d& noise);
-  void mergeAlike();
+  /// Makes one of stored surfaces that are the same; whether there were any.
+  bool mergeAlike();
   void clearBlock();
+  /// Reads the executions of a block, the rest of `memory` from `at` on; false if it is not one.
+  bool restoreBlock(const std::vector<double>& memory, size_t at);
   void mix();
 
   BankConfig config_;

@@ -122,11 +122,12 @@ bool GroundFilter::restore(const std::vector<double>& memory, size_t& at) {
   for (size_t i = at; i < at + needed; ++i)
     if (!std::isfinite(memory[i])) return false;
   change_probability_ = memory[at + 1];
+  if (change_probability_ < 0.0 || change_probability_ > 1.0) return false;
   at += 2;
   for (Eigen::Index i = 0; i < n; ++i) x_[i] = memory[at++];
   for (Eigen::Index j = 0; j < n; ++j)
     for (Eigen::Index i = j; i < n; ++i) P_(i, j) = P_(j, i) = memory[at++];
-  return true;
+  return P_.llt().info() == Eigen::Success;
 }
 
 }  // namespace tread::learner

@@ -37,7 +37,8 @@ class GroundFilter {
   void restartAt(const Eigen::VectorXd& x, double share);
   void assign(const GroundFilter& other);
   void save(std::vector<double>& memory) const;
-  /// Reads what save() appended, from `at` on; false if it is not there or not of this size.
+  /// Reads what save() appended, from `at` on; false if it is not there, not of this size or no
+  /// state of a filter. What was there before is lost then.
   bool restore(const std::vector<double>& memory, size_t& at);
 
  private:
@@ -69,7 +70,7 @@ class GroundFilter {
 /// Logarithm of the normal density of `y` about zero with covariance S.
 double logNormal(const Eigen::Vector3d& y, const Eigen::Matrix3d& S);
 
-/// No vehicle's mean twist is beyond this, whatever was measured [m/s, rad/s].
+/// No vehicle's mean twist is beyond 100 m/s, 100 rad/s, whatever was measured.
 Eigen::Vector3d plausible(const Eigen::Vector3d& twist);
 
 }  // namespace tread::learner

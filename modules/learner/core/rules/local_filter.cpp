@@ -13,7 +13,9 @@ LocalFilter::LocalFilter(const FilterConfig& config, const PatternSet& shipped)
     : model_(std::make_shared<GroundModel>(config, shipped)), filter_(model_, config) {}
 
 void LocalFilter::learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) {
-  filter_.update(executed, meanTwist(measured, model_->period()));
+  const Eigen::Vector3d mean_twist = meanTwist(measured, model_->period());
+  if (!mean_twist.allFinite()) return;  // beyond all numbers
+  filter_.update(executed, mean_twist);
   note.change_probability = filter_.changeProbability();
 }
 

@@ -14,6 +14,9 @@ namespace tread::learner {
 std::unique_ptr<LearningRule> makeRule(const RuleConfig& config, const PatternSet& shipped) {
   if (!(config.memory >= 0.0 && config.memory < 1.0))
     throw std::invalid_argument("learner: memory must be in 0 <= memory < 1");
+  if (config.bank.settled_after < 1 || config.bank.capacity < 1)
+    throw std::invalid_argument(
+        "learner: settled_after and capacity of the bank must be 1 or more");
   switch (config.rule) {
     case Rule::kOff:
       return std::make_unique<Off>(shipped);

@@ -11,6 +11,7 @@
 #include <Eigen/LU>
 
 #include "modules/learner/core/rules/ground_filter.hpp"
+#include "modules/learner/core/rules/stored_number.hpp"
 
 namespace tread::learner {
 namespace {
@@ -19,11 +20,8 @@ namespace {
 constexpr double kLongestMean = 200.0;
 /// No bank is larger.
 constexpr double kMostSurfaces = 1000.0;
-
-Eigen::Matrix3d noiseOf(const GroundModel& model, const RememberedSurface& surface,
-                        size_t pattern) {
-  return scaledNoise(model.noise(pattern), surface.noise);
-}
+/// No ground's corrections are, of whatever unit.
+constexpr double kLargestCorrection = 1e9;
 
 /// Log density without the constant; lowest where the matrix is none.
 double logNormalOf(const Eigen::VectorXd& y, const Eigen::MatrixXd& covariance) {
@@ -48,8 +46,7 @@ KnownSurface::KnownSurface(const GroundModel& model, RememberedSurface stored)
   for (size_t p = 0; p < model.patterns(); ++p) {
     if (stored_.driven[p] <= 0.0) continue;
     const auto& H = model.profile(p).meanResponse();
-    const Eigen::Matrix3d weights =
-        share * stored_.driven[p] * noiseOf(model, stored_, p).inverse();
+    const Eigen::Matrix3d weights = share * stored_.driven[p] * executionNoise(model, p).inverse();
     const Eigen::Matrix<double, 10, 10> gained = H.transpose() * weights * H;
     const Eigen::Index at = GroundModel::ownAt(p);
     information.topLeftCorner<common, common>() += gained.topLeftCorner<common, common>();
@@ -62,7 +59,7 @@ KnownSurface::KnownSurface(const GroundModel& model, RememberedSurface stored)
   Eigen::Matrix<double, Eigen::Dynamic, 3> PH(model.dimension(), 3);
   for (size_t p = 0; p < model.patterns(); ++p) {
     model.timesResponse(P_, p, PH);
-    spreads_.emplace_back(model.response(PH, p) + noiseOf(model, stored_, p));
+    spreads_.emplace_back(model.response(PH, p) + executionNoise(model, p));
   }
 }
 
@@ -82,7 +79,7 @@ std::shared_ptr<const KnownSurface> KnownSurface::after(const GroundModel& model
     const size_t p = sample.pattern;
     const Eigen::Vector3d y = plausible(sample.mean_twist) - model.meanTwistUnder(next.x, p);
     model.timesResponse(P, p, PH);
-    const Eigen::Matrix3d S = model.response(PH, p) + noiseOf(model, next, p);
+    const Eigen::Matrix3d S = model.response(PH, p) + scaledNoise(model.noise(p), next.noise);
     const Eigen::Matrix<double, Eigen::Dynamic, 3> gain = PH * S.inverse();
     next.x += gain * y;
     P -= gain * PH.transpose();
@@ -158,7 +155,7 @@ bool SurfaceBank::restore(const std::vector<double>& memory, size_t& at) {
   const size_t each = 4 + dimension + model_->patterns();
   if (memory.size() <= at) return false;
   const double count = memory[at];
-  if (!(count >= 0.0 && count <= kMostSurfaces) || count != std::floor(count)) return false;
+  if (!isCount(count, kMostSurfaces)) return false;
   const size_t end = at + 1 + static_cast<size_t>(count) * each;
   if (memory.size() < end) return false;
   for (size_t i = at; i < end; ++i)
@@ -166,6 +163,7 @@ bool SurfaceBank::restore(const std::vector<double>& memory, size_t& at) {
   std::vector<RememberedSurface> read(static_cast<size_t>(count));
   size_t next = at + 1;
   for (RememberedSurface& surface : read) {
+    if (!isCount(memory[next], kMostExecutions)) return false;
     surface.last_met = static_cast<int64_t>(memory[next++]);
     surface.x.resize(model_->dimension());
     for (Eigen::Index i = 0; i < surface.x.size(); ++i) surface.x[i] = memory[next++];
@@ -173,7 +171,9 @@ bool SurfaceBank::restore(const std::vector<double>& memory, size_t& at) {
     for (double& driven : surface.driven) driven = memory[next++];
     for (Eigen::Index axis = 0; axis < 3; ++axis) surface.noise[axis] = memory[next++];
     if (surface.noise.minCoeff() < kLeastNoise || surface.noise.maxCoeff() > kMostNoise ||
-        *std::min_element(surface.driven.begin(), surface.driven.end()) < 0.0)
+        *std::min_element(surface.driven.begin(), surface.driven.end()) < 0.0 ||
+        !(surface.executions() >= 1.0 && surface.executions() <= kMostExecutions) ||
+        surface.x.cwiseAbs().maxCoeff() > kLargestCorrection)
       return false;
   }
   surfaces_.clear();

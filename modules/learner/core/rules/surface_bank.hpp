@@ -38,6 +38,10 @@ class KnownSurface {
   const RememberedSurface& stored() const { return stored_; }
   const Eigen::VectorXd& mean() const { return stored_.x; }
   const Eigen::MatrixXd& covariance() const { return P_; }
+  /// Covariance of one execution's mean twist on this surface: R q.
+  Eigen::Matrix3d executionNoise(const GroundModel& model, size_t pattern) const {
+    return scaledNoise(model.noise(pattern), stored_.noise);
+  }
   /// Logarithm of the density of an execution on this surface.
   double logLikelihood(const GroundModel& model, const TwistSample& sample) const;
   /// This surface after some executions that were on it: a Kalman update each.
