@@ -110,7 +110,7 @@ struct LearnerArguments {
   std::string config;
   std::string model;
   std::string patterns;
-  std::string rule = "collective";
+  std::string rule = "bank";
   double memory = 0.5;
   double max_gap = 0.3;
   double max_speed = 0.0;
@@ -209,7 +209,7 @@ void addLearner(CLI::App& app, LearnerArguments& arguments) {
   source->add_option("--patterns", arguments.patterns, "pattern file");
   source->require_option(0, 1);
   command.add_option("--rule", arguments.rule, "beside 'off'")
-      ->check(CLI::IsMember({"off", "single", "collective"}))
+      ->check(CLI::IsMember(learner::ruleNames()))
       ->capture_default_str();
   command.add_option("--memory", arguments.memory, "weight of the old prediction")
       ->check(CLI::Range(0.0, 0.999))

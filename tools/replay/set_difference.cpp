@@ -70,6 +70,11 @@ std::string differenceOf(const learning_t& log, const learning_t& replay, double
   compare.numbers("predicted end", log.predicted_end, replay.predicted_end);
   compare.field("error of position [m]", log.error_position, replay.error_position);
   compare.field("error of yaw [rad]", log.error_yaw, replay.error_yaw);
+  compare.field("reason of the change", log.change_reason, replay.change_reason);
+  compare.field("probability of changed ground", log.ground_changed, replay.ground_changed);
+  compare.field("surface", int64_t{log.surface}, int64_t{replay.surface});
+  compare.field("probability of the surface", log.surface_probability,
+                replay.surface_probability);
   compare.field("changed", bool{log.changed != 0}, bool{replay.changed != 0});
   compare.numbers("scaling", log.scaling, replay.scaling);
   compare.field("result version", log.result_version, replay.result_version);

@@ -61,7 +61,7 @@ class LiveLearner {
         config_(configFor(predictedSet(log_, model))) {
     std::ofstream(folder_.file("patterns.yaml")) << formatPatterns(config_.shipped);
     std::ofstream(folder_.file("learner.yaml"))
-        << processConfig(config_, "collective", folder_.file("patterns.yaml"));
+        << processConfig(config_, "bank", folder_.file("patterns.yaml"));
     LogWriter writer(folder_.file("played.lcmlog"));
     for (const LogEvent& event : events)
       writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
@@ -86,7 +86,7 @@ class LiveLearner {
     REQUIRE(until([this] { return player_->waitFor(0); }, seconds));
     until([] { return false; }, 4.0);
     return compareLive(toRobotLog(log_.name, std::move(heard_)), log_,
-                       runLearner(log_, config_, Commitment::kRecorded, "collective"));
+                       runLearner(log_, config_, Commitment::kRecorded, "bank"));
   }
 
  private:
