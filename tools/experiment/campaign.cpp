@@ -89,6 +89,7 @@ class Runner {
     campaign_.settings.rules = campaign_.setting.rules = request.rules;
     campaign_.settings.config.memory = request.memory;
     campaign_.settings.repetitions = request.repetitions;
+    campaign_.settings.tour = request.tour;
     campaign_.settings.threads = request.threads;
     campaign_.settings.change_inside = request.change_inside;
     campaign_.setting.books = static_cast<size_t>(request.books);
@@ -161,7 +162,8 @@ class Runner {
     const auto& rules = campaign_.settings.rules;
     if (std::find(rules.begin(), rules.end(), "bank") != rules.end())
       for (size_t home = 0; home < grounds.size(); ++home)
-        campaign_.tours.push_back(tourOfBank(campaign_.settings.config, grounds, home,
+        campaign_.tours.push_back(tourOfBank(campaign_.settings.config, grounds,
+                                             {home, grounds.size(), campaign_.request.tour},
                                              seedOf({campaign_.settings.seed, home})));
     campaign_.grounds = std::move(grounds);
     campaign_.first = std::move(errors);
@@ -171,27 +173,47 @@ class Runner {
   std::function<void(double)> progress_;
 };
 
-}  // namespace
-
-std::string textOfTours(const Campaign& campaign) {
-  if (campaign.tours.empty()) return "";
-  std::string text =
-      "THE BANK before a transition: it begins empty, drives the other surfaces in random order, "
-      "then the one\nthat the transition starts from. One of the tours of each:\n";
-  for (const std::vector<TourLeg>& legs : campaign.tours) {
-    text += "  from " + legs.back().surface + ":";
-    for (const TourLeg& leg : legs)
-      text += " " + leg.surface + " (" + std::to_string(leg.executions) + " executions, " +
-              (leg.stored_after > 0 ? "stored after " + std::to_string(leg.stored_after)
-                                    : std::string("not stored")) +
-              ")";
-    text += "\n";
+/// What --extras asks for, in words and as a request: a tenth of the repetitions, few books.
+std::vector<std::pair<std::string, Request>> variantsOf(const Request& request) {
+  constexpr int64_t kFewest = 100;
+  constexpr int kBooks = 3;
+  Request base = request;
+  base.repetitions = std::max(kFewest, request.repetitions / 10);
+  base.books = std::min(request.books, kBooks);
+  std::vector<std::pair<std::string, Request>> variants;
+  if (!request.world.empty()) {
+    Request longer = base;
+    longer.length = 2 * request.length;
+    variants.emplace_back("each command held twice as long", longer);
   }
-  return text;
+  if (!request.change_inside) {
+    Request inside = base;
+    inside.change_inside = true;
+    variants.emplace_back("the ground changes in the middle of the first execution", inside);
+  }
+  return variants;
 }
 
+}  // namespace
+
 Campaign runCampaign(const Request& request, const std::function<void(double)>& progress) {
-  return Runner(request, progress).run();
+  if (!request.extras) return Runner(request, progress).run();
+  const std::vector<std::pair<std::string, Request>> variants = variantsOf(request);
+  // A variant takes about as long as its share of the repetitions.
+  const double main_share = 1.0 / (1.0 + 0.15 * static_cast<double>(variants.size()));
+  double done = 0.0, part = main_share;
+  const auto shared = [&](double share) {
+    if (progress) progress(done + share * part);
+  };
+  Campaign campaign = Runner(request, shared).run();
+  part = (1.0 - main_share) / static_cast<double>(variants.size());
+  done = main_share;
+  for (const auto& [words, of_variant] : variants) {
+    Campaign other = Runner(of_variant, shared).run();
+    campaign.variants.push_back({words, std::move(other.tables), std::move(other.books)});
+    done += part;
+  }
+  return campaign;
 }
 
 }  // namespace tread::experiment

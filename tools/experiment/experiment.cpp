@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "tools/experiment/seeds.hpp"
 
@@ -14,10 +13,18 @@ namespace {
 // A fixed number of parts, each with seeds of its own: threads have no influence on numbers.
 constexpr size_t kSequenceParts = 12;
 constexpr size_t kSideParts = 4;
+constexpr int64_t kDriftDrives = 20;  // on each surface
 constexpr size_t kBins = 50;
 constexpr double kBinsReach = 2.5;  // times the mean error without learning
 
-enum class Trial : uint64_t { kSequences, kAllPatterns, kDevelopment, kLong };
+enum class Trial : uint64_t {
+  kSequences,
+  kAllPatterns,
+  kDevelopment,
+  kLong,
+  kLongSequences,
+  kDrift
+};
 
 /// Repetitions of what is not in the tables.
 int64_t sideRepetitions(const ExperimentSettings& settings) {
@@ -63,8 +70,13 @@ class Schedule {
       for (size_t to = 0; to < grounds.size(); ++to)
         if (from != to) parts_.push_back({from, to, {}, {}, {}});
     long_parts_.resize(grounds.size());
+    sequence_parts_.resize(grounds.size());
+    drift_parts_.resize(grounds.size());
     for (TransitionParts& parts : parts_) addTransition(parts);
-    for (size_t s = 0; s < grounds.size(); ++s) addLong(s);
+    for (size_t s = 0; s < grounds.size(); ++s) {
+      addLong(s);
+      addDrift(s);
+    }
   }
 
   const std::vector<std::function<void()>>& tasks() const { return tasks_; }
@@ -79,7 +91,7 @@ class Schedule {
   };
 
   Lineup lineup(size_t from, size_t to, size_t part) const {
-    return Lineup(settings_.rules, settings_.config, grounds_, from, to,
+    return Lineup(settings_.rules, settings_.config, grounds_, from, to, settings_.tour,
                   seedOf({settings_.seed, 1, from, to, part}));
   }
   TrialSite site(size_t from, size_t to, Trial trial, size_t part, int64_t repetitions) const {
@@ -89,11 +101,14 @@ class Schedule {
   void addTransition(TransitionParts& parts);
   void addSide(TransitionParts& parts, size_t part);
   void addLong(size_t surface);
+  void addDrift(size_t surface);
 
   const std::vector<Ground>& grounds_;
   const ExperimentSettings& settings_;
   std::vector<TransitionParts> parts_;
   std::vector<std::vector<Errors>> long_parts_;
+  std::vector<std::vector<Errors>> sequence_parts_;
+  std::vector<std::vector<std::vector<double>>> drift_parts_;
   std::vector<std::function<void()>> tasks_;
 };
 
@@ -129,13 +144,28 @@ void Schedule::addSide(TransitionParts& parts, size_t part) {
 
 void Schedule::addLong(size_t surface) {
   long_parts_[surface].resize(kSideParts);
+  sequence_parts_[surface].resize(kSideParts);
   for (size_t part = 0; part < kSideParts; ++part)
     tasks_.push_back([this, surface, part] {
       Lineup rules = lineup(surface, surface, part);
       const int64_t drives = std::max<int64_t>(8, sideRepetitions(settings_) / 30);
-      long_parts_[surface][part] = driveLong(
-          rules, site(surface, surface, Trial::kLong, part, share(drives, part, kSideParts)));
+      const int64_t of_part = share(drives, part, kSideParts);
+      long_parts_[surface][part] =
+          driveLong(rules, site(surface, surface, Trial::kLong, part, of_part), {});
+      sequence_parts_[surface][part] = driveLong(
+          rules, site(surface, surface, Trial::kLongSequences, part, of_part), settings_.sequences);
     });
+}
+
+void Schedule::addDrift(size_t surface) {
+  tasks_.push_back([this, surface] {
+    const std::optional<size_t> watched = neverExecuted(grounds_[surface], settings_.sequences);
+    if (!watched) return;
+    Lineup rules = lineup(surface, surface, 0);
+    drift_parts_[surface] =
+        driveDrift(rules, site(surface, surface, Trial::kDrift, 0, kDriftDrives),
+                   settings_.sequences, *watched, settings_.drift);
+  });
 }
 
 void addHistograms(std::vector<Histogram>& sums, const std::vector<Histogram>& more) {
@@ -151,6 +181,30 @@ std::vector<Errors> sum(const std::vector<std::vector<Errors>>& parts) {
   return sums;
 }
 
+std::vector<Errors> sumsOf(const std::vector<std::vector<Errors>>& surfaces) {
+  std::vector<Errors> sums;
+  for (const std::vector<Errors>& parts : surfaces) {
+    sums.push_back(parts.front());
+    for (size_t part = 1; part < parts.size(); ++part) sums.back().add(parts[part]);
+  }
+  return sums;
+}
+
+/// By rule and execution, over those surfaces that have a pattern to watch.
+std::vector<std::vector<double>> meanDrift(
+    const std::vector<std::vector<std::vector<double>>>& surfaces) {
+  std::vector<std::vector<double>> mean;
+  double count = 0.0;
+  for (const auto& one : surfaces) count += one.empty() ? 0.0 : 1.0;
+  for (const auto& one : surfaces) {
+    if (one.empty()) continue;
+    if (mean.empty()) mean.assign(one.size(), std::vector<double>(one.front().size(), 0.0));
+    for (size_t i = 0; i < one.size(); ++i)
+      for (size_t j = 0; j < one[i].size(); ++j) mean[i][j] += one[i][j] / count;
+  }
+  return mean;
+}
+
 ExperimentErrors Schedule::errors() const {
   ExperimentErrors all;
   for (const TransitionParts& parts : parts_) {
@@ -163,11 +217,9 @@ ExperimentErrors Schedule::errors() const {
     all.transitions.push_back(
         {parts.from, parts.to, std::move(sums), sum(parts.all_patterns), sum(parts.development)});
   }
-  for (const std::vector<Errors>& parts : long_parts_) {
-    Errors sums = parts.front();
-    for (size_t part = 1; part < parts.size(); ++part) sums.add(parts[part]);
-    all.unchanged.push_back(std::move(sums));
-  }
+  all.unchanged = sumsOf(long_parts_);
+  all.unchanged_sequences = sumsOf(sequence_parts_);
+  all.drift = meanDrift(drift_parts_);
   return all;
 }
 
@@ -175,6 +227,22 @@ ExperimentErrors Schedule::errors() const {
 
 size_t ExperimentSettings::ruleIndex(const std::string& name) const {
   return static_cast<size_t>(std::find(rules.begin(), rules.end(), name) - rules.begin());
+}
+
+std::optional<size_t> neverExecuted(const Ground& ground, const std::vector<Sequence>& sequences) {
+  constexpr double kLeastWidth = 0.02;  // [m]
+  std::optional<size_t> widest;
+  for (size_t p = 0; p < ground.averaged_ends.size(); ++p) {
+    const double width = std::abs(ground.averaged_ends[p].y);
+    if (width < kLeastWidth) continue;
+    if (widest && width <= std::abs(ground.averaged_ends[*widest].y)) continue;
+    const bool executed =
+        std::any_of(sequences.begin(), sequences.end(), [&](const Sequence& sequence) {
+          return std::find(sequence.begin(), sequence.end(), p) != sequence.end();
+        });
+    if (!executed) widest = p;
+  }
+  return widest;
 }
 
 ExperimentErrors runExperiment(const std::vector<Ground>& grounds,

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "tools/experiment/tables.hpp"
+#include "tools/experiment/paper_numbers.hpp"
 #include "tools/picture/plot.hpp"
 
 namespace tread::experiment {
@@ -17,9 +17,9 @@ using picture::Picture;
 using picture::Style;
 using Points = std::vector<Eigen::Vector2d>;
 
-constexpr int kWidth = 1160;
-constexpr double kPanelWidth = 480.0;
-constexpr double kLeft[] = {70.0, 650.0};
+constexpr double kWidth = 1400.0;
+constexpr double kRow = 330.0;  // height of a row of panels with its legend
+constexpr double kLeft = 75.0;  // of each panel, for its numbers
 
 Style styleOf(const std::string& rule) {
   static const std::map<std::string, picture::Colour> colours{{"off", picture::kGrey},
@@ -29,6 +29,7 @@ Style styleOf(const std::string& rule) {
                                                               {"local_filter", picture::kOrange},
                                                               {"bank", picture::kGreen},
                                                               {kBankUnseen, picture::kSkyBlue},
+                                                              {kBankEmpty, picture::kBlue},
                                                               {kOmniscient, picture::kBlack}};
   const auto colour = colours.find(rule);
   Style style;
@@ -39,16 +40,45 @@ Style styleOf(const std::string& rule) {
   return style;
 }
 
-/// Names of the rules in a line below the title, away from the curves.
-void drawLegend(Picture& picture, const std::vector<std::string>& rules) {
-  double x = kLeft[0];
-  for (const std::string& rule : rules) {
-    const Style style = styleOf(rule);
+/// Not more than five curves in one panel: the paper's rules, then the others, each time with the
+/// best that is possible.
+std::vector<std::vector<size_t>> curveGroups(const std::vector<std::string>& rules) {
+  constexpr size_t kMost = 5;
+  std::vector<size_t> papers, others;
+  size_t best = rules.size();
+  for (size_t i = 0; i < rules.size(); ++i) {
+    const bool paper =
+        std::find(paperRules().begin(), paperRules().end(), rules[i]) != paperRules().end();
+    (paper ? papers : others).push_back(i);
+    if (rules[i] == kOmniscient) best = i;
+  }
+  if (rules.size() <= kMost) {
+    papers.insert(papers.end(), others.begin(), others.end());
+    return {papers};
+  }
+  std::vector<std::vector<size_t>> groups;
+  if (!papers.empty()) groups.push_back(papers);
+  const size_t parts = (others.size() + kMost - 2) / (kMost - 1);
+  for (size_t part = 0; part < parts; ++part) {
+    std::vector<size_t> group(
+        others.begin() + static_cast<long>(others.size() * part / parts),
+        others.begin() + static_cast<long>(others.size() * (part + 1) / parts));
+    if (best < rules.size()) group.push_back(best);
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+/// Names of the rules in a line above their panels, away from the curves.
+void drawLegend(Picture& picture, double x, double y, const std::vector<std::string>& rules,
+                const std::vector<size_t>& group) {
+  for (const size_t i : group) {
+    const Style style = styleOf(rules[i]);
     const double height = std::max(2.0, style.width);
-    picture.fill({x, 47.0, style.dashed ? 9.0 : 26.0, height}, style.colour);
-    if (style.dashed) picture.fill({x + 15.0, 47.0, 9.0, height}, style.colour);
-    picture.text(x + 32.0, 52.0, rule, 12.0);
-    x += 60.0 + 7.5 * static_cast<double>(rule.size());
+    picture.fill({x, y, style.dashed ? 9.0 : 26.0, height}, style.colour);
+    if (style.dashed) picture.fill({x + 15.0, y, 9.0, height}, style.colour);
+    picture.text(x + 32.0, y + 5.0, rules[i], 13.0);
+    x += 50.0 + 8.0 * static_cast<double>(rules[i].size());
   }
 }
 
@@ -59,16 +89,42 @@ double largest(const std::vector<Points>& curves) {
   return y;
 }
 
-/// One panel with a curve for each rule.
+/// One panel with a curve for each rule of a group.
 void drawCurves(Picture& picture, Box box, Panel::Axes axes, const std::vector<Points>& curves,
-                const std::vector<std::string>& rules) {
-  axes.y_max = 1.08 * largest(curves);
+                const std::vector<std::string>& rules, const std::vector<size_t>& group) {
   Panel panel(picture, box, axes);
   for (const bool wide : {true, false})
-    for (size_t i = 0; i < curves.size(); ++i)
+    for (const size_t i : group)
       if (!curves[i].empty() && (styleOf(rules[i]).width > 2.0) == wide)
         panel.line(curves[i], styleOf(rules[i]));
   panel.finish();
+}
+
+/// Curves of one column of panels, by rule.
+struct Column {
+  Panel::Axes axes;
+  std::vector<Points> curves;
+};
+
+/// A row of panels for each group of rules, all of a column on the same scale.
+void drawRows(const std::string& path, const std::string& title, std::vector<Column> columns,
+              const std::vector<std::string>& rules) {
+  const std::vector<std::vector<size_t>> groups = curveGroups(rules);
+  const double panel = (kWidth - 20.0) / static_cast<double>(columns.size()) - kLeft;
+  Picture picture(static_cast<int>(kWidth),
+                  static_cast<int>(50.0 + kRow * static_cast<double>(groups.size())), title);
+  for (Column& column : columns)
+    if (column.axes.y_max <= column.axes.y_min) column.axes.y_max = 1.08 * largest(column.curves);
+  for (size_t row = 0; row < groups.size(); ++row) {
+    const double top = 50.0 + kRow * static_cast<double>(row);
+    drawLegend(picture, kLeft, top, rules, groups[row]);
+    for (size_t i = 0; i < columns.size(); ++i) {
+      const double left = kLeft + static_cast<double>(i) * (panel + kLeft);
+      drawCurves(picture, {left, top + 45.0, panel, kRow - 115.0}, columns[i].axes,
+                 columns[i].curves, rules, groups[row]);
+    }
+  }
+  picture.save(path);
 }
 
 /// value(errors of an execution, rule) over the number of the execution, by rule.
@@ -121,45 +177,72 @@ std::string wordsOf(const TransitionErrors& transition, const std::vector<Ground
 
 void drawDevelopment(const std::string& path, const TransitionErrors& transition,
                      const ExperimentSettings& settings, const std::string& words) {
-  Picture picture(kWidth, 785, "From " + words + ": error over executions, without a reset");
-  drawLegend(picture, settings.rules);
   const double last = static_cast<double>(transition.development.size());
-  const char* units[] = {"per driven metre [m/m]", "per radian turned [rad/rad]"};
-  for (int column = 0; column < 2; ++column) {
-    const auto of = [&](const Errors& errors) -> const RatioMoments& {
-      return column == 0 ? errors.position : errors.orientation;
+  const size_t rules = settings.rules.size();
+  std::vector<Column> columns;
+  for (const bool position : {true, false}) {
+    const auto of = [position](const Errors& errors) -> const RatioMoments& {
+      return position ? errors.position : errors.orientation;
     };
-    const std::string name = column == 0 ? "Position" : "Orientation";
-    Panel::Axes axes{name + " error", "execution after the change", units[column], 1.0, last};
-    drawCurves(picture, {kLeft[column], 95.0, kPanelWidth, 270.0}, axes,
-               overExecutions(
-                   transition, settings.rules.size(),
-                   [&](const Errors& errors, size_t rule) { return of(errors).error(rule).value; }),
-               settings.rules);
-    axes.title = name + " error: standard deviation";
-    drawCurves(picture, {kLeft[column], 460.0, kPanelWidth, 270.0}, axes,
-               overExecutions(
-                   transition, settings.rules.size(),
-                   [&](const Errors& errors, size_t rule) { return of(errors).deviation(rule); }),
-               settings.rules);
+    const std::string name = position ? "Position" : "Orientation";
+    const std::string unit = position ? "[m/m]" : "[rad/rad]";
+    const auto axes = [&](const std::string& title) {
+      return Panel::Axes{title, "execution after the change", unit, 1.0, last, 0.0, 0.0};
+    };
+    columns.push_back({axes(name + " error"),
+                       overExecutions(transition, rules, [&](const Errors& errors, size_t rule) {
+                         return of(errors).error(rule).value;
+                       })});
+    columns.push_back({axes("... its deviation"),
+                       overExecutions(transition, rules, [&](const Errors& errors, size_t rule) {
+                         return of(errors).deviation(rule);
+                       })});
   }
-  picture.save(path);
+  drawRows(path, "From " + words + ": error over executions, without a reset", std::move(columns),
+           settings.rules);
 }
 
 void drawDistributions(const std::string& path, const TransitionErrors& transition,
                        const ExperimentSettings& settings, const std::string& words) {
-  Picture picture(kWidth, 450, "From " + words + ": errors over the test sequences");
-  drawLegend(picture, settings.rules);
-  for (int column = 0; column < 2; ++column) {
+  std::vector<Column> columns;
+  for (const bool position : {true, false}) {
     const std::vector<Histogram>& histograms =
-        column == 0 ? transition.sequences.position : transition.sequences.orientation;
-    std::vector<Points> curves;
-    for (const Histogram& histogram : histograms) curves.push_back(density(histogram));
-    Panel::Axes axes{column == 0 ? "Position" : "Orientation",
-                     column == 0 ? "error per driven metre [m/m]" : "error per radian [rad/rad]",
-                     "executions [%]"};
-    axes.x_max = histograms.front().width * static_cast<double>(histograms.front().counts.size());
-    drawCurves(picture, {kLeft[column], 95.0, kPanelWidth, 300.0}, axes, curves, settings.rules);
+        position ? transition.sequences.position : transition.sequences.orientation;
+    Column column;
+    column.axes = {position ? "Position" : "Orientation",
+                   position ? "error per driven metre [m/m]" : "error per radian [rad/rad]",
+                   "executions [%]",
+                   0.0,
+                   histograms.front().width * static_cast<double>(histograms.front().counts.size()),
+                   0.0,
+                   0.0};
+    for (const Histogram& histogram : histograms) column.curves.push_back(density(histogram));
+    columns.push_back(std::move(column));
+  }
+  drawRows(path, "From " + words + ": errors over the test sequences", std::move(columns),
+           settings.rules);
+}
+
+void drawDrift(const std::string& path, const std::vector<std::vector<double>>& drift,
+               const ExperimentSettings& settings, const std::string& watched) {
+  std::vector<Points> curves;
+  for (const std::vector<double>& widths : drift) {
+    Points curve;
+    for (size_t j = 0; j < widths.size(); ++j)
+      curve.emplace_back(static_cast<double>(j), widths[j]);
+    curves.push_back(std::move(curve));
+  }
+  Panel::Axes axes{"", "execution", "width over the shipped one [1]"};
+  axes.x_max = static_cast<double>(settings.drift);
+  axes.y_max = 1.08 * largest(curves);
+  const std::vector<std::vector<size_t>> groups = curveGroups(settings.rules);
+  Picture picture(static_cast<int>(kWidth), static_cast<int>(50.0 + kRow),
+                  "Drift on unchanged ground: width of '" + watched + "', which is never executed");
+  const double panel = (kWidth - 20.0) / static_cast<double>(groups.size()) - kLeft;
+  for (size_t i = 0; i < groups.size(); ++i) {
+    const double left = kLeft + static_cast<double>(i) * (panel + kLeft);
+    drawLegend(picture, left, 55.0, settings.rules, groups[i]);
+    drawCurves(picture, {left, 80.0, panel, kRow - 100.0}, axes, curves, settings.rules, groups[i]);
   }
   picture.save(path);
 }

@@ -24,4 +24,9 @@ void drawDevelopment(const std::string& path, const TransitionErrors& transition
 void drawDistributions(const std::string& path, const TransitionErrors& transition,
                        const ExperimentSettings& settings, const std::string& words);
 
+/// How wide each rule predicts a pattern that is never executed, over executions on unchanged
+/// ground (PNG).
+void drawDrift(const std::string& path, const std::vector<std::vector<double>>& drift,
+               const ExperimentSettings& settings, const std::string& watched);
+
 }  // namespace tread::experiment

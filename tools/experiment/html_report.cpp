@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-
 #include "tools/experiment/campaign.hpp"
 #include "tools/experiment/figures.hpp"
+#include "tools/experiment/html_words.hpp"
 #include "tools/experiment/paper_numbers.hpp"
 
 namespace tread::experiment {
@@ -13,98 +10,29 @@ namespace {
 
 const char* const kQuantities[] = {kPosition, kOrientation};
 
-const char* const kHead = R"(<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><title>Transitions between surfaces</title><style>
-body { font: 15px/1.45 sans-serif; color: #222; max-width: 1240px; margin: 2em auto; padding: 0 1em; }
-h1 { font-size: 1.5em; } h2 { font-size: 1.15em; margin-top: 2em; }
-table { border-collapse: collapse; margin: .6em 0; font-variant-numeric: tabular-nums; }
-th, td { padding: .15em .55em; text-align: right; white-space: nowrap; }
-th { font-weight: 600; } thead tr:last-child th { border-bottom: 1.5px solid #555; }
-td.name, th.name { text-align: left; } tr.first td, tr.first th { border-top: 1px solid #ccc; }
-td.group, th.group { border-left: 1px solid #ccc; } .worse { color: #b03a00; }
-.paper { display: block; color: #777; font-size: .8em; } .doubt { border-bottom: 1px dotted #b03a00; }
-.wide { overflow-x: auto; } img { max-width: 100%; } pre { overflow-x: auto; font-size: .85em; }
-p.small { color: #555; font-size: .9em; }
-</style></head><body>
-)";
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char letter : text) {
-    if (letter == '<')
-      safe += "&lt;";
-    else if (letter == '>')
-      safe += "&gt;";
-    else if (letter == '&')
-      safe += "&amp;";
-    else if (letter == '"')
-      safe += "&quot;";
-    else
-      safe += letter;
-  }
-  return safe;
-}
-
-std::string base64(const std::string& bytes) {
-  static const char kLetters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned group = 0;
-    for (size_t j = 0; j < 3; ++j)
-      group = group << 8 | (i + j < bytes.size() ? static_cast<unsigned char>(bytes[i + j]) : 0U);
-    for (size_t j = 0; j < 4; ++j)
-      text += i + j <= bytes.size() ? kLetters[group >> (18 - 6 * j) & 63U] : '=';
-  }
-  return text;
-}
-
-std::string number(const char* format, double value) {
-  char text[48];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-std::string picture(const std::string& png, const std::string& words) {
-  return "<p><img alt=\"" + escaped(words) + "\" src=\"data:image/png;base64," + base64(png) +
-         "\"></p>\n";
-}
-
-std::string cell(const std::string& inside, const std::string& tip = "", bool group = false) {
-  return "<td" + std::string(group ? " class=\"group\"" : "") +
-         (tip.empty() ? "" : " title=\"" + escaped(tip) + "\"") + ">" + inside + "</td>";
-}
-
-std::string paperWords(double value, const char* format, const std::string& doubt) {
-  const std::string text = number(format, value);
-  if (doubt.empty()) return "<span class=\"paper\">" + text + "</span>";
-  return "<span class=\"paper\"><span class=\"doubt\" title=\"" + escaped(doubt) + "\">" + text +
-         "?</span></span>";
-}
-
-std::string intervalWords(const Row& row, const char* format) {
-  std::string words =
-      "99 %: " + number(format, row.estimate.low) + " to " + number(format, row.estimate.high);
-  if (std::isfinite(row.spread)) words += "; deviation over books " + number(format, row.spread);
-  return words;
-}
-
 /// Writes the tables of one campaign.
 class Writer {
  public:
   explicit Writer(const Campaign& campaign)
       : campaign_(campaign), tables_(campaign.tables), setting_(campaign.setting) {}
 
-  std::string html(const std::string& figure4, const std::string& figure5) const;
+  std::string html(const Pictures& pictures) const;
 
  private:
   std::string about() const;
   std::string errors() const;
-  std::string errorRow(const std::string& from, const char* quantity) const;
+  std::string errorTable(const std::vector<std::string>& rules) const;
+  std::string errorRow(const std::vector<std::string>& rules, const std::string& from,
+                       const char* quantity) const;
   std::string reductions() const;
   std::string reductionTable(const std::string& rule, const std::string& against) const;
   std::string reductionCell(const Row* row, bool with_paper) const;
   std::string allPatterns() const;
   std::string unchanged() const;
+  std::string unchangedTable(const std::vector<Row>& rows) const;
+  std::string drift(const std::string& png) const;
+  std::string bank() const;
+  std::string variants() const;
   std::string notes() const;
   bool isPapers(const std::string& rule, const std::string& against) const {
     return setting_.paper_reference && rule == "collective" && against == "single";
@@ -137,14 +65,15 @@ std::string Writer::about() const {
   return text + ".</p>\n";
 }
 
-std::string Writer::errorRow(const std::string& from, const char* quantity) const {
+std::string Writer::errorRow(const std::vector<std::string>& rules, const std::string& from,
+                             const char* quantity) const {
   const bool first = std::string(quantity) == kPosition;
   std::string text = first ? "<tr class=\"first\">" : "<tr>";
   text += "<td class=\"name\">" + (first ? escaped(from) : "") + "</td><td class=\"name\">" +
           quantity + "</td>";
   for (const std::string& to : setting_.surfaces)
-    for (const std::string& rule : setting_.rules) {
-      const bool group = rule == setting_.rules.front();
+    for (const std::string& rule : rules) {
+      const bool group = rule == rules.front();
       const Row* row = find(tables_.errors, from, to, quantity, rule);
       if (row == nullptr) {
         text += cell("-", "", group);
@@ -160,27 +89,31 @@ std::string Writer::errorRow(const std::string& from, const char* quantity) cons
   return text + "</tr>\n";
 }
 
+std::string Writer::errorTable(const std::vector<std::string>& rules) const {
+  std::string text = "<div class=\"wide\"><table><thead><tr><th></th><th></th>";
+  for (const std::string& to : setting_.surfaces)
+    text += "<th class=\"group\" style=\"text-align:center\" colspan=\"" +
+            std::to_string(rules.size()) + "\">" + escaped(to) + "</th>";
+  text += "</tr><tr><th class=\"name\">from</th><th></th>";
+  for (size_t s = 0; s < setting_.surfaces.size(); ++s)
+    for (const std::string& rule : rules)
+      text += "<th" + std::string(rule == rules.front() ? " class=\"group\"" : "") + ">" +
+              escaped(rule) + "</th>";
+  text += "</tr></thead><tbody>\n";
+  for (const std::string& from : setting_.surfaces)
+    for (const char* quantity : kQuantities) text += errorRow(rules, from, quantity);
+  return text + "</tbody></table></div>\n";
+}
+
 std::string Writer::errors() const {
   std::string text =
       "<h2>Table I: errors</h2>\n<p class=\"small\">Position per driven metre, orientation per "
       "radian turned; rows from, groups of columns to. " +
       std::string(setting_.paper_reference ? "Grey: the paper's numbers, ? = probably misprinted. "
                                            : "") +
-      "The 99 % interval of a number appears under the pointer.</p>\n<div class=\"wide\"><table>"
-      "<thead><tr><th></th><th></th>";
-  for (const std::string& to : setting_.surfaces)
-    text += "<th class=\"group\" style=\"text-align:center\" colspan=\"" +
-            std::to_string(setting_.rules.size()) + "\">" + escaped(to) + "</th>";
-  text += "</tr><tr><th class=\"name\">from</th><th></th>";
-  for (size_t s = 0; s < setting_.surfaces.size(); ++s)
-    for (const std::string& rule : setting_.rules)
-      text += "<th" + std::string(rule == setting_.rules.front() ? " class=\"group\"" : "") + ">" +
-              escaped(rule) + "</th>";
-  text += "</tr></thead><tbody>\n";
-  for (const std::string& from : setting_.surfaces)
-    for (const char* quantity : kQuantities) text += errorRow(from, quantity);
-  return text + "</tbody></table></div>\n<pre>" +
-         escaped(textOfAgreement(tables_, setting_, campaign_.books)) + "</pre>\n";
+      "The 99 % interval of a number appears under the pointer.</p>\n";
+  for (const std::vector<std::string>& rules : columnGroups(setting_)) text += errorTable(rules);
+  return text + "<pre>" + escaped(textOfAgreement(tables_, setting_, campaign_.books)) + "</pre>\n";
 }
 
 std::string Writer::reductionCell(const Row* row, bool with_paper) const {
@@ -251,25 +184,46 @@ std::string Writer::allPatterns() const {
   return text + "</tbody></table></div>\n";
 }
 
-std::string Writer::unchanged() const {
-  if (tables_.unchanged.empty()) return "";
-  std::string text =
-      "<h2>Cost on an unchanged surface</h2>\n<p class=\"small\">Error in the long run, patterns "
-      "in random order, over that of the right set; position / "
-      "orientation.</p>\n<table><thead><tr><th class=\"name\">surface</th>";
+std::string Writer::unchangedTable(const std::vector<Row>& rows) const {
+  std::string text = "<table><thead><tr><th class=\"name\">surface</th>";
   for (const std::string& rule : setting_.rules) text += "<th>" + escaped(rule) + "</th>";
   text += "</tr></thead><tbody>\n";
   for (const std::string& surface : setting_.surfaces) {
     text += "<tr><td class=\"name\">" + escaped(surface) + "</td>";
     for (const std::string& rule : setting_.rules) {
-      const Row* position = find(tables_.unchanged, surface, surface, kPosition, rule);
-      const Row* turn = find(tables_.unchanged, surface, surface, kOrientation, rule);
+      const Row* position = find(rows, surface, surface, kPosition, rule);
+      const Row* turn = find(rows, surface, surface, kOrientation, rule);
       text += cell(number("%.3f", position->estimate.value) + " / " +
                    number("%.3f", turn->estimate.value));
     }
     text += "</tr>\n";
   }
   return text + "</tbody></table>\n";
+}
+
+std::string Writer::unchanged() const {
+  if (tables_.unchanged.empty()) return "";
+  return "<h2>Cost on an unchanged surface</h2>\n<p class=\"small\">Error in the long run over "
+         "that of the right set; position / orientation. Patterns in random order:</p>\n" +
+         unchangedTable(tables_.unchanged) +
+         "<p class=\"small\">The test sequences again and again:</p>\n" +
+         unchangedTable(tables_.unchanged_sequences);
+}
+
+std::string Writer::drift(const std::string& png) const {
+  if (png.empty()) return "";
+  return "<h2>Drift on an unchanged surface</h2>\n" + picture(png, "drift") + "<pre>" +
+         escaped(textOfDrift(campaign_)) + "</pre>\n";
+}
+
+std::string Writer::bank() const {
+  if (campaign_.tours.empty()) return "";
+  return "<h2>What the bank met before</h2>\n<pre>" + escaped(textOfBank(campaign_)) + "</pre>\n";
+}
+
+std::string Writer::variants() const {
+  if (campaign_.variants.empty()) return "";
+  return "<h2>On other terms</h2>\n<pre>" + escaped(textOfVariants(campaign_)) + "</pre>\n";
 }
 
 std::string Writer::notes() const {
@@ -279,25 +233,24 @@ std::string Writer::notes() const {
   return text + "</ul>\n";
 }
 
-std::string Writer::html(const std::string& figure4, const std::string& figure5) const {
+std::string Writer::html(const Pictures& pictures) const {
   const size_t shown = transitionOfFigures(campaign_.first, campaign_.settings, campaign_.grounds);
   const std::string words = wordsOf(campaign_.first.transitions[shown], campaign_.grounds);
-  std::string text = kHead + about() + "<pre>" +
-                     escaped(textOfKeyFigures(tables_, setting_, campaign_.books) + "\n" +
-                             textOfTours(campaign_)) +
-                     "</pre>\n" + errors() + reductions();
+  std::string text = kHtmlHead + about() + "<pre>" +
+                     escaped(textOfKeyFigures(tables_, setting_, campaign_.books)) + "</pre>\n" +
+                     errors() + reductions();
   text += "<h2>Figure 4: from " + escaped(words) + ", error over executions</h2>\n" +
-          picture(figure4, "error over executions");
+          picture(pictures.figure4, "error over executions");
   text += "<h2>Figure 5: from " + escaped(words) + ", error distributions</h2>\n" +
-          picture(figure5, "error distributions");
-  return text + allPatterns() + unchanged() + notes() + "</body></html>\n";
+          picture(pictures.figure5, "error distributions");
+  return text + allPatterns() + unchanged() + drift(pictures.drift) + bank() + variants() +
+         notes() + "</body></html>\n";
 }
 
 }  // namespace
 
-std::string htmlOf(const Campaign& campaign, const std::string& figure4_png,
-                   const std::string& figure5_png) {
-  return Writer(campaign).html(figure4_png, figure5_png);
+std::string htmlOf(const Campaign& campaign, const Pictures& pictures) {
+  return Writer(campaign).html(pictures);
 }
 
 }  // namespace tread::experiment

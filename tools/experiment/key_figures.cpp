@@ -26,56 +26,67 @@ double largest(const std::vector<double>& values) {
   return values.empty() ? median(values) : *std::max_element(values.begin(), values.end());
 }
 
-/// What is told of a rule; position and orientation of each in turn.
-struct Figures {
-  std::array<double, 2> sequences;        ///< [%] median reduction against single
-  std::array<double, 2> sequences_worst;  ///< [%] more than off in the worst transition
-  std::array<double, 2> all_after_10;     ///< the same over all patterns
-  std::array<double, 2> all_after_3_worst;
-  std::array<double, 2> unchanged;  ///< [1] of the omniscient error, median over surfaces
-  std::array<double, 2> unchanged_worst;
+double medianCost(const std::vector<Row>& rows, const std::string& quantity,
+                  const std::string& rule) {
+  std::vector<double> costs;
+  for (const Row& row : rows)
+    if (row.quantity == quantity && row.rule == rule) costs.push_back(row.estimate.value);
+  return median(costs);
+}
+
+/// One column of the key figures.
+struct Figure {
+  const char* title;
+  const char* format;
+  /// Over all books at once, for cells that are means over them.
+  bool of_means;
+  double (*value)(const Tables& tables, const std::string& quantity, const std::string& rule);
 };
 
-Figures figuresOf(const Tables& tables, const std::string& rule) {
-  Figures figures{};
-  for (size_t i = 0; i < 2; ++i) {
-    const std::string quantity = i == 0 ? kPosition : kOrientation;
-    const auto less = [&](const std::vector<Row>& rows, int k) {
-      return 100.0 * (1.0 - median(ratios(rows, quantity, rule, "single", k)));
-    };
-    const auto more = [&](const std::vector<Row>& rows, int k) {
-      return 100.0 * (largest(ratios(rows, quantity, rule, "off", k)) - 1.0);
-    };
-    figures.sequences[i] = less(tables.errors, 0);
-    figures.sequences_worst[i] = more(tables.errors, 0);
-    figures.all_after_10[i] = less(tables.all_patterns, 10);
-    figures.all_after_3_worst[i] = more(tables.all_patterns, 3);
-    std::vector<double> costs;
-    for (const Row& row : tables.unchanged)
-      if (row.quantity == quantity && row.rule == rule) costs.push_back(row.estimate.value);
-    figures.unchanged[i] = median(costs);
-    figures.unchanged_worst[i] = largest(costs);
-  }
-  return figures;
+double worst(const std::vector<Row>& rows, const std::string& quantity, const std::string& rule,
+             int k) {
+  return 100.0 * (largest(ratios(rows, quantity, rule, "off", k)) - 1.0);
 }
 
-/// Deviation of each figure from book to book.
-Figures spreadOf(const std::vector<Tables>& books, const std::string& rule) {
-  std::vector<Figures> all;
-  for (const Tables& book : books) all.push_back(figuresOf(book, rule));
-  const auto deviation = [&](std::array<double, 2> Figures::*figure, size_t i) {
-    double mean = 0.0, squares = 0.0;
-    for (const Figures& one : all) mean += (one.*figure)[i] / static_cast<double>(all.size());
-    for (const Figures& one : all) squares += std::pow((one.*figure)[i] - mean, 2);
-    return std::sqrt(squares / static_cast<double>(all.size() - 1));
-  };
-  Figures spread{};
-  for (const auto figure :
-       {&Figures::sequences, &Figures::sequences_worst, &Figures::all_after_10,
-        &Figures::all_after_3_worst, &Figures::unchanged, &Figures::unchanged_worst})
-    for (size_t i = 0; i < 2; ++i) (spread.*figure)[i] = deviation(figure, i);
-  return spread;
+double reduced(const std::vector<Row>& rows, const std::string& quantity, const std::string& rule,
+               int k) {
+  return 100.0 * (1.0 - median(ratios(rows, quantity, rule, "single", k)));
 }
+
+const Figure kFigures[] = {
+    {"sequences", "%.1f", false,
+     [](const Tables& t, const std::string& q, const std::string& r) {
+       return reduced(t.errors, q, r, 0);
+     }},
+    {"worst to off", "%+.1f", false,
+     [](const Tables& t, const std::string& q, const std::string& r) {
+       return worst(t.errors, q, r, 0);
+     }},
+    {"of means", "%+.1f", true,
+     [](const Tables& t, const std::string& q, const std::string& r) {
+       return worst(t.errors, q, r, 0);
+     }},
+    {"all after 10", "%.1f", false,
+     [](const Tables& t, const std::string& q, const std::string& r) {
+       return reduced(t.all_patterns, q, r, 10);
+     }},
+    {"all 3 to off", "%+.1f", false,
+     [](const Tables& t, const std::string& q, const std::string& r) {
+       return worst(t.all_patterns, q, r, 3);
+     }},
+    {"of means", "%+.1f", true,
+     [](const Tables& t, const std::string& q, const std::string& r) {
+       return worst(t.all_patterns, q, r, 3);
+     }},
+    {"unchanged", "%.3f", false,
+     [](const Tables& t, const std::string& q, const std::string& r) {
+       return medianCost(t.unchanged, q, r);
+     }},
+    {"by sequences", "%.3f", false,
+     [](const Tables& t, const std::string& q, const std::string& r) {
+       return medianCost(t.unchanged_sequences, q, r);
+     }},
+};
 
 std::string formatted(const char* format, double value) {
   if (!std::isfinite(value)) return "-";
@@ -84,38 +95,56 @@ std::string formatted(const char* format, double value) {
   return text;
 }
 
-std::string rowOf(const std::string& name, const Figures& figures, bool with_sign) {
-  const char* more = with_sign ? "%+.1f" : "%.1f";
-  const auto pair = [](const std::array<double, 2>& both, const char* format) {
-    return formatted(format, both[0]) + " / " + formatted(format, both[1]);
-  };
-  char line[200];
-  std::snprintf(
-      line, sizeof line, "%-13s %15s %15s %15s %15s %16s %16s\n", name.c_str(),
-      pair(figures.sequences, "%.1f").c_str(), pair(figures.sequences_worst, more).c_str(),
-      pair(figures.all_after_10, "%.1f").c_str(), pair(figures.all_after_3_worst, more).c_str(),
-      pair(figures.unchanged, "%.3f").c_str(), pair(figures.unchanged_worst, "%.3f").c_str());
-  return line;
+/// Mean over the books, and the deviation between them.
+std::string cellOf(const Figure& figure, const std::vector<Tables>& books,
+                   const std::string& quantity, const std::string& rule) {
+  const auto n = static_cast<double>(books.size());
+  double mean = 0.0, squares = 0.0;
+  std::vector<double> values;
+  for (const Tables& book : books) values.push_back(figure.value(book, quantity, rule));
+  for (const double value : values) mean += value / n;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  const std::string text = formatted(figure.format, mean);
+  if (books.size() < 2 || !std::isfinite(mean)) return text;
+  const bool ratio = std::string(figure.format) == "%.3f";
+  return text + " +-" + formatted(ratio ? "%.3f" : "%.1f", std::sqrt(squares / (n - 1.0)));
+}
+
+std::string padded(const std::string& text, size_t width) {
+  return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
 }
 
 }  // namespace
 
 std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
                              const std::vector<Tables>& books) {
+  constexpr size_t kName = 13, kWidth = 15;
   std::string text =
-      "KEY FIGURES, position / orientation. Reductions [%] against single: median over "
-      "transitions. "
-      "Against\noff [%]: the worst transition, + = worse than no learning. Test sequences; errors "
-      "over all patterns after\n10 and after 3 executions; error in the long run on an unchanged "
-      "surface over the omniscient one.\n\n";
-  char head[200];
-  std::snprintf(head, sizeof head, "%-13s %15s %15s %15s %15s %16s %16s\n", "rule", "sequences",
-                "worst to off", "all after 10", "all 3 to off", "unchanged", "worst surface");
-  text += head;
-  for (const std::string& rule : setting.rules) text += rowOf(rule, figuresOf(tables, rule), true);
-  if (books.size() < 2) return text;
-  text += "deviation from book to book\n";
-  for (const std::string& rule : setting.rules) text += rowOf(rule, spreadOf(books, rule), false);
+      "KEY FIGURES. Reductions [%] against single: median over transitions, test sequences, and "
+      "over all patterns\nafter 10 executions. Against off [%]: the worst transition, + = worse "
+      "than no learning, test sequences, and over\nall patterns after 3 executions. Unchanged: "
+      "error in the long run over the omniscient one, median over surfaces,\nrandom patterns, and "
+      "test sequences.";
+  if (books.size() > 1)
+    text += " Means and deviations over " + std::to_string(books.size()) +
+            " books; of means: the worst of the\nmeans over the books.";
+  text += "\n";
+  for (const char* quantity : {kPosition, kOrientation}) {
+    text += "\n" + std::string(quantity) +
+            std::string(kName - std::min(kName, std::string(quantity).size()), ' ');
+    for (const Figure& figure : kFigures)
+      if (books.size() > 1 || !figure.of_means) text += padded(figure.title, kWidth);
+    text += "\n";
+    for (const std::string& rule : setting.rules) {
+      text += rule + std::string(kName - std::min(kName, rule.size()), ' ');
+      for (const Figure& figure : kFigures)
+        if (!figure.of_means)
+          text += padded(cellOf(figure, books, quantity, rule), kWidth);
+        else if (books.size() > 1)
+          text += padded(formatted(figure.format, figure.value(tables, quantity, rule)), kWidth);
+      text += "\n";
+    }
+  }
   return text;
 }
 

@@ -54,6 +54,11 @@ void define(CLI::App& command, Arguments& arguments) {
   command.add_option("--repetitions", request.repetitions, "of each transition")
       ->check(CLI::Range(2, 100'000'000))
       ->capture_default_str();
+  command
+      .add_option("--tour", request.tour,
+                  "executions on each surface that the bank drives before a transition")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
   command.add_option("--memory", request.memory, "w: weight of the old prediction")
       ->check(CLI::Range(0.0, 0.999))
       ->capture_default_str();
@@ -69,6 +74,8 @@ void define(CLI::App& command, Arguments& arguments) {
       ->capture_default_str();
   command.add_flag("--change-inside", request.change_inside,
                    "the ground changes in the middle of the first execution");
+  command.add_flag("--extras", request.extras,
+                   "also with twice as long patterns (world) and with changes inside a pattern");
   command.add_option("--out", arguments.out, "folder for tables, pictures and report.html");
 }
 
@@ -89,8 +96,10 @@ void run(const Arguments& arguments) {
   std::cout << textOfErrors(campaign.tables, campaign.setting) << '\n'
             << textOfReductions(campaign.tables, campaign.setting) << '\n'
             << textOfAgreement(campaign.tables, campaign.setting, campaign.books) << '\n'
-            << textOfKeyFigures(campaign.tables, campaign.setting, campaign.books) << '\n'
-            << textOfTours(campaign) << std::flush;
+            << textOfBank(campaign) << '\n'
+            << textOfDrift(campaign) << '\n'
+            << textOfVariants(campaign)
+            << textOfKeyFigures(campaign.tables, campaign.setting, campaign.books) << std::flush;
   std::fprintf(stderr, "%s: %zu transitions, %.2f s of trials on %d threads\n",
                campaign.source.c_str(), campaign.first.transitions.size(), campaign.seconds,
                arguments.request.threads);
@@ -102,8 +111,8 @@ int main(int argc, char** argv) {
   CLI::App app{"Experiments with rules of learning.", "tread-experiment"};
   app.require_subcommand(1);
   Arguments arguments;
-  arguments.request.rules = {"off",          "single", "collective", "telescoping",
-                             "local_filter", "bank",   "omniscient"};
+  arguments.request.rules = {"off",  "single",      "collective", "telescoping", "local_filter",
+                             "bank", "bank_unseen", "bank_empty", "omniscient"};
   arguments.request.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   CLI::App* transitions = app.add_subcommand(
       "transitions", "section V of the paper: what rules err after a change of surface");

@@ -113,13 +113,15 @@ Tables tablesOf(const ExperimentErrors& errors, const ExperimentSettings& settin
     Row about;
     about.from = about.to = grounds[s].surface;
     addUnchanged(errors.unchanged[s], settings, about, tables.unchanged);
+    addUnchanged(errors.unchanged_sequences[s], settings, about, tables.unchanged_sequences);
   }
   return tables;
 }
 
 Tables combined(const std::vector<Tables>& books) {
   return {combinedRows(books, &Tables::errors), combinedRows(books, &Tables::reductions),
-          combinedRows(books, &Tables::all_patterns), combinedRows(books, &Tables::unchanged)};
+          combinedRows(books, &Tables::all_patterns), combinedRows(books, &Tables::unchanged),
+          combinedRows(books, &Tables::unchanged_sequences)};
 }
 
 const Row* find(const std::vector<Row>& rows, const std::string& from, const std::string& to,

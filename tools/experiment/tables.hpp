@@ -26,10 +26,11 @@ struct Row {
 
 /// The numbers of an experiment.
 struct Tables {
-  std::vector<Row> errors;        ///< Table I
-  std::vector<Row> reductions;    ///< [%] Table II
-  std::vector<Row> all_patterns;  ///< errors over all patterns after k executions
-  std::vector<Row> unchanged;     ///< [1] error in the long run over the omniscient one
+  std::vector<Row> errors;               ///< Table I
+  std::vector<Row> reductions;           ///< [%] Table II
+  std::vector<Row> all_patterns;         ///< errors over all patterns after k executions
+  std::vector<Row> unchanged;            ///< [1] error in the long run over the omniscient one
+  std::vector<Row> unchanged_sequences;  ///< the same over the test sequences
 };
 
 Tables tablesOf(const ExperimentErrors& errors, const ExperimentSettings& settings,
@@ -48,10 +49,13 @@ const Row* find(const std::vector<Row>& rows, const std::string& from, const std
 std::vector<std::string> learningRules(const std::vector<std::string>& rules);
 
 // Text of the CSV files.
-std::string csvOfErrors(const Tables& tables);       ///< table1.csv
-std::string csvOfReductions(const Tables& tables);   ///< table2.csv
-std::string csvOfAllPatterns(const Tables& tables);  ///< all_patterns.csv
-std::string csvOfUnchanged(const Tables& tables);    ///< unchanged.csv
+std::string csvOfErrors(const Tables& tables);              ///< table1.csv
+std::string csvOfReductions(const Tables& tables);          ///< table2.csv
+std::string csvOfAllPatterns(const Tables& tables);         ///< all_patterns.csv
+std::string csvOfUnchanged(const Tables& tables);           ///< unchanged.csv
+std::string csvOfUnchangedSequences(const Tables& tables);  ///< unchanged_sequences.csv
+/// drift.csv: rule,executions,width of the watched pattern over its shipped one [1].
+std::string csvOfDrift(const ExperimentErrors& errors, const ExperimentSettings& settings);
 /// books.csv: table,seed,from,to,quantity,rule,against,k,value of each book.
 std::string csvOfBooks(const std::vector<Tables>& books, uint64_t first_seed);
 

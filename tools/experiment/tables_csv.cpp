@@ -27,6 +27,14 @@ void addBook(const char* table, uint64_t seed, const std::vector<Row>& rows, std
             "," + std::to_string(row.k) + "," + number(row.estimate.value) + "\n";
 }
 
+std::string csvOfRatios(const std::vector<Row>& rows) {
+  std::string text = "surface,quantity,rule,ratio\n";
+  for (const Row& row : rows)
+    text +=
+        row.from + "," + row.quantity + "," + row.rule + "," + number(row.estimate.value) + "\n";
+  return text;
+}
+
 }  // namespace
 
 std::string csvOfErrors(const Tables& tables) {
@@ -50,10 +58,18 @@ std::string csvOfAllPatterns(const Tables& tables) {
 }
 
 std::string csvOfUnchanged(const Tables& tables) {
-  std::string text = "surface,quantity,rule,ratio\n";
-  for (const Row& row : tables.unchanged)
-    text +=
-        row.from + "," + row.quantity + "," + row.rule + "," + number(row.estimate.value) + "\n";
+  return csvOfRatios(tables.unchanged);
+}
+
+std::string csvOfUnchangedSequences(const Tables& tables) {
+  return csvOfRatios(tables.unchanged_sequences);
+}
+
+std::string csvOfDrift(const ExperimentErrors& errors, const ExperimentSettings& settings) {
+  std::string text = "rule,executions,width\n";
+  for (size_t i = 0; i < errors.drift.size(); ++i)
+    for (size_t j = 0; j < errors.drift[i].size(); ++j)
+      text += settings.rules[i] + "," + std::to_string(j) + "," + number(errors.drift[i][j]) + "\n";
   return text;
 }
 
@@ -65,6 +81,7 @@ std::string csvOfBooks(const std::vector<Tables>& books, uint64_t first_seed) {
     addBook("table2", seed, books[book].reductions, text);
     addBook("all_patterns", seed, books[book].all_patterns, text);
     addBook("unchanged", seed, books[book].unchanged, text);
+    addBook("unchanged_sequences", seed, books[book].unchanged_sequences, text);
   }
   return text;
 }

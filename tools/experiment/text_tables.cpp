@@ -29,24 +29,12 @@ std::string centred(const std::string& text, size_t width) {
   return padded(std::string(left, ' ') + text, width);
 }
 
-/// The paper's columns first, then what else was compared.
-std::vector<std::string> columnsOf(const Setting& setting) {
-  std::vector<std::string> columns;
-  const auto has = [](const std::vector<std::string>& list, const std::string& rule) {
-    return std::find(list.begin(), list.end(), rule) != list.end();
-  };
-  for (const std::string& rule : paperRules())
-    if (has(setting.rules, rule)) columns.push_back(rule);
-  for (const std::string& rule : setting.rules)
-    if (!has(columns, rule)) columns.push_back(rule);
-  return columns;
-}
-
 constexpr size_t kRowHead = 22;
 
-/// Head and body of a Table I; cell(from, to, quantity, column) gives six characters.
+/// Head and body of a Table I; cell(from, to, quantity, column) gives six characters. The columns'
+/// letters begin with `first`.
 template <class Cell>
-std::string grid(const Setting& setting, size_t columns, const Cell& cell) {
+std::string grid(const Setting& setting, size_t columns, char first, const Cell& cell) {
   const size_t group = 7 * columns + 2;
   std::string text = padded("from \\ to", kRowHead);
   for (const std::string& to : setting.surfaces) text += "| " + centred(to, group - 2);
@@ -54,7 +42,7 @@ std::string grid(const Setting& setting, size_t columns, const Cell& cell) {
   for (size_t s = 0; s < setting.surfaces.size(); ++s) {
     text += "|";
     for (size_t c = 0; c < columns; ++c)
-      text += "    " + std::string(1, static_cast<char>('a' + c)) + "  ";
+      text += "    " + std::string(1, static_cast<char>(first + static_cast<char>(c))) + "  ";
     text += " ";
   }
   text += "\n";
@@ -75,7 +63,7 @@ std::string grid(const Setting& setting, size_t columns, const Cell& cell) {
 std::string paperGrid(const Setting& setting) {
   std::string notes;
   std::string text =
-      grid(setting, 4,
+      grid(setting, 4, 'a',
            [&](const std::string& from, const std::string& to, const std::string& quantity,
                size_t column) {
              const PaperCell* cell = paperCell(from, to, quantity);
@@ -169,6 +157,32 @@ std::string spreadNote(const Tables& tables, const Setting& setting) {
 
 }  // namespace
 
+std::vector<std::vector<std::string>> columnGroups(const Setting& setting) {
+  constexpr size_t kWidest = 158;
+  const auto has = [](const std::vector<std::string>& list, const std::string& rule) {
+    return std::find(list.begin(), list.end(), rule) != list.end();
+  };
+  std::vector<std::string> papers, others;
+  for (const std::string& rule : paperRules())
+    if (has(setting.rules, rule)) papers.push_back(rule);
+  for (const std::string& rule : setting.rules)
+    if (!has(papers, rule)) others.push_back(rule);
+  const size_t surface = (kWidest - kRowHead) / std::max<size_t>(1, setting.surfaces.size());
+  const size_t most = surface < 9 + 7 ? 1 : (surface - 2) / 7;
+  std::vector<std::vector<std::string>> groups;
+  if (papers.size() + others.size() <= most) {
+    papers.insert(papers.end(), others.begin(), others.end());
+    return {papers};
+  }
+  for (const auto& rules : {papers, others}) {
+    const size_t parts = (rules.size() + most - 1) / most;
+    for (size_t part = 0; part < parts; ++part)
+      groups.emplace_back(rules.begin() + static_cast<long>(rules.size() * part / parts),
+                          rules.begin() + static_cast<long>(rules.size() * (part + 1) / parts));
+  }
+  return groups;
+}
+
 double median(std::vector<double> values) {
   if (values.empty()) return Estimate{}.value;
   std::sort(values.begin(), values.end());
@@ -177,20 +191,25 @@ double median(std::vector<double> values) {
 }
 
 std::string textOfErrors(const Tables& tables, const Setting& setting) {
-  const std::vector<std::string> columns = columnsOf(setting);
   std::string text =
       "TABLE I: errors of all transitions; position per driven metre, orientation per radian "
       "turned.\n";
-  for (size_t c = 0; c < columns.size(); ++c)
-    text += std::string(c == 0 ? "" : "  ") + static_cast<char>('a' + c) + ") " + columns[c];
-  text += "\n\n";
-  text += grid(setting, columns.size(),
-               [&](const std::string& from, const std::string& to, const std::string& quantity,
-                   size_t column) {
-                 const Row* row = find(tables.errors, from, to, quantity, columns[column]);
-                 return row == nullptr ? std::string("  -   ")
-                                       : formatted("%5.3f", row->estimate.value) + " ";
-               });
+  char letter = 'a';
+  for (const std::vector<std::string>& columns : columnGroups(setting)) {
+    text += letter == 'a' ? "" : "\n";
+    for (size_t c = 0; c < columns.size(); ++c)
+      text += std::string(c == 0 ? "" : "  ") + static_cast<char>(letter + static_cast<char>(c)) +
+              ") " + columns[c];
+    text += "\n\n";
+    text += grid(setting, columns.size(), letter,
+                 [&](const std::string& from, const std::string& to, const std::string& quantity,
+                     size_t column) {
+                   const Row* row = find(tables.errors, from, to, quantity, columns[column]);
+                   return row == nullptr ? std::string("  -   ")
+                                         : formatted("%5.3f", row->estimate.value) + " ";
+                 });
+    letter = static_cast<char>(letter + static_cast<char>(columns.size()));
+  }
   text += spreadNote(tables, setting);
   if (setting.paper_reference)
     text +=

@@ -17,8 +17,12 @@ struct Setting {
   size_t books = 1;
 };
 
+/// Rules side by side in one table that is narrow enough to read: the paper's columns a, b, c, d
+/// first, then what else was compared.
+std::vector<std::vector<std::string>> columnGroups(const Setting& setting);
+
 /// Table I in the paper's layout: rows from, groups of columns to; a, b, c, d as in the paper,
-/// further rules after them; the paper's numbers below.
+/// further rules in tables after them; the paper's numbers below.
 std::string textOfErrors(const Tables& tables, const Setting& setting);
 /// Table II: collective against single as in the paper, then each other rule.
 std::string textOfReductions(const Tables& tables, const Setting& setting);
@@ -26,7 +30,7 @@ std::string textOfReductions(const Tables& tables, const Setting& setting);
 std::string textOfAgreement(const Tables& tables, const Setting& setting,
                             const std::vector<Tables>& books);
 /// Medians and worst cases by rule: reductions, all patterns, unchanged ground; with several books
-/// the deviation between them.
+/// means and deviations over them.
 std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
                              const std::vector<Tables>& books);
 

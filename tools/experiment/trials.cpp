@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/experiment/draw.hpp"
+
 namespace tread::experiment {
 namespace {
 
 using learner::ConstTrajectory;
 
-constexpr int kSettling = 60;  // executions before the long run counts
-constexpr int kLongRun = 240;  // executions that count
+constexpr size_t kSettling = 60;  // executions before the long run counts
+constexpr size_t kLongRun = 240;  // executions that count
 
 double positionError(const Pose2& predicted, const Pose2& driven) {
   const double dx = predicted.x - driven.x;
@@ -22,6 +24,14 @@ double positionError(const Pose2& predicted, const Pose2& driven) {
 double orientationError(const Pose2& predicted, const Pose2& driven) {
   const double difference = std::abs(predicted.yaw - driven.yaw);
   return difference <= kPi ? difference : std::abs(wrapAngle(difference));
+}
+
+/// All sequences, one after the other.
+Sequence joined(const std::vector<Sequence>& sequences) {
+  Sequence all;
+  for (const Sequence& sequence : sequences)
+    all.insert(all.end(), sequence.begin(), sequence.end());
+  return all;
 }
 
 /// Executions by chance, and what all rules made of them since the last clear().
@@ -192,18 +202,44 @@ std::vector<Errors> driveDevelopment(Lineup& lineup, const TrialSite& site,
   return result;
 }
 
-Errors driveLong(Lineup& lineup, const TrialSite& site) {
+Errors driveLong(Lineup& lineup, const TrialSite& site, const std::vector<Sequence>& sequences) {
   Errors result(lineup.size());
+  const Sequence order = joined(sequences);
   Drive drive(lineup, site);
   for (int64_t repetition = 0; repetition < site.repetitions; ++repetition) {
     lineup.reset();
-    for (int j = 0; j < kSettling + kLongRun; ++j) {
+    for (size_t j = 0; j < kSettling + kLongRun; ++j) {
       if (j == kSettling) drive.clear();
-      drive.execute(drive.any(), true);
+      drive.execute(order.empty() ? drive.any() : order[j % order.size()], true);
     }
     drive.addTo(result);
   }
   return result;
+}
+
+std::vector<std::vector<double>> driveDrift(Lineup& lineup, const TrialSite& site,
+                                            const std::vector<Sequence>& sequences, size_t watched,
+                                            size_t executions) {
+  std::vector<std::vector<double>> sums(lineup.size(), std::vector<double>(executions + 1, 0.0));
+  const Sequence order = joined(sequences);
+  Drive drive(lineup, site);
+  const auto note = [&](size_t j) {
+    for (size_t i = 0; i < lineup.size(); ++i)
+      sums[i][j] += std::abs(lineup.predictEnd(i, watched).y);
+  };
+  for (int64_t repetition = 0; repetition < site.repetitions; ++repetition) {
+    lineup.reset();
+    note(0);
+    for (size_t j = 0; j < executions; ++j) {
+      drive.execute(order[j % order.size()], true);
+      note(j + 1);
+    }
+  }
+  for (std::vector<double>& widths : sums) {
+    const double shipped = widths.front();
+    for (double& width : widths) width /= shipped;
+  }
+  return sums;
 }
 
 }  // namespace tread::experiment

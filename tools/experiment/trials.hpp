@@ -56,8 +56,15 @@ std::vector<Errors> driveAllPatterns(Lineup& lineup, const TrialSite& site,
 std::vector<Errors> driveDevelopment(Lineup& lineup, const TrialSite& site,
                                      const std::vector<Sequence>& sequences, size_t executions);
 
-/// Errors in the long run: random patterns, without a reset; the first executions do not count. A
-/// repetition is one such drive.
-Errors driveLong(Lineup& lineup, const TrialSite& site);
+/// Errors in the long run: the test sequences again and again, random patterns if there are none,
+/// without a reset; the first executions do not count. A repetition is one such drive.
+Errors driveLong(Lineup& lineup, const TrialSite& site, const std::vector<Sequence>& sequences);
+
+/// How wide a pattern that is never executed is predicted, over its shipped width (sideways reach
+/// of its end), before and after each execution of the test sequences on unchanged ground; by rule,
+/// means over repetitions.
+std::vector<std::vector<double>> driveDrift(Lineup& lineup, const TrialSite& site,
+                                            const std::vector<Sequence>& sequences, size_t watched,
+                                            size_t executions);
 
 }  // namespace tread::experiment

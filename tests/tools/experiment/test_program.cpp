@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include <catch2/catch.hpp>
 
@@ -95,7 +96,11 @@ TEST_CASE("one command writes all tables, pictures and the report of a world") {
   CHECK(unchanged[0] == "surface,quantity,rule,ratio");
   CHECK(unchanged.size() == 1 + 4 * 2 * 4);
 
-  for (const char* picture : {"/figure4.png", "/figure5.png"})
+  CHECK(linesOf(out + "/unchanged_sequences.csv").size() == unchanged.size());
+  CHECK(linesOf(out + "/drift.csv").size() == 1 + 4 * 301);
+  CHECK(contentOf(out + "/key_figures.txt").find("unchanged") != std::string::npos);
+
+  for (const char* picture : {"/figure4.png", "/figure5.png", "/drift.png"})
     CHECK(contentOf(out + picture).substr(1, 3) == "PNG");
   const std::string report = contentOf(out + "/report.html");
   CHECK(report.find("data:image/png;base64,iVBORw0KGgo") != std::string::npos);
@@ -116,7 +121,27 @@ TEST_CASE("several books give means with their spread, and each book's numbers")
   CHECK(printed.find("paper") == std::string::npos);
   const auto books = linesOf(folder / "out/books.csv");
   CHECK(books[0] == "table,seed,from,to,quantity,rule,against,k,value");
-  CHECK(books.size() == 1 + 3 * (2 * 2 * 4 + 2 * 2 * 3 + 2 * 2 * 4 * 4 + 2 * 2 * 4));
+  CHECK(books.size() == 1 + 3 * (2 * 2 * 4 + 2 * 2 * 3 + 2 * 2 * 4 * 4 + 2 * (2 * 2 * 4)));
+}
+
+TEST_CASE("all rules with extras: the bank is shown, lines are short, variants are told") {
+  const Folder folder;
+  write(folder / "small.yaml", kSmallWorld);
+  const auto [code, printed] =
+      run("--world " + (folder / "small.yaml") +
+          " --repetitions 20 --threads 2 --tour 40 --extras --out " + (folder / "out"));
+  INFO(printed);
+  REQUIRE(code == 0);
+  CHECK(printed.find("VARIANT: each command held twice as long") != std::string::npos);
+  CHECK(printed.find("VARIANT: the ground changes in the middle") != std::string::npos);
+  std::istringstream lines(printed);
+  for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 160);
+  const std::string bank = contentOf(folder / "out/bank.txt");
+  CHECK(bank.find("sideslip") != std::string::npos);
+  CHECK(bank.find("40 executions on each of: road (stored after") != std::string::npos);
+  const std::string report = contentOf(folder / "out/report.html");
+  for (const char* words : {"What the bank met before", "On other terms", "bank_unseen"})
+    CHECK(report.find(words) != std::string::npos);
 }
 
 TEST_CASE("a folder of recordings gives the same tables as the world that they come from") {

@@ -50,7 +50,8 @@ TEST_CASE("every rule of the learner takes part, and others do not disturb it") 
   const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
   ExperimentSettings settings = smallSettings();
   settings.repetitions = effort(100);
-
+  settings.tour = 40;
+  settings.rules = contestantNames();
   const Tables all = tablesOf(runExperiment(grounds, settings, {}), settings, grounds);
   settings.rules = {"collective", "single"};
   const Tables two = tablesOf(runExperiment(grounds, settings, {}), settings, grounds);
@@ -73,7 +74,7 @@ TEST_CASE("the interval of a table covers the error that all recordings together
   const int experiments = effort(300);
   int covered = 0;
   for (int i = 0; i < experiments; ++i) {
-    Lineup lineup(settings.rules, settings.config, grounds, 0, 1, 0);
+    Lineup lineup(settings.rules, settings.config, grounds, 0, 1, settings.tour, 0);
     const TrialSite site{grounds[0], grounds[1], false, 200, static_cast<uint64_t>(i)};
     const Estimate estimate =
         driveSequences(lineup, site, settings.sequences, {}, {}).errors.position.error(0);
@@ -85,10 +86,12 @@ TEST_CASE("the interval of a table covers the error that all recordings together
 TEST_CASE("repetitions allocate nothing") {
   const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
   const ExperimentSettings settings = smallSettings();
-  for (const std::string& rule : settings.rules)
+  for (const std::string& rule : contestantNames()) {
+    // They may close a block of executions; see below.
+    if (rule == "bank" || rule == kBankUnseen) continue;
     for (const bool change_inside : {false, true}) {
       const auto allocationsOf = [&](int64_t repetitions) {
-        Lineup lineup({rule}, settings.config, grounds, 0, 1, 0);
+        Lineup lineup({rule}, settings.config, grounds, 0, 1, settings.tour, 0);
         const TrialSite site{grounds[0], grounds[1], change_inside, repetitions, 1};
         const std::size_t before = allocations();
         driveSequences(lineup, site, settings.sequences, {}, {});
@@ -97,6 +100,31 @@ TEST_CASE("repetitions allocate nothing") {
       INFO(rule);
       CHECK(allocationsOf(3) == allocationsOf(300));
     }
+  }
+}
+
+TEST_CASE("the bank allocates nothing but when it judges a block of executions") {
+  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
+  learner::RuleConfig config;
+  config.rule = learner::Rule::kBank;
+  const auto rule = learner::makeRule(config, grounds[0].averaged);
+  driveTour(*rule, grounds, {0, grounds.size(), 50}, 1);
+  const int executions = 400;
+  int64_t judged = 0, since = config.bank.settled_after;
+  for (int i = 0; i < executions; ++i) {
+    const auto pattern = static_cast<size_t>(i % 3);
+    const Ground& ground = grounds[static_cast<size_t>(i / 100 % 2)];
+    const auto measured = ground.executions[pattern].of(static_cast<size_t>(i % 40));
+    learner::RuleNote note;
+    const std::size_t before = allocations();
+    rule->learn(pattern, measured, note);
+    ++since;
+    if (allocations() == before) continue;
+    CHECK((judged == 0 || since >= config.bank.settled_after));
+    ++judged;
+    since = 0;
+  }
+  CHECK(judged <= executions / config.bank.settled_after + 1);
 }
 
 TEST_CASE("progress tells every part once, and a failing part ends the run with its reason") {
