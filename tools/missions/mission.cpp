@@ -62,21 +62,6 @@ void addMission(const MissionResult& result, int first, int last,
 
 using Executions = std::vector<const ScoredExecution*>;
 
-/// Measured executions that lie wholly on one stretch of surface: after change `index - 1`, before
-/// change `index`.
-Executions stretch(const MissionResult& result, size_t index) {
-  const auto& changes = result.crossings;
-  const double from = index == 0 ? -1.0 : changes[index - 1].time;
-  const double to =
-      index < changes.size() ? changes[index].time : std::numeric_limits<double>::infinity();
-  Executions executions;
-  for (const ScoredExecution& execution : result.executions)
-    if (execution.measured && !execution.surface.empty() && execution.time > from &&
-        execution.time <= to)
-      executions.push_back(&execution);
-  return executions;
-}
-
 /// Means over the executions with index first..last (1-based), clipped to what there is.
 std::pair<double, double> meanErrors(const Executions& executions, size_t first, size_t last) {
   double position = 0.0, yaw = 0.0;
@@ -91,9 +76,22 @@ std::pair<double, double> meanErrors(const Executions& executions, size_t first,
 
 }  // namespace
 
+std::vector<const ScoredExecution*> stretchOf(const MissionResult& result, size_t index) {
+  const auto& changes = result.crossings;
+  const double from = index == 0 ? -1.0 : changes[index - 1].time;
+  const double to =
+      index < changes.size() ? changes[index].time : std::numeric_limits<double>::infinity();
+  Executions executions;
+  for (const ScoredExecution& execution : result.executions)
+    if (execution.measured && !execution.surface.empty() && execution.time > from &&
+        execution.time <= to)
+      executions.push_back(&execution);
+  return executions;
+}
+
 ErrorAroundChange errorsAround(const MissionResult& result, size_t change) {
-  const Executions before = stretch(result, change);
-  const Executions after = stretch(result, change + 1);
+  const Executions before = stretchOf(result, change);
+  const Executions after = stretchOf(result, change + 1);
   ErrorAroundChange errors;
   const size_t first = before.size() > 5 ? before.size() - 4 : 1;
   std::tie(errors.before_position, errors.before_yaw) = meanErrors(before, first, before.size());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/geometry/se2.hpp"
+#include "tools/shadow/shadow_learners.hpp"
 
 namespace tread::missions {
 
@@ -22,6 +23,7 @@ const char* nameOf(Outcome outcome);
 
 /// One execution of a pattern as the learner scored it, with the true surface under it.
 struct ScoredExecution {
+  shadow::ExecutionKey key;
   double time = 0.0;  ///< [s] of its end since the start of the mission
   std::string pattern;
   std::string surface;          ///< true surface at its end; empty if it crossed a border
@@ -31,6 +33,9 @@ struct ScoredExecution {
   double error_yaw = 0.0;       ///< [rad] the same, wrapped
   double path_length = 0.0;     ///< [m]
   double turned = 0.0;          ///< [rad] |net yaw| measured
+  Pose2 measured_end;           ///< in the frame of its start
+  /// What each of MissionResult::shadow_rules made of it; empty where not measured.
+  std::vector<shadow::EndError> by_rule;
 };
 
 /// A change of the true surface under the robot. Who turns round on a border crosses it again.
@@ -71,6 +76,7 @@ struct MissionResult {
   int surface_changes = 0;   ///< that the world has between start and goal, driven or not
   std::vector<Crossing> crossings;
   std::vector<ScoredExecution> executions;
+  std::vector<learner::Rule> shadow_rules;  ///< that judged the same executions beside the drive
   std::vector<TrackPoint> track;
   std::vector<Contact> contacts;  ///< one per collision
 
@@ -98,6 +104,10 @@ struct ErrorAroundChange {
   double settled_position = 0.0;  ///< [m] the fifth to the fifteenth on the new one
   double settled_yaw = 0.0;       ///< [rad]
 };
+
+/// Measured executions that lie wholly on one stretch of surface: after crossing `index` - 1,
+/// before crossing `index`; 0 = before the first.
+std::vector<const ScoredExecution*> stretchOf(const MissionResult& result, size_t index);
 
 /// `change` is an index into crossings.
 ErrorAroundChange errorsAround(const MissionResult& result, size_t change);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <map>
 
 #include "common/bus/virtual_bus.hpp"
 #include "tools/missions/mission_watch.hpp"
@@ -25,17 +26,29 @@ void tell(const MissionOptions& options, const MissionWatch& watch, int64_t tick
   if (options.progress && tick % 20 == 0) options.progress(watch.progress());
 }
 
+/// What the rules beside the drive made of its executions.
+void addShadows(shadow::ShadowLearners& shadows, MissionResult& result) {
+  shadows.finish();
+  result.shadow_rules = shadows.rules();
+  std::map<shadow::ExecutionKey, std::vector<shadow::EndError>> errors;
+  for (shadow::ShadowedExecution& execution : shadows.executions())
+    errors[execution.key] = std::move(execution.by_rule);
+  for (ScoredExecution& execution : result.executions) execution.by_rule = errors[execution.key];
+}
+
 }  // namespace
 
 MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOptions& options) {
   const double cpu_start = threadSeconds();
   MissionRun run;
-  run.scene.world = makeMissionWorld(seed);
+  run.scene.world = makeMissionWorld(seed, options.shortest_line);
   RobotSystem system(robot, run.scene.world.description, run.scene.world.T_map_start, seed,
                      options.rule, options.faults);
-  if (options.log != nullptr)
+  shadow::ShadowLearners shadows(system.learnerConfig(), options.shadows, system.bus().now());
+  if (options.log != nullptr || !options.shadows.empty())
     system.bus().setTap([&](int64_t utime, const char* channel, const uint8_t* bytes, size_t size) {
-      options.log->write(utime, channel, bytes, size);
+      if (options.log != nullptr) options.log->write(utime, channel, bytes, size);
+      if (shadows.hears(channel)) shadows.hear(utime, {utime, channel, {bytes, bytes + size}});
     });
   Operator person(system.bus().outside(), run.scene.world.T_map_goal);
   MissionWatch watch(system, run.scene.world);
@@ -47,6 +60,7 @@ MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOpti
     tell(options, watch, tick);
   }
   run.result = watch.result();
+  addShadows(shadows, run.result);
   run.result.seed = seed;
   run.result.rearmed = person.rearmed();
   watch.fillScene(run.scene);

@@ -23,7 +23,9 @@ struct Progress {
 
 /// How missions are run.
 struct MissionOptions {
-  std::string rule = "collective";
+  std::string rule;                      ///< of learning; empty = as the robot's configuration says
+  std::vector<learner::Rule> shadows;    ///< judge the same executions beside the drive
+  double shortest_line = kShortestLine;  ///< [m] see makeMissionWorld()
   FaultPlan faults;
   LogWriter* log = nullptr;                       ///< every message, if given
   std::function<void(const Progress&)> progress;  ///< may be empty

@@ -65,6 +65,7 @@ void MissionWatch::hear(const execution_t& message) {
 
 void MissionWatch::hear(const learning_t& message) {
   ScoredExecution execution;
+  execution.key = {message.learned_run_id, message.learned_execution_id};
   execution.time = seconds(message.utime);
   execution.pattern = message.learned_pattern_name;
   execution.measured = message.accepted && std::isfinite(message.error_position);
@@ -73,7 +74,9 @@ void MissionWatch::hear(const learning_t& message) {
   execution.error_yaw = message.error_yaw;
   execution.path_length = message.path_length;
   execution.turned = std::abs(message.measured_end[2]);
-  const auto record = records_.find({message.learned_run_id, message.learned_execution_id});
+  execution.measured_end = {message.measured_end[0], message.measured_end[1],
+                            message.measured_end[2]};
+  const auto record = records_.find(execution.key);
   if (record != records_.end())
     execution.surface = surfaceBetween(record->second.started, record->second.ended);
   result_.executions.push_back(execution);

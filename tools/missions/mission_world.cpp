@@ -189,9 +189,9 @@ bool hasWay(const Layout& layout) {
   return false;
 }
 
-Layout drawLayout(Dice& dice) {
+Layout drawLayout(Dice& dice, double shortest) {
   Layout layout;
-  layout.length = dice.between(25.0, 42.0);
+  layout.length = dice.between(shortest, 1.68 * shortest);
   const int barriers = 1 + dice.below(3);
   for (int i = 0; i < barriers; ++i) {
     const double share = (i + dice.between(0.3, 0.7)) / barriers;
@@ -219,8 +219,9 @@ void addSurfaces(MissionWorld& world, Dice& dice, double length, const Pose2& T_
     const Pose2 border = T_map_way * Pose2{x, 0.0, tilt};
     sim::SurfaceRegion strip;
     strip.surface = names[static_cast<size_t>(present)];
+    const double far = std::max(120.0, 80.0 + length);
     for (const Vector2d& corner :
-         {Vector2d(0, -80), Vector2d(120, -80), Vector2d(120, 80), Vector2d(0, 80)})
+         {Vector2d(0, -80), Vector2d(far, -80), Vector2d(far, 80), Vector2d(0, 80)})
       strip.corners.push_back(border * corner);
     world.description.regions.push_back(strip);
   }
@@ -249,14 +250,15 @@ sim::Obstacle moved(const sim::Obstacle& obstacle, const Pose2& T_map_way) {
 
 }  // namespace
 
-MissionWorld makeMissionWorld(uint64_t seed) {
+MissionWorld makeMissionWorld(uint64_t seed, double shortest) {
   // Neighbouring seeds must not give similar engines: spread them first (Weyl constant).
   Dice dice(seed * 0x9e3779b97f4a7c15ull + 1);
   MissionWorld world;
   world.seed = seed;
-  Layout layout = drawLayout(dice);
+  Layout layout = drawLayout(dice, shortest);
   const bool may_be_open = dice.chance(0.1);
-  while (!hasWay(layout) || (!may_be_open && !lineBlocked(layout))) layout = drawLayout(dice);
+  while (!hasWay(layout) || (!may_be_open && !lineBlocked(layout)))
+    layout = drawLayout(dice, shortest);
   const Pose2 T_map_way{0.0, 0.0, dice.between(-kPi, kPi)};
   world.T_map_start = T_map_way * Pose2{0.0, 0.0, dice.between(-0.8, 0.8)};
   world.T_map_goal = T_map_way * Pose2{layout.length, 0.0, 0.0};

@@ -9,10 +9,10 @@
 namespace tread::missions {
 
 /// What a mission takes place in: hard on purpose, the same for the same seed.
-/** At least 25 m from start to goal; walls whose only near gap lies off the straight line, pockets
- * that open towards the start, scattered boulders; no gap between obstacles is narrower than the
- * footprint plus 0.4 m; one to three changes of surface on the way; gentle slopes. A way of the
- * footprint's width exists. */
+/** From start to goal at least `shortest`, at most 1.68 times that; walls whose only near gap lies
+ * off the straight line, pockets that open towards the start, scattered boulders; no gap between
+ * obstacles is narrower than the footprint plus 0.4 m; one to three changes of surface on the way;
+ * gentle slopes. A way of the footprint's width exists. */
 struct MissionWorld {
   uint64_t seed = 0;
   Pose2 T_map_start;
@@ -23,7 +23,11 @@ struct MissionWorld {
   sim::WorldDescription description;
 };
 
-MissionWorld makeMissionWorld(uint64_t seed);
+/// Shortest straight line from start to goal [m].
+inline constexpr double kShortestLine = 25.0;
+
+/** `shortest` [m]: with longer lines each surface is driven for longer. */
+MissionWorld makeMissionWorld(uint64_t seed, double shortest = kShortestLine);
 
 /// Narrowest gap between obstacles that a mission may hold [m]: the footprint's width (0.68 m) plus
 /// 0.4 m.

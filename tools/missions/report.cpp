@@ -10,7 +10,7 @@
 #include <ostream>
 #include <stdexcept>
 
-#include <nlohmann/json.hpp>
+#include "tools/missions/campaign_json.hpp"
 
 namespace tread::missions {
 namespace {
@@ -21,18 +21,6 @@ std::string format(const char* pattern, Arguments... arguments) {
   char text[400];
   std::snprintf(text, sizeof text, pattern, arguments...);
   return text;
-}
-
-int countOf(const Campaign& campaign, Outcome outcome) {
-  return static_cast<int>(
-      std::count_if(campaign.results.begin(), campaign.results.end(),
-                    [&](const MissionResult& r) { return r.outcome == outcome; }));
-}
-
-int collisionsOf(const Campaign& campaign) {
-  int collisions = 0;
-  for (const MissionResult& result : campaign.results) collisions += result.collisions;
-  return collisions;
 }
 
 void printShares(std::ostream& out, const Campaign& campaign) {
@@ -133,6 +121,18 @@ nlohmann::ordered_json runJson(const MissionResult& result) {
 
 }  // namespace
 
+int countOf(const Campaign& campaign, Outcome outcome) {
+  return static_cast<int>(
+      std::count_if(campaign.results.begin(), campaign.results.end(),
+                    [&](const MissionResult& r) { return r.outcome == outcome; }));
+}
+
+int collisionsOf(const Campaign& campaign) {
+  int collisions = 0;
+  for (const MissionResult& result : campaign.results) collisions += result.collisions;
+  return collisions;
+}
+
 std::string lineOf(const MissionResult& result) {
   return format(
       "seed %-6llu %-8s %5.1f s  %5.1f m  detour %4.2f  patterns %3d  crossings %zu of %d  "
@@ -170,7 +170,7 @@ void printSummary(std::ostream& out, const Campaign& campaign) {
   printErrors(out, campaign, 5, 15);
 }
 
-void writeJson(const std::string& path, const Campaign& campaign) {
+nlohmann::ordered_json campaignJson(const Campaign& campaign) {
   nlohmann::ordered_json json;
   json["missions"] = campaign.results.size();
   json["arrived"] = countOf(campaign, Outcome::kArrived);
@@ -187,11 +187,19 @@ void writeJson(const std::string& path, const Campaign& campaign) {
   json["errors_5_to_15"] = errorsJson(campaign, 5, 15);
   json["runs"] = nlohmann::ordered_json::array();
   for (const MissionResult& result : campaign.results) json["runs"].push_back(runJson(result));
+  return json;
+}
+
+void writeJsonFile(const std::string& path, const nlohmann::ordered_json& json) {
   std::ofstream file(path);
   // A reason comes from a message, which may have been broken: its bytes need not be UTF-8.
   file << json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
   file.close();
   if (!file) throw std::runtime_error(path + ": cannot write the report");
+}
+
+void writeJson(const std::string& path, const Campaign& campaign) {
+  writeJsonFile(path, campaignJson(campaign));
 }
 
 }  // namespace tread::missions

@@ -20,6 +20,10 @@ struct Campaign {
   std::vector<MissionResult> results;
 };
 
+int countOf(const Campaign& campaign, Outcome outcome);
+/// Contacts of all its missions.
+int collisionsOf(const Campaign& campaign);
+
 /// One line per mission.
 std::string lineOf(const MissionResult& result);
 

@@ -97,7 +97,7 @@ RobotSystem::RobotSystem(const RobotConfig& config, const sim::WorldDescription&
                          const Pose2& T_map_start, uint64_t seed, const std::string& rule,
                          const FaultPlan& faults)
     : config_(config), bus_(std::make_unique<VirtualBus>(seed, onTheRobot(faults))) {
-  config_.learner.rule.rule = *learner::ruleNamed(rule);
+  if (!rule.empty()) config_.learner.rule.rule = *learner::ruleNamed(rule);
   std::tie(ins_line_, ins_device_) = makePipe();
   std::tie(motor_line_, motor_device_) = makePipe();
   sim::SimulatorSettings settings;

@@ -48,6 +48,7 @@ RobotConfig readRobot(const std::string& folder);
  * robot: whoever watches from outside hears all as it was said. */
 class RobotSystem {
  public:
+  /// `rule`: of learning; empty = as the configuration says.
   RobotSystem(const RobotConfig& config, const sim::WorldDescription& world,
               const Pose2& T_map_start, uint64_t seed, const std::string& rule,
               const FaultPlan& faults);
@@ -59,6 +60,7 @@ class RobotSystem {
   /// Cuts or mends a device's line: "ins" or "motor".
   void connect(const std::string& device, bool connected);
   const PatternSet& patterns() const { return config_.learner.shipped; }
+  const learner::LearnerNodeConfig& learnerConfig() const { return config_.learner; }
   const mapping::LocalMapConfig& map() const { return config_.mapping.map; }
   MemoryStore& learnerStore() { return learner_store_; }
 
