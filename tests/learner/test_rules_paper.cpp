@@ -217,6 +217,29 @@ TEST_CASE("on unchanged ground no other rule drifts") {
   stays(Rule::kBank, 0.02, 0.03);
 }
 
+TEST_CASE("scaling rules freeze the ratios between patterns, however exactly all are measured") {
+  // Ground that turns the gentle arc by 1.3 of what is predicted, the hard one as predicted. Each
+  // execution of one puts the other wrong; the filters tell them apart.
+  const auto truth = [](size_t p) {
+    return p == kTurnLeft ? arc({0.9, 0.0, 1.3 * 0.5}) : arc({0.7, 0.0, 1.0});
+  };
+  const auto learned = [&](Rule rule) {
+    Pupil pupil(ruleConfig(rule, 0.3), richSet());
+    for (int round = 0; round < 60; ++round)
+      for (const size_t p : {kTurnLeft, kHardLeft}) pupil.learn(p, truth(p));
+    return std::pair(pupil.end(kTurnLeft).yaw, pupil.end(kHardLeft).yaw);
+  };
+  for (const Rule rule : {Rule::kCollective, Rule::kTelescoping}) {
+    const auto [gentle, hard] = learned(rule);
+    REQUIRE(gentle / hard == Approx(0.5));
+  }
+  for (const Rule rule : {Rule::kSingle, Rule::kLocalFilter, Rule::kBank}) {
+    const auto [gentle, hard] = learned(rule);
+    REQUIRE(gentle == Approx(0.65).margin(0.01));
+    REQUIRE(hard == Approx(1.0).margin(0.01));
+  }
+}
+
 TEST_CASE("a yaw gain from a gentle arc makes a 90 degree pattern worse when it is scaled") {
   const double unlearned = quarterTurnError(Rule::kOff, 1);
   REQUIRE(unlearned == Approx(0.262).margin(5e-4));

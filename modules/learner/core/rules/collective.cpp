@@ -40,11 +40,13 @@ bool ScalingGuards::allow(size_t executed, const ConstTrajectory& measured,
 }
 
 void Collective::learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) {
+  const Axes box = boundingBox(measured);
+  if (!ScalingGuards::possible(box)) return;
   const bool gives = guards_.allow(executed, measured, table_.end(executed), note);
   if (gives)
-    note.scaling = scalingVector(boundingBox(measured), boundingBox(table_.of(executed)),
-                                 guards_.role(executed), limits_);  // equation (1)
-  smooth(measured, memory_, table_.change(executed));               // equation (2)
+    note.scaling = scalingVector(box, boundingBox(table_.of(executed)), guards_.role(executed),
+                                 limits_);             // equation (1)
+  smooth(measured, memory_, table_.change(executed));  // equation (2)
   if (!gives) return;
   // Equation (2) with M = V R: one factor for each axis.
   const Axes blended = (1.0 - memory_) * note.scaling + memory_;

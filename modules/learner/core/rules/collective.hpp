@@ -11,12 +11,16 @@ class ScalingGuards {
  public:
   ScalingGuards(const RuleConfig& config, const PatternSet& shipped);
 
+  /// Whether a box is one that a vehicle can drive; what is not must not become a prediction.
+  static bool possible(const Axes& box) { return (box < kLargestBox).all(); }
   /// Fills the guards of `note`; true if a V may be computed from this measurement.
   bool allow(size_t executed, const ConstTrajectory& measured, const Pose2& predicted_end,
              RuleNote& note) const;
   const PatternRole& role(size_t pattern) const { return roles_[pattern]; }
 
  private:
+  static constexpr double kLargestBox = 1e6;  ///< [m, m, rad]
+
   bool opposite(size_t executed, int axis, double measured, double predicted) const;
 
   std::vector<PatternRole> roles_;
@@ -36,8 +40,10 @@ class ScalingGuards {
  * with w the weight of the old prediction (equation (2); line 13 of Algorithm 1 swaps the roles).
  * Guards, see scaling.hpp: an axis whose shipped box is noise keeps the factor 1 for good; a
  * pattern of one dimension gives no V; nor does a measurement that went the other way; V is kept
- * within limits. Known fault: on unchanged ground the patterns that are never driven drift, because
- * the mean of a quotient of noisy boxes is not 1 (telescoping.hpp has none of it). */
+ * within limits. Known faults: on unchanged ground the patterns that are never driven drift,
+ * because the mean of a quotient of noisy boxes is not 1 (telescoping.hpp has none of it); and as
+ * every pattern gets the same factor, the ratios between patterns stay those of the shipped set for
+ * ever, also where all are measured exactly (telescoping has that, too). */
 class Collective : public StoredPredictions {
  public:
   Collective(const RuleConfig& config, const PatternSet& shipped)

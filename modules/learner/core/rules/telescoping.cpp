@@ -5,6 +5,7 @@
 namespace tread::learner {
 
 void Telescoping::learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) {
+  if (!ScalingGuards::possible(boundingBox(measured))) return;
   const bool gives = guards_.allow(executed, measured, table_.end(executed), note);
   const Axes old_box = boundingBox(table_.of(executed));
   smooth(measured, memory_, table_.change(executed));  // equation (2)
