@@ -129,10 +129,25 @@ Finding lengthProblem(const MotionPattern& pattern) {
   return {};
 }
 
+/// Whether a sample is right beyond doubt; most are, and need no words. NaN is in doubt.
+bool surelyRight(const TrackCommand& command, double command_limit, const Pose2& from,
+                 const Pose2& to, double period) {
+  const double longest = 0.999 * PatternLimits::kMaxSpeed * period;
+  const double dx = to.x - from.x, dy = to.y - from.y;
+  return std::abs(command.left) <= command_limit && std::abs(command.right) <= command_limit &&
+         dx * dx + dy * dy <= longest * longest &&
+         std::abs(to.yaw - from.yaw) <= 0.999 * PatternLimits::kMaxYawRate * period;
+}
+
 Finding seriesProblem(const MotionPattern& pattern, CommandKind kind, double period) {
   if (Finding finding = lengthProblem(pattern)) return finding;
+  const double command_limit = commandLimit(kind);
   Pose2 last;
   for (size_t i = 0; i < pattern.commands.size(); ++i) {
+    if (surelyRight(pattern.commands[i], command_limit, last, pattern.trajectory[i], period)) {
+      last = pattern.trajectory[i];
+      continue;
+    }
     const std::string sample = "sample " + std::to_string(i + 1) + ": ";
     if (const std::string problem = commandProblem(pattern.commands[i], kind); !problem.empty())
       return {{"commands", sample + problem}};

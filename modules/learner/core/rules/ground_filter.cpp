@@ -69,6 +69,7 @@ double GroundFilter::update(size_t executed, const Eigen::Vector3d& mean_twist) 
   const Eigen::Vector3d y = plausible(mean_twist) - model_->meanTwistUnder(x_, executed);
   model_->timesResponse(P_, executed, PH_);
   consider(stayed_, 1.0 - drift_, drift_ * steady_, executed, y);
+  if (hazard_ <= 0.0 && drift_ <= 0.0) return follow();
   consider(changed_, 1.0, 1.0, executed, y);
   const double log_s = std::log(1.0 - hazard_) + stayed_.log_likelihood;
   const double log_c = std::log(hazard_) + changed_.log_likelihood;
@@ -86,14 +87,27 @@ double GroundFilter::update(size_t executed, const Eigen::Vector3d& mean_twist) 
   apart_ = std::sqrt(w_s * w_c) * (stayed_.step - changed_.step);
   const Eigen::MatrixXd& Q = model_->changeCovariance();
   for (Eigen::Index j = 0; j < model_->dimension(); ++j) {
-    P_.col(j) = kept * P_.col(j) + opened * Q.col(j) + apart_[j] * apart_;
-    for (Eigen::Index k = 0; k < 3; ++k)
-      P_.col(j) -=
-          stayed_.root(j, k) * stayed_.root.col(k) + changed_.root(j, k) * changed_.root.col(k);
+    const auto& r = stayed_.root;
+    const auto& q = changed_.root;
+    P_.col(j) = kept * P_.col(j) + opened * Q.col(j) + apart_[j] * apart_ -
+                (r(j, 0) * r.col(0) + q(j, 0) * q.col(0)) -
+                (r(j, 1) * r.col(1) + q(j, 1) * q.col(1)) -
+                (r(j, 2) * r.col(2) + q(j, 2) * q.col(2));
   }
   x_ += w_s * stayed_.step + w_c * changed_.step;
   return logSum(std::log(1.0 - hazard_) + stayed_.log_density,
                 std::log(hazard_) + changed_.log_density);
+}
+
+double GroundFilter::follow() {
+  // What the general case comes to with w_s = 1: most of its sums are of zeros.
+  change_probability_ = 0.0;
+  const auto& root = stayed_.root;
+  for (Eigen::Index j = 0; j < model_->dimension(); ++j)
+    P_.col(j) =
+        P_.col(j) - root(j, 0) * root.col(0) - root(j, 1) * root.col(1) - root(j, 2) * root.col(2);
+  x_ += stayed_.step;
+  return stayed_.log_density;
 }
 
 void GroundFilter::restartAt(const Eigen::VectorXd& x, double share) {

@@ -53,6 +53,9 @@ class GroundFilter {
   void consider(Hypothesis& hypothesis, double kept, double opened, size_t executed,
                 const Eigen::Vector3d& y);
 
+  /// The update where nothing ever changes: P' = P - root root', x' = x + step.
+  double follow();
+
   std::shared_ptr<const GroundModel> model_;
   double hazard_;
   double drift_;

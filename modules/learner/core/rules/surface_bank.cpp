@@ -31,6 +31,17 @@ double logNormalOf(const Eigen::VectorXd& y, const Eigen::MatrixXd& covariance) 
          root.matrixLLT().diagonal().array().log().sum();
 }
 
+/// P - PH S^-1 PH'.
+void takeOff(Eigen::MatrixXd& P, const Eigen::Matrix<double, Eigen::Dynamic, 3>& PH,
+             const Eigen::Matrix3d& S) {
+  const Eigen::Matrix3d inverse_root =
+      S.llt().matrixL().solve(Eigen::Matrix3d::Identity()).transpose();
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> root = PH.lazyProduct(inverse_root);
+  for (Eigen::Index j = 0; j < P.cols(); ++j)
+    P.col(j) =
+        P.col(j) - root(j, 0) * root.col(0) - root(j, 1) * root.col(1) - root(j, 2) * root.col(2);
+}
+
 }  // namespace
 
 double RememberedSurface::executions() const {
@@ -39,24 +50,16 @@ double RememberedSurface::executions() const {
 
 KnownSurface::KnownSurface(const GroundModel& model, RememberedSurface stored)
     : stored_(std::move(stored)) {
-  constexpr int common = TwistCorrection::kCommon;
-  constexpr int own = TwistCorrection::kOwn;
-  Eigen::MatrixXd information = model.changeInformation();
+  // Pattern by pattern, as if all its executions were one: cheaper than the inverse, and P stays
+  // symmetric to the bit.
+  P_ = model.changeCovariance();
   const double share = std::min(1.0, kLongestMean / std::max(1.0, stored_.executions()));
+  Eigen::Matrix<double, Eigen::Dynamic, 3> PH(model.dimension(), 3);
   for (size_t p = 0; p < model.patterns(); ++p) {
     if (stored_.driven[p] <= 0.0) continue;
-    const auto& H = model.profile(p).meanResponse();
-    const Eigen::Matrix3d weights = share * stored_.driven[p] * executionNoise(model, p).inverse();
-    const Eigen::Matrix<double, 10, 10> gained = H.transpose() * weights * H;
-    const Eigen::Index at = GroundModel::ownAt(p);
-    information.topLeftCorner<common, common>() += gained.topLeftCorner<common, common>();
-    information.block<common, own>(0, at) += gained.topRightCorner<common, own>();
-    information.block<own, common>(at, 0) += gained.bottomLeftCorner<own, common>();
-    information.block<own, own>(at, at) += gained.bottomRightCorner<own, own>();
+    model.timesResponse(P_, p, PH);
+    takeOff(P_, PH, model.response(PH, p) + executionNoise(model, p) / (share * stored_.driven[p]));
   }
-  P_ = information.llt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
-  P_ = (0.5 * (P_ + P_.transpose())).eval();
-  Eigen::Matrix<double, Eigen::Dynamic, 3> PH(model.dimension(), 3);
   for (size_t p = 0; p < model.patterns(); ++p) {
     model.timesResponse(P_, p, PH);
     spreads_.emplace_back(model.response(PH, p) + executionNoise(model, p));
@@ -82,7 +85,7 @@ std::shared_ptr<const KnownSurface> KnownSurface::after(const GroundModel& model
     const Eigen::Matrix3d S = model.response(PH, p) + scaledNoise(model.noise(p), next.noise);
     const Eigen::Matrix<double, Eigen::Dynamic, 3> gain = PH * S.inverse();
     next.x += gain * y;
-    P -= gain * PH.transpose();
+    takeOff(P, PH, S);
     const Eigen::Vector3d seen = y.cwiseAbs2().cwiseQuotient(S.diagonal()).cwiseProduct(next.noise);
     const double share =
         1.0 / (SurfaceBank::kNoisePrior + std::min(next.executions(), kLongestMean));

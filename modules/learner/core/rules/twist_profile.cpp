@@ -12,17 +12,29 @@ constexpr int kOwnForward = TwistCorrection::kCommon;
 constexpr int kOwnLateral = TwistCorrection::kCommon + 1;
 constexpr int kOwnYaw = TwistCorrection::kCommon + 2;
 
-/// sin(x) / x; the series is exact to 1e-16 where it is used.
-double sinc(double x) {
-  const double x2 = x * x;
-  if (x2 > 0.01) return std::sin(x) / x;
-  return 1.0 - x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0)));
-}
+/// sin(x) / x and cos(x); the series are exact to 1e-16 where they are used.
+struct HalfTurn {
+  explicit HalfTurn(double x) {
+    const double x2 = x * x;
+    if (x2 > 0.01) {
+      sinc = std::sin(x) / x;
+      cosine = std::cos(x);
+      return;
+    }
+    constexpr double k6 = 1.0 / 6.0, k20 = 1.0 / 20.0, k42 = 1.0 / 42.0, k72 = 1.0 / 72.0;
+    constexpr double k12 = 1.0 / 12.0, k30 = 1.0 / 30.0, k56 = 1.0 / 56.0, k90 = 1.0 / 90.0;
+    sinc = 1.0 - k6 * x2 * (1.0 - k20 * x2 * (1.0 - k42 * x2 * (1.0 - k72 * x2)));
+    cosine =
+        1.0 - 0.5 * x2 * (1.0 - k12 * x2 * (1.0 - k30 * x2 * (1.0 - k56 * x2 * (1.0 - k90 * x2))));
+  }
+  double sinc;
+  double cosine;
+};
 
 /// Chord over arc of a sample that turns by 2 `half`. Beyond half a turn a sample the arc would be
 /// ambiguous; its chord is taken.
-double chordShare(double half) {
-  return std::abs(half) < 1.5 ? sinc(half) : 1.0;
+double chordShare(double half, double sinc) {
+  return std::abs(half) < 1.5 ? sinc : 1.0;
 }
 
 /// The motion of one sample, (v, s, w) times the period.
@@ -32,7 +44,7 @@ Eigen::Vector3d sampleMotion(const Pose2& from, const Pose2& to) {
   const double s = std::sin(from.yaw + half);
   const double dx = to.x - from.x;
   const double dy = to.y - from.y;
-  const double stretch = 1.0 / chordShare(half);
+  const double stretch = 1.0 / chordShare(half, HalfTurn(half).sinc);
   return {stretch * (c * dx + s * dy), stretch * (c * dy - s * dx), 2.0 * half};
 }
 
@@ -107,6 +119,7 @@ Pose2 TwistProfile::walk(const Correction10& x, Put&& put) const {
   const double turn = 1.0 + x[Index::kYaw] + x[kOwnYaw];
   const double bias = clamped(x[Index::kYawBias], -kLargestBias, kLargestBias);
   Pose2 at;
+  double c_at = 1.0, s_at = 0.0;  // of at.yaw, turned along instead of computed anew
   for (size_t t = 0; t < forward_.size(); ++t) {
     const double v = forward_[t];
     const double w = yaw_[t];
@@ -117,9 +130,13 @@ Pose2 TwistProfile::walk(const Correction10& x, Put&& put) const {
     const double s_new = lateral_[t] + slip * std::abs(v) + crab * v;
     const double w_new = yaw * w + bias * v;
     const double half = 0.5 * w_new * period_;
-    const double chord = chordShare(half) * period_;
-    const double c = std::cos(at.yaw + half);
-    const double s = std::sin(at.yaw + half);
+    const HalfTurn turned(half);
+    const double chord = chordShare(half, turned.sinc) * period_;
+    const double sine = half * turned.sinc;
+    const double c = c_at * turned.cosine - s_at * sine;
+    const double s = s_at * turned.cosine + c_at * sine;
+    c_at = c * turned.cosine - s * sine;
+    s_at = s * turned.cosine + c * sine;
     at.x += chord * (c * v_new - s * s_new);
     at.y += chord * (s * v_new + c * s_new);
     at.yaw += 2.0 * half;
