@@ -77,8 +77,8 @@ void drawLegend(Picture& picture, double x, double y, const std::vector<std::str
     const double height = std::max(2.0, style.width);
     picture.fill({x, y, style.dashed ? 9.0 : 26.0, height}, style.colour);
     if (style.dashed) picture.fill({x + 15.0, y, 9.0, height}, style.colour);
-    picture.text(x + 32.0, y + 5.0, rules[i], 13.0);
-    x += 50.0 + 8.0 * static_cast<double>(rules[i].size());
+    picture.text(x + 30.0, y + 5.0, rules[i], 11.0);
+    x += 36.0 + 6.8 * static_cast<double>(rules[i].size());
   }
 }
 

@@ -73,10 +73,12 @@ std::string textOfStored(const RememberedSurface& surface, const std::string& ex
 
 std::string textOfResiduals(const RememberedSurface& surface, const std::string& explains,
                             const PatternSet& set) {
+  constexpr size_t kInLine = 3;
   std::string text = "  " + explains + ":";
   for (size_t p = 0; p < set.patterns().size(); ++p) {
     const Eigen::Index at = learner::GroundModel::ownAt(p);
-    text += (p == 0 ? " " : "; ") + set.patterns()[p].name;
+    text += std::string(p == 0 ? "" : ";") + (p > 0 && p % kInLine == 0 ? "\n      " : " ") +
+            set.patterns()[p].name;
     for (Eigen::Index axis = 0; axis < 3; ++axis) text += formatted(" %+.3f", surface.x[at + axis]);
   }
   return text + "\n";
