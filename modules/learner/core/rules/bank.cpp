@@ -216,14 +216,19 @@ std::optional<PoseCovariance> Bank::endCovariance(size_t pattern) const {
     const Eigen::Vector3d moved = J * (model_->correctionOf(x, pattern) - mean);
     return moved * moved.transpose();
   };
-  Eigen::Matrix3d covariance =
-      weights_[0] * (away(filter_.mean()) + model_->endNoise(pattern) +
-                     J * model_->covarianceOf(filter_.covariance(), pattern) * J.transpose());
-  for (size_t k = 0; k < surfaces_.size(); ++k)
-    covariance += weights_[k + 1] *
-                  (away(surfaces_[k].mean()) +
-                   lever * surfaces_[k].executionNoise(*model_, pattern) * lever.transpose() +
-                   J * model_->covarianceOf(surfaces_[k].covariance(), pattern) * J.transpose());
+  Eigen::Matrix<double, TwistCorrection::kAll, TwistCorrection::kAll> ground =
+      weights_[0] * model_->covarianceOf(filter_.covariance(), pattern);
+  Eigen::Matrix3d moved = weights_[0] * away(filter_.mean());
+  Eigen::Matrix3d execution = Eigen::Matrix3d::Zero();
+  for (size_t k = 0; k < surfaces_.size(); ++k) {
+    const double weight = weights_[k + 1];
+    ground += weight * model_->covarianceOf(surfaces_[k].covariance(), pattern);
+    moved += weight * away(surfaces_[k].mean());
+    execution += weight * surfaces_[k].executionNoise(*model_, pattern);
+  }
+  const Eigen::Matrix3d covariance = weights_[0] * model_->endNoise(pattern) + moved +
+                                     lever * execution * lever.transpose() +
+                                     J * ground * J.transpose();
   return upperTriangle(0.5 * (covariance + covariance.transpose()));
 }
 

@@ -119,8 +119,15 @@ size_t SurfaceBank::store(RememberedSurface surface, size_t capacity) {
 
 bool SurfaceBank::alike(size_t i, size_t j) const {
   const Eigen::VectorXd apart = surfaces_[i]->mean() - surfaces_[j]->mean();
-  const Eigen::MatrixXd same = surfaces_[i]->covariance() + surfaces_[j]->covariance();
-  return logNormalOf(apart, same) > logNormalOf(apart, same + model_->changeCovariance());
+  Eigen::MatrixXd spread = surfaces_[i]->covariance() + surfaces_[j]->covariance();
+  const double log_same = logNormalOf(apart, spread);
+  spread += model_->changeCovariance();
+  // Most pairs are so far apart that a bound on the other density decides: (A + Q)^-1 <= Q^-1, and
+  // a determinant is at most the product of the diagonal (Hadamard).
+  const double log_other_at_least = -0.5 * apart.dot(model_->changeInformation() * apart) -
+                                    0.5 * spread.diagonal().array().log().sum();
+  if (log_same <= log_other_at_least) return false;
+  return log_same > logNormalOf(apart, spread);
 }
 
 void SurfaceBank::merge(size_t i, size_t j) {
