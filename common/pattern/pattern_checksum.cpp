@@ -10,11 +10,14 @@
 namespace tread {
 namespace {
 
-// Fowler-Noll-Vo 1a, 64 bit: offset basis and prime as published by its authors.
+// After Fowler-Noll-Vo 1a, 64 bit (offset basis and prime as published by its authors), but word by
+// word: an eighth of the time. Folding lets high bits reach low ones, which the product alone does
+// not.
 class Hash {
  public:
   void add(uint64_t value) {
-    for (int shift = 0; shift < 64; shift += 8) addByte((value >> shift) & 0xffU);
+    value_ = (value_ ^ value) * 0x100000001b3U;
+    value_ ^= value_ >> 29;
   }
   void add(int64_t value) { add(static_cast<uint64_t>(value)); }
   void add(double value) {
@@ -24,13 +27,11 @@ class Hash {
   }
   void add(const std::string& text) {
     add(static_cast<uint64_t>(text.size()));
-    for (const char c : text) addByte(static_cast<unsigned char>(c));
+    for (const char c : text) add(static_cast<uint64_t>(static_cast<unsigned char>(c)));
   }
   uint64_t value() const { return value_; }
 
  private:
-  void addByte(uint64_t byte) { value_ = (value_ ^ byte) * 0x100000001b3U; }
-
   uint64_t value_ = 0xcbf29ce484222325U;
 };
 

@@ -6,8 +6,8 @@
 
 namespace tread {
 
-/// FNV-1a (64 bit) over a canonical form of the content, cut to 63 bits so that it is never
-/// negative.
+/// FNV-1a (64 bit), word by word and folded, over a canonical form of the content, cut to 63 bits
+/// so that it is never negative.
 /** In it: name, version, parent, kind, period, classes by name, patterns in their order; numbers by
  * their bit patterns, little end first, every NaN the same. Not in it: utime, which is a time stamp
  * of the content. */

@@ -58,12 +58,12 @@ struct FilterConfig {
 
 /// Parameters of the bank of remembered surfaces.
 struct BankConfig {
-  double hazard = 0.28;         ///< [1] probability that the surface changes before an execution
-  double unknown_prior = 0.15;  ///< [1] that the next one is not in the bank
+  double hazard = 0.35;         ///< [1] probability that the surface changes before an execution
+  double unknown_prior = 0.5;   ///< [1] that the next one is not in the bank
   int64_t settled_after = 10;   ///< executions without a change that make a block
   double new_margin = 3.0;      ///< [1] of log density, by which a block must be likelier as new
   double settled_change = 0.5;  ///< [1] probability of a change that counts as one
-  double unknown_share = 0.4;   ///< [1] of Q: how far an unknown surface is from the known one
+  double unknown_share = 1.0;   ///< [1] of Q: how far an unknown surface is from the known one
   int64_t capacity = 16;        ///< surfaces; the one that was met longest ago makes room
 };
 
