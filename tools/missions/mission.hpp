@@ -33,6 +33,7 @@ struct ScoredExecution {
   double error_yaw = 0.0;       ///< [rad] the same, wrapped
   double path_length = 0.0;     ///< [m]
   double turned = 0.0;          ///< [rad] |net yaw| measured
+  double slope = 0.0;           ///< [rad] mean inclination; NaN = not known
   Pose2 measured_end;           ///< in the frame of its start
   /// What each of MissionResult::shadow_rules made of it; empty where not measured.
   std::vector<shadow::EndError> by_rule;

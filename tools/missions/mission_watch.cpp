@@ -73,6 +73,7 @@ void MissionWatch::hear(const learning_t& message) {
   execution.error_position = message.error_position;
   execution.error_yaw = message.error_yaw;
   execution.path_length = message.path_length;
+  execution.slope = message.slope;
   execution.turned = std::abs(message.measured_end[2]);
   execution.measured_end = {message.measured_end[0], message.measured_end[1],
                             message.measured_end[2]};

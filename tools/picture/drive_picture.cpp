@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include <tread/plan_tree_t.hpp>
@@ -132,10 +133,35 @@ void drawWay(Picture& picture, const DriveScene& scene) {
   panel.finish();
 }
 
+/// Patterns that a running mean of errors takes together, the newest last.
+constexpr size_t kRunning = 5;
+constexpr Colour kRuleColours[] = {kGrey, kOrange, kGreen, kPink, kRed, kBlack};
+
+std::vector<Vector2d> runningMeans(const std::vector<PatternError>& errors,
+                                   double PatternError::*error) {
+  std::vector<Vector2d> means;
+  for (size_t i = 0; i < errors.size(); ++i) {
+    const size_t count = std::min(kRunning, i + 1);
+    double sum = 0.0;
+    for (size_t k = i + 1 - count; k <= i; ++k) sum += std::abs(errors[k].*error);
+    means.emplace_back(errors[i].time, sum / static_cast<double>(count));
+  }
+  return means;
+}
+
+void drawRules(Panel& panel, const DriveScene& scene, double PatternError::*error) {
+  for (size_t rule = 0; rule < scene.by_rule.size(); ++rule)
+    panel.line(runningMeans(scene.by_rule[rule].errors, error),
+               {kRuleColours[rule % std::size(kRuleColours)], 2.2, false, ""});
+}
+
 void drawErrors(Picture& picture, Box box, const std::string& title, const std::string& unit,
                 const DriveScene& scene, double PatternError::*error) {
   double largest = 0.02;
   for (const PatternError& at : scene.errors) largest = std::max(largest, std::abs(at.*error));
+  for (const RuleSeries& rule : scene.by_rule)
+    for (const Vector2d& mean : runningMeans(rule.errors, error))
+      largest = std::max(largest, mean.y());
   Panel panel(picture, box,
               {title, "time [s]", unit, 0.0, std::max(1.0, scene.duration), 0.0, 1.15 * largest});
   for (const PatternError& at : scene.errors) {
@@ -143,6 +169,7 @@ void drawErrors(Picture& picture, Box box, const std::string& title, const std::
     panel.line({{at.time, 0.0}, {at.time, value}}, {kSkyBlue, 1.5, false, ""});
     panel.dot({at.time, value}, kBlue, 3.0);
   }
+  drawRules(panel, scene, error);
   double height = 1.07;
   double last = -1e9;
   for (const BorderCrossing& crossing : scene.crossings) {
@@ -165,6 +192,18 @@ void drawSurfaceLegend(Picture& picture, const DriveScene& scene) {
   }
 }
 
+void drawRuleLegend(Picture& picture, const DriveScene& scene) {
+  if (scene.by_rule.empty()) return;
+  picture.fill({906, 690, 6, 6}, kBlue);
+  picture.text(922, 697, "as driven; the same executions by rule, mean of the last five:", 12.0);
+  double x = 900;
+  for (size_t rule = 0; rule < scene.by_rule.size(); ++rule) {
+    picture.fill({x, 714, 16, 3}, kRuleColours[rule % std::size(kRuleColours)]);
+    picture.text(x + 22, 720, scene.by_rule[rule].rule, 12.0);
+    x += 100;
+  }
+}
+
 }  // namespace
 
 void drawDrive(const std::string& path, const DriveScene& scene) {
@@ -175,6 +214,7 @@ void drawDrive(const std::string& path, const DriveScene& scene) {
   drawErrors(picture, {900, 365, 370, 210}, "prediction error of each pattern: yaw", "[rad]", scene,
              &PatternError::yaw);
   drawSurfaceLegend(picture, scene);
+  drawRuleLegend(picture, scene);
   picture.save(path);
 }
 

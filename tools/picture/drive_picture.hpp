@@ -47,6 +47,12 @@ struct PatternError {
   double yaw = 0.0;       ///< [rad]
 };
 
+/// The same executions, predicted by a rule of learning.
+struct RuleSeries {
+  std::string rule;
+  std::vector<PatternError> errors;
+};
+
 /// The ground became another.
 struct BorderCrossing {
   double time = 0.0;  ///< [s]
@@ -65,7 +71,8 @@ struct DriveScene {
   Pose2 T_map_start;
   Pose2 T_map_goal;
   std::vector<Eigen::Vector2d> contacts;  ///< p_map [m]
-  std::vector<PatternError> errors;
+  std::vector<PatternError> errors;       ///< as driven
+  std::vector<RuleSeries> by_rule;        ///< drawn as running means
   std::vector<BorderCrossing> crossings;
   double duration = 1.0;  ///< [s]
 };

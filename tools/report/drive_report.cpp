@@ -49,6 +49,20 @@ std::vector<picture::BorderCrossing> crossingsOf(const DriveRecord& drive,
   return crossings;
 }
 
+std::vector<picture::RuleSeries> seriesOf(const RuleErrors& by_rule, int64_t begun) {
+  std::vector<picture::RuleSeries> series;
+  for (size_t rule = 0; rule < by_rule.rules.size(); ++rule) {
+    picture::RuleSeries one;
+    one.rule = learner::ruleName(by_rule.rules[rule]);
+    for (const shadow::ShadowedExecution& execution : by_rule.executions)
+      if (execution.measured)
+        one.errors.push_back({static_cast<double>(execution.ended - begun) * 1e-6,
+                              execution.by_rule[rule].position, execution.by_rule[rule].yaw});
+    series.push_back(std::move(one));
+  }
+  return series;
+}
+
 }  // namespace
 
 std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth) {
@@ -65,12 +79,17 @@ std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth) {
   return line;
 }
 
-std::string wordsOf(const DriveRecord& drive, const SimulationTruth& truth) {
+std::string wordsOf(const DriveRecord& drive, const SimulationTruth& truth,
+                    const RuleErrors& by_rule) {
   std::string words = resultLine(drive, truth) + "\n";
   words += formatted("prediction error at a pattern's end: mean %.3f m, %.2f deg over %zu measured",
                      mean(drive, &picture::PatternError::position),
                      mean(drive, &picture::PatternError::yaw) * 180.0 / kPi, drive.errors.size());
   words += formatted(" (%d refused)\n", drive.refused);
+  std::vector<int64_t> changes;
+  for (const picture::BorderCrossing& crossing : crossingsOf(drive, truth))
+    changes.push_back(drive.begun + std::llround(crossing.time * 1e6));
+  if (!by_rule.rules.empty()) words += wordsOf(by_rule, changes);
   words += "latency, as the logger received:\n";
   words += latencyLine("INS to learner's set", drive.latencies.insToSet());
   words += latencyLine("set to plan", drive.latencies.setToPlan());
@@ -79,7 +98,8 @@ std::string wordsOf(const DriveRecord& drive, const SimulationTruth& truth) {
   return words;
 }
 
-picture::DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth) {
+picture::DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth,
+                            const RuleErrors& by_rule) {
   picture::DriveScene scene;
   scene.title = resultLine(drive, truth);
   if (truth.world) {
@@ -95,6 +115,7 @@ picture::DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& tru
   if (!drive.track.empty()) scene.T_map_start = drive.track.front().T_map_body;
   scene.T_map_goal = drive.T_map_goal;
   scene.errors = drive.errors;
+  scene.by_rule = seriesOf(by_rule, drive.begun);
   scene.crossings = crossingsOf(drive, truth);
   scene.duration = drive.seconds();
   int contacts = 0;

@@ -9,6 +9,7 @@
 #include "modules/simulator/core/world.hpp"
 #include "modules/simulator/truth_record.hpp"
 #include "tools/report/drive_record.hpp"
+#include "tools/report/rule_errors.hpp"
 
 namespace tread::report {
 
@@ -18,11 +19,13 @@ struct SimulationTruth {
   std::vector<sim::TruthRow> rows;  ///< empty = no record
 };
 
-/// The drive in words: one line of result first, then errors and latencies.
-std::string wordsOf(const DriveRecord& drive, const SimulationTruth& truth);
+/// The drive in words: one line of result first, then errors, as driven and by rule, and latencies.
+std::string wordsOf(const DriveRecord& drive, const SimulationTruth& truth,
+                    const RuleErrors& by_rule);
 /// The one line of result alone.
 std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth);
 /// The drive to be drawn.
-picture::DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth);
+picture::DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth,
+                            const RuleErrors& by_rule);
 
 }  // namespace tread::report

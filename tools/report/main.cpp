@@ -17,6 +17,7 @@ struct Arguments {
   std::string world;
   std::string truth;
   std::string picture;
+  std::vector<std::string> rules{"off", "collective", "bank"};
 };
 
 int run(const Arguments& arguments) {
@@ -24,9 +25,14 @@ int run(const Arguments& arguments) {
   SimulationTruth truth;
   if (!arguments.world.empty()) truth.world = sim::readWorld(arguments.world);
   if (!arguments.truth.empty()) truth.rows = sim::readTruthRecord(arguments.truth);
-  std::cout << wordsOf(drive, truth);
+  RuleErrors by_rule;
+  std::vector<learner::Rule> rules;
+  for (const std::string& name : arguments.rules)
+    if (name != "none") rules.push_back(*learner::ruleNamed(name));
+  if (!rules.empty()) by_rule = errorsByRule(arguments.logs, TREAD_CONFIG_DIR "/patterns", rules);
+  std::cout << wordsOf(drive, truth, by_rule);
   if (!arguments.picture.empty()) {
-    picture::drawDrive(arguments.picture, sceneOf(drive, truth));
+    picture::drawDrive(arguments.picture, sceneOf(drive, truth, by_rule));
     std::cout << "picture: " << arguments.picture << std::endl;
   }
   const bool touched = !truth.rows.empty() && truth.rows.back().contacts > 0;
@@ -45,6 +51,12 @@ int main(int argc, char** argv) {
       ->required();
   app.add_option("--world", arguments.world, "world file of a simulation: ground and obstacles");
   app.add_option("--truth", arguments.truth, "record of tread-simulator (--set record=FILE)");
+  std::vector<std::string> names = learner::ruleNames();
+  names.push_back("none");
+  app.add_option("--rules", arguments.rules,
+                 "rules of learning that predict the drive's executions side by side, or none")
+      ->delimiter(',')
+      ->check(CLI::IsMember(names));
   app.add_option("--picture", arguments.picture, "file of the picture (PNG)");
   try {
     app.parse(argc, argv);

@@ -157,6 +157,8 @@ std::vector<ShadowedExecution> ShadowLearners::executions() const {
     ShadowedExecution execution;
     execution.key = key;
     execution.ended = first.utime;
+    const auto began = began_.find(key);
+    if (began != began_.end()) execution.began = began->second;
     const int64_t decided = decisionTime(key);
     for (const auto& shadow : shadows_) {
       const auto judged = shadow->judged().find(key);

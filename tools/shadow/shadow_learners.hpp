@@ -27,6 +27,7 @@ struct EndError {
 /// One execution with the prediction of each rule.
 struct ShadowedExecution {
   ExecutionKey key;
+  int64_t began = 0;  ///< [us]; 0 = not known
   int64_t ended = 0;  ///< [us]
   bool measured = false;
   std::vector<EndError> by_rule;  ///< in the order of the rules; empty where not measured

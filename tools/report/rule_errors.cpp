@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/report/rule_errors.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "tools/replay/robot_learner.hpp"
+#include "tools/replay/robot_log.hpp"
+
+namespace tread::report {
+namespace {
+
+using Executions = std::vector<const shadow::ShadowedExecution*>;
+
+/// What a learner needs, and what tells the robot's time.
+replay::RobotLog relevantLog(const std::vector<std::string>& paths) {
+  constexpr std::array<const char*, 4> kTooMuch{kScan.name, kPlanTree.name, kMap.name,
+                                                kLearnerState.name};
+  std::vector<LogEvent> events;
+  for (const std::string& path : paths) {
+    LogReader reader(path);
+    for (LogEvent event; reader.next(event);)
+      if (std::find(kTooMuch.begin(), kTooMuch.end(), event.channel) == kTooMuch.end())
+        events.push_back(event);
+  }
+  return replay::toRobotLog(paths.empty() ? "no log" : paths.front(), std::move(events));
+}
+
+/// Executions wholly on one surface, each with its number on it, from 1; and on which stretch.
+struct Numbered {
+  const shadow::ShadowedExecution* execution = nullptr;
+  size_t stretch = 0;
+  int number = 0;
+};
+
+std::vector<Numbered> numbered(const RuleErrors& errors, const std::vector<int64_t>& changes) {
+  std::vector<Numbered> result;
+  size_t stretch = 0;
+  int number = 0;
+  for (const shadow::ShadowedExecution& execution : errors.executions) {
+    while (stretch < changes.size() && changes[stretch] <= execution.ended) {
+      ++stretch;
+      number = 0;
+    }
+    const bool across = stretch > 0 && execution.began < changes[stretch - 1];
+    if (execution.measured && !across) result.push_back({&execution, stretch, ++number});
+  }
+  return result;
+}
+
+/// The last five of each stretch that has a change behind it.
+Executions beforeChanges(const std::vector<Numbered>& all, size_t changes) {
+  Executions chosen;
+  for (size_t i = 0; i < all.size(); ++i)
+    if (all[i].stretch < changes && (i + 5 >= all.size() || all[i + 5].stretch != all[i].stretch))
+      chosen.push_back(all[i].execution);
+  return chosen;
+}
+
+Executions afterChanges(const std::vector<Numbered>& all, int first, int last) {
+  Executions chosen;
+  for (const Numbered& one : all)
+    if (one.stretch > 0 && one.number >= first && one.number <= last)
+      chosen.push_back(one.execution);
+  return chosen;
+}
+
+std::string meanText(const Executions& executions, size_t rule) {
+  if (executions.empty()) return "                  -";
+  double position = 0.0, yaw = 0.0;
+  for (const shadow::ShadowedExecution* execution : executions) {
+    position += execution->by_rule[rule].position;
+    yaw += std::abs(execution->by_rule[rule].yaw);
+  }
+  const auto count = static_cast<double>(executions.size());
+  char text[60];
+  std::snprintf(text, sizeof text, "%7.3f m %5.2f deg", position / count,
+                yaw / count * 180.0 / kPi);
+  return text;
+}
+
+}  // namespace
+
+RuleErrors errorsByRule(const std::vector<std::string>& logs, const std::string& patterns_folder,
+                        const std::vector<learner::Rule>& rules) {
+  RuleErrors errors;
+  errors.rules = rules;
+  try {
+    const replay::RobotLog log = relevantLog(logs);
+    const learner::LearnerNodeConfig config = replay::learnerConfigOf(log, patterns_folder);
+    errors.driven = learner::ruleName(config.rule.rule);
+    if (log.events.empty()) throw std::runtime_error("the log is empty");
+    shadow::ShadowLearners shadows(config, rules, log.events.front().heard);
+    for (const replay::TimedEvent& timed : log.events) shadows.hear(timed.heard, timed.event);
+    shadows.finish();
+    errors.executions = shadows.executions();
+  } catch (const std::exception& error) {
+    errors.problem = error.what();
+  }
+  return errors;
+}
+
+std::string wordsOf(const RuleErrors& errors, const std::vector<int64_t>& changes) {
+  if (!errors.problem.empty()) return "prediction error by rule: none, " + errors.problem + "\n";
+  const std::vector<Numbered> all = numbered(errors, changes);
+  Executions whole;
+  for (const Numbered& one : all) whole.push_back(one.execution);
+  std::string words =
+      "the same executions predicted by each rule, from the shipped set on (driven: " +
+      errors.driven + "):\n";
+  char line[200];
+  std::snprintf(line, sizeof line, "  %-12s  %-18s", "rule", "all on one surface");
+  words += line;
+  if (!changes.empty()) {
+    std::snprintf(line, sizeof line, "  %-18s  %-18s  %-18s", "before a change", "1..3 after it",
+                  "5..15 after it");
+    words += line;
+  }
+  words += "\n";
+  for (size_t rule = 0; rule < errors.rules.size(); ++rule) {
+    std::snprintf(line, sizeof line, "  %-12s", learner::ruleName(errors.rules[rule]));
+    words += line + ("  " + meanText(whole, rule));
+    if (!changes.empty())
+      words += "  " + meanText(beforeChanges(all, changes.size()), rule) + "  " +
+               meanText(afterChanges(all, 1, 3), rule) + "  " +
+               meanText(afterChanges(all, 5, 15), rule);
+    words += "\n";
+  }
+  return words;
+}
+
+}  // namespace tread::report
