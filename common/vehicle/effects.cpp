@@ -2,42 +2,26 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/vehicle/effects.hpp"
 
+#include <limits>
 #include <stdexcept>
+
+#include "common/vehicle/catalogue_parts.hpp"
 
 namespace tread {
 namespace {
 
-void applyYawPull(const std::vector<double>& values, VehicleMotion& motion) {
-  motion.v_body.omega += values[0];
-}
-
-void applySideslip(const std::vector<double>& values, VehicleMotion& motion) {
-  motion.v_body.v_y += values[0] * motion.v_body.omega;
-}
-
-void applyCrab(const std::vector<double>& values, VehicleMotion& motion) {
-  motion.crab += values[0];
+std::vector<Effect> allEffects() {
+  std::vector<Effect> all;
+  for (auto part : {driveEffects, trackEffects, turningEffects, yawEffects, speedEffects,
+                    bodyEffects, measurementEffects})
+    for (Effect& effect : part()) all.push_back(std::move(effect));
+  return all;
 }
 
 }  // namespace
 
 const std::vector<Effect>& effectCatalogue() {
-  // Yaw pull first: sideslip is what the true yaw rate causes.
-  static const std::vector<Effect> catalogue{
-      {"yaw_pull",
-       "The vehicle turns by itself, whatever the tracks do: omega += rate.",
-       {{"rate", "rad/s", -0.5, 0.5}},
-       applyYawPull},
-      {"sideslip",
-       "Turning pushes the vehicle sideways, because it turns about a point ahead of or behind its "
-       "middle: v_y += lever omega.",
-       {{"lever", "m/rad", -0.5, 0.5}},
-       applySideslip},
-      {"crab",
-       "The vehicle drifts to one side of its heading as it drives: v_y += v_x tan(angle).",
-       {{"angle", "rad", -0.5, 0.5}},
-       applyCrab},
-  };
+  static const std::vector<Effect> catalogue = allEffects();
   return catalogue;
 }
 
@@ -46,6 +30,39 @@ size_t effectIndex(const std::string& name) {
   for (size_t i = 0; i < catalogue.size(); ++i)
     if (catalogue[i].name == name) return i;
   throw std::out_of_range("no effect '" + name + "' in the catalogue of the vehicle model");
+}
+
+const Effect& effectNamed(const std::string& name) {
+  return effectCatalogue()[effectIndex(name)];
+}
+
+const EffectParameter& parameterNamed(const Effect& effect, const std::string& parameter) {
+  for (const EffectParameter& candidate : effect.parameters)
+    if (candidate.name == parameter) return candidate;
+  throw std::out_of_range("effect '" + effect.name + "' has no parameter '" + parameter + "'");
+}
+
+bool isOn(const Effect& effect, const EffectValues& vehicle, const MeasurementModel& measurement) {
+  for (const EffectParameter& parameter : effect.parameters) {
+    if (parameter.role == ParameterRole::kShape) continue;
+    const double value =
+        parameter.vehicle != nullptr ? vehicle.*parameter.vehicle : measurement.*parameter.measured;
+    if (value != 0.0) return true;
+  }
+  return false;
+}
+
+std::vector<std::string> effectsOn(const EffectValues& vehicle) {
+  std::vector<std::string> names;
+  for (const Effect& effect : effectCatalogue())
+    if (effect.kind == EffectKind::kVehicle && isOn(effect, vehicle, {}))
+      names.push_back(effect.name);
+  return names;
+}
+
+double naturalValue(const EffectParameter& parameter, double value) {
+  if (!parameter.reciprocal()) return value;
+  return value == 0.0 ? std::numeric_limits<double>::infinity() : 1.0 / value;
 }
 
 }  // namespace tread

@@ -8,38 +8,56 @@
 namespace tread {
 namespace {
 
-constexpr double kMaxStep = 0.005;       // [s]
 constexpr double kShortestStep = 1e-12;  // [s], below it is rounding of time
 
-/// A track that follows its target for dt: mean speed meanwhile and speed at the end.
-struct Lagged {
-  double mean;
-  double end;
-};
+double supplied(const VehicleModel& model, const DriveContext& context, double asked) {
+  return suppliedSpeed(model.effects, asked, context.session_time, context.battery_drop);
+}
 
-Lagged follow(double speed, double target, double lag, double dt) {
-  if (lag <= 0.0) return {target, target};
-  const double decay = std::exp(-dt / lag);
-  const double distance = speed - target;
-  return {target + distance * (1.0 - decay) * lag / dt, target + distance * decay};
+/// A track that has run in its direction for long has its slack behind it.
+TrackState enteredTrack(const EffectValues& effects, double speed, double heat) {
+  return {speed, speed < 0.0 ? effects.track_backlash : 0.0, heat};
 }
 
 }  // namespace
 
-EntryState steadyEntry(const VehicleModel& model, const TrackCommand& command) {
-  return {model.trackSpeeds(command), command};
+EntryState steadyEntry(const VehicleModel& model, const TrackCommand& command,
+                       const DriveContext& context) {
+  const TrackCommand asked = model.trackSpeeds(command);
+  EntryState entry;
+  entry.track_speeds = {
+      driveTarget(model.effects, supplied(model, context, asked.left), 1.0, 0.0),
+      driveTarget(model.effects, supplied(model, context, asked.right), -1.0, 0.0)};
+  entry.command = command;
+  entry.context = context;
+  return entry;
 }
 
-Twist2 steadyTwist(const VehicleModel& model, const TrackCommand& command) {
-  return model.motionAt(model.trackSpeeds(command), {}).v_body;
+Twist2 steadyTwist(const VehicleModel& model, const TrackCommand& command,
+                   const DriveContext& context) {
+  return VehicleKernel(model, steadyEntry(model, command, context)).twist();
 }
 
 VehicleKernel::VehicleKernel(const VehicleModel& model, const EntryState& entry,
                              const ExecutionNoise& noise)
-    : model_(model), noise_(noise), track_speeds_(entry.track_speeds), acting_(entry.command) {}
+    : model_(model),
+      context_(entry.context),
+      left_(enteredTrack(model.effects, entry.track_speeds.left, entry.heat.left)),
+      right_(enteredTrack(model.effects, entry.track_speeds.right, entry.heat.right)),
+      on_ground_(entry.track_speeds),
+      acting_(entry.command) {
+  setNoise(noise);
+  const ChangesInForce changes = changesAt(model_.effects, context_.session_time, 0.0);
+  body_ = entry.body ? *entry.body : groundMotion(model_, noise_, changes, entry.track_speeds);
+}
+
+void VehicleKernel::setNoise(const ExecutionNoise& noise) {
+  noise_ = noise;
+  tan_crab_ = std::tan(noise.crab + model_.effects.crab);
+}
 
 void VehicleKernel::step(const TrackCommand& command, double duration) {
-  waiting_.push_back({time_ + model_.delay, command});
+  waiting_.push_back({time_ + model_.commandDelay(), command});
   const double end = time_ + duration;
   while (!waiting_.empty() && waiting_.front().until < end - kShortestStep) {
     advance(waiting_.front().until - time_);
@@ -50,19 +68,54 @@ void VehicleKernel::step(const TrackCommand& command, double duration) {
   time_ = end;
 }
 
+void VehicleKernel::step(const TrackCommand& command, double duration,
+                         const DriveContext& context) {
+  context_ = context;
+  step(command, duration);
+}
+
 void VehicleKernel::advance(double duration) {
   if (duration < kShortestStep) return;
-  const TrackCommand target = model_.trackSpeeds(acting_);
-  const int steps = std::max(1, static_cast<int>(std::ceil(duration / kMaxStep - 1e-6)));
+  const TrackCommand asked = model_.trackSpeeds(acting_);
+  const int steps = std::max(1, static_cast<int>(std::ceil(duration / model_.step - 1e-6)));
   const double dt = duration / steps;
-  for (int i = 0; i < steps; ++i) {
-    const Lagged left = follow(track_speeds_.left, target.left, model_.lag, dt);
-    const Lagged right = follow(track_speeds_.right, target.right, model_.lag, dt);
-    const Twist2 v_body = model_.motionAt({left.mean, right.mean}, noise_).v_body;
-    T_start_body_ = T_start_body_ * integrate(v_body, dt);
-    track_speeds_ = {left.end, right.end};
-  }
+  for (int i = 0; i < steps; ++i) integrateStep(asked, dt);
   time_ += duration;
+}
+
+void VehicleKernel::integrateStep(const TrackCommand& asked, double dt) {
+  const EffectValues& effects = model_.effects;
+  on_ground_ = {driveTrack(model_, supplied(model_, context_, asked.left), 1.0, dt, left_),
+                driveTrack(model_, supplied(model_, context_, asked.right), -1.0, dt, right_)};
+  const ChangesInForce changes = changesAt(effects, context_.session_time, dt);
+  const PlaneMotion steady = groundMotion(model_, noise_, changes, on_ground_);
+  const Followed v = follow(body_.v, steady.v, effects.body_inertia, dt);
+  const Followed omega = follow(body_.omega, steady.omega, effects.yaw_inertia, dt);
+  const Twist2 v_body =
+      bodyTwist(effects, tan_crab_, changes, context_, on_ground_, {v.mean, omega.mean});
+  T_start_body_ = T_start_body_ * integrate(v_body, dt);
+  body_ = {v.end, omega.end};
+  context_.session_time += dt;
+}
+
+Twist2 VehicleKernel::twist() const {
+  const EffectValues& effects = model_.effects;
+  const ChangesInForce changes = changesAt(effects, context_.session_time, 0.0);
+  const TrackCommand tracks = effects.track_backlash == 0.0 ? trackSpeeds() : on_ground_;
+  PlaneMotion motion = groundMotion(model_, noise_, changes, tracks);
+  if (effects.body_inertia > 0.0) motion.v = body_.v;
+  if (effects.yaw_inertia > 0.0) motion.omega = body_.omega;
+  return bodyTwist(effects, tan_crab_, changes, context_, tracks, motion);
+}
+
+EntryState VehicleKernel::state() const {
+  EntryState state;
+  state.track_speeds = trackSpeeds();
+  state.command = acting_;
+  state.context = context_;
+  state.body = body_;
+  state.heat = {left_.heat, right_.heat};
+  return state;
 }
 
 std::vector<Pose2> simulate(const VehicleModel& model, const std::vector<TrackCommand>& commands,

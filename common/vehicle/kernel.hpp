@@ -3,45 +3,83 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "common/geometry/se2.hpp"
 #include "common/pattern/pattern.hpp"
+#include "common/vehicle/drive_train.hpp"
+#include "common/vehicle/ground_motion.hpp"
 #include "common/vehicle/model.hpp"
 
 namespace tread {
 
-/// In what state a vehicle begins: standing still by default.
+/// In what state a vehicle begins: standing still, cold, level, at the start of a session.
 struct EntryState {
-  TrackCommand track_speeds;  ///< [m/s]
-  TrackCommand command;  ///< given so far; it acts on until the delay of the first new one is over
+  TrackCommand track_speeds{};  ///< [m/s] of the drive
+  TrackCommand
+      command{};  ///< given so far; it acts on until the delay of the first new one is over
+  DriveContext context{};  ///< at the start
+  /// Forward speed and yaw rate of the body, for its inertia; else what the tracks lead to.
+  std::optional<PlaneMotion> body = std::nullopt;
+  TrackCommand heat{};  ///< [1] low-pass of the duty of each side's motor, see thermal_derating
 };
 
-/// The state that a command leads to when it is held for long.
-EntryState steadyEntry(const VehicleModel& model, const TrackCommand& command);
+/// The state that a command leads to when it is held for long (motors cold).
+EntryState steadyEntry(const VehicleModel& model, const TrackCommand& command,
+                       const DriveContext& context = {});
 
 /// The body twist that a command leads to when it is held for long.
-Twist2 steadyTwist(const VehicleModel& model, const TrackCommand& command);
+Twist2 steadyTwist(const VehicleModel& model, const TrackCommand& command,
+                   const DriveContext& context = {});
 
 /// Drives a model through commands; deterministic, without a clock.
-/** Track speeds are integrated exactly (first-order lag, piecewise constant commands); the pose
- * moves along SE(2) exponentials of the mean twist of steps of at most 5 ms. Copies continue
- * independently. */
+/** What happens to a command, in this order; each effect stands where it acts:
+ *
+ *     command
+ *       -> waits: delay + command_delay
+ *       -> each track: full_speed, motor_deadband, speed_saturation, battery_sag,
+ *          thermal_derating, track_asymmetry
+ *       -> the drive follows: lag + actuator_lag (lag_asymmetry when slowing), slew_limit;
+ *          track_backlash
+ *     track speeds on the ground
+ *       -> slip_ratio, terrain_change (slip), gains and gauge of the nominal model
+ *       -> yaw rate: track_width and terrain_change (width), yaw_rate_skid, yaw_breakaway and
+ *          terrain_change (break-away), turn_power_limit, speed_understeer, reverse_yaw_gain,
+ *          payload_change, grip_limit, yaw_pull, yaw_rate_offset
+ *       -> forward speed: turn_speed_loss, reverse_speed_gain, payload_change, quadratic_drag,
+ *          rolling_resistance
+ *       -> the body follows: yaw_inertia, body_inertia
+ *       -> to the side: icr_offset and payload_change, crab, centrifugal_drift
+ *       -> slope_pitch, slope_roll
+ *     body twist -> pose
+ *
+ * The body follows before its motion to the side is known, so that the centre of rotation belongs
+ * to the true yaw rate (and icr_offset remains exactly a lever arm).
+ *
+ * Lags and ramps are integrated exactly over steps of at most model.step; the pose moves along
+ * SE(2) exponentials of each step's mean twist. An effect that is off does not change a bit. All
+ * state is the kernel's: copies continue independently. */
 class VehicleKernel {
  public:
   VehicleKernel(const VehicleModel& model, const EntryState& entry,
                 const ExecutionNoise& noise = {});
 
-  /// Holds a command for `duration` [s].
+  /// Holds a command for `duration` [s]; the context stays, session time goes on.
   void step(const TrackCommand& command, double duration);
+  /// The same with what is known of this step; its session time is that of the step's beginning.
+  void step(const TrackCommand& command, double duration, const DriveContext& context);
 
   /// Pose relative to the start, yaw unwrapped.
   const Pose2& pose() const { return T_start_body_; }
   /// Body twist at this moment.
-  Twist2 twist() const { return model_.motionAt(track_speeds_, noise_).v_body; }
-  const TrackCommand& trackSpeeds() const { return track_speeds_; }
+  Twist2 twist() const;
+  /// Speeds of the drive, before slack and slip [m/s].
+  TrackCommand trackSpeeds() const { return {left_.speed, right_.speed}; }
+  /// State from which another kernel can begin (without waiting commands and slack).
+  EntryState state() const;
   /// Changes the noise from now on, for noise that varies along a drive.
-  void setNoise(const ExecutionNoise& noise) { noise_ = noise; }
+  void setNoise(const ExecutionNoise& noise);
 
  private:
   struct Waiting {
@@ -50,11 +88,17 @@ class VehicleKernel {
   };
 
   void advance(double duration);
+  void integrateStep(const TrackCommand& asked, double dt);
 
   VehicleModel model_;
   ExecutionNoise noise_;
+  DriveContext context_;
+  double tan_crab_ = 0.0;
   Pose2 T_start_body_;
-  TrackCommand track_speeds_;
+  TrackState left_;
+  TrackState right_;
+  TrackCommand on_ground_;  ///< [m/s] mean speeds of the tracks in the last step of integration
+  PlaneMotion body_;
   TrackCommand acting_;
   std::deque<Waiting> waiting_;
   double time_ = 0.0;

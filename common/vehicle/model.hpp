@@ -2,10 +2,11 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <algorithm>
 #include <random>
 #include <string>
-#include <vector>
 
+#include "common/geometry/se2.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/vehicle/effects.hpp"
 
@@ -25,13 +26,21 @@ struct ExecutionNoise {
   double crab = 0.0;     ///< [rad] added to the direction of travel
 };
 
+/// What is known of a moment of a drive beside the command; level, at the start, by default.
+/** Frames: x forward, y left, z up; a nose that points down is a positive pitch, a raised left side
+ * a positive roll. */
+struct DriveContext {
+  double session_time = 0.0;  ///< [s] since the start of the session
+  double battery_drop = 0.0;  ///< [1] relative fall of the voltage since then; 0 = not measured
+  double roll = 0.0;          ///< [rad]
+  double pitch = 0.0;         ///< [rad]
+};
+
 /// A vehicle on one ground: nominal two-track model and the effects that are on.
 /** v_x = forward_gain (vl + vr) / 2, omega = yaw_gain (vr - vl) / gauge, v_y = 0; track speeds
- * follow the commands after a delay with a first-order lag. Effects change these three afterwards,
- * in the order of the catalogue. */
+ * follow the commands after a delay with a first-order lag. In which order effects act on that:
+ * kernel.hpp. */
 struct VehicleModel {
-  VehicleModel();
-
   std::string name;
   CommandKind kind = CommandKind::kPower;
   double full_speed = 1.0;    ///< [m/s] track speed at power 1; not used for track speed commands
@@ -40,18 +49,28 @@ struct VehicleModel {
   double gauge = 1.0;         ///< [m] between the middles of the tracks
   double forward_gain = 1.0;  ///< [1] ground speed over mean track speed
   double yaw_gain = 1.0;      ///< [1] yaw rate over that of the track speeds
-  /// Values of each effect's parameters, in the order of the catalogue; 0 = off.
-  std::vector<std::vector<double>> effects;
+  double step = 0.005;        ///< [s] longest step of integration
+  EffectValues effects;
   ExecutionSpread spread;
 
-  /// A parameter of an effect by name; throws std::out_of_range if there is none.
+  /// A parameter of a vehicle effect by name; throws std::out_of_range if there is none.
   double& effect(const std::string& effect_name, const std::string& parameter);
   double effect(const std::string& effect_name, const std::string& parameter) const;
 
   /// Track speeds that a command asks for, left and right [m/s].
-  TrackCommand trackSpeeds(const TrackCommand& command) const;
-  /// Body motion at these track speeds with this noise.
-  VehicleMotion motionAt(const TrackCommand& track_speeds, const ExecutionNoise& noise) const;
+  TrackCommand trackSpeeds(const TrackCommand& command) const {
+    if (kind == CommandKind::kTrackSpeed) return command;
+    return {full_speed * command.left, full_speed * command.right};
+  }
+  /// Delay of commands with the effect on it [s].
+  double commandDelay() const { return std::max(0.0, delay + effects.command_delay); }
+  /// Lag of the drive with the effect on it [s].
+  double driveLag() const { return std::max(0.0, lag + effects.actuator_lag); }
+  /// The longest time constant with which a motion settles: drive and body, one after the other.
+  double settlingLag() const {
+    return driveLag() + std::max(0.0, effects.lag_asymmetry) +
+           std::max(effects.yaw_inertia, effects.body_inertia);
+  }
 };
 
 /// One draw of the noise of an execution: factors N(1, spread), crab angle N(0, spread).

@@ -3,17 +3,16 @@
 #include "common/vehicle/model_file.hpp"
 
 #include <algorithm>
-#include <sstream>
+#include <set>
 #include <vector>
-
-#include "common/config/config_reader.hpp"
-#include "common/config/scalars.hpp"
 
 namespace tread {
 namespace {
 
 constexpr Range kGain{0.05, 5.0};
 constexpr Range kSpread{0.0, 1.0};
+constexpr Range kAnything{-1e300, 1e300};
+constexpr double kNoLimit = 1e9;
 
 void readTracks(ConfigReader& reader, VehicleModel& model) {
   std::string kind;
@@ -28,81 +27,147 @@ void readTracks(ConfigReader& reader, VehicleModel& model) {
   reader.number("delay", model.delay, {0.0, 2.0}, "s");
   reader.number("forward_gain", model.forward_gain, kGain, "");
   reader.number("yaw_gain", model.yaw_gain, kGain, "");
+  reader.number("step", model.step, {0.0005, 0.1}, "s");
 }
 
-void readEffects(ConfigReader reader, VehicleModel& model) {
-  const std::vector<Effect>& catalogue = effectCatalogue();
-  for (size_t i = 0; i < catalogue.size(); ++i) {
-    ConfigReader effect = reader.section(catalogue[i].name);
-    for (size_t j = 0; j < catalogue[i].parameters.size(); ++j) {
-      const EffectParameter& parameter = catalogue[i].parameters[j];
-      effect.number(parameter.name, model.effects[i][j], {parameter.min, parameter.max},
-                    parameter.unit);
-    }
+void readParameter(ConfigReader& effect, const EffectParameter& parameter, double& value) {
+  const bool natural = parameter.reciprocal() && effect.has(parameter.natural_name);
+  if (natural && effect.has(parameter.name))
+    throw effect.error(parameter.natural_name,
+                       "stands beside " + parameter.name + ", its reciprocal; give one of them");
+  if (natural) {
+    double limit = kNoLimit;
+    effect.number(parameter.natural_name, limit, {1.0 / parameter.max, kNoLimit},
+                  parameter.natural_unit);
+    value = 1.0 / limit;
+  }
+  effect.number(parameter.name, value, {parameter.min, parameter.max}, parameter.unit);
+}
+
+void readMeasurement(ConfigReader reader, MeasurementModel& measurement) {
+  for (const Effect& effect : effectCatalogue()) {
+    if (effect.kind != EffectKind::kMeasurement) continue;
+    ConfigReader section = reader.section(effect.name);
+    for (const EffectParameter& parameter : effect.parameters)
+      readParameter(section, parameter, measurement.*parameter.measured);
   }
 }
 
-VehicleModel readModel(ConfigReader reader) {
-  VehicleModel model;
+void readBounds(ConfigReader reader, ModelDocument& document) {
+  for (const std::string& parameter : reader.keys()) {
+    const double* value = findParameter(document, parameter);
+    if (value == nullptr)
+      throw reader.error(parameter,
+                         "is no parameter; write lag, forward_gain or effect.parameter "
+                         "(icr_offset.offset)");
+    std::vector<double> ends;
+    reader.numbers(parameter, ends, 2, kAnything, "", true);
+    if (ends[0] >= ends[1] || *value < ends[0] || *value > ends[1])
+      throw reader.error(parameter, "the model's value must lie between the two bounds");
+    document.bounds.push_back({parameter, ends[0], ends[1]});
+  }
+}
+
+bool isSymmetric(const std::vector<std::vector<double>>& matrix) {
+  for (size_t i = 0; i < matrix.size(); ++i) {
+    if (matrix[i][i] < 0.0) return false;
+    for (size_t j = 0; j < i; ++j)
+      if (matrix[i][j] != matrix[j][i]) return false;
+  }
+  return true;
+}
+
+void readCovariance(ConfigReader reader, const ModelDocument& document,
+                    ParameterCovariance& covariance) {
+  reader.texts("parameters", covariance.parameters);
+  std::set<std::string> known;
+  for (const std::string& parameter : covariance.parameters)
+    if (findParameter(document, parameter) == nullptr || !known.insert(parameter).second)
+      throw reader.error("parameters", "'" + parameter +
+                                           "' is no parameter or there twice; write lag, "
+                                           "forward_gain or effect.parameter");
+  const size_t size = covariance.parameters.size();
+  reader.table("matrix", covariance.matrix, std::max<size_t>(size, 1), kAnything, "");
+  if (covariance.matrix.size() != size || !isSymmetric(covariance.matrix))
+    throw reader.error("matrix",
+                       "one row per parameter, symmetric, nothing negative on the "
+                       "diagonal");
+}
+
+void readProvenance(ConfigReader reader, Provenance& provenance) {
+  reader.text("tool", provenance.tool);
+  if (reader.has("seed")) {
+    int64_t seed = 0;
+    reader.integer("seed", seed, {0.0, 9.2e18}, "");
+    provenance.seed = seed;
+  }
+  reader.integer("runs", provenance.runs, {0.0, 1e9}, "");
+  for (ConfigReader& entry : reader.sections("logs")) {
+    SourceLog log;
+    entry.text("name", log.name, true);
+    entry.text("sha256", log.sha256, true);
+    if (log.sha256.size() != 64 ||
+        log.sha256.find_first_not_of("0123456789abcdef") != std::string::npos)
+      throw entry.error("sha256", "is no SHA-256; 64 digits 0-9 a-f");
+    provenance.logs.push_back(log);
+  }
+}
+
+std::optional<Envelope> readEnvelope(ConfigReader& reader) {
+  if (!reader.has("envelope")) return std::nullopt;
+  ConfigReader section = reader.section("envelope");
+  Envelope envelope;
+  section.number("v", envelope.v, {0.0, 100.0}, "m/s", true);
+  section.number("omega", envelope.omega, {0.0, 100.0}, "rad/s", true);
+  section.number("v_omega", envelope.v_omega, {0.0, 10000.0}, "m/s2", true);
+  return envelope;
+}
+
+ModelDocument readDocument(ConfigReader reader) {
+  ModelDocument document;
+  VehicleModel& model = document.vehicle;
   reader.text("name", model.name, true);
   readTracks(reader, model);
-  readEffects(reader.section("effects"), model);
+  ConfigReader effects = reader.section("effects");
+  readEffects(effects, model.effects);
+  readMeasurement(reader.section("measurement"), document.measurement);
   ConfigReader spread = reader.section("spread");
   spread.number("forward", model.spread.forward, kSpread, "");
   spread.number("yaw", model.spread.yaw, kSpread, "");
   spread.number("crab", model.spread.crab, kSpread, "rad");
+  readBounds(reader.section("bounds"), document);
+  readCovariance(reader.section("covariance"), document, document.covariance);
+  readProvenance(reader.section("provenance"), document.provenance);
+  document.envelope = readEnvelope(reader);
   reader.finish();
-  return model;
-}
-
-void writeEffects(std::ostringstream& out, const VehicleModel& model) {
-  const std::vector<Effect>& catalogue = effectCatalogue();
-  bool any = false;
-  for (size_t i = 0; i < catalogue.size(); ++i) {
-    const std::vector<double>& values = model.effects[i];
-    if (std::all_of(values.begin(), values.end(), [](double value) { return value == 0.0; }))
-      continue;
-    if (!any) out << "effects:\n";
-    any = true;
-    out << "  " << catalogue[i].name << ":  # " << catalogue[i].sentence << '\n';
-    for (size_t j = 0; j < values.size(); ++j) {
-      const EffectParameter& parameter = catalogue[i].parameters[j];
-      out << "    " << parameter.name << ": " << formatNumber(values[j]) << "  # " << parameter.unit
-          << '\n';
-    }
-  }
+  return document;
 }
 
 }  // namespace
 
+void readEffects(ConfigReader& effects, EffectValues& values) {
+  for (const Effect& effect : effectCatalogue()) {
+    if (effect.kind != EffectKind::kVehicle) continue;
+    ConfigReader section = effects.section(effect.name);
+    for (const EffectParameter& parameter : effect.parameters)
+      readParameter(section, parameter, values.*parameter.vehicle);
+  }
+}
+
+ModelDocument readModelDocument(const std::string& path) {
+  return readDocument(ConfigReader::fromFile(path));
+}
+
+ModelDocument parseModelDocument(const std::string& text, const std::string& name) {
+  return readDocument(ConfigReader::fromText(text, name));
+}
+
 VehicleModel readModelFile(const std::string& path) {
-  return readModel(ConfigReader::fromFile(path));
+  return readModelDocument(path).vehicle;
 }
 
 VehicleModel parseModel(const std::string& text, const std::string& name) {
-  return readModel(ConfigReader::fromText(text, name));
-}
-
-std::string formatModel(const VehicleModel& model) {
-  std::ostringstream out;
-  const auto line = [&](const std::string& key, double value, const std::string& comment) {
-    out << key << ": " << formatNumber(value) << "  # " << comment << '\n';
-  };
-  const bool power = model.kind == CommandKind::kPower;
-  out << "name: " << formatText(model.name) << '\n';
-  out << "kind: " << (power ? "power" : "track_speed") << '\n';
-  if (power) line("full_speed", model.full_speed, "m/s, track speed at power 1");
-  line("gauge", model.gauge, "m, between the middles of the tracks");
-  line("lag", model.lag, "s, time constant of the track speeds");
-  line("delay", model.delay, "s, before a command begins to act");
-  line("forward_gain", model.forward_gain, "ground speed over mean track speed");
-  line("yaw_gain", model.yaw_gain, "yaw rate over that of the track speeds");
-  writeEffects(out, model);
-  out << "spread:  # standard deviations from one execution to the next\n";
-  line("  forward", model.spread.forward, "of the factor on the forward speed");
-  line("  yaw", model.spread.yaw, "of the factor on the yaw rate");
-  line("  crab", model.spread.crab, "rad, of the direction of travel");
-  return out.str();
+  return parseModelDocument(text, name).vehicle;
 }
 
 }  // namespace tread

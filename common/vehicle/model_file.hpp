@@ -4,21 +4,31 @@
 
 #include <string>
 
-#include "common/vehicle/model.hpp"
+#include "common/config/config_reader.hpp"
+#include "common/vehicle/model_document.hpp"
 
 namespace tread {
 
 /// Reads a model file (YAML that people read and edit; see config/models).
 /** Throws ConfigError with one line "file:line: what is wrong; what is allowed" for bad YAML,
  * unknown keys or effects and values out of their ranges. What the file does not name has the value
- * of the nominal model (effects: off). */
-VehicleModel readModelFile(const std::string& path);
+ * of the nominal model (effects: off). Vehicle effects stand under effects:, those of the INS under
+ * measurement:. A limit may be given as itself or as inverse_limit, its reciprocal. */
+ModelDocument readModelDocument(const std::string& path);
 
 /// The same from text; `name` stands for the file in messages.
+ModelDocument parseModelDocument(const std::string& text, const std::string& name);
+
+/// Only the vehicle of a model file.
+VehicleModel readModelFile(const std::string& path);
 VehicleModel parseModel(const std::string& text, const std::string& name);
 
-/// Text of a model file; parseModel() of it gives the same model, bit for bit. Effects that are off
-/// are left out.
+/// Text of a model file; parsing it gives the same document, bit for bit. Effects that are off are
+/// left out.
+std::string formatModelDocument(const ModelDocument& document);
 std::string formatModel(const VehicleModel& model);
+
+/// Reads the vehicle effects of a section whose keys are their names (not finished here).
+void readEffects(ConfigReader& effects, EffectValues& values);
 
 }  // namespace tread

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "common/config/config_reader.hpp"
+#include "common/vehicle/model_file.hpp"
 
 namespace tread::experiment {
 namespace {
@@ -29,15 +30,7 @@ WorldSurface readSurface(ConfigReader& reader, const VehicleModel& vehicle) {
   reader.number("forward_gain", surface.model.forward_gain, kGain, "");
   reader.number("yaw_gain", surface.model.yaw_gain, kGain, "");
   ConfigReader effects = reader.section("effects");
-  const std::vector<Effect>& catalogue = effectCatalogue();
-  for (size_t i = 0; i < catalogue.size(); ++i) {
-    ConfigReader effect = effects.section(catalogue[i].name);
-    for (size_t j = 0; j < catalogue[i].parameters.size(); ++j) {
-      const EffectParameter& parameter = catalogue[i].parameters[j];
-      effect.number(parameter.name, surface.model.effects[i][j], {parameter.min, parameter.max},
-                    parameter.unit);
-    }
-  }
+  readEffects(effects, surface.model.effects);
   ConfigReader spread = reader.section("spread");
   spread.number("forward", surface.model.spread.forward, kSpread, "");
   spread.number("yaw", surface.model.spread.yaw, kSpread, "");

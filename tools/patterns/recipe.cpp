@@ -83,7 +83,7 @@ double heldAtEnd(const std::vector<TrackCommand>& commands, const TrackCommand& 
 
 void requireHold(const ConfigReader& reader, const MotionPattern& pattern, const MotionClass& exit,
                  const VehicleModel& model, double period) {
-  const double needed = kLagsToHold * model.lag + model.delay;
+  const double needed = kLagsToHold * model.settlingLag() + model.commandDelay();
   const double held = heldAtEnd(pattern.commands, exit.steady, period);
   if (held < needed - 1e-9)
     throw reader.error("commands", "the steady command of exit class '" + exit.name +

@@ -2,56 +2,34 @@
 // Copyright (c) 2026 The Tread authors
 #include <cmath>
 #include <random>
-#include <set>
 #include <stdexcept>
-#include <string>
 
 #include <catch2/catch.hpp>
 
-#include "common/vehicle/model.hpp"
+#include "common/vehicle/kernel.hpp"
 
 using namespace tread;
 
-TEST_CASE("Every effect of the catalogue is off at zero and does something when it is on") {
-  VehicleModel model;
-  const TrackCommand tracks{0.4, 1.0};
-  const Twist2 plain = model.motionAt(tracks, {}).v_body;
-  CHECK(plain.v_x == Approx(0.7));
-  CHECK(plain.v_y == 0.0);
-  CHECK(plain.omega == Approx(0.6));
-  for (const Effect& effect : effectCatalogue()) {
-    for (const EffectParameter& parameter : effect.parameters) {
-      INFO(effect.name << "." << parameter.name);
-      CHECK(parameter.min <= 0.0);
-      CHECK(parameter.max > 0.0);
-      VehicleModel changed;
-      changed.effect(effect.name, parameter.name) = 0.1;
-      const Twist2 twist = changed.motionAt(tracks, {}).v_body;
-      CHECK((twist.v_x != plain.v_x || twist.v_y != plain.v_y || twist.omega != plain.omega));
-    }
-  }
-}
-
-TEST_CASE("Names of effects and parameters are unique and unknown ones are refused") {
-  std::set<std::string> names;
-  for (const Effect& effect : effectCatalogue()) CHECK(names.insert(effect.name).second);
+TEST_CASE("Unknown effects and parameters of a vehicle are refused") {
   VehicleModel model;
   CHECK_THROWS_AS(model.effect("antigravity", "rate"), std::out_of_range);
   CHECK_THROWS_AS(model.effect("crab", "rate"), std::out_of_range);
+  CHECK_THROWS_AS(model.effect("gyro_bias", "rate"), std::out_of_range);
 }
 
 TEST_CASE("The motion follows the equations of the calibration") {
   VehicleModel model;
+  model.kind = CommandKind::kTrackSpeed;
   model.gauge = 0.6;
   model.forward_gain = 0.9541;
   model.yaw_gain = 0.8885;
-  model.effect("sideslip", "lever") = 0.0465;
-  model.effect("yaw_pull", "rate") = 0.0102;
+  model.effect("icr_offset", "offset") = -0.0465;
+  model.effect("yaw_rate_offset", "rate") = 0.0102;
   model.effect("crab", "angle") = 0.0442;
   const ExecutionNoise noise{1.01, 0.97, -0.02};
   const double v = 0.9541 * 1.01 * (0.6 + 1.1) / 2.0;
   const double omega = 0.8885 * 0.97 * (1.1 - 0.6) / 0.6 + 0.0102;
-  const Twist2 twist = model.motionAt({0.6, 1.1}, noise).v_body;
+  const Twist2 twist = VehicleKernel(model, steadyEntry(model, {0.6, 1.1}), noise).twist();
   CHECK(twist.v_x == Approx(v));
   CHECK(twist.omega == Approx(omega));
   CHECK(twist.v_y == Approx(v * std::tan(0.0442 - 0.02) + 0.0465 * omega));

@@ -35,7 +35,7 @@ TEST_CASE("What a model file does not name is nominal") {
   CHECK(model.forward_gain == 1.0);
   CHECK(model.yaw_gain == 1.0);
   CHECK(model.lag == 0.0);
-  CHECK(model.effect("sideslip", "lever") == 0.0);
+  CHECK(model.effect("icr_offset", "offset") == 0.0);
   CHECK(model.spread.yaw == 0.0);
 }
 
@@ -45,17 +45,46 @@ TEST_CASE("A model file comes back bit for bit") {
   model.lag = 0.1 + 0.05;
   model.delay = 1.0 / 3.0;
   model.forward_gain = 0.95 * 1.01;
-  model.effect("sideslip", "lever") = -1.0 / 7.0;
-  model.effect("crab", "angle") = 1e-17;
+  model.step = 0.1 / 3.0;
   model.spread = {0.1 / 3.0, 0.2, 0.3};
+  for (const Effect& effect : effectCatalogue())
+    for (const EffectParameter& parameter : effect.parameters)
+      if (parameter.vehicle != nullptr)
+        model.effects.*parameter.vehicle =
+            parameter.typical * (1.0 + 1e-15) / 3.0 +
+            10.0 / 3.0 * (parameter.name == "time_constant" ? 1.0 : 0.0);
   const VehicleModel again = parseModel(formatModel(model), "again.yaml");
   CHECK(again.name == model.name);
   CHECK(again.lag == model.lag);
   CHECK(again.delay == model.delay);
   CHECK(again.forward_gain == model.forward_gain);
-  CHECK(again.effects == model.effects);
+  CHECK(again.step == model.step);
   CHECK(again.spread.forward == model.spread.forward);
+  for (const Effect& effect : effectCatalogue())
+    for (const EffectParameter& parameter : effect.parameters) {
+      INFO(effect.name << "." << parameter.name);
+      if (parameter.vehicle != nullptr)
+        CHECK(again.effects.*parameter.vehicle == model.effects.*parameter.vehicle);
+    }
   CHECK(formatModel(again) == formatModel(model));
+}
+
+TEST_CASE("Effects that are off are left out of a model file, also those with a default shape") {
+  const std::string text = formatModel(parseModel(kHead, "m.yaml"));
+  CHECK(text.find("effects") == std::string::npos);
+  CHECK(text.find("measurement") == std::string::npos);
+}
+
+TEST_CASE("A limit may stand in a file as itself or as its reciprocal, not as both") {
+  const std::string effect = kHead + "effects:\n  turn_power_limit:\n    ";
+  const VehicleModel itself = parseModel(effect + "limit: 2\n", "m.yaml");
+  const VehicleModel reciprocal = parseModel(effect + "inverse_limit: 0.5\n", "m.yaml");
+  CHECK(itself.effects.turn_power_limit == 0.5);
+  CHECK(reciprocal.effects.turn_power_limit == 0.5);
+  CHECK(formatModel(itself).find("inverse_limit: 0.5  # s/rad: limit 2 rad/s") !=
+        std::string::npos);
+  expectError(effect + "limit: 2\n    inverse_limit: 0.5\n", "7", "one of them");
+  expectError(effect + "limit: 0\n", "7", "0.1..1e+09 rad/s");
 }
 
 TEST_CASE("Bad model files are refused with file, line and what is allowed") {
@@ -63,9 +92,13 @@ TEST_CASE("Bad model files are refused with file, line and what is allowed") {
   expectError(kHead + "lag: fast\n", "5", "0..5 s");
   expectError(kHead + "lag: -0.1\n", "5", "0..5 s");
   expectError(kHead + "yaw_gain: .nan\n", "5", "nan");
-  expectError(kHead + "effects:\n  slideslip:\n    lever: 0.1\n", "6", "sideslip");
-  expectError(kHead + "effects:\n  sideslip:\n    lever: 2\n", "7", "-0.5..0.5 m/rad");
-  expectError(kHead + "effects:\n  sideslip:\n    angle: 0.1\n", "7", "lever");
+  expectError(kHead + "step: 0\n", "5", "5e-04..0.1 s");
+  expectError(kHead + "effects:\n  icr_ofset:\n    offset: 0.1\n", "6", "icr_offset");
+  expectError(kHead + "effects:\n  icr_offset:\n    offset: 2\n", "7", "-0.5..0.5 m");
+  expectError(kHead + "effects:\n  icr_offset:\n    angle: 0.1\n", "7", "offset");
+  expectError(kHead + "effects:\n  yaw_pull:\n    rate: 0.1\n", "7", "pull");
+  expectError(kHead + "effects:\n  gyro_bias:\n    rate: 0.1\n", "6", "gyro_bias");
+  expectError(kHead + "measurement:\n  slip_ratio:\n    slip: 0.1\n", "6", "slip_ratio");
   expectError("name: m\nkind: power\ngauge: 0.6\n", "1", "full_speed");
   expectError("name: m\nkind: track_speed\ngauge: 1\nfull_speed: 1\n", "4", "track_speed");
   expectError("name: m\nkind: torque\ngauge: 1\n", "2", "track_speed");

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/vehicle/catalogue_parts.hpp"
+
+namespace tread {
+
+std::vector<Effect> driveEffects() {
+  using V = EffectValues;
+  return {
+      {"command_delay",
+       "Command delay",
+       EffectKind::kVehicle,
+       "xw",
+       "A command takes a fixed time before anything of it reaches the motors.",
+       "u(t) -> u(t - delay); adds to the model's delay",
+       "Nothing happens for a fixed time after each change of the command, then all at once; the "
+       "residual follows the latest command change in speed and yaw rate alike.",
+       "A witness that does not pass through the INS: wheel encoders, motor current or a hardware "
+       "time stamp. Without one, delay and INS latency add up to one number.",
+       "Film the tracks and a lamp on the command line during one start; count the frames.",
+       {strength("delay", "s", -2.0, 2.0, 0.1, &V::command_delay, {0.05, 0.1, 0.2, 0.3})}},
+      {"motor_deadband",
+       "Motor deadband, stiction",
+       EffectKind::kVehicle,
+       "xw",
+       "Small commands do not move a track, and larger ones lose the same amount.",
+       "u -> sign(u) max(0, |u| - speed), each track",
+       "Too slow by a constant, forwards and backwards; the slow inner track of a gentle turn "
+       "loses "
+       "most of its speed, so that gentle turns are too tight.",
+       "Raise one track's command slowly from 0 to 20 %, then turn about the other, stopped track; "
+       "rolling resistance does not touch the yaw rate.",
+       "Raise the stick slowly and read the command at which each track begins to move.",
+       {strength("speed", "m/s", 0.0, 0.5, 0.08, &V::motor_deadband, {0.03, 0.08, 0.15})}},
+      {"speed_saturation",
+       "Speed saturation",
+       EffectKind::kVehicle,
+       "xw",
+       "A track does not run faster than a certain speed, whatever is asked of it.",
+       "u -> clip(u, +-limit), each track; inverse_limit = 1 / limit",
+       "Right up to a speed, flat above it, straight ahead and for the outer track of fast turns.",
+       "Drive straight at the top command and fast arcs: a limit of turning power leaves the "
+       "straight drive alone, a weak battery shrinks all commands.",
+       "Drive straight at 70, 85 and 100 % of the command and compare the three speeds.",
+       {inverseLimit("s/m", 10.0, 0.8, &V::speed_saturation, {0.25, 0.4, 0.6, 0.9, 1.2}, "limit",
+                     "m/s")}},
+      {"battery_sag",
+       "Battery sag",
+       EffectKind::kVehicle,
+       "xw",
+       "The tracks slow down as the battery empties.",
+       "u -> u (1 - per_hour T / 3600 s - per_drop drop), T since the start of the session, drop: "
+       "relative fall of the voltage where it is measured",
+       "Speed and yaw rate fall together in proportion to the command, more with each minute.",
+       "Come back to the same patch of ground at the end; a heated motor recovers in a rest, a "
+       "battery does not.",
+       "Read the voltage at the start and now, standing and at full speed.",
+       {strength("per_hour", "1/h", -3.0, 6.0, 0.3, &V::battery_sag_per_hour),
+        strength("per_drop", "1", -1.0, 3.0, 1.0, &V::battery_sag_per_drop)}},
+      {"thermal_derating",
+       "Thermal derating",
+       EffectKind::kVehicle,
+       "xw",
+       "Motors or their controller give less after hard work and recover in a rest.",
+       "u -> u (1 - loss E), E' = ((u / full_speed)^2 - E) / time_constant, each track; full_speed "
+       "is 1 m/s for track speed commands",
+       "Speed and yaw rate fall with the work of the last minutes, not with the time of day.",
+       "Drive hard, rest for some minutes, repeat the same drive: heat goes, an empty battery "
+       "stays.",
+       "Feel or read the temperature of motors and controller after ten minutes of full power.",
+       {strength("loss", "1", 0.0, 0.9, 0.15, &V::thermal_derating),
+        shape(strength("time_constant", "s", 10.0, 3600.0, 240.0, &V::thermal_time,
+                       {60.0, 240.0, 600.0}))}},
+      {"track_asymmetry",
+       "Left-right asymmetry",
+       EffectKind::kVehicle,
+       "xw",
+       "One track runs a little faster than the other at the same command.",
+       "u_left -> u_left (1 + share), u_right -> u_right (1 - share)",
+       "Driving straight it turns to the side of the slower track, by an angle per metre; the yaw "
+       "rate residual is proportional to the speed and flips in reverse.",
+       "Drive the same line forwards and backwards: asymmetry flips the sign of the yaw rate, a "
+       "gyro bias does not; drive it both ways: a slope to the side flips in the body.",
+       "Drive 20 m along a line with equal commands, then back in reverse; measure both misses.",
+       {strength("share", "1", -0.3, 0.3, 0.03, &V::track_asymmetry)}},
+  };
+}
+
+}  // namespace tread

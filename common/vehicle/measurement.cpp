@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/vehicle/measurement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tread {
+namespace {
+
+/// Index of the sample with which the interval around `time` begins.
+size_t intervalAt(const std::vector<TimedPose>& motion, double time) {
+  const auto later =
+      std::upper_bound(motion.begin(), motion.end(), time,
+                       [](double moment, const TimedPose& pose) { return moment < pose.time; });
+  const auto index = static_cast<size_t>(std::distance(motion.begin(), later));
+  return std::min(std::max<size_t>(index, 1) - 1, motion.size() - 2);
+}
+
+TimedPose measured(const std::vector<TimedPose>& motion, const MeasurementModel& ins,
+                   const TimedPose& now) {
+  TimedPose said = now;
+  Pose2& pose = said.T_map_body;
+  if (ins.ins_latency != 0.0) pose = poseAt(motion, now.time - ins.ins_latency);
+  if (ins.lever_arm_x != 0.0 || ins.lever_arm_y != 0.0) {
+    const Eigen::Vector2d p = pose * Eigen::Vector2d(-ins.lever_arm_x, -ins.lever_arm_y);
+    pose.x = p.x();
+    pose.y = p.y();
+  }
+  pose.x *= 1.0 + ins.position_scale;
+  pose.y *= 1.0 + ins.position_scale;
+  if (ins.heading_latency != 0.0)
+    pose.yaw = poseAt(motion, now.time - ins.ins_latency - ins.heading_latency).yaw;
+  pose.yaw -= ins.heading_misalignment;
+  pose.yaw += ins.gyro_bias_heading * ins.gyro_bias * now.time;
+  const double gyro_latency = ins.ins_latency_gyro * ins.ins_latency;
+  if (gyro_latency != 0.0) said.omega = yawRateAt(motion, now.time - gyro_latency);
+  said.omega += ins.gyro_bias;
+  return said;
+}
+
+}  // namespace
+
+Pose2 poseAt(const std::vector<TimedPose>& motion, double time) {
+  if (motion.size() < 2) return motion.front().T_map_body;
+  const size_t i = intervalAt(motion, time);
+  const TimedPose& from = motion[i];
+  const TimedPose& to = motion[i + 1];
+  if (time == from.time || to.time <= from.time) return from.T_map_body;
+  if (time == to.time) return to.T_map_body;
+  const Twist2 v_body = twistTo(between(from.T_map_body, to.T_map_body), to.time - from.time);
+  return from.T_map_body * integrate(v_body, time - from.time);
+}
+
+double yawRateAt(const std::vector<TimedPose>& motion, double time) {
+  if (motion.size() < 2 || time <= motion.front().time) return motion.front().omega;
+  if (time >= motion.back().time) return motion.back().omega;
+  const size_t i = intervalAt(motion, time);
+  const double span = motion[i + 1].time - motion[i].time;
+  if (span <= 0.0) return motion[i].omega;
+  const double share = (time - motion[i].time) / span;
+  return motion[i].omega + share * (motion[i + 1].omega - motion[i].omega);
+}
+
+std::vector<TimedPose> measure(const std::vector<TimedPose>& motion,
+                               const MeasurementModel& measurement) {
+  std::vector<TimedPose> said;
+  said.reserve(motion.size());
+  for (const TimedPose& now : motion) said.push_back(measured(motion, measurement, now));
+  return said;
+}
+
+}  // namespace tread

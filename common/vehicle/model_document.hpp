@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/vehicle/kernel.hpp"
+
+namespace tread {
+
+/// Narrower bounds than the catalogue's for one parameter of a model.
+struct ParameterBounds {
+  std::string parameter;  ///< see findParameter()
+  double min = 0.0;
+  double max = 0.0;
+};
+
+/// How sure the parameters are that were estimated together; empty = not known.
+struct ParameterCovariance {
+  std::vector<std::string> parameters;      ///< see findParameter()
+  std::vector<std::vector<double>> matrix;  ///< in the parameters' units, symmetric
+};
+
+/// A log from which a model was made.
+struct SourceLog {
+  std::string name;
+  std::string sha256;  ///< 64 hexadecimal digits
+};
+
+/// Where a model comes from.
+struct Provenance {
+  std::string tool;             ///< name and version; empty = written by hand
+  std::optional<int64_t> seed;  ///< of its random numbers
+  int64_t runs = 0;             ///< how often a tool has worked on these logs
+  std::vector<SourceLog> logs;
+};
+
+/// The largest motion that a model was made from or that a drive asks for.
+struct Envelope {
+  double v = 0.0;        ///< [m/s] largest |v|
+  double omega = 0.0;    ///< [rad/s] largest |omega|
+  double v_omega = 0.0;  ///< [m/s2] largest |v omega|
+
+  void include(const Twist2& v_body);
+};
+
+/// What outside of an envelope is asked for; one line each, empty if all is within.
+std::vector<std::string> warningsOutside(const Envelope& known, const Envelope& asked);
+
+/// A model with all that is known of it: what a model file holds.
+struct ModelDocument {
+  VehicleModel vehicle;
+  MeasurementModel measurement;
+  std::vector<ParameterBounds> bounds;
+  ParameterCovariance covariance;
+  Provenance provenance;
+  std::optional<Envelope> envelope;
+};
+
+/// Largest motions of a model that drives these commands, for warningsOutside().
+Envelope envelopeOf(const VehicleModel& model, const std::vector<TrackCommand>& commands,
+                    double period, const EntryState& entry);
+
+/// The number of a document that a path names: lag, delay, forward_gain, yaw_gain, full_speed,
+/// gauge, or effect.parameter (icr_offset.offset); nullptr for anything else.
+double* findParameter(ModelDocument& document, const std::string& path);
+const double* findParameter(const ModelDocument& document, const std::string& path);
+
+}  // namespace tread
