@@ -58,7 +58,7 @@ struct FilterConfig {
 
 /// Parameters of the bank of remembered surfaces.
 struct BankConfig {
-  double hazard = 0.35;         ///< [1] probability that the surface changes before an execution
+  double hazard = 0.32;         ///< [1] probability that the surface changes before an execution
   double unknown_prior = 0.5;   ///< [1] that the next one is not in the bank
   int64_t settled_after = 10;   ///< executions without a change that make a block
   double new_margin = 3.0;      ///< [1] of log density, by which a block must be likelier as new
