@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 
 #include <Eigen/Geometry>
@@ -79,19 +80,28 @@ class LogMaker {
     addMark(config.utime, 1, "note", "recording " + session.name + " of a " + session.robot);
   }
 
-  void addIns(const std::vector<Fix>& fixes, double longest_step) {
-    int64_t seq = 0;
+  void addIns(const std::vector<Fix>& fixes, const std::vector<GyroReading>& gyro,
+              double longest_step) {
+    std::map<int64_t, ins_t> messages;
     int64_t last = 0;
     for (const Fix& fix : fixes) {
-      ins_t ins = blankIns();
-      ins.utime = utimeOf(fix.time);
+      const int64_t utime = utimeOf(fix.time);
       // Two fixes within a millisecond are one.
-      if (ins.utime <= last) continue;
-      ins.seq = seq++;
+      if (utime <= last) continue;
+      ins_t ins = blankIns();
       fill(ins, fix);
-      const bool gap = last > 0 && ins.utime - last > std::llround(longest_step * 1e6);
+      const bool gap = last > 0 && utime - last > std::llround(longest_step * 1e6);
       if (gap) ins.ins_status |= ins_t::STATUS_GAP;
-      last = ins.utime;
+      // The same reading must not be said twice.
+      if (!gyro.empty()) ins.rate[2] = kUnknown;
+      messages[last = utime] = ins;
+    }
+    for (const GyroReading& reading : gyro)
+      messages.emplace(utimeOf(reading.time), gyroOnly()).first->second.rate[2] = reading.yaw_rate;
+    int64_t seq = 0;
+    for (auto& [utime, ins] : messages) {
+      ins.utime = utime;
+      ins.seq = seq++;
       add(kIns, ins);
       ++counts_.ins;
     }
@@ -176,6 +186,16 @@ class LogMaker {
     return ins;
   }
 
+  /// A message between two fixes: only the gyro speaks.
+  static ins_t gyroOnly() {
+    ins_t ins = blankIns();
+    ins.ins_status |=
+        ins_t::STATUS_NO_POSITION | ins_t::STATUS_NO_HEADING | ins_t::STATUS_NO_ATTITUDE;
+    for (double& value : ins.position) value = kUnknown;
+    for (double& value : ins.orientation) value = kUnknown;
+    return ins;
+  }
+
   static void fill(ins_t& ins, const Fix& fix) {
     ins.position[0] = fix.T_map_body.x;
     ins.position[1] = fix.T_map_body.y;
@@ -244,7 +264,7 @@ std::vector<LogEvent> makeLog(const Recording& recording, const Session& session
   const double step = format == "aligned" ? kPeriod : 1.0 / session.pose_rate;
   LogMaker maker(counts);
   maker.addNotes(session, format, layout, begin);
-  maker.addIns(recording.fixes, 3.0 * step);
+  maker.addIns(recording.fixes, recording.gyro, 3.0 * step);
   maker.addMotor(recording.drive, executions);
   maker.addExecutions(executions);
   return maker.sorted();

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 
 #include <CLI/CLI.hpp>
 
@@ -21,13 +22,30 @@ struct Arguments {
   std::string session;
   std::string csv;
   std::string log;
+  bool keep_lag = false;
+  Gyro gyro = Gyro::kAtFixes;
   ExecutionLayout layout;
 };
 
 Recording read(const Arguments& arguments, const Session& session) {
-  if (arguments.format == "steps") return readSteps(arguments.csv, session);
+  if (arguments.format == "steps") return readSteps(arguments.csv, session, arguments.gyro);
   if (arguments.format == "aligned") return readAligned(arguments.csv, session);
-  return readContinuous(arguments.csv, session);
+  return readContinuous(arguments.csv, session, arguments.gyro);
+}
+
+/// Aligned files hold neither the gyro nor the times at which poses were logged.
+void checkFormat(const Arguments& arguments) {
+  if (arguments.format == "aligned" && (arguments.keep_lag || arguments.gyro == Gyro::kAll))
+    throw ImportError("--keep-lag and --gyro all: not in aligned files; take --format steps");
+}
+
+Session sessionOf(const Arguments& arguments) {
+  const std::string name = arguments.session.empty()
+                               ? std::filesystem::path(arguments.csv).stem().string()
+                               : arguments.session;
+  Session session = readSession(arguments.sessions, name);
+  if (arguments.keep_lag) session.pose_lag = 0.0;
+  return session;
 }
 
 /// A command is held for a period of the recording, so an execution is a whole number of them.
@@ -40,10 +58,8 @@ void checkLength(double length) {
 
 void run(const Arguments& arguments) {
   checkLength(arguments.layout.length);
-  const std::string name = arguments.session.empty()
-                               ? std::filesystem::path(arguments.csv).stem().string()
-                               : arguments.session;
-  const Session session = readSession(arguments.sessions, name);
+  checkFormat(arguments);
+  const Session session = sessionOf(arguments);
   const Recording recording = read(arguments, session);
   LogCounts counts;
   const auto events = makeLog(recording, session, arguments.format, arguments.layout, counts);
@@ -78,6 +94,12 @@ int parseAndRun(int argc, char** argv) {
   app.add_option("--executions", arguments.layout.executions, "per command")
       ->check(CLI::Range(1, 9))
       ->capture_default_str();
+  app.add_flag("--keep-lag", arguments.keep_lag,
+               "poses at the time at which they were logged, not when they were measured");
+  app.add_option("--gyro", arguments.gyro, "readings of the gyro: at fixes, or all")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Gyro>{{"fixes", Gyro::kAtFixes}, {"all", Gyro::kAll}}))
+      ->default_str("fixes");
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   run(arguments);
   return 0;

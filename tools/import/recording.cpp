@@ -100,7 +100,7 @@ double gyroAt(const CsvTable& table, size_t first, size_t last, size_t time_colu
 
 }  // namespace
 
-Recording readSteps(const std::string& path, const Session& session) {
+Recording readSteps(const std::string& path, const Session& session, Gyro kept) {
   const CsvTable table(path);
   const StepColumns columns(table);
   const size_t z = table.column("z_m");
@@ -118,6 +118,8 @@ Recording readSteps(const std::string& path, const Session& session) {
     bool new_track = true;
     for (size_t row = rows.first; row < rows.last; ++row) {
       recording.drive.push_back(driveSample(table, columns, row, rows.origin, session));
+      if (kept == Gyro::kAll)
+        recording.gyro.push_back({recording.drive.back().time, table.number(row, gyro)});
       if (table.integer(row, fresh) == 0) continue;
       const double time = table.number(row, columns.time) - session.pose_lag;
       Fix fix;
@@ -257,7 +259,7 @@ class RunFinder {
 
 }  // namespace
 
-Recording readContinuous(const std::string& path, const Session& session) {
+Recording readContinuous(const std::string& path, const Session& session, Gyro kept) {
   const CsvTable table(path);
   const ContinuousColumns columns(table);
   Recording recording;
@@ -270,6 +272,8 @@ Recording readContinuous(const std::string& path, const Session& session) {
     const DriveSample sample = continuousSample(table, columns, row, origin, session);
     finder.add(table.integer(row, columns.step), sample);
     recording.drive.push_back(sample);
+    if (kept == Gyro::kAll)
+      recording.gyro.push_back({sample.time, session.imu_sign * table.number(row, columns.gyro)});
     if (table.integer(row, columns.fresh) == 0) continue;
     recording.fixes.push_back(continuousFix(table, columns, row, origin, session));
     recording.fixes.back().new_track = recording.fixes.size() == 1;

@@ -47,8 +47,21 @@ struct CommandRun {
   std::string end_reason;  ///< why it ended
 };
 
+/// What the gyro said at a moment.
+struct GyroReading {
+  double time = 0.0;      ///< [s]; the gyro is not late
+  double yaw_rate = 0.0;  ///< [rad/s]
+};
+
+/// Which readings of the gyro are kept.
+enum class Gyro {
+  kAtFixes,  ///< the one nearest to each fix
+  kAll       ///< all of them, beside the fixes
+};
+
 struct Recording {
   std::vector<Fix> fixes;          ///< in order of time
+  std::vector<GyroReading> gyro;   ///< in order of time; only where all are kept
   std::vector<DriveSample> drive;  ///< in order of time
   std::vector<CommandRun> runs;    ///< in order of time
 };
@@ -59,11 +72,13 @@ inline constexpr double kSilence = 2.0;
 inline constexpr double kPeriod = 0.05;
 
 /// steps/*.csv: poses held and late; a fix where pose_new says so. Throws ImportError.
-Recording readSteps(const std::string& path, const Session& session);
+/** A session without pose lag leaves the poses at the time at which they were logged. */
+Recording readSteps(const std::string& path, const Session& session, Gyro gyro = Gyro::kAtFixes);
 /// aligned/*.csv: lag already removed, poses interpolated to 20 Hz; none inside ICP gaps above 0.3
 /// s.
 Recording readAligned(const std::string& path, const Session& session);
 /// continuous/*.csv: the whole drive in the map frame, with the operator's part and the battery.
-Recording readContinuous(const std::string& path, const Session& session);
+Recording readContinuous(const std::string& path, const Session& session,
+                         Gyro gyro = Gyro::kAtFixes);
 
 }  // namespace tread::importer

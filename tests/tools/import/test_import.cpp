@@ -74,6 +74,47 @@ TEST_CASE("steps: a fix is an INS message only where it is new, at the time it w
   REQUIRE((log.ins[20].ins_status & ins_t::STATUS_NO_ATTITUDE) != 0);
 }
 
+TEST_CASE("all readings of the gyro lie beside the fixes, which stay as they are") {
+  const Folder folder("import_gyro");
+  const std::string csv = folder.file("drive.csv", kStepsHeader + stepRows(3) + stepRows(4));
+  Session session = readSession(folder.file("sessions.csv", sessions(242)), "drive");
+  session.pose_lag = 0.23;
+  const Imported few = imported(readSteps(csv, session), session, "steps");
+  const Imported all = imported(readSteps(csv, session, Gyro::kAll), session, "steps");
+  REQUIRE(few.ins.size() == 122);
+  REQUIRE(all.ins.size() == 122 + 242);
+  constexpr int32_t kNoPose = ins_t::STATUS_NO_POSITION | ins_t::STATUS_NO_HEADING;
+  size_t fix = 0;
+  for (const ins_t& ins : all.ins) {
+    if ((ins.ins_status & kNoPose) != 0) {
+      REQUIRE((ins.ins_status & kNoPose) == kNoPose);
+      REQUIRE(std::isnan(ins.position[0]));
+      REQUIRE(std::isfinite(ins.rate[2]));
+      continue;
+    }
+    REQUIRE(ins.utime == few.ins[fix].utime);
+    REQUIRE(ins.ins_status == few.ins[fix].ins_status);
+    REQUIRE(ins.position[0] == few.ins[fix].position[0]);
+    REQUIRE(std::isnan(ins.rate[2]));
+    ++fix;
+  }
+  REQUIRE(fix == 122);
+}
+
+TEST_CASE("without pose lag fixes and gyro are one message at the time at which they were logged") {
+  const Folder folder("import_keep_lag");
+  const std::string csv = folder.file("drive.csv", kStepsHeader + stepRows(3));
+  Session session = readSession(folder.file("sessions.csv", sessions(121)), "drive");
+  session.pose_lag = 0.0;
+  const Imported log = imported(readSteps(csv, session, Gyro::kAll), session, "steps");
+  REQUIRE(log.ins.size() == 121);
+  for (size_t i = 0; i < 121; ++i) {
+    REQUIRE(log.ins[i].utime == log.motor[i].utime);
+    REQUIRE(log.ins[i].rate[2] == Approx(0.05 * static_cast<double>(i)));
+    REQUIRE(std::isfinite(log.ins[i].position[0]) == (i % 2 == 0));
+  }
+}
+
 TEST_CASE("steps: steps are never chained, a silence and a jump lie between them") {
   const Imported log = importedSteps();
   REQUIRE((log.ins[0].ins_status & ins_t::STATUS_JUMP) != 0);

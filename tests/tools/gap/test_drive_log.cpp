@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/tools/gap/small_log.hpp"
+#include "tests/tools/import/drive_samples.hpp"
+#include "tools/gap/drive_log.hpp"
+#include "tools/gap/file_hash.hpp"
+#include "tools/import/drive_log.hpp"
+
+using namespace tread;
+using namespace tread::gap;
+using namespace tread::samples;
+
+namespace {
+
+size_t posesOf(const Stretch& stretch) {
+  size_t count = 0;
+  for (const InsSample& sample : stretch.ins) count += std::isfinite(sample.T_map_body.x) ? 1 : 0;
+  return count;
+}
+
+Drive importedSteps(int steps, bool keep_lag, importer::Gyro gyro) {
+  const Folder folder("gap_steps");
+  std::string rows = kStepsHeader;
+  for (int step = 1; step <= steps; ++step) rows += stepRows(step);
+  const std::string csv = folder.file("drive.csv", rows);
+  importer::Session session =
+      importer::readSession(folder.file("sessions.csv", sessions(121 * steps)), "drive");
+  if (keep_lag) session.pose_lag = 0.0;
+  importer::LogCounts counts;
+  return toDrive("drive.lcmlog", importer::makeLog(importer::readSteps(csv, session, gyro), session,
+                                                   "steps", {}, counts));
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a drive without a gap is one stretch at rest, its commands merged, its poses unwrapped") {
+  SmallLog log;
+  for (int i = 0; i < 20; ++i) {
+    log.motor(0.05 * i, {}, motor_t::STATE_ARMED);
+    log.ins(0.05 * i, {}, 0.0);
+  }
+  drive(log, 1.0, 21.0, {1.0, 0.0, 0.8}, {});
+  const Drive result = toDrive("a.lcmlog", log.sorted());
+  REQUIRE(result.stretches.size() == 1);
+  const Stretch& stretch = result.stretches[0];
+  REQUIRE(result.kind == CommandKind::kTrackSpeed);
+  REQUIRE(stretch.begin() == 0.0);
+  REQUIRE(stretch.end == Approx(21.0));
+  REQUIRE(stretch.commands.size() == 2);
+  REQUIRE(stretch.commands[1].time == Approx(1.0));
+  REQUIRE(stretch.commands[1].command.right == Approx(1.4));
+  REQUIRE_FALSE(stretch.entry_speeds);
+  REQUIRE(stretch.command_before == TrackCommand{});
+  REQUIRE(stretch.ins.back().T_map_body.yaw == Approx(0.8 * 19.9));
+  REQUIRE(std::isnan(stretch.ins.back().roll));
+  REQUIRE(result.driven() == Approx(21.0));
+  REQUIRE(result.encoders.empty());
+  REQUIRE(result.voltage.empty());
+}
+
+TEST_CASE("missing commands end a stretch, and where the robot still moves after them poses wait") {
+  SmallLog log;
+  const Pose2 T_map_body = drive(log, 0.0, 10.0, {1.0, 0.0, 0.0}, {});
+  drive(log, 10.5, 20.5, {1.0, 0.0, 0.0}, T_map_body);
+  const Drive result = toDrive("a", log.sorted());
+  REQUIRE(result.stretches.size() == 2);
+  REQUIRE(result.stretches[0].end == Approx(10.0));
+  REQUIRE(result.stretches[1].begin() == Approx(10.5));
+  // Nobody knows how fast it is then; after three seconds that no longer matters.
+  REQUIRE(result.stretches[1].ins.front().time == Approx(13.5));
+}
+
+TEST_CASE(
+    "what an operator or a fault does is unknown, what the robot's own bridge holds is zero") {
+  SmallLog log;
+  for (int i = 0; i < 400; ++i) {
+    const double time = 0.05 * i;
+    log.ins(time, {0.01 * i, 0.0, 0.0}, 0.0);
+    if (time < 5.0)
+      log.motor(time, {0.3, 0.3}, motor_t::STATE_DISARMED, "ARM needed");
+    else if (time < 10.0)
+      log.motor(time, {0.3, 0.3}, motor_t::STATE_DISARMED, "idle or driven by the operator");
+    else if (time < 15.0)
+      log.motor(time, {0.3, 0.3});
+    else
+      log.motor(time, {}, motor_t::STATE_ESTOP);
+  }
+  const Drive result = toDrive("a", log.sorted());
+  REQUIRE(result.stretches.size() == 2);
+  REQUIRE(result.stretches[0].commands.size() == 1);
+  REQUIRE(result.stretches[0].commands[0].command == TrackCommand{});
+  REQUIRE(result.stretches[0].end == Approx(5.0));
+  REQUIRE(result.stretches[1].begin() == Approx(10.0));
+  REQUIRE(result.stretches[1].end == Approx(15.0));
+}
+
+TEST_CASE("a jump or a silence of the INS begins a stretch whose commands begin before its poses") {
+  SmallLog log;
+  for (int i = 0; i < 600; ++i) {
+    const double time = 0.05 * i;
+    log.motor(time, {1.0, 1.0});
+    const bool silent = time > 18.01 && time < 19.99;
+    const Pose2 pose{time + (i >= 200 ? 50.0 : 0.0), 0.0, 0.0};
+    if (!silent) log.ins(time, pose, 0.0, i == 200 ? ins_t::STATUS_JUMP : 0);
+  }
+  const Drive result = toDrive("a", log.sorted());
+  REQUIRE(result.stretches.size() == 3);
+  REQUIRE(result.stretches[0].ins.back().time == Approx(9.95));
+  REQUIRE(result.stretches[1].begin() == Approx(7.0));
+  REQUIRE(result.stretches[1].ins.front().time == Approx(10.0));
+  REQUIRE(result.stretches[1].command_before.left == 1.0);
+  REQUIRE(result.stretches[2].begin() == Approx(17.0));
+  REQUIRE(result.stretches[2].ins.front().time == Approx(20.0));
+  for (const Execution& execution : result.executions) {
+    const Stretch& stretch = result.stretches[execution.stretch];
+    REQUIRE(execution.begin >= stretch.ins.front().time - 0.05);
+    REQUIRE(execution.end <= stretch.end + 0.05);
+  }
+}
+
+TEST_CASE(
+    "a held pose is no pose, but its gyro counts; a robot told to stand may repeat its pose") {
+  SmallLog log;
+  for (int i = 0; i < 200; ++i) {
+    const double time = 0.05 * i;
+    const bool drives = time >= 4.99;
+    log.motor(time, drives ? TrackCommand{1.0, 1.0} : TrackCommand{});
+    log.ins(time, {drives ? 0.05 * (i / 4) : 0.0, 0.0, 0.0}, 0.1);
+  }
+  const Drive result = toDrive("a", log.sorted());
+  REQUIRE(result.stretches.size() == 1);
+  const auto& ins = result.stretches[0].ins;
+  REQUIRE(ins.size() == 200);
+  size_t standing = 0;
+  size_t driving = 0;
+  for (const InsSample& sample : ins) {
+    REQUIRE(sample.omega == Approx(0.1));
+    if (std::isfinite(sample.T_map_body.x)) ++(sample.time < 4.97 ? standing : driving);
+  }
+  REQUIRE(standing >= 80);
+  REQUIRE(driving == 25);
+}
+
+TEST_CASE("whole turns between two late poses are those of the gyro") {
+  SmallLog log;
+  double yaw = 0.0;
+  for (int i = 0; i < 400; ++i) {
+    const double time = 0.05 * i;
+    const double omega = 4.0;
+    log.motor(time, {-2.0, 2.0});
+    if (i % 24 == 0)
+      log.ins(time, {0.1 * i, 0.0, yaw}, omega);
+    else
+      log.ins(time, {kNaN, kNaN, kNaN}, omega,
+              ins_t::STATUS_NO_POSITION | ins_t::STATUS_NO_HEADING);
+    yaw += 0.05 * omega;
+  }
+  const Drive result = toDrive("a", log.sorted());
+  REQUIRE(result.stretches.size() == 1);
+  const auto& last = result.stretches[0].ins[384];
+  REQUIRE(last.T_map_body.yaw == Approx(4.0 * 0.05 * 384));
+}
+
+TEST_CASE(
+    "executions of two seconds are kept, long ones are cut, others leave pieces of the drive") {
+  SmallLog log;
+  drive(log, 0.0, 30.0, {1.0, 0.0, 0.1}, {});
+  SECTION("two seconds") {
+    for (int n = 0; n < 12; ++n) log.execution(n + 1, 2.2 * n + 0.5, 2.2 * n + 2.5);
+    log.execution(99, 28.0, 29.5, execution_record_t::OUTCOME_ABORTED);
+    const Drive result = toDrive("a", log.sorted());
+    REQUIRE(result.executions.size() == 12);
+    REQUIRE(result.executions[1].begin == Approx(2.7));
+    REQUIRE(result.executions[1].end == Approx(4.7));
+  }
+  SECTION("five seconds") {
+    for (int n = 0; n < 5; ++n) log.execution(n + 1, 5.0 * n + 0.5, 5.0 * n + 5.5);
+    const Drive result = toDrive("a", log.sorted());
+    REQUIRE(result.executions.size() == 10);
+    REQUIRE(result.executions[1].begin == Approx(2.5));
+  }
+  SECTION("one second, or none") {
+    for (int n = 0; n < 20; ++n) log.execution(n + 1, 1.0 * n, 1.0 * n + 1.0);
+    const Drive result = toDrive("a", log.sorted());
+    REQUIRE(result.executions.size() == 15);
+    REQUIRE(result.executions[14].end == Approx(30.0));
+  }
+}
+
+TEST_CASE(
+    "an imported recording: a stretch a step, with the gyro of all rows and the poses as logged") {
+  const Drive fixes = importedSteps(2, false, importer::Gyro::kAtFixes);
+  REQUIRE(fixes.stretches.size() == 2);
+  // The first two of 61 fixes were measured before the first command.
+  REQUIRE(posesOf(fixes.stretches[0]) == 59);
+  const Drive all = importedSteps(2, true, importer::Gyro::kAll);
+  REQUIRE(all.stretches.size() == 2);
+  const Stretch& step = all.stretches[1];
+  REQUIRE(posesOf(step) == 61);
+  REQUIRE(step.ins.size() == 121);
+  REQUIRE(step.end - step.begin() == Approx(6.05));
+  for (size_t i = 0; i < step.ins.size(); ++i) {
+    REQUIRE(step.ins[i].time - step.begin() == Approx(0.05 * static_cast<double>(i)).margin(1e-9));
+    REQUIRE(step.ins[i].omega == Approx(0.05 * static_cast<double>(i)).margin(1e-6));
+    if (i % 2 == 0) REQUIRE(step.ins[i].T_map_body.x == Approx(0.05 * static_cast<double>(i)));
+  }
+  REQUIRE(all.executions.size() == 4);
+  REQUIRE(all.executions[0].begin - all.stretches[0].begin() == Approx(1.2));
+}
+
+TEST_CASE(
+    "an imported step begins with its encoders, after the step before it if it went on at once") {
+  const Drive all = importedSteps(2, true, importer::Gyro::kAll);
+  // 1.9 and 3.9 rad/s at 0.5 m, commanded 2 and 4 rad/s.
+  REQUIRE(all.stretches[0].entry_speeds->left == Approx(0.95));
+  REQUIRE(all.stretches[0].command_before.left == Approx(0.95));
+  REQUIRE(all.stretches[1].entry_speeds->right == Approx(1.95));
+  REQUIRE(all.stretches[1].command_before.right == Approx(2.0));
+}
+
+TEST_CASE("all readings of the gyro: fixes stay what they were, and no reading is said twice") {
+  const Drive lag_removed = importedSteps(1, false, importer::Gyro::kAll);
+  const auto& ins = lag_removed.stretches.at(0).ins;
+  size_t rates = 0;
+  for (const InsSample& sample : ins) rates += std::isfinite(sample.omega) ? 1 : 0;
+  REQUIRE(rates == 121);
+  REQUIRE(posesOf(lag_removed.stretches[0]) == 59);
+}
+
+TEST_CASE("a log that cannot be read is one clear line, a truncated one a fatal note") {
+  const Folder folder("gap_bad");
+  REQUIRE_THROWS_WITH(readDrive(folder.file("none.lcmlog")), Catch::Contains("cannot be read"));
+  REQUIRE_THROWS_WITH(readDrive(folder.file("text.lcmlog", "no log at all")),
+                      Catch::Contains("is this an LCM log"));
+  SmallLog log;
+  drive(log, 0.0, 10.0, {1.0, 0.0, 0.1}, {});
+  const std::string path = folder.file("cut.lcmlog");
+  {
+    LogWriter writer(path);
+    for (const LogEvent& event : log.sorted())
+      writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
+  }
+  REQUIRE(readDrive(path).notes.empty());
+  REQUIRE(readDrive(path).name == "cut.lcmlog");
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) - 30);
+  const Drive cut = readDrive(path);
+  REQUIRE(cut.notes.at(0).fatal);
+  REQUIRE(cut.notes[0].what.find("ends in the middle of an event") != std::string::npos);
+  REQUIRE(cut.stretches.size() == 1);
+}
+
+TEST_CASE("the hash of a log is its SHA-256") {
+  const Folder folder("gap_hash");
+  REQUIRE(sha256OfFile(folder.file("abc", "abc")) ==
+          "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST_CASE("real recordings become drives with a stretch for every step") {
+  const char* recordings = std::getenv("TREAD_RECORDINGS");
+  const std::string folder = std::string(recordings ? recordings : "") + "/drive/";
+  if (!std::filesystem::exists(folder + "sessions.csv")) {
+    WARN("skipped: no recordings in " + folder);
+    return;
+  }
+  importer::Session session =
+      importer::readSession(folder + "sessions.csv", "warthog_unlabelled_2023");
+  session.pose_lag = 0.0;
+  importer::LogCounts counts;
+  const Drive result = toDrive(
+      "a", importer::makeLog(importer::readSteps(folder + "steps/warthog_unlabelled_2023.csv",
+                                                 session, importer::Gyro::kAll),
+                             session, "steps", {}, counts));
+  REQUIRE(result.stretches.size() == 119);
+  REQUIRE(result.executions.size() == 238);
+  REQUIRE(result.driven() == Approx(714.0).margin(10.0));
+  size_t readings = 0;
+  size_t poses = 0;
+  for (const Stretch& stretch : result.stretches) {
+    REQUIRE(stretch.entry_speeds);
+    readings += stretch.ins.size();
+    poses += posesOf(stretch);
+  }
+  REQUIRE(readings == 14263);
+  REQUIRE(static_cast<double>(poses) / static_cast<double>(readings) == Approx(0.475).margin(0.02));
+}

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/geometry/se2.hpp"
+#include "common/pattern/pattern.hpp"
+
+namespace tread::gap {
+
+inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+/// A command on the motors from a moment until the next one.
+struct CommandSample {
+  double time = 0.0;  ///< [s] since the log's first message
+  TrackCommand command{};
+};
+
+/// What the INS said at a moment.
+struct InsSample {
+  double time = 0.0;             ///< [s] of the measurement, since the log's first message
+  Pose2 T_map_body{};  ///< yaw unwrapped within a stretch; all NaN where only the gyro spoke
+  double omega = kNotMeasured;   ///< [rad/s] of the gyro
+  double roll = kNotMeasured;    ///< [rad] left side up positive
+  double pitch = kNotMeasured;   ///< [rad] nose down positive
+};
+
+/// Driving without a gap: commands known throughout, one track of the INS.
+/** Where the INS jumped or was silent in the middle of driving, the commands begin up to 3 s before
+ * the poses do (as in the stretch before): whatever state is assumed there is forgotten by then. */
+struct Stretch {
+  std::vector<CommandSample> commands;  ///< in order of time, not empty
+  double end = 0.0;                     ///< [s] until when the last command acts
+  std::vector<InsSample> ins;           ///< in order of time, within the commands' time
+  /// Track speeds at the beginning where encoders say them; else a vehicle at rest is assumed.
+  std::optional<TrackCommand> entry_speeds;
+  /// What was commanded before, until its delay is over; zero for a vehicle that stood.
+  TrackCommand command_before{};
+
+  double begin() const { return commands.front().time; }
+};
+
+/// One execution of a pattern (or a piece of driving of the same length).
+struct Execution {
+  size_t stretch = 0;  ///< index of the stretch in which it lies
+  double begin = 0.0;  ///< [s]
+  double end = 0.0;    ///< [s]
+};
+
+/// Voltage of the battery at a moment.
+struct VoltageSample {
+  double time = 0.0;     ///< [s]
+  double voltage = 0.0;  ///< [V]
+};
+
+/// Track speeds as encoders say; only for the error floor and for entry speeds, never for the fit.
+struct EncoderSample {
+  double time = 0.0;  ///< [s]
+  TrackCommand speed{};
+};
+
+/// A line about the state of a log.
+struct HygieneNote {
+  std::string log;
+  std::string what;    ///< one clear line
+  bool fatal = false;  ///< nothing can be concluded from this log
+};
+
+/// What a log says about one drive of one vehicle, ready for the gap workflow.
+struct Drive {
+  std::string name;    ///< file name of the log
+  std::string sha256;  ///< of the file
+  CommandKind kind = CommandKind::kPower;
+  std::vector<Stretch> stretches;      ///< in order of time
+  std::vector<Execution> executions;   ///< in order of time; 2 s pieces where the log names none
+  std::vector<VoltageSample> voltage;  ///< empty = not measured
+  std::vector<EncoderSample> encoders; ///< empty = there are none
+  std::vector<HygieneNote> notes;      ///< what the reader noticed; checkHygiene() repeats them
+
+  /// Seconds of driving.
+  double driven() const {
+    double sum = 0.0;
+    for (const Stretch& stretch : stretches) sum += stretch.end - stretch.begin();
+    return sum;
+  }
+};
+
+}  // namespace tread::gap

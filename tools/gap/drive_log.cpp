@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/gap/drive_log.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+
+#include "tools/gap/file_hash.hpp"
+#include "tools/gap/known_commands.hpp"
+#include "tools/gap/log_messages.hpp"
+#include "tools/gap/stretches.hpp"
+
+namespace tread::gap {
+namespace {
+
+/// The kind of most commands while it drove.
+CommandKind kindOf(const LogMessages& messages) {
+  std::map<int16_t, size_t> counts;
+  for (const motor_t& motor : messages.motor)
+    if (motor.bridge_state == motor_t::STATE_DRIVING) ++counts[motor.motor_command_kind];
+  const auto power = static_cast<int16_t>(CommandKind::kPower);
+  const auto speed = static_cast<int16_t>(CommandKind::kTrackSpeed);
+  return counts[speed] > counts[power] ? CommandKind::kTrackSpeed : CommandKind::kPower;
+}
+
+std::vector<HeardSpan> heardSpans(const LogMessages& messages) {
+  std::vector<HeardSpan> spans;
+  for (CommandSpan& span : knownCommands(messages)) {
+    SpanReadings readings = insReadings(messages, span);
+    spans.push_back({std::move(span), std::move(readings)});
+  }
+  return spans;
+}
+
+std::vector<Execution> recordsOf(const LogMessages& messages) {
+  std::vector<Execution> records;
+  for (const execution_record_t& record : messages.executions)
+    records.push_back({0, messages.seconds(record.started), messages.seconds(record.ended)});
+  return records;
+}
+
+}  // namespace
+
+Drive toDrive(const std::string& name, const std::vector<LogEvent>& events) {
+  const LogMessages messages = sortMessages(events);
+  const std::vector<HeardSpan> spans = heardSpans(messages);
+  Drive drive;
+  drive.name = name;
+  drive.kind = kindOf(messages);
+  drive.voltage = voltageSamples(messages);
+  drive.encoders = encoderSamples(messages);
+  drive.stretches = stretchesOf(spans, drive.encoders);
+  drive.executions = executionsOf(drive.stretches, recordsOf(messages));
+  return drive;
+}
+
+Drive readDrive(const std::string& path) {
+  LogReader reader(path);
+  std::vector<LogEvent> events;
+  for (LogEvent event; reader.next(event);) events.push_back(event);
+  if (events.empty())
+    throw std::runtime_error(reader.problem().empty()
+                                 ? "log " + path + ": no event in it; is this an LCM log?"
+                                 : reader.problem());
+  Drive drive = toDrive(std::filesystem::path(path).filename().string(), events);
+  drive.sha256 = sha256OfFile(path);
+  if (!reader.problem().empty())
+    drive.notes.insert(
+        drive.notes.begin(),
+        HygieneNote{drive.name, reader.problem() + "; copy the log again from the robot", true});
+  return drive;
+}
+
+}  // namespace tread::gap

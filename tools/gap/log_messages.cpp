@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/gap/log_messages.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace tread::gap {
+namespace {
+
+class Sorter {
+ public:
+  void take(const LogEvent& event) {
+    ++messages_.events;
+    if (event.channel == kMotor.name) {
+      takeTimed(event, kMotor, messages_.motor, messages_.motor_stamps);
+    } else if (event.channel == kIns.name) {
+      takeTimed(event, kIns, messages_.ins, messages_.ins_stamps);
+    } else if (event.channel == kExecution.name) {
+      takeExecutions(event);
+    } else if (event.channel == kConfig.name) {
+      takeBoot(event);
+    }
+  }
+
+  LogMessages sorted() {
+    sortByTime(messages_.motor);
+    sortByTime(messages_.ins);
+    for (auto& [key, record] : executions_) messages_.executions.push_back(std::move(record));
+    std::stable_sort(messages_.executions.begin(), messages_.executions.end(),
+                     [](const auto& a, const auto& b) { return a.started < b.started; });
+    const bool any = !messages_.motor.empty() || !messages_.ins.empty();
+    messages_.origin = any ? INT64_MAX : 0;
+    if (!messages_.motor.empty()) messages_.origin = messages_.motor.front().utime;
+    if (!messages_.ins.empty())
+      messages_.origin = std::min(messages_.origin, messages_.ins.front().utime);
+    return std::move(messages_);
+  }
+
+ private:
+  template <class Message>
+  void takeTimed(const LogEvent& event, const Channel<Message>& channel,
+                 std::vector<Message>& messages, std::vector<Stamp>& stamps) {
+    Message message;
+    if (!counted(decode(event, channel, message))) return;
+    stamps.push_back({event.utime, message.utime, message.seq});
+    messages.push_back(std::move(message));
+  }
+
+  void takeExecutions(const LogEvent& event) {
+    execution_t message;
+    if (!counted(decode(event, kExecution, message))) return;
+    for (const execution_record_t& record : message.records)
+      if (record.outcome == execution_record_t::OUTCOME_COMPLETED && record.ended > record.started)
+        executions_.emplace(std::pair{record.record_run_id, record.record_execution_id}, record);
+  }
+
+  void takeBoot(const LogEvent& event) {
+    config_t config;
+    if (!counted(decode(event, kConfig, config))) return;
+    std::vector<int64_t>& boots = messages_.boots[config.config_process];
+    if (boots.empty() || boots.back() != config.config_boot_id)
+      boots.push_back(config.config_boot_id);
+  }
+
+  bool counted(bool good) {
+    if (!good) ++messages_.foreign;
+    return good;
+  }
+
+  template <class Message>
+  static void sortByTime(std::vector<Message>& messages) {
+    std::stable_sort(messages.begin(), messages.end(),
+                     [](const Message& a, const Message& b) { return a.utime < b.utime; });
+  }
+
+  LogMessages messages_;
+  std::map<std::pair<int64_t, int64_t>, execution_record_t> executions_;
+};
+
+}  // namespace
+
+LogMessages sortMessages(const std::vector<LogEvent>& events) {
+  Sorter sorter;
+  for (const LogEvent& event : events) sorter.take(event);
+  return sorter.sorted();
+}
+
+}  // namespace tread::gap

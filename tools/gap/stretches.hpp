@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <vector>
+
+#include "tools/gap/ins_readings.hpp"
+
+namespace tread::gap {
+
+/// A span with what the INS said in it.
+struct HeardSpan {
+  CommandSpan commands;
+  SpanReadings ins;
+};
+
+/// The stretches of a log: spans, cut where the INS begins a new track.
+std::vector<Stretch> stretchesOf(const std::vector<HeardSpan>& spans,
+                                 const std::vector<EncoderSample>& encoders);
+
+/// The executions to be predicted; `records` in seconds, in order of time.
+std::vector<Execution> executionsOf(const std::vector<Stretch>& stretches,
+                                    const std::vector<Execution>& records);
+
+}  // namespace tread::gap
