@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <cctype>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "common/vehicle/model_file.hpp"
+#include "tests/tools/gap/sample_findings.hpp"
+#include "tools/gap/find_output.hpp"
+#include "tools/gap/report/headline.hpp"
+#include "tools/gap/report/sections.hpp"
+#include "tools/gap/report/words.hpp"
+
+namespace tread::gap {
+namespace {
+
+const Verdict kVerdicts[] = {
+    Verdict::kNoDiscrepancy,  Verdict::kFound,       Verdict::kAmbiguous, Verdict::kPartial,
+    Verdict::kNotInCatalogue, Verdict::kMeasurement, Verdict::kCannotTell};
+
+std::string html(Verdict verdict) {
+  return htmlOf(reportPage(samples::finding(verdict), samples::inputs()));
+}
+
+std::string markdown(Verdict verdict) {
+  return markdownOf(reportPage(samples::finding(verdict), samples::inputs()));
+}
+
+bool has(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+/// The first tag that is not closed in its turn; empty = well-formed.
+std::string unbalanced(const std::string& text) {
+  const std::set<std::string> kEmpty = {"meta", "!DOCTYPE"};
+  std::vector<std::string> open;
+  for (size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1)) {
+    const size_t end = text.find('>', at);
+    if (end == std::string::npos || text.find('<', at + 1) < end) return text.substr(at, 40);
+    std::string tag = text.substr(at + 1, end - at - 1);
+    const bool closes = tag[0] == '/';
+    const bool empty = tag.back() == '/';
+    tag = tag.substr(closes ? 1 : 0, tag.find_first_of(" /\n", closes ? 1 : 0) - (closes ? 1 : 0));
+    if (empty || kEmpty.count(tag) > 0) continue;
+    if (!closes) {
+      open.push_back(tag);
+    } else if (open.empty() || open.back() != tag) {
+      return text.substr(at, 40);
+    } else {
+      open.pop_back();
+    }
+  }
+  return open.empty() ? "" : open.back();
+}
+
+}  // namespace
+
+TEST_CASE("a report is well-formed HTML without scripts or anything from elsewhere") {
+  for (const Verdict verdict : kVerdicts) {
+    const std::string text = html(verdict);
+    INFO(verdictName(verdict));
+    CHECK(unbalanced(text) == "");
+    CHECK_FALSE(has(text, "<script"));
+    CHECK_FALSE(has(text, "src="));
+    CHECK_FALSE(has(text, "href="));
+    CHECK_FALSE(has(text, "nan"));
+    CHECK(has(text, "width=device-width"));
+    CHECK(has(text, "b&lt;c&gt;.lcmlog"));
+  }
+}
+
+TEST_CASE("the same finding gives the same bytes") {
+  for (const Verdict verdict : kVerdicts) {
+    CHECK(html(verdict) == html(verdict));
+    CHECK(markdown(verdict) == markdown(verdict));
+  }
+}
+
+TEST_CASE("the headline says the verdict in words, and the first screen the gain") {
+  CHECK(headlineOf(samples::finding(Verdict::kFound)) ==
+        "Found: Limit of turning power and Left-right asymmetry");
+  CHECK(headlineOf(samples::finding(Verdict::kAmbiguous)) ==
+        "Centre of rotation ahead of or behind the middle or Lever arm along the vehicle: this "
+        "drive cannot tell them apart");
+  CHECK(headlineOf(samples::finding(Verdict::kMeasurement)) ==
+        "The INS, not the vehicle: INS mounted askew");
+  const std::string text = markdown(Verdict::kFound);
+  CHECK(has(text,
+            "2 s end-pose error on driving it has not seen: 0.642 -> 0.451 m, heading 20.5 -> 10.7 "
+            "deg (median of 60 executions"));
+  CHECK(text.find("2 s end-pose error") < text.find("## What was found"));
+  CHECK(has(text, "reaches 0.290 m and 5.73 deg"));
+}
+
+TEST_CASE("a found effect is said with its natural number, interval and direction") {
+  CHECK(sentenceOf(samples::turnLimit()) ==
+        "The drive cannot turn the vehicle faster than a certain yaw rate on this ground: limit "
+        "1.25 rad/s (1.22 to 1.28 rad/s).");
+  CHECK(sentenceOf(samples::asymmetry()) ==
+        "One track runs a little faster than the other at the same command: share -2.98 % (-3.40 "
+        "to -2.60 %); the right track is the faster one.");
+}
+
+TEST_CASE("a report shows where, how, the ladder, the parameters and what else it could be") {
+  const std::string text = markdown(Verdict::kFound);
+  for (const char* words :
+       {"Where simulation and measurement disagree", "Executions, as measured and as predicted",
+        "Step by step", "Parameters of the new model", "What else it could be",
+        "What this drive could not show", "Where the new model holds", "State of the logs",
+        "All candidates", "Versions and files", "lag and delay: correlation 0.950",
+        "tread-gap plan track_asymmetry yaw_pull", "52 % of the poses", "not at all",
+        "30 independent blocks", "up to 1.10 m/s, 2.40 rad/s", "Real but too small to matter",
+        "| Limit of turning power | limit | off | 1.25 rad/s |"}) {
+    INFO(words);
+    CHECK(has(text, words));
+  }
+  const std::string page = html(Verdict::kFound);
+  CHECK(has(page, "yaw rate over yaw rate"));
+  CHECK(has(page, "worst, 100 s of a.lcmlog"));
+  CHECK(has(page, "full colour = 0.600 rad/s"));
+}
+
+TEST_CASE("effects that cannot be told apart come with the measurement that tells") {
+  const std::string text = markdown(Verdict::kAmbiguous);
+  CHECK(has(text, "To tell: Measure the lever arm with a tape."));
+  CHECK(has(text, "tread-gap plan icr_offset lever_arm_x"));
+}
+
+TEST_CASE("what remains without a name is told by channel and variable") {
+  CHECK(has(markdown(Verdict::kPartial),
+            "Unexplained: the yaw rate residual depends on speed x yaw rate."));
+  CHECK(has(markdown(Verdict::kNotInCatalogue), "no effect of the catalogue explains it"));
+}
+
+TEST_CASE("a drive that cannot tell says why and shows no numbers that were not measured") {
+  const std::string text = markdown(Verdict::kCannotTell);
+  CHECK(has(text, "6 independent blocks of 20 s; 10 are needed"));
+  CHECK_FALSE(has(text, "end-pose error"));
+}
+
+TEST_CASE("the new model is read back with its provenance and envelope") {
+  const Finding finding = samples::finding(Verdict::kFound);
+  const ModelDocument model = newModel(finding, samples::inputs());
+  const ModelDocument read = parseModelDocument(formatModelDocument(model), "model.yaml");
+  CHECK(read.vehicle.effects.turn_power_limit == 0.8);
+  CHECK(read.provenance.tool == toolVersion());
+  CHECK(read.provenance.seed == 7);
+  CHECK(read.provenance.runs == 1);
+  REQUIRE(read.provenance.logs.size() == 1);
+  CHECK(read.provenance.logs[0].name == "a.lcmlog");
+  CHECK(read.envelope->omega == 2.4);
+}
+
+TEST_CASE("working on the same log again counts the runs") {
+  Finding finding = samples::finding(Verdict::kFound);
+  finding.before = newModel(finding, samples::inputs());
+  CHECK(newModel(finding, samples::inputs()).provenance.runs == 2);
+}
+
+TEST_CASE("numbers are said with three digits that count and in the field's units") {
+  CHECK(threeDigits(0.012345) == "0.0123");
+  CHECK(threeDigits(1234.4) == "1234");
+  CHECK(threeDigits(2.0) == "2");
+  CHECK(threeDigits(100.0 * 0.07) == "7");
+  CHECK(threeDigits(-1e-15) == "0");
+  CHECK(threeDigits(kNotMeasured) == "-");
+  CHECK(said(0.05, "rad") == "2.86 deg");
+  CHECK(said(0.031, "1") == "3.10 %");
+  CHECK(said(std::numeric_limits<double>::infinity(), "rad/s") == "no limit");
+}
+
+}  // namespace tread::gap

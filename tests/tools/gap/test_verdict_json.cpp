@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include "tests/tools/gap/sample_findings.hpp"
+#include "tools/gap/verdict_json.hpp"
+
+namespace tread::gap {
+
+using Json = nlohmann::ordered_json;
+
+TEST_CASE("verdict.json names the verdict, and the verdict is the exit status") {
+  const std::pair<Verdict, int> kExpected[] = {
+      {Verdict::kNoDiscrepancy, 0}, {Verdict::kFound, 10},          {Verdict::kAmbiguous, 11},
+      {Verdict::kPartial, 12},      {Verdict::kNotInCatalogue, 13}, {Verdict::kMeasurement, 14},
+      {Verdict::kCannotTell, 15}};
+  const char* const kNames[] = {"NO_DISCREPANCY",   "FOUND",       "AMBIGUOUS",  "PARTIAL",
+                                "NOT_IN_CATALOGUE", "MEASUREMENT", "CANNOT_TELL"};
+  for (size_t i = 0; i < 7; ++i) {
+    const Json json = verdictJson(samples::finding(kExpected[i].first), samples::inputs());
+    CHECK(json["verdict"] == kNames[i]);
+    CHECK(static_cast<int>(kExpected[i].first) == kExpected[i].second);
+    for (const char* key :
+         {"effects", "calibrated", "gap", "unexplained", "not_excited", "seed", "inputs"})
+      CHECK(json.contains(key));
+  }
+}
+
+TEST_CASE("an effect in verdict.json has kind, parameters, group and runner-ups") {
+  const Json json = verdictJson(samples::finding(Verdict::kFound), samples::inputs());
+  const Json& effect = json["effects"][0];
+  CHECK(effect["name"] == "turn_power_limit");
+  CHECK(effect["kind"] == "vehicle");
+  CHECK(effect["group"].empty());
+  CHECK(effect["runner_up"] == Json::array({"yaw_rate_skid"}));
+  CHECK(verdictJson(samples::finding(Verdict::kMeasurement), {})["effects"][0]["kind"] ==
+        "measurement");
+  CHECK(verdictJson(samples::finding(Verdict::kAmbiguous), {})["effects"][0]["group"] ==
+        Json::array({"lever_arm_x"}));
+}
+
+TEST_CASE("a limit stands in verdict.json as its reciprocal and as itself") {
+  const Json json = verdictJson(samples::finding(Verdict::kFound), samples::inputs());
+  const Json& parameters = json["effects"][0]["parameters"];
+  CHECK(parameters["inverse_limit"]["value"] == 0.8);
+  CHECK(parameters["inverse_limit"]["unit"] == "s/rad");
+  CHECK(parameters["limit"]["value"] == 1.25);
+  CHECK(parameters["limit"]["unit"] == "rad/s");
+  CHECK(parameters["limit"]["low"].get<double>() == Approx(1.0 / 0.82));
+  CHECK(parameters["limit"]["high"].get<double>() == Approx(1.0 / 0.78));
+}
+
+TEST_CASE("numbers in verdict.json that are not finite are null") {
+  Finding finding = samples::finding(Verdict::kFound);
+  finding.effects[0].parameters[0].low = 0.0;  // perhaps no limit at all
+  finding.effects[1].parameters[0].high = std::numeric_limits<double>::infinity();
+  const Json json = verdictJson(finding, samples::inputs());
+  CHECK(json["effects"][0]["parameters"]["limit"]["high"].is_null());
+  CHECK(json["effects"][1]["parameters"]["share"]["high"].is_null());
+  CHECK(Json::parse(json.dump()) == json);
+}
+
+TEST_CASE("verdict.json holds the gap before, after and at the floor, or null") {
+  Json gap = verdictJson(samples::finding(Verdict::kFound), {})["gap"];
+  CHECK(gap["horizon_s"] == 2.0);
+  CHECK(gap["before"]["position_m"]["median"] == 0.642);
+  CHECK(gap["after"]["yaw_rad"]["rms"] == 0.31);
+  CHECK(gap["floor"]["position_m"]["median"] == 0.29);
+  Finding without_floor = samples::finding(Verdict::kFound);
+  without_floor.gap->floor.reset();
+  CHECK(verdictJson(without_floor, {})["gap"]["floor"].is_null());
+  gap = verdictJson(samples::finding(Verdict::kCannotTell), {})["gap"];
+  CHECK(gap["before"].is_null());
+}
+
+TEST_CASE(
+    "verdict.json names calibrated terms, what remains, what was not excited, and its files") {
+  const Json json = verdictJson(samples::finding(Verdict::kPartial), samples::inputs());
+  CHECK(json["calibrated"]["lag"]["value"] == 0.17);
+  CHECK(json["calibrated"]["icr_offset.offset"]["unit"] == "m");
+  CHECK(json["unexplained"][0] ==
+        Json({{"channel", "yaw rate"}, {"variable", "speed x yaw rate"}}));
+  CHECK(json["not_excited"] == Json::array({"grip_limit", "slope_pitch"}));
+  CHECK(json["seed"] == 7);
+  CHECK(json["inputs"]["model"]["sha256"] == std::string(64, 'a'));
+  CHECK(json["inputs"]["train"][0]["name"] == "a.lcmlog");
+  CHECK(json["inputs"]["test"][0]["sha256"] == std::string(64, 'c'));
+}
+
+}  // namespace tread::gap

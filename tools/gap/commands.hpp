@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+// The subcommands of tread-gap. Each adds itself to the program and does its work in its callback,
+// once the whole command line is read; it sets the program's exit status, and what it throws ends
+// the program with its one line and 2.
+namespace tread::gap {
+
+/// Exit statuses beside those of the verdicts.
+inline constexpr int kBadInput = 2;
+
+CLI::App* addFind(CLI::App& app, int& status);
+CLI::App* addExplain(CLI::App& app);
+
+}  // namespace tread::gap

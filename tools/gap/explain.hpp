@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+
+#include "common/vehicle/effects.hpp"
+
+namespace tread::gap {
+
+/// An effect by name; throws std::runtime_error with one line that guesses what was meant.
+const Effect& effectOrGuess(const std::string& name);
+
+/// What an effect is, its equation and parameters, what it looks like, what it is confused with
+/// and how to check it in two minutes.
+std::string explanation(const Effect& effect);
+
+/// One line for each effect of the catalogue.
+std::string listOfEffects();
+
+/// Text in lines of at most `width` letters, each after the first one indented.
+std::string wrapped(const std::string& text, size_t width, size_t indent);
+
+}  // namespace tread::gap

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "tools/gap/commands.hpp"
+#include "tools/gap/explain.hpp"
+
+namespace tread::gap {
+
+CLI::App* addExplain(CLI::App& app) {
+  const auto name = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand(
+      "explain", "what an effect is, what it looks like and how to check it in two minutes");
+  command->add_option("EFFECT", *name, "name of an effect; without it, all of them");
+  command->callback([name] {
+    std::cout << (name->empty() ? listOfEffects() : explanation(effectOrGuess(*name)))
+              << std::flush;
+  });
+  return command;
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/vehicle/model_file.hpp"
+#include "tools/gap/commands.hpp"
+#include "tools/gap/core/discovery.hpp"
+#include "tools/gap/drive_log.hpp"
+#include "tools/gap/file_hash.hpp"
+#include "tools/gap/find_output.hpp"
+#include "tools/gap/report/headline.hpp"
+
+namespace tread::gap {
+namespace {
+
+struct Options {
+  std::string model;
+  std::vector<std::string> train;
+  std::vector<std::string> test;
+  std::string out;
+  int64_t seed = 1;
+  int threads = 1;
+};
+
+constexpr const char* kFooter =
+    "Into --out: verdict.json, model.yaml (the new model; nothing is applied by itself), report.md\n"
+    "and report.html. Exit status: 0 NO_DISCREPANCY, 10 FOUND, 11 AMBIGUOUS, 12 PARTIAL,\n"
+    "13 NOT_IN_CATALOGUE, 14 MEASUREMENT, 15 CANNOT_TELL, 2 bad input (one line says which).\n"
+    "The same files and the same seed give the same bytes, with any number of threads.";
+
+std::string fileName(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+void say(const std::string& line) {
+  std::cout << line << std::endl;
+}
+
+void requireKind(const Drive& drive, const ModelDocument& model, const std::string& path) {
+  if (drive.stretches.empty() || drive.kind == model.vehicle.kind) return;
+  const bool power = drive.kind == CommandKind::kPower;
+  throw std::runtime_error(path + ": its commands are " + (power ? "powers" : "track speeds") +
+                           ", those of the model " + (power ? "track speeds" : "powers") +
+                           "; give a model with kind: " + (power ? "power" : "track_speed"));
+}
+
+/// Reads logs of one role; the same log twice would count its noise twice.
+std::vector<Drive> readDrives(const std::vector<std::string>& paths, InputFile::Role role,
+                              const ModelDocument& model, std::vector<InputFile>& inputs) {
+  std::vector<Drive> drives;
+  for (const std::string& path : paths) {
+    Drive drive = readDrive(path);
+    requireKind(drive, model, path);
+    for (const InputFile& input : inputs)
+      if (input.sha256 == drive.sha256)
+        throw std::runtime_error(path + ": the same file as " + input.name +
+                                 "; give each log once");
+    inputs.push_back({role, fileName(path), drive.sha256});
+    drives.push_back(std::move(drive));
+  }
+  return drives;
+}
+
+int find(const Options& options) {
+  std::vector<InputFile> inputs;
+  GapTask task;
+  task.model = readModelDocument(options.model);
+  inputs.push_back(
+      {InputFile::Role::kModel, fileName(options.model), sha256OfFile(options.model)});
+  task.train = readDrives(options.train, InputFile::Role::kTrain, task.model, inputs);
+  task.test = readDrives(options.test, InputFile::Role::kTest, task.model, inputs);
+  for (const std::vector<Drive>* drives : {&task.train, &task.test})
+    for (const Drive& drive : *drives)
+      task.hygiene.insert(task.hygiene.end(), drive.notes.begin(), drive.notes.end());
+  task.seed = static_cast<uint64_t>(options.seed);
+  task.threads = options.threads;
+  makeFolder(options.out);
+  const Finding finding = findGap(task, say);
+  writeFinding(options.out, finding, inputs);
+  say(std::string(verdictName(finding.verdict)) + ": " + headlineOf(finding));
+  for (const FoundEffect& effect : finding.effects) say("  " + sentenceOf(effect));
+  if (finding.verdict == Verdict::kCannotTell) say("  " + finding.reason);
+  if (finding.gap) say("  " + gainOf(*finding.gap));
+  say(options.out + "/report.html");
+  return static_cast<int>(finding.verdict);
+}
+
+}  // namespace
+
+CLI::App* addFind(CLI::App& app, int& status) {
+  const auto options = std::make_shared<Options>();
+  options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  CLI::App* command = app.add_subcommand(
+      "find", "where do simulation and measurement disagree, and what is it called?");
+  command->footer(kFooter);
+  command->add_option("--model", options->model, "model file (YAML)")->required();
+  command->add_option("--train", options->train, "logs to learn from")->required()->expected(-1);
+  command
+      ->add_option("--test", options->test,
+                   "logs for the errors before and after only; without any, blocks of the training "
+                   "logs are kept apart in turn")
+      ->expected(-1);
+  command->add_option("--out", options->out, "folder for the four files; made if needed")
+      ->required();
+  command->add_option("--seed", options->seed, "of the random draws of the tests")
+      ->capture_default_str()
+      ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));
+  command->add_option("--threads", options->threads, "no influence on any byte")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024));
+  command->callback([options, &status] { status = find(*options); });
+  return command;
+}
+
+}  // namespace tread::gap

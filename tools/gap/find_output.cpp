@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/gap/find_output.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+#include "common/vehicle/model_file.hpp"
+#include "tools/gap/report/sections.hpp"
+#include "tools/recordings/text_file.hpp"
+
+namespace tread::gap {
+
+ModelDocument newModel(const Finding& finding, const std::vector<InputFile>& inputs) {
+  ModelDocument model = finding.after;
+  const Provenance& old = finding.before.provenance;
+  Provenance provenance;
+  provenance.tool = toolVersion();
+  provenance.seed = static_cast<int64_t>(finding.seed);
+  provenance.runs = 1;
+  for (const InputFile& input : inputs) {
+    if (input.role != InputFile::Role::kTrain) continue;
+    provenance.logs.push_back({input.name, input.sha256});
+    if (std::any_of(old.logs.begin(), old.logs.end(),
+                    [&](const SourceLog& log) { return log.sha256 == input.sha256; }))
+      provenance.runs = old.runs + 1;
+  }
+  model.provenance = provenance;
+  return model;
+}
+
+void makeFolder(const std::string& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure || access(folder.c_str(), W_OK) != 0)
+    throw std::runtime_error(folder + ": cannot be made or written; check --out");
+}
+
+void writeFinding(const std::string& folder, const Finding& finding,
+                  const std::vector<InputFile>& inputs) {
+  makeFolder(folder);
+  const Page page = reportPage(finding, inputs);
+  recordings::writeText(folder + "/model.yaml", formatModelDocument(newModel(finding, inputs)));
+  recordings::writeText(folder + "/report.md", markdownOf(page));
+  recordings::writeText(folder + "/report.html", htmlOf(page));
+  // Last: whoever finds the verdict finds the rest, too.
+  recordings::writeText(folder + "/verdict.json", verdictJson(finding, inputs).dump(2) + "\n");
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/gap/core/finding.hpp"
+#include "tools/gap/verdict_json.hpp"
+
+namespace tread::gap {
+
+/// The new model with where it comes from: tool, seed, logs, and how often it was worked on them.
+/** A run counts on from the model's own count if it names one of the same logs. Only training logs
+ * are named: nothing of the model comes from the others. */
+ModelDocument newModel(const Finding& finding, const std::vector<InputFile>& inputs);
+
+/// Writes model.yaml, report.md, report.html and, last, verdict.json into a folder.
+/** Each file is there whole or not at all. The folder is made if needed. Throws std::runtime_error
+ * with one clear line. */
+void writeFinding(const std::string& folder, const Finding& finding,
+                  const std::vector<InputFile>& inputs);
+
+/// Makes a folder if needed; throws std::runtime_error if it cannot be made or written.
+void makeFolder(const std::string& folder);
+
+}  // namespace tread::gap

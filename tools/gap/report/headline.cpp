@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/gap/report/headline.hpp"
+
+#include <algorithm>
+
+#include "common/vehicle/degeneracy.hpp"
+#include "tools/gap/report/pictures.hpp"
+#include "tools/gap/report/words.hpp"
+
+namespace tread::gap {
+namespace {
+
+/// What the sign of a parameter means on the ground.
+struct Direction {
+  const char* path;
+  const char* positive;
+  const char* negative;
+};
+
+const Direction kDirections[] = {
+    {"track_asymmetry.share", "the left track is the faster one",
+     "the right track is the faster one"},
+    {"yaw_pull.pull", "it pulls to the left", "it pulls to the right"},
+    {"yaw_rate_offset.rate", "it turns to the left", "it turns to the right"},
+    {"gyro_bias.rate", "a turn to the left", "a turn to the right"},
+    {"icr_offset.offset", "ahead of the middle", "behind the middle"},
+    {"lever_arm_x.offset", "it reports a point behind the middle",
+     "it reports a point ahead of the middle"},
+    {"lever_arm_y.offset", "it reports a point right of the middle",
+     "it reports a point left of the middle"},
+    {"reverse_yaw_gain.gain", "it turns more forwards", "it turns more backwards"},
+    {"reverse_speed_gain.gain", "it is faster forwards", "it is faster backwards"},
+    {"crab.angle", "it drifts to the left", "it drifts to the right"},
+    {"heading_misalignment.angle", "its heading points too far to the right",
+     "its heading points too far to the left"},
+    {"heading_latency.latency", "the heading is the older one", "the position is the older one"},
+    {"centrifugal_drift.time", "outwards", "inwards"},
+    {"lag_asymmetry.slowing", "slowing down takes longer", "slowing down is quicker"},
+    {"payload_change.yaw", "it turns more than before", "it turns less than before"},
+    {"terrain_change.width_1", "it turns less than before", "it turns more than before"},
+    {"slip_ratio.slip", "it is slower than its tracks", "it is faster than its tracks"},
+    {"position_scale.scale", "distances come out too long", "distances come out too short"},
+};
+
+std::string directionOf(const Estimate& estimate) {
+  for (const Direction& direction : kDirections)
+    if (estimate.parameter == direction.path)
+      return estimate.value < 0.0 ? direction.negative : direction.positive;
+  return "";
+}
+
+std::vector<std::string> namesOf(const std::vector<FoundEffect>& effects) {
+  std::vector<std::string> names;
+  for (const FoundEffect& effect : effects) names.push_back(effect.name);
+  return names;
+}
+
+/// Effects that this drive cannot tell from a found one, itself first.
+std::vector<std::string> alternativesOf(const FoundEffect& effect) {
+  std::vector<std::string> names{effect.name};
+  names.insert(names.end(), effect.group.begin(), effect.group.end());
+  for (const RunnerUp& runner_up : effect.runner_ups)
+    if (runner_up.behind <= runner_up.error &&
+        std::find(names.begin(), names.end(), runner_up.effect) == names.end())
+      names.push_back(runner_up.effect);
+  return names;
+}
+
+std::string ambiguousHeadline(const Finding& finding) {
+  std::vector<std::string> parts;
+  for (const FoundEffect& effect : finding.effects) {
+    const std::vector<std::string> names = alternativesOf(effect);
+    parts.push_back(titlesOf(names, "or"));
+  }
+  return joined(parts, "and") + ": this drive cannot tell them apart";
+}
+
+/// The measurement or drive that tells the members of a group apart, from the degeneracy table.
+std::vector<std::string> waysToTell(const FoundEffect& effect) {
+  std::vector<std::string> ways;
+  for (const DegeneracyGroup* group : groupsOf(effect.name)) {
+    const bool met = std::any_of(
+        group->members.begin(), group->members.end(), [&](const std::string& member) {
+          const std::vector<std::string> names = alternativesOf(effect);
+          return member != effect.name &&
+                 std::find(names.begin(), names.end(), member) != names.end();
+        });
+    if (met) ways.push_back(group->separates);
+  }
+  if (ways.empty()) ways.push_back(effectNamed(effect.name).separates);
+  return ways;
+}
+
+void addNext(const Finding& finding, std::vector<Block>& blocks) {
+  Points points;
+  if (finding.verdict == Verdict::kAmbiguous)
+    for (const FoundEffect& effect : finding.effects)
+      for (const std::string& way : waysToTell(effect)) points.items.push_back("To tell: " + way);
+  if (finding.verdict == Verdict::kFound || finding.verdict == Verdict::kMeasurement ||
+      finding.verdict == Verdict::kPartial)
+    for (const FoundEffect& effect : finding.effects)
+      points.items.push_back("To check " + inSentence(titleOf(effect.name)) +
+                             " in two minutes: " + effectNamed(effect.name).check);
+  if (finding.verdict == Verdict::kCannotTell && !finding.not_excited.empty())
+    points.items.push_back("This drive would not have shown: " + titlesOf(finding.not_excited) +
+                           ".");
+  if (!points.items.empty()) blocks.push_back(points);
+}
+
+std::string opening(const Finding& finding) {
+  switch (finding.verdict) {
+    case Verdict::kNoDiscrepancy:
+      return "What the model predicts and what the INS measured differ by no more than chance, "
+             "over the whole catalogue and on all variables. Which effects would have been seen, "
+             "from which size on, stands below.";
+    case Verdict::kNotInCatalogue:
+      return "There is a disagreement, and no effect of the catalogue explains it. A term by "
+             "another name would be a guess; the model stays as it was but for its calibration.";
+    case Verdict::kCannotTell:
+      return finding.reason + (finding.reason.empty() || finding.reason.back() == '.' ? "" : ".");
+    case Verdict::kMeasurement:
+      return "The vehicle drives as the model says; what differs is how the INS reports it. Only "
+             "the measurement part of the model has changed.";
+    default: return "";
+  }
+}
+
+std::string saidErrors(const EndErrors& errors, bool rms) {
+  return saidDistance(rms ? errors.position.rms : errors.position.median) + " and " +
+         saidAngle(rms ? errors.yaw.rms : errors.yaw.median);
+}
+
+}  // namespace
+
+std::string headlineOf(const Finding& finding) {
+  const std::string names = titlesOf(namesOf(finding.effects));
+  switch (finding.verdict) {
+    case Verdict::kNoDiscrepancy: return "Simulation and measurement agree";
+    case Verdict::kFound: return "Found: " + names;
+    case Verdict::kAmbiguous: return ambiguousHeadline(finding);
+    case Verdict::kPartial: return "Found: " + names + "; and something more without a name";
+    case Verdict::kNotInCatalogue: return "Something that is not in the catalogue";
+    case Verdict::kMeasurement: return "The INS, not the vehicle: " + names;
+    case Verdict::kCannotTell: return "This drive cannot tell";
+  }
+  return "";
+}
+
+std::string sentenceOf(const FoundEffect& effect) {
+  std::vector<std::string> numbers;
+  std::string direction;
+  for (const Estimate& estimate : effect.parameters) {
+    numbers.push_back(saidEstimate(estimate));
+    if (direction.empty()) direction = directionOf(estimate);
+  }
+  std::string text = withoutStop(effectNamed(effect.name).sentence);
+  if (!numbers.empty()) text += ": " + joined(numbers);
+  if (!direction.empty()) text += "; " + direction;
+  return text + ".";
+}
+
+std::string gainOf(const Gap& gap) {
+  std::string text = threeDigits(gap.horizon) + " s end-pose error on driving it has not seen: " +
+                     threeDigits(gap.before.position.median) + " -> " +
+                     saidDistance(gap.after.position.median) + ", heading " +
+                     threeDigits(gap.before.yaw.median * 180.0 / kPi) + " -> " +
+                     saidAngle(gap.after.yaw.median) + " (median of " +
+                     std::to_string(gap.after.executions) + " executions; rms " +
+                     saidErrors(gap.before, true) + " -> " + saidErrors(gap.after, true) + ").";
+  if (gap.floor)
+    text += " Dead reckoning with encoders and gyro, about the best that is possible, reaches " +
+            saidErrors(*gap.floor, false) + ".";
+  if (!gap.structure_nested)
+    text += " The parameters were fitted without these executions, the effects were chosen with "
+            "them.";
+  return text;
+}
+
+std::string dependsOn(const Unexplained& rest) {
+  return "the " + rest.channel + " residual depends on " + rest.variable;
+}
+
+std::vector<Block> firstBlocks(const Finding& finding) {
+  std::vector<Block> blocks;
+  const std::string words = opening(finding);
+  if (!words.empty()) blocks.push_back(Paragraph{words});
+  for (const FoundEffect& effect : finding.effects) blocks.push_back(Paragraph{sentenceOf(effect)});
+  if (!finding.unexplained.empty()) {
+    std::vector<std::string> rests;
+    for (const Unexplained& rest : finding.unexplained) rests.push_back(dependsOn(rest));
+    blocks.push_back(Paragraph{"Unexplained: " + joined(rests) + "."});
+  }
+  if (finding.gap) {
+    blocks.push_back(Paragraph{gainOf(*finding.gap)});
+    blocks.push_back(Pictures{{gapPicture(*finding.gap, false), gapPicture(*finding.gap, true)},
+                              "End errors on executions that were not used for the fit."});
+  }
+  addNext(finding, blocks);
+  return blocks;
+}
+
+std::string moodOf(Verdict verdict) {
+  if (verdict == Verdict::kNoDiscrepancy) return "good";
+  if (verdict == Verdict::kFound || verdict == Verdict::kMeasurement) return "change";
+  return "doubt";
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+
+#include "tools/gap/core/finding.hpp"
+
+namespace tread::gap {
+
+/// A residual over a variable, before and after, with 95 % intervals; filled dots are marked cells.
+std::string atlasPicture(const AtlasCurve& curve);
+
+/// The largest |mean| of a map before and after: equal colours need a common scale.
+double largestResidual(const AtlasMap& map);
+
+/// A residual over speed and yaw rate.
+std::string mapPicture(const AtlasMap& map, bool after, double full_colour);
+
+/// One execution: measured, old and new model, seen from its beginning.
+std::string overlayPicture(const Overlay& overlay, const std::string& title);
+
+/// What each step of the ladder brought on blocks that were not fitted, with its standard error.
+std::string ladderPicture(const std::vector<LadderStep>& ladder);
+
+/// Median end errors before, after and the floor.
+std::string gapPicture(const Gap& gap, bool yaw);
+
+}  // namespace tread::gap

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <vector>
+
+#include "tools/gap/core/finding.hpp"
+#include "tools/gap/report/page.hpp"
+#include "tools/gap/verdict_json.hpp"
+
+/// The sections of a report behind its first screen; a section without blocks is left out.
+namespace tread::gap {
+
+Section effectsSection(const Finding& finding);
+Section atlasSection(const Finding& finding);
+Section executionsSection(const Finding& finding, const std::vector<InputFile>& inputs);
+Section ladderSection(const Finding& finding);
+Section parametersSection(const Finding& finding);
+Section alternativesSection(const Finding& finding);
+Section notShownSection(const Finding& finding);
+Section envelopeSection(const Finding& finding);
+Section logsSection(const Finding& finding);
+Section candidatesSection(const Finding& finding);
+Section filesSection(const Finding& finding, const std::vector<InputFile>& inputs);
+
+/// Name and version of this tool, for provenance.
+const char* toolVersion();
+
+/// The whole report.
+Page reportPage(const Finding& finding, const std::vector<InputFile>& inputs);
+
+}  // namespace tread::gap

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cmath>
+
+#include "common/vehicle/degeneracy.hpp"
+#include "tools/gap/report/headline.hpp"
+#include "tools/gap/report/sections.hpp"
+#include "tools/gap/report/words.hpp"
+
+namespace tread::gap {
+namespace {
+
+bool isEffect(const std::string& name) {
+  return std::any_of(effectCatalogue().begin(), effectCatalogue().end(),
+                     [&](const Effect& effect) { return effect.name == name; });
+}
+
+bool isMember(const DegeneracyGroup& group, const std::string& name) {
+  return std::find(group.members.begin(), group.members.end(), name) != group.members.end();
+}
+
+/// Why two effects look the same, and what tells them apart; empty where no table knows them.
+std::string groupWords(const std::string& effect, const std::string& other) {
+  for (const DegeneracyGroup* group : groupsOf(effect))
+    if (isMember(*group, other))
+      return asSentence(group->because) + (group->when.empty() ? "" : " (" + group->when + ")") + ". " +
+             group->separates;
+  return "";
+}
+
+/// The lines about what an effect may be taken for, one per other effect.
+void addOthers(const FoundEffect& found, Points& points, Commands& plans) {
+  const auto plan = [&](const std::string& other) {
+    if (isEffect(other))
+      plans.lines.push_back("tread-gap plan " + found.name + " " + other + " --model model.yaml");
+  };
+  for (const std::string& member : found.group) {
+    points.items.push_back(titleOf(found.name) + " or " + inSentence(titleOf(member)) +
+                           ": they cannot be told apart. " + groupWords(found.name, member));
+    plan(member);
+  }
+  for (const RunnerUp& runner_up : found.runner_ups) {
+    const std::string words = groupWords(found.name, runner_up.effect);
+    const std::string way =
+        !words.empty() || !isEffect(runner_up.effect) ? words : effectNamed(found.name).separates;
+    const std::string rank = runner_up.behind <= runner_up.error ? "as good" : "less good";
+    points.items.push_back(titleOf(runner_up.effect) + " in place of " +
+                           inSentence(titleOf(found.name)) + ": " + rank + " (" +
+                           threeDigits(runner_up.behind) + " \u00b1 " +
+                           threeDigits(runner_up.error) + " nats behind). " + way);
+    plan(runner_up.effect);
+  }
+}
+
+/// The smallest size that would have been found, as people say it.
+std::string saidDetectable(const CandidateTest& test) {
+  const EffectParameter* parameter =
+      parameterOfPath(test.effect + "." + test.parameter).parameter;
+  if (!std::isfinite(test.detectable)) return "not at all";
+  if (parameter == nullptr) return threeDigits(test.detectable);
+  if (parameter->reciprocal())
+    return parameter->natural_name + " below " +
+           said(naturalValue(*parameter, test.detectable), parameter->natural_unit);
+  return said(test.detectable, parameter->unit);
+}
+
+}  // namespace
+
+Section alternativesSection(const Finding& finding) {
+  Section section{"What else it could be, and the drive that tells", {}};
+  Points points;
+  Commands plans;
+  for (const FoundEffect& effect : finding.effects) addOthers(effect, points, plans);
+  if (points.items.empty()) return section;
+  section.blocks.push_back(points);
+  if (!plans.lines.empty()) {
+    section.blocks.push_back(Paragraph{"The shortest drive that tells two of them apart:"});
+    section.blocks.push_back(plans);
+  }
+  return section;
+}
+
+Section notShownSection(const Finding& finding) {
+  Section section{"What this drive could not show", {}};
+  Table table{{"effect", "what would show it"}, {}, 2};
+  for (const std::string& name : finding.not_excited)
+    table.rows.push_back({titleOf(name), isEffect(name) ? effectNamed(name).separates : ""});
+  if (!table.rows.empty()) {
+    section.blocks.push_back(Paragraph{
+        "These effects may be there: nothing in this drive would have made them visible."});
+    section.blocks.push_back(table);
+  }
+  if (!finding.negligible.empty())
+    section.blocks.push_back(Paragraph{
+        "Real but too small to matter (below 1 % of the end error), not added: " +
+        titlesOf(finding.negligible) + "."});
+  return section;
+}
+
+Section candidatesSection(const Finding& finding) {
+  Section section{"All candidates", {}};
+  if (finding.candidates.empty()) return section;
+  section.blocks.push_back(Paragraph{
+      "The first test of each effect against the calibrated model. p is over the whole catalogue; "
+      "own share is the part of its signature that no term of the model has; the last column is "
+      "the smallest size that four of five drives like this one would have shown."});
+  Table table{{"effect", "parameter", "score", "p", "own share", "visible from"}, {}, 2};
+  std::vector<CandidateTest> tests = finding.candidates;
+  std::stable_sort(tests.begin(), tests.end(), [](const CandidateTest& a, const CandidateTest& b) {
+    return a.score > b.score;
+  });
+  for (const CandidateTest& test : tests)
+    table.rows.push_back({titleOf(test.effect), test.parameter, threeDigits(test.score),
+                          saidChance(test.p_value), said(test.uniqueness, "1"),
+                          saidDetectable(test)});
+  section.blocks.push_back(table);
+  return section;
+}
+
+Page reportPage(const Finding& finding, const std::vector<InputFile>& inputs) {
+  Page page;
+  page.verdict = headlineOf(finding);
+  page.title = page.verdict + " - tread-gap";
+  page.mood = moodOf(finding.verdict);
+  page.first = firstBlocks(finding);
+  page.first.push_back(Paragraph{std::string("Verdict ") + verdictName(finding.verdict) +
+                                     ", exit status " +
+                                     std::to_string(static_cast<int>(finding.verdict)) +
+                                     ". Nothing is applied by itself: the new model is model.yaml.",
+                                 true});
+  for (Section& section :
+       std::vector<Section>{effectsSection(finding), atlasSection(finding),
+                            executionsSection(finding, inputs), ladderSection(finding),
+                            parametersSection(finding), alternativesSection(finding),
+                            notShownSection(finding), envelopeSection(finding),
+                            logsSection(finding), candidatesSection(finding),
+                            filesSection(finding, inputs)})
+    if (!section.blocks.empty()) page.sections.push_back(std::move(section));
+  return page;
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+
+#include "tools/gap/report/headline.hpp"
+#include "tools/gap/report/pictures.hpp"
+#include "tools/gap/report/sections.hpp"
+#include "tools/gap/report/words.hpp"
+
+namespace tread::gap {
+namespace {
+
+/// Cells whose residual is there beyond chance.
+size_t marked(const std::vector<AtlasCell>& cells) {
+  return static_cast<size_t>(
+      std::count_if(cells.begin(), cells.end(), [](const AtlasCell& cell) { return cell.marked; }));
+}
+
+std::vector<std::string> mapPictures(const Finding& finding) {
+  std::vector<std::string> pictures;
+  for (const AtlasMap& map : finding.maps) {
+    if (map.v_edges.size() < 2 || map.omega_edges.size() < 2) continue;
+    const double full_colour = largestResidual(map);
+    pictures.push_back(mapPicture(map, false, full_colour));
+    pictures.push_back(mapPicture(map, true, full_colour));
+  }
+  return pictures;
+}
+
+/// Logs in the order in which the drives were given: the model is none.
+std::string logName(const std::vector<InputFile>& inputs, size_t drive) {
+  std::vector<std::string> names;
+  for (const InputFile::Role role : {InputFile::Role::kTrain, InputFile::Role::kTest})
+    for (const InputFile& input : inputs)
+      if (input.role == role) names.push_back(input.name);
+  if (drive >= names.size()) return "log " + std::to_string(drive + 1);
+  constexpr size_t kRoom = 26;
+  return names[drive].size() <= kRoom ? names[drive] : names[drive].substr(0, kRoom - 2) + "..";
+}
+
+std::string remarkOf(const LadderStep& step) {
+  std::vector<std::string> close;
+  for (const RunnerUp& runner_up : step.runner_ups)
+    if (runner_up.behind <= runner_up.error) close.push_back(titleOf(runner_up.effect));
+  std::string text = step.remark;
+  if (!close.empty()) text += (text.empty() ? "as good: " : "; as good: ") + joined(close, "or");
+  return text;
+}
+
+}  // namespace
+
+Section atlasSection(const Finding& finding) {
+  Section section{"Where simulation and measurement disagree", {}};
+  if (finding.atlas.empty()) return section;
+  size_t before = 0;
+  size_t after = 0;
+  for (const AtlasCurve& curve : finding.atlas) {
+    before += marked(curve.before);
+    after += marked(curve.after);
+  }
+  section.blocks.push_back(Paragraph{
+      "Residuals, measured less predicted, over what they may depend on. Of all fields " +
+      std::to_string(before) + " were off beyond chance before and " + std::to_string(after) +
+      " are now (filled dots; intervals 95 % over blocks of driving, corrected for the number of "
+      "fields)."});
+  if (const std::vector<std::string> maps = mapPictures(finding); !maps.empty())
+    section.blocks.push_back(Pictures{maps, "Mean residual over speed and yaw rate; white is right, "
+                                            "empty was not driven."});
+  Pictures curves{{}, "Orange, dashed: the old model. Blue: the new one."};
+  for (const AtlasCurve& curve : finding.atlas) curves.svg.push_back(atlasPicture(curve));
+  section.blocks.push_back(curves);
+  return section;
+}
+
+Section executionsSection(const Finding& finding, const std::vector<InputFile>& inputs) {
+  Section section{"Executions, as measured and as predicted", {}};
+  if (finding.overlays.empty()) return section;
+  constexpr size_t kTypical = 6;
+  Pictures pictures{{}, "Each from where it begins; ahead is up. Dots are where it ends."};
+  for (size_t i = 0; i < finding.overlays.size(); ++i) {
+    const Overlay& overlay = finding.overlays[i];
+    const std::string rank = i < kTypical ? "typical" : "worst";
+    pictures.svg.push_back(overlayPicture(overlay, rank + ", " + threeDigits(overlay.begin) +
+                                                       " s of " +
+                                                       logName(inputs, overlay.drive)));
+  }
+  section.blocks.push_back(Paragraph{
+      finding.overlays.size() > kTypical
+          ? "Six typical executions, then the worst; none was used for the fit."
+          : "Typical executions; none was used for the fit."});
+  section.blocks.push_back(pictures);
+  return section;
+}
+
+Section ladderSection(const Finding& finding) {
+  Section section{"Step by step", {}};
+  if (finding.ladder.empty()) return section;
+  section.blocks.push_back(Paragraph{
+      "Each step adds the effect that helps most on blocks of driving that were not fitted, or "
+      "takes one away that no longer helps. Gains in log likelihood (nats) with standard error; p "
+      "is the chance of so large a score anywhere in the catalogue if nothing were there."});
+  Table table{{"step", "effect", "remark", "score", "p", "gain"}, {}, 3};
+  size_t number = 0;
+  for (const LadderStep& step : finding.ladder) {
+    const std::string sign = step.removed ? "- " : "+ ";
+    table.rows.push_back({std::to_string(++number), sign + titleOf(step.effect),
+                          remarkOf(step), threeDigits(step.score), saidChance(step.p_value),
+                          threeDigits(step.gain) + " \u00b1 " + threeDigits(step.gain_error)});
+  }
+  section.blocks.push_back(table);
+  section.blocks.push_back(Pictures{{ladderPicture(finding.ladder)}, "Gain of each step."});
+  return section;
+}
+
+Section logsSection(const Finding& finding) {
+  Section section{"State of the logs", {}};
+  Points points;
+  for (const HygieneNote& note : finding.hygiene)
+    points.items.push_back((note.log.empty() ? "" : note.log + ": ") + note.what +
+                           (note.fatal ? " (nothing can be concluded from this log)" : ""));
+  if (finding.hygiene.empty()) points.items.push_back("Nothing to remark.");
+  section.blocks.push_back(points);
+  if (finding.blocks > 0)
+    section.blocks.push_back(Paragraph{
+        std::to_string(finding.blocks) + " independent blocks of " +
+        threeDigits(finding.block_length) +
+        " s; whatever is said about chance counts blocks, not samples. Test for what remains: p = " +
+        saidChance(finding.adequacy_p) + "."});
+  return section;
+}
+
+}  // namespace tread::gap
