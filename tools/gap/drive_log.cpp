@@ -9,6 +9,7 @@
 
 #include "tools/gap/file_hash.hpp"
 #include "tools/gap/known_commands.hpp"
+#include "tools/gap/log_checks.hpp"
 #include "tools/gap/log_messages.hpp"
 #include "tools/gap/stretches.hpp"
 
@@ -53,6 +54,11 @@ Drive toDrive(const std::string& name, const std::vector<LogEvent>& events) {
   drive.encoders = encoderSamples(messages);
   drive.stretches = stretchesOf(spans, drive.encoders);
   drive.executions = executionsOf(drive.stretches, recordsOf(messages));
+  NoteBook notes(name);
+  checkPublishers(messages, notes);
+  checkClocks(messages, notes);
+  checkChannels(messages, spans, notes);
+  drive.notes = notes.notes();
   return drive;
 }
 

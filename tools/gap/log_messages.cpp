@@ -5,17 +5,31 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/messages/ins_messages.hpp"
+
 namespace tread::gap {
 namespace {
+
+/// Whether messages of one time say different things.
+bool clash(const ins_t& a, const ins_t& b) {
+  const auto first = planarPose(a);
+  const auto second = planarPose(b);
+  return a.utime == b.utime && first && second &&
+         (first->position() - second->position()).norm() > 1e-6;
+}
+bool clash(const motor_t& a, const motor_t& b) {
+  return a.utime == b.utime &&
+         (a.command_left != b.command_left || a.command_right != b.command_right);
+}
 
 class Sorter {
  public:
   void take(const LogEvent& event) {
     ++messages_.events;
     if (event.channel == kMotor.name) {
-      takeTimed(event, kMotor, messages_.motor, messages_.motor_stamps);
+      takeTimed(event, kMotor, messages_.motor, messages_.motor_stamps, messages_.motor_clashes);
     } else if (event.channel == kIns.name) {
-      takeTimed(event, kIns, messages_.ins, messages_.ins_stamps);
+      takeTimed(event, kIns, messages_.ins, messages_.ins_stamps, messages_.ins_clashes);
     } else if (event.channel == kExecution.name) {
       takeExecutions(event);
     } else if (event.channel == kConfig.name) {
@@ -40,9 +54,10 @@ class Sorter {
  private:
   template <class Message>
   void takeTimed(const LogEvent& event, const Channel<Message>& channel,
-                 std::vector<Message>& messages, std::vector<Stamp>& stamps) {
+                 std::vector<Message>& messages, std::vector<Stamp>& stamps, size_t& clashes) {
     Message message;
     if (!counted(decode(event, channel, message))) return;
+    if (!messages.empty() && clash(messages.back(), message)) ++clashes;
     stamps.push_back({event.utime, message.utime, message.seq});
     messages.push_back(std::move(message));
   }

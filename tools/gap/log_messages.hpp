@@ -25,6 +25,8 @@ struct LogMessages {
   std::vector<execution_record_t> executions;  ///< completed ones, each once, in order of begin
   std::vector<Stamp> motor_stamps;             ///< in the order of the log
   std::vector<Stamp> ins_stamps;               ///< in the order of the log
+  size_t motor_clashes = 0;  ///< neighbours in the log with one time and different commands
+  size_t ins_clashes = 0;    ///< neighbours in the log with one time and different places
   /// By process: boot ids as they follow each other in the log, without repetition.
   std::map<std::string, std::vector<int64_t>> boots;
   int64_t origin = 0;  ///< [us] utime of the first INS or MOTOR; time 0 of the drive

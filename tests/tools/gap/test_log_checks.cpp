@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "tests/tools/gap/small_log.hpp"
+#include "tools/gap/drive_log.hpp"
+
+using namespace tread;
+using namespace tread::gap;
+using namespace tread::samples;
+
+namespace {
+
+SmallLog goodLog(double length = 30.0) {
+  SmallLog log;
+  drive(log, 0.0, length, {1.0, 0.0, 0.2}, {});
+  return log;
+}
+
+/// The first fatal line; empty if nothing is fatal.
+std::string fatal(const std::vector<LogEvent>& events) {
+  for (const HygieneNote& note : toDrive("a.lcmlog", events).notes)
+    if (note.fatal) return note.what;
+  return "";
+}
+
+/// Shifts the messages of a channel from a time on [s], and when they were logged.
+template <class Message>
+void shift(std::vector<LogEvent>& events, const Channel<Message>& channel, double from, double by,
+           double logged_by) {
+  for (LogEvent& event : events) {
+    Message message;
+    if (!decode(event, channel, message) || message.utime < at(from)) continue;
+    message.utime += std::llround(by * 1e6);
+    message.encode(event.bytes.data(), 0, static_cast<int>(event.bytes.size()));
+    event.utime += std::llround(logged_by * 1e6);
+  }
+}
+
+bool noted(const std::vector<LogEvent>& events, const std::string& part) {
+  for (const HygieneNote& note : toDrive("a.lcmlog", events).notes)
+    if (note.what.find(part) != std::string::npos) return true;
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("a good log is not complained of") {
+  REQUIRE(toDrive("a.lcmlog", goodLog().sorted()).notes.empty());
+}
+
+TEST_CASE("a log without MOTOR or without INS says which channel is missing") {
+  SmallLog only_ins;
+  for (int i = 0; i < 100; ++i) only_ins.ins(0.1 * i, {}, 0.0);
+  REQUIRE(fatal(only_ins.sorted()) ==
+          "no MOTOR message among 100 events: the commands are unknown; record channel MOTOR");
+  SmallLog only_motor;
+  for (int i = 0; i < 100; ++i) only_motor.motor(0.1 * i, {1.0, 1.0});
+  REQUIRE(fatal(only_motor.sorted()).find("no INS message") == 0);
+  REQUIRE(fatal({}).find("no MOTOR message among 0 events") == 0);
+}
+
+TEST_CASE("a clock that goes back or jumps ahead is found with its place") {
+  SECTION("the whole robot's clock, seen against the recorder's") {
+    auto events = goodLog().sorted();
+    shift(events, kMotor, 15.0, 5.0, 0.0);
+    shift(events, kIns, 15.0, 5.0, 0.0);
+    REQUIRE(fatal(events).find("clock jump: MOTOR goes on by 5.05 s at 14.9") == 0);
+  }
+  SECTION("it goes back") {
+    auto events = goodLog().sorted();
+    shift(events, kIns, 15.0, -3.0, 0.0);
+    REQUIRE(fatal(events) == "clock jump: INS goes back by 2.90 s at 14.9 s; cut the log there");
+  }
+  SECTION("recorded with the robot's own clock: the robot does not move on in the pause") {
+    auto events = goodLog().sorted();
+    shift(events, kIns, 15.0, 4.0, 4.0);
+    REQUIRE(fatal(events).find("clock jump: INS goes on by 4.10 s at 14.9 s, but the robot moves "
+                               "on by 0.10 m at 1.00 m/s") == 0);
+  }
+}
+
+TEST_CASE("an INS that was silent while the robot moved on is no clock jump") {
+  SmallLog log;
+  Pose2 T_map_body;
+  for (int i = 0; i < 600; ++i) {
+    log.motor(0.05 * i, {0.9, 1.1});
+    if (i < 200 || i > 280) log.ins(0.05 * i, T_map_body, 0.2);
+    T_map_body = T_map_body * integrate({1.0, 0.0, 0.2}, 0.05);
+  }
+  REQUIRE(fatal(log.sorted()) == "");
+  REQUIRE(noted(log.sorted(), "no new INS pose for more than 1.5 s 1 times, first at 9.9"));
+}
+
+TEST_CASE("a recorder that is held up, or whose own clock jumps, does not condemn the log") {
+  auto events = goodLog().sorted();
+  for (size_t i = 0; i < events.size(); ++i)
+    if (i > 400 && i < 440) events[i].utime = events[440].utime;
+  REQUIRE(fatal(events) == "");
+  for (size_t i = 500; i < events.size(); ++i) events[i].utime += 3'600'000'000;
+  REQUIRE(fatal(events) == "");
+  REQUIRE(noted(events, "the recorder's clock jumped"));
+}
+
+TEST_CASE("two robots in one log are found by their numbers, by contradictions or by their boots") {
+  SECTION("interleaved") {
+    SmallLog first;
+    SmallLog second;
+    drive(first, 0.0, 20.0, {1.0, 0.0, 0.2}, {});
+    drive(second, 0.02, 20.02, {0.5, 0.0, -0.2}, {3.0, 1.0, 0.0});
+    for (const LogEvent& event : second.events) first.events.push_back(event);
+    REQUIRE(fatal(first.sorted()).find("two robots in one log: MOTOR has two publishers") == 0);
+  }
+  SECTION("with the same numbers at the same times") {
+    SmallLog first;
+    SmallLog second;
+    drive(first, 0.0, 20.0, {1.0, 0.0, 0.2}, {});
+    drive(second, 0.0, 20.0, {0.5, 0.0, -0.2}, {3.0, 1.0, 0.0});
+    for (const LogEvent& event : second.events) first.events.push_back(event);
+    REQUIRE(fatal(first.sorted()).find("two robots in one log") == 0);
+  }
+  SECTION("boots") {
+    SmallLog log = goodLog();
+    for (int i = 0; i < 3; ++i) {
+      config_t config{};
+      config.utime = at(10.0 * i);
+      config.config_process = "motor_bridge";
+      config.config_boot_id = i % 2;
+      log.add(kConfig, config);
+    }
+    REQUIRE(fatal(log.sorted()).find("two robots in one log: CONFIG of motor_bridge") == 0);
+  }
+  SECTION("every message twice is still one robot") {
+    SmallLog log = goodLog();
+    const auto events = log.events;
+    for (const LogEvent& event : events) log.events.push_back(event);
+    REQUIRE(fatal(log.sorted()) == "");
+  }
+}
+
+TEST_CASE("an INS that hangs while commands drive is found with its place") {
+  SmallLog log;
+  Pose2 T_map_body;
+  for (int i = 0; i < 600; ++i) {
+    log.motor(0.05 * i, {0.9, 1.1});
+    log.ins(0.05 * i, T_map_body, 0.2);
+    if (i < 300) T_map_body = T_map_body * integrate({1.0, 0.0, 0.2}, 0.05);
+  }
+  REQUIRE(fatal(log.sorted()).find("the INS is frozen: one pose from 15.0 to 29.9") == 0);
+}
+
+TEST_CASE("a robot that stands, or is told so little that it may stand, has no frozen INS") {
+  SmallLog log;
+  Pose2 T_map_body;
+  for (int i = 0; i < 900; ++i) {
+    const double time = 0.05 * i;
+    const double command = time < 15.0 ? 1.0 : time < 25.0 ? 0.1 : time < 35.0 ? 0.0 : 1.0;
+    log.motor(time, {command, command});
+    log.ins(time, T_map_body, 0.0);
+    if (command == 1.0) T_map_body.x += 0.05;
+  }
+  REQUIRE(fatal(log.sorted()) == "");
+}
+
+TEST_CASE("foreign bytes and numbers that are none never break the reader") {
+  SmallLog log = goodLog();
+  LogEvent odd;
+  odd.utime = at(3.0);
+  odd.channel = "MOTOR";
+  odd.bytes = {1, 2, 3};
+  log.events.push_back(odd);
+  odd.channel = "INS";
+  odd.bytes.clear();
+  log.events.push_back(odd);
+  log.motor(3.01, {kNaN, 1.0});
+  log.ins(3.02, {kNaN, 1.0, kNaN}, kNaN);
+  log.ins(3.03, {1e300, -1e300, 0.0}, 1e300);
+  const auto events = log.sorted();
+  REQUIRE(noted(events, "2 events on our channels are of another type"));
+  REQUIRE(noted(events, "1 MOTOR messages without a number as command"));
+}
+
+TEST_CASE("commands of two kinds cannot be explained by one model") {
+  SmallLog log = goodLog();
+  for (int i = 0; i < 100; ++i) {
+    log.motor(30.0 + 0.05 * i, {0.1, 0.1});
+    motor_t motor = log.lastMotor();
+    motor.motor_command_kind = 1;
+    log.events.pop_back();
+    log.add(kMotor, motor);
+  }
+  REQUIRE(fatal(log.sorted()).find("commands of two kinds: 100 power, 600 track speed") == 0);
+}
