@@ -70,6 +70,9 @@ class VehicleKernel {
   /// The same with what is known of this step; its session time is that of the step's beginning.
   void step(const TrackCommand& command, double duration, const DriveContext& context);
 
+  /// The body stands at once, as at a hard obstacle; tracks and waiting commands go on.
+  void stopBody() { body_ = {}; }
+
   /// Pose relative to the start, yaw unwrapped.
   const Pose2& pose() const { return T_start_body_; }
   /// Body twist at this moment.

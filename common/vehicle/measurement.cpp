@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/vehicle/effects.hpp"
+
 namespace tread {
 namespace {
 
@@ -62,12 +64,24 @@ double yawRateAt(const std::vector<TimedPose>& motion, double time) {
   return motion[i].omega + share * (motion[i + 1].omega - motion[i].omega);
 }
 
+bool isPerfect(const MeasurementModel& measurement) {
+  const std::vector<Effect>& effects = effectCatalogue();
+  return std::none_of(effects.begin(), effects.end(), [&](const Effect& effect) {
+    return effect.kind == EffectKind::kMeasurement && isOn(effect, {}, measurement);
+  });
+}
+
 std::vector<TimedPose> measure(const std::vector<TimedPose>& motion,
                                const MeasurementModel& measurement) {
   std::vector<TimedPose> said;
   said.reserve(motion.size());
   for (const TimedPose& now : motion) said.push_back(measured(motion, measurement, now));
   return said;
+}
+
+TimedPose measuredAt(const std::vector<TimedPose>& motion, const MeasurementModel& measurement,
+                     double time) {
+  return measured(motion, measurement, {time, poseAt(motion, time), yawRateAt(motion, time)});
 }
 
 }  // namespace tread

@@ -24,6 +24,9 @@ Pose2 poseAt(const std::vector<TimedPose>& motion, double time);
 /// The yaw rate at a moment, linear between samples, constant before the first and after the last.
 double yawRateAt(const std::vector<TimedPose>& motion, double time);
 
+/// Whether the INS says the motion as it is: every measurement effect is off.
+bool isPerfect(const MeasurementModel& measurement);
+
 /// What the INS says, at the same moments, of a true motion.
 /** With t' = t - ins_latency: the position is (1 + position_scale) (p(t') - R(yaw(t')) lever_arm),
  * the heading yaw(t' - heading_latency) - heading_misalignment + gyro_bias_heading gyro_bias t, the
@@ -31,5 +34,9 @@ double yawRateAt(const std::vector<TimedPose>& motion, double time);
  * for bit. */
 std::vector<TimedPose> measure(const std::vector<TimedPose>& motion,
                                const MeasurementModel& measurement);
+
+/// What the INS says at one moment: a yaw rate beside the pose as in measure().
+TimedPose measuredAt(const std::vector<TimedPose>& motion, const MeasurementModel& measurement,
+                     double time);
 
 }  // namespace tread

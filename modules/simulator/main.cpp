@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <fstream>
+#include <iostream>
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/shell.hpp"
+#include "modules/simulator/model_vehicle.hpp"
 #include "modules/simulator/simulator_config.hpp"
 #include "modules/simulator/simulator_node.hpp"
 #include "modules/simulator/world_file.hpp"
@@ -36,15 +38,17 @@ ShellBody prepare(ConfigReader& reader) {
     SimulatorSettings settings = config.settings;
     settings.robot.start_utime = bus.now();
     settings.ins.utc_at_zero = bus.utc() - bus.now();
-    SimulatedDevices devices(world, settings);
+    SimulatedDevices devices(world, settings,
+                             config.model ? partsOf(*config.model, settings.robot) : RobotParts{});
     const std::unique_ptr<Link> ins = makeLink(config.ins);
     const std::unique_ptr<Link> motor = makeLink(config.motor);
     const std::unique_ptr<Link> laser = makeLink(config.laser);
     for (const Link* line : {ins.get(), motor.get(), laser.get()}) mustOffer(*line);
     std::ofstream file = openRecord(config.record);
     TruthRecord record(file);
-    SimulatorNode node(devices, bus, DeviceLines{*ins, *motor, laser.get()},
-                       file.is_open() ? &record : nullptr);
+    SimulatorNode node(
+        devices, bus, DeviceLines{*ins, *motor, laser.get()}, file.is_open() ? &record : nullptr,
+        [](const std::string& line) { std::cerr << "tread-simulator: " << line << std::endl; });
     bus.run(node, stop);
   };
 }
@@ -54,6 +58,8 @@ ShellBody prepare(ConfigReader& reader) {
 int main(int argc, char** argv) {
   return runShell(argc, argv, "tread-simulator",
                   "The simulated robot behind its devices' protocols: INS and motor controller on "
-                  "pseudo-terminals, range finder on a TCP port.",
+                  "pseudo-terminals, range finder on a TCP port. The configuration's model: FILE "
+                  "drives a model file in the place of the dynamic vehicle; vehicle: changes that "
+                  "one's physical parameters.",
                   prepare);
 }

@@ -3,6 +3,8 @@
 #include "modules/simulator/simulator_config.hpp"
 
 #include "common/link/address.hpp"
+#include "common/vehicle/model_file.hpp"
+#include "modules/simulator/vehicle_config.hpp"
 
 namespace tread::sim {
 namespace {
@@ -18,6 +20,24 @@ void readAddress(ConfigReader& reader, const std::string& key, std::string& addr
   }
 }
 
+/// The motor controller of the simulated robot takes power and nothing else.
+std::optional<ModelDocument> readModel(ConfigReader& reader) {
+  std::string path = "none";
+  reader.text("model", path);
+  if (path == "none") return std::nullopt;
+  reader.path("model", path);
+  if (reader.has("vehicle"))
+    throw reader.error("vehicle",
+                       "is of the dynamic vehicle, model: of the vehicle in its place; "
+                       "give one of them");
+  ModelDocument document = readModelDocument(path);
+  if (document.vehicle.kind != CommandKind::kPower)
+    throw reader.error("model", path +
+                                    " takes track speeds, the simulated robot's motor line "
+                                    "only power; give a model of kind power");
+  return document;
+}
+
 }  // namespace
 
 SimulatorConfig readSimulatorConfig(ConfigReader& reader) {
@@ -31,6 +51,8 @@ SimulatorConfig readSimulatorConfig(ConfigReader& reader) {
   reader.integer("seed", seed, {0.0, 1e15}, "1");
   robot.seed = static_cast<uint64_t>(seed);
   reader.flag("motion_noise", robot.motion_noise);
+  config.model = readModel(reader);
+  readVehicle(reader.section("vehicle"), robot.vehicle);
   readAddress(reader, "ins", config.ins);
   readAddress(reader, "motor", config.motor);
   readAddress(reader, "laser", config.laser);

@@ -4,14 +4,21 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+
+#include <tread/health_t.hpp>
 
 namespace tread::sim {
 namespace {
 
+constexpr int64_t kHealthEvery = 1'000'000;  // [us]
+
 /// What people want to know of a simulation, as YAML.
 std::string describe(const SimulatedDevices& devices) {
   const WorldDescription& world = devices.robot().world().description();
-  return "world: \"" + world.name + "\"\nseed: " + std::to_string(devices.robot().settings().seed) +
+  const std::string model = devices.robot().vehicle().name();
+  return "world: \"" + world.name + "\"\n" + (model.empty() ? "" : "model: \"" + model + "\"\n") +
+         "seed: " + std::to_string(devices.robot().settings().seed) +
          "\nobstacles: " + std::to_string(world.obstacles.size()) +
          "\nregions: " + std::to_string(world.regions.size()) + "\n";
 }
@@ -19,27 +26,39 @@ std::string describe(const SimulatedDevices& devices) {
 }  // namespace
 
 SimulatorNode::SimulatorNode(SimulatedDevices& devices, Bus& bus, const DeviceLines& lines,
-                             TruthRecord* record)
+                             TruthRecord* record, Say say)
     : devices_(devices),
       lines_(lines),
       record_(record),
+      say_(std::move(say)),
       health_(bus, "simulator", describe(devices)) {}
 
 void SimulatorNode::step(int64_t utime) {
   advanceTo(utime);
   devices_.ins().receive(hear(lines_.ins, utime), utime);
   devices_.motor().receive(hear(lines_.motor, utime), utime);
-  say(lines_.ins, devices_.ins().transmit(utime));
-  say(lines_.motor, devices_.motor().transmit(utime));
+  transmit(lines_.ins, devices_.ins().transmit(utime));
+  transmit(lines_.motor, devices_.motor().transmit(utime));
   if (lines_.laser != nullptr) {
     const bool open = lines_.laser->isOpen();
     if (open && !laser_connected_) devices_.laser().reconnect();
     laser_connected_ = open;
     devices_.laser().receive(hear(*lines_.laser, utime), utime);
-    say(*lines_.laser, devices_.laser().transmit(utime));
+    transmit(*lines_.laser, devices_.laser().transmit(utime));
   }
+  tellHealth(utime);
+}
+
+void SimulatorNode::tellHealth(int64_t utime) {
   const RobotTruth& truth = devices_.robot().truth();
   health_.setCounter("collisions", static_cast<int64_t>(truth.collisions.size()));
+  if (utime >= next_health_) {
+    next_health_ = utime + kHealthEvery;
+    const std::string warning = devices_.robot().vehicle().warning();
+    if (!warning.empty()) health_.setState(health_t::HEALTH_DEGRADED, warning);
+    if (!warning.empty() && !warned_ && say_) say_(warning);
+    warned_ = warned_ || !warning.empty();
+  }
   health_.step(utime);
 }
 
@@ -64,7 +83,7 @@ std::string SimulatorNode::hear(Link& line, int64_t utime) {
   return bytes;
 }
 
-void SimulatorNode::say(Link& line, const std::string& bytes) {
+void SimulatorNode::transmit(Link& line, const std::string& bytes) {
   if (bytes.empty()) return;
   if (!line.write(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size())) {
     health_.addToCounter("bytes lost: line full or down", static_cast<int64_t>(bytes.size()));

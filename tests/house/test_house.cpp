@@ -142,11 +142,18 @@ TEST_CASE("concepts link no bus: geometry, grid, pattern and vehicle include no 
     }
 }
 
+// The simulator's process may run a model file in the ground truth's place, so that a named effect
+// is seen at work; the ground truth itself must know nothing of the kernel, else a blind test would
+// find its own equations again.
 TEST_CASE("the two vehicle models share no equations") {
-  for (const Include& include : includesUnder("modules/simulator")) {
-    CAPTURE(include.file, include.target);
-    CHECK_FALSE(startsWith(include.target, "common/vehicle"));
-  }
+  for (const char* truth : {"modules/simulator/core", "modules/simulator/emulators"})
+    for (const Include& include : includesUnder(truth)) {
+      CAPTURE(include.file, include.target);
+      CHECK_FALSE(startsWith(include.target, "common/vehicle"));
+      if (startsWith(include.target, "modules/"))
+        CHECK((startsWith(include.target, "modules/simulator/core/") ||
+               startsWith(include.target, "modules/simulator/emulators/")));
+    }
   for (const Include& include : includesUnder("common/vehicle")) {
     CAPTURE(include.file, include.target);
     CHECK_FALSE(startsWith(include.target, "modules/"));

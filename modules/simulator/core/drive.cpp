@@ -18,7 +18,9 @@ double withDryFriction(double speed, double change) {
 
 void stepTrack(const DriveParameters& parameters, double commanded_power, double voltage,
                const TrackLoad& load, double dt, TrackDrive& track) {
-  track.power += (commanded_power - track.power) * std::min(1.0, dt / parameters.power_lag);
+  const double heard = std::max(0.0, std::abs(commanded_power) - parameters.dead_power);
+  const double asked = std::copysign(heard, commanded_power);
+  track.power += (asked - track.power) * std::min(1.0, dt / parameters.power_lag);
   const double drive_speed =
       parameters.free_speed * track.power * voltage / parameters.nominal_voltage;
   const double wanted = parameters.stiffness * (drive_speed - track.speed);

@@ -10,6 +10,7 @@ struct DriveParameters {
   double stiffness = 4000.0;    ///< loss of drive force per track speed, one track [N s/m]
   double force_limit = 2500.0;  ///< current limit of the power stage, as force at the track [N]
   double power_lag = 0.09;      ///< first-order lag of the power stage's output [s]
+  double dead_power = 0.0;      ///< commands up to it give nothing, larger ones lose as much [1]
   double track_mass = 60.0;     ///< belt, sprockets, gear and rotor, as mass at the track [kg]
   double gear_friction = 40.0;  ///< dry friction of gear and belt, one track [N]
   double brake_force = 2000.0;  ///< parking brake, holds while there is no power [N]

@@ -38,6 +38,14 @@ struct InsInput {
   Eigen::Vector3d rate_body = Eigen::Vector3d::Zero();  ///< about x, y, z [rad/s]
 };
 
+/// What age, place and mounting of the instrument make of the truth, before its own noise.
+class InsErrors {
+ public:
+  virtual ~InsErrors() = default;
+  /// What the INS senses at a time; called at each measurement, in the order of time.
+  virtual InsInput sensed(int64_t utime, const InsInput& truth) = 0;
+};
+
 /// One measurement.
 struct InsSample {
   int64_t utime = 0;                                    ///< of the measurement [us]

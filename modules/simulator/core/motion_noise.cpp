@@ -28,12 +28,15 @@ void MotionNoise::step() {
   heading_.step(gaussian_);
 }
 
+MotionFactors MotionNoise::factors(const MotionSpread& spread) const {
+  return {1.0 + scale_ * spread.forward * forward_.value(),
+          1.0 + scale_ * spread.yaw * yaw_.value(), scale_ * spread.heading * heading_.value()};
+}
+
 Twist2 MotionNoise::disturb(const Twist2& v_body, const MotionSpread& spread) const {
-  const double forward = 1.0 + scale_ * spread.forward * forward_.value();
-  const double yaw = 1.0 + scale_ * spread.yaw * yaw_.value();
-  const double heading = scale_ * spread.heading * heading_.value();
-  const double v_x = v_body.v_x * forward;
-  return {v_x, v_body.v_y + v_x * std::tan(heading), v_body.omega * yaw};
+  const MotionFactors now = factors(spread);
+  const double v_x = v_body.v_x * now.forward;
+  return {v_x, v_body.v_y + v_x * std::tan(now.heading), v_body.omega * now.yaw};
 }
 
 }  // namespace tread::sim

@@ -10,6 +10,13 @@
 
 namespace tread::sim {
 
+/// What is made of a motion at one moment.
+struct MotionFactors {
+  double forward = 1.0;  ///< factor on the forward speed [1]
+  double yaw = 1.0;      ///< factor on the yaw rate [1]
+  double heading = 0.0;  ///< added to the direction of motion [rad]
+};
+
 /// What the ground adds to the motion and no model knows: correlated in time, scaled by the
 /// surface.
 /** Three Ornstein-Uhlenbeck processes change forward gain, yaw gain and direction of motion. Their
@@ -23,6 +30,8 @@ class MotionNoise {
   /// Advances the processes by one step.
   void step();
 
+  /// What the processes are now, for a spread.
+  MotionFactors factors(const MotionSpread& spread) const;
   /// The body velocity that comes out of the dynamics' velocity on a surface.
   Twist2 disturb(const Twist2& v_body, const MotionSpread& spread) const;
 

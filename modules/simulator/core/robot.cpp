@@ -3,6 +3,7 @@
 #include "modules/simulator/core/robot.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace tread::sim {
 namespace {
@@ -34,13 +35,16 @@ TrackContact::Surfaces surfacesBelow(const World& world, const VehicleParameters
 
 }  // namespace
 
-SimulatedRobot::SimulatedRobot(std::shared_ptr<const World> world, const RobotSettings& settings)
+SimulatedRobot::SimulatedRobot(std::shared_ptr<const World> world, const RobotSettings& settings,
+                               RobotParts parts)
     : world_(std::move(world)),
       settings_(settings),
-      vehicle_(settings.vehicle),
+      vehicle_(parts.vehicle ? std::move(parts.vehicle)
+                             : std::make_unique<TrackedVehicle>(settings.vehicle)),
       noise_(streamSeed(settings.seed, kMotionStream), kStep * kStepsPerGround),
       laser_(settings.laser, streamSeed(settings.seed, kLaserStream), settings.start_utime),
       ins_(settings.ins, streamSeed(settings.seed, kInsStream), settings.start_utime),
+      ins_errors_(std::move(parts.ins_errors)),
       T_map_free_(settings.start) {
   truth_.utime = settings.start_utime;
   truth_.T_map_body = settings.start;
@@ -59,12 +63,9 @@ void SimulatedRobot::advanceTo(int64_t utime) {
 }
 
 void SimulatedRobot::step() {
-  if (ins_.due(truth_.utime)) {
-    const Eigen::Vector3d v_body(truth_.v_body.v_x, truth_.v_body.v_y, 0.0);
-    ins_.measure(truth_.utime, {truth_.body, truth_.T_map_body.yaw, v_body, rate_body_});
-  }
+  if (ins_.due(truth_.utime)) measureIns();
   laser_.advanceTo(truth_.utime, *world_, truth_.body);
-  vehicle_.step(power_, ground_, kStep);
+  vehicle_->step(power_, ground_, kStep);
   moveBody();
   truth_.utime += kStepUs;
   if (++steps_ % kStepsPerGround == 0) {
@@ -76,9 +77,16 @@ void SimulatedRobot::step() {
   settleOnPlane();
 }
 
+void SimulatedRobot::measureIns() {
+  const Eigen::Vector3d v_body(truth_.v_body.v_x, truth_.v_body.v_y, 0.0);
+  const InsInput truth{truth_.body, truth_.T_map_body.yaw, v_body, rate_body_};
+  ins_.measure(truth_.utime, ins_errors_ ? ins_errors_->sensed(truth_.utime, truth) : truth);
+}
+
 void SimulatedRobot::moveBody() {
-  truth_.v_body = vehicle_.velocity();
-  if (settings_.motion_noise) truth_.v_body = noise_.disturb(truth_.v_body, surface_->spread);
+  truth_.v_body = vehicle_->velocity();
+  if (settings_.motion_noise && vehicle_->disturbedByGround())
+    truth_.v_body = noise_.disturb(truth_.v_body, surface_->spread);
   const Eigen::Vector3d v_body(truth_.v_body.v_x, truth_.v_body.v_y, 0.0);
   const Eigen::Vector3d v_map = truth_.body.R_map_body * v_body;
   truth_.T_map_body.x += kStep * v_map.x();
@@ -127,7 +135,7 @@ void SimulatedRobot::checkCollision() {
   last_touch_ = truth_.utime;
   truth_.T_map_body = T_map_free_;
   truth_.v_body = {};
-  vehicle_.stopBody();
+  vehicle_->stopBody();
 }
 
 }  // namespace tread::sim

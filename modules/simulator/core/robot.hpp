@@ -26,6 +26,12 @@ struct RobotSettings {
   bool motion_noise = true;  ///< false: the calibrated mean motion only
 };
 
+/// Parts that the user may exchange; what is null is as it always is.
+struct RobotParts {
+  std::unique_ptr<Plant> vehicle;         ///< in the place of the dynamic vehicle
+  std::unique_ptr<InsErrors> ins_errors;  ///< of an INS that is late or askew
+};
+
 /// The footprint met an obstacle: one entry per encounter, ended by half a second without touch.
 struct CollisionEvent {
   int64_t utime = 0;         ///< of the first touch [us]
@@ -49,7 +55,8 @@ struct RobotTruth {
  * otherwise. */
 class SimulatedRobot {
  public:
-  SimulatedRobot(std::shared_ptr<const World> world, const RobotSettings& settings);
+  SimulatedRobot(std::shared_ptr<const World> world, const RobotSettings& settings,
+                 RobotParts parts = {});
 
   /// Power on the motors from now on, -1..1; what is not a number counts as zero.
   void setPower(const MotorPower& power);
@@ -58,7 +65,7 @@ class SimulatedRobot {
   void advanceTo(int64_t utime);
 
   const RobotTruth& truth() const { return truth_; }
-  const TrackedVehicle& vehicle() const { return vehicle_; }
+  const Plant& vehicle() const { return *vehicle_; }
   const World& world() const { return *world_; }
   const RobotSettings& settings() const { return settings_; }
 
@@ -69,6 +76,7 @@ class SimulatedRobot {
 
  private:
   void step();
+  void measureIns();
   void moveBody();
   void settleOnPlane();
   void checkCollision();
@@ -77,10 +85,11 @@ class SimulatedRobot {
 
   std::shared_ptr<const World> world_;
   RobotSettings settings_;
-  TrackedVehicle vehicle_;
+  std::unique_ptr<Plant> vehicle_;
   MotionNoise noise_;
   Laser laser_;
   Ins ins_;
+  std::unique_ptr<InsErrors> ins_errors_;
   MotorPower power_;
   Ground ground_;
   const SurfaceParameters* surface_ = nullptr;

@@ -39,7 +39,17 @@ TrackedVehicle::TrackedVehicle(const VehicleParameters& parameters)
     : parameters_(parameters),
       left_geometry_{parameters.contact_length, parameters.gauge / 2.0},
       right_geometry_{parameters.contact_length, -parameters.gauge / 2.0} {
-  battery_.voltage = parameters.drive.full_voltage;
+  const DriveParameters& drive = parameters.drive;
+  battery_.charge = parameters.charge;
+  battery_.voltage =
+      drive.full_voltage - (drive.full_voltage - drive.empty_voltage) * (1.0 - parameters.charge);
+}
+
+void TrackedVehicle::rebuild(const VehicleParameters& parameters) {
+  v_centre_.v_y += v_centre_.omega * (parameters.centre - parameters_.centre);
+  parameters_ = parameters;
+  left_geometry_ = {parameters.contact_length, parameters.gauge / 2.0};
+  right_geometry_ = {parameters.contact_length, -parameters.gauge / 2.0};
 }
 
 void TrackedVehicle::step(const MotorPower& power, const Ground& ground, double dt) {
@@ -49,10 +59,10 @@ void TrackedVehicle::step(const MotorPower& power, const Ground& ground, double 
   const TrackForce right =
       right_contact_.step(right_geometry_, ground.right, v_centre_, right_.speed, loads.right, dt);
   moveBody(left, right, ground, dt);
-  stepTrack(parameters_.drive, std::clamp(power.left, -1.0, 1.0), battery_.voltage,
-            {-left.along, left.dry_friction}, dt, left_);
-  stepTrack(parameters_.drive, std::clamp(power.right, -1.0, 1.0), battery_.voltage,
-            {-right.along, right.dry_friction}, dt, right_);
+  stepTrack(parameters_.drive, parameters_.left_power * std::clamp(power.left, -1.0, 1.0),
+            battery_.voltage, {-left.along, left.dry_friction}, dt, left_);
+  stepTrack(parameters_.drive, parameters_.right_power * std::clamp(power.right, -1.0, 1.0),
+            battery_.voltage, {-right.along, right.dry_friction}, dt, right_);
   stepBattery(parameters_.drive, left_, right_, dt, battery_);
 }
 
@@ -61,13 +71,15 @@ void TrackedVehicle::moveBody(const TrackForce& left, const TrackForce& right, c
   const double steepness =
       ground.slope_along * ground.slope_along + ground.slope_across * ground.slope_across;
   const double weight = parameters_.mass * kGravity / std::sqrt(1.0 + steepness);
-  const double force_x =
-      left.along + left.resistance + right.along + right.resistance - weight * ground.slope_along;
-  const double force_y = left.across + right.across - weight * ground.slope_across;
+  const double force_x = left.along + left.resistance + right.along + right.resistance -
+                         weight * ground.slope_along + outside_.along;
+  const double force_y =
+      left.across + right.across - weight * ground.slope_across + outside_.across;
+  const double moment = left.moment + right.moment + outside_.moment;
   const double v_x = v_centre_.v_x;
   v_centre_.v_x += dt * (force_x / parameters_.mass + v_centre_.omega * v_centre_.v_y);
   v_centre_.v_y += dt * (force_y / parameters_.mass - v_centre_.omega * v_x);
-  v_centre_.omega += dt * (left.moment + right.moment) / parameters_.yaw_inertia;
+  v_centre_.omega += dt * moment / parameters_.yaw_inertia;
 }
 
 }  // namespace tread::sim

@@ -2,11 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <array>
-
-#include "common/geometry/se2.hpp"
-#include "modules/simulator/core/drive.hpp"
-#include "modules/simulator/core/track_contact.hpp"
+#include "modules/simulator/core/plant.hpp"
 
 namespace tread::sim {
 
@@ -21,21 +17,17 @@ struct VehicleParameters {
   double mass_height = 0.35;  ///< of the centre of mass above the ground [m]
   double length = 1.30;       ///< footprint [m]
   double width = 0.68;        ///< footprint [m]
+  double left_power = 1.0;    ///< what the left drive gives of the power that it is told to [1]
+  double right_power = 1.0;   ///< the same on the right [1]
+  double charge = 1.0;        ///< of the battery at the beginning, 1 = full
   DriveParameters drive;
 };
 
-/// Motor power, -1..1 a track.
-struct MotorPower {
-  double left = 0.0;
-  double right = 0.0;
-};
-
-/// The ground below the vehicle at one moment.
-struct Ground {
-  TrackContact::Surfaces left{};   ///< below the segments, front to rear; never null
-  TrackContact::Surfaces right{};  ///< below the segments, front to rear; never null
-  double slope_along = 0.0;        ///< height gained per metre ahead [1]
-  double slope_across = 0.0;       ///< height gained per metre to the left [1]
+/// What else acts on the body, axes of the body, at the centre of mass: a plough, a trailer, wind.
+struct OutsideForce {
+  double along = 0.0;   ///< forward positive [N]
+  double across = 0.0;  ///< to the left positive [N]
+  double moment = 0.0;  ///< counter-clockwise positive [N m]
 };
 
 /// The same surface everywhere, level. The surface must outlive the ground.
@@ -45,24 +37,25 @@ Ground levelGround(const SurfaceParameters& surface);
 /** Motor power -> drive force against belt speed -> belt speed -> slip -> shear of the ground ->
    motion of the body in the tangent plane of the ground. Semi-implicit integration, meant for steps
    of 1 ms. */
-class TrackedVehicle {
+class TrackedVehicle final : public Plant {
  public:
   explicit TrackedVehicle(const VehicleParameters& parameters);
 
-  /// Advances by dt [s]. Power is clamped to -1..1.
-  void step(const MotorPower& power, const Ground& ground, double dt);
+  void step(const MotorPower& power, const Ground& ground, double dt) override;
 
-  /// Velocity of the body origin in the body frame.
-  Twist2 velocity() const {
+  Twist2 velocity() const override {
     return {v_centre_.v_x, v_centre_.v_y - v_centre_.omega * parameters_.centre, v_centre_.omega};
   }
-  const TrackDrive& left() const { return left_; }
-  const TrackDrive& right() const { return right_; }
-  const Battery& battery() const { return battery_; }
+  const TrackDrive& left() const override { return left_; }
+  const TrackDrive& right() const override { return right_; }
+  const Battery& battery() const override { return battery_; }
   const VehicleParameters& parameters() const { return parameters_; }
 
-  /// Stops the body at once, as a hard obstacle does; the tracks go on turning.
-  void stopBody() { v_centre_ = {}; }
+  void stopBody() override { v_centre_ = {}; }
+  /// Acts on the body from now on.
+  void setOutsideForce(const OutsideForce& force) { outside_ = force; }
+  /// Another build from now on, a new payload for instance; the body origin keeps its velocity.
+  void rebuild(const VehicleParameters& parameters);
   /// Puts a share 0..1 of charge into the battery.
   void setCharge(double charge) { battery_.charge = charge; }
 
@@ -77,6 +70,7 @@ class TrackedVehicle {
   TrackDrive left_;
   TrackDrive right_;
   Battery battery_;
+  OutsideForce outside_;
   Twist2 v_centre_;  ///< of the centre of mass, axes of the body
 };
 

@@ -22,8 +22,8 @@ double drivingCurrent(const TrackDrive& track) {
 }  // namespace
 
 SimulatedDevices::SimulatedDevices(std::shared_ptr<const World> world,
-                                   const SimulatorSettings& settings)
-    : robot_(std::move(world), settings.robot),
+                                   const SimulatorSettings& settings, RobotParts parts)
+    : robot_(std::move(world), settings.robot, std::move(parts)),
       ins_(settings.ins, streamSeed(settings.robot.seed, kInsStream)),
       motor_(settings.motor),
       laser_(scipSettingsOf(settings.robot.laser), streamSeed(settings.robot.seed, kLaserStream)) {

@@ -25,7 +25,8 @@ struct SimulatorSettings {
 /** Pure: no clock, no links. Channel 1 of the motor controller is the left track. */
 class SimulatedDevices {
  public:
-  SimulatedDevices(std::shared_ptr<const World> world, const SimulatorSettings& settings);
+  SimulatedDevices(std::shared_ptr<const World> world, const SimulatorSettings& settings,
+                   RobotParts parts = {});
 
   /// Simulates up to a time; the motors follow the controller's output in steps of 1 ms.
   void advanceTo(int64_t utime);

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/vehicle/model_document.hpp"
+#include "modules/simulator/core/motion_noise.hpp"
+#include "modules/simulator/core/robot.hpp"
+
+namespace tread::sim {
+
+/// A vehicle that does what a model file says: how a named effect is seen at work.
+/** The kernel is stepped with the simulator; it hears power, session time, attitude and the fall of
+ * the battery's voltage. The world's surfaces do not touch it: a model file is one ground. Its
+ * spread varies along the drive as the dynamic vehicle's does. The battery is the dynamic
+ * vehicle's, loaded by the current that this one draws at the same power straight ahead on grass.
+ */
+class ModelVehicle final : public Plant {
+ public:
+  /// `noise_seed`: of the spread; without it every execution is the mean. The model takes power.
+  ModelVehicle(const ModelDocument& document, std::optional<uint64_t> noise_seed);
+
+  void step(const MotorPower& power, const Ground& ground, double dt) override;
+
+  /// Leads from pose to pose of the kernel in steps of constant velocity in the map.
+  Twist2 velocity() const override { return v_body_; }
+  const TrackDrive& left() const override { return left_; }
+  const TrackDrive& right() const override { return right_; }
+  const Battery& battery() const override { return battery_; }
+  void stopBody() override { kernel_.stopBody(); }
+  bool disturbedByGround() const override { return false; }
+  std::string name() const override { return name_; }
+  /// What is asked for outside of the model's envelope.
+  std::string warning() const override;
+
+ private:
+  void varyNoise();
+  void drawCurrent(const MotorPower& power, double dt);
+
+  std::string name_;
+  VehicleKernel kernel_;
+  std::optional<Envelope> known_;
+  Envelope asked_;
+  MotionSpread spread_;
+  std::optional<MotionNoise> noise_;
+  int64_t steps_ = 0;
+  double session_time_ = 0.0;  ///< [s]
+  Twist2 v_body_;
+  DriveParameters drive_;
+  TrackDrive left_;
+  TrackDrive right_;
+  Battery battery_;
+};
+
+/// Vehicle and INS of a model file, for a robot of these settings.
+/** The INS part is null where the file says nothing of it. */
+RobotParts partsOf(const ModelDocument& document, const RobotSettings& settings);
+
+}  // namespace tread::sim

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include "modules/simulator/simulator_config.hpp"
+
+namespace tread::sim {
+namespace {
+
+const std::string kSimulators = TREAD_SOURCE_DIR "/config/simulators/";
+/// As if it stood among the shipped ones.
+const std::string kHere = kSimulators + "test.yaml";
+const std::string kWorld = "world: ../worlds/meadow.yaml\n";
+
+SimulatorConfig read(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  ConfigReader reader = ConfigReader::fromText(text, kHere, overrides);
+  return readSimulatorConfig(reader);
+}
+
+std::string refusalOf(const std::string& text) {
+  try {
+    read(kWorld + text);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+/// Where a vehicle of a configuration is after two seconds of a command.
+Pose2 driven(const std::string& text, const MotorPower& power) {
+  RobotSettings settings = read(kWorld + text).settings.robot;
+  settings.motion_noise = false;
+  SimulatedRobot robot(std::make_shared<const World>(WorldDescription{}), settings);
+  robot.setPower(power);
+  robot.advanceTo(2'000'000);
+  return robot.truth().T_map_body;
+}
+
+}  // namespace
+
+TEST_CASE("the shipped simulators can be read, and drive the dynamic vehicle") {
+  for (const char* name : {"demo.yaml", "meadow.yaml"}) {
+    ConfigReader reader = ConfigReader::fromFile(kSimulators + name);
+    CHECK_FALSE(readSimulatorConfig(reader).model);
+  }
+}
+
+TEST_CASE("a simulator's model is a file beside its configuration, or none") {
+  CHECK_FALSE(read(kWorld).model);
+  CHECK_FALSE(read(kWorld + "model: none\n").model);
+  const SimulatorConfig config = read(kWorld + "model: ../models/teodor_grass.yaml\n");
+  REQUIRE(config.model);
+  CHECK(config.model->vehicle.name == "teodor_grass");
+  CHECK_THAT(config.effective, Catch::Contains("teodor_grass.yaml"));
+  CHECK_FALSE(read(kWorld + "model: ../models/teodor_grass.yaml\n", {"model=none"}).model);
+}
+
+TEST_CASE("a model that the simulator cannot drive is refused in one line") {
+  using Catch::Contains;
+  CHECK_THAT(refusalOf("model: ../models/warthog_nominal.yaml\n"),
+             Contains("test.yaml:2") && Contains("track speeds") && Contains("only power"));
+  CHECK_THAT(refusalOf("model: nowhere.yaml\n"), Contains("nowhere.yaml: cannot be read"));
+  CHECK_THAT(refusalOf("model: ../models/teodor_grass.yaml\nvehicle: {mass: 300}\n"),
+             Contains("test.yaml:3") && Contains("one of them"));
+}
+
+TEST_CASE("the dynamic vehicle's physical parameters are read strictly") {
+  using Catch::Contains;
+  const SimulatorConfig config =
+      read(kWorld + "vehicle: {left_power: 0.9, capacity: 50, charge: 0.5, dead_power: 0.1}\n");
+  CHECK(config.settings.robot.vehicle.left_power == 0.9);
+  CHECK(config.settings.robot.vehicle.right_power == 1.0);
+  CHECK(config.settings.robot.vehicle.drive.capacity == 50.0 * 3600.0);
+  CHECK(read(kWorld).settings.robot.vehicle.drive.capacity == DriveParameters{}.capacity);
+  CHECK_THAT(refusalOf("vehicle: {left_pover: 0.9}\n"), Contains("left_pover"));
+  CHECK_THAT(refusalOf("vehicle:\n  left_power: 3\n"), Contains("test.yaml:3"));
+  CHECK_THAT(refusalOf("vehicle:\n  empty_voltage: 30\n"),
+             Contains("test.yaml:3") && Contains("full_voltage"));
+}
+
+TEST_CASE("what is changed in the dynamic vehicle shows in its motion") {
+  const Pose2 usual = driven("", {0.8, 0.8});
+  CHECK(std::abs(usual.yaw) < 1e-6);
+  CHECK(driven("vehicle: {left_power: 0.9}\n", {0.8, 0.8}).yaw > 0.1);
+  CHECK(driven("vehicle: {right_power: 0.9}\n", {0.8, 0.8}).yaw < -0.1);
+  CHECK(driven("vehicle: {dead_power: 0.1}\n", {0.8, 0.8}).x < 0.92 * usual.x);
+  CHECK(driven("vehicle: {dead_power: 0.1}\n", {0.09, 0.09}).x == 0.0);
+  CHECK(driven("vehicle: {charge: 0.1}\n", {0.8, 0.8}).x < 0.95 * usual.x);
+  const double turned = driven("", {-0.5, 0.5}).yaw;
+  CHECK(driven("vehicle: {force_limit: 400}\n", {-0.5, 0.5}).yaw < 0.8 * turned);
+}
+
+}  // namespace tread::sim
