@@ -5,14 +5,23 @@
 #include <string>
 
 #include "common/pattern/pattern_file.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tools/patterns/advice.hpp"
 #include "tools/patterns/commands.hpp"
+#include "tools/patterns/envelope.hpp"
 
 namespace tread::patterns {
 namespace {
 
-void check(const std::string& file) {
+struct Options {
+  std::string file;
+  std::string model;
+};
+
+void check(const Options& options) {
+  const std::string& file = options.file;
   const PatternSet set = readPatternFile(file);
+  if (!options.model.empty()) warnOutside(readModelDocument(options.model), options.model, set);
   for (const std::string& line : adviceFor(set)) std::cout << file << ": warning: " << line << '\n';
   std::cout << file << ": ok, " << set.patterns().size() << " patterns, "
             << set.content().classes.size() << " classes, version " << set.version() << '\n';
@@ -21,11 +30,13 @@ void check(const std::string& file) {
 }  // namespace
 
 CLI::App* addCheck(CLI::App& app) {
-  const auto file = std::make_shared<std::string>();
+  const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "check", "say what is wrong in a pattern file (code 1), or warn of what may make trouble");
-  command->add_option("FILE", *file, "pattern file (YAML)")->required();
-  command->callback([file] { check(*file); });
+  command->add_option("FILE", options->file, "pattern file (YAML)")->required();
+  command->add_option("--model", options->model,
+                      "model file: warn of motions beyond those that it was made from, too");
+  command->callback([options] { check(*options); });
   return command;
 }
 

@@ -8,6 +8,7 @@
 #include "common/pattern/pattern_file.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/patterns/commands.hpp"
+#include "tools/patterns/envelope.hpp"
 #include "tools/patterns/output.hpp"
 #include "tools/patterns/recipe.hpp"
 #include "tools/patterns/table.hpp"
@@ -22,8 +23,9 @@ struct Options {
 };
 
 void make(const Options& options) {
-  const PatternSet set =
-      makeSet(ConfigReader::fromFile(options.recipe), readModelFile(options.model));
+  const ModelDocument model = readModelDocument(options.model);
+  const PatternSet set = makeSet(ConfigReader::fromFile(options.recipe), model.vehicle);
+  warnOutside(model, options.model, set);
   writeOutput(options.output, formatPatterns(set), {options.recipe, options.model});
   std::cout << table(set);
 }

@@ -7,19 +7,44 @@
 #include <vector>
 
 #include "common/vehicle/kernel.hpp"
+#include "common/vehicle/measurement.hpp"
 
 namespace tread::patterns {
 namespace {
+
+constexpr double kLeadIn = 3.0;  // [s], longer than any latency of an INS
 
 const char* kindName(CommandKind kind) {
   return kind == CommandKind::kPower ? "power" : "track speed";
 }
 
-recordings::Execution execute(const VehicleModel& model, const MotionPattern& pattern,
+/// What a late, askew or biased INS says of an execution, relative to what it said at its start.
+recordings::Execution seenByIns(const ModelDocument& model, const MotionPattern& pattern,
+                                double period, EntryState entry, const ExecutionNoise& noise) {
+  const auto before = static_cast<size_t>(kLeadIn / period) + 1;
+  const double begin = -period * static_cast<double>(before);
+  entry.context.session_time = begin;
+  VehicleKernel kernel(model.vehicle, entry, noise);
+  std::vector<TimedPose> motion{{begin, kernel.pose(), kernel.twist().omega}};
+  for (size_t i = 0; i < before + pattern.commands.size(); ++i) {
+    kernel.step(i < before ? entry.command : pattern.commands[i - before], period);
+    const double time = begin + period * static_cast<double>(motion.size());
+    motion.push_back({time, kernel.pose(), kernel.twist().omega});
+  }
+  const std::vector<TimedPose> said = measure(motion, model.measurement);
+  recordings::Execution seen;
+  for (size_t i = before + 1; i < said.size(); ++i)
+    seen.push_back(between(said[before].T_map_body, said[i].T_map_body));
+  return seen;
+}
+
+recordings::Execution execute(const ModelDocument& model, const MotionPattern& pattern,
                               double period, const EntryState& entry, const ModelRecording& how,
                               std::mt19937_64& random) {
-  const ExecutionNoise noise = drawNoise(model.spread, random);
-  recordings::Execution measured = simulate(model, pattern.commands, period, entry, noise);
+  const ExecutionNoise noise = drawNoise(model.vehicle.spread, random);
+  recordings::Execution measured =
+      isPerfect(model.measurement) ? simulate(model.vehicle, pattern.commands, period, entry, noise)
+                                   : seenByIns(model, pattern, period, entry, noise);
   std::normal_distribution<double> standard;
   for (Pose2& pose : measured) {
     pose.x += how.position * standard(random);
@@ -40,16 +65,20 @@ std::mt19937_64 randomFor(uint64_t seed, const std::string& surface, int pattern
 
 }  // namespace
 
-recordings::SurfaceRecordings recordModel(const PatternSet& set, const VehicleModel& model,
-                                          const std::string& surface, const ModelRecording& how) {
+void requireSameKind(const PatternSet& set, const VehicleModel& model) {
   if (model.kind != set.content().kind)
     throw std::runtime_error(std::string("the patterns command ") + kindName(set.content().kind) +
                              ", the model takes " + kindName(model.kind) +
                              "; give a model of the same vehicle");
+}
+
+recordings::SurfaceRecordings recordModel(const PatternSet& set, const ModelDocument& model,
+                                          const std::string& surface, const ModelRecording& how) {
+  requireSameKind(set, model.vehicle);
   recordings::SurfaceRecordings recorded{surface, {}};
   for (const MotionPattern& pattern : set.patterns()) {
     std::mt19937_64 random = randomFor(how.seed, surface, pattern.id);
-    const EntryState entry = steadyEntry(model, set.classNamed(pattern.entry_class).steady);
+    const EntryState entry = steadyEntry(model.vehicle, set.classNamed(pattern.entry_class).steady);
     std::vector<recordings::Execution> executions;
     for (int e = 0; e < how.executions; ++e)
       executions.push_back(execute(model, pattern, set.periodSeconds(), entry, how, random));

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "common/vehicle/model.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "tools/recordings/recordings.hpp"
 
 namespace tread::patterns {
@@ -17,12 +17,16 @@ struct ModelRecording {
   uint64_t seed = 1;
 };
 
+/// Throws std::runtime_error if a set commands another kind than a model's.
+void requireSameKind(const PatternSet& set, const VehicleModel& model);
+
 /// Executes each pattern of a set on a vehicle model, entered in the steady motion of its entry
 /// class, with the model's spread and INS noise on each sample; the start is known without error.
-/** Each pattern on each surface has a random series of its own, by its id and the surface's name:
- * other patterns and their order change nothing. Throws std::runtime_error if the set commands
- * another kind than the model's. */
-recordings::SurfaceRecordings recordModel(const PatternSet& set, const VehicleModel& model,
+/** What the model says of the INS (late, askew, biased) is in what is recorded, of the start, too;
+ * it measures from three seconds before the pattern on. Each pattern on each surface has a random
+ * series of its own, by its id and the surface's name: other patterns and their order change
+ * nothing. Throws std::runtime_error if the set commands another kind than the model's. */
+recordings::SurfaceRecordings recordModel(const PatternSet& set, const ModelDocument& model,
                                           const std::string& surface, const ModelRecording& how);
 
 }  // namespace tread::patterns

@@ -9,6 +9,7 @@
 #include "common/pattern/pattern_file.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/patterns/commands.hpp"
+#include "tools/patterns/envelope.hpp"
 #include "tools/patterns/live_run.hpp"
 #include "tools/patterns/model_recording.hpp"
 #include "tools/recordings/book_update.hpp"
@@ -50,7 +51,9 @@ void record(const Options& options) {
   } else {
     ModelRecording how = options.how;
     how.executions = options.executions;
-    surface = recordModel(set, readModelFile(options.model), options.surface, how);
+    const ModelDocument model = readModelDocument(options.model);
+    warnOutside(model, options.model, set);
+    surface = recordModel(set, model, options.surface, how);
   }
   const bool replaced = recordings::addToBook(options.book, set, surface);
   std::error_code failure;

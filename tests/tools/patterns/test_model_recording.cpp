@@ -22,8 +22,8 @@ PatternSet shipped() {
   return readPatternFile(kConfig + "patterns/teodor.yaml");
 }
 
-VehicleModel grass() {
-  return readModelFile(kConfig + "models/teodor_grass.yaml");
+ModelDocument grass() {
+  return readModelDocument(kConfig + "models/teodor_grass.yaml");
 }
 
 bool same(const recordings::Execution& a, const recordings::Execution& b) {
@@ -44,7 +44,7 @@ TEST_CASE("What a model recorded averages to what the model predicts, ends scatt
   for (const MotionPattern& pattern : averaged.patterns()) {
     INFO(pattern.name);
     MotionPattern predicted = pattern;
-    predict(grass(), set.periodSeconds(), set.classNamed(pattern.entry_class), predicted);
+    predict(grass().vehicle, set.periodSeconds(), set.classNamed(pattern.entry_class), predicted);
     CHECK(std::hypot(pattern.end().x - predicted.end().x, pattern.end().y - predicted.end().y) <
           0.012);
     CHECK(std::abs(pattern.end().yaw - predicted.end().yaw) < 0.025);
@@ -70,7 +70,41 @@ TEST_CASE("The same seed records the same, another seed or surface does not") {
 }
 
 TEST_CASE("Patterns of one vehicle are not recorded on the model of another") {
-  const VehicleModel warthog = readModelFile(kConfig + "models/warthog_nominal.yaml");
+  const ModelDocument warthog = readModelDocument(kConfig + "models/warthog_nominal.yaml");
   CHECK_THROWS_WITH(recordModel(shipped(), warthog, "x", {}),
                     Catch::Contains("the patterns command power, the model takes track speed"));
+}
+
+TEST_CASE("What the model file says of the INS is in what is recorded") {
+  ModelRecording how;
+  how.executions = 1;
+  how.position = how.yaw = 0.0;
+  ModelDocument still = grass();
+  still.vehicle.spread = {};
+  ModelDocument askew = still;
+  askew.measurement.heading_misalignment = 0.1;
+  const PatternSet set = shipped();
+  const auto plain = recordModel(set, still, "grass", how);
+  const auto seen = recordModel(set, askew, "grass", how);
+  for (size_t p = 0; p < set.patterns().size(); ++p) {
+    const Pose2& straight = plain.executions[p][0].back();
+    const Pose2& turned = seen.executions[p][0].back();
+    CAPTURE(set.patterns()[p].name);
+    CHECK(std::hypot(turned.x, turned.y) ==
+          Approx(std::hypot(straight.x, straight.y)).margin(1e-6));
+    CHECK(turned.yaw == Approx(straight.yaw).margin(1e-9));
+    if (straight.x > 0.3)
+      CHECK(std::atan2(turned.y, turned.x) - std::atan2(straight.y, straight.x) ==
+            Approx(0.1).margin(1e-6));
+  }
+  // In a steady motion a late INS says the same; while it starts it still says standing.
+  ModelDocument late = still;
+  late.measurement.ins_latency = 0.2;
+  const auto of_late = recordModel(set, late, "grass", how);
+  for (size_t p = 0; p < set.patterns().size(); ++p) {
+    const Pose2& now = plain.executions[p][0].back();
+    const Pose2& said = of_late.executions[p][0].back();
+    if (set.patterns()[p].name == "straight") CHECK(said.x == Approx(now.x).margin(1e-6));
+    if (set.patterns()[p].name == "start") CHECK(said.x < now.x - 0.15);
+  }
 }

@@ -16,6 +16,33 @@ TEST_CASE("tread-patterns makes a file that it can show") {
   CHECK(shown.says("hard_left"));
 }
 
+TEST_CASE("tread-patterns warns where patterns ask for more than a model was made from") {
+  const Folder folder;
+  std::ifstream grass(kGrass);
+  std::ofstream narrow(folder.path("narrow.yaml"));
+  narrow << grass.rdbuf() << "envelope: {v: 1.2, omega: 1.5, v_omega: 2}\n";
+  narrow.close();
+  const std::string recipe = kConfig + "patterns/recipes/teodor.yaml";
+  const Run made = run("make " + recipe + " --model " + folder.path("narrow.yaml") + " -o " +
+                       folder.path("set.yaml"));
+  CHECK(made.status == 0);
+  CHECK(made.says("narrow.yaml: warning: yaw rate up to"));
+  CHECK_FALSE(made.says("warning: speed up to"));
+  for (const std::string& arguments :
+       {"check " + kSet + " --model " + folder.path("narrow.yaml"),
+        "record " + kSet + " -n 1 --surface s --book " + folder.path("book") + " --model " +
+            folder.path("narrow.yaml")}) {
+    const Run warned = run(arguments);
+    INFO(warned.printed);
+    CHECK(warned.status == 0);
+    CHECK(warned.says("narrow.yaml: warning: yaw rate up to"));
+  }
+  CHECK_FALSE(run("check " + kSet + " --model " + kGrass).says("asked for"));
+  const Run foreign = run("check " + kSet + " --model " + kConfig + "models/warthog_nominal.yaml");
+  CHECK(foreign.status == 1);
+  CHECK(foreign.says("the model takes track speed"));
+}
+
 TEST_CASE("tread-patterns says in one line what is wrong") {
   const Run missing = run("show no/such/file.yaml");
   CHECK(missing.status == 1);
