@@ -160,6 +160,19 @@ TEST_CASE("the two vehicle models share no equations") {
   }
 }
 
+TEST_CASE("what hides effects shares no source with what finds them") {
+  for (const Include& include : includesUnder("tests/blind")) {
+    CAPTURE(include.file, include.target);
+    CHECK_FALSE(startsWith(include.target, "common/vehicle"));
+    CHECK_FALSE(startsWith(include.target, "tools/"));
+  }
+  for (const char* folder : {"common", "modules", "tools"})
+    for (const Include& include : includesUnder(folder)) {
+      CAPTURE(include.file, include.target);
+      CHECK_FALSE(startsWith(include.target, "tests/blind"));
+    }
+}
+
 TEST_CASE("only lidar_driver knows mrpt-hwdrivers") {
   for (const char* folder : {"common", "modules", "tools"})
     for (const Include& include : includesUnder(folder)) {

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/log/event_log.hpp"
+
+namespace tread::blind {
+
+/// The ways in which a log can be bad: clock_jump, frozen_ins, flipped_gyro, truncated, no_motor,
+/// two_robots.
+const std::vector<std::string>& defectNames();
+
+/// What was done to a log.
+struct Defect {
+  double keep = 1.0;  ///< share of the file's bytes that are left
+  std::string where;  ///< in words
+};
+
+/// Spoils a log. `other` is a second robot's log, needed by two_robots only. Throws
+/// std::invalid_argument for an unknown defect.
+Defect spoil(const std::string& defect, uint64_t seed, const std::vector<LogEvent>& other,
+             std::vector<LogEvent>& events);
+
+}  // namespace tread::blind

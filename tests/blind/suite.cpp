@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tests/blind/suite.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <stdexcept>
+
+#include "modules/simulator/core/random.hpp"
+#include "tests/blind/bad_log.hpp"
+#include "tests/blind/dice.hpp"
+#include "tests/blind/effect_list.hpp"
+
+namespace tread::blind {
+namespace {
+
+const char* const kNoises[] = {"low", "mid", "high"};
+
+std::vector<std::string> catalogueNames() {
+  std::vector<std::string> names;
+  for (const EffectSpec& effect : effectList())
+    if (effect.kind != EffectKind::kOutOfCatalogue) names.push_back(effect.name);
+  return names;
+}
+
+std::vector<std::string> unknownNames() {
+  std::vector<std::string> names;
+  for (const EffectSpec& effect : effectList())
+    if (effect.kind == EffectKind::kOutOfCatalogue) names.push_back(effect.name);
+  return names;
+}
+
+/// Two that can be told apart: not of one exact group, not two changes at one unknown time.
+bool fitTogether(const std::string& a, const std::string& b) {
+  if (a == b) return false;
+  for (const char* other : effectNamed(a).group)
+    if (std::string(other).find(b) != std::string::npos) return false;
+  const auto changes = [](const std::string& name) {
+    return name == "payload_change" || name == "terrain_change";
+  };
+  return !(changes(a) && changes(b));
+}
+
+class SuiteMaker {
+ public:
+  SuiteMaker(double minutes, uint64_t seed)
+      : minutes_(minutes), seed_(seed), dice_(sim::streamSeed(seed, kSuiteStream)) {}
+
+  CasePlan& add(CaseKind kind, const std::vector<std::string>& effects, double size,
+                const std::string& noise) {
+    CasePlan plan;
+    plan.kind = kind;
+    plan.effects = effects;
+    plan.size = size;
+    plan.noise = noise;
+    plan.minutes = minutes_;
+    plan.seed = sim::streamSeed(seed_, 1000 + plans_.size());
+    plans_.push_back(plan);
+    return plans_.back();
+  }
+
+  void addNulls(int count) {
+    for (int i = 0; i < count; ++i) add(CaseKind::kNull, {}, 0.0, kNoises[1 + i % 2]);
+  }
+
+  void addPairs(int count) {
+    const std::vector<std::string> names = catalogueNames();
+    while (count > 0) {
+      const std::string a = names[static_cast<size_t>(dice_.below(static_cast<int>(names.size())))];
+      const std::string b = names[static_cast<size_t>(dice_.below(static_cast<int>(names.size())))];
+      if (!fitTogether(a, b)) continue;
+      add(CaseKind::kPair, {a, b}, count % 2 == 0 ? 2.0 : 4.0, "mid");
+      --count;
+    }
+  }
+
+  void addUnknown(int rounds) {
+    for (int i = 0; i < rounds; ++i)
+      for (const std::string& name : unknownNames())
+        add(CaseKind::kUnknown, {name}, i % 2 == 0 ? 2.0 : 4.0, kNoises[i / 2 % 3]);
+  }
+
+  void addDegenerate(int rounds) {
+    for (int i = 0; i < rounds; ++i)
+      for (const DegenerateGroup& group : degenerateGroups()) {
+        const auto pick = static_cast<size_t>(i) % group.members.size();
+        CasePlan& plan = add(CaseKind::kDegenerate, {group.members[pick]}, 4.0, kNoises[i % 2]);
+        plan.group = group.members;
+        plan.choice = group.choice;
+      }
+  }
+
+  void addBad(int rounds) {
+    for (int i = 0; i < rounds; ++i)
+      for (const std::string& defect : defectNames())
+        add(CaseKind::kBad, {}, 0.0, "mid").defect = defect;
+  }
+
+  /// Names in an order that tells nothing.
+  std::vector<CasePlan> shuffled() {
+    std::vector<size_t> numbers;
+    for (size_t i = 0; i < plans_.size(); ++i) numbers.push_back(i + 1);
+    for (size_t i = numbers.size(); i > 1; --i)
+      std::swap(numbers[i - 1], numbers[static_cast<size_t>(dice_.below(static_cast<int>(i)))]);
+    for (size_t i = 0; i < plans_.size(); ++i) {
+      char name[16];
+      std::snprintf(name, sizeof name, "%04zu", numbers[i]);
+      plans_[i].name = name;
+    }
+    std::sort(plans_.begin(), plans_.end(),
+              [](const CasePlan& a, const CasePlan& b) { return a.name < b.name; });
+    return std::move(plans_);
+  }
+
+ private:
+  double minutes_;
+  uint64_t seed_;
+  Dice dice_;
+  std::vector<CasePlan> plans_;
+};
+
+}  // namespace
+
+const std::vector<DegenerateGroup>& degenerateGroups() {
+  static const std::vector<DegenerateGroup> groups{
+      {{"icr_offset", "lever_arm_x"}, Choice::kFull},
+      {{"centrifugal_drift", "heading_latency"}, Choice::kFull},
+      {{"command_delay", "ins_latency"}, Choice::kFull},
+      {{"position_scale", "slip_ratio"}, Choice::kFull},
+      {{"slip_ratio", "motor_deadband", "rolling_resistance", "quadratic_drag"}, Choice::kOneSpeed},
+      {{"track_width", "yaw_rate_skid", "yaw_breakaway", "speed_understeer"}, Choice::kOneSpeed},
+      {{"track_asymmetry", "yaw_pull"}, Choice::kForward},
+  };
+  return groups;
+}
+
+std::vector<CasePlan> suiteOf(const std::string& name, double minutes, uint64_t seed) {
+  SuiteMaker maker(minutes, seed);
+  if (name == "full") {
+    for (const std::string& effect : catalogueNames())
+      for (const double size : {1.0, 2.0, 4.0})
+        for (const char* noise : kNoises) maker.add(CaseKind::kSingle, {effect}, size, noise);
+    maker.addNulls(400);
+    maker.addPairs(200);
+    maker.addUnknown(24);
+    maker.addDegenerate(14);
+    maker.addBad(8);
+  } else if (name == "small") {
+    for (const char* effect :
+         {"track_asymmetry", "motor_deadband", "yaw_breakaway", "command_delay", "battery_sag",
+          "slope_pitch", "turn_power_limit", "icr_offset", "ins_latency", "gyro_bias"})
+      maker.add(CaseKind::kSingle, {effect}, 2.0, "mid");
+    maker.addNulls(4);
+    maker.addPairs(2);
+    maker.addUnknown(1);
+    maker.addBad(1);
+  } else {
+    throw std::invalid_argument("suite '" + name + "' is neither small nor full");
+  }
+  return maker.shuffled();
+}
+
+}  // namespace tread::blind

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/blind/blind_case.hpp"
+
+namespace tread::blind {
+
+/// One group that no drive of a kind can tell apart.
+struct DegenerateGroup {
+  std::vector<std::string> members;  ///< effects that can be hidden; all are right answers
+  Choice choice = Choice::kFull;     ///< drives in which they are alike
+};
+
+/// Groups after gap.md Part 2: exact ones, then those of poor drives.
+const std::vector<DegenerateGroup>& degenerateGroups();
+
+/// All cases of a suite, small or full, in the order of their shuffled names. Throws
+/// std::invalid_argument for another name. Same seed, same cases.
+std::vector<CasePlan> suiteOf(const std::string& name, double minutes, uint64_t seed);
+
+}  // namespace tread::blind

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "modules/simulator/core/terrain.hpp"
+#include "modules/simulator/core/vehicle.hpp"
+
+// The plain vehicle: a Teodor's body and tracks with a stiff drive on even, tough ground. Its own
+// physics are left in it, but those that a catalogue would name are small: hardly any dry friction,
+// a balanced body, a battery that does not fade.
+namespace tread::blind {
+
+/// How much is uncertain in a log, one sigma.
+struct NoiseLevel {
+  std::string name;
+  double gyro_bin = 0.0;  ///< yaw rate averaged over 0.25 s [rad/s]
+  double fix = 0.0;       ///< position, per axis [m]
+  double heading = 0.0;   ///< [rad]
+  double terrain = 0.0;   ///< of speed and of yaw rate from pattern to pattern [1]
+};
+
+/// low, mid or high; nothing for another name.
+std::optional<NoiseLevel> noiseLevel(const std::string& name);
+
+sim::VehicleParameters plainVehicle();
+sim::SurfaceParameters plainSurface();
+
+/// Waves of the ground with slopes of about 5 degrees. They tilt the INS; the plain vehicle does
+/// not mind them.
+sim::Terrain rollingTerrain(uint64_t seed);
+
+/// Loss of forward drive force per speed of the plain vehicle [N s/m].
+double forwardDamping();
+/// Loss of yaw moment per yaw rate of the plain vehicle [N m s].
+double yawDamping();
+/// Side force per sideways speed of the plain vehicle [N s/m].
+double sideDamping();
+
+}  // namespace tread::blind
