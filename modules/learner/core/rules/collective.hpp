@@ -2,33 +2,9 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include "modules/learner/core/rules/stored_predictions.hpp"
+#include "modules/learner/core/rules/scaling_rule.hpp"
 
 namespace tread::learner {
-
-/// Whether an execution of a pattern may tell the others how to scale.
-class ScalingGuards {
- public:
-  ScalingGuards(const RuleConfig& config, const PatternSet& shipped);
-
-  /// Whether a box is one that a vehicle can drive; what is not must not become a prediction.
-  static bool possible(const Axes& box) { return (box < kLargestBox).all(); }
-  /// Fills the guards of `note`; true if a V may be computed from this measurement.
-  bool allow(size_t executed, const ConstTrajectory& measured, const Pose2& predicted_end,
-             RuleNote& note) const;
-  const PatternRole& role(size_t pattern) const { return roles_[pattern]; }
-
- private:
-  static constexpr double kLargestBox = 1e6;  ///< [m, m, rad]
-
-  bool opposite(size_t executed, int axis, double measured, double predicted) const;
-
-  std::vector<PatternRole> roles_;
-  std::vector<Axes> variances_;  ///< of the shipped ends; NaN = unknown
-  Axes relative_noise_;
-  Axes absolute_noise_;
-  double sign_sigmas_;
-};
 
 /// Collective Motion Pattern Scaling, the paper's algorithm (section IV, Algorithm 1; Table I
 /// column c).
@@ -44,23 +20,19 @@ class ScalingGuards {
  * because the mean of a quotient of noisy boxes is not 1 (telescoping.hpp has none of it); and as
  * every pattern gets the same factor, the ratios between patterns stay those of the shipped set for
  * ever, also where all are measured exactly (telescoping has that, too). */
-class Collective : public StoredPredictions {
+class Collective : public ScalingRule {
  public:
-  Collective(const RuleConfig& config, const PatternSet& shipped)
-      : StoredPredictions(shipped),
-        guards_(config, shipped),
-        limits_(config.scaling),
-        memory_(config.memory) {}
+  using ScalingRule::ScalingRule;
 
-  void learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) override;
   std::unique_ptr<LearningRule> clone() const override {
     return std::make_unique<Collective>(*this);
   }
 
- private:
-  ScalingGuards guards_;
-  ScalingLimits limits_;
-  double memory_;
+ protected:
+  Axes factors(const Boxes& boxes, const PatternRole& role, RuleNote& note) const override {
+    note.scaling = scalingVector(boxes.measured, boxes.before, role, limits_);  // equation (1)
+    return (1.0 - memory_) * note.scaling + memory_;  // equation (2) with M = V R
+  }
 };
 
 }  // namespace tread::learner

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include "modules/learner/core/rules/collective.hpp"
+#include "modules/learner/core/rules/scaling_rule.hpp"
 
 namespace tread::learner {
 
@@ -12,23 +12,19 @@ namespace tread::learner {
  *    R_p <- R_p box(R*_new) / box(R*_old)   for every other pattern p, axis by axis
  * Over many executions the quotients telescope to box(R*_now) / box(R*_first): what the others got
  * is never more than what the executed pattern itself learned. */
-class Telescoping : public StoredPredictions {
+class Telescoping : public ScalingRule {
  public:
-  Telescoping(const RuleConfig& config, const PatternSet& shipped)
-      : StoredPredictions(shipped),
-        guards_(config, shipped),
-        limits_(config.scaling),
-        memory_(config.memory) {}
+  using ScalingRule::ScalingRule;
 
-  void learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) override;
   std::unique_ptr<LearningRule> clone() const override {
     return std::make_unique<Telescoping>(*this);
   }
 
- private:
-  ScalingGuards guards_;
-  ScalingLimits limits_;
-  double memory_;
+ protected:
+  Axes factors(const Boxes& boxes, const PatternRole& role, RuleNote& note) const override {
+    note.scaling = scalingVector(boxes.after, boxes.before, role, limits_);
+    return note.scaling;
+  }
 };
 
 }  // namespace tread::learner

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/learner/core/rules/collective.hpp"
+#include "modules/learner/core/rules/scaling_rule.hpp"
 
 #include <cmath>
 
@@ -39,19 +39,18 @@ bool ScalingGuards::allow(size_t executed, const ConstTrajectory& measured,
   return true;
 }
 
-void Collective::learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) {
-  const Axes box = boundingBox(measured);
-  if (!ScalingGuards::possible(box)) return;
+void ScalingRule::learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) {
+  Boxes boxes;
+  boxes.measured = boundingBox(measured);
+  if (!ScalingGuards::possible(boxes.measured)) return;
   const bool gives = guards_.allow(executed, measured, table_.end(executed), note);
-  if (gives)
-    note.scaling = scalingVector(box, boundingBox(table_.of(executed)), guards_.role(executed),
-                                 limits_);             // equation (1)
+  boxes.before = boundingBox(table_.of(executed));
   smooth(measured, memory_, table_.change(executed));  // equation (2)
   if (!gives) return;
-  // Equation (2) with M = V R: one factor for each axis.
-  const Axes blended = (1.0 - memory_) * note.scaling + memory_;
+  boxes.after = boundingBox(table_.of(executed));
+  const Axes scaling = factors(boxes, guards_.role(executed), note);
   for (size_t p = 0; p < table_.patterns(); ++p)
-    if (p != executed) scale(blended, guards_.role(p), table_.change(p));
+    if (p != executed) scale(scaling, guards_.role(p), table_.change(p));
 }
 
 }  // namespace tread::learner
