@@ -23,11 +23,11 @@ struct CommandSample {
 
 /// What the INS said at a moment.
 struct InsSample {
-  double time = 0.0;             ///< [s] of the measurement, since the log's first message
+  double time = 0.0;   ///< [s] of the measurement, since the log's first message
   Pose2 T_map_body{};  ///< yaw unwrapped within a stretch; all NaN where only the gyro spoke
-  double omega = kNotMeasured;   ///< [rad/s] of the gyro
-  double roll = kNotMeasured;    ///< [rad] left side up positive
-  double pitch = kNotMeasured;   ///< [rad] nose down positive
+  double omega = kNotMeasured;  ///< [rad/s] of the gyro
+  double roll = kNotMeasured;   ///< [rad] left side up positive
+  double pitch = kNotMeasured;  ///< [rad] nose down positive
 };
 
 /// Driving without a gap: commands known throughout, one track of the INS.
@@ -76,11 +76,11 @@ struct Drive {
   std::string name;    ///< file name of the log
   std::string sha256;  ///< of the file
   CommandKind kind = CommandKind::kPower;
-  std::vector<Stretch> stretches;      ///< in order of time
-  std::vector<Execution> executions;   ///< in order of time; 2 s pieces where the log names none
-  std::vector<VoltageSample> voltage;  ///< empty = not measured
-  std::vector<EncoderSample> encoders; ///< empty = there are none
-  std::vector<HygieneNote> notes;      ///< what the reader noticed; checkHygiene() repeats them
+  std::vector<Stretch> stretches;       ///< in order of time
+  std::vector<Execution> executions;    ///< in order of time; 2 s pieces where the log names none
+  std::vector<VoltageSample> voltage;   ///< empty = not measured
+  std::vector<EncoderSample> encoders;  ///< empty = there are none
+  std::vector<HygieneNote> notes;       ///< what the reader noticed; checkHygiene() repeats them
 
   /// Seconds of driving.
   double driven() const {

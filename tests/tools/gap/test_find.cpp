@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include "synthetic_drive.hpp"
+#include "tools/gap/core/discovery.hpp"
+
+using namespace tread;
+using namespace tread::gap;
+
+namespace {
+
+const Progress kSilent = [](const std::string&) {};
+
+/// What is found on a drive of the synthetic vehicle in which numbers were changed.
+Finding findAfter(const std::vector<std::pair<std::string, double>>& hidden, double seconds,
+                  uint64_t seed, int threads = 2) {
+  ModelDocument truth = syntheticVehicle();
+  for (const auto& [path, value] : hidden) *findParameter(truth, path) = value;
+  GapTask task;
+  task.model = syntheticVehicle();
+  task.seed = seed;
+  task.threads = threads;
+  task.train.push_back(syntheticDrive(truth, seconds, seed));
+  return findGap(task, kSilent);
+}
+
+std::vector<std::string> namesIn(const Finding& finding) {
+  std::vector<std::string> names;
+  for (const FoundEffect& effect : finding.effects) names.push_back(effect.name);
+  return names;
+}
+
+using Names = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("a drive of the model itself shows no discrepancy, and says what it would have seen") {
+  const Finding finding = findAfter({}, 400.0, 3);
+  CHECK(finding.verdict == Verdict::kNoDiscrepancy);
+  CHECK(finding.effects.empty());
+  REQUIRE(!finding.candidates.empty());
+  REQUIRE(finding.gap);
+  CHECK(finding.gap->after.position.median == Approx(finding.gap->before.position.median));
+}
+
+TEST_CASE("a hidden effect of the drive is named, sized within its interval, and closes the gap") {
+  const Finding finding = findAfter({{"motor_deadband.speed", 0.1}}, 400.0, 2);
+  CHECK(finding.verdict == Verdict::kFound);
+  REQUIRE(namesIn(finding) == Names{"motor_deadband"});
+  const Estimate& speed = finding.effects[0].parameters.at(0);
+  CHECK(speed.value == Approx(0.1).margin(0.01));
+  CHECK(speed.low < speed.value);
+  CHECK(speed.value < speed.high);
+  CHECK(finding.after.vehicle.effects.motor_deadband == speed.value);
+  REQUIRE(finding.gap);
+  CHECK(finding.gap->after.position.median < 0.5 * finding.gap->before.position.median);
+}
+
+TEST_CASE("an effect of the calibrated set that the model lacks is found, not swallowed") {
+  CHECK(namesIn(findAfter({{"slip_ratio.slip", 0.1}}, 400.0, 4)) == Names{"slip_ratio"});
+}
+
+TEST_CASE("what the INS does is named as the INS's") {
+  const Finding finding = findAfter({{"lever_arm_y.offset", 0.1}}, 400.0, 5);
+  CHECK(finding.verdict == Verdict::kMeasurement);
+  CHECK(namesIn(finding) == Names{"lever_arm_y"});
+  CHECK(finding.after.vehicle.effects.icr_offset == 0.0);
+}
+
+TEST_CASE("what no drive can tell apart is ambiguous, with both names") {
+  const Finding finding = findAfter({{"icr_offset.offset", 0.1}}, 400.0, 6);
+  CHECK(finding.verdict == Verdict::kAmbiguous);
+  REQUIRE(finding.effects.size() == 1);
+  Names both = finding.effects[0].group;
+  both.push_back(finding.effects[0].name);
+  std::sort(both.begin(), both.end());
+  CHECK(both == Names{"icr_offset", "lever_arm_x"});
+}
+
+TEST_CASE("two hidden effects are both named") {
+  Names names = namesIn(
+      findAfter({{"track_asymmetry.share", 0.05}, {"centrifugal_drift.time", 0.2}}, 500.0, 7));
+  std::sort(names.begin(), names.end());
+  CHECK(names == Names{"centrifugal_drift", "track_asymmetry"});
+}
+
+TEST_CASE("a drive of two minutes is too short to tell chance from cause") {
+  const Finding finding = findAfter({{"motor_deadband.speed", 0.1}}, 120.0, 8);
+  CHECK(finding.verdict == Verdict::kCannotTell);
+  CHECK(finding.reason.find("drive at least 200 s") != std::string::npos);
+}
+
+TEST_CASE("the number of threads does not change a bit of what is found") {
+  const Finding one = findAfter({{"yaw_pull.pull", 0.06}}, 300.0, 9, 1);
+  const Finding three = findAfter({{"yaw_pull.pull", 0.06}}, 300.0, 9, 3);
+  REQUIRE(namesIn(one) == namesIn(three));
+  REQUIRE(!one.effects.empty());
+  for (size_t i = 0; i < one.effects[0].parameters.size(); ++i) {
+    CHECK(one.effects[0].parameters[i].value == three.effects[0].parameters[i].value);
+    CHECK(one.effects[0].parameters[i].low == three.effects[0].parameters[i].low);
+  }
+  CHECK(one.gap->after.yaw.rms == three.gap->after.yaw.rms);
+}

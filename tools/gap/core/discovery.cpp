@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/gap/core/discovery.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "common/vehicle/degeneracy.hpp"
+#include "tools/gap/core/adequacy.hpp"
+#include "tools/gap/core/atlas.hpp"
+#include "tools/gap/core/end_errors.hpp"
+
+namespace tread::gap {
+namespace {
+
+constexpr int kLeastBlocks = 10;
+constexpr int kLeastHalf = 6;            // blocks from which effects can be chosen, too
+constexpr double kAdequacyAlpha = 0.01;  // with the tests' 2 %: 3 % false alarms altogether
+constexpr double kInvisible = 2.0;       // times its typical size: not excited
+
+std::string text(const char* format, double a, double b) {
+  char line[200];
+  std::snprintf(line, sizeof line, format, a, b);
+  return line;
+}
+
+class Discovery {
+ public:
+  Discovery(const GapTask& task, const Progress& say)
+      : task_(task),
+        say_(say),
+        rows_(task.train, {}),
+        fitter_(rows_, task.threads),
+        all_(rows_.rows().size(), 1) {
+    settings_.seed = task.seed;
+  }
+
+  Finding run() {
+    finding_.seed = task_.seed;
+    finding_.before = task_.model;
+    finding_.after = task_.model;
+    finding_.hygiene = task_.hygiene;
+    finding_.blocks = static_cast<size_t>(rows_.blocks());
+    finding_.block_length = rows_.blockLength();
+    if (cannotTell()) return std::move(finding_);
+    say_(text("1 calibrate: %.0f rows in %.0f blocks", static_cast<double>(rows_.rows().size()),
+              rows_.blocks()));
+    say_("2-5 test, refit, validate, prune");
+    result_ = search(fitter_, task_.model, all_, settings_, say_);
+    finding_.after = result_.state.model;
+    describeEffects();
+    say_("6 adequacy");
+    const Adequacy adequacy =
+        testAdequacy(fitter_, result_.state, all_, kAdequacyAlpha, task_.seed);
+    finding_.adequacy_p = adequacy.p_value;
+    finding_.unexplained = adequacy.unexplained;
+    say_("7 error on driving that was not used");
+    finding_.gap = task_.test.empty() ? nestedGap() : testGap();
+    finding_.atlas = residualAtlas(rows_, task_.model, finding_.after);
+    finding_.overlays = overlays();
+    judge();
+    return std::move(finding_);
+  }
+
+ private:
+  bool cannotTell() {
+    finding_.verdict = Verdict::kCannotTell;
+    for (const HygieneNote& note : task_.hygiene)
+      if (note.fatal) {
+        finding_.reason = note.log + ": " + note.what;
+        return true;
+      }
+    if (rows_.blocks() >= kLeastBlocks && !rows_.rows().empty()) return false;
+    double driven = 0.0;
+    for (const Drive& drive : task_.train) driven += drive.driven();
+    finding_.reason =
+        text("only %.0f s of driving, too little to tell chance from cause: drive at least %.0f s",
+             driven, kLeastBlocks * RowSettings{}.block);
+    return true;
+  }
+
+  void describeEffects() {
+    const FitState& state = result_.state;
+    const Eigen::MatrixXd covariance = parameterCovariance(rows_, state, all_);
+    const double quantile = studentQuantile(rows_.blocks() - 1);
+    std::map<std::string, std::vector<Estimate>> estimates;
+    for (size_t i = 0; i < state.free.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      const Estimate estimate = estimateOf(state.free[i], quantile * std::sqrt(covariance(at, at)));
+      const std::string effect = state.free[i].path.substr(0, state.free[i].path.find('.'));
+      if (isNew(effect))
+        estimates[effect].push_back(estimate);
+      else
+        finding_.calibrated.push_back(estimate);
+    }
+    for (const std::string& name : result_.effects) describe(name, estimates[name]);
+    finding_.negligible = result_.negligible;
+    finding_.ladder = result_.ladder;
+    finding_.candidates = result_.tests;
+    for (const CandidateTest& test : result_.tests)
+      if (test.detectable >
+          kInvisible * std::abs(parameterNamed(effectNamed(test.effect), test.parameter).typical))
+        finding_.not_excited.push_back(test.effect);
+    documentAfter(covariance);
+  }
+
+  bool isNew(const std::string& effect) const {
+    return std::find(result_.effects.begin(), result_.effects.end(), effect) !=
+           result_.effects.end();
+  }
+
+  Estimate estimateOf(const FreeParameter& parameter, double half) const {
+    Estimate estimate;
+    estimate.parameter = parameter.path;
+    estimate.value = *findParameter(result_.state.model, parameter.path);
+    estimate.before = *findParameter(task_.model, parameter.path);
+    estimate.low = estimate.value - half;
+    estimate.high = estimate.value + half;
+    const size_t dot = parameter.path.find('.');
+    if (dot != std::string::npos)
+      estimate.unit =
+          parameterNamed(effectNamed(parameter.path.substr(0, dot)), parameter.path.substr(dot + 1))
+              .unit;
+    else
+      estimate.unit = parameter.path == "lag" || parameter.path == "delay" ? "s" : "1";
+    return estimate;
+  }
+
+  void describe(const std::string& name, std::vector<Estimate> parameters) {
+    FoundEffect effect;
+    effect.name = name;
+    effect.kind = effectNamed(name).kind;
+    effect.parameters = std::move(parameters);
+    effect.group = twinsOf(name, result_.state.model);
+    effect.runner_ups = result_.runner_ups[name];
+    effect.score = result_.scores[name];
+    effect.p_value = result_.p_values[name];
+    effect.gain = result_.gains[name].value;
+    effect.gain_error = result_.gains[name].error;
+    finding_.effects.push_back(std::move(effect));
+  }
+
+  void documentAfter(const Eigen::MatrixXd& covariance) {
+    ParameterCovariance& known = finding_.after.covariance;
+    known = {};
+    std::vector<Eigen::Index> sure;
+    for (size_t i = 0; i < result_.state.free.size(); ++i) {
+      const FreeParameter& parameter = result_.state.free[i];
+      const auto at = static_cast<Eigen::Index>(i);
+      if (!(std::sqrt(covariance(at, at)) < parameter.max - parameter.min)) continue;
+      known.parameters.push_back(parameter.path);
+      sure.push_back(at);
+    }
+    for (Eigen::Index i : sure) {
+      known.matrix.emplace_back();
+      for (Eigen::Index j : sure) known.matrix.back().push_back(covariance(i, j));
+    }
+    Envelope envelope;
+    for (const auto& motion : rows_.simulate(finding_.after.vehicle))
+      for (size_t i = 1; i < motion.size(); ++i) {
+        const double dt = motion[i].time - motion[i - 1].time;
+        if (dt > 0.0)
+          envelope.include(twistTo(between(motion[i - 1].T_map_body, motion[i].T_map_body), dt));
+      }
+    finding_.after.envelope = envelope;
+  }
+
+  Gap testGap() const {
+    Gap gap;
+    const Rows test(task_.test, {});
+    const auto every = [](const EndError&) { return true; };
+    gap.before = summaryOf(endErrors(test, task_.model), every);
+    gap.after = summaryOf(endErrors(test, finding_.after), every);
+    return gap;
+  }
+
+  /// Alternate blocks: what one half found is judged by the other.
+  Gap nestedGap() {
+    Gap gap;
+    gap.structure_nested = rows_.blocks() >= 2 * kLeastHalf;
+    gap.before = summaryOf(endErrors(rows_, task_.model), [](const EndError&) { return true; });
+    std::vector<EndError> outside;
+    const Progress silent = [](const std::string&) {};
+    for (int half : {0, 1}) {
+      std::vector<char> mask(all_.size());
+      for (size_t i = 0; i < mask.size(); ++i) mask[i] = rows_.rows()[i].block % 2 == half;
+      const ModelDocument model =
+          gap.structure_nested ? search(fitter_, task_.model, mask, settings_, silent).state.model
+                               : refitted(fitter_, result_, mask).model;
+      for (const EndError& error : endErrors(rows_, model))
+        if (error.block % 2 != half) outside.push_back(error);
+    }
+    gap.after = summaryOf(outside, [](const EndError&) { return true; });
+    return gap;
+  }
+
+  /// Six of the middle and the three worst (by the new model's error).
+  std::vector<Overlay> overlays() const {
+    std::vector<EndError> errors = endErrors(rows_, finding_.after);
+    std::stable_sort(errors.begin(), errors.end(),
+                     [](const EndError& a, const EndError& b) { return a.position < b.position; });
+    std::vector<Overlay> chosen;
+    const size_t count = errors.size();
+    const size_t typical = std::min<size_t>(6, count);
+    for (size_t i = 0; i < typical; ++i)
+      chosen.push_back(overlayOf(rows_, errors[count * (i + 1) / 8], task_.model, finding_.after));
+    for (size_t i = 0; i < std::min<size_t>(3, count); ++i)
+      chosen.push_back(overlayOf(rows_, errors[count - 1 - i], task_.model, finding_.after));
+    return chosen;
+  }
+
+  static bool isAmbiguous(const FoundEffect& effect) {
+    if (!effect.group.empty()) return true;
+    return std::any_of(effect.runner_ups.begin(), effect.runner_ups.end(),
+                       [](const RunnerUp& other) { return other.behind < other.error; });
+  }
+
+  void judge() {
+    const bool adequate = finding_.adequacy_p > kAdequacyAlpha;
+    const auto& effects = finding_.effects;
+    if (effects.empty()) {
+      finding_.verdict = adequate ? Verdict::kNoDiscrepancy : Verdict::kNotInCatalogue;
+    } else if (!adequate) {
+      finding_.verdict = Verdict::kPartial;
+    } else if (std::any_of(effects.begin(), effects.end(), isAmbiguous)) {
+      finding_.verdict = Verdict::kAmbiguous;
+    } else if (std::all_of(effects.begin(), effects.end(), [](const FoundEffect& effect) {
+                 return effect.kind == EffectKind::kMeasurement;
+               })) {
+      finding_.verdict = Verdict::kMeasurement;
+    } else {
+      finding_.verdict = Verdict::kFound;
+    }
+    for (const Estimate& estimate : finding_.calibrated) {
+      if (onBound(finding_.after, freeParameter(task_.model, estimate.parameter)) &&
+          estimate.value != 0.0) {
+        finding_.verdict = Verdict::kCannotTell;
+        finding_.reason = estimate.parameter + " runs to the end of its plausible range";
+      }
+    }
+  }
+
+  const GapTask& task_;
+  const Progress& say_;
+  Rows rows_;
+  Fitter fitter_;
+  std::vector<char> all_;
+  SearchSettings settings_;
+  SearchResult result_;
+  Finding finding_;
+};
+
+}  // namespace
+
+std::vector<std::string> twinsOf(const std::string& effect, const ModelDocument& model) {
+  std::vector<std::string> twins;
+  for (const DegeneracyGroup* group : groupsOf(effect)) {
+    const bool late = group->name == "late" &&
+                      (effect == "command_delay" || model.measurement.ins_latency_gyro > 0.5);
+    const bool change = group->name == "payload_or_ground";
+    if ((!group->when.empty() && !late && !change) || group->name == "scale") continue;
+    for (const std::string& member : group->members) {
+      const auto& catalogue = effectCatalogue();
+      const bool is_effect =
+          std::any_of(catalogue.begin(), catalogue.end(),
+                      [&member](const Effect& known) { return known.name == member; });
+      if (is_effect && member != effect) twins.push_back(member);
+    }
+  }
+  return twins;
+}
+
+Finding findGap(const GapTask& task, const Progress& say) {
+  return Discovery(task, say).run();
+}
+
+}  // namespace tread::gap

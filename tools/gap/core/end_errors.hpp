@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "tools/gap/core/finding.hpp"
+#include "tools/gap/core/rows.hpp"
+
+namespace tread::gap {
+
+/// Prediction less measurement at the end of one execution, in the frame of its beginning.
+struct EndError {
+  size_t drive = 0;
+  Execution execution;
+  int block = 0;
+  double position = 0.0;  ///< [m], scaled to the horizon
+  double yaw = 0.0;       ///< [rad], scaled to the horizon, not wrapped
+};
+
+/// The horizon over which errors are told [s].
+inline constexpr double kHorizon = 2.0;
+
+/// Errors of a model on all executions that have fixes near their beginning and end.
+/** The simulation runs open loop through the whole stretch, so that an execution begins in the
+ * state that the commands before it led to. Lengths between .75 and 1.25 of the horizon count. */
+std::vector<EndError> endErrors(const Rows& rows, const ModelDocument& model);
+
+/// Median and root mean square of those that `counts`.
+EndErrors summaryOf(const std::vector<EndError>& errors,
+                    const std::function<bool(const EndError&)>& counts);
+
+/// One execution as measured and as two models predict it.
+Overlay overlayOf(const Rows& rows, const EndError& of, const ModelDocument& before,
+                  const ModelDocument& after);
+
+}  // namespace tread::gap

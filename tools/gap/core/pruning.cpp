@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/gap/core/pruning.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "tools/gap/core/end_errors.hpp"
+
+namespace tread::gap {
+namespace {
+
+/// What removing an effect costs.
+struct Removal {
+  FitState state;      ///< without it
+  double score = 0.0;  ///< T of the whole effect in the presence of the others
+  Gain gain;           ///< of having it, on blocks left out
+};
+
+bool belongsTo(const FreeParameter& parameter, const std::string& effect) {
+  return parameter.path.compare(0, effect.size() + 1, effect + ".") == 0;
+}
+
+/// The effect of one model put into another.
+ModelDocument withEffectOf(const ModelDocument& model, const ModelDocument& source,
+                           const std::string& effect) {
+  ModelDocument changed = model;
+  for (const EffectParameter& parameter : effectNamed(effect).parameters) {
+    const std::string path = effect + "." + parameter.name;
+    *findParameter(changed, path) = *findParameter(source, path);
+  }
+  return changed;
+}
+
+Removal removal(const Fitter& fitter, const FitState& state, const std::string& effect,
+                const std::vector<char>& mask) {
+  Removal removed;
+  removed.state = without(fitter, state, effect, mask);
+  const Eigen::VectorXd direction =
+      fitter.secant(removed.state, withEffectOf(removed.state.model, state.model, effect), 1.0);
+  const ScoreTest test(fitter.rows(), removed.state, direction, mask);
+  removed.score = test.score(0);
+  removed.gain =
+      gainOf(heldOutLoss(fitter.rows(), removed.state, mask),
+             heldOutLoss(fitter.rows(), state, mask), blocksThatCount(fitter.rows(), mask));
+  return removed;
+}
+
+/// Largest relative improvement of the end errors on executions of the mask's blocks.
+double improvement(const Fitter& fitter, const ModelDocument& old_model,
+                   const ModelDocument& new_model, const std::vector<char>& mask) {
+  const std::vector<char> blocks = blocksThatCount(fitter.rows(), mask);
+  const auto counts = [&blocks](const EndError& e) {
+    return blocks[static_cast<size_t>(e.block)] != 0;
+  };
+  const EndErrors old_errors = summaryOf(endErrors(fitter.rows(), old_model), counts);
+  const EndErrors new_errors = summaryOf(endErrors(fitter.rows(), new_model), counts);
+  double largest = 0.0;
+  for (const auto& [before, after] :
+       {std::pair{old_errors.position.median, new_errors.position.median},
+        std::pair{old_errors.position.rms, new_errors.position.rms},
+        std::pair{old_errors.yaw.median, new_errors.yaw.median},
+        std::pair{old_errors.yaw.rms, new_errors.yaw.rms}})
+    if (before > 0.0) largest = std::max(largest, 1.0 - after / before);
+  return largest;
+}
+
+/// Effects by how sure their strongest parameter is, least sure first.
+std::vector<std::string> leastSureFirst(const Fitter& fitter, const SearchResult& result,
+                                        const std::vector<char>& mask) {
+  const Eigen::MatrixXd covariance = parameterCovariance(fitter.rows(), result.state, mask);
+  std::map<std::string, double> sure;
+  for (size_t i = 0; i < result.state.free.size(); ++i)
+    for (const std::string& effect : result.effects) {
+      const FreeParameter& parameter = result.state.free[i];
+      if (!belongsTo(parameter, effect)) continue;
+      const auto at = static_cast<Eigen::Index>(i);
+      const double value = *findParameter(result.state.model, parameter.path);
+      const bool time = parameter.path.find(".time") != std::string::npos;
+      if (!time)
+        sure[effect] = std::max(sure[effect], std::abs(value) / std::sqrt(covariance(at, at)));
+    }
+  std::vector<std::string> order = result.effects;
+  std::stable_sort(order.begin(), order.end(),
+                   [&sure](const auto& a, const auto& b) { return sure[a] < sure[b]; });
+  return order;
+}
+
+class Pruning {
+ public:
+  Pruning(const Fitter& fitter, const std::vector<char>& mask, double needed, double least_gain,
+          SearchResult& result, const Progress& say)
+      : fitter_(fitter),
+        mask_(mask),
+        needed_(needed),
+        least_gain_(least_gain),
+        result_(result),
+        say_(say) {}
+
+  void run() {
+    while (removeOne()) continue;
+  }
+
+ private:
+  /// Looks at all, least sure first; true if one went.
+  bool removeOne() {
+    for (const std::string& effect : leastSureFirst(fitter_, result_, mask_)) {
+      Removal removed = removal(fitter_, result_.state, effect, mask_);
+      std::string why;
+      if (std::abs(removed.score) < needed_)
+        why = "chance explains it beside the others";
+      else if (removed.gain.value <= 0.0)
+        why = "does not help on blocks left out";
+      else if (improvement(fitter_, removed.state.model, result_.state.model, mask_) < least_gain_)
+        why = "real, but negligible: changes the end error by less than 1 %";
+      if (why.empty()) {
+        result_.scores[effect] = removed.score;
+        result_.gains[effect] = removed.gain;
+        continue;
+      }
+      remove(effect, removed, why);
+      return true;
+    }
+    return false;
+  }
+
+  void remove(const std::string& effect, Removal& removed, const std::string& why) {
+    // Plain causes that were only taken in as a cover go without a word.
+    const bool was_added = result_.p_values.count(effect) != 0;
+    if (why[0] == 'r') result_.negligible.push_back(effect);
+    if (was_added) {
+      LadderStep step;
+      step.effect = effect;
+      step.removed = true;
+      step.score = removed.score;
+      step.gain = removed.gain.value;
+      step.gain_error = removed.gain.error;
+      step.remark = why;
+      result_.ladder.push_back(step);
+      say_("  - " + effect + ": " + why);
+    }
+    result_.state = std::move(removed.state);
+    result_.effects.erase(std::find(result_.effects.begin(), result_.effects.end(), effect));
+  }
+
+  const Fitter& fitter_;
+  const std::vector<char>& mask_;
+  double needed_;
+  double least_gain_;
+  SearchResult& result_;
+  const Progress& say_;
+};
+
+}  // namespace
+
+FitState without(const Fitter& fitter, const FitState& state, const std::string& effect,
+                 const std::vector<char>& mask) {
+  FitState reduced = state;
+  for (size_t i = reduced.free.size(); i-- > 0;)
+    if (belongsTo(reduced.free[i], effect)) fitter.release(reduced, i);
+  for (const EffectParameter& parameter : effectNamed(effect).parameters)
+    if (parameter.role == ParameterRole::kStrength)
+      *findParameter(reduced.model, effect + "." + parameter.name) = 0.0;
+  reduced.predicted = fitter.rows().predict(reduced.model);
+  fitter.fit(reduced, mask);
+  return reduced;
+}
+
+void pruneEffects(const Fitter& fitter, const std::vector<char>& mask, double needed,
+                  double least_gain, SearchResult& result, const Progress& say) {
+  Pruning(fitter, mask, needed, least_gain, result, say).run();
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include "tools/gap/core/search.hpp"
+
+namespace tread::gap {
+
+/// The state without an effect, its other parameters refitted, with current Jacobian.
+FitState without(const Fitter& fitter, const FitState& state, const std::string& effect,
+                 const std::vector<char>& mask);
+
+/// Removes effects, weakest first, that the others make superfluous.
+/** Each that stays passes the score test alone in the presence of the others (|T| >= `needed`),
+ * improves blocks left out, and the end error by at least `least_gain` of it. Fills scores, gains
+ * and negligible of the result. */
+void pruneEffects(const Fitter& fitter, const std::vector<char>& mask, double needed,
+                  double least_gain, SearchResult& result, const Progress& say);
+
+}  // namespace tread::gap

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "tools/gap/core/fit.hpp"
+
+namespace tread::gap {
+
+/// Whether directions in which a prediction could change would bring it nearer to the measurement.
+/** Each column is freed of what the free parameters explain (orthogonal in the metric of the
+ * scales: Neyman), its pull is summed block by block, and T = sum / root of the sum of squares. The
+ * distribution of the largest |T| over all columns under "nothing is there" comes from giving each
+ * block's pull a random sign (wild bootstrap), the same for all columns, so that correlated columns
+ * do not count twice. Blocks, not samples: the ground's noise is correlated (gap.md 4.5). */
+class ScoreTest {
+ public:
+  /// `directions` rows x candidates.
+  ScoreTest(const Rows& rows, const FitState& state, const Eigen::MatrixXd& directions,
+            const std::vector<char>& mask);
+
+  Eigen::Index candidates() const { return pulls_.cols(); }
+  /// T of a candidate; 0 where it does not change the prediction.
+  double score(Eigen::Index candidate) const { return scores_[candidate]; }
+  /// Share of the candidate's size that the free parameters cannot imitate, 0..1.
+  double uniqueness(Eigen::Index candidate) const { return uniqueness_[candidate]; }
+  /// Estimated size, in first order, in the candidate's unit.
+  double size(Eigen::Index candidate) const;
+  /// Standard error of that size over blocks.
+  double sizeError(Eigen::Index candidate) const;
+  /// The candidate freed of what the free parameters explain (rows x 1).
+  Eigen::VectorXd own(Eigen::Index candidate) const { return own_.col(candidate); }
+
+  /// Largest |T| over all candidates in each of `draws` worlds in which nothing is there, sorted.
+  std::vector<double> largestByChance(int draws, uint64_t seed) const;
+
+ private:
+  Eigen::MatrixXd own_;     ///< rows x candidates
+  Eigen::MatrixXd pulls_;   ///< blocks x candidates
+  Eigen::VectorXd scores_;  ///< candidates
+  Eigen::VectorXd uniqueness_;
+  Eigen::VectorXd information_;  ///< of a candidate's size
+};
+
+/// Share of chance results that are at least as large (with the observed one counted in).
+double familyWise(const std::vector<double>& largest_by_chance, double score);
+/// The |T| that chance reaches with a probability of `alpha`.
+double criticalScore(const std::vector<double>& largest_by_chance, double alpha);
+
+}  // namespace tread::gap

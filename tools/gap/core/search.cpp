@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/gap/core/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "tools/gap/core/end_errors.hpp"
+#include "tools/gap/core/pruning.hpp"
+
+namespace tread::gap {
+namespace {
+
+constexpr double kPowerQuantile = 0.84;  // normal: 80 % power
+
+/// Plain causes that everything else must be told from.
+const std::vector<std::string>& coverPaths() {
+  static const std::vector<std::string> paths{"slip_ratio.slip", "track_width.widening",
+                                              "actuator_lag.lag", "command_delay.delay",
+                                              "ins_latency.latency"};
+  return paths;
+}
+
+std::string effectOf(const std::string& path) {
+  return path.substr(0, path.find('.'));
+}
+
+/// A test of all candidates, and for each effect the candidate with the largest score.
+struct Round {
+  std::vector<Candidate> candidates;
+  std::vector<double> scores;
+  std::vector<double> sizes;
+  std::vector<double> chance;
+  std::vector<size_t> best;  ///< of each effect, largest score first
+  std::vector<CandidateTest> tests;
+};
+
+std::vector<size_t> bestOfEffects(const Round& round) {
+  std::map<std::string, size_t> best;
+  for (size_t i = 0; i < round.candidates.size(); ++i) {
+    const auto known = best.emplace(round.candidates[i].effect, i).first;
+    if (std::abs(round.scores[i]) > std::abs(round.scores[known->second])) known->second = i;
+  }
+  std::vector<size_t> order;
+  for (const auto& [effect, index] : best) order.push_back(index);
+  std::stable_sort(order.begin(), order.end(), [&round](size_t a, size_t b) {
+    return std::abs(round.scores[a]) > std::abs(round.scores[b]);
+  });
+  return order;
+}
+
+class Search {
+ public:
+  Search(const Fitter& fitter, const std::vector<char>& mask, const SearchSettings& settings,
+         const Progress& say)
+      : fitter_(fitter), mask_(mask), settings_(settings), say_(say) {}
+
+  SearchResult run(const ModelDocument& model) {
+    calibrate(model);
+    Round round = test();
+    result_.tests = round.tests;
+    if (!significant(round).empty()) {
+      cover();
+      while (result_.effects.size() < settings_.most + covered_) {
+        round = test();
+        if (!addBest(round)) break;
+      }
+      prune(round);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  FitState& state() { return result_.state; }
+  const FitState& state() const { return result_.state; }
+
+  void calibrate(const ModelDocument& model) {
+    state() = fitter_.start(model, givenParameters(model), mask_);
+    settle(state());
+    result_.calibrated = state();
+  }
+
+  /// Fit and noise in turn: the noise of a worse fit is too large.
+  void settle(FitState& fitted) const {
+    fitter_.fit(fitted, mask_);
+    fitter_.renewNoise(fitted, mask_);
+    fitter_.fit(fitted, mask_);
+    if (fitted.jacobian.rows() == 0) fitter_.renewJacobian(fitted);
+  }
+
+  Round test() {
+    Round round;
+    round.candidates = candidatesFor(state().model, excitationOf(fitter_.rows(), state().model));
+    const ScoreTest test(fitter_.rows(), state(), directionsOf(fitter_, state(), round.candidates),
+                         mask_);
+    round.chance = test.largestByChance(settings_.draws, settings_.seed);
+    for (size_t i = 0; i < round.candidates.size(); ++i) {
+      round.scores.push_back(test.score(static_cast<Eigen::Index>(i)));
+      round.sizes.push_back(test.size(static_cast<Eigen::Index>(i)));
+    }
+    round.best = bestOfEffects(round);
+    const double needed = criticalScore(round.chance, settings_.alpha) + kPowerQuantile;
+    for (size_t i : round.best) {
+      const auto at = static_cast<Eigen::Index>(i);
+      round.tests.push_back({round.candidates[i].effect, round.candidates[i].parameter,
+                             round.scores[i], familyWise(round.chance, round.scores[i]),
+                             test.uniqueness(at), needed * test.sizeError(at)});
+    }
+    return round;
+  }
+
+  std::vector<size_t> significant(const Round& round) const {
+    std::vector<size_t> found;
+    for (size_t i : round.best)
+      if (familyWise(round.chance, round.scores[i]) <= settings_.alpha) found.push_back(i);
+    if (found.size() > settings_.tried) found.resize(settings_.tried);
+    return found;
+  }
+
+  void cover() {
+    for (const std::string& path : coverPaths()) {
+      const std::string effect = effectOf(path);
+      if (isOn(effectNamed(effect), state().model.vehicle.effects, state().model.measurement))
+        continue;
+      FreeParameter parameter = freeParameter(state().model, path);
+      parameter.expected = 0.0;
+      fitter_.add(state(), parameter, 0.0, mask_);
+      result_.effects.push_back(effect);
+      ++covered_;
+    }
+    settle(state());
+  }
+
+  /// A candidate that was refitted, and what that brings on blocks left out.
+  struct Trial {
+    size_t candidate = 0;
+    FitState state;
+    Eigen::VectorXd loss;
+    Gain gain;
+    std::string refused;
+  };
+
+  Trial tryOut(const Round& round, size_t index, const Eigen::VectorXd& loss_now) const {
+    Trial trial;
+    trial.candidate = index;
+    trial.state = state();
+    addCandidate(fitter_, trial.state, round.candidates[index], round.sizes[index], mask_);
+    fitter_.fit(trial.state, mask_);
+    for (const FreeParameter& parameter : trial.state.free)
+      if (effectOf(parameter.path) == round.candidates[index].effect &&
+          parameter.path.find("time") == std::string::npos &&
+          *findParameter(trial.state.model, parameter.path) != 0.0 &&
+          onBound(trial.state.model, parameter))
+        trial.refused = parameter.path + " runs to the end of its plausible range";
+    trial.loss = heldOutLoss(fitter_.rows(), trial.state, mask_);
+    trial.gain = gainOf(loss_now, trial.loss, blocksThatCount(fitter_.rows(), mask_));
+    return trial;
+  }
+
+  bool addBest(const Round& round) {
+    const std::vector<size_t> found = significant(round);
+    if (found.empty()) return false;
+    const Eigen::VectorXd now = heldOutLoss(fitter_.rows(), state(), mask_);
+    std::vector<Trial> trials(found.size());
+    for (size_t i = 0; i < found.size(); ++i) trials[i] = tryOut(round, found[i], now);
+    const Trial* best = nullptr;
+    for (const Trial& trial : trials)
+      if (trial.refused.empty() && trial.gain.value > 0.0 &&
+          (best == nullptr || trial.gain.value > best->gain.value))
+        best = &trial;
+    noteTrials(round, trials, best);
+    if (best == nullptr) return false;
+    const std::string effect = round.candidates[best->candidate].effect;
+    state() = best->state;
+    settle(state());
+    if (std::find(result_.effects.begin(), result_.effects.end(), effect) == result_.effects.end())
+      result_.effects.push_back(effect);
+    return true;
+  }
+
+  void noteTrials(const Round& round, const std::vector<Trial>& trials, const Trial* best) {
+    LadderStep step;
+    for (const Trial& trial : trials) {
+      const std::string& effect = round.candidates[trial.candidate].effect;
+      if (&trial == best) {
+        step.effect = effect;
+        step.score = round.scores[trial.candidate];
+        step.p_value = familyWise(round.chance, step.score);
+        step.gain = trial.gain.value;
+        step.gain_error = trial.gain.error;
+      } else if (!trial.refused.empty()) {
+        LadderStep refused;
+        refused.effect = effect;
+        refused.score = round.scores[trial.candidate];
+        refused.p_value = familyWise(round.chance, refused.score);
+        refused.removed = true;
+        refused.remark = trial.refused;
+        result_.ladder.push_back(refused);
+      } else if (best != nullptr) {
+        const Gain behind = gainOf(trial.loss, best->loss, blocksThatCount(fitter_.rows(), mask_));
+        step.runner_ups.push_back({effect, behind.value, behind.error});
+      }
+    }
+    if (best == nullptr) return;
+    result_.runner_ups[step.effect] = step.runner_ups;
+    result_.p_values[step.effect] = step.p_value;
+    result_.ladder.push_back(step);
+    char line[160];
+    std::snprintf(line, sizeof line, "  + %s: score %.1f, held-out gain %.1f +- %.1f",
+                  step.effect.c_str(), step.score, step.gain, step.gain_error);
+    say_(line);
+  }
+
+  void prune(const Round& last) {
+    const double needed = criticalScore(last.chance, settings_.alpha);
+    pruneEffects(fitter_, mask_, needed, settings_.least_gain, result_, say_);
+    for (const std::string& effect : result_.effects)
+      result_.p_values[effect] = familyWise(last.chance, result_.scores[effect]);
+    settle(state());
+  }
+
+  const Fitter& fitter_;
+  const std::vector<char>& mask_;
+  const SearchSettings& settings_;
+  const Progress& say_;
+  SearchResult result_;
+  size_t covered_ = 0;
+};
+
+}  // namespace
+
+std::vector<FreeParameter> givenParameters(const ModelDocument& model) {
+  std::vector<FreeParameter> free;
+  const ParameterCovariance& known = model.covariance;
+  for (size_t i = 0; i < known.parameters.size(); ++i) {
+    if (known.parameters[i].find('.') != std::string::npos) continue;
+    FreeParameter number = freeParameter(model, known.parameters[i]);
+    number.deviation = std::sqrt(known.matrix[i][i]);
+    if (number.deviation > 0.0 && std::isfinite(number.deviation)) free.push_back(number);
+  }
+  for (const Effect& effect : effectCatalogue())
+    for (const EffectParameter& parameter : effect.parameters) {
+      const std::string path = effect.name + "." + parameter.name;
+      if (parameter.role == ParameterRole::kStrength && *findParameter(model, path) != 0.0)
+        free.push_back(freeParameter(model, path));
+    }
+  return free;
+}
+
+SearchResult search(const Fitter& fitter, const ModelDocument& model, const std::vector<char>& mask,
+                    const SearchSettings& settings, const Progress& say) {
+  return Search(fitter, mask, settings, say).run(model);
+}
+
+FitState refitted(const Fitter& fitter, const SearchResult& result, const std::vector<char>& mask) {
+  FitState state = result.state;
+  fitter.fit(state, mask);
+  return state;
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tools/gap/core/candidates.hpp"
+#include "tools/gap/core/finding.hpp"
+#include "tools/gap/core/fit.hpp"
+#include "tools/gap/core/score_test.hpp"
+#include "tools/gap/core/validation.hpp"
+
+namespace tread::gap {
+
+/// Takes one line about what is being done.
+using Progress = std::function<void(const std::string&)>;
+
+struct SearchSettings {
+  double alpha =
+      0.02;          ///< probability that a test over the whole catalogue names something wrongly
+  int draws = 1999;  ///< of the bootstrap
+  size_t tried = 4;  ///< effects that are refitted in a round
+  size_t most = 8;   ///< effects that are added at most
+  double least_gain = 0.01;  ///< of the end error; less is real but negligible
+  uint64_t seed = 1;
+};
+
+/// What a search ends with.
+struct SearchResult {
+  FitState state;                    ///< of the new model
+  FitState calibrated;               ///< of the given terms alone
+  std::vector<std::string> effects;  ///< switched on, in the order of acceptance
+  std::map<std::string, std::vector<RunnerUp>> runner_ups;
+  std::map<std::string, Gain> gains;  ///< what each brings when all others are there
+  std::map<std::string, double> scores;
+  std::map<std::string, double> p_values;
+  std::vector<LadderStep> ladder;
+  std::vector<CandidateTest> tests;  ///< of the calibrated model, every effect's best direction
+  std::vector<std::string> negligible;
+};
+
+/// Which parameters of a model are free: strengths of effects that are on, and the numbers of the
+/// nominal model of which the model's covariance says how sure they are.
+std::vector<FreeParameter> givenParameters(const ModelDocument& model);
+
+/// Finds the effects that a model lacks (gap.md 4.2, stages 1 and 3 to 5), on rows of the mask.
+/** 1. Calibrates what is on. 2. Tests all that is off; ends if chance explains it. 3. Else takes in
+ * the plain causes (slip, width, lag, delay, latency) as a cover, so that they cannot pass as
+ * something rarer, 4. tests, refits the best, validates on blocks left out and adds the best, as
+ * long as something is significant, 5. removes what the rest makes superfluous, cover included. */
+SearchResult search(const Fitter& fitter, const ModelDocument& model, const std::vector<char>& mask,
+                    const SearchSettings& settings, const Progress& say);
+
+/// Refits a given structure on other rows: the parameters of a result, from the values of `model`.
+FitState refitted(const Fitter& fitter, const SearchResult& result, const std::vector<char>& mask);
+
+}  // namespace tread::gap

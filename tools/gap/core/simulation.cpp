@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/gap/core/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tread::gap {
+namespace {
+
+constexpr double kLongestStep = 0.05;  // [s] of integration; lags and ramps are exact within one
+
+/// Roll and pitch at a moment; level where the INS does not say.
+void levelAt(const std::vector<InsSample>& ins, double time, size_t& at, DriveContext& context) {
+  while (at + 1 < ins.size() && ins[at + 1].time <= time) ++at;
+  if (at >= ins.size()) return;
+  if (std::isfinite(ins[at].roll)) context.roll = ins[at].roll;
+  if (std::isfinite(ins[at].pitch)) context.pitch = ins[at].pitch;
+}
+
+/// Relative fall of the battery's voltage since the first sample.
+double dropAt(const std::vector<VoltageSample>& voltage, double time, size_t& at) {
+  if (voltage.empty() || voltage.front().voltage <= 0.0) return 0.0;
+  while (at + 1 < voltage.size() && voltage[at + 1].time <= time) ++at;
+  return 1.0 - voltage[at].voltage / voltage.front().voltage;
+}
+
+}  // namespace
+
+StretchPlan::StretchPlan(const Drive& drive, const Stretch& stretch, double piece)
+    : begin_(stretch.begin()),
+      entry_speeds_(stretch.entry_speeds),
+      command_before_(stretch.command_before) {
+  size_t ins_at = 0;
+  size_t voltage_at = 0;
+  for (size_t i = 0; i < stretch.commands.size(); ++i) {
+    const double from = stretch.commands[i].time;
+    const double to = i + 1 < stretch.commands.size() ? stretch.commands[i + 1].time : stretch.end;
+    const int count = std::max(1, static_cast<int>(std::ceil((to - from) / piece - 1e-6)));
+    const double duration = (to - from) / count;
+    for (int n = 0; n < count; ++n) {
+      DriveContext context;
+      context.session_time = from + n * duration;
+      levelAt(stretch.ins, context.session_time + duration / 2.0, ins_at, context);
+      context.battery_drop = dropAt(drive.voltage, context.session_time, voltage_at);
+      pieces_.push_back({duration, stretch.commands[i].command, context});
+    }
+  }
+}
+
+EntryState StretchPlan::entryFor(const VehicleModel& vehicle) const {
+  EntryState entry = steadyEntry(vehicle, command_before_, pieces_.front().context);
+  if (entry_speeds_) entry.track_speeds = *entry_speeds_;
+  return entry;
+}
+
+std::vector<TimedPose> StretchPlan::simulate(const VehicleModel& vehicle) const {
+  VehicleModel model = vehicle;
+  model.step = kLongestStep;
+  VehicleKernel kernel(model, entryFor(model));
+  std::vector<TimedPose> motion;
+  motion.reserve(pieces_.size() + 1);
+  double time = begin_;
+  motion.push_back({time, kernel.pose(), kernel.twist().omega});
+  for (const Piece& piece : pieces_) {
+    kernel.step(piece.command, piece.duration, piece.context);
+    time += piece.duration;
+    motion.push_back({time, kernel.pose(), kernel.twist().omega});
+  }
+  return motion;
+}
+
+}  // namespace tread::gap

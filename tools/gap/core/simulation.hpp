@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <vector>
+
+#include "common/vehicle/kernel.hpp"
+#include "common/vehicle/measurement.hpp"
+#include "common/vehicle/model_document.hpp"
+#include "tools/gap/core/drive.hpp"
+
+namespace tread::gap {
+
+/// The commands of a stretch cut into short pieces, each with what is known of its moment.
+/** Made once a drive; simulating again with other parameters is then one pass over it. */
+class StretchPlan {
+ public:
+  /// Pieces of at most `piece` seconds. The stretch may go away afterwards.
+  StretchPlan(const Drive& drive, const Stretch& stretch, double piece);
+
+  /// True motion of a model through the stretch, relative to its beginning; one entry a piece.
+  std::vector<TimedPose> simulate(const VehicleModel& vehicle) const;
+
+ private:
+  struct Piece {
+    double duration;  ///< [s]
+    TrackCommand command;
+    DriveContext context;
+  };
+
+  EntryState entryFor(const VehicleModel& vehicle) const;
+
+  double begin_ = 0.0;
+  std::vector<Piece> pieces_;
+  std::optional<TrackCommand> entry_speeds_;
+  TrackCommand command_before_;
+};
+
+}  // namespace tread::gap
