@@ -61,6 +61,9 @@ std::vector<std::string> RobotRun::argumentsOf(const std::string& name) const {
   };
   const auto device = [this](const std::string& line) { return folder_ + "/devices/" + line; };
   const std::string laser = std::to_string(laser_port_);
+  const auto others = settings_.find(name);
+  if (others != settings_.end())
+    for (const std::string& setting : others->second) words.insert(words.end(), {"--set", setting});
   if (name == "simulator") {
     set("world", folder_ + "/world.yaml");
     set("start", start_pose_);

@@ -29,6 +29,10 @@ class RobotRun {
   /// Names of the processes, as they are started by startAll().
   static const std::vector<std::string>& names();
   void start(const std::string& name);
+  /// Another value in a process's configuration, for the next time that it is started.
+  void set(const std::string& name, const std::string& key, const std::string& value) {
+    settings_[name].push_back(key + "=" + value);
+  }
   /// The same as the last word of another command, which must become it (exec).
   void startBehind(const std::vector<std::string>& wrapper, const std::string& name);
   void startAll();
@@ -85,6 +89,7 @@ class RobotRun {
   std::string url_;
   int laser_port_;
   std::string start_pose_;
+  std::map<std::string, std::vector<std::string>> settings_;  ///< KEY=VALUE by process
   LcmBus bus_;
   Latest<motor_t> motor_;
   Latest<plan_t> plan_;

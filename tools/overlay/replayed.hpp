@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <vector>
+
+#include "common/vehicle/model_document.hpp"
+#include "tools/overlay/logged_drive.hpp"
+
+namespace tread::overlay {
+
+inline constexpr double kSample = 0.1;  ///< [s] between the poses of a piece
+
+/// A piece of a drive: what was measured, and what models make of the same commands from the
+/// measured pose at its beginning on. Poses relative to that one, at 0, kSample, 2 kSample, ...
+struct Piece {
+  double begin = 0.0;  ///< [s] of the drive
+  std::vector<Pose2> measured;
+  std::vector<std::vector<Pose2>> predicted;  ///< by model
+
+  double positionError(size_t model, size_t sample) const;  ///< [m]
+  double yawError(size_t model, size_t sample) const;       ///< [rad]
+};
+
+/// The drive in pieces of a length [s], without those in which the vehicle hardly moved, the INS
+/// was silent for more than 0.3 s, or the log begins less than 3 s before.
+/** A model drives through the 3 s before, from rest, so that its tracks and delays are under way;
+ * it knows slopes and battery as the log does, and its INS part is between it and what is compared.
+ * Throws std::runtime_error if the models take another kind of command than was given. */
+std::vector<Piece> replay(const LoggedDrive& drive, const std::vector<ModelDocument>& models,
+                          double length);
+
+/// Median over the pieces of the errors of a model at a sample: [m] and [rad].
+struct Errors {
+  double position = 0.0;
+  double yaw = 0.0;
+};
+Errors medianErrors(const std::vector<Piece>& pieces, size_t model, size_t sample);
+
+}  // namespace tread::overlay
