@@ -104,6 +104,19 @@ TEST_CASE("a found effect is said with its natural number, interval and directio
         "to -2.60 %); the right track is the faster one.");
 }
 
+TEST_CASE("where a sign turns an effect round, its sentence says so") {
+  FoundEffect effect;
+  effect.name = "heading_latency";
+  effect.parameters = {{"heading_latency.latency", "s", -0.17, -0.18, -0.16, 0.0}};
+  CHECK(sentenceOf(effect) ==
+        "The position of a pose is older than its heading: latency -0.170 s (-0.180 to -0.160 s).");
+}
+
+TEST_CASE("what remains is told channel by channel") {
+  CHECK(remainsOf({{"along", "speed", 3.0, 0.01}, {"yaw rate", "v", 3.0, 0.01}, {"along", "time", 3.0, 0.01}}) ==
+        "the along residual depends on speed and time; the yaw rate residual depends on v");
+}
+
 TEST_CASE("a report shows where, how, the ladder, the parameters and what else it could be") {
   const std::string text = markdown(Verdict::kFound);
   for (const char* words :
@@ -119,7 +132,7 @@ TEST_CASE("a report shows where, how, the ladder, the parameters and what else i
   }
   const std::string page = html(Verdict::kFound);
   CHECK(has(page, "yaw rate over yaw rate"));
-  CHECK(has(page, "worst, 100 s of a.lcmlog"));
+  CHECK(has(page, "worst, 100 s of a<"));
   CHECK(has(page, "full colour = 0.600 rad/s"));
 }
 

@@ -3,6 +3,7 @@
 #include "tools/gap/report/headline.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "common/vehicle/degeneracy.hpp"
 #include "tools/gap/report/pictures.hpp"
@@ -11,7 +12,7 @@
 namespace tread::gap {
 namespace {
 
-/// What the sign of a parameter means on the ground.
+/// What the sign of a parameter means on the ground, where the effect's sentence leaves that open.
 struct Direction {
   const char* path;
   const char* positive;
@@ -25,23 +26,43 @@ const Direction kDirections[] = {
     {"yaw_rate_offset.rate", "it turns to the left", "it turns to the right"},
     {"gyro_bias.rate", "a turn to the left", "a turn to the right"},
     {"icr_offset.offset", "ahead of the middle", "behind the middle"},
-    {"lever_arm_x.offset", "it reports a point behind the middle",
-     "it reports a point ahead of the middle"},
-    {"lever_arm_y.offset", "it reports a point right of the middle",
-     "it reports a point left of the middle"},
     {"reverse_yaw_gain.gain", "it turns more forwards", "it turns more backwards"},
     {"reverse_speed_gain.gain", "it is faster forwards", "it is faster backwards"},
     {"crab.angle", "it drifts to the left", "it drifts to the right"},
     {"heading_misalignment.angle", "its heading points too far to the right",
      "its heading points too far to the left"},
-    {"heading_latency.latency", "the heading is the older one", "the position is the older one"},
-    {"centrifugal_drift.time", "outwards", "inwards"},
-    {"lag_asymmetry.slowing", "slowing down takes longer", "slowing down is quicker"},
+    {"lag_asymmetry.slowing", "braking takes longer", "braking is quicker"},
     {"payload_change.yaw", "it turns more than before", "it turns less than before"},
     {"terrain_change.width_1", "it turns less than before", "it turns more than before"},
-    {"slip_ratio.slip", "it is slower than its tracks", "it is faster than its tracks"},
-    {"position_scale.scale", "distances come out too long", "distances come out too short"},
+    {"position_scale.scale", "too long", "too short"},
 };
+
+/// Effects whose sentence is wrong where their first parameter is negative, and what is right then.
+const char* const kReversed[][2] = {
+    {"slip_ratio", "Both tracks carry the vehicle further than they turn, by the same share"},
+    {"track_width", "The vehicle turns as if its tracks were closer together than they are"},
+    {"yaw_rate_skid", "The faster it turns, the further it turns beyond what its tracks ask"},
+    {"speed_understeer", "The same difference of the tracks turns more the faster it drives"},
+    {"turn_speed_loss", "In turns it is faster than its tracks"},
+    {"quadratic_drag", "The faster it drives, the further it runs ahead of its tracks"},
+    {"centrifugal_drift", "In curves it is carried inwards, more the faster and tighter"},
+    {"command_delay", "A command acts earlier than the model says"},
+    {"actuator_lag", "The tracks take up a new speed sooner than the model says"},
+    {"battery_sag", "The tracks get faster with time"},
+    {"slope_pitch", "It is faster uphill and slower downhill"},
+    {"slope_roll", "Driving across a slope it climbs"},
+    {"ins_latency", "The stamps of the INS are early: its poses belong to later moments"},
+    {"heading_latency", "The position of a pose is older than its heading"},
+    {"lever_arm_x", "The INS reports a point that is so far ahead of the vehicle's middle"},
+    {"lever_arm_y", "The INS reports a point that is so far to the left of the vehicle's middle"},
+};
+
+std::string plainSentence(const FoundEffect& effect) {
+  const bool reversed = !effect.parameters.empty() && effect.parameters.front().value < 0.0;
+  for (const auto& entry : kReversed)
+    if (reversed && effect.name == entry[0]) return entry[1];
+  return withoutStop(effectNamed(effect.name).sentence);
+}
 
 std::string directionOf(const Estimate& estimate) {
   for (const Direction& direction : kDirections)
@@ -71,7 +92,7 @@ std::string ambiguousHeadline(const Finding& finding) {
   std::vector<std::string> parts;
   for (const FoundEffect& effect : finding.effects) {
     const std::vector<std::string> names = alternativesOf(effect);
-    parts.push_back(titlesOf(names, "or"));
+    parts.push_back(shortTitlesOf(names, "or"));
   }
   return joined(parts, "and") + ": this drive cannot tell them apart";
 }
@@ -100,7 +121,7 @@ void addNext(const Finding& finding, std::vector<Block>& blocks) {
   if (finding.verdict == Verdict::kFound || finding.verdict == Verdict::kMeasurement ||
       finding.verdict == Verdict::kPartial)
     for (const FoundEffect& effect : finding.effects)
-      points.items.push_back("To check " + inSentence(titleOf(effect.name)) +
+      points.items.push_back("To check " + inSentence(shortTitleOf(effect.name)) +
                              " in two minutes: " + effectNamed(effect.name).check);
   if (finding.verdict == Verdict::kCannotTell && !finding.not_excited.empty())
     points.items.push_back("This drive would not have shown: " + titlesOf(finding.not_excited) +
@@ -134,7 +155,7 @@ std::string saidErrors(const EndErrors& errors, bool rms) {
 }  // namespace
 
 std::string headlineOf(const Finding& finding) {
-  const std::string names = titlesOf(namesOf(finding.effects));
+  const std::string names = shortTitlesOf(namesOf(finding.effects));
   switch (finding.verdict) {
     case Verdict::kNoDiscrepancy: return "Simulation and measurement agree";
     case Verdict::kFound: return "Found: " + names;
@@ -154,7 +175,7 @@ std::string sentenceOf(const FoundEffect& effect) {
     numbers.push_back(saidEstimate(estimate));
     if (direction.empty()) direction = directionOf(estimate);
   }
-  std::string text = withoutStop(effectNamed(effect.name).sentence);
+  std::string text = plainSentence(effect);
   if (!numbers.empty()) text += ": " + joined(numbers);
   if (!direction.empty()) text += "; " + direction;
   return text + ".";
@@ -177,8 +198,18 @@ std::string gainOf(const Gap& gap) {
   return text;
 }
 
-std::string dependsOn(const Unexplained& rest) {
-  return "the " + rest.channel + " residual depends on " + rest.variable;
+std::string remainsOf(const std::vector<Unexplained>& rests) {
+  std::vector<std::string> channels;
+  std::map<std::string, std::vector<std::string>> variables;
+  for (const Unexplained& rest : rests) {
+    if (variables.count(rest.channel) == 0) channels.push_back(rest.channel);
+    variables[rest.channel].push_back(rest.variable);
+  }
+  std::string text;
+  for (const std::string& channel : channels)
+    text += (text.empty() ? "" : "; ") + std::string("the ") + channel +
+            " residual depends on " + joined(variables[channel]);
+  return text;
 }
 
 std::vector<Block> firstBlocks(const Finding& finding) {
@@ -187,9 +218,7 @@ std::vector<Block> firstBlocks(const Finding& finding) {
   if (!words.empty()) blocks.push_back(Paragraph{words});
   for (const FoundEffect& effect : finding.effects) blocks.push_back(Paragraph{sentenceOf(effect)});
   if (!finding.unexplained.empty()) {
-    std::vector<std::string> rests;
-    for (const Unexplained& rest : finding.unexplained) rests.push_back(dependsOn(rest));
-    blocks.push_back(Paragraph{"Unexplained: " + joined(rests) + "."});
+    blocks.push_back(Paragraph{"Unexplained: " + remainsOf(finding.unexplained) + "."});
   }
   if (finding.gap) {
     blocks.push_back(Paragraph{gainOf(*finding.gap)});

@@ -19,8 +19,8 @@ std::string sentenceOf(const FoundEffect& effect);
 /// "2 s end-pose error on driving it has not seen: 0.64 -> 0.45 m, heading 20.5 -> 10.7 deg ...".
 std::string gainOf(const Gap& gap);
 
-/// "the yaw rate residual depends on speed".
-std::string dependsOn(const Unexplained& rest);
+/// "the yaw rate residual depends on speed and elapsed time; the along residual on ...".
+std::string remainsOf(const std::vector<Unexplained>& rests);
 
 /// What stands on the first screen: sentences, gain, what to do next.
 std::vector<Block> firstBlocks(const Finding& finding);

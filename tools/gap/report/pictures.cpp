@@ -130,7 +130,7 @@ std::string ladderPicture(const std::vector<LadderStep>& ladder) {
     const double x = static_cast<double>(i) + 1.0;
     chart.field({x - 0.3, 0.0}, {x + 0.3, step.gain}, step.removed ? kGrey : kAfterColour);
     chart.bar(x, step.gain - step.gain_error, step.gain + step.gain_error, kInk);
-    chart.labelBelow(x, "step " + std::to_string(i + 1));
+    chart.labelBelow(x, std::to_string(i + 1));
   }
   chart.legend("added", kAfterColour);
   chart.legend("removed or refused", kGrey);

@@ -36,7 +36,7 @@ void addOthers(const FoundEffect& found, Points& points, Commands& plans) {
       plans.lines.push_back("tread-gap plan " + found.name + " " + other + " --model model.yaml");
   };
   for (const std::string& member : found.group) {
-    points.items.push_back(titleOf(found.name) + " or " + inSentence(titleOf(member)) +
+    points.items.push_back(shortTitleOf(found.name) + " or " + inSentence(shortTitleOf(member)) +
                            ": they cannot be told apart. " + groupWords(found.name, member));
     plan(member);
   }
@@ -45,8 +45,8 @@ void addOthers(const FoundEffect& found, Points& points, Commands& plans) {
     const std::string way =
         !words.empty() || !isEffect(runner_up.effect) ? words : effectNamed(found.name).separates;
     const std::string rank = runner_up.behind <= runner_up.error ? "as good" : "less good";
-    points.items.push_back(titleOf(runner_up.effect) + " in place of " +
-                           inSentence(titleOf(found.name)) + ": " + rank + " (" +
+    points.items.push_back(shortTitleOf(runner_up.effect) + " in place of " +
+                           inSentence(shortTitleOf(found.name)) + ": " + rank + " (" +
                            threeDigits(runner_up.behind) + " \u00b1 " +
                            threeDigits(runner_up.error) + " nats behind). " + way);
     plan(runner_up.effect);

@@ -35,13 +35,14 @@ std::string logName(const std::vector<InputFile>& inputs, size_t drive) {
       if (input.role == role) names.push_back(input.name);
   if (drive >= names.size()) return "log " + std::to_string(drive + 1);
   constexpr size_t kRoom = 26;
-  return names[drive].size() <= kRoom ? names[drive] : names[drive].substr(0, kRoom - 2) + "..";
+  const std::string name = names[drive].substr(0, names[drive].rfind(".lcmlog"));
+  return name.size() <= kRoom ? name : name.substr(0, kRoom - 2) + "..";
 }
 
 std::string remarkOf(const LadderStep& step) {
   std::vector<std::string> close;
   for (const RunnerUp& runner_up : step.runner_ups)
-    if (runner_up.behind <= runner_up.error) close.push_back(titleOf(runner_up.effect));
+    if (runner_up.behind <= runner_up.error) close.push_back(shortTitleOf(runner_up.effect));
   std::string text = step.remark;
   if (!close.empty()) text += (text.empty() ? "as good: " : "; as good: ") + joined(close, "or");
   return text;
@@ -97,7 +98,7 @@ Section ladderSection(const Finding& finding) {
   if (finding.ladder.empty()) return section;
   section.blocks.push_back(Paragraph{
       "Each step adds the effect that helps most on blocks of driving that were not fitted, or "
-      "takes one away that no longer helps. Gains in log likelihood (nats) with standard error; p "
+      "takes one away again that the others make superfluous. Gains in log likelihood (nats) with standard error; p "
       "is the chance of so large a score anywhere in the catalogue if nothing were there."});
   Table table{{"step", "effect", "remark", "score", "p", "gain"}, {}, 3};
   size_t number = 0;

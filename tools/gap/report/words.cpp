@@ -131,6 +131,18 @@ std::string titlesOf(const std::vector<std::string>& effects, const std::string&
   return joined(titles, last_joint);
 }
 
+std::string shortTitleOf(const std::string& effect) {
+  const std::string title = titleOf(effect);
+  return title.substr(0, title.find(','));
+}
+
+std::string shortTitlesOf(const std::vector<std::string>& effects,
+                          const std::string& last_joint) {
+  std::vector<std::string> titles;
+  for (const std::string& effect : effects) titles.push_back(shortTitleOf(effect));
+  return joined(titles, last_joint);
+}
+
 std::string withoutStop(const std::string& sentence) {
   return !sentence.empty() && sentence.back() == '.' ? sentence.substr(0, sentence.size() - 1)
                                                       : sentence;

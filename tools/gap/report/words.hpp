@@ -45,6 +45,10 @@ std::string saidEstimate(const Estimate& estimate);
 /// Titles of effects, "A, B and C"; what is no effect (forward_gain) as it is.
 std::string titleOf(const std::string& effect);
 std::string titlesOf(const std::vector<std::string>& effects, const std::string& last_joint = "and");
+/// The same up to the first comma of each title.
+std::string shortTitleOf(const std::string& effect);
+std::string shortTitlesOf(const std::vector<std::string>& effects,
+                          const std::string& last_joint = "and");
 
 /// The words with commas between them and `joint` before the last.
 std::string joined(const std::vector<std::string>& words, const std::string& joint = "and");
