@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "tools/gap/log_checks.hpp"
 
@@ -122,12 +121,6 @@ void checkCommandGaps(const std::vector<HeardSpan>& spans, NoteBook& notes) {
 }
 
 }  // namespace
-
-std::string digits(double value, int behind) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*f", behind, value);
-  return text;
-}
 
 void checkChannels(const LogMessages& messages, const std::vector<HeardSpan>& spans,
                    NoteBook& notes) {

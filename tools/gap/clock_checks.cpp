@@ -16,7 +16,8 @@ constexpr int64_t kLongestLog = 172'800'000'000;  // [us] two days
 constexpr double kMoving = 0.3;                   // [m/s]
 constexpr int64_t kLongStep = 1'000'000;          // [us] that no driver needs between two messages
 constexpr size_t kFewClashes = 5;
-constexpr size_t kWindow = 200;  // messages
+constexpr size_t kWindow = 200;      // messages
+constexpr size_t kShortWindow = 20;  // messages
 
 /// Least time between message and recording among up to `kWindow` messages [us]: a recorder that
 /// was held up for a while has caught up somewhere among them.
@@ -33,11 +34,27 @@ bool clocksPart(const std::vector<Stamp>& stamps, size_t index) {
   return std::abs(leastDelay(stamps, begin, index) - leastDelay(stamps, index, end)) > kClockStep;
 }
 
+/// Whether recorder and robot run at one pace: a replay may be recorded at any.
+bool samePace(const std::vector<Stamp>& stamps) {
+  std::vector<double> paces;
+  for (size_t i = kShortWindow; i < stamps.size(); i += kShortWindow) {
+    const Stamp& before = stamps[i - kShortWindow];
+    const auto logged = static_cast<double>(stamps[i].logged - before.logged);
+    if (stamps[i].utime > before.utime)
+      paces.push_back(logged / static_cast<double>(stamps[i].utime - before.utime));
+  }
+  if (paces.empty()) return true;
+  const auto middle = paces.begin() + static_cast<long>(paces.size() / 2);
+  std::nth_element(paces.begin(), middle, paces.end());
+  return *middle > 0.8 && *middle < 1.25;
+}
+
 /// Time going back, and the robot's clock against the recorder's.
 void checkStamps(const std::string& channel, const std::vector<Stamp>& stamps,
                  const LogMessages& messages, NoteBook& notes) {
   size_t overtaken = 0;
   bool recorder_told = false;
+  const bool same_pace = samePace(stamps);
   for (size_t i = 1; i < stamps.size(); ++i) {
     const int64_t step = stamps[i].utime - stamps[i - 1].utime;
     const int64_t logged = stamps[i].logged - stamps[i - 1].logged;
@@ -47,7 +64,7 @@ void checkStamps(const std::string& channel, const std::vector<Stamp>& stamps,
                          digits(-1e-6 * static_cast<double>(step), 2) + " s" + place +
                          "; cut the log there");
     overtaken += step < 0 ? 1 : 0;
-    if (std::abs(logged - step) <= kClockStep || !clocksPart(stamps, i)) continue;
+    if (!same_pace || std::abs(logged - step) <= kClockStep || !clocksPart(stamps, i)) continue;
     if (step > kClockStep)
       return notes.fatal("clock jump: " + channel + " goes on by " +
                          digits(1e-6 * static_cast<double>(step), 2) + " s" + place +

@@ -7,6 +7,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "tools/gap/core/hygiene.hpp"
 #include "tools/gap/file_hash.hpp"
 #include "tools/gap/known_commands.hpp"
 #include "tools/gap/log_checks.hpp"
@@ -15,6 +16,8 @@
 
 namespace tread::gap {
 namespace {
+
+constexpr double kManyBroken = 0.2;  // of the stretches
 
 /// The kind of most commands while it drove.
 CommandKind kindOf(const LogMessages& messages) {
@@ -42,6 +45,22 @@ std::vector<Execution> recordsOf(const LogMessages& messages) {
   return records;
 }
 
+/// Steps of a recording whose poses lie in a wrong frame say nothing.
+void takeOutBroken(Drive& drive, NoteBook& notes) {
+  const std::vector<size_t> broken = brokenStretches(drive);
+  if (broken.empty()) return;
+  const std::string of =
+      std::to_string(broken.size()) + " of " + std::to_string(drive.stretches.size()) +
+      " stretches have poses in a wrong frame (heading against gyro, or way against heading), "
+      "first at " +
+      digits(drive.stretches[broken.front()].begin()) + " s";
+  if (static_cast<double>(broken.size()) >
+      kManyBroken * static_cast<double>(drive.stretches.size()))
+    return notes.note(of + "; too many to be exceptions, so they stay");
+  notes.note(of + "; left out");
+  removeStretches(broken, drive);
+}
+
 }  // namespace
 
 Drive toDrive(const std::string& name, const std::vector<LogEvent>& events) {
@@ -58,7 +77,10 @@ Drive toDrive(const std::string& name, const std::vector<LogEvent>& events) {
   checkPublishers(messages, notes);
   checkClocks(messages, notes);
   checkChannels(messages, spans, notes);
+  takeOutBroken(drive, notes);
   drive.notes = notes.notes();
+  const std::vector<HygieneNote> rest = checkHygiene(drive);
+  drive.notes.insert(drive.notes.end(), rest.begin(), rest.end());
   return drive;
 }
 

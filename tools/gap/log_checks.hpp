@@ -2,31 +2,13 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <string>
 #include <vector>
 
+#include "tools/gap/core/note_book.hpp"
 #include "tools/gap/log_messages.hpp"
 #include "tools/gap/stretches.hpp"
 
 namespace tread::gap {
-
-/// Notes about one log, in the order in which they were made.
-class NoteBook {
- public:
-  explicit NoteBook(std::string log) : log_(std::move(log)) {}
-
-  /// Nothing can be concluded from the log.
-  void fatal(const std::string& what) { notes_.push_back({log_, what, true}); }
-  void note(const std::string& what) { notes_.push_back({log_, what, false}); }
-  std::vector<HygieneNote> notes() { return std::move(notes_); }
-
- private:
-  std::string log_;
-  std::vector<HygieneNote> notes_;
-};
-
-/// A number with so many digits behind the point.
-std::string digits(double value, int behind = 1);
 
 /// Missing or foreign channels, commands of two kinds, silences, jumps and frozen poses.
 void checkChannels(const LogMessages& messages, const std::vector<HeardSpan>& spans,

@@ -248,7 +248,7 @@ TEST_CASE("a log that cannot be read is one clear line, a truncated one a fatal 
     for (const LogEvent& event : log.sorted())
       writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
   }
-  REQUIRE(readDrive(path).notes.empty());
+  for (const HygieneNote& note : readDrive(path).notes) REQUIRE_FALSE(note.fatal);
   REQUIRE(readDrive(path).name == "cut.lcmlog");
   std::filesystem::resize_file(path, std::filesystem::file_size(path) - 30);
   const Drive cut = readDrive(path);

@@ -80,7 +80,7 @@ struct Drive {
   std::vector<Execution> executions;    ///< in order of time; 2 s pieces where the log names none
   std::vector<VoltageSample> voltage;   ///< empty = not measured
   std::vector<EncoderSample> encoders;  ///< empty = there are none
-  std::vector<HygieneNote> notes;       ///< what the reader noticed; checkHygiene() repeats them
+  std::vector<HygieneNote> notes;       ///< what the reader noticed, and checkHygiene()
 
   /// Seconds of driving.
   double driven() const {
