@@ -7,359 +7,113 @@
 namespace tread::blind {
 namespace {
 
-constexpr auto kVehicle = EffectKind::kVehicle;
-constexpr auto kMeasurement = EffectKind::kMeasurement;
-constexpr auto kUnknown = EffectKind::kOutOfCatalogue;
 constexpr auto kPhysical = EffectForm::kPhysical;
 constexpr auto kKinematic = EffectForm::kKinematic;
 constexpr auto kSame = EffectShape::kSame;
 constexpr auto kOther = EffectShape::kOther;
 
-std::vector<EffectSpec> driveEffects() {
-  return {
-      {"slip_ratio",
-       kVehicle,
-       kPhysical,
-       kSame,
-       "belt speed per motor speed",
-       hideSlipRatio,
-       {"position_scale+track_width"},
-       {}},
-      {"track_asymmetry",
-       kVehicle,
-       kPhysical,
-       kSame,
-       "power of the left and right stage",
-       hideTrackAsymmetry,
-       {},
-       {}},
-      {"motor_deadband",
-       kVehicle,
-       kPhysical,
-       kSame,
-       "dead power of each stage",
-       hideMotorDeadband,
-       {},
-       {}},
-      {"speed_saturation",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "soft limit of power",
-       hideSpeedSaturation,
-       {},
-       {}},
-      {"actuator_lag",
-       kVehicle,
-       kPhysical,
-       kSame,
-       "lag of the power stage",
-       hideActuatorLag,
-       {},
-       {}},
-      {"command_delay",
-       kVehicle,
-       kPhysical,
-       kSame,
-       "queue before the power stage",
-       hideCommandDelay,
-       {},
-       {}},
-      {"slew_limit",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "ramp of power before the lag",
-       hideSlewLimit,
-       {},
-       {}},
-      {"lag_asymmetry",
-       kVehicle,
-       kPhysical,
-       kSame,
-       "lag of falling power",
-       hideLagAsymmetry,
-       {},
-       {}},
-      {"battery_sag",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "voltage that falls with what is drawn",
-       hideBatterySag,
-       {},
-       {}},
-      {"thermal_derating",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "motors heated by orders and current",
-       hideThermalDerating,
-       {},
-       {}},
-      {"track_backlash",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "slack between motor and belt",
-       hideTrackBacklash,
-       {},
-       {}},
-  };
+/// One line of the table.
+struct Row {
+  const char* name;
+  EffectForm form;
+  EffectShape shape;
+  Hider (*make)(double size, double duration, Dice& dice);
+  const char* how;
+};
+
+const Row kVehicleRows[] = {
+    {"slip_ratio", kPhysical, kSame, hideSlipRatio, "belt speed per motor speed"},
+    {"track_asymmetry", kPhysical, kSame, hideTrackAsymmetry, "power of the left and right stage"},
+    {"motor_deadband", kPhysical, kSame, hideMotorDeadband, "dead power of each stage"},
+    {"speed_saturation", kPhysical, kOther, hideSpeedSaturation, "soft limit of power"},
+    {"actuator_lag", kPhysical, kSame, hideActuatorLag, "lag of the power stage"},
+    {"command_delay", kPhysical, kSame, hideCommandDelay, "queue before the power stage"},
+    {"slew_limit", kPhysical, kOther, hideSlewLimit, "ramp of power before the lag"},
+    {"lag_asymmetry", kPhysical, kSame, hideLagAsymmetry, "lag of falling power"},
+    {"battery_sag", kPhysical, kOther, hideBatterySag, "voltage that falls with what is drawn"},
+    {"thermal_derating", kPhysical, kOther, hideThermalDerating,
+     "motors heated by orders and current"},
+    {"track_backlash", kPhysical, kOther, hideTrackBacklash, "slack between motor and belt"},
+    {"track_width", kPhysical, kSame, hideTrackWidth, "scrub resistance of the ground"},
+    {"yaw_rate_skid", kPhysical, kOther, hideYawRateSkid, "moment with the square of the rate"},
+    {"turn_power_limit", kPhysical, kOther, hideTurnPowerLimit, "steep moment beyond a rate"},
+    {"yaw_breakaway", kPhysical, kOther, hideYawBreakaway, "dry moment that creeps"},
+    {"speed_understeer", kPhysical, kOther, hideSpeedUndersteer,
+     "yaw damping with speed to the 2.5"},
+    {"yaw_pull", kPhysical, kOther, hideYawPull, "one-sided drag: it turns and brakes"},
+    {"grip_limit", kPhysical, kOther, hideGripLimit, "moment beyond a side acceleration"},
+    {"reverse_yaw_gain", kPhysical, kOther, hideReverseYawGain, "yaw damping with signed speed"},
+    {"yaw_inertia", kPhysical, kSame, hideYawInertia, "yaw inertia"},
+    {"payload_change", kPhysical, kOther, hidePayloadChange,
+     "mass, inertia, centre of pressure at a time"},
+    {"terrain_change", kPhysical, kOther, hideTerrainChange,
+     "surface parameters at one or two times"},
+    {"slope_pitch", kPhysical, kSame, hideSlopePitch, "downhill force along"},
+    {"slope_roll", kPhysical, kOther, hideSlopeRoll, "downhill force across while moving"},
+    {"centrifugal_drift", kPhysical, kOther, hideCentrifugalDrift, "side force, progressive"},
+    {"rolling_resistance", kPhysical, kSame, hideRollingResistance, "dry drag on the body"},
+    {"quadratic_drag", kPhysical, kOther, hideQuadraticDrag,
+     "drag with the square of the true speed"},
+    {"turn_speed_loss", kPhysical, kOther, hideTurnSpeedLoss, "drag with the rate, first squared"},
+    {"reverse_speed_gain", kPhysical, kOther, hideReverseSpeedGain,
+     "push ahead with speed either way"},
+    {"icr_offset", kPhysical, kSame, hideIcrOffset, "centre of pressure and of the tracks"},
+    {"body_inertia", kKinematic, kSame, hideBodyInertia, "first-order lag of the body's speed"},
+};
+
+const Row kMeasurementRows[] = {
+    {"ins_latency", kKinematic, kSame, hideInsLatency, "position and heading late, gyro in time"},
+    {"heading_latency", kKinematic, kSame, hideHeadingLatency, "heading late"},
+    {"gyro_bias", kKinematic, kOther, hideGyroBias, "bias of the rate, larger when cold"},
+    {"heading_misalignment", kKinematic, kSame, hideHeadingMisalignment,
+     "heading turned by an angle"},
+    {"lever_arm_x", kKinematic, kSame, hideLeverArmX, "antenna ahead of the origin"},
+    {"lever_arm_y", kKinematic, kSame, hideLeverArmY, "antenna beside the origin"},
+    {"position_scale", kKinematic, kSame, hidePositionScale, "all positions scaled"},
+};
+
+const Row kUnknownRows[] = {
+    {"stribeck_friction", kPhysical, kOther, hideStribeckFriction,
+     "gear friction that fades with speed"},
+    {"load_transfer", kPhysical, kOther, hideLoadTransfer,
+     "yaw damping and side force with braking"},
+    {"voltage_dead_time", kPhysical, kOther, hideVoltageDeadTime,
+     "queue that grows with missing voltage"},
+    {"steering_hysteresis", kPhysical, kOther, hideSteeringHysteresis,
+     "yaw damping by the turns before"},
+};
+
+const Row kVariantRows[] = {
+    {"ins_latency_all", kKinematic, kSame, hideInsLatencyAll, "all that the INS says is late"},
+};
+
+/// What no drive can tell from an effect.
+std::vector<std::string> groupOf(const std::string& name) {
+  if (name == "slip_ratio") return {"position_scale", "track_width"};
+  if (name == "position_scale") return {"slip_ratio", "track_width"};
+  if (name == "icr_offset") return {"lever_arm_x"};
+  if (name == "lever_arm_x") return {"icr_offset"};
+  if (name == "centrifugal_drift") return {"heading_latency"};
+  if (name == "heading_latency") return {"centrifugal_drift"};
+  if (name == "command_delay") return {"ins_latency"};
+  if (name == "ins_latency_all") return {"ins_latency", "command_delay"};
+  return {};
 }
 
-std::vector<EffectSpec> turningEffects() {
-  return {
-      {"track_width",
-       kVehicle,
-       kPhysical,
-       kSame,
-       "scrub resistance of the ground",
-       hideTrackWidth,
-       {},
-       {}},
-      {"yaw_rate_skid",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "moment with the square of the rate",
-       hideYawRateSkid,
-       {},
-       {}},
-      {"turn_power_limit",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "steep moment beyond a rate",
-       hideTurnPowerLimit,
-       {},
-       {}},
-      {"yaw_breakaway",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "dry moment that creeps",
-       hideYawBreakaway,
-       {},
-       {}},
-      {"speed_understeer",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "yaw damping with speed to the 2.5",
-       hideSpeedUndersteer,
-       {},
-       {}},
-      {"yaw_pull",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "one-sided drag: it turns and brakes",
-       hideYawPull,
-       {},
-       {}},
-      {"grip_limit",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "moment beyond a side acceleration",
-       hideGripLimit,
-       {},
-       {}},
-      {"reverse_yaw_gain",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "yaw damping with signed speed",
-       hideReverseYawGain,
-       {},
-       {}},
-      {"yaw_inertia", kVehicle, kPhysical, kSame, "yaw inertia", hideYawInertia, {}, {}},
-  };
+/// What the rest depends on that no listed effect explains.
+std::vector<std::string> dependenceOf(const std::string& name) {
+  if (name == "stribeck_friction") return {"speed", "command"};
+  if (name == "load_transfer") return {"acceleration", "time_since_command", "previous_command"};
+  if (name == "voltage_dead_time") return {"voltage", "time_since_command"};
+  if (name == "steering_hysteresis") return {"previous_turn", "previous_command"};
+  return {};
 }
 
-std::vector<EffectSpec> bodyEffects() {
-  return {
-      {"payload_change",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "mass, inertia, centre of pressure at a time",
-       hidePayloadChange,
-       {},
-       {}},
-      {"terrain_change",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "surface parameters at one or two times",
-       hideTerrainChange,
-       {},
-       {}},
-      {"slope_pitch", kVehicle, kPhysical, kSame, "downhill force along", hideSlopePitch, {}, {}},
-      {"slope_roll",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "downhill force across while moving",
-       hideSlopeRoll,
-       {},
-       {}},
-      {"centrifugal_drift",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "side force, progressive",
-       hideCentrifugalDrift,
-       {"heading_latency"},
-       {}},
-      {"rolling_resistance",
-       kVehicle,
-       kPhysical,
-       kSame,
-       "dry drag on the body",
-       hideRollingResistance,
-       {},
-       {}},
-      {"quadratic_drag",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "drag with the square of the true speed",
-       hideQuadraticDrag,
-       {},
-       {}},
-      {"turn_speed_loss",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "drag with the rate, first squared",
-       hideTurnSpeedLoss,
-       {},
-       {}},
-      {"reverse_speed_gain",
-       kVehicle,
-       kPhysical,
-       kOther,
-       "push ahead with speed either way",
-       hideReverseSpeedGain,
-       {},
-       {}},
-      {"icr_offset",
-       kVehicle,
-       kPhysical,
-       kSame,
-       "centre of pressure and of the tracks",
-       hideIcrOffset,
-       {"lever_arm_x"},
-       {}},
-      {"body_inertia",
-       kVehicle,
-       kKinematic,
-       kSame,
-       "first-order lag of the body's speed",
-       hideBodyInertia,
-       {},
-       {}},
-  };
-}
-
-std::vector<EffectSpec> instrumentEffects() {
-  return {
-      {"ins_latency",
-       kMeasurement,
-       kKinematic,
-       kSame,
-       "position and heading late, gyro in time",
-       hideInsLatency,
-       {},
-       {}},
-      {"heading_latency",
-       kMeasurement,
-       kKinematic,
-       kSame,
-       "heading late",
-       hideHeadingLatency,
-       {"centrifugal_drift"},
-       {}},
-      {"gyro_bias",
-       kMeasurement,
-       kKinematic,
-       kOther,
-       "bias of the rate, larger when cold",
-       hideGyroBias,
-       {},
-       {}},
-      {"heading_misalignment",
-       kMeasurement,
-       kKinematic,
-       kSame,
-       "heading turned by an angle",
-       hideHeadingMisalignment,
-       {},
-       {}},
-      {"lever_arm_x",
-       kMeasurement,
-       kKinematic,
-       kSame,
-       "antenna ahead of the origin",
-       hideLeverArmX,
-       {"icr_offset"},
-       {}},
-      {"lever_arm_y",
-       kMeasurement,
-       kKinematic,
-       kSame,
-       "antenna beside the origin",
-       hideLeverArmY,
-       {},
-       {}},
-      {"position_scale",
-       kMeasurement,
-       kKinematic,
-       kSame,
-       "all positions scaled",
-       hidePositionScale,
-       {"slip_ratio+track_width"},
-       {}},
-  };
-}
-
-std::vector<EffectSpec> unknownEffects() {
-  return {
-      {"stribeck_friction",
-       kUnknown,
-       kPhysical,
-       kOther,
-       "gear friction that fades with speed",
-       hideStribeckFriction,
-       {},
-       {"speed"}},
-      {"load_transfer",
-       kUnknown,
-       kPhysical,
-       kOther,
-       "yaw damping and side force with braking",
-       hideLoadTransfer,
-       {},
-       {"acceleration"}},
-      {"voltage_dead_time",
-       kUnknown,
-       kPhysical,
-       kOther,
-       "queue that grows with missing voltage",
-       hideVoltageDeadTime,
-       {},
-       {"voltage", "time_since_command"}},
-      {"steering_hysteresis",
-       kUnknown,
-       kPhysical,
-       kOther,
-       "yaw damping by the turns before",
-       hideSteeringHysteresis,
-       {},
-       {"previous_turn"}},
-  };
+template <size_t Count>
+void append(const Row (&rows)[Count], EffectKind kind, std::vector<EffectSpec>& list) {
+  for (const Row& row : rows)
+    list.push_back({row.name, kind, row.form, row.shape, row.how, row.make, groupOf(row.name),
+                    dependenceOf(row.name)});
 }
 
 }  // namespace
@@ -367,9 +121,10 @@ std::vector<EffectSpec> unknownEffects() {
 const std::vector<EffectSpec>& effectList() {
   static const std::vector<EffectSpec> all = [] {
     std::vector<EffectSpec> list;
-    for (const auto& part :
-         {driveEffects(), turningEffects(), bodyEffects(), instrumentEffects(), unknownEffects()})
-      list.insert(list.end(), part.begin(), part.end());
+    append(kVehicleRows, EffectKind::kVehicle, list);
+    append(kMeasurementRows, EffectKind::kMeasurement, list);
+    append(kVariantRows, EffectKind::kVariant, list);
+    append(kUnknownRows, EffectKind::kOutOfCatalogue, list);
     return list;
   }();
   return all;

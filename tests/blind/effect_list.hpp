@@ -10,7 +10,12 @@
 
 namespace tread::blind {
 
-enum class EffectKind { kVehicle, kMeasurement, kOutOfCatalogue };
+enum class EffectKind {
+  kVehicle,
+  kMeasurement,
+  kVariant,  ///< of a measurement effect: for groups that cannot be told apart
+  kOutOfCatalogue,
+};
 /// Whether forces and power are changed inside the dynamics, or the motion that comes out of them.
 enum class EffectForm { kPhysical, kKinematic };
 /// Whether the steady motion follows the catalogue's equation or only resembles it.
@@ -25,11 +30,11 @@ struct EffectSpec {
   const char* how;  ///< which lever is turned, in words
   /// The hider for a size: 1 is about the smallest that can be found, 2 and 4 are usual.
   Hider (*make)(double size, double duration, Dice& dice);
-  std::vector<const char*> group;       ///< cannot be told from these with any drive
-  std::vector<const char*> depends_on;  ///< what the rest depends on, if out of catalogue
+  std::vector<std::string> group;       ///< cannot be told from these with any drive
+  std::vector<std::string> depends_on;  ///< what the rest depends on, if out of catalogue
 };
 
-/// All effects: the catalogue's names in their order, then those that are in no catalogue.
+/// All effects: the catalogue's names, variants, then those that are in no catalogue.
 const std::vector<EffectSpec>& effectList();
 
 /// An effect by name; throws std::invalid_argument naming the unknown one.
@@ -71,6 +76,7 @@ Hider hideIcrOffset(double size, double duration, Dice& dice);
 Hider hideBodyInertia(double size, double duration, Dice& dice);
 
 Hider hideInsLatency(double size, double duration, Dice& dice);
+Hider hideInsLatencyAll(double size, double duration, Dice& dice);
 Hider hideHeadingLatency(double size, double duration, Dice& dice);
 Hider hideGyroBias(double size, double duration, Dice& dice);
 Hider hideHeadingMisalignment(double size, double duration, Dice& dice);

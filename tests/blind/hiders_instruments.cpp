@@ -23,6 +23,12 @@ Hider hideInsLatency(double size, double, Dice&) {
                     [=](InstrumentFault& fault) { fault.pose_latency = late; });
 }
 
+Hider hideInsLatencyAll(double size, double, Dice&) {
+  const double late = 0.075 * size;
+  return instrument("latency_of_all_channels", "L", late, "s", 1.0,
+                    [=](InstrumentFault& fault) { fault.all_latency = late; });
+}
+
 Hider hideHeadingLatency(double size, double, Dice&) {
   const double late = 0.06 * size;
   return instrument("heading_latency", "T_h", late, "s", 1.0,

@@ -50,22 +50,26 @@ Hider hideLoadTransfer(double size, double, Dice&) {
 }
 
 Hider hideVoltageDeadTime(double size, double, Dice&) {
-  const double per_volt = 0.1 * size;  // [s/V]
+  constexpr double kPerVolt = 0.2;         // [s/V]
+  const double resistance = 0.014 * size;  // of old cables [ohm]
   Hider hider;
   hider.stage = Stage::kWire;
-  hider.build = [](double, Build& build) { build.vehicle.drive.inner_resistance = 0.03; };
+  hider.build = [=](double, Build& build) { build.vehicle.drive.inner_resistance += resistance; };
   // A controller that answers late while the voltage is low.
   hider.drive = [=, wire = std::deque<MotorPower>(), low = 0.0](const Moment& now,
                                                                 MotorPower power) mutable {
     constexpr double kSlow = 1.0;  // [s]
-    const double missing = std::max(0.0, plainVehicle().drive.full_voltage - now.voltage);
+    const sim::DriveParameters plain = plainVehicle().drive;
+    const double share = resistance / (resistance + plain.inner_resistance);
+    const double missing = share * std::max(0.0, plain.full_voltage - now.voltage);
     low += (missing - low) * now.dt / kSlow;
     wire.push_back(power);
-    const auto wanted = static_cast<size_t>(std::min(0.4, per_volt * low) / now.dt) + 1;
+    const auto wanted = static_cast<size_t>(std::min(0.4, kPerVolt * low) / now.dt) + 1;
     while (wire.size() > wanted) wire.pop_front();
     return wire.front();
   };
-  hider.levers = {{"dead_time_per_missing_voltage", per_volt, "s/V", false}};
+  hider.levers = {{"dead_time_per_missing_voltage", kPerVolt, "s/V", false},
+                  {"resistance_added", resistance, "ohm", false}};
   return hider;
 }
 

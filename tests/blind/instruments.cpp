@@ -61,6 +61,12 @@ sim::InsParameters insParameters(const NoiseLevel& noise) {
   return ins;
 }
 
+/// What the gyro would say without noise.
+double sensedYawRate(const std::vector<Twist2>& v_body, const InstrumentFault& fault, double time) {
+  const double warm_up = fault.gyro_warm_up * std::exp(-time / kWarmUpTime);
+  return yawRateAt(v_body, time - fault.all_latency) + fault.gyro_bias + warm_up;
+}
+
 sim::InsInput sensed(const Track& track, const InstrumentFault& fault, double time) {
   const double now = time - fault.all_latency;
   const Place place(now, track.pitch.size());
@@ -70,8 +76,7 @@ sim::InsInput sensed(const Track& track, const InstrumentFault& fault, double ti
   input.body.pitch = place.of(track.pitch);
   input.body.roll = place.of(track.roll);
   input.yaw = pose.yaw;
-  const double warm_up = fault.gyro_warm_up * std::exp(-time / kWarmUpTime);
-  input.rate_body.z() = yawRateAt(track.v_body, now) + fault.gyro_bias + warm_up;
+  input.rate_body.z() = sensedYawRate(track.v_body, fault, time);
   return input;
 }
 
@@ -87,6 +92,10 @@ ErrorSize sizeOf(std::vector<double> errors) {
   return {median, std::sqrt(squares / static_cast<double>(errors.size()))};
 }
 
+double rmsOf(const std::vector<double>& errors) {
+  return sizeOf(errors).rms;
+}
+
 /// Compares relative end poses, one pair an execution.
 class EndPoses {
  public:
@@ -95,14 +104,28 @@ class EndPoses {
         std::hypot(T_start_measured.x - T_start_end.x, T_start_measured.y - T_start_end.y));
     yaw_.push_back(std::abs(wrapAngle(T_start_measured.yaw - T_start_end.yaw)));
   }
+  void addYawRate(double error) { yaw_rate_.push_back(error); }
   EndPoseError error() const {
-    return {sizeOf(position_), sizeOf(yaw_), static_cast<int>(yaw_.size())};
+    return {sizeOf(position_), sizeOf(yaw_), rmsOf(yaw_rate_), static_cast<int>(yaw_.size())};
   }
 
  private:
   std::vector<double> position_;
   std::vector<double> yaw_;
+  std::vector<double> yaw_rate_;
 };
+
+/// Mean over 0.25 s from a time on.
+template <class YawRate>
+double binOf(double time, YawRate yaw_rate) {
+  constexpr int kSamples = 12;
+  double sum = 0.0;
+  for (int i = 0; i < kSamples; ++i) sum += yaw_rate(time + 0.02 * (i + 0.5));
+  return sum / kSamples;
+}
+
+/// Bins of 0.25 s in a pattern.
+constexpr int kBins = 8;
 
 Pose2 measuredAt(const std::vector<sim::InsSample>& samples, int64_t time) {
   const auto after =
@@ -118,6 +141,23 @@ Pose2 measuredAt(const std::vector<sim::InsSample>& samples, int64_t time) {
   const double share = static_cast<double>(time - a.utime) / static_cast<double>(b.utime - a.utime);
   const Eigen::Vector3d p = a.p_map + share * (b.p_map - a.p_map);
   return {p.x(), p.y(), a.yaw + share * (b.yaw - a.yaw)};
+}
+
+constexpr int64_t kBinUs = 250'000;
+
+/// Mean of measured minus true yaw rate over one bin.
+double yawRateError(const HiddenDrive& drive, const InstrumentFault& fault,
+                    const std::vector<sim::InsSample>& measured, int64_t begin) {
+  auto sample =
+      std::lower_bound(measured.begin(), measured.end(), begin,
+                       [](const sim::InsSample& one, int64_t time) { return one.utime < time; });
+  double sum = 0.0;
+  int count = 0;
+  for (; sample != measured.end() && sample->utime < begin + kBinUs; ++sample, ++count) {
+    const double time = static_cast<double>(sample->utime) * 1e-6;
+    sum += sample->rate_body.z() - sensedYawRate(drive.track.v_clean, fault, time);
+  }
+  return count > 0 ? sum / count : 0.0;
 }
 
 }  // namespace
@@ -161,6 +201,8 @@ EndPoseError oracleFloor(const HiddenDrive& drive, const InstrumentFault& fault,
     };
     ends.add(between(truth(pattern.start), truth(end)),
              between(measuredAt(measured, pattern.start), measuredAt(measured, end)));
+    for (int bin = 0; bin < kBins; ++bin)
+      ends.addYawRate(yawRateError(drive, fault, measured, pattern.start + bin * kBinUs));
   }
   return ends.error();
 }
@@ -176,6 +218,11 @@ EndPoseError hiddenGap(const HiddenDrive& with, const InstrumentFault& fault,
                      sensedPose(drive.track.T_map_clean, told, end));
     };
     ends.add(relative(without, {}), relative(with, fault));
+    for (int bin = 0; bin < kBins; ++bin)
+      ends.addYawRate(binOf(start + 0.25 * bin, [&](double time) {
+        return sensedYawRate(with.track.v_clean, fault, time) -
+               sensedYawRate(without.track.v_clean, {}, time);
+      }));
   }
   return ends.error();
 }

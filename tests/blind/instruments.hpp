@@ -28,8 +28,9 @@ struct ErrorSize {
 
 /// Errors of 2 s end poses over all executions of a programme.
 struct EndPoseError {
-  ErrorSize position;  ///< [m]
-  ErrorSize yaw;       ///< [rad]
+  ErrorSize position;     ///< [m]
+  ErrorSize yaw;          ///< [rad]
+  double yaw_rate = 0.0;  ///< rms over 0.25 s, of the gyro [rad/s]
   int executions = 0;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +11,8 @@
 #include "tests/blind/bad_log.hpp"
 #include "tests/blind/effect_list.hpp"
 #include "tests/blind/sealed_folder.hpp"
+#include "tests/blind/semi.hpp"
+#include "tests/blind/sha256.hpp"
 #include "tests/blind/suite.hpp"
 
 using namespace tread::blind;
@@ -80,15 +84,52 @@ void hide(const Arguments& arguments) {
   std::printf("%s: %zu of %zu cases hidden\n", arguments.out.c_str(), made, plans.size());
 }
 
+const char* kindText(EffectKind kind) {
+  if (kind == EffectKind::kVehicle) return "vehicle";
+  return kind == EffectKind::kOutOfCatalogue ? "unlisted" : "measurement";
+}
+
 void list() {
   for (const EffectSpec& effect : effectList())
-    std::printf("%-22s %-12s %-9s %-6s %s\n", effect.name,
-                effect.kind == EffectKind::kVehicle       ? "vehicle"
-                : effect.kind == EffectKind::kMeasurement ? "measurement"
-                                                          : "unlisted",
+    std::printf("%-22s %-12s %-9s %-6s %s\n", effect.name, kindText(effect.kind),
                 effect.form == EffectForm::kPhysical ? "physical" : "kinematic",
                 effect.shape == EffectShape::kSame ? "same" : "other", effect.how);
   for (const std::string& defect : defectNames()) std::printf("%-22s bad log\n", defect.c_str());
+}
+
+/// Options of `semi`.
+struct SemiArguments {
+  std::string log;
+  std::string effect;
+  int size = 1;
+  uint64_t seed = 1;
+  std::string name = "0001";
+  std::string out;
+};
+
+void hideInRecording(const SemiArguments& arguments) {
+  MadeCase made;
+  made.events = readLog(arguments.log);
+  std::ifstream file(arguments.log, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const SemiTruth truth = hideInLog(arguments.effect, arguments.size, arguments.seed, made.events);
+  made.truth = semiTruthText(arguments.name, truth, arguments.size, arguments.seed, sha256(bytes));
+  SealedFolder(arguments.out).add(arguments.name, made);
+  std::printf("%s: %s hidden in %s\n", arguments.out.c_str(), arguments.name.c_str(),
+              arguments.log.c_str());
+}
+
+void addSemiOptions(CLI::App& semi, SemiArguments& arguments) {
+  std::vector<std::string> names;
+  for (const SemiEffect& effect : semiEffects()) names.push_back(effect.name);
+  semi.add_option("--log", arguments.log, "LCM log of a recording, as tread-import makes it")
+      ->required()
+      ->check(CLI::ExistingFile);
+  semi.add_option("--effect", arguments.effect)->required()->check(CLI::IsMember(names));
+  semi.add_option("--size", arguments.size, "1 or 2")->check(CLI::Range(1, 2));
+  semi.add_option("--seed", arguments.seed, "of the sign and of the time of a change");
+  semi.add_option("--name", arguments.name, "of the case")->capture_default_str();
+  semi.add_option("--out", arguments.out, "folder that gets blind/ and sealed/")->required();
 }
 
 int checkSeals(const std::string& path) {
@@ -116,7 +157,7 @@ void addOptions(CLI::App& app, Arguments& arguments) {
       ->check(CLI::IsMember({"low", "mid", "high"}))
       ->capture_default_str();
   app.add_option("--programme", arguments.programme, "which motion patterns are driven")
-      ->check(CLI::IsMember({"full", "five_forward", "forward", "one_speed"}))
+      ->check(CLI::IsMember({"full", "five_forward", "forward", "one_speed", "straight"}))
       ->capture_default_str();
   app.add_option("--minutes", arguments.minutes, "of each log")
       ->check(CLI::Range(0.5, 120.0))
@@ -135,8 +176,12 @@ int parseAndRun(int argc, char** argv) {
   merge->add_option("--out", merged)->required();
   CLI::App* open = app.add_subcommand("unseal", "opens sealed/ and checks all commitments");
   open->add_option("--out", opened)->required();
+  SemiArguments semi;
+  CLI::App* recording = app.add_subcommand("semi", "hides an effect in the log of a recording");
+  addSemiOptions(*recording, semi);
   app.require_subcommand(0, 1);
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
+  if (*recording) return hideInRecording(semi), 0;
   if (*names) return list(), 0;
   if (*merge) return mergeCommitments(merged), 0;
   if (*open) return checkSeals(opened);

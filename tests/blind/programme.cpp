@@ -62,6 +62,10 @@ MotorPower oneSpeedCommand(Dice& dice) {
   return command(kMean, dice.sign() * kHalf);
 }
 
+MotorPower straightCommand(Dice& dice) {
+  return dice.below(4) == 0 ? MotorPower{} : command(0.6, 0.0);
+}
+
 MotorPower forwardOnly(const MotorPower& power) {
   const double mean = 0.5 * (power.left + power.right);
   const double half = 0.5 * (power.right - power.left);
@@ -82,6 +86,8 @@ class Composer {
         return five_[static_cast<size_t>(dice_.below(5))];
       case Choice::kOneSpeed:
         return oneSpeedCommand(dice_);
+      case Choice::kStraight:
+        return straightCommand(dice_);
       case Choice::kForward:
         return forwardOnly(anyCommand(dice_, vigour_));
       case Choice::kFull:
@@ -108,6 +114,8 @@ std::string choiceName(Choice choice) {
       return "forward";
     case Choice::kOneSpeed:
       return "one_speed";
+    case Choice::kStraight:
+      return "straight";
     case Choice::kFull:
       break;
   }
@@ -115,8 +123,8 @@ std::string choiceName(Choice choice) {
 }
 
 std::optional<Choice> choiceNamed(const std::string& name) {
-  for (const Choice choice :
-       {Choice::kFull, Choice::kFiveForward, Choice::kForward, Choice::kOneSpeed})
+  for (const Choice choice : {Choice::kFull, Choice::kFiveForward, Choice::kForward,
+                              Choice::kOneSpeed, Choice::kStraight})
     if (choiceName(choice) == name) return choice;
   return std::nullopt;
 }

@@ -21,9 +21,10 @@ enum class Choice {
   kFiveForward,  ///< five forward patterns
   kForward,      ///< the whole command space, forwards only
   kOneSpeed,     ///< one speed, one differential, either way, and stops
+  kStraight,     ///< one speed straight ahead, and stops
 };
 
-/// The name in files: full, five_forward, forward, one_speed.
+/// The name in files: full, five_forward, forward, one_speed, straight.
 std::string choiceName(Choice choice);
 /// The choice of a name; nothing for another name.
 std::optional<Choice> choiceNamed(const std::string& name);

@@ -95,7 +95,9 @@ void mergeCommitments(const std::string& path) {
   const fs::path blind = fs::path(path) / "blind";
   std::vector<std::pair<std::string, std::string>> lines;
   for (const auto& [file, hash] : committed(blind))
-    lines.emplace_back(fs::path(file).stem().string() + file, hash + "  " + file + "\n");
+    // Each truth before its log, as a whole run writes them.
+    lines.emplace_back(fs::path(file).stem().string() + (file[0] == 's' ? " 1" : " 2"),
+                       hash + "  " + file + "\n");
   std::sort(lines.begin(), lines.end());
   std::vector<fs::path> lists;
   for (const auto& entry : fs::directory_iterator(blind))

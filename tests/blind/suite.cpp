@@ -19,7 +19,8 @@ const char* const kNoises[] = {"low", "mid", "high"};
 std::vector<std::string> catalogueNames() {
   std::vector<std::string> names;
   for (const EffectSpec& effect : effectList())
-    if (effect.kind != EffectKind::kOutOfCatalogue) names.push_back(effect.name);
+    if (effect.kind == EffectKind::kVehicle || effect.kind == EffectKind::kMeasurement)
+      names.push_back(effect.name);
   return names;
 }
 
@@ -30,15 +31,19 @@ std::vector<std::string> unknownNames() {
   return names;
 }
 
-/// Two that can be told apart: not of one exact group, not two changes at one unknown time.
+/// Two that can be told apart: not of one exact group, not two changes at one unknown time; and
+/// two that can be built together: not two that both rebuild the motor.
 bool fitTogether(const std::string& a, const std::string& b) {
   if (a == b) return false;
-  for (const char* other : effectNamed(a).group)
-    if (std::string(other).find(b) != std::string::npos) return false;
+  for (const std::string& other : effectNamed(a).group)
+    if (other == b) return false;
   const auto changes = [](const std::string& name) {
     return name == "payload_change" || name == "terrain_change";
   };
-  return !(changes(a) && changes(b));
+  const auto motors = [](const std::string& name) {
+    return name == "lag_asymmetry" || name == "track_backlash";
+  };
+  return !(changes(a) && changes(b)) && !(motors(a) && motors(b));
 }
 
 class SuiteMaker {
@@ -83,9 +88,9 @@ class SuiteMaker {
   void addDegenerate(int rounds) {
     for (int i = 0; i < rounds; ++i)
       for (const DegenerateGroup& group : degenerateGroups()) {
-        const auto pick = static_cast<size_t>(i) % group.members.size();
-        CasePlan& plan = add(CaseKind::kDegenerate, {group.members[pick]}, 4.0, kNoises[i % 2]);
-        plan.group = group.members;
+        const auto pick = static_cast<size_t>(i) % group.hidden.size();
+        CasePlan& plan = add(CaseKind::kDegenerate, {group.hidden[pick]}, 4.0, kNoises[i % 2]);
+        plan.group = group.right;
         plan.choice = group.choice;
       }
   }
@@ -122,14 +127,28 @@ class SuiteMaker {
 }  // namespace
 
 const std::vector<DegenerateGroup>& degenerateGroups() {
+  static const std::vector<std::string> lines{"icr_offset", "lever_arm_x"};
+  static const std::vector<std::string> drift{"centrifugal_drift", "heading_latency"};
+  static const std::vector<std::string> late{"command_delay", "ins_latency"};
+  static const std::vector<std::string> scale{"position_scale", "slip_ratio", "track_width"};
+  static const std::vector<std::string> loss{"slip_ratio",     "motor_deadband",
+                                             "position_scale", "rolling_resistance",
+                                             "quadratic_drag", "reverse_speed_gain"};
+  static const std::vector<std::string> turn{"track_width", "yaw_rate_skid", "yaw_breakaway",
+                                             "speed_understeer", "reverse_yaw_gain"};
+  static const std::vector<std::string> pull{"track_asymmetry", "yaw_pull"};
   static const std::vector<DegenerateGroup> groups{
-      {{"icr_offset", "lever_arm_x"}, Choice::kFull},
-      {{"centrifugal_drift", "heading_latency"}, Choice::kFull},
-      {{"command_delay", "ins_latency"}, Choice::kFull},
-      {{"position_scale", "slip_ratio"}, Choice::kFull},
-      {{"slip_ratio", "motor_deadband", "rolling_resistance", "quadratic_drag"}, Choice::kOneSpeed},
-      {{"track_width", "yaw_rate_skid", "yaw_breakaway", "speed_understeer"}, Choice::kOneSpeed},
-      {{"track_asymmetry", "yaw_pull"}, Choice::kForward},
+      {lines, lines, Choice::kFull},
+      {drift, drift, Choice::kFull},
+      {{"command_delay", "ins_latency_all"}, late, Choice::kFull},
+      {{"position_scale", "slip_ratio"}, scale, Choice::kFull},
+      {{"slip_ratio", "motor_deadband", "rolling_resistance", "quadratic_drag"},
+       loss,
+       Choice::kStraight},
+      {{"track_width", "yaw_rate_skid", "yaw_breakaway", "speed_understeer"},
+       turn,
+       Choice::kOneSpeed},
+      {pull, pull, Choice::kForward},
   };
   return groups;
 }

@@ -12,8 +12,9 @@ namespace tread::blind {
 
 /// One group that no drive of a kind can tell apart.
 struct DegenerateGroup {
-  std::vector<std::string> members;  ///< effects that can be hidden; all are right answers
-  Choice choice = Choice::kFull;     ///< drives in which they are alike
+  std::vector<std::string> hidden;  ///< one of these is hidden
+  std::vector<std::string> right;   ///< right answers
+  Choice choice = Choice::kFull;    ///< drives in which they are alike
 };
 
 /// Groups after gap.md Part 2: exact ones, then those of poor drives.

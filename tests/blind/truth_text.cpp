@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 const char* nameOf(EffectKind kind) {
   if (kind == EffectKind::kVehicle) return "vehicle";
-  return kind == EffectKind::kMeasurement ? "measurement" : "out_of_catalogue";
+  return kind == EffectKind::kOutOfCatalogue ? "out_of_catalogue" : "measurement";
 }
 
 Json listOf(const std::vector<Quantity>& quantities) {
@@ -44,6 +44,7 @@ Json errorOf(const EndPoseError& error) {
   Json json;
   json["position_m"] = {{"median", error.position.median}, {"rms", error.position.rms}};
   json["yaw_rad"] = {{"median", error.yaw.median}, {"rms", error.yaw.rms}};
+  json["yaw_rate_rad_s"] = {{"rms", error.yaw_rate}};
   json["executions"] = error.executions;
   return json;
 }
@@ -64,8 +65,12 @@ std::vector<std::string> rightVerdicts(const CasePlan& plan, const CaseTruth& tr
   }
   bool measurement_only = true;
   for (const HiddenTruth& effect : truth.effects)
-    measurement_only = measurement_only && effect.spec->kind == EffectKind::kMeasurement;
-  return {measurement_only ? "MEASUREMENT" : "FOUND"};
+    measurement_only = measurement_only && effect.spec->kind != EffectKind::kVehicle;
+  std::vector<std::string> verdicts{measurement_only ? "MEASUREMENT" : "FOUND"};
+  // An exact group may be named as such.
+  for (const HiddenTruth& effect : truth.effects)
+    if (!effect.spec->group.empty()) return {verdicts.front(), "AMBIGUOUS"};
+  return verdicts;
 }
 
 }  // namespace

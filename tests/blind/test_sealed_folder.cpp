@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "tests/blind/bad_log.hpp"
+#include "tests/blind/blind_bench.hpp"
+#include "tests/blind/sealed_folder.hpp"
+#include "tests/blind/sha256.hpp"
+#include "tests/blind/suite.hpp"
+
+using namespace tread;
+using namespace tread::blind;
+using tread::blind::bench::Folder;
+using tread::blind::bench::shortPlan;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Writes a few cases of half a minute, those of a shard only.
+void writeCases(const Folder& folder, size_t shard, size_t shards) {
+  const std::string part =
+      shards == 1 ? "" : std::to_string(shard + 1) + "of" + std::to_string(shards);
+  SealedFolder sealed(folder.path(), part);
+  const auto plans = suiteOf("small", 0.5, 4);
+  for (size_t i = shard; i < 6; i += shards) sealed.add(plans[i].name, makeCase(plans[i]));
+}
+
+std::map<std::string, std::string> filesOf(const Folder& folder) {
+  std::map<std::string, std::string> files;
+  for (const char* part : {"blind", "sealed"})
+    for (const auto& entry : fs::directory_iterator(folder.path(part))) {
+      const std::string name = part + ("/" + entry.path().filename().string());
+      files[name] = folder.content(name);
+    }
+  return files;
+}
+
+}  // namespace
+
+TEST_CASE("SHA-256 is that of the standard") {
+  CHECK(sha256("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  CHECK(sha256("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  CHECK(sha256(std::string(1'000'000, 'a')) ==
+        "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST_CASE("same seed, same bytes; another seed, others") {
+  Folder a, b, c;
+  CasePlan plan = shortPlan({"yaw_breakaway"});
+  SealedFolder(a.path()).add("x", makeCase(plan));
+  SealedFolder(b.path()).add("x", makeCase(plan));
+  plan.seed = 18;
+  SealedFolder(c.path()).add("x", makeCase(plan));
+  CHECK(unseal(a.path()).empty());
+  CHECK(unseal(b.path()).empty());
+  CHECK(filesOf(a) == filesOf(b));
+  CHECK(a.content("blind/x.lcm") != c.content("blind/x.lcm"));
+}
+
+TEST_CASE("shards merge to the whole, byte by byte") {
+  Folder whole, parts;
+  writeCases(whole, 0, 1);
+  for (size_t shard = 0; shard < 3; ++shard) writeCases(parts, shard, 3);
+  mergeCommitments(parts.path());
+  CHECK(unseal(whole.path()).empty());
+  CHECK(unseal(parts.path()).empty());
+  CHECK(filesOf(whole) == filesOf(parts));
+}
+
+TEST_CASE("the truth is committed and sealed, and a changed one is noticed") {
+  Folder folder;
+  const MadeCase made = makeCase(shortPlan({"slip_ratio"}));
+  SealedFolder(folder.path()).add("0001", made);
+  const auto mode = fs::status(folder.path("sealed")).permissions();
+  CHECK((mode & fs::perms::all) == fs::perms::none);
+  const std::string list = folder.content("blind/commitments.txt");
+  CHECK(list.find(sha256(made.truth) + "  sealed/0001.json\n") == 0);
+  CHECK(unseal(folder.path()).empty());
+  CHECK(folder.content("sealed/0001.json") == made.truth);
+  std::ofstream(folder.path("sealed/0001.json"), std::ios::app) << " ";
+  const auto wrong = unseal(folder.path());
+  REQUIRE(wrong.size() == 1);
+  CHECK(wrong.front() == "sealed/0001.json: is not what was committed");
+}
+
+TEST_CASE("a case is never overwritten") {
+  Folder folder;
+  const MadeCase made = makeCase(shortPlan({}));
+  SealedFolder(folder.path()).add("0001", made);
+  CHECK_THROWS_WITH(SealedFolder(folder.path()).add("0001", made), Catch::Contains("exists"));
+}
+
+TEST_CASE("a truncated log ends inside an event") {
+  Folder folder;
+  CasePlan plan = shortPlan({});
+  plan.kind = CaseKind::kBad;
+  plan.defect = "truncated";
+  SealedFolder(folder.path()).add("0001", makeCase(plan));
+  LogReader reader(folder.path("blind/0001.lcm"));
+  LogEvent event;
+  size_t whole = 0;
+  while (reader.next(event)) ++whole;
+  CHECK(whole > 100);
+  CHECK_FALSE(reader.problem().empty());
+}
+
+TEST_CASE("the full suite has every effect in all sizes and noises, and the other kinds") {
+  const auto plans = suiteOf("full", 10.0, 1);
+  std::map<CaseKind, int> count;
+  std::set<std::string> names, singles;
+  for (const CasePlan& plan : plans) {
+    ++count[plan.kind];
+    names.insert(plan.name);
+    if (plan.kind == CaseKind::kSingle)
+      singles.insert(plan.effects.front() + std::to_string(plan.size) + plan.noise);
+    if (plan.kind == CaseKind::kPair) {
+      CHECK(plan.effects.size() == 2);
+      CHECK(plan.effects[0] != plan.effects[1]);
+    }
+  }
+  CHECK(names.size() == plans.size());
+  CHECK(singles.size() == 38 * 9);
+  CHECK(count[CaseKind::kNull] == 400);
+  CHECK(count[CaseKind::kPair] == 200);
+  CHECK(count[CaseKind::kUnknown] >= 90);
+  CHECK(count[CaseKind::kDegenerate] >= 90);
+  CHECK(count[CaseKind::kBad] == 8 * static_cast<int>(defectNames().size()));
+}
+
+TEST_CASE("names in a suite are mixed: neighbours are of different kinds") {
+  const auto plans = suiteOf("full", 10.0, 1);
+  int changes = 0;
+  for (size_t i = 1; i < plans.size(); ++i) changes += plans[i].kind != plans[i - 1].kind ? 1 : 0;
+  CHECK(changes > static_cast<int>(plans.size()) / 2);
+}
+
+TEST_CASE("every case of the small suite can be made") {
+  for (const CasePlan& plan : suiteOf("small", 0.5, 2)) {
+    CAPTURE(plan.name, plan.defect);
+    CHECK_NOTHROW(makeCase(plan));
+  }
+}
+
+TEST_CASE("groups that no drive tells apart are made with the right answers beside the truth") {
+  for (const DegenerateGroup& group : degenerateGroups())
+    for (const std::string& hidden : group.hidden) {
+      CAPTURE(hidden);
+      CasePlan plan = shortPlan({hidden});
+      plan.minutes = 0.5;
+      plan.kind = CaseKind::kDegenerate;
+      plan.group = group.right;
+      plan.choice = group.choice;
+      const std::string truth = makeCase(plan).truth;
+      for (const std::string& right : group.right)
+        CHECK(truth.find("\"" + right + "\"") != std::string::npos);
+    }
+}
