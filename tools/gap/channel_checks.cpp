@@ -46,12 +46,13 @@ void checkHeld(const std::vector<HeardSpan>& spans, NoteBook& notes) {
     poses += span.ins.poses;
     repeated += span.ins.repeated;
     for (const HeldPose& held : span.ins.held) {
+      if (held.end - held.begin <= kNoticedHold) continue;
       const double driven = drivenBetween(span.commands, held.begin, held.end, least);
       if (least > 0.0 && driven > kFrozen)
         notes.fatal("the INS is frozen: one pose from " + digits(held.begin) + " to " +
                     digits(held.end) +
                     " s while commands drive; cut the log before, check the INS");
-      else if (held.end - held.begin > kNoticedHold)
+      else
         notes.note("one pose from " + digits(held.begin) + " to " + digits(held.end) +
                    " s; not used as measurement");
     }
@@ -130,8 +131,9 @@ void checkChannels(const LogMessages& messages, const std::vector<HeardSpan>& sp
   if (messages.ins.empty())
     notes.fatal("no INS message" + of + ": the motion is unknown; record channel INS");
   if (messages.foreign > 0)
-    notes.note(std::to_string(messages.foreign) +
-               " events on our channels are of another type; left out (another version's log?)");
+    notes.note(
+        std::to_string(messages.foreign) +
+        " events on our channels are of another type or time; left out (another version's log?)");
   if (!messages.motor.empty() && spans.empty())
     notes.fatal("the bridge never drives or stands armed for a second: no command is known");
   checkKinds(messages, notes);

@@ -15,9 +15,8 @@ constexpr int64_t kClockStep = 500'000;           // [us]
 constexpr int64_t kLongestLog = 172'800'000'000;  // [us] two days
 constexpr double kMoving = 0.3;                   // [m/s]
 constexpr int64_t kLongStep = 1'000'000;          // [us] that no driver needs between two messages
-constexpr size_t kFewClashes = 5;
-constexpr size_t kWindow = 200;      // messages
-constexpr size_t kShortWindow = 20;  // messages
+constexpr size_t kWindow = 200;                   // messages
+constexpr size_t kShortWindow = 20;               // messages
 
 /// Least time between message and recording among up to `kWindow` messages [us]: a recorder that
 /// was held up for a while has caught up somewhere among them.
@@ -79,76 +78,66 @@ void checkStamps(const std::string& channel, const std::vector<Stamp>& stamps,
                " come out of order; sorted by their own time");
 }
 
-/// A moving INS message with its neighbour.
+/// The place of the robot at a message or at most half a second beside it.
 struct Moving {
+  int64_t utime;
   Pose2 pose;
-  double speed;
+  double speed;  ///< [m/s]
 };
 
-std::optional<Moving> movingAt(const std::vector<ins_t>& ins, size_t index, size_t neighbour) {
-  const auto pose = planarPose(ins[index]);
-  const auto other = planarPose(ins[neighbour]);
-  const int64_t step = std::abs(ins[index].utime - ins[neighbour].utime);
-  if (!pose || !other || step == 0 || step > kClockStep) return std::nullopt;
-  const double speed =
-      (pose->position() - other->position()).norm() / (1e-6 * static_cast<double>(step));
-  if (speed < kMoving) return std::nullopt;
-  return Moving{*pose, speed};
+/// From `index` on in one direction: the next pose, and the next other one, which gives the speed.
+std::optional<Moving> movingAt(const std::vector<ins_t>& ins, size_t index, int direction) {
+  std::optional<Pose2> found;
+  int64_t utime = 0;
+  for (size_t i = index; i < ins.size(); i += static_cast<size_t>(direction)) {
+    if (std::abs(ins[i].utime - ins[index].utime) > kClockStep) break;
+    const auto pose = planarPose(ins[i]);
+    if (!pose) continue;
+    if (found) {
+      const double way = (pose->position() - found->position()).norm();
+      const double time = 1e-6 * static_cast<double>(std::abs(ins[i].utime - utime));
+      if (way > 0.0 && time > 0.0 && way / time >= kMoving)
+        return Moving{utime, *found, way / time};
+      if (way > 0.0) break;
+    } else {
+      found = pose;
+      utime = ins[i].utime;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Whether the next pose from `index` on is said to be on a new track.
+bool jumpAnnounced(const std::vector<ins_t>& ins, size_t index) {
+  for (size_t i = index; i < ins.size(); ++i) {
+    if ((ins[i].ins_status & ins_t::STATUS_JUMP) != 0) return true;
+    if (planarPose(ins[i])) return false;
+  }
+  return false;
 }
 
 /// A pause after which the robot is where it was one message later: time went on, the robot did
 /// not.
 void checkPauses(const LogMessages& messages, NoteBook& notes) {
   const std::vector<ins_t>& ins = messages.ins;
-  for (size_t i = 2; i + 1 < ins.size(); ++i) {
+  for (size_t i = 1; i < ins.size(); ++i) {
     const int64_t step = ins[i].utime - ins[i - 1].utime;
-    const bool announced = (ins[i].ins_status & ins_t::STATUS_JUMP) != 0;
-    if (step < kLongStep || announced || ins[i].seq != ins[i - 1].seq + 1) continue;
-    const auto before = movingAt(ins, i - 1, i - 2);
-    const auto after = movingAt(ins, i, i + 1);
+    if (step < kLongStep || ins[i].seq != ins[i - 1].seq + 1 || jumpAnnounced(ins, i)) continue;
+    const auto before = movingAt(ins, i - 1, -1);
+    const auto after = movingAt(ins, i, 1);
     if (!before || !after) continue;
-    const double speed = 0.5 * (before->speed + after->speed);
+    const double pause = 1e-6 * static_cast<double>(step);
+    const double speed = std::max(before->speed, after->speed);
     const double moved = (after->pose.position() - before->pose.position()).norm();
-    const double usual = speed * 1e-6 * static_cast<double>(ins[i - 1].utime - ins[i - 2].utime);
+    // What lies between the two poses but the pause itself, and a message's period.
+    const double rest = 1e-6 * static_cast<double>(after->utime - before->utime - step) + 0.1;
     const double turned = std::abs(wrapAngle(after->pose.yaw - before->pose.yaw));
-    if (moved > 2.0 * usual + 0.05 || moved > 0.3 * speed * 1e-6 * static_cast<double>(step) ||
-        turned > 0.4)
-      continue;
-    return notes.fatal("clock jump: INS goes on by " + digits(1e-6 * static_cast<double>(step), 2) +
-                       " s at " + digits(messages.seconds(ins[i - 1].utime)) +
+    if (moved > 2.0 * speed * rest || moved > 0.3 * speed * pause || turned > 0.4) continue;
+    return notes.fatal("clock jump: INS goes on by " + digits(pause, 2) + " s at " +
+                       digits(messages.seconds(ins[i - 1].utime)) +
                        " s, but the robot moves on by " + digits(moved, 2) + " m at " +
                        digits(speed, 2) + " m/s; cut the log there");
   }
-}
-
-/// How often seq does not grow although the message is another one.
-size_t seqFallsBack(const std::vector<Stamp>& stamps) {
-  size_t count = 0;
-  bool counts = false;
-  for (size_t i = 1; i < stamps.size(); ++i) {
-    counts = counts || stamps[i].seq != stamps[0].seq;
-    const bool same = stamps[i].seq == stamps[i - 1].seq && stamps[i].utime == stamps[i - 1].utime;
-    if (stamps[i].seq <= stamps[i - 1].seq && !same) ++count;
-  }
-  return counts ? count : 0;
-}
-
-bool bootsAlternate(std::vector<int64_t> boots) {
-  std::sort(boots.begin(), boots.end());
-  return std::adjacent_find(boots.begin(), boots.end()) != boots.end();
-}
-
-void checkChannel(const std::string& channel, const std::vector<Stamp>& stamps, size_t clash_count,
-                  NoteBook& notes) {
-  const size_t falls = seqFallsBack(stamps);
-  if (std::max(falls, clash_count) >= std::max(kFewClashes, stamps.size() / 100))
-    return notes.fatal("two robots in one log: " + channel +
-                       " has two publishers (its seq falls back " + std::to_string(falls) +
-                       " times, " + std::to_string(clash_count) +
-                       " messages contradict another one of the same time); record one robot");
-  if (falls > 0)
-    notes.note(channel + "'s publisher was started again " + std::to_string(falls) +
-               " times, or messages came out of order");
 }
 
 }  // namespace
@@ -163,15 +152,6 @@ void checkClocks(const LogMessages& messages, NoteBook& notes) {
   if (last - messages.origin > kLongestLog)
     notes.fatal("clock jump: INS and MOTOR span " + digits(messages.seconds(last) / 3600.0) +
                 " hours; are both on the robot's clock?");
-}
-
-void checkPublishers(const LogMessages& messages, NoteBook& notes) {
-  checkChannel("MOTOR", messages.motor_stamps, messages.motor_clashes, notes);
-  checkChannel("INS", messages.ins_stamps, messages.ins_clashes, notes);
-  for (const auto& [process, boots] : messages.boots)
-    if (bootsAlternate(boots))
-      return notes.fatal("two robots in one log: CONFIG of " + process +
-                         " alternates between two boots; record one robot");
 }
 
 }  // namespace tread::gap

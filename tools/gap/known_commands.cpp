@@ -100,8 +100,10 @@ TrackCommand commandAt(const CommandSpan& span, double time) {
 
 bool standsBetween(const CommandSpan& span, double from, double to) {
   if (!isZero(commandAt(span, from))) return false;
-  for (const CommandSample& sample : span.commands)
-    if (sample.time > from && sample.time < to && !isZero(sample.command)) return false;
+  auto sample = std::upper_bound(span.commands.begin(), span.commands.end(), from,
+                                 [](double t, const CommandSample& c) { return t < c.time; });
+  for (; sample != span.commands.end() && sample->time < to; ++sample)
+    if (!isZero(sample->command)) return false;
   return true;
 }
 

@@ -10,6 +10,12 @@
 namespace tread::gap {
 namespace {
 
+/// A time that a clock can show; others are broken bytes.
+bool sensible(int64_t utime) {
+  constexpr int64_t kThreeCenturies = 10'000'000'000'000'000;  // [us]
+  return utime >= 0 && utime < kThreeCenturies;
+}
+
 /// Whether messages of one time say different things.
 bool clash(const ins_t& a, const ins_t& b) {
   const auto first = planarPose(a);
@@ -56,9 +62,10 @@ class Sorter {
   void takeTimed(const LogEvent& event, const Channel<Message>& channel,
                  std::vector<Message>& messages, std::vector<Stamp>& stamps, size_t& clashes) {
     Message message;
-    if (!counted(decode(event, channel, message))) return;
+    if (!counted(decode(event, channel, message) && sensible(message.utime))) return;
     if (!messages.empty() && clash(messages.back(), message)) ++clashes;
-    stamps.push_back({event.utime, message.utime, message.seq});
+    stamps.push_back(
+        {sensible(event.utime) ? event.utime : message.utime, message.utime, message.seq});
     messages.push_back(std::move(message));
   }
 
@@ -66,7 +73,8 @@ class Sorter {
     execution_t message;
     if (!counted(decode(event, kExecution, message))) return;
     for (const execution_record_t& record : message.records)
-      if (record.outcome == execution_record_t::OUTCOME_COMPLETED && record.ended > record.started)
+      if (record.outcome == execution_record_t::OUTCOME_COMPLETED && sensible(record.started) &&
+          sensible(record.ended) && record.ended > record.started)
         executions_.emplace(std::pair{record.record_run_id, record.record_execution_id}, record);
   }
 

@@ -31,7 +31,7 @@ struct LogMessages {
   std::map<std::string, std::vector<int64_t>> boots;
   int64_t origin = 0;  ///< [us] utime of the first INS or MOTOR; time 0 of the drive
   size_t events = 0;   ///< in the log, whatever their channel
-  size_t foreign = 0;  ///< on our channels, but of another type
+  size_t foreign = 0;  ///< on our channels, but of another type or time
 
   /// Seconds since time 0.
   double seconds(int64_t utime) const { return 1e-6 * static_cast<double>(utime - origin); }

@@ -26,6 +26,7 @@ struct Made {
   double jump = 0.0;         ///< [s] by that much
   double noise = 0.01;       ///< [m] and half of it [rad]
   bool stands_first = true;  ///< for 5 s
+  bool alternates = false;   ///< the same turn and speed to and fro
 };
 
 /// A command that changes every second and a half; a first-order vehicle that follows it.
@@ -45,6 +46,10 @@ Drive makeDrive(const Made& made) {
     if (i % 75 == 0 && !(made.stands_first && time < 5.0)) {
       v_wanted = uniform(random);
       omega_wanted = made.turning * uniform(random);
+    }
+    if (made.alternates) {
+      v_wanted = i / 75 % 2 == 0 ? 0.5 : -0.5;
+      omega_wanted = -v_wanted;
     }
     if (i % 75 == 0)
       stretch.commands.push_back(
@@ -124,6 +129,12 @@ TEST_CASE("motion against the commands is a flipped sign") {
   Made backwards;
   backwards.forward_sign = -1.0;
   REQUIRE(fatal(makeDrive(backwards)).find("flipped sign: the robot goes backwards") == 0);
+}
+
+TEST_CASE("commands that alternate evenly are not taken for a flipped sign") {
+  Made made;
+  made.alternates = true;
+  REQUIRE(fatal(makeDrive(made)) == "");
 }
 
 TEST_CASE("a mirrored map does not fit its headings") {

@@ -77,6 +77,14 @@ TEST_CASE("a clock that goes back or jumps ahead is found with its place") {
     shift(events, kIns, 15.0, -3.0, 0.0);
     REQUIRE(fatal(events) == "clock jump: INS goes back by 2.90 s at 14.9 s; cut the log there");
   }
+  SECTION("both channels go back, and the log is sorted by time") {
+    auto events = goodLog().sorted();
+    shift(events, kMotor, 15.0, -3.0, -3.0);
+    shift(events, kIns, 15.0, -3.0, -3.0);
+    std::stable_sort(events.begin(), events.end(),
+                     [](const LogEvent& a, const LogEvent& b) { return a.utime < b.utime; });
+    REQUIRE(fatal(events).find("clock jump: MOTOR goes back at 14.9") == 0);
+  }
   SECTION("recorded with the robot's own clock: the robot does not move on in the pause") {
     auto events = goodLog().sorted();
     shift(events, kIns, 15.0, 4.0, 4.0);
@@ -154,6 +162,16 @@ TEST_CASE("an INS that hangs while commands drive is found with its place") {
   REQUIRE(fatal(log.sorted()).find("the INS is frozen: one pose from 15.0 to 29.9") == 0);
 }
 
+TEST_CASE("an INS that sends one message again and again is frozen, too") {
+  SmallLog log = goodLog();
+  const LogEvent last = log.events.back().channel == std::string("INS")
+                            ? log.events.back()
+                            : log.events[log.events.size() - 2];
+  REQUIRE(last.channel == "INS");
+  for (int i = 0; i < 100; ++i) log.events.push_back(last);
+  REQUIRE(fatal(log.sorted()).find("the INS is frozen: one message of 29.9 s") == 0);
+}
+
 TEST_CASE("a robot that stands, or is told so little that it may stand, has no frozen INS") {
   SmallLog log;
   Pose2 T_map_body;
@@ -181,7 +199,7 @@ TEST_CASE("foreign bytes and numbers that are none never break the reader") {
   log.ins(3.02, {kNaN, 1.0, kNaN}, kNaN);
   log.ins(3.03, {1e300, -1e300, 0.0}, 1e300);
   const auto events = log.sorted();
-  REQUIRE(noted(events, "2 events on our channels are of another type"));
+  REQUIRE(noted(events, "2 events on our channels are of another type or time"));
   REQUIRE(noted(events, "1 MOTOR messages without a number as command"));
 }
 

@@ -8,9 +8,12 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kClear = 0.5;          // |correlation| from which a sign is certain
-constexpr double kEarlier = 0.3;        // [s] by which no motion precedes its command
-constexpr double kLagStep = 0.6;        // [s] by which no vehicle's lag changes within a drive
+constexpr double kClear = 0.5;       // |correlation| from which a sign is certain
+constexpr double kClearer = 0.25;    // by which it is larger than that of the other sign
+constexpr double kEarlier = 0.3;     // [s] by which no motion precedes its command
+constexpr double kLongestLag = 2.0;  // [s] of a vehicle behind its commands
+constexpr double kPrecedes = 0.1;  // of correlation^2 that a motion before its command must explain
+constexpr double kLagStep = 0.6;   // [s] by which no vehicle's lag changes within a drive
 constexpr double kBetterSquare = 0.25;  // of correlation^2 that another lag must explain more
 constexpr double kPart = 60.0;          // [s] of increments
 
@@ -37,8 +40,7 @@ double lagError(const LagTable& table, double correlation) {
   const size_t size = table.increments();
   for (size_t g = 0; g < kGroups; ++g) {
     const auto match = table.best(g * size / kGroups, (g + 1) * size / kGroups);
-    if (match && match->correlation * correlation > 0.5 * square(correlation))
-      lags.push_back(match->lag);
+    if (match && match->correlation > 0.5 * correlation) lags.push_back(match->lag);
   }
   if (lags.size() < 4) return kNotMeasured;
   double mean = 0.0;
@@ -75,26 +77,33 @@ bool turns(const std::vector<PoseIncrement>& increments) {
 void checkFrozenGyro(const Drive& drive, NoteBook& notes) {
   for (const Stretch& stretch : drive.stretches) {
     const InsSample* from = nullptr;
-    double turned = 0.0;
     double yaw = kNotMeasured;
+    double yaw_from = kNotMeasured;
     for (const InsSample& sample : stretch.ins) {
-      if (std::isfinite(sample.T_map_body.yaw)) {
-        if (std::isfinite(yaw)) turned += std::abs(sample.T_map_body.yaw - yaw);
-        yaw = sample.T_map_body.yaw;
-      }
+      if (std::isfinite(sample.T_map_body.yaw)) yaw = sample.T_map_body.yaw;
       if (!std::isfinite(sample.omega)) continue;
       if (from == nullptr || sample.omega != from->omega) {
         from = &sample;
-        turned = 0.0;
+        yaw_from = yaw;
       }
-      if (sample.time - from->time > 3.0 &&
-          turned > 1.0 + 3.0 * std::abs(from->omega) * (sample.time - from->time))
+      const double time = sample.time - from->time;
+      const double turned = std::abs(yaw - yaw_from);
+      if (time > 3.0 && turned > 1.0 + 3.0 * std::abs(from->omega) * time)
         return notes.fatal("the gyro is frozen: it says " + digits(from->omega, 4) +
                            " rad/s all the time from " + digits(from->time) + " to " +
                            digits(sample.time) + " s while the heading turns " + digits(turned) +
                            " rad; check the INS");
     }
   }
+}
+
+/// Whether one rate clearly goes against the other at every lag.
+/** Commands that alternate agree and disagree equally well, at different lags. */
+bool goesAgainst(const LagTable& table, double from, double to) {
+  const auto against = table.best(0, table.increments(), -1.0, from, to);
+  const auto with = table.best(0, table.increments(), 1.0, from, to);
+  if (!against || against->correlation > -kClear) return false;
+  return !with || with->correlation < -against->correlation - kClearer;
 }
 
 /// What follows a command, and how it is called.
@@ -113,7 +122,7 @@ void checkParts(const Follower& follower, const std::vector<PoseIncrement>& incr
     while (last < increments.size() && sum < kPart) sum += increments[last++].duration();
     const auto own = follower.table.best(first, last);
     const auto as_whole = follower.table.near(whole.lag, first, last);
-    const double left = as_whole ? square(as_whole->correlation) : 0.0;
+    const double left = as_whole ? square(std::max(0.0, as_whole->correlation)) : 0.0;
     if (sum >= 0.5 * kPart && own && own->correlation > 0.6 &&
         std::abs(own->lag - whole.lag) > kLagStep &&
         square(own->correlation) - left > kBetterSquare)
@@ -127,15 +136,18 @@ void checkParts(const Follower& follower, const std::vector<PoseIncrement>& incr
 
 void checkFollower(const Follower& follower, const std::vector<PoseIncrement>& increments,
                    NoteBook& notes) {
-  const auto best = follower.table.best(0, increments.size());
-  if (!best || std::abs(best->correlation) < kClear) return;
-  const auto now = follower.table.near(std::max(best->lag, 0.0), 0, increments.size());
-  if (best->correlation < 0.0)
+  const LagTable& table = follower.table;
+  if (goesAgainst(table, -kEarlier, kLongestLag)) {
+    const auto against = table.best(0, increments.size(), -1.0, -kEarlier, kLongestLag);
     return notes.fatal(std::string(follower.wrong) + " (correlation " +
-                       digits(best->correlation, 2) + " over " + std::to_string(best->rows) +
+                       digits(against->correlation, 2) + " over " + std::to_string(against->rows) +
                        " intervals)");
-  const double left = now ? square(now->correlation) : 0.0;
-  if (best->lag < -kEarlier && square(best->correlation) - left > 0.1)
+  }
+  const auto best = table.best(0, increments.size());
+  if (!best || best->correlation < kClear) return;
+  const auto usual = table.best(0, increments.size(), 1.0, -kEarlier, kLongestLag);
+  const double left = usual ? square(std::max(0.0, usual->correlation)) : 0.0;
+  if (best->lag < -kEarlier && square(best->correlation) - left > kPrecedes)
     return notes.fatal("the motion precedes its commands by " + digits(-best->lag) +
                        " s: INS and MOTOR are not on one clock");
   checkParts(follower, increments, *best, notes);
@@ -155,12 +167,15 @@ void checkGyro(const Drive& drive, NoteBook& notes) {
   const auto match = table.best(0, increments.size());
   if (!match || !turns(increments))
     return notes.note("no gyro beside the heading, or nothing turns: not compared");
+  if (goesAgainst(table, -1.0, 1.0)) {
+    const auto against = table.best(0, increments.size(), -1.0);
+    return notes.fatal("flipped sign: the gyro turns against the heading (slope " +
+                       digits(against->slope, 2) + ", correlation " +
+                       digits(against->correlation, 2) + " over " + std::to_string(against->rows) +
+                       " intervals); check how the INS is mounted and which sign it uses");
+  }
   const std::string r = "correlation " + digits(match->correlation, 2) + " over " +
                         std::to_string(match->rows) + " intervals";
-  if (match->correlation < -kClear)
-    return notes.fatal("flipped sign: the gyro turns against the heading (slope " +
-                       digits(match->slope, 2) + ", " + r +
-                       "); check how the INS is mounted and which sign it uses");
   if (match->correlation < kClear) return notes.note("gyro and heading hardly agree (" + r + ")");
   const double error = lagError(table, match->correlation);
   const std::string band = std::isfinite(error)

@@ -147,22 +147,24 @@ std::optional<LagMatch> LagTable::match(size_t lag, size_t first, size_t last) c
   return LagMatch{lags_[lag], xy / scale, xy / xx, y - xy / xx * x, rows};
 }
 
-std::optional<LagMatch> LagTable::best(size_t first, size_t last) const {
+std::optional<LagMatch> LagTable::best(size_t first, size_t last, double sign, double from,
+                                       double to) const {
   std::vector<std::optional<LagMatch>> all;
   size_t top = 0;
-  for (size_t lag = 0; lag < lags_.size(); ++lag) {
-    all.push_back(match(lag, first, last));
-    const bool better = all[lag] && (!all[top] || std::abs(all[lag]->correlation) >
-                                                      std::abs(all[top]->correlation));
-    if (better) top = lag;
+  for (const double lag : lags_) {
+    const bool within = lag >= from - 1e-9 && lag <= to + 1e-9;
+    all.push_back(within ? match(all.size(), first, last) : std::nullopt);
+    const auto& now = all.back();
+    if (now && (!all[top] || sign * now->correlation > sign * all[top]->correlation))
+      top = all.size() - 1;
   }
   if (all.empty() || !all[top]) return std::nullopt;
   LagMatch found = *all[top];
   if (top == 0 || top + 1 == lags_.size() || !all[top - 1] || !all[top + 1]) return found;
   // The peak of the parabola through three neighbours.
-  const double left = std::abs(all[top - 1]->correlation);
-  const double right = std::abs(all[top + 1]->correlation);
-  const double bend = left - 2.0 * std::abs(found.correlation) + right;
+  const double left = sign * all[top - 1]->correlation;
+  const double right = sign * all[top + 1]->correlation;
+  const double bend = left - 2.0 * sign * found.correlation + right;
   if (bend < 0.0) found.lag += 0.5 * (left - right) / bend * (lags_[top + 1] - lags_[top]);
   return found;
 }

@@ -70,8 +70,10 @@ class LagTable {
   /// The match at one of the lags over increments [first, last); nothing where less than a third
   /// of the increments speak, or nothing moves.
   std::optional<LagMatch> match(size_t lag, size_t first, size_t last) const;
-  /// The match with the largest |correlation|, refined between the lags.
-  std::optional<LagMatch> best(size_t first, size_t last) const;
+  /// The match with the largest correlation (sign 1) or the most negative one (sign -1) among lags
+  /// from `from` to `to` [s], refined between the lags.
+  std::optional<LagMatch> best(size_t first, size_t last, double sign = 1.0, double from = -1e9,
+                               double to = 1e9) const;
   /// The match at the lag nearest to a time.
   std::optional<LagMatch> near(double lag, size_t first, size_t last) const;
   size_t increments() const { return rates_.size(); }
