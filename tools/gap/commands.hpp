@@ -14,5 +14,7 @@ inline constexpr int kBadInput = 2;
 
 CLI::App* addFind(CLI::App& app, int& status);
 CLI::App* addExplain(CLI::App& app);
+CLI::App* addWhatIf(CLI::App& app);
+CLI::App* addPlan(CLI::App& app, int& status);
 
 }  // namespace tread::gap

@@ -36,8 +36,8 @@ std::string channelWords(const std::string& channels) {
 std::string parameterWords(const EffectParameter& parameter) {
   if (parameter.reciprocal())
     return parameter.natural_name + " above " +
-           said(1.0 / parameter.max, parameter.natural_unit) + ", for instance " +
-           said(1.0 / parameter.typical, parameter.natural_unit) + " (in model files " +
+           said(1.0 / parameter.max, naturalUnit(parameter)) + ", for instance " +
+           said(1.0 / parameter.typical, naturalUnit(parameter)) + " (in model files " +
            parameter.natural_name + ", or " + parameter.name + ", its reciprocal)";
   const bool shape = parameter.role == ParameterRole::kShape;
   return parameter.name + " " + saidInterval(parameter.min, parameter.max, parameter.unit) +

@@ -28,6 +28,7 @@ struct Options {
   std::string out;
   int64_t seed = 1;
   int threads = 1;
+  bool calibrate = false;
 };
 
 constexpr const char* kFooter =
@@ -82,6 +83,7 @@ int find(const Options& options) {
       task.hygiene.insert(task.hygiene.end(), drive.notes.begin(), drive.notes.end());
   task.seed = static_cast<uint64_t>(options.seed);
   task.threads = options.threads;
+  task.calibrate = options.calibrate;
   makeFolder(options.out);
   const Finding finding = findGap(task, say);
   writeFinding(options.out, finding, inputs);
@@ -110,6 +112,9 @@ CLI::App* addFind(CLI::App& app, int& status) {
       ->expected(-1);
   command->add_option("--out", options->out, "folder for the four files; made if needed")
       ->required();
+  command->add_flag("--calibrate", options->calibrate,
+                    "fit lag, delay and gains of the nominal model, too: makes the model of a new "
+                    "vehicle from a long log");
   command->add_option("--seed", options->seed, "of the random draws of the tests")
       ->capture_default_str()
       ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));

@@ -14,9 +14,20 @@
 #include "tools/recordings/text_file.hpp"
 
 namespace tread::gap {
+namespace {
+
+/// Both halves of a covariance equal to the bit: rounding has made them differ, a file must not.
+void makeSymmetric(std::vector<std::vector<double>>& matrix) {
+  for (size_t i = 0; i < matrix.size(); ++i)
+    for (size_t j = 0; j < i; ++j)
+      matrix[i][j] = matrix[j][i] = 0.5 * (matrix[i][j] + matrix[j][i]);
+}
+
+}  // namespace
 
 ModelDocument newModel(const Finding& finding, const std::vector<InputFile>& inputs) {
   ModelDocument model = finding.after;
+  makeSymmetric(model.covariance.matrix);
   const Provenance& old = finding.before.provenance;
   Provenance provenance;
   provenance.tool = toolVersion();
@@ -44,7 +55,9 @@ void writeFinding(const std::string& folder, const Finding& finding,
                   const std::vector<InputFile>& inputs) {
   makeFolder(folder);
   const Page page = reportPage(finding, inputs);
-  recordings::writeText(folder + "/model.yaml", formatModelDocument(newModel(finding, inputs)));
+  const std::string model = formatModelDocument(newModel(finding, inputs));
+  parseModelDocument(model, folder + "/model.yaml");  // a file that nobody can read is none
+  recordings::writeText(folder + "/model.yaml", model);
   recordings::writeText(folder + "/report.md", markdownOf(page));
   recordings::writeText(folder + "/report.html", htmlOf(page));
   // Last: whoever finds the verdict finds the rest, too.

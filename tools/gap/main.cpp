@@ -13,6 +13,8 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     tread::gap::addFind(app, status);
     tread::gap::addExplain(app);
+    tread::gap::addWhatIf(app);
+    tread::gap::addPlan(app, status);
     if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "tread-gap: %s\n", error.what());

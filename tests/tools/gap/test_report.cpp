@@ -167,6 +167,13 @@ TEST_CASE("the new model is read back with its provenance and envelope") {
   CHECK(read.envelope->omega == 2.4);
 }
 
+TEST_CASE("a covariance that rounding made unequal in its halves can be read back") {
+  Finding finding = samples::finding(Verdict::kFound);
+  finding.after.covariance.matrix[0][1] += 1e-19;
+  REQUIRE(finding.after.covariance.matrix[0][1] != finding.after.covariance.matrix[1][0]);
+  CHECK_NOTHROW(parseModelDocument(formatModelDocument(newModel(finding, samples::inputs())), "m"));
+}
+
 TEST_CASE("working on the same log again counts the runs") {
   Finding finding = samples::finding(Verdict::kFound);
   finding.before = newModel(finding, samples::inputs());

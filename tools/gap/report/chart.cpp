@@ -228,4 +228,18 @@ std::string Chart::svg() const {
          "</g>\n" + shapes_ + "</svg>";
 }
 
+std::string sheetOf(const std::vector<std::string>& charts, size_t columns) {
+  const size_t rows = (charts.size() + columns - 1) / columns;
+  std::string text = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" +
+                     at(kWidth * static_cast<double>(columns)) + "\" height=\"" +
+                     at(kHeight * static_cast<double>(rows)) + "\">\n";
+  for (size_t i = 0; i < charts.size(); ++i) {
+    const std::string place =
+        "<svg x=\"" + at(kWidth * static_cast<double>(i % columns)) + "\" y=\"" +
+        at(kHeight * static_cast<double>(i / columns)) + "\" width=\"320\" height=\"230\"";
+    text += place + charts[i].substr(4) + "\n";  // behind the chart's own "<svg"
+  }
+  return text + "</svg>\n";
+}
+
 }  // namespace tread::gap

@@ -77,4 +77,7 @@ class Chart {
   double legend_end_ = 0.0;
 };
 
+/// Charts in rows of so many, as one SVG file.
+std::string sheetOf(const std::vector<std::string>& charts, size_t columns);
+
 }  // namespace tread::gap

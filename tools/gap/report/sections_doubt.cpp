@@ -61,7 +61,7 @@ std::string saidDetectable(const CandidateTest& test) {
   if (parameter == nullptr) return threeDigits(test.detectable);
   if (parameter->reciprocal())
     return parameter->natural_name + " below " +
-           said(naturalValue(*parameter, test.detectable), parameter->natural_unit);
+           said(naturalValue(*parameter, test.detectable), naturalUnit(*parameter));
   return said(test.detectable, parameter->unit);
 }
 

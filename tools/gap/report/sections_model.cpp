@@ -18,22 +18,22 @@ std::string plausible(const Finding& finding, const Estimate& estimate) {
       return saidInterval(bounds.min, bounds.max, estimate.unit);
   if (parameter == nullptr) return "";
   if (parameter->reciprocal())
-    return "above " + said(1.0 / parameter->max, parameter->natural_unit);
+    return "above " + said(1.0 / parameter->max, naturalUnit(*parameter));
   return saidInterval(parameter->min, parameter->max, parameter->unit);
 }
 
 /// Before its effect was added a parameter was off.
 std::string saidBefore(const Estimate& estimate, const Estimate& natural) {
   if (parameterOfPath(estimate.parameter).effect != nullptr && estimate.before == 0.0) return "off";
-  return said(natural.before, natural.unit);
+  return said(natural.before, saidUnit(natural));
 }
 
 void addRow(const Finding& finding, const Estimate& estimate, const std::string& effect,
             Table& table) {
   const Estimate natural = naturalEstimate(estimate);
   table.rows.push_back({effect, lastPart(natural.parameter), saidBefore(estimate, natural),
-                        said(natural.value, natural.unit),
-                        saidInterval(natural.low, natural.high, natural.unit),
+                        said(natural.value, saidUnit(natural)),
+                        saidInterval(natural.low, natural.high, saidUnit(natural)),
                         plausible(finding, estimate)});
 }
 

@@ -90,6 +90,10 @@ std::string lastPart(const std::string& path) {
   return point == std::string::npos ? path : path.substr(point + 1);
 }
 
+std::string naturalUnit(const EffectParameter& parameter) {
+  return parameter.natural_unit == "1" ? "" : parameter.natural_unit;
+}
+
 Estimate naturalEstimate(const Estimate& estimate) {
   const EffectParameter* parameter = parameterOfPath(estimate.parameter).parameter;
   if (parameter == nullptr || !parameter->reciprocal()) return estimate;
@@ -104,10 +108,15 @@ Estimate naturalEstimate(const Estimate& estimate) {
   return natural;
 }
 
+std::string saidUnit(const Estimate& natural) {
+  return natural.parameter == "friction" ? "" : natural.unit;
+}
+
 std::string saidEstimate(const Estimate& estimate) {
   const Estimate natural = naturalEstimate(estimate);
-  return lastPart(natural.parameter) + " " + said(natural.value, natural.unit) + " (" +
-         saidInterval(natural.low, natural.high, natural.unit) + ")";
+  const std::string unit = saidUnit(natural);
+  return lastPart(natural.parameter) + " " + said(natural.value, unit) + " (" +
+         saidInterval(natural.low, natural.high, unit) + ")";
 }
 
 std::string titleOf(const std::string& effect) {
@@ -157,6 +166,9 @@ std::string inSentence(const std::string& words) {
 }
 
 std::string asSentence(const std::string& words) {
+  // Formulas keep their letters.
+  if (words.size() > 1 && words[1] != ' ' && std::islower(static_cast<unsigned char>(words[1])) == 0)
+    return words;
   std::string text = words;
   if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   return text;

@@ -35,9 +35,15 @@ ParameterOfPath parameterOfPath(const std::string& path);
 /// The parameter's name without its effect.
 std::string lastPart(const std::string& path);
 
+/// Unit in which people say a limit; none for a friction, which is no share.
+std::string naturalUnit(const EffectParameter& parameter);
+
 /// An estimate of a reciprocal as people say it: the limit itself, its interval turned over.
 /** Others come back as they are. */
 Estimate naturalEstimate(const Estimate& estimate);
+
+/// Unit in which a natural estimate is said.
+std::string saidUnit(const Estimate& natural);
 
 /// "limit 1.18 rad/s (1.15 to 1.21 rad/s)".
 std::string saidEstimate(const Estimate& estimate);

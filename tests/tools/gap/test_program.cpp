@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <string>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "common/log/event_log.hpp"
+#include "common/pattern/pattern_file.hpp"
+#include "common/vehicle/effects.hpp"
+#include "common/vehicle/kernel.hpp"
+#include "common/vehicle/model_file.hpp"
+#include "tests/tools/gap/gap_program.hpp"
+#include "tests/tools/gap/small_log.hpp"
+
+namespace tread::gap {
+namespace {
+
+using samples::Folder;
+using samples::kModels;
+using samples::run;
+using samples::Run;
+
+/// A log of a model that drives arcs to and fro: track speeds, INS at 10 Hz.
+void writeDrive(const std::string& path, double seconds) {
+  VehicleModel truth = readModelFile(kModels + "warthog_asphalt.yaml");
+  tread::samples::SmallLog log;
+  VehicleKernel kernel(truth, EntryState{});
+  constexpr double kPeriod = 0.05;
+  int64_t id = 0;
+  for (int i = 0; i * kPeriod < seconds; ++i) {
+    const double time = i * kPeriod;
+    const double turn = i / 40 % 3 * 0.4 - 0.4;
+    const TrackCommand command{1.0 - turn, 1.0 + turn};
+    log.motor(time, command);
+    if (i % 2 == 0) log.ins(time, kernel.pose(), kernel.twist().omega);
+    if (i % 40 == 39) log.execution(++id, time - 1.95, time);
+    kernel.step(command, kPeriod);
+  }
+  LogWriter writer(path);
+  for (const LogEvent& event : log.events)
+    writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
+}
+
+}  // namespace
+
+TEST_CASE("every effect of the catalogue is explained, with a check of two minutes") {
+  const Run list = run("explain");
+  CHECK(list.status == 0);
+  for (const Effect& effect : effectCatalogue()) {
+    INFO(effect.name);
+    CHECK(list.says("  " + effect.name + " "));
+    const Run one = run("explain " + effect.name);
+    CHECK(one.status == 0);
+    for (const char* heading : {"what it is", "equation", "parameters", "changes", "looks like",
+                                "tell it apart", "in two minutes"})
+      CHECK(one.says(heading));
+    CHECK(one.says(effect.title));
+  }
+  CHECK(run("explain icr_offset").says("lever_arm_x"));
+}
+
+TEST_CASE("bad input ends with 2 and one line that says what and where") {
+  const Folder folder;
+  folder.write("typo.yaml", "name: a\nkind: power\nfull_speed: 1\ngauge: 0.6\neffects:\n  slip_ratoi:\n    slip: 0.1\n");
+  folder.write("no.lcmlog", "this is no log\n");
+  writeDrive(folder.path("speeds.lcmlog"), 10.0);
+  const std::string grass = "--model " + kModels + "teodor_grass.yaml ";
+  const std::string out = " --out " + folder.path("out");
+  const std::pair<std::string, std::string> kBad[] = {
+      {"explain slip_ratoi", "did you mean slip_ratio?"},
+      {"find --model none.yaml --train x.lcmlog" + out, "none.yaml: cannot be read"},
+      {"find --model " + folder.path("typo.yaml") + " --train x.lcmlog" + out, "typo.yaml:6"},
+      {"find " + grass + "--train none.lcmlog" + out, "none.lcmlog"},
+      {"find " + grass + "--train " + folder.path("no.lcmlog") + out, "no.lcmlog"},
+      {"find " + grass + "--train " + folder.path("speeds.lcmlog") + out,
+       "its commands are track speeds"},
+      {"what-if " + grass, "nothing to change"},
+      {"what-if " + grass + "--remove slip_ratio", "it is off in this model"},
+      {"what-if " + grass + "--add slip_ratio --set slip=3", "not plausible"},
+      {"what-if " + grass + "--add slip_ratio --set slop=0.3", "no parameter of slip_ratio"},
+      {"plan slip_ratio slip_ratio " + grass, "name two effects"},
+      {"plan slip_ratio grip " + grass, "'grip' is no effect"}};
+  for (const auto& [arguments, words] : kBad) {
+    const Run bad = run(arguments);
+    INFO(arguments << "\n" << bad.printed);
+    CHECK(bad.status == 2);
+    CHECK(bad.says(words));
+    CHECK(std::count(bad.printed.begin(), bad.printed.end(), '\n') == 1);
+  }
+  CHECK_FALSE(std::filesystem::exists(folder.path("out")));
+}
+
+TEST_CASE("a log that is too short cannot tell: status 15, the reason, and four files") {
+  const Folder folder;
+  writeDrive(folder.path("short.lcmlog"), 40.0);
+  const std::string find = "find --model " + kModels + "warthog_nominal.yaml --train " +
+                           folder.path("short.lcmlog") + " --seed 3";
+  const Run first = run(find + " --threads 1 --out " + folder.path("a"));
+  INFO(first.printed);
+  CHECK(first.status == 15);
+  CHECK(first.says("CANNOT_TELL"));
+  const auto json = nlohmann::json::parse(folder.text("a/verdict.json"));
+  CHECK(json["verdict"] == "CANNOT_TELL");
+  CHECK_FALSE(json["reason"].get<std::string>().empty());
+  CHECK(json["seed"] == 3);
+  CHECK(json["inputs"]["train"][0]["sha256"].get<std::string>().size() == 64);
+  CHECK_NOTHROW(readModelDocument(folder.path("a/model.yaml")));
+  SECTION("the same files and seed give the same bytes, whatever the number of threads") {
+    CHECK(run(find + " --threads 2 --out " + folder.path("b")).status == 15);
+    for (const char* file : {"verdict.json", "model.yaml", "report.md", "report.html"}) {
+      CHECK_FALSE(folder.text(std::string("a/") + file).empty());
+      CHECK(folder.text(std::string("a/") + file) == folder.text(std::string("b/") + file));
+    }
+  }
+}
+
+TEST_CASE("what-if shows what an effect does, as numbers and as pictures") {
+  const Folder folder;
+  const std::string model = "what-if --model " + kModels + "teodor_grass.yaml ";
+  const Run without = run(model + "--remove icr_offset --out " + folder.path("w.svg"));
+  CHECK(without.status == 0);
+  CHECK(without.says("What if: without centre of rotation"));
+  CHECK(without.says("fast turn on the spot"));
+  CHECK(folder.text("w.svg").find("</svg>") != std::string::npos);
+  const Run level = run(model + "--add slope_pitch");
+  CHECK(level.says("No manoeuvre shows a difference"));
+  CHECK_FALSE(run(model + "--add slope_pitch --pitch 10").says("No manoeuvre shows"));
+  CHECK(run(model + "--add turn_power_limit --set limit=0.5").status == 0);
+}
+
+TEST_CASE("what-if simulates the executions of a log") {
+  const Folder folder;
+  writeDrive(folder.path("drive.lcmlog"), 40.0);
+  const Run of_log = run("what-if --model " + kModels + "warthog_asphalt.yaml --add slip_ratio --log " +
+                         folder.path("drive.lcmlog") + " --out " + folder.path("w.html"));
+  INFO(of_log.printed);
+  CHECK(of_log.status == 0);
+  CHECK(of_log.says("executions of the log"));
+  CHECK(folder.text("w.html").find("On the log") != std::string::npos);
+}
+
+TEST_CASE("plan writes a pattern set that tells two effects apart, and that can be driven") {
+  const Folder folder;
+  const std::string model = kModels + "teodor_tarmac.yaml";
+  const Run plan = run("plan track_asymmetry yaw_pull --model " + model + " --out " + folder.path("p.yaml"));
+  INFO(plan.printed);
+  CHECK(plan.status == 0);
+  CHECK(plan.says("s of driving"));
+  const PatternSet set = readPatternFile(folder.path("p.yaml"));
+  double seconds = 0.0;
+  for (const MotionPattern& pattern : set.patterns())
+    seconds += set.periodSeconds() * static_cast<double>(pattern.commands.size());
+  CHECK(seconds <= 120.0);
+  const Run record = samples::runProgram(
+      "tread-patterns", "record " + folder.path("p.yaml") + " --book " + folder.path("book") +
+                            " --surface here -n 1 --model " + model);
+  INFO(record.printed);
+  CHECK(record.status == 0);
+}
+
+TEST_CASE("plan among the patterns of a set keeps what leads to them and back to standing") {
+  const Folder folder;
+  const std::string patterns = std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor.yaml";
+  const Run plan = run("plan track_asymmetry gyro_bias --model " + kModels +
+                       "teodor_tarmac.yaml --patterns " + patterns + " --out " + folder.path("p.yaml"));
+  INFO(plan.printed);
+  CHECK(plan.status == 0);
+  CHECK_NOTHROW(readPatternFile(folder.path("p.yaml")));
+}
+
+TEST_CASE("where no drive tells two effects apart, plan names the measurement that does") {
+  const Run plan = run("plan icr_offset lever_arm_x --model " + kModels + "teodor_tarmac.yaml");
+  INFO(plan.printed);
+  CHECK(plan.status == 1);
+  CHECK(plan.says("Measure the lever arm with a tape."));
+  CHECK(run("plan slope_pitch slip_ratio --model " + kModels + "teodor_tarmac.yaml")
+            .says("shows in none of these manoeuvres on level ground"));
+}
+
+}  // namespace tread::gap

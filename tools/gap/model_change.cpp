@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/gap/model_change.hpp"
+
+#include <stdexcept>
+
+#include "common/config/scalars.hpp"
+#include "tools/gap/explain.hpp"
+#include "tools/gap/report/words.hpp"
+
+namespace tread::gap {
+namespace {
+
+double& valueOf(ModelDocument& model, const EffectParameter& parameter) {
+  return parameter.vehicle != nullptr ? model.vehicle.effects.*parameter.vehicle
+                                      : model.measurement.*parameter.measured;
+}
+
+std::string parameterNames(const Effect& effect) {
+  std::vector<std::string> names;
+  for (const EffectParameter& parameter : effect.parameters) {
+    names.push_back(parameter.name);
+    if (parameter.reciprocal()) names.push_back(parameter.natural_name);
+  }
+  return joinWords(names);
+}
+
+void setEffect(ModelDocument& model, const Effect& effect, const std::string& name, double value) {
+  for (const EffectParameter& parameter : effect.parameters) {
+    const bool natural = parameter.reciprocal() && name == parameter.natural_name;
+    if (!natural && name != parameter.name) continue;
+    if (natural && value == 0.0) throw std::runtime_error(name + "=0: a limit of 0 lets nothing move");
+    const double held = natural ? 1.0 / value : value;
+    if (held < parameter.min || held > parameter.max)
+      throw std::runtime_error(effect.name + "." + name + "=" + formatNumber(value) +
+                               ": not plausible; " + parameter.name + " is " +
+                               formatNumber(parameter.min) + " to " +
+                               formatNumber(parameter.max) +
+                               (parameter.unit == "1" ? "" : " " + parameter.unit));
+    valueOf(model, parameter) = held;
+    return;
+  }
+  throw std::runtime_error("'" + name + "' is no parameter of " + effect.name +
+                           "; it has " + parameterNames(effect));
+}
+
+void set(ModelDocument& model, const std::string& assignment, const Effect* last_added) {
+  const size_t equals = assignment.find('=');
+  const auto value = equals == std::string::npos
+                         ? std::nullopt
+                         : parseNumber(assignment.substr(equals + 1));
+  if (!value)
+    throw std::runtime_error("--set " + assignment + ": write parameter=number");
+  const std::string path = assignment.substr(0, equals);
+  const size_t point = path.find('.');
+  if (point != std::string::npos) {
+    setEffect(model, effectOrGuess(path.substr(0, point)), path.substr(point + 1), *value);
+  } else if (double* number = findParameter(model, path)) {
+    if (!(*value >= 0.0)) throw std::runtime_error("--set " + assignment + ": must not be negative");
+    *number = *value;
+  } else if (last_added != nullptr) {
+    setEffect(model, *last_added, path, *value);
+  } else {
+    throw std::runtime_error("--set " + assignment +
+                             ": no such parameter; write effect.parameter=number, or lag, delay, "
+                             "forward_gain, yaw_gain, full_speed or gauge");
+  }
+}
+
+}  // namespace
+
+void turnOff(ModelDocument& model, const Effect& effect) {
+  const ModelDocument nominal{};
+  for (const EffectParameter& parameter : effect.parameters)
+    valueOf(model, parameter) = parameter.vehicle != nullptr
+                                    ? nominal.vehicle.effects.*parameter.vehicle
+                                    : nominal.measurement.*parameter.measured;
+}
+
+void turnOn(ModelDocument& model, const Effect& effect) {
+  turnOff(model, effect);
+  valueOf(model, effect.parameters.front()) = effect.parameters.front().typical;
+  for (const EffectParameter& parameter : effect.parameters)
+    if (parameter.role == ParameterRole::kShape) valueOf(model, parameter) = parameter.typical;
+}
+
+bool isOn(const ModelDocument& model, const Effect& effect) {
+  return isOn(effect, model.vehicle.effects, model.measurement);
+}
+
+ModelDocument changed(const ModelDocument& model, const ModelChange& change) {
+  ModelDocument other = model;
+  for (const std::string& name : change.remove) {
+    const Effect& effect = effectOrGuess(name);
+    if (!isOn(model, effect))
+      throw std::runtime_error("--remove " + name + ": it is off in this model");
+    turnOff(other, effect);
+  }
+  const Effect* last_added = nullptr;
+  for (const std::string& name : change.add) {
+    last_added = &effectOrGuess(name);
+    turnOn(other, *last_added);
+  }
+  for (const std::string& assignment : change.set) set(other, assignment, last_added);
+  return other;
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "common/pattern/pattern_file.hpp"
+#include "common/vehicle/degeneracy.hpp"
+#include "common/vehicle/model_file.hpp"
+#include "tools/gap/commands.hpp"
+#include "tools/gap/explain.hpp"
+#include "tools/gap/model_change.hpp"
+#include "tools/gap/plan_design.hpp"
+#include "tools/gap/plan_patterns.hpp"
+#include "tools/gap/report/words.hpp"
+#include "tools/recordings/text_file.hpp"
+
+namespace tread::gap {
+namespace {
+
+struct Options {
+  std::string truth;
+  std::string rival;
+  std::string model;
+  std::string patterns;
+  std::string out;
+  std::vector<std::string> set;
+};
+
+constexpr const char* kFooter =
+    "A is taken at its size in the model, else at its typical one (or as --set says); B is refitted\n"
+    "to look most like A, together with what the model says is uncertain. Written to --out is a\n"
+    "pattern set for tread-patterns record. Where no drive tells the two apart, the measurement\n"
+    "that does is printed instead, and the exit status is 1.";
+
+/// Measurements that tell the two apart, from the degeneracy table and the catalogue.
+std::string otherWays(const std::string& a, const std::string& b) {
+  std::string text;
+  for (const DegeneracyGroup* group : groupsOf(a))
+    if (std::find(group->members.begin(), group->members.end(), b) != group->members.end())
+      text += "  " + asSentence(group->because) + (group->when.empty() ? "" : " (" + group->when + ")") +
+              ".\n  " + group->separates + "\n";
+  if (!text.empty()) return text;
+  for (const std::string& name : {a, b})
+    text += "  " + titleOf(name) + ": " + effectNamed(name).separates + "\n";
+  return text;
+}
+
+std::string sizeOf(const ModelDocument& model, const std::string& name) {
+  std::vector<std::string> sizes;
+  for (const EffectParameter& parameter : effectNamed(name).parameters) {
+    const std::string path = name + "." + parameter.name;
+    const double value = *findParameter(model, path);
+    if (parameter.role == ParameterRole::kShape || value == 0.0) continue;
+    const bool natural = parameter.reciprocal();
+    sizes.push_back((natural ? parameter.natural_name : parameter.name) + " " +
+                    said(naturalValue(parameter, value),
+                         natural ? naturalUnit(parameter) : parameter.unit));
+  }
+  return sizes.empty() ? "off" : joined(sizes);
+}
+
+/// The room that the patterns of a set ask for, with some to spare [m].
+double roomFor(const PatternSet& set) {
+  double farthest = 0.0;
+  for (const MotionPattern& pattern : set.patterns())
+    farthest = std::max(farthest, pattern.end().position().norm());
+  return std::max(8.0, std::ceil(2.0 * farthest));
+}
+
+std::string sequenceText(const DesignTask& task, const Design& design) {
+  std::string text;
+  for (size_t i = 0; i < task.manoeuvres.size(); ++i) {
+    if (design.counts[i] == 0) continue;
+    char line[120];
+    std::snprintf(line, sizeof line, "  %zu x %-24s %.1f s\n", design.counts[i],
+                  task.manoeuvres[i].name.c_str(),
+                  kManoeuvrePeriod * static_cast<double>(task.manoeuvres[i].commands.size()));
+    text += line;
+  }
+  return text;
+}
+
+void tellFound(const Options& options, const DesignTask& task, const Design& design,
+               const PatternSet& set) {
+  std::cout << "To tell " << inSentence(titleOf(options.truth)) << " ("
+            << sizeOf(design.truth, options.truth) << ") from "
+            << inSentence(titleOf(options.rival)) << ":\n\n"
+            << sequenceText(task, design) << "\n"
+            << threeDigits(design.duration) << " s of driving; expected difference of the log "
+            << "likelihoods " << threeDigits(design.difference) << " (" << threeDigits(task.enough)
+            << " is enough),\nalthough " << inSentence(titleOf(options.rival))
+            << " is refitted to look most like it ("
+            << sizeOf(design.rival, options.rival) << ").\n";
+  if (options.out.empty()) return;
+  recordings::writeText(options.out, formatPatterns(set));
+  std::cout << "\n" << options.out << ": a pattern set. Record a log (tread-logger) while\n"
+            << "  tread-patterns record " << options.out
+            << " --book plan_book --surface here --live -n 1 --room " << threeDigits(roomFor(set))
+            << "\ndrives it, and give that log to tread-gap find with the old one (--train OLD NEW).\n";
+}
+
+void tellNone(const Options& options, const Design& design) {
+  constexpr double kInvisible = 0.5;  // [nats]
+  if (design.visible < kInvisible)
+    std::cout << titleOf(options.truth) << " (" << sizeOf(design.truth, options.truth)
+              << ") shows in none of these manoeuvres on level ground. What shows it:\n";
+  else
+    std::cout << "No drive of these manoeuvres within 120 s tells " << inSentence(titleOf(options.truth))
+              << " (" << sizeOf(design.truth, options.truth) << ") from "
+              << inSentence(titleOf(options.rival)) << " (" << sizeOf(design.rival, options.rival)
+              << "): expected difference " << threeDigits(design.difference) << " after "
+              << threeDigits(design.duration) << " s. What tells:\n";
+  std::cout << otherWays(options.truth, options.rival);
+}
+
+int plan(const Options& options) {
+  effectOrGuess(options.truth);
+  effectOrGuess(options.rival);
+  if (options.truth == options.rival)
+    throw std::runtime_error("plan: twice " + options.truth + "; name two effects");
+  DesignTask task;
+  task.model = readModelDocument(options.model);
+  task.truth = options.truth;
+  task.rival = options.rival;
+  if (!options.set.empty()) {
+    ModelChange change{{}, {}, options.set};
+    if (!isOn(task.model, effectNamed(options.truth))) change.add = {options.truth};
+    task.model = changed(task.model, change);
+  }
+  std::optional<PatternSet> from;
+  if (!options.patterns.empty()) from = readPatternFile(options.patterns);
+  task.manoeuvres = from ? manoeuvresOf(*from, task.model) : planManoeuvres(task.model);
+  const Design design = designDrive(task);
+  if (!design.separates) {
+    tellNone(options, design);
+    return 1;
+  }
+  tellFound(options, task, design,
+            from ? planSet(*from, design.counts)
+                 : planSet(task.model, task.manoeuvres, design.counts));
+  return 0;
+}
+
+}  // namespace
+
+CLI::App* addPlan(CLI::App& app, int& status) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("plan", "the shortest drive that tells effect A from effect B");
+  command->footer(kFooter);
+  command->add_option("A", options->truth, "effect that is taken to be there")->required();
+  command->add_option("B", options->rival, "effect that it may be taken for")->required();
+  command->add_option("--model", options->model, "model file (YAML)")->required();
+  command->add_option("--patterns", options->patterns,
+                      "choose among the patterns of this set instead of the built-in manoeuvres");
+  command->add_option("--set", options->set, "parameter=number: another size of A");
+  command->add_option("--out", options->out, "pattern set to write (YAML)");
+  command->callback([options, &status] { status = plan(*options); });
+  return command;
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/gap/what_if.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "tools/gap/core/end_errors.hpp"
+#include "tools/gap/core/rows.hpp"
+#include "tools/gap/report/chart.hpp"
+#include "tools/gap/report/pictures.hpp"
+#include "tools/gap/report/words.hpp"
+
+namespace tread::gap {
+namespace {
+
+constexpr size_t kShownExecutions = 9;
+
+std::vector<Pose2> posesOf(const std::vector<TimedPose>& motion) {
+  std::vector<Pose2> poses;
+  for (const TimedPose& moment : motion) poses.push_back(moment.T_map_body);
+  return poses;
+}
+
+std::vector<ChartPoint> seenFromAbove(const std::vector<Pose2>& poses) {
+  std::vector<ChartPoint> points;
+  for (const Pose2& pose : poses) points.push_back({-pose.y, pose.x});
+  return points;
+}
+
+std::string picture(const Comparison& comparison) {
+  ChartRange range = ChartRange::empty();
+  const std::vector<ChartPoint> first = seenFromAbove(comparison.first);
+  const std::vector<ChartPoint> second = seenFromAbove(comparison.second);
+  for (const std::vector<ChartPoint>* points : {&first, &second})
+    for (const ChartPoint& point : *points) range.include(point);
+  Chart chart(comparison.name, "to the right [m]", "ahead [m]",
+              range.widened(0.2).withEqualScales());
+  chart.line(first, kBeforeColour, 1.8, true);
+  chart.dot(first.back(), kBeforeColour);
+  chart.line(second, kAfterColour);
+  chart.dot(second.back(), kAfterColour);
+  chart.legend("as it is", kBeforeColour, true);
+  chart.legend("what if: " + threeDigits(comparison.position) + " m, " +
+                   saidAngle(comparison.yaw) + " apart",
+               kAfterColour);
+  return chart.svg();
+}
+
+std::vector<std::string> picturesOf(const std::vector<Comparison>& comparisons) {
+  std::vector<std::string> pictures;
+  for (const Comparison& comparison : comparisons) pictures.push_back(picture(comparison));
+  return pictures;
+}
+
+std::vector<std::string> picturesOf(const LogComparison& comparison) {
+  std::vector<std::string> pictures;
+  for (const Overlay& overlay : comparison.overlays)
+    pictures.push_back(overlayPicture(overlay, "execution at " + threeDigits(overlay.begin) + " s"));
+  return pictures;
+}
+
+double apart(const Overlay& overlay) {
+  return (overlay.before.back().position() - overlay.after.back().position()).norm();
+}
+
+std::string row(const std::string& name, const std::string& position, const std::string& yaw) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%-28s %14s %14s\n", name.c_str(), position.c_str(),
+                yaw.c_str());
+  return text;
+}
+
+Table tableOf(const LogComparison& comparison) {
+  Table table{{"model", "median", "rms", "heading, median", "heading, rms"}, {}, 1};
+  const auto add = [&](const std::string& name, const EndErrors& errors) {
+    table.rows.push_back({name, saidDistance(errors.position.median),
+                          saidDistance(errors.position.rms), saidAngle(errors.yaw.median),
+                          saidAngle(errors.yaw.rms)});
+  };
+  add("as it is", comparison.first);
+  add("what if", comparison.second);
+  return table;
+}
+
+}  // namespace
+
+std::vector<Comparison> compareModels(const ModelDocument& first, const ModelDocument& second,
+                                      const Circumstances& circumstances) {
+  std::vector<Comparison> comparisons;
+  const double full = std::max(fullCommand(first), fullCommand(second));
+  for (const Manoeuvre& manoeuvre : standardManoeuvres(full)) {
+    Comparison comparison;
+    comparison.name = manoeuvre.name;
+    comparison.first = posesOf(drivenByModel(first, manoeuvre, circumstances));
+    comparison.second = posesOf(drivenByModel(second, manoeuvre, circumstances));
+    const Pose2 ends = between(comparison.first.back(), comparison.second.back());
+    comparison.position = ends.position().norm();
+    comparison.yaw = ends.yaw;
+    comparisons.push_back(std::move(comparison));
+  }
+  return comparisons;
+}
+
+LogComparison compareOnLog(const Drive& drive, const ModelDocument& first,
+                           const ModelDocument& second) {
+  const std::vector<Drive> drives{drive};
+  const Rows rows(drives, RowSettings{});
+  const auto all = [](const EndError&) { return true; };
+  const std::vector<EndError> errors = endErrors(rows, first);
+  LogComparison comparison{summaryOf(errors, all), summaryOf(endErrors(rows, second), all), {}};
+  for (const EndError& error : errors)
+    comparison.overlays.push_back(overlayOf(rows, error, first, second));
+  std::stable_sort(comparison.overlays.begin(), comparison.overlays.end(),
+                   [](const Overlay& a, const Overlay& b) { return apart(a) > apart(b); });
+  if (comparison.overlays.size() > kShownExecutions) comparison.overlays.resize(kShownExecutions);
+  return comparison;
+}
+
+std::string textOf(const std::vector<Comparison>& comparisons) {
+  std::string text = row("manoeuvre of 2 s", "ends apart", "heading");
+  bool any = false;
+  for (const Comparison& comparison : comparisons) {
+    text += row(comparison.name, saidDistance(comparison.position), saidAngle(comparison.yaw));
+    any = any || comparison.position > 0.0 || comparison.yaw != 0.0;
+  }
+  if (!any)
+    text += "No manoeuvre shows a difference. What depends on slope, battery, heat or time wants "
+            "--pitch, --roll, --battery-drop, --minutes or --worked.\n";
+  return text;
+}
+
+std::string textOf(const LogComparison& comparison) {
+  std::string text = std::to_string(comparison.first.executions) +
+                     " executions of the log, errors after 2 s, median (rms)\n";
+  const auto add = [&](const std::string& name, const EndErrors& errors) {
+    text += row(name, saidDistance(errors.position.median), saidAngle(errors.yaw.median)) +
+            row("", "(" + saidDistance(errors.position.rms) + ")",
+                "(" + saidAngle(errors.yaw.rms) + ")");
+  };
+  add("model as it is", comparison.first);
+  add("what if", comparison.second);
+  return text;
+}
+
+Page pageOf(const std::string& question, const std::vector<Comparison>& comparisons,
+            const std::vector<LogComparison>& on_log) {
+  Page page;
+  page.title = question + " - tread-gap what-if";
+  page.verdict = question;
+  page.mood = "change";
+  Table table{{"manoeuvre", "ends apart", "heading"}, {}, 1};
+  for (const Comparison& comparison : comparisons)
+    table.rows.push_back(
+        {comparison.name, saidDistance(comparison.position), saidAngle(comparison.yaw)});
+  page.first = {Paragraph{"The same commands, simulated with the model as it is and as it would be; "
+                          "differences after two seconds."},
+                table};
+  page.sections.push_back({"Manoeuvres",
+                           {Pictures{picturesOf(comparisons),
+                                     "Orange, dashed: as it is. Blue: what if. Ahead is up."}}});
+  for (const LogComparison& comparison : on_log)
+    page.sections.push_back(
+        {"On the log",
+         {tableOf(comparison),
+          Pictures{picturesOf(comparison),
+                   "The executions on which the two differ most; old: as it is, new: what if."}}});
+  return page;
+}
+
+std::string svgOf(const std::vector<Comparison>& comparisons,
+                  const std::vector<LogComparison>& on_log) {
+  std::vector<std::string> pictures = picturesOf(comparisons);
+  for (const LogComparison& comparison : on_log)
+    for (std::string& more : picturesOf(comparison)) pictures.push_back(std::move(more));
+  return sheetOf(pictures, 3);
+}
+
+}  // namespace tread::gap

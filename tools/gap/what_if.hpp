@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/gap/core/drive.hpp"
+#include "tools/gap/core/finding.hpp"
+#include "tools/gap/manoeuvres.hpp"
+#include "tools/gap/report/page.hpp"
+
+namespace tread::gap {
+
+/// One manoeuvre driven by two models, as the INS would say it.
+struct Comparison {
+  std::string name;
+  std::vector<Pose2> first;   ///< relative to the begin
+  std::vector<Pose2> second;
+  double position = 0.0;  ///< [m] between the two ends
+  double yaw = 0.0;       ///< [rad] second less first, at the end
+};
+
+/// All standard manoeuvres with both models.
+std::vector<Comparison> compareModels(const ModelDocument& first, const ModelDocument& second,
+                                      const Circumstances& circumstances);
+
+/// What two models err on the executions of a log.
+struct LogComparison {
+  EndErrors first;
+  EndErrors second;
+  std::vector<Overlay> overlays;  ///< where they differ most, in order of that
+};
+
+/// Simulates a log's driving with both models.
+LogComparison compareOnLog(const Drive& drive, const ModelDocument& first,
+                           const ModelDocument& second);
+
+/// The answer as a table in text, as a page, and its pictures in one SVG.
+std::string textOf(const std::vector<Comparison>& comparisons);
+std::string textOf(const LogComparison& comparison);
+Page pageOf(const std::string& question, const std::vector<Comparison>& comparisons,
+            const std::vector<LogComparison>& on_log);
+std::string svgOf(const std::vector<Comparison>& comparisons,
+                  const std::vector<LogComparison>& on_log);
+
+}  // namespace tread::gap
