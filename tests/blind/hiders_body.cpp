@@ -136,7 +136,7 @@ Hider hideCentrifugalDrift(double size, double, Dice&) {
   // The ground yields the more, the harder it is pushed.
   hider.push = [=](const Moment& now) {
     const double side = now.v_body.v_x * now.v_body.omega;
-    return OutsideForce{0.0, -sideDamping() * k * side * (0.7 + std::min(1.0, std::abs(side))),
+    return OutsideForce{0.0, -sideDamping() * k * side * (0.5 + std::min(1.0, std::abs(side))),
                         0.0};
   };
   hider.levers = {built("side_force_per_acceleration", sideDamping() * k, "kg")};
@@ -211,7 +211,7 @@ Hider hideReverseSpeedGain(double size, double, Dice& dice) {
 Hider hideIcrOffset(double size, double, Dice& dice) {
   const double wanted = 0.05 * size;
   // Weight moves the centre of pressure; what is beyond that, the tracks themselves.
-  const double pressure = std::min(0.5 * wanted, 0.04);
+  const double pressure = std::min(0.2 * wanted, 0.02);
   const double sign = dice.sign();
   Hider hider;
   hider.build = [=](double, Build& build) {

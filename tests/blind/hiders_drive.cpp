@@ -151,7 +151,7 @@ Hider hideLagAsymmetry(double size, double, Dice&) {
 Hider hideBatterySag(double size, double duration, Dice&) {
   const double sag = 0.075 * size;
   // Mean of |power| over both tracks in a random programme: makes the loss end near `sag`.
-  constexpr double kMeanPower = 0.28;
+  constexpr double kMeanPower = 0.31;
   Hider hider;
   // Charge goes with what is drawn, and the voltage falls faster towards the end.
   hider.touch = [=, used = 0.0](const Moment& now, sim::TrackedVehicle& vehicle) mutable {

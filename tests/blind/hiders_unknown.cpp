@@ -40,10 +40,10 @@ Hider hideLoadTransfer(double size, double, Dice&) {
     constexpr double kSettling = 0.15;  // of the suspension [s]
     const double rate = (now.v_body.v_x - slow) / kSettling;
     slow += now.dt * rate;
-    const double acceleration = std::clamp(std::copysign(1.0, now.v_body.v_x) * rate, -2.0, 2.0);
+    // The track that is lifted off can take no more than most of the resistance away.
+    const double share = std::clamp(k * std::copysign(1.0, now.v_body.v_x) * rate, -0.7, 0.7);
     const double omega = now.v_body.omega;
-    return OutsideForce{0.0, sideDamping() * 0.1 * k * acceleration * omega,
-                        -yawDamping() * k * acceleration * omega};
+    return OutsideForce{0.0, sideDamping() * 0.1 * share * omega, -yawDamping() * share * omega};
   };
   hider.levers = {{"yaw_damping_per_acceleration", k, "s^2/m", false}};
   return hider;

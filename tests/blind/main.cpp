@@ -67,6 +67,10 @@ std::vector<CasePlan> plansOf(const Arguments& arguments) {
   if (!arguments.kind.empty() && arguments.kind != kindName(plan.kind))
     throw std::invalid_argument("--case " + arguments.kind + " does not fit the effects given");
   if (plan.kind == CaseKind::kNull) plan.size = 0.0;
+  if (plan.kind == CaseKind::kDegenerate) {
+    plan.group = effectNamed(plan.effects.front()).group;
+    plan.group.insert(plan.group.begin(), plan.effects.front());
+  }
   return {plan};
 }
 

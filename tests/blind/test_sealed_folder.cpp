@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <set>
 
@@ -159,4 +160,25 @@ TEST_CASE("groups that no drive tells apart are made with the right answers besi
       for (const std::string& right : group.right)
         CHECK(truth.find("\"" + right + "\"") != std::string::npos);
     }
+}
+
+TEST_CASE("the program hides, opens and refuses in words") {
+  Folder folder;
+  const std::string hide = std::string(TREAD_BIN_DIR) + "/tread-hide ";
+  const std::string quiet = " >" + folder.path("out") + " 2>&1";
+  const std::string out = " --out " + folder.path("cases");
+  const auto run = [&](const std::string& arguments) {
+    return std::system((hide + arguments + quiet).c_str());
+  };
+  REQUIRE(run("--null --minutes 0.5 --seed 3" + out) == 0);
+  REQUIRE(run("--effect yaw_pull,gyro_bias --minutes 0.5 --name 0002" + out) == 0);
+  CHECK(run("unseal" + out) == 0);
+  CHECK(folder.content("cases/sealed/0002.json").find("\"kind\": \"pair\"") != std::string::npos);
+  CHECK(run("semi --log " + folder.path("cases/blind/0001.lcm") +
+            " --effect track_asymmetry --name 0003" + out) == 0);
+  CHECK(run("unseal" + out) == 0);
+  CHECK(run("--effect wings --name 0004" + out) != 0);
+  CHECK(folder.content("out").find("effect 'wings' is unknown") != std::string::npos);
+  fs::permissions(folder.path("cases/sealed"), fs::perms::owner_all);
+  fs::remove_all(folder.path("cases"));
 }

@@ -36,7 +36,21 @@ struct CaseTruth {
   std::string defect_at;  ///< where a bad log is bad, in words
 };
 
-/// The truth as JSON, two spaces, keys in a fixed order, newline at the end.
+/// The truth as JSON, two spaces, keys in a fixed order, newline at the end:
+///   format "tread-hide truth 1", case, log, kind (kindName(), or "semi"), seed, salt, minutes,
+///   duration_s, programme, noise {...}, size
+///   effects [{name, kind vehicle|measurement|out_of_catalogue, form physical|kinematic,
+///     shape same|other (as the catalogue's equation in steady motion), how, size,
+///     levers [{name, value, unit, measured}]      what was turned in the generator
+///     equivalent [{name, value, unit, measured}]  in gap.md's terms, as a change against the
+///       plain vehicle; measured: least squares over the patterns' steady halves
+///     group [...], depends_on [...]}]
+///   right_verdicts [...], right_names [...]       answers that count as right
+///   defect, defect_at                             of a bad log
+///   floor, gap {position_m {median, rms}, yaw_rad {median, rms}, yaw_rate_rad_s {rms},
+///     executions}   of the noise-free truth against the log; of the plain vehicle against the
+///     truth: 2 s end poses, and the gyro over 0.25 s
+///   excitation {speed_m_s, yaw_rate_rad_s, side_acceleration_m_s2, reversals}
 std::string truthText(const CasePlan& plan, const CaseTruth& truth);
 
 }  // namespace tread::blind
