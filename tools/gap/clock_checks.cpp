@@ -122,7 +122,7 @@ void checkPauses(const LogMessages& messages, NoteBook& notes) {
   const std::vector<ins_t>& ins = messages.ins;
   for (size_t i = 1; i < ins.size(); ++i) {
     const int64_t step = ins[i].utime - ins[i - 1].utime;
-    if (step < kLongStep || ins[i].seq != ins[i - 1].seq + 1 || jumpAnnounced(ins, i)) continue;
+    if (step < kLongStep || !isNext(ins[i].seq, ins[i - 1].seq) || jumpAnnounced(ins, i)) continue;
     const auto before = movingAt(ins, i - 1, -1);
     const auto after = movingAt(ins, i, 1);
     if (!before || !after) continue;

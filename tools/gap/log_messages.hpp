@@ -18,6 +18,11 @@ struct Stamp {
   int64_t seq = 0;
 };
 
+/// Whether a number follows another one directly; any bytes may stand in a log.
+inline bool isNext(int64_t seq, int64_t before) {
+  return static_cast<uint64_t>(seq) - static_cast<uint64_t>(before) == 1;
+}
+
 /// What the gap workflow reads of a log.
 struct LogMessages {
   std::vector<motor_t> motor;                  ///< in order of utime

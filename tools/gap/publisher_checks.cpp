@@ -41,7 +41,7 @@ std::optional<Stamp> clockWentBack(std::vector<Stamp> stamps) {
   size_t times = 0;
   for (size_t i = 1; i < stamps.size(); ++i) {
     if (stamps[i].utime >= stamps[i - 1].utime - kOvertaking) continue;
-    if (stamps[i].seq != stamps[i - 1].seq + 1 || ++times > 2) return std::nullopt;
+    if (!isNext(stamps[i].seq, stamps[i - 1].seq) || ++times > 2) return std::nullopt;
     if (!place) place = stamps[i - 1];
   }
   return place;
