@@ -93,7 +93,7 @@ TEST_CASE("a sound drive is described and nothing in it is fatal") {
   const Drive drive = makeDrive({});
   REQUIRE(fatal(drive) == "");
   REQUIRE(lineWith(drive, "behind the gyro").find("turns 1.0") != std::string::npos);
-  REQUIRE(lineWith(drive, "of standstill").find("5 s of standstill: gyro 0.0000") == 0);
+  REQUIRE(lineWith(drive, "of standstill").find("3 s of standstill: gyro 0.0000") == 0);
   REQUIRE(lineWith(drive, "driven 200 s in 1 stretches").find("reversals") != std::string::npos);
   REQUIRE(lineWith(drive, "new poses every 0.10 s") != "");
 }

@@ -11,7 +11,7 @@ namespace {
 constexpr double kFastest = 8.0;         // [m/s] of a vehicle of this kind
 constexpr double kJump = 0.5;            // [m]
 constexpr double kTooManyJumps = 0.05;   // of the pose steps
-constexpr double kSettled = 1.0;         // [s] after which a vehicle stands
+constexpr double kSettled = 3.0;         // [s] after which a vehicle stands; tracks recoil
 constexpr double kNearlyStraight = 0.3;  // [rad]
 constexpr double kLeastAlong = 0.6;      // of the way, squared: else the heading is another one
 
@@ -78,7 +78,7 @@ void checkCourse(const std::vector<PoseIncrement>& increments, NoteBook& notes) 
               "mirrored or turned map?)");
 }
 
-/// Times in which a stretch has commanded zero for a second.
+/// Times in which a stretch has commanded zero for long.
 std::vector<std::pair<double, double>> standstills(const Stretch& stretch) {
   std::vector<std::pair<double, double>> times;
   for (size_t i = 0; i < stretch.commands.size(); ++i) {
@@ -86,7 +86,7 @@ std::vector<std::pair<double, double>> standstills(const Stretch& stretch) {
     const double begin = stretch.commands[i].time;
     while (i < stretch.commands.size() && stretch.commands[i].command == TrackCommand{}) ++i;
     const double end = i < stretch.commands.size() ? stretch.commands[i].time : stretch.end;
-    if (end - begin > 2.0 * kSettled) times.push_back({begin + kSettled, end});
+    if (end - begin > kSettled + 1.0) times.push_back({begin + kSettled, end});
   }
   return times;
 }
