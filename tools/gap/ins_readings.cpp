@@ -63,7 +63,8 @@ class Reader {
   bool isHeld(const Pose2& pose, double time) {
     const bool stands = standsBetween(span_, time - kSettled, time);
     if (!stands) ++result_.poses;
-    return !stands && last_ && samePose(*last_, pose);
+    // What hangs while it drives does not come alive because it stands.
+    return (!stands || holding_) && last_ && samePose(*last_, pose);
   }
 
   void hold(double time) {

@@ -205,7 +205,7 @@ void describeStandstill(const Drive& drive, NoteBook& notes) {
     }
   if (seconds < 2.0)
     return notes.note(
-        "it never stands still for two seconds: bias of the gyro and noise are not "
+        "it never stands still for long: bias of the gyro and noise are not "
         "known by themselves");
   std::string what = digits(seconds, 0) + " s of standstill:";
   if (gyro.known())
