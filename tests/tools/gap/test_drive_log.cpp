@@ -263,31 +263,45 @@ TEST_CASE("the hash of a log is its SHA-256") {
           "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
-TEST_CASE("real recordings become drives with a stretch for every step") {
+TEST_CASE(
+    "real recordings become drives with a stretch for every step, and nothing in them is fatal") {
   const char* recordings = std::getenv("TREAD_RECORDINGS");
   const std::string folder = std::string(recordings ? recordings : "") + "/drive/";
   if (!std::filesystem::exists(folder + "sessions.csv")) {
     WARN("skipped: no recordings in " + folder);
     return;
   }
-  importer::Session session =
-      importer::readSession(folder + "sessions.csv", "warthog_unlabelled_2023");
-  session.pose_lag = 0.0;
-  importer::LogCounts counts;
-  const Drive result = toDrive(
-      "a", importer::makeLog(importer::readSteps(folder + "steps/warthog_unlabelled_2023.csv",
-                                                 session, importer::Gyro::kAll),
-                             session, "steps", {}, counts));
-  REQUIRE(result.stretches.size() == 119);
-  REQUIRE(result.executions.size() == 238);
-  REQUIRE(result.driven() == Approx(714.0).margin(10.0));
-  size_t readings = 0;
-  size_t poses = 0;
-  for (const Stretch& stretch : result.stretches) {
-    REQUIRE(stretch.entry_speeds);
-    readings += stretch.ins.size();
-    poses += posesOf(stretch);
+  struct Expected {
+    const char* session;
+    size_t stretches;    // steps of the recording
+    size_t most_broken;  // of them in a wrong frame
+  };
+  for (const Expected& expected : {Expected{"warthog_unlabelled_2023", 119, 0},
+                                   {"warthog_gravel_20240806", 99, 5},
+                                   {"warthog_sand_20240925a", 99, 5},
+                                   {"husky_tile_2022", 199, 0}}) {
+    const std::string name = expected.session;
+    importer::Session session = importer::readSession(folder + "sessions.csv", name);
+    session.pose_lag = 0.0;
+    importer::LogCounts counts;
+    const auto recording =
+        importer::readSteps(folder + "steps/" + name + ".csv", session, importer::Gyro::kAll);
+    const Drive result = toDrive(name, importer::makeLog(recording, session, "steps", {}, counts));
+    INFO(name);
+    for (const HygieneNote& note : result.notes) {
+      INFO(note.what);
+      REQUIRE_FALSE(note.fatal);
+    }
+    REQUIRE(result.stretches.size() <= expected.stretches);
+    REQUIRE(result.stretches.size() + expected.most_broken >= expected.stretches);
+    REQUIRE(result.executions.size() == 2 * result.stretches.size());
+    REQUIRE(result.encoders.size() == recording.drive.size());
+    for (const Stretch& stretch : result.stretches) {
+      REQUIRE(stretch.entry_speeds);
+      REQUIRE(stretch.end - stretch.begin() > 5.0);
+      // The gyro speaks at every row; new poses are a fifth to a half of them as a rule.
+      REQUIRE(stretch.ins.size() > 100);
+      REQUIRE(posesOf(stretch) * 20 > stretch.ins.size());
+    }
   }
-  REQUIRE(readings == 14263);
-  REQUIRE(static_cast<double>(poses) / static_cast<double>(readings) == Approx(0.475).margin(0.02));
 }

@@ -162,6 +162,20 @@ TEST_CASE("an INS that hangs while commands drive is found with its place") {
   REQUIRE(fatal(log.sorted()).find("the INS is frozen: one pose from 15.0 to 29.9") == 0);
 }
 
+TEST_CASE("what hung while it drove is no measurement at the standstill after it") {
+  SmallLog log;
+  for (int i = 0; i < 600; ++i) {
+    const double time = 0.05 * i;
+    log.motor(time, time < 20.0 ? TrackCommand{1.0, 1.0} : TrackCommand{});
+    log.ins(time, {std::min(time, 10.0), 0.0, 0.0}, 0.2);
+  }
+  const Drive result = toDrive("a", log.sorted());
+  REQUIRE(fatal(log.sorted()).find("the INS is frozen: one pose from 10.0 to 29.9") == 0);
+  for (const Stretch& stretch : result.stretches)
+    for (const InsSample& sample : stretch.ins)
+      REQUIRE(std::isfinite(sample.T_map_body.x) == (sample.time < 10.01));
+}
+
 TEST_CASE("an INS that sends one message again and again is frozen, too") {
   SmallLog log = goodLog();
   const LogEvent last = log.events.back().channel == std::string("INS")
