@@ -39,7 +39,8 @@ Pose2 driven(const std::string& text, const MotorPower& power) {
 }  // namespace
 
 TEST_CASE("the shipped simulators can be read, and drive the dynamic vehicle") {
-  for (const char* name : {"demo.yaml", "meadow.yaml"}) {
+  for (const char* name :
+       {"demo.yaml", "meadow.yaml", "field.yaml", "field_weak_left_drive.yaml"}) {
     ConfigReader reader = ConfigReader::fromFile(kSimulators + name);
     CHECK_FALSE(readSimulatorConfig(reader).model);
   }

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <cstdio>
 #include <iostream>
+#include <set>
 
 #include "common/config/command_line.hpp"
 #include "common/vehicle/model_file.hpp"
@@ -35,7 +36,7 @@ void describe(CLI::App& app, Arguments& arguments) {
 }
 
 void tell(const std::string& file, const std::vector<Piece>& pieces, size_t model, double length) {
-  for (const double horizon : {2.0, length}) {
+  for (const double horizon : std::set<double>{2.0, length}) {
     if (horizon > length) continue;
     const Errors errors =
         medianErrors(pieces, model, static_cast<size_t>(std::round(horizon / kSample)));
