@@ -13,10 +13,11 @@
 #include "common/vehicle/model_file.hpp"
 #include "tools/gap/commands.hpp"
 #include "tools/gap/core/discovery.hpp"
-#include "tools/gap/drive_log.hpp"
 #include "tools/gap/file_hash.hpp"
 #include "tools/gap/find_output.hpp"
+#include "tools/gap/read_for_model.hpp"
 #include "tools/gap/report/headline.hpp"
+#include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {
@@ -45,12 +46,11 @@ void say(const std::string& line) {
   std::cout << line << std::endl;
 }
 
-void requireKind(const Drive& drive, const ModelDocument& model, const std::string& path) {
-  if (drive.stretches.empty() || drive.kind == model.vehicle.kind) return;
-  const bool power = drive.kind == CommandKind::kPower;
-  throw std::runtime_error(path + ": its commands are " + (power ? "powers" : "track speeds") +
-                           ", those of the model " + (power ? "track speeds" : "powers") +
-                           "; give a model with kind: " + (power ? "power" : "track_speed"));
+/// Stage 0: what a log is, and what is wrong with it.
+void tell(const Drive& drive) {
+  say("0 " + drive.name + ": " + threeDigits(drive.driven()) + " s of driving, " +
+      std::to_string(drive.executions.size()) + " executions");
+  for (const HygieneNote& note : drive.notes) say((note.fatal ? "  ! " : "  ") + note.what);
 }
 
 /// Reads logs of one role; the same log twice would count its noise twice.
@@ -58,13 +58,13 @@ std::vector<Drive> readDrives(const std::vector<std::string>& paths, InputFile::
                               const ModelDocument& model, std::vector<InputFile>& inputs) {
   std::vector<Drive> drives;
   for (const std::string& path : paths) {
-    Drive drive = readDrive(path);
-    requireKind(drive, model, path);
+    Drive drive = readDriveFor(model, path);
     for (const InputFile& input : inputs)
       if (input.sha256 == drive.sha256)
         throw std::runtime_error(path + ": the same file as " + input.name +
                                  "; give each log once");
     inputs.push_back({role, fileName(path), drive.sha256});
+    tell(drive);
     drives.push_back(std::move(drive));
   }
   return drives;

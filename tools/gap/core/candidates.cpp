@@ -90,12 +90,12 @@ std::vector<Setting> settingsFor(const std::string& effect, const std::string& p
 
 /// What is fitted together with a strength.
 std::vector<std::string> freedWith(const std::string& effect, const std::string& parameter) {
-  if (effect == "payload_change")
-    return {"payload_change.yaw", "payload_change.speed", "payload_change.time"};
+  if (effect == "payload_change") return {"payload_change.yaw", "payload_change.speed"};
+  if (effect == "thermal_derating")
+    return {"thermal_derating.loss", "thermal_derating.time_constant"};
   if (effect == "terrain_change") {
     const std::string number = parameter.substr(parameter.size() - 1);
-    return {"terrain_change.width_" + number, "terrain_change.slip_" + number,
-            "terrain_change.time_" + number};
+    return {"terrain_change.width_" + number, "terrain_change.slip_" + number};
   }
   return {effect + "." + parameter};
 }
@@ -165,7 +165,8 @@ std::vector<Candidate> candidatesFor(const ModelDocument& model, const Excitatio
           for (const auto& [path, value] : setting.shapes)
             if (path == effect.name + "." + parameter.name) begin = value;
           all.push_back({effect.name, parameter.name, begin + change, change, setting.since,
-                         setting.shapes, freedWith(effect.name, parameter.name)});
+                         setting.shapes, freedWith(effect.name, parameter.name),
+                         std::isfinite(setting.since) ? setting.shapes.front().first : ""});
         }
     }
   return all;

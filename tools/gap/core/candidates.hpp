@@ -20,6 +20,7 @@ struct Candidate {
   /// Values that go with it: shapes such as the moment of a change.
   std::vector<std::pair<std::string, double>> shapes;
   std::vector<std::string> free;  ///< paths that a fit of this candidate frees
+  std::string moment;             ///< path of the moment of a change; empty = none
 };
 
 /// The most that a drive demands, in first approximation; limits are probed below it.

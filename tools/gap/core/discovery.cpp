@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <set>
+#include <tuple>
 
 #include "common/vehicle/degeneracy.hpp"
 #include "tools/gap/core/adequacy.hpp"
 #include "tools/gap/core/atlas.hpp"
 #include "tools/gap/core/end_errors.hpp"
+#include "tools/gap/core/moments.hpp"
 
 namespace tread::gap {
 namespace {
@@ -18,6 +19,7 @@ namespace {
 constexpr int kLeastBlocks = 10;
 constexpr int kLeastHalf = 6;            // blocks from which effects can be chosen, too
 constexpr double kAdequacyAlpha = 0.01;  // with the tests' 2 %: 3 % false alarms altogether
+constexpr double kMomentNats = 10.0;     // 2 nats times what correlated ground takes off
 constexpr double kInvisible = 2.0;       // times its typical size: not excited
 
 std::string text(const char* format, double a, double b) {
@@ -35,6 +37,11 @@ class Discovery {
         fitter_(rows_, task.threads),
         all_(rows_.rows().size(), 1) {
     settings_.seed = task.seed;
+    settings_.calibrate = task.calibrate;
+    // The model of a new vehicle takes in whatever can be seen, however little it matters: else a
+    // later log would find it.
+    if (task.calibrate) settings_.least_gain = 0.0;
+    if (task.calibrate) settings_.most = 16;
   }
 
   Finding run() {
@@ -95,6 +102,10 @@ class Discovery {
       else
         finding_.calibrated.push_back(estimate);
     }
+    for (const std::string& path : momentsOf(state.model)) {
+      const std::string effect = path.substr(0, path.find('.'));
+      if (isNew(effect)) estimates[effect].push_back(momentEstimate(path));
+    }
     for (const std::string& name : result_.effects) describe(name, estimates[name]);
     finding_.negligible = result_.negligible;
     finding_.ladder = result_.ladder;
@@ -128,12 +139,23 @@ class Discovery {
     return estimate;
   }
 
+  Estimate momentEstimate(const std::string& path) const {
+    Estimate estimate;
+    estimate.parameter = path;
+    estimate.unit = "s";
+    estimate.value = *findParameter(result_.state.model, path);
+    std::tie(estimate.low, estimate.high) =
+        momentInterval(fitter_, result_.state, path, all_, kMomentNats);
+    return estimate;
+  }
+
   void describe(const std::string& name, std::vector<Estimate> parameters) {
     FoundEffect effect;
     effect.name = name;
     effect.kind = effectNamed(name).kind;
     effect.parameters = std::move(parameters);
     effect.group = twinsOf(name, result_.state.model);
+    for (const std::string& pair : result_.replaced[name]) effect.group.push_back(pair);
     effect.runner_ups = result_.runner_ups[name];
     effect.score = result_.scores[name];
     effect.p_value = result_.p_values[name];

@@ -15,6 +15,8 @@ struct GapTask {
   std::vector<Drive> train;
   std::vector<Drive> test;           ///< never used for structure or parameters; may be empty
   std::vector<HygieneNote> hygiene;  ///< what is known of the logs (stage 0)
+  /// Lag, delay and gains of the nominal model are fitted, too: makes a model of a new vehicle.
+  bool calibrate = false;
   uint64_t seed = 1;
   int threads = 1;  ///< does not change a bit of the result
 };

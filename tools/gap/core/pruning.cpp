@@ -47,22 +47,28 @@ Removal removal(const Fitter& fitter, const FitState& state, const std::string& 
   return removed;
 }
 
-/// Largest relative improvement of the end errors on executions of the mask's blocks.
+/// Mean end errors on executions of the mask's blocks: position [m] and yaw [rad].
+std::pair<double, double> meanErrors(const Fitter& fitter, const ModelDocument& model,
+                                     const std::vector<char>& mask) {
+  const std::vector<char> blocks = blocksThatCount(fitter.rows(), mask);
+  double position = 0.0;
+  double yaw = 0.0;
+  for (const EndError& error : endErrors(fitter.rows(), model)) {
+    if (blocks[static_cast<size_t>(error.block)] == 0) continue;
+    position += error.position;
+    yaw += error.yaw;
+  }
+  return {position, yaw};
+}
+
+/// Relative improvement of the mean end error, of position or yaw, whichever is larger.
 double improvement(const Fitter& fitter, const ModelDocument& old_model,
                    const ModelDocument& new_model, const std::vector<char>& mask) {
-  const std::vector<char> blocks = blocksThatCount(fitter.rows(), mask);
-  const auto counts = [&blocks](const EndError& e) {
-    return blocks[static_cast<size_t>(e.block)] != 0;
-  };
-  const EndErrors old_errors = summaryOf(endErrors(fitter.rows(), old_model), counts);
-  const EndErrors new_errors = summaryOf(endErrors(fitter.rows(), new_model), counts);
+  const auto before = meanErrors(fitter, old_model, mask);
+  const auto after = meanErrors(fitter, new_model, mask);
   double largest = 0.0;
-  for (const auto& [before, after] :
-       {std::pair{old_errors.position.median, new_errors.position.median},
-        std::pair{old_errors.position.rms, new_errors.position.rms},
-        std::pair{old_errors.yaw.median, new_errors.yaw.median},
-        std::pair{old_errors.yaw.rms, new_errors.yaw.rms}})
-    if (before > 0.0) largest = std::max(largest, 1.0 - after / before);
+  if (before.first > 0.0) largest = std::max(largest, 1.0 - after.first / before.first);
+  if (before.second > 0.0) largest = std::max(largest, 1.0 - after.second / before.second);
   return largest;
 }
 

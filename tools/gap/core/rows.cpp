@@ -50,6 +50,22 @@ size_t fixAfter(const std::vector<InsSample>& fixes, size_t from, double time) {
   return from;
 }
 
+/// Yaw of poseAt(), at a tenth of its cost: along an arc it is linear in time.
+double yawAt(const std::vector<TimedPose>& motion, double time) {
+  if (motion.size() < 2) return motion.front().T_map_body.yaw;
+  // Pieces have nearly equal lengths: guess, then walk.
+  const double span = motion.back().time - motion.front().time;
+  const double share = span > 0.0 ? (time - motion.front().time) / span : 0.0;
+  const auto last = static_cast<double>(motion.size() - 2);
+  auto i = static_cast<size_t>(std::clamp(share * (last + 1.0), 0.0, last));
+  while (i > 0 && motion[i].time > time) --i;
+  while (i + 2 < motion.size() && motion[i + 1].time <= time) ++i;
+  const TimedPose& from = motion[i];
+  const TimedPose& to = motion[i + 1];
+  return from.T_map_body.yaw + (to.T_map_body.yaw - from.T_map_body.yaw) * (time - from.time) /
+                                   (to.time - from.time);
+}
+
 }  // namespace
 
 const char* channelName(Channel channel) {
@@ -187,8 +203,7 @@ Eigen::VectorXd Rows::predict(const std::vector<std::vector<TimedPose>>& motions
     const double duration = row.end - row.begin;
     double value = 0.0;
     if (row.channel == Channel::kYawRate) {
-      value = (poseAt(motion, row.end - gyro_latency).yaw -
-               poseAt(motion, row.begin - gyro_latency).yaw) /
+      value = (yawAt(motion, row.end - gyro_latency) - yawAt(motion, row.begin - gyro_latency)) /
                   duration +
               ins.gyro_bias;
     } else {

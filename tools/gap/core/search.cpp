@@ -7,12 +7,14 @@
 #include <cstdio>
 #include <set>
 
-#include "tools/gap/core/end_errors.hpp"
+#include "tools/gap/core/moments.hpp"
 #include "tools/gap/core/pruning.hpp"
+#include "tools/gap/core/replacement.hpp"
 
 namespace tread::gap {
 namespace {
 
+constexpr double kVanished = 2e-3;       // of an effect's typical size
 constexpr double kPowerQuantile = 0.84;  // normal: 80 % power
 
 /// Plain causes that everything else must be told from.
@@ -25,6 +27,13 @@ const std::vector<std::string>& coverPaths() {
 
 std::string effectOf(const std::string& path) {
   return path.substr(0, path.find('.'));
+}
+
+bool hasVanished(const ModelDocument& model, const Candidate& candidate) {
+  const EffectParameter& known = parameterNamed(effectNamed(candidate.effect), candidate.parameter);
+  const double size = *findParameter(model, candidate.effect + "." + candidate.parameter) -
+                      (candidate.value - candidate.change);
+  return std::abs(size) < kVanished * std::abs(known.typical);
 }
 
 /// A test of all candidates, and for each effect the candidate with the largest score.
@@ -68,6 +77,7 @@ class Search {
         if (!addBest(round)) break;
       }
       prune(round);
+      noteDetectable(test());
     }
     return std::move(result_);
   }
@@ -77,7 +87,7 @@ class Search {
   const FitState& state() const { return result_.state; }
 
   void calibrate(const ModelDocument& model) {
-    state() = fitter_.start(model, givenParameters(model), mask_);
+    state() = fitter_.start(model, givenParameters(model, settings_.calibrate), mask_);
     settle(state());
     result_.calibrated = state();
   }
@@ -111,6 +121,13 @@ class Search {
     return round;
   }
 
+  /// What could have been seen beside what was found: before, its size hid the rest.
+  void noteDetectable(const Round& last) {
+    for (CandidateTest& first : result_.tests)
+      for (const CandidateTest& now : last.tests)
+        if (now.effect == first.effect) first.detectable = now.detectable;
+  }
+
   std::vector<size_t> significant(const Round& round) const {
     std::vector<size_t> found;
     for (size_t i : round.best)
@@ -122,6 +139,8 @@ class Search {
   void cover() {
     for (const std::string& path : coverPaths()) {
       const std::string effect = effectOf(path);
+      // Numbers of the nominal model that are free cover the same.
+      if (settings_.calibrate && effect != "ins_latency") continue;
       if (isOn(effectNamed(effect), state().model.vehicle.effects, state().model.measurement))
         continue;
       FreeParameter parameter = freeParameter(state().model, path);
@@ -148,9 +167,14 @@ class Search {
     trial.state = state();
     addCandidate(fitter_, trial.state, round.candidates[index], round.sizes[index], mask_);
     fitter_.fit(trial.state, mask_);
+    if (!round.candidates[index].moment.empty()) {
+      refineMoment(fitter_, trial.state, round.candidates[index].moment, mask_);
+      fitter_.fit(trial.state, mask_);
+    }
+    if (hasVanished(trial.state.model, round.candidates[index]))
+      trial.refused = "its size vanishes in the fit";
     for (const FreeParameter& parameter : trial.state.free)
       if (effectOf(parameter.path) == round.candidates[index].effect &&
-          parameter.path.find("time") == std::string::npos &&
           *findParameter(trial.state.model, parameter.path) != 0.0 &&
           onBound(trial.state.model, parameter))
         trial.refused = parameter.path + " runs to the end of its plausible range";
@@ -216,6 +240,10 @@ class Search {
   void prune(const Round& last) {
     const double needed = criticalScore(last.chance, settings_.alpha);
     pruneEffects(fitter_, mask_, needed, settings_.least_gain, result_, say_);
+    const size_t before = result_.ladder.size();
+    replacePairs(fitter_, mask_, result_, say_);
+    if (result_.ladder.size() > before)
+      pruneEffects(fitter_, mask_, needed, settings_.least_gain, result_, say_);
     for (const std::string& effect : result_.effects)
       result_.p_values[effect] = familyWise(last.chance, result_.scores[effect]);
     settle(state());
@@ -231,10 +259,13 @@ class Search {
 
 }  // namespace
 
-std::vector<FreeParameter> givenParameters(const ModelDocument& model) {
+std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool calibrate) {
   std::vector<FreeParameter> free;
+  if (calibrate)
+    for (const char* number : {"lag", "delay", "forward_gain", "yaw_gain"})
+      free.push_back(freeParameter(model, number));
   const ParameterCovariance& known = model.covariance;
-  for (size_t i = 0; i < known.parameters.size(); ++i) {
+  for (size_t i = 0; !calibrate && i < known.parameters.size(); ++i) {
     if (known.parameters[i].find('.') != std::string::npos) continue;
     FreeParameter number = freeParameter(model, known.parameters[i]);
     number.deviation = std::sqrt(known.matrix[i][i]);

@@ -25,6 +25,7 @@ struct SearchSettings {
   int draws = 1999;  ///< of the bootstrap
   size_t tried = 4;  ///< effects that are refitted in a round
   size_t most = 8;   ///< effects that are added at most
+  bool calibrate = false;    ///< the numbers of the nominal model are free
   double least_gain = 0.01;  ///< of the end error; less is real but negligible
   uint64_t seed = 1;
 };
@@ -41,11 +42,14 @@ struct SearchResult {
   std::vector<LadderStep> ladder;
   std::vector<CandidateTest> tests;  ///< of the calibrated model, every effect's best direction
   std::vector<std::string> negligible;
+  /// Of an effect that stands for two others: those two.
+  std::map<std::string, std::vector<std::string>> replaced;
 };
 
 /// Which parameters of a model are free: strengths of effects that are on, and the numbers of the
 /// nominal model of which the model's covariance says how sure they are.
-std::vector<FreeParameter> givenParameters(const ModelDocument& model);
+/// When calibrating all numbers of the nominal model are free without limits of belief.
+std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool calibrate);
 
 /// Finds the effects that a model lacks (gap.md 4.2, stages 1 and 3 to 5), on rows of the mask.
 /** 1. Calibrates what is on. 2. Tests all that is off; ends if chance explains it. 3. Else takes in

@@ -61,11 +61,11 @@ std::vector<TimedPose> StretchPlan::simulate(const VehicleModel& vehicle) const 
   std::vector<TimedPose> motion;
   motion.reserve(pieces_.size() + 1);
   double time = begin_;
-  motion.push_back({time, kernel.pose(), kernel.twist().omega});
+  motion.push_back({time, kernel.pose()});
   for (const Piece& piece : pieces_) {
     kernel.step(piece.command, piece.duration, piece.context);
     time += piece.duration;
-    motion.push_back({time, kernel.pose(), kernel.twist().omega});
+    motion.push_back({time, kernel.pose()});
   }
   return motion;
 }

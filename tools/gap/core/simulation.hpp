@@ -18,7 +18,8 @@ class StretchPlan {
   /// Pieces of at most `piece` seconds. The stretch may go away afterwards.
   StretchPlan(const Drive& drive, const Stretch& stretch, double piece);
 
-  /// True motion of a model through the stretch, relative to its beginning; one entry a piece.
+  /// True poses of a model through the stretch, relative to its beginning; one entry a piece.
+  /// Yaw rates are left at 0: rows take theirs from the yaws.
   std::vector<TimedPose> simulate(const VehicleModel& vehicle) const;
 
  private:

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/gap/core/replacement.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "tools/gap/core/pruning.hpp"
+
+namespace tread::gap {
+namespace {
+
+constexpr double kImitated = 0.35;  // uniqueness below which the found effects imitate another one
+
+/// Candidates that the found effects can imitate, one of each effect.
+std::vector<Candidate> imitated(const Fitter& fitter, const std::vector<char>& mask,
+                                const FitState& state) {
+  const auto candidates = candidatesFor(state.model, excitationOf(fitter.rows(), state.model));
+  const ScoreTest test(fitter.rows(), state, directionsOf(fitter, state, candidates), mask);
+  std::vector<Candidate> chosen;
+  std::set<std::string> names;
+  for (size_t i = 0; i < candidates.size(); ++i)
+    if (test.uniqueness(static_cast<Eigen::Index>(i)) < kImitated &&
+        names.insert(candidates[i].effect).second)
+      chosen.push_back(candidates[i]);
+  return chosen;
+}
+
+class Replacement {
+ public:
+  Replacement(const Fitter& fitter, const std::vector<char>& mask, SearchResult& result,
+              const Progress& say)
+      : fitter_(fitter), mask_(mask), result_(result), say_(say) {}
+
+  /// True if a pair went.
+  bool replaceOne() {
+    if (result_.effects.size() < 2) return false;
+    const std::vector<Candidate> singles = imitated(fitter_, mask_, result_.state);
+    if (singles.empty()) return false;
+    const Eigen::VectorXd loss = heldOutLoss(fitter_.rows(), result_.state, mask_);
+    for (const Candidate& single : singles)
+      for (size_t a = 0; a < result_.effects.size(); ++a)
+        for (size_t b = a + 1; b < result_.effects.size(); ++b)
+          if (tryOne(single, result_.effects[a], result_.effects[b], loss)) return true;
+    return false;
+  }
+
+ private:
+  bool tryOne(const Candidate& single, const std::string& a, const std::string& b,
+              const Eigen::VectorXd& loss) {
+    const FitState reduced = without(fitter_, without(fitter_, result_.state, a, mask_), b, mask_);
+    const ScoreTest test(fitter_.rows(), reduced, directionsOf(fitter_, reduced, {single}), mask_);
+    FitState tried = reduced;
+    addCandidate(fitter_, tried, single, test.size(0), mask_);
+    fitter_.fit(tried, mask_);
+    for (const FreeParameter& parameter : tried.free)
+      if (parameter.path.compare(0, single.effect.size(), single.effect) == 0 &&
+          onBound(tried.model, parameter))
+        return false;
+    const Gain pair_gain = gainOf(heldOutLoss(fitter_.rows(), tried, mask_), loss,
+                                  blocksThatCount(fitter_.rows(), mask_));
+    if (pair_gain.value > pair_gain.error) return false;
+    replace(single.effect, a, b, std::move(tried), pair_gain);
+    return true;
+  }
+
+  void replace(const std::string& single, const std::string& a, const std::string& b,
+               FitState state, const Gain& pair_gain) {
+    LadderStep step;
+    step.effect = single;
+    step.gain = -pair_gain.value;
+    step.gain_error = pair_gain.error;
+    step.remark = "in the place of " + a + " and " + b;
+    result_.ladder.push_back(step);
+    say_("  = " + single + " " + step.remark);
+    auto& effects = result_.effects;
+    effects.erase(std::remove(effects.begin(), effects.end(), a), effects.end());
+    effects.erase(std::remove(effects.begin(), effects.end(), b), effects.end());
+    effects.push_back(single);
+    result_.replaced[single] = {a, b};
+    result_.state = std::move(state);
+  }
+
+  const Fitter& fitter_;
+  const std::vector<char>& mask_;
+  SearchResult& result_;
+  const Progress& say_;
+};
+
+}  // namespace
+
+void replacePairs(const Fitter& fitter, const std::vector<char>& mask, SearchResult& result,
+                  const Progress& say) {
+  Replacement replacement(fitter, mask, result, say);
+  while (replacement.replaceOne()) continue;
+}
+
+}  // namespace tread::gap
