@@ -63,6 +63,19 @@ double offsetOf(const std::vector<Rates>& rates, double scale) {
   return *middle;
 }
 
+/// Motion to the side for each v omega, from poses alone [s].
+double sidewaysOf(const std::vector<PoseIncrement>& increments) {
+  std::vector<Rates> rates;
+  for (const PoseIncrement& increment : increments) {
+    const double v = increment.v();
+    // In the body frame of the middle of the turn.
+    const double across =
+        increment.T_begin_end.y / increment.duration() - 0.5 * increment.T_begin_end.yaw * v;
+    if (std::abs(increment.T_begin_end.yaw) < 1.0) rates.push_back({v * increment.omega(), across});
+  }
+  return rates.empty() ? 0.0 : scaleOf(rates, 0.0);
+}
+
 std::vector<Rates> pairs(const std::vector<PoseIncrement>& increments,
                          const std::vector<double>& following, const RunningSums& sums,
                          double lag) {
@@ -118,8 +131,9 @@ class Reckoner {
       const auto omega =
           gyro_[stretch].mean(begin - fit_.turning_lag, begin + dt - fit_.turning_lag);
       if (!speed || !omega) return std::nullopt;
-      T_from_body = T_from_body *
-                    integrate({fit_.speed * *speed, 0.0, fit_.turning * *omega + fit_.drift}, dt);
+      const double v = fit_.speed * *speed;
+      const double turn = fit_.turning * *omega + fit_.drift;
+      T_from_body = T_from_body * integrate({v, fit_.sideways * v * turn, turn}, dt);
     }
     return T_from_body;
   }
@@ -157,6 +171,7 @@ std::optional<Reckoning> fitReckoning(const Drive& drive) {
     fit.turning = scaleOf(turns, fit.drift);
     fit.drift = offsetOf(turns, fit.turning);
   }
+  fit.sideways = sidewaysOf(increments);
   return fit;
 }
 
