@@ -136,6 +136,12 @@ void addSemiOptions(CLI::App& semi, SemiArguments& arguments) {
   semi.add_option("--out", arguments.out, "folder that gets blind/ and sealed/")->required();
 }
 
+/// What may be known of a suite's cases before they are opened: NAME NOISE, a line each.
+void listConditions(const std::string& suite, uint64_t seed) {
+  for (const CasePlan& plan : suiteOf(suite, 1.0, seed))
+    std::printf("%s %s\n", plan.name.c_str(), plan.noise.c_str());
+}
+
 int checkSeals(const std::string& path) {
   const std::vector<std::string> wrong = unseal(path);
   for (const std::string& line : wrong) std::fprintf(stderr, "tread-hide: %s\n", line.c_str());
@@ -180,6 +186,12 @@ int parseAndRun(int argc, char** argv) {
   merge->add_option("--out", merged)->required();
   CLI::App* open = app.add_subcommand("unseal", "opens sealed/ and checks all commitments");
   open->add_option("--out", opened)->required();
+  std::string suite = "small";
+  uint64_t seed = 1;
+  CLI::App* conditions =
+      app.add_subcommand("conditions", "name and noise of a suite's cases: what is no secret");
+  conditions->add_option("--suite", suite)->required()->check(CLI::IsMember({"small", "full"}));
+  conditions->add_option("--seed", seed)->capture_default_str();
   SemiArguments semi;
   CLI::App* recording = app.add_subcommand("semi", "hides an effect in the log of a recording");
   addSemiOptions(*recording, semi);
@@ -187,6 +199,7 @@ int parseAndRun(int argc, char** argv) {
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   if (*recording) return hideInRecording(semi), 0;
   if (*names) return list(), 0;
+  if (*conditions) return listConditions(suite, seed), 0;
   if (*merge) return mergeCommitments(merged), 0;
   if (*open) return checkSeals(opened);
   if (arguments.out.empty()) throw std::invalid_argument("--out is missing");

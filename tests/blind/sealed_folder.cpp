@@ -93,12 +93,13 @@ void SealedFolder::add(const std::string& name, const MadeCase& made) {
 
 void mergeCommitments(const std::string& path) {
   const fs::path blind = fs::path(path) / "blind";
-  std::vector<std::pair<std::string, std::string>> lines;
-  for (const auto& [file, hash] : committed(blind))
-    // Each truth before its log, as a whole run writes them.
-    lines.emplace_back(fs::path(file).stem().string() + (file[0] == 's' ? " 1" : " 2"),
-                       hash + "  " + file + "\n");
-  std::sort(lines.begin(), lines.end());
+  // Each truth before its log, as a whole run writes them.
+  std::map<std::pair<std::string, bool>, std::string> lines;
+  for (const auto& [file, hash] : committed(blind)) {
+    std::string& line = lines[{fs::path(file).stem().string(), file[0] != 's'}];
+    line = hash;
+    line.append("  ").append(file).append("\n");
+  }
   std::vector<fs::path> lists;
   for (const auto& entry : fs::directory_iterator(blind))
     if (isList(entry.path())) lists.push_back(entry.path());

@@ -71,8 +71,10 @@ class SuiteMaker {
   void addPairs(int count) {
     const std::vector<std::string> names = catalogueNames();
     while (count > 0) {
-      const std::string a = names[static_cast<size_t>(dice_.below(static_cast<int>(names.size())))];
-      const std::string b = names[static_cast<size_t>(dice_.below(static_cast<int>(names.size())))];
+      const std::string& a =
+          names[static_cast<size_t>(dice_.below(static_cast<int>(names.size())))];
+      const std::string& b =
+          names[static_cast<size_t>(dice_.below(static_cast<int>(names.size())))];
       if (!fitTogether(a, b)) continue;
       add(CaseKind::kPair, {a, b}, count % 2 == 0 ? 2.0 : 4.0, "mid");
       --count;
