@@ -16,5 +16,6 @@ CLI::App* addFind(CLI::App& app, int& status);
 CLI::App* addExplain(CLI::App& app);
 CLI::App* addWhatIf(CLI::App& app);
 CLI::App* addPlan(CLI::App& app, int& status);
+CLI::App* addCompare(CLI::App& app, int& status);
 
 }  // namespace tread::gap

@@ -16,6 +16,7 @@ namespace tread::gap {
 namespace {
 
 constexpr size_t kShownExecutions = 9;
+constexpr double kRounding = 1e-9;  // [m] and [rad]
 
 std::vector<Pose2> posesOf(const std::vector<TimedPose>& motion) {
   std::vector<Pose2> poses;
@@ -123,7 +124,7 @@ std::string textOf(const std::vector<Comparison>& comparisons) {
   bool any = false;
   for (const Comparison& comparison : comparisons) {
     text += row(comparison.name, saidDistance(comparison.position), saidAngle(comparison.yaw));
-    any = any || comparison.position > 0.0 || comparison.yaw != 0.0;
+    any = any || comparison.position > kRounding || std::abs(comparison.yaw) > kRounding;
   }
   if (!any)
     text += "No manoeuvre shows a difference. What depends on slope, battery, heat or time wants "

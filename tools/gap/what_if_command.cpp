@@ -8,8 +8,8 @@
 
 #include "common/vehicle/model_file.hpp"
 #include "tools/gap/commands.hpp"
-#include "tools/gap/drive_log.hpp"
 #include "tools/gap/model_change.hpp"
+#include "tools/gap/read_for_model.hpp"
 #include "tools/gap/report/words.hpp"
 #include "tools/gap/what_if.hpp"
 #include "tools/recordings/text_file.hpp"
@@ -65,7 +65,7 @@ void whatIf(const Options& options) {
   const std::vector<Comparison> comparisons =
       compareModels(model, other, circumstancesOf(options));
   std::vector<LogComparison> on_log;
-  if (!options.log.empty()) on_log.push_back(compareOnLog(readDrive(options.log), model, other));
+  if (!options.log.empty()) on_log.push_back(compareOnLog(readDriveFor(model, options.log), model, other));
   const std::string question = questionOf(options.change);
   std::cout << question << "\n\n" << textOf(comparisons);
   for (const LogComparison& comparison : on_log) std::cout << '\n' << textOf(comparison);

@@ -132,9 +132,12 @@ void addNext(const Finding& finding, std::vector<Block>& blocks) {
 std::string opening(const Finding& finding) {
   switch (finding.verdict) {
     case Verdict::kNoDiscrepancy:
-      return "What the model predicts and what the INS measured differ by no more than chance, "
+      return std::string("What the model predicts and what the INS measured differ by no more than chance, "
              "over the whole catalogue and on all variables. Which effects would have been seen, "
-             "from which size on, stands below.";
+                         "from which size on, stands below.") +
+             (finding.negligible.empty() ? std::string()
+                                         : " Real, but too small to matter: " +
+                                               titlesOf(finding.negligible) + ".");
     case Verdict::kNotInCatalogue:
       return "There is a disagreement, and no effect of the catalogue explains it. A term by "
              "another name would be a guess; the model stays as it was but for its calibration.";

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "common/vehicle/model_file.hpp"
+#include "tools/gap/commands.hpp"
+#include "tools/gap/compare.hpp"
+#include "tools/gap/read_for_model.hpp"
+
+namespace tread::gap {
+namespace {
+
+constexpr int kSomethingMoved = 10;
+
+struct Options {
+  std::string first;
+  std::string second;
+  std::string model;
+  int threads = 1;
+};
+
+/// Whoever compares wants to know what is wrong with the logs first.
+Drive readSoundDrive(const std::string& path, const ModelDocument& model) {
+  Drive drive = readDriveFor(model, path);
+  for (const HygieneNote& note : drive.notes)
+    if (note.fatal) throw std::runtime_error(path + ": " + note.what);
+  return drive;
+}
+
+int compare(const Options& options) {
+  const ModelDocument model = readModelDocument(options.model);
+  const Drive first = readSoundDrive(options.first, model);
+  const Drive second = readSoundDrive(options.second, model);
+  if (first.sha256 == second.sha256)
+    throw std::runtime_error(options.second + ": the same file as the first; give two logs");
+  const LogChange change = compareLogs(model, first, second, options.threads);
+  std::cout << textOf(change) << std::flush;
+  const bool moved =
+      std::any_of(change.movements.begin(), change.movements.end(), [](const Movement& movement) {
+        return std::abs(movement.sigmas()) > kMoved;
+      });
+  return moved ? kSomethingMoved : 0;
+}
+
+}  // namespace
+
+CLI::App* addCompare(CLI::App& app, int& status) {
+  const auto options = std::make_shared<Options>();
+  options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  CLI::App* command =
+      app.add_subcommand("compare", "what changed from one log to another, yesterday and today");
+  command->footer("Fits the same terms on both logs and tells which parameters moved by more than\n"
+                  "3 sigma. Exit status 0: none did; 10: some did; 2: bad input.");
+  command->add_option("FIRST", options->first, "log")->required();
+  command->add_option("SECOND", options->second, "log")->required();
+  command->add_option("--model", options->model, "model file whose terms are fitted (YAML)")
+      ->required();
+  command->add_option("--threads", options->threads, "no influence on any byte")
+      ->check(CLI::Range(1, 1024));
+  command->callback([options, &status] { status = compare(*options); });
+  return command;
+}
+
+}  // namespace tread::gap

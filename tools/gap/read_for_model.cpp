@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/gap/read_for_model.hpp"
+
+#include <stdexcept>
+
+#include "tools/gap/drive_log.hpp"
+
+namespace tread::gap {
+
+Drive readDriveFor(const ModelDocument& model, const std::string& path) {
+  Drive drive = readDrive(path);
+  if (drive.stretches.empty() || drive.kind == model.vehicle.kind) return drive;
+  const bool power = drive.kind == CommandKind::kPower;
+  throw std::runtime_error(path + ": its commands are " + (power ? "powers" : "track speeds") +
+                           ", those of the model " + (power ? "track speeds" : "powers") +
+                           "; give a model with kind: " + (power ? "power" : "track_speed"));
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+
+#include "common/vehicle/model_document.hpp"
+#include "tools/gap/core/drive.hpp"
+
+namespace tread::gap {
+
+/// Reads a log for a model; throws std::runtime_error with one line if it cannot be read or its
+/// commands are of another kind than the model's.
+Drive readDriveFor(const ModelDocument& model, const std::string& path);
+
+}  // namespace tread::gap
