@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <random>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -21,9 +23,12 @@ using samples::kModels;
 using samples::run;
 using samples::Run;
 
-/// A log of a model that drives arcs to and fro: track speeds, INS at 10 Hz.
-void writeDrive(const std::string& path, double seconds) {
+/// A log of a model that drives arcs at two speeds: track speeds, INS at 10 Hz.
+void writeDrive(const std::string& path, double seconds, double yaw_gain = 0.49) {
   VehicleModel truth = readModelFile(kModels + "warthog_asphalt.yaml");
+  truth.yaw_gain = yaw_gain;
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0.0, 0.01);
   tread::samples::SmallLog log;
   VehicleKernel kernel(truth, EntryState{});
   constexpr double kPeriod = 0.05;
@@ -31,9 +36,13 @@ void writeDrive(const std::string& path, double seconds) {
   for (int i = 0; i * kPeriod < seconds; ++i) {
     const double time = i * kPeriod;
     const double turn = i / 40 % 3 * 0.4 - 0.4;
-    const TrackCommand command{1.0 - turn, 1.0 + turn};
+    const double speed = i / 40 % 5 < 2 ? 1.0 : 0.6;
+    const TrackCommand command{speed - turn, speed + turn};
     log.motor(time, command);
-    if (i % 2 == 0) log.ins(time, kernel.pose(), kernel.twist().omega);
+    Pose2 T_map_body = kernel.pose();
+    T_map_body.x += noise(random);
+    T_map_body.y += noise(random);
+    if (i % 2 == 0) log.ins(time, T_map_body, kernel.twist().omega + noise(random));
     if (i % 40 == 39) log.execution(++id, time - 1.95, time);
     kernel.step(command, kPeriod);
   }
@@ -176,6 +185,26 @@ TEST_CASE("where no drive tells two effects apart, plan names the measurement th
   CHECK(plan.says("Measure the lever arm with a tape."));
   CHECK(run("plan slope_pitch slip_ratio --model " + kModels + "teodor_tarmac.yaml")
             .says("shows in none of these manoeuvres on level ground"));
+}
+
+TEST_CASE("compare tells which parameters moved from one log to another") {
+  const Folder folder;
+  writeDrive(folder.path("yesterday.lcmlog"), 120.0);
+  writeDrive(folder.path("today.lcmlog"), 121.0);
+  writeDrive(folder.path("sand.lcmlog"), 120.0, 0.4);
+  const auto compare = [&](const std::string& second) {
+    return run("compare " + folder.path("yesterday.lcmlog") + " " + folder.path(second) +
+               " --model " + kModels + "warthog_asphalt.yaml");
+  };
+  const Run same = compare("today.lcmlog");
+  INFO(same.printed);
+  CHECK(same.status == 0);
+  CHECK(same.says("Nothing moved by more than 3 sigma."));
+  const Run sand = compare("sand.lcmlog");
+  INFO(sand.printed);
+  CHECK(sand.status == 10);
+  CHECK(sand.says("Changed: yaw_gain ("));
+  CHECK(compare("yesterday.lcmlog").status == 2);
 }
 
 }  // namespace tread::gap
