@@ -36,7 +36,7 @@ std::vector<double> probesOf(const Effect& effect, const EffectParameter& parame
     for (double& probe : probes) probe *= kGravity;
     return probes;
   }
-  if (!parameter.probes.empty()) return parameter.probes;
+  if (effect.name != "command_delay" && !parameter.probes.empty()) return parameter.probes;
   return {kSmallProbe * parameter.typical};
 }
 
@@ -218,7 +218,8 @@ void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candid
   const std::string strength = candidate.effect + "." + candidate.parameter;
   // Thresholds begin at their probe, whose slope is known; the others at their first order size.
   const EffectParameter& known = parameterNamed(effectNamed(candidate.effect), candidate.parameter);
-  const bool threshold = known.reciprocal() || !known.probes.empty();
+  const bool threshold =
+      known.reciprocal() || (!known.probes.empty() && candidate.effect != "command_delay");
   const double from = candidate.value - candidate.change;
   const double begin =
       threshold ? candidate.value : std::clamp(from + size, known.min * 0.9, known.max * 0.9);

@@ -10,6 +10,7 @@
 #include "common/vehicle/degeneracy.hpp"
 #include "tools/gap/core/adequacy.hpp"
 #include "tools/gap/core/atlas.hpp"
+#include "tools/gap/core/dead_reckoning.hpp"
 #include "tools/gap/core/end_errors.hpp"
 #include "tools/gap/core/moments.hpp"
 
@@ -55,7 +56,7 @@ class Discovery {
     say_(text("1 calibrate: %.0f rows in %.0f blocks", static_cast<double>(rows_.rows().size()),
               rows_.blocks()));
     say_("2-5 test, refit, validate, prune");
-    result_ = search(fitter_, task_.model, all_, settings_, say_);
+    result_ = search(fitter_, task_.model, all_, settings_, memory_, say_);
     finding_.after = result_.state.model;
     describeEffects();
     say_("6 adequacy");
@@ -65,6 +66,7 @@ class Discovery {
     finding_.unexplained = adequacy.unexplained;
     say_("7 error on driving that was not used");
     finding_.gap = task_.test.empty() ? nestedGap() : testGap();
+    finding_.gap->floor = deadReckoningFloor(task_.test.empty() ? task_.train : task_.test);
     finding_.atlas = residualAtlas(rows_, task_.model, finding_.after);
     finding_.overlays = overlays();
     judge();
@@ -209,8 +211,9 @@ class Discovery {
       std::vector<char> mask(all_.size());
       for (size_t i = 0; i < mask.size(); ++i) mask[i] = rows_.rows()[i].block % 2 == half;
       const ModelDocument model =
-          gap.structure_nested ? search(fitter_, task_.model, mask, settings_, silent).state.model
-                               : refitted(fitter_, result_, mask).model;
+          gap.structure_nested
+              ? search(fitter_, task_.model, mask, settings_, memory_, silent).state.model
+              : refitted(fitter_, result_, mask).model;
       for (const EndError& error : endErrors(rows_, model))
         if (error.block % 2 != half) outside.push_back(error);
     }
@@ -270,6 +273,7 @@ class Discovery {
   Fitter fitter_;
   std::vector<char> all_;
   SearchSettings settings_;
+  SearchMemory memory_;
   SearchResult result_;
   Finding finding_;
 };

@@ -11,6 +11,9 @@
 namespace tread::gap {
 namespace {
 
+constexpr double kSure = 4.0;        // standard errors of a gain beyond doubt
+constexpr double kSureNats = 100.0;  // and its least size: smaller ones may be negligible
+
 /// What removing an effect costs.
 struct Removal {
   FitState state;      ///< without it
@@ -33,18 +36,41 @@ ModelDocument withEffectOf(const ModelDocument& model, const ModelDocument& sour
   return changed;
 }
 
-Removal removal(const Fitter& fitter, const FitState& state, const std::string& effect,
-                const std::vector<char>& mask) {
+/// What the effect costs, given a state without it and the direction that leads back.
+Removal judged(const Fitter& fitter, const FitState& with, FitState reduced,
+               const Eigen::VectorXd& direction, const std::vector<char>& mask) {
   Removal removed;
-  removed.state = without(fitter, state, effect, mask);
-  const Eigen::VectorXd direction =
-      fitter.secant(removed.state, withEffectOf(removed.state.model, state.model, effect), 1.0);
-  const ScoreTest test(fitter.rows(), removed.state, direction, mask);
+  const ScoreTest test(fitter.rows(), reduced, direction, mask);
   removed.score = test.score(0);
   removed.gain =
-      gainOf(heldOutLoss(fitter.rows(), removed.state, mask),
-             heldOutLoss(fitter.rows(), state, mask), blocksThatCount(fitter.rows(), mask));
+      gainOf(heldOutLoss(fitter.rows(), reduced, mask), heldOutLoss(fitter.rows(), with, mask),
+             blocksThatCount(fitter.rows(), mask));
+  removed.state = std::move(reduced);
   return removed;
+}
+
+Removal removal(const Fitter& fitter, const FitState& state, const std::string& effect,
+                const std::vector<char>& mask) {
+  FitState reduced = without(fitter, state, effect, mask);
+  const Eigen::VectorXd direction =
+      fitter.secant(reduced, withEffectOf(reduced.model, state.model, effect), 1.0);
+  return judged(fitter, state, std::move(reduced), direction, mask);
+}
+
+/// The same in first order, without a simulation; the model of the state stays as it was.
+Removal linearRemoval(const Fitter& fitter, const FitState& state, const std::string& effect,
+                      const std::vector<char>& mask) {
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(state.predicted.size());
+  FitState reduced = state;
+  for (size_t i = reduced.free.size(); i-- > 0;) {
+    if (!belongsTo(reduced.free[i], effect)) continue;
+    const auto at = static_cast<Eigen::Index>(i);
+    direction += state.jacobian.col(at) * *findParameter(state.model, state.free[i].path);
+    fitter.release(reduced, i);
+  }
+  reduced.predicted = state.predicted - direction;
+  followLinearly(fitter, reduced, mask);
+  return judged(fitter, state, std::move(reduced), direction, mask);
 }
 
 /// Mean end errors on executions of the mask's blocks: position [m] and yaw [rad].
@@ -112,14 +138,13 @@ class Pruning {
   /// Looks at all, least sure first; true if one went.
   bool removeOne() {
     for (const std::string& effect : leastSureFirst(fitter_, result_, mask_)) {
-      Removal removed = removal(fitter_, result_.state, effect, mask_);
-      std::string why;
-      if (std::abs(removed.score) < needed_)
-        why = "chance explains it beside the others";
-      else if (removed.gain.value <= 0.0)
-        why = "does not help on blocks left out";
-      else if (improvement(fitter_, removed.state.model, result_.state.model, mask_) < least_gain_)
-        why = "real, but negligible: changes the end error by less than 1 %";
+      // What is beyond doubt in first order needs no simulation without it.
+      Removal removed = linearRemoval(fitter_, result_.state, effect, mask_);
+      const bool sure = std::abs(removed.score) > needed_ &&
+                        removed.gain.value > kSure * removed.gain.error &&
+                        removed.gain.value > kSureNats;
+      if (!sure) removed = removal(fitter_, result_.state, effect, mask_);
+      const std::string why = sure ? "" : reasonAgainst(removed);
       if (why.empty()) {
         result_.scores[effect] = removed.score;
         result_.gains[effect] = removed.gain;
@@ -131,10 +156,19 @@ class Pruning {
     return false;
   }
 
+  /// Why an effect should go; empty if it should stay.
+  std::string reasonAgainst(const Removal& removed) const {
+    if (std::abs(removed.score) < needed_) return "chance explains it beside the others";
+    if (removed.gain.value <= 0.0) return "does not help on blocks left out";
+    if (improvement(fitter_, removed.state.model, result_.state.model, mask_) < least_gain_)
+      return "real, but negligible: changes the end error by less than 1 %";
+    return "";
+  }
+
   void remove(const std::string& effect, Removal& removed, const std::string& why) {
     // Plain causes that were only taken in as a cover go without a word.
     const bool was_added = result_.p_values.count(effect) != 0;
-    if (why[0] == 'r') result_.negligible.push_back(effect);
+    if (why.compare(0, 4, "real") == 0) result_.negligible.push_back(effect);
     if (was_added) {
       LadderStep step;
       step.effect = effect;

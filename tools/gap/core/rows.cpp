@@ -62,8 +62,8 @@ double yawAt(const std::vector<TimedPose>& motion, double time) {
   while (i + 2 < motion.size() && motion[i + 1].time <= time) ++i;
   const TimedPose& from = motion[i];
   const TimedPose& to = motion[i + 1];
-  return from.T_map_body.yaw + (to.T_map_body.yaw - from.T_map_body.yaw) * (time - from.time) /
-                                   (to.time - from.time);
+  return from.T_map_body.yaw +
+         (to.T_map_body.yaw - from.T_map_body.yaw) * (time - from.time) / (to.time - from.time);
 }
 
 }  // namespace

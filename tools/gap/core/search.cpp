@@ -14,6 +14,7 @@
 namespace tread::gap {
 namespace {
 
+constexpr size_t kRenewed = 10;          // directions that are simulated again in a round
 constexpr double kVanished = 2e-3;       // of an effect's typical size
 constexpr double kPowerQuantile = 0.84;  // normal: 80 % power
 
@@ -63,21 +64,22 @@ std::vector<size_t> bestOfEffects(const Round& round) {
 class Search {
  public:
   Search(const Fitter& fitter, const std::vector<char>& mask, const SearchSettings& settings,
-         const Progress& say)
-      : fitter_(fitter), mask_(mask), settings_(settings), say_(say) {}
+         SearchMemory& memory, const Progress& say)
+      : fitter_(fitter), mask_(mask), settings_(settings), memory_(memory), say_(say) {}
 
   SearchResult run(const ModelDocument& model) {
     calibrate(model);
-    Round round = test();
+    Round round = test(memory_.calibrated);
     result_.tests = round.tests;
     if (!significant(round).empty()) {
       cover();
-      while (result_.effects.size() < settings_.most + covered_) {
-        round = test();
-        if (!addBest(round)) break;
+      round = test(memory_.covered);
+      while (result_.effects.size() < settings_.most + covered_ && addBest(round)) {
+        renewLikeliest(round);
+        round = test(memory_.covered);
       }
       prune(round);
-      noteDetectable(test());
+      noteDetectable(test(memory_.covered));
     }
     return std::move(result_);
   }
@@ -100,11 +102,11 @@ class Search {
     if (fitted.jacobian.rows() == 0) fitter_.renewJacobian(fitted);
   }
 
-  Round test() {
+  Round test(DirectionBook& book) {
     Round round;
-    round.candidates = candidatesFor(state().model, excitationOf(fitter_.rows(), state().model));
-    const ScoreTest test(fitter_.rows(), state(), directionsOf(fitter_, state(), round.candidates),
-                         mask_);
+    round.candidates = candidatesFor(state().model, book.excitation(fitter_, state()));
+    const ScoreTest test(fitter_.rows(), state(),
+                         book.directions(fitter_, state(), round.candidates), mask_);
     round.chance = test.largestByChance(settings_.draws, settings_.seed);
     for (size_t i = 0; i < round.candidates.size(); ++i) {
       round.scores.push_back(test.score(static_cast<Eigen::Index>(i)));
@@ -126,6 +128,17 @@ class Search {
     for (CandidateTest& first : result_.tests)
       for (const CandidateTest& now : last.tests)
         if (now.effect == first.effect) first.detectable = now.detectable;
+  }
+
+  /// The likeliest candidates of the last round get directions of the model as it is now.
+  void renewLikeliest(const Round& round) {
+    std::vector<Candidate> likeliest;
+    for (size_t i : round.best)
+      if (likeliest.size() < kRenewed &&
+          !isOn(effectNamed(round.candidates[i].effect), state().model.vehicle.effects,
+                state().model.measurement))
+        likeliest.push_back(round.candidates[i]);
+    memory_.covered.renew(fitter_, state(), likeliest);
   }
 
   std::vector<size_t> significant(const Round& round) const {
@@ -252,6 +265,7 @@ class Search {
   const Fitter& fitter_;
   const std::vector<char>& mask_;
   const SearchSettings& settings_;
+  SearchMemory& memory_;
   const Progress& say_;
   SearchResult result_;
   size_t covered_ = 0;
@@ -281,8 +295,8 @@ std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool cali
 }
 
 SearchResult search(const Fitter& fitter, const ModelDocument& model, const std::vector<char>& mask,
-                    const SearchSettings& settings, const Progress& say) {
-  return Search(fitter, mask, settings, say).run(model);
+                    const SearchSettings& settings, SearchMemory& memory, const Progress& say) {
+  return Search(fitter, mask, settings, memory, say).run(model);
 }
 
 FitState refitted(const Fitter& fitter, const SearchResult& result, const std::vector<char>& mask) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tools/gap/core/candidates.hpp"
+#include "tools/gap/core/direction_book.hpp"
 #include "tools/gap/core/finding.hpp"
 #include "tools/gap/core/fit.hpp"
 #include "tools/gap/core/score_test.hpp"
@@ -46,6 +47,13 @@ struct SearchResult {
   std::map<std::string, std::vector<std::string>> replaced;
 };
 
+/// Directions that searches over the same rows share: of the calibrated model, and of the one with
+/// the cover.
+struct SearchMemory {
+  DirectionBook calibrated;
+  DirectionBook covered;
+};
+
 /// Which parameters of a model are free: strengths of effects that are on, and the numbers of the
 /// nominal model of which the model's covariance says how sure they are.
 /// When calibrating all numbers of the nominal model are free without limits of belief.
@@ -57,7 +65,7 @@ std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool cali
  * something rarer, 4. tests, refits the best, validates on blocks left out and adds the best, as
  * long as something is significant, 5. removes what the rest makes superfluous, cover included. */
 SearchResult search(const Fitter& fitter, const ModelDocument& model, const std::vector<char>& mask,
-                    const SearchSettings& settings, const Progress& say);
+                    const SearchSettings& settings, SearchMemory& memory, const Progress& say);
 
 /// Refits a given structure on other rows: the parameters of a result, from the values of `model`.
 FitState refitted(const Fitter& fitter, const SearchResult& result, const std::vector<char>& mask);

@@ -88,6 +88,12 @@ Eigen::VectorXd heldOutLoss(const Rows& rows, const FitState& state,
   return loss;
 }
 
+void followLinearly(const Fitter& fitter, FitState& state, const std::vector<char>& mask) {
+  if (state.free.empty()) return;
+  const Eigen::VectorXd residuals = fitter.rows().residuals(state.predicted);
+  state.predicted += state.jacobian * refitted(state, residuals, mask);
+}
+
 Gain gainOf(const Eigen::VectorXd& first, const Eigen::VectorXd& second,
             const std::vector<char>& block_counts) {
   std::vector<double> gains;

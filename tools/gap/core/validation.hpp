@@ -15,6 +15,10 @@ namespace tread::gap {
  * optimum without it, so that no simulation is needed. The state's Jacobian must be current. */
 Eigen::VectorXd heldOutLoss(const Rows& rows, const FitState& state, const std::vector<char>& mask);
 
+/// Lets the free parameters of a state follow its residuals in first order: the prediction changes,
+/// the model does not.
+void followLinearly(const Fitter& fitter, FitState& state, const std::vector<char>& mask);
+
 /// A difference over blocks and its standard error.
 struct Gain {
   double value = 0.0;  ///< [nats]
