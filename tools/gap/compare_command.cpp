@@ -42,9 +42,8 @@ int compare(const Options& options) {
   const LogChange change = compareLogs(model, first, second, options.threads);
   std::cout << textOf(change) << std::flush;
   const bool moved =
-      std::any_of(change.movements.begin(), change.movements.end(), [](const Movement& movement) {
-        return std::abs(movement.sigmas()) > kMoved;
-      });
+      std::any_of(change.movements.begin(), change.movements.end(),
+                  [](const Movement& movement) { return std::abs(movement.sigmas()) > kMoved; });
   return moved ? kSomethingMoved : 0;
 }
 
@@ -55,8 +54,9 @@ CLI::App* addCompare(CLI::App& app, int& status) {
   options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   CLI::App* command =
       app.add_subcommand("compare", "what changed from one log to another, yesterday and today");
-  command->footer("Fits the same terms on both logs and tells which parameters moved by more than\n"
-                  "3 sigma. Exit status 0: none did; 10: some did; 2: bad input.");
+  command->footer(
+      "Fits the same terms on both logs and tells which parameters moved by more than\n"
+      "3 sigma. Exit status 0: none did; 10: some did; 2: bad input.");
   command->add_option("FIRST", options->first, "log")->required();
   command->add_option("SECOND", options->second, "log")->required();
   command->add_option("--model", options->model, "model file whose terms are fitted (YAML)")

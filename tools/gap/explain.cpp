@@ -35,16 +35,15 @@ std::string channelWords(const std::string& channels) {
 
 std::string parameterWords(const EffectParameter& parameter) {
   if (parameter.reciprocal())
-    return parameter.natural_name + " above " +
-           said(1.0 / parameter.max, naturalUnit(parameter)) + ", for instance " +
-           said(1.0 / parameter.typical, naturalUnit(parameter)) + " (in model files " +
-           parameter.natural_name + ", or " + parameter.name + ", its reciprocal)";
+    return parameter.natural_name + " above " + said(1.0 / parameter.max, naturalUnit(parameter)) +
+           ", for instance " + said(1.0 / parameter.typical, naturalUnit(parameter)) +
+           " (in model files " + parameter.natural_name + ", or " + parameter.name +
+           ", its reciprocal)";
   const bool shape = parameter.role == ParameterRole::kShape;
   return parameter.name + " " + saidInterval(parameter.min, parameter.max, parameter.unit) +
          ", for instance " + said(parameter.typical, parameter.unit) + " (in model files " +
-         formatNumber(parameter.typical) +
-         (parameter.unit == "1" ? "" : " " + parameter.unit) + ")" +
-         (shape ? "; says when or how, not how much" : "");
+         formatNumber(parameter.typical) + (parameter.unit == "1" ? "" : " " + parameter.unit) +
+         ")" + (shape ? "; says when or how, not how much" : "");
 }
 
 std::string groupWords(const Effect& effect, const DegeneracyGroup& group) {
@@ -86,9 +85,9 @@ const Effect& effectOrGuess(const std::string& name) {
     names.push_back(effect.name);
   }
   const auto meant = nearestSpelling(name, names);
-  throw std::runtime_error("'" + name + "' is no effect of the catalogue; " +
-                           (meant ? "did you mean " + *meant + "?"
-                                  : "tread-gap explain lists them"));
+  throw std::runtime_error(
+      "'" + name + "' is no effect of the catalogue; " +
+      (meant ? "did you mean " + *meant + "?" : "tread-gap explain lists them"));
 }
 
 std::string explanation(const Effect& effect) {

@@ -33,7 +33,8 @@ struct Options {
 };
 
 constexpr const char* kFooter =
-    "Into --out: verdict.json, model.yaml (the new model; nothing is applied by itself), report.md\n"
+    "Into --out: verdict.json, model.yaml (the new model; nothing is applied by itself), "
+    "report.md\n"
     "and report.html. Exit status: 0 NO_DISCREPANCY, 10 FOUND, 11 AMBIGUOUS, 12 PARTIAL,\n"
     "13 NOT_IN_CATALOGUE, 14 MEASUREMENT, 15 CANNOT_TELL, 2 bad input (one line says which).\n"
     "The same files and the same seed give the same bytes, with any number of threads.";
@@ -74,8 +75,7 @@ int find(const Options& options) {
   std::vector<InputFile> inputs;
   GapTask task;
   task.model = readModelDocument(options.model);
-  inputs.push_back(
-      {InputFile::Role::kModel, fileName(options.model), sha256OfFile(options.model)});
+  inputs.push_back({InputFile::Role::kModel, fileName(options.model), sha256OfFile(options.model)});
   task.train = readDrives(options.train, InputFile::Role::kTrain, task.model, inputs);
   task.test = readDrives(options.test, InputFile::Role::kTest, task.model, inputs);
   for (const std::vector<Drive>* drives : {&task.train, &task.test})

@@ -9,7 +9,8 @@
 int main(int argc, char** argv) {
   int status = 0;
   try {
-    CLI::App app{"Finds, names and closes the gap between simulation and measurement.", "tread-gap"};
+    CLI::App app{"Finds, names and closes the gap between simulation and measurement.",
+                 "tread-gap"};
     app.require_subcommand(1);
     tread::gap::addFind(app, status);
     tread::gap::addExplain(app);

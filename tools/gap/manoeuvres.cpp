@@ -57,7 +57,9 @@ std::vector<Manoeuvre> standardManoeuvres(double full) {
   const TrackCommand ahead{full, full};
   const TrackCommand half{0.5 * full, 0.5 * full};
   const TrackCommand back{-0.5 * full, -0.5 * full};
-  const auto turn = [&](double left, double right) { return TrackCommand{left * full, right * full}; };
+  const auto turn = [&](double left, double right) {
+    return TrackCommand{left * full, right * full};
+  };
   return {
       {"start to full speed", rest, held(ahead, 2.0)},
       {"straight, full speed", ahead, held(ahead, 2.0)},
@@ -71,8 +73,7 @@ std::vector<Manoeuvre> standardManoeuvres(double full) {
       {"left backwards", back, held(turn(-0.5, -0.2), 2.0)},
       {"slow turn on the spot", rest, held(turn(-0.2, 0.2), 2.0)},
       {"fast turn on the spot", rest, held(turn(-0.7, 0.7), 2.0)},
-      {"left, then right", ahead,
-       followed(held(turn(0.5, 1.0), 1.0), held(turn(1.0, 0.5), 1.0))},
+      {"left, then right", ahead, followed(held(turn(0.5, 1.0), 1.0), held(turn(1.0, 0.5), 1.0))},
       {"forwards, then back", half, followed(held(half, 0.5), held(back, 1.5))},
       {"standing", rest, held(rest, 2.0)},
   };

@@ -29,34 +29,33 @@ void setEffect(ModelDocument& model, const Effect& effect, const std::string& na
   for (const EffectParameter& parameter : effect.parameters) {
     const bool natural = parameter.reciprocal() && name == parameter.natural_name;
     if (!natural && name != parameter.name) continue;
-    if (natural && value == 0.0) throw std::runtime_error(name + "=0: a limit of 0 lets nothing move");
+    if (natural && value == 0.0)
+      throw std::runtime_error(name + "=0: a limit of 0 lets nothing move");
     const double held = natural ? 1.0 / value : value;
     if (held < parameter.min || held > parameter.max)
       throw std::runtime_error(effect.name + "." + name + "=" + formatNumber(value) +
                                ": not plausible; " + parameter.name + " is " +
-                               formatNumber(parameter.min) + " to " +
-                               formatNumber(parameter.max) +
+                               formatNumber(parameter.min) + " to " + formatNumber(parameter.max) +
                                (parameter.unit == "1" ? "" : " " + parameter.unit));
     valueOf(model, parameter) = held;
     return;
   }
-  throw std::runtime_error("'" + name + "' is no parameter of " + effect.name +
-                           "; it has " + parameterNames(effect));
+  throw std::runtime_error("'" + name + "' is no parameter of " + effect.name + "; it has " +
+                           parameterNames(effect));
 }
 
 void set(ModelDocument& model, const std::string& assignment, const Effect* last_added) {
   const size_t equals = assignment.find('=');
-  const auto value = equals == std::string::npos
-                         ? std::nullopt
-                         : parseNumber(assignment.substr(equals + 1));
-  if (!value)
-    throw std::runtime_error("--set " + assignment + ": write parameter=number");
+  const auto value =
+      equals == std::string::npos ? std::nullopt : parseNumber(assignment.substr(equals + 1));
+  if (!value) throw std::runtime_error("--set " + assignment + ": write parameter=number");
   const std::string path = assignment.substr(0, equals);
   const size_t point = path.find('.');
   if (point != std::string::npos) {
     setEffect(model, effectOrGuess(path.substr(0, point)), path.substr(point + 1), *value);
   } else if (double* number = findParameter(model, path)) {
-    if (!(*value >= 0.0)) throw std::runtime_error("--set " + assignment + ": must not be negative");
+    if (!(*value >= 0.0))
+      throw std::runtime_error("--set " + assignment + ": must not be negative");
     *number = *value;
   } else if (last_added != nullptr) {
     setEffect(model, *last_added, path, *value);

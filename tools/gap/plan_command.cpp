@@ -34,7 +34,8 @@ struct Options {
 };
 
 constexpr const char* kFooter =
-    "A is taken at its size in the model, else at its typical one (or as --set says); B is refitted\n"
+    "A is taken at its size in the model, else at its typical one (or as --set says); B is "
+    "refitted\n"
     "to look most like A, together with what the model says is uncertain. Written to --out is a\n"
     "pattern set for tread-patterns record. Where no drive tells the two apart, the measurement\n"
     "that does is printed instead, and the exit status is 1.";
@@ -44,8 +45,9 @@ std::string otherWays(const std::string& a, const std::string& b) {
   std::string text;
   for (const DegeneracyGroup* group : groupsOf(a))
     if (std::find(group->members.begin(), group->members.end(), b) != group->members.end())
-      text += "  " + asSentence(group->because) + (group->when.empty() ? "" : " (" + group->when + ")") +
-              ".\n  " + group->separates + "\n";
+      text += "  " + asSentence(group->because) +
+              (group->when.empty() ? "" : " (" + group->when + ")") + ".\n  " + group->separates +
+              "\n";
   if (!text.empty()) return text;
   for (const std::string& name : {a, b})
     text += "  " + titleOf(name) + ": " + effectNamed(name).separates + "\n";
@@ -59,9 +61,9 @@ std::string sizeOf(const ModelDocument& model, const std::string& name) {
     const double value = *findParameter(model, path);
     if (parameter.role == ParameterRole::kShape || value == 0.0) continue;
     const bool natural = parameter.reciprocal();
-    sizes.push_back((natural ? parameter.natural_name : parameter.name) + " " +
-                    said(naturalValue(parameter, value),
-                         natural ? naturalUnit(parameter) : parameter.unit));
+    sizes.push_back(
+        (natural ? parameter.natural_name : parameter.name) + " " +
+        said(naturalValue(parameter, value), natural ? naturalUnit(parameter) : parameter.unit));
   }
   return sizes.empty() ? "off" : joined(sizes);
 }
@@ -96,14 +98,16 @@ void tellFound(const Options& options, const DesignTask& task, const Design& des
             << threeDigits(design.duration) << " s of driving; expected difference of the log "
             << "likelihoods " << threeDigits(design.difference) << " (" << threeDigits(task.enough)
             << " is enough),\nalthough " << inSentence(titleOf(options.rival))
-            << " is refitted to look most like it ("
-            << sizeOf(design.rival, options.rival) << ").\n";
+            << " is refitted to look most like it (" << sizeOf(design.rival, options.rival)
+            << ").\n";
   if (options.out.empty()) return;
   recordings::writeText(options.out, formatPatterns(set));
-  std::cout << "\n" << options.out << ": a pattern set. Record a log (tread-logger) while\n"
-            << "  tread-patterns record " << options.out
-            << " --book plan_book --surface here --live -n 1 --room " << threeDigits(roomFor(set))
-            << "\ndrives it, and give that log to tread-gap find with the old one (--train OLD NEW).\n";
+  std::cout
+      << "\n"
+      << options.out << ": a pattern set. Record a log (tread-logger) while\n"
+      << "  tread-patterns record " << options.out
+      << " --book plan_book --surface here --live -n 1 --room " << threeDigits(roomFor(set))
+      << "\ndrives it, and give that log to tread-gap find with the old one (--train OLD NEW).\n";
 }
 
 void tellNone(const Options& options, const Design& design) {
@@ -112,11 +116,12 @@ void tellNone(const Options& options, const Design& design) {
     std::cout << titleOf(options.truth) << " (" << sizeOf(design.truth, options.truth)
               << ") shows in none of these manoeuvres on level ground. What shows it:\n";
   else
-    std::cout << "No drive of these manoeuvres within 120 s tells " << inSentence(titleOf(options.truth))
-              << " (" << sizeOf(design.truth, options.truth) << ") from "
-              << inSentence(titleOf(options.rival)) << " (" << sizeOf(design.rival, options.rival)
-              << "): expected difference " << threeDigits(design.difference) << " after "
-              << threeDigits(design.duration) << " s. What tells:\n";
+    std::cout << "No drive of these manoeuvres within 120 s tells "
+              << inSentence(titleOf(options.truth)) << " (" << sizeOf(design.truth, options.truth)
+              << ") from " << inSentence(titleOf(options.rival)) << " ("
+              << sizeOf(design.rival, options.rival) << "): expected difference "
+              << threeDigits(design.difference) << " after " << threeDigits(design.duration)
+              << " s. What tells:\n";
   std::cout << otherWays(options.truth, options.rival);
 }
 
@@ -142,9 +147,9 @@ int plan(const Options& options) {
     tellNone(options, design);
     return 1;
   }
-  tellFound(options, task, design,
-            from ? planSet(*from, design.counts)
-                 : planSet(task.model, task.manoeuvres, design.counts));
+  tellFound(
+      options, task, design,
+      from ? planSet(*from, design.counts) : planSet(task.model, task.manoeuvres, design.counts));
   return 0;
 }
 

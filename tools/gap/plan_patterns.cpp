@@ -66,8 +66,7 @@ void addWay(const PatternSet& set, const std::string& from, const std::string& t
 std::vector<Manoeuvre> planManoeuvres(const ModelDocument& model) {
   const double full = fullCommand(model);
   // Others than this model may settle later: half a second more.
-  const double settled =
-      3.0 * model.vehicle.settlingLag() + model.vehicle.commandDelay() + 0.5;
+  const double settled = 3.0 * model.vehicle.settlingLag() + model.vehicle.commandDelay() + 0.5;
   const auto stop = static_cast<size_t>(std::ceil(settled / kManoeuvrePeriod));
   std::vector<Manoeuvre> all;
   const auto add = [&](const char* name, std::vector<TrackCommand> parts) {
@@ -107,8 +106,9 @@ std::vector<Manoeuvre> planManoeuvres(const ModelDocument& model) {
 
 std::vector<Manoeuvre> manoeuvresOf(const PatternSet& set, const ModelDocument& model) {
   if (set.content().kind != model.vehicle.kind)
-    throw std::runtime_error("plan: the patterns command another kind than the model; give "
-                             "patterns and model of one vehicle");
+    throw std::runtime_error(
+        "plan: the patterns command another kind than the model; give "
+        "patterns and model of one vehicle");
   if (std::abs(set.periodSeconds() - kManoeuvrePeriod) > 1e-9)
     throw std::runtime_error("plan: the patterns' period is not 0.05 s; give such a set");
   std::vector<Manoeuvre> all;

@@ -43,8 +43,8 @@ std::string picture(const Comparison& comparison) {
   chart.line(second, kAfterColour);
   chart.dot(second.back(), kAfterColour);
   chart.legend("as it is", kBeforeColour, true);
-  chart.legend("what if: " + threeDigits(comparison.position) + " m, " +
-                   saidAngle(comparison.yaw) + " apart",
+  chart.legend("what if: " + threeDigits(comparison.position) + " m, " + saidAngle(comparison.yaw) +
+                   " apart",
                kAfterColour);
   return chart.svg();
 }
@@ -58,7 +58,8 @@ std::vector<std::string> picturesOf(const std::vector<Comparison>& comparisons) 
 std::vector<std::string> picturesOf(const LogComparison& comparison) {
   std::vector<std::string> pictures;
   for (const Overlay& overlay : comparison.overlays)
-    pictures.push_back(overlayPicture(overlay, "execution at " + threeDigits(overlay.begin) + " s"));
+    pictures.push_back(
+        overlayPicture(overlay, "execution at " + threeDigits(overlay.begin) + " s"));
   return pictures;
 }
 
@@ -127,8 +128,9 @@ std::string textOf(const std::vector<Comparison>& comparisons) {
     any = any || comparison.position > kRounding || std::abs(comparison.yaw) > kRounding;
   }
   if (!any)
-    text += "No manoeuvre shows a difference. What depends on slope, battery, heat or time wants "
-            "--pitch, --roll, --battery-drop, --minutes or --worked.\n";
+    text +=
+        "No manoeuvre shows a difference. What depends on slope, battery, heat or time wants "
+        "--pitch, --roll, --battery-drop, --minutes or --worked.\n";
   return text;
 }
 
@@ -155,9 +157,10 @@ Page pageOf(const std::string& question, const std::vector<Comparison>& comparis
   for (const Comparison& comparison : comparisons)
     table.rows.push_back(
         {comparison.name, saidDistance(comparison.position), saidAngle(comparison.yaw)});
-  page.first = {Paragraph{"The same commands, simulated with the model as it is and as it would be; "
-                          "differences after two seconds."},
-                table};
+  page.first = {
+      Paragraph{"The same commands, simulated with the model as it is and as it would be; "
+                "differences after two seconds."},
+      table};
   page.sections.push_back({"Manoeuvres",
                            {Pictures{picturesOf(comparisons),
                                      "Orange, dashed: as it is. Blue: what if. Ahead is up."}}});

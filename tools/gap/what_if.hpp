@@ -15,7 +15,7 @@ namespace tread::gap {
 /// One manoeuvre driven by two models, as the INS would say it.
 struct Comparison {
   std::string name;
-  std::vector<Pose2> first;   ///< relative to the begin
+  std::vector<Pose2> first;  ///< relative to the begin
   std::vector<Pose2> second;
   double position = 0.0;  ///< [m] between the two ends
   double yaw = 0.0;       ///< [rad] second less first, at the end

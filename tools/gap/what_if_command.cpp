@@ -62,10 +62,10 @@ void whatIf(const Options& options) {
     throw std::runtime_error(options.out + ": what kind of file? end it with .html or .svg");
   const ModelDocument model = readModelDocument(options.model);
   const ModelDocument other = changed(model, options.change);
-  const std::vector<Comparison> comparisons =
-      compareModels(model, other, circumstancesOf(options));
+  const std::vector<Comparison> comparisons = compareModels(model, other, circumstancesOf(options));
   std::vector<LogComparison> on_log;
-  if (!options.log.empty()) on_log.push_back(compareOnLog(readDriveFor(model, options.log), model, other));
+  if (!options.log.empty())
+    on_log.push_back(compareOnLog(readDriveFor(model, options.log), model, other));
   const std::string question = questionOf(options.change);
   std::cout << question << "\n\n" << textOf(comparisons);
   for (const LogComparison& comparison : on_log) std::cout << '\n' << textOf(comparison);
@@ -99,8 +99,9 @@ CLI::App* addWhatIf(CLI::App& app) {
   command->add_option("--model", options->model, "model file (YAML)")->required();
   command->add_option("--remove", options->change.remove, "turn this effect off");
   command->add_option("--add", options->change.add, "turn this effect on, at its typical size");
-  command->add_option("--set", options->change.set,
-                      "parameter=number: of the effect added, or effect.parameter, or lag, delay..");
+  command->add_option(
+      "--set", options->change.set,
+      "parameter=number: of the effect added, or effect.parameter, or lag, delay..");
   command->add_option("--log", options->log, "a log; its executions are simulated, too");
   command->add_option("--out", options->out, "pictures: FILE.html or FILE.svg");
   addCircumstances(*command, *options);

@@ -26,7 +26,8 @@ struct Run {
 
 /// A program of the house, called as people call it.
 inline Run runProgram(const std::string& program, const std::string& arguments) {
-  const std::string command = std::string(TREAD_BIN_DIR) + "/" + program + " " + arguments + " 2>&1";
+  const std::string command =
+      std::string(TREAD_BIN_DIR) + "/" + program + " " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   REQUIRE(pipe != nullptr);
   Run result;

@@ -71,7 +71,9 @@ TEST_CASE("every effect of the catalogue is explained, with a check of two minut
 
 TEST_CASE("bad input ends with 2 and one line that says what and where") {
   const Folder folder;
-  folder.write("typo.yaml", "name: a\nkind: power\nfull_speed: 1\ngauge: 0.6\neffects:\n  slip_ratoi:\n    slip: 0.1\n");
+  folder.write(
+      "typo.yaml",
+      "name: a\nkind: power\nfull_speed: 1\ngauge: 0.6\neffects:\n  slip_ratoi:\n    slip: 0.1\n");
   folder.write("no.lcmlog", "this is no log\n");
   writeDrive(folder.path("speeds.lcmlog"), 10.0);
   const std::string grass = "--model " + kModels + "teodor_grass.yaml ";
@@ -141,8 +143,9 @@ TEST_CASE("what-if shows what an effect does, as numbers and as pictures") {
 TEST_CASE("what-if simulates the executions of a log") {
   const Folder folder;
   writeDrive(folder.path("drive.lcmlog"), 40.0);
-  const Run of_log = run("what-if --model " + kModels + "warthog_asphalt.yaml --add slip_ratio --log " +
-                         folder.path("drive.lcmlog") + " --out " + folder.path("w.html"));
+  const Run of_log =
+      run("what-if --model " + kModels + "warthog_asphalt.yaml --add slip_ratio --log " +
+          folder.path("drive.lcmlog") + " --out " + folder.path("w.html"));
   INFO(of_log.printed);
   CHECK(of_log.status == 0);
   CHECK(of_log.says("executions of the log"));
@@ -152,7 +155,8 @@ TEST_CASE("what-if simulates the executions of a log") {
 TEST_CASE("plan writes a pattern set that tells two effects apart, and that can be driven") {
   const Folder folder;
   const std::string model = kModels + "teodor_tarmac.yaml";
-  const Run plan = run("plan track_asymmetry yaw_pull --model " + model + " --out " + folder.path("p.yaml"));
+  const Run plan =
+      run("plan track_asymmetry yaw_pull --model " + model + " --out " + folder.path("p.yaml"));
   INFO(plan.printed);
   CHECK(plan.status == 0);
   CHECK(plan.says("s of driving"));
@@ -171,8 +175,9 @@ TEST_CASE("plan writes a pattern set that tells two effects apart, and that can 
 TEST_CASE("plan among the patterns of a set keeps what leads to them and back to standing") {
   const Folder folder;
   const std::string patterns = std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor.yaml";
-  const Run plan = run("plan track_asymmetry gyro_bias --model " + kModels +
-                       "teodor_tarmac.yaml --patterns " + patterns + " --out " + folder.path("p.yaml"));
+  const Run plan =
+      run("plan track_asymmetry gyro_bias --model " + kModels + "teodor_tarmac.yaml --patterns " +
+          patterns + " --out " + folder.path("p.yaml"));
   INFO(plan.printed);
   CHECK(plan.status == 0);
   CHECK_NOTHROW(readPatternFile(folder.path("p.yaml")));

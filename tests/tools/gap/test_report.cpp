@@ -113,7 +113,9 @@ TEST_CASE("where a sign turns an effect round, its sentence says so") {
 }
 
 TEST_CASE("what remains is told channel by channel") {
-  CHECK(remainsOf({{"along", "speed", 3.0, 0.01}, {"yaw rate", "v", 3.0, 0.01}, {"along", "time", 3.0, 0.01}}) ==
+  CHECK(remainsOf({{"along", "speed", 3.0, 0.01},
+                   {"yaw rate", "v", 3.0, 0.01},
+                   {"along", "time", 3.0, 0.01}}) ==
         "the along residual depends on speed and time; the yaw rate residual depends on v");
 }
 

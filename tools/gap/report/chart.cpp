@@ -27,14 +27,13 @@ std::string at(double value) {
 }
 
 std::string words(double x, double y, const std::string& text, const std::string& more) {
-  return "<text x=\"" + at(x) + "\" y=\"" + at(y) + "\" " + more + ">" + escaped(text) +
-         "</text>";
+  return "<text x=\"" + at(x) + "\" y=\"" + at(y) + "\" " + more + ">" + escaped(text) + "</text>";
 }
 
 std::string stroke(double x1, double y1, double x2, double y2, const std::string& colour,
                    const std::string& more = "") {
-  return "<line x1=\"" + at(x1) + "\" y1=\"" + at(y1) + "\" x2=\"" + at(x2) + "\" y2=\"" +
-         at(y2) + "\" stroke=\"" + colour + "\"" + more + "/>";
+  return "<line x1=\"" + at(x1) + "\" y1=\"" + at(y1) + "\" x2=\"" + at(x2) + "\" y2=\"" + at(y2) +
+         "\" stroke=\"" + colour + "\"" + more + "/>";
 }
 
 /// A step of 1, 2 or 5 times a power of ten that cuts a range into about so many pieces.
@@ -134,7 +133,8 @@ void Chart::line(const std::vector<ChartPoint>& points, const std::string& colou
                  bool dashed) {
   std::string path;
   for (const ChartPoint& point : points)
-    if (isFinite(point)) path += (path.empty() ? "" : " ") + at(px(point.x)) + "," + at(py(point.y));
+    if (isFinite(point))
+      path += (path.empty() ? "" : " ") + at(px(point.x)) + "," + at(py(point.y));
   if (path.empty()) return;
   shapes_ += "<polyline fill=\"none\" stroke=\"" + colour + "\" stroke-width=\"" + at(width) +
              "\" stroke-linejoin=\"round\"" + (dashed ? " stroke-dasharray=\"5 3\"" : "") +
@@ -145,7 +145,8 @@ void Chart::band(const std::vector<ChartPoint>& low, const std::vector<ChartPoin
                  const std::string& colour) {
   std::string path;
   const auto add = [&](const ChartPoint& point) {
-    if (isFinite(point)) path += (path.empty() ? "" : " ") + at(px(point.x)) + "," + at(py(point.y));
+    if (isFinite(point))
+      path += (path.empty() ? "" : " ") + at(px(point.x)) + "," + at(py(point.y));
   };
   for (const ChartPoint& point : low) add(point);
   for (auto point = high.rbegin(); point != high.rend(); ++point) add(*point);
@@ -165,8 +166,7 @@ void Chart::bar(double x, double low, double high, const std::string& colour) {
   shapes_ += stroke(px(x), py(low), px(x), py(high), colour, " stroke-width=\"1.2\"") + "\n";
 }
 
-void Chart::field(const ChartPoint& corner, const ChartPoint& opposite,
-                  const std::string& colour) {
+void Chart::field(const ChartPoint& corner, const ChartPoint& opposite, const std::string& colour) {
   const double left = std::min(px(corner.x), px(opposite.x));
   const double top = std::min(py(corner.y), py(opposite.y));
   shapes_ += "<rect x=\"" + at(left) + "\" y=\"" + at(top) + "\" width=\"" +
@@ -187,10 +187,10 @@ void Chart::level(double y) {
 
 void Chart::legend(const std::string& entry, const std::string& colour, bool dashed) {
   const double x = legend_end_;
-  legend_ += stroke(x, 27.0, x + 14.0, 27.0, colour,
-                    std::string(" stroke-width=\"2.2\"") +
-                        (dashed ? " stroke-dasharray=\"5 3\"" : "")) +
-             words(x + 18.0, 30.5, entry, "font-size=\"10\" fill=\"#1c2126\"") + "\n";
+  legend_ +=
+      stroke(x, 27.0, x + 14.0, 27.0, colour,
+             std::string(" stroke-width=\"2.2\"") + (dashed ? " stroke-dasharray=\"5 3\"" : "")) +
+      words(x + 18.0, 30.5, entry, "font-size=\"10\" fill=\"#1c2126\"") + "\n";
   legend_end_ += 30.0 + 5.4 * static_cast<double>(entry.size());
 }
 
@@ -218,8 +218,8 @@ std::string Chart::svg() const {
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 320 230\" role=\"img\" "
          "font-family=\"system-ui, sans-serif\"><title>" +
          escaped(title_) + "</title>\n<rect width=\"320\" height=\"230\" fill=\"#fff\"/>\n" +
-         words(4.0, 13.0, title_, "font-size=\"11.5\" font-weight=\"600\" fill=\"#1c2126\"") + "\n" +
-         legend_ + "<g " + small + ">\n" + axes() +
+         words(4.0, 13.0, title_, "font-size=\"11.5\" font-weight=\"600\" fill=\"#1c2126\"") +
+         "\n" + legend_ + "<g " + small + ">\n" + axes() +
          words(0.5 * (kLeft + kWidth - kRight), kHeight - 8.0, x_words_,
                "text-anchor=\"middle\" font-size=\"10\"") +
          words(0.0, 0.0, y_words_,
@@ -234,9 +234,9 @@ std::string sheetOf(const std::vector<std::string>& charts, size_t columns) {
                      at(kWidth * static_cast<double>(columns)) + "\" height=\"" +
                      at(kHeight * static_cast<double>(rows)) + "\">\n";
   for (size_t i = 0; i < charts.size(); ++i) {
-    const std::string place =
-        "<svg x=\"" + at(kWidth * static_cast<double>(i % columns)) + "\" y=\"" +
-        at(kHeight * static_cast<double>(i / columns)) + "\" width=\"320\" height=\"230\"";
+    const std::string place = "<svg x=\"" + at(kWidth * static_cast<double>(i % columns)) +
+                              "\" y=\"" + at(kHeight * static_cast<double>(i / columns)) +
+                              "\" width=\"320\" height=\"230\"";
     text += place + charts[i].substr(4) + "\n";  // behind the chart's own "<svg"
   }
   return text + "</svg>\n";

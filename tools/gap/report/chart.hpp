@@ -38,8 +38,8 @@ struct ChartRange {
 };
 
 /// A small picture with axes as SVG text: 320 x 230 units, as wide as its place in the page.
-/** Points that are not finite are left out; an axis without words has no numbers. Only shapes and text with attributes of their own, so
- * that it can stand alone as a file, too. */
+/** Points that are not finite are left out; an axis without words has no numbers. Only shapes and
+ * text with attributes of their own, so that it can stand alone as a file, too. */
 class Chart {
  public:
   Chart(std::string title, std::string x_words, std::string y_words, const ChartRange& range);

@@ -101,8 +101,8 @@ std::string ambiguousHeadline(const Finding& finding) {
 std::vector<std::string> waysToTell(const FoundEffect& effect) {
   std::vector<std::string> ways;
   for (const DegeneracyGroup* group : groupsOf(effect.name)) {
-    const bool met = std::any_of(
-        group->members.begin(), group->members.end(), [&](const std::string& member) {
+    const bool met =
+        std::any_of(group->members.begin(), group->members.end(), [&](const std::string& member) {
           const std::vector<std::string> names = alternativesOf(effect);
           return member != effect.name &&
                  std::find(names.begin(), names.end(), member) != names.end();
@@ -132,12 +132,14 @@ void addNext(const Finding& finding, std::vector<Block>& blocks) {
 std::string opening(const Finding& finding) {
   switch (finding.verdict) {
     case Verdict::kNoDiscrepancy:
-      return std::string("What the model predicts and what the INS measured differ by no more than chance, "
-             "over the whole catalogue and on all variables. Which effects would have been seen, "
-                         "from which size on, stands below.") +
-             (finding.negligible.empty() ? std::string()
-                                         : " Real, but too small to matter: " +
-                                               titlesOf(finding.negligible) + ".");
+      return std::string(
+                 "What the model predicts and what the INS measured differ by no more than chance, "
+                 "over the whole catalogue and on all variables. Which effects would have been "
+                 "seen, "
+                 "from which size on, stands below.") +
+             (finding.negligible.empty()
+                  ? std::string()
+                  : " Real, but too small to matter: " + titlesOf(finding.negligible) + ".");
     case Verdict::kNotInCatalogue:
       return "There is a disagreement, and no effect of the catalogue explains it. A term by "
              "another name would be a guess; the model stays as it was but for its calibration.";
@@ -146,7 +148,8 @@ std::string opening(const Finding& finding) {
     case Verdict::kMeasurement:
       return "The vehicle drives as the model says; what differs is how the INS reports it. Only "
              "the measurement part of the model has changed.";
-    default: return "";
+    default:
+      return "";
   }
 }
 
@@ -160,13 +163,20 @@ std::string saidErrors(const EndErrors& errors, bool rms) {
 std::string headlineOf(const Finding& finding) {
   const std::string names = shortTitlesOf(namesOf(finding.effects));
   switch (finding.verdict) {
-    case Verdict::kNoDiscrepancy: return "Simulation and measurement agree";
-    case Verdict::kFound: return "Found: " + names;
-    case Verdict::kAmbiguous: return ambiguousHeadline(finding);
-    case Verdict::kPartial: return "Found: " + names + "; and something more without a name";
-    case Verdict::kNotInCatalogue: return "Something that is not in the catalogue";
-    case Verdict::kMeasurement: return "The INS, not the vehicle: " + names;
-    case Verdict::kCannotTell: return "This drive cannot tell";
+    case Verdict::kNoDiscrepancy:
+      return "Simulation and measurement agree";
+    case Verdict::kFound:
+      return "Found: " + names;
+    case Verdict::kAmbiguous:
+      return ambiguousHeadline(finding);
+    case Verdict::kPartial:
+      return "Found: " + names + "; and something more without a name";
+    case Verdict::kNotInCatalogue:
+      return "Something that is not in the catalogue";
+    case Verdict::kMeasurement:
+      return "The INS, not the vehicle: " + names;
+    case Verdict::kCannotTell:
+      return "This drive cannot tell";
   }
   return "";
 }
@@ -185,19 +195,20 @@ std::string sentenceOf(const FoundEffect& effect) {
 }
 
 std::string gainOf(const Gap& gap) {
-  std::string text = threeDigits(gap.horizon) + " s end-pose error on driving it has not seen: " +
-                     threeDigits(gap.before.position.median) + " -> " +
-                     saidDistance(gap.after.position.median) + ", heading " +
-                     threeDigits(gap.before.yaw.median * 180.0 / kPi) + " -> " +
-                     saidAngle(gap.after.yaw.median) + " (median of " +
-                     std::to_string(gap.after.executions) + " executions; rms " +
-                     saidErrors(gap.before, true) + " -> " + saidErrors(gap.after, true) + ").";
+  std::string text =
+      threeDigits(gap.horizon) +
+      " s end-pose error on driving it has not seen: " + threeDigits(gap.before.position.median) +
+      " -> " + saidDistance(gap.after.position.median) + ", heading " +
+      threeDigits(gap.before.yaw.median * 180.0 / kPi) + " -> " + saidAngle(gap.after.yaw.median) +
+      " (median of " + std::to_string(gap.after.executions) + " executions; rms " +
+      saidErrors(gap.before, true) + " -> " + saidErrors(gap.after, true) + ").";
   if (gap.floor)
     text += " Dead reckoning with encoders and gyro, about the best that is possible, reaches " +
             saidErrors(*gap.floor, false) + ".";
   if (!gap.structure_nested)
-    text += " The parameters were fitted without these executions, the effects were chosen with "
-            "them.";
+    text +=
+        " The parameters were fitted without these executions, the effects were chosen with "
+        "them.";
   return text;
 }
 
@@ -210,8 +221,8 @@ std::string remainsOf(const std::vector<Unexplained>& rests) {
   }
   std::string text;
   for (const std::string& channel : channels)
-    text += (text.empty() ? "" : "; ") + std::string("the ") + channel +
-            " residual depends on " + joined(variables[channel]);
+    text += (text.empty() ? "" : "; ") + std::string("the ") + channel + " residual depends on " +
+            joined(variables[channel]);
   return text;
 }
 

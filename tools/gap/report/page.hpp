@@ -47,9 +47,9 @@ struct Section {
 
 /// A report: what one must know first, then sections with the details.
 struct Page {
-  std::string title;     ///< of the window
-  std::string verdict;   ///< the headline
-  std::string mood;      ///< good, change, doubt: the colour of the headline
+  std::string title;    ///< of the window
+  std::string verdict;  ///< the headline
+  std::string mood;     ///< good, change, doubt: the colour of the headline
   std::vector<Block> first;
   std::vector<Section> sections;
 };

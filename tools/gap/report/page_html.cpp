@@ -89,9 +89,10 @@ std::string escaped(const std::string& text) {
 
 std::string htmlOf(const Page& page) {
   HtmlWriter writer;
-  writer.text = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-                "content=\"width=device-width, initial-scale=1\">\n<title>" +
-                escaped(page.title) + "</title>\n<style>\n" + kStyle + "\n</style></head><body>\n";
+  writer.text =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n<title>" +
+      escaped(page.title) + "</title>\n<style>\n" + kStyle + "\n</style></head><body>\n";
   writer.text += "<header class=\"" + page.mood + "\"><h1>" + escaped(page.verdict) + "</h1>\n";
   for (const Block& block : page.first) std::visit(writer, block);
   writer.text += "</header>\n";

@@ -61,9 +61,10 @@ std::string atlasPicture(const AtlasCurve& curve) {
   include(range, curve.before);
   include(range, curve.after);
   range.include({range.x_min, 0.0});
-  Chart chart(curve.channel + " over " + curve.variable,
-              curve.variable + (curve.variable_unit.empty() ? "" : " [" + curve.variable_unit + "]"),
-              "measured - predicted [" + curve.unit + "]", range.widened(1e-3));
+  Chart chart(
+      curve.channel + " over " + curve.variable,
+      curve.variable + (curve.variable_unit.empty() ? "" : " [" + curve.variable_unit + "]"),
+      "measured - predicted [" + curve.unit + "]", range.widened(1e-3));
   chart.level(0.0);
   draw(chart, curve.before, kBeforeColour, true);
   draw(chart, curve.after, kAfterColour, false);
@@ -84,8 +85,8 @@ std::string mapPicture(const AtlasMap& map, bool after, double full_colour) {
   const std::vector<double>& values = after ? map.after : map.before;
   const ChartRange range{map.v_edges.front(), map.v_edges.back(), map.omega_edges.front(),
                          map.omega_edges.back()};
-  Chart chart(map.channel + (after ? ", after" : ", before") + ": full colour = " +
-                  threeDigits(full_colour) + " " + map.unit,
+  Chart chart(map.channel + (after ? ", after" : ", before") +
+                  ": full colour = " + threeDigits(full_colour) + " " + map.unit,
               "speed [m/s]", "yaw rate [rad/s]", range);
   const size_t columns = map.v_edges.size() - 1;
   for (size_t i = 0; i < values.size(); ++i) {

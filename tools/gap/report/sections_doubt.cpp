@@ -24,8 +24,8 @@ bool isMember(const DegeneracyGroup& group, const std::string& name) {
 std::string groupWords(const std::string& effect, const std::string& other) {
   for (const DegeneracyGroup* group : groupsOf(effect))
     if (isMember(*group, other))
-      return asSentence(group->because) + (group->when.empty() ? "" : " (" + group->when + ")") + ". " +
-             group->separates;
+      return asSentence(group->because) + (group->when.empty() ? "" : " (" + group->when + ")") +
+             ". " + group->separates;
   return "";
 }
 
@@ -55,8 +55,7 @@ void addOthers(const FoundEffect& found, Points& points, Commands& plans) {
 
 /// The smallest size that would have been found, as people say it.
 std::string saidDetectable(const CandidateTest& test) {
-  const EffectParameter* parameter =
-      parameterOfPath(test.effect + "." + test.parameter).parameter;
+  const EffectParameter* parameter = parameterOfPath(test.effect + "." + test.parameter).parameter;
   if (!std::isfinite(test.detectable)) return "not at all";
   if (parameter == nullptr) return threeDigits(test.detectable);
   if (parameter->reciprocal())
@@ -92,9 +91,9 @@ Section notShownSection(const Finding& finding) {
     section.blocks.push_back(table);
   }
   if (!finding.negligible.empty())
-    section.blocks.push_back(Paragraph{
-        "Real but too small to matter (below 1 % of the end error), not added: " +
-        titlesOf(finding.negligible) + "."});
+    section.blocks.push_back(
+        Paragraph{"Real but too small to matter (below 1 % of the end error), not added: " +
+                  titlesOf(finding.negligible) + "."});
   return section;
 }
 
@@ -129,13 +128,11 @@ Page reportPage(const Finding& finding, const std::vector<InputFile>& inputs) {
                                      std::to_string(static_cast<int>(finding.verdict)) +
                                      ". Nothing is applied by itself: the new model is model.yaml.",
                                  true});
-  for (Section& section :
-       std::vector<Section>{effectsSection(finding), atlasSection(finding),
-                            executionsSection(finding, inputs), ladderSection(finding),
-                            parametersSection(finding), alternativesSection(finding),
-                            notShownSection(finding), envelopeSection(finding),
-                            logsSection(finding), candidatesSection(finding),
-                            filesSection(finding, inputs)})
+  for (Section& section : std::vector<Section>{
+           effectsSection(finding), atlasSection(finding), executionsSection(finding, inputs),
+           ladderSection(finding), parametersSection(finding), alternativesSection(finding),
+           notShownSection(finding), envelopeSection(finding), logsSection(finding),
+           candidatesSection(finding), filesSection(finding, inputs)})
     if (!section.blocks.empty()) page.sections.push_back(std::move(section));
   return page;
 }

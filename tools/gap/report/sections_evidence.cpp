@@ -65,8 +65,9 @@ Section atlasSection(const Finding& finding) {
       " are now (filled dots; intervals 95 % over blocks of driving, corrected for the number of "
       "fields)."});
   if (const std::vector<std::string> maps = mapPictures(finding); !maps.empty())
-    section.blocks.push_back(Pictures{maps, "Mean residual over speed and yaw rate; white is right, "
-                                            "empty was not driven."});
+    section.blocks.push_back(Pictures{maps,
+                                      "Mean residual over speed and yaw rate; white is right, "
+                                      "empty was not driven."});
   Pictures curves{{}, "Orange, dashed: the old model. Blue: the new one."};
   for (const AtlasCurve& curve : finding.atlas) curves.svg.push_back(atlasPicture(curve));
   section.blocks.push_back(curves);
@@ -82,13 +83,12 @@ Section executionsSection(const Finding& finding, const std::vector<InputFile>& 
     const Overlay& overlay = finding.overlays[i];
     const std::string rank = i < kTypical ? "typical" : "worst";
     pictures.svg.push_back(overlayPicture(overlay, rank + ", " + threeDigits(overlay.begin) +
-                                                       " s of " +
-                                                       logName(inputs, overlay.drive)));
+                                                       " s of " + logName(inputs, overlay.drive)));
   }
-  section.blocks.push_back(Paragraph{
-      finding.overlays.size() > kTypical
-          ? "Six typical executions, then the worst; none was used for the fit."
-          : "Typical executions; none was used for the fit."});
+  section.blocks.push_back(
+      Paragraph{finding.overlays.size() > kTypical
+                    ? "Six typical executions, then the worst; none was used for the fit."
+                    : "Typical executions; none was used for the fit."});
   section.blocks.push_back(pictures);
   return section;
 }
@@ -98,14 +98,15 @@ Section ladderSection(const Finding& finding) {
   if (finding.ladder.empty()) return section;
   section.blocks.push_back(Paragraph{
       "Each step adds the effect that helps most on blocks of driving that were not fitted, or "
-      "takes one away again that the others make superfluous. Gains in log likelihood (nats) with standard error; p "
+      "takes one away again that the others make superfluous. Gains in log likelihood (nats) with "
+      "standard error; p "
       "is the chance of so large a score anywhere in the catalogue if nothing were there."});
   Table table{{"step", "effect", "remark", "score", "p", "gain"}, {}, 3};
   size_t number = 0;
   for (const LadderStep& step : finding.ladder) {
     const std::string sign = step.removed ? "- " : "+ ";
-    table.rows.push_back({std::to_string(++number), sign + titleOf(step.effect),
-                          remarkOf(step), threeDigits(step.score), saidChance(step.p_value),
+    table.rows.push_back({std::to_string(++number), sign + titleOf(step.effect), remarkOf(step),
+                          threeDigits(step.score), saidChance(step.p_value),
                           threeDigits(step.gain) + " \u00b1 " + threeDigits(step.gain_error)});
   }
   section.blocks.push_back(table);
@@ -122,11 +123,11 @@ Section logsSection(const Finding& finding) {
   if (finding.hygiene.empty()) points.items.push_back("Nothing to remark.");
   section.blocks.push_back(points);
   if (finding.blocks > 0)
-    section.blocks.push_back(Paragraph{
-        std::to_string(finding.blocks) + " independent blocks of " +
-        threeDigits(finding.block_length) +
-        " s; whatever is said about chance counts blocks, not samples. Test for what remains: p = " +
-        saidChance(finding.adequacy_p) + "."});
+    section.blocks.push_back(Paragraph{std::to_string(finding.blocks) + " independent blocks of " +
+                                       threeDigits(finding.block_length) +
+                                       " s; whatever is said about chance counts blocks, not "
+                                       "samples. Test for what remains: p = " +
+                                       saidChance(finding.adequacy_p) + "."});
   return section;
 }
 

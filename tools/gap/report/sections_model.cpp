@@ -65,8 +65,8 @@ Section effectsSection(const Finding& finding) {
     section.blocks.push_back(
         Points{{"Equation: " + effect.equation, "In the residuals: " + effect.looks_like,
                 "In two minutes: " + effect.check,
-                "Evidence: score " + threeDigits(found.score) + ", p " +
-                    saidChance(found.p_value) + ", gain " + threeDigits(found.gain) + " \u00b1 " +
+                "Evidence: score " + threeDigits(found.score) + ", p " + saidChance(found.p_value) +
+                    ", gain " + threeDigits(found.gain) + " \u00b1 " +
                     threeDigits(found.gain_error) + " nats on blocks that were not fitted"}});
   }
   return section;

@@ -145,8 +145,7 @@ std::string shortTitleOf(const std::string& effect) {
   return title.substr(0, title.find(','));
 }
 
-std::string shortTitlesOf(const std::vector<std::string>& effects,
-                          const std::string& last_joint) {
+std::string shortTitlesOf(const std::vector<std::string>& effects, const std::string& last_joint) {
   std::vector<std::string> titles;
   for (const std::string& effect : effects) titles.push_back(shortTitleOf(effect));
   return joined(titles, last_joint);
@@ -154,7 +153,7 @@ std::string shortTitlesOf(const std::vector<std::string>& effects,
 
 std::string withoutStop(const std::string& sentence) {
   return !sentence.empty() && sentence.back() == '.' ? sentence.substr(0, sentence.size() - 1)
-                                                      : sentence;
+                                                     : sentence;
 }
 
 std::string inSentence(const std::string& words) {
@@ -167,7 +166,8 @@ std::string inSentence(const std::string& words) {
 
 std::string asSentence(const std::string& words) {
   // Formulas keep their letters.
-  if (words.size() > 1 && words[1] != ' ' && std::islower(static_cast<unsigned char>(words[1])) == 0)
+  if (words.size() > 1 && words[1] != ' ' &&
+      std::islower(static_cast<unsigned char>(words[1])) == 0)
     return words;
   std::string text = words;
   if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));

@@ -50,7 +50,8 @@ std::string saidEstimate(const Estimate& estimate);
 
 /// Titles of effects, "A, B and C"; what is no effect (forward_gain) as it is.
 std::string titleOf(const std::string& effect);
-std::string titlesOf(const std::vector<std::string>& effects, const std::string& last_joint = "and");
+std::string titlesOf(const std::vector<std::string>& effects,
+                     const std::string& last_joint = "and");
 /// The same up to the first comma of each title.
 std::string shortTitleOf(const std::string& effect);
 std::string shortTitlesOf(const std::vector<std::string>& effects,
