@@ -270,6 +270,8 @@ void LiveRecorder::fail(const std::string& reason) {
 void LiveRecorder::publishProgram(int64_t utime) {
   // A planner that was there before must not be stopped by a second voice: listen first.
   if (silent_ || utime < begun_ + kListenFirst) return;
+  // Before the robot speaks its time is not known, and one that were told would be followed.
+  if (!situation_.pose && !situation_.bridge) return;
   program_t message{};
   message.utime = utime;
   message.seq = seq_program_++;

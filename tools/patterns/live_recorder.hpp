@@ -26,11 +26,11 @@ struct LiveRecording {
 };
 
 /// Stands in the planner's place, drives each pattern many times and measures what it did.
-/** PROGRAM at 20 Hz whatever happens, empty when the robot shall stand; EXECUTION, MOTOR and INS
- * in. Chains of joinable patterns bring it into the entry classes; what is not a fair measurement
- * is refused with its reason and driven again. Begins when ARM was seen after its start. It sees no
- * obstacles: the room must be free. No planner may run beside it; where one speaks, it gives up
- * and says nothing more. */
+/** PROGRAM at 20 Hz once the robot speaks, empty when the robot shall stand; EXECUTION, MOTOR and
+ * INS in. Chains of joinable patterns bring it into the entry classes; what is not a fair
+ * measurement is refused with its reason and driven again. Begins when ARM was seen after its
+ * start. It sees no obstacles: the room must be free. No planner may run beside it; where one
+ * speaks, it gives up and says nothing more. */
 class LiveRecorder : public Node {
  public:
   using Say = std::function<void(const std::string& line)>;
