@@ -85,8 +85,9 @@ void drawErrors(Picture& page, Box box, const std::vector<Piece>& pieces,
   axes.x_label = "s after the last measured pose";
   axes.y_label = yaw ? "deg" : "m";
   axes.x_max = kSample * static_cast<double>(samples - 1);
-  axes.y_max = highest > 0.0 ? 1.08 * highest : 1.0;
+  axes.y_max = highest > 0.0 ? 1.35 * highest : 1.0;
   Panel panel(page, box, axes);
+  if (!yaw) panel.legendEntry(kMeasured);
   for (size_t m = 0; m < names.size(); ++m) panel.line(curves[m], styleOf(names, m));
   panel.finish();
 }
@@ -101,8 +102,9 @@ void drawOverlay(const std::string& path, const std::string& title,
                title);
   for (size_t k = 0; k < std::min(kShown, pieces.size()); ++k) {
     const size_t chosen = pieces.size() <= kShown ? k : (2 * k + 1) * pieces.size() / (2 * kShown);
-    const Box box{50.0 + static_cast<double>(k % kColumns) * (kSide + 50.0),
-                  70.0 + static_cast<double>(k / kColumns) * (kSide + 70.0), kSide, kSide};
+    const size_t row = k / kColumns, column = k % kColumns;
+    const Box box{50.0 + static_cast<double>(column) * (kSide + 50.0),
+                  70.0 + static_cast<double>(row) * (kSide + 70.0), kSide, kSide};
     drawPiece(page, box, pieces[chosen], model_names);
   }
   drawErrors(page, {left + 60.0, 70.0, 310.0, kSide}, pieces, model_names, false);
