@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/blind/judgement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/blind/same_quantity.hpp"
+
+namespace tread::blindtest {
+namespace {
+
+/// An effect that changes the motion by less than this share of the noise is not excited.
+constexpr double kLeastVisible = 0.05;
+/// Gaps closer to the floor than this are none that could be closed.
+constexpr double kLeastGap = 0.05;
+
+bool contains(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// Position and yaw in units of what even the truth misses.
+double inFloors(const EndError& error, const EndError& floor) {
+  return std::hypot(error.position / floor.position, error.yaw / floor.yaw);
+}
+
+double closedShare(const CaseRecord& record) {
+  const EndError& floor = record.truth.floor;
+  const double best = std::sqrt(2.0);
+  const double before = inFloors(record.answer.before, floor);
+  const double after = inFloors(record.answer.after, floor);
+  if (!(before > best * (1.0 + kLeastGap)) || !std::isfinite(after)) return kUnknown;
+  return (before - after) / (before - best);
+}
+
+/// Variables of the workflow that stand for a word of the truth.
+bool standsFor(const std::string& variable, const std::string& word) {
+  const auto has = [&](const char* part) { return variable.find(part) != std::string::npos; };
+  const bool turning = has("yaw rate");
+  const bool speed = variable == "v" || variable == "|v|" || variable == "v^2" ||
+                     variable == "v |v|" || variable == "sign of v";
+  if (word == "speed" || word == "command") return speed || (turning && !has("change"));
+  if (word == "acceleration" || word == "time_since_command" || word == "previous_command")
+    return has("change");
+  if (word == "voltage") return has("elapsed");
+  if (word == "previous_turn") return turning;
+  return false;
+}
+
+bool rightVariable(const CaseRecord& record) {
+  for (const HiddenEffect& hidden : record.truth.effects)
+    for (const std::string& word : hidden.depends_on)
+      for (const auto& rest : record.answer.unexplained)
+        if (standsFor(rest.second, word)) return true;
+  return false;
+}
+
+void judgeNames(const CaseRecord& record, Judgement& judgement) {
+  const std::vector<NamedEffect>& named = record.answer.effects;
+  size_t covered = 0;
+  bool all_listed = true;
+  const bool degenerate = record.truth.kind == "degenerate";
+  for (const HiddenEffect& hidden : record.truth.effects) {
+    const auto covering = [&](const NamedEffect& one) {
+      return covers(one, hidden.name) ||
+             (degenerate && contains(record.truth.right_names, one.name));
+    };
+    const auto running_up = [&](const NamedEffect& one) {
+      return contains(one.runner_ups, hidden.name);
+    };
+    const bool is_named = std::any_of(named.begin(), named.end(), covering);
+    const bool has_moved = !is_named && moved(record.answer, hidden.name);
+    covered += is_named;
+    judgement.moved += has_moved;
+    all_listed = all_listed &&
+                 (is_named || has_moved || std::any_of(named.begin(), named.end(), running_up));
+    judgement.first_right = judgement.first_right || (!named.empty() && covering(named.front()));
+  }
+  const size_t hidden = record.truth.effects.size();
+  judgement.found = covered + judgement.moved;
+  judgement.listed = hidden > 0 && all_listed;
+  judgement.nothing = named.empty() && judgement.moved == 0;
+  judgement.only_wrong = !named.empty() && judgement.found == 0;
+  judgement.exact = hidden > 0 && judgement.found == hidden && named.size() == covered;
+}
+
+/// A degenerate case is answered where its alternatives are named as such.
+bool saysGroup(const CaseRecord& record) {
+  const std::vector<std::string>& right = record.truth.right_names;
+  for (const NamedEffect& named : record.answer.effects) {
+    if (!contains(right, named.name)) continue;
+    if (record.answer.verdict == "AMBIGUOUS") return true;
+    for (const std::string& other : named.group)
+      if (contains(right, other)) return true;
+  }
+  return false;
+}
+
+void judgeParameters(const CaseRecord& record, Judgement& judgement) {
+  for (const HiddenEffect& hidden : record.truth.effects) {
+    std::vector<Estimated> estimates = record.answer.calibrated;
+    for (const NamedEffect& named : record.answer.effects)
+      if (named.name == hidden.name)
+        estimates.insert(estimates.end(), named.parameters.begin(), named.parameters.end());
+    for (const HiddenNumber& number : hidden.numbers) {
+      const auto same = sameQuantity(hidden.name, number.name, record.truth.duration);
+      if (!same) continue;
+      for (const Estimated& one : estimates) {
+        if (one.path != hidden.name + "." + same->parameter || !std::isfinite(one.value)) continue;
+        const double before = same->limit || !std::isfinite(one.before) ? 0.0 : one.before;
+        const double change = number.value * same->factor;
+        const double truth = before + change;
+        judgement.parameters.push_back({one.path, hidden.shape,
+                                        std::abs(one.value - truth) / std::abs(change),
+                                        one.low <= truth && truth <= one.high});
+      }
+    }
+  }
+}
+
+bool isExcited(const Truth& truth) {
+  if (truth.effects.empty() || !(truth.floor.position > 0.0)) return true;
+  return truth.gap.position > kLeastVisible * truth.floor.position ||
+         truth.gap.yaw > kLeastVisible * truth.floor.yaw;
+}
+
+}  // namespace
+
+bool covers(const NamedEffect& named, const std::string& effect) {
+  return named.name == effect || contains(named.group, effect);
+}
+
+bool moved(const Answer& answer, const std::string& effect) {
+  constexpr double kSigmas = 3.0;
+  constexpr double kIntervalSigmas = 2.0 * 1.96;
+  for (const Estimated& one : answer.calibrated) {
+    if (one.path.rfind(effect + ".", 0) != 0 || !(std::abs(one.before) > 0.0)) continue;
+    const double sigma = (one.high - one.low) / kIntervalSigmas;
+    const double before = std::isfinite(one.before_sigma) ? one.before_sigma : 0.0;
+    if (std::abs(one.value - one.before) > kSigmas * std::hypot(sigma, before)) return true;
+  }
+  return false;
+}
+
+Judgement judge(const CaseRecord& record) {
+  const Answer& answer = record.answer;
+  Judgement judgement;
+  judgement.right_verdict = contains(record.truth.right_verdicts, answer.verdict);
+  judgement.refused =
+      (answer.verdict == "CANNOT_TELL" || answer.verdict == "error") && !answer.reason.empty();
+  judgement.flagged = answer.verdict == "PARTIAL" || answer.verdict == "NOT_IN_CATALOGUE";
+  judgement.grouped = saysGroup(record);
+  judgement.right_variable = judgement.flagged && rightVariable(record);
+  judgement.excited = isExcited(record.truth);
+  judgement.closed = closedShare(record);
+  judgeNames(record, judgement);
+  judgeParameters(record, judgement);
+  return judgement;
+}
+
+}  // namespace tread::blindtest

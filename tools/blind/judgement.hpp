@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/blind/case_record.hpp"
+
+namespace tread::blindtest {
+
+/// How well one parameter was found.
+struct ParameterError {
+  std::string path;
+  std::string shape;      ///< same, other
+  double relative = 0.0;  ///< |estimate - truth| / |size of what was hidden|
+  bool inside = false;    ///< the truth lies in the 95 % interval
+};
+
+/// What an answer is worth.
+struct Judgement {
+  bool right_verdict = false;
+  bool refused = false;      ///< CANNOT_TELL, or an error, with a reason
+  bool flagged = false;      ///< something unexplained is left, and said
+  bool nothing = false;      ///< no effect is named and none has moved
+  size_t found = 0;          ///< hidden effects that are named, or moved where they were on already
+  size_t moved = 0;          ///< of these, those that the nominal model had on already
+  bool first_right = false;  ///< the first name covers a hidden effect
+  bool listed = false;       ///< every hidden effect is found or a runner-up
+  bool only_wrong = false;   ///< something is named, and nothing that was hidden
+  bool exact = false;        ///< all that was hidden, and nothing else
+  bool grouped = false;      ///< says that it cannot tell: AMBIGUOUS, or a group with the truth
+  bool right_variable = false;  ///< what is left depends on what the truth depends on
+  bool excited = true;          ///< the drive shows what was hidden at all
+  double closed = kUnknown;     ///< share of the gap to the oracle that was closed; NaN = no gap
+  std::vector<ParameterError> parameters;
+};
+
+/// Naming an effect or its group counts as naming it.
+bool covers(const NamedEffect& named, const std::string& effect);
+
+/// Whether a term that the nominal model has on moved by more than three standard deviations.
+bool moved(const Answer& answer, const std::string& effect);
+
+Judgement judge(const CaseRecord& record);
+
+}  // namespace tread::blindtest

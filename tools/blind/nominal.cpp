@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+
+#include "tools/blind/child.hpp"
+#include "tools/blind/study.hpp"
+#include "tools/gap/file_hash.hpp"
+
+namespace fs = std::filesystem;
+
+namespace tread::blindtest {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kRounds = 3;
+constexpr int kFound = 10;
+constexpr int kCannotTell = 15;
+constexpr const char* kStory = "story.json";
+
+/// Held by one process at a time.
+class Lock {
+ public:
+  explicit Lock(const std::string& path)
+      : descriptor_(open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644)) {
+    if (descriptor_ < 0 || flock(descriptor_, LOCK_EX) != 0)
+      throw std::runtime_error(path + ": cannot be locked");
+  }
+  ~Lock() { close(descriptor_); }
+  Lock(const Lock&) = delete;
+  Lock& operator=(const Lock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+/// No case of a suite has these seeds: theirs are drawn from the suite's.
+uint64_t hourSeed(const Study& study, const std::string& noise) {
+  return 100 * study.seed + (noise == "low" ? 11 : noise == "mid" ? 12 : 13);
+}
+
+Json readJson(const fs::path& path) {
+  std::ifstream file(path);
+  return Json::parse(file);
+}
+
+/// One round of calibration; its verdict.
+Json calibrate(const Study& study, const fs::path& folder, const std::string& model, int round) {
+  const std::string out = "round" + std::to_string(round);
+  const Ended ended = run({{study.programs + "/tread-gap", "find", "--calibrate", "--threads", "1",
+                            "--model", model, "--train", "hour/blind/hour.lcm", "--out", out},
+                           folder.string(),
+                           out + ".log",
+                           (folder / "hour/sealed").string()});
+  if (ended.status != 0 && (ended.status < kFound || ended.status >= kCannotTell))
+    throw std::runtime_error("calibration failed: " + lastLine((folder / (out + ".log")).string()));
+  return readJson(folder / out / "verdict.json");
+}
+
+void make(const Study& study, const fs::path& folder, const std::string& noise) {
+  fs::remove_all(folder / "hour");
+  std::ofstream(folder / "base.yaml") << kBaseModel;
+  runOrThrow({{study.programs + "/tread-hide", "--null", "--minutes", std::to_string(study.hour),
+               "--noise", noise, "--seed", std::to_string(hourSeed(study, noise)), "--name", "hour",
+               "--out", "hour"},
+              folder.string(),
+              "hide.log",
+              ""});
+  std::string model = "base.yaml";
+  Json verdict;
+  int round = 0;
+  do {
+    verdict = calibrate(study, folder, model, ++round);
+    model = "round" + std::to_string(round) + "/model.yaml";
+  } while (!verdict.at("unexplained").empty() && round < kRounds);
+  Json story = {{"rounds", round}, {"verdict", verdict.at("verdict")}, {"named", Json::array()}};
+  for (const Json& effect : verdict.at("effects")) story["named"].push_back(effect.at("name"));
+  story["unexplained"] = verdict.at("unexplained");
+  std::ofstream(folder / kStory) << story.dump(2) << "\n";
+  fs::copy_file(folder / model, folder / "model.part", fs::copy_options::overwrite_existing);
+  fs::remove_all(folder / "hour");
+  fs::rename(folder / "model.part", folder / "model.yaml");
+}
+
+}  // namespace
+
+std::string nominalModel(const Study& study, const std::string& noise) {
+  if (!study.nominal.empty()) return fs::absolute(study.nominal).string();
+  const fs::path folder = fs::absolute(study.out) / "nominal" / noise;
+  fs::create_directories(folder);
+  const Lock lock((folder / "lock").string());
+  if (!fs::exists(folder / "model.yaml")) make(study, folder, noise);
+  return (folder / "model.yaml").string();
+}
+
+Json nominalStory(const Study& study, const std::vector<HiddenCase>& cases) {
+  std::set<std::string> noises;
+  for (const HiddenCase& one : cases) noises.insert(one.noise);
+  Json all = Json::object();
+  for (const std::string& noise : noises) {
+    const std::string model = nominalModel(study, noise);
+    Json story = {{"sha256", gap::sha256OfFile(model)}};
+    if (study.nominal.empty()) {
+      const fs::path told = fs::path(model).parent_path() / kStory;
+      const Json told_story = readJson(told);
+      for (const auto& [key, value] : told_story.items()) story[key] = value;
+    }
+    all[noise] = story;
+  }
+  return all;
+}
+
+}  // namespace tread::blindtest

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/blind/judgement.hpp"
+
+namespace tread::blindtest {
+
+/// A case with what its answer is worth.
+struct JudgedCase {
+  CaseRecord record;
+  Judgement judgement;
+};
+
+/// What a figure must be.
+struct Must {
+  double at = 0.0;
+  bool least = true;                     ///< at least; else at most
+  std::optional<double> below = {};      ///< at the same time at most this
+  std::optional<double> upper_end = {};  ///< the interval's upper end is at most this
+};
+
+/// One figure. A share has hits and Wilson's 95 % interval; any other has a value only.
+struct ScoreLine {
+  std::string section;
+  std::string what;
+  bool is_share = true;
+  size_t hits = 0;
+  size_t cases = 0;
+  double value = kUnknown;  ///< a share of 1, or the figure; NaN without cases
+  double low = kUnknown;
+  double high = kUnknown;
+  std::optional<Must> must = {};
+
+  /// Whether what must be is reached; nothing where there is no case or no must.
+  std::optional<bool> met() const;
+};
+
+/// Wilson's 95 % interval of a share; sets value, low and high from hits and cases.
+void setShare(ScoreLine& line);
+
+/// The q-quantile by linear interpolation; NaN of nothing.
+double quantile(std::vector<double> values, double q);
+
+/// All figures: first those of gap.md 4.7, section "must", then what is behind them.
+std::vector<ScoreLine> scoresOf(const std::vector<JudgedCase>& cases);
+
+/// Which names were given to what was hidden: of single cases and null logs.
+struct Confusion {
+  std::vector<std::string> hidden;  ///< rows, sorted; "nothing" (null logs) last
+  std::vector<std::string> named;   ///< columns: names, then "nothing", "unexplained", "refused"
+  std::vector<std::vector<double>> share;  ///< of a row's cases
+  std::vector<size_t> cases;               ///< of each row
+};
+
+Confusion confusionOf(const std::vector<JudgedCase>& cases);
+
+}  // namespace tread::blindtest
