@@ -13,7 +13,9 @@ namespace tread::gap {
 namespace {
 
 constexpr int kMostSteps = 25;
-constexpr double kEnough = 0.02;      // [nats] a step that gains less ends a fit
+constexpr int kMostRounds = 8;    // with new Jacobians
+constexpr double kEnough = 0.02;  // [nats] a step that gains less ends a fit
+constexpr double kRoughlyEnough = 0.5;
 constexpr double kMostDamping = 1e6;  // beyond it no step is left
 constexpr double kShareOfTypical = 0.02;
 
@@ -232,27 +234,30 @@ bool Fitter::stepOnce(FitState& state, const std::vector<char>& mask, double& da
   return false;
 }
 
-void Fitter::fit(FitState& state, const std::vector<char>& mask) const {
+void Fitter::fitRoughly(FitState& state, const std::vector<char>& mask) const {
   if (state.free.empty()) return;
-  bool fresh = false;
-  if (state.jacobian.cols() != static_cast<Eigen::Index>(state.free.size())) {
-    renewJacobian(state);
-    fresh = true;
-  }
+  if (state.jacobian.cols() != static_cast<Eigen::Index>(state.free.size())) renewJacobian(state);
   state.loss = lossOf(state, mask);
   double damping = 1e-3;
-  for (int i = 0; i < kMostSteps; ++i) {
-    double gained = 0.0;
-    const bool stepped = stepOnce(state, mask, damping, gained);
-    if (stepped && gained > kEnough) {
-      fresh = false;
-      continue;
-    }
-    // Before giving up: once more with a Jacobian of these values.
-    if (fresh) return;
+  double gained = 0.0;
+  for (int i = 0; i < kMostSteps; ++i)
+    if (!stepOnce(state, mask, damping, gained) || gained < kRoughlyEnough) return;
+}
+
+void Fitter::fit(FitState& state, const std::vector<char>& mask) const {
+  if (state.free.empty()) return;
+  fitRoughly(state, mask);
+  for (int round = 0; round < kMostRounds; ++round) {
+    // With a Jacobian of these values: what is left is found, and covariances hold.
     renewJacobian(state);
-    fresh = true;
-    damping = 1e-3;
+    double damping = 1e-3;
+    double gained = 0.0;
+    double together = 0.0;
+    while (stepOnce(state, mask, damping, gained)) {
+      together += gained;
+      if (gained < kEnough) break;
+    }
+    if (together < kEnough * 5.0) return;
   }
 }
 

@@ -58,6 +58,8 @@ class Fitter {
   void release(FitState& state, size_t index) const;
   /// Minimises the loss; columns that are missing in the Jacobian are made first.
   void fit(FitState& state, const std::vector<char>& mask) const;
+  /// The same to within half a nat, with the Jacobian as the steps taught it: for comparisons.
+  void fitRoughly(FitState& state, const std::vector<char>& mask) const;
   /// The Jacobian at the state's values.
   void renewJacobian(FitState& state) const;
   /// Change of the prediction per change of a parameter to `value` (rows x 1); 0 where it is equal.

@@ -37,40 +37,32 @@ ModelDocument withEffectOf(const ModelDocument& model, const ModelDocument& sour
 }
 
 /// What the effect costs, given a state without it and the direction that leads back.
-Removal judged(const Fitter& fitter, const FitState& with, FitState reduced,
+Removal judged(const Fitter& fitter, const Eigen::VectorXd& loss_with, FitState reduced,
                const Eigen::VectorXd& direction, const std::vector<char>& mask) {
   Removal removed;
   const ScoreTest test(fitter.rows(), reduced, direction, mask);
   removed.score = test.score(0);
-  removed.gain =
-      gainOf(heldOutLoss(fitter.rows(), reduced, mask), heldOutLoss(fitter.rows(), with, mask),
-             blocksThatCount(fitter.rows(), mask));
+  removed.gain = gainOf(heldOutLoss(fitter.rows(), reduced, mask), loss_with,
+                        blocksThatCount(fitter.rows(), mask));
   removed.state = std::move(reduced);
   return removed;
 }
 
-Removal removal(const Fitter& fitter, const FitState& state, const std::string& effect,
-                const std::vector<char>& mask) {
+Removal removal(const Fitter& fitter, const FitState& state, const Eigen::VectorXd& loss_with,
+                const std::string& effect, const std::vector<char>& mask) {
   FitState reduced = without(fitter, state, effect, mask);
   const Eigen::VectorXd direction =
       fitter.secant(reduced, withEffectOf(reduced.model, state.model, effect), 1.0);
-  return judged(fitter, state, std::move(reduced), direction, mask);
+  return judged(fitter, loss_with, std::move(reduced), direction, mask);
 }
 
 /// The same in first order, without a simulation; the model of the state stays as it was.
-Removal linearRemoval(const Fitter& fitter, const FitState& state, const std::string& effect,
-                      const std::vector<char>& mask) {
-  Eigen::VectorXd direction = Eigen::VectorXd::Zero(state.predicted.size());
-  FitState reduced = state;
-  for (size_t i = reduced.free.size(); i-- > 0;) {
-    if (!belongsTo(reduced.free[i], effect)) continue;
-    const auto at = static_cast<Eigen::Index>(i);
-    direction += state.jacobian.col(at) * *findParameter(state.model, state.free[i].path);
-    fitter.release(reduced, i);
-  }
-  reduced.predicted = state.predicted - direction;
+Removal linearRemoval(const Fitter& fitter, const FitState& state, const Eigen::VectorXd& loss_with,
+                      const std::string& effect, const std::vector<char>& mask) {
+  FitState reduced = withoutLinearly(fitter, state, effect);
+  const Eigen::VectorXd direction = state.predicted - reduced.predicted;
   followLinearly(fitter, reduced, mask);
-  return judged(fitter, state, std::move(reduced), direction, mask);
+  return judged(fitter, loss_with, std::move(reduced), direction, mask);
 }
 
 /// Mean end errors on executions of the mask's blocks: position [m] and yaw [rad].
@@ -137,13 +129,14 @@ class Pruning {
  private:
   /// Looks at all, least sure first; true if one went.
   bool removeOne() {
+    const Eigen::VectorXd loss = heldOutLoss(fitter_.rows(), result_.state, mask_);
     for (const std::string& effect : leastSureFirst(fitter_, result_, mask_)) {
       // What is beyond doubt in first order needs no simulation without it.
-      Removal removed = linearRemoval(fitter_, result_.state, effect, mask_);
+      Removal removed = linearRemoval(fitter_, result_.state, loss, effect, mask_);
       const bool sure = std::abs(removed.score) > needed_ &&
                         removed.gain.value > kSure * removed.gain.error &&
                         removed.gain.value > kSureNats;
-      if (!sure) removed = removal(fitter_, result_.state, effect, mask_);
+      if (!sure) removed = removal(fitter_, result_.state, loss, effect, mask_);
       const std::string why = sure ? "" : reasonAgainst(removed);
       if (why.empty()) {
         result_.scores[effect] = removed.score;
@@ -203,7 +196,18 @@ FitState without(const Fitter& fitter, const FitState& state, const std::string&
     if (parameter.role == ParameterRole::kStrength)
       *findParameter(reduced.model, effect + "." + parameter.name) = 0.0;
   reduced.predicted = fitter.rows().predict(reduced.model);
-  fitter.fit(reduced, mask);
+  fitter.fitRoughly(reduced, mask);
+  return reduced;
+}
+
+FitState withoutLinearly(const Fitter& fitter, const FitState& state, const std::string& effect) {
+  FitState reduced = state;
+  for (size_t i = reduced.free.size(); i-- > 0;) {
+    if (!belongsTo(reduced.free[i], effect)) continue;
+    const auto at = static_cast<Eigen::Index>(i);
+    reduced.predicted -= state.jacobian.col(at) * *findParameter(state.model, state.free[i].path);
+    fitter.release(reduced, i);
+  }
   return reduced;
 }
 

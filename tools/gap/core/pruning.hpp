@@ -10,6 +10,10 @@ namespace tread::gap {
 FitState without(const Fitter& fitter, const FitState& state, const std::string& effect,
                  const std::vector<char>& mask);
 
+/// The same in first order and without a simulation; nothing is refitted, the model stays as it
+/// was.
+FitState withoutLinearly(const Fitter& fitter, const FitState& state, const std::string& effect);
+
 /// Removes effects, weakest first, that the others make superfluous.
 /** Each that stays passes the score test alone in the presence of the others (|T| >= `needed`),
  * improves blocks left out, and the end error by at least `least_gain` of it. Fills scores, gains

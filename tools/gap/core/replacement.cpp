@@ -10,20 +10,43 @@
 namespace tread::gap {
 namespace {
 
+constexpr double kHopeless = 3.0;       // standard errors by which a pair is better in first order
+constexpr double kHopelessNats = 20.0;  // and what rounding of that order may cost
 constexpr double kImitated = 0.35;  // uniqueness below which the found effects imitate another one
 
-/// Candidates that the found effects can imitate, one of each effect.
-std::vector<Candidate> imitated(const Fitter& fitter, const std::vector<char>& mask,
-                                const FitState& state) {
+/// An effect that the found ones can imitate, and what it would change.
+struct Single {
+  Candidate candidate;
+  Eigen::VectorXd direction;
+};
+
+/// One of each such effect.
+std::vector<Single> imitated(const Fitter& fitter, const std::vector<char>& mask,
+                             const FitState& state) {
   const auto candidates = candidatesFor(state.model, excitationOf(fitter.rows(), state.model));
-  const ScoreTest test(fitter.rows(), state, directionsOf(fitter, state, candidates), mask);
-  std::vector<Candidate> chosen;
+  const Eigen::MatrixXd directions = directionsOf(fitter, state, candidates);
+  const ScoreTest test(fitter.rows(), state, directions, mask);
+  std::vector<Single> chosen;
   std::set<std::string> names;
-  for (size_t i = 0; i < candidates.size(); ++i)
-    if (test.uniqueness(static_cast<Eigen::Index>(i)) < kImitated &&
-        names.insert(candidates[i].effect).second)
-      chosen.push_back(candidates[i]);
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (test.uniqueness(at) < kImitated && names.insert(candidates[i].effect).second)
+      chosen.push_back({candidates[i], directions.col(at)});
+  }
   return chosen;
+}
+
+/// The state with one effect in the place of two, in first order and without a simulation.
+FitState linearlyReplaced(const Fitter& fitter, const std::vector<char>& mask,
+                          const FitState& state, const Single& single, const std::string& a,
+                          const std::string& b) {
+  FitState reduced = withoutLinearly(fitter, withoutLinearly(fitter, state, a), b);
+  reduced.free.push_back(
+      freeParameter(reduced.model, single.candidate.effect + "." + single.candidate.parameter));
+  reduced.jacobian.conservativeResize(reduced.predicted.size(), reduced.jacobian.cols() + 1);
+  reduced.jacobian.rightCols(1) = single.direction;
+  followLinearly(fitter, reduced, mask);
+  return reduced;
 }
 
 class Replacement {
@@ -35,10 +58,10 @@ class Replacement {
   /// True if a pair went.
   bool replaceOne() {
     if (result_.effects.size() < 2) return false;
-    const std::vector<Candidate> singles = imitated(fitter_, mask_, result_.state);
+    const std::vector<Single> singles = imitated(fitter_, mask_, result_.state);
     if (singles.empty()) return false;
     const Eigen::VectorXd loss = heldOutLoss(fitter_.rows(), result_.state, mask_);
-    for (const Candidate& single : singles)
+    for (const Single& single : singles)
       for (size_t a = 0; a < result_.effects.size(); ++a)
         for (size_t b = a + 1; b < result_.effects.size(); ++b)
           if (tryOne(single, result_.effects[a], result_.effects[b], loss)) return true;
@@ -46,13 +69,18 @@ class Replacement {
   }
 
  private:
-  bool tryOne(const Candidate& single, const std::string& a, const std::string& b,
+  bool tryOne(const Single& imitated_one, const std::string& a, const std::string& b,
               const Eigen::VectorXd& loss) {
+    const std::vector<char> counts = blocksThatCount(fitter_.rows(), mask_);
+    const FitState nearly = linearlyReplaced(fitter_, mask_, result_.state, imitated_one, a, b);
+    const Gain first_order = gainOf(heldOutLoss(fitter_.rows(), nearly, mask_), loss, counts);
+    if (first_order.value > kHopeless * first_order.error + kHopelessNats) return false;
+    const Candidate& single = imitated_one.candidate;
     const FitState reduced = without(fitter_, without(fitter_, result_.state, a, mask_), b, mask_);
     const ScoreTest test(fitter_.rows(), reduced, directionsOf(fitter_, reduced, {single}), mask_);
     FitState tried = reduced;
     addCandidate(fitter_, tried, single, test.size(0), mask_);
-    fitter_.fit(tried, mask_);
+    fitter_.fitRoughly(tried, mask_);
     for (const FreeParameter& parameter : tried.free)
       if (parameter.path.compare(0, single.effect.size(), single.effect) == 0 &&
           onBound(tried.model, parameter))

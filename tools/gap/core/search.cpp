@@ -96,7 +96,7 @@ class Search {
 
   /// Fit and noise in turn: the noise of a worse fit is too large.
   void settle(FitState& fitted) const {
-    fitter_.fit(fitted, mask_);
+    fitter_.fitRoughly(fitted, mask_);
     fitter_.renewNoise(fitted, mask_);
     fitter_.fit(fitted, mask_);
     if (fitted.jacobian.rows() == 0) fitter_.renewJacobian(fitted);
@@ -179,10 +179,10 @@ class Search {
     trial.candidate = index;
     trial.state = state();
     addCandidate(fitter_, trial.state, round.candidates[index], round.sizes[index], mask_);
-    fitter_.fit(trial.state, mask_);
+    fitter_.fitRoughly(trial.state, mask_);
     if (!round.candidates[index].moment.empty()) {
       refineMoment(fitter_, trial.state, round.candidates[index].moment, mask_);
-      fitter_.fit(trial.state, mask_);
+      fitter_.fitRoughly(trial.state, mask_);
     }
     if (hasVanished(trial.state.model, round.candidates[index]))
       trial.refused = "its size vanishes in the fit";
