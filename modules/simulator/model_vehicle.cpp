@@ -20,6 +20,7 @@ constexpr uint64_t kModelStream = 20;  // of random numbers, beside those of rob
 ModelVehicle::ModelVehicle(const ModelDocument& document, std::optional<uint64_t> noise_seed)
     : name_(document.vehicle.name),
       kernel_(document.vehicle, EntryState{}),
+      mean_(document.vehicle, EntryState{}),
       known_(document.envelope),
       spread_{document.vehicle.spread.forward, document.vehicle.spread.yaw,
               document.vehicle.spread.crab} {
@@ -42,7 +43,8 @@ void ModelVehicle::step(const MotorPower& power, const Ground& ground, double dt
   session_time_ += dt;
   const Pose2 moved = between(T_start_before, kernel_.pose());
   v_body_ = {moved.x / dt, moved.y / dt, moved.yaw / dt};
-  asked_.include(v_body_);
+  mean_.step({clamped.left, clamped.right}, dt, context);
+  asked_.include(mean_.twist());
   drawCurrent(clamped, dt);
 }
 

@@ -29,10 +29,13 @@ class ModelVehicle final : public Plant {
   const TrackDrive& left() const override { return left_; }
   const TrackDrive& right() const override { return right_; }
   const Battery& battery() const override { return battery_; }
-  void stopBody() override { kernel_.stopBody(); }
+  void stopBody() override {
+    kernel_.stopBody();
+    mean_.stopBody();
+  }
   bool disturbedByGround() const override { return false; }
   std::string name() const override { return name_; }
-  /// What is asked for outside of the model's envelope.
+  /// What is asked for outside of the model's envelope, by the mean motion: chance asks nothing.
   std::string warning() const override;
 
  private:
@@ -41,6 +44,7 @@ class ModelVehicle final : public Plant {
 
   std::string name_;
   VehicleKernel kernel_;
+  VehicleKernel mean_;  ///< the same without noise
   std::optional<Envelope> known_;
   Envelope asked_;
   MotionSpread spread_;

@@ -270,9 +270,13 @@ TEST_CASE("out of its model's envelope the simulator says so, once, and in HEALT
                                 Catch::Contains("made from up to 0.7 rad/s"));
   CHECK(bench.health.health_state == health_t::HEALTH_DEGRADED);
   CHECK_THAT(bench.health.health_reason, Catch::Contains("model m: yaw rate"));
-  Bench wide(kPlain + "envelope: {v: 1.5, omega: 3, v_omega: 5}\n");
-  wide.drive(8.0);
-  CHECK(wide.said.empty());
+  // The largest mean motions: what chance makes of them is nothing that anybody asked for.
+  Bench mean(kPlain +
+                 "spread: {forward: 0.1, yaw: 0.1}\n"
+                 "envelope: {v: 0.93, omega: 1.8, v_omega: 1.3}\n",
+             true);
+  mean.drive(8.0);
+  CHECK(mean.said.empty());
 }
 
 TEST_CASE("an obstacle stops a model's vehicle, too, and it backs away from it") {
