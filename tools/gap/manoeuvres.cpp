@@ -49,7 +49,8 @@ void drive(VehicleKernel& kernel, const TrackCommand& command, double& time,
 
 double fullCommand(const ModelDocument& model) {
   if (model.vehicle.kind == CommandKind::kPower) return 1.0;
-  return model.envelope && model.envelope->v > 0.0 ? model.envelope->v : 1.0;
+  constexpr double kBeyond = 1.25;
+  return model.envelope && model.envelope->v > 0.0 ? kBeyond * model.envelope->v : 1.0;
 }
 
 std::vector<Manoeuvre> standardManoeuvres(double full) {

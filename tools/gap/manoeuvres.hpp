@@ -28,7 +28,8 @@ struct Circumstances {
   double worked = 0.0;        ///< [1] mean square of the drive's duty until now, for its heat
 };
 
-/// The largest command that a model is asked for: power 1, or the speed of its envelope, or 1 m/s.
+/// The largest command that a model is asked for: power 1, or a track speed: a quarter more than
+/// its envelope's, so that limits at its end are met, or 1 m/s.
 double fullCommand(const ModelDocument& model);
 
 /// What is driven to see a model: straights, arcs and turns of two seconds, both ways, at speed and

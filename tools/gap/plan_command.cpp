@@ -31,6 +31,7 @@ struct Options {
   std::string patterns;
   std::string out;
   std::vector<std::string> set;
+  double speed = 0.0;  // [m/s], 0 = as the model's envelope says
 };
 
 constexpr const char* kFooter =
@@ -40,15 +41,23 @@ constexpr const char* kFooter =
     "pattern set for tread-patterns record. Where no drive tells the two apart, the measurement\n"
     "that does is printed instead, and the exit status is 1.";
 
-/// Measurements that tell the two apart, from the degeneracy table and the catalogue.
-std::string otherWays(const std::string& a, const std::string& b) {
+/// What the degeneracy table says of two effects; empty where it does not know them.
+std::string fromTable(const std::string& a, const std::string& b) {
   std::string text;
-  for (const DegeneracyGroup* group : groupsOf(a))
-    if (std::find(group->members.begin(), group->members.end(), b) != group->members.end())
-      text += "  " + asSentence(group->because) +
-              (group->when.empty() ? "" : " (" + group->when + ")") + ".\n  " + group->separates +
-              "\n";
-  if (!text.empty()) return text;
+  for (const DegeneracyGroup* group : groupsOf(a)) {
+    if (std::find(group->members.begin(), group->members.end(), b) == group->members.end())
+      continue;
+    const std::string when = group->when.empty() ? "" : " (" + group->when + ")";
+    text += "  " + asSentence(group->because) + when + ".\n  " + group->separates + "\n";
+  }
+  return text;
+}
+
+/// Measurements that tell the two apart, from that table, else from the catalogue.
+std::string otherWays(const std::string& a, const std::string& b) {
+  const std::string known = fromTable(a, b);
+  if (!known.empty()) return known;
+  std::string text;
   for (const std::string& name : {a, b})
     text += "  " + titleOf(name) + ": " + effectNamed(name).separates + "\n";
   return text;
@@ -100,6 +109,8 @@ void tellFound(const Options& options, const DesignTask& task, const Design& des
             << " is enough),\nalthough " << inSentence(titleOf(options.rival))
             << " is refitted to look most like it (" << sizeOf(design.rival, options.rival)
             << ").\n";
+  const std::string known = fromTable(options.truth, options.rival);
+  if (!known.empty()) std::cout << "\nThey resemble each other; another way to tell:\n" << known;
   if (options.out.empty()) return;
   recordings::writeText(options.out, formatPatterns(set));
   std::cout
@@ -141,7 +152,12 @@ int plan(const Options& options) {
   }
   std::optional<PatternSet> from;
   if (!options.patterns.empty()) from = readPatternFile(options.patterns);
-  task.manoeuvres = from ? manoeuvresOf(*from, task.model) : planManoeuvres(task.model);
+  task.manoeuvres = from
+                        ? manoeuvresOf(*from, task.model)
+                        : planManoeuvres(task.model, options.speed > 0.0 ? options.speed
+                                                                         : fullCommand(task.model));
+  if (options.speed > 0.0 && task.model.vehicle.kind == CommandKind::kPower)
+    throw std::runtime_error("--speed is for models that take track speeds; this one takes powers");
   const Design design = designDrive(task);
   if (!design.separates) {
     tellNone(options, design);
@@ -166,6 +182,10 @@ CLI::App* addPlan(CLI::App& app, int& status) {
   command->add_option("--patterns", options->patterns,
                       "choose among the patterns of this set instead of the built-in manoeuvres");
   command->add_option("--set", options->set, "parameter=number: another size of A");
+  command
+      ->add_option("--speed", options->speed,
+                   "m/s, largest track speed commanded; not for models that take powers")
+      ->check(CLI::Range(0.01, 20.0));
   command->add_option("--out", options->out, "pattern set to write (YAML)");
   command->callback([options, &status] { status = plan(*options); });
   return command;

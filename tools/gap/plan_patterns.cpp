@@ -51,11 +51,11 @@ std::map<std::string, const MotionPattern*> waysFrom(const PatternSet& set,
 void addWay(const PatternSet& set, const std::string& from, const std::string& to,
             std::set<std::string>& needed) {
   const auto into = waysFrom(set, from);
+  if (into.count(to) == 0)
+    throw std::runtime_error("plan: no pattern of the set leads from " + from + " to " + to);
   std::string at = to;
   while (at != from) {
     const auto found = into.find(at);
-    if (found == into.end())
-      throw std::runtime_error("plan: no pattern of the set leads from " + from + " to " + to);
     needed.insert(found->second->name);
     at = found->second->entry_class;
   }
@@ -63,13 +63,12 @@ void addWay(const PatternSet& set, const std::string& from, const std::string& t
 
 }  // namespace
 
-std::vector<Manoeuvre> planManoeuvres(const ModelDocument& model) {
-  const double full = fullCommand(model);
+std::vector<Manoeuvre> planManoeuvres(const ModelDocument& model, double full) {
   // Others than this model may settle later: half a second more.
   const double settled = 3.0 * model.vehicle.settlingLag() + model.vehicle.commandDelay() + 0.5;
   const auto stop = static_cast<size_t>(std::ceil(settled / kManoeuvrePeriod));
   std::vector<Manoeuvre> all;
-  const auto add = [&](const char* name, std::vector<TrackCommand> parts) {
+  const auto add = [&](const char* name, const std::vector<TrackCommand>& parts) {
     const size_t each = 40 / parts.size();
     Manoeuvre manoeuvre{name, {}, {}};
     for (const TrackCommand& part : parts)

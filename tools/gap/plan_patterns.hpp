@@ -11,8 +11,8 @@
 namespace tread::gap {
 
 /// What a plan chooses from: two seconds of straights, arcs and turns, each from standing to
-/// standing, so that any may follow any.
-std::vector<Manoeuvre> planManoeuvres(const ModelDocument& model);
+/// standing, so that any may follow any; commands up to `full`.
+std::vector<Manoeuvre> planManoeuvres(const ModelDocument& model, double full);
 
 /// The patterns of a set, each entered in its class. Throws std::runtime_error if its commands are
 /// not the model's or its period is not kManoeuvrePeriod.

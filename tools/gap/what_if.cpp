@@ -20,28 +20,16 @@ constexpr double kRounding = 1e-9;  // [m] and [rad]
 
 std::vector<Pose2> posesOf(const std::vector<TimedPose>& motion) {
   std::vector<Pose2> poses;
+  poses.reserve(motion.size());
   for (const TimedPose& moment : motion) poses.push_back(moment.T_map_body);
   return poses;
 }
 
-std::vector<ChartPoint> seenFromAbove(const std::vector<Pose2>& poses) {
-  std::vector<ChartPoint> points;
-  for (const Pose2& pose : poses) points.push_back({-pose.y, pose.x});
-  return points;
-}
-
 std::string picture(const Comparison& comparison) {
-  ChartRange range = ChartRange::empty();
-  const std::vector<ChartPoint> first = seenFromAbove(comparison.first);
-  const std::vector<ChartPoint> second = seenFromAbove(comparison.second);
-  for (const std::vector<ChartPoint>* points : {&first, &second})
-    for (const ChartPoint& point : *points) range.include(point);
   Chart chart(comparison.name, "to the right [m]", "ahead [m]",
-              range.widened(0.2).withEqualScales());
-  chart.line(first, kBeforeColour, 1.8, true);
-  chart.dot(first.back(), kBeforeColour);
-  chart.line(second, kAfterColour);
-  chart.dot(second.back(), kAfterColour);
+              rangeOf({&comparison.first, &comparison.second}));
+  drawPath(chart, comparison.first, kBeforeColour, true);
+  drawPath(chart, comparison.second, kAfterColour, false);
   chart.legend("as it is", kBeforeColour, true);
   chart.legend("what if: " + threeDigits(comparison.position) + " m, " + saidAngle(comparison.yaw) +
                    " apart",
@@ -51,12 +39,14 @@ std::string picture(const Comparison& comparison) {
 
 std::vector<std::string> picturesOf(const std::vector<Comparison>& comparisons) {
   std::vector<std::string> pictures;
+  pictures.reserve(comparisons.size());
   for (const Comparison& comparison : comparisons) pictures.push_back(picture(comparison));
   return pictures;
 }
 
 std::vector<std::string> picturesOf(const LogComparison& comparison) {
   std::vector<std::string> pictures;
+  pictures.reserve(comparison.overlays.size());
   for (const Overlay& overlay : comparison.overlays)
     pictures.push_back(
         overlayPicture(overlay, "execution at " + threeDigits(overlay.begin) + " s"));

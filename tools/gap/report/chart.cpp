@@ -234,8 +234,10 @@ std::string sheetOf(const std::vector<std::string>& charts, size_t columns) {
                      at(kWidth * static_cast<double>(columns)) + "\" height=\"" +
                      at(kHeight * static_cast<double>(rows)) + "\">\n";
   for (size_t i = 0; i < charts.size(); ++i) {
-    const std::string place = "<svg x=\"" + at(kWidth * static_cast<double>(i % columns)) +
-                              "\" y=\"" + at(kHeight * static_cast<double>(i / columns)) +
+    const size_t row = i / columns;
+    const size_t column = i % columns;
+    const std::string place = "<svg x=\"" + at(kWidth * static_cast<double>(column)) + "\" y=\"" +
+                              at(kHeight * static_cast<double>(row)) +
                               "\" width=\"320\" height=\"230\"";
     text += place + charts[i].substr(4) + "\n";  // behind the chart's own "<svg"
   }

@@ -29,6 +29,7 @@ struct ChartRange {
   double y_min = 0.0;
   double y_max = 1.0;
 
+  double height() const { return y_max - y_min; }
   void include(const ChartPoint& point);
   /// A range that includes nothing yet.
   static ChartRange empty();
@@ -61,6 +62,7 @@ class Chart {
   /// One entry of the legend below the title.
   void legend(const std::string& words, const std::string& colour, bool dashed = false);
 
+  const ChartRange& range() const { return range_; }
   std::string svg() const;
 
  private:

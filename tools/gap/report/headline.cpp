@@ -73,6 +73,7 @@ std::string directionOf(const Estimate& estimate) {
 
 std::vector<std::string> namesOf(const std::vector<FoundEffect>& effects) {
   std::vector<std::string> names;
+  names.reserve(effects.size());
   for (const FoundEffect& effect : effects) names.push_back(effect.name);
   return names;
 }

@@ -62,8 +62,13 @@ struct HtmlWriter {
 
   void row(const std::vector<std::string>& cells, size_t left, const std::string& tag) {
     text += "<tr>";
+    const std::string end = "</" + tag + ">";
     for (size_t i = 0; i < cells.size(); ++i)
-      text += "<" + tag + (i < left ? " class=\"l\">" : ">") + escaped(cells[i]) + "</" + tag + ">";
+      text.append("<")
+          .append(tag)
+          .append(i < left ? " class=\"l\">" : ">")
+          .append(escaped(cells[i]))
+          .append(end);
     text += "</tr>\n";
   }
 };

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/gap/report/chart.hpp"
 #include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
@@ -44,14 +43,9 @@ void include(ChartRange& range, const std::vector<AtlasCell>& cells) {
 /// Ahead is up, left is left.
 std::vector<ChartPoint> seenFromAbove(const std::vector<Pose2>& poses) {
   std::vector<ChartPoint> points;
+  points.reserve(poses.size());
   for (const Pose2& pose : poses) points.push_back({-pose.y, pose.x});
   return points;
-}
-
-void drawPath(Chart& chart, const std::vector<Pose2>& poses, const char* colour, bool dashed) {
-  const std::vector<ChartPoint> points = seenFromAbove(poses);
-  chart.line(points, colour, 1.8, dashed);
-  if (!points.empty()) chart.dot(points.back(), colour);
 }
 
 }  // namespace
@@ -102,11 +96,27 @@ std::string mapPicture(const AtlasMap& map, bool after, double full_colour) {
   return chart.svg();
 }
 
-std::string overlayPicture(const Overlay& overlay, const std::string& title) {
+void drawPath(Chart& chart, const std::vector<Pose2>& poses, const char* colour, bool dashed) {
+  const std::vector<ChartPoint> points = seenFromAbove(poses);
+  if (points.empty()) return;
+  chart.line(points, colour, 1.8, dashed);
+  const double length = 0.1 * chart.range().height();
+  const ChartPoint end = points.back();
+  const double yaw = poses.back().yaw;
+  chart.line({end, {end.x - length * std::sin(yaw), end.y + length * std::cos(yaw)}}, colour, 2.4);
+  chart.dot(end, colour);
+}
+
+ChartRange rangeOf(const std::vector<const std::vector<Pose2>*>& paths) {
   ChartRange range = ChartRange::empty();
-  for (const std::vector<Pose2>* poses : {&overlay.measured, &overlay.before, &overlay.after})
+  for (const std::vector<Pose2>* poses : paths)
     for (const ChartPoint& point : seenFromAbove(*poses)) range.include(point);
-  Chart chart(title, "to the right [m]", "ahead [m]", range.widened(0.2).withEqualScales());
+  return range.widened(0.2).withEqualScales();
+}
+
+std::string overlayPicture(const Overlay& overlay, const std::string& title) {
+  Chart chart(title, "to the right [m]", "ahead [m]",
+              rangeOf({&overlay.measured, &overlay.before, &overlay.after}));
   drawPath(chart, overlay.measured, kInk, false);
   drawPath(chart, overlay.before, kBeforeColour, true);
   drawPath(chart, overlay.after, kAfterColour, false);

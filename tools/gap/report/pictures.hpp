@@ -3,8 +3,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "tools/gap/core/finding.hpp"
+#include "tools/gap/report/chart.hpp"
 
 namespace tread::gap {
 
@@ -16,6 +18,12 @@ double largestResidual(const AtlasMap& map);
 
 /// A residual over speed and yaw rate.
 std::string mapPicture(const AtlasMap& map, bool after, double full_colour);
+
+/// A driven path seen from above, ahead is up, with its heading where it ends.
+void drawPath(Chart& chart, const std::vector<Pose2>& poses, const char* colour, bool dashed);
+
+/// The part of the ground that paths need, with equal scales.
+ChartRange rangeOf(const std::vector<const std::vector<Pose2>*>& paths);
 
 /// One execution: measured, old and new model, seen from its beginning.
 std::string overlayPicture(const Overlay& overlay, const std::string& title);

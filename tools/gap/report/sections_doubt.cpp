@@ -29,28 +29,32 @@ std::string groupWords(const std::string& effect, const std::string& other) {
   return "";
 }
 
-/// The lines about what an effect may be taken for, one per other effect.
+/// What an effect may be taken for: its twins first, then all others in one point.
 void addOthers(const FoundEffect& found, Points& points, Commands& plans) {
   const auto plan = [&](const std::string& other) {
     if (isEffect(other))
       plans.lines.push_back("tread-gap plan " + found.name + " " + other + " --model model.yaml");
   };
   for (const std::string& member : found.group) {
-    points.items.push_back(shortTitleOf(found.name) + " or " + inSentence(shortTitleOf(member)) +
-                           ": they cannot be told apart. " + groupWords(found.name, member));
+    std::string item = shortTitleOf(found.name);
+    item.append(" or ").append(inSentence(shortTitleOf(member)));
+    item.append(": they cannot be told apart. ").append(groupWords(found.name, member));
+    points.items.push_back(std::move(item));
     plan(member);
   }
+  std::vector<std::string> others;
   for (const RunnerUp& runner_up : found.runner_ups) {
-    const std::string words = groupWords(found.name, runner_up.effect);
-    const std::string way =
-        !words.empty() || !isEffect(runner_up.effect) ? words : effectNamed(found.name).separates;
-    const std::string rank = runner_up.behind <= runner_up.error ? "as good" : "less good";
-    points.items.push_back(shortTitleOf(runner_up.effect) + " in place of " +
-                           inSentence(shortTitleOf(found.name)) + ": " + rank + " (" +
-                           threeDigits(runner_up.behind) + " \u00b1 " +
-                           threeDigits(runner_up.error) + " nats behind). " + way);
+    const bool close = runner_up.behind <= runner_up.error;
+    std::string other = inSentence(shortTitleOf(runner_up.effect));
+    other.append(close ? " (as good: " : " (less good: ").append(threeDigits(runner_up.behind));
+    other.append(" \u00b1 ").append(threeDigits(runner_up.error)).append(" nats behind)");
+    others.push_back(std::move(other));
     plan(runner_up.effect);
   }
+  if (!others.empty())
+    points.items.push_back("In place of " + inSentence(shortTitleOf(found.name)) + ": " +
+                           joined(others, "or") +
+                           ". To tell: " + effectNamed(found.name).separates);
 }
 
 /// The smallest size that would have been found, as people say it.

@@ -78,7 +78,9 @@ Section executionsSection(const Finding& finding, const std::vector<InputFile>& 
   Section section{"Executions, as measured and as predicted", {}};
   if (finding.overlays.empty()) return section;
   constexpr size_t kTypical = 6;
-  Pictures pictures{{}, "Each from where it begins; ahead is up. Dots are where it ends."};
+  Pictures pictures{
+      {},
+      "Each from where it begins; ahead is up. Dots are where it ends, with the heading there."};
   for (size_t i = 0; i < finding.overlays.size(); ++i) {
     const Overlay& overlay = finding.overlays[i];
     const std::string rank = i < kTypical ? "typical" : "worst";

@@ -136,6 +136,7 @@ std::string joined(const std::vector<std::string>& words, const std::string& joi
 
 std::string titlesOf(const std::vector<std::string>& effects, const std::string& last_joint) {
   std::vector<std::string> titles;
+  titles.reserve(effects.size());
   for (const std::string& effect : effects) titles.push_back(titleOf(effect));
   return joined(titles, last_joint);
 }
@@ -147,6 +148,7 @@ std::string shortTitleOf(const std::string& effect) {
 
 std::string shortTitlesOf(const std::vector<std::string>& effects, const std::string& last_joint) {
   std::vector<std::string> titles;
+  titles.reserve(effects.size());
   for (const std::string& effect : effects) titles.push_back(shortTitleOf(effect));
   return joined(titles, last_joint);
 }
