@@ -35,9 +35,18 @@ void draw(Chart& chart, const std::vector<AtlasCell>& cells, const char* colour,
 void include(ChartRange& range, const std::vector<AtlasCell>& cells) {
   for (const AtlasCell& cell : cells) {
     if (cell.rows == 0) continue;
+    range.include({middle(cell), cell.mean});
     range.include({middle(cell), cell.low});
     range.include({middle(cell), cell.high});
   }
+}
+
+/// Length of the heading at a path's end over the height of its picture.
+constexpr double kTip = 0.1;
+
+/// A point ahead of a pose.
+ChartPoint headingTip(const Pose2& pose, double length) {
+  return {-pose.y - length * std::sin(pose.yaw), pose.x + length * std::cos(pose.yaw)};
 }
 
 /// Ahead is up, left is left.
@@ -100,17 +109,17 @@ void drawPath(Chart& chart, const std::vector<Pose2>& poses, const char* colour,
   const std::vector<ChartPoint> points = seenFromAbove(poses);
   if (points.empty()) return;
   chart.line(points, colour, 1.8, dashed);
-  const double length = 0.1 * chart.range().height();
-  const ChartPoint end = points.back();
-  const double yaw = poses.back().yaw;
-  chart.line({end, {end.x - length * std::sin(yaw), end.y + length * std::cos(yaw)}}, colour, 2.4);
-  chart.dot(end, colour);
+  chart.line({points.back(), headingTip(poses.back(), kTip * chart.range().height())}, colour, 2.4);
+  chart.dot(points.back(), colour);
 }
 
 ChartRange rangeOf(const std::vector<const std::vector<Pose2>*>& paths) {
   ChartRange range = ChartRange::empty();
   for (const std::vector<Pose2>* poses : paths)
     for (const ChartPoint& point : seenFromAbove(*poses)) range.include(point);
+  const double height = range.widened(0.2).withEqualScales().height();
+  for (const std::vector<Pose2>* poses : paths)
+    if (!poses->empty()) range.include(headingTip(poses->back(), kTip * height));
   return range.widened(0.2).withEqualScales();
 }
 

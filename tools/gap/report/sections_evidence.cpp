@@ -87,10 +87,9 @@ Section executionsSection(const Finding& finding, const std::vector<InputFile>& 
     pictures.svg.push_back(overlayPicture(overlay, rank + ", " + threeDigits(overlay.begin) +
                                                        " s of " + logName(inputs, overlay.drive)));
   }
-  section.blocks.push_back(
-      Paragraph{finding.overlays.size() > kTypical
-                    ? "Six typical executions, then the worst; none was used for the fit."
-                    : "Typical executions; none was used for the fit."});
+  section.blocks.push_back(Paragraph{
+      "Six typical executions of the logs that the model was made from, then the worst. What it "
+      "errs on driving that it has not seen stands above."});
   section.blocks.push_back(pictures);
   return section;
 }
