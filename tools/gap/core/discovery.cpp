@@ -10,6 +10,7 @@
 #include "common/vehicle/degeneracy.hpp"
 #include "tools/gap/core/adequacy.hpp"
 #include "tools/gap/core/atlas.hpp"
+#include "tools/gap/core/atlas_maps.hpp"
 #include "tools/gap/core/dead_reckoning.hpp"
 #include "tools/gap/core/end_errors.hpp"
 #include "tools/gap/core/moments.hpp"
@@ -68,6 +69,7 @@ class Discovery {
     finding_.gap = task_.test.empty() ? nestedGap() : testGap();
     finding_.gap->floor = deadReckoningFloor(task_.test.empty() ? task_.train : task_.test);
     finding_.atlas = residualAtlas(rows_, task_.model, finding_.after);
+    finding_.maps = residualMaps(rows_, task_.model, finding_.after);
     finding_.overlays = overlays();
     judge();
     return std::move(finding_);

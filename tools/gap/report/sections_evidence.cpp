@@ -62,8 +62,8 @@ Section atlasSection(const Finding& finding) {
   section.blocks.push_back(Paragraph{
       "Residuals, measured less predicted, over what they may depend on. Of all fields " +
       std::to_string(before) + " were off beyond chance before and " + std::to_string(after) +
-      " are now (filled dots; intervals 95 % over blocks of driving, corrected for the number of "
-      "fields)."});
+      " are now (filled dots: beyond chance even for so many fields; intervals: 95 % each, over "
+      "blocks of driving)."});
   if (const std::vector<std::string> maps = mapPictures(finding); !maps.empty())
     section.blocks.push_back(Pictures{maps,
                                       "Mean residual over speed and yaw rate; white is right, "
