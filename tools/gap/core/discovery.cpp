@@ -19,7 +19,7 @@ namespace tread::gap {
 namespace {
 
 constexpr int kLeastBlocks = 10;
-constexpr int kLeastHalf = 6;            // blocks from which effects can be chosen, too
+constexpr int kLeastHalf = 10;           // blocks from which effects can be chosen, too
 constexpr double kAdequacyAlpha = 0.01;  // with the tests' 2 %: 3 % false alarms altogether
 constexpr double kMomentNats = 10.0;     // 2 nats times what correlated ground takes off
 constexpr double kInvisible = 2.0;       // times its typical size: not excited
@@ -40,10 +40,6 @@ class Discovery {
         all_(rows_.rows().size(), 1) {
     settings_.seed = task.seed;
     settings_.calibrate = task.calibrate;
-    // The model of a new vehicle takes in whatever can be seen, however little it matters: else a
-    // later log would find it.
-    if (task.calibrate) settings_.least_gain = 0.0;
-    if (task.calibrate) settings_.most = 16;
   }
 
   Finding run() {

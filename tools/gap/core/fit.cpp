@@ -103,6 +103,9 @@ FreeParameter freeParameter(const ModelDocument& model, const std::string& path)
     free = {path, known.min, known.max, kShareOfTypical * std::abs(known.typical)};
     if (known.role == ParameterRole::kShape && known.unit == "s") free.step = 1.0;
   }
+  // A sum of times that is negative does nothing more.
+  if (path == "command_delay.delay") free.min = -model.vehicle.delay;
+  if (path == "actuator_lag.lag") free.min = -model.vehicle.lag;
   for (const ParameterBounds& bounds : model.bounds)
     if (bounds.parameter == path) {
       free.min = bounds.min;

@@ -11,7 +11,7 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kLeastUnique = 1e-4;  // below it a column is rounding
+constexpr double kLeastUnique = 0.02;  // below it a column is what the model's curvature leaves
 /// Mean slope of the pull by the residual, over 1 / scale^2: (f + 1) / (f + 3).
 constexpr double kInformation = (kFreedom + 1.0) / (kFreedom + 3.0);
 
