@@ -19,9 +19,12 @@ std::vector<std::string> wordsAt(const Json& json, const char* key) {
                             : std::vector<std::string>{};
 }
 
-EndError errorOf(const Json& json) {
+EndErrors errorOf(const Json& json) {
   if (!json.is_object()) return {};
-  return {numberAt(json.at("position_m"), "rms"), numberAt(json.at("yaw_rad"), "rms")};
+  const auto of = [&](const char* size) {
+    return EndError{numberAt(json.at("position_m"), size), numberAt(json.at("yaw_rad"), size)};
+  };
+  return {of("rms"), of("median")};
 }
 
 HiddenEffect hiddenOf(const Json& json) {

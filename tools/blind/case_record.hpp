@@ -13,10 +13,15 @@ namespace tread::blindtest {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Root mean squares of 2 s end poses; NaN where nobody measured.
+/// Errors of 2 s end poses; NaN where nobody measured.
 struct EndError {
   double position = kUnknown;  ///< [m]
   double yaw = kUnknown;       ///< [rad]
+};
+
+/// Root mean squares and medians of such errors.
+struct EndErrors : EndError {
+  EndError median;
 };
 
 /// A number of the truth, in the catalogue's terms.
@@ -47,8 +52,8 @@ struct Truth {
   std::vector<HiddenEffect> effects;
   std::vector<std::string> right_verdicts;
   std::vector<std::string> right_names;
-  EndError floor;  ///< of the truth without noise against the log
-  EndError gap;    ///< of the plain vehicle against the truth
+  EndErrors floor;  ///< of the truth without noise against the log
+  EndErrors gap;    ///< of the plain vehicle against the truth
 };
 
 /// An estimated parameter.
@@ -71,12 +76,12 @@ struct NamedEffect {
 
 /// What tread-gap answered.
 struct Answer {
-  std::string verdict;  ///< "error" where it ended with a message instead
-  std::string reason;
+  std::string verdict;  ///< "error" where it ended without
+  std::string reason;   ///< empty where it broke down
   std::vector<NamedEffect> effects;
   std::vector<Estimated> calibrated;
-  EndError before;
-  EndError after;
+  EndErrors before;
+  EndErrors after;
   std::vector<std::pair<std::string, std::string>> unexplained;  ///< channel, variable
 };
 

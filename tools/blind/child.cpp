@@ -36,6 +36,11 @@ bool cover(const char* folder) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (!child.hidden.empty()) cover(child.hidden.c_str());
   if (chdir(child.folder.c_str()) != 0) _exit(kCannotStart);
+  if (child.cpu_limit > 0) {
+    const auto seconds = static_cast<rlim_t>(child.cpu_limit);
+    const rlimit limit{seconds, seconds};
+    setrlimit(RLIMIT_CPU, &limit);
+  }
   const int log = open(child.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   if (log < 0) _exit(kCannotStart);
   dup2(log, STDOUT_FILENO);

@@ -10,9 +10,10 @@ namespace tread::blindtest {
 /// A command and where it runs.
 struct Child {
   std::vector<std::string> command;
-  std::string folder;  ///< it begins here
-  std::string log;     ///< what it prints, below `folder`
-  std::string hidden;  ///< a folder that does not exist for it; empty = none
+  std::string folder;       ///< it begins here
+  std::string log;          ///< what it prints, below `folder`
+  std::string hidden = {};  ///< a folder that does not exist for it; empty = none
+  int cpu_limit = 0;        ///< [s] of a run that does not end; 0 = none
 };
 
 /// How it ended.

@@ -24,11 +24,11 @@ double inFloors(const EndError& error, const EndError& floor) {
   return std::hypot(error.position / floor.position, error.yaw / floor.yaw);
 }
 
-double closedShare(const CaseRecord& record) {
-  const EndError& floor = record.truth.floor;
+double closedShare(const EndError& error_before, const EndError& error_after,
+                   const EndError& floor) {
   const double best = std::sqrt(2.0);
-  const double before = inFloors(record.answer.before, floor);
-  const double after = inFloors(record.answer.after, floor);
+  const double before = inFloors(error_before, floor);
+  const double after = inFloors(error_after, floor);
   if (!(before > best * (1.0 + kLeastGap)) || !std::isfinite(after)) return kUnknown;
   return (before - after) / (before - best);
 }
@@ -118,6 +118,14 @@ void judgeParameters(const CaseRecord& record, Judgement& judgement) {
   }
 }
 
+/// A hidden effect is named together with those that no drive tells from it.
+bool isNamedInGroup(const CaseRecord& record) {
+  const std::string& hidden = record.truth.effects.front().name;
+  return std::any_of(
+      record.answer.effects.begin(), record.answer.effects.end(),
+      [&](const NamedEffect& one) { return !one.group.empty() && covers(one, hidden); });
+}
+
 bool isExcited(const Truth& truth) {
   if (truth.effects.empty() || !(truth.floor.position > 0.0)) return true;
   return truth.gap.position > kLeastVisible * truth.floor.position ||
@@ -145,14 +153,18 @@ bool moved(const Answer& answer, const std::string& effect) {
 Judgement judge(const CaseRecord& record) {
   const Answer& answer = record.answer;
   Judgement judgement;
-  judgement.right_verdict = contains(record.truth.right_verdicts, answer.verdict);
+  judgement.right_verdict =
+      contains(record.truth.right_verdicts, answer.verdict) ||
+      (record.truth.kind == "single" && answer.verdict == "AMBIGUOUS" && isNamedInGroup(record));
   judgement.refused =
       (answer.verdict == "CANNOT_TELL" || answer.verdict == "error") && !answer.reason.empty();
   judgement.flagged = answer.verdict == "PARTIAL" || answer.verdict == "NOT_IN_CATALOGUE";
   judgement.grouped = saysGroup(record);
   judgement.right_variable = judgement.flagged && rightVariable(record);
   judgement.excited = isExcited(record.truth);
-  judgement.closed = closedShare(record);
+  judgement.closed = closedShare(answer.before, answer.after, record.truth.floor);
+  judgement.closed_median =
+      closedShare(answer.before.median, answer.after.median, record.truth.floor.median);
   judgeNames(record, judgement);
   judgeParameters(record, judgement);
   return judgement;

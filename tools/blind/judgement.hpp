@@ -33,6 +33,7 @@ struct Judgement {
   bool right_variable = false;  ///< what is left depends on what the truth depends on
   bool excited = true;          ///< the drive shows what was hidden at all
   double closed = kUnknown;     ///< share of the gap to the oracle that was closed; NaN = no gap
+  double closed_median = kUnknown;  ///< the same by medians of the end errors instead of rms
   std::vector<ParameterError> parameters;
 };
 

@@ -21,6 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kRounds = 3;
+constexpr int kLimit = 3600;  // [s] of a calibration that does not end
 constexpr int kFound = 10;
 constexpr int kCannotTell = 15;
 constexpr const char* kStory = "story.json";
@@ -58,9 +59,11 @@ Json calibrate(const Study& study, const fs::path& folder, const std::string& mo
                             "--model", model, "--train", "hour/blind/hour.lcm", "--out", out},
                            folder.string(),
                            out + ".log",
-                           (folder / "hour/sealed").string()});
+                           (folder / "hour/sealed").string(),
+                           kLimit});
   if (ended.status != 0 && (ended.status < kFound || ended.status >= kCannotTell))
-    throw std::runtime_error("calibration failed: " + lastLine((folder / (out + ".log")).string()));
+    throw std::runtime_error("calibration ended with " + std::to_string(ended.status) + ": " +
+                             lastLine((folder / (out + ".log")).string()));
   return readJson(folder / out / "verdict.json");
 }
 

@@ -40,7 +40,7 @@ void drawConfusion(const Confusion& confusion, const std::string& path);
 std::string figureWords(const ScoreLine& line);
 /// ">= 95 %", or "" without a must.
 std::string mustWords(const ScoreLine& line);
-/// "reached", "short", "no case"; "" without a must.
+/// "reached", "short", "too few" (cases for the interval), "no case"; "" without a must.
 std::string metWords(const ScoreLine& line);
 
 }  // namespace tread::blindtest

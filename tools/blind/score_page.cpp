@@ -16,10 +16,10 @@ using picture::Box;
 using picture::Colour;
 using picture::Picture;
 
-constexpr double kCell = 22.0;     // [pixels]
-constexpr double kLeft = 230.0;    // names of rows
-constexpr double kTop = 70.0;      // numbers of columns
-constexpr double kMargin = 150.0;  // words of the last columns
+constexpr double kCell = 22.0;    // [pixels]
+constexpr double kLeft = 230.0;   // names of rows
+constexpr double kTop = 70.0;     // numbers of columns
+constexpr double kLeast = 860.0;  // width that title and legend need
 
 const char* const kHead = R"(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>Blind test</title><style>
@@ -100,7 +100,7 @@ std::string sectionTable(const ScoredStudy& study, const std::string& section) {
 void drawConfusion(const Confusion& confusion, const std::string& path) {
   const auto columns = static_cast<double>(confusion.named.size());
   const auto rows = static_cast<double>(confusion.hidden.size());
-  Picture picture(static_cast<int>(kLeft + kCell * columns + kMargin),
+  Picture picture(static_cast<int>(std::max(kLeast, kLeft + kCell * columns + 20.0)),
                   static_cast<int>(kTop + kCell * rows + 60.0),
                   "What was hidden (rows, cases) and what was named (columns) [% of the cases]");
   // The last three columns are no effects.

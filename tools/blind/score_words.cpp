@@ -86,7 +86,10 @@ std::string mustWords(const ScoreLine& line) {
 std::string metWords(const ScoreLine& line) {
   if (!line.must) return "";
   const auto met = line.met();
-  return !met ? "no case" : *met ? "reached" : "short";
+  if (!met) return "no case";
+  // A share that is good enough but of too few cases to be sure of it.
+  if (!*met && line.must->upper_end && line.value <= line.must->at) return "too few";
+  return *met ? "reached" : "short";
 }
 
 std::string tableText(const ScoredStudy& study) {

@@ -66,6 +66,11 @@ std::vector<double> closedOf(const JudgedCase& one) {
   return {one.judgement.closed};
 }
 
+std::vector<double> closedMediansOf(const JudgedCase& one) {
+  if (!std::isfinite(one.judgement.closed_median) || !allFound(one)) return {};
+  return {one.judgement.closed_median};
+}
+
 std::vector<double> errorsOf(const JudgedCase& one) {
   std::vector<double> errors;
   for (const ParameterError& error : one.judgement.parameters) errors.push_back(error.relative);
@@ -199,6 +204,8 @@ class Scorer {
 
   void singles() {
     const Test single = isKind("single");
+    share("single", "not excited (below 5 % of the noise)", single,
+          [](const JudgedCase& one) { return !one.judgement.excited; });
     singleLines("all", single);
     for (const char* noise : {"low", "mid", "high"})
       singleLines(std::string(noise) + " noise", both(single, noiseIs(noise)));
@@ -206,15 +213,14 @@ class Scorer {
       singleLines(std::string("form ") +
                       (shape[0] == 's' ? "as in the catalogue" : "only like the catalogue's"),
                   both(single, shapeIs(shape)));
+    for (const double size : {1.0, 2.0, 4.0})
+      singleLines("size " + std::to_string(static_cast<int>(size)), both(single, sizeIs(size)));
     for (const double size : {1.0, 2.0, 4.0}) {
       const std::string what = "size " + std::to_string(static_cast<int>(size));
-      singleLines(what, both(single, sizeIs(size)));
       for (const char* noise : {"low", "mid", "high"})
         share("single by size and noise", "named, " + what + ", " + noise + " noise",
               both(both(single, sizeIs(size)), noiseIs(noise)), allFound);
     }
-    share("single", "not excited (below 5 % of the noise)", single,
-          [](const JudgedCase& one) { return !one.judgement.excited; });
   }
 
   void byEffect() {
@@ -272,6 +278,8 @@ class Scorer {
 
   void numbers() {
     const Test single = isKind("single");
+    figure("gap closed", "by medians of the end errors instead of rms, median", single,
+           closedMediansOf, 0.5);
     for (const char* noise : {"low", "mid", "high"})
       for (const double q : {0.5, 0.1})
         figure("gap closed",

@@ -46,11 +46,11 @@ TEST_CASE("a term of the nominal model that moves beyond three sigma counts, apa
 
 TEST_CASE("the closed share of the gap is measured from the nominal model down to the truth") {
   CaseRecord record = answered(hidden({"slip_ratio"}, "single"), {"slip_ratio"});
-  record.answer.after = {0.1, 0.1};
+  record.answer.after = {{0.1, 0.1}, {}};
   CHECK(judge(record).closed == Approx(1.0));
   record.answer.after = record.answer.before;
   CHECK(judge(record).closed == Approx(0.0));
-  record.answer.before = {0.1, 0.1};
+  record.answer.before = {{0.1, 0.1}, {}};
   CHECK_FALSE(judge(record).closed == Approx(0.0));  // no gap, no share
 }
 

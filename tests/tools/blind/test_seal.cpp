@@ -67,6 +67,8 @@ TEST_CASE("a child's status and last words are told") {
   const Sealed sealed;
   CHECK(sealed.shell("exit 13", false).status == 13);
   CHECK(sealed.shell("kill -9 $$", false).status == 128 + 9);
+  CHECK(run({{"/bin/sh", "-c", "while :; do :; done"}, sealed.folder(), "log.txt", "", 1}).status >
+        128);
   sealed.shell("echo first; echo last; echo", false);
   CHECK(lastLine(sealed.folder() + "/log.txt") == "last");
   CHECK_THROWS_WITH(run({{"/no/such/program"}, sealed.folder(), "log.txt", ""}),
