@@ -89,6 +89,7 @@ int find(const Options& options) {
   writeFinding(options.out, finding, inputs);
   say(std::string(verdictName(finding.verdict)) + ": " + headlineOf(finding));
   for (const FoundEffect& effect : finding.effects) say("  " + sentenceOf(effect));
+  for (const std::string& sentence : movedSentences(finding)) say("  " + sentence);
   if (finding.verdict == Verdict::kCannotTell) say("  " + finding.reason);
   if (finding.gap) say("  " + gainOf(*finding.gap));
   say(options.out + "/report.html");

@@ -47,6 +47,8 @@ Json calibratedJson(const std::vector<Estimate>& calibrated) {
   for (const Estimate& estimate : calibrated) {
     const size_t point = estimate.parameter.find('.');
     add(all, point == std::string::npos ? "" : estimate.parameter.substr(0, point + 1), estimate);
+    all[estimate.parameter]["before"] = number(estimate.before);
+    all[estimate.parameter]["moved"] = estimate.moved;
   }
   return all;
 }

@@ -22,6 +22,7 @@ constexpr int kLeastBlocks = 10;
 constexpr int kLeastHalf = 10;           // blocks from which effects can be chosen, too
 constexpr double kAdequacyAlpha = 0.01;  // with the tests' 2 %: 3 % false alarms altogether
 constexpr double kMomentNats = 10.0;     // 2 nats times what correlated ground takes off
+constexpr double kMoved = 4.0;           // standard errors; a few terms are looked at in each log
 constexpr double kInvisible = 2.0;       // times its typical size: not excited
 
 std::string text(const char* format, double a, double b) {
@@ -55,10 +56,12 @@ class Discovery {
     say_("2-5 test, refit, validate, prune");
     result_ = search(fitter_, task_.model, all_, settings_, memory_, say_);
     finding_.after = result_.state.model;
+    // What was seen but does not matter is no rest without a name.
+    const FitState tested = result_.state;
+    if (!result_.effects.empty() && !isConfirmed()) forgetEffects();
     describeEffects();
     say_("6 adequacy");
-    const Adequacy adequacy =
-        testAdequacy(fitter_, result_.state, all_, kAdequacyAlpha, task_.seed);
+    const Adequacy adequacy = testAdequacy(fitter_, tested, all_, kAdequacyAlpha, task_.seed);
     finding_.adequacy_p = adequacy.p_value;
     finding_.unexplained = adequacy.unexplained;
     say_("7 error on driving that was not used");
@@ -88,6 +91,44 @@ class Discovery {
     return true;
   }
 
+  /// Whether the end error falls, by more than its standard error over blocks, on halves of the
+  /// driving that the sizes of the effects were not fitted to.
+  bool isConfirmed() const {
+    const auto blocks = static_cast<Eigen::Index>(rows_.blocks());
+    Eigen::MatrixXd with = Eigen::MatrixXd::Zero(blocks, 2);
+    Eigen::MatrixXd lacking = Eigen::MatrixXd::Zero(blocks, 2);
+    for (int half : {0, 1}) {
+      const ModelDocument model = refitted(fitter_, result_, halfMask(half)).model;
+      for (const EndError& error : endErrors(rows_, model))
+        if (error.block % 2 != half) with.row(error.block) += sizeOf(error);
+    }
+    for (const EndError& error : endErrors(rows_, result_.calibrated.model))
+      lacking.row(error.block) += sizeOf(error);
+    const std::vector<char> every(static_cast<size_t>(blocks), 1);
+    for (Eigen::Index i : {0, 1}) {
+      const Gain gain = gainOf(lacking.col(i), with.col(i), every);
+      if (gain.value > gain.error) return true;
+    }
+    return false;
+  }
+
+  static Eigen::RowVector2d sizeOf(const EndError& error) { return {error.position, error.yaw}; }
+
+  std::vector<char> halfMask(int half) const {
+    std::vector<char> mask(all_.size());
+    for (size_t i = 0; i < mask.size(); ++i) mask[i] = rows_.rows()[i].block % 2 == half;
+    return mask;
+  }
+
+  void forgetEffects() {
+    for (const std::string& effect : result_.effects) {
+      say_("  - " + effect + ": does not lessen the end error on driving it was not fitted to");
+      result_.negligible.push_back(effect);
+    }
+    result_.effects.clear();
+    result_.state = result_.calibrated;
+  }
+
   void describeEffects() {
     const FitState& state = result_.state;
     const Eigen::MatrixXd covariance = parameterCovariance(rows_, state, all_);
@@ -101,6 +142,8 @@ class Discovery {
         estimates[effect].push_back(estimate);
       else
         finding_.calibrated.push_back(estimate);
+      if (!isNew(effect))
+        finding_.calibrated.back().moved = hasMoved(estimate, std::sqrt(covariance(at, at)));
     }
     for (const std::string& path : momentsOf(state.model)) {
       const std::string effect = path.substr(0, path.find('.'));
@@ -115,6 +158,16 @@ class Discovery {
           kInvisible * std::abs(parameterNamed(effectNamed(test.effect), test.parameter).typical))
         finding_.not_excited.push_back(test.effect);
     documentAfter(covariance);
+  }
+
+  /// Whether a term of the model is another one now; numbers of the nominal model show as effects.
+  bool hasMoved(const Estimate& estimate, double error) const {
+    if (estimate.parameter.find('.') == std::string::npos) return false;
+    const ParameterCovariance& known = task_.model.covariance;
+    double variance = error * error;
+    for (size_t i = 0; i < known.parameters.size(); ++i)
+      if (known.parameters[i] == estimate.parameter) variance += known.matrix[i][i];
+    return std::abs(estimate.value - estimate.before) > kMoved * std::sqrt(variance);
   }
 
   bool isNew(const std::string& effect) const {
@@ -206,8 +259,7 @@ class Discovery {
     std::vector<EndError> outside;
     const Progress silent = [](const std::string&) {};
     for (int half : {0, 1}) {
-      std::vector<char> mask(all_.size());
-      for (size_t i = 0; i < mask.size(); ++i) mask[i] = rows_.rows()[i].block % 2 == half;
+      const std::vector<char> mask = halfMask(half);
       const ModelDocument model =
           gap.structure_nested
               ? search(fitter_, task_.model, mask, settings_, memory_, silent).state.model
@@ -240,10 +292,36 @@ class Discovery {
                        [](const RunnerUp& other) { return other.behind < other.error; });
   }
 
+  /// A change of what the model already has is a discrepancy, too; false if there is none that
+  /// matters.
+  bool judgeMoved(bool adequate) {
+    const Gap& gap = *finding_.gap;
+    const double least = 1.0 - settings_.least_gain;
+    const bool matters = gap.after.position.median < least * gap.before.position.median ||
+                         gap.after.yaw.median < least * gap.before.yaw.median;
+    bool any = false;
+    bool vehicle = false;
+    for (Estimate& estimate : finding_.calibrated) {
+      estimate.moved = estimate.moved && matters;
+      if (!estimate.moved) continue;
+      any = true;
+      const Effect& effect =
+          effectNamed(estimate.parameter.substr(0, estimate.parameter.find('.')));
+      vehicle = vehicle || effect.kind == EffectKind::kVehicle;
+    }
+    if (!any) return false;
+    finding_.verdict = !adequate ? Verdict::kPartial
+                       : vehicle ? Verdict::kFound
+                                 : Verdict::kMeasurement;
+    return true;
+  }
+
   void judge() {
     const bool adequate = finding_.adequacy_p > kAdequacyAlpha;
     const auto& effects = finding_.effects;
-    if (effects.empty()) {
+    if (effects.empty() && judgeMoved(adequate)) {
+      return;
+    } else if (effects.empty()) {
       finding_.verdict = adequate ? Verdict::kNoDiscrepancy : Verdict::kNotInCatalogue;
     } else if (!adequate) {
       finding_.verdict = Verdict::kPartial;

@@ -35,6 +35,9 @@ struct Estimate {
   double low = 0.0;   ///< of the 95 % interval
   double high = 0.0;  ///< infinite bounds where the drive does not say
   double before = 0.0;
+  /// Of a term that the model has: it is another one now, beyond chance and what the model's own
+  /// covariance allows.
+  bool moved = false;
 };
 
 /// Another effect that explains the data as well or nearly so.

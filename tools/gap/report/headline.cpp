@@ -71,11 +71,30 @@ std::string directionOf(const Estimate& estimate) {
   return "";
 }
 
-std::vector<std::string> namesOf(const std::vector<FoundEffect>& effects) {
+/// Effects of the model that are other ones now.
+std::vector<std::string> movedIn(const Finding& finding) {
   std::vector<std::string> names;
-  names.reserve(effects.size());
-  for (const FoundEffect& effect : effects) names.push_back(effect.name);
+  for (const Estimate& estimate : finding.calibrated) {
+    const std::string effect = estimate.parameter.substr(0, estimate.parameter.find('.'));
+    if (estimate.moved && std::find(names.begin(), names.end(), effect) == names.end())
+      names.push_back(effect);
+  }
   return names;
+}
+
+/// Found effects; where there are none, those that have changed.
+std::vector<std::string> namesOf(const Finding& finding) {
+  std::vector<std::string> names;
+  names.reserve(finding.effects.size());
+  for (const FoundEffect& effect : finding.effects) names.push_back(effect.name);
+  return names.empty() ? movedIn(finding) : names;
+}
+
+std::string movedSentence(const Estimate& estimate) {
+  const std::string effect = estimate.parameter.substr(0, estimate.parameter.find('.'));
+  return shortTitleOf(effect) +
+         ", which the model has, is another one now: " + saidEstimate(estimate) + " instead of " +
+         threeDigits(estimate.before) + " " + estimate.unit + ".";
 }
 
 /// Effects that this drive cannot tell from a found one, itself first.
@@ -162,7 +181,7 @@ std::string saidErrors(const EndErrors& errors, bool rms) {
 }  // namespace
 
 std::string headlineOf(const Finding& finding) {
-  const std::string names = shortTitlesOf(namesOf(finding.effects));
+  const std::string names = shortTitlesOf(namesOf(finding));
   switch (finding.verdict) {
     case Verdict::kNoDiscrepancy:
       return "Simulation and measurement agree";
@@ -193,6 +212,13 @@ std::string sentenceOf(const FoundEffect& effect) {
   if (!numbers.empty()) text += ": " + joined(numbers);
   if (!direction.empty()) text += "; " + direction;
   return text + ".";
+}
+
+std::vector<std::string> movedSentences(const Finding& finding) {
+  std::vector<std::string> sentences;
+  for (const Estimate& estimate : finding.calibrated)
+    if (estimate.moved) sentences.push_back(movedSentence(estimate));
+  return sentences;
 }
 
 std::string gainOf(const Gap& gap) {
@@ -232,6 +258,7 @@ std::vector<Block> firstBlocks(const Finding& finding) {
   const std::string words = opening(finding);
   if (!words.empty()) blocks.push_back(Paragraph{words});
   for (const FoundEffect& effect : finding.effects) blocks.push_back(Paragraph{sentenceOf(effect)});
+  for (const std::string& sentence : movedSentences(finding)) blocks.push_back(Paragraph{sentence});
   if (!finding.unexplained.empty()) {
     blocks.push_back(Paragraph{"Unexplained: " + remainsOf(finding.unexplained) + "."});
   }

@@ -16,6 +16,9 @@ std::string headlineOf(const Finding& finding);
 /// One sentence in the words of the workshop with the effect's numbers and its direction.
 std::string sentenceOf(const FoundEffect& effect);
 
+/// One sentence for each term of the model that is another one now.
+std::vector<std::string> movedSentences(const Finding& finding);
+
 /// "2 s end-pose error on driving it has not seen: 0.64 -> 0.45 m, heading 20.5 -> 10.7 deg ...".
 std::string gainOf(const Gap& gap);
 
