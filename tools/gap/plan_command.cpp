@@ -55,9 +55,8 @@ std::string fromTable(const std::string& a, const std::string& b) {
 
 /// Measurements that tell the two apart, from that table, else from the catalogue.
 std::string otherWays(const std::string& a, const std::string& b) {
-  const std::string known = fromTable(a, b);
-  if (!known.empty()) return known;
-  std::string text;
+  std::string text = fromTable(a, b);
+  if (!text.empty()) return text;
   for (const std::string& name : {a, b})
     text += "  " + titleOf(name) + ": " + effectNamed(name).separates + "\n";
   return text;
