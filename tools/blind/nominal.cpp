@@ -82,7 +82,7 @@ void make(const Study& study, const fs::path& folder, const std::string& noise) 
   do {
     verdict = calibrate(study, folder, model, ++round);
     model = "round" + std::to_string(round) + "/model.yaml";
-  } while (!verdict.at("unexplained").empty() && round < kRounds);
+  } while (!verdict.at("unexplained").empty() && !verdict.at("effects").empty() && round < kRounds);
   Json story = {{"rounds", round}, {"verdict", verdict.at("verdict")}, {"named", Json::array()}};
   for (const Json& effect : verdict.at("effects")) story["named"].push_back(effect.at("name"));
   story["unexplained"] = verdict.at("unexplained");

@@ -35,8 +35,8 @@ std::vector<HiddenCase> casesOf(const Study& study);
 
 /// Where the nominal model of a noise level is, absolute; made if it is not there.
 /** An hour of the plain vehicle of a seed of its own, hidden like all logs, goes through
- * `tread-gap find --calibrate`, again from where it came to while it leaves something unexplained.
- * Whoever comes second waits. */
+ * `tread-gap find --calibrate`, again from where it came to while that leaves something unexplained
+ * and adds. Whoever comes second waits. */
 std::string nominalModel(const Study& study, const std::string& noise);
 
 /// How each nominal model was made: {noise: {model sha256, rounds, verdict, effects}}.

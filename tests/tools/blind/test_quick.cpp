@@ -3,6 +3,7 @@
 // Twelve logs from the generator to the scores, by the programs as people call them.
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -27,10 +28,11 @@ class Folder {
       (fs::temp_directory_path() / ("tread-quick-" + std::to_string(getpid()))).string();
 };
 
-int runQuick(const std::string& out) {
-  const std::string command =
-      std::string(TREAD_BIN_DIR) + "/tread-blind --suite quick --minutes 6 --nominal " +
-      TREAD_SOURCE_DIR + "/tests/data/blind/nominal_mid.yaml --out " + out + " > /dev/null";
+int runQuick(const std::string& out, const std::string& options = "") {
+  const std::string command = std::string(TREAD_BIN_DIR) +
+                              "/tread-blind --suite quick --minutes 6 --nominal " +
+                              TREAD_SOURCE_DIR + "/tests/data/blind/nominal_mid.yaml --out " + out +
+                              " " + options + " > /dev/null";
   return std::system(command.c_str());
 }
 
@@ -63,4 +65,12 @@ TEST_CASE(
        {"scores.json", "table.txt", "cases.csv", "confusion.png", "scores.html",
         "shard-1of1/batch-1/verdicts.txt", "shard-1of1/batch-1/blind/commitments.txt"})
     CHECK(fs::file_size(fs::path(folder.path) / file) > 0);
+  // A shard of it gives the same bytes elsewhere, whatever the number of jobs.
+  const std::string elsewhere = folder.path + "/elsewhere";
+  REQUIRE(runQuick(elsewhere, "--shard 5/6 --jobs 2") == 0);
+  const std::vector<std::string> whole = merged({folder.path});
+  const std::vector<std::string> part = merged({elsewhere});
+  REQUIRE(part.size() == 3);
+  for (const std::string& line : part)
+    CHECK(std::find(whole.begin(), whole.end(), line) != whole.end());
 }
