@@ -125,6 +125,17 @@ bool isOpen(const Effect& effect, const EffectParameter& parameter, const ModelD
   return !isOn(effect, effects, model.measurement);
 }
 
+/// Effects that are a number of the nominal model under another name.
+void forgetNominal(std::vector<Candidate>& candidates) {
+  static const std::set<std::string> kNumbers{"slip_ratio", "track_width", "actuator_lag",
+                                              "command_delay"};
+  candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
+                                  [](const Candidate& candidate) {
+                                    return kNumbers.count(candidate.effect) != 0;
+                                  }),
+                   candidates.end());
+}
+
 }  // namespace
 
 Excitation excitationOf(const Rows& rows, const ModelDocument& model) {
@@ -170,6 +181,16 @@ std::vector<Candidate> candidatesFor(const ModelDocument& model, const Excitatio
         }
     }
   return all;
+}
+
+std::vector<Candidate> candidatesFor(const FitState& state, const Excitation& most) {
+  std::vector<Candidate> candidates = candidatesFor(state.model, most);
+  const bool nominal_free =
+      std::any_of(state.free.begin(), state.free.end(), [](const FreeParameter& parameter) {
+        return parameter.path.find('.') == std::string::npos && std::isinf(parameter.deviation);
+      });
+  if (nominal_free) forgetNominal(candidates);
+  return candidates;
 }
 
 ModelDocument tried(const ModelDocument& model, const Candidate& candidate) {

@@ -39,6 +39,10 @@ Excitation excitationOf(const Rows& rows, const ModelDocument& model);
  * are another one under a second name (crab, yaw_rate_offset) are left to their groups. */
 std::vector<Candidate> candidatesFor(const ModelDocument& model, const Excitation& excitation);
 
+/// Those of a state: where numbers of the nominal model are free without limits, effects that are
+/// the same under another name are left out.
+std::vector<Candidate> candidatesFor(const FitState& state, const Excitation& excitation);
+
 /// A model with the candidate at its trial value.
 ModelDocument tried(const ModelDocument& model, const Candidate& candidate);
 

@@ -23,14 +23,17 @@ struct Single {
 /// One of each such effect.
 std::vector<Single> imitated(const Fitter& fitter, const std::vector<char>& mask,
                              const FitState& state) {
-  const auto candidates = candidatesFor(state.model, excitationOf(fitter.rows(), state.model));
+  const auto candidates = candidatesFor(state, excitationOf(fitter.rows(), state.model));
   const Eigen::MatrixXd directions = directionsOf(fitter, state, candidates);
   const ScoreTest test(fitter.rows(), state, directions, mask);
   std::vector<Single> chosen;
   std::set<std::string> names;
   for (size_t i = 0; i < candidates.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    if (test.uniqueness(at) < kImitated && names.insert(candidates[i].effect).second)
+    const Effect& effect = effectNamed(candidates[i].effect);
+    // A second change of ground is part of an effect that is on.
+    if (isOn(effect, state.model.vehicle.effects, state.model.measurement)) continue;
+    if (test.uniqueness(at) < kImitated && names.insert(effect.name).second)
       chosen.push_back({candidates[i], directions.col(at)});
   }
   return chosen;

@@ -37,17 +37,6 @@ bool hasVanished(const ModelDocument& model, const Candidate& candidate) {
   return std::abs(size) < kVanished * std::abs(known.typical);
 }
 
-/// Effects that are a number of the nominal model under another name.
-void forgetNominal(std::vector<Candidate>& candidates) {
-  static const std::set<std::string> kNumbers{"slip_ratio", "track_width", "actuator_lag",
-                                              "command_delay"};
-  candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
-                                  [](const Candidate& candidate) {
-                                    return kNumbers.count(candidate.effect) != 0;
-                                  }),
-                   candidates.end());
-}
-
 /// A test of all candidates, and for each effect the candidate with the largest score.
 struct Round {
   std::vector<Candidate> candidates;
@@ -115,8 +104,7 @@ class Search {
 
   Round test(DirectionBook& book) {
     Round round;
-    round.candidates = candidatesFor(state().model, book.excitation(fitter_, state()));
-    if (settings_.calibrate) forgetNominal(round.candidates);
+    round.candidates = candidatesFor(state(), book.excitation(fitter_, state()));
     const ScoreTest test(fitter_.rows(), state(),
                          book.directions(fitter_, state(), round.candidates), mask_);
     round.chance = test.largestByChance(settings_.draws, settings_.seed);
