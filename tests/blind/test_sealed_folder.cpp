@@ -50,7 +50,7 @@ TEST_CASE("SHA-256 is that of the standard") {
         "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-TEST_CASE("same seed, same bytes; another seed, others") {
+TEST_CASE("same seed, same bytes, and another seed gives others") {
   Folder a, b, c;
   CasePlan plan = shortPlan({"yaw_breakaway"});
   SealedFolder(a.path()).add("x", makeCase(plan));

@@ -55,7 +55,7 @@ TEST_CASE("misalignment turns every heading by the angle and leaves the rest") {
   }
 }
 
-TEST_CASE("late poses keep what they say and get later stamps; the gyro stays in time") {
+TEST_CASE("late poses keep what they say and get later stamps, and the gyro stays in time") {
   const Pair pair("ins_latency");
   CHECK(pair.value() == 0.3);
   std::map<int64_t, ins_t> after;

@@ -194,6 +194,21 @@ TEST_CASE("each folder of common serves at least two modules or tools") {
   }
 }
 
+TEST_CASE("no test name holds a semicolon: ctest would take it for two tests that do not exist") {
+  const std::regex name("TEST_CASE(_METHOD)?\\(\\s*\"([^\"]*)\"");
+  size_t names = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(TREAD_SOURCE_DIR) / "tests")) {
+    if (entry.path().extension() != ".cpp") continue;
+    const std::string text = contentOf(entry.path());
+    for (std::sregex_iterator found(text.begin(), text.end(), name), end; found != end; ++found) {
+      ++names;
+      CAPTURE(entry.path().string(), (*found)[2].str());
+      CHECK((*found)[2].str().find(';') == std::string::npos);
+    }
+  }
+  CHECK(names > 500);
+}
+
 TEST_CASE("the top level holds what the user fixed and nothing else") {
   const std::set<std::string> allowed{
       "CMakeLists.txt", "lcmtypes", "modules",           "common", "config", "tests", "tools",

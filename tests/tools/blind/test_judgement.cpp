@@ -7,7 +7,7 @@
 using namespace tread::blindtest;
 using namespace tread::blindtest::samples;
 
-TEST_CASE("the truth alone is exactly right; with another name it is found but not exact") {
+TEST_CASE("the truth alone is exactly right, with another name it is found but not exact") {
   const Judgement right = judge(answered(hidden({"slip_ratio"}, "single"), {"slip_ratio"}));
   CHECK(right.exact);
   CHECK(right.first_right);

@@ -127,7 +127,7 @@ TEST_CASE("a jump or a silence of the INS begins a stretch whose commands begin 
 }
 
 TEST_CASE(
-    "a held pose is no pose, but its gyro counts; a robot told to stand may repeat its pose") {
+    "a held pose is no pose, but its gyro counts, and a robot told to stand may repeat its pose") {
   SmallLog log;
   for (int i = 0; i < 200; ++i) {
     const double time = 0.05 * i;
