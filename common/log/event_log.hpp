@@ -20,6 +20,20 @@ struct LogEvent {
   std::vector<uint8_t> bytes;
 };
 
+/// A message as it goes over the bus.
+template <class Message>
+std::vector<uint8_t> encoded(const Message& message) {
+  std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+/// The event of a message that was recorded at its own utime.
+template <class Message>
+LogEvent eventOf(const Channel<Message>& channel, const Message& message) {
+  return {message.utime, channel.name, encoded(message)};
+}
+
 /// Writes LCM event logs that lcm-logplayer and lcm-spy read.
 /** Throws std::runtime_error with one clear line if the file cannot be made. */
 class LogWriter {
@@ -38,8 +52,7 @@ class LogWriter {
   /// Encodes and appends a message at its own utime.
   template <class Message>
   void write(const Channel<Message>& channel, const Message& message) {
-    std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
-    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    const std::vector<uint8_t> bytes = encoded(message);
     write(message.utime, channel.name, bytes.data(), bytes.size());
   }
 

@@ -15,8 +15,7 @@ void editEach(std::vector<LogEvent>& events, const Channel<Message>& channel, Ch
     Message message;
     if (!decode(event, channel, message)) continue;
     change(message);
-    event.bytes.resize(static_cast<size_t>(message.getEncodedSize()));
-    message.encode(event.bytes.data(), 0, static_cast<int>(event.bytes.size()));
+    event.bytes = encoded(message);
   }
 }
 

@@ -45,15 +45,6 @@ void delayAll(double seconds, Events& events) {
   putInOrder(events);
 }
 
-LogEvent eventOf(const ins_t& ins) {
-  LogEvent event;
-  event.utime = ins.utime;
-  event.channel = kIns.name;
-  event.bytes.resize(static_cast<size_t>(ins.getEncodedSize()));
-  ins.encode(event.bytes.data(), 0, static_cast<int>(event.bytes.size()));
-  return event;
-}
-
 /// What is left of a message when its pose is late: the gyro.
 ins_t withoutPose(ins_t ins) {
   std::fill_n(ins.position, 3, kUnknown);
@@ -87,7 +78,7 @@ void delayPoses(double seconds, Events& events) {
   events.erase(std::remove_if(events.begin(), events.end(),
                               [](const LogEvent& event) { return event.channel == kIns.name; }),
                events.end());
-  for (const auto& message : messages) events.push_back(eventOf(message.second));
+  for (const auto& message : messages) events.push_back(eventOf(kIns, message.second));
   putInOrder(events);
 }
 

@@ -111,12 +111,7 @@ class LogMaker {
  private:
   template <class Message>
   void add(const Channel<Message>& channel, const Message& message) {
-    LogEvent event;
-    event.utime = message.utime;
-    event.channel = channel.name;
-    event.bytes.resize(static_cast<size_t>(message.getEncodedSize()));
-    message.encode(event.bytes.data(), 0, static_cast<int>(event.bytes.size()));
-    events_.push_back(std::move(event));
+    events_.push_back(eventOf(channel, message));
   }
 
   void addMark(const std::string& surface) {

@@ -26,12 +26,7 @@ class SmallLog {
  public:
   template <class Message>
   void add(const Channel<Message>& channel, const Message& message) {
-    LogEvent event;
-    event.utime = message.utime;
-    event.channel = channel.name;
-    event.bytes.resize(static_cast<size_t>(message.getEncodedSize()));
-    message.encode(event.bytes.data(), 0, static_cast<int>(event.bytes.size()));
-    events.push_back(std::move(event));
+    events.push_back(eventOf(channel, message));
   }
 
   motor_t& lastMotor() { return motor_; }

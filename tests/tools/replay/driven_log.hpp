@@ -40,8 +40,7 @@ void rewrite(std::vector<LogEvent>& events, const Channel<Message>& channel,
   for (LogEvent& event : events) {
     Message message;
     if (!decode(event, channel, message) || !change(message)) continue;
-    event.bytes.resize(static_cast<size_t>(message.getEncodedSize()));
-    message.encode(event.bytes.data(), 0, static_cast<int>(event.bytes.size()));
+    event.bytes = encoded(message);
   }
 }
 

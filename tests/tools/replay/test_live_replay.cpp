@@ -93,10 +93,7 @@ class LiveLearner {
   template <class Message>
   void keep(const Channel<Message>& channel) {
     bus_->subscribe<Message>(channel, [this, channel](const Message& message) {
-      LogEvent event{bus_->now(), channel.name, {}};
-      event.bytes.resize(static_cast<size_t>(message.getEncodedSize()));
-      message.encode(event.bytes.data(), 0, static_cast<int>(event.bytes.size()));
-      heard_.push_back(std::move(event));
+      heard_.push_back({bus_->now(), channel.name, encoded(message)});
     });
   }
 
