@@ -36,7 +36,10 @@ Excitation excitationOf(const HiddenDrive& drive) {
 std::vector<HiddenTruth> truthOf(const std::vector<Hidden>& hidden, const Comparison& comparison) {
   std::vector<HiddenTruth> all;
   for (const Hidden& one : hidden) {
-    HiddenTruth truth{one.spec, one.hider.levers, one.hider.equivalent};
+    HiddenTruth truth{one.spec, one.hider.levers, one.hider.equivalent, one.spec->group};
+    for (const std::string& other : one.hider.unlike)
+      truth.group.erase(std::remove(truth.group.begin(), truth.group.end(), other),
+                        truth.group.end());
     if (one.hider.measure) truth.equivalent = one.hider.measure(comparison);
     all.push_back(truth);
   }

@@ -83,20 +83,37 @@ const Row kUnknownRows[] = {
      "yaw damping by the turns before"},
 };
 
-const Row kVariantRows[] = {
+const Row kVehicleVariantRows[] = {
+    {"crab", kKinematic, kSame, hideCrab, "motion at an angle to the hull"},
+};
+
+const Row kMeasurementVariantRows[] = {
     {"ins_latency_all", kKinematic, kSame, hideInsLatencyAll, "all that the INS says is late"},
 };
 
-/// What no drive can tell from an effect.
+/// What no drive can tell from an effect: other effects, and numbers of a nominal model.
 std::vector<std::string> groupOf(const std::string& name) {
-  if (name == "slip_ratio") return {"position_scale", "track_width"};
-  if (name == "position_scale") return {"slip_ratio", "track_width"};
+  if (name == "slip_ratio") return {"forward_gain", "full_speed"};
   if (name == "icr_offset") return {"lever_arm_x"};
   if (name == "lever_arm_x") return {"icr_offset"};
   if (name == "centrifugal_drift") return {"heading_latency"};
   if (name == "heading_latency") return {"centrifugal_drift"};
+  if (name == "crab") return {"heading_misalignment"};
+  if (name == "heading_misalignment") return {"crab"};
+  if (name == "payload_change") return {"terrain_change"};
+  if (name == "terrain_change") return {"payload_change"};
+  // Everything late is a delay; poses that are late beside a gyro in time are not.
   if (name == "command_delay") return {"ins_latency"};
   if (name == "ins_latency_all") return {"ins_latency", "command_delay"};
+  return {};
+}
+
+/// What is the same together: slip takes speed and yaw rate, a width the yaw rate, a scale the
+/// speed.
+std::vector<std::vector<std::string>> togetherOf(const std::string& name) {
+  if (name == "slip_ratio") return {{"position_scale", "track_width"}};
+  if (name == "position_scale") return {{"slip_ratio", "track_width"}};
+  if (name == "track_width") return {{"position_scale", "slip_ratio"}};
   return {};
 }
 
@@ -113,7 +130,7 @@ template <size_t Count>
 void append(const Row (&rows)[Count], EffectKind kind, std::vector<EffectSpec>& list) {
   for (const Row& row : rows)
     list.push_back({row.name, kind, row.form, row.shape, row.how, row.make, groupOf(row.name),
-                    dependenceOf(row.name)});
+                    togetherOf(row.name), dependenceOf(row.name)});
 }
 
 }  // namespace
@@ -123,7 +140,8 @@ const std::vector<EffectSpec>& effectList() {
     std::vector<EffectSpec> list;
     append(kVehicleRows, EffectKind::kVehicle, list);
     append(kMeasurementRows, EffectKind::kMeasurement, list);
-    append(kVariantRows, EffectKind::kVariant, list);
+    append(kVehicleVariantRows, EffectKind::kVehicleVariant, list);
+    append(kMeasurementVariantRows, EffectKind::kMeasurementVariant, list);
     append(kUnknownRows, EffectKind::kOutOfCatalogue, list);
     return list;
   }();

@@ -13,7 +13,9 @@ namespace tread::blind {
 enum class EffectKind {
   kVehicle,
   kMeasurement,
-  kVariant,  ///< of a measurement effect: for groups that cannot be told apart
+  // Never hidden but in groups that cannot be told apart.
+  kVehicleVariant,
+  kMeasurementVariant,
   kOutOfCatalogue,
 };
 /// Whether forces and power are changed inside the dynamics, or the motion that comes out of them.
@@ -30,7 +32,9 @@ struct EffectSpec {
   const char* how;  ///< which lever is turned, in words
   /// The hider for a size: 1 is about the smallest that can be found, 2 and 4 are usual.
   Hider (*make)(double size, double duration, Dice& dice);
-  std::vector<std::string> group;       ///< cannot be told from these with any drive
+  std::vector<std::string> group;  ///< each of these alone is the same for any drive
+  /// These are the same where they are all there.
+  std::vector<std::vector<std::string>> together;
   std::vector<std::string> depends_on;  ///< what the rest depends on, if out of catalogue
 };
 
@@ -74,6 +78,7 @@ Hider hideTurnSpeedLoss(double size, double duration, Dice& dice);
 Hider hideReverseSpeedGain(double size, double duration, Dice& dice);
 Hider hideIcrOffset(double size, double duration, Dice& dice);
 Hider hideBodyInertia(double size, double duration, Dice& dice);
+Hider hideCrab(double size, double duration, Dice& dice);
 
 Hider hideInsLatency(double size, double duration, Dice& dice);
 Hider hideInsLatencyAll(double size, double duration, Dice& dice);

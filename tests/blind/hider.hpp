@@ -36,7 +36,7 @@ struct Build {
 struct InstrumentFault {
   double pose_latency = 0.0;     ///< of position and heading, not of the gyro [s]
   double all_latency = 0.0;      ///< of everything that the INS says [s]
-  double heading_latency = 0.0;  ///< of the heading alone [s]
+  double heading_latency = 0.0;  ///< of the heading alone, against the position [s]
   double gyro_bias = 0.0;        ///< [rad/s]
   double gyro_warm_up = 0.0;     ///< more bias when cold, gone after minutes [rad/s]
   double misalignment = 0.0;     ///< of body against INS: v_y gains this share of v_x [rad]
@@ -85,6 +85,7 @@ struct Hider {
   std::function<Twist2(const Moment&, Twist2)> slide;
   std::function<void(const Moment&, sim::TrackedVehicle&)> touch;
   std::function<void(InstrumentFault&)> sense;
+  std::vector<std::string> unlike;   ///< of its spec's group: what this one can be told from
   std::vector<Quantity> levers;      ///< what was turned, as it is
   std::vector<Quantity> equivalent;  ///< in the catalogue's terms where that needs no measuring
   /// In the catalogue's terms, found by comparing.

@@ -73,6 +73,7 @@ Hider hideTerrainChange(double size, double duration, Dice& dice) {
   if (changes == 2) at.push_back(at.front() + duration * dice.uniform(0.2, 0.35));
   Hider hider;
   hider.due = at;
+  if (changes == 2) hider.unlike = {"payload_change"};
   hider.build = [=](double time, Build& build) {
     if (time < at.front() || (changes == 2 && time >= at.back())) return;
     build.surface.scrub_resistance *= 1.0 + 0.2 * size;
@@ -222,6 +223,18 @@ Hider hideIcrOffset(double size, double, Dice& dice) {
                   built("tracks_ahead", sign * (wanted - pressure), "m")};
   hider.measure = fitted(
       "x_icr", "m", [](const SteadyPair& p) { return -p.with.omega; }, gainedSideSpeed);
+  return hider;
+}
+
+Hider hideCrab(double size, double, Dice& dice) {
+  const double angle = 0.025 * size * dice.sign();
+  Hider hider;
+  hider.slide = [=](const Moment&, Twist2 twist) {
+    twist.v_y += twist.v_x * std::tan(angle);
+    return twist;
+  };
+  hider.levers = {built("angle", angle, "rad")};
+  hider.equivalent = {built("psi_0", angle, "rad")};
   return hider;
 }
 

@@ -30,6 +30,7 @@ Hider hideInsLatencyAll(double size, double, Dice&) {
 }
 
 Hider hideHeadingLatency(double size, double, Dice&) {
+  // heading(t - T_h) beside position(t): v_y gains T_h v omega, a drift of -T_h.
   const double late = 0.06 * size;
   return instrument("heading_latency", "T_h", late, "s", 1.0,
                     [=](InstrumentFault& fault) { fault.heading_latency = late; });
@@ -52,8 +53,10 @@ Hider hideHeadingMisalignment(double size, double, Dice& dice) {
 }
 
 Hider hideLeverArmX(double size, double, Dice& dice) {
+  // The field's sign, that of a centre of rotation as far ahead: v_y loses l_x omega, so the
+  // antenna sits behind for l_x > 0.
   const double arm = 0.05 * size * dice.sign();
-  return instrument("antenna_ahead", "l_x", arm, "m", 1.0,
+  return instrument("antenna_ahead", "l_x", arm, "m", -1.0,
                     [=](InstrumentFault& fault) { fault.antenna_x = arm; });
 }
 

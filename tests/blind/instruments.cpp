@@ -47,15 +47,19 @@ double yawRateAt(const std::vector<Twist2>& twists, double time) {
   return 0.5 * (twists[earlier].omega + twists[place.before].omega);
 }
 
+/// Nothing but the noise of NoiseLevel: an offset that stays for longer than a pattern would be an
+/// effect of its own. A filter's poses err alike for a moment, so that a mean over a tenth of a
+/// second is hardly better than one of them.
 sim::InsParameters insParameters(const NoiseLevel& noise) {
   constexpr double kSamplesPerBin = 0.25 / 0.02;
   sim::InsParameters ins;
   ins.latency_us = 0;
-  ins.position_noise = noise.fix;
-  ins.position_bias = 2.0 * noise.fix;
+  ins.bias_time = 0.15;
+  ins.position_noise = 0.0;
+  ins.position_bias = noise.fix;
   ins.height_noise = noise.fix;
-  ins.heading_noise = noise.heading;
-  ins.heading_bias = 2.0 * noise.heading;
+  ins.heading_noise = 0.0;
+  ins.heading_bias = noise.heading;
   ins.attitude_noise = 0.002;
   ins.rate_noise = noise.gyro_bin * std::sqrt(kSamplesPerBin);
   return ins;

@@ -69,6 +69,8 @@ std::vector<CasePlan> plansOf(const Arguments& arguments) {
   if (plan.kind == CaseKind::kNull) plan.size = 0.0;
   if (plan.kind == CaseKind::kDegenerate) {
     plan.group = effectNamed(plan.effects.front()).group;
+    for (const auto& all : effectNamed(plan.effects.front()).together)
+      plan.group.insert(plan.group.end(), all.begin(), all.end());
     plan.group.insert(plan.group.begin(), plan.effects.front());
   }
   return {plan};
@@ -89,7 +91,7 @@ void hide(const Arguments& arguments) {
 }
 
 const char* kindText(EffectKind kind) {
-  if (kind == EffectKind::kVehicle) return "vehicle";
+  if (kind == EffectKind::kVehicle || kind == EffectKind::kVehicleVariant) return "vehicle";
   return kind == EffectKind::kOutOfCatalogue ? "unlisted" : "measurement";
 }
 
@@ -152,7 +154,7 @@ int checkSeals(const std::string& path) {
 void addOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--out", arguments.out, "folder that gets blind/ and sealed/");
   app.add_option("--suite", arguments.suite, "all cases of a study")
-      ->check(CLI::IsMember({"small", "full"}));
+      ->check(CLI::IsMember(suiteNames()));
   app.add_option("--shard", arguments.shard, "I/N: every N-th case of the suite from the I-th");
   app.add_option("--case", arguments.kind, "kind of one case; default: what the effects make it")
       ->check(CLI::IsMember({"null", "single", "pair", "out_of_catalogue", "degenerate", "bad"}));
@@ -190,7 +192,7 @@ int parseAndRun(int argc, char** argv) {
   uint64_t seed = 1;
   CLI::App* conditions =
       app.add_subcommand("conditions", "name and noise of a suite's cases: what is no secret");
-  conditions->add_option("--suite", suite)->required()->check(CLI::IsMember({"small", "full"}));
+  conditions->add_option("--suite", suite)->required()->check(CLI::IsMember(suiteNames()));
   conditions->add_option("--seed", seed)->capture_default_str();
   SemiArguments semi;
   CLI::App* recording = app.add_subcommand("semi", "hides an effect in the log of a recording");

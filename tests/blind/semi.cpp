@@ -15,6 +15,7 @@
 #include "common/geometry/se2.hpp"
 #include "modules/simulator/core/random.hpp"
 #include "tests/blind/dice.hpp"
+#include "tests/blind/effect_list.hpp"
 #include "tests/blind/event_edit.hpp"
 
 namespace tread::blind {
@@ -157,14 +158,21 @@ void hideInPoses(const std::string& effect, double value, Events& events) {
   if (effect == "heading_misalignment") turnHeading(value, events);
   if (effect == "ins_latency") delayPoses(value, events);
   if (effect == "command_delay") delayAll(value, events);
-  if (effect == "lever_arm_x") moveAntenna({value, 0.0, 0.0}, events);
-  // The catalogue's sign: v_x grows by l_y omega.
+  // The field's signs: v_y loses l_x omega, v_x gains l_y omega.
+  if (effect == "lever_arm_x") moveAntenna({-value, 0.0, 0.0}, events);
   if (effect == "lever_arm_y") moveAntenna({0.0, -value, 0.0}, events);
   if (effect == "gyro_bias") editEach(events, kIns, [=](ins_t& ins) { ins.rate[2] += value; });
   if (effect == "position_scale")
     editPoses(events, [=](ins_t& ins) {
       for (double& p : ins.position) p *= 1.0 + value;
     });
+}
+
+/// From the first command to the last [s].
+double drivenTime(const Events& events) {
+  const auto motors = messagesOf(events, kMotor);
+  if (motors.empty()) return 0.0;
+  return static_cast<double>(motors.back().utime - motors.front().utime) * 1e-6;
 }
 
 bool actsOnCommands(const std::string& effect) {
@@ -202,7 +210,7 @@ SemiTruth hideInLog(const std::string& effect, int size, uint64_t seed, Events& 
   Dice dice(sim::streamSeed(seed, kEffectStream));
   const double sign = spec->either_sign ? dice.sign() : 1.0;
   const double value = sign * (size == 1 ? spec->small : spec->large);
-  SemiTruth truth{effect, {{spec->parameter, value, spec->unit, false}}};
+  SemiTruth truth{effect, {{spec->parameter, value, spec->unit, false}}, drivenTime(events)};
   if (effect == "payload_change" || effect == "terrain_change") {
     const double when = dice.uniform(0.4, 0.6);
     changeYawGain(value, when, events);
@@ -232,11 +240,18 @@ std::string semiTruthText(const std::string& name, const SemiTruth& truth, int s
   for (const Quantity& one : truth.parameters)
     equivalent.push_back(
         {{"name", one.name}, {"value", one.value}, {"unit", one.unit}, {"measured", one.measured}});
+  const EffectSpec& spec = effectNamed(truth.effect);
+  const bool vehicle = spec.kind == EffectKind::kVehicle;
   Json effect;
   effect["name"] = truth.effect;
-  effect["form"] = "exact transformation";
+  effect["kind"] = vehicle ? "vehicle" : "measurement";
+  effect["form"] = "kinematic";
+  effect["shape"] = "same";
+  effect["how"] = "exact transformation";
   effect["size"] = size;
   effect["equivalent"] = equivalent;
+  effect["group"] = spec.group;
+  effect["together"] = spec.together;
   Json json;
   json["format"] = "tread-hide truth 1";
   json["case"] = name;
@@ -245,14 +260,20 @@ std::string semiTruthText(const std::string& name, const SemiTruth& truth, int s
   json["seed"] = seed;
   json["salt"] = std::to_string(sim::streamSeed(seed, kSaltStream));
   json["source_sha256"] = source_hash;
+  json["minutes"] = truth.duration / 60.0;
+  json["duration_s"] = truth.duration;
+  json["programme"] = "recording";
+  json["noise"] = {{"name", "recording"}};
   json["size"] = size;
   json["effects"] = Json::array({effect});
+  json["right_verdicts"] = {vehicle ? "FOUND" : "MEASUREMENT", "AMBIGUOUS"};
   std::vector<std::string> right{truth.effect};
-  if (truth.effect == "payload_change") right.push_back("terrain_change");
-  if (truth.effect == "terrain_change") right.push_back("payload_change");
-  if (truth.effect == "command_delay") right.push_back("ins_latency");
-  if (truth.effect == "lever_arm_x") right.push_back("icr_offset");
+  right.insert(right.end(), spec.group.begin(), spec.group.end());
   json["right_names"] = right;
+  json["defect"] = "";
+  json["defect_at"] = "";
+  json["floor"] = nullptr;
+  json["gap"] = nullptr;
   return json.dump(2) + "\n";
 }
 

@@ -30,6 +30,7 @@ const std::vector<SemiEffect>& semiEffects();
 struct SemiTruth {
   std::string effect;
   std::vector<Quantity> parameters;
+  double duration = 0.0;  ///< from the first command to the last [s]
 };
 
 /// Hides an effect in the events of a log, size 1 or 2; the sign and the time of a change come
@@ -40,7 +41,9 @@ SemiTruth hideInLog(const std::string& effect, int size, uint64_t seed,
 /// The events of a log; throws std::runtime_error if there are none or it is damaged.
 std::vector<LogEvent> readLog(const std::string& path);
 
-/// The truth as JSON; `log` names the case, `source_hash` is that of the recording's log.
+/// The truth as JSON with the keys of truth_text.hpp, and source_sha256, the hash of the
+/// recording's log. Noise and programme are called "recording"; what only a generator knows is
+/// null.
 std::string semiTruthText(const std::string& name, const SemiTruth& truth, int size, uint64_t seed,
                           const std::string& source_hash);
 

@@ -20,8 +20,11 @@ struct DegenerateGroup {
 /// Groups after gap.md Part 2: exact ones, then those of poor drives.
 const std::vector<DegenerateGroup>& degenerateGroups();
 
-/// All cases of a suite, small or full, in the order of their shuffled names. Throws
-/// std::invalid_argument for another name. Same seed, same cases.
+/// small, medium, full.
+const std::vector<std::string>& suiteNames();
+
+/// All cases of a suite in the order of their shuffled names. Short logs (200 s beside 10 min) have
+/// a third of `minutes`. Throws std::invalid_argument for another name. Same seed, same cases.
 std::vector<CasePlan> suiteOf(const std::string& name, double minutes, uint64_t seed);
 
 }  // namespace tread::blind

@@ -117,28 +117,6 @@ TEST_CASE("nothing in a log tells what is hidden") {
   }
 }
 
-TEST_CASE("noise is as large as its level says") {
-  for (const char* level : {"low", "mid", "high"}) {
-    CasePlan plan = shortPlan({});
-    plan.noise = level;
-    const NoiseLevel noise = *noiseLevel(level);
-    const auto ins = messagesOf(makeCase(plan).events, kIns);
-    // The first seconds stand still.
-    const size_t standing = 13 * 50;
-    double square = 0.0, fix = 0.0;
-    int bins = 0;
-    for (size_t i = 0; i + 13 <= standing; i += 13, ++bins) {
-      double mean = 0.0;
-      for (size_t k = i; k < i + 13; ++k) mean += ins[k].rate[2] / 13.0;
-      square += mean * mean;
-    }
-    for (size_t i = 1; i < standing; ++i)
-      fix += std::pow(ins[i].position[0] - ins[i - 1].position[0], 2) / 2.0;
-    CHECK(std::sqrt(square / bins) == Approx(noise.gyro_bin).epsilon(0.3));
-    CHECK(std::sqrt(fix / static_cast<double>(standing)) == Approx(noise.fix).epsilon(0.15));
-  }
-}
-
 TEST_CASE("a jumped clock jumps by seven seconds on all channels") {
   const MadeCase made = badCase("clock_jump");
   const auto ins = messagesOf(made.events, kIns);

@@ -14,12 +14,12 @@
 // a balanced body, a battery that does not fade.
 namespace tread::blind {
 
-/// How much is uncertain in a log, one sigma.
+/// How much is uncertain in a log, one sigma (gap.md 3.5, which has no heading noise).
 struct NoiseLevel {
   std::string name;
   double gyro_bin = 0.0;  ///< yaw rate averaged over 0.25 s [rad/s]
-  double fix = 0.0;       ///< position, per axis [m]
-  double heading = 0.0;   ///< [rad]
+  double fix = 0.0;       ///< position of a pose, per axis [m]
+  double heading = 0.0;   ///< of a pose [rad]
   double terrain = 0.0;   ///< of speed and of yaw rate from pattern to pattern [1]
 };
 

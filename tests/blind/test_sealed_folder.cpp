@@ -110,58 +110,6 @@ TEST_CASE("a truncated log ends inside an event") {
   CHECK_FALSE(reader.problem().empty());
 }
 
-TEST_CASE("the full suite has every effect in all sizes and noises, and the other kinds") {
-  const auto plans = suiteOf("full", 10.0, 1);
-  std::map<CaseKind, int> count;
-  std::set<std::string> names, singles;
-  for (const CasePlan& plan : plans) {
-    ++count[plan.kind];
-    names.insert(plan.name);
-    if (plan.kind == CaseKind::kSingle)
-      singles.insert(plan.effects.front() + std::to_string(plan.size) + plan.noise);
-    if (plan.kind == CaseKind::kPair) {
-      CHECK(plan.effects.size() == 2);
-      CHECK(plan.effects[0] != plan.effects[1]);
-    }
-  }
-  CHECK(names.size() == plans.size());
-  CHECK(singles.size() == 38 * 9);
-  CHECK(count[CaseKind::kNull] == 400);
-  CHECK(count[CaseKind::kPair] == 200);
-  CHECK(count[CaseKind::kUnknown] >= 90);
-  CHECK(count[CaseKind::kDegenerate] >= 90);
-  CHECK(count[CaseKind::kBad] == 8 * static_cast<int>(defectNames().size()));
-}
-
-TEST_CASE("names in a suite are mixed: neighbours are of different kinds") {
-  const auto plans = suiteOf("full", 10.0, 1);
-  int changes = 0;
-  for (size_t i = 1; i < plans.size(); ++i) changes += plans[i].kind != plans[i - 1].kind ? 1 : 0;
-  CHECK(changes > static_cast<int>(plans.size()) / 2);
-}
-
-TEST_CASE("every case of the small suite can be made") {
-  for (const CasePlan& plan : suiteOf("small", 0.5, 2)) {
-    CAPTURE(plan.name, plan.defect);
-    CHECK_NOTHROW(makeCase(plan));
-  }
-}
-
-TEST_CASE("groups that no drive tells apart are made with the right answers beside the truth") {
-  for (const DegenerateGroup& group : degenerateGroups())
-    for (const std::string& hidden : group.hidden) {
-      CAPTURE(hidden);
-      CasePlan plan = shortPlan({hidden});
-      plan.minutes = 0.5;
-      plan.kind = CaseKind::kDegenerate;
-      plan.group = group.right;
-      plan.choice = group.choice;
-      const std::string truth = makeCase(plan).truth;
-      for (const std::string& right : group.right)
-        CHECK(truth.find("\"" + right + "\"") != std::string::npos);
-    }
-}
-
 TEST_CASE("the program hides, opens and refuses in words") {
   Folder folder;
   const std::string hide = std::string(TREAD_BIN_DIR) + "/tread-hide ";

@@ -95,7 +95,7 @@ TEST_CASE("scale, lever arms and gyro bias are what they say") {
     const Eigen::Vector3d p(before[i].position), px(moved_x[i].position), py(moved_y[i].position);
     const Eigen::Vector3d arm_x = attitudeOf(before[i]).conjugate() * (px - p);
     const Eigen::Vector3d arm_y = attitudeOf(before[i]).conjugate() * (py - p);
-    CHECK((arm_x - Eigen::Vector3d(x.value(), 0.0, 0.0)).norm() < 1e-9);
+    CHECK((arm_x - Eigen::Vector3d(-x.value(), 0.0, 0.0)).norm() < 1e-9);
     CHECK((arm_y - Eigen::Vector3d(0.0, -y.value(), 0.0)).norm() < 1e-9);
     CHECK(biased[i].rate[2] - before[i].rate[2] == Approx(gyro.value()));
   }

@@ -12,7 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const char* nameOf(EffectKind kind) {
-  if (kind == EffectKind::kVehicle) return "vehicle";
+  if (kind == EffectKind::kVehicle || kind == EffectKind::kVehicleVariant) return "vehicle";
   return kind == EffectKind::kOutOfCatalogue ? "out_of_catalogue" : "measurement";
 }
 
@@ -35,7 +35,8 @@ Json effectOf(const HiddenTruth& hidden, double size) {
   effect["size"] = size;
   effect["levers"] = listOf(hidden.levers);
   effect["equivalent"] = listOf(hidden.equivalent);
-  effect["group"] = spec.group;
+  effect["group"] = hidden.group;
+  effect["together"] = spec.together;
   effect["depends_on"] = spec.depends_on;
   return effect;
 }
@@ -65,11 +66,12 @@ std::vector<std::string> rightVerdicts(const CasePlan& plan, const CaseTruth& tr
   }
   bool measurement_only = true;
   for (const HiddenTruth& effect : truth.effects)
-    measurement_only = measurement_only && effect.spec->kind != EffectKind::kVehicle;
+    measurement_only = measurement_only && nameOf(effect.spec->kind) == std::string("measurement");
   std::vector<std::string> verdicts{measurement_only ? "MEASUREMENT" : "FOUND"};
   // An exact group may be named as such.
   for (const HiddenTruth& effect : truth.effects)
-    if (!effect.spec->group.empty()) return {verdicts.front(), "AMBIGUOUS"};
+    if (!effect.group.empty() || !effect.spec->together.empty())
+      return {verdicts.front(), "AMBIGUOUS"};
   return verdicts;
 }
 

@@ -16,6 +16,7 @@ struct HiddenTruth {
   const EffectSpec* spec = nullptr;
   std::vector<Quantity> levers;
   std::vector<Quantity> equivalent;
+  std::vector<std::string> group;  ///< each the same as this one, in this drive
 };
 
 /// How far a log goes: what is never asked cannot be found.
@@ -39,12 +40,15 @@ struct CaseTruth {
 /// The truth as JSON, two spaces, keys in a fixed order, newline at the end:
 ///   format "tread-hide truth 1", case, log, kind (kindName(), or "semi"), seed, salt, minutes,
 ///   duration_s, programme, noise {...}, size
-///   effects [{name, kind vehicle|measurement|out_of_catalogue, form physical|kinematic,
-///     shape same|other (as the catalogue's equation in steady motion), how, size,
-///     levers [{name, value, unit, measured}]      what was turned in the generator
-///     equivalent [{name, value, unit, measured}]  in gap.md's terms, as a change against the
+///   effects [{name, kind vehicle|measurement|out_of_catalogue,
+///     form physical (changed in the 1 kHz dynamics)|kinematic (in the motion or what is said of
+///     it), shape same|other (as the catalogue's equation in steady motion), how, size, levers
+///     [{name, value, unit, measured}]      what was turned in the generator equivalent [{name,
+///     value, unit, measured}]  in gap.md's terms, as a change against the
 ///       plain vehicle; measured: least squares over the patterns' steady halves
-///     group [...], depends_on [...]}]
+///     group [...]      each of these alone is the same for any drive
+///     together [[...]] these are the same where they are all there
+///     depends_on [...]}]
 ///   right_verdicts [...], right_names [...]       answers that count as right
 ///   defect, defect_at                             of a bad log
 ///   floor, gap {position_m {median, rms}, yaw_rad {median, rms}, yaw_rate_rad_s {rms},

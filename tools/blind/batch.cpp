@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/blind/batch.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <filesystem>
@@ -57,7 +58,8 @@ class Runner {
 
   void hide() const {
     const std::string log = "hide.log";
-    if (batch_.cases.front().arguments.empty()) {
+    const auto of_suite = [](const HiddenCase& one) { return one.arguments.empty(); };
+    if (std::any_of(batch_.cases.begin(), batch_.cases.end(), of_suite)) {
       const std::string shard =
           std::to_string(batch_.first + 1) + "/" + std::to_string(batch_.stride);
       runOrThrow({{program("tread-hide"), "--suite", study_.suite, "--minutes",
@@ -66,11 +68,12 @@ class Runner {
                   batch_.folder,
                   log,
                   ""});
-      return;
     }
     for (const HiddenCase& one : batch_.cases) {
-      std::vector<std::string> command{program("tread-hide"), "--out", "."};
+      if (of_suite(one)) continue;
+      std::vector<std::string> command{program("tread-hide")};
       command.insert(command.end(), one.arguments.begin(), one.arguments.end());
+      command.insert(command.end(), {"--out", "."});
       runOrThrow({command, batch_.folder, log, ""});
     }
   }
@@ -101,7 +104,7 @@ class Runner {
   void find(const HiddenCase& one) {
     fs::create_directories(folder_ / "found" / one.name);
     const Ended ended = blindtest::run(
-        {{program("tread-gap"), "find", "--threads", "1", "--model", models_.at(one.noise),
+        {{program("tread-gap"), "find", "--threads", "1", "--model", models_.at(one.nominal),
           "--train", "blind/" + one.name + ".lcm", "--out", "found/" + one.name},
          batch_.folder,
          foundFile(one, "log.txt"),
@@ -142,7 +145,7 @@ class Runner {
       answer["verdict"] = readJson(folder_ / foundFile(one, "verdict.json"));
     else if (ended_.at(one.name).status == kBadInput)
       answer["message"] = lastLine((folder_ / foundFile(one, "log.txt")).string());
-    record["nominal"] = nominalNumbers(models_.at(one.noise), answer["verdict"]);
+    record["nominal"] = nominalNumbers(models_.at(one.nominal), answer["verdict"]);
     record["answer"] = std::move(answer);
     record["verdict_sha256"] = verdictHash(one).substr(0, 64);
     return record;

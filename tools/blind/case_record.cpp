@@ -24,14 +24,20 @@ EndErrors errorOf(const Json& json) {
   const auto of = [&](const char* size) {
     return EndError{numberAt(json.at("position_m"), size), numberAt(json.at("yaw_rad"), size)};
   };
-  return {of("rms"), of("median")};
+  EndErrors errors{of("rms"), of("median")};
+  if (json.contains("yaw_rate_rad_s")) errors.yaw_rate = numberAt(json.at("yaw_rate_rad_s"), "rms");
+  return errors;
 }
 
 HiddenEffect hiddenOf(const Json& json) {
   HiddenEffect effect;
   effect.name = json.at("name");
+  effect.kind = json.value("kind", "");
   effect.form = json.value("form", "");
   effect.shape = json.value("shape", "");
+  effect.group = wordsAt(json, "group");
+  if (json.contains("together"))
+    effect.together = json.at("together").get<std::vector<std::vector<std::string>>>();
   effect.depends_on = wordsAt(json, "depends_on");
   for (const Json& number : json.at("equivalent"))
     effect.numbers.push_back({number.at("name"), numberAt(number, "value")});
@@ -62,6 +68,7 @@ Estimated estimatedOf(const std::string& path, const Json& json, const Json& nom
     one.before = numberAt(nominal.at(path), "value");
     one.before_sigma = numberAt(nominal.at(path), "sigma");
   }
+  if (json.contains("moved")) one.moved = json.at("moved").get<bool>();
   return one;
 }
 

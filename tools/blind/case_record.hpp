@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,7 @@ struct EndError {
 /// Root mean squares and medians of such errors.
 struct EndErrors : EndError {
   EndError median;
+  double yaw_rate = kUnknown;  ///< rms of the gyro over 0.25 s [rad/s]
 };
 
 /// A number of the truth, in the catalogue's terms.
@@ -33,8 +35,11 @@ struct HiddenNumber {
 /// One effect that was hidden.
 struct HiddenEffect {
   std::string name;
-  std::string form;   ///< physical, kinematic
-  std::string shape;  ///< same, other: as the catalogue's equation or only like it
+  std::string kind;                ///< vehicle, measurement, out_of_catalogue
+  std::string form;                ///< physical, kinematic
+  std::string shape;               ///< same, other: as the catalogue's equation or only like it
+  std::vector<std::string> group;  ///< each of these alone is the same
+  std::vector<std::vector<std::string>> together;  ///< these are, where they are all there
   std::vector<std::string> depends_on;
   std::vector<HiddenNumber> numbers;
 };
@@ -42,7 +47,7 @@ struct HiddenEffect {
 /// What tread-hide sealed.
 struct Truth {
   std::string name;  ///< of the case
-  std::string kind;  ///< null, single, pair, out_of_catalogue, degenerate, bad
+  std::string kind;  ///< null, single, pair, out_of_catalogue, degenerate, bad, semi
   std::string noise;
   std::string programme;
   std::string defect;
@@ -64,6 +69,8 @@ struct Estimated {
   double high = kUnknown;
   double before = kUnknown;        ///< in the nominal model
   double before_sigma = kUnknown;  ///< its standard deviation there
+  /// Whether the workflow says that it is another one now; nothing where it did not say.
+  std::optional<bool> moved = {};
 };
 
 /// An effect that the workflow named.

@@ -13,7 +13,7 @@ const char* const kNothing = "nothing";
 const char* const kUnexplained = "unexplained";
 const char* const kRefused = "refused";
 
-bool belongs(const JudgedCase& one) {
+bool counts(const JudgedCase& one) {
   return one.record.truth.kind == "single" || one.record.truth.kind == "null";
 }
 
@@ -25,8 +25,12 @@ std::string hiddenOf(const JudgedCase& one) {
 std::set<std::string> saidOf(const JudgedCase& one) {
   const std::string hidden = hiddenOf(one);
   std::set<std::string> said;
-  for (const NamedEffect& named : one.record.answer.effects)
-    said.insert(covers(named, hidden) ? hidden : named.name);
+  const auto& effects = one.record.truth.effects;
+  for (const NamedEffect& named : one.record.answer.effects) {
+    const bool right =
+        !effects.empty() && blindtest::belongs(named.name, effects.front(), one.record.answer);
+    said.insert(right ? hidden : named.name);
+  }
   if (one.judgement.moved > 0) said.insert(hidden);
   if (one.judgement.refused) said.insert(kRefused);
   if (one.judgement.flagged) said.insert(kUnexplained);
@@ -42,7 +46,7 @@ Confusion confusionOf(const std::vector<JudgedCase>& cases) {
   std::set<std::string> names;
   const std::set<std::string> words{kNothing, kUnexplained, kRefused};
   for (const JudgedCase& one : cases) {
-    if (!belongs(one)) continue;
+    if (!counts(one)) continue;
     const std::string hidden = hiddenOf(one);
     ++count[hidden];
     if (hidden != kNothing) names.insert(hidden);

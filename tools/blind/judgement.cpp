@@ -55,33 +55,52 @@ bool rightVariable(const CaseRecord& record) {
   return false;
 }
 
+/// Whether the headline is that of something named, be it that a term of the model is another one.
+bool namesSomething(const Answer& answer) {
+  return contains({"FOUND", "AMBIGUOUS", "PARTIAL", "MEASUREMENT"}, answer.verdict);
+}
+
+bool isNamed(const std::string& name, const Answer& answer) {
+  return std::any_of(answer.effects.begin(), answer.effects.end(),
+                     [&](const NamedEffect& one) { return one.name == name; });
+}
+
+/// Whether an effect stands beside a name as another possible one.
+bool isBeside(const NamedEffect& named, const HiddenEffect& hidden) {
+  return contains(named.runner_ups, hidden.name) || contains(named.group, hidden.name);
+}
+
 void judgeNames(const CaseRecord& record, Judgement& judgement) {
   const std::vector<NamedEffect>& named = record.answer.effects;
-  size_t covered = 0;
+  const auto right = [&](const NamedEffect& one, const HiddenEffect& hidden) {
+    return belongs(one.name, hidden, record.answer) ||
+           (record.truth.kind == "degenerate" && contains(record.truth.right_names, one.name));
+  };
   bool all_listed = true;
-  const bool degenerate = record.truth.kind == "degenerate";
   for (const HiddenEffect& hidden : record.truth.effects) {
-    const auto covering = [&](const NamedEffect& one) {
-      return covers(one, hidden.name) ||
-             (degenerate && contains(record.truth.right_names, one.name));
-    };
-    const auto running_up = [&](const NamedEffect& one) {
-      return contains(one.runner_ups, hidden.name);
-    };
-    const bool is_named = std::any_of(named.begin(), named.end(), covering);
-    const bool has_moved = !is_named && moved(record.answer, hidden.name);
-    covered += is_named;
+    const auto is_right = [&](const NamedEffect& one) { return right(one, hidden); };
+    const bool is_named = std::any_of(named.begin(), named.end(), is_right);
+    const bool has_moved = !is_named && moved(record.answer, hidden);
+    judgement.found += is_named || has_moved;
     judgement.moved += has_moved;
-    all_listed = all_listed &&
-                 (is_named || has_moved || std::any_of(named.begin(), named.end(), running_up));
-    judgement.first_right = judgement.first_right || (!named.empty() && covering(named.front()));
+    all_listed =
+        all_listed && (is_named || has_moved ||
+                       std::any_of(named.begin(), named.end(),
+                                   [&](const NamedEffect& one) { return isBeside(one, hidden); }));
+    judgement.first_right =
+        judgement.first_right || (named.empty() ? has_moved : is_right(named.front()));
   }
-  const size_t hidden = record.truth.effects.size();
-  judgement.found = covered + judgement.moved;
-  judgement.listed = hidden > 0 && all_listed;
-  judgement.nothing = named.empty() && judgement.moved == 0;
-  judgement.only_wrong = !named.empty() && judgement.found == 0;
-  judgement.exact = hidden > 0 && judgement.found == hidden && named.size() == covered;
+  const std::vector<HiddenEffect>& truth = record.truth.effects;
+  const bool all_right = std::all_of(named.begin(), named.end(), [&](const NamedEffect& one) {
+    return std::any_of(truth.begin(), truth.end(),
+                       [&](const HiddenEffect& hidden) { return right(one, hidden); });
+  });
+  judgement.listed = !truth.empty() && all_listed;
+  const bool said = !named.empty() || namesSomething(record.answer);
+  judgement.alarm = said;
+  judgement.nothing = !said && judgement.moved == 0;
+  judgement.only_wrong = said && judgement.found == 0;
+  judgement.exact = !truth.empty() && judgement.found == truth.size() && all_right;
 }
 
 /// A degenerate case is answered where its alternatives are named as such.
@@ -120,42 +139,59 @@ void judgeParameters(const CaseRecord& record, Judgement& judgement) {
 
 /// A hidden effect is named together with those that no drive tells from it.
 bool isNamedInGroup(const CaseRecord& record) {
-  const std::string& hidden = record.truth.effects.front().name;
+  const HiddenEffect& hidden = record.truth.effects.front();
   return std::any_of(
-      record.answer.effects.begin(), record.answer.effects.end(),
-      [&](const NamedEffect& one) { return !one.group.empty() && covers(one, hidden); });
+      record.answer.effects.begin(), record.answer.effects.end(), [&](const NamedEffect& one) {
+        return !one.group.empty() && (covers(one.name, hidden) || isBeside(one, hidden));
+      });
 }
 
 bool isExcited(const Truth& truth) {
   if (truth.effects.empty() || !(truth.floor.position > 0.0)) return true;
   return truth.gap.position > kLeastVisible * truth.floor.position ||
-         truth.gap.yaw > kLeastVisible * truth.floor.yaw;
+         truth.gap.yaw > kLeastVisible * truth.floor.yaw ||
+         truth.gap.yaw_rate > kLeastVisible * truth.floor.yaw_rate;
+}
+
+/// Whether one number is another one now: as the workflow says, else by three sigma.
+bool hasMoved(const Estimated& one) {
+  if (one.moved) return *one.moved;
+  constexpr double kSigmas = 3.0;
+  constexpr double kIntervalSigmas = 2.0 * 1.96;
+  if (!(std::abs(one.before) > 0.0)) return false;
+  const double sigma = (one.high - one.low) / kIntervalSigmas;
+  const double before = std::isfinite(one.before_sigma) ? one.before_sigma : 0.0;
+  return std::abs(one.value - one.before) > kSigmas * std::hypot(sigma, before);
 }
 
 }  // namespace
 
-bool covers(const NamedEffect& named, const std::string& effect) {
-  return named.name == effect || contains(named.group, effect);
+bool covers(const std::string& name, const HiddenEffect& hidden) {
+  return name == hidden.name || contains(hidden.group, name);
 }
 
-bool moved(const Answer& answer, const std::string& effect) {
-  constexpr double kSigmas = 3.0;
-  constexpr double kIntervalSigmas = 2.0 * 1.96;
-  for (const Estimated& one : answer.calibrated) {
-    if (one.path.rfind(effect + ".", 0) != 0 || !(std::abs(one.before) > 0.0)) continue;
-    const double sigma = (one.high - one.low) / kIntervalSigmas;
-    const double before = std::isfinite(one.before_sigma) ? one.before_sigma : 0.0;
-    if (std::abs(one.value - one.before) > kSigmas * std::hypot(sigma, before)) return true;
-  }
-  return false;
+bool belongs(const std::string& name, const HiddenEffect& hidden, const Answer& answer) {
+  if (covers(name, hidden)) return true;
+  return std::any_of(hidden.together.begin(), hidden.together.end(), [&](const auto& all) {
+    return contains(all, name) && std::all_of(all.begin(), all.end(), [&](const std::string& one) {
+             return isNamed(one, answer);
+           });
+  });
+}
+
+bool moved(const Answer& answer, const HiddenEffect& hidden) {
+  return std::any_of(answer.calibrated.begin(), answer.calibrated.end(), [&](const Estimated& one) {
+    return covers(one.path.substr(0, one.path.find('.')), hidden) && hasMoved(one);
+  });
 }
 
 Judgement judge(const CaseRecord& record) {
   const Answer& answer = record.answer;
   Judgement judgement;
-  judgement.right_verdict =
-      contains(record.truth.right_verdicts, answer.verdict) ||
-      (record.truth.kind == "single" && answer.verdict == "AMBIGUOUS" && isNamedInGroup(record));
+  judgement.right_verdict = contains(record.truth.right_verdicts, answer.verdict) ||
+                            (!record.truth.effects.empty() &&
+                             (record.truth.kind == "single" || record.truth.kind == "semi") &&
+                             answer.verdict == "AMBIGUOUS" && isNamedInGroup(record));
   judgement.refused =
       (answer.verdict == "CANNOT_TELL" || answer.verdict == "error") && !answer.reason.empty();
   judgement.flagged = answer.verdict == "PARTIAL" || answer.verdict == "NOT_IN_CATALOGUE";

@@ -33,7 +33,7 @@ void addOptions(CLI::App& app, Arguments& arguments) {
   Study& study = arguments.study;
   app.footer(kFooter);
   app.add_option("--suite", study.suite, "which cases")
-      ->check(CLI::IsMember({"quick", "small", "full"}))
+      ->check(CLI::IsMember({"quick", "small", "medium", "full"}))
       ->capture_default_str();
   app.add_option("--out", study.out, "folder")->required();
   app.add_option("--seed", study.seed)->capture_default_str();
@@ -49,6 +49,9 @@ void addOptions(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_option("--nominal", study.nominal, "model file for all cases instead of calibrating")
       ->check(CLI::ExistingFile);
+  app.add_option("--recordings", study.recordings,
+                 "folder of real logs NAME.lcmlog with NAME.yaml, the model to begin with: effects "
+                 "are hidden in them, too (medium, full)");
   app.add_flag("--keep", study.keep, "logs and reports stay");
   app.add_option("--merge", arguments.merge,
                  "folders of shards (or --out of several): join and score them only");
@@ -62,8 +65,9 @@ void readShard(const std::string& text, Study& study) {
     throw std::runtime_error("--shard: '" + text + "' is not I/N with 1 <= I <= N");
 }
 
-void score(const std::vector<std::string>& lines, const std::string& folder) {
-  const ScoredStudy study = scored(lines);
+void score(const std::vector<std::string>& lines, const std::string& folder,
+           const std::vector<std::string>& timed) {
+  const ScoredStudy study = scored(lines, secondsBelow(timed));
   writeScores(study, folder);
   std::cout << tableText(study) << "\n" << folder << "/scores.html" << std::endl;
 }
@@ -75,7 +79,8 @@ int parseAndRun(int argc, char** argv) {
   addOptions(app, arguments);
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   Study& study = arguments.study;
-  if (!arguments.merge.empty()) return score(merged(arguments.merge), study.out), 0;
+  if (!arguments.merge.empty())
+    return score(merged(arguments.merge), study.out, arguments.merge), 0;
   readShard(arguments.shard, study);
   study.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path().string();
   if (!canHide())
@@ -83,7 +88,7 @@ int parseAndRun(int argc, char** argv) {
                  "out, and the watch on it tells"
               << std::endl;
   const std::vector<std::string> lines = runShard(study);
-  score(lines, study.shards == 1 ? study.out : shardFolder(study));
+  score(lines, study.shards == 1 ? study.out : shardFolder(study), {shardFolder(study)});
   return 0;
 }
 

@@ -6,10 +6,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <set>
 #include <stdexcept>
 
 #include "tools/blind/child.hpp"
+#include "tools/blind/recordings.hpp"
 #include "tools/blind/study.hpp"
 #include "tools/gap/file_hash.hpp"
 
@@ -52,14 +54,22 @@ Json readJson(const fs::path& path) {
   return Json::parse(file);
 }
 
+/// A log that tells of the plain vehicle, and where its calibration begins.
+struct Plain {
+  std::string log;
+  std::string model;
+  std::string sealed;  ///< folder that calibration must not see; empty = none
+};
+
 /// One round of calibration; its verdict.
-Json calibrate(const Study& study, const fs::path& folder, const std::string& model, int round) {
+Json calibrate(const Study& study, const fs::path& folder, const Plain& plain,
+               const std::string& model, int round) {
   const std::string out = "round" + std::to_string(round);
   const Ended ended = run({{study.programs + "/tread-gap", "find", "--calibrate", "--threads", "1",
-                            "--model", model, "--train", "hour/blind/hour.lcm", "--out", out},
+                            "--model", model, "--train", plain.log, "--out", out},
                            folder.string(),
                            out + ".log",
-                           (folder / "hour/sealed").string(),
+                           plain.sealed,
                            kLimit});
   if (ended.status != 0 && (ended.status < kFound || ended.status >= kCannotTell))
     throw std::runtime_error("calibration ended with " + std::to_string(ended.status) + ": " +
@@ -67,7 +77,8 @@ Json calibrate(const Study& study, const fs::path& folder, const std::string& mo
   return readJson(folder / out / "verdict.json");
 }
 
-void make(const Study& study, const fs::path& folder, const std::string& noise) {
+/// An hour of the plain vehicle with the noise of a level.
+Plain hideHour(const Study& study, const fs::path& folder, const std::string& noise) {
   fs::remove_all(folder / "hour");
   std::ofstream(folder / "base.yaml") << kBaseModel;
   runOrThrow({{study.programs + "/tread-hide", "--null", "--minutes", std::to_string(study.hour),
@@ -76,17 +87,29 @@ void make(const Study& study, const fs::path& folder, const std::string& noise) 
               folder.string(),
               "hide.log",
               ""});
-  std::string model = "base.yaml";
+  return {"hour/blind/hour.lcm", "base.yaml", (folder / "hour/sealed").string()};
+}
+
+void make(const Study& study, const fs::path& folder, const std::string& name) {
+  const auto recording = recordingNamed(study, name);
+  const Plain plain =
+      recording ? Plain{recording->log, recording->model, ""} : hideHour(study, folder, name);
+  std::string model = plain.model;
   Json verdict;
   int round = 0;
   do {
-    verdict = calibrate(study, folder, model, ++round);
+    verdict = calibrate(study, folder, plain, model, ++round);
     model = "round" + std::to_string(round) + "/model.yaml";
   } while (!verdict.at("unexplained").empty() && !verdict.at("effects").empty() && round < kRounds);
   Json story = {{"rounds", round}, {"verdict", verdict.at("verdict")}, {"named", Json::array()}};
   for (const Json& effect : verdict.at("effects")) story["named"].push_back(effect.at("name"));
   story["unexplained"] = verdict.at("unexplained");
   std::ofstream(folder / kStory) << story.dump(2) << "\n";
+  std::cout << "nominal model " << name << " after " << round << " round(s): "
+            << (verdict.at("unexplained").empty()
+                    ? "the adequacy test passes"
+                    : "the adequacy test does not pass: " + verdict.at("unexplained").dump())
+            << std::endl;
   fs::copy_file(folder / model, folder / "model.part", fs::copy_options::overwrite_existing);
   fs::remove_all(folder / "hour");
   fs::rename(folder / "model.part", folder / "model.yaml");
@@ -94,28 +117,29 @@ void make(const Study& study, const fs::path& folder, const std::string& noise) 
 
 }  // namespace
 
-std::string nominalModel(const Study& study, const std::string& noise) {
-  if (!study.nominal.empty()) return fs::absolute(study.nominal).string();
-  const fs::path folder = fs::absolute(study.out) / "nominal" / noise;
+std::string nominalModel(const Study& study, const std::string& name) {
+  if (!study.nominal.empty() && !recordingNamed(study, name))
+    return fs::absolute(study.nominal).string();
+  const fs::path folder = fs::absolute(study.out) / "nominal" / name;
   fs::create_directories(folder);
   const Lock lock((folder / "lock").string());
-  if (!fs::exists(folder / "model.yaml")) make(study, folder, noise);
+  if (!fs::exists(folder / "model.yaml")) make(study, folder, name);
   return (folder / "model.yaml").string();
 }
 
 Json nominalStory(const Study& study, const std::vector<HiddenCase>& cases) {
-  std::set<std::string> noises;
-  for (const HiddenCase& one : cases) noises.insert(one.noise);
+  std::set<std::string> names;
+  for (const HiddenCase& one : cases) names.insert(one.nominal);
   Json all = Json::object();
-  for (const std::string& noise : noises) {
-    const std::string model = nominalModel(study, noise);
+  for (const std::string& name : names) {
+    const std::string model = nominalModel(study, name);
     Json story = {{"sha256", gap::sha256OfFile(model)}};
-    if (study.nominal.empty()) {
-      const fs::path told = fs::path(model).parent_path() / kStory;
+    const fs::path told = fs::path(model).parent_path() / kStory;
+    if (study.nominal.empty() || recordingNamed(study, name)) {
       const Json told_story = readJson(told);
       for (const auto& [key, value] : told_story.items()) story[key] = value;
     }
-    all[noise] = story;
+    all[name] = story;
   }
   return all;
 }

@@ -47,8 +47,7 @@ const Row kRows[] = {
     {"heading_latency", "T_h", {"latency"}},
     {"gyro_bias", "b", {"rate"}},
     {"heading_misalignment", "psi_0", {"angle"}},
-    // The truth measures towards the front; the catalogue has it as an ICR that is as far ahead.
-    {"lever_arm_x", "l_x", {"offset", -1.0}},
+    {"lever_arm_x", "l_x", {"offset"}},
     {"lever_arm_y", "l_y", {"offset"}},
     {"position_scale", "k", {"scale"}},
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -15,6 +16,8 @@ namespace tread::blindtest {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr const char* kTimesFile = "times.csv";
 
 void write(const fs::path& path, const std::string& text) {
   std::ofstream file(path, std::ios::binary);
@@ -46,7 +49,7 @@ std::vector<fs::path> recordFiles(const std::string& folder) {
 
 }  // namespace
 
-ScoredStudy scored(const std::vector<std::string>& lines) {
+ScoredStudy scored(const std::vector<std::string>& lines, const CaseSeconds& seconds) {
   ScoredStudy study;
   if (lines.empty()) throw std::runtime_error("no cases");
   try {
@@ -55,6 +58,8 @@ ScoredStudy scored(const std::vector<std::string>& lines) {
     for (const std::string& line : study.lines) {
       JudgedCase one{recordOf(Json::parse(line)), {}};
       one.judgement = judge(one.record);
+      const auto time = seconds.find(one.record.truth.name);
+      if (time != seconds.end()) one.seconds = time->second;
       study.cases.push_back(std::move(one));
     }
   } catch (const nlohmann::json::exception& problem) {
@@ -63,6 +68,25 @@ ScoredStudy scored(const std::vector<std::string>& lines) {
   study.scores = scoresOf(study.cases);
   study.confusion = confusionOf(study.cases);
   return study;
+}
+
+CaseSeconds secondsBelow(const std::vector<std::string>& folders) {
+  CaseSeconds seconds;
+  for (const std::string& folder : folders) {
+    if (!fs::is_directory(folder)) continue;
+    for (const auto& entry :
+         fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied)) {
+      if (entry.path().filename() != kTimesFile) continue;
+      std::ifstream file(entry.path());
+      std::string line;
+      for (std::getline(file, line); std::getline(file, line);) {
+        const size_t comma = line.find(',');
+        if (comma != std::string::npos)
+          seconds[line.substr(0, comma)] = std::strtod(line.c_str() + comma + 1, nullptr);
+      }
+    }
+  }
+  return seconds;
 }
 
 std::vector<std::string> merged(const std::vector<std::string>& folders) {
@@ -95,9 +119,9 @@ std::string scoresJson(const ScoredStudy& study) {
     Json one = {{"section", line.section}, {"what", line.what}, {"cases", line.cases}};
     if (line.is_share) one["hits"] = line.hits;
     one["value"] = number(line.value);
-    if (line.is_share) one["low"] = number(line.low), one["high"] = number(line.high);
-    if (line.must) one["must"] = mustWords(line);
-    if (const auto met = line.met()) one["reached"] = *met;
+    one["low"] = number(line.low), one["high"] = number(line.high);
+    if (!line.is_share) one["unit"] = line.unit;
+    if (line.must) one["must"] = mustWords(line), one["met"] = metWords(line);
     json["scores"].push_back(one);
   }
   const Confusion& confusion = study.confusion;

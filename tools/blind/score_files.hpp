@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,14 @@ struct ScoredStudy {
   Confusion confusion;
 };
 
+/// CPU seconds of answers by case.
+using CaseSeconds = std::map<std::string, double>;
+
 /// Judges and counts. Throws std::runtime_error for a line that is no record.
-ScoredStudy scored(const std::vector<std::string>& lines);
+ScoredStudy scored(const std::vector<std::string>& lines, const CaseSeconds& seconds = {});
+
+/// The times.csv of batches below folders, as far as they are still there.
+CaseSeconds secondsBelow(const std::vector<std::string>& folders);
 
 /// Joins the cases.jsonl of shards below the folders (or in them). Throws std::runtime_error where
 /// they are not of one study or a case is there twice with different answers.
@@ -36,11 +43,11 @@ std::string scoresJson(const ScoredStudy& study);            ///< scores.json
 std::string pageHtml(const ScoredStudy& study, const std::string& png);
 void drawConfusion(const Confusion& confusion, const std::string& path);
 
-/// The figure with its interval and number of cases: "93.3 % (68-99), 14 of 15".
+/// The figure with its interval and number of cases: "93.3 % (70 to 99), 14 of 15".
 std::string figureWords(const ScoreLine& line);
 /// ">= 95 %", or "" without a must.
 std::string mustWords(const ScoreLine& line);
-/// "reached", "short", "too few" (cases for the interval), "no case"; "" without a must.
+/// "met", "not met", "cannot be decided with 38 (value met)", "no case"; "" without a must.
 std::string metWords(const ScoreLine& line);
 
 }  // namespace tread::blindtest

@@ -90,7 +90,7 @@ std::string sectionTable(const ScoredStudy& study, const std::string& section) {
     const std::string met = metWords(line);
     html += "<tr><td>" + escaped(line.what) + "</td><td>" + escaped(figureWords(line)) +
             "</td><td>" + escaped(mustWords(line)) + "</td><td" +
-            (met == "short" ? " class=\"short\"" : "") + ">" + met + "</td></tr>\n";
+            (met == "not met" ? " class=\"short\"" : "") + ">" + met + "</td></tr>\n";
   }
   return html + "</table>\n";
 }
@@ -129,7 +129,10 @@ std::string pageHtml(const ScoredStudy& study, const std::string& png) {
       "<h1>Blind test: hidden effects, and what tread-gap named</h1>\n<p>Suite " +
       escaped(study.header.value("suite", "?")) + ", seed " +
       std::to_string(study.header.value("seed", 0)) + ": " + std::to_string(study.cases.size()) +
-      " logs. Shares with Wilson's 95 % interval. Gap closed: of 2 s end errors (position and "
+      " logs. Values with 95 % interval (Wilson's of a share, of order statistics of a quantile); "
+      "what must be is met or not met where the whole interval says so. Excited: the effect "
+      "changes "
+      "the motion by 5 % of the noise or more. Gap closed: of 2 s end errors (position and "
       "yaw, rms, in units of what the truth itself misses), where they were more than 5 % above "
       "that.</p>\n";
   html += sectionTable(study, "must");

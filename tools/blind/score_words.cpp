@@ -15,6 +15,15 @@ std::string percent(double share, int digits) {
   return text;
 }
 
+/// A figure of a line without its unit; an interval that is open at an end has no number there.
+std::string number(const ScoreLine& line, double value, int digits) {
+  if (!std::isfinite(value)) return "?";
+  if (line.unit == std::string("%")) return percent(value, digits);
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
 /// Words with a bar between them stay one field of a CSV file.
 std::string joined(const std::vector<std::string>& words) {
   std::string all;
@@ -69,17 +78,19 @@ void addJudgement(const Judgement& judgement, std::ostringstream& row) {
 
 std::string figureWords(const ScoreLine& line) {
   if (line.cases == 0) return "no case";
-  if (!line.is_share) return percent(line.value, 1) + " % of " + std::to_string(line.cases);
-  return percent(line.value, 1) + " % (" + percent(line.low, 0) + "-" + percent(line.high, 0) +
-         "), " + std::to_string(line.hits) + " of " + std::to_string(line.cases);
+  const std::string words = number(line, line.value, 1) + " " + line.unit + " (" +
+                            number(line, line.low, 0) + " to " + number(line, line.high, 0) + "), ";
+  if (!line.is_share) return words + "n = " + std::to_string(line.cases);
+  return words + std::to_string(line.hits) + " of " + std::to_string(line.cases);
 }
 
 std::string mustWords(const ScoreLine& line) {
   if (!line.must) return "";
-  std::string words = (line.must->least ? ">= " : "<= ") + percent(line.must->at, 0) + " %";
-  if (line.must->below)
-    words = percent(line.must->at, 0) + "-" + percent(*line.must->below, 0) + " %";
-  if (line.must->upper_end) words += ", upper end <= " + percent(*line.must->upper_end, 0) + " %";
+  const auto digits = [&](double value) { return number(line, value, 0); };
+  const std::string unit = std::string(" ") + line.unit;
+  std::string words = (line.must->least ? ">= " : "<= ") + digits(line.must->at) + unit;
+  if (line.must->below) words = digits(line.must->at) + " to " + digits(*line.must->below) + unit;
+  if (line.must->upper_end) words += ", upper end <= " + digits(*line.must->upper_end) + unit;
   return words;
 }
 
@@ -87,9 +98,10 @@ std::string metWords(const ScoreLine& line) {
   if (!line.must) return "";
   const auto met = line.met();
   if (!met) return "no case";
-  // A share that is good enough but of too few cases to be sure of it.
-  if (!*met && line.must->upper_end && line.value <= line.must->at) return "too few";
-  return *met ? "reached" : "short";
+  if (*met == Met::kYes) return "met";
+  if (*met == Met::kNo) return "not met";
+  return "cannot be decided with " + std::to_string(line.cases) +
+         (line.valueIsGood() ? " (value met)" : " (value not met)");
 }
 
 std::string tableText(const ScoredStudy& study) {
@@ -97,12 +109,13 @@ std::string tableText(const ScoredStudy& study) {
   text << "suite " << study.header.value("suite", "?") << ", seed " << study.header.value("seed", 0)
        << ", " << study.header.value("minutes", 0.0) << " min logs: " << study.cases.size()
        << " of " << study.header.value("cases", 0) << " cases\n";
-  text << "(shares with Wilson's 95 % interval)\n";
+  text << "(value with 95 % interval: Wilson's of a share, of order statistics of a quantile; what "
+          "must be is met\n or not met where the whole interval says so)\n";
   std::string section;
   for (const ScoreLine& line : study.scores) {
     if (line.section != section) text << "\n" << (section = line.section) << "\n";
     char row[240];
-    std::snprintf(row, sizeof row, "  %-76s %-34s %-28s %s", line.what.c_str(),
+    std::snprintf(row, sizeof row, "  %-72s %-36s %-28s %s", line.what.c_str(),
                   figureWords(line).c_str(), mustWords(line).c_str(), metWords(line).c_str());
     std::string words(row);
     words.erase(words.find_last_not_of(' ') + 1);

@@ -15,9 +15,10 @@ namespace tread::blindtest {
 struct JudgedCase {
   CaseRecord record;
   Judgement judgement;
+  double seconds = kUnknown;  ///< CPU time of the answer; NaN where nobody measured
 };
 
-/// What a figure must be.
+/// What a figure must be, and how that is decided: by its interval.
 struct Must {
   double at = 0.0;
   bool least = true;                     ///< at least; else at most
@@ -25,11 +26,15 @@ struct Must {
   std::optional<double> upper_end = {};  ///< the interval's upper end is at most this
 };
 
-/// One figure. A share has hits and Wilson's 95 % interval; any other has a value only.
+/// Whether what must be is reached.
+enum class Met { kYes, kNo, kOpen };  ///< open: the interval has both in it
+
+/// One figure with its 95 % interval: Wilson's of a share, that of order statistics of a quantile.
 struct ScoreLine {
   std::string section;
   std::string what;
   bool is_share = true;
+  const char* unit = "%";  ///< of what is no share: %, s
   size_t hits = 0;
   size_t cases = 0;
   double value = kUnknown;  ///< a share of 1, or the figure; NaN without cases
@@ -37,8 +42,11 @@ struct ScoreLine {
   double high = kUnknown;
   std::optional<Must> must = {};
 
-  /// Whether what must be is reached; nothing where there is no case or no must.
-  std::optional<bool> met() const;
+  /// Nothing where there is no case or no must. Shares that must be 0 or 1 are decided by the
+  /// value.
+  std::optional<Met> met() const;
+  /// Whether the value, interval apart, is as it must be.
+  bool valueIsGood() const;
 };
 
 /// Wilson's 95 % interval of a share; sets value, low and high from hits and cases.
@@ -47,7 +55,10 @@ void setShare(ScoreLine& line);
 /// The q-quantile by linear interpolation; NaN of nothing.
 double quantile(std::vector<double> values, double q);
 
-/// All figures: first those of gap.md 4.7, section "must", then what is behind them.
+/// Sets value, low and high of a quantile of values; the interval is distribution-free.
+void setQuantile(ScoreLine& line, std::vector<double> values, double q);
+
+/// All figures: first those of gap.md 4.7, section "must", in its order, then what is behind them.
 std::vector<ScoreLine> scoresOf(const std::vector<JudgedCase>& cases);
 
 /// Which names were given to what was hidden: of single cases and null logs.

@@ -12,6 +12,7 @@
 
 #include "tools/blind/batch.hpp"
 #include "tools/blind/child.hpp"
+#include "tools/blind/recordings.hpp"
 #include "tools/gap/file_hash.hpp"
 
 namespace fs = std::filesystem;
@@ -48,7 +49,7 @@ std::vector<HiddenCase> hiddenSuite(const Study& study) {
               ""});
   std::vector<HiddenCase> cases;
   std::ifstream lines(folder / "conditions.txt");
-  for (HiddenCase one; lines >> one.name >> one.noise;) cases.push_back(one);
+  for (HiddenCase one; lines >> one.name >> one.nominal;) cases.push_back(one);
   return cases;
 }
 
@@ -75,7 +76,10 @@ std::string shardFolder(const Study& study) {
 
 std::vector<HiddenCase> casesOf(const Study& study) {
   if (study.suite == "quick") return quickSuite(study.minutes, study.seed);
-  return hiddenSuite(study);
+  std::vector<HiddenCase> cases = hiddenSuite(study);
+  // Behind the suite's own, which tread-hide numbers from the first on.
+  for (const HiddenCase& one : recordingSuite(study)) cases.push_back(one);
+  return cases;
 }
 
 std::vector<std::string> runShard(const Study& study) {
@@ -86,7 +90,7 @@ std::vector<std::string> runShard(const Study& study) {
   claim(study, header);
   std::map<std::string, std::string> models;
   for (const HiddenCase& one : cases)
-    if (models.count(one.noise) == 0) models[one.noise] = nominalModel(study, one.noise);
+    if (models.count(one.nominal) == 0) models[one.nominal] = nominalModel(study, one.nominal);
   const size_t per_shard = (cases.size() + study.shards - 1) / study.shards;
   const size_t batches = std::max<size_t>(1, (per_shard + kBatch - 1) / kBatch);
   std::vector<std::string> records;

@@ -35,7 +35,7 @@ std::vector<HiddenCase> quickSuite(double minutes, uint64_t seed) {
     char name[24];
     std::snprintf(name, sizeof name, "%04zu", i + 1);
     HiddenCase one{name, "mid", kinds[i]};
-    for (const std::string& word : {std::string("--noise"), one.noise, std::string("--minutes"),
+    for (const std::string& word : {std::string("--noise"), one.nominal, std::string("--minutes"),
                                     std::to_string(minutes), std::string("--name"), one.name,
                                     std::string("--seed"), std::to_string(seed * 1000 + i + 1)})
       one.arguments.push_back(word);

@@ -11,7 +11,7 @@ namespace tread::blindtest {
 /// What may be known of a case before it is opened, and how it is hidden.
 struct HiddenCase {
   std::string name;
-  std::string noise;                   ///< low, mid, high: tells which nominal model is the robot's
+  std::string nominal;  ///< which nominal model is the robot's: low, mid, high, recording-NAME
   std::vector<std::string> arguments;  ///< of tread-hide, for a case of its own; empty: of a suite
 };
 

@@ -19,10 +19,16 @@ inline CaseRecord hidden(const std::vector<std::string>& names, const std::strin
   record.truth.size = 2.0;
   record.truth.minutes = 10.0;
   record.truth.duration = 600.0;
-  record.truth.floor = {{0.1, 0.1}, {}};
-  record.truth.gap = {{0.3, 0.3}, {}};
-  for (const std::string& name : names)
-    record.truth.effects.push_back({name, "physical", "same", {}, {}});
+  record.truth.floor = {{0.1, 0.1}, {}, 0.01};
+  record.truth.gap = {{0.3, 0.3}, {}, 0.03};
+  for (const std::string& name : names) {
+    HiddenEffect effect;
+    effect.name = name;
+    effect.kind = "vehicle";
+    effect.form = "physical";
+    effect.shape = "same";
+    record.truth.effects.push_back(effect);
+  }
   record.truth.right_names = names;
   record.answer.verdict = "NO_DISCREPANCY";
   record.answer.before = {{0.5, 0.1}, {}};

@@ -19,11 +19,38 @@ TEST_CASE("the truth alone is exactly right, with another name it is found but n
   CHECK_FALSE(more.only_wrong);
 }
 
-TEST_CASE("naming the group of the truth counts as naming the truth") {
+TEST_CASE("naming one that no drive can tell from the truth counts as naming the truth") {
   CaseRecord record = answered(hidden({"icr_offset"}, "single"), {"lever_arm_x"});
   CHECK(judge(record).only_wrong);
-  record.answer.effects.front().group = {"icr_offset"};
+  record.truth.effects.front().group = {"lever_arm_x"};
   CHECK(judge(record).exact);
+  CHECK(judge(record).first_right);
+}
+
+TEST_CASE("saying that a wrong name may be the truth lists the truth and does not name it") {
+  CaseRecord record = answered(hidden({"body_inertia"}, "single"), {"actuator_lag"});
+  record.answer.effects.front().group = {"body_inertia"};
+  CHECK(judge(record).listed);
+  CHECK(judge(record).found == 0);
+}
+
+TEST_CASE("effects that are the truth together count where all of them are named") {
+  CaseRecord record = answered(hidden({"position_scale"}, "single"), {"slip_ratio"});
+  record.truth.effects.front().together = {{"slip_ratio", "track_width"}};
+  CHECK(judge(record).only_wrong);
+  record.answer.effects.push_back({"track_width", {}, {}, {}});
+  CHECK(judge(record).exact);
+  record.answer.effects.push_back({"gyro_bias", {}, {}, {}});
+  CHECK(judge(record).found == 1);
+  CHECK_FALSE(judge(record).exact);
+}
+
+TEST_CASE("an effect that only the gyro sees is excited") {
+  CaseRecord record = hidden({"gyro_bias"}, "single");
+  record.truth.gap = {{0.0, 0.0}, {}, 0.02};
+  CHECK(judge(record).excited);
+  record.truth.gap.yaw_rate = 0.0001;
+  CHECK_FALSE(judge(record).excited);
 }
 
 TEST_CASE("a wrong name is only wrong, a runner-up is listed, silence names nothing") {
@@ -42,6 +69,28 @@ TEST_CASE("a term of the nominal model that moves beyond three sigma counts, apa
   CHECK(judge(record).moved == 1);
   record.answer.calibrated.front().value = 0.13;
   CHECK(judge(record).found == 0);
+}
+
+TEST_CASE("whether a term has moved is what the workflow says of it, where it says so") {
+  CaseRecord record = hidden({"heading_latency"}, "semi");
+  record.truth.effects.front().group = {"centrifugal_drift"};
+  record.answer.calibrated = {{"centrifugal_drift.time", 0.30, 0.26, 0.34, 0.10, 0.01, false}};
+  CHECK(judge(record).found == 0);
+  record.answer.calibrated.front().moved = true;
+  CHECK(judge(record).moved == 1);
+  CHECK(judge(record).first_right);
+}
+
+TEST_CASE("a model's own term that is wrongly called another one is a wrong name") {
+  CaseRecord record = hidden({}, "null");
+  CHECK_FALSE(judge(record).alarm);
+  record.answer.verdict = "NOT_IN_CATALOGUE";
+  CHECK_FALSE(judge(record).alarm);
+  record.answer.verdict = "FOUND";
+  CHECK(judge(record).alarm);
+  CaseRecord single = hidden({"gyro_bias"}, "single");
+  single.answer.verdict = "FOUND";
+  CHECK(judge(single).only_wrong);
 }
 
 TEST_CASE("the closed share of the gap is measured from the nominal model down to the truth") {

@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include <unistd.h>
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -24,6 +23,8 @@ const ScoreLine& lineOf(const std::vector<ScoreLine>& lines, const std::string& 
   FAIL("no line " << what);
   return lines.front();
 }
+
+const char* const kFalsePositives = "false positives: an effect named in a null log";
 
 const char* const kHeader =
     R"({"format":"tread-blind cases 1","suite":"small","seed":1,"minutes":10.0,"cases":2,"nominal":{}})";
@@ -77,49 +78,71 @@ class Shards {
 
 }  // namespace
 
-TEST_CASE("a share has Wilson's interval") {
-  ScoreLine line;
-  line.hits = 9;
-  line.cases = 10;
-  setShare(line);
-  CHECK(line.value == Approx(0.9));
-  CHECK(line.low == Approx(0.596).margin(0.001));
-  CHECK(line.high == Approx(0.982).margin(0.001));
-}
-
-TEST_CASE("a quantile lies between its neighbours") {
-  CHECK(quantile({3.0, 1.0, 2.0, 4.0}, 0.5) == Approx(2.5));
-  CHECK(quantile({1.0, 2.0}, 0.1) == Approx(1.1));
-  CHECK(std::isnan(quantile({}, 0.5)));
-}
-
-TEST_CASE("a must with an upper end is short while there are too few cases") {
-  ScoreLine line;
-  line.must = Must{0.05, false, {}, 0.08};
-  CHECK_FALSE(line.met().has_value());
-  line.cases = 10;
-  setShare(line);
-  CHECK(line.met() == false);
-  line.cases = 400;
-  line.hits = 8;
-  setShare(line);
-  CHECK(line.met() == true);
-}
-
-TEST_CASE("alarms on null logs are counted, whatever they are called") {
+TEST_CASE("null logs: a name is a false positive, other alarms are counted beside it") {
   CaseRecord cannot_tell = hidden({}, "null");
   cannot_tell.answer.verdict = "CANNOT_TELL";
   const std::vector<JudgedCase> cases{judged(hidden({}, "null")),
                                       judged(answered(hidden({}, "null"), {"gyro_bias"})),
                                       judged(cannot_tell)};
   const auto scores = scoresOf(cases);
-  CHECK(lineOf(scores, "must", "false positives on null logs").hits == 2);
-  CHECK(lineOf(scores, "null", "an effect is named, mid noise").hits == 1);
+  CHECK(lineOf(scores, "must", kFalsePositives).hits == 1);
+  CHECK(lineOf(scores, "must", "  any verdict but NO_DISCREPANCY in a null log").hits == 2);
+  CHECK(lineOf(scores, "null", "an effect is named, 10 min, mid noise").hits == 1);
+}
+
+TEST_CASE("single effects are counted for both kinds, and by how their forms fit the catalogue's") {
+  CaseRecord vehicle = answered(hidden({"slip_ratio"}, "single"), {"slip_ratio"});
+  CaseRecord ins = hidden({"gyro_bias"}, "single");
+  ins.truth.effects.front().kind = "measurement";
+  ins.truth.effects.front().shape = "other";
+  ins.truth.effects.front().form = "kinematic";
+  const auto scores = scoresOf({judged(vehicle), judged(ins)});
+  const auto named = [&](const std::string& slice) {
+    const ScoreLine& line = lineOf(scores, "single: " + slice, "named, 10 min, mid noise, excited");
+    return std::make_pair(line.hits, line.cases);
+  };
+  using Count = std::pair<size_t, size_t>;
+  CHECK(named("all") == Count(1, 2));
+  CHECK(named("vehicle") == Count(1, 1));
+  CHECK(named("measurement") == Count(0, 1));
+  CHECK(named("form as in the catalogue") == Count(1, 1));
+  CHECK(named("form only like the catalogue's") == Count(0, 1));
+  CHECK(named("changed in the 1 kHz dynamics") == Count(1, 1));
+}
+
+TEST_CASE("what the drive does not show is no miss, and is listed") {
+  CaseRecord record = hidden({"grip_limit"}, "single");
+  record.truth.gap = {{0.0001, 0.0001}, {}, 0.0};
+  const auto scores = scoresOf({judged(record)});
+  CHECK(lineOf(scores, "must", "truth named, single, 10 min, mid noise, excited").cases == 0);
+  CHECK(
+      lineOf(scores, "not excited: changes the motion by less than 5 % of the noise", "grip_limit")
+          .hits == 1);
+}
+
+TEST_CASE("cases in recordings are scored by the first name") {
+  const auto scores =
+      scoresOf({judged(answered(hidden({"gyro_bias"}, "semi"), {"gyro_bias"})),
+                judged(answered(hidden({"gyro_bias"}, "semi"), {"yaw_pull", "gyro_bias"}))});
+  CHECK(lineOf(scores, "must", "in recordings: first name right").hits == 1);
+  CHECK(lineOf(scores, "in recordings", "named").hits == 2);
+}
+
+TEST_CASE("the time of answers is read from where the batches left it, and counts for long logs") {
+  const Shards shards;
+  const std::string a = shards.add("shard-1of1", {kHeader, recordLine("0001", "NO_DISCREPANCY")});
+  std::filesystem::create_directories(a + "/batch-1");
+  std::ofstream(a + "/batch-1/times.csv") << "case,cpu_s\n0001,12.5\n0002,99\n";
+  const ScoredStudy study = scored(merged({a}), secondsBelow({a}));
+  const ScoreLine& line =
+      lineOf(study.scores, "must", "CPU time of the answer to a 10 min log, with report, median");
+  CHECK(line.value == 12.5);
+  CHECK(figureWords(line) == "12.5 s (? to ?), n = 1");
 }
 
 TEST_CASE("the confusion matrix counts a group with the truth as the truth") {
   CaseRecord twin = answered(hidden({"icr_offset"}, "single"), {"lever_arm_x"});
-  twin.answer.effects.front().group = {"icr_offset"};
+  twin.truth.effects.front().group = {"lever_arm_x"};
   const Confusion confusion =
       confusionOf({judged(twin), judged(answered(hidden({"icr_offset"}, "single"), {"crab"})),
                    judged(hidden({}, "null"))});
@@ -139,8 +162,8 @@ TEST_CASE("shards are joined to the same bytes in any order") {
   CHECK(merged({b, a}) == lines);
   CHECK(merged({shards.path()}) == lines);
   const ScoredStudy study = scored(lines);
-  CHECK(lineOf(study.scores, "must", "false positives on null logs").hits == 1);
-  CHECK(tableText(study).find("50.0 % (9-91), 1 of 2") != std::string::npos);
+  CHECK(lineOf(study.scores, "must", kFalsePositives).hits == 1);
+  CHECK(tableText(study).find("50.0 % (9 to 91), 1 of 2") != std::string::npos);
 }
 
 TEST_CASE("shards of another study or with other answers are refused") {
