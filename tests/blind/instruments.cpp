@@ -40,11 +40,11 @@ Pose2 poseAt(const std::vector<Pose2>& poses, double time) {
           a.yaw + place.share * (b.yaw - a.yaw)};
 }
 
-/// The gyro measures the mean of its time since the last sample, 20 ms.
+/// The gyro is in time with the poses.
 double yawRateAt(const std::vector<Twist2>& twists, double time) {
   const Place place(time, twists.size());
-  const size_t earlier = place.before > 0 ? place.before - 1 : 0;
-  return 0.5 * (twists[earlier].omega + twists[place.before].omega);
+  const double before = twists[place.before].omega;
+  return before + place.share * (twists[place.before + 1].omega - before);
 }
 
 /// Nothing but the noise of NoiseLevel: an offset that stays for longer than a pattern would be an

@@ -27,13 +27,14 @@ std::optional<NoiseLevel> noiseLevel(const std::string& name) {
 sim::VehicleParameters plainVehicle() {
   sim::VehicleParameters vehicle;
   vehicle.centre = 0.0;
-  // Borne by the middle of the tracks: it turns as easily as one with twice the length and a
-  // quarter of the resistance, but hardly drifts sideways.
-  vehicle.contact_length = 0.3;
+  // Borne by the middle of the tracks, on tough ground: it hardly drifts sideways.
+  vehicle.contact_length = 0.25;
+  // Turning follows the tracks as promptly as driving does.
+  vehicle.yaw_inertia = 28.3;
   vehicle.drive.stiffness = 8000.0;
   vehicle.drive.force_limit = 8000.0;
   vehicle.drive.power_lag = 0.2;
-  vehicle.drive.gear_friction = 5.0;
+  vehicle.drive.gear_friction = 1.0;
   vehicle.drive.inner_resistance = 0.0005;
   vehicle.drive.capacity = 1e9;
   return vehicle;
@@ -42,13 +43,13 @@ sim::VehicleParameters plainVehicle() {
 sim::SurfaceParameters plainSurface() {
   sim::SurfaceParameters surface;
   surface.name = "test field";
-  // Cleats in tough soil: the tracks hardly ever slip through.
+  // Cleats in tough soil: the tracks hardly ever slip through, at any speed.
   surface.friction = 2.0;
-  surface.shear_displacement = 0.004;
-  // Turning is resisted mostly by ground that is pushed aside, in proportion to the speed.
-  surface.lateral_displacement = 4.5;
-  surface.scrub_resistance = 14.0;
-  surface.resistance_constant = 0.002;
+  surface.shear_displacement = 0.003;
+  // Turning is resisted by ground that is pushed aside, in proportion to the speed.
+  surface.lateral_displacement = 100.0;
+  surface.scrub_resistance = 20.0;
+  surface.resistance_constant = 0.0004;
   surface.resistance_viscous = 0.05;
   return surface;
 }
