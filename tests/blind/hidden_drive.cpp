@@ -67,7 +67,7 @@ class Machine {
     rebuildIfDue(now.time);
     sense(now, order);
     sim::MotorPower power = order;
-    sim::OutsideForce force;
+    sim::OutsideForce force = bearing();
     for (Hidden& one : hidden_) {
       if (one.hider.drive) power = one.hider.drive(now, power);
       if (one.hider.touch) one.hider.touch(now, vehicle_);
@@ -88,6 +88,12 @@ class Machine {
   }
 
  private:
+  /// The plain vehicle is not carried outwards: something to be hidden.
+  sim::OutsideForce bearing() const {
+    const Twist2 v = vehicle_.velocity();
+    return {0.0, build_.vehicle.mass * v.v_x * v.omega, 0.0};
+  }
+
   Build buildAt(double time) {
     Build build{plainVehicle(), plainSurface()};
     for (Hidden& one : hidden_)

@@ -27,8 +27,7 @@ std::optional<NoiseLevel> noiseLevel(const std::string& name) {
 sim::VehicleParameters plainVehicle() {
   sim::VehicleParameters vehicle;
   vehicle.centre = 0.0;
-  // Borne by the middle of the tracks, on tough ground: it hardly drifts sideways.
-  vehicle.contact_length = 0.25;
+  vehicle.contact_length = 0.4;
   // Turning follows the tracks as promptly as driving does.
   vehicle.yaw_inertia = 28.3;
   vehicle.drive.stiffness = 8000.0;
@@ -48,7 +47,7 @@ sim::SurfaceParameters plainSurface() {
   surface.shear_displacement = 0.003;
   // Turning is resisted by ground that is pushed aside, in proportion to the speed.
   surface.lateral_displacement = 100.0;
-  surface.scrub_resistance = 20.0;
+  surface.scrub_resistance = 8.0;
   surface.resistance_constant = 0.0004;
   surface.resistance_viscous = 0.05;
   return surface;
