@@ -17,5 +17,6 @@ CLI::App* addExplain(CLI::App& app);
 CLI::App* addWhatIf(CLI::App& app);
 CLI::App* addPlan(CLI::App& app, int& status);
 CLI::App* addCompare(CLI::App& app, int& status);
+CLI::App* addLadder(CLI::App& app);
 
 }  // namespace tread::gap

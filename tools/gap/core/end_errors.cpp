@@ -69,11 +69,15 @@ ErrorFigure figureOf(std::vector<double> errors) {
 }  // namespace
 
 std::vector<EndError> endErrors(const Rows& rows, const ModelDocument& model) {
-  const Motions motions = rows.simulate(model.vehicle);
+  return endErrors(rows, rows.simulate(model.vehicle), model.measurement);
+}
+
+std::vector<EndError> endErrors(const Rows& rows, const Motions& motions,
+                                const MeasurementModel& measurement) {
   std::vector<EndError> errors;
   for (size_t drive = 0; drive < rows.drives().size(); ++drive)
     for (const Execution& execution : rows.drives()[drive].executions)
-      if (const auto error = errorOf(rows, drive, execution, motions, model.measurement))
+      if (const auto error = errorOf(rows, drive, execution, motions, measurement))
         errors.push_back(*error);
   return errors;
 }

@@ -26,6 +26,10 @@ inline constexpr double kHorizon = 2.0;
 /** The simulation runs open loop through the whole stretch, so that an execution begins in the
  * state that the commands before it led to. Lengths between .75 and 1.25 of the horizon count. */
 std::vector<EndError> endErrors(const Rows& rows, const ModelDocument& model);
+/// The same of motions that were simulated otherwise; one for each stretch, as Rows::simulate().
+std::vector<EndError> endErrors(const Rows& rows,
+                                const std::vector<std::vector<TimedPose>>& motions,
+                                const MeasurementModel& measurement);
 
 /// Median and root mean square of those that `counts`.
 EndErrors summaryOf(const std::vector<EndError>& errors,

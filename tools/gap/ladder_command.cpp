@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/vehicle/model_file.hpp"
+#include "tools/gap/commands.hpp"
+#include "tools/gap/drive_log.hpp"
+#include "tools/gap/find_output.hpp"
+#include "tools/gap/ladder_output.hpp"
+#include "tools/gap/read_for_model.hpp"
+#include "tools/gap/recorded_baseline.hpp"
+
+namespace tread::gap {
+namespace {
+
+struct Options {
+  std::vector<std::string> logs;
+  std::string model;
+  std::string out;
+  bool pool = false;
+  int64_t seed = 1;
+  int threads = 1;
+};
+
+constexpr const char* kFooter =
+    "Rungs: the ideal model; gain and track fitted; powertrain and centre of rotation; the\n"
+    "literature's slip regression; a black box; what find discovers. Each is judged on driving\n"
+    "that it was not fitted to: alternate blocks of the log; with --pool also the log that all\n"
+    "others did not see. Without --model the ideal one is a differential drive with the track\n"
+    "that an imported recording names. Into --out: ladder.json and ladder.md. Exit status 0,\n"
+    "or 2 for bad input. The same files and the same seed give the same bytes, with any number\n"
+    "of threads.";
+
+/// What is on in a model could not be told from what is found.
+ModelDocument readIdeal(const std::string& path) {
+  ModelDocument model = readModelDocument(path);
+  for (const Effect& effect : effectCatalogue())
+    if (isOn(effect, model.vehicle.effects, model.measurement))
+      throw std::runtime_error(path + ": the effect " + effect.name +
+                               " is on; a ladder begins with a model without effects");
+  return model;
+}
+
+/// A differential drive that does what its track speeds say.
+LadderLog recordedIdeal(const std::string& path) {
+  LadderLog log;
+  log.drive = readDrive(path);
+  if (log.drive.kind != CommandKind::kTrackSpeed)
+    throw std::runtime_error(path +
+                             ": its commands are powers, so that the ideal model must say how fast "
+                             "full power is; give --model");
+  const std::optional<double> baseline = recordedBaseline(path);
+  log.ideal.vehicle.name = "ideal differential drive";
+  log.ideal.vehicle.kind = CommandKind::kTrackSpeed;
+  log.ideal.vehicle.gauge = baseline.value_or(1.0);
+  log.ideal_known = baseline.has_value();
+  return log;
+}
+
+std::vector<LadderLog> readLogs(const Options& options) {
+  std::optional<ModelDocument> ideal;
+  if (!options.model.empty()) ideal = readIdeal(options.model);
+  std::vector<LadderLog> logs;
+  for (const std::string& path : options.logs) {
+    LadderLog log = ideal ? LadderLog{readDriveFor(*ideal, path), *ideal} : recordedIdeal(path);
+    for (const LadderLog& other : logs)
+      if (other.drive.sha256 == log.drive.sha256)
+        throw std::runtime_error(path + ": the same file as " + other.drive.name +
+                                 "; give each log once");
+    logs.push_back(std::move(log));
+  }
+  return logs;
+}
+
+void ladder(const Options& options) {
+  if (options.pool && options.logs.size() < 2)
+    throw std::runtime_error("--pool: learning from all logs but one wants at least two --log");
+  LadderTask task;
+  task.logs = readLogs(options);
+  task.pool = options.pool;
+  task.seed = static_cast<uint64_t>(options.seed);
+  task.threads = options.threads;
+  makeFolder(options.out);
+  LadderReport report;
+  report.model = std::filesystem::path(options.model).filename().string();
+  for (const LadderLog& log : task.logs) report.sha256.push_back(log.drive.sha256);
+  report.ladder =
+      climbLadder(task, [](const std::string& line) { std::cout << line << std::endl; });
+  writeLadder(options.out, report);
+  std::cout << ladderText(report) << options.out << "/ladder.md" << std::endl;
+}
+
+}  // namespace
+
+CLI::App* addLadder(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  CLI::App* command = app.add_subcommand(
+      "ladder", "how good is what find discovers, beside the models that others use?");
+  command->footer(kFooter);
+  command->add_option("--log", options->logs, "logs of drives")->required()->expected(-1);
+  command->add_option("--model", options->model, "the ideal model (YAML), without effects");
+  command->add_option("--out", options->out, "folder for ladder.json and ladder.md; made if needed")
+      ->required();
+  command->add_flag("--pool", options->pool, "also judge each log by what all others teach");
+  command->add_option("--seed", options->seed, "of the random draws of the tests")
+      ->capture_default_str()
+      ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));
+  command->add_option("--threads", options->threads, "no influence on any byte")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024));
+  command->callback([options] { ladder(*options); });
+  return command;
+}
+
+}  // namespace tread::gap
