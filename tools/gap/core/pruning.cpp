@@ -16,9 +16,10 @@ constexpr double kSureNats = 100.0;  // and its least size: smaller ones may be 
 
 /// What removing an effect costs.
 struct Removal {
-  FitState state;      ///< without it
-  double score = 0.0;  ///< T of the whole effect in the presence of the others
-  Gain gain;           ///< of having it, on blocks left out
+  FitState state;         ///< without it
+  double score = 0.0;     ///< T of the whole effect in the presence of the others
+  double evidence = 0.0;  ///< over what is needed
+  Gain gain;              ///< of having it, on blocks left out
 };
 
 bool belongsTo(const FreeParameter& parameter, const std::string& effect) {
@@ -38,10 +39,12 @@ ModelDocument withEffectOf(const ModelDocument& model, const ModelDocument& sour
 
 /// What the effect costs, given a state without it and the direction that leads back.
 Removal judged(const Fitter& fitter, const Eigen::VectorXd& loss_with, FitState reduced,
-               const Eigen::VectorXd& direction, const std::vector<char>& mask) {
+               const Eigen::VectorXd& direction, const std::vector<char>& mask,
+               const Needed& needed) {
   Removal removed;
   const ScoreTest test(fitter.rows(), reduced, direction, mask);
   removed.score = test.score(0);
+  removed.evidence = evidence(test, 0, needed);
   removed.gain = gainOf(heldOutLoss(fitter.rows(), reduced, mask), loss_with,
                         blocksThatCount(fitter.rows(), mask));
   removed.state = std::move(reduced);
@@ -49,20 +52,21 @@ Removal judged(const Fitter& fitter, const Eigen::VectorXd& loss_with, FitState 
 }
 
 Removal removal(const Fitter& fitter, const FitState& state, const Eigen::VectorXd& loss_with,
-                const std::string& effect, const std::vector<char>& mask) {
+                const std::string& effect, const std::vector<char>& mask, const Needed& needed) {
   FitState reduced = without(fitter, state, effect, mask);
   const Eigen::VectorXd direction =
       fitter.secant(reduced, withEffectOf(reduced.model, state.model, effect), 1.0);
-  return judged(fitter, loss_with, std::move(reduced), direction, mask);
+  return judged(fitter, loss_with, std::move(reduced), direction, mask, needed);
 }
 
 /// The same in first order, without a simulation; the model of the state stays as it was.
 Removal linearRemoval(const Fitter& fitter, const FitState& state, const Eigen::VectorXd& loss_with,
-                      const std::string& effect, const std::vector<char>& mask) {
+                      const std::string& effect, const std::vector<char>& mask,
+                      const Needed& needed) {
   FitState reduced = withoutLinearly(fitter, state, effect);
   const Eigen::VectorXd direction = state.predicted - reduced.predicted;
   followLinearly(fitter, reduced, mask);
-  return judged(fitter, loss_with, std::move(reduced), direction, mask);
+  return judged(fitter, loss_with, std::move(reduced), direction, mask, needed);
 }
 
 /// Mean end errors on executions of the mask's blocks: position [m] and yaw [rad].
@@ -113,8 +117,8 @@ std::vector<std::string> leastSureFirst(const Fitter& fitter, const SearchResult
 
 class Pruning {
  public:
-  Pruning(const Fitter& fitter, const std::vector<char>& mask, double needed, double least_gain,
-          SearchResult& result, const Progress& say)
+  Pruning(const Fitter& fitter, const std::vector<char>& mask, const Needed& needed,
+          double least_gain, SearchResult& result, const Progress& say)
       : fitter_(fitter),
         mask_(mask),
         needed_(needed),
@@ -132,14 +136,15 @@ class Pruning {
     const Eigen::VectorXd loss = heldOutLoss(fitter_.rows(), result_.state, mask_);
     for (const std::string& effect : leastSureFirst(fitter_, result_, mask_)) {
       // What is beyond doubt in first order needs no simulation without it.
-      Removal removed = linearRemoval(fitter_, result_.state, loss, effect, mask_);
-      const bool sure = std::abs(removed.score) > needed_ &&
+      Removal removed = linearRemoval(fitter_, result_.state, loss, effect, mask_, needed_);
+      const bool sure = removed.evidence >= 1.0 &&
                         removed.gain.value > kSure * removed.gain.error &&
                         removed.gain.value > kSureNats;
-      if (!sure) removed = removal(fitter_, result_.state, loss, effect, mask_);
+      if (!sure) removed = removal(fitter_, result_.state, loss, effect, mask_, needed_);
       const std::string why = sure ? "" : reasonAgainst(removed);
       if (why.empty()) {
         result_.scores[effect] = removed.score;
+        result_.evidence[effect] = removed.evidence;
         result_.gains[effect] = removed.gain;
         continue;
       }
@@ -151,7 +156,7 @@ class Pruning {
 
   /// Why an effect should go; empty if it should stay.
   std::string reasonAgainst(const Removal& removed) const {
-    if (std::abs(removed.score) < needed_) return "chance explains it beside the others";
+    if (removed.evidence < 1.0) return "chance explains it beside the others";
     if (removed.gain.value <= 0.0) return "does not help on blocks left out";
     if (improvement(fitter_, removed.state.model, result_.state.model, mask_) < least_gain_)
       return "real, but negligible: changes the end error by less than 1 %";
@@ -179,7 +184,7 @@ class Pruning {
 
   const Fitter& fitter_;
   const std::vector<char>& mask_;
-  double needed_;
+  const Needed needed_;
   double least_gain_;
   SearchResult& result_;
   const Progress& say_;
@@ -211,7 +216,7 @@ FitState withoutLinearly(const Fitter& fitter, const FitState& state, const std:
   return reduced;
 }
 
-void pruneEffects(const Fitter& fitter, const std::vector<char>& mask, double needed,
+void pruneEffects(const Fitter& fitter, const std::vector<char>& mask, const Needed& needed,
                   double least_gain, SearchResult& result, const Progress& say) {
   Pruning(fitter, mask, needed, least_gain, result, say).run();
 }

@@ -15,10 +15,10 @@ FitState without(const Fitter& fitter, const FitState& state, const std::string&
 FitState withoutLinearly(const Fitter& fitter, const FitState& state, const std::string& effect);
 
 /// Removes effects, weakest first, that the others make superfluous.
-/** Each that stays passes the score test alone in the presence of the others (|T| >= `needed`),
+/** Each that stays passes the score test alone in the presence of the others (evidence() >= 1),
  * improves blocks left out, and the end error by at least `least_gain` of it. Fills scores, gains
  * and negligible of the result. */
-void pruneEffects(const Fitter& fitter, const std::vector<char>& mask, double needed,
+void pruneEffects(const Fitter& fitter, const std::vector<char>& mask, const Needed& needed,
                   double least_gain, SearchResult& result, const Progress& say);
 
 }  // namespace tread::gap

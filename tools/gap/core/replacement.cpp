@@ -90,7 +90,9 @@ class Replacement {
         return false;
     const Gain pair_gain = gainOf(heldOutLoss(fitter_.rows(), tried, mask_), loss,
                                   blocksThatCount(fitter_.rows(), mask_));
-    if (pair_gain.value > pair_gain.error) return false;
+    // A moment may be set anywhere: with it one effect has to be better than two without.
+    const double bearable = single.moment.empty() ? pair_gain.error : 0.0;
+    if (pair_gain.value > bearable) return false;
     replace(single.effect, a, b, std::move(tried), pair_gain);
     return true;
   }

@@ -11,6 +11,8 @@
 namespace tread::gap {
 namespace {
 
+constexpr double kFewBlocks = 1.25;    // a root of active blocks below so many critical scores
+constexpr double kSparse = 4.0;        // score of a candidate that few blocks excite
 constexpr double kLeastUnique = 0.02;  // below it a column is what the model's curvature leaves
 /// Mean slope of the pull by the residual, over 1 / scale^2: (f + 1) / (f + 3).
 constexpr double kInformation = (kFreedom + 1.0) / (kFreedom + 3.0);
@@ -43,9 +45,13 @@ ScoreTest::ScoreTest(const Rows& rows, const FitState& state, const Eigen::Matri
   own_ = orthogonal(state, directions, metric);
   const Eigen::Index count = directions.cols();
   pulls_ = Eigen::MatrixXd::Zero(std::max(1, rows.blocks()), count);
+  block_information_ = pulls_;
   for (Eigen::Index i = 0; i < residuals.size(); ++i)
-    if (metric[i] > 0.0)
-      pulls_.row(rows.rows()[static_cast<size_t>(i)].block) += pull[i] * own_.row(i);
+    if (metric[i] > 0.0) {
+      const int block = rows.rows()[static_cast<size_t>(i)].block;
+      pulls_.row(block) += pull[i] * own_.row(i);
+      block_information_.row(block) += kInformation * metric[i] * own_.row(i).cwiseAbs2();
+    }
   scores_ = Eigen::VectorXd::Zero(count);
   uniqueness_ = Eigen::VectorXd::Zero(count);
   information_ = Eigen::VectorXd::Zero(count);
@@ -54,6 +60,7 @@ ScoreTest::ScoreTest(const Rows& rows, const FitState& state, const Eigen::Matri
     const double own = own_.col(c).cwiseAbs2().dot(metric);
     if (whole <= 0.0 || own <= kLeastUnique * kLeastUnique * whole) {
       pulls_.col(c).setZero();
+      block_information_.col(c).setZero();
       continue;
     }
     uniqueness_[c] = std::sqrt(own / whole);
@@ -73,6 +80,40 @@ double ScoreTest::sizeError(Eigen::Index candidate) const {
   return pulls_.col(candidate).norm() / information_[candidate];
 }
 
+double ScoreTest::activeBlocks(Eigen::Index candidate) const {
+  const double squares = block_information_.col(candidate).squaredNorm();
+  return squares > 0.0 ? std::pow(information_[candidate], 2) / squares : 0.0;
+}
+
+double ScoreTest::overdispersion(Eigen::Index candidate) const {
+  if (information_[candidate] <= 0.0) return 1.0;
+  const double common = size(candidate);
+  double scatter = 0.0;
+  for (Eigen::Index b = 0; b < pulls_.rows(); ++b) {
+    const double information = block_information_(b, candidate);
+    // What a block has itself drawn the common size to is given back.
+    const double rest = std::max(0.05, 1.0 - information / information_[candidate]);
+    scatter += std::pow(pulls_(b, candidate) - common * information, 2) / rest;
+  }
+  return std::max(1.0, scatter / information_[candidate]);
+}
+
+double ScoreTest::usualOverdispersion() const {
+  std::vector<double> all;
+  for (Eigen::Index c = 0; c < candidates(); ++c)
+    if (information_[c] > 0.0) all.push_back(overdispersion(c));
+  if (all.empty()) return 1.0;
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  std::nth_element(all.begin(), middle, all.end());
+  return *middle;
+}
+
+double ScoreTest::sparseScore(Eigen::Index candidate, double usual) const {
+  if (information_[candidate] <= 0.0) return 0.0;
+  return pulls_.col(candidate).sum() /
+         std::sqrt(information_[candidate] * std::max(usual, overdispersion(candidate)));
+}
+
 std::vector<double> ScoreTest::largestByChance(int draws, uint64_t seed) const {
   std::mt19937_64 random(seed);
   Eigen::MatrixXd normalised = pulls_;
@@ -89,6 +130,18 @@ std::vector<double> ScoreTest::largestByChance(int draws, uint64_t seed) const {
   }
   std::sort(largest.begin(), largest.end());
   return largest;
+}
+
+double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& needed) {
+  const double by_blocks = std::abs(test.score(candidate)) / needed.score;
+  if (std::sqrt(test.activeBlocks(candidate)) >= kFewBlocks * needed.score) return by_blocks;
+  return std::max(by_blocks,
+                  std::abs(test.sparseScore(candidate, needed.overdispersion)) / kSparse);
+}
+
+double chanceOfSize(double evidence, size_t candidates) {
+  return std::min(1.0,
+                  static_cast<double>(candidates) * std::erfc(evidence * kSparse / std::sqrt(2.0)));
 }
 
 double familyWise(const std::vector<double>& largest_by_chance, double score) {

@@ -32,6 +32,16 @@ class ScoreTest {
   double size(Eigen::Index candidate) const;
   /// Standard error of that size over blocks.
   double sizeError(Eigen::Index candidate) const;
+  /// How many blocks excite a candidate: (sum of information)^2 / sum of its squares.
+  double activeBlocks(Eigen::Index candidate) const;
+  /// How much larger than the scales say the blocks' pulls scatter about one common size; 1 at
+  /// least.
+  double overdispersion(Eigen::Index candidate) const;
+  /// Median of it over the candidates.
+  double usualOverdispersion() const;
+  /// Size over its standard error from information and overdispersion, not less than `usual`.
+  /** For candidates that few blocks excite: their |T| cannot exceed the root of activeBlocks(). */
+  double sparseScore(Eigen::Index candidate, double usual) const;
   /// The candidate freed of what the free parameters explain (rows x 1).
   Eigen::VectorXd own(Eigen::Index candidate) const { return own_.col(candidate); }
 
@@ -43,8 +53,24 @@ class ScoreTest {
   Eigen::MatrixXd pulls_;   ///< blocks x candidates
   Eigen::VectorXd scores_;  ///< candidates
   Eigen::VectorXd uniqueness_;
-  Eigen::VectorXd information_;  ///< of a candidate's size
+  Eigen::VectorXd information_;        ///< of a candidate's size
+  Eigen::MatrixXd block_information_;  ///< blocks x candidates
 };
+
+/// What a score must reach to count.
+struct Needed {
+  double score = 0.0;           ///< |T| that chance rarely reaches
+  double overdispersion = 1.0;  ///< as usual in these drives
+};
+
+/// Evidence for a candidate over what is needed; from 1 on chance is no explanation.
+/** |T| over blocks; where few blocks excite it, so that T cannot be large, its size for the
+ * information and the overdispersion, if that is clear. */
+double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& needed);
+
+/// Probability that chance gives any of so many candidates that evidence by its size alone
+/// (Bonferroni).
+double chanceOfSize(double evidence, size_t candidates);
 
 /// Share of chance results that are at least as large (with the observed one counted in).
 double familyWise(const std::vector<double>& largest_by_chance, double score);

@@ -43,6 +43,8 @@ struct Round {
   std::vector<double> scores;
   std::vector<double> sizes;
   std::vector<double> chance;
+  std::vector<double> evidence;  ///< over what is needed: above 1 chance is no explanation
+  double overdispersion = 1.0;
   std::vector<size_t> best;  ///< of each effect, largest score first
   std::vector<CandidateTest> tests;
 };
@@ -113,6 +115,9 @@ class Search {
       round.sizes.push_back(test.size(static_cast<Eigen::Index>(i)));
     }
     round.best = bestOfEffects(round);
+    round.overdispersion = test.usualOverdispersion();
+    for (size_t i = 0; i < round.candidates.size(); ++i)
+      round.evidence.push_back(evidenceOf(test, static_cast<Eigen::Index>(i), round));
     const double needed = criticalScore(round.chance, settings_.alpha) + kPowerQuantile;
     for (size_t i : round.best) {
       const auto at = static_cast<Eigen::Index>(i);
@@ -122,6 +127,27 @@ class Search {
     }
     return round;
   }
+
+  /// Evidence for a candidate over what is needed; less than 1 if chance explains it.
+  double evidenceOf(const ScoreTest& test, Eigen::Index candidate, const Round& round) const {
+    const Needed needed{criticalScore(round.chance, alpha()), round.overdispersion};
+    const double by_blocks = familyWise(round.chance, test.score(candidate)) <= alpha()
+                                 ? std::max(1.0, std::abs(test.score(candidate)) / needed.score)
+                                 : 0.0;
+    // The first effect is found by blocks alone: that is what keeps false alarms rare.
+    return isCovered() ? std::max(by_blocks, evidence(test, candidate, needed)) : by_blocks;
+  }
+
+  /// By blocks, or by its size where that was what convinced.
+  double pValueOf(const Round& round, double score, double evidence) const {
+    const double by_blocks = familyWise(round.chance, score);
+    return by_blocks <= alpha()
+               ? by_blocks
+               : std::min(by_blocks, chanceOfSize(evidence, round.candidates.size()));
+  }
+
+  bool isCovered() const { return has_cover_; }
+  double alpha() const { return isCovered() ? settings_.alpha_more : settings_.alpha; }
 
   /// What could have been seen beside what was found: before, its size hid the rest.
   void noteDetectable(const Round& last) {
@@ -141,10 +167,19 @@ class Search {
     memory_.covered.renew(fitter_, state(), likeliest);
   }
 
+  /// Of each effect beyond chance the clearest candidate; the clearest effects first.
   std::vector<size_t> significant(const Round& round) const {
+    std::map<std::string, size_t> clearest;
+    for (size_t i = 0; i < round.candidates.size(); ++i) {
+      if (round.evidence[i] < 1.0) continue;
+      const auto known = clearest.emplace(round.candidates[i].effect, i).first;
+      if (round.evidence[i] > round.evidence[known->second]) known->second = i;
+    }
     std::vector<size_t> found;
-    for (size_t i : round.best)
-      if (familyWise(round.chance, round.scores[i]) <= settings_.alpha) found.push_back(i);
+    for (const auto& [effect, index] : clearest) found.push_back(index);
+    std::stable_sort(found.begin(), found.end(), [&round](size_t a, size_t b) {
+      return round.evidence[a] > round.evidence[b];
+    });
     if (found.size() > settings_.tried) found.resize(settings_.tried);
     return found;
   }
@@ -163,6 +198,7 @@ class Search {
       ++covered_;
     }
     settle(state());
+    has_cover_ = true;
   }
 
   /// A candidate that was refitted, and what that brings on blocks left out.
@@ -224,14 +260,14 @@ class Search {
       if (&trial == best) {
         step.effect = effect;
         step.score = round.scores[trial.candidate];
-        step.p_value = familyWise(round.chance, step.score);
+        step.p_value = pValueOf(round, step.score, round.evidence[trial.candidate]);
         step.gain = trial.gain.value;
         step.gain_error = trial.gain.error;
       } else if (!trial.refused.empty()) {
         LadderStep refused;
         refused.effect = effect;
         refused.score = round.scores[trial.candidate];
-        refused.p_value = familyWise(round.chance, refused.score);
+        refused.p_value = pValueOf(round, refused.score, round.evidence[trial.candidate]);
         refused.removed = true;
         refused.remark = trial.refused;
         result_.ladder.push_back(refused);
@@ -251,14 +287,14 @@ class Search {
   }
 
   void prune(const Round& last) {
-    const double needed = criticalScore(last.chance, settings_.alpha);
+    const Needed needed{criticalScore(last.chance, alpha()), last.overdispersion};
     pruneEffects(fitter_, mask_, needed, settings_.least_gain, result_, say_);
     const size_t before = result_.ladder.size();
     replacePairs(fitter_, mask_, result_, say_);
     if (result_.ladder.size() > before)
       pruneEffects(fitter_, mask_, needed, settings_.least_gain, result_, say_);
     for (const std::string& effect : result_.effects)
-      result_.p_values[effect] = familyWise(last.chance, result_.scores[effect]);
+      result_.p_values[effect] = pValueOf(last, result_.scores[effect], result_.evidence[effect]);
     settle(state());
   }
 
@@ -269,6 +305,7 @@ class Search {
   const Progress& say_;
   SearchResult result_;
   size_t covered_ = 0;
+  bool has_cover_ = false;
 };
 
 }  // namespace

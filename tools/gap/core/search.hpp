@@ -22,10 +22,11 @@ using Progress = std::function<void(const std::string&)>;
 
 struct SearchSettings {
   double alpha =
-      0.02;          ///< probability that a test over the whole catalogue names something wrongly
-  int draws = 1999;  ///< of the bootstrap
-  size_t tried = 4;  ///< effects that are refitted in a round
-  size_t most = 8;   ///< effects that are added at most
+      0.02;  ///< probability that the first test over the whole catalogue names something wrongly
+  double alpha_more = 0.05;  ///< the same of every further test, once something is there
+  int draws = 1999;          ///< of the bootstrap
+  size_t tried = 4;          ///< effects that are refitted in a round
+  size_t most = 8;           ///< effects that are added at most
   bool calibrate = false;    ///< the numbers of the nominal model are free
   double least_gain = 0.01;  ///< of the end error; less is real but negligible
   uint64_t seed = 1;
@@ -39,6 +40,7 @@ struct SearchResult {
   std::map<std::string, std::vector<RunnerUp>> runner_ups;
   std::map<std::string, Gain> gains;  ///< what each brings when all others are there
   std::map<std::string, double> scores;
+  std::map<std::string, double> evidence;  ///< over what is needed
   std::map<std::string, double> p_values;
   std::vector<LadderStep> ladder;
   std::vector<CandidateTest> tests;  ///< of the calibrated model, every effect's best direction

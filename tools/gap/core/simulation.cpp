@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace tread::gap {
 namespace {
 
-constexpr double kLongestStep = 0.05;  // [s] of integration; lags and ramps are exact within one
+constexpr double kTransient = 0.8;  // [s] after a change of command; then all changes slowly
+constexpr double kSlowly = 2.0;     // pieces are so much longer then
 
 /// Roll and pitch at a moment; level where the INS does not say.
 void levelAt(const std::vector<InsSample>& ins, double time, size_t& at, DriveContext& context) {
@@ -36,14 +38,19 @@ StretchPlan::StretchPlan(const Drive& drive, const Stretch& stretch, double piec
   for (size_t i = 0; i < stretch.commands.size(); ++i) {
     const double from = stretch.commands[i].time;
     const double to = i + 1 < stretch.commands.size() ? stretch.commands[i + 1].time : stretch.end;
-    const int count = std::max(1, static_cast<int>(std::ceil((to - from) / piece - 1e-6)));
-    const double duration = (to - from) / count;
-    for (int n = 0; n < count; ++n) {
-      DriveContext context;
-      context.session_time = from + n * duration;
-      levelAt(stretch.ins, context.session_time + duration / 2.0, ins_at, context);
-      context.battery_drop = dropAt(drive.voltage, context.session_time, voltage_at);
-      pieces_.push_back({duration, stretch.commands[i].command, context});
+    const double settled = to - from > 1.5 * kTransient ? from + kTransient : to;
+    for (const auto& [begin, end, longest] :
+         {std::tuple{from, settled, piece}, std::tuple{settled, to, kSlowly * piece}}) {
+      const int count = static_cast<int>(std::ceil((end - begin) / longest - 1e-6));
+      const double duration = (end - begin) / std::max(1, count);
+      for (int n = 0; n < count; ++n) {
+        DriveContext context;
+        context.session_time = begin + n * duration;
+        levelAt(stretch.ins, context.session_time + duration / 2.0, ins_at, context);
+        context.battery_drop = dropAt(drive.voltage, context.session_time, voltage_at);
+        pieces_.push_back({duration, stretch.commands[i].command, context});
+        longest_ = std::max(longest_, duration);
+      }
     }
   }
 }
@@ -56,7 +63,7 @@ EntryState StretchPlan::entryFor(const VehicleModel& vehicle) const {
 
 std::vector<TimedPose> StretchPlan::simulate(const VehicleModel& vehicle) const {
   VehicleModel model = vehicle;
-  model.step = kLongestStep;
+  model.step = longest_;  // lags and ramps are exact within one
   VehicleKernel kernel(model, entryFor(model));
   std::vector<TimedPose> motion;
   motion.reserve(pieces_.size() + 1);

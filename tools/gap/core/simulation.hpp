@@ -15,7 +15,8 @@ namespace tread::gap {
 /** Made once a drive; simulating again with other parameters is then one pass over it. */
 class StretchPlan {
  public:
-  /// Pieces of at most `piece` seconds. The stretch may go away afterwards.
+  /// Pieces of at most `piece` seconds, of twice that where a command has held for a while. The
+  /// stretch may go away afterwards.
   StretchPlan(const Drive& drive, const Stretch& stretch, double piece);
 
   /// True poses of a model through the stretch, relative to its beginning; one entry a piece.
@@ -32,6 +33,7 @@ class StretchPlan {
   EntryState entryFor(const VehicleModel& vehicle) const;
 
   double begin_ = 0.0;
+  double longest_ = 1e-3;  ///< piece [s]
   std::vector<Piece> pieces_;
   std::optional<TrackCommand> entry_speeds_;
   TrackCommand command_before_;
