@@ -192,15 +192,23 @@ class Pruning {
 
 }  // namespace
 
+FitState switchedOff(const Fitter& fitter, const FitState& state,
+                     const std::vector<std::string>& effects) {
+  FitState reduced = state;
+  for (const std::string& effect : effects) {
+    for (size_t i = reduced.free.size(); i-- > 0;)
+      if (belongsTo(reduced.free[i], effect)) fitter.release(reduced, i);
+    for (const EffectParameter& parameter : effectNamed(effect).parameters)
+      if (parameter.role == ParameterRole::kStrength)
+        *findParameter(reduced.model, effect + "." + parameter.name) = 0.0;
+  }
+  reduced.predicted = fitter.rows().predict(reduced.model);
+  return reduced;
+}
+
 FitState without(const Fitter& fitter, const FitState& state, const std::string& effect,
                  const std::vector<char>& mask) {
-  FitState reduced = state;
-  for (size_t i = reduced.free.size(); i-- > 0;)
-    if (belongsTo(reduced.free[i], effect)) fitter.release(reduced, i);
-  for (const EffectParameter& parameter : effectNamed(effect).parameters)
-    if (parameter.role == ParameterRole::kStrength)
-      *findParameter(reduced.model, effect + "." + parameter.name) = 0.0;
-  reduced.predicted = fitter.rows().predict(reduced.model);
+  FitState reduced = switchedOff(fitter, state, {effect});
   fitter.fitRoughly(reduced, mask);
   return reduced;
 }

@@ -6,6 +6,10 @@
 
 namespace tread::gap {
 
+/// The state with effects switched off; nothing is refitted.
+FitState switchedOff(const Fitter& fitter, const FitState& state,
+                     const std::vector<std::string>& effects);
+
 /// The state without an effect, its other parameters refitted, with current Jacobian.
 FitState without(const Fitter& fitter, const FitState& state, const std::string& effect,
                  const std::vector<char>& mask);

@@ -10,8 +10,9 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kHopeless = 3.0;       // standard errors by which a pair is better in first order
+constexpr double kHopeless = 2.5;       // standard errors by which a pair is better in first order
 constexpr double kHopelessNats = 20.0;  // and what rounding of that order may cost
+constexpr double kBearableNats = 10.0;  // that simplicity may cost
 constexpr double kImitated = 0.35;  // uniqueness below which the found effects imitate another one
 
 /// An effect that the found ones can imitate, and what it would change.
@@ -79,7 +80,7 @@ class Replacement {
     const Gain first_order = gainOf(heldOutLoss(fitter_.rows(), nearly, mask_), loss, counts);
     if (first_order.value > kHopeless * first_order.error + kHopelessNats) return false;
     const Candidate& single = imitated_one.candidate;
-    const FitState reduced = without(fitter_, without(fitter_, result_.state, a, mask_), b, mask_);
+    const FitState reduced = switchedOff(fitter_, result_.state, {a, b});
     const ScoreTest test(fitter_.rows(), reduced, directionsOf(fitter_, reduced, {single}), mask_);
     FitState tried = reduced;
     addCandidate(fitter_, tried, single, test.size(0), mask_);
@@ -88,17 +89,21 @@ class Replacement {
       if (parameter.path.compare(0, single.effect.size(), single.effect) == 0 &&
           onBound(tried.model, parameter))
         return false;
+    // What does not fit as well needs no validation; that is in first order and may be mistaken.
+    if (tried.loss - result_.state.loss > 2.0 * kBearableNats) return false;
     const Gain pair_gain = gainOf(heldOutLoss(fitter_.rows(), tried, mask_), loss,
                                   blocksThatCount(fitter_.rows(), mask_));
-    // A moment may be set anywhere: with it one effect has to be better than two without.
-    const double bearable = single.moment.empty() ? pair_gain.error : 0.0;
+    // A moment may be set anywhere: an effect with one has to be clearly better than two without.
+    const double bearable =
+        single.moment.empty() ? std::min(pair_gain.error, kBearableNats) : -pair_gain.error;
     if (pair_gain.value > bearable) return false;
     replace(single.effect, a, b, std::move(tried), pair_gain);
     return true;
   }
 
-  void replace(const std::string& single, const std::string& a, const std::string& b,
-               FitState state, const Gain& pair_gain) {
+  /// By value: the names come from the list that changes.
+  void replace(const std::string& single, const std::string a, const std::string b, FitState state,
+               const Gain& pair_gain) {
     LadderStep step;
     step.effect = single;
     step.gain = -pair_gain.value;

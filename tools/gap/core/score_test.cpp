@@ -75,6 +75,10 @@ double ScoreTest::size(Eigen::Index candidate) const {
                                        : 0.0;
 }
 
+double ScoreTest::promise(Eigen::Index candidate) const {
+  return 0.5 * size(candidate) * pulls_.col(candidate).sum();
+}
+
 double ScoreTest::sizeError(Eigen::Index candidate) const {
   if (information_[candidate] <= 0.0) return std::numeric_limits<double>::infinity();
   return pulls_.col(candidate).norm() / information_[candidate];

@@ -30,6 +30,8 @@ class ScoreTest {
   double uniqueness(Eigen::Index candidate) const { return uniqueness_[candidate]; }
   /// Estimated size, in first order, in the candidate's unit.
   double size(Eigen::Index candidate) const;
+  /// What it would gain, in first order [nats].
+  double promise(Eigen::Index candidate) const;
   /// Standard error of that size over blocks.
   double sizeError(Eigen::Index candidate) const;
   /// How many blocks excite a candidate: (sum of information)^2 / sum of its squares.

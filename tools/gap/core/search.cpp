@@ -44,6 +44,7 @@ struct Round {
   std::vector<double> sizes;
   std::vector<double> chance;
   std::vector<double> evidence;  ///< over what is needed: above 1 chance is no explanation
+  std::vector<double> promise;   ///< gain in first order [nats]
   double overdispersion = 1.0;
   std::vector<size_t> best;  ///< of each effect, largest score first
   std::vector<CandidateTest> tests;
@@ -116,8 +117,10 @@ class Search {
     }
     round.best = bestOfEffects(round);
     round.overdispersion = test.usualOverdispersion();
-    for (size_t i = 0; i < round.candidates.size(); ++i)
+    for (size_t i = 0; i < round.candidates.size(); ++i) {
       round.evidence.push_back(evidenceOf(test, static_cast<Eigen::Index>(i), round));
+      round.promise.push_back(test.promise(static_cast<Eigen::Index>(i)));
+    }
     const double needed = criticalScore(round.chance, settings_.alpha) + kPowerQuantile;
     for (size_t i : round.best) {
       const auto at = static_cast<Eigen::Index>(i);
@@ -167,20 +170,18 @@ class Search {
     memory_.covered.renew(fitter_, state(), likeliest);
   }
 
-  /// Of each effect beyond chance the clearest candidate; the clearest effects first.
+  /// Of each effect beyond chance the most promising candidate; the most promising effects first.
   std::vector<size_t> significant(const Round& round) const {
     std::map<std::string, size_t> clearest;
     for (size_t i = 0; i < round.candidates.size(); ++i) {
       if (round.evidence[i] < 1.0) continue;
       const auto known = clearest.emplace(round.candidates[i].effect, i).first;
-      if (round.evidence[i] > round.evidence[known->second]) known->second = i;
+      if (round.promise[i] > round.promise[known->second]) known->second = i;
     }
     std::vector<size_t> found;
     for (const auto& [effect, index] : clearest) found.push_back(index);
-    std::stable_sort(found.begin(), found.end(), [&round](size_t a, size_t b) {
-      return round.evidence[a] > round.evidence[b];
-    });
-    if (found.size() > settings_.tried) found.resize(settings_.tried);
+    std::stable_sort(found.begin(), found.end(),
+                     [&round](size_t a, size_t b) { return round.promise[a] > round.promise[b]; });
     return found;
   }
 
@@ -229,20 +230,27 @@ class Search {
         trial.refused = parameter.path + " runs to the end of its plausible range";
     trial.loss = heldOutLoss(fitter_.rows(), trial.state, mask_);
     trial.gain = gainOf(loss_now, trial.loss, blocksThatCount(fitter_.rows(), mask_));
+    // First order may promise more than the refit keeps.
+    trial.gain.value = std::min(trial.gain.value, state().loss - trial.state.loss);
     return trial;
   }
 
+  /// Refits the clearest effects and adds the one that helps most on blocks left out; the next ones
+  /// if none of them is possible.
   bool addBest(const Round& round) {
     const std::vector<size_t> found = significant(round);
     if (found.empty()) return false;
     const Eigen::VectorXd now = heldOutLoss(fitter_.rows(), state(), mask_);
-    std::vector<Trial> trials(found.size());
-    for (size_t i = 0; i < found.size(); ++i) trials[i] = tryOut(round, found[i], now);
+    std::vector<Trial> trials;
     const Trial* best = nullptr;
-    for (const Trial& trial : trials)
-      if (trial.refused.empty() && trial.gain.value > 0.0 &&
-          (best == nullptr || trial.gain.value > best->gain.value))
-        best = &trial;
+    for (size_t begin = 0; begin < found.size() && best == nullptr; begin += settings_.tried) {
+      const size_t end = std::min(found.size(), begin + settings_.tried);
+      for (size_t i = begin; i < end; ++i) trials.push_back(tryOut(round, found[i], now));
+      for (const Trial& trial : trials)
+        if (trial.refused.empty() && trial.gain.value > 0.0 &&
+            (best == nullptr || trial.gain.value > best->gain.value))
+          best = &trial;
+    }
     noteTrials(round, trials, best);
     if (best == nullptr) return false;
     const std::string effect = round.candidates[best->candidate].effect;

@@ -25,7 +25,7 @@ struct SearchSettings {
       0.02;  ///< probability that the first test over the whole catalogue names something wrongly
   double alpha_more = 0.05;  ///< the same of every further test, once something is there
   int draws = 1999;          ///< of the bootstrap
-  size_t tried = 4;          ///< effects that are refitted in a round
+  size_t tried = 4;          ///< effects that are refitted at a time
   size_t most = 8;           ///< effects that are added at most
   bool calibrate = false;    ///< the numbers of the nominal model are free
   double least_gain = 0.01;  ///< of the end error; less is real but negligible
