@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <benchmark/benchmark.h>
+#include <time.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/tools/gap/synthetic_drive.hpp"
+#include "tools/gap/core/discovery.hpp"
+
+// What `tread-gap find` computes between the log and the report, on ten minutes of driving: the
+// test of the whole catalogue, refits, pruning, the nested halves, adequacy and the residual maps,
+// with one thread. The drive and what hides in it are always the same, so that the work is, too;
+// reading logs and writing reports is not in it. `simulations` is that time over the time that the
+// nominal model takes to simulate and predict the same drive once, measured in the same process:
+// it holds on any machine. `cpu_s` is the processor time on this one.
+
+namespace {
+
+using namespace tread;
+using namespace tread::gap;
+
+using Hidden = std::vector<std::pair<std::string, double>>;
+
+constexpr double kSeconds = 600.0;
+constexpr uint64_t kSeed = 7;
+constexpr int kReference = 100;  // predictions whose mean is the reference
+
+/// Of this process: what else the machine does does not count [s].
+double now() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+GapTask taskOf(const Hidden& hidden) {
+  ModelDocument truth = syntheticVehicle();
+  for (const auto& [path, value] : hidden) *findParameter(truth, path) = value;
+  GapTask task;
+  task.model = syntheticVehicle();
+  task.seed = kSeed;
+  task.threads = 1;
+  task.train.push_back(syntheticDrive(truth, kSeconds, kSeed));
+  return task;
+}
+
+/// Seconds that one simulation and prediction of the drive by the nominal model takes.
+double predictionTime(const GapTask& task) {
+  const Rows rows(task.train, {});
+  benchmark::DoNotOptimize(rows.predict(task.model).data());
+  const double begun = now();
+  for (int i = 0; i < kReference; ++i) benchmark::DoNotOptimize(rows.predict(task.model).data());
+  return (now() - begun) / kReference;
+}
+
+void find(benchmark::State& state, const Hidden& hidden) {
+  const GapTask task = taskOf(hidden);
+  const double prediction = predictionTime(task);
+  const Progress silent = [](const std::string&) {};
+  std::string names;
+  double spent = 0.0;
+  for (auto _ : state) {
+    const double begun = now();
+    const Finding finding = findGap(task, silent);
+    spent += now() - begun;
+    names = verdictName(finding.verdict);
+    for (const FoundEffect& effect : finding.effects) names += " " + effect.name;
+  }
+  const double each = spent / static_cast<double>(state.iterations());
+  state.counters["cpu_s"] = each;
+  state.counters["simulations"] = each / prediction;
+  state.counters["one_ms"] = 1e3 * prediction;
+  state.SetLabel(names);
+}
+
+void findOne(benchmark::State& state) {
+  find(state, {{"motor_deadband.speed", 0.1}});
+}
+
+void findThree(benchmark::State& state) {
+  find(state, {{"track_asymmetry.share", 0.05},
+               {"centrifugal_drift.time", 0.2},
+               {"motor_deadband.speed", 0.1}});
+}
+
+BENCHMARK(findOne)->Name("find/one_hidden")->Unit(benchmark::kSecond)->Iterations(1);
+BENCHMARK(findThree)->Name("find/three_hidden")->Unit(benchmark::kSecond)->Iterations(1);
+
+}  // namespace
