@@ -253,4 +253,8 @@ void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candid
   }
 }
 
+bool hasMoment(const std::string& effect) {
+  return effect == "payload_change" || effect == "terrain_change";
+}
+
 }  // namespace tread::gap

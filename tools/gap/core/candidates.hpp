@@ -54,4 +54,7 @@ Eigen::MatrixXd directionsOf(const Fitter& fitter, const FitState& state,
 void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candidate, double size,
                   const std::vector<char>& mask);
 
+/// Whether an effect begins at a moment that is searched for.
+bool hasMoment(const std::string& effect);
+
 }  // namespace tread::gap

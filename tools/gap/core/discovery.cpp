@@ -14,6 +14,7 @@
 #include "tools/gap/core/dead_reckoning.hpp"
 #include "tools/gap/core/end_errors.hpp"
 #include "tools/gap/core/moments.hpp"
+#include "tools/gap/core/student.hpp"
 
 namespace tread::gap {
 namespace {

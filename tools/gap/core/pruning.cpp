@@ -136,11 +136,13 @@ class Pruning {
     const Eigen::VectorXd loss = heldOutLoss(fitter_.rows(), result_.state, mask_);
     for (const std::string& effect : leastSureFirst(fitter_, result_, mask_)) {
       // What is beyond doubt in first order needs no simulation without it.
-      Removal removed = linearRemoval(fitter_, result_.state, loss, effect, mask_, needed_);
+      Needed needed = needed_;
+      needed.size_counts = !hasMoment(effect);
+      Removal removed = linearRemoval(fitter_, result_.state, loss, effect, mask_, needed);
       const bool sure = removed.evidence >= 1.0 &&
                         removed.gain.value > kSure * removed.gain.error &&
                         removed.gain.value > kSureNats;
-      if (!sure) removed = removal(fitter_, result_.state, loss, effect, mask_, needed_);
+      if (!sure) removed = removal(fitter_, result_.state, loss, effect, mask_, needed);
       const std::string why = sure ? "" : reasonAgainst(removed);
       if (why.empty()) {
         result_.scores[effect] = removed.score;

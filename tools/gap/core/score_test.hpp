@@ -41,7 +41,8 @@ class ScoreTest {
   double overdispersion(Eigen::Index candidate) const;
   /// Median of it over the candidates.
   double usualOverdispersion() const;
-  /// Size over its standard error from information and overdispersion, not less than `usual`.
+  /// Size over its standard error from information and overdispersion: its own, moderated by what
+  /// is `usual` as by a few further blocks.
   /** For candidates that few blocks excite: their |T| cannot exceed the root of activeBlocks(). */
   double sparseScore(Eigen::Index candidate, double usual) const;
   /// The candidate freed of what the free parameters explain (rows x 1).
@@ -63,11 +64,13 @@ class ScoreTest {
 struct Needed {
   double score = 0.0;           ///< |T| that chance rarely reaches
   double overdispersion = 1.0;  ///< as usual in these drives
+  bool size_counts = true;      ///< where few blocks excite it; not for what may begin at any time
 };
 
 /// Evidence for a candidate over what is needed; from 1 on chance is no explanation.
 /** |T| over blocks; where few blocks excite it, so that T cannot be large, its size for the
- * information and the overdispersion, if that is clear. */
+ * information and the overdispersion, by Student's distribution of the blocks that excite it and a
+ * few that stand for what is usual. */
 double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& needed);
 
 /// Probability that chance gives any of so many candidates that evidence by its size alone

@@ -133,12 +133,14 @@ class Search {
 
   /// Evidence for a candidate over what is needed; less than 1 if chance explains it.
   double evidenceOf(const ScoreTest& test, Eigen::Index candidate, const Round& round) const {
-    const Needed needed{criticalScore(round.chance, alpha()), round.overdispersion};
-    const double by_blocks = familyWise(round.chance, test.score(candidate)) <= alpha()
-                                 ? std::max(1.0, std::abs(test.score(candidate)) / needed.score)
-                                 : 0.0;
-    // The first effect is found by blocks alone: that is what keeps false alarms rare.
-    return isCovered() ? std::max(by_blocks, evidence(test, candidate, needed)) : by_blocks;
+    // The first effect is found by blocks alone: that is what keeps false alarms rare. So is a
+    // change, which finds a few blocks of chance wherever they are.
+    const bool size_counts =
+        isCovered() && !hasMoment(round.candidates[static_cast<size_t>(candidate)].effect);
+    const Needed needed{criticalScore(round.chance, alpha()), round.overdispersion, size_counts};
+    const double found = evidence(test, candidate, needed);
+    return familyWise(round.chance, test.score(candidate)) <= alpha() ? std::max(1.0, found)
+                                                                      : found;
   }
 
   /// By blocks, or by its size where that was what convinced.
@@ -295,7 +297,7 @@ class Search {
   }
 
   void prune(const Round& last) {
-    const Needed needed{criticalScore(last.chance, alpha()), last.overdispersion};
+    const Needed needed{criticalScore(last.chance, alpha()), last.overdispersion, true};
     pruneEffects(fitter_, mask_, needed, settings_.least_gain, result_, say_);
     const size_t before = result_.ladder.size();
     replacePairs(fitter_, mask_, result_, say_);

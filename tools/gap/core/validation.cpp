@@ -154,15 +154,4 @@ Eigen::MatrixXd parameterCovariance(const Rows& rows, const FitState& state,
   return covariance;
 }
 
-double studentQuantile(int freedom) {
-  // Cornish and Fisher's expansion around the normal quantile; within .5 % from 3 degrees on.
-  const double z = 1.959964;
-  const double n = std::max(3, freedom);
-  const double z3 = z * z * z;
-  const double z5 = z3 * z * z;
-  const double z7 = z5 * z * z;
-  return z + (z3 + z) / (4.0 * n) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n) +
-         (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n * n * n);
-}
-
 }  // namespace tread::gap

@@ -38,7 +38,4 @@ std::vector<char> blocksThatCount(const Rows& rows, const std::vector<char>& mas
 Eigen::MatrixXd parameterCovariance(const Rows& rows, const FitState& state,
                                     const std::vector<char>& mask);
 
-/// 97.5 % quantile of Student's distribution.
-double studentQuantile(int freedom);
-
 }  // namespace tread::gap
