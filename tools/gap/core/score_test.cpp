@@ -8,14 +8,11 @@
 
 #include <Eigen/Cholesky>
 
-#include "tools/gap/core/student.hpp"
-
 namespace tread::gap {
 namespace {
 
 constexpr double kFewBlocks = 1.25;    // a root of active blocks below so many critical scores
 constexpr double kSparse = 3.9;        // normal quantile: 1e-4
-constexpr double kUsualBlocks = 4.0;   // that the usual overdispersion counts for
 constexpr double kLeastUnique = 0.02;  // below it a column is what the model's curvature leaves
 /// Mean slope of the pull by the residual, over 1 / scale^2: (f + 1) / (f + 3).
 constexpr double kInformation = (kFreedom + 1.0) / (kFreedom + 3.0);
@@ -117,10 +114,8 @@ double ScoreTest::usualOverdispersion() const {
 
 double ScoreTest::sparseScore(Eigen::Index candidate, double usual) const {
   if (information_[candidate] <= 0.0) return 0.0;
-  const double freedom = std::max(0.0, activeBlocks(candidate) - 1.0);
-  const double dispersion =
-      (kUsualBlocks * usual + freedom * overdispersion(candidate)) / (kUsualBlocks + freedom);
-  return pulls_.col(candidate).sum() / std::sqrt(information_[candidate] * dispersion);
+  return pulls_.col(candidate).sum() /
+         std::sqrt(information_[candidate] * std::max(usual, overdispersion(candidate)));
 }
 
 std::vector<double> ScoreTest::largestByChance(int draws, uint64_t seed) const {
@@ -143,10 +138,10 @@ std::vector<double> ScoreTest::largestByChance(int draws, uint64_t seed) const {
 
 double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& needed) {
   const double by_blocks = std::abs(test.score(candidate)) / needed.score;
-  const double active = test.activeBlocks(candidate);
-  if (!needed.size_counts || std::sqrt(active) >= kFewBlocks * needed.score) return by_blocks;
-  const double size = std::abs(test.sparseScore(candidate, needed.overdispersion));
-  return std::max(by_blocks, size / studentQuantile(active - 1.0 + kUsualBlocks, kSparse));
+  if (!needed.size_counts || std::sqrt(test.activeBlocks(candidate)) >= kFewBlocks * needed.score)
+    return by_blocks;
+  return std::max(by_blocks,
+                  std::abs(test.sparseScore(candidate, needed.overdispersion)) / kSparse);
 }
 
 double chanceOfSize(double evidence, size_t candidates) {

@@ -41,8 +41,7 @@ class ScoreTest {
   double overdispersion(Eigen::Index candidate) const;
   /// Median of it over the candidates.
   double usualOverdispersion() const;
-  /// Size over its standard error from information and overdispersion: its own, moderated by what
-  /// is `usual` as by a few further blocks.
+  /// Size over its standard error from information and overdispersion, not less than the `usual`.
   /** For candidates that few blocks excite: their |T| cannot exceed the root of activeBlocks(). */
   double sparseScore(Eigen::Index candidate, double usual) const;
   /// The candidate freed of what the free parameters explain (rows x 1).
@@ -69,8 +68,7 @@ struct Needed {
 
 /// Evidence for a candidate over what is needed; from 1 on chance is no explanation.
 /** |T| over blocks; where few blocks excite it, so that T cannot be large, its size for the
- * information and the overdispersion, by Student's distribution of the blocks that excite it and a
- * few that stand for what is usual. */
+ * information and the overdispersion, if that is clear. */
 double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& needed);
 
 /// Probability that chance gives any of so many candidates that evidence by its size alone
