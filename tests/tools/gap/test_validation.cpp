@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core_rig.hpp"
+#include "tools/gap/core/student.hpp"
 #include "tools/gap/core/validation.hpp"
 
 using namespace tread;
