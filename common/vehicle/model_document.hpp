@@ -30,12 +30,20 @@ struct SourceLog {
   std::string sha256;  ///< 64 hexadecimal digits
 };
 
+/// A person's last word on an effect of the catalogue.
+struct Decision {
+  std::string effect;
+  bool accepted = false;  ///< in whatever the tests say; else never considered
+  std::string by;         ///< who decided; may be empty
+};
+
 /// Where a model comes from.
 struct Provenance {
   std::string tool;             ///< name and version; empty = written by hand
   std::optional<int64_t> seed;  ///< of its random numbers
   int64_t runs = 0;             ///< how often a tool has worked on these logs
   std::vector<SourceLog> logs;
+  std::vector<Decision> decisions;
 };
 
 /// The largest motion that a model was made from or that a drive asks for.

@@ -111,6 +111,15 @@ void readProvenance(ConfigReader reader, Provenance& provenance) {
       throw entry.error("sha256", "is no SHA-256; 64 digits 0-9 a-f");
     provenance.logs.push_back(log);
   }
+  for (ConfigReader& entry : reader.sections("decisions")) {
+    Decision decision;
+    entry.text("effect", decision.effect, true);
+    std::string decided = "accepted";
+    entry.choice("decision", decided, {"accepted", "rejected"}, true);
+    decision.accepted = decided == "accepted";
+    entry.text("by", decision.by);
+    provenance.decisions.push_back(decision);
+  }
 }
 
 std::optional<Envelope> readEnvelope(ConfigReader& reader) {

@@ -92,7 +92,7 @@ void writeEstimate(std::ostringstream& out, const ModelDocument& document) {
 
 void writeProvenance(std::ostringstream& out, const Provenance& provenance) {
   if (provenance.tool.empty() && !provenance.seed && provenance.runs == 0 &&
-      provenance.logs.empty())
+      provenance.logs.empty() && provenance.decisions.empty())
     return;
   out << "provenance:\n";
   if (!provenance.tool.empty()) out << "  tool: " << formatText(provenance.tool) << '\n';
@@ -102,6 +102,12 @@ void writeProvenance(std::ostringstream& out, const Provenance& provenance) {
   for (const SourceLog& log : provenance.logs)
     out << "    - name: " << formatText(log.name) << "\n      sha256: " << formatText(log.sha256)
         << '\n';
+  if (!provenance.decisions.empty()) out << "  decisions:  # of people\n";
+  for (const Decision& decision : provenance.decisions) {
+    out << "    - effect: " << decision.effect
+        << "\n      decision: " << (decision.accepted ? "accepted" : "rejected") << '\n';
+    if (!decision.by.empty()) out << "      by: " << formatText(decision.by) << '\n';
+  }
 }
 
 void writeEnvelope(std::ostringstream& out, const Envelope& envelope) {

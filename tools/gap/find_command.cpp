@@ -13,6 +13,7 @@
 #include "common/vehicle/model_file.hpp"
 #include "tools/gap/commands.hpp"
 #include "tools/gap/core/discovery.hpp"
+#include "tools/gap/decisions.hpp"
 #include "tools/gap/file_hash.hpp"
 #include "tools/gap/find_output.hpp"
 #include "tools/gap/read_for_model.hpp"
@@ -30,6 +31,9 @@ struct Options {
   int64_t seed = 1;
   int threads = 1;
   bool calibrate = false;
+  std::vector<std::string> accepted;
+  std::vector<std::string> rejected;
+  std::string by;
 };
 
 constexpr const char* kFooter =
@@ -75,6 +79,7 @@ int find(const Options& options) {
   std::vector<InputFile> inputs;
   GapTask task;
   task.model = readModelDocument(options.model);
+  task.decisions = decisionsOf({options.accepted, options.rejected, options.by}, task.model);
   inputs.push_back({InputFile::Role::kModel, fileName(options.model), sha256OfFile(options.model)});
   task.train = readDrives(options.train, InputFile::Role::kTrain, task.model, inputs);
   task.test = readDrives(options.test, InputFile::Role::kTest, task.model, inputs);
@@ -116,6 +121,14 @@ CLI::App* addFind(CLI::App& app, int& status) {
   command->add_flag("--calibrate", options->calibrate,
                     "fit lag, delay and gains of the nominal model, too: makes the model of a new "
                     "vehicle from a long log");
+  command
+      ->add_option("--accept", options->accepted,
+                   "effects that are in the model from the start and stay, whatever the tests say")
+      ->expected(-1);
+  command->add_option("--reject", options->rejected, "effects that are not considered")
+      ->expected(-1);
+  command->add_option("--by", options->by,
+                      "who accepts or rejects; for the new model's provenance");
   command->add_option("--seed", options->seed, "of the random draws of the tests")
       ->capture_default_str()
       ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));

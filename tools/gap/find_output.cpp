@@ -40,6 +40,11 @@ ModelDocument newModel(const Finding& finding, const std::vector<InputFile>& inp
                     [&](const SourceLog& log) { return log.sha256 == input.sha256; }))
       provenance.runs = old.runs + 1;
   }
+  provenance.decisions = finding.decisions;
+  for (const Decision& earlier : old.decisions)
+    if (std::none_of(finding.decisions.begin(), finding.decisions.end(),
+                     [&](const Decision& now) { return now.effect == earlier.effect; }))
+      provenance.decisions.push_back(earlier);
   model.provenance = provenance;
   return model;
 }

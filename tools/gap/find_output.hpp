@@ -12,7 +12,8 @@ namespace tread::gap {
 
 /// The new model with where it comes from: tool, seed, logs, and how often it was worked on them.
 /** A run counts on from the model's own count if it names one of the same logs. Only training logs
- * are named: nothing of the model comes from the others. */
+ * are named: nothing of the model comes from the others. What people decided stays on record from
+ * model to model, but decides nothing by itself. */
 ModelDocument newModel(const Finding& finding, const std::vector<InputFile>& inputs);
 
 /// Writes model.yaml, report.md, report.html and, last, verdict.json into a folder.

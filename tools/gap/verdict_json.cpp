@@ -39,7 +39,8 @@ Json effectJson(const FoundEffect& effect) {
           {"kind", effect.kind == EffectKind::kVehicle ? "vehicle" : "measurement"},
           {"parameters", parameters},
           {"group", effect.group},
-          {"runner_up", runner_ups}};
+          {"runner_up", runner_ups},
+          {"accepted", effect.accepted}};
 }
 
 Json calibratedJson(const std::vector<Estimate>& calibrated) {
@@ -70,6 +71,15 @@ Json gapJson(const std::optional<Gap>& gap) {
           {"floor", gap->floor ? errorsJson(*gap->floor) : Json(nullptr)}};
 }
 
+Json decisionsJson(const std::vector<Decision>& decisions) {
+  Json all = Json::array();
+  for (const Decision& decision : decisions)
+    all.push_back({{"effect", decision.effect},
+                   {"decision", decision.accepted ? "accepted" : "rejected"},
+                   {"by", decision.by}});
+  return all;
+}
+
 Json inputsJson(const std::vector<InputFile>& inputs) {
   Json all = {{"model", nullptr}, {"train", Json::array()}, {"test", Json::array()}};
   for (const InputFile& input : inputs) {
@@ -97,6 +107,7 @@ nlohmann::ordered_json verdictJson(const Finding& finding, const std::vector<Inp
           {"gap", gapJson(finding.gap)},
           {"unexplained", unexplained},
           {"not_excited", finding.not_excited},
+          {"decisions", decisionsJson(finding.decisions)},
           {"seed", finding.seed},
           {"inputs", inputsJson(inputs)}};
 }

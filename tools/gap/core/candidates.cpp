@@ -113,8 +113,7 @@ bool secondChangeOn(const EffectValues& effects) {
 /// Whether a strength of an effect can be switched on in this model.
 bool isOpen(const Effect& effect, const EffectParameter& parameter, const ModelDocument& model,
             const Excitation& most) {
-  static const std::set<std::string> kSecondNames{"crab", "yaw_rate_offset"};
-  if (kSecondNames.count(effect.name) != 0 || parameter.role == ParameterRole::kShape) return false;
+  if (parameter.role == ParameterRole::kShape) return false;
   const EffectValues& effects = model.vehicle.effects;
   if (effect.name == "terrain_change") {
     if (parameter.name.find("breakaway") == 0) return false;
@@ -123,6 +122,29 @@ bool isOpen(const Effect& effect, const EffectParameter& parameter, const ModelD
   }
   if (parameter.name == "per_drop" && !most.voltage) return false;
   return !isOn(effect, effects, model.measurement);
+}
+
+/// All directions of an effect that can be switched on.
+void addCandidates(const Effect& effect, const ModelDocument& model, const Excitation& most,
+                   std::vector<Candidate>& all) {
+  for (const EffectParameter& parameter : effect.parameters) {
+    if (!isOpen(effect, parameter, model, most)) continue;
+    for (double change : probesOf(effect, parameter, most))
+      for (const Setting& setting : settingsFor(effect.name, parameter.name, model, most)) {
+        double begin = 0.0;
+        for (const auto& [path, value] : setting.shapes)
+          if (path == effect.name + "." + parameter.name) begin = value;
+        all.push_back({effect.name, parameter.name, begin + change, change, setting.since,
+                       setting.shapes, freedWith(effect.name, parameter.name),
+                       std::isfinite(setting.since) ? setting.shapes.front().first : ""});
+      }
+  }
+}
+
+bool isNominalFree(const FitState& state) {
+  return std::any_of(state.free.begin(), state.free.end(), [](const FreeParameter& parameter) {
+    return parameter.path.find('.') == std::string::npos && std::isinf(parameter.deviation);
+  });
 }
 
 /// Effects that are a number of the nominal model under another name.
@@ -166,31 +188,34 @@ Excitation excitationOf(const Rows& rows, const ModelDocument& model) {
 }
 
 std::vector<Candidate> candidatesFor(const ModelDocument& model, const Excitation& most) {
+  static const std::set<std::string> kSecondNames{"crab", "yaw_rate_offset"};
   std::vector<Candidate> all;
   for (const Effect& effect : effectCatalogue())
-    for (const EffectParameter& parameter : effect.parameters) {
-      if (!isOpen(effect, parameter, model, most)) continue;
-      for (double change : probesOf(effect, parameter, most))
-        for (const Setting& setting : settingsFor(effect.name, parameter.name, model, most)) {
-          double begin = 0.0;
-          for (const auto& [path, value] : setting.shapes)
-            if (path == effect.name + "." + parameter.name) begin = value;
-          all.push_back({effect.name, parameter.name, begin + change, change, setting.since,
-                         setting.shapes, freedWith(effect.name, parameter.name),
-                         std::isfinite(setting.since) ? setting.shapes.front().first : ""});
-        }
-    }
+    if (kSecondNames.count(effect.name) == 0) addCandidates(effect, model, most, all);
   return all;
 }
 
 std::vector<Candidate> candidatesFor(const FitState& state, const Excitation& most) {
   std::vector<Candidate> candidates = candidatesFor(state.model, most);
-  const bool nominal_free =
-      std::any_of(state.free.begin(), state.free.end(), [](const FreeParameter& parameter) {
-        return parameter.path.find('.') == std::string::npos && std::isinf(parameter.deviation);
-      });
-  if (nominal_free) forgetNominal(candidates);
+  if (isNominalFree(state)) forgetNominal(candidates);
   return candidates;
+}
+
+std::vector<Candidate> candidatesOf(const std::string& effect, const FitState& state,
+                                    const Excitation& most) {
+  std::vector<Candidate> candidates;
+  addCandidates(effectNamed(effect), state.model, most, candidates);
+  if (isNominalFree(state)) forgetNominal(candidates);
+  return candidates;
+}
+
+void leaveOut(std::vector<Candidate>& candidates, const std::vector<std::string>& effects) {
+  candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
+                                  [&effects](const Candidate& candidate) {
+                                    return std::find(effects.begin(), effects.end(),
+                                                     candidate.effect) != effects.end();
+                                  }),
+                   candidates.end());
 }
 
 ModelDocument tried(const ModelDocument& model, const Candidate& candidate) {

@@ -43,6 +43,13 @@ std::vector<Candidate> candidatesFor(const ModelDocument& model, const Excitatio
 /// the same under another name are left out.
 std::vector<Candidate> candidatesFor(const FitState& state, const Excitation& excitation);
 
+/// Those of one effect, and of one that is another under a second name, too.
+std::vector<Candidate> candidatesOf(const std::string& effect, const FitState& state,
+                                    const Excitation& excitation);
+
+/// Takes out the candidates of these effects.
+void leaveOut(std::vector<Candidate>& candidates, const std::vector<std::string>& effects);
+
 /// A model with the candidate at its trial value.
 ModelDocument tried(const ModelDocument& model, const Candidate& candidate);
 

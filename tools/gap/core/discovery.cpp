@@ -42,6 +42,8 @@ class Discovery {
         all_(rows_.rows().size(), 1) {
     settings_.seed = task.seed;
     settings_.calibrate = task.calibrate;
+    for (const Decision& decision : task.decisions)
+      (decision.accepted ? settings_.accepted : settings_.rejected).push_back(decision.effect);
   }
 
   Finding run() {
@@ -49,6 +51,7 @@ class Discovery {
     finding_.before = task_.model;
     finding_.after = task_.model;
     finding_.hygiene = task_.hygiene;
+    finding_.decisions = task_.decisions;
     finding_.blocks = static_cast<size_t>(rows_.blocks());
     finding_.block_length = rows_.blockLength();
     if (cannotTell()) return std::move(finding_);
@@ -56,10 +59,11 @@ class Discovery {
               rows_.blocks()));
     say_("2-5 test, refit, validate, prune");
     result_ = search(fitter_, task_.model, all_, settings_, memory_, say_);
-    finding_.after = result_.state.model;
+    requireSized();
     // What was seen but does not matter is no rest without a name.
     const FitState tested = result_.state;
     if (!result_.effects.empty() && !isConfirmed()) forgetEffects();
+    finding_.after = result_.state.model;
     describeEffects();
     say_("6 adequacy");
     const Adequacy adequacy = testAdequacy(fitter_, tested, all_, kAdequacyAlpha, task_.seed);
@@ -92,6 +96,20 @@ class Discovery {
     return true;
   }
 
+  /// An accepted effect without a size would be a claim about nothing.
+  void requireSized() {
+    for (const FreeParameter& parameter : result_.state.free) {
+      const std::string effect = parameter.path.substr(0, parameter.path.find('.'));
+      if (isNew(effect) && contains(settings_.accepted, effect) &&
+          *findParameter(result_.state.model, parameter.path) != 0.0 &&
+          onBound(result_.state.model, parameter))
+        result_.unsized[effect] = "its size runs to the end of its plausible range";
+    }
+    for (const auto& [effect, why] : result_.unsized)
+      throw std::invalid_argument(effect + ": accepted, but this drive cannot size it: " + why +
+                                  "; drive what shows it, or do not accept it");
+  }
+
   /// Whether the end error falls, by more than its standard error over blocks, on halves of the
   /// driving that the sizes of the effects were not fitted to.
   bool isConfirmed() const {
@@ -122,11 +140,16 @@ class Discovery {
   }
 
   void forgetEffects() {
+    std::vector<std::string> kept;
     for (const std::string& effect : result_.effects) {
+      if (contains(settings_.accepted, effect)) {
+        kept.push_back(effect);
+        continue;
+      }
       say_("  - " + effect + ": does not lessen the end error on driving it was not fitted to");
       result_.negligible.push_back(effect);
     }
-    result_.effects.clear();
+    result_.effects = kept;
     result_.state = result_.calibrated;
   }
 
@@ -215,6 +238,16 @@ class Discovery {
     effect.p_value = result_.p_values[name];
     effect.gain = result_.gains[name].value;
     effect.gain_error = result_.gains[name].error;
+    effect.accepted = contains(settings_.accepted, name);
+    if (effect.accepted) {
+      effect.group.clear();  // decided
+      effect.runner_ups.clear();
+    }
+    effect.group.erase(std::remove_if(effect.group.begin(), effect.group.end(),
+                                      [this](const std::string& other) {
+                                        return contains(settings_.rejected, other);
+                                      }),
+                       effect.group.end());
     finding_.effects.push_back(std::move(effect));
   }
 
@@ -319,7 +352,9 @@ class Discovery {
 
   void judge() {
     const bool adequate = finding_.adequacy_p > kAdequacyAlpha;
-    const auto& effects = finding_.effects;
+    std::vector<FoundEffect> effects;
+    std::copy_if(finding_.effects.begin(), finding_.effects.end(), std::back_inserter(effects),
+                 isShown);
     if (effects.empty() && judgeMoved(adequate)) {
       return;
     } else if (effects.empty()) {

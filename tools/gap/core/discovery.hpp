@@ -17,6 +17,8 @@ struct GapTask {
   std::vector<HygieneNote> hygiene;  ///< what is known of the logs (stage 0)
   /// Lag, delay and gains of the nominal model are fitted, too: makes a model of a new vehicle.
   bool calibrate = false;
+  /// Accepted effects are in the model from the start and stay; rejected ones are never considered.
+  std::vector<Decision> decisions;
   uint64_t seed = 1;
   int threads = 1;  ///< does not change a bit of the result
 };
@@ -24,7 +26,8 @@ struct GapTask {
 /// Where simulation and measurement disagree, what it is most likely called, how sure that is.
 /** Stages 1 to 7 of gap.md 4.2; the error figures come from driving that was used neither for the
  * choice of effects nor for their size: the test drives, or else alternate blocks of the training
- * drives, each half judged by what the other half found. Deterministic for a seed. */
+ * drives, each half judged by what the other half found. Deterministic for a seed. Throws
+ * std::invalid_argument for an accepted effect that the drives cannot size. */
 Finding findGap(const GapTask& task, const Progress& say);
 
 /// Members of an effect's degeneracy groups that hold for every drive (without itself), effects

@@ -58,7 +58,16 @@ struct FoundEffect {
   double p_value = 1.0;  ///< of the largest T over the whole catalogue
   double gain = 0.0;     ///< [nats] on blocks that were not fitted
   double gain_error = 0.0;
+  bool accepted = false;  ///< by a person: it stands whatever the numbers above say
 };
+
+/// Probability of chance from which on an accepted effect is not shown by the drive itself.
+inline constexpr double kShownBelow = 0.05;
+
+/// Whether tests speak for an effect, and not a person alone.
+inline bool isShown(const FoundEffect& effect) {
+  return !effect.accepted || effect.p_value <= kShownBelow;
+}
 
 /// Median and root mean square over executions.
 struct ErrorFigure {
@@ -178,6 +187,7 @@ struct Finding {
   double block_length = 0.0;  ///< [s]
   double adequacy_p = 1.0;
   uint64_t seed = 0;
+  std::vector<Decision> decisions;  ///< of people, in the order given
 };
 
 }  // namespace tread::gap

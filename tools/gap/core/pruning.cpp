@@ -143,7 +143,8 @@ class Pruning {
                         removed.gain.value > kSure * removed.gain.error &&
                         removed.gain.value > kSureNats;
       if (!sure) removed = removal(fitter_, result_.state, loss, effect, mask_, needed);
-      const std::string why = sure ? "" : reasonAgainst(removed);
+      const bool stays = sure || contains(result_.accepted, effect);
+      const std::string why = stays ? "" : reasonAgainst(removed);
       if (why.empty()) {
         result_.scores[effect] = removed.score;
         result_.evidence[effect] = removed.evidence;

@@ -23,8 +23,9 @@ struct Single {
 
 /// One of each such effect.
 std::vector<Single> imitated(const Fitter& fitter, const std::vector<char>& mask,
-                             const FitState& state) {
-  const auto candidates = candidatesFor(state, excitationOf(fitter.rows(), state.model));
+                             const FitState& state, const std::vector<std::string>& rejected) {
+  auto candidates = candidatesFor(state, excitationOf(fitter.rows(), state.model));
+  leaveOut(candidates, rejected);
   const Eigen::MatrixXd directions = directionsOf(fitter, state, candidates);
   const ScoreTest test(fitter.rows(), state, directions, mask);
   std::vector<Single> chosen;
@@ -62,7 +63,7 @@ class Replacement {
   /// True if a pair went.
   bool replaceOne() {
     if (result_.effects.size() < 2) return false;
-    const std::vector<Single> singles = imitated(fitter_, mask_, result_.state);
+    const std::vector<Single> singles = imitated(fitter_, mask_, result_.state, result_.rejected);
     if (singles.empty()) return false;
     const Eigen::VectorXd loss = heldOutLoss(fitter_.rows(), result_.state, mask_);
     for (const Single& single : singles)
@@ -75,6 +76,7 @@ class Replacement {
  private:
   bool tryOne(const Single& imitated_one, const std::string& a, const std::string& b,
               const Eigen::VectorXd& loss) {
+    if (contains(result_.accepted, a) || contains(result_.accepted, b)) return false;
     const std::vector<char> counts = blocksThatCount(fitter_.rows(), mask_);
     const FitState nearly = linearlyReplaced(fitter_, mask_, result_.state, imitated_one, a, b);
     const Gain first_order = gainOf(heldOutLoss(fitter_.rows(), nearly, mask_), loss, counts);

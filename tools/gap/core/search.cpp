@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <set>
 
+#include "tools/gap/core/acceptance.hpp"
 #include "tools/gap/core/moments.hpp"
 #include "tools/gap/core/pruning.hpp"
 #include "tools/gap/core/replacement.hpp"
@@ -72,6 +73,7 @@ class Search {
 
   SearchResult run(const ModelDocument& model) {
     calibrate(model);
+    takeInAccepted();
     Round round = test(memory_.calibrated);
     result_.tests = round.tests;
     if (!significant(round).empty()) {
@@ -83,6 +85,8 @@ class Search {
       }
       prune(round);
       noteDetectable(test(memory_.covered));
+    } else if (!result_.effects.empty()) {
+      prune(round);
     }
     return std::move(result_);
   }
@@ -97,6 +101,22 @@ class Search {
     result_.calibrated = state();
   }
 
+  /// What a person has accepted is there before anything is tested.
+  void takeInAccepted() {
+    result_.accepted = settings_.accepted;
+    result_.rejected = settings_.rejected;
+    for (const std::string& effect : settings_.accepted) {
+      if (isOn(effectNamed(effect), state().model.vehicle.effects, state().model.measurement))
+        continue;
+      const std::string why = takeIn(fitter_, state(), effect, mask_);
+      if (why.empty())
+        result_.effects.push_back(effect);
+      else
+        result_.unsized[effect] = why;
+    }
+    result_.calibrated = state();
+  }
+
   /// Fit and noise in turn: the noise of a worse fit is too large.
   void settle(FitState& fitted) const {
     fitter_.fitRoughly(fitted, mask_);
@@ -108,6 +128,7 @@ class Search {
   Round test(DirectionBook& book) {
     Round round;
     round.candidates = candidatesFor(state(), book.excitation(fitter_, state()));
+    leaveOut(round.candidates, settings_.rejected);
     const ScoreTest test(fitter_.rows(), state(),
                          book.directions(fitter_, state(), round.candidates), mask_);
     round.chance = test.largestByChance(settings_.draws, settings_.seed);
@@ -192,6 +213,7 @@ class Search {
       const std::string effect = effectOf(path);
       // Numbers of the nominal model that are free cover the same.
       if (settings_.calibrate && effect != "ins_latency") continue;
+      if (contains(settings_.rejected, effect)) continue;
       if (isOn(effectNamed(effect), state().model.vehicle.effects, state().model.measurement))
         continue;
       FreeParameter parameter = freeParameter(state().model, path);

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -29,6 +30,9 @@ struct SearchSettings {
   size_t most = 8;           ///< effects that are added at most
   bool calibrate = false;    ///< the numbers of the nominal model are free
   double least_gain = 0.01;  ///< of the end error; less is real but negligible
+  /// A person's last word: in from calibration on, whatever tests say.
+  std::vector<std::string> accepted;
+  std::vector<std::string> rejected;  ///< never considered
   uint64_t seed = 1;
 };
 
@@ -45,6 +49,9 @@ struct SearchResult {
   std::vector<LadderStep> ladder;
   std::vector<CandidateTest> tests;  ///< of the calibrated model, every effect's best direction
   std::vector<std::string> negligible;
+  std::vector<std::string> accepted;           ///< of the settings: they stay
+  std::vector<std::string> rejected;           ///< of the settings: they never come
+  std::map<std::string, std::string> unsized;  ///< accepted, but not in: why
   /// Of an effect that stands for two others: those two.
   std::map<std::string, std::vector<std::string>> replaced;
 };
@@ -55,6 +62,11 @@ struct SearchMemory {
   DirectionBook calibrated;
   DirectionBook covered;
 };
+
+/// Whether a name is among these.
+inline bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
 
 /// Which parameters of a model are free: strengths of effects that are on, and the numbers of the
 /// nominal model of which the model's covariance says how sure they are.

@@ -86,7 +86,8 @@ std::vector<std::string> movedIn(const Finding& finding) {
 std::vector<std::string> namesOf(const Finding& finding) {
   std::vector<std::string> names;
   names.reserve(finding.effects.size());
-  for (const FoundEffect& effect : finding.effects) names.push_back(effect.name);
+  for (const FoundEffect& effect : finding.effects)
+    if (isShown(effect)) names.push_back(effect.name);
   return names.empty() ? movedIn(finding) : names;
 }
 
@@ -111,6 +112,7 @@ std::vector<std::string> alternativesOf(const FoundEffect& effect) {
 std::string ambiguousHeadline(const Finding& finding) {
   std::vector<std::string> parts;
   for (const FoundEffect& effect : finding.effects) {
+    if (!isShown(effect)) continue;
     const std::vector<std::string> names = alternativesOf(effect);
     parts.push_back(shortTitlesOf(names, "or"));
   }
@@ -211,6 +213,10 @@ std::string sentenceOf(const FoundEffect& effect) {
   std::string text = plainSentence(effect);
   if (!numbers.empty()) text += ": " + joined(numbers);
   if (!direction.empty()) text += "; " + direction;
+  if (effect.accepted)
+    text += isShown(effect) ? " (accepted; the drive shows it, too)"
+                            : " (accepted; the drive alone does not show it: p " +
+                                  saidChance(effect.p_value) + ")";
   return text + ".";
 }
 

@@ -18,6 +18,7 @@ Section ladderSection(const Finding& finding);
 Section parametersSection(const Finding& finding);
 Section alternativesSection(const Finding& finding);
 Section notShownSection(const Finding& finding);
+Section decisionsSection(const Finding& finding);
 Section envelopeSection(const Finding& finding);
 Section logsSection(const Finding& finding);
 Section candidatesSection(const Finding& finding);

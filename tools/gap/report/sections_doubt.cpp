@@ -101,6 +101,19 @@ Section notShownSection(const Finding& finding) {
   return section;
 }
 
+Section decisionsSection(const Finding& finding) {
+  Section section{"What people decided", {}};
+  Points points;
+  for (const Decision& decision : finding.decisions)
+    points.items.push_back(titleOf(decision.effect) +
+                           (decision.accepted
+                                ? ": accepted; in the model from the start, whatever the tests say"
+                                : ": rejected; it was not considered") +
+                           (decision.by.empty() ? "" : " (" + decision.by + ")"));
+  if (!points.items.empty()) section.blocks.push_back(points);
+  return section;
+}
+
 Section candidatesSection(const Finding& finding) {
   Section section{"All candidates", {}};
   if (finding.candidates.empty()) return section;
@@ -135,8 +148,8 @@ Page reportPage(const Finding& finding, const std::vector<InputFile>& inputs) {
   for (Section& section : std::vector<Section>{
            effectsSection(finding), atlasSection(finding), executionsSection(finding, inputs),
            ladderSection(finding), parametersSection(finding), alternativesSection(finding),
-           notShownSection(finding), envelopeSection(finding), logsSection(finding),
-           candidatesSection(finding), filesSection(finding, inputs)})
+           notShownSection(finding), decisionsSection(finding), envelopeSection(finding),
+           logsSection(finding), candidatesSection(finding), filesSection(finding, inputs)})
     if (!section.blocks.empty()) page.sections.push_back(std::move(section));
   return page;
 }
