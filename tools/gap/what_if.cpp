@@ -102,8 +102,8 @@ LogComparison compareOnLog(const Drive& drive, const ModelDocument& first,
   const auto all = [](const EndError&) { return true; };
   const std::vector<EndError> errors = endErrors(rows, first);
   LogComparison comparison{summaryOf(errors, all), summaryOf(endErrors(rows, second), all), {}};
-  for (const EndError& error : errors)
-    comparison.overlays.push_back(overlayOf(rows, error, first, second));
+  const OverlayMaker maker(rows, first, second);
+  for (const EndError& error : errors) comparison.overlays.push_back(maker.of(error));
   std::stable_sort(comparison.overlays.begin(), comparison.overlays.end(),
                    [](const Overlay& a, const Overlay& b) { return apart(a) > apart(b); });
   if (comparison.overlays.size() > kShownExecutions) comparison.overlays.resize(kShownExecutions);

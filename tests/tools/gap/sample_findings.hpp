@@ -107,6 +107,8 @@ inline Overlay overlay(double turn, double begin) {
   const auto miss = [&](const std::vector<Pose2>& poses) {
     return (poses.back().position() - overlay.measured.back().position()).norm();
   };
+  for (size_t i = 0; i < overlay.after.size(); ++i)
+    overlay.band.push_back(0.004 * static_cast<double>(i));
   overlay.error_before = miss(overlay.before);
   overlay.error_after = miss(overlay.after);
   return overlay;
@@ -116,6 +118,8 @@ inline void addEvidence(Finding& finding) {
   finding.atlas = {curve("yaw rate", "yaw rate"), curve("along", "speed x yaw rate")};
   finding.maps = {map()};
   for (int i = 0; i < 9; ++i) finding.overlays.push_back(overlay(0.2 * i, 12.5 * i));
+  for (int i = 0; i < 60; ++i)
+    finding.places.push_back({0, 0.1 * i, std::sin(0.2 * i), 0.1 + 0.01 * (i % 9), 0.03});
   finding.gap = Gap{2.0,
                     {{0.642, 0.91}, {0.357, 0.61}, 60},
                     {{0.451, 0.7}, {0.187, 0.31}, 60},

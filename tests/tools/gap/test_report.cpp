@@ -121,14 +121,26 @@ TEST_CASE("what remains is told channel by channel") {
 
 TEST_CASE("a report shows where, how, the ladder, the parameters and what else it could be") {
   const std::string text = markdown(Verdict::kFound);
-  for (const char* words :
-       {"Where simulation and measurement disagree", "Executions, as measured and as predicted",
-        "Step by step", "Parameters of the new model", "What else it could be",
-        "What this drive could not show", "Where the new model holds", "State of the logs",
-        "All candidates", "Versions and files", "lag and delay: correlation 0.950",
-        "tread-gap plan track_asymmetry yaw_pull", "52 % of the poses", "not at all",
-        "30 independent blocks", "up to 1.10 m/s, 2.40 rad/s", "Real but too small to matter",
-        "| Limit of turning power | limit | off | 1.25 rad/s |"}) {
+  for (const char* words : {"Where simulation and measurement disagree",
+                            "Executions, as measured and as predicted",
+                            "holds 9 of 10 of all 60 such executions",
+                            "Where on the ground",
+                            "Step by step",
+                            "Parameters of the new model",
+                            "What else it could be",
+                            "What this drive could not show",
+                            "Where the new model holds",
+                            "State of the logs",
+                            "All candidates",
+                            "Versions and files",
+                            "lag and delay: correlation 0.950",
+                            "tread-gap plan track_asymmetry yaw_pull",
+                            "52 % of the poses",
+                            "not at all",
+                            "30 independent blocks",
+                            "up to 1.10 m/s, 2.40 rad/s",
+                            "Real but too small to matter",
+                            "| Limit of turning power | limit | off | 1.25 rad/s |"}) {
     INFO(words);
     CHECK(has(text, words));
   }
@@ -136,6 +148,11 @@ TEST_CASE("a report shows where, how, the ladder, the parameters and what else i
   CHECK(has(page, "yaw rate over yaw rate"));
   CHECK(has(page, "worst, 100 s of a<"));
   CHECK(has(page, "full colour = 0.600 rad/s"));
+  CHECK(has(page, "<g opacity=\"0.16\">"));
+  CHECK(has(page, "full colour: 0.170 m and more"));
+  Finding blind = samples::finding(Verdict::kFound);
+  blind.places.clear();
+  CHECK(has(markdownOf(reportPage(blind, samples::inputs())), "the logs have no absolute poses"));
 }
 
 TEST_CASE("effects that cannot be told apart come with the measurement that tells") {

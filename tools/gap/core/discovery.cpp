@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <tuple>
 
 #include "common/vehicle/degeneracy.hpp"
@@ -15,6 +16,7 @@
 #include "tools/gap/core/end_errors.hpp"
 #include "tools/gap/core/moments.hpp"
 #include "tools/gap/core/student.hpp"
+#include "tools/gap/core/unseen.hpp"
 
 namespace tread::gap {
 namespace {
@@ -74,7 +76,9 @@ class Discovery {
     finding_.gap->floor = deadReckoningFloor(task_.test.empty() ? task_.train : task_.test);
     finding_.atlas = residualAtlas(rows_, task_.model, finding_.after);
     finding_.maps = residualMaps(rows_, task_.model, finding_.after);
-    finding_.overlays = overlays();
+    ShownExecutions shown = shownExecutions(unseen_, task_.model, residualNoise());
+    finding_.overlays = std::move(shown.overlays);
+    finding_.places = std::move(shown.places);
     judge();
     return std::move(finding_);
   }
@@ -276,12 +280,13 @@ class Discovery {
     finding_.after.envelope = envelope;
   }
 
-  Gap testGap() const {
+  Gap testGap() {
     Gap gap;
-    const Rows test(task_.test, {});
+    const Rows& test = test_rows_.emplace(task_.test, RowSettings{});
     const auto every = [](const EndError&) { return true; };
     gap.before = summaryOf(endErrors(test, task_.model), every);
-    gap.after = summaryOf(endErrors(test, finding_.after), every);
+    unseen_.push_back({&test, finding_.after, endErrors(test, finding_.after), task_.train.size()});
+    gap.after = summaryOf(unseen_.back().errors, every);
     return gap;
   }
 
@@ -290,7 +295,7 @@ class Discovery {
     Gap gap;
     gap.structure_nested = rows_.blocks() >= 2 * kLeastHalf;
     gap.before = summaryOf(endErrors(rows_, task_.model), [](const EndError&) { return true; });
-    std::vector<EndError> outside;
+    std::vector<EndError> outside;  // of either half
     const Progress silent = [](const std::string&) {};
     for (int half : {0, 1}) {
       const std::vector<char> mask = halfMask(half);
@@ -298,26 +303,20 @@ class Discovery {
           gap.structure_nested
               ? search(fitter_, task_.model, mask, settings_, memory_, silent).state.model
               : refitted(fitter_, result_, mask).model;
+      unseen_.push_back({&rows_, model, {}, 0});
       for (const EndError& error : endErrors(rows_, model))
-        if (error.block % 2 != half) outside.push_back(error);
+        if (error.block % 2 != half) unseen_.back().errors.push_back(error);
+      outside.insert(outside.end(), unseen_.back().errors.begin(), unseen_.back().errors.end());
     }
     gap.after = summaryOf(outside, [](const EndError&) { return true; });
     return gap;
   }
 
-  /// Six of the middle and the three worst (by the new model's error).
-  std::vector<Overlay> overlays() const {
-    std::vector<EndError> errors = endErrors(rows_, finding_.after);
-    std::stable_sort(errors.begin(), errors.end(),
-                     [](const EndError& a, const EndError& b) { return a.position < b.position; });
-    std::vector<Overlay> chosen;
-    const size_t count = errors.size();
-    const size_t typical = std::min<size_t>(6, count);
-    for (size_t i = 0; i < typical; ++i)
-      chosen.push_back(overlayOf(rows_, errors[count * (i + 1) / 8], task_.model, finding_.after));
-    for (size_t i = 0; i < std::min<size_t>(3, count); ++i)
-      chosen.push_back(overlayOf(rows_, errors[count - 1 - i], task_.model, finding_.after));
-    return chosen;
+  /// Noise of what the new model leaves, channel by channel.
+  Noise residualNoise() const {
+    const Eigen::VectorXd predicted = rows_.predict(finding_.after);
+    return estimateNoise(rows_.rows(), rows_.residuals(predicted),
+                         activityOf(rows_.rows(), predicted), all_);
   }
 
   static bool isAmbiguous(const FoundEffect& effect) {
@@ -386,6 +385,8 @@ class Discovery {
   std::vector<char> all_;
   SearchSettings settings_;
   SearchMemory memory_;
+  std::optional<Rows> test_rows_;
+  std::vector<Unseen> unseen_;
   SearchResult result_;
   Finding finding_;
 };

@@ -98,32 +98,43 @@ EndErrors summaryOf(const std::vector<EndError>& errors,
   return summary;
 }
 
-Overlay overlayOf(const Rows& rows, const EndError& of, const ModelDocument& before,
-                  const ModelDocument& after) {
-  const Stretch& stretch = rows.drives()[of.drive].stretches[of.execution.stretch];
-  const size_t index = rows.stretchIndex(of.drive, of.execution.stretch);
+OverlayMaker::OverlayMaker(const Rows& rows, const ModelDocument& before,
+                           const ModelDocument& after)
+    : rows_(rows), before_(before.measurement), after_(after.measurement) {
+  old_motions_ = rows.simulate(before.vehicle);
+  new_motions_ = rows.simulate(after.vehicle);
+  for (const Drive& drive : rows.drives())
+    for (const Stretch& stretch : drive.stretches) {
+      measured_.emplace_back();
+      for (const InsSample& sample : stretch.ins)
+        if (std::isfinite(sample.T_map_body.x))
+          measured_.back().push_back({sample.time, sample.T_map_body});
+    }
+}
+
+Overlay OverlayMaker::of(const EndError& error) const {
+  const size_t index = rows_.stretchIndex(error.drive, error.execution.stretch);
+  const double begin = error.execution.begin;
   Overlay overlay;
-  overlay.drive = of.drive;
-  overlay.begin = of.execution.begin;
-  std::vector<TimedPose> measured;
-  for (const InsSample& sample : stretch.ins)
-    if (std::isfinite(sample.T_map_body.x)) measured.push_back({sample.time, sample.T_map_body});
-  const double length = of.execution.end - of.execution.begin;
-  const auto old_motion = rows.simulateStretch(index, before.vehicle);
-  const auto new_motion = rows.simulateStretch(index, after.vehicle);
-  const Pose2 T_map_begin = poseAt(measured, of.execution.begin);
+  overlay.drive = error.drive;
+  overlay.begin = begin;
+  overlay.duration = error.execution.end - begin;
+  const Pose2 T_map_begin = poseAt(measured_[index], begin);
   for (int i = 0; i < kOverlayPoints; ++i) {
-    const double time = of.execution.begin + length * i / (kOverlayPoints - 1.0);
-    overlay.measured.push_back(between(T_map_begin, poseAt(measured, time)));
-    overlay.before.push_back(
-        predictedBetween(old_motion, before.measurement, of.execution.begin, time));
-    overlay.after.push_back(
-        predictedBetween(new_motion, after.measurement, of.execution.begin, time));
+    const double time = begin + overlay.duration * i / (kOverlayPoints - 1.0);
+    overlay.measured.push_back(between(T_map_begin, poseAt(measured_[index], time)));
+    overlay.before.push_back(predictedBetween(old_motions_[index], before_, begin, time));
+    overlay.after.push_back(predictedBetween(new_motions_[index], after_, begin, time));
   }
   const Eigen::Vector2d end = overlay.measured.back().position();
   overlay.error_before = (overlay.before.back().position() - end).norm();
   overlay.error_after = (overlay.after.back().position() - end).norm();
   return overlay;
+}
+
+Eigen::Vector2d OverlayMaker::middleOf(const EndError& error) const {
+  const size_t index = rows_.stretchIndex(error.drive, error.execution.stretch);
+  return poseAt(measured_[index], 0.5 * (error.execution.begin + error.execution.end)).position();
 }
 
 }  // namespace tread::gap

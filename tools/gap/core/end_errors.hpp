@@ -35,8 +35,24 @@ std::vector<EndError> endErrors(const Rows& rows,
 EndErrors summaryOf(const std::vector<EndError>& errors,
                     const std::function<bool(const EndError&)>& counts);
 
-/// One execution as measured and as two models predict it.
-Overlay overlayOf(const Rows& rows, const EndError& of, const ModelDocument& before,
-                  const ModelDocument& after);
+/// Executions as measured and as two models predict them.
+class OverlayMaker {
+ public:
+  /// Simulates all drives of the rows once with either model; the rows must outlive it.
+  OverlayMaker(const Rows& rows, const ModelDocument& before, const ModelDocument& after);
+
+  Overlay of(const EndError& error) const;
+  /// Where the vehicle was halfway [m], in the frame of the log.
+  Eigen::Vector2d middleOf(const EndError& error) const;
+
+ private:
+  const Rows& rows_;
+  MeasurementModel before_;
+  MeasurementModel after_;
+  /// Of each stretch.
+  std::vector<std::vector<TimedPose>> old_motions_;
+  std::vector<std::vector<TimedPose>> new_motions_;
+  std::vector<std::vector<TimedPose>> measured_;
+};
 
 }  // namespace tread::gap

@@ -86,11 +86,23 @@ struct EndErrors {
 struct Overlay {
   size_t drive = 0;
   double begin = 0.0;           ///< [s]
+  double duration = 2.0;        ///< [s]
   std::vector<Pose2> measured;  ///< at equal times over the horizon
   std::vector<Pose2> before;
   std::vector<Pose2> after;
   double error_before = 0.0;  ///< [m] at the end
   double error_after = 0.0;   ///< [m]
+  /// Radius about each point of `after` within which nine of ten executions are [m]; may be empty.
+  std::vector<double> band;
+};
+
+/// What two models err at the end of an execution, and where that was.
+struct PlaceError {
+  size_t drive = 0;
+  double x = 0.0;  ///< [m] halfway, in the frame of the log
+  double y = 0.0;
+  double before = 0.0;  ///< [m]
+  double after = 0.0;   ///< [m]
 };
 
 /// How far simulation and measurement are apart after 2 s, on executions not used for the fit.
@@ -177,8 +189,10 @@ struct Finding {
   std::vector<Unexplained> unexplained;
   std::vector<std::string> not_excited;  ///< effects that this drive could not have shown
   std::vector<AtlasCurve> atlas;
-  std::vector<AtlasMap> maps;     ///< may be empty
-  std::vector<Overlay> overlays;  ///< six typical, then the three worst
+  std::vector<AtlasMap> maps;  ///< may be empty
+  /// Six typical, then the three worst, of driving that was not used for the fit.
+  std::vector<Overlay> overlays;
+  std::vector<PlaceError> places;  ///< of all such executions
   std::vector<LadderStep> ladder;
   std::vector<CandidateTest> candidates;
   std::vector<HygieneNote> hygiene;

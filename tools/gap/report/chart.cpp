@@ -154,6 +154,26 @@ void Chart::band(const std::vector<ChartPoint>& low, const std::vector<ChartPoin
   shapes_ += "<polygon fill=\"" + colour + "\" fill-opacity=\"0.16\" points=\"" + path + "\"/>\n";
 }
 
+void Chart::tube(const std::vector<ChartPoint>& points, const std::vector<double>& radii,
+                 const std::string& colour) {
+  const double scale = (kWidth - kLeft - kRight) / (range_.x_max - range_.x_min);
+  std::string pieces;
+  for (size_t i = 1; i < std::min(points.size(), radii.size()); ++i) {
+    if (!isFinite(points[i - 1]) || !isFinite(points[i])) continue;
+    pieces += stroke(
+        px(points[i - 1].x), py(points[i - 1].y), px(points[i].x), py(points[i].y), colour,
+        " stroke-linecap=\"round\" stroke-width=\"" + at(scale * (radii[i - 1] + radii[i])) + "\"");
+  }
+  // Only the whole is translucent: pieces would darken one another.
+  if (!pieces.empty()) shapes_ += "<g opacity=\"0.16\">" + pieces + "</g>\n";
+}
+
+void Chart::spot(const ChartPoint& point, const std::string& fill) {
+  if (!isFinite(point)) return;
+  shapes_ += "<circle cx=\"" + at(px(point.x)) + "\" cy=\"" + at(py(point.y)) +
+             "\" r=\"3\" stroke=\"#8a949e\" stroke-width=\"0.4\" fill=\"" + fill + "\"/>\n";
+}
+
 void Chart::dot(const ChartPoint& point, const std::string& colour, bool filled) {
   if (!isFinite(point)) return;
   shapes_ += "<circle cx=\"" + at(px(point.x)) + "\" cy=\"" + at(py(point.y)) +

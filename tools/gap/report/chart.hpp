@@ -50,6 +50,11 @@ class Chart {
   /// The area between low and high at each x.
   void band(const std::vector<ChartPoint>& low, const std::vector<ChartPoint>& high,
             const std::string& colour);
+  /// The surroundings of a path within a radius about each point; for charts with equal scales.
+  void tube(const std::vector<ChartPoint>& points, const std::vector<double>& radii,
+            const std::string& colour);
+  /// A spot of a map, in its own colour.
+  void spot(const ChartPoint& at, const std::string& fill);
   void dot(const ChartPoint& at, const std::string& colour, bool filled = true);
   /// From low to high at x.
   void bar(double x, double low, double high, const std::string& colour);

@@ -124,14 +124,53 @@ ChartRange rangeOf(const std::vector<const std::vector<Pose2>*>& paths) {
 }
 
 std::string overlayPicture(const Overlay& overlay, const std::string& title) {
-  Chart chart(title, "to the right [m]", "ahead [m]",
-              rangeOf({&overlay.measured, &overlay.before, &overlay.after}));
+  ChartRange range = rangeOf({&overlay.measured, &overlay.before, &overlay.after});
+  const std::vector<ChartPoint> predicted = seenFromAbove(overlay.after);
+  for (size_t i = 0; i < std::min(predicted.size(), overlay.band.size()); ++i)
+    for (const double side : {-1.1, 1.1})
+      range.include(
+          {predicted[i].x + side * overlay.band[i], predicted[i].y + side * overlay.band[i]});
+  Chart chart(title, "to the right [m]", "ahead [m]", range.withEqualScales());
+  chart.tube(predicted, overlay.band, kAfterColour);
   drawPath(chart, overlay.measured, kInk, false);
   drawPath(chart, overlay.before, kBeforeColour, true);
   drawPath(chart, overlay.after, kAfterColour, false);
   chart.legend("measured", kInk);
   chart.legend("old " + saidDistance(overlay.error_before), kBeforeColour, true);
   chart.legend("new " + saidDistance(overlay.error_after), kAfterColour);
+  return chart.svg();
+}
+
+double fullColourOf(const std::vector<PlaceError>& places) {
+  std::vector<double> errors;
+  for (const PlaceError& place : places) {
+    errors.push_back(place.before);
+    errors.push_back(place.after);
+  }
+  if (errors.empty()) return 0.0;
+  const auto at =
+      errors.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(errors.size() - 1));
+  std::nth_element(errors.begin(), at, errors.end());
+  return *at;
+}
+
+std::string placePicture(const std::vector<PlaceError>& places, bool after, double full_colour,
+                         const std::string& log) {
+  const auto errorOf = [after](const PlaceError& place) {
+    return after ? place.after : place.before;
+  };
+  std::vector<PlaceError> order = places;  // the worst on top
+  std::stable_sort(order.begin(), order.end(), [&](const PlaceError& a, const PlaceError& b) {
+    return errorOf(a) < errorOf(b);
+  });
+  ChartRange range = ChartRange::empty();
+  for (const PlaceError& place : order) range.include({place.x, place.y});
+  Chart chart(std::string("end errors ") + (after ? "after, " : "before, ") + log, "x [m]", "y [m]",
+              range.widened(1.0).withEqualScales());
+  for (const PlaceError& place : order)
+    chart.spot({place.x, place.y},
+               divergingColour(full_colour > 0.0 ? errorOf(place) / full_colour : 0.0));
+  chart.legend("full colour: " + saidDistance(full_colour) + " and more", kBeforeColour);
   return chart.svg();
 }
 

@@ -28,6 +28,13 @@ ChartRange rangeOf(const std::vector<const std::vector<Pose2>*>& paths);
 /// One execution: measured, old and new model, seen from its beginning.
 std::string overlayPicture(const Overlay& overlay, const std::string& title);
 
+/// The error from which on places have their full colour: 19 of 20 are below it [m].
+double fullColourOf(const std::vector<PlaceError>& places);
+
+/// End errors where they were made, in the frame of the log.
+std::string placePicture(const std::vector<PlaceError>& places, bool after, double full_colour,
+                         const std::string& log);
+
 /// What each step of the ladder brought on blocks that were not fitted, with its standard error.
 std::string ladderPicture(const std::vector<LadderStep>& ladder);
 

@@ -14,6 +14,7 @@ namespace tread::gap {
 Section effectsSection(const Finding& finding);
 Section atlasSection(const Finding& finding);
 Section executionsSection(const Finding& finding, const std::vector<InputFile>& inputs);
+Section placesSection(const Finding& finding, const std::vector<InputFile>& inputs);
 Section ladderSection(const Finding& finding);
 Section parametersSection(const Finding& finding);
 Section alternativesSection(const Finding& finding);

@@ -147,9 +147,10 @@ Page reportPage(const Finding& finding, const std::vector<InputFile>& inputs) {
                                  true});
   for (Section& section : std::vector<Section>{
            effectsSection(finding), atlasSection(finding), executionsSection(finding, inputs),
-           ladderSection(finding), parametersSection(finding), alternativesSection(finding),
-           notShownSection(finding), decisionsSection(finding), envelopeSection(finding),
-           logsSection(finding), candidatesSection(finding), filesSection(finding, inputs)})
+           placesSection(finding, inputs), ladderSection(finding), parametersSection(finding),
+           alternativesSection(finding), notShownSection(finding), decisionsSection(finding),
+           envelopeSection(finding), logsSection(finding), candidatesSection(finding),
+           filesSection(finding, inputs)})
     if (!section.blocks.empty()) page.sections.push_back(std::move(section));
   return page;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
+#include <map>
 
 #include "tools/gap/report/headline.hpp"
 #include "tools/gap/report/pictures.hpp"
@@ -37,6 +38,31 @@ std::string logName(const std::vector<InputFile>& inputs, size_t drive) {
   constexpr size_t kRoom = 26;
   const std::string name = names[drive].substr(0, names[drive].rfind(".lcmlog"));
   return name.size() <= kRoom ? name : name.substr(0, kRoom - 2) + "..";
+}
+
+/// Errors over the ground, log by log, before and after in the same colours.
+std::vector<std::string> placePictures(const Finding& finding,
+                                       const std::vector<InputFile>& inputs) {
+  std::map<size_t, std::vector<PlaceError>> logs;
+  for (const PlaceError& place : finding.places) logs[place.drive].push_back(place);
+  std::vector<std::string> pictures;
+  for (const auto& [drive, places] : logs) {
+    const double full_colour = fullColourOf(places);
+    for (const bool after : {false, true})
+      pictures.push_back(placePicture(places, after, full_colour, logName(inputs, drive)));
+  }
+  return pictures;
+}
+
+/// Whose model predicted the executions that are shown.
+std::string predictedBy(const Finding& finding, const std::vector<InputFile>& inputs) {
+  if (std::any_of(inputs.begin(), inputs.end(),
+                  [](const InputFile& input) { return input.role == InputFile::Role::kTest; }))
+    return "they are of the test logs.";
+  if (finding.gap && finding.gap->structure_nested)
+    return "each is predicted by the model that the other half of the driving gave.";
+  return "each is predicted with parameters that the other half of the driving gave; the effects "
+         "were chosen with all of it.";
 }
 
 std::string remarkOf(const LadderStep& step) {
@@ -80,17 +106,39 @@ Section executionsSection(const Finding& finding, const std::vector<InputFile>& 
   constexpr size_t kTypical = 6;
   Pictures pictures{
       {},
-      "Each from where it begins; ahead is up. Dots are where it ends, with the heading there."};
+      "Each from where it begins; ahead is up. Dots are where it ends, with the heading there. "
+      "Blue shade: 9 of 10 are within."};
   for (size_t i = 0; i < finding.overlays.size(); ++i) {
     const Overlay& overlay = finding.overlays[i];
     const std::string rank = i < kTypical ? "typical" : "worst";
     pictures.svg.push_back(overlayPicture(overlay, rank + ", " + threeDigits(overlay.begin) +
                                                        " s of " + logName(inputs, overlay.drive)));
   }
-  section.blocks.push_back(Paragraph{
-      "Six typical executions of the logs that the model was made from, then the worst. What it "
-      "errs on driving that it has not seen stands above."});
+  section.blocks.push_back(
+      Paragraph{"Six typical executions, then the three worst, none of them used for the fit: " +
+                predictedBy(finding, inputs)});
+  if (!finding.overlays.front().band.empty())
+    section.blocks.push_back(Paragraph{
+        "The shade is a 90 % band: the residual noise of the fitted model (for each channel a part "
+        "that is always there and one in proportion to the motion), carried along the predicted "
+        "path, times the factor with which it holds 9 of 10 of all " +
+        std::to_string(finding.places.size()) + " such executions at each moment."});
   section.blocks.push_back(pictures);
+  return section;
+}
+
+Section placesSection(const Finding& finding, const std::vector<InputFile>& inputs) {
+  Section section{"Where on the ground", {}};
+  if (!finding.gap) return section;
+  if (finding.places.empty()) {
+    section.blocks.push_back(
+        Paragraph{"No map: the logs have no absolute poses at the executions' ends."});
+    return section;
+  }
+  section.blocks.push_back(Pictures{
+      placePictures(finding, inputs),
+      "Position error at the end of each execution that was not used for the fit, where it was "
+      "driven; grey is right. Errors that gather in one place speak for the ground there."});
   return section;
 }
 
