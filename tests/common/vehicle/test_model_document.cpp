@@ -34,7 +34,11 @@ ModelDocument fullDocument() {
   document.covariance.parameters = {"icr_offset.offset", "ins_latency.latency", "yaw_gain"};
   document.covariance.matrix = {
       {1e-4 / 3.0, 1e-9, 0.0}, {1e-9, 2e-5, -1e-7}, {0.0, -1e-7, 1.0 / 3e6}};
-  document.provenance = {"tread-gap 0.1", 42, 3, {{"a: log.lcm", std::string(64, 'a')}}};
+  document.provenance = {"tread-gap 0.1",
+                         42,
+                         3,
+                         {{"a: log.lcm", std::string(64, 'a')}},
+                         {{"yaw_pull", true, "Anna: Berg"}, {"grip_limit", false, ""}}};
   document.envelope = Envelope{1.1 / 3.0, 0.7, 0.1 + 0.2};
   return document;
 }
@@ -58,6 +62,12 @@ TEST_CASE("Everything in a model file comes back bit for bit") {
   CHECK(again.provenance.runs == 3);
   REQUIRE(again.provenance.logs.size() == 1);
   CHECK(again.provenance.logs[0].name == "a: log.lcm");
+  REQUIRE(again.provenance.decisions.size() == 2);
+  CHECK(again.provenance.decisions[0].effect == "yaw_pull");
+  CHECK(again.provenance.decisions[0].accepted);
+  CHECK(again.provenance.decisions[0].by == "Anna: Berg");
+  CHECK_FALSE(again.provenance.decisions[1].accepted);
+  CHECK(again.provenance.decisions[1].by.empty());
   REQUIRE(again.envelope);
   CHECK(again.envelope->v_omega == document.envelope->v_omega);
 }
@@ -86,6 +96,8 @@ TEST_CASE("Bad bounds, covariances, origins and envelopes are refused in one cle
   expectError(base + "provenance:\n  seed: 1.5\n", "9", "seed");
   expectError(base + "provenance:\n  logs:\n    - name: a\n      sha256: beef\n", "11",
               "64 digits");
+  expectError(base + "provenance:\n  decisions:\n    - effect: yaw_pull\n      decision: maybe\n",
+              "11", "accepted");
   expectError(base + "envelope:\n  v: 1\n", "8", "omega");
   expectError(base + "envelope:\n  v: -1\n  omega: 1\n  v_omega: 1\n", "9", "0..100 m/s");
   expectError(base + "measurement:\n  ins_latency:\n    latency: 3\n", "10", "-1..2 s");

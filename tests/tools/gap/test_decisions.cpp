@@ -66,6 +66,13 @@ TEST_CASE("a rejected effect is not considered: neither found nor among the cand
   CHECK(finding.after.vehicle.effects.motor_deadband == 0.0);
 }
 
+TEST_CASE("a rejected plain cause is no cover either") {
+  const Finding finding = findWith({{"slip_ratio.slip", 0.1}}, {{"slip_ratio", false, ""}});
+  const Names names = namesIn(finding);
+  CHECK(std::count(names.begin(), names.end(), "slip_ratio") == 0);
+  CHECK(finding.after.vehicle.effects.slip_ratio == 0.0);
+}
+
 TEST_CASE("of two effects that no drive tells apart a decision names the one") {
   const Values hidden{{"icr_offset.offset", 0.1}};
   const Finding rejected = findWith(hidden, {{"lever_arm_x", false, ""}});

@@ -53,6 +53,16 @@ TEST_CASE("a superfluous effect goes, with a word on the ladder, and a real one 
   CHECK_FALSE(result.ladder[0].remark.empty());
 }
 
+TEST_CASE("an accepted effect stays though it is superfluous, and its numbers are told") {
+  const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
+  SearchResult begin = resultOf(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}});
+  begin.accepted = {"yaw_pull"};
+  const SearchResult result = pruned(rig, begin);
+  CHECK(result.effects == Names{"motor_deadband", "yaw_pull"});
+  CHECK(result.ladder.empty());
+  CHECK(std::abs(result.scores.at("yaw_pull")) < kNeeded.score);
+}
+
 TEST_CASE("a plain cause that was only a cover goes without a word") {
   const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
   SearchResult covered = resultOf(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}});
@@ -94,6 +104,21 @@ TEST_CASE("two effects that imitate one become that one") {
   CHECK(*findParameter(result.state.model, "slip_ratio.slip") == 0.0);
   REQUIRE(result.ladder.size() == 1);
   CHECK(result.ladder[0].remark.find("in the place of") == 0);
+}
+
+TEST_CASE("neither does an accepted effect go into another one, nor does a rejected one come") {
+  const Rig rig({{"position_scale.scale", -0.06}}, 300.0, 5);
+  const SearchResult begin =
+      resultOf(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.01}});
+  for (const bool accepted : {false, true}) {
+    SearchResult result = begin;
+    if (accepted)
+      result.accepted = {"track_width"};
+    else
+      result.rejected = {"position_scale"};
+    replacePairs(rig.fitter, rig.all, result, kSilent);
+    CHECK(result.effects == Names{"slip_ratio", "track_width"});
+  }
 }
 
 TEST_CASE("two effects that no single one fits as well stay two") {

@@ -46,6 +46,7 @@ class Discovery {
     settings_.calibrate = task.calibrate;
     for (const Decision& decision : task.decisions)
       (decision.accepted ? settings_.accepted : settings_.rejected).push_back(decision.effect);
+    settings_.all_sized = true;
   }
 
   Finding run() {
@@ -296,6 +297,7 @@ class Discovery {
     gap.structure_nested = rows_.blocks() >= 2 * kLeastHalf;
     gap.before = summaryOf(endErrors(rows_, task_.model), [](const EndError&) { return true; });
     std::vector<EndError> outside;  // of either half
+    settings_.all_sized = false;    // half of the driving may not show all
     const Progress silent = [](const std::string&) {};
     for (int half : {0, 1}) {
       const std::vector<char> mask = halfMask(half);

@@ -74,6 +74,7 @@ class Search {
   SearchResult run(const ModelDocument& model) {
     calibrate(model);
     takeInAccepted();
+    if (settings_.all_sized && !result_.unsized.empty()) return std::move(result_);
     Round round = test(memory_.calibrated);
     result_.tests = round.tests;
     if (!significant(round).empty()) {

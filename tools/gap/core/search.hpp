@@ -33,6 +33,7 @@ struct SearchSettings {
   /// A person's last word: in from calibration on, whatever tests say.
   std::vector<std::string> accepted;
   std::vector<std::string> rejected;  ///< never considered
+  bool all_sized = false;             ///< ends at once where an accepted one cannot be sized
   uint64_t seed = 1;
 };
 
