@@ -50,7 +50,8 @@ TEST_CASE("a superfluous effect goes, with a word on the ladder, and a real one 
   REQUIRE(result.ladder.size() == 1);
   CHECK(result.ladder[0].effect == "yaw_pull");
   CHECK(result.ladder[0].removed);
-  CHECK_FALSE(result.ladder[0].remark.empty());
+  CHECK(result.ladder[0].remark == "chance explains it beside the others");
+  CHECK(result.negligible.empty());
 }
 
 TEST_CASE("an accepted effect stays though it is superfluous, and its numbers are told") {
