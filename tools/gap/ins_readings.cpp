@@ -27,7 +27,7 @@ InsSample sampleOf(const LogMessages& messages, const ins_t& ins,
   sample.time = messages.seconds(ins.utime);
   sample.T_map_body = pose.value_or(Pose2{kNotMeasured, kNotMeasured, kNotMeasured});
   if (std::isfinite(ins.rate[2])) sample.omega = ins.rate[2];
-  if (!pose || (ins.ins_status & ins_t::STATUS_NO_ATTITUDE) != 0) return sample;
+  if ((ins.ins_status & ins_t::STATUS_NO_ATTITUDE) != 0) return sample;
   const YawPitchRoll angles = yawPitchRoll(Eigen::Quaterniond(
       ins.orientation[0], ins.orientation[1], ins.orientation[2], ins.orientation[3]));
   sample.roll = angles.roll;

@@ -45,11 +45,14 @@ Moment momentOf(const Rows& rows, const Row& row, const std::vector<TimedPose>& 
   const double begin = drive.stretches.front().begin();
   const double end = drive.stretches.back().end;
   moment.elapsed = 2.0 * ((row.begin - begin) / std::max(1.0, end - begin)) - 1.0;
-  const auto ins =
-      std::lower_bound(stretch.ins.begin(), stretch.ins.end(), (row.begin + row.end) / 2.0,
-                       [](const InsSample& sample, double time) { return sample.time < time; });
-  if (ins != stretch.ins.end() && std::isfinite(ins->roll)) moment.roll = ins->roll;
-  if (ins != stretch.ins.end() && std::isfinite(ins->pitch)) moment.pitch = ins->pitch;
+  auto ins =
+      std::upper_bound(stretch.ins.begin(), stretch.ins.end(), (row.begin + row.end) / 2.0,
+                       [](double time, const InsSample& sample) { return time < sample.time; });
+  while (ins != stretch.ins.begin() && !std::isfinite(std::prev(ins)->roll)) --ins;
+  if (ins != stretch.ins.begin()) {
+    moment.roll = std::prev(ins)->roll;
+    moment.pitch = std::prev(ins)->pitch;
+  }
   return moment;
 }
 

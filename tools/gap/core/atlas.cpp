@@ -8,6 +8,7 @@
 #include <set>
 
 #include "tools/gap/core/adequacy.hpp"
+#include "tools/gap/core/student.hpp"
 
 namespace tread::gap {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 constexpr int kCells = 9;
 constexpr size_t kLeastRows = 12;
 constexpr size_t kLeastBlocks = 4;
-constexpr double kMarked = 3.9;  // standard errors: 5 % over some 500 cells
+constexpr double kMarked = 3.9;  // normal quantile: 5 % over some 500 cells
 
 /// Cells of equal numbers of rows over one variable.
 std::vector<double> edgesOf(std::vector<double> values) {
@@ -52,9 +53,10 @@ AtlasCell cellOf(const Rows& rows, const std::vector<size_t>& members,
     scatter += std::pow(sum.first - sum.second * cell.mean, 2);
   const auto number = static_cast<double>(blocks.size());
   const double error = std::sqrt(scatter * number / (number - 1.0)) / count;
-  cell.low = cell.mean - 1.96 * error;
-  cell.high = cell.mean + 1.96 * error;
-  cell.marked = std::abs(cell.mean) > kMarked * error;
+  const double half = studentQuantile(number - 1.0) * error;
+  cell.low = cell.mean - half;
+  cell.high = cell.mean + half;
+  cell.marked = std::abs(cell.mean) > studentQuantile(number - 1.0, kMarked) * error;
   return cell;
 }
 

@@ -115,6 +115,8 @@ bool isOpen(const Effect& effect, const EffectParameter& parameter, const ModelD
             const Excitation& most) {
   if (parameter.role == ParameterRole::kShape) return false;
   const EffectValues& effects = model.vehicle.effects;
+  // A load that only moves its centre looks like the centre itself from early on.
+  if (effect.name == "payload_change" && parameter.name == "icr") return false;
   if (effect.name == "terrain_change") {
     if (parameter.name.find("breakaway") == 0) return false;
     const bool second = parameter.name.back() == '2';

@@ -42,6 +42,8 @@ class Discovery {
         rows_(task.train, {}),
         fitter_(rows_, task.threads),
         all_(rows_.rows().size(), 1) {
+    const std::vector<char> counts = blocksThatCount(rows_, all_);
+    measured_ = static_cast<int>(std::count(counts.begin(), counts.end(), char{1}));
     settings_.seed = task.seed;
     settings_.calibrate = task.calibrate;
     for (const Decision& decision : task.decisions)
@@ -55,11 +57,11 @@ class Discovery {
     finding_.after = task_.model;
     finding_.hygiene = task_.hygiene;
     finding_.decisions = task_.decisions;
-    finding_.blocks = static_cast<size_t>(rows_.blocks());
+    finding_.blocks = static_cast<size_t>(measured_);
     finding_.block_length = rows_.blockLength();
     if (cannotTell()) return std::move(finding_);
     say_(text("1 calibrate: %.0f rows in %.0f blocks", static_cast<double>(rows_.rows().size()),
-              rows_.blocks()));
+              measured_));
     say_("2-5 test, refit, validate, prune");
     result_ = search(fitter_, task_.model, all_, settings_, memory_, say_);
     requireSized();
@@ -92,12 +94,15 @@ class Discovery {
         finding_.reason = note.log + ": " + note.what;
         return true;
       }
-    if (rows_.blocks() >= kLeastBlocks && !rows_.rows().empty()) return false;
+    if (measured_ >= kLeastBlocks) return false;
     double driven = 0.0;
     for (const Drive& drive : task_.train) driven += drive.driven();
-    finding_.reason =
-        text("only %.0f s of driving, too little to tell chance from cause: drive at least %.0f s",
-             driven, kLeastBlocks * RowSettings{}.block);
+    if (rows_.blocks() > measured_ && rows_.blockLength() > 0.0)
+      driven = measured_ * rows_.blockLength();
+    finding_.reason = text(
+        "only %.0f s of measured driving, too little to tell chance from cause: drive at least "
+        "%.0f s",
+        driven, kLeastBlocks * RowSettings{}.block);
     return true;
   }
 
@@ -161,7 +166,7 @@ class Discovery {
   void describeEffects() {
     const FitState& state = result_.state;
     const Eigen::MatrixXd covariance = parameterCovariance(rows_, state, all_);
-    const double quantile = studentQuantile(rows_.blocks() - 1);
+    const double quantile = studentQuantile(measured_ - 1);
     std::map<std::string, std::vector<Estimate>> estimates;
     for (size_t i = 0; i < state.free.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
@@ -183,8 +188,10 @@ class Discovery {
     finding_.ladder = result_.ladder;
     finding_.candidates = result_.tests;
     for (const CandidateTest& test : result_.tests)
-      if (test.detectable >
-          kInvisible * std::abs(parameterNamed(effectNamed(test.effect), test.parameter).typical))
+      if (!isNew(test.effect) &&
+          test.detectable >
+              kInvisible *
+                  std::abs(parameterNamed(effectNamed(test.effect), test.parameter).typical))
         finding_.not_excited.push_back(test.effect);
     documentAfter(covariance);
   }
@@ -294,7 +301,7 @@ class Discovery {
   /// Alternate blocks: what one half found is judged by the other.
   Gap nestedGap() {
     Gap gap;
-    gap.structure_nested = rows_.blocks() >= 2 * kLeastHalf;
+    gap.structure_nested = measured_ >= 2 * kLeastHalf;
     gap.before = summaryOf(endErrors(rows_, task_.model), [](const EndError&) { return true; });
     std::vector<EndError> outside;  // of either half
     settings_.all_sized = false;    // half of the driving may not show all
@@ -357,7 +364,7 @@ class Discovery {
     std::copy_if(finding_.effects.begin(), finding_.effects.end(), std::back_inserter(effects),
                  isShown);
     if (effects.empty() && judgeMoved(adequate)) {
-      return;
+      // It says so itself.
     } else if (effects.empty()) {
       finding_.verdict = adequate ? Verdict::kNoDiscrepancy : Verdict::kNotInCatalogue;
     } else if (!adequate) {
@@ -371,13 +378,22 @@ class Discovery {
     } else {
       finding_.verdict = Verdict::kFound;
     }
-    for (const Estimate& estimate : finding_.calibrated) {
-      if (onBound(finding_.after, freeParameter(task_.model, estimate.parameter)) &&
-          estimate.value != 0.0) {
-        finding_.verdict = Verdict::kCannotTell;
-        finding_.reason = estimate.parameter + " runs to the end of its plausible range";
-      }
-    }
+    for (const Estimate& estimate : finding_.calibrated) refuseOnBound(estimate);
+    for (const FoundEffect& effect : finding_.effects)
+      for (const Estimate& estimate : effect.parameters) refuseOnBound(estimate);
+  }
+
+  /// A size at the end of what is plausible is no measurement.
+  void refuseOnBound(const Estimate& estimate) {
+    if (estimate.parameter.find(".time") != std::string::npos || estimate.value == 0.0) return;
+    const FreeParameter parameter = freeParameter(task_.model, estimate.parameter);
+    // Of a delay or lag that the model has, nothing may be left.
+    const bool to_nothing =
+        (estimate.parameter == "command_delay.delay" || estimate.parameter == "actuator_lag.lag") &&
+        estimate.value < 0.0;
+    if (to_nothing || !onBound(finding_.after, parameter)) return;
+    finding_.verdict = Verdict::kCannotTell;
+    finding_.reason = estimate.parameter + " runs to the end of its plausible range";
   }
 
   const GapTask& task_;
@@ -391,6 +407,7 @@ class Discovery {
   std::vector<Unseen> unseen_;
   SearchResult result_;
   Finding finding_;
+  int measured_ = 0;  ///< blocks with rows
 };
 
 }  // namespace

@@ -115,6 +115,18 @@ std::vector<std::string> leastSureFirst(const Fitter& fitter, const SearchResult
   return order;
 }
 
+/// Whether an effect's prediction is straight down to its absence: not limits, thresholds, shapes.
+bool isStraight(const FitState& state, const std::string& effect) {
+  for (const FreeParameter& parameter : state.free) {
+    if (!belongsTo(parameter, effect)) continue;
+    const EffectParameter& known =
+        parameterNamed(effectNamed(effect), parameter.path.substr(effect.size() + 1));
+    if (known.reciprocal() || !known.probes.empty() || known.role == ParameterRole::kShape)
+      return false;
+  }
+  return true;
+}
+
 class Pruning {
  public:
   Pruning(const Fitter& fitter, const std::vector<char>& mask, const Needed& needed,
@@ -138,8 +150,10 @@ class Pruning {
       // What is beyond doubt in first order needs no simulation without it.
       Needed needed = needed_;
       needed.size_counts = !hasMoment(effect);
-      Removal removed = linearRemoval(fitter_, result_.state, loss, effect, mask_, needed);
-      const bool sure = removed.evidence >= 1.0 &&
+      const bool straight = isStraight(result_.state, effect);
+      Removal removed;
+      if (straight) removed = linearRemoval(fitter_, result_.state, loss, effect, mask_, needed);
+      const bool sure = straight && removed.evidence >= 1.0 &&
                         removed.gain.value > kSure * removed.gain.error &&
                         removed.gain.value > kSureNats;
       if (!sure) removed = removal(fitter_, result_.state, loss, effect, mask_, needed);

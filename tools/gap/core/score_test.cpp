@@ -11,7 +11,8 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kFewBlocks = 1.25;    // a root of active blocks below so many critical scores
+constexpr double kFewBlocks = 1.25;  // a root of active blocks below so many critical scores
+constexpr double kNearly = 0.999;
 constexpr double kSparse = 3.9;        // normal quantile: 1e-4
 constexpr double kLeastUnique = 0.02;  // below it a column is what the model's curvature leaves
 /// Mean slope of the pull by the residual, over 1 / scale^2: (f + 1) / (f + 3).
@@ -137,7 +138,9 @@ std::vector<double> ScoreTest::largestByChance(int draws, uint64_t seed) const {
 }
 
 double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& needed) {
-  const double by_blocks = std::abs(test.score(candidate)) / needed.score;
+  double by_blocks = std::abs(test.score(candidate)) / needed.score;
+  // Where few blocks act chance reaches the largest score of all: to equal it is nothing.
+  if (by_blocks < 1.0 + 1e-9) by_blocks = std::min(by_blocks, kNearly);
   if (!needed.size_counts || std::sqrt(test.activeBlocks(candidate)) >= kFewBlocks * needed.score)
     return by_blocks;
   return std::max(by_blocks,

@@ -12,12 +12,12 @@ namespace {
 constexpr double kTransient = 0.8;  // [s] after a change of command; then all changes slowly
 constexpr double kSlowly = 2.0;     // pieces are so much longer then
 
-/// Roll and pitch at a moment; level where the INS does not say.
-void levelAt(const std::vector<InsSample>& ins, double time, size_t& at, DriveContext& context) {
-  while (at + 1 < ins.size() && ins[at + 1].time <= time) ++at;
-  if (at >= ins.size()) return;
-  if (std::isfinite(ins[at].roll)) context.roll = ins[at].roll;
-  if (std::isfinite(ins[at].pitch)) context.pitch = ins[at].pitch;
+/// Roll and pitch at a moment; where the INS does not say, as they were, level at first.
+void levelAt(const std::vector<InsSample>& ins, double time, size_t& next, DriveContext& context) {
+  for (; next < ins.size() && ins[next].time <= time; ++next) {
+    if (std::isfinite(ins[next].roll)) context.roll = ins[next].roll;
+    if (std::isfinite(ins[next].pitch)) context.pitch = ins[next].pitch;
+  }
 }
 
 /// Relative fall of the battery's voltage since the first sample.
@@ -33,7 +33,8 @@ StretchPlan::StretchPlan(const Drive& drive, const Stretch& stretch, double piec
     : begin_(stretch.begin()),
       entry_speeds_(stretch.entry_speeds),
       command_before_(stretch.command_before) {
-  size_t ins_at = 0;
+  DriveContext context;
+  size_t ins_next = 0;
   size_t voltage_at = 0;
   for (size_t i = 0; i < stretch.commands.size(); ++i) {
     const double from = stretch.commands[i].time;
@@ -44,9 +45,8 @@ StretchPlan::StretchPlan(const Drive& drive, const Stretch& stretch, double piec
       const int count = static_cast<int>(std::ceil((end - begin) / longest - 1e-6));
       const double duration = (end - begin) / std::max(1, count);
       for (int n = 0; n < count; ++n) {
-        DriveContext context;
         context.session_time = begin + n * duration;
-        levelAt(stretch.ins, context.session_time + duration / 2.0, ins_at, context);
+        levelAt(stretch.ins, context.session_time + duration / 2.0, ins_next, context);
         context.battery_drop = dropAt(drive.voltage, context.session_time, voltage_at);
         pieces_.push_back({duration, stretch.commands[i].command, context});
         longest_ = std::max(longest_, duration);

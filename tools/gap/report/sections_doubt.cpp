@@ -124,7 +124,7 @@ Section candidatesSection(const Finding& finding) {
   Table table{{"effect", "parameter", "score", "p", "own share", "visible from"}, {}, 2};
   std::vector<CandidateTest> tests = finding.candidates;
   std::stable_sort(tests.begin(), tests.end(), [](const CandidateTest& a, const CandidateTest& b) {
-    return a.score > b.score;
+    return std::abs(a.score) > std::abs(b.score);
   });
   for (const CandidateTest& test : tests)
     table.rows.push_back({titleOf(test.effect), test.parameter, threeDigits(test.score),
