@@ -115,6 +115,10 @@ std::vector<std::string> leastSureFirst(const Fitter& fitter, const SearchResult
   return order;
 }
 
+bool isBeyondDoubt(const Gain& gain) {
+  return gain.value > kSure * gain.error && gain.value > kSureNats;
+}
+
 /// Whether an effect's prediction is straight down to its absence: not limits, thresholds, shapes.
 bool isStraight(const FitState& state, const std::string& effect) {
   for (const FreeParameter& parameter : state.free) {
@@ -153,9 +157,7 @@ class Pruning {
       const bool straight = isStraight(result_.state, effect);
       Removal removed;
       if (straight) removed = linearRemoval(fitter_, result_.state, loss, effect, mask_, needed);
-      const bool sure = straight && removed.evidence >= 1.0 &&
-                        removed.gain.value > kSure * removed.gain.error &&
-                        removed.gain.value > kSureNats;
+      const bool sure = straight && removed.evidence >= 1.0 && isBeyondDoubt(removed.gain);
       if (!sure) removed = removal(fitter_, result_.state, loss, effect, mask_, needed);
       const bool stays = sure || contains(result_.accepted, effect);
       const std::string why = stays ? "" : reasonAgainst(removed);
@@ -173,7 +175,9 @@ class Pruning {
 
   /// Why an effect should go; empty if it should stay.
   std::string reasonAgainst(const Removal& removed) const {
-    if (removed.evidence < 1.0) return "chance explains it beside the others";
+    // Residuals far beyond the scales pull no more: a large effect shows in its gain.
+    if (removed.evidence < 1.0 && !isBeyondDoubt(removed.gain))
+      return "chance explains it beside the others";
     if (removed.gain.value <= 0.0) return "does not help on blocks left out";
     if (improvement(fitter_, removed.state.model, result_.state.model, mask_) < least_gain_)
       return "real, but negligible: changes the end error by less than 1 %";
