@@ -34,7 +34,7 @@ std::optional<Met> ScoreLine::met() const {
   const bool absolute = must->least ? must->at >= 1.0 && is_share : must->at <= 0.0;
   if (absolute || !(low <= high)) return valueIsGood() ? Met::kYes : Met::kNo;
   if (must->upper_end) {
-    if (value <= must->at && high <= *must->upper_end) return Met::kYes;
+    if (value <= must->at && high <= *must->upper_end && cases >= must->cases) return Met::kYes;
     return low > must->at ? Met::kNo : Met::kOpen;
   }
   const double best = must->least ? low : high;

@@ -10,7 +10,7 @@ namespace {
 void addNulls(Scorer& scorer) {
   const Test null = isKind("null");
   scorer.share("false positives: an effect named in a null log", null, flag(&Judgement::alarm),
-               Must{0.05, false, {}, 0.08});
+               Must{0.05, false, {}, 0.08, 400});
   scorer.share("  any verdict but NO_DISCREPANCY in a null log", null,
                [](const JudgedCase& one) { return one.record.answer.verdict != "NO_DISCREPANCY"; });
 }

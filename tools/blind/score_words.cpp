@@ -91,6 +91,7 @@ std::string mustWords(const ScoreLine& line) {
   std::string words = (line.must->least ? ">= " : "<= ") + digits(line.must->at) + unit;
   if (line.must->below) words = digits(line.must->at) + " to " + digits(*line.must->below) + unit;
   if (line.must->upper_end) words += ", upper end <= " + digits(*line.must->upper_end) + unit;
+  if (line.must->cases > 0) words += ", n >= " + std::to_string(line.must->cases);
   return words;
 }
 

@@ -24,6 +24,7 @@ struct Must {
   bool least = true;                     ///< at least; else at most
   std::optional<double> below = {};      ///< at the same time at most this
   std::optional<double> upper_end = {};  ///< the interval's upper end is at most this
+  size_t cases = 0;                      ///< fewer do not show that it is met
 };
 
 /// Whether what must be is reached.

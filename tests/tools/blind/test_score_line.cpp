@@ -66,8 +66,9 @@ TEST_CASE("what must be is met or not where the whole interval says so, else it 
 }
 
 TEST_CASE("a must with an upper end is open while there are too few cases") {
-  const Must must{0.05, false, {}, 0.08};
+  const Must must{0.05, false, {}, 0.08, 400};
   CHECK(share(0, 10, must).met() == Met::kOpen);
+  CHECK(share(0, 399, must).met() == Met::kOpen);
   CHECK(share(8, 400, must).met() == Met::kYes);
   CHECK(share(4, 20, must).met() == Met::kNo);
 }
