@@ -6,6 +6,8 @@
 #include <set>
 #include <vector>
 
+#include "common/config/scalars.hpp"
+
 namespace tread {
 namespace {
 
@@ -94,6 +96,17 @@ void readCovariance(ConfigReader reader, const ModelDocument& document,
                        "diagonal");
 }
 
+/// Whoever decides by hand may mistype; a decision about nothing would be kept for ever.
+void requireEffect(const ConfigReader& reader, const std::string& name) {
+  std::vector<std::string> names;
+  for (const Effect& effect : effectCatalogue()) names.push_back(effect.name);
+  if (std::find(names.begin(), names.end(), name) != names.end()) return;
+  const auto meant = nearestSpelling(name, names);
+  throw reader.error("effect",
+                     "'" + name + "' is no effect of the catalogue; " +
+                         (meant ? "did you mean " + *meant + "?" : "tread-gap explain lists them"));
+}
+
 void readProvenance(ConfigReader reader, Provenance& provenance) {
   reader.text("tool", provenance.tool);
   if (reader.has("seed")) {
@@ -114,6 +127,7 @@ void readProvenance(ConfigReader reader, Provenance& provenance) {
   for (ConfigReader& entry : reader.sections("decisions")) {
     Decision decision;
     entry.text("effect", decision.effect, true);
+    requireEffect(entry, decision.effect);
     std::string decided = "accepted";
     entry.choice("decision", decided, {"accepted", "rejected"}, true);
     decision.accepted = decided == "accepted";

@@ -98,6 +98,8 @@ TEST_CASE("Bad bounds, covariances, origins and envelopes are refused in one cle
               "64 digits");
   expectError(base + "provenance:\n  decisions:\n    - effect: yaw_pull\n      decision: maybe\n",
               "11", "accepted");
+  expectError(base + "provenance:\n  decisions:\n    - effect: yaw_pul\n      decision: accepted\n",
+              "10", "'yaw_pul' is no effect of the catalogue; did you mean yaw_pull?");
   expectError(base + "envelope:\n  v: 1\n", "8", "omega");
   expectError(base + "envelope:\n  v: -1\n  omega: 1\n  v_omega: 1\n", "9", "0..100 m/s");
   expectError(base + "measurement:\n  ins_latency:\n    latency: 3\n", "10", "-1..2 s");
