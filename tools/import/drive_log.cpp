@@ -62,14 +62,16 @@ class LogMaker {
  public:
   explicit LogMaker(LogCounts& counts) : counts_(counts) {}
 
-  void addNotes(const Session& session, const std::string& format, const ExecutionLayout& layout,
-                double begin) {
+  void addNotes(const Session& session, const std::string& format, bool all_gyro,
+                const ExecutionLayout& layout, double begin) {
+    const std::string poses = session.lag_kept ? "as logged" : "as measured";
+    const std::string gyro = all_gyro ? "all" : "at fixes";
     std::ostringstream text;
     text << "recording: " << session.name << "\nrobot: \"" << session.robot
          << "\"\nformat: " << format << "\nwheel_radius: " << session.wheel_radius
          << "\nbaseline: " << session.baseline << "\npose_lag_removed: " << session.pose_lag
-         << "\noffset: " << layout.offset << "\nlength: " << layout.length
-         << "\nexecutions: " << layout.executions << "\n";
+         << "\nposes: " << poses << "\ngyro: " << gyro << "\noffset: " << layout.offset
+         << "\nlength: " << layout.length << "\nexecutions: " << layout.executions << "\n";
     config_t config{};
     config.utime = utimeOf(begin);
     config.config_process = "tread-import";
@@ -77,7 +79,11 @@ class LogMaker {
     config.config_text = text.str();
     add(kConfig, config);
     addMark(config.utime, 0, "surface", session.surface);
-    addMark(config.utime, 1, "note", "recording " + session.name + " of a " + session.robot);
+    std::ostringstream note;
+    note << "recording " << session.name << " of a " << session.robot << ", tracks "
+         << session.baseline << " m apart; --format " << format << ", poses " << poses << ", gyro "
+         << gyro;
+    addMark(config.utime, 1, "note", note.str());
   }
 
   void addIns(const std::vector<Fix>& fixes, const std::vector<GyroReading>& gyro,
@@ -258,7 +264,7 @@ std::vector<LogEvent> makeLog(const Recording& recording, const Session& session
   // ICP.
   const double step = format == "aligned" ? kPeriod : 1.0 / session.pose_rate;
   LogMaker maker(counts);
-  maker.addNotes(session, format, layout, begin);
+  maker.addNotes(session, format, !recording.gyro.empty(), layout, begin);
   maker.addIns(recording.fixes, recording.gyro, 3.0 * step);
   maker.addMotor(recording.drive, executions);
   maker.addExecutions(executions);

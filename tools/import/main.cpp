@@ -16,6 +16,8 @@ using namespace tread::importer;
 
 namespace {
 
+constexpr int kBadInput = 2;  // as the gap workflow's programs
+
 struct Arguments {
   std::string format;
   std::string sessions;
@@ -44,6 +46,7 @@ Session sessionOf(const Arguments& arguments) {
                                ? std::filesystem::path(arguments.csv).stem().string()
                                : arguments.session;
   Session session = readSession(arguments.sessions, name);
+  session.lag_kept = arguments.keep_lag;
   if (arguments.keep_lag) session.pose_lag = 0.0;
   return session;
 }
@@ -112,6 +115,6 @@ int main(int argc, char** argv) {
     return parseAndRun(argc, argv);
   } catch (const std::exception& problem) {
     std::fprintf(stderr, "tread-import: %s\n", problem.what());
-    return 1;
+    return kBadInput;
   }
 }

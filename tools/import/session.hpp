@@ -14,6 +14,7 @@ struct Session {
   double wheel_radius = 0.0;  ///< [m]
   double baseline = 0.0;      ///< [m] that turns (v, w) commands into wheel speeds
   double pose_lag = 0.0;      ///< [s] poses are logged this much after they were measured
+  bool lag_kept = false;      ///< they stay there; pose_lag is 0 then
   double pose_rate = 0.0;     ///< [Hz]
   double imu_sign = 1.0;      ///< of the gyro in raw files, so that + is counter-clockwise
   bool absolute_attitude =

@@ -2,8 +2,13 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include <sys/wait.h>
+
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 
 #include "tests/tools/import/drive_samples.hpp"
 #include "tools/import/csv_table.hpp"
@@ -165,6 +170,9 @@ TEST_CASE("the log says on which ground it was driven, and is the same every tim
   const auto marks = messagesOn(kMark, log.events);
   REQUIRE(marks.at(0).mark_kind == "surface");
   REQUIRE(marks.at(0).mark_value == "gravel");
+  REQUIRE(marks.at(1).mark_value ==
+          "recording drive of a Some robot, 100 kg, tracks 1 m apart; --format steps, poses as "
+          "measured, gyro at fixes");
   const Imported again = importedSteps();
   REQUIRE(again.events.size() == log.events.size());
   for (size_t i = 0; i < log.events.size(); ++i) {
@@ -241,6 +249,20 @@ TEST_CASE("a bad file is one line with file and line") {
   swapped.replace(swapped.find("3,0,0.100"), 9, "3,0,0.010");
   REQUIRE(complaint(swapped) ==
           "drive.csv:4: t_s does not grow within the step; are the rows in order?");
+}
+
+TEST_CASE("the program ends with 2 and one line on bad input, as the gap workflow does") {
+  const Folder folder("import_program");
+  const std::string said = folder.file("said.txt");
+  const std::string command = std::string(TREAD_BIN_DIR) + "/tread-import --format steps " +
+                              "--sessions " + folder.file("none.csv") + " " +
+                              folder.file("drive.csv") + " -o " + folder.file("drive.lcmlog") +
+                              " 2> " + said;
+  REQUIRE(WEXITSTATUS(std::system(command.c_str())) == 2);
+  std::ifstream file(said);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  REQUIRE(text.find("tread-import: ") == 0);
+  REQUIRE(std::count(text.begin(), text.end(), '\n') == 1);
 }
 
 TEST_CASE("a session that is not known is refused, and so is a file that is not there") {
