@@ -2,49 +2,34 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/gap/compare.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <stdexcept>
 
 #include "tools/gap/core/end_errors.hpp"
+#include "tools/gap/core/enough_driving.hpp"
 #include "tools/gap/core/search.hpp"
+#include "tools/gap/core/student.hpp"
 #include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {
 
-constexpr int kFewestBlocks = 4;  // errors from fewer have no meaning
+/// Rows, and whether there are enough of them.
+void requireEnough(const Rows& rows) {
+  const std::string problem = tooLittleDriving(rows);
+  if (!problem.empty()) throw std::runtime_error(rows.drives().front().name + ": " + problem);
+}
 
-struct LogFit {
-  ModelDocument model;
-  std::vector<double> values;
-  std::vector<double> errors;
-  int blocks = 0;
-};
-
-LogFit fitted(const ModelDocument& model, const std::vector<FreeParameter>& free,
-              const std::vector<Drive>& drives, int threads) {
-  const Rows rows(drives, RowSettings{});
-  if (rows.blocks() < kFewestBlocks)
-    throw std::runtime_error(drives.front().name + ": " + std::to_string(rows.blocks()) +
-                             " blocks of 20 s of driving; at least " +
-                             std::to_string(kFewestBlocks) + " are needed");
-  const Fitter fitter(rows, threads);
-  const std::vector<char> mask(rows.rows().size(), 1);
-  FitState state = fitter.start(model, free, mask);
-  fitter.fit(state, mask);
-  fitter.renewNoise(state, mask);
-  fitter.fit(state, mask);
-  fitter.renewJacobian(state);
-  const Eigen::MatrixXd covariance = parameterCovariance(rows, state, mask);
-  LogFit fit{state.model, {}, {}, rows.blocks()};
-  for (size_t i = 0; i < state.free.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    fit.values.push_back(*findParameter(state.model, state.free[i].path));
-    fit.errors.push_back(std::sqrt(covariance(at, at)));
-  }
-  return fit;
+/// What a model has on, without what is known beforehand: that would pull all logs to one value.
+std::vector<FreeParameter> comparedParameters(const ModelDocument& model) {
+  std::vector<FreeParameter> free = givenParameters(model, false);
+  if (free.empty()) free = givenParameters(model, true);
+  for (FreeParameter& parameter : free)
+    parameter.deviation = std::numeric_limits<double>::infinity();
+  return free;
 }
 
 std::string unitOf(const std::string& path) {
@@ -75,14 +60,23 @@ std::string nameOf(const Movement& movement) {
          (path.parameter->reciprocal() ? path.parameter->natural_name : path.parameter->name);
 }
 
+/// From where on a difference is none of chance, and why just there.
+std::string limitLine(const LogChange& change) {
+  return "From " + threeDigits(change.needed) + " sigma on it is no chance, with " +
+         std::to_string(change.movements.size()) + " parameters and " +
+         std::to_string(std::min(change.first_blocks, change.second_blocks)) +
+         " blocks of driving.\n";
+}
+
 std::string headline(const LogChange& change) {
   std::vector<std::string> moved;
   for (const Movement& movement : change.movements)
-    if (std::abs(movement.sigmas()) > kMoved)
+    if (change.moved(movement))
       moved.push_back(nameOf(movement) + " (" + threeDigits(std::abs(movement.sigmas())) +
                       " sigma)");
-  if (moved.empty()) return "Nothing moved by more than 3 sigma.\n";
-  return "Changed: " + joined(moved) + ".\n";
+  const std::string first =
+      moved.empty() ? "Nothing moved beyond chance" : "Changed: " + joined(moved);
+  return first + ".\n" + limitLine(change);
 }
 
 }  // namespace
@@ -92,22 +86,60 @@ double Movement::sigmas() const {
   return std::isfinite(error) && error > 0.0 ? (second - first) / error : 0.0;
 }
 
+bool LogChange::moved(const Movement& movement) const {
+  return std::abs(movement.sigmas()) > needed;
+}
+
+bool LogChange::anyMoved() const {
+  return std::any_of(movements.begin(), movements.end(),
+                     [this](const Movement& movement) { return moved(movement); });
+}
+
+double neededSigmas(int fewest_blocks, size_t parameters) {
+  const double chance =
+      chanceBeyond(kSigmaLevel) / static_cast<double>(std::max<size_t>(1, parameters));
+  return studentQuantile(fewest_blocks - 1.0, normalQuantileOf(chance));
+}
+
+LogFit fitLog(const ModelDocument& model, const Drive& drive, int threads) {
+  const std::vector<Drive> drives{drive};
+  const Rows rows(drives, RowSettings{});
+  requireEnough(rows);
+  const Fitter fitter(rows, threads);
+  const std::vector<char> mask(rows.rows().size(), 1);
+  FitState state = fitter.start(model, comparedParameters(model), mask);
+  fitter.fit(state, mask);
+  fitter.renewNoise(state, mask);
+  fitter.fit(state, mask);
+  fitter.renewJacobian(state);
+  const Eigen::MatrixXd covariance = parameterCovariance(rows, state, mask);
+  LogFit fit{state.model, {}, {}, {}, measuredBlocks(rows)};
+  for (size_t i = 0; i < state.free.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    fit.parameters.push_back(state.free[i].path);
+    fit.values.push_back(*findParameter(state.model, state.free[i].path));
+    fit.errors.push_back(std::sqrt(covariance(at, at)));
+  }
+  return fit;
+}
+
+LogChange changeBetween(const LogFit& first, const LogFit& second) {
+  LogChange change;
+  change.first_blocks = first.blocks;
+  change.second_blocks = second.blocks;
+  change.needed = neededSigmas(std::min(first.blocks, second.blocks), first.parameters.size());
+  for (size_t i = 0; i < first.parameters.size(); ++i)
+    change.movements.push_back({first.parameters[i], unitOf(first.parameters[i]), first.values[i],
+                                first.errors[i], second.values[i], second.errors[i]});
+  return change;
+}
+
 LogChange compareLogs(const ModelDocument& model, const Drive& first, const Drive& second,
                       int threads) {
-  std::vector<FreeParameter> free = givenParameters(model, false);
-  if (free.empty()) free = givenParameters(model, true);
-  // What is known beforehand would pull both logs to the same value.
-  for (FreeParameter& parameter : free)
-    parameter.deviation = std::numeric_limits<double>::infinity();
+  const LogFit one = fitLog(model, first, threads);
+  const LogFit two = fitLog(model, second, threads);
+  LogChange change = changeBetween(one, two);
   const std::vector<Drive> later{second};
-  const LogFit one = fitted(model, free, {first}, threads);
-  const LogFit two = fitted(model, free, later, threads);
-  LogChange change;
-  change.first_blocks = one.blocks;
-  change.second_blocks = two.blocks;
-  for (size_t i = 0; i < free.size(); ++i)
-    change.movements.push_back({free[i].path, unitOf(free[i].path), one.values[i], one.errors[i],
-                                two.values[i], two.errors[i]});
   const Rows rows(later, RowSettings{});
   change.with_first = endErrorsOf(rows, one.model);
   change.with_second = endErrorsOf(rows, two.model);
@@ -125,7 +157,7 @@ std::string textOf(const LogChange& change) {
     std::snprintf(line, sizeof line, "%-34s %-27s %-27s %+.1f%s\n", nameOf(movement).c_str(),
                   saidWithError(movement, movement.first, movement.first_error).c_str(),
                   saidWithError(movement, movement.second, movement.second_error).c_str(),
-                  movement.sigmas(), std::abs(movement.sigmas()) > kMoved ? "  moved" : "");
+                  movement.sigmas(), change.moved(movement) ? "  moved" : "");
     text += line;
   }
   const auto errors = [](const EndErrors& of) {

@@ -10,6 +10,15 @@
 
 namespace tread::gap {
 
+/// What one log says of the parameters that are compared.
+struct LogFit {
+  ModelDocument model;  ///< fitted
+  std::vector<std::string> parameters;
+  std::vector<double> values;
+  std::vector<double> errors;  ///< standard errors over blocks of driving
+  int blocks = 0;              ///< of measured driving
+};
+
 /// One parameter, fitted on each of two logs.
 struct Movement {
   std::string parameter;  ///< path as in findParameter()
@@ -28,16 +37,32 @@ struct LogChange {
   std::vector<Movement> movements;
   int first_blocks = 0;
   int second_blocks = 0;
+  double needed = 0.0;    ///< [standard errors] from which a movement is no chance
   EndErrors with_first;   ///< of the second log with what was fitted on the first
   EndErrors with_second;  ///< and with its own
+
+  bool moved(const Movement& movement) const;
+  bool anyMoved() const;
 };
 
-/// Movements from this on are called changes [standard errors].
-inline constexpr double kMoved = 3.0;
+/// Level at which something is said to have moved, for all parameters together [standard
+/// deviations of a normal number]: 0.3 %. As blocks of ground resemble their neighbours, up to 1 %
+/// of pairs of equal logs are said to differ.
+inline constexpr double kSigmaLevel = 3.0;
 
-/// Fits the terms that a model has on, and the numbers that it is unsure of, on both logs.
+/// Fits the terms that a model has on, and the numbers that it is unsure of, on a log.
 /** Of a model without either, lag, delay and gains are fitted. Throws std::runtime_error with one
- * line if a log has too little driving. */
+ * line if the log has too little driving. */
+LogFit fitLog(const ModelDocument& model, const Drive& drive, int threads);
+
+/// Standard errors that a difference needs: errors of few blocks are themselves uncertain
+/// (Student), and of many parameters one is soon far off (Bonferroni).
+double neededSigmas(int fewest_blocks, size_t parameters);
+
+/// What moved between two fits of one model.
+LogChange changeBetween(const LogFit& first, const LogFit& second);
+
+/// Both fits, what moved, and what the second log says of the first one's parameters.
 LogChange compareLogs(const ModelDocument& model, const Drive& first, const Drive& second,
                       int threads);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -11,6 +10,7 @@
 #include "common/vehicle/model_file.hpp"
 #include "tools/gap/commands.hpp"
 #include "tools/gap/compare.hpp"
+#include "tools/gap/import_note.hpp"
 #include "tools/gap/read_for_model.hpp"
 
 namespace tread::gap {
@@ -39,12 +39,13 @@ int compare(const Options& options) {
   const Drive second = readSoundDrive(options.second, model);
   if (first.sha256 == second.sha256)
     throw std::runtime_error(options.second + ": the same file as the first; give two logs");
+  requireSameRobot(first, second);
+  requireSameImport(first, second);
   const LogChange change = compareLogs(model, first, second, options.threads);
+  for (const Drive* drive : {&first, &second})
+    if (!drive->lost.empty()) std::cout << drive->lost << '\n';
   std::cout << textOf(change) << std::flush;
-  const bool moved =
-      std::any_of(change.movements.begin(), change.movements.end(),
-                  [](const Movement& movement) { return std::abs(movement.sigmas()) > kMoved; });
-  return moved ? kSomethingMoved : 0;
+  return change.anyMoved() ? kSomethingMoved : 0;
 }
 
 }  // namespace
@@ -55,8 +56,9 @@ CLI::App* addCompare(CLI::App& app, int& status) {
   CLI::App* command =
       app.add_subcommand("compare", "what changed from one log to another, yesterday and today");
   command->footer(
-      "Fits the same terms on both logs and tells which parameters moved by more than\n"
-      "3 sigma. Exit status 0: none did; 10: some did; 2: bad input.");
+      "Fits the same terms on both logs and tells which parameters moved beyond chance, at three\n"
+      "sigma for all of them together: of a hundred pairs of equal logs at most one is said to\n"
+      "have changed. Exit status 0: nothing moved; 10: something did; 2: bad input.");
   command->add_option("FIRST", options->first, "log")->required();
   command->add_option("SECOND", options->second, "log")->required();
   command->add_option("--model", options->model, "model file whose terms are fitted (YAML)")

@@ -69,6 +69,7 @@ Drive toDrive(const std::string& name, const std::vector<LogEvent>& events) {
   Drive drive;
   drive.name = name;
   drive.kind = kindOf(messages);
+  drive.imported = messages.imported;
   drive.voltage = voltageSamples(messages);
   drive.encoders = encoderSamples(messages);
   drive.stretches = stretchesOf(spans, drive.encoders);
@@ -94,10 +95,12 @@ Drive readDrive(const std::string& path) {
                                  : reader.problem());
   Drive drive = toDrive(std::filesystem::path(path).filename().string(), events);
   drive.sha256 = sha256OfFile(path);
-  if (!reader.problem().empty())
-    drive.notes.insert(
-        drive.notes.begin(),
-        HygieneNote{drive.name, reader.problem() + "; copy the log again from the robot", true});
+  if (reader.problem().empty()) return drive;
+  // Whole events are as good as in a whole log; whether they are enough is judged later.
+  const double span = 1e-6 * static_cast<double>(events.back().utime - events.front().utime);
+  drive.lost = reader.problem() + "; its " + std::to_string(events.size()) + " whole events, " +
+               digits(span, 0) + " s, are used; copy the log again if the robot still has it";
+  drive.notes.insert(drive.notes.begin(), HygieneNote{drive.name, drive.lost, false});
   return drive;
 }
 

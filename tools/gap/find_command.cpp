@@ -16,6 +16,7 @@
 #include "tools/gap/decisions.hpp"
 #include "tools/gap/file_hash.hpp"
 #include "tools/gap/find_output.hpp"
+#include "tools/gap/import_note.hpp"
 #include "tools/gap/read_for_model.hpp"
 #include "tools/gap/report/headline.hpp"
 #include "tools/gap/report/words.hpp"
@@ -84,8 +85,11 @@ int find(const Options& options) {
   task.train = readDrives(options.train, InputFile::Role::kTrain, task.model, inputs);
   task.test = readDrives(options.test, InputFile::Role::kTest, task.model, inputs);
   for (const std::vector<Drive>* drives : {&task.train, &task.test})
-    for (const Drive& drive : *drives)
+    for (const Drive& drive : *drives) {
+      requireSameRobot(task.train.front(), drive);
+      requireSameImport(task.train.front(), drive);
       task.hygiene.insert(task.hygiene.end(), drive.notes.begin(), drive.notes.end());
+    }
   task.seed = static_cast<uint64_t>(options.seed);
   task.threads = options.threads;
   task.calibrate = options.calibrate;

@@ -15,9 +15,9 @@
 #include "tools/gap/commands.hpp"
 #include "tools/gap/drive_log.hpp"
 #include "tools/gap/find_output.hpp"
+#include "tools/gap/import_note.hpp"
 #include "tools/gap/ladder_output.hpp"
 #include "tools/gap/read_for_model.hpp"
-#include "tools/gap/recorded_baseline.hpp"
 
 namespace tread::gap {
 namespace {
@@ -58,11 +58,11 @@ LadderLog recordedIdeal(const std::string& path) {
     throw std::runtime_error(path +
                              ": its commands are powers, so that the ideal model must say how fast "
                              "full power is; give --model");
-  const std::optional<double> baseline = recordedBaseline(path);
+  const double baseline = log.drive.imported ? log.drive.imported->baseline : 0.0;
   log.ideal.vehicle.name = "ideal differential drive";
   log.ideal.vehicle.kind = CommandKind::kTrackSpeed;
-  log.ideal.vehicle.gauge = baseline.value_or(1.0);
-  log.ideal_known = baseline.has_value();
+  log.ideal.vehicle.gauge = baseline > 0.0 ? baseline : 1.0;
+  log.ideal_known = baseline > 0.0;
   return log;
 }
 
@@ -76,9 +76,32 @@ std::vector<LadderLog> readLogs(const Options& options) {
       if (other.drive.sha256 == log.drive.sha256)
         throw std::runtime_error(path + ": the same file as " + other.drive.name +
                                  "; give each log once");
+    if (!logs.empty()) requireSameImport(logs.front().drive, log.drive);
+    if (!logs.empty() && options.pool) requireSameRobot(logs.front().drive, log.drive);
     logs.push_back(std::move(log));
   }
   return logs;
+}
+
+/// A table without a row would look like a result. Pooled, short logs may be enough together.
+void requireRows(const LadderTask& task) {
+  for (const LadderLog& log : task.logs)
+    if (task.pool || unusable(log.drive).empty()) return;
+  const Drive& first = task.logs.front().drive;
+  throw std::runtime_error(first.name + ": " + unusable(first));
+}
+
+void requireRows(const Ladder& ladder) {
+  for (const auto* rows : {&ladder.nested, &ladder.pooled})
+    for (const LadderRow& row : *rows)
+      if (row.remark.empty()) return;
+  throw std::runtime_error(ladder.nested.front().log + ": " + ladder.nested.front().remark);
+}
+
+/// Lines about how much of a log was lost.
+void tellLosses(const LadderTask& task) {
+  for (const LadderLog& log : task.logs)
+    if (!log.drive.lost.empty()) std::cout << log.drive.lost << std::endl;
 }
 
 void ladder(const Options& options) {
@@ -89,12 +112,15 @@ void ladder(const Options& options) {
   task.pool = options.pool;
   task.seed = static_cast<uint64_t>(options.seed);
   task.threads = options.threads;
+  requireRows(task);
   makeFolder(options.out);
+  tellLosses(task);
   LadderReport report;
   report.model = std::filesystem::path(options.model).filename().string();
   for (const LadderLog& log : task.logs) report.sha256.push_back(log.drive.sha256);
   report.ladder =
       climbLadder(task, [](const std::string& line) { std::cout << line << std::endl; });
+  requireRows(report.ladder);
   writeLadder(options.out, report);
   std::cout << ladderText(report) << options.out << "/ladder.md" << std::endl;
 }

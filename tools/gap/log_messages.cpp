@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/messages/ins_messages.hpp"
+#include "tools/gap/import_note.hpp"
 
 namespace tread::gap {
 namespace {
@@ -81,6 +82,7 @@ class Sorter {
   void takeBoot(const LogEvent& event) {
     config_t config;
     if (!counted(decode(event, kConfig, config))) return;
+    if (auto note = importNoteOf(config)) messages_.imported = std::move(note);
     std::vector<int64_t>& boots = messages_.boots[config.config_process];
     if (boots.empty() || boots.back() != config.config_boot_id)
       boots.push_back(config.config_boot_id);

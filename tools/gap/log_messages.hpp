@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/log/event_log.hpp"
+#include "tools/gap/core/drive.hpp"
 
 namespace tread::gap {
 
@@ -34,6 +36,7 @@ struct LogMessages {
   size_t ins_clashes = 0;    ///< neighbours in the log with one time and different places
   /// By process: boot ids as they follow each other in the log, without repetition.
   std::map<std::string, std::vector<int64_t>> boots;
+  std::optional<ImportNote> imported;  ///< the last one
   int64_t origin = 0;  ///< [us] utime of the first INS or MOTOR; time 0 of the drive
   size_t events = 0;   ///< in the log, whatever their channel
   size_t foreign = 0;  ///< on our channels, but of another type or time

@@ -5,11 +5,13 @@
 #include <stdexcept>
 
 #include "tools/gap/drive_log.hpp"
+#include "tools/gap/import_note.hpp"
 
 namespace tread::gap {
 
 Drive readDriveFor(const ModelDocument& model, const std::string& path) {
   Drive drive = readDrive(path);
+  requireSameGauge(drive, model.vehicle.gauge);
   if (drive.stretches.empty() || drive.kind == model.vehicle.kind) return drive;
   const bool power = drive.kind == CommandKind::kPower;
   throw std::runtime_error(path + ": its commands are " + (power ? "powers" : "track speeds") +

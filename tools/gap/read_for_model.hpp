@@ -9,8 +9,8 @@
 
 namespace tread::gap {
 
-/// Reads a log for a model; throws std::runtime_error with one line if it cannot be read or its
-/// commands are of another kind than the model's.
+/// Reads a log for a model; throws std::runtime_error with one line if it cannot be read, or is of
+/// another robot: its commands are of another kind than the model's, or for another gauge.
 Drive readDriveFor(const ModelDocument& model, const std::string& path);
 
 }  // namespace tread::gap

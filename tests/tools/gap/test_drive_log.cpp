@@ -11,6 +11,7 @@
 #include "tests/tools/import/drive_samples.hpp"
 #include "tools/gap/drive_log.hpp"
 #include "tools/gap/file_hash.hpp"
+#include "tools/gap/import_note.hpp"
 #include "tools/import/drive_log.hpp"
 
 using namespace tread;
@@ -32,6 +33,7 @@ Drive importedSteps(int steps, bool keep_lag, importer::Gyro gyro) {
   const std::string csv = folder.file("drive.csv", rows);
   importer::Session session =
       importer::readSession(folder.file("sessions.csv", sessions(121 * steps)), "drive");
+  session.lag_kept = keep_lag;
   if (keep_lag) session.pose_lag = 0.0;
   importer::LogCounts counts;
   return toDrive("drive.lcmlog", importer::makeLog(importer::readSteps(csv, session, gyro), session,
@@ -235,7 +237,8 @@ TEST_CASE("all readings of the gyro: fixes stay what they were, and no reading i
   REQUIRE(posesOf(lag_removed.stretches[0]) == 59);
 }
 
-TEST_CASE("a log that cannot be read is one clear line, a truncated one a fatal note") {
+TEST_CASE(
+    "a log that cannot be read is one clear line, of a truncated one the whole events count") {
   const Folder folder("gap_bad");
   REQUIRE_THROWS_WITH(readDrive(folder.file("none.lcmlog")), Catch::Contains("cannot be read"));
   REQUIRE_THROWS_WITH(readDrive(folder.file("text.lcmlog", "no log at all")),
@@ -252,9 +255,41 @@ TEST_CASE("a log that cannot be read is one clear line, a truncated one a fatal 
   REQUIRE(readDrive(path).name == "cut.lcmlog");
   std::filesystem::resize_file(path, std::filesystem::file_size(path) - 30);
   const Drive cut = readDrive(path);
-  REQUIRE(cut.notes.at(0).fatal);
-  REQUIRE(cut.notes[0].what.find("ends in the middle of an event") != std::string::npos);
+  for (const HygieneNote& note : cut.notes) REQUIRE_FALSE(note.fatal);
+  REQUIRE_THAT(cut.notes.at(0).what, Catch::Contains("ends in the middle of an event; its 299 "
+                                                     "whole events, 10 s, are used"));
+  REQUIRE(cut.lost == cut.notes[0].what);
   REQUIRE(cut.stretches.size() == 1);
+}
+
+TEST_CASE("a drive says of which robot it was imported, and how") {
+  const Drive fixes = importedSteps(2, false, importer::Gyro::kAtFixes);
+  REQUIRE(fixes.imported);
+  CHECK(fixes.imported->robot == "Some robot, 100 kg");
+  CHECK(fixes.imported->baseline == 1.0);
+  CHECK(fixes.imported->options == "--format steps, poses as measured, gyro at fixes");
+  const Drive all = importedSteps(2, true, importer::Gyro::kAll);
+  CHECK(all.imported->options == "--format steps, poses as logged, gyro all");
+  CHECK_NOTHROW(requireSameImport(fixes, fixes));
+  CHECK_THROWS_WITH(requireSameImport(fixes, all),
+                    "drive.lcmlog: imported with --format steps, poses as logged, gyro all, but "
+                    "drive.lcmlog with --format steps, poses as measured, gyro at fixes; import "
+                    "both in the same way");
+  CHECK_NOTHROW(requireSameGauge(fixes, 1.015));
+  CHECK_THROWS_WITH(requireSameGauge(fixes, 1.08),
+                    "drive.lcmlog: its commands were made for tracks 1 m apart, the model says "
+                    "gauge: 1.08; give a model of this robot");
+  Drive other = fixes;
+  other.imported->robot = "Husky";
+  CHECK_THROWS_WITH(requireSameRobot(fixes, other),
+                    "drive.lcmlog: of the robot Husky, but drive.lcmlog of the robot Some robot, "
+                    "100 kg; give logs of one robot");
+  SmallLog own;
+  drive(own, 0.0, 10.0, {1.0, 0.0, 0.1}, {});
+  const Drive live = toDrive("live.lcmlog", own.sorted());
+  CHECK_FALSE(live.imported);
+  CHECK_NOTHROW(requireSameImport(live, fixes));
+  CHECK_NOTHROW(requireSameGauge(live, 3.0));
 }
 
 TEST_CASE("the hash of a log is its SHA-256") {

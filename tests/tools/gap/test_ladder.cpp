@@ -198,6 +198,8 @@ TEST_CASE("pooled logs name the same effect in all folds, and the bytes do not k
 
 TEST_CASE("a log that is too short has no rungs, and the reason stands there") {
   const LadderRow row = rowOf(syntheticVehicle(), 40.0, 9);
-  CHECK(row.remark == "2 blocks of driving, 4 are needed");
+  CHECK(row.remark ==
+        "only 40 s of measured driving, too little to tell chance from cause: drive at least "
+        "200 s");
   for (const auto& errors : row.errors) CHECK_FALSE(errors);
 }

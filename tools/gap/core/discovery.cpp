@@ -14,6 +14,7 @@
 #include "tools/gap/core/atlas_maps.hpp"
 #include "tools/gap/core/dead_reckoning.hpp"
 #include "tools/gap/core/end_errors.hpp"
+#include "tools/gap/core/enough_driving.hpp"
 #include "tools/gap/core/moments.hpp"
 #include "tools/gap/core/student.hpp"
 #include "tools/gap/core/unseen.hpp"
@@ -21,7 +22,6 @@
 namespace tread::gap {
 namespace {
 
-constexpr int kLeastBlocks = 10;
 constexpr int kLeastHalf = 10;           // blocks from which effects can be chosen, too
 constexpr double kAdequacyAlpha = 0.01;  // with the tests' 2 %: 3 % false alarms altogether
 constexpr double kMomentNats = 10.0;     // 2 nats times what correlated ground takes off
@@ -42,8 +42,7 @@ class Discovery {
         rows_(task.train, {}),
         fitter_(rows_, task.threads),
         all_(rows_.rows().size(), 1) {
-    const std::vector<char> counts = blocksThatCount(rows_, all_);
-    measured_ = static_cast<int>(std::count(counts.begin(), counts.end(), char{1}));
+    measured_ = measuredBlocks(rows_);
     settings_.seed = task.seed;
     settings_.calibrate = task.calibrate;
     for (const Decision& decision : task.decisions)
@@ -94,16 +93,8 @@ class Discovery {
         finding_.reason = note.log + ": " + note.what;
         return true;
       }
-    if (measured_ >= kLeastBlocks) return false;
-    double driven = 0.0;
-    for (const Drive& drive : task_.train) driven += drive.driven();
-    if (rows_.blocks() > measured_ && rows_.blockLength() > 0.0)
-      driven = measured_ * rows_.blockLength();
-    finding_.reason = text(
-        "only %.0f s of measured driving, too little to tell chance from cause: drive at least "
-        "%.0f s",
-        driven, kLeastBlocks * RowSettings{}.block);
-    return true;
+    finding_.reason = tooLittleDriving(rows_);
+    return !finding_.reason.empty();
   }
 
   /// An accepted effect without a size would be a claim about nothing.

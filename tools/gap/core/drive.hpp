@@ -71,6 +71,13 @@ struct HygieneNote {
   bool fatal = false;  ///< nothing can be concluded from this log
 };
 
+/// What a log says of the recording that it was imported from.
+struct ImportNote {
+  std::string robot;      ///< empty = not said
+  double baseline = 0.0;  ///< [m] between the tracks for which commands were made; 0 = not said
+  std::string options;    ///< of the import, in words; empty = not said
+};
+
 /// What a log says about one drive of one vehicle, ready for the gap workflow.
 struct Drive {
   std::string name;    ///< file name of the log
@@ -80,6 +87,8 @@ struct Drive {
   std::vector<Execution> executions;    ///< in order of time; 2 s pieces where the log names none
   std::vector<VoltageSample> voltage;   ///< empty = not measured
   std::vector<EncoderSample> encoders;  ///< empty = there are none
+  std::optional<ImportNote> imported;   ///< nothing where the robot itself wrote the log
+  std::string lost;                     ///< what of a damaged file could not be read; empty = whole
   std::vector<HygieneNote> notes;       ///< what the reader noticed, and checkHygiene()
 
   /// Seconds of driving.

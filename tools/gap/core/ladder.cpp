@@ -8,13 +8,12 @@
 #include <map>
 
 #include "tools/gap/core/dead_reckoning.hpp"
+#include "tools/gap/core/enough_driving.hpp"
 
 namespace tread::gap {
 namespace {
 
-constexpr int kLeastBlocks = 4;
-constexpr int kLeastForEffects = 10;        // as find
-constexpr int kLeastForNestedEffects = 20;  // as find
+constexpr int kLeastForNestedEffects = 2 * kLeastBlocks;  // as find
 constexpr auto kFound = static_cast<size_t>(Rung::kDiscovered);
 
 using RungErrors = std::array<std::optional<std::vector<EndError>>, kRungs>;
@@ -48,19 +47,21 @@ void summarise(const RungErrors& errors, LadderRow& row) {
   }
 }
 
+/// Why nothing can be concluded from a log; empty if it is sound.
+std::string fatalNote(const Drive& drive) {
+  for (const HygieneNote& note : drive.notes)
+    if (note.fatal) return note.what;
+  return "";
+}
+
 LadderRow rowOf(const Drive& drive, const Rows& rows) {
   LadderRow row;
   row.log = drive.name;
-  row.blocks = rows.blocks();
+  row.blocks = measuredBlocks(rows);
   row.driven = drive.driven();
   row.floor = deadReckoningFloor(rows.drives());
-  for (const HygieneNote& note : drive.notes)
-    if (note.fatal) row.remark = note.what;
+  row.remark = fatalNote(drive);
   return row;
-}
-
-std::string tooShort(int blocks, int least) {
-  return std::to_string(blocks) + " blocks of driving, " + std::to_string(least) + " are needed";
 }
 
 std::vector<char> halfMask(const Rows& rows, int half) {
@@ -114,19 +115,14 @@ LadderRow nestedRow(const LadderLog& log, const LadderTask& task, const Progress
   const Rows rows(drives, {});
   LadderRow row = rowOf(log.drive, rows);
   say(row.log + ": " + std::to_string(row.blocks) + " blocks");
-  if (row.remark.empty() && row.blocks < kLeastBlocks)
-    row.remark = tooShort(row.blocks, kLeastBlocks);
+  if (row.remark.empty()) row.remark = tooLittleDriving(rows);
   if (!row.remark.empty()) {
     say("  left out: " + row.remark);
     return row;
   }
   const Fitter fitter(rows, task.threads);
   row.structure_nested = row.blocks >= kLeastForNestedEffects;
-  std::optional<Discoverer> discoverer;
-  if (row.blocks >= kLeastForEffects)
-    discoverer.emplace(fitter, log.ideal, task.seed, row.structure_nested, say);
-  else
-    row.remark = "no effects are chosen: " + tooShort(row.blocks, kLeastForEffects);
+  const Discoverer discoverer(fitter, log.ideal, task.seed, row.structure_nested, say);
   RungErrors errors;
   for (int half : {0, 1}) {
     say("  from half " + std::to_string(half + 1));
@@ -134,7 +130,7 @@ LadderRow nestedRow(const LadderLog& log, const LadderTask& task, const Progress
     LadderFold fold;
     fold.trained_on = "half " + std::to_string(half + 1);
     fold.models = fitRungs(fitter, log.ideal, log.ideal_known, mask, say);
-    if (discoverer) fold.models[kFound] = discoverer->on(mask);
+    fold.models[kFound] = discoverer.on(mask);
     addErrors(
         rows, fold.models, [half](const EndError& error) { return error.block % 2 != half; },
         errors);
@@ -148,9 +144,7 @@ LadderRow pooledRow(const LadderTask& task, size_t left_out, const Progress& say
   const LadderLog& log = task.logs[left_out];
   std::vector<Drive> train;
   for (size_t i = 0; i < task.logs.size(); ++i) {
-    const auto& notes = task.logs[i].drive.notes;
-    const bool sound = std::none_of(notes.begin(), notes.end(),
-                                    [](const HygieneNote& note) { return note.fatal; });
+    const bool sound = fatalNote(task.logs[i].drive).empty();
     if (i != left_out && sound) train.push_back(task.logs[i].drive);
   }
   const std::vector<Drive> test{log.drive};
@@ -158,8 +152,8 @@ LadderRow pooledRow(const LadderTask& task, size_t left_out, const Progress& say
   LadderRow row = rowOf(log.drive, test_rows);
   const Rows rows(train, {});
   say(row.log + " left out, from " + std::to_string(rows.blocks()) + " blocks of the others");
-  if (row.remark.empty() && rows.blocks() < kLeastForEffects)
-    row.remark = "of the others " + tooShort(rows.blocks(), kLeastForEffects);
+  if (row.remark.empty() && !tooLittleDriving(rows).empty())
+    row.remark = "of the others " + tooLittleDriving(rows);
   if (!row.remark.empty()) {
     say("  left out: " + row.remark);
     return row;
@@ -205,6 +199,13 @@ RungDifference differenceOf(const std::vector<EndError>& first,
     position.push_back(second[i].position - first[i].position);
   }
   return {meanOf(yaw, first), meanOf(position, first)};
+}
+
+std::string unusable(const Drive& drive) {
+  const std::string fatal = fatalNote(drive);
+  if (!fatal.empty()) return fatal;
+  const std::vector<Drive> drives{drive};
+  return tooLittleDriving(Rows(drives, {}));
 }
 
 Ladder climbLadder(const LadderTask& task, const Progress& say) {

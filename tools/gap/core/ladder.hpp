@@ -41,7 +41,7 @@ struct LadderFold {
 /// How far each rung is from one log, on driving that it was not fitted to.
 struct LadderRow {
   std::string log;
-  std::string remark;  ///< why there is nothing, or why there is no discovered rung; empty else
+  std::string remark;  ///< why there is nothing; empty else
   int blocks = 0;
   double driven = 0.0;           ///< [s]
   bool structure_nested = true;  ///< effects, too, were chosen without the driving that judges
@@ -60,10 +60,12 @@ struct Ladder {
 /// The table of gap.md 3.3 (and 3.4) on any drives: errors 2 s after the beginning of an execution,
 /// simulated open loop, of models that did not see that driving.
 /** Nested: alternate blocks of a log, structure and parameters of each half from the other. As
- * find does, effects are chosen on the whole log where it has less than 20 blocks, and not at all
- * below 10; below 4 there is nothing. Pooled: structure and parameters from all other logs.
- * Deterministic for a seed. */
+ * find does, effects are chosen on the whole log where it has less than 20 blocks; below 10 there
+ * is nothing. Pooled: structure and parameters from all other logs. Deterministic for a seed. */
 Ladder climbLadder(const LadderTask& task, const Progress& say);
+
+/// Why a log by itself gives no row, in one line; empty if it gives one.
+std::string unusable(const Drive& drive);
 
 /// Mean of second less first over executions, its standard error clustered by blocks.
 /** Both of the same executions in the same order. */

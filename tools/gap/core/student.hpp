@@ -12,4 +12,10 @@ inline constexpr double kNormal975 = 1.959964;
  * by a tenth at 8 degrees for 1e-4. */
 double studentQuantile(double freedom, double normal_quantile = kNormal975);
 
+/// Normal quantile that is exceeded, either way, with a probability of `chance` (0 to 1).
+double normalQuantileOf(double chance);
+
+/// Chance that a normal number exceeds a quantile, either way.
+double chanceBeyond(double normal_quantile);
+
 }  // namespace tread::gap
