@@ -19,6 +19,7 @@
 #include "tools/gap/plan_design.hpp"
 #include "tools/gap/plan_patterns.hpp"
 #include "tools/gap/report/words.hpp"
+#include "tools/patterns/envelope.hpp"
 #include "tools/recordings/text_file.hpp"
 
 namespace tread::gap {
@@ -35,11 +36,13 @@ struct Options {
 };
 
 constexpr const char* kFooter =
-    "A is taken at its size in the model, else at its typical one (or as --set says); B is "
-    "refitted\n"
-    "to look most like A, together with what the model says is uncertain. Written to --out is a\n"
-    "pattern set for tread-patterns record. Where no drive tells the two apart, the measurement\n"
-    "that does is printed instead, and the exit status is 1.";
+    "Each effect is taken at its size in the model, else at its typical one (or as --set says); "
+    "the\n"
+    "other is refitted to look most like it, together with what the model says is uncertain. The\n"
+    "drive tells them apart whichever is there, so that their order makes no difference. It stays\n"
+    "within the motions that the model was made from, where its file says them. Written to --out\n"
+    "is a pattern set for tread-patterns record. Where no drive tells the two apart, the\n"
+    "measurement that does is printed instead, and the exit status is 1.";
 
 /// What the degeneracy table says of two effects; empty where it does not know them.
 std::string fromTable(const std::string& a, const std::string& b) {
@@ -97,18 +100,28 @@ std::string sequenceText(const DesignTask& task, const Design& design) {
   return text;
 }
 
+std::string sizedName(const ModelDocument& model, const std::string& effect) {
+  return inSentence(titleOf(effect)) + " (" + sizeOf(model, effect) + ")";
+}
+
+std::string sideText(const DesignSide& side) {
+  return "  " + threeDigits(side.difference) + " if it is " +
+         sizedName(side.true_model, side.truth) + ",\n    although " +
+         inSentence(titleOf(side.rival)) + " is refitted to look most like it (" +
+         sizeOf(side.rival_model, side.rival) + ")\n";
+}
+
 void tellFound(const Options& options, const DesignTask& task, const Design& design,
                const PatternSet& set) {
-  std::cout << "To tell " << inSentence(titleOf(options.truth)) << " ("
-            << sizeOf(design.truth, options.truth) << ") from "
-            << inSentence(titleOf(options.rival)) << ":\n\n"
+  const DesignSide& side = design.sides.front();
+  std::cout << "To tell " << inSentence(titleOf(side.truth)) << " from "
+            << inSentence(titleOf(side.rival)) << ":\n\n"
             << sequenceText(task, design) << "\n"
-            << threeDigits(design.duration) << " s of driving; expected difference of the log "
-            << "likelihoods " << threeDigits(design.difference) << " (" << threeDigits(task.enough)
-            << " is enough),\nalthough " << inSentence(titleOf(options.rival))
-            << " is refitted to look most like it (" << sizeOf(design.rival, options.rival)
-            << ").\n";
-  const std::string known = fromTable(options.truth, options.rival);
+            << threeDigits(design.duration)
+            << " s of driving; expected difference of the log likelihoods ("
+            << threeDigits(task.enough) << " is enough):\n"
+            << sideText(design.sides[0]) << sideText(design.sides[1]);
+  const std::string known = fromTable(side.truth, side.rival);
   if (!known.empty()) std::cout << "\nThey resemble each other; another way to tell:\n" << known;
   if (options.out.empty()) return;
   recordings::writeText(options.out, formatPatterns(set));
@@ -120,19 +133,37 @@ void tellFound(const Options& options, const DesignTask& task, const Design& des
       << "\ndrives it, and give that log to tread-gap find with the old one (--train OLD NEW).\n";
 }
 
-void tellNone(const Options& options, const Design& design) {
+void tellNone(const Design& design) {
   constexpr double kInvisible = 0.5;  // [nats]
-  if (design.visible < kInvisible)
-    std::cout << titleOf(options.truth) << " (" << sizeOf(design.truth, options.truth)
+  const DesignSide& side = design.harder();
+  if (side.visible < kInvisible)
+    std::cout << titleOf(side.truth) << " (" << sizeOf(side.true_model, side.truth)
               << ") shows in none of these manoeuvres on level ground. What shows it:\n";
   else
     std::cout << "No drive of these manoeuvres within 120 s tells "
-              << inSentence(titleOf(options.truth)) << " (" << sizeOf(design.truth, options.truth)
-              << ") from " << inSentence(titleOf(options.rival)) << " ("
-              << sizeOf(design.rival, options.rival) << "): expected difference "
-              << threeDigits(design.difference) << " after " << threeDigits(design.duration)
+              << sizedName(side.true_model, side.truth) << " from "
+              << sizedName(side.rival_model, side.rival) << ": expected difference "
+              << threeDigits(side.difference) << " after " << threeDigits(design.duration)
               << " s. What tells:\n";
-  std::cout << otherWays(options.truth, options.rival);
+  std::cout << otherWays(design.sides.front().truth, design.sides.front().rival);
+}
+
+/// The built-in manoeuvres: what a person asks for, else what the model knows.
+std::vector<Manoeuvre> builtInManoeuvres(const Options& options, const ModelDocument& model) {
+  if (options.speed > 0.0) return planManoeuvres(model, options.speed);
+  std::vector<Manoeuvre> all = planManoeuvres(model, fullCommand(model));
+  if (model.envelope) keepWithin(*model.envelope, model.vehicle, all);
+  return all;
+}
+
+/// Of patterns and speeds that a person asks for, and where the model does not say what it knows.
+void warnBeyond(const Options& options, const ModelDocument& model, const PatternSet& set) {
+  patterns::warnOutside(model, options.model, set);
+  if (model.envelope) return;
+  const Envelope asked = patterns::envelopeOf(model.vehicle, set);
+  std::cerr << options.model << ": warning: no envelope in it; the plan asks for up to "
+            << threeDigits(asked.v) << " m/s and " << threeDigits(asked.omega)
+            << " rad/s of it, whatever it was made from\n";
 }
 
 int plan(const Options& options) {
@@ -142,8 +173,10 @@ int plan(const Options& options) {
     throw std::runtime_error("plan: twice " + options.truth + "; name two effects");
   DesignTask task;
   task.model = readModelDocument(options.model);
-  task.truth = options.truth;
-  task.rival = options.rival;
+  task.first = options.truth;
+  task.second = options.rival;
+  if (options.speed > 0.0 && task.model.vehicle.kind == CommandKind::kPower)
+    throw std::runtime_error("--speed is for models that take track speeds; this one takes powers");
   if (!options.set.empty()) {
     ModelChange change{{}, {}, options.set};
     if (!isOn(task.model, effectNamed(options.truth))) change.add = {options.truth};
@@ -151,20 +184,16 @@ int plan(const Options& options) {
   }
   std::optional<PatternSet> from;
   if (!options.patterns.empty()) from = readPatternFile(options.patterns);
-  task.manoeuvres = from
-                        ? manoeuvresOf(*from, task.model)
-                        : planManoeuvres(task.model, options.speed > 0.0 ? options.speed
-                                                                         : fullCommand(task.model));
-  if (options.speed > 0.0 && task.model.vehicle.kind == CommandKind::kPower)
-    throw std::runtime_error("--speed is for models that take track speeds; this one takes powers");
+  task.manoeuvres = from ? manoeuvresOf(*from, task.model) : builtInManoeuvres(options, task.model);
   const Design design = designDrive(task);
   if (!design.separates) {
-    tellNone(options, design);
+    tellNone(design);
     return 1;
   }
-  tellFound(
-      options, task, design,
-      from ? planSet(*from, design.counts) : planSet(task.model, task.manoeuvres, design.counts));
+  const PatternSet set =
+      from ? planSet(*from, design.counts) : planSet(task.model, task.manoeuvres, design.counts);
+  warnBeyond(options, task.model, set);
+  tellFound(options, task, design, set);
   return 0;
 }
 
@@ -175,8 +204,8 @@ CLI::App* addPlan(CLI::App& app, int& status) {
   CLI::App* command =
       app.add_subcommand("plan", "the shortest drive that tells effect A from effect B");
   command->footer(kFooter);
-  command->add_option("A", options->truth, "effect that is taken to be there")->required();
-  command->add_option("B", options->rival, "effect that it may be taken for")->required();
+  command->add_option("A", options->truth, "effect that may be there")->required();
+  command->add_option("B", options->rival, "effect that may be there instead")->required();
   command->add_option("--model", options->model, "model file (YAML)")->required();
   command->add_option("--patterns", options->patterns,
                       "choose among the patterns of this set instead of the built-in manoeuvres");

@@ -61,6 +61,21 @@ void addWay(const PatternSet& set, const std::string& from, const std::string& t
   }
 }
 
+bool isWithin(const Envelope& envelope, const VehicleModel& vehicle, const Manoeuvre& manoeuvre) {
+  const EntryState entry = steadyEntry(vehicle, manoeuvre.before);
+  const Envelope asked = envelopeOf(vehicle, manoeuvre.commands, kManoeuvrePeriod, entry);
+  constexpr double kRounding = 0.99;
+  const Envelope known{kRounding * envelope.v, kRounding * envelope.omega,
+                       kRounding * envelope.v_omega};
+  return warningsOutside(known, asked).empty();
+}
+
+Manoeuvre scaled(Manoeuvre manoeuvre, double factor) {
+  for (TrackCommand& command : manoeuvre.commands)
+    command = {factor * command.left, factor * command.right};
+  return manoeuvre;
+}
+
 }  // namespace
 
 std::vector<Manoeuvre> planManoeuvres(const ModelDocument& model, double full) {
@@ -101,6 +116,20 @@ std::vector<Manoeuvre> planManoeuvres(const ModelDocument& model, double full) {
   add("turn_at_speed", {{0.6, 0.6}, {0.3, 0.9}, {0.9, 0.3}, {0.6, 0.6}});
   add("stand", {{0.0, 0.0}});
   return all;
+}
+
+void keepWithin(const Envelope& envelope, const VehicleModel& vehicle,
+                std::vector<Manoeuvre>& manoeuvres) {
+  for (Manoeuvre& manoeuvre : manoeuvres) {
+    if (isWithin(envelope, vehicle, manoeuvre)) continue;
+    double low = 0.0;
+    double high = 1.0;
+    for (int i = 0; i < 20; ++i) {
+      const double middle = 0.5 * (low + high);
+      (isWithin(envelope, vehicle, scaled(manoeuvre, middle)) ? low : high) = middle;
+    }
+    manoeuvre = scaled(manoeuvre, low);
+  }
 }
 
 std::vector<Manoeuvre> manoeuvresOf(const PatternSet& set, const ModelDocument& model) {

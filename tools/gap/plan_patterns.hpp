@@ -14,6 +14,10 @@ namespace tread::gap {
 /// standing, so that any may follow any; commands up to `full`.
 std::vector<Manoeuvre> planManoeuvres(const ModelDocument& model, double full);
 
+/// Scales down what would take a model's vehicle out of an envelope, less a hundredth for rounding.
+void keepWithin(const Envelope& envelope, const VehicleModel& vehicle,
+                std::vector<Manoeuvre>& manoeuvres);
+
 /// The patterns of a set, each entered in its class. Throws std::runtime_error if its commands are
 /// not the model's or its period is not kManoeuvrePeriod.
 std::vector<Manoeuvre> manoeuvresOf(const PatternSet& set, const ModelDocument& model);

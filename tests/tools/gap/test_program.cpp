@@ -193,6 +193,39 @@ TEST_CASE("plan writes a pattern set that tells two effects apart, and that can 
   CHECK(record.status == 0);
 }
 
+TEST_CASE("the order in which plan is given two effects makes no difference") {
+  const std::string model = " --model " + kModels + "warthog_asphalt.yaml";
+  const Run one = run("plan track_asymmetry yaw_pull" + model);
+  const Run other = run("plan yaw_pull track_asymmetry" + model);
+  INFO(one.printed << other.printed);
+  CHECK(one.status == 0);
+  CHECK(one.printed == other.printed);
+  CHECK(one.says("if it is yaw pull"));
+  CHECK(one.says("if it is left-right asymmetry"));
+  CHECK(one.says("warning: no envelope in it; the plan asks for up to "));
+}
+
+TEST_CASE("a plan stays within what the model was made from, unless a person asks for more") {
+  const Folder folder;
+  folder.write("seen.yaml",
+               "name: a\nkind: track_speed\ngauge: 1.08\nlag: 0.3\nenvelope:\n  v: 2.5\n"
+               "  omega: 1.5\n  v_omega: 2\n");
+  const std::string plan = "plan centrifugal_drift icr_offset --model " + folder.path("seen.yaml") +
+                           " --out " + folder.path("p.yaml");
+  const Run within = run(plan);
+  INFO(within.printed);
+  CHECK(within.status == 0);
+  CHECK_FALSE(within.says("warning"));
+  const Run check = samples::runProgram(
+      "tread-patterns", "check " + folder.path("p.yaml") + " --model " + folder.path("seen.yaml"));
+  INFO(check.printed);
+  CHECK(check.says("ok, "));
+  CHECK_FALSE(check.says("is asked for"));
+  const Run beyond = run(plan + " --speed 5");
+  CHECK(beyond.status == 0);
+  CHECK(beyond.says("is asked for, the model was made from up to"));
+}
+
 TEST_CASE("plan among the patterns of a set keeps what leads to them and back to standing") {
   const Folder folder;
   const std::string patterns = std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor.yaml";
