@@ -3,20 +3,18 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
 namespace tread {
 
+/// What is wrong with a command line, in one line: where, what, and what would be right.
+/** "tread-gap find: '--thread' is not known; did you mean --threads? See tread-gap find --help". */
+std::string usageError(const CLI::App& app, const CLI::Error& error);
+
 /// Parses a command line; the exit code if the program ends here: 0 after --help, 2 after a usage
-/// error, as with all our programs (CLI11's own codes begin at 100).
-inline std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv) {
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  return std::nullopt;
-}
+/// error, with one line on stderr, as with all our programs (CLI11's own codes begin at 100).
+std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv);
 
 }  // namespace tread

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/config/command_line.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+#include "common/config/scalars.hpp"
+
+namespace tread {
+namespace {
+
+std::vector<std::string> commandsOf(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+std::vector<std::string> optionsOf(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    if (!option->get_lnames().empty()) names.push_back("--" + option->get_lnames().front());
+  return names;
+}
+
+/// "'fnd' is no command; did you mean find?", else the list of all.
+std::string unknown(const std::string& word, const std::string& is_not,
+                    const std::vector<std::string>& known) {
+  const auto meant = nearestSpelling(word, known);
+  return "'" + word + "' " + is_not + "; " +
+         (meant ? "did you mean " + *meant + "? Known: " : "known: ") + joinWords(known);
+}
+
+/// The part of the program whose arguments are wrong.
+const CLI::App& innermost(const CLI::App& app) {
+  const std::vector<CLI::App*> given = app.get_subcommands();
+  return given.empty() ? app : innermost(*given.back());
+}
+
+bool isOption(const std::string& word) {
+  return word.size() > 1 && word.front() == '-';
+}
+
+bool is(const CLI::Error& error, CLI::ExitCodes kind) {
+  return error.get_exit_code() == static_cast<int>(kind);
+}
+
+/// CLI11 says of which type what is missing would have been.
+std::string missingValue(const std::string& what) {
+  const size_t end = what.find(':');
+  const bool missing = what.find("missing") != std::string::npos;
+  return missing && end != std::string::npos ? what.substr(0, end) + ": its value is missing"
+                                             : what;
+}
+
+std::string whatIsWrong(const CLI::App& app, const CLI::App& part, const CLI::Error& error) {
+  const std::vector<std::string> left = app.remaining(true);
+  const std::vector<std::string> commands = commandsOf(part);
+  // A mistyped option comes first: it is why another one seems to be missing.
+  const auto mistyped = std::find_if(left.begin(), left.end(), isOption);
+  const bool command_first = !commands.empty() && !left.empty() && mistyped != left.begin();
+  if (mistyped != left.end() && !command_first)
+    return unknown(*mistyped, "is not known", optionsOf(part));
+  if (!commands.empty()) {
+    if (!left.empty()) return unknown(left.front(), "is no command", commands);
+    if (is(error, CLI::ExitCodes::RequiredError) && error.what()[0] != '-')
+      return "a command is missing; one of " + joinWords(commands);
+  }
+  if (is(error, CLI::ExitCodes::ExtrasError) && !left.empty())
+    return "'" + left.front() + "' is one argument too many";
+  return is(error, CLI::ExitCodes::ArgumentMismatch) ? missingValue(error.what()) : error.what();
+}
+
+}  // namespace
+
+std::string usageError(const CLI::App& app, const CLI::Error& error) {
+  const CLI::App& part = innermost(app);
+  const std::string name = app.get_name() + (&part == &app ? "" : " " + part.get_name());
+  std::string what = whatIsWrong(app, part, error);
+  std::replace(what.begin(), what.end(), '\n', ' ');
+  return name + ": " + what + "; see " + name + " --help";
+}
+
+std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // help
+    std::fprintf(stderr, "%s\n", usageError(app, error).c_str());
+    return 2;
+  }
+  return std::nullopt;
+}
+
+}  // namespace tread

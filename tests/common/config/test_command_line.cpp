@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "common/config/command_line.hpp"
+
+namespace tread {
+namespace {
+
+/// What a program says of these arguments; empty if nothing is wrong.
+std::string errorOf(const std::string& arguments) {
+  CLI::App app{"A program.", "tread-sample"};
+  app.require_subcommand(1);
+  std::string text;
+  int number = 0;
+  CLI::App* find = app.add_subcommand("find", "finds");
+  find->add_option("--model", text, "file")->required();
+  find->add_option("--threads", number, "number")->check(CLI::Range(1, 8));
+  CLI::App* explain = app.add_subcommand("explain", "explains");
+  explain->add_option("EFFECT", text, "name");
+  try {
+    app.parse(arguments);
+  } catch (const CLI::ParseError& error) {
+    return usageError(app, error);
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("a usage error is one line that says where, what, and what would be right") {
+  const std::pair<std::string, std::string> kBad[] = {
+      {"", "tread-sample: a command is missing; one of find, explain; see tread-sample --help"},
+      {"fnd --model a",
+       "tread-sample: 'fnd' is no command; did you mean find? Known: find, explain; see "
+       "tread-sample --help"},
+      {"guess",
+       "tread-sample: 'guess' is no command; known: find, explain; see tread-sample --help"},
+      {"find", "tread-sample find: --model is required; see tread-sample find --help"},
+      {"find --model a --thread 2",
+       "tread-sample find: '--thread' is not known; did you mean --threads? Known: --help, "
+       "--model, "
+       "--threads; see tread-sample find --help"},
+      {"find --modle a",
+       "tread-sample find: '--modle' is not known; did you mean --model? Known: --help, --model, "
+       "--threads; see tread-sample find --help"},
+      {"find --threads 2 --model",
+       "tread-sample find: --model: its value is missing; see tread-sample find --help"},
+      {"find --model a b",
+       "tread-sample find: 'b' is one argument too many; see tread-sample find --help"},
+      {"explain a b",
+       "tread-sample explain: 'b' is one argument too many; see tread-sample explain --help"}};
+  for (const auto& [arguments, words] : kBad) CHECK(errorOf(arguments) == words);
+  for (const char* bad : {"find --model a --threads 0", "find --model a --threads x",
+                          "find --model", "find --threads 2 --model"}) {
+    const std::string words = errorOf(bad);
+    INFO(words);
+    CHECK(words.find("tread-sample find: ") == 0);
+    CHECK(words.find("--help") != std::string::npos);
+    CHECK(words.find('\n') == std::string::npos);
+  }
+  CHECK(errorOf("find --model a --threads 2") == "");
+}
+
+}  // namespace tread
