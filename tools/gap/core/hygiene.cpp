@@ -15,7 +15,10 @@ constexpr double kLongestLag = 2.0;  // [s] of a vehicle behind its commands
 constexpr double kPrecedes = 0.1;  // of correlation^2 that a motion before its command must explain
 constexpr double kLagStep = 0.6;   // [s] by which no vehicle's lag changes within a drive
 constexpr double kBetterSquare = 0.25;  // of correlation^2 that another lag must explain more
-constexpr double kPart = 60.0;          // [s] of increments
+constexpr double kLagGrid = 0.02;       // [s] between lags of the gyro that are tried
+constexpr const char* kFitted = "; how late it is, the fit says (INS latency)";
+constexpr const char* kAhead = "; the heading is ahead of the gyro: are both stamped by one clock?";
+constexpr double kPart = 60.0;  // [s] of increments
 
 std::vector<double> turning(const std::vector<PoseIncrement>& increments) {
   std::vector<double> rates;
@@ -51,8 +54,14 @@ double lagError(const LagTable& table, double correlation) {
   return std::sqrt(sum / (n - 1.0) / n);
 }
 
+/// Whether the heading is ahead of the gyro, which no latency of an INS does.
+bool isAhead(const LagTable& table, const LagMatch& match) {
+  const double error = lagError(table, match.correlation);
+  return std::isfinite(error) && match.lag + 2.58 * error < -kLagGrid;
+}
+
 LagTable gyroTable(const Drive& drive, const std::vector<PoseIncrement>& increments) {
-  return {increments, turning(increments), gyroSums(drive), lagGrid(-0.3, 0.8, 0.02)};
+  return {increments, turning(increments), gyroSums(drive), lagGrid(-0.3, 0.8, kLagGrid)};
 }
 
 /// How far lags of commands can be looked for: a fifth of a typical stretch, at most 10 s.
@@ -177,13 +186,9 @@ void checkGyro(const Drive& drive, NoteBook& notes) {
   const std::string r = "correlation " + digits(match->correlation, 2) + " over " +
                         std::to_string(match->rows) + " intervals";
   if (match->correlation < kClear) return notes.note("gyro and heading hardly agree (" + r + ")");
-  const double error = lagError(table, match->correlation);
-  const std::string band = std::isfinite(error)
-                               ? " (99 % band " + digits(match->lag - 2.58 * error, 2) + " to " +
-                                     digits(match->lag + 2.58 * error, 2) + " s)"
-                               : "";
-  notes.note("the heading is " + digits(match->lag, 2) + " s behind the gyro" + band + ", turns " +
-             digits(match->slope, 3) + " of it; " + r);
+  // Steady turns tell little of a lag: the fit, which knows the commands, is what says it.
+  notes.note("gyro and heading agree: the heading turns " + digits(match->slope, 3) +
+             " of the gyro; " + r + (isAhead(table, *match) ? kAhead : kFitted));
 }
 
 void checkCommands(const Drive& drive, const std::vector<PoseIncrement>& increments,
