@@ -173,7 +173,8 @@ struct CandidateTest {
   double score = 0.0;
   double p_value = 1.0;     ///< family-wise
   double uniqueness = 1.0;  ///< share of its signature that no active term has
-  /// Smallest size found with 80 % power, in the parameter's unit; infinite = not excited.
+  /// Smallest size found with 80 % power, in the parameter's unit, of a limit the gentlest one that
+  /// was tried; infinite = not excited.
   double detectable = 0.0;
 };
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "tools/gap/core/acceptance.hpp"
+#include "tools/gap/core/detectable.hpp"
 #include "tools/gap/core/moments.hpp"
 #include "tools/gap/core/pruning.hpp"
 #include "tools/gap/core/replacement.hpp"
@@ -148,7 +149,8 @@ class Search {
       const auto at = static_cast<Eigen::Index>(i);
       round.tests.push_back({round.candidates[i].effect, round.candidates[i].parameter,
                              round.scores[i], familyWise(round.chance, round.scores[i]),
-                             test.uniqueness(at), needed * test.sizeError(at)});
+                             test.uniqueness(at),
+                             detectableSize(round.candidates, test, i, needed)});
     }
     return round;
   }
