@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cstdint>
+
 #include <CLI/CLI.hpp>
 
 // The subcommands of tread-gap. Each adds itself to the program and does its work in its callback,
@@ -18,5 +20,9 @@ CLI::App* addWhatIf(CLI::App& app);
 CLI::App* addPlan(CLI::App& app, int& status);
 CLI::App* addCompare(CLI::App& app, int& status);
 CLI::App* addLadder(CLI::App& app);
+
+/// Adds --seed, and --threads with as many as the machine has, to a subcommand; both variables must
+/// outlive it.
+void addSeedAndThreads(CLI::App& command, int64_t& seed, int& threads);
 
 }  // namespace tread::gap

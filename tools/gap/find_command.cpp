@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "common/vehicle/model_file.hpp"
@@ -38,9 +36,10 @@ struct Options {
 };
 
 constexpr const char* kFooter =
-    "Into --out: verdict.json, model.yaml (the new model; nothing is applied by itself), "
-    "report.md\n"
-    "and report.html. Exit status: 0 NO_DISCREPANCY, 10 FOUND, 11 AMBIGUOUS, 12 PARTIAL,\n"
+    "Into --out: verdict.json, model.yaml (the new model; nothing is applied by itself; none "
+    "after\n"
+    "CANNOT_TELL), report.md and report.html. Exit status: 0 NO_DISCREPANCY, 10 FOUND, 11 "
+    "AMBIGUOUS, 12 PARTIAL,\n"
     "13 NOT_IN_CATALOGUE, 14 MEASUREMENT, 15 CANNOT_TELL, 2 bad input (one line says which).\n"
     "The same files and the same seed give the same bytes, with any number of threads.";
 
@@ -76,7 +75,20 @@ std::vector<Drive> readDrives(const std::vector<std::string>& paths, InputFile::
   return drives;
 }
 
+/// Where the files are; a model that an earlier run left is not this one's.
+void sayWhere(const std::string& folder, const Finding& finding) {
+  say("Report: " + folder + "/report.html");
+  if (hasNewModel(finding)) {
+    say("New model, not applied by itself: " + folder + "/model.yaml");
+    return;
+  }
+  const bool old = std::filesystem::exists(folder + "/model.yaml");
+  say(std::string("No model was written") +
+      (old ? "; " + folder + "/model.yaml is left from an earlier run." : "."));
+}
+
 int find(const Options& options) {
+  tryFolder(options.out);
   std::vector<InputFile> inputs;
   GapTask task;
   task.model = readModelDocument(options.model);
@@ -96,12 +108,8 @@ int find(const Options& options) {
   makeFolder(options.out);
   const Finding finding = findGap(task, say);
   writeFinding(options.out, finding, inputs);
-  say(std::string(verdictName(finding.verdict)) + ": " + headlineOf(finding));
-  for (const FoundEffect& effect : finding.effects) say("  " + sentenceOf(effect));
-  for (const std::string& sentence : movedSentences(finding)) say("  " + sentence);
-  if (finding.verdict == Verdict::kCannotTell) say("  " + finding.reason);
-  if (finding.gap) say("  " + gainOf(*finding.gap));
-  say(options.out + "/report.html");
+  for (const std::string& line : closingLines(finding)) say(line);
+  sayWhere(options.out, finding);
   return static_cast<int>(finding.verdict);
 }
 
@@ -109,7 +117,6 @@ int find(const Options& options) {
 
 CLI::App* addFind(CLI::App& app, int& status) {
   const auto options = std::make_shared<Options>();
-  options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   CLI::App* command = app.add_subcommand(
       "find", "where do simulation and measurement disagree, and what is it called?");
   command->footer(kFooter);
@@ -133,12 +140,7 @@ CLI::App* addFind(CLI::App& app, int& status) {
       ->expected(-1);
   command->add_option("--by", options->by,
                       "who accepts or rejects; for the new model's provenance");
-  command->add_option("--seed", options->seed, "of the random draws of the tests")
-      ->capture_default_str()
-      ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));
-  command->add_option("--threads", options->threads, "no influence on any byte")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1024));
+  addSeedAndThreads(*command, options->seed, options->threads);
   command->callback([options, &status] { status = find(*options); });
   return command;
 }

@@ -5,6 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
@@ -12,6 +15,8 @@
 #include "common/vehicle/model_file.hpp"
 #include "tools/gap/report/sections.hpp"
 #include "tools/recordings/text_file.hpp"
+
+namespace fs = std::filesystem;
 
 namespace tread::gap {
 namespace {
@@ -21,6 +26,11 @@ void makeSymmetric(std::vector<std::vector<double>>& matrix) {
   for (size_t i = 0; i < matrix.size(); ++i)
     for (size_t j = 0; j < i; ++j)
       matrix[i][j] = matrix[j][i] = 0.5 * (matrix[i][j] + matrix[j][i]);
+}
+
+[[noreturn]] void refuse(const std::string& folder, const std::string& why) {
+  throw std::runtime_error(folder + ": cannot be made or written (" + why +
+                           "); give another folder with --out");
 }
 
 }  // namespace
@@ -49,20 +59,42 @@ ModelDocument newModel(const Finding& finding, const std::vector<InputFile>& inp
   return model;
 }
 
+bool hasNewModel(const Finding& finding) {
+  return finding.verdict != Verdict::kCannotTell;
+}
+
+void tryFolder(const std::string& folder) {
+  fs::path there = fs::absolute(folder);
+  std::error_code failure;
+  while (!fs::exists(there, failure) && there.has_relative_path()) there = there.parent_path();
+  if (!fs::is_directory(there, failure)) refuse(folder, there.string() + " is no folder");
+  // Permissions alone do not tell: a file system may be full or read-only.
+  std::string trial = (there / "tread-gap-XXXXXX").string();
+  const int file = mkstemp(trial.data());
+  if (file < 0) refuse(folder, std::strerror(errno));
+  close(file);
+  unlink(trial.c_str());
+  for (const char* name : {"model.yaml", "report.md", "report.html", "verdict.json"})
+    if (fs::is_directory(fs::path(folder) / name, failure))
+      refuse(folder, std::string(name) + " in it is a folder");
+}
+
 void makeFolder(const std::string& folder) {
   std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (failure || access(folder.c_str(), W_OK) != 0)
-    throw std::runtime_error(folder + ": cannot be made or written; check --out");
+  fs::create_directories(folder, failure);
+  if (failure) refuse(folder, failure.message());
+  if (access(folder.c_str(), W_OK) != 0) refuse(folder, std::strerror(errno));
 }
 
 void writeFinding(const std::string& folder, const Finding& finding,
                   const std::vector<InputFile>& inputs) {
   makeFolder(folder);
   const Page page = reportPage(finding, inputs);
-  const std::string model = formatModelDocument(newModel(finding, inputs));
-  parseModelDocument(model, folder + "/model.yaml");  // a file that nobody can read is none
-  recordings::writeText(folder + "/model.yaml", model);
+  if (hasNewModel(finding)) {
+    const std::string model = formatModelDocument(newModel(finding, inputs));
+    parseModelDocument(model, folder + "/model.yaml");  // a file that nobody can read is none
+    recordings::writeText(folder + "/model.yaml", model);
+  }
   recordings::writeText(folder + "/report.md", markdownOf(page));
   recordings::writeText(folder + "/report.html", htmlOf(page));
   // Last: whoever finds the verdict finds the rest, too.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
@@ -8,7 +7,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "common/vehicle/model_file.hpp"
@@ -129,7 +127,6 @@ void ladder(const Options& options) {
 
 CLI::App* addLadder(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   CLI::App* command = app.add_subcommand(
       "ladder", "how good is what find discovers, beside the models that others use?");
   command->footer(kFooter);
@@ -138,12 +135,7 @@ CLI::App* addLadder(CLI::App& app) {
   command->add_option("--out", options->out, "folder for ladder.json and ladder.md; made if needed")
       ->required();
   command->add_flag("--pool", options->pool, "also judge each log by what all others teach");
-  command->add_option("--seed", options->seed, "of the random draws of the tests")
-      ->capture_default_str()
-      ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));
-  command->add_option("--threads", options->threads, "no influence on any byte")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1024));
+  addSeedAndThreads(*command, options->seed, options->threads);
   command->callback([options] { ladder(*options); });
   return command;
 }

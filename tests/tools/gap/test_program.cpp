@@ -52,6 +52,10 @@ TEST_CASE("bad input ends with 2 and one line that says what and where") {
   const std::string grass = "--model " + kModels + "teodor_grass.yaml ";
   const std::string out = " --out " + folder.path("out");
   const std::pair<std::string, std::string> kBad[] = {
+      {"", "a command is missing; one of find, explain"},
+      {"fnd", "'fnd' is no command; did you mean find?"},
+      {"find --train a.lcmlog" + out, "tread-gap find: --model is required"},
+      {"find " + grass + "--train a.lcmlog --modle b" + out, "did you mean --model?"},
       {"explain slip_ratoi", "did you mean slip_ratio?"},
       {"find --model none.yaml --train x.lcmlog" + out, "none.yaml: cannot be read"},
       {"find --model " + folder.path("typo.yaml") + " --train x.lcmlog" + out, "typo.yaml:6"},
@@ -85,7 +89,25 @@ TEST_CASE("bad input ends with 2 and one line that says what and where") {
   CHECK_FALSE(std::filesystem::exists(folder.path("out")));
 }
 
-TEST_CASE("a log that is too short cannot tell: status 15, the reason, and four files") {
+TEST_CASE("a folder that cannot be written is told before anything is read") {
+  const Folder folder;
+  folder.write("file", "");
+  std::filesystem::create_directories(folder.path("taken/model.yaml"));
+  const std::string find = "find --model none.yaml --train none.lcmlog --out ";
+  const std::pair<std::string, std::string> kBad[] = {{"file", "is no folder"},
+                                                      {"file/out", "is no folder"},
+                                                      {"taken", "model.yaml in it is a folder"}};
+  for (const auto& [out, words] : kBad) {
+    const Run bad = run(find + folder.path(out));
+    INFO(bad.printed);
+    CHECK(bad.status == 2);
+    CHECK(bad.says(folder.path(out) + ": cannot be made or written ("));
+    CHECK(bad.says(words));
+    CHECK(std::count(bad.printed.begin(), bad.printed.end(), '\n') == 1);
+  }
+}
+
+TEST_CASE("a log that is too short cannot tell: status 15, the reason, and no model") {
   const Folder folder;
   writeDrive(folder.path("short.lcmlog"), 40.0);
   const std::string find = "find --model " + kModels + "warthog_nominal.yaml --train " +
@@ -99,10 +121,18 @@ TEST_CASE("a log that is too short cannot tell: status 15, the reason, and four 
   CHECK_FALSE(json["reason"].get<std::string>().empty());
   CHECK(json["seed"] == 3);
   CHECK(json["inputs"]["train"][0]["sha256"].get<std::string>().size() == 64);
-  CHECK_NOTHROW(readModelDocument(folder.path("a/model.yaml")));
+  CHECK_FALSE(std::filesystem::exists(folder.path("a/model.yaml")));
+  CHECK(first.says("No model was written.\n"));
+  CHECK(first.says("Report: " + folder.path("a/report.html")));
+  SECTION("a model of an earlier run stays as it is, and is said to be one") {
+    folder.write("a/model.yaml", "earlier");
+    CHECK(
+        run(find + " --out " + folder.path("a")).says("a/model.yaml is left from an earlier run"));
+    CHECK(folder.text("a/model.yaml") == "earlier");
+  }
   SECTION("the same files and seed give the same bytes, whatever the number of threads") {
     CHECK(run(find + " --threads 2 --out " + folder.path("b")).status == 15);
-    for (const char* file : {"verdict.json", "model.yaml", "report.md", "report.html"}) {
+    for (const char* file : {"verdict.json", "report.md", "report.html"}) {
       CHECK_FALSE(folder.text(std::string("a/") + file).empty());
       CHECK(folder.text(std::string("a/") + file) == folder.text(std::string("b/") + file));
     }

@@ -10,20 +10,12 @@
 
 namespace tread::gap {
 
-/// The headline of a report, for instance "Found: Limit of turning power".
+/// The headline of a report in one line, for instance "Found: Limit of turning power"; where the
+/// drive cannot tell, "A or B: this drive cannot tell them apart".
 std::string headlineOf(const Finding& finding);
 
-/// One sentence in the words of the workshop with the effect's numbers and its direction.
-std::string sentenceOf(const FoundEffect& effect);
-
-/// One sentence for each term of the model that is another one now.
-std::vector<std::string> movedSentences(const Finding& finding);
-
-/// "2 s end-pose error on driving it has not seen: 0.64 -> 0.45 m, heading 20.5 -> 10.7 deg ...".
-std::string gainOf(const Gap& gap);
-
-/// "the yaw rate residual depends on speed and elapsed time; the along residual on ...".
-std::string remainsOf(const std::vector<Unexplained>& rests);
+/// What find prints at its end, the verdict first.
+std::vector<std::string> closingLines(const Finding& finding);
 
 /// What stands on the first screen: sentences, gain, what to do next.
 std::vector<Block> firstBlocks(const Finding& finding);

@@ -5,6 +5,7 @@
 
 #include "common/vehicle/degeneracy.hpp"
 #include "tools/gap/report/headline.hpp"
+#include "tools/gap/report/rivals.hpp"
 #include "tools/gap/report/sections.hpp"
 #include "tools/gap/report/words.hpp"
 
@@ -24,59 +25,69 @@ bool isMember(const DegeneracyGroup& group, const std::string& name) {
 std::string groupWords(const std::string& effect, const std::string& other) {
   for (const DegeneracyGroup* group : groupsOf(effect))
     if (isMember(*group, other))
-      return asSentence(group->because) + (group->when.empty() ? "" : " (" + group->when + ")") +
-             ". " + group->separates;
+      return " " + asSentence(group->because) + (group->when.empty() ? "" : ": " + group->when) +
+             ". To tell: " + group->separates;
   return "";
 }
 
-/// What an effect may be taken for: its twins first, then all others in one point.
-void addOthers(const FoundEffect& found, Points& points, Commands& plans) {
-  const auto plan = [&](const std::string& other) {
-    if (isEffect(other))
-      plans.lines.push_back("tread-gap plan " + found.name + " " + other + " --model model.yaml");
-  };
-  for (const std::string& member : found.group) {
-    std::string item = shortTitleOf(found.name);
-    item.append(" or ").append(inSentence(shortTitleOf(member)));
-    item.append(": they cannot be told apart. ").append(groupWords(found.name, member));
-    points.items.push_back(std::move(item));
-    plan(member);
-  }
-  std::vector<std::string> others;
-  for (const RunnerUp& runner_up : found.runner_ups) {
-    const bool close = runner_up.behind <= runner_up.error;
-    std::string other = inSentence(shortTitleOf(runner_up.effect));
-    other.append(close ? " (as good: " : " (less good: ").append(threeDigits(runner_up.behind));
-    other.append(" \u00b1 ").append(threeDigits(runner_up.error)).append(" nats behind)");
-    others.push_back(std::move(other));
-    plan(runner_up.effect);
-  }
-  if (!others.empty())
-    points.items.push_back("In place of " + inSentence(shortTitleOf(found.name)) + ": " +
-                           joined(others, "or") +
-                           ". To tell: " + effectNamed(found.name).separates);
+std::string twinWords(const RivalPair& pair) {
+  return shortTitleOf(pair.found) + " or " + inSentence(shortTitleOf(pair.other)) +
+         ": this drive cannot tell them apart." + groupWords(pair.found, pair.other);
 }
 
-/// The smallest size that would have been found, as people say it.
+std::string runnerUpWords(const RivalPair& pair) {
+  return inSentence(shortTitleOf(pair.other)) +
+         (isAsGood({pair.other, pair.behind, pair.error}) ? " (as good: " : " (less good: ") +
+         threeDigits(pair.behind) + " \u00b1 " + threeDigits(pair.error) + " nats behind)";
+}
+
+/// What an effect may be taken for: its twins first, then all others in one point.
+void addOthers(const std::string& found, const std::vector<RivalPair>& pairs, Points& points) {
+  std::vector<std::string> others;
+  for (const RivalPair& pair : pairs) {
+    if (pair.found != found) continue;
+    if (pair.twin)
+      points.items.push_back(twinWords(pair));
+    else
+      others.push_back(runnerUpWords(pair));
+  }
+  if (!others.empty())
+    points.items.push_back("In place of " + inSentence(shortTitleOf(found)) + ": " +
+                           joined(others, "or") + ". To tell: " + effectNamed(found).separates);
+}
+
+/// The smallest size that would have been found, as people say it; of a limit, which bites or does
+/// not, the gentlest one.
 std::string saidDetectable(const CandidateTest& test) {
   const EffectParameter* parameter = parameterOfPath(test.effect + "." + test.parameter).parameter;
-  if (!std::isfinite(test.detectable)) return "not at all";
+  const bool limit = parameter != nullptr && parameter->reciprocal();
+  if (!std::isfinite(test.detectable)) return limit ? "no limit that was tried" : "not at all";
   if (parameter == nullptr) return threeDigits(test.detectable);
-  if (parameter->reciprocal())
-    return parameter->natural_name + " below " +
-           said(naturalValue(*parameter, test.detectable), naturalUnit(*parameter));
+  if (limit)
+    return parameter->natural_name + " of " +
+           said(naturalValue(*parameter, test.detectable), naturalUnit(*parameter)) + " or below";
   return said(test.detectable, parameter->unit);
+}
+
+bool isFound(const Finding& finding, const std::string& name) {
+  return std::any_of(finding.effects.begin(), finding.effects.end(),
+                     [&](const FoundEffect& effect) { return effect.name == name; });
 }
 
 }  // namespace
 
 Section alternativesSection(const Finding& finding) {
   Section section{"What else it could be, and the drive that tells", {}};
+  const std::vector<RivalPair> pairs = rivalPairs(finding);
   Points points;
-  Commands plans;
-  for (const FoundEffect& effect : finding.effects) addOthers(effect, points, plans);
+  for (const FoundEffect& effect : finding.effects) addOthers(effect.name, pairs, points);
   if (points.items.empty()) return section;
   section.blocks.push_back(points);
+  Commands plans;
+  for (const RivalPair& pair : pairs)
+    if (finding.verdict != Verdict::kCannotTell && isEffect(pair.other) && driveMayTell(pair))
+      plans.lines.push_back("tread-gap plan " + pair.found + " " + pair.other +
+                            " --model model.yaml");
   if (!plans.lines.empty()) {
     section.blocks.push_back(Paragraph{"The shortest drive that tells two of them apart:"});
     section.blocks.push_back(plans);
@@ -120,7 +131,8 @@ Section candidatesSection(const Finding& finding) {
   section.blocks.push_back(Paragraph{
       "The first test of each effect against the calibrated model. p is over the whole catalogue; "
       "own share is the part of its signature that no term of the model has; the last column is "
-      "the smallest size that four of five drives like this one would have shown."});
+      "the smallest size that four of five drives like this one would have shown, of a limit the "
+      "gentlest one."});
   Table table{{"effect", "parameter", "score", "p", "own share", "visible from"}, {}, 2};
   std::vector<CandidateTest> tests = finding.candidates;
   std::stable_sort(tests.begin(), tests.end(), [](const CandidateTest& a, const CandidateTest& b) {
@@ -129,7 +141,7 @@ Section candidatesSection(const Finding& finding) {
   for (const CandidateTest& test : tests)
     table.rows.push_back({titleOf(test.effect), test.parameter, threeDigits(test.score),
                           saidChance(test.p_value), said(test.uniqueness, "1"),
-                          saidDetectable(test)});
+                          isFound(finding, test.effect) ? "found" : saidDetectable(test)});
   section.blocks.push_back(table);
   return section;
 }
@@ -143,7 +155,10 @@ Page reportPage(const Finding& finding, const std::vector<InputFile>& inputs) {
   page.first.push_back(Paragraph{std::string("Verdict ") + verdictName(finding.verdict) +
                                      ", exit status " +
                                      std::to_string(static_cast<int>(finding.verdict)) +
-                                     ". Nothing is applied by itself: the new model is model.yaml.",
+                                     (finding.verdict == Verdict::kCannotTell
+                                          ? ". No model was written."
+                                          : ". Nothing is applied by itself: the new model is "
+                                            "model.yaml."),
                                  true});
   for (Section& section : std::vector<Section>{
            effectsSection(finding), atlasSection(finding), executionsSection(finding, inputs),

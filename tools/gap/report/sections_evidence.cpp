@@ -175,7 +175,7 @@ Section logsSection(const Finding& finding) {
     section.blocks.push_back(Paragraph{std::to_string(finding.blocks) + " independent blocks of " +
                                        threeDigits(finding.block_length) +
                                        " s; whatever is said about chance counts blocks, not "
-                                       "samples. Test for what remains: p = " +
+                                       "samples. Test for what remains: p " +
                                        saidChance(finding.adequacy_p) + "."});
   return section;
 }

@@ -3,23 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/gap/report/headline.hpp"
+#include "tools/gap/report/effect_words.hpp"
+#include "tools/gap/report/limits.hpp"
 #include "tools/gap/report/sections.hpp"
 #include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {
 
-/// What a parameter may be: the model file's bounds, else the catalogue's; empty = not known.
-std::string plausible(const Finding& finding, const Estimate& estimate) {
+std::string saidRange(const PlausibleRange& range, const Estimate& estimate) {
+  if (range.min == range.max) return "";
   const EffectParameter* parameter = parameterOfPath(estimate.parameter).parameter;
-  for (const ParameterBounds& bounds : finding.after.bounds)
-    if (bounds.parameter == estimate.parameter)
-      return saidInterval(bounds.min, bounds.max, estimate.unit);
-  if (parameter == nullptr) return "";
-  if (parameter->reciprocal())
-    return "above " + said(1.0 / parameter->max, naturalUnit(*parameter));
-  return saidInterval(parameter->min, parameter->max, parameter->unit);
+  if (parameter != nullptr && parameter->reciprocal())
+    return "above " + said(1.0 / range.max, naturalUnit(*parameter));
+  return saidInterval(range.min, range.max, estimate.unit);
 }
 
 /// Before its effect was added a parameter was off.
@@ -28,13 +25,29 @@ std::string saidBefore(const Estimate& estimate, const Estimate& natural) {
   return said(natural.before, saidUnit(natural));
 }
 
+/// What a parameter makes together with what it acts on top of.
+std::string saidTotal(const Finding& finding, const Estimate& estimate) {
+  const auto total = totalOf(estimate.parameter, finding.after);
+  return total ? total->name + " " + said(total->value, total->unit) : "";
+}
+
 void addRow(const Finding& finding, const Estimate& estimate, const std::string& effect,
             Table& table) {
   const Estimate natural = naturalEstimate(estimate);
   table.rows.push_back({effect, lastPart(natural.parameter), saidBefore(estimate, natural),
-                        said(natural.value, saidUnit(natural)),
+                        said(natural.value, saidUnit(natural)) +
+                            (isAtLimit(finding, estimate) ? " (at its limit)" : ""),
                         saidInterval(natural.low, natural.high, saidUnit(natural)),
-                        plausible(finding, estimate)});
+                        saidRange(plausibleRange(finding, estimate.parameter), estimate),
+                        saidTotal(finding, estimate)});
+}
+
+/// Takes away a last column that says nothing.
+void forgetEmptyTotals(Table& table) {
+  for (const std::vector<std::string>& row : table.rows)
+    if (!row.back().empty()) return;
+  table.header.pop_back();
+  for (std::vector<std::string>& row : table.rows) row.pop_back();
 }
 
 /// Pairs whose estimates move together.
@@ -64,7 +77,7 @@ Section effectsSection(const Finding& finding) {
         (effect.kind == EffectKind::kVehicle ? "of the vehicle" : "of the measurement") + ")"});
     section.blocks.push_back(
         Points{{"Equation: " + effect.equation, "In the residuals: " + effect.looks_like,
-                "In two minutes: " + effect.check,
+                "In two minutes: " + checkOf(found),
                 "Evidence: score " + threeDigits(found.score) + ", p " + saidChance(found.p_value) +
                     ", gain " + threeDigits(found.gain) + " \u00b1 " +
                     threeDigits(found.gain_error) + " nats on blocks that were not fitted"}});
@@ -74,7 +87,8 @@ Section effectsSection(const Finding& finding) {
 
 Section parametersSection(const Finding& finding) {
   Section section{"Parameters of the new model", {}};
-  Table table{{"term", "parameter", "before", "now", "95 % interval", "plausible"}, {}, 2};
+  Table table{
+      {"term", "parameter", "before", "now", "95 % interval", "plausible", "in all"}, {}, 2};
   for (const FoundEffect& effect : finding.effects)
     for (const Estimate& estimate : effect.parameters)
       addRow(finding, estimate, titleOf(effect.name), table);
@@ -83,6 +97,7 @@ Section parametersSection(const Finding& finding) {
     addRow(finding, estimate, effect == nullptr ? "nominal model" : effect->title, table);
   }
   if (table.rows.empty()) return section;
+  forgetEmptyTotals(table);
   section.blocks.push_back(table);
   const Points pairs = highCorrelations(finding.after.covariance);
   if (!pairs.items.empty()) section.blocks.push_back(pairs);

@@ -153,6 +153,12 @@ std::string shortTitlesOf(const std::vector<std::string>& effects, const std::st
   return joined(titles, last_joint);
 }
 
+std::string joinedSentences(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += (text.empty() ? "" : " ") + sentence;
+  return text;
+}
+
 std::string withoutStop(const std::string& sentence) {
   return !sentence.empty() && sentence.back() == '.' ? sentence.substr(0, sentence.size() - 1)
                                                      : sentence;

@@ -60,6 +60,9 @@ std::string shortTitlesOf(const std::vector<std::string>& effects,
 /// The words with commas between them and `joint` before the last.
 std::string joined(const std::vector<std::string>& words, const std::string& joint = "and");
 
+/// Sentences one after the other.
+std::string joinedSentences(const std::vector<std::string>& sentences);
+
 /// The same sentence without its full stop; with a small first letter; with a large one.
 std::string withoutStop(const std::string& sentence);
 std::string inSentence(const std::string& words);

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "tests/tools/gap/sample_findings.hpp"
+#include "tools/gap/find_output.hpp"
+#include "tools/gap/report/effect_words.hpp"
+#include "tools/gap/report/gap_words.hpp"
+#include "tools/gap/report/headline.hpp"
+#include "tools/gap/report/rivals.hpp"
+#include "tools/gap/report/sections.hpp"
+
+namespace tread::gap {
+namespace {
+
+FoundEffect effect(const std::string& name, const std::vector<std::string>& as_good = {},
+                   double gain = 10.0) {
+  FoundEffect found;
+  found.name = name;
+  found.gain = gain;
+  for (const std::string& other : as_good) found.runner_ups.push_back({other, 1.0, 2.0});
+  return found;
+}
+
+Finding withEffects(Verdict verdict, const std::vector<FoundEffect>& effects) {
+  Finding finding = samples::finding(verdict);
+  finding.effects = effects;
+  return finding;
+}
+
+std::string headline(Verdict verdict, const std::vector<FoundEffect>& effects) {
+  return headlineOf(withEffects(verdict, effects));
+}
+
+std::string report(const Finding& finding) {
+  return markdownOf(reportPage(finding, samples::inputs()));
+}
+
+bool has(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+size_t count(const std::string& text, const std::string& words) {
+  size_t times = 0;
+  for (size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1))
+    ++times;
+  return times;
+}
+
+FoundEffect sized(const std::string& path, const std::string& unit, double value) {
+  FoundEffect found = effect(path.substr(0, path.find('.')));
+  found.parameters = {{path, unit, value, value - 0.01, value + 0.01, 0.0}};
+  return found;
+}
+
+/// A finding whose new model has this parameter.
+Finding withSize(const FoundEffect& found) {
+  Finding finding = withEffects(Verdict::kFound, {found});
+  const Estimate& estimate = found.parameters.front();
+  *findParameter(finding.after, estimate.parameter) = estimate.value;
+  return finding;
+}
+
+}  // namespace
+
+TEST_CASE("a headline that leaves names open is one line, with what is sure before it") {
+  CHECK(headline(Verdict::kAmbiguous, {effect("yaw_pull", {"track_asymmetry"})}) ==
+        "Yaw pull or left-right asymmetry: this drive cannot tell them apart");
+  CHECK(headline(Verdict::kAmbiguous,
+                 {effect("slip_ratio"), effect("yaw_pull", {"track_asymmetry"})}) ==
+        "Found: Longitudinal slip; and Yaw pull or left-right asymmetry: this drive cannot tell "
+        "them apart");
+  CHECK(headline(Verdict::kAmbiguous, {effect("yaw_pull", {"crab", "gyro_bias", "grip_limit"})}) ==
+        "Yaw pull or one of 3 others: this drive cannot tell them apart");
+  CHECK(headline(Verdict::kAmbiguous, {effect("slip_ratio"), effect("crab", {"yaw_pull"}),
+                                       effect("yaw_pull", {"track_asymmetry"})}) ==
+        "Found: Longitudinal slip; not sure by name: Crabbing and Yaw pull");
+  CHECK(headline(Verdict::kFound, {effect("slip_ratio", {}, 1.0), effect("crab", {}, 9.0),
+                                   effect("grip_limit", {}, 5.0), effect("yaw_pull", {}, 2.0)}) ==
+        "Found: Crabbing, Grip limit and 2 more");
+}
+
+TEST_CASE("a name that is open is marked under PARTIAL, too, and what it could be is listed") {
+  const Finding finding =
+      withEffects(Verdict::kPartial, {effect("slip_ratio"), samples::icrOffset()});
+  CHECK(headlineOf(finding) ==
+        "Found: Longitudinal slip; and Centre of rotation ahead of or behind the middle or lever "
+        "arm along the vehicle: this drive cannot tell them apart; and something more without a "
+        "name");
+  CHECK(has(report(finding),
+            "- Centre of rotation ahead of or behind the middle could also be lever arm along the "
+            "vehicle. To tell: Measure the lever arm with a tape."));
+}
+
+TEST_CASE("two effects that may be taken for each other are one pair, whichever was found first") {
+  const Finding finding = withEffects(
+      Verdict::kPartial,
+      {effect("yaw_pull", {"track_asymmetry"}), effect("track_asymmetry", {"yaw_pull", "crab"})});
+  const std::vector<RivalPair> pairs = rivalPairs(finding);
+  REQUIRE(pairs.size() == 2);
+  CHECK(pairs[0].found == "yaw_pull");
+  CHECK(pairs[1].other == "crab");
+  CHECK(count(report(finding), "tread-gap plan ") == 2);
+}
+
+TEST_CASE("no drive is planned for twins that want another measurement") {
+  const std::string text = report(samples::finding(Verdict::kAmbiguous));
+  CHECK(has(text,
+            "this drive cannot tell them apart. v_y = -offset omega in both. To tell: "
+            "Measure the lever arm with a tape."));
+  CHECK_FALSE(has(text, "tread-gap plan"));
+}
+
+TEST_CASE("dead reckoning is the best possible only where the model does not beat it") {
+  Gap gap = *samples::finding(Verdict::kFound).gap;
+  CHECK(has(gainOf(gap), "about the best that is possible"));
+  gap.after.position.median = 0.2;
+  CHECK_FALSE(has(gainOf(gap), "best"));
+  CHECK(has(gainOf(gap), "reaches 0.290 m and 5.73 deg; the new model does better in position."));
+}
+
+TEST_CASE("what got worse on unseen driving is named") {
+  Gap gap = *samples::finding(Verdict::kFound).gap;
+  CHECK(worseOf(gap) == "");
+  gap.after.position.median = 0.7;
+  CHECK(worseOf(gap) ==
+        "Not better, but worse on driving it has not seen: position (median 0.642 m before, 0.700 "
+        "m now); only heading got better.");
+  gap.after.yaw.median = 0.5;
+  CHECK(has(worseOf(gap), "0.700 m now) and heading (median 20.5 deg before, 28.6 deg now)."));
+  Finding finding = samples::finding(Verdict::kFound);
+  finding.gap = gap;
+  const std::vector<std::string> lines = closingLines(finding);
+  CHECK(std::count(lines.begin(), lines.end(), "  " + worseOf(gap)) == 1);
+  CHECK(has(report(finding), worseOf(gap)));
+}
+
+TEST_CASE("what find prints at its end begins with the verdict and tells what remains") {
+  const std::vector<std::string> lines = closingLines(samples::finding(Verdict::kPartial));
+  CHECK(lines.front().find("PARTIAL: Found: ") == 0);
+  CHECK(std::count(lines.begin(), lines.end(),
+                   "  Unexplained: the yaw rate residual depends on speed x yaw rate.") == 1);
+}
+
+TEST_CASE("a term on top of what the model had shows their total beside") {
+  const Finding finding = withSize(sized("actuator_lag.lag", "s", 0.2));
+  CHECK(has(sentenceOf(finding.effects[0], finding.after), "; lag in all 0.370 s."));
+  CHECK(has(report(finding),
+            "| lag | off | 0.200 s | 0.190 to 0.210 s | -0.170 to 5 s | lag in "
+            "all 0.370 s |"));
+  CHECK_FALSE(has(report(samples::finding(Verdict::kMeasurement)), "| in all |"));
+}
+
+TEST_CASE("a parameter at the end of what is plausible is marked, with what to do") {
+  Finding finding = withSize(sized("lag_asymmetry.slowing", "s", -2.0));
+  CHECK(has(report(finding), "| -2 s (at its limit) |"));
+  finding.verdict = Verdict::kCannotTell;
+  CHECK(has(report(finding), "or leave it out: --reject lag_asymmetry."));
+  CHECK(has(report(finding), "No model was written."));
+  CHECK_FALSE(hasNewModel(finding));
+}
+
+TEST_CASE("a negative slip sends people to the wheel radius") {
+  const FoundEffect slip = sized("slip_ratio.slip", "1", -0.07);
+  CHECK(has(sentenceOf(slip), "check the wheel radius"));
+  CHECK(has(checkOf(slip), "it may be too small by 7.00 %") == false);
+  CHECK(has(checkOf(slip), "it may be too small by 7 %"));
+  CHECK_FALSE(has(checkOf(sized("slip_ratio.slip", "1", 0.07)), "radius"));
+}
+
+TEST_CASE("a limit is visible from the gentlest one on, and what was found is said to be") {
+  const std::string text = report(samples::finding(Verdict::kNoDiscrepancy));
+  CHECK(has(text, "| limit of 2.50 rad/s or below |"));
+  CHECK(has(text, "| no limit that was tried |"));
+  CHECK(has(report(samples::finding(Verdict::kFound)), "| 80 % | found |"));
+}
+
+TEST_CASE("a term of the model that is another one now is said in its natural numbers") {
+  Finding finding = samples::finding(Verdict::kNoDiscrepancy);
+  finding.calibrated = {{"turn_power_limit.inverse_limit", "s/rad", 0.8, 0.78, 0.82, 0.5, true}};
+  CHECK(movedSentences(finding).front() ==
+        "Limit of turning power, which the model has, is another one now: limit 1.25 rad/s (1.22 "
+        "to 1.28 rad/s) instead of 2 rad/s.");
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/gap/core/finding.hpp"
+
+namespace tread::gap {
+
+/// Whether a drive leaves open which of two it is.
+inline bool isAsGood(const RunnerUp& runner_up) {
+  return runner_up.behind < runner_up.error;
+}
+
+/// Effects that this drive cannot tell from a found one (without itself): twins, then those that
+/// are as good.
+std::vector<std::string> rivalsOf(const FoundEffect& effect);
+
+/// What tells an effect from its rivals: of the degeneracy table, else of the catalogue.
+std::vector<std::string> waysToTell(const FoundEffect& effect);
+
+/// Two effects that may be taken for each other.
+struct RivalPair {
+  std::string found;
+  std::string other;
+  bool twin = false;    ///< of the same group: the residuals cannot decide
+  double behind = 0.0;  ///< [nats] of a runner-up
+  double error = 0.0;   ///< [nats]
+};
+
+/// Whether a drive may tell a pair: twins of the degeneracy table want another measurement.
+bool driveMayTell(const RivalPair& pair);
+
+/// All pairs of a finding, each once, whichever of the two was found first.
+std::vector<RivalPair> rivalPairs(const Finding& finding);
+
+}  // namespace tread::gap
