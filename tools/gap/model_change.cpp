@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/gap/model_change.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "common/config/scalars.hpp"
@@ -16,6 +17,35 @@ double& valueOf(ModelDocument& model, const EffectParameter& parameter) {
                                       : model.measurement.*parameter.measured;
 }
 
+/// Whether two names share a word of three letters or more: slip and slip_ratio.
+bool resemble(const std::string& name, const Effect& effect) {
+  size_t begin = 0;
+  while (begin < name.size()) {
+    const size_t end = std::min(name.find_first_of("_- ", begin), name.size());
+    const std::string word = name.substr(begin, end - begin);
+    if (word.size() >= 3 && effect.name.find(word) != std::string::npos) return true;
+    begin = end + 1;
+  }
+  return false;
+}
+
+/// An effect by name, else an error that lists the names which are near.
+const Effect& effectOrNear(const std::string& name) {
+  std::vector<std::string> all;
+  std::vector<std::string> near;
+  for (const Effect& effect : effectCatalogue()) {
+    if (effect.name == name) return effect;
+    all.push_back(effect.name);
+    if (resemble(name, effect)) near.push_back(effect.name);
+  }
+  const auto spelt = nearestSpelling(name, all);
+  if (spelt && std::find(near.begin(), near.end(), *spelt) == near.end())
+    near.insert(near.begin(), *spelt);
+  if (near.empty()) return effectOrGuess(name);  // throws
+  throw std::runtime_error("'" + name + "' is no effect of the catalogue; did you mean " +
+                           joined(near, "or") + "?");
+}
+
 std::string parameterNames(const Effect& effect) {
   std::vector<std::string> names;
   for (const EffectParameter& parameter : effect.parameters) {
@@ -23,6 +53,12 @@ std::string parameterNames(const Effect& effect) {
     if (parameter.reciprocal()) names.push_back(parameter.natural_name);
   }
   return joinWords(names);
+}
+
+/// The name under which people set the size of an effect.
+std::string firstStrength(const Effect& effect) {
+  const EffectParameter& first = effect.parameters.front();
+  return first.reciprocal() ? first.natural_name : first.name;
 }
 
 void setEffect(ModelDocument& model, const Effect& effect, const std::string& name, double value) {
@@ -52,7 +88,7 @@ void set(ModelDocument& model, const std::string& assignment, const Effect* last
   const std::string path = assignment.substr(0, equals);
   const size_t point = path.find('.');
   if (point != std::string::npos) {
-    setEffect(model, effectOrGuess(path.substr(0, point)), path.substr(point + 1), *value);
+    setEffect(model, effectOrNear(path.substr(0, point)), path.substr(point + 1), *value);
   } else if (double* number = findParameter(model, path)) {
     if (!(*value >= 0.0))
       throw std::runtime_error("--set " + assignment + ": must not be negative");
@@ -90,14 +126,18 @@ bool isOn(const ModelDocument& model, const Effect& effect) {
 ModelDocument changed(const ModelDocument& model, const ModelChange& change) {
   ModelDocument other = model;
   for (const std::string& name : change.remove) {
-    const Effect& effect = effectOrGuess(name);
+    const Effect& effect = effectOrNear(name);
     if (!isOn(model, effect))
       throw std::runtime_error("--remove " + name + ": it is off in this model");
     turnOff(other, effect);
   }
   const Effect* last_added = nullptr;
   for (const std::string& name : change.add) {
-    last_added = &effectOrGuess(name);
+    last_added = &effectOrNear(name);
+    if (isOn(other, *last_added))
+      throw std::runtime_error(
+          "--add " + name + ": it is already on in this model; another size: " + "--set " + name +
+          "." + firstStrength(*last_added) + "=NUMBER, without it: --remove " + name);
     turnOn(other, *last_added);
   }
   for (const std::string& assignment : change.set) set(other, assignment, last_added);

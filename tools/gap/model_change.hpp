@@ -28,7 +28,7 @@ void turnOn(ModelDocument& model, const Effect& effect);
 bool isOn(const ModelDocument& model, const Effect& effect);
 
 /// The model after the change; throws std::runtime_error with one line for what is not possible:
-/// unknown names, values beyond what is plausible, removing what is off.
+/// unknown names, values beyond what is plausible, removing what is off, adding what is on.
 ModelDocument changed(const ModelDocument& model, const ModelChange& change);
 
 }  // namespace tread::gap

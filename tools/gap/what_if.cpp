@@ -25,14 +25,32 @@ std::vector<Pose2> posesOf(const std::vector<TimedPose>& motion) {
   return poses;
 }
 
+/// Millimetres below a decimetre; nobody measures tenths of them.
+std::string shownDistance(double distance) {
+  char text[40];
+  if (std::abs(distance) < 0.1)
+    std::snprintf(text, sizeof text, "%.0f mm", 1000.0 * distance);
+  else
+    std::snprintf(text, sizeof text, "%.2f m", distance);
+  return text;
+}
+
+/// Tenths of a degree; no -0.0.
+std::string shownAngle(double angle) {
+  char text[40];
+  const double tenths = std::round(10.0 * angle * 180.0 / kPi);
+  std::snprintf(text, sizeof text, "%.1f deg", tenths == 0.0 ? 0.0 : 0.1 * tenths);
+  return text;
+}
+
 std::string picture(const Comparison& comparison) {
   Chart chart(comparison.name, "to the right [m]", "ahead [m]",
               rangeOf({&comparison.first, &comparison.second}));
   drawPath(chart, comparison.first, kBeforeColour, true);
   drawPath(chart, comparison.second, kAfterColour, false);
   chart.legend("as it is", kBeforeColour, true);
-  chart.legend("what if: " + threeDigits(comparison.position) + " m, " + saidAngle(comparison.yaw) +
-                   " apart",
+  chart.legend("what if: " + shownDistance(comparison.position) + ", " +
+                   shownAngle(comparison.yaw) + " apart",
                kAfterColour);
   return chart.svg();
 }
@@ -67,22 +85,45 @@ std::string row(const std::string& name, const std::string& position, const std:
 Table tableOf(const LogComparison& comparison) {
   Table table{{"model", "median", "rms", "heading, median", "heading, rms"}, {}, 1};
   const auto add = [&](const std::string& name, const EndErrors& errors) {
-    table.rows.push_back({name, saidDistance(errors.position.median),
-                          saidDistance(errors.position.rms), saidAngle(errors.yaw.median),
-                          saidAngle(errors.yaw.rms)});
+    table.rows.push_back({name, shownDistance(errors.position.median),
+                          shownDistance(errors.position.rms), shownAngle(errors.yaw.median),
+                          shownAngle(errors.yaw.rms)});
   };
-  add("as it is", comparison.first);
-  add("what if", comparison.second);
+  add("before: as it is", comparison.first);
+  add("after: what if", comparison.second);
   return table;
+}
+
+/// What full speed is in the manoeuvres, and why.
+std::string fullSpeedText(const ModelDocument& first, double full) {
+  if (first.vehicle.kind == CommandKind::kPower)
+    return "full power (" + threeDigits(first.vehicle.full_speed) + " m/s by the model)";
+  const std::string speed = threeDigits(full) + " m/s";
+  if (!first.envelope || first.envelope->v <= 0.0)
+    return speed + " (the model's file does not say what it was made from)";
+  return speed + " (a quarter beyond the " + threeDigits(first.envelope->v) +
+         " m/s that the model was made from)";
 }
 
 }  // namespace
 
+double fullCommand(const ModelDocument& first, const ModelDocument& second) {
+  return std::max(fullCommand(first), fullCommand(second));
+}
+
+std::string settingOf(const ModelDocument& first, const ModelDocument& second,
+                      const std::string& model_file, const std::string& log_file) {
+  std::string text = "Model: " + model_file + ". Full speed of the manoeuvres: " +
+                     fullSpeedText(first, fullCommand(first, second)) + ".";
+  if (!log_file.empty()) text += " Log: " + log_file + ".";
+  return text +
+         " Before: the model as it is; after: what if. Headings: after less before, left positive.";
+}
+
 std::vector<Comparison> compareModels(const ModelDocument& first, const ModelDocument& second,
                                       const Circumstances& circumstances) {
   std::vector<Comparison> comparisons;
-  const double full = std::max(fullCommand(first), fullCommand(second));
-  for (const Manoeuvre& manoeuvre : standardManoeuvres(full)) {
+  for (const Manoeuvre& manoeuvre : standardManoeuvres(fullCommand(first, second))) {
     Comparison comparison;
     comparison.name = manoeuvre.name;
     comparison.first = posesOf(drivenByModel(first, manoeuvre, circumstances));
@@ -114,7 +155,7 @@ std::string textOf(const std::vector<Comparison>& comparisons) {
   std::string text = row("manoeuvre of 2 s", "ends apart", "heading");
   bool any = false;
   for (const Comparison& comparison : comparisons) {
-    text += row(comparison.name, saidDistance(comparison.position), saidAngle(comparison.yaw));
+    text += row(comparison.name, shownDistance(comparison.position), shownAngle(comparison.yaw));
     any = any || comparison.position > kRounding || std::abs(comparison.yaw) > kRounding;
   }
   if (!any)
@@ -128,17 +169,17 @@ std::string textOf(const LogComparison& comparison) {
   std::string text = std::to_string(comparison.first.executions) +
                      " executions of the log, errors after 2 s, median (rms)\n";
   const auto add = [&](const std::string& name, const EndErrors& errors) {
-    text += row(name, saidDistance(errors.position.median), saidAngle(errors.yaw.median)) +
-            row("", "(" + saidDistance(errors.position.rms) + ")",
-                "(" + saidAngle(errors.yaw.rms) + ")");
+    text += row(name, shownDistance(errors.position.median), shownAngle(errors.yaw.median)) +
+            row("", "(" + shownDistance(errors.position.rms) + ")",
+                "(" + shownAngle(errors.yaw.rms) + ")");
   };
-  add("model as it is", comparison.first);
-  add("what if", comparison.second);
+  add("before: model as it is", comparison.first);
+  add("after: what if", comparison.second);
   return text;
 }
 
-Page pageOf(const std::string& question, const std::vector<Comparison>& comparisons,
-            const std::vector<LogComparison>& on_log) {
+Page pageOf(const std::string& question, const std::string& setting,
+            const std::vector<Comparison>& comparisons, const std::vector<LogComparison>& on_log) {
   Page page;
   page.title = question + " - tread-gap what-if";
   page.verdict = question;
@@ -146,11 +187,11 @@ Page pageOf(const std::string& question, const std::vector<Comparison>& comparis
   Table table{{"manoeuvre", "ends apart", "heading"}, {}, 1};
   for (const Comparison& comparison : comparisons)
     table.rows.push_back(
-        {comparison.name, saidDistance(comparison.position), saidAngle(comparison.yaw)});
+        {comparison.name, shownDistance(comparison.position), shownAngle(comparison.yaw)});
   page.first = {
       Paragraph{"The same commands, simulated with the model as it is and as it would be; "
                 "differences after two seconds."},
-      table};
+      Paragraph{setting}, table};
   page.sections.push_back({"Manoeuvres",
                            {Pictures{picturesOf(comparisons),
                                      "Orange, dashed: as it is. Blue: what if. Ahead is up."}}});

@@ -21,6 +21,13 @@ struct Comparison {
   double yaw = 0.0;       ///< [rad] second less first, at the end
 };
 
+/// The largest command of manoeuvres that show two models: see fullCommand().
+double fullCommand(const ModelDocument& first, const ModelDocument& second);
+
+/// In what the answer holds: model, commands, log if there is one, and which of the two is before.
+std::string settingOf(const ModelDocument& first, const ModelDocument& second,
+                      const std::string& model_file, const std::string& log_file);
+
 /// All standard manoeuvres with both models.
 std::vector<Comparison> compareModels(const ModelDocument& first, const ModelDocument& second,
                                       const Circumstances& circumstances);
@@ -39,8 +46,8 @@ LogComparison compareOnLog(const Drive& drive, const ModelDocument& first,
 /// The answer as a table in text, as a page, and its pictures in one SVG.
 std::string textOf(const std::vector<Comparison>& comparisons);
 std::string textOf(const LogComparison& comparison);
-Page pageOf(const std::string& question, const std::vector<Comparison>& comparisons,
-            const std::vector<LogComparison>& on_log);
+Page pageOf(const std::string& question, const std::string& setting,
+            const std::vector<Comparison>& comparisons, const std::vector<LogComparison>& on_log);
 std::string svgOf(const std::vector<Comparison>& comparisons,
                   const std::vector<LogComparison>& on_log);
 

@@ -67,11 +67,13 @@ void whatIf(const Options& options) {
   if (!options.log.empty())
     on_log.push_back(compareOnLog(readDriveFor(model, options.log), model, other));
   const std::string question = questionOf(options.change);
-  std::cout << question << "\n\n" << textOf(comparisons);
+  const std::string setting = settingOf(model, other, options.model, options.log);
+  std::cout << question << "\n" << setting << "\n\n" << textOf(comparisons);
   for (const LogComparison& comparison : on_log) std::cout << '\n' << textOf(comparison);
   if (!options.out.empty())
-    recordings::writeText(options.out, svg ? svgOf(comparisons, on_log)
-                                           : htmlOf(pageOf(question, comparisons, on_log)));
+    recordings::writeText(
+        options.out,
+        svg ? svgOf(comparisons, on_log) : htmlOf(pageOf(question, setting, comparisons, on_log)));
   std::cout << std::flush;
 }
 
@@ -98,7 +100,8 @@ CLI::App* addWhatIf(CLI::App& app) {
       "what-if", "simulate with an effect removed, added or of another size, and show it");
   command->add_option("--model", options->model, "model file (YAML)")->required();
   command->add_option("--remove", options->change.remove, "turn this effect off");
-  command->add_option("--add", options->change.add, "turn this effect on, at its typical size");
+  command->add_option("--add", options->change.add,
+                      "turn this effect on, at its typical size; of one that is on, --set another");
   command->add_option(
       "--set", options->change.set,
       "parameter=number: of the effect added, or effect.parameter, or lag, delay..");
