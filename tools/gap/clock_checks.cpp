@@ -2,9 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
-#include "common/messages/ins_messages.hpp"
 #include "tools/gap/log_checks.hpp"
 
 namespace tread::gap {
@@ -13,8 +11,6 @@ namespace {
 constexpr int64_t kOvertaking = 200'000;          // [us] by which messages may come out of order
 constexpr int64_t kClockStep = 500'000;           // [us]
 constexpr int64_t kLongestLog = 172'800'000'000;  // [us] two days
-constexpr double kMoving = 0.3;                   // [m/s]
-constexpr int64_t kLongStep = 1'000'000;          // [us] that no driver needs between two messages
 constexpr size_t kWindow = 200;                   // messages
 constexpr size_t kShortWindow = 20;               // messages
 
@@ -76,68 +72,6 @@ void checkStamps(const std::string& channel, const std::vector<Stamp>& stamps,
   if (overtaken > 0)
     notes.note(std::to_string(overtaken) + " messages of " + channel +
                " come out of order; sorted by their own time");
-}
-
-/// The place of the robot at a message or at most half a second beside it.
-struct Moving {
-  int64_t utime;
-  Pose2 pose;
-  double speed;  ///< [m/s]
-};
-
-/// From `index` on in one direction: the next pose, and the next other one, which gives the speed.
-std::optional<Moving> movingAt(const std::vector<ins_t>& ins, size_t index, int direction) {
-  std::optional<Pose2> found;
-  int64_t utime = 0;
-  for (size_t i = index; i < ins.size(); i += static_cast<size_t>(direction)) {
-    if (std::abs(ins[i].utime - ins[index].utime) > kClockStep) break;
-    const auto pose = planarPose(ins[i]);
-    if (!pose) continue;
-    if (found) {
-      const double way = (pose->position() - found->position()).norm();
-      const double time = 1e-6 * static_cast<double>(std::abs(ins[i].utime - utime));
-      if (way > 0.0 && time > 0.0 && way / time >= kMoving)
-        return Moving{utime, *found, way / time};
-      if (way > 0.0) break;
-    } else {
-      found = pose;
-      utime = ins[i].utime;
-    }
-  }
-  return std::nullopt;
-}
-
-/// Whether the next pose from `index` on is said to be on a new track.
-bool jumpAnnounced(const std::vector<ins_t>& ins, size_t index) {
-  for (size_t i = index; i < ins.size(); ++i) {
-    if ((ins[i].ins_status & ins_t::STATUS_JUMP) != 0) return true;
-    if (planarPose(ins[i])) return false;
-  }
-  return false;
-}
-
-/// A pause after which the robot is where it was one message later: time went on, the robot did
-/// not.
-void checkPauses(const LogMessages& messages, NoteBook& notes) {
-  const std::vector<ins_t>& ins = messages.ins;
-  for (size_t i = 1; i < ins.size(); ++i) {
-    const int64_t step = ins[i].utime - ins[i - 1].utime;
-    if (step < kLongStep || !isNext(ins[i].seq, ins[i - 1].seq) || jumpAnnounced(ins, i)) continue;
-    const auto before = movingAt(ins, i - 1, -1);
-    const auto after = movingAt(ins, i, 1);
-    if (!before || !after) continue;
-    const double pause = 1e-6 * static_cast<double>(step);
-    const double speed = std::max(before->speed, after->speed);
-    const double moved = (after->pose.position() - before->pose.position()).norm();
-    // What lies between the two poses but the pause itself, and a message's period.
-    const double rest = 1e-6 * static_cast<double>(after->utime - before->utime - step) + 0.1;
-    const double turned = std::abs(wrapAngle(after->pose.yaw - before->pose.yaw));
-    if (moved > 2.0 * speed * rest || moved > 0.3 * speed * pause || turned > 0.4) continue;
-    return notes.fatal("clock jump: INS goes on by " + digits(pause, 2) + " s at " +
-                       digits(messages.seconds(ins[i - 1].utime)) +
-                       " s, but the robot moves on by " + digits(moved, 2) + " m at " +
-                       digits(speed, 2) + " m/s; cut the log there");
-  }
 }
 
 }  // namespace

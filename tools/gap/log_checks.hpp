@@ -17,6 +17,10 @@ void checkChannels(const LogMessages& messages, const std::vector<HeardSpan>& sp
 /// Clocks that jump or go back.
 void checkClocks(const LogMessages& messages, NoteBook& notes);
 
+/// A pause after which the robot is where it was one message later, although it moves: time went
+/// on, the robot did not. Part of checkClocks().
+void checkPauses(const LogMessages& messages, NoteBook& notes);
+
 /// Two robots (or two publishers of a channel) in one log.
 void checkPublishers(const LogMessages& messages, NoteBook& notes);
 

@@ -93,6 +93,53 @@ TEST_CASE("a clock that goes back or jumps ahead is found with its place") {
   }
 }
 
+TEST_CASE("a clock that jumps ahead on all channels is found however slowly the robot moves") {
+  for (const Twist2& twist : {Twist2{0.15, 0.0, 0.02}, Twist2{0.0, 0.0, 0.5}, Twist2{1.0, 0.0, 1.5},
+                              Twist2{-0.2, 0.0, -0.3}}) {
+    SmallLog log;
+    drive(log, 0.0, 30.0, twist, {});
+    auto events = log.sorted();
+    REQUIRE(fatal(events) == "");
+    shift(events, kIns, 15.0, 7.0, 7.0);
+    shift(events, kMotor, 15.0, 7.0, 7.0);
+    CHECK(fatal(events).find("clock jump: INS and MOTOR go on by 7.") == 0);
+  }
+}
+
+TEST_CASE("a silence in which time went on is no clock jump") {
+  SECTION("the robot stood") {
+    SmallLog log;
+    drive(log, 0.0, 14.0, {0.5, 0.0, 0.1}, {});
+    const Pose2 there = integrate({0.5, 0.0, 0.1}, 14.0);
+    drive(log, 14.0, 16.0, {}, there);
+    drive(log, 23.0, 25.0, {}, there);
+    drive(log, 25.0, 40.0, {0.5, 0.0, 0.1}, there);
+    CHECK(fatal(log.sorted()) == "");
+  }
+  SECTION("the robot drove on") {
+    SmallLog log;
+    const Pose2 there = drive(log, 0.0, 15.0, {0.5, 0.0, 0.1}, {});
+    drive(log, 22.0, 40.0, {0.5, 0.0, 0.1}, there * integrate({0.5, 0.0, 0.1}, 7.0));
+    CHECK(fatal(log.sorted()) == "");
+  }
+  SECTION("it was stopped by its watchdog, and started again") {
+    SmallLog log;
+    Pose2 there = drive(log, 0.0, 15.0, {0.5, 0.0, 0.1}, {});
+    there = there * integrate({0.5, 0.0, 0.1}, 0.3);
+    there = drive(log, 22.0, 23.0, {}, there);
+    drive(log, 23.0, 40.0, {0.5, 0.0, 0.1}, there);
+    CHECK(fatal(log.sorted()) == "");
+  }
+  SECTION("the recorder lost messages of all channels") {
+    SmallLog log;
+    drive(log, 0.0, 40.0, {0.5, 0.0, 0.1}, {});
+    std::vector<LogEvent> kept;
+    for (const LogEvent& event : log.sorted())
+      if (event.utime < at(15.0) || event.utime > at(22.0)) kept.push_back(event);
+    CHECK(fatal(kept) == "");
+  }
+}
+
 TEST_CASE("an INS that was silent while the robot moved on is no clock jump") {
   SmallLog log;
   Pose2 T_map_body;
