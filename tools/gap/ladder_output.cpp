@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/gap/ladder_output.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -143,38 +142,6 @@ Section sectionOf(const std::string& title, const std::vector<LadderRow>& rows) 
   return section;
 }
 
-/// Columns of spaces; the last one is not filled up.
-std::string plain(const Table& table) {
-  std::vector<std::vector<std::string>> lines{table.header};
-  lines.insert(lines.end(), table.rows.begin(), table.rows.end());
-  std::vector<size_t> widths(table.header.size(), 0);
-  for (const auto& line : lines)
-    for (size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
-  std::string text;
-  for (const auto& line : lines) {
-    for (size_t i = 0; i < line.size(); ++i) {
-      const std::string fill(widths[i] - line[i].size(), ' ');
-      const bool left = i < table.left;
-      text += (i > 0 ? "  " : "") + (left ? line[i] : fill + line[i]);
-      if (left && i + 1 < line.size()) text += fill;
-    }
-    text += "\n";
-  }
-  return text;
-}
-
-struct TextWriter {
-  std::string text;
-
-  void operator()(const Paragraph& paragraph) { text += paragraph.text + "\n"; }
-  void operator()(const Table& table) { text += plain(table) + "\n"; }
-  void operator()(const Points& points) {
-    for (const std::string& item : points.items) text += item + "\n";
-  }
-  void operator()(const Commands&) {}
-  void operator()(const Pictures&) {}
-};
-
 }  // namespace
 
 Page ladderPage(const LadderReport& report) {
@@ -201,15 +168,6 @@ Page ladderPage(const LadderReport& report) {
       sectionOf("Each log judged by what all others taught", report.ladder.pooled));
   page.sections.back().blocks.emplace_back(Paragraph{agreement(report.ladder.pooled)});
   return page;
-}
-
-std::string ladderText(const LadderReport& report) {
-  TextWriter writer;
-  for (const Section& section : ladderPage(report).sections) {
-    writer.text += "\n" + section.title + "\n\n";
-    for (const Block& block : section.blocks) std::visit(writer, block);
-  }
-  return writer.text;
 }
 
 void writeLadder(const std::string& folder, const LadderReport& report) {
