@@ -6,6 +6,7 @@
 
 #include "tools/gap/commands.hpp"
 #include "tools/gap/explain.hpp"
+#include "tools/gap/topics.hpp"
 
 namespace tread::gap {
 
@@ -13,9 +14,13 @@ CLI::App* addExplain(CLI::App& app) {
   const auto name = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand(
       "explain", "what an effect is, what it looks like and how to check it in two minutes");
-  command->add_option("EFFECT", *name, "name of an effect; without it, all of them");
+  command->add_option("EFFECT", *name,
+                      "name of an effect, or start, verdicts or words; without it, a list");
   command->callback([name] {
-    std::cout << (name->empty() ? listOfEffects() : explanation(effectOrGuess(*name)))
+    const auto about = topic(*name);
+    std::cout << (name->empty() ? listOfEffects() + listOfTopics()
+                  : about       ? *about
+                                : explanation(effectOrGuess(*name)))
               << std::flush;
   });
   return command;

@@ -38,6 +38,19 @@ TEST_CASE("every effect of the catalogue is explained, with a check of two minut
   CHECK(run("explain icr_offset").says("lever_arm_x"));
 }
 
+TEST_CASE("explain says how to begin, what to do after each verdict, and what words mean") {
+  const Run list = run("explain");
+  for (const char* topic : {"start", "verdicts", "words"})
+    CHECK(list.says(std::string("\n  ") + topic + " "));
+  CHECK(run("explain start").says("tread-import --format steps --keep-lag --gyro all"));
+  const Run verdicts = run("explain verdicts");
+  for (const char* verdict : {"0 NO_DISCREPANCY", "10 FOUND", "11 AMBIGUOUS", "12 PARTIAL",
+                              "13 NOT_IN_CATALOGUE", "14 MEASUREMENT", "15 CANNOT_TELL"})
+    CHECK(verdicts.says(verdict));
+  for (const char* word : {"block ", "nats ", "adequacy ", "held-out ", "floor ", "twin group "})
+    CHECK(run("explain words").says(word));
+}
+
 TEST_CASE("bad input ends with 2 and one line that says what and where") {
   const Folder folder;
   folder.write(

@@ -179,6 +179,12 @@ TEST_CASE("a limit is visible from the gentlest one on, and what was found is sa
   CHECK(has(report(samples::finding(Verdict::kFound)), "| 80 % | found |"));
 }
 
+TEST_CASE("a report says what to do after its verdict, and what its words mean") {
+  const Finding finding = samples::finding(Verdict::kMeasurement);
+  CHECK(has(report(finding), "What to do: Mend the INS: lever arm, mounting, time stamps."));
+  CHECK(has(report(finding), "| nats | unit of evidence"));
+}
+
 TEST_CASE("a term of the model that is another one now is said in its natural numbers") {
   Finding finding = samples::finding(Verdict::kNoDiscrepancy);
   finding.calibrated = {{"turn_power_limit.inverse_limit", "s/rad", 0.8, 0.78, 0.82, 0.5, true}};

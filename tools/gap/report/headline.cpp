@@ -6,6 +6,7 @@
 
 #include "tools/gap/report/effect_words.hpp"
 #include "tools/gap/report/gap_words.hpp"
+#include "tools/gap/report/guidance.hpp"
 #include "tools/gap/report/limits.hpp"
 #include "tools/gap/report/pictures.hpp"
 #include "tools/gap/report/rivals.hpp"
@@ -217,6 +218,7 @@ std::vector<Block> firstBlocks(const Finding& finding) {
     blocks.push_back(Pictures{{gapPicture(*finding.gap, false), gapPicture(*finding.gap, true)},
                               "End errors on executions that were not used for the fit."});
   }
+  blocks.push_back(Paragraph{"What to do: " + adviceFor(finding.verdict).next});
   addNext(finding, blocks);
   return blocks;
 }

@@ -23,6 +23,7 @@ Section decisionsSection(const Finding& finding);
 Section envelopeSection(const Finding& finding);
 Section logsSection(const Finding& finding);
 Section candidatesSection(const Finding& finding);
+Section wordsSection();
 Section filesSection(const Finding& finding, const std::vector<InputFile>& inputs);
 
 /// Name and version of this tool, for provenance.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/vehicle/degeneracy.hpp"
+#include "tools/gap/report/guidance.hpp"
 #include "tools/gap/report/headline.hpp"
 #include "tools/gap/report/rivals.hpp"
 #include "tools/gap/report/sections.hpp"
@@ -146,6 +147,14 @@ Section candidatesSection(const Finding& finding) {
   return section;
 }
 
+Section wordsSection() {
+  Section section{"Words", {}};
+  Table table{{"word", "what it means here"}, {}, 2};
+  for (const Word& word : glossary()) table.rows.push_back({word.word, word.meaning});
+  section.blocks.push_back(table);
+  return section;
+}
+
 Page reportPage(const Finding& finding, const std::vector<InputFile>& inputs) {
   Page page;
   page.verdict = headlineOf(finding);
@@ -165,7 +174,7 @@ Page reportPage(const Finding& finding, const std::vector<InputFile>& inputs) {
            placesSection(finding, inputs), ladderSection(finding), parametersSection(finding),
            alternativesSection(finding), notShownSection(finding), decisionsSection(finding),
            envelopeSection(finding), logsSection(finding), candidatesSection(finding),
-           filesSection(finding, inputs)})
+           wordsSection(), filesSection(finding, inputs)})
     if (!section.blocks.empty()) page.sections.push_back(std::move(section));
   return page;
 }
