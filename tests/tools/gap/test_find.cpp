@@ -85,6 +85,20 @@ TEST_CASE("two hidden effects are both named") {
   CHECK(names == Names{"centrifugal_drift", "track_asymmetry"});
 }
 
+TEST_CASE("effects that are both found do not stand in each other's place") {
+  const Finding finding = findAfter({{"speed_saturation.inverse_limit", 1.3},
+                                     {"turn_power_limit.inverse_limit", 1.5},
+                                     {"turn_speed_loss.loss", 0.15}},
+                                    500.0, 7);
+  const Names names = namesIn(finding);
+  REQUIRE(names.size() > 1);
+  for (const FoundEffect& effect : finding.effects)
+    for (const RunnerUp& other : effect.runner_ups) {
+      INFO(effect.name << " or " << other.effect);
+      CHECK(std::find(names.begin(), names.end(), other.effect) == names.end());
+    }
+}
+
 TEST_CASE("a drive of two minutes is too short to tell chance from cause") {
   const Finding finding = findAfter({{"motor_deadband.speed", 0.1}}, 120.0, 8);
   CHECK(finding.verdict == Verdict::kCannotTell);

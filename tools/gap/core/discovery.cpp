@@ -236,7 +236,9 @@ class Discovery {
     effect.parameters = std::move(parameters);
     effect.group = twinsOf(name, result_.state.model);
     for (const std::string& pair : result_.replaced[name]) effect.group.push_back(pair);
-    effect.runner_ups = result_.runner_ups[name];
+    // What came in beside it later does not stand in its place.
+    for (const RunnerUp& other : result_.runner_ups[name])
+      if (!isNew(other.effect)) effect.runner_ups.push_back(other);
     effect.score = result_.scores[name];
     effect.p_value = result_.p_values[name];
     effect.gain = result_.gains[name].value;
