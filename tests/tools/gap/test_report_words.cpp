@@ -164,6 +164,16 @@ TEST_CASE("a parameter at the end of what is plausible is marked, with what to d
   CHECK_FALSE(hasNewModel(finding));
 }
 
+TEST_CASE(
+    "each effect is told by its name and in a sentence, in the report and at the end of find") {
+  const Finding finding = samples::finding(Verdict::kFound);
+  const std::string sentence =
+      "Limit of turning power: the drive cannot turn the vehicle faster than a certain yaw rate on "
+      "this ground: limit 1.25 rad/s (1.22 to 1.28 rad/s).";
+  CHECK(has(report(finding), "- " + sentence + "\n"));
+  CHECK(closingLines(finding)[1] == "  " + sentence);
+}
+
 TEST_CASE("a negative slip sends people to the wheel radius") {
   const FoundEffect slip = sized("slip_ratio.slip", "1", -0.07);
   CHECK(has(sentenceOf(slip), "check the wheel radius"));

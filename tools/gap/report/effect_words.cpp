@@ -111,6 +111,10 @@ std::string sentenceOf(const FoundEffect& effect, const ModelDocument& model) {
   return withNumbers(effect, totals);
 }
 
+std::string titledSentenceOf(const FoundEffect& effect, const ModelDocument& model) {
+  return shortTitleOf(effect.name) + ": " + inSentence(sentenceOf(effect, model));
+}
+
 std::optional<Total> totalOf(const std::string& path, const ModelDocument& model) {
   const VehicleModel& vehicle = model.vehicle;
   if (path == "command_delay.delay" && vehicle.delay != 0.0)

@@ -16,6 +16,9 @@ std::string sentenceOf(const FoundEffect& effect);
 /// The same; of a term that acts on top of what the model had with their sum, too.
 std::string sentenceOf(const FoundEffect& effect, const ModelDocument& model);
 
+/// The same behind the effect's name.
+std::string titledSentenceOf(const FoundEffect& effect, const ModelDocument& model);
+
 /// One sentence for each term of the model that is another one now.
 std::vector<std::string> movedSentences(const Finding& finding);
 

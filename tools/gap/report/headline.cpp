@@ -188,7 +188,7 @@ std::vector<std::string> closingLines(const Finding& finding) {
     if (!finding.effects.empty()) lines.push_back(std::string("  ") + kNoResult);
   }
   for (const FoundEffect& effect : finding.effects)
-    lines.push_back("  " + sentenceOf(effect, finding.after));
+    lines.push_back("  " + titledSentenceOf(effect, finding.after));
   for (const std::string& sentence : movedSentences(finding)) lines.push_back("  " + sentence);
   if (!finding.unexplained.empty())
     lines.push_back("  Unexplained: " + remainsOf(finding.unexplained) + ".");
@@ -205,9 +205,11 @@ std::vector<Block> firstBlocks(const Finding& finding) {
   if (!words.empty()) blocks.push_back(Paragraph{words});
   if (finding.verdict == Verdict::kCannotTell && !finding.effects.empty())
     blocks.push_back(Paragraph{kNoResult});
+  Points sentences;
   for (const FoundEffect& effect : finding.effects)
-    blocks.push_back(Paragraph{sentenceOf(effect, finding.after)});
-  for (const std::string& sentence : movedSentences(finding)) blocks.push_back(Paragraph{sentence});
+    sentences.items.push_back(titledSentenceOf(effect, finding.after));
+  for (const std::string& sentence : movedSentences(finding)) sentences.items.push_back(sentence);
+  if (!sentences.items.empty()) blocks.push_back(sentences);
   if (!finding.unexplained.empty()) {
     blocks.push_back(Paragraph{"Unexplained: " + remainsOf(finding.unexplained) + "."});
   }
