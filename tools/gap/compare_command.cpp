@@ -25,18 +25,10 @@ struct Options {
   int threads = 1;
 };
 
-/// Whoever compares wants to know what is wrong with the logs first.
-Drive readSoundDrive(const std::string& path, const ModelDocument& model) {
-  Drive drive = readDriveFor(model, path);
-  for (const HygieneNote& note : drive.notes)
-    if (note.fatal) throw std::runtime_error(path + ": " + note.what);
-  return drive;
-}
-
 int compare(const Options& options) {
   const ModelDocument model = readModelDocument(options.model);
-  const Drive first = readSoundDrive(options.first, model);
-  const Drive second = readSoundDrive(options.second, model);
+  const Drive first = readSoundDriveFor(model, options.first);
+  const Drive second = readSoundDriveFor(model, options.second);
   if (first.sha256 == second.sha256)
     throw std::runtime_error(options.second + ": the same file as the first; give two logs");
   requireSameRobot(first, second);

@@ -19,4 +19,13 @@ Drive readDriveFor(const ModelDocument& model, const std::string& path) {
                            "; give a model with kind: " + (power ? "power" : "track_speed"));
 }
 
+Drive readSoundDriveFor(const ModelDocument& model, const std::string& path) {
+  Drive drive = readDriveFor(model, path);
+  for (const HygieneNote& note : drive.notes)
+    if (note.fatal) throw std::runtime_error(path + ": " + note.what);
+  if (drive.executions.empty())
+    throw std::runtime_error(path + ": nothing was driven for two seconds; give a log of a drive");
+  return drive;
+}
+
 }  // namespace tread::gap

@@ -13,4 +13,7 @@ namespace tread::gap {
 /// another robot: its commands are of another kind than the model's, or for another gauge.
 Drive readDriveFor(const ModelDocument& model, const std::string& path);
 
+/// The same, and throws if the log is not sound or nothing was driven in it.
+Drive readSoundDriveFor(const ModelDocument& model, const std::string& path);
+
 }  // namespace tread::gap

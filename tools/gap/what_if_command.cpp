@@ -64,12 +64,17 @@ void whatIf(const Options& options) {
   const ModelDocument other = changed(model, options.change);
   const std::vector<Comparison> comparisons = compareModels(model, other, circumstancesOf(options));
   std::vector<LogComparison> on_log;
-  if (!options.log.empty())
-    on_log.push_back(compareOnLog(readDriveFor(model, options.log), model, other));
+  std::string lost;
+  if (!options.log.empty()) {
+    const Drive drive = readSoundDriveFor(model, options.log);
+    lost = drive.lost;
+    on_log.push_back(compareOnLog(drive, model, other));
+  }
   const std::string question = questionOf(options.change);
   const std::string setting = settingOf(model, other, options.model, options.log);
   std::cout << question << "\n" << setting << "\n\n" << textOf(comparisons);
   for (const LogComparison& comparison : on_log) std::cout << '\n' << textOf(comparison);
+  if (!lost.empty()) std::cout << lost << '\n';
   if (!options.out.empty())
     recordings::writeText(
         options.out,

@@ -201,9 +201,17 @@ TEST_CASE("of a truncated log the whole events are compared, and what was lost i
   CHECK(long_enough.status == 0);
   CHECK(long_enough.says("ends in the middle of an event"));
   std::filesystem::resize_file(folder.path("cut.lcmlog"), size / 2);
+  const Run what_if = run("what-if --add slip_ratio --log " + folder.path("cut.lcmlog") +
+                          " --model " + kModels + "warthog_asphalt.yaml");
+  CHECK(what_if.says("ends in the middle of an event"));
   const Run too_short = run(compare);
   CHECK(too_short.status == 2);
   CHECK(too_short.says("too little to tell chance from cause"));
+  std::filesystem::resize_file(folder.path("cut.lcmlog"), 1000);
+  const Run nothing = run("what-if --add slip_ratio --log " + folder.path("cut.lcmlog") +
+                          " --model " + kModels + "warthog_asphalt.yaml");
+  CHECK(nothing.status == 2);
+  CHECK(nothing.says("cut.lcmlog: "));
 }
 
 }  // namespace tread::gap
