@@ -96,6 +96,14 @@ TEST_CASE("a name that is open is marked under PARTIAL, too, and what it could b
             "vehicle. To tell: Measure the lever arm with a tape."));
 }
 
+TEST_CASE("the latency that a delay may be is not the one that the model may have beside it") {
+  FoundEffect delay = effect("command_delay");
+  delay.group = {"ins_latency"};
+  CHECK(headline(Verdict::kAmbiguous, {delay, effect("ins_latency")}) ==
+        "Found: INS latency; and Command delay or INS latency of poses and gyro alike: this drive "
+        "cannot tell them apart");
+}
+
 TEST_CASE("two effects that may be taken for each other are one pair, whichever was found first") {
   const Finding finding = withEffects(
       Verdict::kPartial,

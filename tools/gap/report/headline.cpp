@@ -59,7 +59,7 @@ std::string eitherOr(const FoundEffect& effect) {
   std::vector<std::string> names = rivalsOf(effect);
   if (names.size() > kReadable)
     return shortTitleOf(effect.name) + " or one of " + std::to_string(names.size()) + " others";
-  for (std::string& name : names) name = inSentence(shortTitleOf(name));
+  for (std::string& name : names) name = rivalTitle(effect.name, name);
   names.insert(names.begin(), shortTitleOf(effect.name));
   return joined(names, "or");
 }
@@ -93,7 +93,7 @@ std::string foundWords(const Finding& finding) {
 void addRivals(const Finding& finding, Points& points) {
   for (const FoundEffect* effect : found(finding, false)) {
     std::vector<std::string> rivals = rivalsOf(*effect);
-    for (std::string& rival : rivals) rival = inSentence(shortTitleOf(rival));
+    for (std::string& rival : rivals) rival = rivalTitle(effect->name, rival);
     points.items.push_back(shortTitleOf(effect->name) + " could also be " + joined(rivals, "or") +
                            ". To tell: " + joinedSentences(waysToTell(*effect)));
   }

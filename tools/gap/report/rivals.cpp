@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/vehicle/degeneracy.hpp"
+#include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {
@@ -30,6 +31,13 @@ std::vector<std::string> rivalsOf(const FoundEffect& effect) {
     if (isAsGood(runner_up) && !contains(names, runner_up.effect))
       names.push_back(runner_up.effect);
   return names;
+}
+
+std::string rivalTitle(const std::string& found, const std::string& other) {
+  const std::string title = inSentence(shortTitleOf(other));
+  // A model may have a latency of the poses alone, which is another one.
+  return found == "command_delay" && other == "ins_latency" ? title + " of poses and gyro alike"
+                                                            : title;
 }
 
 std::vector<std::string> waysToTell(const FoundEffect& effect) {

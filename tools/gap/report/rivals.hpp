@@ -18,6 +18,9 @@ inline bool isAsGood(const RunnerUp& runner_up) {
 /// are as good.
 std::vector<std::string> rivalsOf(const FoundEffect& effect);
 
+/// What another effect is called beside a found one, within a sentence.
+std::string rivalTitle(const std::string& found, const std::string& other);
+
 /// What tells an effect from its rivals: of the degeneracy table, else of the catalogue.
 std::vector<std::string> waysToTell(const FoundEffect& effect);
 

@@ -32,7 +32,7 @@ std::string groupWords(const std::string& effect, const std::string& other) {
 }
 
 std::string twinWords(const RivalPair& pair) {
-  return shortTitleOf(pair.found) + " or " + inSentence(shortTitleOf(pair.other)) +
+  return shortTitleOf(pair.found) + " or " + rivalTitle(pair.found, pair.other) +
          ": this drive cannot tell them apart." + groupWords(pair.found, pair.other);
 }
 
