@@ -16,7 +16,7 @@ using namespace tread::importer;
 
 namespace {
 
-constexpr int kBadInput = 2;  // as the gap workflow's programs
+constexpr int kBadInput = 2;  // and whatever else keeps the log from being made, as tread-gap
 
 struct Arguments {
   std::string format;

@@ -69,7 +69,7 @@ TEST_CASE("a truncated recording is one line, and no log is left behind") {
   const Outcome import =
       call("tread-import --format steps --sessions " + folder.file("sessions.csv", sessions(242)) +
            " " + csv + " -o " + log);
-  REQUIRE(import.code == 1);
+  REQUIRE(import.code == 2);
   REQUIRE(lines(import.said) == 1);
   REQUIRE(import.said.find("drive.csv:122: ") != std::string::npos);
   REQUIRE_FALSE(std::filesystem::exists(log));
@@ -81,7 +81,7 @@ TEST_CASE("a log that does not fit on the disk is one line, not a success") {
   const Outcome import =
       call("tread-import --format steps --sessions " + folder.file("sessions.csv", sessions(242)) +
            " " + csv + " -o /dev/full");
-  REQUIRE(import.code == 1);
+  REQUIRE(import.code == 2);
   REQUIRE(lines(import.said) == 1);
   REQUIRE(import.said.find("/dev/full: cannot be written") != std::string::npos);
 }
@@ -92,7 +92,7 @@ TEST_CASE("executions of a length that is no whole number of commands are refuse
   const Outcome import =
       call("tread-import --format steps --length 0.12 --sessions " +
            folder.file("sessions.csv", sessions(242)) + " " + csv + " -o " + folder.file("x.log"));
-  REQUIRE(import.code == 1);
+  REQUIRE(import.code == 2);
   REQUIRE(lines(import.said) == 1);
   REQUIRE(import.said.find("--length") != std::string::npos);
 }
