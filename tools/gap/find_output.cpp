@@ -64,6 +64,7 @@ bool hasNewModel(const Finding& finding) {
 }
 
 void tryFolder(const std::string& folder) {
+  if (folder.empty()) refuse("--out", "its name is empty");
   fs::path there = fs::absolute(folder);
   std::error_code failure;
   while (!fs::exists(there, failure) && there.has_relative_path()) there = there.parent_path();

@@ -121,6 +121,7 @@ TEST_CASE("a folder that cannot be written is told before anything is read") {
     CHECK(bad.says(words));
     CHECK(std::count(bad.printed.begin(), bad.printed.end(), '\n') == 1);
   }
+  CHECK(run(find + "''").says("(its name is empty)"));
 }
 
 TEST_CASE("a log that is too short cannot tell: status 15, the reason, and no model") {

@@ -11,6 +11,7 @@
 #include "tools/gap/report/effect_words.hpp"
 #include "tools/gap/report/gap_words.hpp"
 #include "tools/gap/report/headline.hpp"
+#include "tools/gap/report/pictures.hpp"
 #include "tools/gap/report/rivals.hpp"
 #include "tools/gap/report/sections.hpp"
 
@@ -128,7 +129,17 @@ TEST_CASE("dead reckoning is the best possible only where the model does not bea
   CHECK(has(gainOf(gap), "about the best that is possible"));
   gap.after.position.median = 0.2;
   CHECK_FALSE(has(gainOf(gap), "best"));
+  CHECK_FALSE(has(gapPicture(gap, false), "floor"));
+  CHECK(has(gapPicture(gap, true), "floor"));
   CHECK(has(gainOf(gap), "reaches 0.290 m and 5.73 deg; the new model does better in position."));
+}
+
+TEST_CASE("where fitting the model's numbers is what makes it agree, the headline says so") {
+  Finding finding = samples::finding(Verdict::kNoDiscrepancy);
+  CHECK(has(headlineOf(finding), "agree, once the model's own numbers are fitted"));
+  CHECK(has(report(finding), "With them: What the model predicts"));
+  finding.gap->after = finding.gap->before;
+  CHECK(headlineOf(finding) == "Simulation and measurement agree");
 }
 
 TEST_CASE("what got worse on unseen driving is named") {
@@ -150,6 +161,10 @@ TEST_CASE("what got worse on unseen driving is named") {
 TEST_CASE("what find prints at its end begins with the verdict and tells what remains") {
   const std::vector<std::string> lines = closingLines(samples::finding(Verdict::kPartial));
   CHECK(lines.front().find("PARTIAL: Found: ") == 0);
+  CHECK(closingLines(samples::finding(Verdict::kFound)).front() ==
+        "FOUND: Limit of turning power and Left-right asymmetry");
+  CHECK(has(closingLines(samples::finding(Verdict::kAmbiguous)).back(),
+            "To tell: Measure the lever arm with a tape."));
   CHECK(std::count(lines.begin(), lines.end(),
                    "  Unexplained: the yaw rate residual depends on speed x yaw rate.") == 1);
 }

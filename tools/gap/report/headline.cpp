@@ -20,6 +20,10 @@ constexpr size_t kNamed = 3;  // effects that a line or a list of the first scre
 /// Before what a fit came to that is none to build on.
 constexpr const char* kNoResult = "Where the fit ended, to look at and not to use:";
 
+constexpr const char* kFittedNumbers =
+    "Numbers that the model already has were fitted to the log; they stand under the parameters. "
+    "With them: ";
+
 /// Effects of the model that are other ones now.
 std::vector<std::string> movedIn(const Finding& finding) {
   std::vector<std::string> names;
@@ -135,10 +139,20 @@ void addNext(const Finding& finding, std::vector<Block>& blocks) {
   if (!points.items.empty()) blocks.push_back(points);
 }
 
+/// Whether model and log agree only because numbers that the model has were fitted to the log.
+bool isMadeByFit(const Finding& finding) {
+  constexpr double kMuch = 0.75;
+  if (!finding.gap || finding.calibrated.empty()) return false;
+  const Gap& gap = *finding.gap;
+  return gap.after.position.median < kMuch * gap.before.position.median ||
+         gap.after.yaw.median < kMuch * gap.before.yaw.median;
+}
+
 std::string opening(const Finding& finding) {
   switch (finding.verdict) {
     case Verdict::kNoDiscrepancy:
-      return std::string(
+      return std::string(isMadeByFit(finding) ? kFittedNumbers : "") +
+             std::string(
                  "What the model predicts and what the INS measured differ by no more than chance, "
                  "over the whole catalogue and on all variables. Which effects would have been "
                  "seen, "
@@ -164,7 +178,8 @@ std::string opening(const Finding& finding) {
 std::string headlineOf(const Finding& finding) {
   switch (finding.verdict) {
     case Verdict::kNoDiscrepancy:
-      return "Simulation and measurement agree";
+      return std::string("Simulation and measurement agree") +
+             (isMadeByFit(finding) ? ", once the model's own numbers are fitted" : "");
     case Verdict::kFound:
     case Verdict::kAmbiguous:
       return foundWords(finding);
@@ -180,9 +195,21 @@ std::string headlineOf(const Finding& finding) {
   return "";
 }
 
+namespace {
+
+/// "FOUND: Limit of turning power": the verdict's name says what the headline begins with.
+std::string verdictLine(const Finding& finding) {
+  const std::string found = "Found: ";
+  std::string headline = headlineOf(finding);
+  if (finding.verdict == Verdict::kFound && headline.find(found) == 0)
+    headline.erase(0, found.size());
+  return std::string(verdictName(finding.verdict)) + ": " + headline;
+}
+
+}  // namespace
+
 std::vector<std::string> closingLines(const Finding& finding) {
-  std::vector<std::string> lines{std::string(verdictName(finding.verdict)) + ": " +
-                                 headlineOf(finding)};
+  std::vector<std::string> lines{verdictLine(finding)};
   if (finding.verdict == Verdict::kCannotTell) {
     lines.push_back("  " + finding.reason);
     if (!finding.effects.empty()) lines.push_back(std::string("  ") + kNoResult);
@@ -196,6 +223,9 @@ std::vector<std::string> closingLines(const Finding& finding) {
   lines.push_back("  " + gainOf(*finding.gap));
   const std::string worse = worseOf(*finding.gap);
   if (!worse.empty()) lines.push_back("  " + worse);
+  Points rivals;
+  if (finding.verdict == Verdict::kAmbiguous) addRivals(finding, rivals);
+  for (const std::string& rival : rivals.items) lines.push_back("  " + rival);
   return lines;
 }
 

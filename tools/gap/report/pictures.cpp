@@ -214,10 +214,12 @@ std::string gapPicture(const Gap& gap, bool yaw) {
   if (gap.floor) chart.field({2.7, 0.0}, {3.3, median(*gap.floor)}, kGrey);
   chart.labelBelow(1.0, "before");
   chart.labelBelow(2.0, "after");
-  if (gap.floor) chart.labelBelow(3.0, "floor");
+  // No floor where the model is below it.
+  const std::string floor = gap.floor && after < median(*gap.floor) ? "dead reckoning" : "floor";
+  if (gap.floor) chart.labelBelow(3.0, floor);
   chart.legend("before " + threeDigits(before), kBeforeColour);
   chart.legend("after " + threeDigits(after), kAfterColour);
-  if (gap.floor) chart.legend("floor " + threeDigits(median(*gap.floor)), kGrey);
+  if (gap.floor) chart.legend(floor + " " + threeDigits(median(*gap.floor)), kGrey);
   return chart.svg();
 }
 
