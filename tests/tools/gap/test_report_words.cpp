@@ -137,7 +137,7 @@ TEST_CASE("dead reckoning is the best possible only where the model does not bea
 TEST_CASE("where fitting the model's numbers is what makes it agree, the headline says so") {
   Finding finding = samples::finding(Verdict::kNoDiscrepancy);
   CHECK(has(headlineOf(finding), "agree, once the model's own numbers are fitted"));
-  CHECK(has(report(finding), "With them: What the model predicts"));
+  CHECK(has(report(finding), "That done: What the model predicts"));
   finding.gap->after = finding.gap->before;
   CHECK(headlineOf(finding) == "Simulation and measurement agree");
 }

@@ -16,7 +16,7 @@ constexpr double kPrecedes = 0.1;  // of correlation^2 that a motion before its 
 constexpr double kLagStep = 0.6;   // [s] by which no vehicle's lag changes within a drive
 constexpr double kBetterSquare = 0.25;  // of correlation^2 that another lag must explain more
 constexpr double kLagGrid = 0.02;       // [s] between lags of the gyro that are tried
-constexpr const char* kFitted = "; how late it is, the fit says (INS latency)";
+constexpr const char* kFitted = "; how late the heading is, the fit says (INS latency)";
 constexpr const char* kAhead = "; the heading is ahead of the gyro: are both stamped by one clock?";
 constexpr double kPart = 60.0;  // [s] of increments
 

@@ -38,7 +38,8 @@ const std::vector<Advice>& advices() {
   static const std::vector<Advice> all{
       {Verdict::kNoDiscrepancy,
        "nothing beyond chance; the report says from which size on each effect would have been seen",
-       "Keep the model. To look deeper, drive longer or what this drive did not show."},
+       "Keep the model (after --calibrate: take model.yaml). To look deeper, drive longer or what "
+       "this drive did not show."},
       {Verdict::kFound, "effects by name, with sizes and intervals; the model has them in",
        "Check each in two minutes, as the report says; run find with --test and a log of another "
        "day; then take model.yaml."},

@@ -22,7 +22,7 @@ constexpr const char* kNoResult = "Where the fit ended, to look at and not to us
 
 constexpr const char* kFittedNumbers =
     "Numbers that the model already has were fitted to the log; they stand under the parameters. "
-    "With them: ";
+    "That done: ";
 
 /// Effects of the model that are other ones now.
 std::vector<std::string> movedIn(const Finding& finding) {
