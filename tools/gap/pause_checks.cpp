@@ -129,11 +129,19 @@ void checkPauses(const LogMessages& messages, NoteBook& notes) {
     const Motion& least = with_motor ? kTogetherWithMotor : kAlone;
     const auto before = beside(ins, i - 1, -1);
     const auto after = beside(ins, i, 1);
-    if (!before || !after || !before->moves(least) || !after->moves(least)) continue;
+    if (!before || !after) continue;
+    const std::string place = " at " + digits(messages.seconds(ins[i - 1].utime)) + " s";
+    if (!before->moves(least) || !after->moves(least)) {
+      if (with_motor)
+        notes.note("INS and MOTOR are silent for " + digits(1e-6 * static_cast<double>(step), 2) +
+                   " s" + place +
+                   " and miss no number, while the robot stands: if its clock jumped there, what "
+                   "depends on time is wrong");
+      continue;
+    }
     const Pause pause = pauseBetween(*before, *after, step);
     if (!stoodStill(pause, with_motor)) continue;
-    return notes.fatal(
-        lineOf(pause, " at " + digits(messages.seconds(ins[i - 1].utime)) + " s", with_motor));
+    return notes.fatal(lineOf(pause, place, with_motor));
   }
 }
 

@@ -115,6 +115,7 @@ TEST_CASE("a silence in which time went on is no clock jump") {
     drive(log, 23.0, 25.0, {}, there);
     drive(log, 25.0, 40.0, {0.5, 0.0, 0.1}, there);
     CHECK(fatal(log.sorted()) == "");
+    CHECK(noted(log.sorted(), "and miss no number, while the robot stands: if its clock jumped"));
   }
   SECTION("the robot drove on") {
     SmallLog log;
