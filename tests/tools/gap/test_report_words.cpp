@@ -184,6 +184,8 @@ TEST_CASE("a parameter at the end of what is plausible is marked, with what to d
   finding.verdict = Verdict::kCannotTell;
   CHECK(has(report(finding), "or leave it out: --reject lag_asymmetry."));
   CHECK(has(report(finding), "No model was written."));
+  CHECK_FALSE(has(report(finding), "new model holds"));
+  CHECK(has(report(finding), "## Parameters where the fit ended"));
   CHECK_FALSE(hasNewModel(finding));
 }
 

@@ -62,7 +62,7 @@ const std::vector<Advice>& advices() {
       {Verdict::kCannotTell,
        "too little driving, a log that is not sound, or a size that is no measurement; no model is "
        "written",
-       "Do what the reason says: mend the log, or drive what is missing."}};
+       "Mend the log, or drive what is missing; the reason says which."}};
   return all;
 }
 

@@ -129,9 +129,13 @@ void addNext(const Finding& finding, std::vector<Block>& blocks) {
   Points points;
   if (finding.verdict == Verdict::kCannotTell) {
     addUnsized(finding, points);
-    if (!finding.not_excited.empty())
-      points.items.push_back("This drive would not have shown: " + titlesOf(finding.not_excited) +
-                             ".");
+    const size_t unseen = finding.not_excited.size();
+    if (unseen > 0)
+      points.items.push_back("This drive would not have shown " +
+                             (unseen <= kNamed
+                                  ? inSentence(shortTitlesOf(finding.not_excited)) + "."
+                                  : std::to_string(unseen) +
+                                        " effects; they stand below, with what would show them."));
   } else {
     addRivals(finding, points);
     if (finding.verdict != Verdict::kAmbiguous) addChecks(finding, points);

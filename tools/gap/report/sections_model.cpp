@@ -69,7 +69,9 @@ Points highCorrelations(const ParameterCovariance& covariance) {
 }  // namespace
 
 Section effectsSection(const Finding& finding) {
-  Section section{"What was found", {}};
+  Section section{
+      finding.verdict == Verdict::kCannotTell ? "Effects where the fit ended" : "What was found",
+      {}};
   for (const FoundEffect& found : finding.effects) {
     const Effect& effect = effectNamed(found.name);
     section.blocks.push_back(Paragraph{
@@ -86,7 +88,9 @@ Section effectsSection(const Finding& finding) {
 }
 
 Section parametersSection(const Finding& finding) {
-  Section section{"Parameters of the new model", {}};
+  Section section{finding.verdict == Verdict::kCannotTell ? "Parameters where the fit ended"
+                                                          : "Parameters of the new model",
+                  {}};
   Table table{
       {"term", "parameter", "before", "now", "95 % interval", "plausible", "in all"}, {}, 2};
   for (const FoundEffect& effect : finding.effects)
@@ -106,7 +110,7 @@ Section parametersSection(const Finding& finding) {
 
 Section envelopeSection(const Finding& finding) {
   Section section{"Where the new model holds", {}};
-  if (!finding.after.envelope) return section;
+  if (!finding.after.envelope || finding.verdict == Verdict::kCannotTell) return section;
   const Envelope& envelope = *finding.after.envelope;
   section.blocks.push_back(Paragraph{
       "It was made from motions up to " + said(envelope.v, "m/s") + ", " +
