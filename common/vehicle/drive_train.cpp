@@ -43,6 +43,20 @@ Followed follow(double value, double target, double lag, double inverse_limit, d
   return {((value + turn) / 2.0 * ramp + rest.mean * (dt - ramp)) / dt, rest.end};
 }
 
+Followed follow(double value, const MovingTarget& target, double lag, double dt) {
+  if (lag <= 0.0) return {target.mean, target.to};
+  // With s = t / dt the target is from + slope s + bend s^2; what follows it for good is
+  // target - lag target' + lag^2 target''.
+  const double bend = 3.0 * (target.from + target.to) - 6.0 * target.mean;
+  const double slope = target.to - target.from - bend;
+  const double share = lag / dt;
+  const double bent = 2.0 * share * share * bend;
+  const double behind_from = target.from - share * slope + bent;
+  const double behind_to = target.to - share * (slope + 2.0 * bend) + bent;
+  const double end = behind_to + (value - behind_from) * std::exp(-dt / lag);
+  return {target.mean - share * (end - value), end};
+}
+
 double suppliedSpeed(const EffectValues& effects, double asked, double session_time, double drop) {
   double speed = asked;
   if (effects.motor_deadband != 0.0) speed = deadZone(speed, effects.motor_deadband);

@@ -18,6 +18,16 @@ Followed follow(double value, double target, double lag, double dt);
 /// The same with a rate of at most 1 / inverse_limit (0 = no limit): a ramp, then the lag; exact.
 Followed follow(double value, double target, double lag, double inverse_limit, double dt);
 
+/// A target that runs from one value to another over a step, with that mean: a parabola.
+struct MovingTarget {
+  double from;
+  double mean;
+  double to;
+};
+
+/// First-order lag [s] behind a moving target over dt; exact.
+Followed follow(double value, const MovingTarget& target, double lag, double dt);
+
 /// What one track and its motor remember.
 struct TrackState {
   double speed = 0.0;  ///< [m/s] of the drive, after its lag

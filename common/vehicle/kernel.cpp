@@ -48,7 +48,8 @@ VehicleKernel::VehicleKernel(const VehicleModel& model, const EntryState& entry,
       acting_(entry.command) {
   setNoise(noise);
   const ChangesInForce changes = changesAt(model_.effects, context_.session_time, 0.0);
-  body_ = entry.body ? *entry.body : groundMotion(model_, noise_, changes, entry.track_speeds);
+  led_to_ = groundMotion(model_, noise_, changes, entry.track_speeds);
+  body_ = entry.body ? *entry.body : led_to_;
 }
 
 void VehicleKernel::setNoise(const ExecutionNoise& noise) {
@@ -89,13 +90,29 @@ void VehicleKernel::integrateStep(const TrackCommand& asked, double dt) {
                 driveTrack(model_, supplied(model_, context_, asked.right), -1.0, dt, right_)};
   const ChangesInForce changes = changesAt(effects, context_.session_time, dt);
   const PlaneMotion steady = groundMotion(model_, noise_, changes, on_ground_);
-  const Followed v = follow(body_.v, steady.v, effects.body_inertia, dt);
-  const Followed omega = follow(body_.omega, steady.omega, effects.yaw_inertia, dt);
   const Twist2 v_body =
-      bodyTwist(effects, tan_crab_, changes, context_, on_ground_, {v.mean, omega.mean});
+      bodyTwist(effects, tan_crab_, changes, context_, on_ground_, moveBody(changes, steady, dt));
   T_start_body_ = T_start_body_ * integrate(v_body, dt);
-  body_ = {v.end, omega.end};
   context_.session_time += dt;
+}
+
+PlaneMotion VehicleKernel::moveBody(const ChangesInForce& changes, const PlaneMotion& mean,
+                                    double dt) {
+  const EffectValues& effects = model_.effects;
+  if (effects.body_inertia <= 0.0 && effects.yaw_inertia <= 0.0) {
+    body_ = mean;
+    return mean;
+  }
+  // Tracks without a lag jump to where they stay; of slack only means are known.
+  const bool gradual = model_.driveLag() > 0.0 && effects.track_backlash == 0.0;
+  const PlaneMotion begin = gradual ? led_to_ : mean;
+  const PlaneMotion end = gradual ? groundMotion(model_, noise_, changes, trackSpeeds()) : mean;
+  const Followed v = follow(body_.v, {begin.v, mean.v, end.v}, effects.body_inertia, dt);
+  const Followed omega =
+      follow(body_.omega, {begin.omega, mean.omega, end.omega}, effects.yaw_inertia, dt);
+  led_to_ = end;
+  body_ = {v.end, omega.end};
+  return {v.mean, omega.mean};
 }
 
 Twist2 VehicleKernel::twist() const {

@@ -92,6 +92,8 @@ class VehicleKernel {
 
   void advance(double duration);
   void integrateStep(const TrackCommand& asked, double dt);
+  /// Forward speed and yaw rate of a body that follows the tracks over dt; its mean meanwhile.
+  PlaneMotion moveBody(const ChangesInForce& changes, const PlaneMotion& mean, double dt);
 
   VehicleModel model_;
   ExecutionNoise noise_;
@@ -102,6 +104,7 @@ class VehicleKernel {
   TrackState right_;
   TrackCommand on_ground_;  ///< [m/s] mean speeds of the tracks in the last step of integration
   PlaneMotion body_;
+  PlaneMotion led_to_;  ///< by the tracks at the end of the last step, for the body's inertia
   TrackCommand acting_;
   std::deque<Waiting> waiting_;
   double time_ = 0.0;

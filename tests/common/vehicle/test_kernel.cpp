@@ -48,6 +48,22 @@ TEST_CASE("A steady command from its steady motion drives the circle of the clos
   CHECK(poses.back().yaw > 2.0 * kPi);  // unwrapped
 }
 
+TEST_CASE("A body behind lagging tracks moves the same in long steps and in short ones") {
+  VehicleModel model = plainModel();
+  model.effect("yaw_inertia", "lag") = 0.03;
+  model.effect("body_inertia", "lag") = 0.08;
+  const auto drivenWith = [&model](double step) {
+    model.step = step;
+    VehicleKernel kernel(model, {});
+    for (const TrackCommand& command : {TrackCommand{0.4, 0.9}, TrackCommand{-0.7, 0.2}})
+      for (int i = 0; i < 6; ++i) kernel.step(command, 0.1);
+    return kernel.pose();
+  };
+  const Pose2 exact = drivenWith(0.0005);
+  expectSame(drivenWith(0.05), exact, 5e-4);
+  expectSame(drivenWith(0.1), exact, 1e-3);
+}
+
 TEST_CASE("From standstill the distance is that of a first-order lag") {
   const VehicleModel model = plainModel();
   const auto poses = simulate(model, held({1.0, 1.0}, 40), 0.05, {});
