@@ -13,6 +13,9 @@ kind: power
 full_speed: 1.2  # m/s
 gauge: 0.43      # m
 lag: 0.15        # s
+effects:
+  yaw_inertia: {lag: 0.03}   # s, a guess: a heavy body is slower than its tracks
+  body_inertia: {lag: 0.03}  # s
 )";
 
 std::vector<HiddenCase> quickSuite(double minutes, uint64_t seed) {
