@@ -30,6 +30,7 @@ struct Options {
   int64_t seed = 1;
   int threads = 1;
   bool calibrate = false;
+  bool keep_small = false;
   std::vector<std::string> accepted;
   std::vector<std::string> rejected;
   std::string by;
@@ -105,6 +106,7 @@ int find(const Options& options) {
   task.seed = static_cast<uint64_t>(options.seed);
   task.threads = options.threads;
   task.calibrate = options.calibrate;
+  task.keep_small = options.keep_small;
   makeFolder(options.out);
   const Finding finding = findGap(task, say);
   writeFinding(options.out, finding, inputs);
@@ -132,6 +134,9 @@ CLI::App* addFind(CLI::App& app, int& status) {
   command->add_flag("--calibrate", options->calibrate,
                     "fit lag, delay and gains of the nominal model, too: makes the model of a new "
                     "vehicle from a long log");
+  command->add_flag("--keep-small", options->keep_small,
+                    "effects that are real stay in the model, even if they change the end error "
+                    "by less than 1 %: for a model that others are to be compared with");
   command
       ->add_option("--accept", options->accepted,
                    "effects that are in the model from the start and stay, whatever the tests say")

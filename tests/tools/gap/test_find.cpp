@@ -12,17 +12,35 @@ namespace {
 
 const Progress kSilent = [](const std::string&) {};
 
-/// What is found on a drive of the synthetic vehicle in which numbers were changed.
-Finding findAfter(const std::vector<std::pair<std::string, double>>& hidden, double seconds,
-                  uint64_t seed, int threads = 2) {
+using Values = std::vector<std::pair<std::string, double>>;
+
+/// What is found with a model on a drive of the synthetic vehicle in which numbers were changed.
+Finding findOn(const Values& hidden, const ModelDocument& model, double seconds, uint64_t seed,
+               int threads = 2) {
   ModelDocument truth = syntheticVehicle();
   for (const auto& [path, value] : hidden) *findParameter(truth, path) = value;
   GapTask task;
-  task.model = syntheticVehicle();
+  task.model = model;
   task.seed = seed;
   task.threads = threads;
   task.train.push_back(syntheticDrive(truth, seconds, seed));
   return findGap(task, kSilent);
+}
+
+Finding findAfter(const Values& hidden, double seconds, uint64_t seed, int threads = 2) {
+  return findOn(hidden, syntheticVehicle(), seconds, seed, threads);
+}
+
+/// The synthetic vehicle with terms of which its file says how sure they are.
+ModelDocument sureOf(const Values& known, double deviation) {
+  ModelDocument model = syntheticVehicle();
+  for (const auto& [path, value] : known) {
+    *findParameter(model, path) = value;
+    model.covariance.parameters.push_back(path);
+    model.covariance.matrix.emplace_back(known.size(), 0.0);
+    model.covariance.matrix.back()[model.covariance.matrix.size() - 1] = deviation * deviation;
+  }
+  return model;
 }
 
 std::vector<std::string> namesIn(const Finding& finding) {
@@ -76,6 +94,38 @@ TEST_CASE("what no drive can tell apart is ambiguous, with both names") {
   both.push_back(finding.effects[0].name);
   std::sort(both.begin(), both.end());
   CHECK(both == Names{"icr_offset", "lever_arm_x"});
+}
+
+TEST_CASE("a bias of the gyro is found though it moves no pose") {
+  const Finding finding = findAfter({{"gyro_bias.rate", 0.03}}, 400.0, 10);
+  CHECK(finding.verdict == Verdict::kMeasurement);
+  CHECK(namesIn(finding) == Names{"gyro_bias"});
+}
+
+TEST_CASE("a large effect is found in the shortest drive that counts") {
+  CHECK(namesIn(findAfter({{"lever_arm_y.offset", 0.1}}, 204.0, 11)) == Names{"lever_arm_y"});
+}
+
+TEST_CASE("a term that the model was sure of and that is another now has moved") {
+  const Finding finding = findOn({{"track_width.widening", 0.4}},
+                                 sureOf({{"track_width.widening", 0.2}}, 0.004), 400.0, 12);
+  CHECK(finding.verdict == Verdict::kFound);
+  CHECK(namesIn(finding).empty());
+  REQUIRE(!finding.calibrated.empty());
+  const Estimate& width = finding.calibrated.front();
+  CHECK(width.parameter == "track_width.widening");
+  CHECK(width.moved);
+  CHECK(width.value == Approx(0.4).margin(0.03));
+}
+
+TEST_CASE("terms that the model is sure of do not give way to what is new") {
+  // Free, the two inertias together would be the lag.
+  const Values known{{"yaw_inertia.lag", 0.05}, {"body_inertia.lag", 0.05}};
+  Values hidden = known;
+  hidden.emplace_back("actuator_lag.lag", 0.15);
+  const Finding finding = findOn(hidden, sureOf(known, 0.002), 400.0, 13);
+  CHECK(namesIn(finding) == Names{"actuator_lag"});
+  for (const Estimate& estimate : finding.calibrated) CHECK(!estimate.moved);
 }
 
 TEST_CASE("two hidden effects are both named") {

@@ -77,9 +77,31 @@ TEST_CASE("an effect that is real but does not change where drives end is neglig
   SyntheticNoise noise;
   noise.gyro = 0.002;
   const Rig rig({{"gyro_bias.rate", 0.002}}, 300.0, 3, noise);
-  const SearchResult result = pruned(rig, resultOf(rig, {{"gyro_bias.rate", 0.001}}));
+  const SearchResult begin = resultOf(rig, {{"gyro_bias.rate", 0.001}});
+  const SearchResult result = pruned(rig, begin);
   CHECK(result.effects.empty());
   CHECK(result.negligible == Names{"gyro_bias"});
+  SearchResult kept = begin;
+  pruneEffects(rig.fitter, rig.all, kNeeded, 0.0, kept, kSilent);  // small ones are wanted, too
+  CHECK(kept.effects == Names{"gyro_bias"});
+}
+
+TEST_CASE("an effect that runs to the end of its plausible range goes, for that reason") {
+  const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
+  SearchResult begin;
+  ModelDocument model = syntheticVehicle();
+  model.bounds.push_back({"motor_deadband.speed", 0.0, 0.05});
+  begin.state = rig.fitter.start(model, {}, rig.all);
+  rig.fitter.add(begin.state, freeParameter(model, "motor_deadband.speed"), 0.02, rig.all);
+  rig.fitter.fit(begin.state, rig.all);
+  begin.effects = {"motor_deadband"};
+  begin.p_values["motor_deadband"] = 0.001;
+  const SearchResult result = pruned(rig, begin);
+  CHECK(result.effects.empty());
+  REQUIRE(result.ladder.size() == 1);
+  CHECK(result.ladder[0].remark == "runs to the end of its plausible range");
+  begin.accepted = {"motor_deadband"};
+  CHECK(pruned(rig, begin).effects == Names{"motor_deadband"});
 }
 
 TEST_CASE("without an effect the others are fitted anew, and the loss tells what it was worth") {

@@ -149,6 +149,21 @@ bool isNominalFree(const FitState& state) {
   });
 }
 
+/// Terms that are on, held by what is known of them, may be others now.
+void addReleases(const FitState& state, std::vector<Candidate>& candidates) {
+  for (const FreeParameter& held : state.free) {
+    const size_t dot = held.path.find('.');
+    if (dot == std::string::npos || !std::isfinite(held.deviation)) continue;
+    Candidate release;
+    release.effect = held.path.substr(0, dot);
+    release.parameter = held.path.substr(dot + 1);
+    release.change = held.step;
+    release.value = *findParameter(state.model, held.path) + held.step;
+    release.release = true;
+    candidates.push_back(release);
+  }
+}
+
 /// Effects that are a number of the nominal model under another name.
 void forgetNominal(std::vector<Candidate>& candidates) {
   static const std::set<std::string> kNumbers{"slip_ratio", "track_width", "actuator_lag",
@@ -199,6 +214,7 @@ std::vector<Candidate> candidatesFor(const ModelDocument& model, const Excitatio
 
 std::vector<Candidate> candidatesFor(const FitState& state, const Excitation& most) {
   std::vector<Candidate> candidates = candidatesFor(state.model, most);
+  addReleases(state, candidates);
   if (isNominalFree(state)) forgetNominal(candidates);
   return candidates;
 }
@@ -262,8 +278,13 @@ Eigen::MatrixXd directionsOf(const Fitter& fitter, const FitState& state,
 
 void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candidate, double size,
                   const std::vector<char>& mask) {
-  for (const auto& [path, value] : candidate.shapes) numberIn(state.model, path) = value;
   const std::string strength = candidate.effect + "." + candidate.parameter;
+  if (candidate.release) {
+    for (FreeParameter& held : state.free)
+      if (held.path == strength) held.deviation = std::numeric_limits<double>::infinity();
+    return;
+  }
+  for (const auto& [path, value] : candidate.shapes) numberIn(state.model, path) = value;
   // Thresholds begin at their probe, whose slope is known; the others at their first order size.
   const EffectParameter& known = parameterNamed(effectNamed(candidate.effect), candidate.parameter);
   const bool threshold =

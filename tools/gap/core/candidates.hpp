@@ -10,7 +10,8 @@
 
 namespace tread::gap {
 
-/// One direction in which an effect that is off could act, and where a fit of it begins.
+/// One direction in which an effect that is off could act, and where a fit of it begins; or one in
+/// which a term that the model is sure of could be another now (`release`).
 struct Candidate {
   std::string effect;
   std::string parameter;  ///< of the effect: the strength that is switched on
@@ -21,6 +22,7 @@ struct Candidate {
   std::vector<std::pair<std::string, double>> shapes;
   std::vector<std::string> free;  ///< paths that a fit of this candidate frees
   std::string moment;             ///< path of the moment of a change; empty = none
+  bool release = false;           ///< what was known of it beforehand no longer counts
 };
 
 /// The most that a drive demands, in first approximation; limits are probed below it.
@@ -39,8 +41,9 @@ Excitation excitationOf(const Rows& rows, const ModelDocument& model);
  * are another one under a second name (crab, yaw_rate_offset) are left to their groups. */
 std::vector<Candidate> candidatesFor(const ModelDocument& model, const Excitation& excitation);
 
-/// Those of a state: where numbers of the nominal model are free without limits, effects that are
-/// the same under another name are left out.
+/// Those of a state: also releases of effects that are on and held by what is known of them; where
+/// numbers of the nominal model are free without limits, effects that are the same under another
+/// name are left out.
 std::vector<Candidate> candidatesFor(const FitState& state, const Excitation& excitation);
 
 /// Those of one effect, and of one that is another under a second name, too.

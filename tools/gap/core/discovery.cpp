@@ -18,6 +18,7 @@
 #include "tools/gap/core/moments.hpp"
 #include "tools/gap/core/student.hpp"
 #include "tools/gap/core/unseen.hpp"
+#include "tools/gap/core/verdict.hpp"
 
 namespace tread::gap {
 namespace {
@@ -45,6 +46,7 @@ class Discovery {
     measured_ = measuredBlocks(rows_);
     settings_.seed = task.seed;
     settings_.calibrate = task.calibrate;
+    if (task.keep_small) settings_.least_gain = 0.0;
     for (const Decision& decision : task.decisions)
       (decision.accepted ? settings_.accepted : settings_.rejected).push_back(decision.effect);
     settings_.all_sized = true;
@@ -66,7 +68,7 @@ class Discovery {
     requireSized();
     // What was seen but does not matter is no rest without a name.
     const FitState tested = result_.state;
-    if (!result_.effects.empty() && !isConfirmed()) forgetEffects();
+    if (!result_.effects.empty() && !task_.keep_small && !isConfirmed()) forgetEffects();
     finding_.after = result_.state.model;
     describeEffects();
     say_("6 adequacy");
@@ -81,7 +83,7 @@ class Discovery {
     ShownExecutions shown = shownExecutions(unseen_, task_.model, residualNoise());
     finding_.overlays = std::move(shown.overlays);
     finding_.places = std::move(shown.places);
-    judge();
+    judge(finding_, kAdequacyAlpha, settings_.least_gain);
     return std::move(finding_);
   }
 
@@ -112,27 +114,38 @@ class Discovery {
   }
 
   /// Whether the end error falls, by more than its standard error over blocks, on halves of the
-  /// driving that the sizes of the effects were not fitted to.
+  /// driving that the sizes of the effects were not fitted to. Effects of the INS, which may move
+  /// no pose, may lessen what is left of the yaw rate.
   bool isConfirmed() const {
     const auto blocks = static_cast<Eigen::Index>(rows_.blocks());
-    Eigen::MatrixXd with = Eigen::MatrixXd::Zero(blocks, 2);
-    Eigen::MatrixXd lacking = Eigen::MatrixXd::Zero(blocks, 2);
-    for (int half : {0, 1}) {
-      const ModelDocument model = refitted(fitter_, result_, halfMask(half)).model;
-      for (const EndError& error : endErrors(rows_, model))
-        if (error.block % 2 != half) with.row(error.block) += sizeOf(error);
-    }
-    for (const EndError& error : endErrors(rows_, result_.calibrated.model))
-      lacking.row(error.block) += sizeOf(error);
+    Eigen::MatrixXd with = Eigen::MatrixXd::Zero(blocks, 3);
+    for (int half : {0, 1}) addMissed(refitted(fitter_, result_, halfMask(half)), 1 - half, with);
+    Eigen::MatrixXd lacking = Eigen::MatrixXd::Zero(blocks, 3);
+    for (int half : {0, 1}) addMissed(result_.calibrated, half, lacking);
+    const bool measurement =
+        std::all_of(result_.effects.begin(), result_.effects.end(), [](const std::string& effect) {
+          return effectNamed(effect).kind == EffectKind::kMeasurement;
+        });
     const std::vector<char> every(static_cast<size_t>(blocks), 1);
-    for (Eigen::Index i : {0, 1}) {
+    for (Eigen::Index i = 0; i < (measurement ? 3 : 2); ++i) {
       const Gain gain = gainOf(lacking.col(i), with.col(i), every);
       if (gain.value > gain.error) return true;
     }
     return false;
   }
 
-  static Eigen::RowVector2d sizeOf(const EndError& error) { return {error.position, error.yaw}; }
+  /// Adds what a state misses on every other block: position, yaw and yaw rate (blocks x 3).
+  void addMissed(const FitState& state, int half, Eigen::MatrixXd& sums) const {
+    for (const EndError& error : endErrors(rows_, state.model))
+      if (error.block % 2 == half)
+        sums.row(error.block).head(2) += Eigen::RowVector2d(error.position, error.yaw);
+    const Eigen::VectorXd residuals = rows_.residuals(state.predicted);
+    for (size_t i = 0; i < rows_.rows().size(); ++i) {
+      const Row& row = rows_.rows()[i];
+      if (row.channel == Channel::kYawRate && row.block % 2 == half)
+        sums(row.block, 2) += std::abs(residuals[static_cast<Eigen::Index>(i)]);
+    }
+  }
 
   std::vector<char> halfMask(int half) const {
     std::vector<char> mask(all_.size());
@@ -179,10 +192,7 @@ class Discovery {
     finding_.ladder = result_.ladder;
     finding_.candidates = result_.tests;
     for (const CandidateTest& test : result_.tests)
-      if (!isNew(test.effect) &&
-          test.detectable >
-              kInvisible *
-                  std::abs(parameterNamed(effectNamed(test.effect), test.parameter).typical))
+      if (!isNew(test.effect) && !isGiven(test.effect) && !isExcited(test))
         finding_.not_excited.push_back(test.effect);
     documentAfter(covariance);
   }
@@ -195,6 +205,15 @@ class Discovery {
     for (size_t i = 0; i < known.parameters.size(); ++i)
       if (known.parameters[i] == estimate.parameter) variance += known.matrix[i][i];
     return std::abs(estimate.value - estimate.before) > kMoved * std::sqrt(variance);
+  }
+
+  bool isGiven(const std::string& effect) const {
+    return isOn(effectNamed(effect), task_.model.vehicle.effects, task_.model.measurement);
+  }
+
+  static bool isExcited(const CandidateTest& test) {
+    const double typical = parameterNamed(effectNamed(test.effect), test.parameter).typical;
+    return test.detectable <= kInvisible * std::abs(typical);
   }
 
   bool isNew(const std::string& effect) const {
@@ -319,74 +338,6 @@ class Discovery {
     const Eigen::VectorXd predicted = rows_.predict(finding_.after);
     return estimateNoise(rows_.rows(), rows_.residuals(predicted),
                          activityOf(rows_.rows(), predicted), all_);
-  }
-
-  static bool isAmbiguous(const FoundEffect& effect) {
-    if (!effect.group.empty()) return true;
-    return std::any_of(effect.runner_ups.begin(), effect.runner_ups.end(),
-                       [](const RunnerUp& other) { return other.behind < other.error; });
-  }
-
-  /// A change of what the model already has is a discrepancy, too; false if there is none that
-  /// matters.
-  bool judgeMoved(bool adequate) {
-    const Gap& gap = *finding_.gap;
-    const double least = 1.0 - settings_.least_gain;
-    const bool matters = gap.after.position.median < least * gap.before.position.median ||
-                         gap.after.yaw.median < least * gap.before.yaw.median;
-    bool any = false;
-    bool vehicle = false;
-    for (Estimate& estimate : finding_.calibrated) {
-      estimate.moved = estimate.moved && matters;
-      if (!estimate.moved) continue;
-      any = true;
-      const Effect& effect =
-          effectNamed(estimate.parameter.substr(0, estimate.parameter.find('.')));
-      vehicle = vehicle || effect.kind == EffectKind::kVehicle;
-    }
-    if (!any) return false;
-    finding_.verdict = !adequate ? Verdict::kPartial
-                       : vehicle ? Verdict::kFound
-                                 : Verdict::kMeasurement;
-    return true;
-  }
-
-  void judge() {
-    const bool adequate = finding_.adequacy_p > kAdequacyAlpha;
-    std::vector<FoundEffect> effects;
-    std::copy_if(finding_.effects.begin(), finding_.effects.end(), std::back_inserter(effects),
-                 isShown);
-    if (effects.empty() && judgeMoved(adequate)) {
-      // It says so itself.
-    } else if (effects.empty()) {
-      finding_.verdict = adequate ? Verdict::kNoDiscrepancy : Verdict::kNotInCatalogue;
-    } else if (!adequate) {
-      finding_.verdict = Verdict::kPartial;
-    } else if (std::any_of(effects.begin(), effects.end(), isAmbiguous)) {
-      finding_.verdict = Verdict::kAmbiguous;
-    } else if (std::all_of(effects.begin(), effects.end(), [](const FoundEffect& effect) {
-                 return effect.kind == EffectKind::kMeasurement;
-               })) {
-      finding_.verdict = Verdict::kMeasurement;
-    } else {
-      finding_.verdict = Verdict::kFound;
-    }
-    for (const Estimate& estimate : finding_.calibrated) refuseOnBound(estimate);
-    for (const FoundEffect& effect : finding_.effects)
-      for (const Estimate& estimate : effect.parameters) refuseOnBound(estimate);
-  }
-
-  /// A size at the end of what is plausible is no measurement.
-  void refuseOnBound(const Estimate& estimate) {
-    if (estimate.parameter.find(".time") != std::string::npos || estimate.value == 0.0) return;
-    const FreeParameter parameter = freeParameter(task_.model, estimate.parameter);
-    // Of a delay or lag that the model has, nothing may be left.
-    const bool to_nothing =
-        (estimate.parameter == "command_delay.delay" || estimate.parameter == "actuator_lag.lag") &&
-        estimate.value < 0.0;
-    if (to_nothing || !onBound(finding_.after, parameter)) return;
-    finding_.verdict = Verdict::kCannotTell;
-    finding_.reason = estimate.parameter + " runs to the end of its plausible range";
   }
 
   const GapTask& task_;

@@ -17,6 +17,8 @@ struct GapTask {
   std::vector<HygieneNote> hygiene;  ///< what is known of the logs (stage 0)
   /// Lag, delay and gains of the nominal model are fitted, too: makes a model of a new vehicle.
   bool calibrate = false;
+  /// What is real stays in, however little it changes the end error.
+  bool keep_small = false;
   /// Accepted effects are in the model from the start and stay; rejected ones are never considered.
   std::vector<Decision> decisions;
   uint64_t seed = 1;

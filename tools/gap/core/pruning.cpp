@@ -12,6 +12,7 @@ namespace tread::gap {
 namespace {
 
 constexpr double kSure = 4.0;        // standard errors of a gain beyond doubt
+constexpr double kSureOfFew = 2.5;   // the same where few blocks act, which cannot agree better
 constexpr double kSureNats = 100.0;  // and its least size: smaller ones may be negligible
 
 /// What removing an effect costs.
@@ -19,6 +20,7 @@ struct Removal {
   FitState state;         ///< without it
   double score = 0.0;     ///< T of the whole effect in the presence of the others
   double evidence = 0.0;  ///< over what is needed
+  bool few = false;       ///< few blocks excite it
   Gain gain;              ///< of having it, on blocks left out
 };
 
@@ -45,6 +47,7 @@ Removal judged(const Fitter& fitter, const Eigen::VectorXd& loss_with, FitState 
   const ScoreTest test(fitter.rows(), reduced, direction, mask);
   removed.score = test.score(0);
   removed.evidence = evidence(test, 0, needed);
+  removed.few = isSparse(test, 0, needed.score);
   removed.gain = gainOf(heldOutLoss(fitter.rows(), reduced, mask), loss_with,
                         blocksThatCount(fitter.rows(), mask));
   removed.state = std::move(reduced);
@@ -69,28 +72,39 @@ Removal linearRemoval(const Fitter& fitter, const FitState& state, const Eigen::
   return judged(fitter, loss_with, std::move(reduced), direction, mask, needed);
 }
 
-/// Mean end errors on executions of the mask's blocks: position [m] and yaw [rad].
-std::pair<double, double> meanErrors(const Fitter& fitter, const ModelDocument& model,
-                                     const std::vector<char>& mask) {
-  const std::vector<char> blocks = blocksThatCount(fitter.rows(), mask);
-  double position = 0.0;
+/// What a model misses on the mask's blocks: sums, for comparisons.
+struct Missed {
+  double position = 0.0;  ///< at the ends of executions
   double yaw = 0.0;
-  for (const EndError& error : endErrors(fitter.rows(), model)) {
+  double yaw_rate = 0.0;
+};
+
+Missed missedBy(const Fitter& fitter, const FitState& state, const std::vector<char>& mask) {
+  const std::vector<char> blocks = blocksThatCount(fitter.rows(), mask);
+  Missed missed;
+  for (const EndError& error : endErrors(fitter.rows(), state.model)) {
     if (blocks[static_cast<size_t>(error.block)] == 0) continue;
-    position += error.position;
-    yaw += error.yaw;
+    missed.position += error.position;
+    missed.yaw += error.yaw;
   }
-  return {position, yaw};
+  const Eigen::VectorXd residuals = fitter.rows().residuals(state.predicted);
+  for (size_t i = 0; i < mask.size(); ++i)
+    if (mask[i] && fitter.rows().rows()[i].channel == Channel::kYawRate)
+      missed.yaw_rate += std::abs(residuals[static_cast<Eigen::Index>(i)]);
+  return missed;
 }
 
-/// Relative improvement of the mean end error, of position or yaw, whichever is larger.
-double improvement(const Fitter& fitter, const ModelDocument& old_model,
-                   const ModelDocument& new_model, const std::vector<char>& mask) {
-  const auto before = meanErrors(fitter, old_model, mask);
-  const auto after = meanErrors(fitter, new_model, mask);
+/// Relative improvement of the mean end error, of position or yaw, whichever is larger; of an
+/// effect of the INS, which may move no pose, also of the yaw rate.
+double improvement(const Fitter& fitter, const FitState& old_state, const FitState& new_state,
+                   const std::string& effect, const std::vector<char>& mask) {
+  const Missed before = missedBy(fitter, old_state, mask);
+  const Missed after = missedBy(fitter, new_state, mask);
   double largest = 0.0;
-  if (before.first > 0.0) largest = std::max(largest, 1.0 - after.first / before.first);
-  if (before.second > 0.0) largest = std::max(largest, 1.0 - after.second / before.second);
+  if (before.position > 0.0) largest = std::max(largest, 1.0 - after.position / before.position);
+  if (before.yaw > 0.0) largest = std::max(largest, 1.0 - after.yaw / before.yaw);
+  if (effectNamed(effect).kind == EffectKind::kMeasurement && before.yaw_rate > 0.0)
+    largest = std::max(largest, 1.0 - after.yaw_rate / before.yaw_rate);
   return largest;
 }
 
@@ -115,8 +129,9 @@ std::vector<std::string> leastSureFirst(const Fitter& fitter, const SearchResult
   return order;
 }
 
-bool isBeyondDoubt(const Gain& gain) {
-  return gain.value > kSure * gain.error && gain.value > kSureNats;
+bool isBeyondDoubt(const Removal& removed) {
+  const double sure = removed.few ? kSureOfFew : kSure;
+  return removed.gain.value > sure * removed.gain.error && removed.gain.value > kSureNats;
 }
 
 /// Whether an effect's prediction is straight down to its absence: not limits, thresholds, shapes.
@@ -150,6 +165,12 @@ class Pruning {
   /// Looks at all, least sure first; true if one went.
   bool removeOne() {
     const Eigen::VectorXd loss = heldOutLoss(fitter_.rows(), result_.state, mask_);
+    for (const std::string& effect : result_.effects) {
+      if (contains(result_.accepted, effect) || !runsToBound(effect)) continue;
+      Removal removed = removal(fitter_, result_.state, loss, effect, mask_, needed_);
+      remove(effect, removed, "runs to the end of its plausible range");
+      return true;
+    }
     for (const std::string& effect : leastSureFirst(fitter_, result_, mask_)) {
       // What is beyond doubt in first order needs no simulation without it.
       Needed needed = needed_;
@@ -157,10 +178,10 @@ class Pruning {
       const bool straight = isStraight(result_.state, effect);
       Removal removed;
       if (straight) removed = linearRemoval(fitter_, result_.state, loss, effect, mask_, needed);
-      const bool sure = straight && removed.evidence >= 1.0 && isBeyondDoubt(removed.gain);
+      const bool sure = straight && removed.evidence >= 1.0 && isBeyondDoubt(removed);
       if (!sure) removed = removal(fitter_, result_.state, loss, effect, mask_, needed);
       const bool stays = sure || contains(result_.accepted, effect);
-      const std::string why = stays ? "" : reasonAgainst(removed);
+      const std::string why = stays ? "" : reasonAgainst(effect, removed);
       if (why.empty()) {
         result_.scores[effect] = removed.score;
         result_.evidence[effect] = removed.evidence;
@@ -173,18 +194,33 @@ class Pruning {
     return false;
   }
 
+  /// A size at the end of what is plausible is no size; of a lag or delay that the model has
+  /// nothing may be left.
+  bool runsToBound(const std::string& effect) const {
+    for (const FreeParameter& parameter : result_.state.free) {
+      const double value = *findParameter(result_.state.model, parameter.path);
+      const bool to_nothing =
+          value < 0.0 && (effect == "actuator_lag" || effect == "command_delay");
+      if (belongsTo(parameter, effect) && parameter.path.find(".time") == std::string::npos &&
+          value != 0.0 && !to_nothing && onBound(result_.state.model, parameter))
+        return true;
+    }
+    return false;
+  }
+
   /// Why an effect should go; empty if it should stay.
-  std::string reasonAgainst(const Removal& removed) const {
+  std::string reasonAgainst(const std::string& effect, const Removal& removed) const {
     // Residuals far beyond the scales pull no more: a large effect shows in its gain.
-    if (removed.evidence < 1.0 && !isBeyondDoubt(removed.gain))
+    if (removed.evidence < 1.0 && !isBeyondDoubt(removed))
       return "chance explains it beside the others";
     if (removed.gain.value <= 0.0) return "does not help on blocks left out";
-    if (improvement(fitter_, removed.state.model, result_.state.model, mask_) < least_gain_)
+    if (least_gain_ > 0.0 &&
+        improvement(fitter_, removed.state, result_.state, effect, mask_) < least_gain_)
       return "real, but negligible: changes the end error by less than 1 %";
     return "";
   }
 
-  void remove(const std::string& effect, Removal& removed, const std::string& why) {
+  void remove(const std::string effect, Removal& removed, const std::string& why) {
     // Plain causes that were only taken in as a cover go without a word.
     const bool was_added = result_.p_values.count(effect) != 0;
     if (why.compare(0, 4, "real") == 0) result_.negligible.push_back(effect);

@@ -20,9 +20,8 @@ FitState withoutLinearly(const Fitter& fitter, const FitState& state, const std:
 
 /// Removes effects, weakest first, that the others make superfluous.
 /** Each that stays passes the score test alone in the presence of the others (evidence() >= 1),
- * improves blocks left out, and the end error by at least `least_gain` of it; accepted ones stay in
- * any case. Fills scores, gains
- * and negligible of the result. */
+ * improves blocks left out, and the end error by at least `least_gain` of it (0 = however little);
+ * accepted ones stay in any case. Fills scores, gains and negligible of the result. */
 void pruneEffects(const Fitter& fitter, const std::vector<char>& mask, const Needed& needed,
                   double least_gain, SearchResult& result, const Progress& say);
 

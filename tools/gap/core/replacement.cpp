@@ -3,6 +3,7 @@
 #include "tools/gap/core/replacement.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "tools/gap/core/pruning.hpp"
@@ -33,7 +34,8 @@ std::vector<Single> imitated(const Fitter& fitter, const std::vector<char>& mask
   for (size_t i = 0; i < candidates.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const Effect& effect = effectNamed(candidates[i].effect);
-    // A second change of ground is part of an effect that is on.
+    // A change early in the drive has more numbers than the two, and is no simpler.
+    if (!candidates[i].moment.empty()) continue;
     if (isOn(effect, state.model.vehicle.effects, state.model.measurement)) continue;
     if (test.uniqueness(at) < kImitated && names.insert(effect.name).second)
       chosen.push_back({candidates[i], directions.col(at)});
@@ -60,7 +62,7 @@ class Replacement {
               const Progress& say)
       : fitter_(fitter), mask_(mask), result_(result), say_(say) {}
 
-  /// True if a pair went.
+  /// True if a pair went: that whose single effect fits best.
   bool replaceOne() {
     if (result_.effects.size() < 2) return false;
     const std::vector<Single> singles = imitated(fitter_, mask_, result_.state, result_.rejected);
@@ -69,18 +71,31 @@ class Replacement {
     for (const Single& single : singles)
       for (size_t a = 0; a < result_.effects.size(); ++a)
         for (size_t b = a + 1; b < result_.effects.size(); ++b)
-          if (tryOne(single, result_.effects[a], result_.effects[b], loss)) return true;
-    return false;
+          tryOne(single, result_.effects[a], result_.effects[b], loss);
+    if (!best_) return false;
+    replace(*best_);
+    best_.reset();
+    return true;
   }
 
  private:
-  bool tryOne(const Single& imitated_one, const std::string& a, const std::string& b,
+  /// One effect in the place of two.
+  struct Exchange {
+    std::string single;
+    std::string a;
+    std::string b;
+    FitState state;
+    Gain pair_gain;
+  };
+
+  /// Keeps the exchange if it is bearable and the best so far.
+  void tryOne(const Single& imitated_one, const std::string& a, const std::string& b,
               const Eigen::VectorXd& loss) {
-    if (contains(result_.accepted, a) || contains(result_.accepted, b)) return false;
+    if (contains(result_.accepted, a) || contains(result_.accepted, b)) return;
     const std::vector<char> counts = blocksThatCount(fitter_.rows(), mask_);
     const FitState nearly = linearlyReplaced(fitter_, mask_, result_.state, imitated_one, a, b);
     const Gain first_order = gainOf(heldOutLoss(fitter_.rows(), nearly, mask_), loss, counts);
-    if (first_order.value > kHopeless * first_order.error + kHopelessNats) return false;
+    if (first_order.value > kHopeless * first_order.error + kHopelessNats) return;
     const Candidate& single = imitated_one.candidate;
     const FitState reduced = switchedOff(fitter_, result_.state, {a, b});
     const ScoreTest test(fitter_.rows(), reduced, directionsOf(fitter_, reduced, {single}), mask_);
@@ -90,41 +105,37 @@ class Replacement {
     for (const FreeParameter& parameter : tried.free)
       if (parameter.path.compare(0, single.effect.size(), single.effect) == 0 &&
           onBound(tried.model, parameter))
-        return false;
+        return;
     // What does not fit as well needs no validation; that is in first order and may be mistaken.
-    if (tried.loss - result_.state.loss > 2.0 * kBearableNats) return false;
+    if (tried.loss - result_.state.loss > 2.0 * kBearableNats) return;
+    if (best_ && tried.loss >= best_->state.loss) return;
     const Gain pair_gain = gainOf(heldOutLoss(fitter_.rows(), tried, mask_), loss,
                                   blocksThatCount(fitter_.rows(), mask_));
-    // A moment may be set anywhere: an effect with one has to be clearly better than two without.
-    const double bearable =
-        single.moment.empty() ? std::min(pair_gain.error, kBearableNats) : -pair_gain.error;
-    if (pair_gain.value > bearable) return false;
-    replace(single.effect, a, b, std::move(tried), pair_gain);
-    return true;
+    if (pair_gain.value > std::min(pair_gain.error, kBearableNats)) return;
+    best_ = Exchange{single.effect, a, b, std::move(tried), pair_gain};
   }
 
-  /// By value: the names come from the list that changes.
-  void replace(const std::string& single, const std::string a, const std::string b, FitState state,
-               const Gain& pair_gain) {
+  void replace(const Exchange& exchange) {
     LadderStep step;
-    step.effect = single;
-    step.gain = -pair_gain.value;
-    step.gain_error = pair_gain.error;
-    step.remark = "in the place of " + a + " and " + b;
+    step.effect = exchange.single;
+    step.gain = -exchange.pair_gain.value;
+    step.gain_error = exchange.pair_gain.error;
+    step.remark = "in the place of " + exchange.a + " and " + exchange.b;
     result_.ladder.push_back(step);
-    say_("  = " + single + " " + step.remark);
+    say_("  = " + exchange.single + " " + step.remark);
     auto& effects = result_.effects;
-    effects.erase(std::remove(effects.begin(), effects.end(), a), effects.end());
-    effects.erase(std::remove(effects.begin(), effects.end(), b), effects.end());
-    effects.push_back(single);
-    result_.replaced[single] = {a, b};
-    result_.state = std::move(state);
+    effects.erase(std::remove(effects.begin(), effects.end(), exchange.a), effects.end());
+    effects.erase(std::remove(effects.begin(), effects.end(), exchange.b), effects.end());
+    effects.push_back(exchange.single);
+    result_.replaced[exchange.single] = {exchange.a, exchange.b};
+    result_.state = exchange.state;
   }
 
   const Fitter& fitter_;
   const std::vector<char>& mask_;
   SearchResult& result_;
   const Progress& say_;
+  std::optional<Exchange> best_;
 };
 
 }  // namespace

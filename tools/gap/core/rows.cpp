@@ -50,14 +50,11 @@ size_t fixAfter(const std::vector<InsSample>& fixes, size_t from, double time) {
   return from;
 }
 
-/// Yaw of poseAt(), at a tenth of its cost: along an arc it is linear in time.
-double yawAt(const std::vector<TimedPose>& motion, double time) {
+/// Yaw of poseAt(), at a tenth of its cost: along an arc it is linear in time. Looks from piece
+/// `i` on, and leaves there where it was found.
+double yawAt(const std::vector<TimedPose>& motion, double time, size_t& i) {
   if (motion.size() < 2) return motion.front().T_map_body.yaw;
-  // Pieces have nearly equal lengths: guess, then walk.
-  const double span = motion.back().time - motion.front().time;
-  const double share = span > 0.0 ? (time - motion.front().time) / span : 0.0;
-  const auto last = static_cast<double>(motion.size() - 2);
-  auto i = static_cast<size_t>(std::clamp(share * (last + 1.0), 0.0, last));
+  if (i + 1 >= motion.size()) i = 0;
   while (i > 0 && motion[i].time > time) --i;
   while (i + 2 < motion.size() && motion[i + 1].time <= time) ++i;
   const TimedPose& from = motion[i];
@@ -79,12 +76,23 @@ const char* channelUnit(Channel channel) {
 
 Rows::Rows(const std::vector<Drive>& drives, const RowSettings& settings)
     : drives_(drives), settings_(settings) {
+  size_t all = 0;
   for (const Drive& drive : drives) {
-    first_stretch_.push_back(plans_.size());
-    for (const Stretch& stretch : drive.stretches)
-      plans_.emplace_back(drive, stretch, settings.piece);
+    first_stretch_.push_back(all);
+    all += drive.stretches.size();
   }
   for (size_t i = 0; i < drives.size(); ++i) addDrive(i, settings.block);
+  // Poses are simulated where rows begin and end, so that nothing is interpolated.
+  std::vector<std::vector<double>> cuts(all);
+  for (const Row& row : rows_)
+    for (double time : {row.begin, row.end})
+      cuts[stretchIndex(row.drive, row.stretch)].push_back(time);
+  for (size_t i = 0; i < drives.size(); ++i)
+    for (size_t s = 0; s < drives[i].stretches.size(); ++s) {
+      std::vector<double>& moments = cuts[stretchIndex(i, s)];
+      std::sort(moments.begin(), moments.end());
+      plans_.emplace_back(drives[i], drives[i].stretches[s], settings.piece, moments);
+    }
   measured_.resize(static_cast<Eigen::Index>(rows_.size()));
   for (size_t i = 0; i < rows_.size(); ++i)
     measured_[static_cast<Eigen::Index>(i)] = rows_[i].measured;
@@ -197,15 +205,15 @@ Eigen::VectorXd Rows::predict(const std::vector<std::vector<TimedPose>>& motions
   Pose2 from;
   double from_time = kNotMeasured;
   const std::vector<TimedPose>* of = nullptr;
+  size_t piece = 0;
   for (size_t i = 0; i < rows_.size(); ++i) {
     const Row& row = rows_[i];
     const std::vector<TimedPose>& motion = motions[stretchIndex(row.drive, row.stretch)];
     const double duration = row.end - row.begin;
     double value = 0.0;
     if (row.channel == Channel::kYawRate) {
-      value = (yawAt(motion, row.end - gyro_latency) - yawAt(motion, row.begin - gyro_latency)) /
-                  duration +
-              ins.gyro_bias;
+      const double before = yawAt(motion, row.begin - gyro_latency, piece);
+      value = (yawAt(motion, row.end - gyro_latency, piece) - before) / duration + ins.gyro_bias;
     } else {
       // The three rows of an interval follow one another, and intervals share their ends.
       if (row.channel == Channel::kHeading) {

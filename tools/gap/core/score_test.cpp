@@ -8,12 +8,15 @@
 
 #include <Eigen/Cholesky>
 
+#include "tools/gap/core/student.hpp"
+
 namespace tread::gap {
 namespace {
 
 constexpr double kFewBlocks = 1.25;  // a root of active blocks below so many critical scores
 constexpr double kNearly = 0.999;
-constexpr double kSparse = 3.9;        // normal quantile: 1e-4
+constexpr double kSparse = 3.9;  // normal quantile: 1e-4
+constexpr double kFirst = 2.8;   // the same of a first effect; of 400 null logs of 200 s 1 passes
 constexpr double kLeastUnique = 0.02;  // below it a column is what the model's curvature leaves
 /// Mean slope of the pull by the residual, over 1 / scale^2: (f + 1) / (f + 3).
 constexpr double kInformation = (kFreedom + 1.0) / (kFreedom + 3.0);
@@ -137,14 +140,20 @@ std::vector<double> ScoreTest::largestByChance(int draws, uint64_t seed) const {
   return largest;
 }
 
+bool isSparse(const ScoreTest& test, Eigen::Index candidate, double score) {
+  return std::sqrt(test.activeBlocks(candidate)) < kFewBlocks * score;
+}
+
 double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& needed) {
   double by_blocks = std::abs(test.score(candidate)) / needed.score;
   // Where few blocks act chance reaches the largest score of all: to equal it is nothing.
   if (by_blocks < 1.0 + 1e-9) by_blocks = std::min(by_blocks, kNearly);
-  if (!needed.size_counts || std::sqrt(test.activeBlocks(candidate)) >= kFewBlocks * needed.score)
-    return by_blocks;
-  return std::max(by_blocks,
-                  std::abs(test.sparseScore(candidate, needed.overdispersion)) / kSparse);
+  if (!needed.size_counts || !isSparse(test, candidate, needed.score)) return by_blocks;
+  const double by_size =
+      needed.first ? std::abs(test.ownScore(candidate)) /
+                         studentQuantile(test.activeBlocks(candidate) - 1.0, kFirst)
+                   : std::abs(test.sparseScore(candidate, needed.overdispersion)) / kSparse;
+  return std::max(by_blocks, by_size);
 }
 
 double chanceOfSize(double evidence, size_t candidates) {

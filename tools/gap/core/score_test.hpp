@@ -44,6 +44,9 @@ class ScoreTest {
   /// Size over its standard error from information and overdispersion, not less than the `usual`.
   /** For candidates that few blocks excite: their |T| cannot exceed the root of activeBlocks(). */
   double sparseScore(Eigen::Index candidate, double usual) const;
+  /// The same with its own overdispersion alone: Student's t with activeBlocks() - 1 degrees of
+  /// freedom, on the safe side where the scales are too large for what scatters.
+  double ownScore(Eigen::Index candidate) const { return sparseScore(candidate, 1.0); }
   /// The candidate freed of what the free parameters explain (rows x 1).
   Eigen::VectorXd own(Eigen::Index candidate) const { return own_.col(candidate); }
 
@@ -63,12 +66,17 @@ class ScoreTest {
 struct Needed {
   double score = 0.0;           ///< |T| that chance rarely reaches
   double overdispersion = 1.0;  ///< as usual in these drives
+  bool first = false;           ///< nothing is known yet of what usually scatters and why
   bool size_counts = true;      ///< where few blocks excite it; not for what may begin at any time
 };
 
+/// Whether so few blocks excite a candidate that its |T| can hardly reach `score`.
+bool isSparse(const ScoreTest& test, Eigen::Index candidate, double score);
+
 /// Evidence for a candidate over what is needed; from 1 on chance is no explanation.
 /** |T| over blocks; where few blocks excite it, so that T cannot be large, its size for the
- * information and the overdispersion, if that is clear. */
+ * information and the overdispersion, if that is clear. Of a first effect the overdispersion is its
+ * own, as few blocks tell it: Student's t. */
 double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& needed);
 
 /// Probability that chance gives any of so many candidates that evidence by its size alone

@@ -5,20 +5,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <set>
 
 #include "tools/gap/core/acceptance.hpp"
-#include "tools/gap/core/detectable.hpp"
 #include "tools/gap/core/moments.hpp"
 #include "tools/gap/core/pruning.hpp"
 #include "tools/gap/core/replacement.hpp"
+#include "tools/gap/core/round.hpp"
 
 namespace tread::gap {
 namespace {
 
-constexpr size_t kRenewed = 10;          // directions that are simulated again in a round
-constexpr double kVanished = 2e-3;       // of an effect's typical size
-constexpr double kPowerQuantile = 0.84;  // normal: 80 % power
+constexpr size_t kRenewed = 10;     // directions that are simulated again in a round
+constexpr double kVanished = 2e-3;  // of an effect's typical size
 
 /// Plain causes that everything else must be told from.
 const std::vector<std::string>& coverPaths() {
@@ -39,33 +37,6 @@ bool hasVanished(const ModelDocument& model, const Candidate& candidate) {
   return std::abs(size) < kVanished * std::abs(known.typical);
 }
 
-/// A test of all candidates, and for each effect the candidate with the largest score.
-struct Round {
-  std::vector<Candidate> candidates;
-  std::vector<double> scores;
-  std::vector<double> sizes;
-  std::vector<double> chance;
-  std::vector<double> evidence;  ///< over what is needed: above 1 chance is no explanation
-  std::vector<double> promise;   ///< gain in first order [nats]
-  double overdispersion = 1.0;
-  std::vector<size_t> best;  ///< of each effect, largest score first
-  std::vector<CandidateTest> tests;
-};
-
-std::vector<size_t> bestOfEffects(const Round& round) {
-  std::map<std::string, size_t> best;
-  for (size_t i = 0; i < round.candidates.size(); ++i) {
-    const auto known = best.emplace(round.candidates[i].effect, i).first;
-    if (std::abs(round.scores[i]) > std::abs(round.scores[known->second])) known->second = i;
-  }
-  std::vector<size_t> order;
-  for (const auto& [effect, index] : best) order.push_back(index);
-  std::stable_sort(order.begin(), order.end(), [&round](size_t a, size_t b) {
-    return std::abs(round.scores[a]) > std::abs(round.scores[b]);
-  });
-  return order;
-}
-
 class Search {
  public:
   Search(const Fitter& fitter, const std::vector<char>& mask, const SearchSettings& settings,
@@ -78,6 +49,7 @@ class Search {
     if (settings_.all_sized && !result_.unsized.empty()) return std::move(result_);
     Round round = test(memory_.calibrated);
     result_.tests = round.tests;
+    const Round first = round;
     if (!significant(round).empty()) {
       cover();
       round = test(memory_.covered);
@@ -87,6 +59,7 @@ class Search {
       }
       prune(round);
       noteDetectable(test(memory_.covered));
+      if (foundNothing()) searchUncovered(first);
     } else if (!result_.effects.empty()) {
       prune(round);
     }
@@ -96,6 +69,26 @@ class Search {
  private:
   FitState& state() { return result_.state; }
   const FitState& state() const { return result_.state; }
+
+  /// Neither an effect nor a term that is another now nor something too small to matter.
+  bool foundNothing() const {
+    const bool only_accepted = std::all_of(
+        result_.effects.begin(), result_.effects.end(),
+        [this](const std::string& effect) { return contains(settings_.accepted, effect); });
+    return only_accepted && result_.negligible.empty() && !has_released_;
+  }
+
+  /// The cover can imitate an effect and then go part by part, each as superfluous: once more with
+  /// nothing but what the first test shows.
+  void searchUncovered(Round round) {
+    state() = result_.calibrated;
+    DirectionBook book = memory_.calibrated;
+    while (result_.effects.size() < settings_.most && addBest(round)) {
+      book.renew(fitter_, state(), likeliestOf(round));
+      round = test(book);
+    }
+    if (!result_.effects.empty()) prune(round);
+  }
 
   void calibrate(const ModelDocument& model) {
     state() = fitter_.start(model, givenParameters(model, settings_.calibrate), mask_);
@@ -127,56 +120,9 @@ class Search {
     if (fitted.jacobian.rows() == 0) fitter_.renewJacobian(fitted);
   }
 
-  Round test(DirectionBook& book) {
-    Round round;
-    round.candidates = candidatesFor(state(), book.excitation(fitter_, state()));
-    leaveOut(round.candidates, settings_.rejected);
-    const ScoreTest test(fitter_.rows(), state(),
-                         book.directions(fitter_, state(), round.candidates), mask_);
-    round.chance = test.largestByChance(settings_.draws, settings_.seed);
-    for (size_t i = 0; i < round.candidates.size(); ++i) {
-      round.scores.push_back(test.score(static_cast<Eigen::Index>(i)));
-      round.sizes.push_back(test.size(static_cast<Eigen::Index>(i)));
-    }
-    round.best = bestOfEffects(round);
-    round.overdispersion = test.usualOverdispersion();
-    for (size_t i = 0; i < round.candidates.size(); ++i) {
-      round.evidence.push_back(evidenceOf(test, static_cast<Eigen::Index>(i), round));
-      round.promise.push_back(test.promise(static_cast<Eigen::Index>(i)));
-    }
-    const double needed = criticalScore(round.chance, settings_.alpha) + kPowerQuantile;
-    for (size_t i : round.best) {
-      const auto at = static_cast<Eigen::Index>(i);
-      round.tests.push_back({round.candidates[i].effect, round.candidates[i].parameter,
-                             round.scores[i], familyWise(round.chance, round.scores[i]),
-                             test.uniqueness(at),
-                             detectableSize(round.candidates, test, i, needed)});
-    }
-    return round;
+  Round test(DirectionBook& book) const {
+    return testedRound(fitter_, state(), mask_, settings_, !has_cover_, book);
   }
-
-  /// Evidence for a candidate over what is needed; less than 1 if chance explains it.
-  double evidenceOf(const ScoreTest& test, Eigen::Index candidate, const Round& round) const {
-    // The first effect is found by blocks alone: that is what keeps false alarms rare. So is a
-    // change, which finds a few blocks of chance wherever they are.
-    const bool size_counts =
-        isCovered() && !hasMoment(round.candidates[static_cast<size_t>(candidate)].effect);
-    const Needed needed{criticalScore(round.chance, alpha()), round.overdispersion, size_counts};
-    const double found = evidence(test, candidate, needed);
-    return familyWise(round.chance, test.score(candidate)) <= alpha() ? std::max(1.0, found)
-                                                                      : found;
-  }
-
-  /// By blocks, or by its size where that was what convinced.
-  double pValueOf(const Round& round, double score, double evidence) const {
-    const double by_blocks = familyWise(round.chance, score);
-    return by_blocks <= alpha()
-               ? by_blocks
-               : std::min(by_blocks, chanceOfSize(evidence, round.candidates.size()));
-  }
-
-  bool isCovered() const { return has_cover_; }
-  double alpha() const { return isCovered() ? settings_.alpha_more : settings_.alpha; }
 
   /// What could have been seen beside what was found: before, its size hid the rest.
   void noteDetectable(const Round& last) {
@@ -187,28 +133,17 @@ class Search {
 
   /// The likeliest candidates of the last round get directions of the model as it is now.
   void renewLikeliest(const Round& round) {
+    memory_.covered.renew(fitter_, state(), likeliestOf(round));
+  }
+
+  std::vector<Candidate> likeliestOf(const Round& round) const {
     std::vector<Candidate> likeliest;
     for (size_t i : round.best)
       if (likeliest.size() < kRenewed &&
           !isOn(effectNamed(round.candidates[i].effect), state().model.vehicle.effects,
                 state().model.measurement))
         likeliest.push_back(round.candidates[i]);
-    memory_.covered.renew(fitter_, state(), likeliest);
-  }
-
-  /// Of each effect beyond chance the most promising candidate; the most promising effects first.
-  std::vector<size_t> significant(const Round& round) const {
-    std::map<std::string, size_t> clearest;
-    for (size_t i = 0; i < round.candidates.size(); ++i) {
-      if (round.evidence[i] < 1.0) continue;
-      const auto known = clearest.emplace(round.candidates[i].effect, i).first;
-      if (round.promise[i] > round.promise[known->second]) known->second = i;
-    }
-    std::vector<size_t> found;
-    for (const auto& [effect, index] : clearest) found.push_back(index);
-    std::stable_sort(found.begin(), found.end(),
-                     [&round](size_t a, size_t b) { return round.promise[a] > round.promise[b]; });
-    return found;
+    return likeliest;
   }
 
   void cover() {
@@ -262,8 +197,8 @@ class Search {
     return trial;
   }
 
-  /// Refits the clearest effects and adds the one that helps most on blocks left out; the next ones
-  /// if none of them is possible.
+  /// Refits the most promising effects and adds the one that helps most on blocks left out; the
+  /// next ones if none of them is possible.
   bool addBest(const Round& round) {
     const std::vector<size_t> found = significant(round);
     if (found.empty()) return false;
@@ -280,11 +215,12 @@ class Search {
     }
     noteTrials(round, trials, best);
     if (best == nullptr) return false;
-    const std::string effect = round.candidates[best->candidate].effect;
+    const Candidate& added = round.candidates[best->candidate];
     state() = best->state;
     settle(state());
-    if (std::find(result_.effects.begin(), result_.effects.end(), effect) == result_.effects.end())
-      result_.effects.push_back(effect);
+    has_released_ = has_released_ || added.release;
+    if (!added.release && !contains(result_.effects, added.effect))
+      result_.effects.push_back(added.effect);
     return true;
   }
 
@@ -298,6 +234,7 @@ class Search {
         step.p_value = pValueOf(round, step.score, round.evidence[trial.candidate]);
         step.gain = trial.gain.value;
         step.gain_error = trial.gain.error;
+        if (round.candidates[trial.candidate].release) step.remark = "is not what the model says";
       } else if (!trial.refused.empty()) {
         LadderStep refused;
         refused.effect = effect;
@@ -322,14 +259,18 @@ class Search {
   }
 
   void prune(const Round& last) {
-    const Needed needed{criticalScore(last.chance, alpha()), last.overdispersion, true};
+    const Needed needed{criticalScore(last.chance, settings_.alpha_more), last.overdispersion,
+                        false, true};
     pruneEffects(fitter_, mask_, needed, settings_.least_gain, result_, say_);
     const size_t before = result_.ladder.size();
     replacePairs(fitter_, mask_, result_, say_);
     if (result_.ladder.size() > before)
       pruneEffects(fitter_, mask_, needed, settings_.least_gain, result_, say_);
-    for (const std::string& effect : result_.effects)
-      result_.p_values[effect] = pValueOf(last, result_.scores[effect], result_.evidence[effect]);
+    for (const std::string& effect : result_.effects) {
+      const double p = pValueOf(last, result_.scores[effect], result_.evidence[effect]);
+      const auto accepted = result_.p_values.emplace(effect, p).first;
+      accepted->second = std::min(accepted->second, p);
+    }
     settle(state());
   }
 
@@ -341,7 +282,19 @@ class Search {
   SearchResult result_;
   size_t covered_ = 0;
   bool has_cover_ = false;
+  bool has_released_ = false;
 };
+
+/// A parameter held by what the model's covariance says of it, if it does.
+FreeParameter heldParameter(const ModelDocument& model, const std::string& path) {
+  FreeParameter parameter = freeParameter(model, path);
+  const ParameterCovariance& known = model.covariance;
+  for (size_t i = 0; i < known.parameters.size(); ++i) {
+    const double deviation = known.parameters[i] == path ? std::sqrt(known.matrix[i][i]) : 0.0;
+    if (deviation > 0.0 && std::isfinite(deviation)) parameter.deviation = deviation;
+  }
+  return parameter;
+}
 
 }  // namespace
 
@@ -351,17 +304,16 @@ std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool cali
     for (const char* number : {"lag", "delay", "forward_gain", "yaw_gain"})
       free.push_back(freeParameter(model, number));
   const ParameterCovariance& known = model.covariance;
-  for (size_t i = 0; !calibrate && i < known.parameters.size(); ++i) {
-    if (known.parameters[i].find('.') != std::string::npos) continue;
-    FreeParameter number = freeParameter(model, known.parameters[i]);
-    number.deviation = std::sqrt(known.matrix[i][i]);
-    if (number.deviation > 0.0 && std::isfinite(number.deviation)) free.push_back(number);
+  for (const std::string& path : known.parameters) {
+    if (calibrate || path.find('.') != std::string::npos) continue;
+    const FreeParameter number = heldParameter(model, path);
+    if (std::isfinite(number.deviation)) free.push_back(number);
   }
   for (const Effect& effect : effectCatalogue())
     for (const EffectParameter& parameter : effect.parameters) {
       const std::string path = effect.name + "." + parameter.name;
       if (parameter.role == ParameterRole::kStrength && *findParameter(model, path) != 0.0)
-        free.push_back(freeParameter(model, path));
+        free.push_back(calibrate ? freeParameter(model, path) : heldParameter(model, path));
     }
   return free;
 }

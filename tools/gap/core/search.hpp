@@ -2,8 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
 #include <functional>
 #include <map>
 #include <string>
@@ -14,28 +12,13 @@
 #include "tools/gap/core/finding.hpp"
 #include "tools/gap/core/fit.hpp"
 #include "tools/gap/core/score_test.hpp"
+#include "tools/gap/core/search_settings.hpp"
 #include "tools/gap/core/validation.hpp"
 
 namespace tread::gap {
 
 /// Takes one line about what is being done.
 using Progress = std::function<void(const std::string&)>;
-
-struct SearchSettings {
-  double alpha =
-      0.02;  ///< probability that the first test over the whole catalogue names something wrongly
-  double alpha_more = 0.05;  ///< the same of every further test, once something is there
-  int draws = 1999;          ///< of the bootstrap
-  size_t tried = 4;          ///< effects that are refitted at a time
-  size_t most = 8;           ///< effects that are added at most
-  bool calibrate = false;    ///< the numbers of the nominal model are free
-  double least_gain = 0.01;  ///< of the end error; less is real but negligible
-  /// A person's last word: in from calibration on, whatever tests say.
-  std::vector<std::string> accepted;
-  std::vector<std::string> rejected;  ///< never considered
-  bool all_sized = false;             ///< ends at once where an accepted one cannot be sized
-  uint64_t seed = 1;
-};
 
 /// What a search ends with.
 struct SearchResult {
@@ -64,13 +47,8 @@ struct SearchMemory {
   DirectionBook covered;
 };
 
-/// Whether a name is among these.
-inline bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 /// Which parameters of a model are free: strengths of effects that are on, and the numbers of the
-/// nominal model of which the model's covariance says how sure they are.
+/// nominal model of which the model's covariance says how sure they are; all held by what it says.
 /// When calibrating all numbers of the nominal model are free without limits of belief.
 std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool calibrate);
 

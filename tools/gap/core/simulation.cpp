@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kTransient = 0.8;  // [s] after a change of command; then all changes slowly
 constexpr double kSlowly = 2.0;     // pieces are so much longer then
+constexpr double kShortest = 1e-3;  // [s] cuts closer than that are one
 
 /// Roll and pitch at a moment; where the INS does not say, as they were, level at first.
 void levelAt(const std::vector<InsSample>& ins, double time, size_t& next, DriveContext& context) {
@@ -29,7 +30,25 @@ double dropAt(const std::vector<VoltageSample>& voltage, double time, size_t& at
 
 }  // namespace
 
-StretchPlan::StretchPlan(const Drive& drive, const Stretch& stretch, double piece)
+std::vector<double> StretchPlan::endsBetween(double from, double to, double longest,
+                                             const std::vector<double>& cuts) {
+  std::vector<double> fixed;
+  for (auto cut = std::upper_bound(cuts.begin(), cuts.end(), from + kShortest);
+       cut != cuts.end() && *cut < to - kShortest; ++cut)
+    if (fixed.empty() || *cut > fixed.back() + kShortest) fixed.push_back(*cut);
+  fixed.push_back(to);
+  std::vector<double> ends;
+  for (double end : fixed) {
+    const int count = std::max(1, static_cast<int>(std::ceil((end - from) / longest - 1e-6)));
+    for (int n = 1; n < count; ++n) ends.push_back(from + n * (end - from) / count);
+    ends.push_back(end);
+    from = end;
+  }
+  return ends;
+}
+
+StretchPlan::StretchPlan(const Drive& drive, const Stretch& stretch, double piece,
+                         const std::vector<double>& cuts)
     : begin_(stretch.begin()),
       entry_speeds_(stretch.entry_speeds),
       command_before_(stretch.command_before) {
@@ -42,14 +61,16 @@ StretchPlan::StretchPlan(const Drive& drive, const Stretch& stretch, double piec
     const double settled = to - from > 1.5 * kTransient ? from + kTransient : to;
     for (const auto& [begin, end, longest] :
          {std::tuple{from, settled, piece}, std::tuple{settled, to, kSlowly * piece}}) {
-      const int count = static_cast<int>(std::ceil((end - begin) / longest - 1e-6));
-      const double duration = (end - begin) / std::max(1, count);
-      for (int n = 0; n < count; ++n) {
-        context.session_time = begin + n * duration;
-        levelAt(stretch.ins, context.session_time + duration / 2.0, ins_next, context);
-        context.battery_drop = dropAt(drive.voltage, context.session_time, voltage_at);
+      double time = begin;
+      for (double next : endsBetween(begin, end, longest, cuts)) {
+        const double duration = next - time;
+        if (duration <= 0.0) continue;
+        context.session_time = time;
+        levelAt(stretch.ins, time + duration / 2.0, ins_next, context);
+        context.battery_drop = dropAt(drive.voltage, time, voltage_at);
         pieces_.push_back({duration, stretch.commands[i].command, context});
         longest_ = std::max(longest_, duration);
+        time = next;
       }
     }
   }

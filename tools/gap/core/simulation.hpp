@@ -15,9 +15,11 @@ namespace tread::gap {
 /** Made once a drive; simulating again with other parameters is then one pass over it. */
 class StretchPlan {
  public:
-  /// Pieces of at most `piece` seconds, of twice that where a command has held for a while. The
-  /// stretch may go away afterwards.
-  StretchPlan(const Drive& drive, const Stretch& stretch, double piece);
+  /// Pieces of at most `piece` seconds, of twice that where a command has held for a while; cut
+  /// also at these moments, in order [s], at which poses will be asked for: within a piece they are
+  /// interpolated. The stretch may go away afterwards.
+  StretchPlan(const Drive& drive, const Stretch& stretch, double piece,
+              const std::vector<double>& cuts = {});
 
   /// True poses of a model through the stretch, relative to its beginning; one entry a piece.
   /// Yaw rates are left at 0: rows take theirs from the yaws.
@@ -29,6 +31,10 @@ class StretchPlan {
     TrackCommand command;
     DriveContext context;
   };
+
+  /// Where pieces end between two moments, the last one included.
+  static std::vector<double> endsBetween(double from, double to, double longest,
+                                         const std::vector<double>& cuts);
 
   EntryState entryFor(const VehicleModel& vehicle) const;
 
