@@ -50,6 +50,7 @@ Followed follow(double value, const MovingTarget& target, double lag, double dt)
   const double bend = 3.0 * (target.from + target.to) - 6.0 * target.mean;
   const double slope = target.to - target.from - bend;
   const double share = lag / dt;
+  if (share > 1e4) return follow(value, target.mean, lag, dt);  // rounding
   const double bent = 2.0 * share * share * bend;
   const double behind_from = target.from - share * slope + bent;
   const double behind_to = target.to - share * (slope + 2.0 * bend) + bent;

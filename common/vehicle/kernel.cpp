@@ -103,8 +103,8 @@ PlaneMotion VehicleKernel::moveBody(const ChangesInForce& changes, const PlaneMo
     body_ = mean;
     return mean;
   }
-  // Tracks without a lag jump to where they stay; of slack only means are known.
-  const bool gradual = model_.driveLag() > 0.0 && effects.track_backlash == 0.0;
+  // Tracks that are quick for the step jump to where they stay; of slack only means are known.
+  const bool gradual = model_.driveLag() >= dt && effects.track_backlash == 0.0;
   const PlaneMotion begin = gradual ? led_to_ : mean;
   const PlaneMotion end = gradual ? groundMotion(model_, noise_, changes, trackSpeeds()) : mean;
   const Followed v = follow(body_.v, {begin.v, mean.v, end.v}, effects.body_inertia, dt);

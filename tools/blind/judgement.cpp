@@ -153,6 +153,15 @@ bool isExcited(const Truth& truth) {
          truth.gap.yaw_rate > kLeastVisible * truth.floor.yaw_rate;
 }
 
+/// Of a number of the nominal model the effect that is the same by another name.
+std::string effectOf(const std::string& path) {
+  if (path == "delay") return "command_delay";
+  if (path == "lag") return "actuator_lag";
+  if (path == "forward_gain") return "slip_ratio";
+  if (path == "yaw_gain") return "track_width";
+  return path.substr(0, path.find('.'));
+}
+
 /// Whether one number is another one now: as the workflow says, else by three sigma.
 bool hasMoved(const Estimated& one) {
   if (one.moved) return *one.moved;
@@ -181,7 +190,7 @@ bool belongs(const std::string& name, const HiddenEffect& hidden, const Answer& 
 
 bool moved(const Answer& answer, const HiddenEffect& hidden) {
   return std::any_of(answer.calibrated.begin(), answer.calibrated.end(), [&](const Estimated& one) {
-    return covers(one.path.substr(0, one.path.find('.')), hidden) && hasMoved(one);
+    return covers(effectOf(one.path), hidden) && hasMoved(one);
   });
 }
 

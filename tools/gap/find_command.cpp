@@ -99,8 +99,10 @@ int find(const Options& options) {
   task.test = readDrives(options.test, InputFile::Role::kTest, task.model, inputs);
   for (const std::vector<Drive>* drives : {&task.train, &task.test})
     for (const Drive& drive : *drives) {
-      requireSameRobot(task.train.front(), drive);
-      requireSameImport(task.train.front(), drive);
+      for (const Drive& other : task.train) {
+        requireSameRobot(other, drive);
+        requireSameImport(other, drive);
+      }
       task.hygiene.insert(task.hygiene.end(), drive.notes.begin(), drive.notes.end());
     }
   task.seed = static_cast<uint64_t>(options.seed);

@@ -74,8 +74,10 @@ std::vector<LadderLog> readLogs(const Options& options) {
       if (other.drive.sha256 == log.drive.sha256)
         throw std::runtime_error(path + ": the same file as " + other.drive.name +
                                  "; give each log once");
-    if (!logs.empty()) requireSameImport(logs.front().drive, log.drive);
-    if (!logs.empty() && options.pool) requireSameRobot(logs.front().drive, log.drive);
+    for (const LadderLog& other : logs) {
+      requireSameImport(other.drive, log.drive);
+      if (options.pool) requireSameRobot(other.drive, log.drive);
+    }
     logs.push_back(std::move(log));
   }
   return logs;

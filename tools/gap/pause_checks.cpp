@@ -12,7 +12,7 @@ namespace {
 
 constexpr int64_t kLongStep = 1'000'000;  // [us] that no driver needs between two messages
 constexpr int64_t kWindow = 500'000;      // [us] over which motion is seen
-constexpr int64_t kShortest = 80'000;     // [us] over which motion can be told from noise
+constexpr int64_t kShortest = 300'000;    // [us] over which motion can be told from noise
 constexpr int64_t kTogether = 300'000;    // [us] within which INS and MOTOR pause at one time
 constexpr double kMessage = 0.1;          // [s] period of messages
 constexpr double kPositionNoise = 0.03;   // [m] between two fixes

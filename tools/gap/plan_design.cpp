@@ -39,13 +39,16 @@ std::vector<Rival> rivalsOf(ModelDocument model, const std::string& there,
   turnOn(model, rival);
   beginAtOnce(model, rival);
   std::vector<FreeParameter> free = givenParameters(model, false);
-  for (const EffectParameter& parameter : rival.parameters) {
-    const std::string path = rival.name + "." + parameter.name;
-    const bool known = std::any_of(free.begin(), free.end(),
-                                   [&](const FreeParameter& other) { return other.path == path; });
-    if (!known && parameter.role == ParameterRole::kStrength)
-      free.push_back(freeParameter(model, path));
-  }
+  // The rival may take any size, whatever the model says of it.
+  free.erase(std::remove_if(free.begin(), free.end(),
+                            [&rival](const FreeParameter& known) {
+                              return known.path.compare(0, rival.name.size() + 1,
+                                                        rival.name + ".") == 0;
+                            }),
+             free.end());
+  for (const EffectParameter& parameter : rival.parameters)
+    if (parameter.role == ParameterRole::kStrength)
+      free.push_back(freeParameter(model, rival.name + "." + parameter.name));
   const EffectParameter& first = rival.parameters.front();
   std::vector<double> sizes = first.probes;
   for (const double factor : {1.0, 0.1, -0.1, -1.0}) sizes.push_back(factor * first.typical);

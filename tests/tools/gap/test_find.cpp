@@ -128,6 +128,26 @@ TEST_CASE("terms that the model is sure of do not give way to what is new") {
   for (const Estimate& estimate : finding.calibrated) CHECK(!estimate.moved);
 }
 
+TEST_CASE("95 % intervals hold the truth about as often as they say") {
+  const Values hidden{{"motor_deadband.speed", 0.1},    {"yaw_breakaway.rate", 0.12},
+                      {"track_asymmetry.share", 0.05},  {"lever_arm_y.offset", 0.1},
+                      {"slope_pitch.compliance", 0.06}, {"turn_speed_loss.loss", 0.15}};
+  int held = 0;
+  int named = 0;
+  for (uint64_t seed = 100; seed < 136; ++seed) {
+    const auto& [path, value] = hidden[seed % hidden.size()];
+    for (const FoundEffect& effect : findAfter({{path, value}}, 300.0, seed).effects)
+      for (const Estimate& estimate : effect.parameters) {
+        if (estimate.parameter != path) continue;
+        ++named;
+        held += estimate.low <= value && value <= estimate.high;
+      }
+  }
+  INFO(held << " of " << named);
+  CHECK(named >= 32);
+  CHECK(held >= 0.85 * named);
+}
+
 TEST_CASE("two hidden effects are both named") {
   Names names = namesIn(
       findAfter({{"track_asymmetry.share", 0.05}, {"centrifugal_drift.time", 0.2}}, 500.0, 7));

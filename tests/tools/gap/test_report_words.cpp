@@ -220,6 +220,14 @@ TEST_CASE("a report says what to do after its verdict, and what its words mean")
   CHECK(has(report(finding), "| nats | unit of evidence"));
 }
 
+TEST_CASE("a number of the model that is another one now is named, with the effect like it") {
+  Finding finding;
+  finding.calibrated = {{"forward_gain", "1", 1.08, 1.07, 1.09, 1.11, true}};
+  CHECK(movedSentences(finding).front() ==
+        "A number of the model is another one now: forward_gain 108 % (107 to 109 %) instead of "
+        "111 %; longitudinal slip would do the same.");
+}
+
 TEST_CASE("a term of the model that is another one now is said in its natural numbers") {
   Finding finding = samples::finding(Verdict::kNoDiscrepancy);
   finding.calibrated = {{"turn_power_limit.inverse_limit", "s/rad", 0.8, 0.78, 0.82, 0.5, true}};

@@ -12,7 +12,6 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kVanished = 2e-3;  // times its typical size
 constexpr double kUnknown = 2.0;  // times its typical size: what the 95 % interval must not exceed
 
 /// The candidate that promises most; none that would change anything = candidates.
@@ -37,7 +36,7 @@ std::string reasonAgainst(const Fitter& fitter, const FitState& state, const Can
   for (size_t i = 0; i < state.free.size(); ++i) {
     if (state.free[i].path != strength) continue;
     const auto at = static_cast<Eigen::Index>(i);
-    if (std::abs(*findParameter(state.model, strength)) < kVanished * std::abs(typical))
+    if (isVanishing(candidate.effect, candidate.parameter, *findParameter(state.model, strength)))
       return "its size vanishes in the fit";
     if (onBound(state.model, state.free[i]))
       return "its size runs to the end of its plausible range";

@@ -88,6 +88,10 @@ const std::vector<Basis>& bases() {
       {"yaw rate x elapsed time", "rad/s", [](const Moment& m) { return m.omega * m.elapsed; }},
       {"change of v", "m/s2", [](const Moment& m) { return m.v_change; }},
       {"change of yaw rate", "rad/s2", [](const Moment& m) { return m.omega_change; }},
+      {"|change of v|", "m/s2", [](const Moment& m) { return std::abs(m.v_change); }},
+      {"|change of yaw rate|", "rad/s2", [](const Moment& m) { return std::abs(m.omega_change); }},
+      {"yaw rate x change of v", "m/s3", [](const Moment& m) { return m.omega * m.v_change; }},
+      {"v x change of yaw rate", "m/s3", [](const Moment& m) { return m.v * m.omega_change; }},
       {"pitch", "rad", [](const Moment& m) { return std::sin(m.pitch); }},
       {"roll", "rad", [](const Moment& m) { return std::sin(m.roll); }}};
   return all;

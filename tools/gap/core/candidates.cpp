@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kGravity = 9.81;     // [m/s2]
 constexpr double kSmallProbe = 0.25;  // of the typical value: smooth effects are straight there
+constexpr double kVanished = 2e-3;    // of an effect's typical size
 constexpr int kMoments = 15;          // at which a change is looked for
 constexpr double kEdge = 0.06;        // share of the drive without moments at either end
 
@@ -299,6 +300,11 @@ void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candid
     parameter.expected = 0.0;
     fitter.add(state, parameter, value, mask);
   }
+}
+
+bool isVanishing(const std::string& effect, const std::string& parameter, double size) {
+  return std::abs(size) <
+         kVanished * std::abs(parameterNamed(effectNamed(effect), parameter).typical);
 }
 
 bool hasMoment(const std::string& effect) {

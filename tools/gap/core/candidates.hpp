@@ -64,6 +64,9 @@ Eigen::MatrixXd directionsOf(const Fitter& fitter, const FitState& state,
 void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candidate, double size,
                   const std::vector<char>& mask);
 
+/// Whether a size is nothing beside what is typical.
+bool isVanishing(const std::string& effect, const std::string& parameter, double size);
+
 /// Whether an effect begins at a moment that is searched for.
 bool hasMoment(const std::string& effect);
 

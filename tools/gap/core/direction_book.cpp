@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/gap/core/direction_book.hpp"
 
+#include <stdexcept>
+
 namespace tread::gap {
 namespace {
 
@@ -12,6 +14,14 @@ bool isSame(double a, double b) {
 bool isSame(const Candidate& a, const Candidate& b) {
   return a.effect == b.effect && a.parameter == b.parameter && a.change == b.change &&
          isSame(a.since, b.since) && a.shapes == b.shapes;
+}
+
+/// Of a term that is fitted: its column of the Jacobian.
+Eigen::VectorXd releaseDirection(const FitState& state, const Candidate& candidate) {
+  const std::string path = candidate.effect + "." + candidate.parameter;
+  for (size_t i = 0; i < state.free.size(); ++i)
+    if (state.free[i].path == path) return state.jacobian.col(static_cast<Eigen::Index>(i));
+  throw std::logic_error("a release of " + path + ", which is not free");
 }
 
 }  // namespace
@@ -32,11 +42,13 @@ Eigen::MatrixXd DirectionBook::directions(const Fitter& fitter, const FitState& 
                                           const std::vector<Candidate>& candidates) {
   std::vector<Candidate> missing;
   for (const Candidate& candidate : candidates)
-    if (pageOf(candidate) == nullptr) missing.push_back(candidate);
+    if (!candidate.release && pageOf(candidate) == nullptr) missing.push_back(candidate);
   renew(fitter, state, missing);
   Eigen::MatrixXd all(state.predicted.size(), static_cast<Eigen::Index>(candidates.size()));
   for (size_t i = 0; i < candidates.size(); ++i)
-    all.col(static_cast<Eigen::Index>(i)) = pageOf(candidates[i])->direction;
+    all.col(static_cast<Eigen::Index>(i)) = candidates[i].release
+                                                ? releaseDirection(state, candidates[i])
+                                                : pageOf(candidates[i])->direction;
   return all;
 }
 

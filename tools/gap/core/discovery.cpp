@@ -16,6 +16,7 @@
 #include "tools/gap/core/end_errors.hpp"
 #include "tools/gap/core/enough_driving.hpp"
 #include "tools/gap/core/moments.hpp"
+#include "tools/gap/core/pruning.hpp"
 #include "tools/gap/core/student.hpp"
 #include "tools/gap/core/unseen.hpp"
 #include "tools/gap/core/verdict.hpp"
@@ -121,7 +122,8 @@ class Discovery {
     Eigen::MatrixXd with = Eigen::MatrixXd::Zero(blocks, 3);
     for (int half : {0, 1}) addMissed(refitted(fitter_, result_, halfMask(half)), 1 - half, with);
     Eigen::MatrixXd lacking = Eigen::MatrixXd::Zero(blocks, 3);
-    for (int half : {0, 1}) addMissed(result_.calibrated, half, lacking);
+    const FitState others = lackingEffects();
+    for (int half : {0, 1}) addMissed(others, half, lacking);
     const bool measurement =
         std::all_of(result_.effects.begin(), result_.effects.end(), [](const std::string& effect) {
           return effectNamed(effect).kind == EffectKind::kMeasurement;
@@ -132,6 +134,17 @@ class Discovery {
       if (gain.value > gain.error) return true;
     }
     return false;
+  }
+
+  /// The result with its given, released and accepted terms alone.
+  FitState lackingEffects() const {
+    if (result_.released.empty()) return result_.calibrated;
+    std::vector<std::string> found;
+    for (const std::string& effect : result_.effects)
+      if (!contains(settings_.accepted, effect)) found.push_back(effect);
+    FitState state = switchedOff(fitter_, result_.state, found);
+    fitter_.fit(state, all_);
+    return state;
   }
 
   /// Adds what a state misses on every other block: position, yaw and yaw rate (blocks x 3).
@@ -164,7 +177,7 @@ class Discovery {
       result_.negligible.push_back(effect);
     }
     result_.effects = kept;
-    result_.state = result_.calibrated;
+    result_.state = lackingEffects();
   }
 
   void describeEffects() {
@@ -189,6 +202,7 @@ class Discovery {
     }
     for (const std::string& name : result_.effects) describe(name, estimates[name]);
     finding_.negligible = result_.negligible;
+    finding_.at_bound = result_.at_bound;
     finding_.ladder = result_.ladder;
     finding_.candidates = result_.tests;
     for (const CandidateTest& test : result_.tests)
@@ -197,9 +211,10 @@ class Discovery {
     documentAfter(covariance);
   }
 
-  /// Whether a term of the model is another one now; numbers of the nominal model show as effects.
+  /// Whether a term of the model is another one now, or a number of which it says how sure it is.
   bool hasMoved(const Estimate& estimate, double error) const {
-    if (estimate.parameter.find('.') == std::string::npos) return false;
+    const bool number = estimate.parameter.find('.') == std::string::npos;
+    if (number && settings_.calibrate) return false;
     const ParameterCovariance& known = task_.model.covariance;
     double variance = error * error;
     for (size_t i = 0; i < known.parameters.size(); ++i)
@@ -257,7 +272,8 @@ class Discovery {
     for (const std::string& pair : result_.replaced[name]) effect.group.push_back(pair);
     // What came in beside it later does not stand in its place.
     for (const RunnerUp& other : result_.runner_ups[name])
-      if (!isNew(other.effect)) effect.runner_ups.push_back(other);
+      if (!isNew(other.effect) && !contains(result_.released, other.effect))
+        effect.runner_ups.push_back(other);
     effect.score = result_.scores[name];
     effect.p_value = result_.p_values[name];
     effect.gain = result_.gains[name].value;

@@ -40,6 +40,10 @@ struct Estimate {
   bool moved = false;
 };
 
+/// The effect that a parameter belongs to; of a number of the nominal model the effect that changes
+/// the same.
+std::string effectOf(const Estimate& estimate);
+
 /// Another effect that explains the data as well or nearly so.
 struct RunnerUp {
   std::string effect;
@@ -198,6 +202,7 @@ struct Finding {
   std::vector<CandidateTest> candidates;
   std::vector<HygieneNote> hygiene;
   std::vector<std::string> negligible;  ///< real but below 1 % of the end error: not added
+  std::vector<std::string> at_bound;    ///< seen, but their sizes ran to the ends of their ranges
   size_t blocks = 0;
   double block_length = 0.0;  ///< [s]
   double adequacy_p = 1.0;

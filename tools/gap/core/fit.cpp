@@ -142,6 +142,14 @@ bool onBound(const ModelDocument& model, const FreeParameter& parameter) {
   return value <= parameter.min + near || value >= parameter.max - near;
 }
 
+bool runsToBound(const ModelDocument& model, const FreeParameter& parameter) {
+  const double value = valueOf(model, parameter.path);
+  const bool to_nothing = value < 0.0 && (parameter.path == "command_delay.delay" ||
+                                          parameter.path == "actuator_lag.lag");
+  return value != 0.0 && !to_nothing && parameter.path.find(".time") == std::string::npos &&
+         onBound(model, parameter);
+}
+
 FitState Fitter::start(const ModelDocument& model, std::vector<FreeParameter> free,
                        const std::vector<char>& mask) const {
   FitState state;

@@ -84,4 +84,9 @@ Eigen::VectorXd priorPrecision(const std::vector<FreeParameter>& free);
 /// Whether a parameter stands on one of its bounds.
 bool onBound(const ModelDocument& model, const FreeParameter& parameter);
 
+/// Whether a size ran to the end of its plausible range, which makes it none.
+/** Off is no size and a moment has no range; of the lag or delay that a model has nothing may be
+ * left. */
+bool runsToBound(const ModelDocument& model, const FreeParameter& parameter);
+
 }  // namespace tread::gap

@@ -13,6 +13,9 @@ namespace {
 
 constexpr double kSure = 4.0;        // standard errors of a gain beyond doubt
 constexpr double kSureOfFew = 2.5;   // the same where few blocks act, which cannot agree better
+constexpr double kNearly = 0.8;      // evidence with which what has passed once stays
+constexpr double kNearlySure = 2.0;  // if it gains so many standard errors
+constexpr double kNearlyNats = 50.0;
 constexpr double kSureNats = 100.0;  // and its least size: smaller ones may be negligible
 
 /// What removing an effect costs.
@@ -165,12 +168,6 @@ class Pruning {
   /// Looks at all, least sure first; true if one went.
   bool removeOne() {
     const Eigen::VectorXd loss = heldOutLoss(fitter_.rows(), result_.state, mask_);
-    for (const std::string& effect : result_.effects) {
-      if (contains(result_.accepted, effect) || !runsToBound(effect)) continue;
-      Removal removed = removal(fitter_, result_.state, loss, effect, mask_, needed_);
-      remove(effect, removed, "runs to the end of its plausible range");
-      return true;
-    }
     for (const std::string& effect : leastSureFirst(fitter_, result_, mask_)) {
       // What is beyond doubt in first order needs no simulation without it.
       Needed needed = needed_;
@@ -191,27 +188,39 @@ class Pruning {
       remove(effect, removed, why);
       return true;
     }
+    return removeAtBound(loss);
+  }
+
+  /// Last: a superfluous one may have pushed another there.
+  bool removeAtBound(const Eigen::VectorXd& loss) {
+    for (const std::string& effect : result_.effects) {
+      if (contains(result_.accepted, effect) || !isAtBound(effect)) continue;
+      Removal removed = removal(fitter_, result_.state, loss, effect, mask_, needed_);
+      result_.at_bound.push_back(effect);
+      remove(effect, removed, "runs to the end of its plausible range");
+      return true;
+    }
     return false;
   }
 
-  /// A size at the end of what is plausible is no size; of a lag or delay that the model has
-  /// nothing may be left.
-  bool runsToBound(const std::string& effect) const {
-    for (const FreeParameter& parameter : result_.state.free) {
-      const double value = *findParameter(result_.state.model, parameter.path);
-      const bool to_nothing =
-          value < 0.0 && (effect == "actuator_lag" || effect == "command_delay");
-      if (belongsTo(parameter, effect) && parameter.path.find(".time") == std::string::npos &&
-          value != 0.0 && !to_nothing && onBound(result_.state.model, parameter))
-        return true;
-    }
-    return false;
+  bool isAtBound(const std::string& effect) const {
+    return std::any_of(
+        result_.state.free.begin(), result_.state.free.end(), [&](const FreeParameter& parameter) {
+          return belongsTo(parameter, effect) && runsToBound(result_.state.model, parameter);
+        });
+  }
+
+  /// What has passed the test once does not go for a hair's breadth.
+  bool isNearly(const std::string& effect, const Removal& removed) const {
+    return result_.p_values.count(effect) != 0 && removed.evidence >= kNearly &&
+           removed.gain.value > kNearlySure * removed.gain.error &&
+           removed.gain.value > kNearlyNats;
   }
 
   /// Why an effect should go; empty if it should stay.
   std::string reasonAgainst(const std::string& effect, const Removal& removed) const {
     // Residuals far beyond the scales pull no more: a large effect shows in its gain.
-    if (removed.evidence < 1.0 && !isBeyondDoubt(removed))
+    if (removed.evidence < 1.0 && !isBeyondDoubt(removed) && !isNearly(effect, removed))
       return "chance explains it beside the others";
     if (removed.gain.value <= 0.0) return "does not help on blocks left out";
     if (least_gain_ > 0.0 &&

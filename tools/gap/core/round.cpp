@@ -43,6 +43,7 @@ double evidenceOf(const ScoreTest& test, Eigen::Index candidate, const Round& ro
 Round testedRound(const Fitter& fitter, const FitState& state, const std::vector<char>& mask,
                   const SearchSettings& settings, bool first, DirectionBook& book) {
   Round round;
+  round.first = first;
   round.alpha = first ? settings.alpha : settings.alpha_more;
   round.candidates = candidatesFor(state, book.excitation(fitter, state));
   leaveOut(round.candidates, settings.rejected);
@@ -60,6 +61,7 @@ Round testedRound(const Fitter& fitter, const FitState& state, const std::vector
   round.best = bestOfEffects(round);
   const double needed = criticalScore(round.chance, settings.alpha) + kPowerQuantile;
   for (size_t i : round.best) {
+    if (round.candidates[i].release) continue;  // on, and fitted
     const auto at = static_cast<Eigen::Index>(i);
     round.tests.push_back({round.candidates[i].effect, round.candidates[i].parameter,
                            round.scores[i], familyWise(round.chance, round.scores[i]),
@@ -86,7 +88,7 @@ double pValueOf(const Round& round, double score, double evidence) {
   const double by_blocks = familyWise(round.chance, score);
   return by_blocks <= round.alpha
              ? by_blocks
-             : std::min(by_blocks, chanceOfSize(evidence, round.candidates.size()));
+             : std::min(by_blocks, chanceOfSize(evidence, round.candidates.size(), round.first));
 }
 
 }  // namespace tread::gap

@@ -21,6 +21,7 @@ struct Round {
   std::vector<double> evidence;  ///< over what is needed: above 1 chance is no explanation
   std::vector<double> promise;   ///< gain in first order [nats]
   double alpha = 0.0;            ///< of this test
+  bool first = false;            ///< nothing has been found yet
   double overdispersion = 1.0;   ///< as usual over the candidates
   std::vector<size_t> best;      ///< of each effect, largest score first
   std::vector<CandidateTest> tests;

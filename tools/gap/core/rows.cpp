@@ -82,7 +82,7 @@ Rows::Rows(const std::vector<Drive>& drives, const RowSettings& settings)
     all += drive.stretches.size();
   }
   for (size_t i = 0; i < drives.size(); ++i) addDrive(i, settings.block);
-  // Poses are simulated where rows begin and end, so that nothing is interpolated.
+  // Poses are simulated where rows begin and end: only latencies have them interpolated.
   std::vector<std::vector<double>> cuts(all);
   for (const Row& row : rows_)
     for (double time : {row.begin, row.end})

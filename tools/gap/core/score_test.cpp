@@ -16,7 +16,9 @@ namespace {
 constexpr double kFewBlocks = 1.25;  // a root of active blocks below so many critical scores
 constexpr double kNearly = 0.999;
 constexpr double kSparse = 3.9;  // normal quantile: 1e-4
-constexpr double kFirst = 2.8;   // the same of a first effect; of 400 null logs of 200 s 1 passes
+constexpr double kFirst =
+    3.3;  // the same of a first effect: 1e-3; what null logs make of it is in tests/blind
+constexpr double kLeastActive = 3.0;   // blocks that must excite it
 constexpr double kLeastUnique = 0.02;  // below it a column is what the model's curvature leaves
 /// Mean slope of the pull by the residual, over 1 / scale^2: (f + 1) / (f + 3).
 constexpr double kInformation = (kFreedom + 1.0) / (kFreedom + 3.0);
@@ -149,6 +151,7 @@ double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& nee
   // Where few blocks act chance reaches the largest score of all: to equal it is nothing.
   if (by_blocks < 1.0 + 1e-9) by_blocks = std::min(by_blocks, kNearly);
   if (!needed.size_counts || !isSparse(test, candidate, needed.score)) return by_blocks;
+  if (needed.first && test.activeBlocks(candidate) < kLeastActive) return by_blocks;
   const double by_size =
       needed.first ? std::abs(test.ownScore(candidate)) /
                          studentQuantile(test.activeBlocks(candidate) - 1.0, kFirst)
@@ -156,9 +159,9 @@ double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& nee
   return std::max(by_blocks, by_size);
 }
 
-double chanceOfSize(double evidence, size_t candidates) {
-  return std::min(1.0,
-                  static_cast<double>(candidates) * std::erfc(evidence * kSparse / std::sqrt(2.0)));
+double chanceOfSize(double evidence, size_t candidates, bool first) {
+  return std::min(1.0, static_cast<double>(candidates) *
+                           std::erfc(evidence * (first ? kFirst : kSparse) / std::sqrt(2.0)));
 }
 
 double familyWise(const std::vector<double>& largest_by_chance, double score) {

@@ -44,8 +44,8 @@ class ScoreTest {
   /// Size over its standard error from information and overdispersion, not less than the `usual`.
   /** For candidates that few blocks excite: their |T| cannot exceed the root of activeBlocks(). */
   double sparseScore(Eigen::Index candidate, double usual) const;
-  /// The same with its own overdispersion alone: Student's t with activeBlocks() - 1 degrees of
-  /// freedom, on the safe side where the scales are too large for what scatters.
+  /// The same with its own overdispersion alone: Student's t with about activeBlocks() - 1 degrees
+  /// of freedom, on the safe side where the scales are too large for what scatters.
   double ownScore(Eigen::Index candidate) const { return sparseScore(candidate, 1.0); }
   /// The candidate freed of what the free parameters explain (rows x 1).
   Eigen::VectorXd own(Eigen::Index candidate) const { return own_.col(candidate); }
@@ -81,7 +81,7 @@ double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& nee
 
 /// Probability that chance gives any of so many candidates that evidence by its size alone
 /// (Bonferroni).
-double chanceOfSize(double evidence, size_t candidates);
+double chanceOfSize(double evidence, size_t candidates, bool first = false);
 
 /// Share of chance results that are at least as large (with the observed one counted in).
 double familyWise(const std::vector<double>& largest_by_chance, double score);

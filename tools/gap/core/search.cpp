@@ -15,8 +15,7 @@
 namespace tread::gap {
 namespace {
 
-constexpr size_t kRenewed = 10;     // directions that are simulated again in a round
-constexpr double kVanished = 2e-3;  // of an effect's typical size
+constexpr size_t kRenewed = 10;  // directions that are simulated again in a round
 
 /// Plain causes that everything else must be told from.
 const std::vector<std::string>& coverPaths() {
@@ -31,10 +30,9 @@ std::string effectOf(const std::string& path) {
 }
 
 bool hasVanished(const ModelDocument& model, const Candidate& candidate) {
-  const EffectParameter& known = parameterNamed(effectNamed(candidate.effect), candidate.parameter);
   const double size = *findParameter(model, candidate.effect + "." + candidate.parameter) -
                       (candidate.value - candidate.change);
-  return std::abs(size) < kVanished * std::abs(known.typical);
+  return isVanishing(candidate.effect, candidate.parameter, size);
 }
 
 class Search {
@@ -75,7 +73,7 @@ class Search {
     const bool only_accepted = std::all_of(
         result_.effects.begin(), result_.effects.end(),
         [this](const std::string& effect) { return contains(settings_.accepted, effect); });
-    return only_accepted && result_.negligible.empty() && !has_released_;
+    return only_accepted && result_.negligible.empty() && result_.released.empty();
   }
 
   /// The cover can imitate an effect and then go part by part, each as superfluous: once more with
@@ -218,7 +216,7 @@ class Search {
     const Candidate& added = round.candidates[best->candidate];
     state() = best->state;
     settle(state());
-    has_released_ = has_released_ || added.release;
+    if (added.release) result_.released.push_back(added.effect);
     if (!added.release && !contains(result_.effects, added.effect))
       result_.effects.push_back(added.effect);
     return true;
@@ -235,6 +233,8 @@ class Search {
         step.gain = trial.gain.value;
         step.gain_error = trial.gain.error;
         if (round.candidates[trial.candidate].release) step.remark = "is not what the model says";
+      } else if (!trial.refused.empty() && round.candidates[trial.candidate].release) {
+        continue;  // the term stays what the model says
       } else if (!trial.refused.empty()) {
         LadderStep refused;
         refused.effect = effect;
@@ -267,9 +267,10 @@ class Search {
     if (result_.ladder.size() > before)
       pruneEffects(fitter_, mask_, needed, settings_.least_gain, result_, say_);
     for (const std::string& effect : result_.effects) {
-      const double p = pValueOf(last, result_.scores[effect], result_.evidence[effect]);
-      const auto accepted = result_.p_values.emplace(effect, p).first;
-      accepted->second = std::min(accepted->second, p);
+      double& p = result_.p_values.emplace(effect, 1.0).first->second;
+      const double last_p = pValueOf(last, result_.scores[effect], result_.evidence[effect]);
+      // What stays for its gain, and not for its score, keeps the p of its acceptance.
+      if (result_.evidence[effect] >= 1.0 || last_p < p) p = last_p;
     }
     settle(state());
   }
@@ -282,7 +283,6 @@ class Search {
   SearchResult result_;
   size_t covered_ = 0;
   bool has_cover_ = false;
-  bool has_released_ = false;
 };
 
 /// A parameter held by what the model's covariance says of it, if it does.

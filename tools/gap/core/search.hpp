@@ -33,8 +33,11 @@ struct SearchResult {
   std::vector<LadderStep> ladder;
   std::vector<CandidateTest> tests;  ///< of the calibrated model, every effect's best direction
   std::vector<std::string> negligible;
-  std::vector<std::string> accepted;           ///< of the settings: they stay
-  std::vector<std::string> rejected;           ///< of the settings: they never come
+  std::vector<std::string>
+      released;  ///< effects of given terms that are others than the model says
+  std::vector<std::string> at_bound;  ///< went since their sizes ran to the ends of their ranges
+  std::vector<std::string> accepted;  ///< of the settings: they stay
+  std::vector<std::string> rejected;  ///< of the settings: they never come
   std::map<std::string, std::string> unsized;  ///< accepted, but not in: why
   /// Of an effect that stands for two others: those two.
   std::map<std::string, std::vector<std::string>> replaced;
@@ -56,11 +59,14 @@ std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool cali
 /** 1. Calibrates what is on. 2. Tests all that is off; ends if chance explains it. 3. Else takes in
  * the plain causes (slip, width, lag, delay, latency) as a cover, so that they cannot pass as
  * something rarer, 4. tests, refits the best, validates on blocks left out and adds the best, as
- * long as something is significant, 5. removes what the rest makes superfluous, cover included. */
+ * long as something is significant, 5. removes what the rest makes superfluous, cover included, and
+ * what runs to its bound. Where nothing is left the candidates of step 2 are tried without the
+ * cover. Given terms are held by the model's covariance; to let one go (a release) is a candidate
+ * like an effect. */
 SearchResult search(const Fitter& fitter, const ModelDocument& model, const std::vector<char>& mask,
                     const SearchSettings& settings, SearchMemory& memory, const Progress& say);
 
-/// Refits a given structure on other rows: the parameters of a result, from the values of `model`.
+/// Refits the structure of a result on other rows, from the result's values.
 FitState refitted(const Fitter& fitter, const SearchResult& result, const std::vector<char>& mask);
 
 }  // namespace tread::gap

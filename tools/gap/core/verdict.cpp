@@ -3,16 +3,33 @@
 #include "tools/gap/core/verdict.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "tools/gap/core/fit.hpp"
 
 namespace tread::gap {
 namespace {
 
+constexpr double kShareOfTypical = 0.1;
+
 bool isAmbiguous(const FoundEffect& effect) {
   if (!effect.group.empty()) return true;
   return std::any_of(effect.runner_ups.begin(), effect.runner_ups.end(),
                      [](const RunnerUp& other) { return other.behind < other.error; });
+}
+
+EffectKind kindOf(const Estimate& estimate) {
+  return effectNamed(effectOf(estimate)).kind;
+}
+
+/// Whether a term of the INS is another by a share of what is usual: where executions end does not
+/// show it, since they begin with the same error.
+bool isAnotherInstrument(const Estimate& estimate) {
+  const size_t dot = estimate.parameter.find('.');
+  if (dot == std::string::npos || kindOf(estimate) != EffectKind::kMeasurement) return false;
+  const double typical =
+      parameterNamed(effectNamed(effectOf(estimate)), estimate.parameter.substr(dot + 1)).typical;
+  return std::abs(estimate.value - estimate.before) > kShareOfTypical * std::abs(typical);
 }
 
 /// A change of what the model already has is a discrepancy if the end error falls with it.
@@ -21,12 +38,8 @@ void forgetMovesThatDoNotMatter(Finding& finding, double least_gain) {
   const double least = 1.0 - least_gain;
   const bool matters = gap.after.position.median < least * gap.before.position.median ||
                        gap.after.yaw.median < least * gap.before.yaw.median;
-  for (Estimate& estimate : finding.calibrated) estimate.moved = estimate.moved && matters;
-}
-
-/// Of a term of the catalogue.
-EffectKind kindOf(const Estimate& estimate) {
-  return effectNamed(estimate.parameter.substr(0, estimate.parameter.find('.'))).kind;
+  for (Estimate& estimate : finding.calibrated)
+    estimate.moved = estimate.moved && (matters || isAnotherInstrument(estimate));
 }
 
 Verdict verdictWithoutEffects(const Finding& finding, bool adequate) {
@@ -58,13 +71,7 @@ Verdict verdictOf(const Finding& finding, const std::vector<FoundEffect>& shown,
 
 /// A size at the end of what is plausible is no measurement.
 void refuseOnBound(const Estimate& estimate, Finding& finding) {
-  if (estimate.parameter.find(".time") != std::string::npos || estimate.value == 0.0) return;
-  const FreeParameter parameter = freeParameter(finding.before, estimate.parameter);
-  // Of a delay or lag that the model has, nothing may be left.
-  const bool to_nothing =
-      (estimate.parameter == "command_delay.delay" || estimate.parameter == "actuator_lag.lag") &&
-      estimate.value < 0.0;
-  if (to_nothing || !onBound(finding.after, parameter)) return;
+  if (!runsToBound(finding.after, freeParameter(finding.before, estimate.parameter))) return;
   finding.verdict = Verdict::kCannotTell;
   finding.reason = estimate.parameter + " runs to the end of its plausible range";
 }
@@ -80,6 +87,10 @@ void judge(Finding& finding, double adequacy_alpha, double least_gain) {
     finding.verdict = verdictWithoutEffects(finding, adequate);
   } else {
     finding.verdict = verdictOf(finding, shown, adequate);
+  }
+  if (finding.verdict == Verdict::kNoDiscrepancy && !finding.at_bound.empty()) {
+    finding.verdict = Verdict::kCannotTell;
+    finding.reason = finding.at_bound.front() + " runs to the end of its plausible range";
   }
   for (const Estimate& estimate : finding.calibrated) refuseOnBound(estimate, finding);
   for (const FoundEffect& effect : finding.effects)

@@ -72,9 +72,12 @@ std::string directionOf(const Estimate& estimate) {
 }
 
 std::string movedSentence(const Estimate& estimate) {
-  const std::string effect = estimate.parameter.substr(0, estimate.parameter.find('.'));
   const Estimate natural = naturalEstimate(estimate);
-  return shortTitleOf(effect) +
+  if (estimate.parameter.find('.') == std::string::npos)
+    return "A number of the model is another one now: " + saidEstimate(estimate) + " instead of " +
+           said(natural.before, saidUnit(natural)) + "; " +
+           inSentence(shortTitleOf(effectOf(estimate))) + " would do the same.";
+  return shortTitleOf(effectOf(estimate)) +
          ", which the model has, is another one now: " + saidEstimate(estimate) + " instead of " +
          said(natural.before, saidUnit(natural)) + ".";
 }
