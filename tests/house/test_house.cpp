@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -73,6 +74,12 @@ std::vector<std::string> foldersOf(const std::string& folder) {
 }
 
 }  // namespace
+
+TEST_CASE("tests that ctest runs are told where recordings are") {
+  const char* url = std::getenv("LCM_DEFAULT_URL");
+  if (url == nullptr || std::string(url) != "memq://") return;  // not run by ctest
+  CHECK(std::getenv("TREAD_RECORDINGS") != nullptr);
+}
 
 TEST_CASE("dependencies point one way: lcmtypes, common, modules, tools, tests") {
   for (const Include& include : includesUnder("common")) {
