@@ -153,7 +153,8 @@ bool isExcited(const Truth& truth) {
          truth.gap.yaw_rate > kLeastVisible * truth.floor.yaw_rate;
 }
 
-/// Of a number of the nominal model the effect that is the same by another name.
+/// Of a number of the nominal model the effect that is the same by another name. Here once more:
+/// who judges the workflow asks nothing of it.
 std::string effectOf(const std::string& path) {
   if (path == "delay") return "command_delay";
   if (path == "lag") return "actuator_lag";

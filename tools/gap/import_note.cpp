@@ -3,8 +3,10 @@
 #include "tools/gap/import_note.hpp"
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "common/config/scalars.hpp"
 
@@ -23,6 +25,17 @@ std::string valueOf(const std::string& text, const std::string& key) {
   if (value.size() >= 2 && value.front() == '"' && value.back() == '"')
     value = value.substr(1, value.size() - 2);
   return value;
+}
+
+/// What two imports note, if both do and it differs.
+std::optional<std::pair<std::string, std::string>> otherwise(const Drive& first,
+                                                             const Drive& second,
+                                                             std::string ImportNote::*what) {
+  if (!first.imported || !second.imported) return std::nullopt;
+  const std::string& one = (*first.imported).*what;
+  const std::string& two = (*second.imported).*what;
+  if (one.empty() || two.empty() || one == two) return std::nullopt;
+  return std::pair{one, two};
 }
 
 }  // namespace
@@ -51,21 +64,17 @@ void requireSameGauge(const Drive& drive, double gauge) {
 }
 
 void requireSameImport(const Drive& first, const Drive& second) {
-  if (!first.imported || !second.imported) return;
-  const std::string& one = first.imported->options;
-  const std::string& two = second.imported->options;
-  if (one.empty() || two.empty() || one == two) return;
-  throw std::runtime_error(second.name + ": imported with " + two + ", but " + first.name +
-                           " with " + one + "; import both in the same way");
+  if (const auto other = otherwise(first, second, &ImportNote::options))
+    throw std::runtime_error(second.name + ": imported with " + other->second + ", but " +
+                             first.name + " with " + other->first +
+                             "; import both in the same way");
 }
 
 void requireSameRobot(const Drive& first, const Drive& second) {
-  if (!first.imported || !second.imported) return;
-  const std::string& one = first.imported->robot;
-  const std::string& two = second.imported->robot;
-  if (one.empty() || two.empty() || one == two) return;
-  throw std::runtime_error(second.name + ": of the robot " + two + ", but " + first.name +
-                           " of the robot " + one + "; give logs of one robot");
+  if (const auto other = otherwise(first, second, &ImportNote::robot))
+    throw std::runtime_error(second.name + ": of the robot " + other->second + ", but " +
+                             first.name + " of the robot " + other->first +
+                             "; give logs of one robot");
 }
 
 }  // namespace tread::gap
