@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+
+#include "tools/plan/map_file.hpp"
+
+namespace tread::plan::samples {
+
+/// A folder of this test that is gone afterwards.
+class Folder {
+ public:
+  Folder() {
+    static int count = 0;
+    path_ = std::filesystem::temp_directory_path() /
+            ("tread-plan-" + std::to_string(getpid()) + "-" + std::to_string(++count));
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  std::string path(const std::string& name) const { return (path_ / name).string(); }
+  std::string text(const std::string& name) const {
+    std::ifstream file(path_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  /// Writes a file and returns its path.
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path(name);
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A file of the planning scenarios of others; empty where they are not.
+inline std::string recorded(const std::string& name) {
+  const char* folder = std::getenv("TREAD_RECORDINGS");
+  const std::string path = std::string(folder == nullptr ? "" : folder) + "/planning/" + name;
+  return std::filesystem::exists(path) ? path : "";
+}
+
+/// A text with a few bytes changed, left out or put in, or its end cut off.
+inline std::string damaged(std::string text, std::mt19937_64& random) {
+  const std::string bytes(
+      "0123456789-+.:# \n\0\xff"
+      "eNax",
+      24);
+  for (size_t changes = 1 + random() % 4; changes > 0 && !text.empty(); --changes) {
+    const size_t at = random() % text.size();
+    const char byte = bytes[random() % bytes.size()];
+    switch (random() % 5) {
+      case 0:
+        text[at] = byte;
+        break;
+      case 1:
+        text.erase(at, 1 + random() % 12);
+        break;
+      case 2:
+        text.insert(at, 1, byte);
+        break;
+      case 3:
+        text.insert(at, 1 + random() % 6, '9');
+        break;
+      default:
+        text.resize(at);
+        break;
+    }
+  }
+  return text;
+}
+
+/// 4 x 3 cells of 0.5 m.
+inline const std::string kEnvironment =
+    "discretization(cells): 4 3\n"
+    "obsthresh: 254\n"
+    "cost_inscribed_thresh: 253\n"
+    "cost_possibly_circumscribed_thresh: 128\n"
+    "cellsize(meters): 0.5\n"
+    "nominalvel(mpersecs): 0.8\n"
+    "timetoturn45degsinplace(secs): 3.0\n"
+    "start(meters,rads): 0.25 0.25 0\n"
+    "end(meters,rads): 1.75 1.25 -1.5\n"
+    "environment:\n"
+    "0 100 253 254\n"
+    "0   0 128 255\n"
+    "0   0   0   0\n";
+
+}  // namespace tread::plan::samples

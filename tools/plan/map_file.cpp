@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/plan/map_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "common/config/config_reader.hpp"
+#include "tools/plan/pgm_file.hpp"
+#include "tools/plan/words.hpp"
+
+namespace tread::plan {
+namespace {
+
+enum class Mode { kTrinary, kScale, kRaw };
+
+/// How a nav2 map's file says its pixels are to be read.
+struct PixelRule {
+  Mode mode = Mode::kTrinary;
+  bool negate = false;
+  double occupied = 0.65;
+  double free = 0.25;
+};
+
+Cell ofOccupancy(double percent) {
+  return percent >= 100.0 ? kObstacle : static_cast<Cell>(percent);
+}
+
+/// The cell of a pixel's brightness 0..1, as nav2's map server has it.
+Cell cellOf(double shade, const PixelRule& rule) {
+  if (rule.mode == Mode::kRaw) {
+    const double value = std::round(shade * 255.0);
+    return value <= 100.0 ? ofOccupancy(value) : kUnknown;
+  }
+  const double occupied = rule.negate ? shade : 1.0 - shade;
+  if (occupied > rule.occupied) return kObstacle;
+  if (occupied < rule.free) return kFree;
+  if (rule.mode == Mode::kTrinary) return kUnknown;
+  return ofOccupancy(std::rint((occupied - rule.free) / (rule.occupied - rule.free) * 100.0));
+}
+
+PixelRule readRule(ConfigReader& reader) {
+  PixelRule rule;
+  std::string mode = "trinary";
+  reader.choice("mode", mode, {"trinary", "scale", "raw"});
+  if (mode != "trinary") rule.mode = mode == "scale" ? Mode::kScale : Mode::kRaw;
+  std::string negate;
+  reader.choice("negate", negate, {"0", "1", "false", "true"}, true);
+  rule.negate = negate == "1" || negate == "true";
+  reader.number("occupied_thresh", rule.occupied, {0.0, 1.0}, "1", true);
+  reader.number("free_thresh", rule.free, {0.0, 1.0}, "1", true);
+  if (rule.free >= rule.occupied)
+    throw reader.error("free_thresh", "must be below occupied_thresh");
+  return rule;
+}
+
+Grid gridOf(const GreyImage& image, double resolution, const PixelRule& rule) {
+  Grid grid(resolution, {0, 0}, image.width, image.height);
+  std::vector<Cell> cells;
+  for (int value = 0; value <= image.white; ++value)
+    cells.push_back(cellOf(static_cast<double>(value) / image.white, rule));
+  const auto width = static_cast<size_t>(image.width);
+  for (size_t row = 0; row < static_cast<size_t>(image.height); ++row) {
+    const size_t from = (static_cast<size_t>(image.height) - 1 - row) * width;  // top row first
+    for (size_t x = 0; x < width; ++x)
+      grid.cells()[row * width + x] = cells[image.pixels[from + x]];
+  }
+  return grid;
+}
+
+/// Keys that we do not know are others' business and stay unread.
+MapFile readNav2(const std::string& path) {
+  ConfigReader reader = ConfigReader::fromFile(path);
+  std::string image;
+  reader.path("image", image, true);
+  double resolution = 0.05;
+  reader.number("resolution", resolution, {1e-3, 100.0}, "m", true);
+  std::vector<double> origin;
+  reader.numbers("origin", origin, 3, {-1e6, 1e6}, "m, m, rad", true);
+  const PixelRule rule = readRule(reader);
+  MapFile map;
+  map.name = path;
+  map.T_map_grid = {origin[0], origin[1], origin[2]};
+  map.grid = gridOf(readPgm(image), resolution, rule);
+  return map;
+}
+
+Grid gridFrom(const MapFile& map, int least_obstacle) {
+  Grid grid = map.grid;
+  std::transform(map.costs.begin(), map.costs.end(), grid.cells().begin(),
+                 [&](uint8_t cost) { return cost >= least_obstacle ? kObstacle : kFree; });
+  return grid;
+}
+
+}  // namespace
+
+MapFile readMap(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension == ".cfg") return parseSbplEnvironment(readWhole(path), path);
+  if (extension == ".yaml" || extension == ".yml") return readNav2(path);
+  throw ConfigError(path + ": a map is the .yaml of a nav2 map or the .cfg of an SBPL environment");
+}
+
+Grid gridForFootprint(const MapFile& map) {
+  return map.costs.empty() ? map.grid : gridFrom(map, map.thresholds.obstacle);
+}
+
+Grid gridForPoint(const MapFile& map) {
+  if (map.costs.empty()) return map.grid;
+  return gridFrom(map, std::min(map.thresholds.obstacle, map.thresholds.inscribed));
+}
+
+}  // namespace tread::plan

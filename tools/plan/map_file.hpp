@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/geometry/se2.hpp"
+#include "common/grid/grid.hpp"
+
+namespace tread::plan {
+
+/// From which cost on a cell of an SBPL environment is what.
+struct CostThresholds {
+  int obstacle = 254;                ///< lethal: something is in the cell
+  int inscribed = 253;               ///< no robot's centre may be in the cell
+  int possibly_circumscribed = 128;  ///< a robot there may touch something, by its heading
+};
+
+/// A map as its file has it.
+/** Frames: poses here, in query files and in results are in the map's own frame [m]. The grid's
+ * frame has its origin in the lower left corner of the map, the corner of the cell (0, 0), whatever
+ * the map's own origin is: convert with T_map_grid. */
+struct MapFile {
+  std::string name;  ///< the file that it was read from
+  Pose2 T_map_grid;
+  Grid grid;                   ///< free, obstacle, unknown; of SBPL's costs what is lethal
+  std::vector<uint8_t> costs;  ///< cell by cell as in the grid; empty unless SBPL's
+  CostThresholds thresholds;   ///< of the costs
+  std::optional<Pose2> T_map_start;
+  std::optional<Pose2> T_map_goal;
+  std::optional<double> nominal_speed;  ///< [m/s]
+  std::optional<double> turn_time;      ///< [s] to turn by 45 degrees on the spot
+};
+
+/// Reads a nav2 or ROS map (.yaml, .yml with its .pgm) or an SBPL environment (.cfg).
+/** A nav2 map's pixels become free, obstacle and unknown as its own loader does it, in the modes
+ * trinary, scale and raw; in the last two a value between free and occupied stays as the cost of a
+ * free cell. Throws ConfigError with one line "file:line: what is wrong; what is needed". */
+MapFile readMap(const std::string& path);
+
+/// An SBPL environment from its text; `name` stands for the file in messages.
+MapFile parseSbplEnvironment(std::string text, const std::string& name);
+
+/// The grid for a robot with a footprint: only lethal cells are obstacles, for lesser costs are
+/// others' inflation of them.
+Grid gridForFootprint(const MapFile& map);
+
+/// The grid for a point: what the map's inflation says no robot's centre may be in is an obstacle,
+/// too.
+Grid gridForPoint(const MapFile& map);
+
+}  // namespace tread::plan
