@@ -96,4 +96,35 @@ inline const std::string kEnvironment =
     "0   0 128 255\n"
     "0   0   0   0\n";
 
+/// Four headings, cells of 0.5 m: from heading 0 one cell ahead and a quarter of a circle to the
+/// left, from heading 3 one cell back.
+inline const std::string kPrimitives =
+    "resolution_m: 0.500000\n"
+    "numberofangles: 4\n"
+    "totalnumberofprimitives: 3\n"
+    "primID: 0\n"
+    "startangle_c: 0\n"
+    "endpose_c: 1 0 0\n"
+    "additionalactioncostmult: 1\n"
+    "intermediateposes: 3\n"
+    "0.0000 0.0000 0.0000\n"
+    "0.2000 0.0000 0.0000\n"
+    "0.5000 0.0000 0.0000\n"
+    "primID: 1\n"
+    "startangle_c: 0\n"
+    "endpose_c: 1 1 1\n"
+    "additionalactioncostmult: 3\n"
+    "intermediateposes: 4\n"
+    "0.0000 0.0000 0.0000\n"
+    "0.3000 0.0000 0.5000\n"
+    "0.3000 0.4000 1.0000\n"
+    "0.5000 0.5000 1.5708\n"
+    "primID: 0\n"
+    "startangle_c: 3\n"
+    "endpose_c: 0 1 -1\n"
+    "additionalactioncostmult: 5\n"
+    "intermediateposes: 2\n"
+    "0.0000 0.0000 -1.5708\n"
+    "0.0000 0.5000 4.7124\n";
+
 }  // namespace tread::plan::samples

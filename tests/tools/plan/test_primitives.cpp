@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "common/config/config_reader.hpp"
+#include "tests/tools/plan/plan_samples.hpp"
+#include "tools/plan/primitives.hpp"
+
+using namespace tread;
+using namespace tread::plan;
+using namespace tread::plan::samples;
+using Catch::Contains;
+
+namespace {
+
+std::string replaced(const std::string& from, const std::string& to) {
+  std::string text = kPrimitives;
+  const size_t at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+PrimitiveFile parse(const std::string& text) {
+  return parsePrimitives(text, "a.mprim");
+}
+
+/// Least cost from start to goal over a whole map, as SBPL counts it; -1 if there is no way.
+class Dijkstra {
+ public:
+  Dijkstra(const MapFile& map, const PrimitiveFile& file)
+      : map_(map), file_(file), blocked_(gridForPoint(map)) {
+    actions_ = latticeActions(file, {*map.nominal_speed, *map.turn_time});
+  }
+
+  int64_t cost() {
+    const State start = stateOf(*map_.T_map_start);
+    const State goal = stateOf(*map_.T_map_goal);
+    std::set<std::pair<int64_t, State>> open{{0, start}};
+    std::map<State, int64_t> best{{start, 0}};
+    while (!open.empty()) {
+      const auto [cost, state] = *open.begin();
+      open.erase(open.begin());
+      if (state == goal) return cost;
+      if (cost > best[state]) continue;
+      for (const LatticeAction& action : actions_[static_cast<size_t>(std::get<2>(state))]) {
+        const auto [x, y, bin] = state;
+        const int64_t step = costOf({x, y}, action);
+        const State next{x + action.dx, y + action.dy, action.end_bin};
+        const auto known = best.find(next);
+        if (step < 0 || (known != best.end() && known->second <= cost + step)) continue;
+        best[next] = cost + step;
+        open.insert({cost + step, next});
+      }
+    }
+    return -1;
+  }
+
+ private:
+  using State = std::tuple<int, int, int>;
+
+  State stateOf(const Pose2& pose) const {
+    const CellIndex cell = map_.grid.indexOf(pose.position());
+    return {cell.x, cell.y, nearestBin(file_.headings, pose.yaw)};
+  }
+
+  int64_t costOf(CellIndex from, const LatticeAction& action) const {
+    int dearest = 0;
+    std::vector<CellIndex> cells = action.cells;
+    cells.push_back({0, 0});
+    cells.push_back({action.dx, action.dy});
+    for (const CellIndex& offset : cells) {
+      const CellIndex cell{from.x + offset.x, from.y + offset.y};
+      if (blocked_.at(cell) != kFree) return -1;
+      dearest = std::max<int>(dearest, map_.costs[map_.grid.offset(cell)]);
+    }
+    return action.cost * (dearest + 1);
+  }
+
+  const MapFile& map_;
+  const PrimitiveFile& file_;
+  Grid blocked_;
+  std::vector<std::vector<LatticeAction>> actions_;
+};
+
+}  // namespace
+
+TEST_CASE("primitives are read with their headings, cells and poses") {
+  const PrimitiveFile file = parse(kPrimitives);
+  CHECK(file.resolution == 0.5);
+  REQUIRE(file.headings.size() == 4);
+  CHECK(file.headings[3] == Approx(1.5 * kPi));
+  REQUIRE(file.primitives.size() == 3);
+  CHECK(file.primitives[1].id == 1);
+  CHECK(file.primitives[1].dx == 1);
+  CHECK(file.primitives[1].dy == 1);
+  CHECK(file.primitives[1].end_bin == 1);
+  CHECK(file.primitives[1].cost_multiplier == 3);
+  CHECK(file.primitives[1].poses[2].y == 0.4);
+  CHECK(file.primitives[2].start_bin == 3);
+  CHECK(file.primitives[2].end_bin == 3);  // stands as -1
+}
+
+TEST_CASE("primitives may state uneven headings and their turning radius") {
+  std::string text =
+      replaced("numberofangles: 4\n",
+               "min_turning_radius_m: 1.0\nnumberofangles: 4\nangle:0 0.0\nangle:1 1.4\n"
+               "angle:2 3.1\nangle:3 4.5\n");
+  text.replace(text.find("intermediateposes"), 0, "turning_radius: 0.0\n");
+  const PrimitiveFile file = parse(text);
+  CHECK(file.headings == std::vector<double>{0.0, 1.4, 3.1, 4.5});
+  CHECK(nearestBin(file.headings, -0.1) == 0);
+  CHECK(nearestBin(file.headings, 5.3) == 3);
+  CHECK(nearestBin(file.headings, 5.5) == 0);
+}
+
+TEST_CASE("primitives that are broken are one clear line with file, line and primitive") {
+  const auto read = [](const std::string& from, const std::string& to) {
+    parse(replaced(from, to));
+  };
+  CHECK_THROWS_WITH(read("resolution_m", "resolution"),
+                    "a.mprim:1: \"resolution:\" stands where resolution_m: should be");
+  CHECK_THROWS_WITH(read("0.500000", "0"), Contains("a.mprim:1: resolution_m is \"0\""));
+  CHECK_THROWS_WITH(read("numberofangles: 4", "numberofangles: 4000000"),
+                    Contains("a.mprim:2: numberofangles is \"4000000\"; a whole number 1..720"));
+  CHECK_THROWS_WITH(read("angles: 4\n", "angles: 4\nangle:0 0.5\nangle:1 0.5\n"),
+                    "a.mprim:4: angle:1 is not greater than the angle before it");
+  CHECK_THROWS_WITH(read("totalnumberofprimitives: 3", "totalnumberofprimitives: 4"),
+                    Contains("a.mprim:27: primitive 4 of 4: the file ends where primID: should"));
+  CHECK_THROWS_WITH(read("totalnumberofprimitives: 3", "totalnumberofprimitives: 2"),
+                    Contains("a.mprim:20: more follows behind the last of 2 primitives"));
+  CHECK_THROWS_WITH(read("additionalactioncostmult: 3\n", ""),
+                    Contains("a.mprim:15: primitive 2 of 3: \"intermediateposes:\" stands where"));
+  CHECK_THROWS_WITH(read("startangle_c: 3", "startangle_c: 4"),
+                    Contains("a.mprim:22: primitive 3 of 3: startangle_c is \"4\""));
+  CHECK_THROWS_WITH(read("0 1 -1", "0 1 8"), Contains("primitive 3 of 3: endpose_c's heading bin"));
+  CHECK_THROWS_WITH(read("0.2000", "nan"),
+                    Contains("a.mprim:10: primitive 1 of 3: a pose's x is \"nan\""));
+  CHECK_THROWS_WITH(read("intermediateposes: 4", "intermediateposes: 2"),
+                    Contains("a.mprim:18: primitive 2 of 3: its last pose misses endpose_c"));
+  CHECK_THROWS_WITH(read("endpose_c: 1 1 1", "endpose_c: 1 2 1"),
+                    Contains("its last pose misses endpose_c by more than half a cell or bin"));
+  CHECK_THROWS_WITH(read("endpose_c: 1 1 1", "endpose_c: 1 1 2"), Contains("misses endpose_c"));
+  CHECK_THROWS_WITH(read("0.0000 0.0000 -1.5708", "0.0000 0.0000 0.0000"),
+                    Contains("primitive 3 of 3: its first pose misses the start"));
+  CHECK_THROWS_WITH(read("0 1 -1", "0 0 -1"), Contains("its last pose misses endpose_c"));
+  std::string still = replaced("0 1 -1", "0 0 -1");
+  still.replace(still.find("0.0000 0.5000 4.7124"), 20, "0.0000 0.0000 4.7124");
+  CHECK_THROWS_WITH(parse(still), Contains("primitive 3 of 3: it neither moves nor turns"));
+}
+
+TEST_CASE("damaged primitives are read or refused in one line, never worse") {
+  std::mt19937_64 random(2);
+  size_t refused = 0;
+  for (int i = 0; i < 4000; ++i) {
+    try {
+      const PrimitiveFile file = parse(damaged(kPrimitives, random));
+      for (const auto& actions : latticeActions(file, {0.001, 1e4}))
+        for (const LatticeAction& action : actions) CHECK(action.cost > 0);
+      headingFree(file, {});
+    } catch (const ConfigError& error) {
+      ++refused;
+      const std::string line = error.what();
+      CHECK(line.rfind("a.mprim:", 0) == 0);
+      CHECK(line.find('\n') == std::string::npos);
+      CHECK(line.size() < 400);
+    }
+  }
+  CHECK(refused > 1000);
+  CHECK(refused < 4000);
+}
+
+TEST_CASE("heading-free primitives are those of heading 0 with the slower of way and turn") {
+  const auto free = headingFree(parse(kPrimitives), {0.5, 1.0});
+  REQUIRE(free.size() == 2);
+  CHECK(free[0].id == 0);
+  REQUIRE(free[0].trajectory.size() == 2);  // without the start
+  CHECK(free[0].trajectory[0].x == 0.2);
+  CHECK(free[0].duration == Approx(0.5 / 0.5));
+  CHECK(free[0].cost_factor == 1.0);
+  // A quarter turn takes 2 s, its way of 0.3 + 0.4 + 0.224 m 1.85 s.
+  CHECK(free[1].duration == Approx(2.0).epsilon(1e-4));
+  CHECK(free[1].cost_factor == 3.0);
+  CHECK(headingFree(parse(kPrimitives), {0.1, 1.0})[1].duration ==
+        Approx((0.7 + std::hypot(0.2, 0.1)) / 0.1));
+}
+
+TEST_CASE("heading-free primitives stand in the frame of their start, their yaw unwrapped") {
+  std::string text = replaced("numberofangles: 4\n",
+                              "numberofangles: 4\nangle:0 0.5\nangle:1 2.0\nangle:2 3.6\n"
+                              "angle:3 5.1\n");
+  const auto put = [&text](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  put("totalnumberofprimitives: 3", "totalnumberofprimitives: 1");
+  text.resize(text.find("primID: 1"));
+  put("endpose_c: 1 0 0", "endpose_c: 1 0 3");
+  put("0.0000 0.0000 0.0000\n", "0.0000 0.0000 0.5000\n");
+  put("0.2000 0.0000 0.0000\n", "0.2000 0.0000 0.0000\n");
+  put("0.5000 0.0000 0.0000\n", "0.5000 0.0000 5.1000\n");
+  const auto free = headingFree(parse(text), {});
+  REQUIRE(free.size() == 1);
+  REQUIRE(free[0].trajectory.size() == 2);
+  CHECK(free[0].trajectory[0].x == Approx(0.2 * std::cos(0.5)));
+  CHECK(free[0].trajectory[0].y == Approx(-0.2 * std::sin(0.5)));
+  CHECK(free[0].trajectory[0].yaw == Approx(-0.5));
+  CHECK(free[0].trajectory[1].yaw == Approx(5.1 - 0.5 - 2.0 * kPi));
+  CHECK(free[0].duration == Approx((0.5 + 2.0 * kPi - 5.1) / (kPi / 4.0) * 2.0));
+}
+
+TEST_CASE("without a primitive of heading 0 there is none for all headings") {
+  std::string text = kPrimitives;
+  text.replace(text.find("primitives: 3"), 13, "primitives: 1");
+  const size_t first = text.find("primID: 0");
+  text.erase(first, text.find("primID: 0", first + 1) - first);
+  CHECK_THROWS_WITH(headingFree(parse(text), {}),
+                    Contains("a.mprim: no primitive begins in heading bin 0"));
+}
+
+TEST_CASE("lattice actions have whole costs and the cells that their poses pass") {
+  const auto actions = latticeActions(parse(kPrimitives), {0.3, 1.0});
+  REQUIRE(actions.size() == 4);
+  REQUIRE(actions[0].size() == 2);
+  CHECK(actions[1].empty());
+  CHECK(actions[0][0].cost == 1667);  // 1666.7 ms
+  CHECK(actions[0][0].cells == std::vector<CellIndex>{{0, 0}, {1, 0}});
+  CHECK(actions[0][1].cost == 3 * 3079);  // 0.9236 m
+  // 0.25 + 0.3 m is beyond the first cell's border at 0.5 m.
+  CHECK(actions[0][1].cells == std::vector<CellIndex>{{0, 0}, {1, 0}, {1, 1}});
+  REQUIRE(actions[3].size() == 1);
+  CHECK(actions[3][0].end_bin == 3);
+  CHECK(actions[3][0].cells == std::vector<CellIndex>{{0, 0}, {0, 1}});
+  CHECK(latticeActions(parse(kPrimitives), {10.0, 1.0})[0][1].cost == 3 * 2000);  // the turn
+}
+
+TEST_CASE("recorded primitives on a recorded map cost what an exact search found") {
+  if (recorded("sbpl/env1.cfg").empty()) {
+    WARN("skipped: the planning scenarios are not here (TREAD_RECORDINGS)");
+    return;
+  }
+  const MapFile map = readMap(recorded("sbpl/env1.cfg"));
+  const auto cost = [&](const std::string& name) {
+    const PrimitiveFile file = readPrimitives(recorded("sbpl/" + name + ".mprim"));
+    return Dijkstra(map, file).cost();
+  };
+  CHECK(cost("pr2") == 8348);
+  CHECK(cost("all_file") == 527);
+  CHECK(cost("mprim_unic_sideback") == 575);
+  CHECK(cost("unicycle_noturninplace") == -1);
+}
+
+TEST_CASE("recorded primitives have as many for heading 0 as was published") {
+  if (recorded("sbpl/env1.cfg").empty()) {
+    WARN("skipped: the planning scenarios are not here (TREAD_RECORDINGS)");
+    return;
+  }
+  const std::map<std::string, size_t> published{{"pr2", 7},
+                                                {"unicycle_noturninplace", 5},
+                                                {"mprim_unic_sideback", 11},
+                                                {"all_file", 13},
+                                                {"pr2_10cm", 16},
+                                                {"non_uniform_res0025_rad1_err005", 10},
+                                                {"pr2_unicycle_10cm", 5}};
+  for (const auto& [name, count] : published) {
+    CAPTURE(name);
+    const PrimitiveFile file = readPrimitives(recorded("sbpl/" + name + ".mprim"));
+    CHECK(file.primitives.size() == 16 * count);
+    const auto free = headingFree(file, {1.0, 20.0});
+    CHECK(free.size() == count);
+    for (const FreePrimitive& primitive : free) CHECK(primitive.duration > 0.0);
+  }
+}
