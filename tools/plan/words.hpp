@@ -33,6 +33,8 @@ class Words {
   size_t left() const { return text_.size() - at_; }
   /// All of them; no word can be taken after that.
   std::string_view rest();
+  /// Of the word that was taken last, from 1.
+  int line() const { return word_line_; }
   /// An error at the line of the word that was taken last.
   ConfigError error(const std::string& problem) const;
   /// Words that errors begin with from here on, for instance "primitive 3"; empty = none.

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/geometry/se2.hpp"
+
+namespace tread::plan {
+
+/// How a query ended.
+enum class PlanStatus {
+  kSolved,       ///< the plan ends within the goal's tolerance
+  kUnreachable,  ///< there is no way, known for sure
+  kNoneInTime    ///< none was found before the deadline
+};
+
+/// "solved", "unreachable" or "none_in_time".
+const char* nameOf(PlanStatus status);
+
+/// How near to the goal something could come.
+struct ClosestApproach {
+  Eigen::Vector2d p_map{0.0, 0.0};
+  double distance = 0.0;  ///< [m] to the goal
+};
+
+/// All that is told about the answer to one query. Poses are in the map's own frame.
+struct PlanAnswer {
+  PlanStatus status = PlanStatus::kNoneInTime;
+  std::string reason;                 ///< in words; empty if it is solved
+  double cost = 0.0;                  ///< of the plan, as the planner counts it
+  double time = 0.0;                  ///< [s] to drive it
+  double length = 0.0;                ///< [m]
+  std::vector<std::string> patterns;  ///< names, or ids where they have none
+  std::vector<Pose2> poses;           ///< T_map_body, start first; the best so far if not solved
+  std::optional<ClosestApproach> closest;
+  int64_t expansions = 0;
+  std::optional<double> first_solution_ms;  ///< from the query to the first plan to the goal
+  double total_ms = 0.0;                    ///< from the query to the end, all work for it included
+  double clearance_ms = 0.0;                ///< of that for the clearance field
+  double heuristic_ms = 0.0;                ///< of that for the way to go
+  double memory_mb = 0.0;                   ///< of search, field and way to go
+};
+
+}  // namespace tread::plan

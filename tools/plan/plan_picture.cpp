@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/plan/plan_picture.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tools/picture/plot.hpp"
+
+namespace tread::plan {
+namespace {
+
+using Eigen::Vector2d;
+using picture::Box;
+using picture::Colour;
+using picture::Panel;
+
+constexpr double kMargin = 70.0;     // [pixels] around the panel for its axes
+constexpr double kLongest = 1000.0;  // [pixels] longer side of the panel
+constexpr double kShortest = 300.0;  // [pixels]
+
+/// The part of the map's frame that the grid's window covers.
+struct Extent {
+  Vector2d low{1e9, 1e9};
+  Vector2d high{-1e9, -1e9};
+
+  Vector2d size() const { return high - low; }
+};
+
+std::array<Vector2d, 4> corners(const PlanScene& scene, CellIndex from, CellIndex to,
+                                double more = 0.0) {
+  const double cell = scene.grid.cellSize();
+  const Vector2d low(from.x * cell - more, from.y * cell - more);
+  const Vector2d high(to.x * cell + more, to.y * cell + more);
+  return {scene.T_map_grid * low, scene.T_map_grid * Vector2d(high.x(), low.y()),
+          scene.T_map_grid * high, scene.T_map_grid * Vector2d(low.x(), high.y())};
+}
+
+Extent extentOf(const PlanScene& scene) {
+  const CellIndex low = scene.grid.lower();
+  Extent extent;
+  for (const Vector2d& corner :
+       corners(scene, low, {low.x + scene.grid.width(), low.y + scene.grid.height()})) {
+    extent.low = extent.low.cwiseMin(corner);
+    extent.high = extent.high.cwiseMax(corner);
+  }
+  return extent;
+}
+
+/// The panel's size follows the map's shape.
+Box boxFor(const Extent& extent) {
+  const double scale = kLongest / extent.size().maxCoeff();
+  return {kMargin, kMargin, std::max(kShortest, extent.size().x() * scale),
+          std::max(kShortest, extent.size().y() * scale)};
+}
+
+/// Cells that are not free, equal neighbours of a row as one.
+void drawCells(Panel& panel, const PlanScene& scene, double metres_per_pixel) {
+  const CellIndex low = scene.grid.lower();
+  for (int y = low.y; y < low.y + scene.grid.height(); ++y) {
+    const int end = low.x + scene.grid.width();
+    for (int x = low.x; x < end;) {
+      const Cell cell = scene.grid.at({x, y});
+      const int first = x;
+      while (x < end && scene.grid.at({x, y}) == cell) ++x;
+      if (isFree(cell)) continue;
+      const double grey = cell == kUnknown ? 0.8 : 0.15;
+      // Half a pixel more: without it smoothed edges leave bright seams between rows.
+      const auto run = corners(scene, {first, y}, {x, y + 1}, metres_per_pixel / 2.0);
+      panel.polygon({run.begin(), run.end()}, {grey, grey, grey});
+    }
+  }
+}
+
+void drawFootprints(Panel& panel, const PlanScene& scene) {
+  const Colour fill{0.90, 0.62, 0.00, 0.18};
+  for (const Pose2& T_map_body : scene.stations) {
+    if (scene.outline.empty()) {
+      panel.disc(T_map_body.position(), scene.radius, fill);
+      continue;
+    }
+    std::vector<Vector2d> outline;
+    for (const Vector2d& corner : scene.outline) outline.push_back(T_map_body * corner);
+    panel.polygon(outline, fill);
+    outline.push_back(outline.front());
+    panel.line(outline, {{0.70, 0.45, 0.00, 0.6}, 0.8, false, ""});
+  }
+}
+
+/// A dot and the way it looks.
+void drawPose(Panel& panel, const Pose2& T_map_body, double length, Colour colour,
+              const std::string& label) {
+  panel.dot(T_map_body.position(), colour, 6.0);
+  panel.line({T_map_body.position(), T_map_body * Vector2d(length, 0.0)},
+             {colour, 3.0, false, label});
+}
+
+}  // namespace
+
+std::vector<Vector2d> rectangle(double length, double width) {
+  const double x = length / 2.0;
+  const double y = width / 2.0;
+  return {{x, y}, {-x, y}, {-x, -y}, {x, -y}};
+}
+
+void drawPlan(const std::string& path, const PlanScene& scene) {
+  const Extent extent = extentOf(scene);
+  const Box box = boxFor(extent);
+  const double metres_per_pixel =
+      std::max(extent.size().x() / box.width, extent.size().y() / box.height);
+  picture::Picture sheet(static_cast<int>(box.width + 2.0 * kMargin),
+                         static_cast<int>(box.height + 2.0 * kMargin), scene.title);
+  Panel panel(sheet, box,
+              {"", "x [m]", "y [m]", extent.low.x(), extent.high.x(), extent.low.y(),
+               extent.high.y(), true});
+  drawCells(panel, scene, metres_per_pixel);
+  for (const auto& branch : scene.tree)
+    panel.line(branch, {{0.00, 0.45, 0.70, 0.35}, 0.8, false, ""});
+  drawFootprints(panel, scene);
+  panel.line(scene.path, {picture::kOrange, 2.5, false, scene.path.empty() ? "" : "plan"});
+  if (!scene.tree.empty()) panel.legendEntry({picture::kBlue, 1.0, false, "search tree"});
+  drawPose(panel, scene.T_map_start, 14.0 * metres_per_pixel, picture::kGreen, "start");
+  drawPose(panel, scene.T_map_goal, 14.0 * metres_per_pixel, picture::kRed, "goal");
+  panel.finish();
+  sheet.save(path);
+}
+
+}  // namespace tread::plan
