@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include <set>
+
 #include "tests/planner/kit/closed_loop.hpp"
 
 using namespace tread;
@@ -229,6 +231,36 @@ TEST_CASE("After an abort it waits until the vehicle stands, then begins again f
   REQUIRE(!rig.supervisor().program().running().empty());
   const ProgramBook& program = rig.supervisor().program();
   CHECK((rig.running().entry_class == "rest" || program.running().execution_id > 5));
+}
+
+TEST_CASE("Before it comes to rest it has said why: at the goal, or what it does from there") {
+  Rig rig;
+  std::set<std::string> reasons;
+  const auto listen = [&](double seconds) {
+    for (double t = 0.0; t < seconds; t += 0.05) {
+      const Decision decision = rig.run(0.05);
+      const ProgramBook& program = rig.supervisor().program();
+      if (program.running().empty() || decision.report.status != PlanStatus::kDriving) continue;
+      if (rig.running().exit_class == "rest") CHECK_FALSE(decision.report.reason.empty());
+      reasons.insert(decision.report.reason);
+    }
+  };
+  listen(18.0);
+  CHECK(reasons == std::set<std::string>{"", "stopping at the goal"});
+  rig.situation().goal = Goal{2, {-6.0, 0.0, 0.0}, 0.5, 4.0};
+  listen(1.0);
+  CHECK(reasons.count("stopping to turn on the spot") == 1);
+}
+
+TEST_CASE("A pattern that the bridge ends early is told with the bridge's reason") {
+  Rig rig;
+  rig.run(3.0);
+  rig.bridge().setArmed(false);
+  // Without the news of being disarmed: what is left is the aborted execution.
+  const Decision decision =
+      rig.run(0.1, [](Situation& s) { s.bridge->state = BridgeReading::State::kArmed; });
+  CHECK(decision.report.status == PlanStatus::kWaiting);
+  CHECK(decision.report.reason.find("stopped by motor_bridge: ") == 0);
 }
 
 TEST_CASE("Boxed in it says that it is blocked, and drives when it is let out") {

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "common/geometry/se2.hpp"
+#include "tools/missions/flip_watch.hpp"
+#include "tools/missions/stop_watch.hpp"
 #include "tools/shadow/shadow_learners.hpp"
 
 namespace tread::missions {
@@ -67,6 +69,8 @@ struct MissionResult {
   std::string reason;          ///< in words; empty when arrived
   int collisions = 0;          ///< contacts of the true footprint with true obstacles
   double time = 0.0;           ///< [s] from the goal to the end
+  double begun = 0.0;          ///< [s] of that until it first moved
+  double driven = 0.0;         ///< [s] of that in motion
   double distance = 0.0;       ///< [m] really driven
   double straight_line = 0.0;  ///< [m] from start to goal
   bool line_blocked = false;   ///< the straight line was not free
@@ -80,6 +84,8 @@ struct MissionResult {
   std::vector<learner::Rule> shadow_rules;  ///< that judged the same executions beside the drive
   std::vector<TrackPoint> track;
   std::vector<Contact> contacts;  ///< one per collision
+  std::vector<Stop> stops;        ///< between start and arrival
+  std::vector<Flip> flips;
 
   double detour() const { return straight_line > 0.0 ? distance / straight_line : 0.0; }
 };

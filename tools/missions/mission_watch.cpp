@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/grid/footprint.hpp"
 #include "tools/operator/drive_progress.hpp"
 
 namespace tread::missions {
@@ -25,6 +26,7 @@ MissionWatch::MissionWatch(RobotSystem& system, const MissionWorld& world)
       world_(world),
       start_(system.bus().now()),
       time_limit_(60.0 + 8.0 * world.straight_line),
+      flips_([this](const Pose2& start, const auto& patterns) { return isFree(start, patterns); }),
       moved_at_(start_),
       last_pose_(system.robot().truth().T_map_body),
       moved_from_(last_pose_),
@@ -40,20 +42,60 @@ MissionWatch::MissionWatch(RobotSystem& system, const MissionWorld& world)
 }
 
 void MissionWatch::listen(Bus& bus) {
-  bus.subscribe<plan_t>(kPlan, [this](const plan_t& message) { plan_ = message; });
+  bus.subscribe<plan_t>(kPlan, [this](const plan_t& message) { hear(message); });
   bus.subscribe<motor_t>(kMotor, [this](const motor_t& message) { motor_ = message; });
   bus.subscribe<execution_t>(kExecution, [this](const execution_t& message) { hear(message); });
   bus.subscribe<learning_t>(kLearning, [this](const learning_t& message) { hear(message); });
   bus.subscribe<plan_tree_t>(kPlanTree, [this](const plan_tree_t& message) { hear(message); });
   bus.subscribe<map_tile_t>(kMap, [this](const map_tile_t& message) { hear(message); });
-  bus.subscribe<pattern_set_part_t>(kPatternSet, [this](const pattern_set_part_t& part) {
-    versions_.insert(part.set_version);
-    result_.set_versions = static_cast<int64_t>(versions_.size()) - 1;
-  });
+  bus.subscribe<pattern_set_part_t>(kPatternSet,
+                                    [this](const pattern_set_part_t& part) { hear(part); });
+}
+
+MissionResult MissionWatch::result() const {
+  MissionResult result = result_;
+  result.stops = stops_.stops(start_, result.outcome == Outcome::kArrived);
+  result.begun = stops_.begun() == 0 ? result.time : seconds(stops_.begun());
+  result.driven = stops_.driven();
+  return result;
+}
+
+void MissionWatch::hear(const pattern_set_part_t& part) {
+  versions_.insert(part.set_version);
+  result_.set_versions = static_cast<int64_t>(versions_.size()) - 1;
+  if (const auto set = sets_.add(part)) flips_.take(*set);
+}
+
+void MissionWatch::hear(const plan_t& message) {
+  plan_ = message;
+  std::optional<Flip> flip = flips_.hear(message);
+  if (!flip) return;
+  flip->time = seconds(system_.bus().now());
+  result_.flips.push_back(*flip);
+}
+
+bool MissionWatch::isFree(const Pose2& T_map_start,
+                          const std::vector<const MotionPattern*>& patterns) const {
+  const planner::WorldConfig& world = system_.planner().world;
+  const Footprint footprint(world.footprint.front, world.footprint.rear, world.footprint.half_width,
+                            world.margins.check);
+  const auto cells = static_cast<int>(std::ceil(world.window / map_.cellSize()));
+  const CellIndex here = Grid(map_.cellSize(), {}, 0, 0).indexOf(T_map_start.position());
+  const Grid around = map_.window({here.x - cells / 2, here.y - cells / 2}, cells, cells);
+  Pose2 start = T_map_start;
+  for (const MotionPattern* pattern : patterns) {
+    for (const Pose2& pose : pattern->trajectory)
+      if (footprint.blockedCells(around, start * pose, false) > 0) return false;
+    start = start * pattern->end();
+  }
+  return true;
 }
 
 void MissionWatch::hear(const execution_t& message) {
+  abort_reason_.clear();
   for (const execution_record_t& record : message.records) {
+    const bool aborted = record.outcome == execution_record_t::OUTCOME_ABORTED;
+    abort_reason_ = aborted ? record.outcome_reason : std::string();
     execution_record_t& known = records_[{record.record_run_id, record.record_execution_id}];
     if (known.outcome != record.outcome) {
       if (record.outcome == execution_record_t::OUTCOME_COMPLETED) ++result_.completed;
@@ -111,6 +153,7 @@ void MissionWatch::step() {
     moved_from_ = truth.T_map_body;
     moved_at_ = now;
   }
+  stops_.step(now, truth.v_body, {plan_.reason, abort_reason_});
   noteContacts();
   followSurface();
   judge();

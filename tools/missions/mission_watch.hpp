@@ -5,7 +5,11 @@
 #include <map>
 #include <set>
 
+#include "common/messages/pattern_messages.hpp"
+
+#include "tools/missions/flip_watch.hpp"
 #include "tools/missions/mission_runner.hpp"
+#include "tools/missions/stop_watch.hpp"
 
 namespace tread::missions {
 
@@ -17,7 +21,7 @@ class MissionWatch {
   /// Call every 50 ms of virtual time.
   void step();
   bool ended() const { return ended_; }
-  MissionResult result() const { return result_; }
+  MissionResult result() const;
   Progress progress() const;
   void fillScene(MissionScene& scene) const {
     scene.map = map_;
@@ -26,10 +30,13 @@ class MissionWatch {
 
  private:
   void listen(Bus& bus);
+  void hear(const plan_t& message);
   void hear(const execution_t& message);
+  void hear(const pattern_set_part_t& part);
   void hear(const learning_t& message);
   void hear(const plan_tree_t& message);
   void hear(const map_tile_t& message);
+  bool isFree(const Pose2& T_map_start, const std::vector<const MotionPattern*>& patterns) const;
   void noteContacts();
   std::string presentPattern() const;
   void followSurface();
@@ -48,6 +55,10 @@ class MissionWatch {
   plan_t plan_{};
   motor_t motor_{};
   std::set<int64_t> versions_;  ///< of pattern sets that were published
+  PatternSetAssembler sets_;
+  FlipWatch flips_;
+  StopWatch stops_;
+  std::string abort_reason_;  ///< of the newest execution, if it was aborted
   std::map<int, std::string> pattern_names_;
   std::map<std::pair<int64_t, int64_t>, execution_record_t> records_;  ///< by run and execution id
   std::vector<std::pair<int64_t, std::string>>

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "tools/missions/campaign_json.hpp"
+#include "tools/missions/stop_report.hpp"
 
 namespace tread::missions {
 namespace {
@@ -78,6 +79,33 @@ nlohmann::ordered_json errorsJson(const Campaign& campaign, int first, int last)
   return rows;
 }
 
+nlohmann::ordered_json stopsJson(const MissionResult& result) {
+  nlohmann::ordered_json stops = nlohmann::ordered_json::array();
+  for (const Stop& stop : result.stops)
+    stops.push_back(
+        {{"time_s", stop.time}, {"duration_s", stop.duration}, {"reason", stop.reason}});
+  return stops;
+}
+
+nlohmann::ordered_json flipsJson(const MissionResult& result) {
+  nlohmann::ordered_json flips = nlohmann::ordered_json::array();
+  for (const Flip& flip : result.flips)
+    flips.push_back({{"time_s", flip.time}, {"from", flip.from}, {"to", flip.to}});
+  return flips;
+}
+
+void addSteadiness(nlohmann::ordered_json& json, const Campaign& campaign) {
+  const Steadiness steadiness = steadinessOf(campaign.results);
+  json["driven_s"] = steadiness.driven;
+  json["flips"] = steadiness.flips;
+  json["flips_per_min"] = steadiness.flipsPerMinute();
+  json["stops"] = steadiness.stops;
+  json["stops_per_mission"] =
+      steadiness.stops / static_cast<double>(std::max<size_t>(1, campaign.results.size()));
+  json["stop_reasons"] = nlohmann::ordered_json::object();
+  for (const auto& [reason, count] : steadiness.reasons) json["stop_reasons"][reason] = count;
+}
+
 nlohmann::ordered_json runJson(const MissionResult& result) {
   nlohmann::ordered_json crossings = nlohmann::ordered_json::array();
   for (size_t i = 0; i < result.crossings.size(); ++i) {
@@ -106,6 +134,8 @@ nlohmann::ordered_json runJson(const MissionResult& result) {
           {"reason", result.reason},
           {"collisions", result.collisions},
           {"time_s", result.time},
+          {"begun_s", result.begun},
+          {"driven_s", result.driven},
           {"distance_m", result.distance},
           {"straight_m", result.straight_line},
           {"detour", result.detour()},
@@ -113,6 +143,8 @@ nlohmann::ordered_json runJson(const MissionResult& result) {
           {"surface_changes", result.surface_changes},
           {"crossings", crossings},
           {"contacts", contacts},
+          {"stops", stopsJson(result)},
+          {"flips", flipsJson(result)},
           {"patterns", result.completed},
           {"aborted", result.aborted},
           {"rearmed", result.rearmed},
@@ -136,11 +168,11 @@ int collisionsOf(const Campaign& campaign) {
 std::string lineOf(const MissionResult& result) {
   return format(
       "seed %-6llu %-8s %5.1f s  %5.1f m  detour %4.2f  patterns %3d  crossings %zu of %d  "
-      "collisions %d%s%s",
+      "collisions %d  stops %zu  flips %zu%s%s",
       static_cast<unsigned long long>(result.seed), nameOf(result.outcome), result.time,
       result.distance, result.detour(), result.completed, result.crossings.size(),
-      result.surface_changes, result.collisions, result.reason.empty() ? "" : "  ",
-      result.reason.c_str());
+      result.surface_changes, result.collisions, result.stops.size(), result.flips.size(),
+      result.reason.empty() ? "" : "  ", result.reason.c_str());
 }
 
 std::string crossingsOf(const MissionResult& result) {
@@ -163,6 +195,7 @@ void printSummary(std::ostream& out, const Campaign& campaign) {
   for (const MissionResult& result : campaign.results) blocked += result.line_blocked ? 1 : 0;
   out << format("collisions %d; straight line blocked in %d of %zu missions\n",
                 collisionsOf(campaign), blocked, campaign.results.size());
+  printSteadiness(out, campaign.results);
   out << format("%.0f s of virtual time in %.0f s: %.1f times real time per core\n",
                 campaign.virtual_time, campaign.wall_time,
                 campaign.virtual_time / std::max(1e-9, campaign.cpu_time));
@@ -178,6 +211,7 @@ nlohmann::ordered_json campaignJson(const Campaign& campaign) {
   json["idle"] = countOf(campaign, Outcome::kIdle);
   json["stopped"] = countOf(campaign, Outcome::kStopped);
   json["collisions"] = collisionsOf(campaign);
+  addSteadiness(json, campaign);
   json["virtual_s"] = campaign.virtual_time;
   json["wall_s"] = campaign.wall_time;
   json["cpu_s"] = campaign.cpu_time;

@@ -83,6 +83,7 @@ void Supervisor::noteGoal(const Situation& s) {
 }
 
 void Supervisor::followBridge(const Situation& s) {
+  const bool led_to_rest = !book_.running().empty() && leadsToRest(book_.running());
   switch (book_.follow(s)) {
     case ProgramBook::Event::kNone:
       return;
@@ -100,12 +101,15 @@ void Supervisor::followBridge(const Situation& s) {
     }
     case ProgramBook::Event::kEnded:
       ++counters_["came to rest"];
+      if (!led_to_rest) say(PlanStatus::kWaiting, "stopped: nothing was handed over in time");
       break;
     case ProgramBook::Event::kAborted:
       ++counters_["aborted by the bridge"];
+      say(PlanStatus::kWaiting, "stopped by motor_bridge: " + book_.abortReason());
       break;
     case ProgramBook::Event::kNeverStarted:
       ++counters_["not begun by the bridge"];
+      say(PlanStatus::kWaiting, "stopped: " + book_.abortReason());
       break;
   }
   mode_ = Mode::kSettling;
@@ -147,6 +151,7 @@ SearchResult Supervisor::searchFrom(const Situation& s, const Pose2& start, int 
   last_plan_ = s.now;
   planned_ = true;
   expansions_ = result.expansions;
+  plan_end_ = result.end;
   time_to_go_ = result.end == SearchEnd::kNothing ? std::numeric_limits<double>::quiet_NaN()
                                                   : result.time_to_go;
   ++counters_["plans"];
@@ -190,7 +195,27 @@ void Supervisor::addDetour(const Situation& s) {
 }
 
 void Supervisor::sayDriving(const Situation& s) {
-  say(PlanStatus::kDriving, s.now < note_until_ ? note_ : "");
+  say(PlanStatus::kDriving, s.now < note_until_ ? note_ : stopAhead());
+}
+
+bool Supervisor::leadsToRest(const Slot& slot) const {
+  return slot.pattern().exit_class == table_->motionClass(table_->restClass()).name;
+}
+
+std::string Supervisor::stopAhead() const {
+  size_t after = 0;  // index in the plan of what begins when the vehicle stands
+  if (!leadsToRest(book_.running())) {
+    if (plan_.empty() || plan_.front().exit_class != table_->restClass()) return {};
+    after = 1;
+  }
+  if (after >= plan_.size())
+    return plan_end_ == SearchEnd::kGoal ? "stopping at the goal" : "stopping: the plan ends there";
+  const TablePattern& next = *table_->find(plan_[after].pattern_id);
+  if (next.reverses) return "stopping to back up";
+  const Pose2& end = next.end().pose;
+  if (std::abs(end.yaw) > std::hypot(end.x, end.y)) return "stopping to turn on the spot";
+  return next.exit == table_->restClass() ? "stopping for a small step"
+                                          : "stopping to set off anew";
 }
 
 void Supervisor::say(PlanStatus status, const std::string& reason) {

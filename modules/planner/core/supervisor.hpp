@@ -115,6 +115,9 @@ class Supervisor {
   void watchProgress(const Situation& s);
   void addDetour(const Situation& s);
   void sayDriving(const Situation& s);
+  bool leadsToRest(const Slot& slot) const;
+  /// Why the running or the next pattern ends at rest, in words; empty if neither does.
+  std::string stopAhead() const;
   void say(PlanStatus status, const std::string& reason);
   const TablePattern* runningPattern() const;
   PlanReport report(const Situation& s) const;
@@ -142,6 +145,7 @@ class Supervisor {
   std::optional<int64_t> nothing_since_;  ///< standing, and nothing was free since then
   std::vector<PlanStep> plan_;            ///< from the end of the running pattern on
   std::optional<Prediction> prediction_;  ///< of the running pattern in this step
+  SearchEnd plan_end_ = SearchEnd::kNothing;
   double time_to_go_ = 0.0;
   int expansions_ = 0;
   bool planned_ = false;

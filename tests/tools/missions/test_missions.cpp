@@ -134,6 +134,9 @@ TEST_CASE("a mission drives from start to goal over changing ground without touc
     for (const ScoredExecution& execution : run.result.executions)
       measured += execution.measured ? 1 : 0;
     CHECK(measured > 15);
+    for (const Stop& stop : run.result.stops) CHECK_FALSE(stop.reason.empty());
+    CHECK(run.result.driven > 20.0);
+    CHECK(run.result.driven + run.result.begun < run.result.time + 0.1);
   }
 }
 
@@ -272,6 +275,8 @@ TEST_CASE("a report says what happened, in text and in JSON") {
   std::ostringstream text;
   printSummary(text, campaign);
   CHECK(text.str().find("arrived      1  100.0 %") != std::string::npos);
+  CHECK(text.str().find("per minute driven") != std::string::npos);
+  CHECK(text.str().find("per mission, at most") != std::string::npos);
   const std::string crossings = crossingsOf(run.result);
   CHECK(std::count(crossings.begin(), crossings.end(), '\n') ==
         static_cast<std::ptrdiff_t>(run.result.crossings.size()));
@@ -283,6 +288,9 @@ TEST_CASE("a report says what happened, in text and in JSON") {
   for (const char* key : {"missions", "arrived", "refused", "idle", "stopped", "collisions",
                           "virtual_s", "wall_s", "seed", "runs", "result", "reason", "time_s",
                           "distance_m", "detour", "surface_changes", "crossings"})
+    CHECK(json.find('"' + std::string(key) + "\":") != std::string::npos);
+  for (const char* key : {"flips", "flips_per_min", "stops", "stops_per_mission", "stop_reasons",
+                          "driven_s", "begun_s"})
     CHECK(json.find('"' + std::string(key) + "\":") != std::string::npos);
   CHECK_THROWS_WITH(writeJson("/nowhere/report.json", campaign),
                     Catch::Contains("/nowhere/report.json"));
