@@ -111,6 +111,8 @@ class RowEnvelope {
 
 ClearanceField::ClearanceField(const Grid& grid, bool unknown_blocks)
     : cell_size_(grid.cellSize()),
+      per_cell_(1.0 / grid.cellSize()),
+      half_diagonal_(static_cast<float>(0.708 * grid.cellSize())),
       lower_(grid.lower()),
       width_(grid.width()),
       height_(grid.height()),
@@ -149,6 +151,12 @@ ClearanceField::Bounds ClearanceField::bounds(const Eigen::Vector2d& p_map) cons
   // A float may be off by half its last digit: both bounds stay bounds.
   const double from_centre = std::sqrt(dx * dx + dy * dy) * cell_size_ + 6e-8 * value;
   return {std::max(0.0, value - from_centre), value + from_centre};
+}
+
+ClearanceField::Verdict ClearanceField::compareClosely(double x, double y, float distance) const {
+  const Bounds close = bounds({x, y});
+  if (close.lower >= static_cast<double>(distance)) return Verdict::kAtLeast;
+  return close.upper < static_cast<double>(distance) ? Verdict::kLess : Verdict::kUnsure;
 }
 
 bool ClearanceField::anyBlocked(int row, int first, int last) const {

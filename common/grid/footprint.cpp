@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace tread {
@@ -18,11 +19,11 @@ constexpr double kTouch = 1e-8;
  *  piece, and only they, overlap the rectangle. Lengths are cells, relative to the cell `base`. */
 class RowSpans {
  public:
-  RowSpans(const Footprint& footprint, const Pose2& T_map_body, double cell_size)
+  RowSpans(const Footprint& footprint, const TurnedPose& T_map_body, double cell_size)
       : base_{static_cast<int>(std::floor(T_map_body.x / cell_size)),
               static_cast<int>(std::floor(T_map_body.y / cell_size))} {
-    const double c = std::cos(T_map_body.yaw);
-    const double s = std::sin(T_map_body.yaw);
+    const double c = T_map_body.cos_yaw;
+    const double s = T_map_body.sin_yaw;
     const double front = footprint.front() / cell_size;
     const double rear = -footprint.rear() / cell_size;
     const double w = footprint.halfWidth() / cell_size;
@@ -83,16 +84,25 @@ class RowSpans {
 };
 
 /// Poses whose cells have no int number overlap nothing that could be asked for.
-bool isUsable(const Pose2& pose, double cell_size) {
+bool isUsable(const TurnedPose& pose, double cell_size) {
   const double reach = 1e9 * cell_size;
-  return std::abs(pose.x) < reach && std::abs(pose.y) < reach && std::isfinite(pose.yaw);
+  return std::abs(pose.x) < reach && std::abs(pose.y) < reach && std::isfinite(pose.cos_yaw);
+}
+
+/// The float next above a length: what is at least as far as that is as far as the length.
+float roundedUp(double length) {
+  return std::nextafter(static_cast<float>(length), std::numeric_limits<float>::infinity());
+}
+
+float roundedDown(double length) {
+  return std::nextafter(static_cast<float>(length), 0.0F);
 }
 
 /// Calls visit(cell) for the cells that the footprint overlaps, row by row.
 template <class Visit>
 void visitCells(const Footprint& footprint, const Pose2& T_map_body, double cell_size,
                 const Visit& visit) {
-  const RowSpans rows(footprint, T_map_body, cell_size);
+  const RowSpans rows(footprint, turned(T_map_body), cell_size);
   for (int y = rows.firstRow(); y <= rows.lastRow(); ++y) {
     const RowSpans::Span span = rows.span(y);
     for (int x = span.first; x <= span.last; ++x) visit(CellIndex{x, y});
@@ -111,32 +121,31 @@ Footprint::Footprint(double front, double rear, double half_width, double margin
   const double count = std::min(8.0, std::max(1.0, std::ceil(length / half_width_)));
   const double step = length / count;
   for (double i = 0.5; i < count; ++i) disc_x_.push_back(-rear_ + i * step);
-  disc_radius_ = std::hypot(0.5 * step, half_width_);
-  inscribed_radius_ = std::min(0.5 * step, half_width_);
+  circumscribed_up_ = roundedUp(circumscribed_);
+  disc_radius_ = roundedUp(std::hypot(0.5 * step, half_width_));
+  inscribed_radius_ = roundedDown(std::min(0.5 * step, half_width_));
 }
 
 Footprint::Verdict Footprint::judgeByDiscs(const ClearanceField& clearance,
-                                           const Pose2& T_map_body) const {
-  const double c = std::cos(T_map_body.yaw);
-  const double s = std::sin(T_map_body.yaw);
-  bool clear = true;
-  for (const double x : disc_x_) {
-    const auto distance = clearance.bounds({T_map_body.x + c * x, T_map_body.y + s * x});
-    if (distance.upper < inscribed_radius_) return Verdict::kCollides;
-    clear = clear && distance.lower >= disc_radius_;
+                                           const TurnedPose& T_map_body) const {
+  Verdict verdict = Verdict::kAtLeast;
+  for (const double along : disc_x_) {
+    const double x = T_map_body.x + T_map_body.cos_yaw * along;
+    const double y = T_map_body.y + T_map_body.sin_yaw * along;
+    if (clearance.compare(x, y, disc_radius_) == Verdict::kAtLeast) continue;
+    if (clearance.compare(x, y, inscribed_radius_) == Verdict::kLess) return Verdict::kLess;
+    verdict = Verdict::kUnsure;
   }
-  return clear ? Verdict::kClear : Verdict::kUnsure;
+  return verdict;
 }
 
-bool Footprint::isFree(const Grid& grid, const ClearanceField& clearance, const Pose2& T_map_body,
-                       bool unknown_blocks) const {
-  if (!isUsable(T_map_body, grid.cellSize())) return false;
-  if (unknown_blocks != clearance.unknownBlocks())
-    return blockedCells(grid, T_map_body, unknown_blocks) == 0;
-  if (clearance.at(T_map_body.position()) >= circumscribed_) return true;
+bool Footprint::isFree(const ClearanceField& clearance, const TurnedPose& T_map_body) const {
+  if (!isUsable(T_map_body, clearance.cellSize())) return false;
+  const Verdict whole = clearance.compare(T_map_body.x, T_map_body.y, circumscribed_up_);
+  if (whole == Verdict::kAtLeast) return true;
   const Verdict verdict = judgeByDiscs(clearance, T_map_body);
-  if (verdict != Verdict::kUnsure) return verdict == Verdict::kClear;
-  const RowSpans rows(*this, T_map_body, grid.cellSize());
+  if (verdict != Verdict::kUnsure) return verdict == Verdict::kAtLeast;
+  const RowSpans rows(*this, T_map_body, clearance.cellSize());
   for (int y = rows.firstRow(); y <= rows.lastRow(); ++y) {
     const RowSpans::Span span = rows.span(y);
     if (clearance.anyBlocked(y, span.first, span.last)) return false;
@@ -144,16 +153,24 @@ bool Footprint::isFree(const Grid& grid, const ClearanceField& clearance, const 
   return true;
 }
 
+bool Footprint::isFree(const Grid& grid, const ClearanceField& clearance, const Pose2& T_map_body,
+                       bool unknown_blocks) const {
+  if (unknown_blocks != clearance.unknownBlocks())
+    return isUsable(turned(T_map_body), grid.cellSize()) &&
+           blockedCells(grid, T_map_body, unknown_blocks) == 0;
+  return isFree(clearance, turned(T_map_body));
+}
+
 std::vector<CellIndex> Footprint::cells(const Grid& grid, const Pose2& T_map_body) const {
   std::vector<CellIndex> covered;
-  if (!isUsable(T_map_body, grid.cellSize())) return covered;
+  if (!isUsable(turned(T_map_body), grid.cellSize())) return covered;
   visitCells(*this, T_map_body, grid.cellSize(), [&](CellIndex cell) { covered.push_back(cell); });
   return covered;
 }
 
 int Footprint::blockedCells(const Grid& grid, const Pose2& T_map_body, bool unknown_blocks) const {
   int count = 0;
-  if (!isUsable(T_map_body, grid.cellSize())) return count;
+  if (!isUsable(turned(T_map_body), grid.cellSize())) return count;
   visitCells(*this, T_map_body, grid.cellSize(),
              [&](CellIndex cell) { count += isBlocked(grid.at(cell), unknown_blocks) ? 1 : 0; });
   return count;

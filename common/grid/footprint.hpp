@@ -2,11 +2,24 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "common/grid/grid.hpp"
 
 namespace tread {
+
+/// A pose whose turn has been worked out.
+struct TurnedPose {
+  double x = 0.0;  ///< [m]
+  double y = 0.0;  ///< [m]
+  double cos_yaw = 1.0;
+  double sin_yaw = 0.0;
+};
+
+inline TurnedPose turned(const Pose2& pose) {
+  return {pose.x, pose.y, std::cos(pose.yaw), std::sin(pose.yaw)};
+}
 
 /// Oriented rectangular footprint in the body frame [m], with the discs that cover it.
 class Footprint {
@@ -30,6 +43,9 @@ class Footprint {
    *  False for a pose that is not finite. */
   bool isFree(const Grid& grid, const ClearanceField& clearance, const Pose2& T_map_body,
               bool unknown_blocks) const;
+  /// The same for a pose whose turn is given by its cosine and sine, and without a grid: unknown
+  /// cells block as they do in the field.
+  bool isFree(const ClearanceField& clearance, const TurnedPose& T_map_body) const;
   /// Cells (of the grid's lattice, also outside its window) that the footprint at a pose overlaps,
   /// row by row.
   std::vector<CellIndex> cells(const Grid& grid, const Pose2& T_map_body) const;
@@ -37,17 +53,18 @@ class Footprint {
   int blockedCells(const Grid& grid, const Pose2& T_map_body, bool unknown_blocks) const;
 
  private:
-  enum class Verdict { kClear, kCollides, kUnsure };
+  using Verdict = ClearanceField::Verdict;
 
-  Verdict judgeByDiscs(const ClearanceField& clearance, const Pose2& T_map_body) const;
+  Verdict judgeByDiscs(const ClearanceField& clearance, const TurnedPose& T_map_body) const;
 
   double front_;
   double rear_;
   double half_width_;
   double circumscribed_;
   std::vector<double> disc_x_;  // centres of the covering discs along the body's x axis
-  double disc_radius_;
-  double inscribed_radius_;  // discs of this radius around the same centres lie inside
+  float circumscribed_up_;      // as the next, rounded to the safe side
+  float disc_radius_;
+  float inscribed_radius_;  // discs of this radius around the same centres lie inside
 };
 
 }  // namespace tread

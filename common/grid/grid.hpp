@@ -98,18 +98,48 @@ class ClearanceField {
   /// window 0 if unknown blocks, else the value of the window's nearest point; 0 for NaN.
   double at(const Eigen::Vector2d& p_map) const { return bounds(p_map).lower; }
 
+  /// Clearance at the centre of the cell that a point lies in, for where a cell is near enough [m].
+  double quick(double x, double y) const {
+    const double column = x * per_cell_ - lower_.x;
+    const double row = y * per_cell_ - lower_.y;
+    if (!(column >= 0.0 && row >= 0.0 && column < width_ && row < height_)) return 0.0;
+    return static_cast<double>(
+        clearance_[static_cast<size_t>(static_cast<int>(row)) * static_cast<size_t>(width_) +
+                   static_cast<size_t>(static_cast<int>(column))]);
+  }
+  /// What is certain about the clearance compared with a distance.
+  enum class Verdict { kLess, kAtLeast, kUnsure };
+  /// Compares at() and the upper bound with a distance [m]; most of the time from one number.
+  /** kAtLeast exactly if at(p) >= distance, kLess only if bounds(p).upper < distance. */
+  Verdict compare(double x, double y, float distance) const {
+    const double column = x * per_cell_ - lower_.x;
+    const double row = y * per_cell_ - lower_.y;
+    if (column >= 0.0 && row >= 0.0 && column < width_ && row < height_) {
+      const float value =
+          clearance_[static_cast<size_t>(static_cast<int>(row)) * static_cast<size_t>(width_) +
+                     static_cast<size_t>(static_cast<int>(column))];
+      if (value - half_diagonal_ >= distance) return Verdict::kAtLeast;
+      if (value + half_diagonal_ < distance) return Verdict::kLess;
+    }
+    return compareClosely(x, y, distance);
+  }
+
   /// Both bounds of the clearance; outside the window the upper one is infinite.
   Bounds bounds(const Eigen::Vector2d& p_map) const;
 
   bool unknownBlocks() const { return unknown_blocks_; }
+  double cellSize() const { return cell_size_; }
 
   /// Whether any of the cells (first..last, row) is blocked, in constant time. At most 65535 cells.
   bool anyBlocked(int row, int first, int last) const;
 
  private:
   double outside(const Eigen::Vector2d& p_map) const;
+  Verdict compareClosely(double x, double y, float distance) const;
 
   double cell_size_ = 0.1;
+  double per_cell_ = 10.0;       // [1/m]
+  float half_diagonal_ = 0.08F;  // [m] of a cell, a little more
   CellIndex lower_;
   int width_ = 0;
   int height_ = 0;

@@ -55,8 +55,10 @@ void readSearch(ConfigReader reader, SearchConfig& search) {
   reader.number("bound_share", search.bound_share, {0.1, 1.0}, "1");
   reader.number("bound_weight", search.bound_weight, {1.0, 10.0}, "1");
   reader.number("turn_weight", search.turn_weight, {0.0, 5.0}, "1");
+  count(reader, "improvements", search.improvements, {0, 10});
   reader.number("reverse_penalty", search.reverse_penalty, {0.0, 20.0}, "1");
   reader.number("stop_penalty", search.stop_penalty, {0.0, 20.0}, "s");
+  reader.number("turn_penalty", search.turn_penalty, {0.0, 20.0}, "s/rad");
   reader.number("near_penalty", search.near_penalty, {0.0, 20.0}, "1");
   reader.number("near_distance", search.near_distance, {0.05, 5.0}, "m");
   reader.number("switch_penalty", search.switch_penalty, {0.0, 20.0}, "s");
@@ -106,7 +108,8 @@ PlannerConfig readPlannerConfig(ConfigReader& reader) {
   ConfigReader sweep = reader.section("sweep");
   sweep.number("distance", config.sweep.distance, {0.01, 0.5}, "m");
   sweep.number("turn", config.sweep.turn, {0.01, 0.5}, "rad");
-  reader.number("default_sigma", config.default_sigma, {0.0, 1.0}, "m");
+  reader.number("default_sigma", config.default_sigma.position, {0.0, 1.0}, "m");
+  reader.number("default_yaw_sigma", config.default_sigma.yaw, {0.0, 1.0}, "rad");
   reader.seconds("lease", config.lease, {0.1, 0.2});
   reader.seconds("deadline", config.deadline, {0.005, 0.045});
   reader.finish();

@@ -114,7 +114,8 @@ plan_t toMessage(const PlanReport& report) {
   for (const PlanStep& step : report.steps) {
     message.pattern_id.push_back(step.pattern_id);
     message.pose.push_back({step.T_map_end.x, step.T_map_end.y, step.T_map_end.yaw});
-    message.covariance.push_back({step.variance, 0.0, kNan, step.variance, kNan, kNan});
+    const Uncertainty& u = step.uncertainty;
+    message.covariance.push_back({u.xx, u.xy, u.xyaw, u.yy, u.yyaw, u.yawyaw});
   }
   return message;
 }

@@ -7,6 +7,7 @@
 #include <queue>
 
 #include "modules/planner/core/cost_to_go.hpp"
+#include "modules/planner/core/passage_map.hpp"
 #include "tests/planner/kit/playground.hpp"
 
 using namespace tread;

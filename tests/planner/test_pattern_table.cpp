@@ -29,7 +29,7 @@ std::optional<PatternSet> without(const PatternSet& set, const std::string& name
 
 TEST_CASE("Poses to check are nowhere farther apart than the step and end at the pattern's end") {
   const SweepStep step{0.07, 0.05};
-  const PatternTable table(samplePatterns(), step, 0.05);
+  const PatternTable table(samplePatterns(), step, {});
   for (const TablePattern& pattern : table.patterns()) {
     Pose2 last;
     for (const SweepPose& at : pattern.sweep) {
@@ -45,7 +45,7 @@ TEST_CASE("Poses to check are nowhere farther apart than the step and end at the
 }
 
 TEST_CASE("The table knows the class of standing, what begins where, and what stops") {
-  const PatternTable table(samplePatterns(), SweepStep{}, 0.05);
+  const PatternTable table(samplePatterns(), SweepStep{}, {});
   REQUIRE(table.restClass() >= 0);
   CHECK(table.motionClass(table.restClass()).name == "rest");
   for (int i = 0; i < table.classCount(); ++i)
@@ -60,12 +60,12 @@ TEST_CASE("The table knows the class of standing, what begins where, and what st
 TEST_CASE("A set without a way to stop is refused in words") {
   const std::optional<PatternSet> set = without(samplePatterns(), "stop");
   REQUIRE(set);
-  const PatternTable table(*set, SweepStep{}, 0.05);
+  const PatternTable table(*set, SweepStep{}, {});
   CHECK(table.defect() == "the pattern set has no pattern that stops from class cruise");
 }
 
 TEST_CASE("What is left of a pattern is laid on the measured pose") {
-  const PatternTable table(samplePatterns(), SweepStep{}, 0.05);
+  const PatternTable table(samplePatterns(), SweepStep{}, {});
   const TablePattern& left = *table.find(3);
   REQUIRE(left.pattern->name == "left");
   const Pose2 start{3.0, -2.0, 1.0};
@@ -78,11 +78,11 @@ TEST_CASE("What is left of a pattern is laid on the measured pose") {
   CHECK(prediction.T_map_end.yaw == Approx(end.yaw).margin(1e-9));
   CHECK(prediction.time_left == Approx(0.6));
   for (const ExpectedPose& at : prediction.ahead) CHECK(at.time > 0.0);
-  CHECK(prediction.variance == Approx(0.6 * 0.05 * 0.05));
+  CHECK(prediction.uncertainty.xx == Approx(0.6 * 0.05 * 0.05));
 }
 
 TEST_CASE("Before a pattern begins the vehicle keeps the twist of its entry class") {
-  const PatternTable table(samplePatterns(), SweepStep{}, 0.05);
+  const PatternTable table(samplePatterns(), SweepStep{}, {});
   const TablePattern& straight = *table.find(1);
   const Prediction prediction = predict(Pose2{}, -0.1, straight, table);
   CHECK(prediction.T_map_end.x == Approx(straight.pattern->end().x + 0.11).margin(1e-6));
@@ -90,7 +90,7 @@ TEST_CASE("Before a pattern begins the vehicle keeps the twist of its entry clas
 }
 
 TEST_CASE("What is left of a running pattern is scaled by how much of it has come true") {
-  const PatternTable table(samplePatterns(), SweepStep{}, 0.05);
+  const PatternTable table(samplePatterns(), SweepStep{}, {});
   const double period = table.set().periodSeconds();
   for (const TablePattern& pattern : table.patterns()) {
     const double half = pattern.duration / 2.0;
@@ -122,7 +122,7 @@ TEST_CASE("A start without margin may go on only where room is gained") {
   const int level = around.freeLevel(start, Surroundings::kPlan);
   REQUIRE(level >= Surroundings::kBare);
   REQUIRE(level < Surroundings::kCheck);
-  const PatternTable table(samplePatterns(), SweepStep{}, 0.05);
+  const PatternTable table(samplePatterns(), SweepStep{}, {});
   int along = 0;
   int away = 0;
   for (const TablePattern& pattern : table.patterns()) {

@@ -10,6 +10,7 @@ namespace tread::planner {
 namespace {
 
 constexpr float kNoWay = std::numeric_limits<float>::infinity();
+constexpr float kOpenGround = 1e6F;
 constexpr float kUnknownCap = 10.0F;
 /// Cells whose lengths differ by less than this may be settled in any order [m].
 constexpr float kBucket = 0.05F;
@@ -29,25 +30,26 @@ float slownessOf(float room, const FieldConfig& config) {
 
 /// Cells waiting to be settled, in buckets of nearly equal length.
 struct CostToGo::Front {
-  std::vector<std::vector<int>> buckets = std::vector<std::vector<int>>(256);
+  std::vector<std::vector<size_t>> buckets = std::vector<std::vector<size_t>>(256);
+  std::vector<size_t> taken;
   size_t current = 0;
   size_t waiting = 0;
 
-  void add(int cell, float length) {
+  void add(size_t cell, float length) {
     const size_t wanted = std::max(current, static_cast<size_t>(length / kBucket));
     buckets[std::min(wanted, current + buckets.size() - 1) % buckets.size()].push_back(cell);
     ++waiting;
   }
-  std::vector<int> take() {
+  const std::vector<size_t>& take() {
     while (buckets[current % buckets.size()].empty()) ++current;
-    std::vector<int> cells;
-    cells.swap(buckets[current % buckets.size()]);
-    waiting -= cells.size();
-    return cells;
+    taken.clear();
+    taken.swap(buckets[current % buckets.size()]);
+    waiting -= taken.size();
+    return taken;
   }
 };
 
-CostToGo::CostToGo(const PassageMap& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
+CostToGo::CostToGo(const PassageSource& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
                    const std::vector<Detour>& detours, const FieldConfig& config) {
   const double distance = (goal.T_map_goal.position() - p_vehicle).norm();
   if (!(distance <= config.max_distance)) {
@@ -66,7 +68,7 @@ CostToGo::CostToGo(const PassageMap& map, const Goal& goal, const Eigen::Vector2
       goal_blocked_ ? "the goal lies on obstacles" : "obstacles enclose the goal or the vehicle";
 }
 
-void CostToGo::layOut(const PassageMap& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
+void CostToGo::layOut(const PassageSource& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
                       double margin, const FieldConfig& config) {
   size_ = map.coarseSize();
   const Eigen::Vector2d p_goal = goal.T_map_goal.position();
@@ -79,55 +81,57 @@ void CostToGo::layOut(const PassageMap& map, const Goal& goal, const Eigen::Vect
   lower_y_ = static_cast<int>(std::floor((middle.y() - half.y()) / size_));
   width_ = static_cast<int>(std::ceil(2.0 * half.x() / size_));
   height_ = static_cast<int>(std::ceil(2.0 * half.y() / size_));
-  const auto cells = static_cast<size_t>(width_) * static_cast<size_t>(height_);
-  slowness_.assign(cells, 1.0F);
+  stride_ = width_ + 2;
+  per_size_ = 1.0 / size_;
+  const auto cells = static_cast<size_t>(stride_) * static_cast<size_t>(height_ + 2);
+  slowness_.assign(cells, kNoWay);
   unknown_.assign(cells, 1);
-  length_.assign(cells, kNoWay);
-  until_unknown_.assign(cells, 0.0F);
-  way_x_.assign(cells, 0.0F);
-  way_y_.assign(cells, 0.0F);
-  settled_.assign(cells, 0);
+  tentative_.assign(cells, kNoWay);
+  settled_.assign(cells, kOpen);
+  slopes_.resize(cells);
   cut_ = 0.0F;
   cut_short_ = touched_border_ = goal_blocked_ = false;
   filled_ = 0;
 }
 
-void CostToGo::paint(const PassageMap& map, const std::vector<Detour>& detours,
+void CostToGo::paint(const PassageSource& map, const std::vector<Detour>& detours,
                      const FieldConfig& config) {
-  const int side = map.coarsePerTile();
-  for (const auto& [key, tile] : map.passages()) {
-    const int left = key.first * side - lower_x_;
-    const int bottom = key.second * side - lower_y_;
-    for (int y = std::max(0, -bottom); y < std::min(side, height_ - bottom); ++y) {
-      for (int x = std::max(0, -left); x < std::min(side, width_ - left); ++x) {
-        const auto from = static_cast<size_t>(y * side + x);
-        const auto to = static_cast<size_t>((bottom + y) * width_ + left + x);
-        slowness_[to] = slownessOf(tile.room[from], config);
-        unknown_[to] = tile.unknown[from];
-      }
+  PassageWindow window;
+  window.lower_x = lower_x_;
+  window.lower_y = lower_y_;
+  window.width = width_;
+  window.height = height_;
+  window.room.assign(static_cast<size_t>(width_) * static_cast<size_t>(height_), kOpenGround);
+  window.unknown.assign(window.room.size(), 1);
+  map.fill(window);
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      const auto from = static_cast<size_t>(y) * static_cast<size_t>(width_) + size_t(x);
+      const auto to = static_cast<size_t>((y + 1) * stride_ + x + 1);
+      slowness_[to] = slownessOf(window.room[from], config);
+      unknown_[to] = window.unknown[from];
     }
   }
   for (const Detour& detour : detours) {
-    for (int cell = 0; cell < width_ * height_; ++cell)
+    for (size_t cell = 0; cell < slowness_.size(); ++cell)
       if ((centreOf(cell) - detour.p_map).norm() < detour.radius)
-        slowness_[static_cast<size_t>(cell)] *= static_cast<float>(1.0 + config.detour_weight);
+        slowness_[cell] *= static_cast<float>(1.0 + config.detour_weight);
   }
 }
 
 bool CostToGo::seed(const Goal& goal, Front& front) {
   const int reach = static_cast<int>(std::ceil(goal.position_tolerance / size_));
   const Eigen::Vector2d p_goal = goal.T_map_goal.position();
-  const int own = cellAt(p_goal);
+  const int own_x = static_cast<int>(std::floor(p_goal.x() / size_)) - lower_x_;
+  const int own_y = static_cast<int>(std::floor(p_goal.y() / size_)) - lower_y_;
   bool any = false;
-  for (int dy = -reach; dy <= reach; ++dy) {
-    for (int dx = -reach; dx <= reach; ++dx) {
-      const int x = own % width_ + dx;
-      const int y = own / width_ + dy;
-      if (x < 0 || y < 0 || x >= width_ || y >= height_) continue;
-      const int cell = y * width_ + x;
+  for (int y = std::max(0, own_y - reach); y <= std::min(height_ - 1, own_y + reach); ++y) {
+    for (int x = std::max(0, own_x - reach); x <= std::min(width_ - 1, own_x + reach); ++x) {
+      const auto cell = static_cast<size_t>((y + 1) * stride_ + x + 1);
       const bool inside = (centreOf(cell) - p_goal).norm() <= goal.position_tolerance;
-      if ((!inside && cell != own) || slowness_[static_cast<size_t>(cell)] == kNoWay) continue;
-      length_[static_cast<size_t>(cell)] = 0.0F;
+      const bool own = x == own_x && y == own_y;
+      if ((!inside && !own) || slowness_[cell] == kNoWay) continue;
+      tentative_[cell] = 0.0F;
       front.add(cell, 0.0F);
       any = true;
     }
@@ -143,8 +147,8 @@ bool CostToGo::march(const Goal& goal, const Eigen::Vector2d& p_vehicle,
   const auto further = static_cast<float>(config.reach);
   float stop_at = kNoWay;
   while (front.waiting > 0) {
-    for (const int cell : front.take()) {
-      if (settled_[static_cast<size_t>(cell)] != 0) continue;
+    for (const size_t cell : front.take()) {
+      if (settled_[cell] < kOpen) continue;
       settle(cell);
       relax(cell, front);
     }
@@ -158,97 +162,94 @@ bool CostToGo::march(const Goal& goal, const Eigen::Vector2d& p_vehicle,
   return std::isfinite(length(p_vehicle));
 }
 
-void CostToGo::settle(int cell) {
-  const auto index = static_cast<size_t>(cell);
-  settled_[index] = 1;
+void CostToGo::settle(size_t cell) {
   ++filled_;
-  const int x = cell % width_;
-  const int y = cell / width_;
-  touched_border_ = touched_border_ || x == 0 || y == 0 || x == width_ - 1 || y == height_ - 1;
-  float best = length_[index];
-  float until = kUnknownCap;
-  Eigen::Vector2f way(0.0F, 0.0F);
-  const int steps[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
-  for (const auto& [dx, dy] : steps) {
-    const float value = valueOf(x + dx, y + dy);
-    if (value >= length_[index]) continue;
-    way += (length_[index] - value) * Eigen::Vector2f(float(dx), float(dy));
-    if (value >= best) continue;
-    best = value;
-    until = until_unknown_[static_cast<size_t>((y + dy) * width_ + x + dx)] +
-            (length_[index] - value) / slowness_[index];
+  const float own = tentative_[cell];
+  const auto stride = static_cast<size_t>(stride_);
+  const float left = settled_[cell - 1];
+  const float right = settled_[cell + 1];
+  const float below = settled_[cell - stride];
+  const float above = settled_[cell + stride];
+  settled_[cell] = own;
+  const size_t column = cell % stride;
+  const size_t row = cell / stride;
+  touched_border_ = touched_border_ || column == 1 || row == 1 ||
+                    column == static_cast<size_t>(width_) || row == static_cast<size_t>(height_);
+  Slope& slope = slopes_[cell];
+  slope = Slope{};
+  slope.step = slowness_[cell] * static_cast<float>(size_);
+  const float x = std::min(left, right);
+  const float y = std::min(below, above);
+  const float along_x = x < own ? (left < right ? x - own : own - x) : 0.0F;
+  const float along_y = y < own ? (below < above ? y - own : own - y) : 0.0F;
+  const float norm = std::sqrt(along_x * along_x + along_y * along_y);
+  if (norm > 0.0F) {
+    slope.along_x = along_x / norm;
+    slope.along_y = along_y / norm;
   }
-  if (way.squaredNorm() > 0.0F) way.normalize();
-  way_x_[index] = way.x();
-  way_y_[index] = way.y();
-  until_unknown_[index] = unknown_[index] != 0 ? 0.0F : std::min(until, kUnknownCap);
+  float until = kUnknownCap;
+  if (std::min(x, y) < own) {
+    const size_t next = x < y ? (left < right ? cell - 1 : cell + 1)
+                              : (below < above ? cell - stride : cell + stride);
+    until = slopes_[next].until_unknown + (own - settled_[next]) / slowness_[cell];
+  }
+  slope.until_unknown = unknown_[cell] != 0 ? 0.0F : std::min(until, kUnknownCap);
 }
 
-/// Length at a cell, infinite outside and where it is blocked or not yet settled.
-float CostToGo::valueOf(int x, int y) const {
-  if (x < 0 || y < 0 || x >= width_ || y >= height_) return kNoWay;
-  const auto index = static_cast<size_t>(y * width_ + x);
-  return settled_[index] != 0 ? length_[index] : kNoWay;
-}
-
-void CostToGo::relax(int cell, Front& front) {
-  const int cx = cell % width_;
-  const int cy = cell / width_;
-  const int neighbours[4][2] = {{cx - 1, cy}, {cx + 1, cy}, {cx, cy - 1}, {cx, cy + 1}};
-  for (const auto& [x, y] : neighbours) {
-    if (x < 0 || y < 0 || x >= width_ || y >= height_) continue;
-    const auto index = static_cast<size_t>(y * width_ + x);
-    if (settled_[index] != 0 || slowness_[index] == kNoWay) continue;
-    const float step = slowness_[index] * static_cast<float>(size_);
-    const float a = std::min(valueOf(x - 1, y), valueOf(x + 1, y));
-    const float b = std::min(valueOf(x, y - 1), valueOf(x, y + 1));
-    const float nearer = std::min(a, b);
+void CostToGo::relax(size_t cell, Front& front) {
+  const auto stride = static_cast<size_t>(stride_);
+  for (const size_t next : {cell - 1, cell + 1, cell - stride, cell + stride}) {
+    const float slowness = slowness_[next];
+    if (settled_[next] < kOpen || slowness == kNoWay) continue;
+    const float step = slowness * static_cast<float>(size_);
+    const float a = std::min(settled_[next - 1], settled_[next + 1]);
+    const float b = std::min(settled_[next - stride], settled_[next + stride]);
     const float apart = std::abs(a - b);
     // Upwind solution of |grad| = slowness; one-sided where the two sides are too far apart.
     const float value = apart < step
                             ? (a + b + std::sqrt(2.0F * step * step - apart * apart)) / 2.0F
-                            : nearer + step;
-    if (value >= length_[index]) continue;
-    length_[index] = value;
-    front.add(y * width_ + x, value);
+                            : std::min(a, b) + step;
+    if (value >= tentative_[next]) continue;
+    tentative_[next] = value;
+    front.add(next, value);
   }
 }
 
 double CostToGo::length(const Eigen::Vector2d& p_map) const {
   if (empty()) return static_cast<double>(kNoWay);
-  const double gx = p_map.x() / size_ - lower_x_ - 0.5;
-  const double gy = p_map.y() / size_ - lower_y_ - 0.5;
-  const int x = static_cast<int>(std::floor(gx));
-  const int y = static_cast<int>(std::floor(gy));
+  const double gx = std::clamp(p_map.x() / size_ - lower_x_ - 0.5, -1.0, double(width_));
+  const double gy = std::clamp(p_map.y() / size_ - lower_y_ - 0.5, -1.0, double(height_));
+  const int x = std::min(static_cast<int>(std::floor(gx)), width_ - 1);
+  const int y = std::min(static_cast<int>(std::floor(gy)), height_ - 1);
   const double fx = gx - x;
   const double fy = gy - y;
   const double weights[4] = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
   double sum = 0.0;
   double weight = 0.0;
   for (int k = 0; k < 4; ++k) {
-    const float value = valueOf(x + k % 2, y + k / 2);
+    const float value = settled_[static_cast<size_t>((y + 1 + k / 2) * stride_ + x + 1 + k % 2)];
     if (value == kNoWay) continue;
     sum += weights[k] * static_cast<double>(value);
     weight += weights[k];
   }
   if (weight > 0.05) return sum / weight;
-  const bool passable = slowness_[static_cast<size_t>(cellAt(p_map))] != kNoWay;
+  const bool passable = slowness_[cellAt(p_map)] != kNoWay;
   if (passable && cut_short_) return static_cast<double>(cut_);
   return lengthNearby(p_map);
 }
 
 double CostToGo::lengthNearby(const Eigen::Vector2d& p_map) const {
   const int reach = static_cast<int>(std::ceil(kNearby / size_));
-  const int own = cellAt(p_map);
+  const auto own = static_cast<int>(cellAt(p_map));
+  const int own_x = own % stride_;
+  const int own_y = own / stride_;
   double best = static_cast<double>(kNoWay);
-  for (int dy = -reach; dy <= reach; ++dy) {
-    for (int dx = -reach; dx <= reach; ++dx) {
-      const int x = own % width_ + dx;
-      const int y = own / width_ + dy;
-      const float value = valueOf(x, y);
-      if (value == kNoWay) continue;
-      const double away = (centreOf(y * width_ + x) - p_map).norm();
-      if (away <= kNearby) best = std::min(best, static_cast<double>(value) + away);
+  for (int y = std::max(1, own_y - reach); y <= std::min(height_, own_y + reach); ++y) {
+    for (int x = std::max(1, own_x - reach); x <= std::min(width_, own_x + reach); ++x) {
+      const auto cell = static_cast<size_t>(y * stride_ + x);
+      if (settled_[cell] == kOpen) continue;
+      const double away = (centreOf(cell) - p_map).norm();
+      if (away <= kNearby) best = std::min(best, static_cast<double>(settled_[cell]) + away);
     }
   }
   return best;
@@ -256,15 +257,16 @@ double CostToGo::lengthNearby(const Eigen::Vector2d& p_map) const {
 
 double CostToGo::untilUnknown(const Eigen::Vector2d& p_map) const {
   if (empty()) return 0.0;
-  const auto cell = static_cast<size_t>(cellAt(p_map));
-  if (settled_[cell] != 0) return static_cast<double>(until_unknown_[cell]);
+  const size_t cell = cellAt(p_map);
+  if (settled_[cell] < kOpen) return static_cast<double>(slopes_[cell].until_unknown);
   return unknown_[cell] != 0 ? 0.0 : static_cast<double>(kUnknownCap);
 }
 
 Eigen::Vector2d CostToGo::direction(const Eigen::Vector2d& p_map) const {
   if (empty()) return {0.0, 0.0};
-  const auto cell = static_cast<size_t>(cellAt(p_map));
-  return {static_cast<double>(way_x_[cell]), static_cast<double>(way_y_[cell])};
+  const size_t cell = cellAt(p_map);
+  if (settled_[cell] == kOpen) return {0.0, 0.0};
+  return {static_cast<double>(slopes_[cell].along_x), static_cast<double>(slopes_[cell].along_y)};
 }
 
 std::vector<Eigen::Vector2d> CostToGo::descend(const Eigen::Vector2d& p_map, double step,
@@ -280,14 +282,17 @@ std::vector<Eigen::Vector2d> CostToGo::descend(const Eigen::Vector2d& p_map, dou
   return points;
 }
 
-int CostToGo::cellAt(const Eigen::Vector2d& p_map) const {
-  const int x = static_cast<int>(std::floor(p_map.x() / size_)) - lower_x_;
-  const int y = static_cast<int>(std::floor(p_map.y() / size_)) - lower_y_;
-  return std::clamp(y, 0, height_ - 1) * width_ + std::clamp(x, 0, width_ - 1);
+/// The cell under a point; the nearest one for a point outside.
+size_t CostToGo::cellAt(const Eigen::Vector2d& p_map) const {
+  const double x = std::clamp(std::floor(p_map.x() / size_) - lower_x_, 0.0, width_ - 1.0);
+  const double y = std::clamp(std::floor(p_map.y() / size_) - lower_y_, 0.0, height_ - 1.0);
+  return static_cast<size_t>((static_cast<int>(y) + 1) * stride_ + static_cast<int>(x) + 1);
 }
 
-Eigen::Vector2d CostToGo::centreOf(int cell) const {
-  return {(lower_x_ + cell % width_ + 0.5) * size_, (lower_y_ + cell / width_ + 0.5) * size_};
+Eigen::Vector2d CostToGo::centreOf(size_t cell) const {
+  const auto stride = static_cast<size_t>(stride_);
+  return {(lower_x_ + static_cast<double>(cell % stride) - 0.5) * size_,
+          (lower_y_ + static_cast<double>(cell / stride) - 0.5) * size_};
 }
 
 bool CostToGo::covers(const Eigen::Vector2d& p_map, double reach) const {

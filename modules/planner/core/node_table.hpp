@@ -7,53 +7,58 @@
 
 namespace tread::planner {
 
-/// Best cost found so far for each cell of the search space: an open-addressed hash table that is
-/// emptied in no time.
+/// The node that holds each cell of the search space: an open-addressed hash table that is emptied
+/// in no time.
 class NodeTable {
  public:
+  /// What is kept for a key of at most 56 bits.
+  struct Slot {
+    uint64_t key = 0;  // with the generation above it
+    float cost = 0.0F;
+    int node = -1;
+  };
+
   NodeTable() : slots_(1U << 12) {}
 
   void clear() {
-    ++generation_;
+    if (++generation_ == 0) {
+      slots_.assign(slots_.size(), Slot{});
+      generation_ = 1;
+    }
     used_ = 0;
   }
-  /// The cost kept for a key; nullptr if there is none. Valid until the next put().
-  const float* find(uint64_t key) const {
-    const Slot& slot = slots_[place(key)];
-    return slot.generation == generation_ ? &slot.cost : nullptr;
-  }
-  void put(uint64_t key, float cost) {
-    Slot& slot = slots_[place(key)];
-    if (slot.generation != generation_) ++used_;
-    slot = {key, generation_, cost};
+  /// The slot of a key; its node is -1 if the key is new. Valid until the next call.
+  Slot& operator[](uint64_t key) {
     if (2 * used_ > slots_.size()) grow();
+    const uint64_t marked = key | static_cast<uint64_t>(generation_) << 56U;
+    Slot& slot = slots_[place(marked)];
+    if (slot.key != marked) {
+      slot = {marked, 0.0F, -1};
+      ++used_;
+    }
+    return slot;
   }
+  size_t bytes() const { return slots_.size() * sizeof(Slot); }
 
  private:
-  struct Slot {
-    uint64_t key = 0;
-    uint32_t generation = 0;
-    float cost = 0.0F;
-  };
-
-  /// Where a key is, or where it would go.
-  size_t place(uint64_t key) const {
+  /// Where a marked key is, or where it would go.
+  size_t place(uint64_t marked) const {
     const size_t mask = slots_.size() - 1;
-    uint64_t hash = key * 0x9E3779B97F4A7C15ULL;
-    hash ^= hash >> 29;
+    uint64_t hash = marked * 0x9E3779B97F4A7C15ULL;
+    hash ^= hash >> 29U;
     size_t at = static_cast<size_t>(hash) & mask;
-    while (slots_[at].generation == generation_ && slots_[at].key != key) at = (at + 1) & mask;
+    while (slots_[at].key >> 56U == generation_ && slots_[at].key != marked) at = (at + 1) & mask;
     return at;
   }
   void grow() {
     std::vector<Slot> old(2 * slots_.size());
     old.swap(slots_);
     for (const Slot& slot : old)
-      if (slot.generation == generation_) slots_[place(slot.key)] = slot;
+      if (slot.key >> 56U == generation_) slots_[place(slot.key)] = slot;
   }
 
   std::vector<Slot> slots_;
-  uint32_t generation_ = 1;
+  uint8_t generation_ = 1;
   size_t used_ = 0;
 };
 

@@ -80,6 +80,23 @@ void PassageMap::forgetBeyond(const Eigen::Vector2d& p_map) {
     it = tiles_.tiles().count(it->first) == 0 ? passages_.erase(it) : std::next(it);
 }
 
+void PassageMap::fill(PassageWindow& window) const {
+  const int side = coarsePerTile();
+  for (const auto& [key, tile] : passages_) {
+    const int left = key.first * side;
+    const int bottom = key.second * side;
+    const int x_to = std::min(left + side, window.lower_x + window.width);
+    const int y_to = std::min(bottom + side, window.lower_y + window.height);
+    for (int y = std::max(bottom, window.lower_y); y < y_to; ++y) {
+      for (int x = std::max(left, window.lower_x); x < x_to; ++x) {
+        const size_t from = at(y - bottom, side, x - left);
+        window.room[window.at(x, y)] = tile.room[from];
+        window.unknown[window.at(x, y)] = tile.unknown[from];
+      }
+    }
+  }
+}
+
 void PassageMap::refresh() {
   for (const auto& [key, change] : dirty_)
     if (change != Change::kNone && tiles_.tiles().count(key) > 0) refreshTile(key);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/grid/grid.hpp"
+#include "modules/planner/core/passage_source.hpp"
 
 namespace tread::planner {
 
@@ -28,7 +29,7 @@ struct PassageTile {
 /// passing.
 /** Dead ends stay known after the local map has moved on. Here unknown is passable: it may be free.
  */
-class PassageMap {
+class PassageMap : public PassageSource {
  public:
   PassageMap(double cell_size, int tile_cells, const PassageConfig& config);
 
@@ -47,7 +48,8 @@ class PassageMap {
   }
   double cellSize() const { return tiles_.cellSize(); }
   int tileCells() const { return tiles_.tileCells(); }
-  double coarseSize() const { return cellSize() * coarse_; }
+  double coarseSize() const override { return cellSize() * coarse_; }
+  void fill(PassageWindow& window) const override;
   /// Counts up whenever a cell changes.
   int64_t revision() const { return revision_; }
   /// Counts up whenever the room or what is unknown changes in a coarse cell.

@@ -59,7 +59,7 @@ Prediction predict(const Pose2& T_map_body, double time, const TablePattern& pat
   prediction.T_map_end = pose;
   prediction.time_left = pattern.duration - time;
   const double share = std::clamp(prediction.time_left / pattern.duration, 0.0, 1.0);
-  prediction.variance = share * pattern.variance;
+  prediction.uncertainty = scaled(pattern.uncertainty, share, T_map_body.yaw);
   return prediction;
 }
 

@@ -19,8 +19,8 @@ struct ExpectedPose {
 struct Prediction {
   std::vector<ExpectedPose> ahead;  ///< poses still to come, the end last
   Pose2 T_map_end;
-  double time_left = 0.0;  ///< [s] from the measurement to the end
-  double variance = 0.0;   ///< [m2] of the end's position
+  double time_left = 0.0;   ///< [s] from the measurement to the end
+  Uncertainty uncertainty;  ///< of the end, in map axes
 };
 
 /// How much of what a running pattern promised has come true so far, each about 1.

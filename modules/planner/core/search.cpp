@@ -12,111 +12,265 @@ namespace {
 constexpr float kNever = std::numeric_limits<float>::infinity();
 /// The predicate is asked once per so many expansions.
 constexpr int kAskEvery = 16;
-/// What a point within a coarse cell may be nearer than the cell's centre [m].
-constexpr double kCellSlack = 0.15;
 /// Nearer to the goal than this its heading counts, farther off that of the way [m].
 constexpr double kNearGoal = 1.0;
 /// Where progress is slow the search looks so many times the horizon ahead.
 constexpr float kLookAhead = 2.0F;
 /// Share of the cost that counts against a leaf when the search is cut off.
 constexpr float kLeafCost = 0.25F;
+/// A bucket of the open list is so much of the estimate at the start, or this [s].
+constexpr float kBucketShare = 1e-3F;
+constexpr float kLeastBucket = 1e-3F;
+/// What is cheaper by less than this share is not cheaper.
+constexpr float kSame = 1e-6F;
 
-uint64_t cellBits(double coordinate, double cell) {
-  return static_cast<uint64_t>(static_cast<int64_t>(std::floor(coordinate / cell))) & 0xFFFFFU;
+uint64_t cellBits(double coordinate, double per_cell) {
+  return static_cast<uint64_t>(static_cast<int64_t>(std::floor(coordinate * per_cell))) & 0xFFFFFU;
+}
+
+float wrapped(float yaw) {
+  constexpr auto pi = static_cast<float>(kPi);
+  while (yaw > pi) yaw -= 2.0F * pi;
+  while (yaw < -pi) yaw += 2.0F * pi;
+  return yaw;
+}
+
+/// Arc cosine to within 7e-5 rad (Abramowitz and Stegun 1964, 4.4.45), clamped.
+float arcCosine(float x) {
+  const float a = std::min(1.0F, std::abs(x));
+  const float value =
+      std::sqrt(1.0F - a) * (1.5707288F + a * (-0.2121144F + a * (0.0742610F - 0.0187293F * a)));
+  return x < 0.0F ? static_cast<float>(kPi) - value : value;
 }
 
 }  // namespace
 
 SearchResult Search::run(const SearchProblem& problem, const StopPredicate& stop) {
   begin(problem);
-  while (true) {
-    const int index = take();
-    if (index < 0) return finish(bestLeaf(), SearchEnd::kProgress);
-    Node& node = nodes_[static_cast<size_t>(index)];
-    if (!admit(node)) continue;
-    ++expansions_;
-    node.expanded = true;
-    if (isGoal(node)) return finish(index, SearchEnd::kGoal);
-    if (isFarEnough(node)) return finish(index, SearchEnd::kHorizon);
-    if (node.time < kLookAhead * static_cast<float>(config_.horizon)) expand(index);
-    if (expansions_ % kAskEvery == 0 && stop(expansions_))
-      return finish(bestLeaf(), SearchEnd::kProgress);
+  for (int number = 0;; ++number) {
+    beginAgain(weightsOf(number));
+    Outcome outcome = Outcome::kBetter;
+    // All but the last search leave off at the first better plan.
+    do {
+      outcome = search(stop);
+    } while (outcome == Outcome::kBetter && number > 0 && number == config_.improvements);
+    const bool done = outcome != Outcome::kBetter || number >= config_.improvements;
+    if (!done) continue;
+    SearchResult result =
+        best_leaf_ >= 0 ? finish(best_leaf_, best_end_) : finish(bestLeaf(), SearchEnd::kProgress);
+    result.exhausted = outcome == Outcome::kAllSeen;
+    return result;
   }
 }
 
 void Search::begin(const SearchProblem& problem) {
   problem_ = &problem;
   nodes_.clear();
-  open_.clear();
-  best_.clear();
   leaf_to_root_.clear();
   expansions_ = 0;
-  speed_ = problem.patterns->bestSpeed();
-  turn_rate_ = std::max(1e-3, problem.patterns->bestTurnRate());
-  way_at_start_ = problem.cost_to_go->length(problem.T_map_start.position());
+  best_leaf_ = -1;
+  best_end_ = SearchEnd::kNothing;
+  best_cost_ = kNever;
+  prepareBound();
+  way_at_start_ = problem.cost_to_go == nullptr
+                      ? 0.0
+                      : problem.cost_to_go->length(problem.T_map_start.position());
+}
+
+void Search::prepareBound() {
+  const PatternTable& patterns = *problem_->patterns;
+  speed_ = patterns.bestSpeed();
+  per_cell_ = 1.0 / config_.cell;
+  goal_yaw_ = static_cast<float>(wrapAngle(problem_->goal.T_map_goal.yaw));
+  yaw_tolerance_ = static_cast<float>(problem_->goal.yaw_tolerance);
+  for (size_t i = 0; i < 2; ++i) {
+    metre_cost_[i] = static_cast<float>(patterns.leastCosts()[i].per_metre);
+    radian_cost_[i] = static_cast<float>(patterns.leastCosts()[i].per_radian);
+  }
+  const bool straight = problem_->cost_to_go == nullptr;
+  slack_ = straight ? 0.0F : static_cast<float>(problem_->cost_to_go->cellSlack());
+  way_share_ = straight ? 1.0F : static_cast<float>(CostToGo::kShare);
+  guess_share_ = static_cast<float>(config_.bound_share);
+}
+
+Search::Weights Search::weightsOf(int number) const {
+  // From the greedy ones to 1 and 0, in equal ratios and equal steps.
+  const double share = config_.improvements == 0
+                           ? 0.0
+                           : std::min(1.0, static_cast<double>(number) / config_.improvements);
+  return {static_cast<float>(std::pow(config_.bound_weight, 1.0 - share)),
+          static_cast<float>(config_.turn_weight * (1.0 - share))};
+}
+
+void Search::beginAgain(const Weights& weights) {
+  weights_ = weights;
+  keepBranch();
+  grown_.clear();
+  best_.clear();
+  const SearchProblem& problem = *problem_;
   Node root{};
   root.x = problem.T_map_start.x;
   root.y = problem.T_map_start.y;
-  root.yaw = problem.T_map_start.yaw;
-  root.to_go = toGo(problem.T_map_start);
-  root.variance = static_cast<float>(problem.start_variance);
+  root.yaw = wrapped(static_cast<float>(wrapAngle(problem.T_map_start.yaw)));
+  root.cos_yaw = static_cast<float>(std::cos(problem.T_map_start.yaw));
+  root.sin_yaw = static_cast<float>(std::sin(problem.T_map_start.yaw));
   root.parent = -1;
+  root.grown = -1;
   root.motion_class = static_cast<int8_t>(problem.start_class);
-  const Surroundings& around = *problem.surroundings;
-  root.level = static_cast<int8_t>(
-      around.freeLevel(problem.T_map_start, around.level(problem.start_variance)));
-  if (root.level < 0) root.overlap = around.overlap(problem.T_map_start);
+  const ToGo to_go = toGo(root);
+  root.bound = to_go.bound;
+  root.guess = guess_at_start_ = to_go.guess;
+  if (problem.cell_costs == nullptr) {
+    const Surroundings& around = *problem.surroundings;
+    root.level = static_cast<int8_t>(
+        around.freeLevel(problem.T_map_start, around.level(problem.start_uncertainty)));
+    if (root.level < 0) root.overlap = around.overlap(problem.T_map_start);
+  }
+  const float width = std::isfinite(root.guess) ? kBucketShare * root.guess : kLeastBucket;
+  open_.clear(std::max(kLeastBucket, width));
+  NodeTable::Slot& slot = best_[keyOf(root)];
+  slot.cost = 0.0F;
+  slot.node = static_cast<int>(nodes_.size());
   nodes_.push_back(root);
-  push(0);
+  open_.push(0.0F, slot.node, 0.0F);
 }
 
-void Search::push(int node) {
-  const Node& entry = nodes_[static_cast<size_t>(node)];
-  const float estimate = node == 0 ? 0.0F : entry.cost + entry.to_go;
-  open_.push_back({estimate, node});
-  std::push_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
-    return a.estimate != b.estimate ? a.estimate > b.estimate : a.node < b.node;
-  });
+/// Of what was searched before only the best plan is kept, at the front.
+void Search::keepBranch() {
+  kept_ = 0;
+  if (best_leaf_ < 0) return nodes_.clear();
+  std::vector<Node> branch;
+  for (int i = best_leaf_; i >= 0; i = nodes_[static_cast<size_t>(i)].parent)
+    branch.push_back(nodes_[static_cast<size_t>(i)]);
+  std::reverse(branch.begin(), branch.end());
+  for (size_t i = 0; i < branch.size(); ++i) branch[i].parent = static_cast<int>(i) - 1;
+  nodes_.assign(branch.begin(), branch.end());
+  best_leaf_ = static_cast<int>(nodes_.size()) - 1;
+  kept_ = nodes_.size();
 }
 
-int Search::take() {
-  if (open_.empty()) return -1;
-  std::pop_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
-    return a.estimate != b.estimate ? a.estimate > b.estimate : a.node < b.node;
-  });
-  const int node = open_.back().node;
-  open_.pop_back();
-  return node;
+Search::Outcome Search::search(const StopPredicate& stop) {
+  while (!open_.empty()) {
+    const OpenList::Entry entry = open_.take();
+    const Node& node = nodes_[static_cast<size_t>(entry.node)];
+    // What was replaced since it was put in, or cannot be part of a better plan any more.
+    if (node.expanded || node.cost != entry.cost) continue;
+    if (node.cost + node.bound >= best_cost_ * (1.0F - kSame)) continue;
+    if (visit(entry.node)) return Outcome::kBetter;
+    if (expansions_ % kAskEvery == 0 && (stop(expansions_) || nodes_.size() > config_.most_nodes))
+      return Outcome::kStopped;
+  }
+  return Outcome::kAllSeen;
 }
 
-bool Search::admit(Node& node) {
-  const uint64_t key = keyOf(node);
-  const float* known = best_.find(key);
-  if (known != nullptr && *known <= node.cost) return false;
-  if (node.parent >= 0 && (!freeFromParent(node) || !canStop(node))) return false;
-  best_.put(key, node.cost);
-  return true;
-}
-
-bool Search::freeFromParent(Node& node) const {
-  const Node& parent = nodes_[static_cast<size_t>(node.parent)];
-  const Surroundings& around = *problem_->surroundings;
-  const Pose2 start = parent.pose();
-  if (parent.level < 0) {
-    if (parent.depth >= config_.escape_patterns) return false;
-    const std::optional<Overlap> left = around.escape(start, parent.overlap, *node.by);
-    if (!left) return false;
-    node.overlap = *left;
-    node.level = static_cast<int8_t>(around.freeLevel(node.pose(), Surroundings::kPlan));
+/// Returns whether the node ends a better plan.
+bool Search::visit(int index) {
+  ++expansions_;
+  Node& node = nodes_[static_cast<size_t>(index)];
+  node.expanded = true;
+  node.grown = static_cast<int>(grown_.size());
+  grown_.push_back(node.parent < 0
+                       ? problem_->start_uncertainty
+                       : uncertaintyAfter(nodes_[static_cast<size_t>(node.parent)], *node.by));
+  if (isGoal(node)) {
+    keepBest(index, SearchEnd::kGoal);
     return true;
   }
-  const int wanted = around.level(static_cast<double>(node.variance));
+  if (isFarEnough(node)) {
+    keepBest(index, SearchEnd::kHorizon);
+    return true;
+  }
+  if (node.time < kLookAhead * static_cast<float>(config_.horizon)) expand(index);
+  return false;
+}
+
+void Search::keepBest(int leaf, SearchEnd end) {
+  const Node& node = nodes_[static_cast<size_t>(leaf)];
+  best_leaf_ = leaf;
+  best_end_ = end;
+  best_cost_ = node.cost + node.bound;
+  if (problem_->on_better) problem_->on_better(static_cast<double>(best_cost_), expansions_);
+}
+
+Uncertainty Search::uncertaintyAfter(const Node& parent, const TablePattern& pattern) const {
+  const Eigen::Vector2d step = pattern.end().pose.position();
+  const auto x = static_cast<float>(step.x());
+  const auto y = static_cast<float>(step.y());
+  const float c = parent.cos_yaw;
+  const float s = parent.sin_yaw;
+  return compose(grown_[static_cast<size_t>(parent.grown)], pattern.uncertainty, c * x - s * y,
+                 s * x + c * y, c, s);
+}
+
+void Search::expand(int parent) {
+  const Node& node = nodes_[static_cast<size_t>(parent)];
+  const int bin = headingBin(node);
+  for (const TablePattern* pattern : problem_->patterns->from(node.motion_class))
+    if (pattern->start_bin < 0 || pattern->start_bin == bin) addChild(parent, *pattern);
+}
+
+void Search::addChild(int parent, const TablePattern& pattern) {
+  const Node& from = nodes_[static_cast<size_t>(parent)];
+  const SweepPose& end = pattern.end();
+  const auto c = static_cast<double>(from.cos_yaw);
+  const auto s = static_cast<double>(from.sin_yaw);
+  Node node;
+  node.x = from.x + c * end.pose.x - s * end.pose.y;
+  node.y = from.y + s * end.pose.x + c * end.pose.y;
+  node.yaw = wrapped(from.yaw + static_cast<float>(end.pose.yaw));
+  node.motion_class = static_cast<int8_t>(pattern.exit);
+  node.cost = from.cost + edgeCost(from, pattern, node) + switchPenalty(from, pattern);
+  NodeTable::Slot& slot = best_[keyOf(node)];
+  if (slot.node >= 0 && slot.cost <= node.cost * (1.0F + kSame)) return;
+  node.cos_yaw = static_cast<float>(c * end.cos_yaw - s * end.sin_yaw);
+  node.sin_yaw = static_cast<float>(s * end.cos_yaw + c * end.sin_yaw);
+  const ToGo to_go = toGo(node);
+  if (node.cost + to_go.bound >= best_cost_) return;
+  node.bound = to_go.bound;
+  node.guess = to_go.guess;
+  node.time = from.time + static_cast<float>(pattern.duration);
+  node.parent = parent;
+  node.grown = -1;
+  node.by = &pattern;
+  node.depth = static_cast<int16_t>(from.depth + 1);
+  node.on_plan = static_cast<int16_t>(staysOnPlan(from, pattern) ? from.on_plan + 1 : -1);
+  node.expanded = false;
+  if (!admit(from, node)) return;
+  const bool waits = slot.node >= 0 && !nodes_[static_cast<size_t>(slot.node)].expanded;
+  if (waits)
+    nodes_[static_cast<size_t>(slot.node)] = node;
+  else
+    slot.node = static_cast<int>(nodes_.size());
+  slot.cost = node.cost;
+  open_.push(node.cost + node.guess, slot.node, node.cost);
+  if (!waits) nodes_.push_back(node);
+}
+
+bool Search::admit(const Node& parent, Node& node) const {
+  if (problem_->cell_costs != nullptr) {
+    node.level = 0;
+    return node.cost < kNever;
+  }
+  return freeFromParent(parent, node) && canStop(node);
+}
+
+bool Search::freeFromParent(const Node& parent, Node& node) const {
+  const Surroundings& around = *problem_->surroundings;
+  if (parent.level < 0) {
+    if (parent.depth >= config_.escape_patterns) return false;
+    const std::optional<Overlap> left = around.escape(parent.plainPose(), parent.overlap, *node.by);
+    if (!left) return false;
+    node.overlap = *left;
+    node.level = static_cast<int8_t>(around.freeLevel(node.plainPose(), Surroundings::kPlan));
+    return true;
+  }
+  const int wanted = around.level(uncertaintyAfter(parent, *node.by));
   if (parent.level >= wanted) {
     node.level = static_cast<int8_t>(wanted);
-    return around.sweepFree(start, *node.by, wanted);
+    return around.sweepFree(parent.pose(), *node.by, wanted);
   }
-  if (!around.sweepRegains(start, parent.level, *node.by, wanted)) return false;
-  node.level = static_cast<int8_t>(around.freeLevel(node.pose(), wanted));
+  if (!around.sweepRegains(parent.plainPose(), parent.level, *node.by, wanted)) return false;
+  node.level = static_cast<int8_t>(around.freeLevel(node.plainPose(), wanted));
   return true;
 }
 
@@ -125,53 +279,36 @@ bool Search::canStop(const Node& node) const {
   const Surroundings& around = *problem_->surroundings;
   const auto& stops = problem_->patterns->stopsFrom(node.motion_class);
   return std::any_of(stops.begin(), stops.end(), [&](const TablePattern* stop) {
-    return node.level < 0 ? around.escape(node.pose(), node.overlap, *stop).has_value()
+    return node.level < 0 ? around.escape(node.plainPose(), node.overlap, *stop).has_value()
                           : around.sweepFree(node.pose(), *stop, node.level);
   });
 }
 
-void Search::expand(int parent) {
-  const int motion_class = nodes_[static_cast<size_t>(parent)].motion_class;
-  for (const TablePattern* pattern : problem_->patterns->from(motion_class))
-    addChild(parent, *pattern);
-}
-
-void Search::addChild(int parent, const TablePattern& pattern) {
-  const Node& from = nodes_[static_cast<size_t>(parent)];
-  const Pose2 end = from.pose() * pattern.end().pose;
-  const float to_go = toGo(end);
-  if (to_go == kNever) return;
-  Node node{};
-  node.x = end.x;
-  node.y = end.y;
-  node.yaw = end.yaw;
-  node.parent = parent;
-  node.by = &pattern;
-  node.depth = static_cast<int16_t>(from.depth + 1);
-  node.motion_class = static_cast<int8_t>(pattern.exit);
-  node.cost = from.cost + edgeCost(pattern, end) + switchPenalty(from, pattern);
-  node.time = from.time + static_cast<float>(pattern.duration);
-  node.to_go = to_go;
-  node.variance = from.variance + static_cast<float>(pattern.variance);
-  const bool on_plan = from.on_plan == from.depth &&
-                       static_cast<size_t>(from.depth) < problem_->committed.size() &&
-                       problem_->committed[static_cast<size_t>(from.depth)] == pattern.id();
-  node.on_plan = static_cast<int16_t>(on_plan ? from.on_plan + 1 : -1);
-  const float* known = best_.find(keyOf(node));
-  if (known != nullptr && *known <= node.cost) return;
-  nodes_.push_back(node);
-  push(static_cast<int>(nodes_.size()) - 1);
-}
-
-float Search::edgeCost(const TablePattern& pattern, const Pose2& end) const {
-  const double clearance = problem_->surroundings->clearance(end.position());
-  const double near = std::max(0.0, 1.0 - clearance / config_.near_distance);
-  double weight = 1.0 + config_.near_penalty * near;
+float Search::edgeCost(const Node& parent, const TablePattern& pattern, const Node& end) const {
+  if (problem_->cell_costs != nullptr) {
+    const CellIndex from{static_cast<int>(std::floor(parent.x * per_cell_)),
+                         static_cast<int>(std::floor(parent.y * per_cell_))};
+    const int worst = problem_->cell_costs->worst(from, pattern.cells);
+    return worst < 0 ? kNever : static_cast<float>(pattern.cost * (worst + 1));
+  }
+  double weight = 1.0;
+  const Surroundings& around = *problem_->surroundings;
+  if (config_.near_penalty > 0.0)
+    weight += config_.near_penalty * around.nearness(end.x, end.y, config_.near_distance);
+  if (config_.unknown_penalty > 0.0 && around.isUnknown({end.x, end.y}))
+    weight += config_.unknown_penalty;
   if (pattern.reverses) weight += config_.reverse_penalty;
+  double cost = pattern.cost * weight;
   const int rest = problem_->patterns->restClass();
-  const bool comes_to_rest = pattern.exit == rest && pattern.entry != rest;
-  return static_cast<float>(pattern.duration * weight +
-                            (comes_to_rest ? config_.stop_penalty : 0.0));
+  if (pattern.exit == rest && pattern.entry != rest) cost += config_.stop_penalty;
+  if (config_.turn_penalty > 0.0) cost += config_.turn_penalty * std::abs(pattern.end().pose.yaw);
+  return static_cast<float>(cost);
+}
+
+bool Search::staysOnPlan(const Node& parent, const TablePattern& pattern) const {
+  const auto depth = static_cast<size_t>(parent.depth);
+  return parent.on_plan == parent.depth && depth < problem_->committed.size() &&
+         problem_->committed[depth] == pattern.id();
 }
 
 float Search::switchPenalty(const Node& parent, const TablePattern& pattern) const {
@@ -181,54 +318,63 @@ float Search::switchPenalty(const Node& parent, const TablePattern& pattern) con
   return static_cast<float>(config_.switch_penalty * std::exp2(-parent.depth));
 }
 
-float Search::toGo(const Pose2& pose) const {
-  const Eigen::Vector2d p = pose.position();
-  const double way = problem_->cost_to_go->length(p);
-  if (!std::isfinite(way)) return kNever;
-  const double bounded = std::max(0.0, config_.bound_share * way - kCellSlack) / speed_;
-  double off_goal = 0.0;
-  if (problem_->goal.yaw_tolerance < kPi)
-    off_goal = std::max(0.0, std::abs(wrapAngle(pose.yaw - problem_->goal.T_map_goal.yaw)) -
-                                 problem_->goal.yaw_tolerance);
-  const double bound = std::max(bounded, off_goal / turn_rate_);
-  double turn = off_goal;
-  if (config_.turn_weight > 0.0 && way > kNearGoal) {
-    const Eigen::Vector2d along = problem_->cost_to_go->direction(p);
-    const double cosine = along.x() * std::cos(pose.yaw) + along.y() * std::sin(pose.yaw);
-    turn = std::acos(std::clamp(cosine, -1.0, 1.0));
+Search::ToGo Search::toGo(const Node& node) const {
+  const Goal& goal = problem_->goal;
+  CostToGo::Sample at;
+  if (problem_->cost_to_go != nullptr) {
+    at = problem_->cost_to_go->sample(node.x, node.y);
+    if (!(at.length < kNever)) return {kNever, kNever};
+  } else {
+    const double dx = goal.T_map_goal.x - node.x;
+    const double dy = goal.T_map_goal.y - node.y;
+    const double distance = std::sqrt(dx * dx + dy * dy);
+    at.length = static_cast<float>(std::max(0.0, distance - goal.position_tolerance));
   }
-  return static_cast<float>(config_.bound_weight * bound + config_.turn_weight * turn / turn_rate_);
+  float off_goal = 0.0F;
+  if (goal.yaw_tolerance < kPi)
+    off_goal = std::max(0.0F, std::abs(wrapped(node.yaw - goal_yaw_)) - yaw_tolerance_);
+  const float way = std::max(0.0F, way_share_ * at.length - slack_);
+  const float bound = std::max(metre_cost_[0] * way + radian_cost_[0] * off_goal,
+                               metre_cost_[1] * way + radian_cost_[1] * off_goal);
+  float turn = off_goal;
+  if (weights_.turn > 0.0F && at.length > kNearGoal)
+    turn = arcCosine(at.along_x * node.cos_yaw + at.along_y * node.sin_yaw);
+  const float expected =
+      std::max(bound, metre_cost_[0] * std::max(0.0F, guess_share_ * at.length - slack_));
+  return {bound, weights_.bound * expected + weights_.turn * radian_cost_[1] * turn};
 }
 
 bool Search::isGoal(const Node& node) const {
   if (node.motion_class != problem_->patterns->restClass()) return false;
   const Goal& goal = problem_->goal;
-  const Pose2& at = goal.T_map_goal;
-  if (std::hypot(node.x - at.x, node.y - at.y) > config_.goal_share * goal.position_tolerance)
-    return false;
-  const double off = std::abs(wrapAngle(node.yaw - at.yaw));
+  const double dx = node.x - goal.T_map_goal.x;
+  const double dy = node.y - goal.T_map_goal.y;
+  const double near = config_.goal_share * goal.position_tolerance;
+  if (dx * dx + dy * dy > near * near) return false;
+  const double off = std::abs(wrapAngle(static_cast<double>(node.yaw) - goal.T_map_goal.yaw));
   return goal.yaw_tolerance >= kPi || off <= config_.goal_share * goal.yaw_tolerance;
 }
 
 bool Search::isFarEnough(const Node& node) const {
-  if (node.depth == 0 || node.level < 0) return false;
-  const float gained = nodes_.front().to_go - node.to_go;
+  if (problem_->cost_to_go == nullptr || node.depth == 0 || node.level < 0) return false;
+  const float gained = guess_at_start_ - node.guess;
   if (gained < static_cast<float>(config_.least_progress)) return false;
   const Eigen::Vector2d p(node.x, node.y);
   if (problem_->cost_to_go->untilUnknown(p) < config_.frontier) return true;
   const auto time = static_cast<double>(node.time);
+  if (time < config_.horizon) return false;
   const double gained_way = way_at_start_ - problem_->cost_to_go->length(p);
-  return time >= config_.horizon && gained_way >= config_.least_rate * speed_ * time;
+  return gained_way >= config_.least_rate * speed_ * time;
 }
 
 int Search::bestLeaf() const {
   int best = -1;
-  float best_value = nodes_.front().to_go - static_cast<float>(config_.least_progress);
-  for (size_t i = 1; i < nodes_.size(); ++i) {
+  const float limit = guess_at_start_ - static_cast<float>(config_.least_progress);
+  float best_value = limit;
+  for (size_t i = kept_ + 1; i < nodes_.size(); ++i) {
     const Node& node = nodes_[i];
-    if (!node.expanded || node.to_go >= nodes_.front().to_go - float(config_.least_progress))
-      continue;
-    const float value = node.to_go + kLeafCost * node.cost;
+    if (!node.expanded || node.guess >= limit) continue;
+    const float value = node.guess + kLeafCost * node.cost;
     if (best >= 0 && value >= best_value) continue;
     best = static_cast<int>(i);
     best_value = value;
@@ -236,63 +382,17 @@ int Search::bestLeaf() const {
   return best;
 }
 
+int Search::headingBin(const Node& node) const {
+  const float bins = static_cast<float>(config_.heading_bins);
+  // Never negative: a node's yaw is within half a turn.
+  const int bin = static_cast<int>(node.yaw * (bins / static_cast<float>(2.0 * kPi)) + bins + 0.5F);
+  return bin % config_.heading_bins;
+}
+
 uint64_t Search::keyOf(const Node& node) const {
-  const double turns = node.yaw / (2.0 * kPi);
-  const double share = turns - std::floor(turns);
-  const auto heading = static_cast<uint64_t>(share * config_.heading_bins + 0.5) %
-                       static_cast<uint64_t>(config_.heading_bins);
-  return cellBits(node.x, config_.cell) | cellBits(node.y, config_.cell) << 20U | heading << 40U |
-         static_cast<uint64_t>(node.motion_class) << 56U;
-}
-
-SearchResult Search::finish(int leaf, SearchEnd end) {
-  SearchResult result;
-  result.expansions = expansions_;
-  if (leaf < 0) {
-    result.reason = expansions_ <= 1 ? "no pattern is free from here"
-                                     : "no free sequence of patterns brings the goal nearer";
-    return result;
-  }
-  result.end = end;
-  for (int i = leaf; i >= 0; i = nodes_[static_cast<size_t>(i)].parent) leaf_to_root_.push_back(i);
-  for (auto it = leaf_to_root_.rbegin() + 1; it != leaf_to_root_.rend(); ++it) {
-    const Node& node = nodes_[static_cast<size_t>(*it)];
-    result.steps.push_back({node.by->id(), node.pose(), node.motion_class,
-                            static_cast<double>(node.time), static_cast<double>(node.variance)});
-  }
-  const Node& last = nodes_[static_cast<size_t>(leaf)];
-  result.cost = static_cast<double>(last.cost);
-  result.way_to_go = problem_->cost_to_go->length({last.x, last.y});
-  result.time_to_go = static_cast<double>(last.time) + result.way_to_go / speed_;
-  return result;
-}
-
-std::vector<TreeNode> Search::tree(size_t count) const {
-  std::vector<bool> wanted(nodes_.size(), false);
-  size_t left = count;
-  for (const int i : leaf_to_root_) {
-    wanted[static_cast<size_t>(i)] = true;
-    left -= left > 0 ? 1 : 0;
-  }
-  for (size_t i = 0; i < nodes_.size() && left > 0; ++i) {
-    if (!nodes_[i].expanded || wanted[i]) continue;
-    wanted[i] = true;
-    --left;
-  }
-  std::vector<int> index(nodes_.size(), -1);
-  std::vector<TreeNode> drawn;
-  for (size_t i = 0; i < nodes_.size(); ++i) {
-    if (!wanted[i]) continue;
-    const Node& node = nodes_[i];
-    index[i] = static_cast<int>(drawn.size());
-    drawn.push_back({node.parent < 0 ? -1 : index[static_cast<size_t>(node.parent)],
-                     node.by == nullptr ? -1 : node.by->id(), node.pose(),
-                     static_cast<double>(node.time)});
-  }
-  branch_.clear();
-  for (auto it = leaf_to_root_.rbegin(); it != leaf_to_root_.rend(); ++it)
-    branch_.push_back(index[static_cast<size_t>(*it)]);
-  return drawn;
+  return cellBits(node.x, per_cell_) | cellBits(node.y, per_cell_) << 20U |
+         static_cast<uint64_t>(headingBin(node)) << 40U |
+         static_cast<uint64_t>(node.motion_class) << 48U;
 }
 
 }  // namespace tread::planner

@@ -134,12 +134,11 @@ void Supervisor::settle(const Situation& s) {
   last_plan_ = 0;
 }
 
-SearchResult Supervisor::searchFrom(const Situation& s, const Pose2& start, int motion_class,
-                                    double variance, int expansions) {
+SearchResult Supervisor::searchFrom(const Situation& s, const PlanStep& start, int expansions) {
   SearchProblem problem;
-  problem.T_map_start = start;
-  problem.start_class = motion_class;
-  problem.start_variance = variance;
+  problem.T_map_start = start.T_map_end;
+  problem.start_class = start.exit_class;
+  problem.start_uncertainty = start.uncertainty;
   problem.patterns = table_.get();
   problem.surroundings = &world_.surroundings();
   problem.cost_to_go = &world_.costToGo();
@@ -247,7 +246,7 @@ PlanReport Supervisor::report(const Situation& s) const {
     time = prediction_->time_left;
     report.execution_ids.push_back(book_.running().execution_id);
     report.steps.push_back(
-        {book_.running().pattern_id, prediction_->T_map_end, 0, time, prediction_->variance});
+        {book_.running().pattern_id, prediction_->T_map_end, 0, time, prediction_->uncertainty});
   }
   for (size_t i = 0; i < plan_.size(); ++i) {
     const bool handed_over = i == 0 && plan_[i].pattern_id == book_.next().pattern_id;

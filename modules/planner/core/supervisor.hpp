@@ -42,10 +42,10 @@ struct PlannerConfig {
   PolicyConfig policy;
   AgeLimits ages;
   SweepStep sweep;
-  double default_sigma = 0.05;  ///< [m] error at the end of a pattern of unknown covariance
-  int64_t lease = 200'000;      ///< [us] the motors stop when nothing newer came for this long
-  int64_t deadline = 30'000;    ///< [us] after which a search is cut off on the robot
-  std::string effective;        ///< the whole as YAML, for CONFIG
+  DefaultSigma default_sigma;  ///< errors at the end of a pattern of unknown covariance
+  int64_t lease = 200'000;     ///< [us] the motors stop when nothing newer came for this long
+  int64_t deadline = 30'000;   ///< [us] after which a search is cut off on the robot
+  std::string effective;       ///< the whole as YAML, for CONFIG
 };
 
 /// What a step decided beside the program.
@@ -96,6 +96,7 @@ class Supervisor {
   bool frozen(const Situation& s) const;
   bool nextCollides(const Prediction& running) const;
   void planNext(const Situation& s, const Readiness& ready, const Prediction& running);
+  PlanStep endOf(const Prediction& running) const;
   void searchNext(const Situation& s, const Prediction& running);
   bool stopNext(const Prediction& running);
   void keepClear(const Situation& s, const Prediction& running);
@@ -109,8 +110,7 @@ class Supervisor {
   void noPlan(const Situation& s, const std::string& why);
   void tryRecovery(const Situation& s);
   // Both.
-  SearchResult searchFrom(const Situation& s, const Pose2& start, int motion_class, double variance,
-                          int expansions);
+  SearchResult searchFrom(const Situation& s, const PlanStep& start, int expansions);
   bool sayUnreachable();
   void watchProgress(const Situation& s);
   void addDetour(const Situation& s);

@@ -89,14 +89,19 @@ void Supervisor::planNext(const Situation& s, const Readiness& ready, const Pred
   say(ready.status, ready.reason);
 }
 
+/// Where the running pattern is expected to end, as the start of what follows.
+PlanStep Supervisor::endOf(const Prediction& running) const {
+  return {runningPattern()->id(), running.T_map_end, runningPattern()->exit, 0.0,
+          running.uncertainty};
+}
+
 void Supervisor::searchNext(const Situation& s, const Prediction& running) {
   if (sayUnreachable()) {
     last_plan_ = s.now;
     stopNext(running);
     return;
   }
-  const SearchResult result = searchFrom(s, running.T_map_end, runningPattern()->exit,
-                                         running.variance, config_.policy.driving_expansions);
+  const SearchResult result = searchFrom(s, endOf(running), config_.policy.driving_expansions);
   if (result.end == SearchEnd::kNothing) {
     const bool stops = stopNext(running);
     ++counters_["no plan while driving"];
@@ -131,8 +136,7 @@ bool Supervisor::stopNext(const Prediction& running) {
     return motion_class == table_->restClass();
   }
   book_.setNext(table_->set(), best->id());
-  plan_.push_back({best->id(), running.T_map_end * best->end().pose, best->exit, best->duration,
-                   running.variance + best->variance});
+  plan_.push_back(stepAfter(endOf(running), *best));
   return true;
 }
 

@@ -37,8 +37,10 @@ void Supervisor::planStart(const Situation& s) {
     return;
   }
   plan_.clear();
-  const SearchResult result = searchFrom(s, s.pose->T_map_body, table_->restClass(), 0.0,
-                                         config_.policy.standing_expansions);
+  PlanStep here;
+  here.T_map_end = s.pose->T_map_body;
+  here.exit_class = table_->restClass();
+  const SearchResult result = searchFrom(s, here, config_.policy.standing_expansions);
   if (result.steps.empty()) return noPlan(s, result.reason);
   nothing_since_.reset();
   begin(s, result.steps);
@@ -74,9 +76,7 @@ void Supervisor::tryRecovery(const Situation& s) {
   PlanStep last;
   last.T_map_end = s.pose->T_map_body;
   for (const int id : ids) {
-    const TablePattern& pattern = *table_->find(id);
-    last = {id, last.T_map_end * pattern.end().pose, pattern.exit, last.time + pattern.duration,
-            last.variance + pattern.variance};
+    last = stepAfter(last, *table_->find(id));
     steps.push_back(last);
   }
   nothing_since_.reset();

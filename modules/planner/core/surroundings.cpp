@@ -8,16 +8,19 @@
 namespace tread::planner {
 namespace {
 
-constexpr bool kUnknownBlocks = true;
-
 Footprint withMargin(const FootprintSize& size, double margin) {
   return Footprint(size.front, size.rear, size.half_width, margin);
 }
 
 }  // namespace
 
-Surroundings::Surroundings(Grid grid, const FootprintSize& size, const Margins& margins)
-    : grid_(std::move(grid)), field_(grid_, kUnknownBlocks), margins_(margins) {
+Surroundings::Surroundings(Grid grid, const FootprintSize& size, const Margins& margins,
+                           bool unknown_blocks)
+    : grid_(std::move(grid)),
+      unknown_blocks_(unknown_blocks),
+      field_(grid_, unknown_blocks),
+      margins_(margins),
+      arm_(withMargin(size, 0.0).circumscribed()) {
   const double check = std::min(margins.check, margins.plan);
   level_margins_ = {0.0, check / 2.0, check, (check + margins.plan) / 2.0};
   for (int i = kPlan; i < kLevels; ++i) {
@@ -33,12 +36,14 @@ int Surroundings::levelWithin(double margin) const {
   return level;
 }
 
-int Surroundings::level(double variance) const {
-  return std::max(kPlan, levelWithin(margins_.plan + margins_.growth * std::sqrt(variance)));
+int Surroundings::level(const Uncertainty& uncertainty) const {
+  const double sigma =
+      std::sqrt(static_cast<double>(uncertainty.ofPoint(static_cast<float>(arm_))));
+  return std::max(kPlan, levelWithin(margins_.plan + margins_.growth * sigma));
 }
 
 bool Surroundings::isFree(const Pose2& T_map_body, int level) const {
-  return levels_[static_cast<size_t>(level)].isFree(grid_, field_, T_map_body, kUnknownBlocks);
+  return levels_[static_cast<size_t>(level)].isFree(grid_, field_, T_map_body, unknown_blocks_);
 }
 
 int Surroundings::freeLevel(const Pose2& T_map_body, int wanted) const {
@@ -47,32 +52,35 @@ int Surroundings::freeLevel(const Pose2& T_map_body, int wanted) const {
   return level;
 }
 
-bool Surroundings::isFarFromAll(const Pose2& T_map_start, const TablePattern& pattern,
+bool Surroundings::isFarFromAll(const TurnedPose& at, const TablePattern& pattern,
                                 int level) const {
   // The whole pattern is one look into the field.
   const double around = pattern.radius + levels_[static_cast<size_t>(level)].circumscribed();
-  return field_.at(T_map_start * pattern.centre) > around;
+  const double x = at.x + at.cos_yaw * pattern.centre.x() - at.sin_yaw * pattern.centre.y();
+  const double y = at.y + at.sin_yaw * pattern.centre.x() + at.cos_yaw * pattern.centre.y();
+  return field_.compare(x, y, static_cast<float>(around + 1e-6)) ==
+         ClearanceField::Verdict::kAtLeast;
 }
 
-bool Surroundings::sweepFree(const Pose2& T_map_start, const TablePattern& pattern,
+bool Surroundings::sweepFree(const TurnedPose& start, const TablePattern& pattern,
                              int level) const {
-  if (isFarFromAll(T_map_start, pattern, level)) return true;
+  if (isFarFromAll(start, pattern, level)) return true;
   const Footprint& footprint = levels_[static_cast<size_t>(level)];
+  const double c = start.cos_yaw;
+  const double s = start.sin_yaw;
   // The end first: patterns that hit something mostly hit it with their end.
-  const double c = std::cos(T_map_start.yaw);
-  const double s = std::sin(T_map_start.yaw);
   for (auto at = pattern.sweep.rbegin(); at != pattern.sweep.rend(); ++at) {
-    const Pose2 pose{T_map_start.x + c * at->pose.x - s * at->pose.y,
-                     T_map_start.y + s * at->pose.x + c * at->pose.y,
-                     T_map_start.yaw + at->pose.yaw};
-    if (!footprint.isFree(grid_, field_, pose, kUnknownBlocks)) return false;
+    const TurnedPose pose{start.x + c * at->pose.x - s * at->pose.y,
+                          start.y + s * at->pose.x + c * at->pose.y,
+                          c * at->cos_yaw - s * at->sin_yaw, s * at->cos_yaw + c * at->sin_yaw};
+    if (!footprint.isFree(field_, pose)) return false;
   }
   return true;
 }
 
 bool Surroundings::sweepRegains(const Pose2& T_map_start, int start_level,
                                 const TablePattern& pattern, int wanted) const {
-  if (isFarFromAll(T_map_start, pattern, wanted)) return true;
+  if (isFarFromAll(turned(T_map_start), pattern, wanted)) return true;
   const double margin = marginOf(start_level);
   return std::all_of(pattern.sweep.begin(), pattern.sweep.end(), [&](const SweepPose& at) {
     const int level = std::min(wanted, levelWithin(margin + margins_.regain * at.reach));
@@ -88,7 +96,7 @@ bool Surroundings::touchesObstacle(const Pose2& T_map_body, int level) const {
 Overlap Surroundings::overlap(const Pose2& T_map_body) const {
   const Footprint& bare = levels_[kBare];
   return {bare.blockedCells(grid_, T_map_body, false),
-          bare.blockedCells(grid_, T_map_body, kUnknownBlocks)};
+          bare.blockedCells(grid_, T_map_body, unknown_blocks_)};
 }
 
 std::optional<Overlap> Surroundings::escape(const Pose2& T_map_start, const Overlap& at_start,

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -43,27 +44,41 @@ struct Overlap {
 /// not free.
 class Surroundings {
  public:
-  Surroundings(Grid grid, const FootprintSize& size, const Margins& margins);
+  /// `unknown_blocks`: false lets the vehicle drive where nothing is known.
+  Surroundings(Grid grid, const FootprintSize& size, const Margins& margins,
+               bool unknown_blocks = true);
 
   const Grid& grid() const { return grid_; }
+  const ClearanceField& field() const { return field_; }
   const Margins& margins() const { return margins_; }
 
   /// Distance from a point to the nearest cell that is not free [m], a lower bound.
   double clearance(const Eigen::Vector2d& p_map) const { return field_.at(p_map); }
+  /// 1 in a cell that is not free, falling to 0 where nothing is nearer than `distance` [m].
+  double nearness(double x, double y, double distance) const {
+    return std::max(0.0, 1.0 - field_.quick(x, y) / distance);
+  }
+  bool isUnknown(const Eigen::Vector2d& p_map) const {
+    return grid_.at(grid_.indexOf(p_map)) == kUnknown;
+  }
   /// Levels of margin, rising: none, that for checking, that for planning, and more between them.
   static constexpr int kBare = 0;
   static constexpr int kCheck = 2;
   static constexpr int kPlan = 4;
   static constexpr int kLevels = 8;
   double marginOf(int level) const { return level_margins_[static_cast<size_t>(level)]; }
-  /// Level for a pose whose position is known with this variance [m2]; kPlan or above.
-  int level(double variance) const;
+  /// Level for a pose of this uncertainty; kPlan or above.
+  /** What counts is the footprint's corner, which a turn moves, too. */
+  int level(const Uncertainty& uncertainty) const;
   /// Whether the footprint with the margin of a level is free at a pose.
   bool isFree(const Pose2& T_map_body, int level) const;
   /// Highest level, at most `wanted`, at which a pose is free; -1 if it is not free at all.
   int freeLevel(const Pose2& T_map_body, int wanted) const;
   /// Whether every pose of a pattern is free, begun at a pose.
-  bool sweepFree(const Pose2& T_map_start, const TablePattern& pattern, int level) const;
+  bool sweepFree(const TurnedPose& T_map_start, const TablePattern& pattern, int level) const;
+  bool sweepFree(const Pose2& T_map_start, const TablePattern& pattern, int level) const {
+    return sweepFree(turned(T_map_start), pattern, level);
+  }
   /// The same for a start that is free only at a lower level than `wanted`: the farther from there,
   /// the more margin to obstacles must be kept, up to the wanted one. To the unknown the start's
   /// own margin is enough: what was never seen beside the vehicle is no reason to stay.
@@ -78,11 +93,13 @@ class Surroundings {
  private:
   int levelWithin(double margin) const;
   bool touchesObstacle(const Pose2& T_map_body, int level) const;
-  bool isFarFromAll(const Pose2& T_map_start, const TablePattern& pattern, int level) const;
+  bool isFarFromAll(const TurnedPose& T_map_start, const TablePattern& pattern, int level) const;
 
   Grid grid_;
+  bool unknown_blocks_;
   ClearanceField field_;
   Margins margins_;
+  double arm_;  // [m] from the body's origin to its farthest corner
   std::vector<Footprint> levels_;
   std::vector<double> level_margins_;
 };

@@ -63,7 +63,7 @@ BENCHMARK(wayToGo)->Unit(benchmark::kMicrosecond);
 
 void preparePatterns(benchmark::State& state) {
   const PatternSet set = samplePatterns();
-  for (auto _ : state) benchmark::DoNotOptimize(PatternTable(set, SweepStep{}, 0.05));
+  for (auto _ : state) benchmark::DoNotOptimize(PatternTable(set, SweepStep{}, {}));
 }
 BENCHMARK(preparePatterns)->Unit(benchmark::kMicrosecond);
 
@@ -71,7 +71,7 @@ BENCHMARK(preparePatterns)->Unit(benchmark::kMicrosecond);
 /// spent.
 void search(benchmark::State& state) {
   const bool exhaust = state.range(0) != 0;
-  const PatternTable table(samplePatterns(), SweepStep{}, 0.05);
+  const PatternTable table(samplePatterns(), SweepStep{}, {});
   std::vector<Scene> scenes;
   for (uint64_t seed = 1; seed <= 10; ++seed) scenes.emplace_back(seed);
   std::vector<Surroundings> around;

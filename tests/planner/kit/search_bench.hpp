@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include "modules/planner/core/passage_map.hpp"
 #include "modules/planner/core/search.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
@@ -14,7 +15,7 @@ struct SearchBench {
               const FieldConfig& field = {})
       : map(grid.cellSize(), 32, PassageConfig{}),
         surroundings(grid, FootprintSize{}, margins),
-        table(set, SweepStep{}, 0.05) {
+        table(set, SweepStep{}, {}) {
     for (const Tile& tile : tilesOf(grid, 32, 1)) map.put(tile);
     map.refresh();
     goal = aim;
