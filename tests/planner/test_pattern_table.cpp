@@ -127,7 +127,7 @@ TEST_CASE("A start without margin may go on only where room is gained") {
   int away = 0;
   for (const TablePattern& pattern : table.patterns()) {
     const Pose2& end = pattern.end().pose;
-    const bool regains = around.sweepRegains(start, level, pattern, Surroundings::kPlan);
+    const bool regains = around.sweepRegains(turned(start), level, pattern, Surroundings::kPlan);
     if (std::abs(end.x) > 0.9 && std::abs(end.y) < 0.01) {
       ++along;
       CHECK(around.sweepFree(start, pattern, level));  // nothing is touched, yet no room is gained

@@ -48,7 +48,7 @@ bool isFree(const Move& move, const Surroundings& around, const Pose2& start, bo
   for (const TablePattern* pattern : move.patterns) {
     if (level >= 0) {
       const int wanted = regains ? Surroundings::kPlan : level;
-      if (!around.sweepRegains(pose, level, *pattern, wanted)) return false;
+      if (!around.sweepRegains(turned(pose), level, *pattern, wanted)) return false;
       level = around.freeLevel(pose * pattern->end().pose, wanted);
     } else {
       const std::optional<Overlap> after = around.escape(pose, overlap, *pattern);

@@ -105,7 +105,6 @@ Search::Weights Search::weightsOf(int number) const {
 void Search::beginAgain(const Weights& weights) {
   weights_ = weights;
   keepBranch();
-  grown_.clear();
   best_.clear();
   const SearchProblem& problem = *problem_;
   Node root{};
@@ -115,7 +114,8 @@ void Search::beginAgain(const Weights& weights) {
   root.cos_yaw = static_cast<float>(std::cos(problem.T_map_start.yaw));
   root.sin_yaw = static_cast<float>(std::sin(problem.T_map_start.yaw));
   root.parent = -1;
-  root.grown = -1;
+  root.number = -1;
+  root.uncertainty = problem.start_uncertainty;
   root.motion_class = static_cast<int8_t>(problem.start_class);
   const ToGo to_go = toGo(root);
   root.bound = to_go.bound;
@@ -154,7 +154,7 @@ Search::Outcome Search::search(const StopPredicate& stop) {
     const OpenList::Entry entry = open_.take();
     const Node& node = nodes_[static_cast<size_t>(entry.node)];
     // What was replaced since it was put in, or cannot be part of a better plan any more.
-    if (node.expanded || node.cost != entry.cost) continue;
+    if (node.expanded() || node.cost != entry.cost) continue;
     if (node.cost + node.bound >= best_cost_ * (1.0F - kSame)) continue;
     if (visit(entry.node)) return Outcome::kBetter;
     if (expansions_ % kAskEvery == 0 && (stop(expansions_) || nodes_.size() > config_.most_nodes))
@@ -167,11 +167,7 @@ Search::Outcome Search::search(const StopPredicate& stop) {
 bool Search::visit(int index) {
   ++expansions_;
   Node& node = nodes_[static_cast<size_t>(index)];
-  node.expanded = true;
-  node.grown = static_cast<int>(grown_.size());
-  grown_.push_back(node.parent < 0
-                       ? problem_->start_uncertainty
-                       : uncertaintyAfter(nodes_[static_cast<size_t>(node.parent)], *node.by));
+  node.number = expansions_;
   if (isGoal(node)) {
     keepBest(index, SearchEnd::kGoal);
     return true;
@@ -198,8 +194,7 @@ Uncertainty Search::uncertaintyAfter(const Node& parent, const TablePattern& pat
   const auto y = static_cast<float>(step.y());
   const float c = parent.cos_yaw;
   const float s = parent.sin_yaw;
-  return compose(grown_[static_cast<size_t>(parent.grown)], pattern.uncertainty, c * x - s * y,
-                 s * x + c * y, c, s);
+  return compose(parent.uncertainty, pattern.uncertainty, c * x - s * y, s * x + c * y, c, s);
 }
 
 void Search::expand(int parent) {
@@ -230,13 +225,12 @@ void Search::addChild(int parent, const TablePattern& pattern) {
   node.guess = to_go.guess;
   node.time = from.time + static_cast<float>(pattern.duration);
   node.parent = parent;
-  node.grown = -1;
+  node.number = -1;
   node.by = &pattern;
   node.depth = static_cast<int16_t>(from.depth + 1);
   node.on_plan = static_cast<int16_t>(staysOnPlan(from, pattern) ? from.on_plan + 1 : -1);
-  node.expanded = false;
   if (!admit(from, node)) return;
-  const bool waits = slot.node >= 0 && !nodes_[static_cast<size_t>(slot.node)].expanded;
+  const bool waits = slot.node >= 0 && !nodes_[static_cast<size_t>(slot.node)].expanded();
   if (waits)
     nodes_[static_cast<size_t>(slot.node)] = node;
   else
@@ -261,15 +255,18 @@ bool Search::freeFromParent(const Node& parent, Node& node) const {
     const std::optional<Overlap> left = around.escape(parent.plainPose(), parent.overlap, *node.by);
     if (!left) return false;
     node.overlap = *left;
+    node.uncertainty = uncertaintyAfter(parent, *node.by);
     node.level = static_cast<int8_t>(around.freeLevel(node.plainPose(), Surroundings::kPlan));
     return true;
   }
-  const int wanted = around.level(uncertaintyAfter(parent, *node.by));
-  if (parent.level >= wanted) {
+  node.uncertainty = uncertaintyAfter(parent, *node.by);
+  const int wanted = around.level(node.uncertainty);
+  if (around.sweepFree(parent.pose(), *node.by, wanted)) {
     node.level = static_cast<int8_t>(wanted);
-    return around.sweepFree(parent.pose(), *node.by, wanted);
+    return true;
   }
-  if (!around.sweepRegains(parent.plainPose(), parent.level, *node.by, wanted)) return false;
+  if (parent.level >= wanted) return false;
+  if (!around.sweepRegains(parent.pose(), parent.level, *node.by, wanted)) return false;
   node.level = static_cast<int8_t>(around.freeLevel(node.plainPose(), wanted));
   return true;
 }
@@ -373,7 +370,7 @@ int Search::bestLeaf() const {
   float best_value = limit;
   for (size_t i = kept_ + 1; i < nodes_.size(); ++i) {
     const Node& node = nodes_[i];
-    if (!node.expanded || node.guess >= limit) continue;
+    if (!node.expanded() || node.guess >= limit) continue;
     const float value = node.guess + kLeafCost * node.cost;
     if (best >= 0 && value >= best_value) continue;
     best = static_cast<int>(i);

@@ -38,7 +38,7 @@ struct SearchConfig {
   double goal_share = 0.7;      ///< [1] of the goal's tolerance that is aimed for
   int improvements = 0;         ///< more searches after the first plan, each for a better one; the
                                 ///< last has weight 1 and ends when there is none
-  size_t most_nodes = 6'000'000;  ///< [1] of 80 bytes each; a search that needs more is cut off
+  size_t most_nodes = 6'000'000;  ///< [1] of 112 bytes each; a search that needs more is cut off
 };
 
 /// What to search for.
@@ -137,18 +137,19 @@ class Search {
     float bound;  // least cost from here to the goal [s]
     float guess;  // and what it is expected to be [s]
     int parent;
-    int grown;  // index of what only expanded nodes need; -1 before
+    int number;  // of its expansion; -1 before
     const TablePattern* by;
     int16_t depth;
     int16_t on_plan;  // patterns in common with the committed plan; -1 = left it
     int8_t motion_class;
-    int8_t level;  // margin with which its end is free; -1 while on blocked ground
-    bool expanded;
-    Overlap overlap;  // on blocked ground
+    int8_t level;             // margin with which its end is free; -1 while on blocked ground
+    Overlap overlap;          // on blocked ground
+    Uncertainty uncertainty;  // in map axes
 
     TurnedPose pose() const {
       return {x, y, static_cast<double>(cos_yaw), static_cast<double>(sin_yaw)};
     }
+    bool expanded() const { return number >= 0; }
     Pose2 plainPose() const { return {x, y, static_cast<double>(yaw)}; }
   };
   /// What drives one search of an anytime run.
@@ -192,7 +193,6 @@ class Search {
   SearchConfig config_;
   const SearchProblem* problem_ = nullptr;
   std::vector<Node> nodes_;
-  std::vector<Uncertainty> grown_;  // of the nodes that were expanded in this search
   OpenList open_;
   NodeTable best_;
   Weights weights_;

@@ -51,9 +51,9 @@ SearchResult Search::finish(int leaf, SearchEnd end) {
 std::vector<TreeNode> Search::tree(size_t count) const {
   std::vector<int> order;  // of the nodes that were expanded in the last search
   for (size_t i = kept_; i < nodes_.size(); ++i)
-    if (nodes_[i].expanded) order.push_back(static_cast<int>(i));
+    if (nodes_[i].expanded()) order.push_back(static_cast<int>(i));
   const auto earlier = [this](int a, int b) {
-    return nodes_[static_cast<size_t>(a)].grown < nodes_[static_cast<size_t>(b)].grown;
+    return nodes_[static_cast<size_t>(a)].number < nodes_[static_cast<size_t>(b)].number;
   };
   std::sort(order.begin(), order.end(), earlier);
   std::vector<int> wanted(leaf_to_root_.rbegin(), leaf_to_root_.rend());
@@ -88,8 +88,7 @@ std::vector<TreeNode> Search::drawn(const std::vector<int>& wanted) const {
 }
 
 size_t Search::bytes() const {
-  return nodes_.capacity() * sizeof(Node) + grown_.capacity() * sizeof(Uncertainty) +
-         best_.bytes() + open_.bytes();
+  return nodes_.capacity() * sizeof(Node) + best_.bytes() + open_.bytes();
 }
 
 }  // namespace tread::planner

@@ -12,6 +12,14 @@ Footprint withMargin(const FootprintSize& size, double margin) {
   return Footprint(size.front, size.rear, size.half_width, margin);
 }
 
+/// A pose of a pattern that begins at `start`.
+TurnedPose alongFrom(const TurnedPose& start, const SweepPose& at) {
+  const double c = start.cos_yaw;
+  const double s = start.sin_yaw;
+  return {start.x + c * at.pose.x - s * at.pose.y, start.y + s * at.pose.x + c * at.pose.y,
+          c * at.cos_yaw - s * at.sin_yaw, s * at.cos_yaw + c * at.sin_yaw};
+}
+
 }  // namespace
 
 Surroundings::Surroundings(Grid grid, const FootprintSize& size, const Margins& margins,
@@ -46,6 +54,10 @@ bool Surroundings::isFree(const Pose2& T_map_body, int level) const {
   return levels_[static_cast<size_t>(level)].isFree(grid_, field_, T_map_body, unknown_blocks_);
 }
 
+bool Surroundings::isFree(const TurnedPose& T_map_body, int level) const {
+  return levels_[static_cast<size_t>(level)].isFree(field_, T_map_body);
+}
+
 int Surroundings::freeLevel(const Pose2& T_map_body, int wanted) const {
   int level = wanted;
   while (level >= 0 && !isFree(T_map_body, level)) --level;
@@ -66,31 +78,27 @@ bool Surroundings::sweepFree(const TurnedPose& start, const TablePattern& patter
                              int level) const {
   if (isFarFromAll(start, pattern, level)) return true;
   const Footprint& footprint = levels_[static_cast<size_t>(level)];
-  const double c = start.cos_yaw;
-  const double s = start.sin_yaw;
   // The end first: patterns that hit something mostly hit it with their end.
   for (auto at = pattern.sweep.rbegin(); at != pattern.sweep.rend(); ++at) {
-    const TurnedPose pose{start.x + c * at->pose.x - s * at->pose.y,
-                          start.y + s * at->pose.x + c * at->pose.y,
-                          c * at->cos_yaw - s * at->sin_yaw, s * at->cos_yaw + c * at->sin_yaw};
-    if (!footprint.isFree(field_, pose)) return false;
+    if (!footprint.isFree(field_, alongFrom(start, *at))) return false;
   }
   return true;
 }
 
-bool Surroundings::sweepRegains(const Pose2& T_map_start, int start_level,
+bool Surroundings::sweepRegains(const TurnedPose& start, int start_level,
                                 const TablePattern& pattern, int wanted) const {
-  if (isFarFromAll(turned(T_map_start), pattern, wanted)) return true;
+  if (isFarFromAll(start, pattern, wanted)) return true;
   const double margin = marginOf(start_level);
   return std::all_of(pattern.sweep.begin(), pattern.sweep.end(), [&](const SweepPose& at) {
     const int level = std::min(wanted, levelWithin(margin + margins_.regain * at.reach));
-    const Pose2 pose = T_map_start * at.pose;
+    const TurnedPose pose = alongFrom(start, at);
     return isFree(pose, level) || (isFree(pose, start_level) && !touchesObstacle(pose, level));
   });
 }
 
-bool Surroundings::touchesObstacle(const Pose2& T_map_body, int level) const {
-  return levels_[static_cast<size_t>(level)].blockedCells(grid_, T_map_body, false) > 0;
+bool Surroundings::touchesObstacle(const TurnedPose& pose, int level) const {
+  const Pose2 plain{pose.x, pose.y, std::atan2(pose.sin_yaw, pose.cos_yaw)};
+  return levels_[static_cast<size_t>(level)].blockedCells(grid_, plain, false) > 0;
 }
 
 Overlap Surroundings::overlap(const Pose2& T_map_body) const {

@@ -82,7 +82,7 @@ class Surroundings {
   /// The same for a start that is free only at a lower level than `wanted`: the farther from there,
   /// the more margin to obstacles must be kept, up to the wanted one. To the unknown the start's
   /// own margin is enough: what was never seen beside the vehicle is no reason to stay.
-  bool sweepRegains(const Pose2& T_map_start, int start_level, const TablePattern& pattern,
+  bool sweepRegains(const TurnedPose& T_map_start, int start_level, const TablePattern& pattern,
                     int wanted) const;
   /// Blocked cells under the footprint: for leaving a place that is not free.
   Overlap overlap(const Pose2& T_map_body) const;
@@ -92,7 +92,8 @@ class Surroundings {
 
  private:
   int levelWithin(double margin) const;
-  bool touchesObstacle(const Pose2& T_map_body, int level) const;
+  bool isFree(const TurnedPose& T_map_body, int level) const;
+  bool touchesObstacle(const TurnedPose& T_map_body, int level) const;
   bool isFarFromAll(const TurnedPose& T_map_start, const TablePattern& pattern, int level) const;
 
   Grid grid_;
