@@ -62,16 +62,16 @@ CostToGo::CostToGo(const PassageSource& map, const Goal& goal, const Eigen::Vect
     paint(map, detours, config);
     if (march(goal, p_vehicle, config)) return;
     const double longest = size_ * std::max(width_, height_);
-    if (goal_blocked_ || !touched_border_ || longest >= config.max_area - size_) break;
+    const bool all_seen = !touched_border_ || map.bounds().has_value();
+    if (goal_blocked_ || all_seen || longest >= config.max_area - size_) break;
   }
   problem_ =
       goal_blocked_ ? "the goal lies on obstacles" : "obstacles enclose the goal or the vehicle";
 }
 
-void CostToGo::layOut(const PassageSource& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
-                      double margin, const FieldConfig& config) {
-  size_ = map.coarseSize();
-  const Eigen::Vector2d p_goal = goal.T_map_goal.position();
+/// A rectangle around goal and vehicle, with a margin.
+void CostToGo::chooseArea(const Eigen::Vector2d& p_goal, const Eigen::Vector2d& p_vehicle,
+                          double margin, const FieldConfig& config) {
   const Eigen::Vector2d middle = (p_goal + p_vehicle) / 2.0;
   const Eigen::Vector2d needed = (p_goal - p_vehicle).cwiseAbs() / 2.0;
   const Eigen::Vector2d half = (needed + Eigen::Vector2d::Constant(margin))
@@ -81,6 +81,19 @@ void CostToGo::layOut(const PassageSource& map, const Goal& goal, const Eigen::V
   lower_y_ = static_cast<int>(std::floor((middle.y() - half.y()) / size_));
   width_ = static_cast<int>(std::ceil(2.0 * half.x() / size_));
   height_ = static_cast<int>(std::ceil(2.0 * half.y() / size_));
+}
+
+void CostToGo::layOut(const PassageSource& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
+                      double margin, const FieldConfig& config) {
+  size_ = map.coarseSize();
+  if (const std::optional<PassageWindow> bounds = map.bounds()) {
+    lower_x_ = bounds->lower_x;
+    lower_y_ = bounds->lower_y;
+    width_ = bounds->width;
+    height_ = bounds->height;
+  } else {
+    chooseArea(goal.T_map_goal.position(), p_vehicle, margin, config);
+  }
   stride_ = width_ + 2;
   per_size_ = 1.0 / size_;
   const auto cells = static_cast<size_t>(stride_) * static_cast<size_t>(height_ + 2);

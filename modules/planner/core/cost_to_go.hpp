@@ -114,6 +114,8 @@ class CostToGo {
 
   void layOut(const PassageSource& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
               double margin, const FieldConfig& config);
+  void chooseArea(const Eigen::Vector2d& p_goal, const Eigen::Vector2d& p_vehicle, double margin,
+                  const FieldConfig& config);
   void paint(const PassageSource& map, const std::vector<Detour>& detours,
              const FieldConfig& config);
   bool seed(const Goal& goal, Front& front);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace tread::planner {
@@ -28,6 +29,8 @@ class PassageSource {
   virtual ~PassageSource() = default;
   /// [m] side of a coarse cell.
   virtual double coarseSize() const = 0;
+  /// The whole of it where it ends, without room and unknown; nothing if it is endless.
+  virtual std::optional<PassageWindow> bounds() const { return std::nullopt; }
   /// Fills in what is known in the window's rectangle and leaves the rest as it is.
   virtual void fill(PassageWindow& window) const = 0;
 };

@@ -67,6 +67,18 @@ void preparePatterns(benchmark::State& state) {
 }
 BENCHMARK(preparePatterns)->Unit(benchmark::kMicrosecond);
 
+/// The paper's five patterns, and no others but those that start and stop.
+PatternSet fivePatterns() {
+  PatternSetContent content = samplePatterns().content();
+  const std::set<std::string> wanted = {"straight", "left", "right", "hard left", "hard right",
+                                        "start",    "stop"};
+  const auto others = [&](const MotionPattern& pattern) { return wanted.count(pattern.name) == 0; };
+  auto& patterns = content.patterns;
+  patterns.erase(std::remove_if(patterns.begin(), patterns.end(), others), patterns.end());
+  std::string why;
+  return *PatternSet::make(std::move(content), why);
+}
+
 /// Searches through many worlds; with an unreachable horizon all expansions of the budget are
 /// spent.
 void search(benchmark::State& state) {

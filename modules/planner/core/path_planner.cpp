@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/planner/core/path_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tread::planner {
+namespace {
+
+/// A coarse cell is at most this share of the disc inside the footprint, so that walls stay walls.
+constexpr double kCoarseShare = 0.5;
+/// Room that a cell may have beyond that at its centre, in cells: as a rule, and at most.
+constexpr double kUsualSlack = 0.25;
+constexpr double kMostSlack = 0.71;
+
+SearchConfig latticeSearch(double cell_size, int bins) {
+  SearchConfig config = PathConfig::pathSearch();
+  config.cell = cell_size;
+  config.heading_bins = bins;
+  config.bound_weight = 1.0;
+  config.turn_weight = 0.0;
+  config.improvements = 1;
+  config.most_nodes = 40'000'000;
+  return config;
+}
+
+PathAnswer refused(const std::string& reason) {
+  PathAnswer answer;
+  answer.end = PathEnd::kUnreachable;
+  answer.reason = reason;
+  return answer;
+}
+
+}  // namespace
+
+SearchConfig PathConfig::pathSearch() {
+  SearchConfig config;
+  config.cell = 0.1;
+  config.heading_bins = 72;
+  config.bound_weight = 2.0;
+  config.reverse_penalty = config.stop_penalty = config.switch_penalty = 0.0;
+  config.near_penalty = 0.0;
+  config.horizon = 1e6;
+  config.frontier = -1.0;
+  config.least_rate = 0.0;
+  config.goal_share = 1.0;
+  config.improvements = 3;
+  return config;
+}
+
+FieldConfig PathConfig::pathField() {
+  FieldConfig config;
+  config.tight_weight = 0.0;
+  config.max_distance = 1e4;
+  config.reach = 3.0;
+  return config;
+}
+
+PathPlanner::PathPlanner(const Grid& grid, const PatternTable& patterns, const PathConfig& config)
+    : patterns_(patterns), config_(config), search_(config.search) {
+  const FootprintSize& size = config.footprint;
+  inscribed_ = std::max(0.0, std::min({size.front, size.rear, size.half_width}));
+  Margins none;
+  none.check = none.plan = none.growth = none.largest = 0.0;
+  surroundings_.emplace(grid, size, none, config.unknown_blocks);
+  const double cell = grid.cellSize();
+  const int coarse = std::max(1, static_cast<int>(kCoarseShare * inscribed_ / cell));
+  passages_.emplace(grid, surroundings_->field(), coarse, kUsualSlack * cell);
+  permissive_.emplace(grid, surroundings_->field(), coarse, kMostSlack * cell);
+  permissive_->label(inscribed_);
+  config_.field.inflation = inscribed_;
+}
+
+PathPlanner::PathPlanner(const CellCosts& costs, double cell_size, int bins,
+                         const PatternTable& patterns)
+    : patterns_(patterns),
+      search_(latticeSearch(cell_size, bins)),
+      costs_(&costs),
+      cell_size_(cell_size) {}
+
+bool PathPlanner::isFree(const Pose2& T_map_body) const {
+  if (costs_ == nullptr) return surroundings_->isFree(T_map_body, Surroundings::kBare);
+  return costs_->at({static_cast<int>(std::floor(T_map_body.x / cell_size_)),
+                     static_cast<int>(std::floor(T_map_body.y / cell_size_))}) >= 0;
+}
+
+SearchProblem PathPlanner::problemOf(const PathQuery& query) const {
+  SearchProblem problem;
+  problem.T_map_start = query.T_map_start;
+  problem.start_class = patterns_.restClass();
+  problem.patterns = &patterns_;
+  problem.goal = {1, query.T_map_goal, query.position_tolerance, query.yaw_tolerance};
+  return problem;
+}
+
+std::optional<PathAnswer> PathPlanner::refusal(const PathQuery& query) const {
+  const Eigen::Vector2d p_start = query.T_map_start.position();
+  const Eigen::Vector2d p_goal = query.T_map_goal.position();
+  if (!surroundings_->grid().contains(surroundings_->grid().indexOf(p_start)))
+    return refused("the start lies outside the map");
+  // On blocked ground the start may be left to all sides.
+  std::vector<int> from{permissive_->areaAt(p_start)};
+  if (from.front() == 0) from = permissive_->areasNear(p_start, 2.0 * inscribed_);
+  const std::vector<int> to = permissive_->areasNear(p_goal, query.position_tolerance);
+  const bool connected = std::any_of(from.begin(), from.end(), [&](int area) {
+    return std::find(to.begin(), to.end(), area) != to.end();
+  });
+  if (connected) return std::nullopt;
+  PathAnswer answer = refused("obstacles enclose the goal or the vehicle");
+  if (from.empty())
+    answer.reason = "the start lies on obstacles";
+  else if (!surroundings_->grid().contains(surroundings_->grid().indexOf(p_goal)))
+    answer.reason = "the goal lies outside the map";
+  else if (to.empty())
+    answer.reason = "the goal lies on obstacles, or too near to them";
+  answer.closest = permissive_->nearestIn(from, p_goal);
+  return answer;
+}
+
+CostToGo PathPlanner::wayTo(const SearchProblem& problem) const {
+  const Eigen::Vector2d p_start = problem.T_map_start.position();
+  CostToGo way(*passages_, problem.goal, p_start, {}, config_.field);
+  return way.unreachable() ? CostToGo(*permissive_, problem.goal, p_start, {}, config_.field) : way;
+}
+
+PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop,
+                               std::function<void(double, int)> on_better) {
+  SearchProblem problem = problemOf(query);
+  problem.on_better = std::move(on_better);
+  if (costs_ != nullptr) return answerOnCells(problem, stop);
+  if (std::optional<PathAnswer> refusal = this->refusal(query)) return *refusal;
+  const CostToGo way = wayTo(problem);
+  problem.surroundings = &*surroundings_;
+  problem.cost_to_go = &way;
+  PathAnswer answer;
+  answer.search = search_.run(problem, stop);
+  judge(answer);
+  return answer;
+}
+
+/// Cells and headings are numbers there: start and goal are moved to the middle of theirs.
+PathAnswer PathPlanner::answerOnCells(SearchProblem problem, const StopPredicate& stop) {
+  const double bin = 2.0 * kPi / search_.config().heading_bins;
+  for (Pose2* pose : {&problem.T_map_start, &problem.goal.T_map_goal}) {
+    pose->x = (std::floor(pose->x / cell_size_) + 0.5) * cell_size_;
+    pose->y = (std::floor(pose->y / cell_size_) + 0.5) * cell_size_;
+    pose->yaw = std::round(pose->yaw / bin) * bin;
+  }
+  problem.goal.position_tolerance = 0.25 * cell_size_;
+  problem.goal.yaw_tolerance = 0.4 * bin;
+  problem.cell_costs = costs_;
+  if (!isFree(problem.T_map_start)) return refused("the start lies on obstacles");
+  if (!isFree(problem.goal.T_map_goal)) return refused("the goal lies on obstacles");
+  PathAnswer answer;
+  answer.search = search_.run(problem, stop);
+  judge(answer);
+  return answer;
+}
+
+void PathPlanner::judge(PathAnswer& answer) {
+  const SearchResult& result = answer.search;
+  if (result.end == SearchEnd::kGoal) {
+    answer.end = PathEnd::kSolved;
+  } else if (result.exhausted && result.expansions <= 1) {
+    answer.end = PathEnd::kUnreachable;
+    answer.reason = "no pattern can begin at the start: each would leave the map or hit something";
+  } else if (result.exhausted) {
+    answer.reason = "the patterns lead to no other place at this resolution: all " +
+                    std::to_string(result.expansions) + " that they reach were looked at";
+  } else {
+    answer.reason = "none was found before the search was stopped";
+  }
+}
+
+}  // namespace tread::planner

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "modules/planner/core/grid_passages.hpp"
+#include "modules/planner/core/search.hpp"
+
+namespace tread::planner {
+
+/// How plans are made on a map that does not change.
+struct PathConfig {
+  FootprintSize footprint;
+  SearchConfig search = pathSearch();
+  FieldConfig field = pathField();
+  bool unknown_blocks = true;
+  /// The whole way at once, the cheapest there is, and nothing but time and turns counts.
+  static SearchConfig pathSearch();
+  static FieldConfig pathField();
+};
+
+/// From where to where; all in the frame of the map.
+struct PathQuery {
+  Pose2 T_map_start;
+  Pose2 T_map_goal;
+  double position_tolerance = 0.25;  ///< [m] > 0
+  double yaw_tolerance = 0.26;       ///< [rad] > 0; pi or more = any heading
+};
+
+/// What became of a query.
+enum class PathEnd {
+  kSolved,
+  kUnreachable,  ///< it is certain that there is none: see PathPlanner
+  kNoneInTime    ///< none was found before the search was told to stop, or at its resolution
+};
+
+struct PathAnswer {
+  PathEnd end = PathEnd::kNoneInTime;
+  std::string reason;   ///< why there is no path, in words; empty if solved
+  SearchResult search;  ///< its steps lead to the goal, or as near to it as was found
+  /// Where the vehicle could stand nearest to an unreachable goal, in p_map.
+  std::optional<Eigen::Vector2d> closest;
+};
+
+/// Plans on a map that does not change, for one vehicle and one set of patterns.
+/** What all queries share is worked out once: clearance, passages, connected areas. Unreachable is
+ * only what is certain: the goal lies outside the map or where not even the disc inside the
+ * footprint has room, that disc cannot be moved from start to goal, or no pattern can begin at the
+ * start. */
+class PathPlanner {
+ public:
+  PathPlanner(const Grid& grid, const PatternTable& patterns, const PathConfig& config);
+  /// For a point that drives over cells with costs: SBPL's own problem (see CellCosts). `bins`:
+  /// headings of the lattice; the goal is one cell and one heading.
+  PathPlanner(const CellCosts& costs, double cell_size, int bins, const PatternTable& patterns);
+
+  /// `on_better` is told of every plan that is better than those before it.
+  PathAnswer answer(const PathQuery& query, const StopPredicate& stop,
+                    std::function<void(double cost, int expansions)> on_better = {});
+  /// Only the first part of answer(): whether the goal is certainly unreachable, and why.
+  std::optional<PathAnswer> refusal(const PathQuery& query) const;
+
+  const Search& search() const { return search_; }
+  /// Whether the footprint is free at a pose.
+  bool isFree(const Pose2& T_map_body) const;
+  /// [m] of the disc inside the footprint, around the body's origin.
+  double inscribedRadius() const { return inscribed_; }
+
+ private:
+  PathAnswer answerOnCells(SearchProblem problem, const StopPredicate& stop);
+  SearchProblem problemOf(const PathQuery& query) const;
+  static void judge(PathAnswer& answer);
+  CostToGo wayTo(const SearchProblem& problem) const;
+
+  const PatternTable& patterns_;
+  PathConfig config_;
+  Search search_;
+  double inscribed_ = 0.0;
+  std::optional<Surroundings> surroundings_;
+  std::optional<GridPassages> passages_;  ///< with the least room that a cell may have, as a guide
+  std::optional<GridPassages> permissive_;  ///< with the most, for what is certain
+  const CellCosts* costs_ = nullptr;
+  double cell_size_ = 0.0;
+};
+
+}  // namespace tread::planner
