@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <iostream>
-#include <mutex>
 #include <optional>
-#include <thread>
 
 #include <CLI/CLI.hpp>
 
+#include "common/config/command_line.hpp"
+#include "tools/missions/campaigner.hpp"
 #include "tools/missions/comparison_report.hpp"
 #include "tools/missions/fault_file.hpp"
-#include "tools/missions/mission_runner.hpp"
-#include "tools/missions/report.hpp"
+#include "tools/missions/omniscient_report.hpp"
 
 namespace {
 
@@ -34,6 +31,9 @@ struct Arguments {
   std::string picture = "mission.png";
   std::string log;
   std::string robot = TREAD_CONFIG_DIR "/robots/teodor";
+  std::vector<std::string> overrides;
+  bool omniscient = false;
+  bool compare_omniscient = false;
   bool live = false;
 };
 
@@ -43,13 +43,22 @@ void define(CLI::App& app, Arguments& arguments) {
   CLI::Option* one =
       app.add_option("--rule", arguments.rule, "rule of learning (default: as in learner.yaml)")
           ->check(CLI::IsMember(learner::ruleNames()));
-  app.add_option("--rules", arguments.rules,
-                 "compare rules: each drives all missions, and all judge the first one's drives")
-      ->delimiter(',')
-      ->check(CLI::IsMember(learner::ruleNames()))
-      ->excludes(one);
+  CLI::Option* several =
+      app.add_option(
+             "--rules", arguments.rules,
+             "compare rules: each drives all missions, and all judge the first one's drives")
+          ->delimiter(',')
+          ->check(CLI::IsMember(learner::ruleNames()))
+          ->excludes(one);
   app.add_flag("--first-drives", arguments.only_first_drives,
                "with --rules: only the first rule drives, the others judge its executions");
+  app.add_flag("--omniscient", arguments.omniscient,
+               "no learning: the planner is given the true patterns of the ground below it")
+      ->excludes(one)
+      ->excludes(several);
+  app.add_flag("--compare-omniscient", arguments.compare_omniscient,
+               "drive all missions, and once more with true patterns; ratio of times to the goal")
+      ->excludes(several);
   app.add_option(
          "--length", arguments.length,
          "shortest straight line to the goal [m]; longer ones give longer stretches of each "
@@ -64,6 +73,11 @@ void define(CLI::App& app, Arguments& arguments) {
   app.add_option("--log", arguments.log,
                  "record the mission with seed --seed as an LCM log (first rule)");
   app.add_option("--robot", arguments.robot, "folder with the robot's configuration files");
+  app.add_option("--set", arguments.overrides,
+                 "PROCESS.KEY=VALUE in the place of what that process's file says; "
+                 "planner.margins.growth=0 drives without inflation by uncertainty")
+      ->expected(1)
+      ->take_all();
   app.add_flag("--live", arguments.live, "tell each second of virtual time");
 }
 
@@ -78,96 +92,73 @@ void printProgress(const Progress& progress) {
   std::cout << std::endl;
 }
 
-/// Runs the missions with one rule on some threads; results in the order of the seeds.
-class Campaigner {
- public:
-  /// `shadows`: judge the same executions. `first`: the rule whose drives are drawn and recorded.
-  Campaigner(const Arguments& arguments, const RobotConfig& robot, std::string rule,
-             std::vector<learner::Rule> shadows, bool first)
-      : arguments_(arguments),
-        robot_(robot),
-        rule_(std::move(rule)),
-        shadows_(std::move(shadows)),
-        first_(first) {
-    if (!arguments.fault_file.empty()) faults_ = readFaultFile(arguments.fault_file);
-  }
-
-  Campaign run() {
-    Campaign campaign;
-    campaign.seed = arguments_.seed;
-    campaign.rule = rule_;
-    campaign.results.resize(static_cast<size_t>(arguments_.missions));
-    const auto started = std::chrono::steady_clock::now();
-    std::vector<std::thread> threads;
-    for (int i = 0; i < arguments_.threads; ++i) threads.emplace_back([&] { work(campaign); });
-    for (std::thread& thread : threads) thread.join();
-    if (error_) std::rethrow_exception(error_);
-    campaign.wall_time =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-    return campaign;
-  }
-
- private:
-  void work(Campaign& campaign) {
-    try {
-      for (int i = next_++; i < arguments_.missions; i = next_++) {
-        MissionRun run = drive(arguments_.seed + static_cast<uint64_t>(i));
-        const std::lock_guard<std::mutex> lock(mutex_);
-        campaign.virtual_time += run.virtual_time;
-        campaign.cpu_time += run.cpu_time;
-        std::cout << lineOf(run.result) << '\n' << crossingsOf(run.result) << std::flush;
-        campaign.results[static_cast<size_t>(i)] = std::move(run.result);
-      }
-    } catch (...) {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      error_ = std::current_exception();
-      next_ = arguments_.missions;
-    }
-  }
-
-  MissionRun drive(uint64_t seed) {
-    MissionOptions options;
-    options.rule = rule_;
-    options.shadows = shadows_;
-    options.shortest_line = arguments_.length;
-    options.faults = faults_;
-    if (arguments_.live) options.progress = printProgress;
-    std::optional<LogWriter> log;
-    if (first_ && !arguments_.log.empty() && seed == arguments_.seed)
-      options.log = &log.emplace(arguments_.log);
-    MissionRun run = runMission(robot_, seed, options);
-    if (log) log->flush();
-    if (first_ && arguments_.show == seed) {
-      picture::drawDrive(arguments_.picture, driveSceneOf(run.result, run.scene));
-      const std::lock_guard<std::mutex> lock(mutex_);
-      std::cout << "picture: " << arguments_.picture << std::endl;
-    }
-    return run;
-  }
-
-  const Arguments& arguments_;
-  const RobotConfig& robot_;
-  std::string rule_;
-  std::vector<learner::Rule> shadows_;
-  bool first_;
-  FaultPlan faults_;
-  std::atomic<int> next_{0};
-  std::mutex mutex_;
-  std::exception_ptr error_;
-};
-
 bool showsOneOfThem(const Arguments& arguments) {
   return !arguments.show ||
          (*arguments.show >= arguments.seed &&
           *arguments.show - arguments.seed < static_cast<uint64_t>(arguments.missions));
 }
 
-void driveOneRule(const Arguments& arguments, const RobotConfig& robot) {
+CampaignOrder orderOf(const Arguments& arguments, const std::string& name) {
+  CampaignOrder order;
+  order.missions = arguments.missions;
+  order.seed = arguments.seed;
+  order.threads = arguments.threads;
+  order.name = name;
+  order.overrides = arguments.overrides;
+  order.options.shortest_line = arguments.length;
+  if (!arguments.fault_file.empty()) order.options.faults = readFaultFile(arguments.fault_file);
+  if (arguments.live) order.options.progress = printProgress;
+  order.show = arguments.show;
+  order.picture = arguments.picture;
+  order.log = arguments.log;
+  return order;
+}
+
+/// The same without picture and log: those are of the first campaign.
+CampaignOrder nextOrderOf(const Arguments& arguments, const std::string& name) {
+  CampaignOrder order = orderOf(arguments, name);
+  order.show.reset();
+  order.log.clear();
+  return order;
+}
+
+Campaign driveLearning(const Arguments& arguments, const RobotConfig& robot) {
   const std::string rule =
       arguments.rule.empty() ? learner::ruleName(robot.learner.rule.rule) : arguments.rule;
-  const Campaign campaign = Campaigner(arguments, robot, rule, {}, true).run();
+  CampaignOrder order = orderOf(arguments, rule);
+  order.options.rule = rule;
+  return runCampaign(robot, order);
+}
+
+void report(const Arguments& arguments, const Campaign& campaign) {
   printSummary(std::cout, campaign);
   if (!arguments.json.empty()) writeJson(arguments.json, campaign);
+}
+
+TruePatterns truePatternsOf(const RobotConfig& robot) {
+  return TruePatterns(robot.learner.shipped, sim::VehicleParameters{});
+}
+
+void driveOmniscient(const Arguments& arguments, const RobotConfig& robot) {
+  const TruePatterns true_patterns = truePatternsOf(robot);
+  CampaignOrder order = orderOf(arguments, "omniscient");
+  order.options.true_patterns = &true_patterns;
+  report(arguments, runCampaign(robot, order));
+}
+
+void compareOmniscient(const Arguments& arguments, const RobotConfig& robot) {
+  OmniscientComparison comparison;
+  std::cout << "learning" << std::endl;
+  comparison.learning = driveLearning(arguments, robot);
+  printSummary(std::cout, comparison.learning);
+  std::cout << "omniscient" << std::endl;
+  const TruePatterns true_patterns = truePatternsOf(robot);
+  CampaignOrder order = nextOrderOf(arguments, "omniscient");
+  order.options.true_patterns = &true_patterns;
+  comparison.omniscient = runCampaign(robot, order);
+  printSummary(std::cout, comparison.omniscient);
+  printOmniscient(std::cout, comparison);
+  if (!arguments.json.empty()) writeOmniscient(arguments.json, comparison);
 }
 
 void compareRules(const Arguments& arguments, const RobotConfig& robot) {
@@ -175,15 +166,26 @@ void compareRules(const Arguments& arguments, const RobotConfig& robot) {
   for (const std::string& name : arguments.rules) rules.push_back(*learner::ruleNamed(name));
   Comparison comparison;
   for (size_t i = 0; i < rules.size(); ++i) {
-    const bool first = i == 0;
-    if (!first && arguments.only_first_drives) break;
-    std::cout << "rule " << arguments.rules[i] << std::endl;
-    comparison.campaigns.push_back(Campaigner(arguments, robot, arguments.rules[i],
-                                              first ? rules : std::vector<learner::Rule>{}, first)
-                                       .run());
+    const std::string& rule = arguments.rules[i];
+    if (i > 0 && arguments.only_first_drives) break;
+    std::cout << "rule " << rule << std::endl;
+    CampaignOrder order = i == 0 ? orderOf(arguments, rule) : nextOrderOf(arguments, rule);
+    order.options.rule = rule;
+    if (i == 0) order.options.shadows = rules;
+    comparison.campaigns.push_back(runCampaign(robot, order));
   }
   printComparison(std::cout, comparison);
   if (!arguments.json.empty()) writeComparison(arguments.json, comparison);
+}
+
+void drive(const Arguments& arguments) {
+  if (!showsOneOfThem(arguments))
+    throw std::invalid_argument("--show: the seed is not among those of --seed and --missions");
+  const RobotConfig robot = readRobot(arguments.robot, arguments.overrides);
+  if (!arguments.rules.empty()) return compareRules(arguments, robot);
+  if (arguments.compare_omniscient) return compareOmniscient(arguments, robot);
+  if (arguments.omniscient) return driveOmniscient(arguments, robot);
+  report(arguments, driveLearning(arguments, robot));
 }
 
 }  // namespace
@@ -193,23 +195,12 @@ int main(int argc, char** argv) {
                "tread-missions"};
   Arguments arguments;
   define(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : 2;
-  }
+  if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   try {
     // --show alone means: that mission.
     if (arguments.show && app.count("--seed") == 0 && arguments.missions == 1)
       arguments.seed = *arguments.show;
-    if (!showsOneOfThem(arguments))
-      throw std::invalid_argument("--show: the seed is not among those of --seed and --missions");
-    const RobotConfig robot = readRobot(arguments.robot);
-    if (arguments.rules.empty())
-      driveOneRule(arguments, robot);
-    else
-      compareRules(arguments, robot);
+    drive(arguments);
   } catch (const std::exception& error) {
     std::cerr << "tread-missions: " << error.what() << std::endl;
     return 1;

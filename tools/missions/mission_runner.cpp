@@ -43,7 +43,7 @@ MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOpti
   MissionRun run;
   run.scene.world = makeMissionWorld(seed, options.shortest_line);
   RobotSystem system(robot, run.scene.world.description, run.scene.world.T_map_start, seed,
-                     options.rule, options.faults);
+                     options.rule, options.faults, options.true_patterns);
   shadow::ShadowLearners shadows(system.learnerConfig(), options.shadows, system.bus().now());
   if (options.log != nullptr || !options.shadows.empty())
     system.bus().setTap([&](int64_t utime, const char* channel, const uint8_t* bytes, size_t size) {

@@ -27,6 +27,7 @@ struct MissionOptions {
   std::vector<learner::Rule> shadows;    ///< judge the same executions beside the drive
   double shortest_line = kShortestLine;  ///< [m] see makeMissionWorld()
   FaultPlan faults;
+  const TruePatterns* true_patterns = nullptr;    ///< if given: an omniscient robot drives
   LogWriter* log = nullptr;                       ///< every message, if given
   std::function<void(const Progress&)> progress;  ///< may be empty
 };

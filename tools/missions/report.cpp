@@ -217,6 +217,7 @@ nlohmann::ordered_json campaignJson(const Campaign& campaign) {
   json["cpu_s"] = campaign.cpu_time;
   json["seed"] = campaign.seed;
   json["rule"] = campaign.rule;
+  json["set"] = campaign.overrides;
   json["errors_1_to_3"] = errorsJson(campaign, 1, 3);
   json["errors_5_to_15"] = errorsJson(campaign, 5, 15);
   json["runs"] = nlohmann::ordered_json::array();

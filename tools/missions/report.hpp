@@ -14,9 +14,10 @@ namespace tread::missions {
 struct Campaign {
   uint64_t seed = 0;
   std::string rule;
-  double virtual_time = 0.0;  ///< [s] sum over the missions
-  double wall_time = 0.0;     ///< [s] from the first start to the last end
-  double cpu_time = 0.0;      ///< [s] sum over the missions of what each took of a core
+  std::vector<std::string> overrides;  ///< of the robot's configuration, as they were given
+  double virtual_time = 0.0;           ///< [s] sum over the missions
+  double wall_time = 0.0;              ///< [s] from the first start to the last end
+  double cpu_time = 0.0;               ///< [s] sum over the missions of what each took of a core
   std::vector<MissionResult> results;
 };
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/missions/robot_system.hpp"
 
+#include <algorithm>
 #include <tuple>
 #include <utility>
 
@@ -35,11 +36,39 @@ FaultPlan onTheRobot(const FaultPlan& faults) {
   return spelled;
 }
 
-template <class Config, class Read>
-Config readFile(const std::string& path, Read read) {
-  ConfigReader reader = ConfigReader::fromFile(path);
-  return read(reader);
-}
+/// The files of a robot's folder, with what was said to replace in them.
+class RobotFiles {
+ public:
+  RobotFiles(std::string folder, const std::vector<std::string>& overrides)
+      : folder_(std::move(folder)) {
+    for (const std::string& words : overrides) {
+      const size_t dot = words.find('.');
+      const std::string process = words.substr(0, dot);
+      const auto& nodes = robotNodes();
+      if (dot == std::string::npos || std::find(nodes.begin(), nodes.end(), process) == nodes.end())
+        throw ConfigError("--set " + words + ": write PROCESS.KEY=VALUE, PROCESS one of " +
+                          listOf(nodes));
+      overrides_[process].push_back(words.substr(dot + 1));
+    }
+  }
+
+  template <class Read>
+  auto read(const std::string& process, Read take) {
+    ConfigReader reader =
+        ConfigReader::fromFile(folder_ + "/" + process + ".yaml", overrides_[process]);
+    return take(reader);
+  }
+
+ private:
+  static std::string listOf(const std::vector<std::string>& names) {
+    std::string list;
+    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+    return list;
+  }
+
+  std::string folder_;
+  std::map<std::string, std::vector<std::string>> overrides_;
+};
 
 }  // namespace
 
@@ -76,27 +105,24 @@ const std::vector<std::string>& robotNodes() {
   return kNames;
 }
 
-RobotConfig readRobot(const std::string& folder) {
-  RobotConfig config(
-      readFile<learner::LearnerNodeConfig>(folder + "/learner.yaml", learner::readLearnerConfig));
-  config.ins_driver =
-      readFile<ins::InsDriverConfig>(folder + "/ins_driver.yaml", ins::readInsDriverConfig);
-  config.lidar_driver = readFile<lidar::LidarDriverConfig>(folder + "/lidar_driver.yaml",
-                                                           lidar::readLidarDriverConfig);
-  config.mapping =
-      readFile<mapping::MappingConfig>(folder + "/mapping.yaml", mapping::readMappingConfig);
-  config.planner =
-      readFile<planner::PlannerConfig>(folder + "/planner.yaml", planner::readPlannerConfig);
-  config.motor_bridge = readFile<motor::MotorBridgeConfig>(folder + "/motor_bridge.yaml",
-                                                           motor::readMotorBridgeConfig);
+RobotConfig readRobot(const std::string& folder, const std::vector<std::string>& overrides) {
+  RobotFiles files(folder, overrides);
+  RobotConfig config(files.read("learner", learner::readLearnerConfig));
+  config.ins_driver = files.read("ins_driver", ins::readInsDriverConfig);
+  config.lidar_driver = files.read("lidar_driver", lidar::readLidarDriverConfig);
+  config.mapping = files.read("mapping", mapping::readMappingConfig);
+  config.planner = files.read("planner", planner::readPlannerConfig);
+  config.motor_bridge = files.read("motor_bridge", motor::readMotorBridgeConfig);
   config.timing = usualTiming();
   return config;
 }
 
 RobotSystem::RobotSystem(const RobotConfig& config, const sim::WorldDescription& world,
                          const Pose2& T_map_start, uint64_t seed, const std::string& rule,
-                         const FaultPlan& faults)
-    : config_(config), bus_(std::make_unique<VirtualBus>(seed, onTheRobot(faults))) {
+                         const FaultPlan& faults, const TruePatterns* true_patterns)
+    : config_(config),
+      true_patterns_(true_patterns),
+      bus_(std::make_unique<VirtualBus>(seed, onTheRobot(faults))) {
   if (!rule.empty()) config_.learner.rule.rule = *learner::ruleNamed(rule);
   std::tie(ins_line_, ins_device_) = makePipe();
   std::tie(motor_line_, motor_device_) = makePipe();
@@ -131,7 +157,9 @@ void RobotSystem::addRobotNodes() {
       [this](Bus& bus) { return std::make_unique<mapping::MappingNode>(config_.mapping, bus); });
   add("planner",
       [this](Bus& bus) { return std::make_unique<planner::PlannerNode>(config_.planner, bus); });
-  add("learner", [this](Bus& bus) {
+  add("learner", [this](Bus& bus) -> std::unique_ptr<Node> {
+    if (true_patterns_ != nullptr)
+      return std::make_unique<TruePatternsNode>(*true_patterns_, devices_->robot(), bus);
     return std::make_unique<learner::LearnerNode>(config_.learner, bus, learner_store_);
   });
   add("motor_bridge", [this](Bus& bus) {

@@ -17,6 +17,7 @@
 #include "modules/motor_bridge/motor_bridge_config.hpp"
 #include "modules/planner/planner_node.hpp"
 #include "modules/simulator/emulators/simulated_devices.hpp"
+#include "tools/missions/true_patterns.hpp"
 
 namespace tread::missions {
 
@@ -39,7 +40,9 @@ const std::vector<std::string>& robotNodes();
 
 /// Reads a robot's folder (config/robots/teodor: one file a process); throws ConfigError with one
 /// clear line.
-RobotConfig readRobot(const std::string& folder);
+/** An override is "process.key=value" or "process.section.key=value": it replaces what the file of
+ * that process says. */
+RobotConfig readRobot(const std::string& folder, const std::vector<std::string>& overrides = {});
 
 /// The whole robot and its world on a virtual bus: real nodes, real device bytes, real messages.
 /** Device lines are in-memory pipes between drivers and emulators; the laser's scans enter behind
@@ -48,10 +51,11 @@ RobotConfig readRobot(const std::string& folder);
  * robot: whoever watches from outside hears all as it was said. */
 class RobotSystem {
  public:
-  /// `rule`: of learning; empty = as the configuration says.
+  /// `rule`: of learning; empty = as the configuration says. `true_patterns`: if given, they are
+  /// told by their node in the learner's place; they must outlive the system.
   RobotSystem(const RobotConfig& config, const sim::WorldDescription& world,
               const Pose2& T_map_start, uint64_t seed, const std::string& rule,
-              const FaultPlan& faults);
+              const FaultPlan& faults, const TruePatterns* true_patterns = nullptr);
   ~RobotSystem();
 
   VirtualBus& bus() { return *bus_; }
@@ -71,6 +75,7 @@ class RobotSystem {
   void add(const std::string& name, VirtualBus::Factory factory);
 
   RobotConfig config_;
+  const TruePatterns* true_patterns_;
   std::unique_ptr<Link> ins_line_, ins_device_;      ///< both ends of the INS line
   std::unique_ptr<Link> motor_line_, motor_device_;  ///< both ends of the motor controller's line
   std::unique_ptr<sim::SimulatedDevices> devices_;

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/missions/true_patterns.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "modules/simulator/core/motion_noise.hpp"
+#include "modules/simulator/core/vehicle.hpp"
+
+namespace tread::missions {
+namespace {
+
+constexpr double kStep = 1e-3;      // of the simulator [s]
+constexpr int kStepsPerNoise = 10;  // it disturbs anew every 10 ms
+constexpr double kEntry = 3.0;      // [s] until a motion is steady
+/// From the bridge's stamp until the power changes: half a step of the bridge, the line, the
+/// controller.
+constexpr double kCommandDelay = 0.010;  // [s]
+constexpr int kDisturbed = 60;           // executions that a covariance is taken of
+
+/// Velocities of the body through an execution, step by step, without chance.
+std::vector<Twist2> velocitiesOf(const MotionPattern& pattern, const TrackCommand& entry,
+                                 double period, const sim::VehicleParameters& parameters,
+                                 const sim::SurfaceParameters& surface) {
+  sim::TrackedVehicle vehicle(parameters);
+  const sim::Ground ground = sim::levelGround(surface);
+  const auto run = [&](const TrackCommand& power, double seconds, std::vector<Twist2>* kept) {
+    for (int i = 0; i < static_cast<int>(std::lround(seconds / kStep)); ++i) {
+      vehicle.step({power.left, power.right}, ground, kStep);
+      if (kept != nullptr) kept->push_back(vehicle.velocity());
+    }
+  };
+  std::vector<Twist2> velocities;
+  run(entry, kEntry, nullptr);
+  run(entry, kCommandDelay, &velocities);
+  for (const TrackCommand& command : pattern.commands) run(command, period, &velocities);
+  velocities.resize(velocities.size() - static_cast<size_t>(std::lround(kCommandDelay / kStep)));
+  return velocities;
+}
+
+Pose2 endOf(const std::vector<Twist2>& velocities, const sim::SurfaceParameters& surface,
+            sim::MotionNoise& noise) {
+  Pose2 pose;
+  int steps = 0;
+  for (const Twist2& v_body : velocities) {
+    if (steps++ % kStepsPerNoise == 0) noise.step();
+    pose = pose * integrate(noise.disturb(v_body, surface.spread), kStep);
+  }
+  return pose;
+}
+
+/// Of the ends of disturbed executions, in the frame of the start.
+PoseCovariance covarianceOf(const std::vector<Twist2>& velocities,
+                            const sim::SurfaceParameters& surface) {
+  sim::MotionNoise noise(1, kStep * kStepsPerNoise);
+  std::vector<Pose2> ends;
+  Pose2 mean;
+  for (int i = 0; i < kDisturbed; ++i) {
+    ends.push_back(endOf(velocities, surface, noise));
+    mean.x += ends.back().x / kDisturbed;
+    mean.y += ends.back().y / kDisturbed;
+    mean.yaw += ends.back().yaw / kDisturbed;
+  }
+  PoseCovariance covariance{};
+  for (const Pose2& end : ends) {
+    const double x = end.x - mean.x, y = end.y - mean.y, yaw = end.yaw - mean.yaw;
+    const double products[] = {x * x, x * y, x * yaw, y * y, y * yaw, yaw * yaw};
+    for (size_t i = 0; i < covariance.size(); ++i) covariance[i] += products[i] / (kDisturbed - 1);
+  }
+  return covariance;
+}
+
+void makeTrue(MotionPattern& pattern, const TrackCommand& entry, double period,
+              const sim::VehicleParameters& vehicle, const sim::SurfaceParameters& surface) {
+  const std::vector<Twist2> velocities = velocitiesOf(pattern, entry, period, vehicle, surface);
+  const size_t per_sample = velocities.size() / pattern.commands.size();
+  Pose2 pose;
+  for (size_t i = 0; i < velocities.size(); ++i) {
+    pose = pose * integrate(velocities[i], kStep);
+    if ((i + 1) % per_sample == 0) pattern.trajectory[i / per_sample] = pose;
+  }
+  pattern.end_covariance = covarianceOf(velocities, surface);
+}
+
+PatternSetContent trueSet(const PatternSet& shipped, const sim::VehicleParameters& vehicle,
+                          const sim::SurfaceParameters& surface) {
+  PatternSetContent content = shipped.content();
+  for (MotionClass& motion : content.classes) {
+    MotionPattern held;
+    held.commands.assign(1, motion.steady);
+    motion.twist =
+        velocitiesOf(held, motion.steady, shipped.periodSeconds(), vehicle, surface).back();
+  }
+  for (MotionPattern& pattern : content.patterns)
+    makeTrue(pattern, shipped.classNamed(pattern.entry_class).steady, shipped.periodSeconds(),
+             vehicle, surface);
+  return content;
+}
+
+}  // namespace
+
+TruePatterns::TruePatterns(const PatternSet& shipped, const sim::VehicleParameters& vehicle) {
+  for (const sim::SurfaceParameters& surface : sim::builtInSurfaces())
+    by_surface_.emplace(surface.name, trueSet(shipped, vehicle, surface));
+}
+
+PatternSet TruePatterns::on(const std::string& surface, int64_t version) const {
+  PatternSetContent content = by_surface_.at(surface);
+  content.parent_version = version - 1;
+  content.version = version;
+  std::string why;
+  std::optional<PatternSet> set = PatternSet::make(std::move(content), why);
+  if (!set) throw std::logic_error("true patterns on " + surface + ": " + why);
+  return *set;
+}
+
+void TruePatternsNode::step(int64_t utime) {
+  const std::string& present = robot_.truth().surface;
+  const bool changed = present != surface_;
+  if (changed) ++version_;
+  surface_ = present;
+  if (changed || (utime >= next_repeat_ && outbox_.emptyOfSets())) {
+    outbox_.putSet(patterns_.on(surface_, version_));
+    next_repeat_ = utime + kRepeat;
+  }
+  outbox_.step(utime);
+}
+
+}  // namespace tread::missions
