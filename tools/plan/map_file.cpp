@@ -111,4 +111,18 @@ Grid gridForPoint(const MapFile& map) {
   return gridFrom(map, std::min(map.thresholds.obstacle, map.thresholds.inscribed));
 }
 
+Grid grownBy(const Grid& grid, double radius) {
+  const ClearanceField clearance(grid, true);
+  // The field is exact at a cell's centre; its corners may have that much less room.
+  const double needed = radius + grid.cellSize() * std::sqrt(0.5);
+  Grid grown = grid;
+  for (int y = grid.lower().y; y < grid.lower().y + grid.height(); ++y)
+    for (int x = grid.lower().x; x < grid.lower().x + grid.width(); ++x) {
+      const Eigen::Vector2d centre = grid.centre({x, y});
+      if (isFree(grid.at({x, y})) && clearance.quick(centre.x(), centre.y()) < needed)
+        grown.set({x, y}, kObstacle);
+    }
+  return grown;
+}
+
 }  // namespace tread::plan

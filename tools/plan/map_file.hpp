@@ -52,4 +52,8 @@ Grid gridForFootprint(const MapFile& map);
 /// too.
 Grid gridForPoint(const MapFile& map);
 
+/// A grid on which a point is as free as a disc of this radius [m] is on the other, or less: what
+/// is too near to anything blocked is an obstacle, unknown and all outside the grid included.
+Grid grownBy(const Grid& grid, double radius);
+
 }  // namespace tread::plan

@@ -35,14 +35,16 @@ struct PlanAnswer {
   double time = 0.0;                  ///< [s] to drive it
   double length = 0.0;                ///< [m]
   std::vector<std::string> patterns;  ///< names, or ids where they have none
-  std::vector<Pose2> poses;           ///< T_map_body, start first; the best so far if not solved
+  std::vector<Pose2> poses;           ///< T_map_body all along, start first, yaw -pi..pi; the best
+                                      ///< so far if it is not solved
+  std::vector<size_t> ends;           ///< for each pattern, which of the poses is its end
   std::optional<ClosestApproach> closest;
   int64_t expansions = 0;
   std::optional<double> first_solution_ms;  ///< from the query to the first plan to the goal
   double total_ms = 0.0;                    ///< from the query to the end, all work for it included
-  double clearance_ms = 0.0;                ///< of that for the clearance field
+  double clearance_ms = 0.0;                ///< of that for what all queries on a map share
   double heuristic_ms = 0.0;                ///< of that for the way to go
-  double memory_mb = 0.0;                   ///< of search, field and way to go
+  double memory_mb = 0.0;                   ///< the most that the program has needed so far
 };
 
 }  // namespace tread::plan

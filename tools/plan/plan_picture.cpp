@@ -111,6 +111,7 @@ void drawPlan(const std::string& path, const PlanScene& scene) {
       std::max(extent.size().x() / box.width, extent.size().y() / box.height);
   picture::Picture sheet(static_cast<int>(box.width + 2.0 * kMargin),
                          static_cast<int>(box.height + 2.0 * kMargin), scene.title);
+  sheet.text(20.0, 50.0, scene.result);
   Panel panel(sheet, box,
               {"", "x [m]", "y [m]", extent.low.x(), extent.high.x(), extent.low.y(),
                extent.high.y(), true});

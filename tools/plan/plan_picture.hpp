@@ -12,6 +12,7 @@ namespace tread::plan {
 /// All that a picture of a plan shows, in the map's own frame but for the grid.
 struct PlanScene {
   std::string title;
+  std::string result;  ///< a line below the title
   Grid grid;
   Pose2 T_map_grid;
   std::vector<std::vector<Eigen::Vector2d>> tree;  ///< points along each branch of the search

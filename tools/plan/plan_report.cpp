@@ -93,16 +93,15 @@ std::string planText(const PlanAnswer& answer) {
   // Costs of a lattice are whole numbers, others need no more than three decimals.
   return std::to_string(answer.patterns.size()) + " patterns, " + fixed(answer.time, 1) + " s, " +
          fixed(answer.length, 2) + " m, cost " +
-         formatNumber(std::round(answer.cost * 1000.0) / 1000.0) + "\n";
+         formatNumber(std::round(answer.cost * 1000.0) / 1000.0);
 }
 
 std::string failureText(const PlanAnswer& answer) {
-  std::string text = answer.status == PlanStatus::kUnreachable ? "unreachable" : "none in time";
-  text += ": " + answer.reason + "\n";
+  std::string text;
   if (answer.closest)
     text += "closest approach: " + fixed(answer.closest->distance, 2) + " m from the goal, at " +
             fixed(answer.closest->p_map.x(), 2) + " " + fixed(answer.closest->p_map.y(), 2) + "\n";
-  if (!answer.poses.empty()) text += "best so far: " + planText(answer);
+  if (!answer.poses.empty()) text += "best so far: " + planText(answer) + "\n";
   return text;
 }
 
@@ -130,6 +129,12 @@ double nearestRank(std::vector<double> values, double share) {
   return values[static_cast<size_t>(std::max(rank, 1.0)) - 1];
 }
 
+void addPreparation(PlanAnswer& answer, double preparation_ms) {
+  answer.clearance_ms += preparation_ms;
+  answer.total_ms += preparation_ms;
+  if (answer.first_solution_ms) *answer.first_solution_ms += preparation_ms;
+}
+
 Json answerJson(const PlanAnswer& answer) {
   Json json;
   json["solved"] = answer.status == PlanStatus::kSolved;
@@ -141,6 +146,7 @@ Json answerJson(const PlanAnswer& answer) {
   json["patterns"] = answer.patterns;
   json["poses"] = Json::array();
   for (const Pose2& pose : answer.poses) json["poses"].push_back(poseJson(pose));
+  json["ends"] = answer.ends;
   json["closest_approach"] = closestJson(answer);
   json["expansions"] = answer.expansions;
   json["first_solution_ms"] = firstJson(answer);
@@ -151,7 +157,8 @@ Json answerJson(const PlanAnswer& answer) {
   return json;
 }
 
-Json answersJson(const std::vector<PlanQuery>& queries, const std::vector<PlanAnswer>& answers) {
+Json answersJson(const std::vector<PlanQuery>& queries, const std::vector<PlanAnswer>& answers,
+                 double preparation_ms) {
   const Totals totals = totalsOf(answers);
   Json json;
   json["queries"] = answers.size();
@@ -160,6 +167,7 @@ Json answersJson(const std::vector<PlanQuery>& queries, const std::vector<PlanAn
   json["none_in_time"] = totals.none_in_time;
   json["first_ms"] = spreadJson(totals.first_ms);
   json["total_ms"] = spreadJson(totals.total_ms);
+  json["preparation_ms"] = preparation_ms;
   json["length_m"] = {{"mean", totals.mean_length}};
   json["expansions_per_s"] = totals.expansions_per_s;
   json["answers"] = Json::array();
@@ -184,16 +192,23 @@ void writeJson(const std::string& path, const Json& json) {
   recordings::writeText(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-std::string answerText(const PlanAnswer& answer) {
-  const bool solved = answer.status == PlanStatus::kSolved;
-  return (solved ? "solved: " + planText(answer) : failureText(answer)) + effortText(answer);
+std::string headline(const PlanAnswer& answer) {
+  if (answer.status == PlanStatus::kSolved) return "solved: " + planText(answer);
+  const bool never = answer.status == PlanStatus::kUnreachable;
+  return std::string(never ? "unreachable: " : "none in time: ") + answer.reason;
 }
 
-std::string answersText(const std::vector<PlanAnswer>& answers) {
+std::string answerText(const PlanAnswer& answer) {
+  const bool solved = answer.status == PlanStatus::kSolved;
+  return headline(answer) + "\n" + (solved ? "" : failureText(answer)) + effortText(answer);
+}
+
+std::string answersText(const std::vector<PlanAnswer>& answers, double preparation_ms) {
   const Totals totals = totalsOf(answers);
   std::string text = std::to_string(answers.size()) + " queries: " + std::to_string(totals.solved) +
                      " solved, " + std::to_string(totals.unreachable) + " unreachable, " +
                      std::to_string(totals.none_in_time) + " none in time\n";
+  text += "map and patterns prepared in " + fixed(preparation_ms, 2) + " ms\n";
   text += spreadText("first plan after", totals.first_ms);
   text += spreadText("ended after", totals.total_ms);
   if (std::isfinite(totals.mean_length))

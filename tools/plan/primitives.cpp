@@ -88,9 +88,10 @@ std::vector<std::vector<LatticeAction>> latticeActions(const PrimitiveFile& file
     const auto start = static_cast<size_t>(primitive.start_bin);
     const double turn =
         turnBetween(file.headings[start], file.headings[static_cast<size_t>(primitive.end_bin)]);
-    const double time = std::ceil(1000.0 * seconds(lengthOf(primitive.poses), turn, pace));
+    const double duration = seconds(lengthOf(primitive.poses), turn, pace);
+    const double time = std::ceil(1000.0 * duration);
     actions[start].push_back({primitive.id, primitive.dx, primitive.dy, primitive.end_bin,
-                              static_cast<int64_t>(time) * primitive.cost_multiplier,
+                              static_cast<int64_t>(time) * primitive.cost_multiplier, duration,
                               passedCells(primitive, file.resolution)});
   }
   return actions;

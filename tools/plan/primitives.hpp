@@ -34,8 +34,9 @@ struct LatticeAction {
   int dx = 0;  ///< [cells]
   int dy = 0;
   int end_bin = 0;
-  int64_t cost = 0;  ///< whole ms of the slower of driving and turning, rounded up, times the
-                     ///< multiplier; before the map's cost counts
+  int64_t cost = 0;       ///< whole ms of the slower of driving and turning, rounded up, times the
+                          ///< multiplier; before the map's cost counts
+  double duration = 0.0;  ///< [s] of the slower of the two
   std::vector<CellIndex> cells;  ///< that its poses pass one after the other, from the start's cell
 };
 

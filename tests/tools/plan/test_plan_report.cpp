@@ -24,6 +24,7 @@ PlanAnswer solvedAnswer() {
   answer.length = 1.5;
   answer.patterns = {"ahead", "left"};
   answer.poses = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.5, 0.25, 0.5}};
+  answer.ends = {1, 2};
   answer.expansions = 1200;
   answer.first_solution_ms = 1.25;
   answer.total_ms = 5.0;
@@ -54,6 +55,7 @@ TEST_CASE("the answer to a query has all its keys, and null for what there is no
   CHECK(solved["length_m"] == 1.5);
   CHECK(solved["patterns"] == Json({"ahead", "left"}));
   CHECK(solved["poses"] == Json::parse("[[0.0,0.0,0.0],[1.0,0.0,0.0],[1.5,0.25,0.5]]"));
+  CHECK(solved["ends"] == Json({1, 2}));
   CHECK(solved["expansions"] == 1200);
   CHECK(solved["first_solution_ms"] == 1.25);
   CHECK(solved["total_ms"] == 5.0);
@@ -77,11 +79,12 @@ TEST_CASE("many answers are counted, with quantiles of nearest rank") {
   }
   answers.push_back(unreachableAnswer());
   answers.push_back(PlanAnswer{});
-  const Json json = answersJson(std::vector<PlanQuery>(answers.size()), answers);
+  const Json json = answersJson(std::vector<PlanQuery>(answers.size()), answers, 4.5);
   CHECK(json["queries"] == 102);
   CHECK(json["solved"] == 100);
   CHECK(json["unreachable"] == 1);
   CHECK(json["none_in_time"] == 1);
+  CHECK(json["preparation_ms"] == 4.5);
   CHECK(json["first_ms"] == Json::parse(R"({"p50":50.0,"p95":95.0,"p99":99.0,"max":100.0})"));
   CHECK(json["total_ms"]["max"] == 5.0);
   CHECK(json["length_m"]["mean"] == 1.5);
@@ -100,12 +103,12 @@ TEST_CASE("quantiles are values that were measured") {
 }
 
 TEST_CASE("a report of nothing solved has null where there is no number") {
-  const Json json = answersJson({{}}, {PlanAnswer{}});
+  const Json json = answersJson({{}}, {PlanAnswer{}}, 1.0);
   const Json written = Json::parse(json.dump());
   CHECK(written["first_ms"]["p50"].is_null());
   CHECK(written["length_m"]["mean"].is_null());
   CHECK(written["expansions_per_s"].is_null());
-  CHECK_THAT(answersText({PlanAnswer{}}), Contains("first plan after: none"));
+  CHECK_THAT(answersText({PlanAnswer{}}, 1.0), Contains("first plan after: none"));
 }
 
 TEST_CASE("a report is written whole, whatever bytes a name has, or refused in one line") {
@@ -134,7 +137,7 @@ TEST_CASE("people read how a query ended, how good the plan is and what it took"
   partial.first_solution_ms.reset();
   CHECK_THAT(answerText(partial),
              Contains("none in time: the deadline came first\nbest so far: 2"));
-  CHECK_THAT(answersText({solvedAnswer(), unreachableAnswer()}),
+  CHECK_THAT(answersText({solvedAnswer(), unreachableAnswer()}, 1.0),
              Contains("2 queries: 1 solved, 1 unreachable, 0 none in time\n"));
 }
 

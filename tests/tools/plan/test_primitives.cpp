@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "common/config/config_reader.hpp"
+#include "tests/tools/plan/lattice_oracle.hpp"
 #include "tests/tools/plan/plan_samples.hpp"
 #include "tools/plan/primitives.hpp"
 
@@ -27,64 +27,6 @@ std::string replaced(const std::string& from, const std::string& to) {
 PrimitiveFile parse(const std::string& text) {
   return parsePrimitives(text, "a.mprim");
 }
-
-/// Least cost from start to goal over a whole map, as SBPL counts it; -1 if there is no way.
-class Dijkstra {
- public:
-  Dijkstra(const MapFile& map, const PrimitiveFile& file)
-      : map_(map), file_(file), blocked_(gridForPoint(map)) {
-    actions_ = latticeActions(file, {*map.nominal_speed, *map.turn_time});
-  }
-
-  int64_t cost() {
-    const State start = stateOf(*map_.T_map_start);
-    const State goal = stateOf(*map_.T_map_goal);
-    std::set<std::pair<int64_t, State>> open{{0, start}};
-    std::map<State, int64_t> best{{start, 0}};
-    while (!open.empty()) {
-      const auto [cost, state] = *open.begin();
-      open.erase(open.begin());
-      if (state == goal) return cost;
-      if (cost > best[state]) continue;
-      for (const LatticeAction& action : actions_[static_cast<size_t>(std::get<2>(state))]) {
-        const auto [x, y, bin] = state;
-        const int64_t step = costOf({x, y}, action);
-        const State next{x + action.dx, y + action.dy, action.end_bin};
-        const auto known = best.find(next);
-        if (step < 0 || (known != best.end() && known->second <= cost + step)) continue;
-        best[next] = cost + step;
-        open.insert({cost + step, next});
-      }
-    }
-    return -1;
-  }
-
- private:
-  using State = std::tuple<int, int, int>;
-
-  State stateOf(const Pose2& pose) const {
-    const CellIndex cell = map_.grid.indexOf(pose.position());
-    return {cell.x, cell.y, nearestBin(file_.headings, pose.yaw)};
-  }
-
-  int64_t costOf(CellIndex from, const LatticeAction& action) const {
-    int dearest = 0;
-    std::vector<CellIndex> cells = action.cells;
-    cells.push_back({0, 0});
-    cells.push_back({action.dx, action.dy});
-    for (const CellIndex& offset : cells) {
-      const CellIndex cell{from.x + offset.x, from.y + offset.y};
-      if (blocked_.at(cell) != kFree) return -1;
-      dearest = std::max<int>(dearest, map_.costs[map_.grid.offset(cell)]);
-    }
-    return action.cost * (dearest + 1);
-  }
-
-  const MapFile& map_;
-  const PrimitiveFile& file_;
-  Grid blocked_;
-  std::vector<std::vector<LatticeAction>> actions_;
-};
 
 }  // namespace
 
@@ -244,7 +186,7 @@ TEST_CASE("recorded primitives on a recorded map cost what an exact search found
   const MapFile map = readMap(recorded("sbpl/env1.cfg"));
   const auto cost = [&](const std::string& name) {
     const PrimitiveFile file = readPrimitives(recorded("sbpl/" + name + ".mprim"));
-    return Dijkstra(map, file).cost();
+    return LatticeOracle(map, file).cost();
   };
   CHECK(cost("pr2") == 8348);
   CHECK(cost("all_file") == 527);

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "tools/plan/map_file.hpp"
+#include "tools/plan/primitives.hpp"
+
+namespace tread::plan::samples {
+
+/// Least cost from start to goal over a whole map as SBPL counts it, by Dijkstra; -1 if there is no
+/// way.
+class LatticeOracle {
+ public:
+  LatticeOracle(const MapFile& map, const PrimitiveFile& file)
+      : map_(map), file_(file), blocked_(gridForPoint(map)) {
+    actions_ = latticeActions(file, {*map.nominal_speed, *map.turn_time});
+  }
+
+  int64_t cost() {
+    const State start = stateOf(*map_.T_map_start);
+    const State goal = stateOf(*map_.T_map_goal);
+    std::set<std::pair<int64_t, State>> open{{0, start}};
+    std::map<State, int64_t> best{{start, 0}};
+    while (!open.empty()) {
+      const auto [cost, state] = *open.begin();
+      open.erase(open.begin());
+      if (state == goal) return cost;
+      if (cost > best[state]) continue;
+      for (const LatticeAction& action : actions_[static_cast<size_t>(std::get<2>(state))]) {
+        const auto [x, y, bin] = state;
+        const int64_t step = costOf({x, y}, action);
+        const State next{x + action.dx, y + action.dy, action.end_bin};
+        const auto known = best.find(next);
+        if (step < 0 || (known != best.end() && known->second <= cost + step)) continue;
+        best[next] = cost + step;
+        open.insert({cost + step, next});
+      }
+    }
+    return -1;
+  }
+
+ private:
+  using State = std::tuple<int, int, int>;
+
+  State stateOf(const Pose2& pose) const {
+    const CellIndex cell = map_.grid.indexOf(pose.position());
+    return {cell.x, cell.y, nearestBin(file_.headings, pose.yaw)};
+  }
+
+  int64_t costOf(CellIndex from, const LatticeAction& action) const {
+    int dearest = 0;
+    std::vector<CellIndex> cells = action.cells;
+    cells.push_back({0, 0});
+    cells.push_back({action.dx, action.dy});
+    for (const CellIndex& offset : cells) {
+      const CellIndex cell{from.x + offset.x, from.y + offset.y};
+      if (blocked_.at(cell) != kFree) return -1;
+      dearest = std::max<int>(dearest, map_.costs[map_.grid.offset(cell)]);
+    }
+    return action.cost * (dearest + 1);
+  }
+
+  const MapFile& map_;
+  const PrimitiveFile& file_;
+  Grid blocked_;
+  std::vector<std::vector<LatticeAction>> actions_;
+};
+
+}  // namespace tread::plan::samples

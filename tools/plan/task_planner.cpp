@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/plan/task_planner.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "common/config/scalars.hpp"
+
+namespace tread::plan {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A point still needs an outline: far smaller than a cell.
+constexpr double kPoint = 1e-3;  // [m]
+constexpr size_t kDrawnNodes = 20'000;
+
+/// Takes the time of one query [ms].
+class Watch {
+ public:
+  explicit Watch(std::optional<double> deadline = std::nullopt) : deadline_(deadline) {}
+
+  double now() const {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begin_).count();
+  }
+  bool isLate() {
+    noteSearch();
+    return deadline_ && now() >= *deadline_;
+  }
+  void noteSolution() {
+    noteSearch();
+    if (!first_) first_ = now();
+  }
+  /// When the search asked or told something for the first time: then the way to go is known.
+  std::optional<double> searching() const { return searching_; }
+  /// When the first plan was there.
+  std::optional<double> first() const { return first_; }
+
+ private:
+  void noteSearch() {
+    if (!searching_) searching_ = now();
+  }
+
+  Clock::time_point begin_ = Clock::now();
+  std::optional<double> deadline_;
+  std::optional<double> searching_;
+  std::optional<double> first_;
+};
+
+double peakMegabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+std::vector<planner::Primitive> freePrimitives(const PlanTask& task,
+                                               std::vector<std::string>& names) {
+  std::vector<planner::Primitive> primitives;
+  for (FreePrimitive& free : headingFree(*task.primitives, task.pace)) {
+    planner::Primitive primitive;
+    primitive.id = static_cast<int>(primitives.size());
+    primitive.poses = std::move(free.trajectory);
+    primitive.duration = free.duration;
+    primitive.cost = free.duration * free.cost_factor;
+    primitives.push_back(std::move(primitive));
+    names.push_back(std::to_string(free.id));
+  }
+  return primitives;
+}
+
+/// Where an action ends, in the frame of its start: exactly on the lattice.
+Pose2 endOf(const LatticeAction& action, size_t start_bin, const PrimitiveFile& file) {
+  const Pose2 T_map_end{action.dx * file.resolution, action.dy * file.resolution,
+                        file.headings[static_cast<size_t>(action.end_bin)]};
+  Pose2 end = between({0.0, 0.0, file.headings[start_bin]}, T_map_end);
+  end.yaw = wrapAngle(end.yaw);
+  return end;
+}
+
+std::vector<planner::Primitive> latticePrimitives(const PlanTask& task,
+                                                  std::vector<std::string>& names) {
+  std::vector<planner::Primitive> primitives;
+  const auto actions = latticeActions(*task.primitives, task.pace);
+  for (size_t bin = 0; bin < actions.size(); ++bin) {
+    for (const LatticeAction& action : actions[bin]) {
+      planner::Primitive primitive;
+      primitive.id = static_cast<int>(primitives.size());
+      primitive.poses = {endOf(action, bin, *task.primitives)};
+      primitive.cost = static_cast<double>(action.cost);
+      primitive.duration = action.duration;
+      primitive.start_bin = static_cast<int>(bin);
+      primitive.cells = action.cells;
+      primitive.cells.push_back({action.dx, action.dy});
+      primitives.push_back(std::move(primitive));
+      names.push_back(std::to_string(action.id));
+    }
+  }
+  return primitives;
+}
+
+/// How finely sweeps are checked: a point must not jump over a cell.
+planner::SweepStep sweepStep(const PlanTask& task) {
+  planner::SweepStep step;
+  if (!task.shape.isRectangle()) step.distance = std::min(step.distance, task.grid.cellSize() / 2);
+  return step;
+}
+
+planner::FootprintSize footprintOf(const RobotShape& shape) {
+  const double length = shape.isRectangle() ? shape.length : kPoint;
+  const double width = shape.isRectangle() ? shape.width : kPoint;
+  return {length / 2.0, length / 2.0, width / 2.0};
+}
+
+PlanStatus statusOf(planner::PathEnd end) {
+  if (end == planner::PathEnd::kSolved) return PlanStatus::kSolved;
+  return end == planner::PathEnd::kUnreachable ? PlanStatus::kUnreachable : PlanStatus::kNoneInTime;
+}
+
+}  // namespace
+
+TaskPlanner::TaskPlanner(const PlanTask& task) : task_(task) {
+  const Watch watch;
+  preparePatterns();
+  preparePlanner();
+  preparation_ms_ = watch.now();
+}
+
+void TaskPlanner::preparePatterns() {
+  if (task_.patterns) {
+    patterns_ = std::make_unique<planner::PatternTable>(*task_.patterns, sweepStep(task_),
+                                                        planner::DefaultSigma{});
+    if (const std::string defect = patterns_->defect(); !defect.empty())
+      throw std::runtime_error("--patterns: " + defect);
+    return;
+  }
+  const auto primitives =
+      task_.exact ? latticePrimitives(task_, names_) : freePrimitives(task_, names_);
+  patterns_ = std::make_unique<planner::PatternTable>(primitives, sweepStep(task_));
+}
+
+void TaskPlanner::preparePlanner() {
+  if (task_.exact) {
+    const CostThresholds& thresholds = task_.map.thresholds;
+    costs_.emplace(task_.grid.width(), task_.grid.height(), task_.map.costs,
+                   std::min(thresholds.obstacle, thresholds.inscribed));
+    planner_ = std::make_unique<planner::PathPlanner>(
+        *costs_, task_.grid.cellSize(), static_cast<int>(task_.primitives->headings.size()),
+        *patterns_);
+    return;
+  }
+  planner::PathConfig config;
+  config.footprint = footprintOf(task_.shape);
+  planner_ = std::make_unique<planner::PathPlanner>(task_.grid, *patterns_, config);
+}
+
+PlanAnswer TaskPlanner::answer(const PlanQuery& query) {
+  Watch watch(task_.deadline_ms);
+  planner::PathQuery wanted;
+  wanted.T_map_start = between(task_.map.T_map_grid, query.T_map_start);
+  wanted.T_map_goal = between(task_.map.T_map_grid, query.T_map_goal);
+  wanted.position_tolerance = task_.position_tolerance;
+  wanted.yaw_tolerance = task_.yaw_tolerance;
+  const planner::PathAnswer found = planner_->answer(
+      wanted, [&watch](int) { return watch.isLate(); },
+      [&watch](double, int) { watch.noteSolution(); });
+  PlanAnswer answer;
+  answer.total_ms = watch.now();
+  answer.first_solution_ms = watch.first();
+  if (!task_.exact) answer.heuristic_ms = watch.searching().value_or(0.0);
+  answer.expansions = found.search.expansions;
+  answer.status = statusOf(found.end);
+  answer.reason = found.reason;
+  // A lattice is seen as a whole: what is not found there does not exist.
+  if (task_.exact && found.search.exhausted && answer.status == PlanStatus::kNoneInTime)
+    answer.status = PlanStatus::kUnreachable;
+  tellPlan(wanted.T_map_start, found.search, answer);
+  if (answer.status != PlanStatus::kSolved) answer.closest = closestApproach(found, query, answer);
+  answer.memory_mb = peakMegabytes();
+  return answer;
+}
+
+std::string TaskPlanner::nameOf(int number) const {
+  if (!task_.patterns) return names_[static_cast<size_t>(number)];
+  const MotionPattern* pattern = task_.patterns->find(number);
+  return pattern == nullptr ? std::to_string(number) : pattern->name;
+}
+
+void TaskPlanner::tellPlan(const Pose2& T_grid_start, const planner::SearchResult& result,
+                           PlanAnswer& answer) const {
+  if (result.steps.empty()) return;
+  const auto tell = [&](const Pose2& T_grid_body) {
+    Pose2 pose = task_.map.T_map_grid * T_grid_body;
+    pose.yaw = wrapAngle(pose.yaw);
+    answer.poses.push_back(pose);
+  };
+  Pose2 T_grid_begin = T_grid_start;
+  tell(T_grid_begin);
+  for (const planner::PlanStep& step : result.steps) {
+    const planner::TablePattern& pattern = *patterns_->find(step.pattern_id);
+    for (const planner::SweepPose& at : pattern.sweep) tell(T_grid_begin * at.pose);
+    T_grid_begin = step.T_map_end;
+    answer.ends.push_back(answer.poses.size() - 1);
+    answer.patterns.push_back(nameOf(step.pattern_id));
+    answer.length += pattern.length;
+  }
+  answer.time = result.steps.back().time;
+  answer.cost = result.cost;
+}
+
+ClosestApproach TaskPlanner::closestApproach(const planner::PathAnswer& found,
+                                             const PlanQuery& query,
+                                             const PlanAnswer& answer) const {
+  Eigen::Vector2d p_map = query.T_map_start.position();
+  if (found.closest) {
+    p_map = task_.map.T_map_grid * *found.closest;
+  } else if (!answer.poses.empty()) {
+    p_map = answer.poses.back().position();
+  }
+  return {p_map, (p_map - query.T_map_goal.position()).norm()};
+}
+
+PlanScene TaskPlanner::scene(const PlanQuery& query, const PlanAnswer& answer) const {
+  PlanScene scene;
+  scene.grid = task_.shape.isPoint() ? task_.grid : gridForFootprint(task_.map);
+  scene.T_map_grid = task_.map.T_map_grid;
+  const std::vector<planner::TreeNode> tree = planner_->search().tree(kDrawnNodes);
+  for (const planner::TreeNode& node : tree) {
+    if (node.parent < 0) continue;
+    const Pose2 T_map_begin =
+        task_.map.T_map_grid * tree[static_cast<size_t>(node.parent)].T_map_body;
+    scene.tree.push_back({T_map_begin.position()});
+    for (const planner::SweepPose& at : patterns_->find(node.pattern_id)->sweep)
+      scene.tree.back().push_back(T_map_begin * at.pose.position());
+  }
+  for (const Pose2& pose : answer.poses) scene.path.push_back(pose.position());
+  if (!answer.poses.empty()) scene.stations.push_back(answer.poses.front());
+  for (const size_t end : answer.ends) scene.stations.push_back(answer.poses[end]);
+  if (task_.shape.isRectangle()) scene.outline = rectangle(task_.shape.length, task_.shape.width);
+  scene.radius = task_.shape.radius;
+  scene.T_map_start = query.T_map_start;
+  scene.T_map_goal = query.T_map_goal;
+  return scene;
+}
+
+}  // namespace tread::plan
