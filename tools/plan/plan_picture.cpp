@@ -89,11 +89,24 @@ void drawFootprints(Panel& panel, const PlanScene& scene) {
 }
 
 /// A dot and the way it looks.
-void drawPose(Panel& panel, const Pose2& T_map_body, double length, Colour colour,
-              const std::string& label) {
+void drawPose(Panel& panel, const Pose2& T_map_body, double length, Colour colour) {
   panel.dot(T_map_body.position(), colour, 6.0);
-  panel.line({T_map_body.position(), T_map_body * Vector2d(length, 0.0)},
-             {colour, 3.0, false, label});
+  panel.line({T_map_body.position(), T_map_body * Vector2d(length, 0.0)}, {colour, 3.0, false, ""});
+}
+
+/// Below the map, where it hides nothing.
+void drawLegend(picture::Picture& sheet, const PlanScene& scene, const Box& box) {
+  double x = box.x;
+  const double y = box.y + box.height + 50.0;
+  const auto entry = [&](Colour colour, const std::string& words, double width) {
+    sheet.fill({x, y - 8.0, 14.0, 8.0}, colour);
+    sheet.text(x + 19.0, y, words, 11.0);
+    x += width;
+  };
+  entry(picture::kGreen, "start", 65.0);
+  entry(picture::kRed, "goal", 62.0);
+  if (!scene.path.empty()) entry(picture::kOrange, "plan", 60.0);
+  if (!scene.tree.empty()) entry(picture::kBlue, "search tree", 90.0);
 }
 
 }  // namespace
@@ -117,13 +130,13 @@ void drawPlan(const std::string& path, const PlanScene& scene) {
                extent.high.y(), true});
   drawCells(panel, scene, metres_per_pixel);
   for (const auto& branch : scene.tree)
-    panel.line(branch, {{0.00, 0.45, 0.70, 0.35}, 0.8, false, ""});
+    panel.line(branch, {{0.00, 0.45, 0.70, 0.25}, 0.6, false, ""});
   drawFootprints(panel, scene);
-  panel.line(scene.path, {picture::kOrange, 2.5, false, scene.path.empty() ? "" : "plan"});
-  if (!scene.tree.empty()) panel.legendEntry({picture::kBlue, 1.0, false, "search tree"});
-  drawPose(panel, scene.T_map_start, 14.0 * metres_per_pixel, picture::kGreen, "start");
-  drawPose(panel, scene.T_map_goal, 14.0 * metres_per_pixel, picture::kRed, "goal");
+  panel.line(scene.path, {picture::kOrange, 2.5, false, ""});
+  drawPose(panel, scene.T_map_start, 14.0 * metres_per_pixel, picture::kGreen);
+  drawPose(panel, scene.T_map_goal, 14.0 * metres_per_pixel, picture::kRed);
   panel.finish();
+  drawLegend(sheet, scene, box);
   sheet.save(path);
 }
 

@@ -18,7 +18,7 @@ using Clock = std::chrono::steady_clock;
 
 /// A point still needs an outline: far smaller than a cell.
 constexpr double kPoint = 1e-3;  // [m]
-constexpr size_t kDrawnNodes = 20'000;
+constexpr size_t kDrawnNodes = 60'000;
 
 /// Takes the time of one query [ms].
 class Watch {
