@@ -192,6 +192,40 @@ TEST_CASE("at the deadline the best so far is the answer") {
   CHECK(answer.expansions < 1000);
 }
 
+TEST_CASE("strange maps and queries are answered, never worse") {
+  std::mt19937_64 random(11);
+  const PlanTask office = officeTask();
+  const std::array<double, 7> kNumbers{0.3, 3.0, 4.5, 8.0, -4.0, 1e6, 0.025};
+  const auto number = [&] { return kNumbers[random() % kNumbers.size()]; };
+  std::array<int, 3> ends{};
+  for (int i = 0; i < 120; ++i) {
+    PlanTask task = office;
+    const int side = 1 + static_cast<int>(random() % 100);
+    task.grid = Grid(0.05 * static_cast<double>(1 + random() % 8), {0, 0}, side,
+                     1 + static_cast<int>(random() % 100));
+    const uint64_t kind = random() % 4;  // all unknown, all free, all blocked, mixed
+    for (Cell& cell : task.grid.cells())
+      cell = kind == 0                                      ? kUnknown
+             : kind == 1 || (kind == 3 && random() % 9 > 0) ? kFree
+                                                            : kObstacle;
+    task.map.T_map_grid = {};
+    task.shape = {random() % 3 == 0 ? 30.0 : 0.2, 0.1, 0.0};
+    if (random() % 4 == 0) task.shape = {};
+    task.queries = {{{number(), number(), number()}, {number(), number(), number()}}};
+    task.deadline_ms = 20.0;
+    TaskPlanner planner(task);
+    const PlanAnswer answer = planner.answer(task.queries.front());
+    CAPTURE(i, answer.reason);
+    ++ends[static_cast<size_t>(answer.status)];
+    CHECK(answer.reason.empty() == (answer.status == PlanStatus::kSolved));
+    CHECK(answer.closest.has_value() == (answer.status != PlanStatus::kSolved));
+    CHECK(answer.poses.empty() == answer.patterns.empty());
+    planner.scene(task.queries.front(), answer);
+  }
+  CHECK(ends[0] > 0);
+  CHECK(ends[1] > 50);
+}
+
 TEST_CASE("a round robot never comes nearer to anything than its radius") {
   const Folder folder;
   PlanOptions options;
