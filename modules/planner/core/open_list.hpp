@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <vector>
 
 namespace tread::planner {
 
 /// Nodes waiting to be expanded, in buckets of nearly equal estimate: constant time per node.
-/** Within a bucket the newest comes first, which goes deep. What is taken may be stale: the caller
- * knows by the cost that was put in with it. */
+/** A bucket holds estimates that differ by less than a 2048th, whatever their unit. Within a bucket
+ * the newest comes first, which goes deep. What is taken may be stale: the caller knows by the cost
+ * that was put in with it. */
 class OpenList {
  public:
   struct Entry {
@@ -19,22 +22,19 @@ class OpenList {
     int next;
   };
 
-  /// Empties it; from now on a bucket is `width` of estimate wide.
-  void clear(float width) {
-    std::fill(heads_.begin(), heads_.end(), -1);
+  void clear() {
+    heads_.clear();
     entries_.clear();
     free_ = -1;
-    per_width_ = 1.0F / width;
-    first_ = heads_.size();
+    first_ = 0;
   }
   bool empty() {
     while (first_ < heads_.size() && heads_[first_] < 0) ++first_;
     return first_ >= heads_.size();
   }
+  /// `estimate` is not negative.
   void push(float estimate, int node, float cost) {
-    // Everything beyond the last bucket shares it.
-    const auto bucket =
-        static_cast<size_t>(std::clamp(estimate * per_width_, 0.0F, static_cast<float>(kBuckets)));
+    const size_t bucket = bucketOf(estimate);
     if (bucket >= heads_.size()) heads_.resize(bucket + 1, -1);
     int at = free_;
     if (at >= 0) {
@@ -62,13 +62,25 @@ class OpenList {
   }
 
  private:
-  static constexpr size_t kBuckets = 1U << 16U;
+  /// Bits of a float that tell no buckets apart.
+  static constexpr uint32_t kFineBits = 12;
+  /// Smaller estimates share the first bucket.
+  static constexpr float kLeast = 1e-3F;
+
+  /// The bits of floats that are not negative rise as the floats do.
+  static uint32_t bitsOf(float value) {
+    uint32_t bits = 0;
+    std::memcpy(&bits, &value, sizeof(bits));
+    return bits >> kFineBits;
+  }
+  static size_t bucketOf(float estimate) {
+    return bitsOf(std::max(kLeast, estimate)) - bitsOf(kLeast);
+  }
 
   std::vector<int> heads_;
   std::vector<Entry> entries_;
   int free_ = -1;
   size_t first_ = 0;
-  float per_width_ = 1.0F;
 };
 
 }  // namespace tread::planner

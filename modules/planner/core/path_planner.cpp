@@ -21,7 +21,7 @@ SearchConfig latticeSearch(double cell_size, int bins) {
   config.heading_bins = bins;
   config.bound_weight = 1.0;
   config.turn_weight = 0.0;
-  config.improvements = 1;
+  config.improvements = 0;
   config.most_nodes = 40'000'000;
   return config;
 }
@@ -96,6 +96,13 @@ SearchProblem PathPlanner::problemOf(const PathQuery& query) const {
 }
 
 std::optional<PathAnswer> PathPlanner::refusal(const PathQuery& query) const {
+  if (costs_ == nullptr) return refusalOfAreas(query);
+  if (!isFree(query.T_map_start)) return refused("the start lies on obstacles");
+  if (!isFree(query.T_map_goal)) return refused("the goal lies on obstacles");
+  return std::nullopt;
+}
+
+std::optional<PathAnswer> PathPlanner::refusalOfAreas(const PathQuery& query) const {
   const Eigen::Vector2d p_start = query.T_map_start.position();
   const Eigen::Vector2d p_goal = query.T_map_goal.position();
   if (!surroundings_->grid().contains(surroundings_->grid().indexOf(p_start)))
@@ -126,14 +133,19 @@ CostToGo PathPlanner::wayTo(const SearchProblem& problem) const {
 }
 
 PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop,
-                               std::function<void(double, int)> on_better) {
-  SearchProblem problem = problemOf(query);
-  problem.on_better = std::move(on_better);
-  if (costs_ != nullptr) return answerOnCells(problem, stop);
+                               const PathEvents& events) {
   if (std::optional<PathAnswer> refusal = this->refusal(query)) return *refusal;
-  const CostToGo way = wayTo(problem);
-  problem.surroundings = &*surroundings_;
-  problem.cost_to_go = &way;
+  SearchProblem problem = problemOf(query);
+  CostToGo way;
+  if (costs_ == nullptr) {
+    way = wayTo(problem);
+    problem.surroundings = &*surroundings_;
+    problem.cost_to_go = &way;
+  } else {
+    placeOnLattice(problem);
+  }
+  problem.on_better = events.better_plan;
+  if (events.search_begins) events.search_begins();
   PathAnswer answer;
   answer.search = search_.run(problem, stop);
   judge(answer);
@@ -141,7 +153,7 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
 }
 
 /// Cells and headings are numbers there: start and goal are moved to the middle of theirs.
-PathAnswer PathPlanner::answerOnCells(SearchProblem problem, const StopPredicate& stop) {
+void PathPlanner::placeOnLattice(SearchProblem& problem) const {
   const double bin = 2.0 * kPi / search_.config().heading_bins;
   for (Pose2* pose : {&problem.T_map_start, &problem.goal.T_map_goal}) {
     pose->x = (std::floor(pose->x / cell_size_) + 0.5) * cell_size_;
@@ -151,27 +163,26 @@ PathAnswer PathPlanner::answerOnCells(SearchProblem problem, const StopPredicate
   problem.goal.position_tolerance = 0.25 * cell_size_;
   problem.goal.yaw_tolerance = 0.4 * bin;
   problem.cell_costs = costs_;
-  if (!isFree(problem.T_map_start)) return refused("the start lies on obstacles");
-  if (!isFree(problem.goal.T_map_goal)) return refused("the goal lies on obstacles");
-  PathAnswer answer;
-  answer.search = search_.run(problem, stop);
-  judge(answer);
-  return answer;
 }
 
-void PathPlanner::judge(PathAnswer& answer) {
+void PathPlanner::judge(PathAnswer& answer) const {
   const SearchResult& result = answer.search;
   if (result.end == SearchEnd::kGoal) {
     answer.end = PathEnd::kSolved;
-  } else if (result.exhausted && result.expansions <= 1) {
-    answer.end = PathEnd::kUnreachable;
-    answer.reason = "no pattern can begin at the start: each would leave the map or hit something";
-  } else if (result.exhausted) {
-    answer.reason = "the patterns lead to no other place at this resolution: all " +
-                    std::to_string(result.expansions) + " that they reach were looked at";
-  } else {
-    answer.reason = "none was found before the search was stopped";
+    return;
   }
+  if (!result.exhausted) {
+    answer.reason = "none was found before the search was stopped";
+    return;
+  }
+  const bool none_begins = result.expansions <= 1;
+  // A lattice has no other states than those that were looked at.
+  if (none_begins || costs_ != nullptr) answer.end = PathEnd::kUnreachable;
+  answer.reason = none_begins
+                      ? "the start has no legal successor: each pattern would leave the map or hit "
+                        "something"
+                      : "the goal is not among all that the patterns lead to, " +
+                            std::to_string(result.expansions) + " expansions at this resolution";
 }
 
 }  // namespace tread::planner

@@ -37,6 +37,12 @@ enum class PathEnd {
   kNoneInTime    ///< none was found before the search was told to stop, or at its resolution
 };
 
+/// Called while a query is answered, for those who measure.
+struct PathEvents {
+  std::function<void()> search_begins;  ///< the way to go is worked out
+  std::function<void(double cost, int expansions)> better_plan;
+};
+
 struct PathAnswer {
   PathEnd end = PathEnd::kNoneInTime;
   std::string reason;   ///< why there is no path, in words; empty if solved
@@ -49,7 +55,7 @@ struct PathAnswer {
 /** What all queries share is worked out once: clearance, passages, connected areas. Unreachable is
  * only what is certain: the goal lies outside the map or where not even the disc inside the
  * footprint has room, that disc cannot be moved from start to goal, or no pattern can begin at the
- * start. */
+ * start; on a lattice also that all states were seen. */
 class PathPlanner {
  public:
   PathPlanner(const Grid& grid, const PatternTable& patterns, const PathConfig& config);
@@ -57,9 +63,8 @@ class PathPlanner {
   /// headings of the lattice; the goal is one cell and one heading.
   PathPlanner(const CellCosts& costs, double cell_size, int bins, const PatternTable& patterns);
 
-  /// `on_better` is told of every plan that is better than those before it.
   PathAnswer answer(const PathQuery& query, const StopPredicate& stop,
-                    std::function<void(double cost, int expansions)> on_better = {});
+                    const PathEvents& events = {});
   /// Only the first part of answer(): whether the goal is certainly unreachable, and why.
   std::optional<PathAnswer> refusal(const PathQuery& query) const;
 
@@ -70,9 +75,10 @@ class PathPlanner {
   double inscribedRadius() const { return inscribed_; }
 
  private:
-  PathAnswer answerOnCells(SearchProblem problem, const StopPredicate& stop);
+  std::optional<PathAnswer> refusalOfAreas(const PathQuery& query) const;
+  void placeOnLattice(SearchProblem& problem) const;
   SearchProblem problemOf(const PathQuery& query) const;
-  static void judge(PathAnswer& answer);
+  void judge(PathAnswer& answer) const;
   CostToGo wayTo(const SearchProblem& problem) const;
 
   const PatternTable& patterns_;

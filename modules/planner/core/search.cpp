@@ -18,9 +18,6 @@ constexpr double kNearGoal = 1.0;
 constexpr float kLookAhead = 2.0F;
 /// Share of the cost that counts against a leaf when the search is cut off.
 constexpr float kLeafCost = 0.25F;
-/// A bucket of the open list is so much of the estimate at the start, or this [s].
-constexpr float kBucketShare = 1e-3F;
-constexpr float kLeastBucket = 1e-3F;
 /// What is cheaper by less than this share is not cheaper.
 constexpr float kSame = 1e-6F;
 
@@ -47,20 +44,17 @@ float arcCosine(float x) {
 
 SearchResult Search::run(const SearchProblem& problem, const StopPredicate& stop) {
   begin(problem);
-  for (int number = 0;; ++number) {
+  Outcome outcome = Outcome::kBetter;
+  for (int number = 0; number <= config_.improvements && outcome == Outcome::kBetter; ++number) {
     beginAgain(weightsOf(number));
-    Outcome outcome = Outcome::kBetter;
-    // All but the last search leave off at the first better plan.
-    do {
-      outcome = search(stop);
-    } while (outcome == Outcome::kBetter && number > 0 && number == config_.improvements);
-    const bool done = outcome != Outcome::kBetter || number >= config_.improvements;
-    if (!done) continue;
-    SearchResult result =
-        best_leaf_ >= 0 ? finish(best_leaf_, best_end_) : finish(bestLeaf(), SearchEnd::kProgress);
-    result.exhausted = outcome == Outcome::kAllSeen;
-    return result;
+    outcome = search(stop);
+    // An exact search goes on until nothing better can be left; the others leave off at a plan.
+    while (outcome == Outcome::kBetter && weights_.exact()) outcome = search(stop);
   }
+  SearchResult result =
+      best_leaf_ >= 0 ? finish(best_leaf_, best_end_) : finish(bestLeaf(), SearchEnd::kProgress);
+  result.exhausted = outcome == Outcome::kAllSeen;
+  return result;
 }
 
 void Search::begin(const SearchProblem& problem) {
@@ -126,8 +120,7 @@ void Search::beginAgain(const Weights& weights) {
         around.freeLevel(problem.T_map_start, around.level(problem.start_uncertainty)));
     if (root.level < 0) root.overlap = around.overlap(problem.T_map_start);
   }
-  const float width = std::isfinite(root.guess) ? kBucketShare * root.guess : kLeastBucket;
-  open_.clear(std::max(kLeastBucket, width));
+  open_.clear();
   NodeTable::Slot& slot = best_[keyOf(root)];
   slot.cost = 0.0F;
   slot.node = static_cast<int>(nodes_.size());

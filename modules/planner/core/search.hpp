@@ -156,6 +156,8 @@ class Search {
   struct Weights {
     float bound = 1.0F;
     float turn = 0.0F;
+
+    bool exact() const { return bound <= 1.0F && turn <= 0.0F; }
   };
   /// Cost from a node on: at least, and as it is expected.
   struct ToGo {
