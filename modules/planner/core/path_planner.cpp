@@ -137,10 +137,14 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
   if (std::optional<PathAnswer> refusal = this->refusal(query)) return *refusal;
   SearchProblem problem = problemOf(query);
   CostToGo way;
+  PoseToGo guide;
   if (costs_ == nullptr) {
     way = wayTo(problem);
     problem.surroundings = &*surroundings_;
     problem.cost_to_go = &way;
+    guide = PoseToGo(*passages_, problem.goal, problem.T_map_start, motionRates(patterns_),
+                     config_.guide_merge, inscribed_, config_.guide_beyond);
+    if (!guide.empty() && guide.reached()) problem.pose_to_go = &guide;
   } else {
     placeOnLattice(problem);
   }

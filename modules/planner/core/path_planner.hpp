@@ -15,6 +15,8 @@ namespace tread::planner {
 struct PathConfig {
   FootprintSize footprint;
   SearchConfig search = pathSearch();
+  int guide_merge = 2;         ///< [1] coarse cells per side of a cell of the guide (PoseToGo)
+  double guide_beyond = 0.15;  ///< [1] of the cost at the start that it is filled in beyond it
   FieldConfig field = pathField();
   bool unknown_blocks = true;
   /// The whole way at once, the cheapest there is, and nothing but time and turns counts.

@@ -18,6 +18,8 @@ constexpr double kNearGoal = 1.0;
 constexpr float kLookAhead = 2.0F;
 /// Share of the cost that counts against a leaf when the search is cut off.
 constexpr float kLeafCost = 0.25F;
+/// Where the guide knows no way it may be wrong, but not often [1].
+constexpr float kUnlikely = 100.0F;
 /// What is cheaper by less than this share is not cheaper.
 constexpr float kSame = 1e-6F;
 
@@ -326,6 +328,10 @@ Search::ToGo Search::toGo(const Node& node) const {
   const float way = std::max(0.0F, way_share_ * at.length - slack_);
   const float bound = std::max(metre_cost_[0] * way + radian_cost_[0] * off_goal,
                                metre_cost_[1] * way + radian_cost_[1] * off_goal);
+  if (problem_->pose_to_go != nullptr) {
+    const float known = problem_->pose_to_go->at(node.x, node.y, node.yaw);
+    return {bound, weights_.bound * std::max(bound, std::min(known, kUnlikely * (1.0F + bound)))};
+  }
   float turn = off_goal;
   if (weights_.turn > 0.0F && at.length > kNearGoal)
     turn = arcCosine(at.along_x * node.cos_yaw + at.along_y * node.sin_yaw);

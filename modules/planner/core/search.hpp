@@ -11,6 +11,7 @@
 #include "modules/planner/core/node_table.hpp"
 #include "modules/planner/core/open_list.hpp"
 #include "modules/planner/core/pattern_table.hpp"
+#include "modules/planner/core/pose_to_go.hpp"
 #include "modules/planner/core/surroundings.hpp"
 
 namespace tread::planner {
@@ -49,6 +50,7 @@ struct SearchProblem {
   const PatternTable* patterns = nullptr;
   const Surroundings* surroundings = nullptr;
   const CostToGo* cost_to_go = nullptr;   ///< nullptr = straight to the goal
+  const PoseToGo* pose_to_go = nullptr;   ///< if given the guide, in the place of the turn weight
   const CellCosts* cell_costs = nullptr;  ///< if given a point drives over these, not a footprint
   Goal goal;
   std::vector<int> committed;  ///< ids of the patterns that the plan before wanted from here on
