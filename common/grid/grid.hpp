@@ -107,6 +107,10 @@ class ClearanceField {
         clearance_[static_cast<size_t>(static_cast<int>(row)) * static_cast<size_t>(width_) +
                    static_cast<size_t>(static_cast<int>(column))]);
   }
+  /// Clearances at the centres of a row of cells, counted from the window's lowest one [m].
+  const float* row(int y) const {
+    return clearance_.data() + static_cast<size_t>(y) * static_cast<size_t>(width_);
+  }
   /// What is certain about the clearance compared with a distance.
   enum class Verdict { kLess, kAtLeast, kUnsure };
   /// Compares at() and the upper bound with a distance [m]; most of the time from one number.

@@ -65,6 +65,7 @@ PathPlanner::PathPlanner(const Grid& grid, const PatternTable& patterns, const P
   Margins none;
   none.check = none.plan = none.growth = none.largest = 0.0;
   surroundings_.emplace(grid, size, none, config.unknown_blocks);
+  places_.emplace(*surroundings_, inscribed_);
   const double cell = grid.cellSize();
   const int coarse = std::max(1, static_cast<int>(kCoarseShare * inscribed_ / cell));
   passages_.emplace(grid, surroundings_->field(), coarse, kUsualSlack * cell);
@@ -142,8 +143,8 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
     way = wayTo(problem);
     problem.surroundings = &*surroundings_;
     problem.cost_to_go = &way;
-    guide = PoseToGo(*passages_, problem.goal, problem.T_map_start, motionRates(patterns_),
-                     config_.guide_merge, inscribed_, config_.guide_beyond);
+    guide = PoseToGo(*places_, problem.goal, problem.T_map_start, motionRates(patterns_),
+                     config_.guide_beyond);
     if (!guide.empty() && guide.reached()) problem.pose_to_go = &guide;
   } else {
     placeOnLattice(problem);

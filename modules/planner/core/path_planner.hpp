@@ -15,7 +15,6 @@ namespace tread::planner {
 struct PathConfig {
   FootprintSize footprint;
   SearchConfig search = pathSearch();
-  int guide_merge = 2;         ///< [1] coarse cells per side of a cell of the guide (PoseToGo)
   double guide_beyond = 0.15;  ///< [1] of the cost at the start that it is filled in beyond it
   FieldConfig field = pathField();
   bool unknown_blocks = true;
@@ -88,6 +87,7 @@ class PathPlanner {
   Search search_;
   double inscribed_ = 0.0;
   std::optional<Surroundings> surroundings_;
+  std::optional<Places> places_;
   std::optional<GridPassages> passages_;  ///< with the least room that a cell may have, as a guide
   std::optional<GridPassages> permissive_;  ///< with the most, for what is certain
   const CellCosts* costs_ = nullptr;

@@ -47,6 +47,7 @@ MotionRates::Rate rateOf(const std::vector<const TablePattern*>& patterns) {
     metres = std::max(metres, p->length / p->cost);
     radians = std::max(radians, std::abs(p->end().pose.yaw) / p->cost);
   }
+  rate.turns = radians > 0.0;
   rate.by_way = {metres > 0.0 ? 1.0 / metres : 0.0, kNever};
   rate.by_turn = {kNever, radians > 0.0 ? 1.0 / radians : 0.0};
   for (const TablePattern* p : patterns) {
@@ -71,17 +72,24 @@ float MotionRates::Rate::cost(double way, double turn) const {
 }
 
 MotionRates motionRates(const PatternTable& patterns) {
-  std::vector<const TablePattern*> ahead;
-  std::vector<const TablePattern*> back;
+  std::vector<const TablePattern*> along[PoseToGo::kHeadings];
   std::vector<const TablePattern*> spot;
   for (const TablePattern& p : patterns.patterns()) {
-    const double turn = std::abs(p.end().pose.yaw);
-    if (turn > 0.0 && p.length < kOnTheSpot * turn)
+    const Pose2& end = p.end().pose;
+    if (end.yaw != 0.0 && p.length < kOnTheSpot * std::abs(end.yaw)) {
       spot.push_back(&p);
-    else if (p.length > kNowhere)
-      (p.reverses ? back : ahead).push_back(&p);
+      continue;
+    }
+    if (p.length < kNowhere) continue;
+    // An arc's chord lies half its turn off the heading at its start.
+    const double direction = std::atan2(end.y, end.x) - end.yaw / 2.0;
+    const auto bin = static_cast<int>(std::lround(direction / kBin));
+    along[(bin % PoseToGo::kHeadings + PoseToGo::kHeadings) % PoseToGo::kHeadings].push_back(&p);
   }
-  return {rateOf(ahead), rateOf(back), rateOf(spot)};
+  MotionRates rates;
+  for (size_t i = 0; i < PoseToGo::kHeadings; ++i) rates.along[i] = rateOf(along[i]);
+  rates.turn = rateOf(spot);
+  return rates;
 }
 
 /// States waiting, in buckets as wide as the cheapest move: what is taken is final.
@@ -99,52 +107,21 @@ struct PoseToGo::Front {
   float per_width;
 };
 
-PoseToGo::PoseToGo(const PassageSource& map, const Goal& goal, const Pose2& T_map_start,
-                   const MotionRates& rates, int merge, double radius, double beyond) {
-  layOut(map, goal, T_map_start, merge, radius);
+PoseToGo::PoseToGo(Places& places, const Goal& goal, const Pose2& T_map_start,
+                   const MotionRates& rates, double beyond)
+    : places_(&places), per_size_(1.0 / places.size()), lower_(places.lower()) {
   prepareMoves(rates);
-  if (!(least_move_ > 0.0F)) {
-    cost_.clear();
-    return;
-  }
+  if (!(least_move_ > 0.0F) || places.count() == 0) return;
+  cost_.assign(places.count() * kHeadings, kNever);
   Front front(least_move_);
   seed(goal, front);
   fill(T_map_start, beyond, front);
 }
 
-void PoseToGo::layOut(const PassageSource& map, const Goal&, const Pose2&, int merge,
-                      double radius) {
-  PassageWindow window = *map.bounds();
-  const double coarse = map.coarseSize();
-  size_ = coarse * merge;
-  per_size_ = 1.0 / size_;
-  lower_x_ = static_cast<int>(std::floor(static_cast<double>(window.lower_x) / merge));
-  lower_y_ = static_cast<int>(std::floor(static_cast<double>(window.lower_y) / merge));
-  const int right = window.lower_x + window.width;
-  const int top = window.lower_y + window.height;
-  width_ = static_cast<int>(std::ceil(static_cast<double>(right) / merge)) - lower_x_;
-  height_ = static_cast<int>(std::ceil(static_cast<double>(top) / merge)) - lower_y_;
-  stride_ = width_ + 2 * kRim;
-  window.room.assign(static_cast<size_t>(window.width) * static_cast<size_t>(window.height), 0.0F);
-  window.unknown.assign(window.room.size(), 0);
-  map.fill(window);
-  const auto cells = static_cast<size_t>(stride_) * static_cast<size_t>(height_ + 2 * kRim);
-  passable_.assign(cells, 0);
-  for (int y = window.lower_y; y < top; ++y) {
-    for (int x = window.lower_x; x < right; ++x) {
-      if (!(window.room[window.at(x, y)] >= static_cast<float>(radius))) continue;
-      const int column = (x - lower_x_ * merge) / merge;
-      const int row = (y - lower_y_ * merge) / merge;
-      passable_[cellNumber(column, row)] = 1;
-    }
-  }
-  cost_.assign(cells * kHeadings, kNever);
-}
-
 void PoseToGo::prepareMoves(const MotionRates& rates) {
   for (int heading = 0; heading < kHeadings; ++heading) {
-    if (rates.forward.any) addMoves(heading, rates.forward, 1);
-    if (rates.reverse.any) addMoves(heading, rates.reverse, -1);
+    for (int direction = 0; direction < kHeadings; ++direction)
+      if (rates.along[direction].any) addMoves(heading, direction, rates.along[direction]);
     if (!rates.turn.any) continue;
     for (const int turn : {-1, 1}) {
       Move move;
@@ -159,21 +136,22 @@ void PoseToGo::prepareMoves(const MotionRates& rates) {
   if (!std::isfinite(least_move_)) least_move_ = 0.0F;
 }
 
-void PoseToGo::addMoves(int heading, const MotionRates::Rate& rate, int sign) {
-  const Step step = stepAlong(heading);
-  const double way = std::hypot(step.x, step.y) * size_;
+void PoseToGo::addMoves(int heading, int direction, const MotionRates::Rate& rate) {
+  const Step step = stepAlong((heading + direction) % kHeadings);
+  const double way = std::hypot(step.x, step.y) * places_->size();
   for (const int turn : {0, -1, 1}) {
+    if (turn != 0 && !rate.turns) continue;
     Move move;
     move.turn = turn;
     move.cost = rate.cost(way, std::abs(turn) * kBin);
-    move.offset = -sign * (step.y * stride_ + step.x);
+    move.offset = -(step.y * places_->stride() + step.x);
     const bool is_long = std::abs(step.x) + std::abs(step.y) > 2;
     if (is_long) {
       const bool wide = std::abs(step.x) > std::abs(step.y);
       const int sx = step.x > 0 ? 1 : -1;
       const int sy = step.y > 0 ? 1 : -1;
-      move.between = -sign * (wide ? sx : sy * stride_);
-      move.between_too = -sign * (sy * stride_ + sx);
+      move.between = -(wide ? sx : sy * places_->stride());
+      move.between_too = -(sy * places_->stride() + sx);
     }
     moves_[heading].push_back(move);
   }
@@ -181,21 +159,21 @@ void PoseToGo::addMoves(int heading, const MotionRates::Rate& rate, int sign) {
 
 void PoseToGo::seed(const Goal& goal, Front& front) {
   const Pose2& at = goal.T_map_goal;
-  const double reach = goal.position_tolerance + 0.5 * size_;
-  const int column = static_cast<int>(std::floor(at.x * per_size_)) - lower_x_;
-  const int row = static_cast<int>(std::floor(at.y * per_size_)) - lower_y_;
+  const double reach = goal.position_tolerance;
+  const int column = places_->column(at.x);
+  const int row = places_->row(at.y);
   const int around = static_cast<int>(std::ceil(reach * per_size_));
-  for (int y = std::max(0, row - around); y <= std::min(height_ - 1, row + around); ++y) {
-    for (int x = std::max(0, column - around); x <= std::min(width_ - 1, column + around); ++x) {
-      const double dx = (lower_x_ + x + 0.5) * size_ - at.x;
-      const double dy = (lower_y_ + y + 0.5) * size_ - at.y;
-      const size_t cell = cellNumber(x, y);
+  for (int y = std::max(0, row - around); y <= std::min(places_->height() - 1, row + around); ++y) {
+    for (int x = std::max(0, column - around); x <= std::min(places_->width() - 1, column + around);
+         ++x) {
       const bool own = x == column && y == row;
-      if ((!own && std::hypot(dx, dy) > reach) || passable_[cell] == 0) continue;
+      if (!own && (places_->centre(x, y) - at.position()).norm() > reach) continue;
+      const size_t square = places_->number(x, y);
       for (int heading = 0; heading < kHeadings; ++heading) {
         const double off = std::abs(wrapAngle(heading * kBin - at.yaw));
-        if (goal.yaw_tolerance < kPi && off > goal.yaw_tolerance + 0.5 * kBin) continue;
-        const size_t state = cell * kHeadings + static_cast<size_t>(heading);
+        if (off > std::max(goal.yaw_tolerance, 0.5 * kBin)) continue;
+        if (!own && !places_->isFree(square, heading)) continue;
+        const size_t state = square * kHeadings + static_cast<size_t>(heading);
         cost_[state] = 0.0F;
         front.add(state, 0.0F);
       }
@@ -204,48 +182,44 @@ void PoseToGo::seed(const Goal& goal, Front& front) {
 }
 
 void PoseToGo::fill(const Pose2& start, double beyond, Front& front) {
-  const int column =
-      std::clamp(static_cast<int>(std::floor(start.x * per_size_)) - lower_x_, 0, width_ - 1);
-  const int row =
-      std::clamp(static_cast<int>(std::floor(start.y * per_size_)) - lower_y_, 0, height_ - 1);
-  const size_t own = cellNumber(column, row) * kHeadings +
+  const int column = std::clamp(places_->column(start.x), 0, places_->width() - 1);
+  const int row = std::clamp(places_->row(start.y), 0, places_->height() - 1);
+  const size_t own = places_->number(column, row) * kHeadings +
                      static_cast<size_t>(binOf(static_cast<float>(wrapAngle(start.yaw))));
+  start_ = own;
   float stop_at = kNever;
   for (; front.current < front.buckets.size(); ++front.current) {
-    const float reached = static_cast<float>(front.current) / front.per_width;
-    if (reached > stop_at) break;
+    const float now = static_cast<float>(front.current) / front.per_width;
+    if (now > stop_at) break;
     // A move may come back into its own bucket.
     for (size_t i = 0; i < front.buckets[front.current].size(); ++i) {
       const size_t state = front.buckets[front.current][i];
-      if (cost_[state] * front.per_width < static_cast<float>(front.current)) continue;
-      relax(state, front);
+      if (cost_[state] >= now) relax(state, front);
     }
-    if (!reached_ && cost_[own] <= reached) {
-      reached_ = true;
-      stop_at = reached + static_cast<float>(beyond);
-    }
+    if (reached_ || cost_[own] > now) continue;
+    reached_ = true;
+    stop_at = now * static_cast<float>(1.0 + beyond);
   }
-  cut_ = reached_ && front.current < front.buckets.size()
-             ? static_cast<float>(front.current) / front.per_width
-             : kNever;
+  if (reached_ && front.current < front.buckets.size())
+    cut_ = static_cast<float>(front.current) / front.per_width;
 }
 
 void PoseToGo::relax(size_t state, Front& front) {
   ++filled_;
   const float cost = cost_[state];
-  const size_t cell = state / kHeadings;
+  const auto square = static_cast<int>(state / kHeadings);
   const auto heading = static_cast<int>(state % kHeadings);
   for (const Move& move : moves_[heading]) {
-    const auto before = static_cast<size_t>(static_cast<int>(cell) + move.offset);
-    if (passable_[before] == 0) continue;
-    if (move.between != 0 &&
-        passable_[static_cast<size_t>(static_cast<int>(cell) + move.between)] == 0 &&
-        passable_[static_cast<size_t>(static_cast<int>(cell) + move.between_too)] == 0)
-      continue;
+    const auto before = static_cast<size_t>(square + move.offset);
     const int turned = (heading - move.turn + kHeadings) % kHeadings;
     const size_t next = before * kHeadings + static_cast<size_t>(turned);
     const float value = cost + move.cost;
     if (value >= cost_[next]) continue;
+    if (move.between != 0 && !places_->passable(static_cast<size_t>(square + move.between)) &&
+        !places_->passable(static_cast<size_t>(square + move.between_too)))
+      continue;
+    // The vehicle stands at the start, whatever it is like there.
+    if (next != start_ && !places_->isFree(before, turned)) continue;
     cost_[next] = value;
     front.add(next, value);
   }

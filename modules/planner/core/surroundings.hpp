@@ -66,12 +66,15 @@ class Surroundings {
   static constexpr int kCheck = 2;
   static constexpr int kPlan = 4;
   static constexpr int kLevels = 8;
+  /// [m] of the smallest disc around the body's origin that contains the bare footprint.
+  double circumscribedRadius() const { return levels_.front().circumscribed(); }
   double marginOf(int level) const { return level_margins_[static_cast<size_t>(level)]; }
   /// Level for a pose of this uncertainty; kPlan or above.
   /** What counts is the footprint's corner, which a turn moves, too. */
   int level(const Uncertainty& uncertainty) const;
   /// Whether the footprint with the margin of a level is free at a pose.
   bool isFree(const Pose2& T_map_body, int level) const;
+  bool isFree(const TurnedPose& T_map_body, int level) const;
   /// Highest level, at most `wanted`, at which a pose is free; -1 if it is not free at all.
   int freeLevel(const Pose2& T_map_body, int wanted) const;
   /// Whether every pose of a pattern is free, begun at a pose.
@@ -92,7 +95,6 @@ class Surroundings {
 
  private:
   int levelWithin(double margin) const;
-  bool isFree(const TurnedPose& T_map_body, int level) const;
   bool touchesObstacle(const TurnedPose& T_map_body, int level) const;
   bool isFarFromAll(const TurnedPose& T_map_start, const TablePattern& pattern, int level) const;
 
