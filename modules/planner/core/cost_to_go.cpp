@@ -20,7 +20,7 @@ constexpr double kLeastMargin = 8.0;
 constexpr double kNearby = 0.5;
 
 float slownessOf(float room, const FieldConfig& config) {
-  if (room < static_cast<float>(config.inflation)) return kNoWay;
+  if (room <= 0.0F || room < static_cast<float>(config.inflation)) return kNoWay;
   const double tight =
       (config.wide - static_cast<double>(room)) / std::max(1e-3, config.wide - config.inflation);
   return static_cast<float>(1.0 + config.tight_weight * std::clamp(tight, 0.0, 1.0));

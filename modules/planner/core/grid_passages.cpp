@@ -16,26 +16,29 @@ int floorDivide(int a, int b) {
 
 }  // namespace
 
-GridPassages::GridPassages(const Grid& grid, const ClearanceField& field, int coarse, double slack)
+GridPassages::GridPassages(const Grid& grid, const ClearanceField& field, int coarse)
     : size_(grid.cellSize() * coarse),
       lower_x_(floorDivide(grid.lower().x, coarse)),
       lower_y_(floorDivide(grid.lower().y, coarse)),
       width_(floorDivide(grid.lower().x + grid.width() - 1, coarse) - lower_x_ + 1),
       height_(floorDivide(grid.lower().y + grid.height() - 1, coarse) - lower_y_ + 1) {
-  if (grid.width() <= 0 || grid.height() <= 0) width_ = height_ = 0;
+  if (grid.empty()) width_ = height_ = 0;
   const size_t cells = static_cast<size_t>(width_) * static_cast<size_t>(height_);
   room_.assign(cells, 0.0F);
   unknown_.assign(cells, 0);
+  std::vector<size_t> columns(static_cast<size_t>(grid.width()));
+  for (size_t x = 0; x < columns.size(); ++x)
+    columns[x] =
+        static_cast<size_t>(floorDivide(grid.lower().x + static_cast<int>(x), coarse) - lower_x_);
   std::vector<int> unknowns(cells, 0);
   for (int y = 0; y < grid.height(); ++y) {
-    for (int x = 0; x < grid.width(); ++x) {
-      const CellIndex cell{grid.lower().x + x, grid.lower().y + y};
-      const size_t to =
-          at(floorDivide(cell.x, coarse) - lower_x_, floorDivide(cell.y, coarse) - lower_y_);
-      const Eigen::Vector2d centre = grid.centre(cell);
-      const auto clearance = static_cast<float>(field.quick(centre.x(), centre.y()));
-      if (clearance > 0.0F) room_[to] = std::max(room_[to], clearance + static_cast<float>(slack));
-      unknowns[to] += grid.at(cell) == kUnknown ? 1 : 0;
+    const size_t row = at(0, floorDivide(grid.lower().y + y, coarse) - lower_y_);
+    const float* clearance = field.row(y);
+    const Cell* kinds = grid.cells().data() + grid.offset({grid.lower().x, grid.lower().y + y});
+    for (size_t x = 0; x < columns.size(); ++x) {
+      const size_t to = row + columns[x];
+      room_[to] = std::max(room_[to], clearance[x]);
+      unknowns[to] += kinds[x] == kUnknown ? 1 : 0;
     }
   }
   for (size_t i = 0; i < cells; ++i) unknown_[i] = 2 * unknowns[i] >= coarse * coarse ? 1 : 0;

@@ -13,9 +13,9 @@ namespace tread::planner {
 /// The passages of a map that does not change, and which places are connected for a disc.
 class GridPassages : public PassageSource {
  public:
-  /// `coarse` cells of the grid make one side of a coarse cell. A point of a cell has at most
-  /// `slack` more room than its centre [m]. Outside the grid there is no room.
-  GridPassages(const Grid& grid, const ClearanceField& field, int coarse, double slack);
+  /// /// `coarse` cells of the grid make one side of a coarse cell; its room is the clearance at
+  /// the best of their centres. Outside the grid there is none.
+  GridPassages(const Grid& grid, const ClearanceField& field, int coarse);
 
   double coarseSize() const override { return size_; }
   std::optional<PassageWindow> bounds() const override {

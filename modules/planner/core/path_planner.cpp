@@ -68,10 +68,8 @@ PathPlanner::PathPlanner(const Grid& grid, const PatternTable& patterns, const P
   places_.emplace(*surroundings_, inscribed_);
   const double cell = grid.cellSize();
   const int coarse = std::max(1, static_cast<int>(kCoarseShare * inscribed_ / cell));
-  passages_.emplace(grid, surroundings_->field(), coarse, kUsualSlack * cell);
-  permissive_.emplace(grid, surroundings_->field(), coarse, kMostSlack * cell);
-  permissive_->label(inscribed_);
-  config_.field.inflation = inscribed_;
+  passages_.emplace(grid, surroundings_->field(), coarse);
+  passages_->label(inscribed_ - kMostSlack * cell);
 }
 
 PathPlanner::PathPlanner(const CellCosts& costs, double cell_size, int bins,
@@ -109,9 +107,9 @@ std::optional<PathAnswer> PathPlanner::refusalOfAreas(const PathQuery& query) co
   if (!surroundings_->grid().contains(surroundings_->grid().indexOf(p_start)))
     return refused("the start lies outside the map");
   // On blocked ground the start may be left to all sides.
-  std::vector<int> from{permissive_->areaAt(p_start)};
-  if (from.front() == 0) from = permissive_->areasNear(p_start, 2.0 * inscribed_);
-  const std::vector<int> to = permissive_->areasNear(p_goal, query.position_tolerance);
+  std::vector<int> from{passages_->areaAt(p_start)};
+  if (from.front() == 0) from = passages_->areasNear(p_start, 2.0 * inscribed_);
+  const std::vector<int> to = passages_->areasNear(p_goal, query.position_tolerance);
   const bool connected = std::any_of(from.begin(), from.end(), [&](int area) {
     return std::find(to.begin(), to.end(), area) != to.end();
   });
@@ -123,14 +121,20 @@ std::optional<PathAnswer> PathPlanner::refusalOfAreas(const PathQuery& query) co
     answer.reason = "the goal lies outside the map";
   else if (to.empty())
     answer.reason = "the goal lies on obstacles, or too near to them";
-  answer.closest = permissive_->nearestIn(from, p_goal);
+  answer.closest = passages_->nearestIn(from, p_goal);
   return answer;
 }
 
 CostToGo PathPlanner::wayTo(const SearchProblem& problem) const {
   const Eigen::Vector2d p_start = problem.T_map_start.position();
-  CostToGo way(*passages_, problem.goal, p_start, {}, config_.field);
-  return way.unreachable() ? CostToGo(*permissive_, problem.goal, p_start, {}, config_.field) : way;
+  FieldConfig config = config_.field;
+  CostToGo way;
+  for (const double slack : {kUsualSlack, kMostSlack}) {
+    config.inflation = std::max(0.0, inscribed_ - slack * surroundings_->grid().cellSize());
+    way = CostToGo(*passages_, problem.goal, p_start, {}, config);
+    if (!way.unreachable()) break;
+  }
+  return way;
 }
 
 PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop,

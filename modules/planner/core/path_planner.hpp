@@ -88,8 +88,7 @@ class PathPlanner {
   double inscribed_ = 0.0;
   std::optional<Surroundings> surroundings_;
   std::optional<Places> places_;
-  std::optional<GridPassages> passages_;  ///< with the least room that a cell may have, as a guide
-  std::optional<GridPassages> permissive_;  ///< with the most, for what is certain
+  std::optional<GridPassages> passages_;
   const CellCosts* costs_ = nullptr;
   double cell_size_ = 0.0;
 };

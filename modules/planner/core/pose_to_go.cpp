@@ -92,17 +92,23 @@ MotionRates motionRates(const PatternTable& patterns) {
   return rates;
 }
 
-/// States waiting, in buckets as wide as the cheapest move: what is taken is final.
+/// States waiting, by cost and what is left to the start at least, in buckets as wide as the
+/// cheapest move.
 struct PoseToGo::Front {
   explicit Front(float width) : per_width(1.0F / width) {}
 
-  void add(size_t state, float cost) {
-    const auto bucket = std::max(current, static_cast<size_t>(cost * per_width));
+  struct Entry {
+    uint32_t state;
+    float cost;
+  };
+
+  void add(size_t state, float cost, float from_start) {
+    const auto bucket = std::max(current, static_cast<size_t>((cost + from_start) * per_width));
     if (bucket >= buckets.size()) buckets.resize(bucket + 64);
-    buckets[bucket].push_back(static_cast<uint32_t>(state));
+    buckets[bucket].push_back({static_cast<uint32_t>(state), cost});
   }
 
-  std::vector<std::vector<uint32_t>> buckets;
+  std::vector<std::vector<Entry>> buckets;
   size_t current = 0;
   float per_width;
 };
@@ -112,6 +118,8 @@ PoseToGo::PoseToGo(Places& places, const Goal& goal, const Pose2& T_map_start,
     : places_(&places), per_size_(1.0 / places.size()), lower_(places.lower()) {
   prepareMoves(rates);
   if (!(least_move_ > 0.0F) || places.count() == 0) return;
+  start_column_ = std::clamp(places.column(T_map_start.x), 0, places.width() - 1);
+  start_row_ = std::clamp(places.row(T_map_start.y), 0, places.height() - 1);
   cost_.assign(places.count() * kHeadings, kNever);
   Front front(least_move_);
   seed(goal, front);
@@ -133,6 +141,10 @@ void PoseToGo::prepareMoves(const MotionRates& rates) {
   least_move_ = kNever;
   for (const auto& moves : moves_)
     for (const Move& move : moves) least_move_ = std::min(least_move_, move.cost);
+  double metre = kNever;
+  for (const MotionRates::Rate& rate : rates.along)
+    if (rate.any) metre = std::min(metre, rate.by_way.per_metre);
+  square_cost_ = std::isfinite(metre) ? static_cast<float>(metre * places_->size()) : 0.0F;
   if (!std::isfinite(least_move_)) least_move_ = 0.0F;
 }
 
@@ -175,16 +187,14 @@ void PoseToGo::seed(const Goal& goal, Front& front) {
         if (!own && !places_->isFree(square, heading)) continue;
         const size_t state = square * kHeadings + static_cast<size_t>(heading);
         cost_[state] = 0.0F;
-        front.add(state, 0.0F);
+        front.add(state, 0.0F, fromStart(square));
       }
     }
   }
 }
 
 void PoseToGo::fill(const Pose2& start, double beyond, Front& front) {
-  const int column = std::clamp(places_->column(start.x), 0, places_->width() - 1);
-  const int row = std::clamp(places_->row(start.y), 0, places_->height() - 1);
-  const size_t own = places_->number(column, row) * kHeadings +
+  const size_t own = places_->number(start_column_, start_row_) * kHeadings +
                      static_cast<size_t>(binOf(static_cast<float>(wrapAngle(start.yaw))));
   start_ = own;
   float stop_at = kNever;
@@ -193,8 +203,8 @@ void PoseToGo::fill(const Pose2& start, double beyond, Front& front) {
     if (now > stop_at) break;
     // A move may come back into its own bucket.
     for (size_t i = 0; i < front.buckets[front.current].size(); ++i) {
-      const size_t state = front.buckets[front.current][i];
-      if (cost_[state] >= now) relax(state, front);
+      const Front::Entry entry = front.buckets[front.current][i];
+      if (cost_[entry.state] == entry.cost) relax(entry.state, front);
     }
     if (reached_ || cost_[own] > now) continue;
     reached_ = true;
@@ -202,6 +212,14 @@ void PoseToGo::fill(const Pose2& start, double beyond, Front& front) {
   }
   if (reached_ && front.current < front.buckets.size())
     cut_ = static_cast<float>(front.current) / front.per_width;
+}
+
+float PoseToGo::fromStart(size_t square) const {
+  const auto stride = static_cast<size_t>(places_->stride());
+  const auto dx =
+      static_cast<float>(static_cast<int>(square % stride) - Places::kRim - start_column_);
+  const auto dy = static_cast<float>(static_cast<int>(square / stride) - Places::kRim - start_row_);
+  return square_cost_ * std::sqrt(dx * dx + dy * dy);
 }
 
 void PoseToGo::relax(size_t state, Front& front) {
@@ -221,7 +239,7 @@ void PoseToGo::relax(size_t state, Front& front) {
     // The vehicle stands at the start, whatever it is like there.
     if (next != start_ && !places_->isFree(before, turned)) continue;
     cost_[next] = value;
-    front.add(next, value);
+    front.add(next, value, fromStart(before));
   }
 }
 

@@ -32,8 +32,8 @@ MotionRates motionRates(const PatternTable& patterns);
 
 /// Cost to the goal by place and heading, on a coarse grid: a guide that knows what turns cost.
 /** The vehicle drives along its heading, ahead or back, and turns on the way or on the spot, each
- * for the least that the set's patterns do it for, but with no least radius. Dijkstra from the goal
- * over places and headings; filled in until the start is reached, and some further. */
+ * for the least that the set's patterns do it for, but with no least radius. A* from the goal over
+ * places and headings towards the start; filled in until that is reached, and some further. */
 class PoseToGo {
  public:
   static constexpr int kHeadings = Places::kHeadings;
@@ -53,7 +53,8 @@ class PoseToGo {
       return cut_;
     const size_t square = places_->number(static_cast<int>(column), static_cast<int>(row));
     const float value = cost_[square * kHeadings + static_cast<size_t>(binOf(yaw))];
-    return value < cut_ ? value : cut_;
+    if (value + square_cost_ < cut_) return value;
+    return std::min(value, std::max(0.0F, cut_ - fromStart(square)));
   }
   /// Whether the start can be reached from the goal.
   bool reached() const { return reached_; }
@@ -79,6 +80,8 @@ class PoseToGo {
   void seed(const Goal& goal, Front& front);
   void fill(const Pose2& T_map_start, double beyond, Front& front);
   void relax(size_t state, Front& front);
+  /// Least cost between the start and a square.
+  float fromStart(size_t square) const;
 
   Places* places_ = nullptr;
   double per_size_ = 1.0;
@@ -87,6 +90,9 @@ class PoseToGo {
   std::vector<Move> moves_[kHeadings];
   float cut_ = std::numeric_limits<float>::infinity();
   float least_move_ = 0.0F;
+  float square_cost_ = 0.0F;  // to cross a square, at least
+  int start_column_ = 0;
+  int start_row_ = 0;
   size_t start_ = 0;
   bool reached_ = false;
   int filled_ = 0;

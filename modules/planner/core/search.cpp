@@ -18,6 +18,8 @@ constexpr double kNearGoal = 1.0;
 constexpr float kLookAhead = 2.0F;
 /// Share of the cost that counts against a leaf when the search is cut off.
 constexpr float kLeafCost = 0.25F;
+/// Patterns so short that they do not leave a cell in so many repetitions lead nowhere.
+constexpr int kMostRepeats = 32;
 /// Where the guide knows no way it may be wrong, but not often [1].
 constexpr float kUnlikely = 100.0F;
 /// What is cheaper by less than this share is not cheaper.
@@ -195,12 +197,13 @@ Uncertainty Search::uncertaintyAfter(const Node& parent, const TablePattern& pat
 void Search::expand(int parent) {
   const Node& node = nodes_[static_cast<size_t>(parent)];
   const int bin = headingBin(node);
+  from_key_ = keyOf(node);
   for (const TablePattern* pattern : problem_->patterns->from(node.motion_class))
     if (pattern->start_bin < 0 || pattern->start_bin == bin) addChild(parent, *pattern);
 }
 
-void Search::addChild(int parent, const TablePattern& pattern) {
-  const Node& from = nodes_[static_cast<size_t>(parent)];
+/// The node after a pattern, as far as it is cheap to know.
+Search::Node Search::nodeAfter(const Node& from, const TablePattern& pattern) const {
   const SweepPose& end = pattern.end();
   const auto c = static_cast<double>(from.cos_yaw);
   const auto s = static_cast<double>(from.sin_yaw);
@@ -208,23 +211,36 @@ void Search::addChild(int parent, const TablePattern& pattern) {
   node.x = from.x + c * end.pose.x - s * end.pose.y;
   node.y = from.y + s * end.pose.x + c * end.pose.y;
   node.yaw = wrapped(from.yaw + static_cast<float>(end.pose.yaw));
-  node.motion_class = static_cast<int8_t>(pattern.exit);
-  node.cost = from.cost + edgeCost(from, pattern, node) + switchPenalty(from, pattern);
-  NodeTable::Slot& slot = best_[keyOf(node)];
-  if (slot.node >= 0 && slot.cost <= node.cost * (1.0F + kSame)) return;
   node.cos_yaw = static_cast<float>(c * end.cos_yaw - s * end.sin_yaw);
   node.sin_yaw = static_cast<float>(s * end.cos_yaw + c * end.sin_yaw);
+  node.cost = from.cost + edgeCost(from, pattern, node) + switchPenalty(from, pattern);
+  node.time = from.time + static_cast<float>(pattern.duration);
+  node.motion_class = static_cast<int8_t>(pattern.exit);
+  node.depth = static_cast<int16_t>(from.depth + 1);
+  node.on_plan = static_cast<int16_t>(staysOnPlan(from, pattern) ? from.on_plan + 1 : -1);
+  node.number = -1;
+  node.by = &pattern;
+  node.repeats = 1;
+  return node;
+}
+
+void Search::addChild(int parent, const TablePattern& pattern) {
+  const Node& from = nodes_[static_cast<size_t>(parent)];
+  Node node = nodeAfter(from, pattern);
+  node.parent = parent;
+  uint64_t key = keyOf(node);
+  if (key == from_key_) {
+    // It would be no better than where it came from: it is repeated until it leaves the cell.
+    if (!leaveCell(from, node)) return;
+    key = keyOf(node);
+  }
+  NodeTable::Slot& slot = best_[key];
+  if (slot.node >= 0 && slot.cost <= node.cost * (1.0F + kSame)) return;
   const ToGo to_go = toGo(node);
   if (node.cost + to_go.bound >= best_cost_) return;
   node.bound = to_go.bound;
   node.guess = to_go.guess;
-  node.time = from.time + static_cast<float>(pattern.duration);
-  node.parent = parent;
-  node.number = -1;
-  node.by = &pattern;
-  node.depth = static_cast<int16_t>(from.depth + 1);
-  node.on_plan = static_cast<int16_t>(staysOnPlan(from, pattern) ? from.on_plan + 1 : -1);
-  if (!admit(from, node)) return;
+  if (node.repeats == 1 && !admit(from, node)) return;
   const bool waits = slot.node >= 0 && !nodes_[static_cast<size_t>(slot.node)].expanded();
   if (waits)
     nodes_[static_cast<size_t>(slot.node)] = node;
@@ -233,6 +249,19 @@ void Search::addChild(int parent, const TablePattern& pattern) {
   slot.cost = node.cost;
   open_.push(node.cost + node.guess, slot.node, node.cost);
   if (!waits) nodes_.push_back(node);
+}
+
+bool Search::leaveCell(const Node& from, Node& node) const {
+  if (!admit(from, node)) return false;
+  while (keyOf(node) == from_key_) {
+    if (node.repeats >= kMostRepeats) return false;
+    Node next = nodeAfter(node, *node.by);
+    next.parent = node.parent;
+    next.repeats = static_cast<int8_t>(node.repeats + 1);
+    if (!admit(node, next)) return false;
+    node = next;
+  }
+  return true;
 }
 
 bool Search::admit(const Node& parent, Node& node) const {

@@ -102,8 +102,8 @@ struct TreeNode {
 
 /// Anytime A* over joinable patterns that collide with nothing.
 /** 1. A node is a continuous pose, an exit class and a time; of the nodes in one cell, heading bin
- * and class the cheapest is kept. It takes the other's place while that one waits, and joins it
- * when that one has been expanded.
+ * and class the cheapest is kept; a pattern too short to leave its cell is repeated. It takes the
+ * other's place while that one waits, and joins it when that one has been expanded.
  *  2. A node is made only if its pattern's sweep is free, with a margin that grows with the
  * uncertainty gathered, and if, unless at rest, a pattern to stop is free from there. So whatever
  * is returned can stop after each of its patterns.
@@ -144,7 +144,8 @@ class Search {
     int16_t depth;
     int16_t on_plan;  // patterns in common with the committed plan; -1 = left it
     int8_t motion_class;
-    int8_t level;             // margin with which its end is free; -1 while on blocked ground
+    int8_t repeats;  // of the pattern that led here
+    int8_t level;    //             // margin with which its end is free; -1 while on blocked ground
     Overlap overlap;          // on blocked ground
     Uncertainty uncertainty;  // in map axes
 
@@ -177,7 +178,9 @@ class Search {
   bool visit(int index);
   void keepBest(int leaf, SearchEnd end);
   void expand(int parent);
+  Node nodeAfter(const Node& from, const TablePattern& pattern) const;
   void addChild(int parent, const TablePattern& pattern);
+  bool leaveCell(const Node& from, Node& node) const;
   bool staysOnPlan(const Node& parent, const TablePattern& pattern) const;
   bool admit(const Node& parent, Node& node) const;
   bool freeFromParent(const Node& parent, Node& node) const;
@@ -217,6 +220,7 @@ class Search {
   size_t kept_ = 0;  // nodes of the best plan of an earlier search, at the front
   int best_leaf_ = -1;
   SearchEnd best_end_ = SearchEnd::kNothing;
+  uint64_t from_key_ = 0;   // of the node that is being expanded
   float best_cost_ = 0.0F;  // of the best plan, what is left to go included
 };
 

@@ -35,8 +35,11 @@ SearchResult Search::finish(int leaf, SearchEnd end) {
   step.T_map_end = problem_->T_map_start;
   step.uncertainty = problem_->start_uncertainty;
   for (auto it = leaf_to_root_.rbegin() + 1; it != leaf_to_root_.rend(); ++it) {
-    step = stepAfter(step, *nodes_[static_cast<size_t>(*it)].by);
-    result.steps.push_back(step);
+    const Node& node = nodes_[static_cast<size_t>(*it)];
+    for (int i = 0; i < node.repeats; ++i) {
+      step = stepAfter(step, *node.by);
+      result.steps.push_back(step);
+    }
   }
   const Node& last = nodes_[static_cast<size_t>(leaf)];
   result.cost = static_cast<double>(last.cost);
