@@ -28,24 +28,18 @@ class Watch {
   double now() const {
     return std::chrono::duration<double, std::milli>(Clock::now() - begin_).count();
   }
-  bool isLate() {
-    noteSearch();
-    return deadline_ && now() >= *deadline_;
-  }
+  /// A little before the deadline: the rest is needed to put the answer together.
+  bool isLate() const { return deadline_ && now() >= *deadline_ - std::min(2.0, *deadline_ / 20); }
   void noteSolution() {
-    noteSearch();
     if (!first_) first_ = now();
   }
-  /// When the search asked or told something for the first time: then the way to go is known.
+  void noteSearch() { searching_ = now(); }
+  /// When the way to go was known.
   std::optional<double> searching() const { return searching_; }
   /// When the first plan was there.
   std::optional<double> first() const { return first_; }
 
  private:
-  void noteSearch() {
-    if (!searching_) searching_ = now();
-  }
-
   Clock::time_point begin_ = Clock::now();
   std::optional<double> deadline_;
   std::optional<double> searching_;
@@ -165,9 +159,10 @@ PlanAnswer TaskPlanner::answer(const PlanQuery& query) {
   wanted.T_map_goal = between(task_.map.T_map_grid, query.T_map_goal);
   wanted.position_tolerance = task_.position_tolerance;
   wanted.yaw_tolerance = task_.yaw_tolerance;
+  const planner::PathEvents events{[&watch] { watch.noteSearch(); },
+                                   [&watch](double, int) { watch.noteSolution(); }};
   const planner::PathAnswer found = planner_->answer(
-      wanted, [&watch](int) { return watch.isLate(); },
-      [&watch](double, int) { watch.noteSolution(); });
+      wanted, [&watch](int) { return watch.isLate(); }, events);
   PlanAnswer answer;
   answer.total_ms = watch.now();
   answer.first_solution_ms = watch.first();
@@ -175,9 +170,6 @@ PlanAnswer TaskPlanner::answer(const PlanQuery& query) {
   answer.expansions = found.search.expansions;
   answer.status = statusOf(found.end);
   answer.reason = found.reason;
-  // A lattice is seen as a whole: what is not found there does not exist.
-  if (task_.exact && found.search.exhausted && answer.status == PlanStatus::kNoneInTime)
-    answer.status = PlanStatus::kUnreachable;
   tellPlan(wanted.T_map_start, found.search, answer);
   if (answer.status != PlanStatus::kSolved) answer.closest = closestApproach(found, query, answer);
   answer.memory_mb = peakMegabytes();
