@@ -153,10 +153,11 @@ ClearanceField::Bounds ClearanceField::bounds(const Eigen::Vector2d& p_map) cons
   return {std::max(0.0, value - from_centre), value + from_centre};
 }
 
-ClearanceField::Verdict ClearanceField::compareClosely(double x, double y, float distance) const {
+ClearanceField::Verdict ClearanceField::compareClosely(double x, double y, float near,
+                                                       float far) const {
   const Bounds close = bounds({x, y});
-  if (close.lower >= static_cast<double>(distance)) return Verdict::kAtLeast;
-  return close.upper < static_cast<double>(distance) ? Verdict::kLess : Verdict::kUnsure;
+  if (close.lower >= static_cast<double>(far)) return Verdict::kAtLeast;
+  return close.upper < static_cast<double>(near) ? Verdict::kLess : Verdict::kUnsure;
 }
 
 bool ClearanceField::anyBlocked(int row, int first, int last) const {

@@ -132,9 +132,9 @@ Footprint::Verdict Footprint::judgeByDiscs(const ClearanceField& clearance,
   for (const double along : disc_x_) {
     const double x = T_map_body.x + T_map_body.cos_yaw * along;
     const double y = T_map_body.y + T_map_body.sin_yaw * along;
-    if (clearance.compare(x, y, disc_radius_) == Verdict::kAtLeast) continue;
-    if (clearance.compare(x, y, inscribed_radius_) == Verdict::kLess) return Verdict::kLess;
-    verdict = Verdict::kUnsure;
+    const Verdict disc = clearance.compare(x, y, inscribed_radius_, disc_radius_);
+    if (disc == Verdict::kLess) return disc;
+    if (disc == Verdict::kUnsure) verdict = disc;
   }
   return verdict;
 }

@@ -116,16 +116,21 @@ class ClearanceField {
   /// Compares at() and the upper bound with a distance [m]; most of the time from one number.
   /** kAtLeast exactly if at(p) >= distance, kLess only if bounds(p).upper < distance. */
   Verdict compare(double x, double y, float distance) const {
+    return compare(x, y, distance, distance);
+  }
+  /// kAtLeast if the clearance is certainly `far` or more, kLess if it is certainly less than
+  /// `near`.
+  Verdict compare(double x, double y, float near, float far) const {
     const double column = x * per_cell_ - lower_.x;
     const double row = y * per_cell_ - lower_.y;
     if (column >= 0.0 && row >= 0.0 && column < width_ && row < height_) {
       const float value =
           clearance_[static_cast<size_t>(static_cast<int>(row)) * static_cast<size_t>(width_) +
                      static_cast<size_t>(static_cast<int>(column))];
-      if (value - half_diagonal_ >= distance) return Verdict::kAtLeast;
-      if (value + half_diagonal_ < distance) return Verdict::kLess;
+      if (value - half_diagonal_ >= far) return Verdict::kAtLeast;
+      if (value + half_diagonal_ < near) return Verdict::kLess;
     }
-    return compareClosely(x, y, distance);
+    return compareClosely(x, y, near, far);
   }
 
   /// Both bounds of the clearance; outside the window the upper one is infinite.
@@ -139,7 +144,7 @@ class ClearanceField {
 
  private:
   double outside(const Eigen::Vector2d& p_map) const;
-  Verdict compareClosely(double x, double y, float distance) const;
+  Verdict compareClosely(double x, double y, float near, float far) const;
 
   double cell_size_ = 0.1;
   double per_cell_ = 10.0;       // [1/m]

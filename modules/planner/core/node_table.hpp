@@ -30,23 +30,36 @@ class NodeTable {
   /// The slot of a key; its node is -1 if the key is new. Valid until the next call.
   Slot& operator[](uint64_t key) {
     if (2 * used_ > slots_.size()) grow();
-    const uint64_t marked = key | static_cast<uint64_t>(generation_) << 56U;
-    Slot& slot = slots_[place(marked)];
-    if (slot.key != marked) {
-      slot = {marked, 0.0F, -1};
+    const uint64_t wanted = marked(key);
+    Slot& slot = slots_[place(wanted)];
+    if (slot.key != wanted) {
+      slot = {wanted, 0.0F, -1};
       ++used_;
     }
     return slot;
   }
-  size_t bytes() const { return slots_.size() * sizeof(Slot); }
+  /// Says that a key will be asked for soon.
+  void prefetch(uint64_t key) const {
+#if defined(__GNUC__)
+    __builtin_prefetch(&slots_[hashed(marked(key)) & (slots_.size() - 1)]);
+#endif
+  }
+  size_t bytes() const {
+    return slots_.size() * sizeof(Slot);
+  }
 
  private:
+  uint64_t marked(uint64_t key) const {
+    return key | static_cast<uint64_t>(generation_) << 56U;
+  }
+  static size_t hashed(uint64_t marked) {
+    const uint64_t hash = marked * 0x9E3779B97F4A7C15ULL;
+    return static_cast<size_t>(hash ^ hash >> 29U);
+  }
   /// Where a marked key is, or where it would go.
   size_t place(uint64_t marked) const {
     const size_t mask = slots_.size() - 1;
-    uint64_t hash = marked * 0x9E3779B97F4A7C15ULL;
-    hash ^= hash >> 29U;
-    size_t at = static_cast<size_t>(hash) & mask;
+    size_t at = hashed(marked) & mask;
     while (slots_[at].key >> 56U == generation_ && slots_[at].key != marked) at = (at + 1) & mask;
     return at;
   }

@@ -22,7 +22,9 @@ class OpenList {
     int next;
   };
 
-  void clear() {
+  /// Empties it; smaller estimates than `least` > 0 will share the first bucket.
+  void clear(float least) {
+    least_ = std::max(1e-6F, least);
     heads_.clear();
     entries_.clear();
     free_ = -1;
@@ -64,21 +66,19 @@ class OpenList {
  private:
   /// Bits of a float that tell no buckets apart.
   static constexpr uint32_t kFineBits = 12;
-  /// Smaller estimates share the first bucket.
-  static constexpr float kLeast = 1e-3F;
-
   /// The bits of floats that are not negative rise as the floats do.
   static uint32_t bitsOf(float value) {
     uint32_t bits = 0;
     std::memcpy(&bits, &value, sizeof(bits));
     return bits >> kFineBits;
   }
-  static size_t bucketOf(float estimate) {
-    return bitsOf(std::max(kLeast, estimate)) - bitsOf(kLeast);
+  size_t bucketOf(float estimate) const {
+    return bitsOf(std::max(least_, estimate)) - bitsOf(least_);
   }
 
   std::vector<int> heads_;
   std::vector<Entry> entries_;
+  float least_ = 1e-3F;
   int free_ = -1;
   size_t first_ = 0;
 };

@@ -124,7 +124,8 @@ void Search::beginAgain(const Weights& weights) {
         around.freeLevel(problem.T_map_start, around.level(problem.start_uncertainty)));
     if (root.level < 0) root.overlap = around.overlap(problem.T_map_start);
   }
-  open_.clear();
+  // Estimates hardly fall below that at the start.
+  open_.clear(std::isfinite(root.guess) ? 0.5F * root.guess : 0.0F);
   NodeTable::Slot& slot = best_[keyOf(root)];
   slot.cost = 0.0F;
   slot.node = static_cast<int>(nodes_.size());
@@ -198,8 +199,17 @@ void Search::expand(int parent) {
   const Node& node = nodes_[static_cast<size_t>(parent)];
   const int bin = headingBin(node);
   from_key_ = keyOf(node);
-  for (const TablePattern* pattern : problem_->patterns->from(node.motion_class))
-    if (pattern->start_bin < 0 || pattern->start_bin == bin) addChild(parent, *pattern);
+  children_.clear();
+  for (const TablePattern* pattern : problem_->patterns->from(node.motion_class)) {
+    if (pattern->start_bin >= 0 && pattern->start_bin != bin) continue;
+    Child child{nodeAfter(node, *pattern), 0};
+    child.node.parent = parent;
+    child.key = keyOf(child.node);
+    // The table is larger than the caches: it is fetched while the others are worked out.
+    best_.prefetch(child.key);
+    children_.push_back(child);
+  }
+  for (Child& child : children_) addChild(child.node, child.key);
 }
 
 /// The node after a pattern, as far as it is cheap to know.
@@ -224,14 +234,11 @@ Search::Node Search::nodeAfter(const Node& from, const TablePattern& pattern) co
   return node;
 }
 
-void Search::addChild(int parent, const TablePattern& pattern) {
-  const Node& from = nodes_[static_cast<size_t>(parent)];
-  Node node = nodeAfter(from, pattern);
-  node.parent = parent;
-  uint64_t key = keyOf(node);
+void Search::addChild(Node& node, uint64_t key) {
+  const int parent = node.parent;
   if (key == from_key_) {
     // It would be no better than where it came from: it is repeated until it leaves the cell.
-    if (!leaveCell(from, node)) return;
+    if (!leaveCell(nodes_[static_cast<size_t>(parent)], node)) return;
     key = keyOf(node);
   }
   NodeTable::Slot& slot = best_[key];
@@ -240,7 +247,7 @@ void Search::addChild(int parent, const TablePattern& pattern) {
   if (node.cost + to_go.bound >= best_cost_) return;
   node.bound = to_go.bound;
   node.guess = to_go.guess;
-  if (node.repeats == 1 && !admit(from, node)) return;
+  if (node.repeats == 1 && !admit(nodes_[static_cast<size_t>(parent)], node)) return;
   const bool waits = slot.node >= 0 && !nodes_[static_cast<size_t>(slot.node)].expanded();
   if (waits)
     nodes_[static_cast<size_t>(slot.node)] = node;

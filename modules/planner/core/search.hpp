@@ -155,6 +155,10 @@ class Search {
     bool expanded() const { return number >= 0; }
     Pose2 plainPose() const { return {x, y, static_cast<double>(yaw)}; }
   };
+  struct Child {
+    Node node;
+    uint64_t key;
+  };
   /// What drives one search of an anytime run.
   struct Weights {
     float bound = 1.0F;
@@ -179,7 +183,7 @@ class Search {
   void keepBest(int leaf, SearchEnd end);
   void expand(int parent);
   Node nodeAfter(const Node& from, const TablePattern& pattern) const;
-  void addChild(int parent, const TablePattern& pattern);
+  void addChild(Node& node, uint64_t key);
   bool leaveCell(const Node& from, Node& node) const;
   bool staysOnPlan(const Node& parent, const TablePattern& pattern) const;
   bool admit(const Node& parent, Node& node) const;
@@ -200,6 +204,7 @@ class Search {
   SearchConfig config_;
   const SearchProblem* problem_ = nullptr;
   std::vector<Node> nodes_;
+  std::vector<Child> children_;  // of the node that is being expanded
   OpenList open_;
   NodeTable best_;
   Weights weights_;

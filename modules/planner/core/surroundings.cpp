@@ -35,7 +35,12 @@ Surroundings::Surroundings(Grid grid, const FootprintSize& size, const Margins& 
     const double share = static_cast<double>(i - kPlan) / (kLevels - 1 - kPlan);
     level_margins_.push_back(margins.plan + share * std::max(0.0, margins.largest - margins.plan));
   }
-  for (const double margin : level_margins_) levels_.push_back(withMargin(size, margin));
+  for (const double margin : level_margins_) {
+    levels_.push_back(withMargin(size, margin));
+    // The least that makes plan + growth * sigma reach the margin.
+    const double sigma = std::max(0.0, margin - margins.plan) / std::max(1e-9, margins.growth);
+    level_variances_.push_back(static_cast<float>(sigma * sigma));
+  }
 }
 
 int Surroundings::levelWithin(double margin) const {
@@ -45,9 +50,11 @@ int Surroundings::levelWithin(double margin) const {
 }
 
 int Surroundings::level(const Uncertainty& uncertainty) const {
-  const double sigma =
-      std::sqrt(static_cast<double>(uncertainty.ofPoint(static_cast<float>(arm_))));
-  return std::max(kPlan, levelWithin(margins_.plan + margins_.growth * sigma));
+  const float variance = uncertainty.ofPoint(static_cast<float>(arm_));
+  int level = kPlan;
+  while (level + 1 < kLevels && level_variances_[static_cast<size_t>(level + 1)] <= variance)
+    ++level;
+  return level;
 }
 
 bool Surroundings::isFree(const Pose2& T_map_body, int level) const {

@@ -105,6 +105,7 @@ class Surroundings {
   double arm_;  // [m] from the body's origin to its farthest corner
   std::vector<Footprint> levels_;
   std::vector<double> level_margins_;
+  std::vector<float> level_variances_;  // [m2] from which on a level is wanted
 };
 
 }  // namespace tread::planner
