@@ -12,6 +12,9 @@ namespace {
 /// Slower than this counts as standing [m/s, rad/s].
 constexpr double kStanding = 0.02;
 
+/// An arc may bulge so much between two poses that are checked [m].
+constexpr double kSagitta = 0.0015;
+
 /// How far from the body's origin its outline is, about: what a turn moves [m].
 constexpr double kArm = 0.7;
 
@@ -35,6 +38,24 @@ void addReach(std::vector<SweepPose>& sweep) {
                kArm * std::abs(at.pose.yaw - before.pose.yaw);
     before = at;
   }
+}
+
+/// The poses of a sweep that a footprint needs, the end last.
+std::vector<SweepPose> coverOf(const std::vector<SweepPose>& sweep, SweepStep step) {
+  std::vector<SweepPose> cover;
+  Pose2 last;
+  for (size_t i = 0; i < sweep.size(); ++i) {
+    const bool is_end = i + 1 == sweep.size();
+    const Pose2& after = sweep[is_end ? i : i + 1].pose;
+    const double distance = distanceBetween(last, after);
+    const double turn = std::abs(after.yaw - last.yaw);
+    const bool next_too_far =
+        distance > step.covered || turn > step.turn + 1e-9 || distance * turn > 8.0 * kSagitta;
+    if (!is_end && !next_too_far) continue;
+    cover.push_back(sweep[i]);
+    last = sweep[i].pose;
+  }
+  return cover;
 }
 
 /// Smallest disc around the middle of the positions that holds them all.
@@ -76,6 +97,7 @@ TablePattern prepare(const Primitive& primitive, SweepStep step) {
   entry.reverses = primitive.poses.back().x < -kStanding;
   entry.sweep = sampleSweep(primitive.poses,
                             primitive.duration / static_cast<double>(primitive.poses.size()), step);
+  entry.cover = coverOf(entry.sweep, step);
   entry.start_bin = primitive.start_bin;
   entry.cells = primitive.cells;
   addDisc(entry);
@@ -177,6 +199,7 @@ TablePattern PatternTable::prepare(const MotionPattern& pattern, SweepStep step,
   entry.length = pattern.pathLength();
   entry.reverses = pattern.end().x < -kStanding;
   entry.sweep = sampleSweep(pattern.trajectory, set_->periodSeconds(), step);
+  entry.cover = coverOf(entry.sweep, step);
   entry.uncertainty = uncertaintyOf(pattern.end_covariance, uncertaintyOf(sigma));
   addDisc(entry);
   return entry;

@@ -43,6 +43,7 @@ struct TablePattern {
   double length = 0.0;                     ///< [m] of its path
   bool reverses = false;                   ///< ends behind its start
   std::vector<SweepPose> sweep;      ///< poses to check, without the start, at most a step apart
+  std::vector<SweepPose> cover;      ///< those of them that are enough for a footprint (SweepStep)
   Eigen::Vector2d centre{0.0, 0.0};  ///< of a disc that holds all positions, relative to the start
   double radius = 0.0;               ///< [m] of that disc
   Uncertainty uncertainty;           ///< of its end, in the axes of its start
@@ -57,6 +58,9 @@ struct TablePattern {
 struct SweepStep {
   double distance = 0.10;  ///< [m]
   double turn = 0.105;     ///< [rad]
+  /// [m] The footprint's sweep over so much of a straight way is the footprint at both ends, if it
+  /// is at least so long: the search checks no more poses than that, and as many as turns need.
+  double covered = 0.3;
 };
 
 /// Standard deviations of the end of a pattern whose covariance nobody has stated.

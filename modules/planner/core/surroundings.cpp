@@ -86,7 +86,7 @@ bool Surroundings::sweepFree(const TurnedPose& start, const TablePattern& patter
   if (isFarFromAll(start, pattern, level)) return true;
   const Footprint& footprint = levels_[static_cast<size_t>(level)];
   // The end first: patterns that hit something mostly hit it with their end.
-  for (auto at = pattern.sweep.rbegin(); at != pattern.sweep.rend(); ++at) {
+  for (auto at = pattern.cover.rbegin(); at != pattern.cover.rend(); ++at) {
     if (!footprint.isFree(field_, alongFrom(start, *at))) return false;
   }
   return true;
