@@ -94,7 +94,8 @@ int GridPassages::areaAt(const Eigen::Vector2d& p_map) const {
 std::vector<int> GridPassages::areasNear(const Eigen::Vector2d& p_map, double distance) const {
   std::vector<int> areas;
   const auto bound = [this](double value, int size) {
-    return static_cast<int>(std::clamp(value, -1.0, static_cast<double>(size)));
+    // In this order what is no number counts as outside.
+    return static_cast<int>(std::min(static_cast<double>(size), std::max(-1.0, value)));
   };
   // A cell's corner may be near enough although its centre is not.
   const double reach = distance + 0.71 * size_;

@@ -13,7 +13,7 @@ namespace tread::planner {
 /// The passages of a map that does not change, and which places are connected for a disc.
 class GridPassages : public PassageSource {
  public:
-  /// /// `coarse` cells of the grid make one side of a coarse cell; its room is the clearance at
+  /// `coarse` cells of the grid make one side of a coarse cell; its room is the clearance at
   /// the best of their centres. Outside the grid there is none.
   GridPassages(const Grid& grid, const ClearanceField& field, int coarse);
 

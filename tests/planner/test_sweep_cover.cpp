@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "modules/planner/core/surroundings.hpp"
+#include "tests/effort.hpp"
+#include "tests/planner/kit/random_ground.hpp"
+#include "tests/planner/kit/sample_patterns.hpp"
+
+using namespace tread;
+using namespace tread::planner;
+using namespace tread::planner::testkit;
+
+namespace {
+
+/// Poses of a pattern, 1 cm and 0.01 rad apart at most.
+std::vector<SweepPose> finePoses(const std::vector<Pose2>& trajectory, double period) {
+  return sampleSweep(trajectory, period, SweepStep{0.01, 0.01});
+}
+
+std::vector<Pose2> randomArc(std::mt19937_64& random, double most_turn) {
+  const Twist2 twist{drawn(random, -1.5, 1.5), 0.0, drawn(random, -most_turn, most_turn)};
+  std::vector<Pose2> poses;
+  for (int k = 1; k <= 40; ++k) poses.push_back(integrate(twist, k / 40.0));
+  return poses;
+}
+
+Margins withoutMargin() {
+  Margins none;
+  none.check = none.plan = none.growth = none.largest = 0.0;
+  return none;
+}
+
+struct Count {
+  int accepted = 0;
+  int refused = 0;  // by the exact test, with a smaller footprint
+};
+
+/// Draws grounds and motions; counts what is accepted although a footprint that is `smaller` [m] on
+/// all sides meets something on the way.
+template <class DrawPoses>
+Count judge(uint64_t seed, SweepStep step, double smaller, const DrawPoses& draw) {
+  std::mt19937_64 random(seed);
+  const FootprintSize size;
+  const Footprint exact(size.front, size.rear, size.half_width, -smaller);
+  Count count;
+  RandomGround ground;
+  ground.blocks = 4;
+  ground.specks = 25;
+  for (int i = 0; i < testing::effort(1500); ++i) {
+    ground.cell_size = i % 4 == 0 ? 0.05 : 0.1;
+    const Grid grid = ground.draw(random);
+    const Surroundings around(grid, size, withoutMargin());
+    for (int k = 0; k < 4; ++k) {
+      Primitive primitive;
+      primitive.poses = draw(random);
+      primitive.duration = primitive.cost = 1.0;
+      const PatternTable table({primitive}, step);
+      const Pose2 start = ground.pose(random);
+      if (!around.isFree(start, Surroundings::kBare)) continue;
+      if (!around.sweepFree(start, table.patterns().front(), Surroundings::kBare)) continue;
+      ++count.accepted;
+      for (const SweepPose& at : finePoses(primitive.poses, 1.0 / 40.0)) {
+        if (exact.blockedCells(grid, start * at.pose, true) == 0) continue;
+        ++count.refused;
+        break;
+      }
+    }
+  }
+  CHECK(count.accepted > testing::effort(1000));
+  return count;
+}
+
+std::vector<Pose2> randomSpotTurn(std::mt19937_64& random) {
+  const double turn = drawn(random, -1.5, 1.5);
+  std::vector<Pose2> poses;
+  for (int k = 1; k <= 40; ++k) poses.push_back({0.0, 0.0, turn * k / 40.0});
+  return poses;
+}
+
+}  // namespace
+
+TEST_CASE("a straight sweep that is accepted touches nothing between the poses that are checked") {
+  const auto straight = [](std::mt19937_64& random) { return randomArc(random, 0.0); };
+  CHECK(judge(1, SweepStep{}, 1e-6, straight).refused == 0);
+}
+
+TEST_CASE("an arc or a turn that is accepted cuts no obstacle by more than 3 cm") {
+  // Between two headings a corner swings out of both; how far follows from the step's turn.
+  const auto arc = [](std::mt19937_64& random) { return randomArc(random, 2.0); };
+  CHECK(judge(2, SweepStep{}, 0.03, arc).refused == 0);
+  CHECK(judge(3, SweepStep{}, 0.02, randomSpotTurn).refused == 0);
+}
+
+TEST_CASE("poses 0.005 rad apart leave no more than 3 mm between them") {
+  const SweepStep fine{0.1, 0.005, 0.3};
+  const auto arc = [](std::mt19937_64& random) { return randomArc(random, 2.0); };
+  CHECK(judge(4, fine, 0.003, arc).refused == 0);
+  CHECK(judge(5, fine, 0.003, randomSpotTurn).refused == 0);
+}
+
+TEST_CASE("a cover is a part of the sweep, in its order, and never leaves more out than it may") {
+  std::mt19937_64 random(6);
+  const SweepStep step;
+  for (int i = 0; i < testing::effort(500); ++i) {
+    Primitive primitive;
+    primitive.poses = i % 3 == 0 ? randomSpotTurn(random) : randomArc(random, 2.0);
+    primitive.duration = primitive.cost = 1.0;
+    const PatternTable table({primitive}, step);
+    const TablePattern& pattern = table.patterns().front();
+    Pose2 last;
+    auto in_sweep = pattern.sweep.begin();
+    for (const SweepPose& at : pattern.cover) {
+      in_sweep = std::find_if(in_sweep, pattern.sweep.end(),
+                              [&](const SweepPose& other) { return other.time == at.time; });
+      REQUIRE(in_sweep != pattern.sweep.end());
+      const double distance = std::hypot(at.pose.x - last.x, at.pose.y - last.y);
+      REQUIRE(distance <= step.covered + 1e-9);
+      REQUIRE(std::abs(at.pose.yaw - last.yaw) <= step.turn + 1e-9);
+      last = at.pose;
+    }
+    REQUIRE(pattern.cover.back().time == pattern.sweep.back().time);
+  }
+}
