@@ -35,7 +35,7 @@ Places::Places(const Surroundings& surroundings, double radius) : surroundings_(
       const size_t square = number(x / side, y / side);
       if (row[x] <= clearance[square]) continue;
       clearance[square] = row[x];
-      best_[square] = {static_cast<float>(cell * (x + 0.5)), static_cast<float>(cell * (y + 0.5))};
+      best_[square] = {grid.lower().x + x, grid.lower().y + y};
     }
   }
   const auto whole = static_cast<float>(surroundings.circumscribedRadius());
@@ -47,9 +47,8 @@ Places::Places(const Surroundings& surroundings, double radius) : surroundings_(
 
 void Places::ask(size_t square, int heading) {
   const double yaw = heading * kTurn;
-  const TurnedPose pose{lower_.x() + static_cast<double>(best_[square].x),
-                        lower_.y() + static_cast<double>(best_[square].y), std::cos(yaw),
-                        std::sin(yaw)};
+  const Eigen::Vector2d p_map = surroundings_.grid().centre(best_[square]);
+  const TurnedPose pose{p_map.x(), p_map.y(), std::cos(yaw), std::sin(yaw)};
   const auto bit = static_cast<uint16_t>(1U << static_cast<unsigned>(heading));
   asked_[square] = static_cast<uint16_t>(asked_[square] | bit);
   if (surroundings_.isFree(pose, Surroundings::kBare))

@@ -51,10 +51,6 @@ class Places {
 
  private:
   enum class Room : uint8_t { kNone, kSome, kAll };
-  struct Point {
-    float x = 0.0F;
-    float y = 0.0F;
-  };
   void ask(size_t square, int heading);
 
   const Surroundings& surroundings_;
@@ -63,7 +59,7 @@ class Places {
   int width_ = 0;
   int height_ = 0;
   std::vector<Room> room_;
-  std::vector<Point> best_;  // from lower_
+  std::vector<CellIndex> best_;  // cell with most room, in map
   std::vector<uint16_t> asked_;
   std::vector<uint16_t> free_;
 };

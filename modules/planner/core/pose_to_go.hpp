@@ -44,8 +44,9 @@ class PoseToGo {
            double beyond);
 
   bool empty() const { return cost_.empty(); }
-  /// Cost from a pose to the goal; of what was not filled in the least that it can be; infinite
-  /// where there is no way.
+  /// Cost from a pose to the goal, yaw within half a turn; infinite where there is no way. What was
+  /// not filled in costs, with the way there from the start, more than what was: the least that it
+  /// can be, or what some way costs.
   float at(double x, double y, float yaw) const {
     const double column = (x - lower_.x()) * per_size_;
     const double row = (y - lower_.y()) * per_size_;
