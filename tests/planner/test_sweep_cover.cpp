@@ -51,7 +51,7 @@ Count judge(uint64_t seed, SweepStep step, double smaller, const DrawPoses& draw
   RandomGround ground;
   ground.blocks = 4;
   ground.specks = 25;
-  for (int i = 0; i < testing::effort(1500); ++i) {
+  for (int i = 0; i < testing::effort(700); ++i) {
     ground.cell_size = i % 4 == 0 ? 0.05 : 0.1;
     const Grid grid = ground.draw(random);
     const Surroundings around(grid, size, withoutMargin());
@@ -71,7 +71,7 @@ Count judge(uint64_t seed, SweepStep step, double smaller, const DrawPoses& draw
       }
     }
   }
-  CHECK(count.accepted > testing::effort(1000));
+  CHECK(count.accepted > testing::effort(250));
   return count;
 }
 

@@ -97,10 +97,14 @@ std::vector<planner::Primitive> latticePrimitives(const PlanTask& task,
   return primitives;
 }
 
-/// How finely sweeps are checked: a point must not jump over a cell.
+/// How finely sweeps are checked: a point must not jump over a cell, a small vehicle over a gap
+/// between two poses.
 planner::SweepStep sweepStep(const PlanTask& task) {
   planner::SweepStep step;
-  if (!task.shape.isRectangle()) step.distance = std::min(step.distance, task.grid.cellSize() / 2);
+  const RobotShape& shape = task.shape;
+  if (!shape.isRectangle()) step.distance = std::min(step.distance, task.grid.cellSize() / 2);
+  step.covered =
+      shape.isRectangle() ? std::min({step.covered, shape.length, shape.width}) : step.distance;
   return step;
 }
 

@@ -154,9 +154,10 @@ Search::Outcome Search::search(const StopPredicate& stop) {
     // What was replaced since it was put in, or cannot be part of a better plan any more.
     if (node.expanded() || node.cost != entry.cost) continue;
     if (node.cost + node.bound >= best_cost_ * (1.0F - kSame)) continue;
-    if (visit(entry.node)) return Outcome::kBetter;
+    const bool is_better = visit(entry.node);
     if (expansions_ % kAskEvery == 0 && (stop(expansions_) || nodes_.size() > config_.most_nodes))
       return Outcome::kStopped;
+    if (is_better) return Outcome::kBetter;
   }
   return Outcome::kAllSeen;
 }

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "tests/effort.hpp"
+#include "tests/planner/kit/path_bench.hpp"
+
+using namespace tread;
+using namespace tread::planner;
+using namespace tread::planner::testkit;
+
+namespace {
+
+constexpr int kExpansions = 3000;
+
+/// Calls visit(bench, query, answer) for many grounds and queries.
+template <class Visit>
+void onQueries(uint64_t seed, int grounds, SweepStep step, const Visit& visit) {
+  for (int i = 0; i < grounds; ++i) {
+    PathBench bench(seed + static_cast<uint64_t>(i), i % 3 != 0, step);
+    for (int k = 0; k < 4; ++k) {
+      const PathQuery query = bench.query();
+      const PathAnswer answer = bench.answer(query, kExpansions);
+      INFO("seed " << seed + static_cast<uint64_t>(i) << " query " << k << ": " << answer.reason);
+      visit(bench, query, answer);
+    }
+  }
+}
+
+std::vector<SweepPose> finePoses(const PathBench& bench, const TablePattern& pattern) {
+  return sampleSweep(pattern.pattern->trajectory, bench.table->set().periodSeconds(),
+                     SweepStep{0.01, 0.01});
+}
+
+/// Whether the footprint, made smaller by so much [m] on all sides, still meets something.
+bool cutsBy(double smaller, const PathBench& bench, const PathQuery& query,
+            const PathAnswer& answer) {
+  const FootprintSize size;
+  const Footprint footprint(size.front, size.rear, size.half_width, -smaller);
+  Pose2 from = query.T_map_start;
+  for (const PlanStep& step : answer.search.steps) {
+    for (const SweepPose& at : finePoses(bench, *bench.table->find(step.pattern_id)))
+      if (footprint.blockedCells(bench.grid, from * at.pose, bench.config.unknown_blocks) > 0)
+        return true;
+    from = step.T_map_end;
+  }
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "no solved plan meets anything at the poses of its patterns, and straight parts nowhere") {
+  const FootprintSize size;
+  const Footprint exact(size.front, size.rear, size.half_width, -1e-6);
+  int plans = 0;
+  onQueries(1, testing::effort(50), SweepStep{},
+            [&](const PathBench& bench, const PathQuery& query, const PathAnswer& answer) {
+              if (answer.end != PathEnd::kSolved) return;
+              ++plans;
+              Pose2 from = query.T_map_start;
+              for (const PlanStep& step : answer.search.steps) {
+                const TablePattern& pattern = *bench.table->find(step.pattern_id);
+                const bool straight = std::abs(pattern.end().pose.yaw) < 1e-9;
+                for (const SweepPose& at : straight ? finePoses(bench, pattern) : pattern.cover)
+                  REQUIRE(exact.blockedCells(bench.grid, from * at.pose,
+                                             bench.config.unknown_blocks) == 0);
+                from = step.T_map_end;
+              }
+            });
+  CHECK(plans > testing::effort(120));
+}
+
+TEST_CASE("in a turn no solved plan cuts a corner by more than 3 cm, with fine steps 1 cm") {
+  for (const double turn : {SweepStep{}.turn, 0.02}) {
+    SweepStep step;
+    step.turn = turn;
+    const double most = turn > 0.05 ? 0.03 : 0.01;
+    onQueries(1000, testing::effort(30), step,
+              [&](const PathBench& bench, const PathQuery& query, const PathAnswer& answer) {
+                if (answer.end == PathEnd::kSolved) CHECK_FALSE(cutsBy(most, bench, query, answer));
+              });
+  }
+}
+
+TEST_CASE("the poses of a solved plan join, and it ends at rest in the goal") {
+  int plans = 0;
+  onQueries(2000, testing::effort(50), SweepStep{},
+            [&](const PathBench& bench, const PathQuery& query, const PathAnswer& answer) {
+              CHECK(answer.reason.empty() == (answer.end == PathEnd::kSolved));
+              if (answer.end != PathEnd::kSolved) return;
+              ++plans;
+              const PatternTable& table = *bench.table;
+              Pose2 pose = query.T_map_start;
+              double time = 0.0;
+              int motion_class = table.restClass();
+              for (const PlanStep& step : answer.search.steps) {
+                const TablePattern& pattern = *table.find(step.pattern_id);
+                REQUIRE(pattern.entry == motion_class);
+                pose = pose * pattern.end().pose;
+                time += pattern.duration;
+                motion_class = step.exit_class;
+                REQUIRE(motion_class == pattern.exit);
+                REQUIRE((pose.position() - step.T_map_end.position()).norm() < 1e-9);
+                REQUIRE(std::abs(wrapAngle(pose.yaw - step.T_map_end.yaw)) < 1e-9);
+                REQUIRE(step.time == Approx(time));
+              }
+              CHECK(motion_class == table.restClass());
+              CHECK(answer.search.cost == Approx(time).epsilon(1e-4).margin(1e-4));
+              const double way = (pose.position() - query.T_map_start.position()).norm();
+              CHECK(time >= way / table.bestSpeed() - 1e-6);
+              const Pose2& goal = query.T_map_goal;
+              CHECK((pose.position() - goal.position()).norm() <= query.position_tolerance + 1e-4);
+              const double off = std::abs(wrapAngle(pose.yaw - goal.yaw));
+              CHECK(off <= query.yaw_tolerance + 1e-4);
+            });
+  CHECK(plans > testing::effort(120));
+}
+
+TEST_CASE("a start that is in the goal needs no pattern") {
+  PathBench bench(5);
+  PathQuery query = bench.query();
+  query.T_map_goal = query.T_map_start;
+  const PathAnswer answer = bench.answer(query, 100);
+  CHECK(answer.end == PathEnd::kSolved);
+  CHECK(answer.search.steps.empty());
+  CHECK(answer.search.cost == 0.0);
+}
+
+TEST_CASE("the same query gives the same bytes, also from a planner that answered others before") {
+  for (uint64_t seed = 1; seed <= static_cast<uint64_t>(testing::effort(20)); ++seed) {
+    PathBench bench(seed);
+    const PathQuery first = bench.query();
+    const PathQuery second = bench.query();
+    const auto bytes = bytesOf(bench.answer(first, 500));
+    bench.answer(second, 500);
+    REQUIRE(bytesOf(bench.answer(first, 500)) == bytes);
+    PathPlanner fresh(bench.grid, *bench.table, bench.config);
+    REQUIRE(bytesOf(fresh.answer(first, after(500))) == bytes);
+  }
+}

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/effort.hpp"
+#include "tests/planner/kit/path_bench.hpp"
+
+using namespace tread;
+using namespace tread::planner;
+using namespace tread::planner::testkit;
+
+namespace {
+
+/// Whether a disc could be moved from cell to cell, by a plain flood fill over all of them.
+bool connected(const Grid& grid, const ClearanceField& field, const PathQuery& query,
+               double radius) {
+  std::vector<uint8_t> seen(grid.cells().size(), 0);
+  std::vector<CellIndex> open{grid.indexOf(query.T_map_start.position())};
+  while (!open.empty()) {
+    const CellIndex cell = open.back();
+    open.pop_back();
+    if (!grid.contains(cell) || seen[grid.offset(cell)] != 0) continue;
+    const Eigen::Vector2d p = grid.centre(cell);
+    if (field.at(p) < radius) continue;
+    seen[grid.offset(cell)] = 1;
+    if ((p - query.T_map_goal.position()).norm() <= query.position_tolerance) return true;
+    for (const CellIndex step : {CellIndex{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+      open.push_back({cell.x + step.x, cell.y + step.y});
+  }
+  return false;
+}
+
+/// Whether any pattern that begins at rest is free from the start, pose by pose.
+bool anyBegins(const PathBench& bench, const Pose2& start) {
+  const FootprintSize size;
+  const Footprint exact(size.front, size.rear, size.half_width, 0.0);
+  for (const TablePattern* pattern : bench.table->from(bench.table->restClass())) {
+    bool hit = false;
+    for (const SweepPose& at : pattern->sweep)
+      hit = hit || exact.blockedCells(bench.grid, start * at.pose, bench.config.unknown_blocks) > 0;
+    if (!hit) return true;
+  }
+  return false;
+}
+
+/// An open ground of 8 m by 6 m around the origin, to build walls on.
+struct Room {
+  Room() {
+    for (Cell& cell : grid.cells()) cell = kFree;
+  }
+  void block(CellIndex from, CellIndex to) {
+    for (int y = from.y; y <= to.y; ++y)
+      for (int x = from.x; x <= to.x; ++x) grid.set({x, y}, kObstacle);
+  }
+  PathAnswer answer(const Pose2& start, const Pose2& goal, double tolerance = 0.25) {
+    const PathQuery query{start, goal, tolerance, 4.0};
+    return PathPlanner(grid, table, config).answer(query, after(20'000));
+  }
+
+  Grid grid{0.1, {-40, -30}, 80, 60};
+  PatternTable table{samplePatterns(), SweepStep{}, {}};
+  PathConfig config;
+};
+
+}  // namespace
+
+TEST_CASE("unreachable is only what a plain flood fill of the inscribed disc finds apart as well") {
+  int apart = 0;
+  int refused = 0;
+  int solved = 0;
+  for (int i = 0; i < testing::effort(150); ++i) {
+    PathBench bench(static_cast<uint64_t>(5000 + i), i % 2 == 0);
+    const ClearanceField field(bench.grid, bench.config.unknown_blocks);
+    for (int k = 0; k < 6; ++k) {
+      const PathQuery query = bench.query();
+      const PathAnswer answer = bench.answer(query, 60);
+      const bool joined = connected(bench.grid, field, query, bench.planner->inscribedRadius());
+      INFO("seed " << 5000 + i << " query " << k << ": " << answer.reason);
+      apart += joined ? 0 : 1;
+      if (answer.end == PathEnd::kSolved) ++solved;
+      if (answer.end != PathEnd::kUnreachable) continue;
+      ++refused;
+      if (answer.search.expansions == 0)
+        CHECK_FALSE(joined);
+      else
+        CHECK_FALSE(anyBegins(bench, query.T_map_start));
+    }
+  }
+  CHECK(solved > testing::effort(200));
+  CHECK(refused > testing::effort(30));
+  CHECK(apart >= refused / 2);
+}
+
+TEST_CASE("each refusal says why, and where the vehicle could stand nearest to the goal") {
+  Room room;
+  room.block({5, -30}, {6, 29});
+  room.block({-35, 15}, {-20, 29});
+  const Pose2 start{-1.5, 0.0, 0.0};
+  const PathAnswer outside = room.answer({-9.0, 0.0, 0.0}, start);
+  CHECK(outside.end == PathEnd::kUnreachable);
+  CHECK(outside.reason == "the start lies outside the map");
+  const PathAnswer far = room.answer(start, {50.0, 0.0, 0.0});
+  CHECK(far.end == PathEnd::kUnreachable);
+  CHECK(far.reason == "the goal lies outside the map");
+  const PathAnswer blocked = room.answer(start, {-2.8, 2.2, 0.0});
+  CHECK(blocked.reason == "the goal lies on obstacles, or too near to them");
+  const PathAnswer shut = room.answer(start, {2.5, 0.0, 0.0});
+  CHECK(shut.end == PathEnd::kUnreachable);
+  CHECK(shut.reason == "obstacles enclose the goal or the vehicle");
+  REQUIRE(shut.closest);
+  CHECK(shut.closest->x() < 0.5);
+  CHECK(shut.closest->x() > 0.0);
+  CHECK(std::abs(shut.closest->y()) < 0.2);
+  CHECK(shut.search.steps.empty());
+  CHECK(room.answer(start, {-1.5, -1.0, 1.0}).end == PathEnd::kSolved);
+}
+
+TEST_CASE("a start deep in obstacles is told so, one at their border may leave them") {
+  Room room;
+  room.block({-40, -30}, {-10, 29});
+  const PathAnswer deep = room.answer({-3.0, 0.0, 0.0}, {2.0, 0.0, 0.0});
+  CHECK(deep.end == PathEnd::kUnreachable);
+  CHECK(deep.reason == "the start lies on obstacles");
+  // The rear overlaps by 15 cm: going ahead is a way out.
+  const PathAnswer border = room.answer({-0.4, 0.0, 0.0}, {2.0, 0.0, 0.0});
+  CHECK(border.end == PathEnd::kSolved);
+}
+
+TEST_CASE("a start that no pattern may leave is told so") {
+  // A slot as wide as the vehicle, closed ahead: from there the patterns only go back.
+  Room room;
+  PatternSetContent content = samplePatterns().content();
+  for (size_t i = content.patterns.size(); i-- > 0;)
+    if (content.patterns[i].name == "back")
+      content.patterns.erase(content.patterns.begin() + long(i));
+  std::string why;
+  const PatternTable forward(*PatternSet::make(std::move(content), why), SweepStep{}, {});
+  room.block({-40, 4}, {7, 29});
+  room.block({-40, -30}, {7, -5});
+  room.block({7, -4}, {7, 3});
+  PathQuery query;
+  query.T_map_start = {0.0, 0.0, 0.0};
+  query.T_map_goal = {-2.0, 0.0, 0.0};
+  const PathAnswer answer =
+      PathPlanner(room.grid, forward, room.config).answer(query, after(20'000));
+  CHECK(answer.end == PathEnd::kUnreachable);
+  CHECK(answer.reason ==
+        "the start has no legal successor: each pattern would leave the map or hit something");
+  CHECK(room.answer(query.T_map_start, query.T_map_goal).end == PathEnd::kSolved);
+}
+
+TEST_CASE("what a coarse search has not found, though it saw all it could, is not unreachable") {
+  Room rough;
+  rough.config.search.cell = 2.0;
+  rough.config.search.heading_bins = 4;
+  Room fine;
+  const Pose2 start{-3.0, -2.0, 0.0};
+  int differs = 0;
+  for (double x = -3.0; x <= 3.0; x += 0.5) {
+    for (const double y : {-1.0, 0.5, 2.0}) {
+      const PathAnswer answer = rough.answer(start, {x, y, 0.0}, 0.1);
+      if (answer.end == PathEnd::kSolved) continue;
+      REQUIRE(answer.search.exhausted);
+      CHECK(answer.end == PathEnd::kNoneInTime);
+      CHECK(answer.reason.find("at this resolution") != std::string::npos);
+      differs += fine.answer(start, {x, y, 0.0}, 0.1).end == PathEnd::kSolved ? 1 : 0;
+    }
+  }
+  CHECK(differs >= 3);
+}
+
+TEST_CASE("goals that are no numbers are refused") {
+  Room room;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {nan, std::numeric_limits<double>::infinity(), 1e300}) {
+    CHECK(room.answer({0.0, 0.0, 0.0}, {bad, 0.0, 0.0}).reason == "the goal lies outside the map");
+    CHECK(room.answer({0.0, bad, 0.0}, {1.0, 0.0, 0.0}).reason == "the start lies outside the map");
+  }
+}
+
+TEST_CASE("a map without cells, and one of a single cell, refuse in words") {
+  const PatternTable table(samplePatterns(), SweepStep{}, {});
+  for (const int size : {0, 1}) {
+    Grid grid(0.1, {0, 0}, size, size);
+    for (Cell& cell : grid.cells()) cell = kFree;
+    PathPlanner planner(grid, table, PathConfig{});
+    const PathAnswer answer = planner.answer({{0.05, 0.05, 0.0}, {0.05, 0.05, 0.0}}, after(100));
+    CHECK(answer.end == PathEnd::kUnreachable);
+    CHECK_FALSE(answer.reason.empty());
+  }
+}
