@@ -120,7 +120,7 @@ TEST_CASE("a stop before anything was found says so and promises nothing") {
       CHECK(told.costs.empty());
     }
   });
-  CHECK(none > testing::effort(20));
+  CHECK(none > 0);
 }
 
 TEST_CASE("an exhausted search is at least as cheap as one that begins with greater care") {
