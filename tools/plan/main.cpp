@@ -16,7 +16,7 @@ using namespace tread::plan;
 int planOne(const PlanTask& task, const PlanOptions& options) {
   TaskPlanner planner(task);
   const PlanQuery& query = task.queries.front();
-  PlanAnswer answer = planner.answer(query);
+  PlanAnswer answer = planner.answer(query, planner.preparationMs());
   addPreparation(answer, planner.preparationMs());
   std::fputs(answerText(answer).c_str(), stdout);
   if (!options.json.empty()) writeJson(options.json, answerJson(answer));

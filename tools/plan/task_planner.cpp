@@ -23,7 +23,11 @@ constexpr size_t kDrawnNodes = 60'000;
 /// Takes the time of one query [ms].
 class Watch {
  public:
-  explicit Watch(std::optional<double> deadline = std::nullopt) : deadline_(deadline) {}
+  /// `spent` of the deadline is over already.
+  explicit Watch(std::optional<double> deadline = std::nullopt, double spent = 0.0)
+      : deadline_(deadline) {
+    if (deadline_) deadline_ = std::max(0.0, *deadline_ - spent);
+  }
 
   double now() const {
     return std::chrono::duration<double, std::milli>(Clock::now() - begin_).count();
@@ -97,21 +101,18 @@ std::vector<planner::Primitive> latticePrimitives(const PlanTask& task,
   return primitives;
 }
 
-/// How finely sweeps are checked: a point must not jump over a cell, a small vehicle over a gap
-/// between two poses.
-planner::SweepStep sweepStep(const PlanTask& task) {
-  planner::SweepStep step;
-  const RobotShape& shape = task.shape;
-  if (!shape.isRectangle()) step.distance = std::min(step.distance, task.grid.cellSize() / 2);
-  step.covered =
-      shape.isRectangle() ? std::min({step.covered, shape.length, shape.width}) : step.distance;
-  return step;
-}
-
 planner::FootprintSize footprintOf(const RobotShape& shape) {
   const double length = shape.isRectangle() ? shape.length : kPoint;
   const double width = shape.isRectangle() ? shape.width : kPoint;
   return {length / 2.0, length / 2.0, width / 2.0};
+}
+
+/// How finely sweeps are checked: a point must not jump over a cell.
+planner::SweepStep sweepStep(const PlanTask& task) {
+  planner::SweepStep step;
+  if (!task.shape.isRectangle()) step.distance = std::min(step.distance, task.grid.cellSize() / 2);
+  step.covered = planner::coveredBy(footprintOf(task.shape), step);
+  return step;
 }
 
 PlanStatus statusOf(planner::PathEnd end) {
@@ -156,8 +157,8 @@ void TaskPlanner::preparePlanner() {
   planner_ = std::make_unique<planner::PathPlanner>(task_.grid, *patterns_, config);
 }
 
-PlanAnswer TaskPlanner::answer(const PlanQuery& query) {
-  Watch watch(task_.deadline_ms);
+PlanAnswer TaskPlanner::answer(const PlanQuery& query, double spent_ms) {
+  Watch watch(task_.deadline_ms, spent_ms);
   planner::PathQuery wanted;
   wanted.T_map_start = between(task_.map.T_map_grid, query.T_map_start);
   wanted.T_map_goal = between(task_.map.T_map_grid, query.T_map_goal);

@@ -21,8 +21,8 @@ class TaskPlanner {
   /// that nobody can drive with.
   explicit TaskPlanner(const PlanTask& task);
 
-  /// The answer; its total_ms is without preparationMs().
-  PlanAnswer answer(const PlanQuery& query);
+  /// The answer; its total_ms is without preparationMs(). Of the deadline `spent_ms` are over.
+  PlanAnswer answer(const PlanQuery& query, double spent_ms = 0.0);
   /// [ms] that patterns, clearance and connected areas took.
   double preparationMs() const { return preparation_ms_; }
   /// What the last query's picture shows.

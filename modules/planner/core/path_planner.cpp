@@ -13,6 +13,8 @@ namespace {
 constexpr double kCoarseShare = 0.5;
 /// Room that a cell may have beyond that at its centre, in cells: as a rule, and at most.
 constexpr double kUsualSlack = 0.25;
+/// So often the cells of the search are halved where all was seen and no plan found.
+constexpr int kFiner = 2;
 constexpr double kMostSlack = 0.71;
 
 SearchConfig latticeSearch(double cell_size, int bins) {
@@ -24,6 +26,10 @@ SearchConfig latticeSearch(double cell_size, int bins) {
   config.improvements = 0;
   config.most_nodes = 40'000'000;
   return config;
+}
+
+bool isWanting(const SearchResult& result) {
+  return result.exhausted && result.end != SearchEnd::kGoal && result.expansions > 1;
 }
 
 PathAnswer refused(const std::string& reason) {
@@ -39,7 +45,7 @@ SearchConfig PathConfig::pathSearch() {
   SearchConfig config;
   config.cell = 0.1;
   config.heading_bins = 72;
-  config.bound_weight = 2.0;
+  config.bound_weight = 3.0;
   config.reverse_penalty = config.stop_penalty = config.switch_penalty = 0.0;
   config.near_penalty = 0.0;
   config.horizon = 1e6;
@@ -157,6 +163,13 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
   if (events.search_begins) events.search_begins();
   PathAnswer answer;
   answer.search = search_.run(problem, stop);
+  // Where the vehicle has to manoeuvre in little space, cells may hide the moves that it takes.
+  for (int finer = 0; finer < kFiner && isWanting(answer.search) && costs_ == nullptr; ++finer) {
+    problem.cell = (problem.cell > 0.0 ? problem.cell : config_.search.cell) / 2.0;
+    const int before = answer.search.expansions;
+    answer.search = search_.run(problem, [&](int count) { return stop(before + count); });
+    answer.search.expansions += before;
+  }
   judge(answer);
   return answer;
 }

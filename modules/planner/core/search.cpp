@@ -78,7 +78,7 @@ void Search::begin(const SearchProblem& problem) {
 void Search::prepareBound() {
   const PatternTable& patterns = *problem_->patterns;
   speed_ = patterns.bestSpeed();
-  per_cell_ = 1.0 / config_.cell;
+  per_cell_ = 1.0 / (problem_->cell > 0.0 ? problem_->cell : config_.cell);
   goal_yaw_ = static_cast<float>(wrapAngle(problem_->goal.T_map_goal.yaw));
   yaw_tolerance_ = static_cast<float>(problem_->goal.yaw_tolerance);
   for (size_t i = 0; i < 2; ++i) {

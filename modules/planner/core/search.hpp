@@ -53,6 +53,7 @@ struct SearchProblem {
   const PoseToGo* pose_to_go = nullptr;   ///< if given the guide, in the place of the turn weight
   const CellCosts* cell_costs = nullptr;  ///< if given a point drives over these, not a footprint
   Goal goal;
+  double cell = 0.0;           ///< [m] in the place of SearchConfig::cell; 0 = as configured
   std::vector<int> committed;  ///< ids of the patterns that the plan before wanted from here on
   /// Told whenever a plan, or a cheaper one, was found, with its cost.
   std::function<void(double cost, int expansions)> on_better;

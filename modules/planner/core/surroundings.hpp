@@ -19,6 +19,11 @@ struct FootprintSize {
   double half_width = 0.34;  ///< to both sides
 };
 
+/// SweepStep::covered for a footprint [m]: never less than its distance.
+inline double coveredBy(const FootprintSize& size, const SweepStep& step) {
+  return std::max(step.distance, std::min(step.covered, 0.45 * (size.front + size.rear)));
+}
+
 /// How much room is kept around the footprint [m].
 struct Margins {
   double check = 0.03;    ///< when what is already under way is checked again
