@@ -14,9 +14,10 @@ namespace {
 constexpr float kFar = 1e12f;
 
 /// Distance along y from each cell's centre to the nearest blocked cell's area in its column.
-/** Row by row over the whole width, so that the compiler can work on many columns at once. */
+/** Row by row over the whole width, so that the compiler can work on many columns at once; `cap`
+ * and more [half cells] is kFar. */
 std::vector<float> columnDistances(const std::vector<uint8_t>& blocked, int width, int height,
-                                   bool outside_blocks) {
+                                   bool outside_blocks, float cap) {
   const auto w = static_cast<size_t>(width);
   const auto h = static_cast<size_t>(height);
   constexpr float kNone = 1e6f;
@@ -32,7 +33,8 @@ std::vector<float> columnDistances(const std::vector<uint8_t>& blocked, int widt
     for (size_t x = 0; x < w; ++x) {
       steps[x] = blocked[y * w + x] ? 0.0f : steps[x] + 1.0f;
       const float rows = std::min(distance[y * w + x], steps[x]);
-      distance[y * w + x] = rows >= kNone ? kFar : std::max(0.0f, 2.0f * rows - 1.0f);
+      const float along = std::max(0.0f, 2.0f * rows - 1.0f);
+      distance[y * w + x] = along >= cap ? kFar : along;
     }
   return distance;
 }
@@ -109,9 +111,10 @@ class RowEnvelope {
 
 }  // namespace
 
-ClearanceField::ClearanceField(const Grid& grid, bool unknown_blocks)
+ClearanceField::ClearanceField(const Grid& grid, bool unknown_blocks, double cap)
     : cell_size_(grid.cellSize()),
       per_cell_(1.0 / grid.cellSize()),
+      cap_(static_cast<float>(cap)),
       half_diagonal_(static_cast<float>(0.708 * grid.cellSize())),
       lower_(grid.lower()),
       width_(grid.width()),
@@ -121,7 +124,10 @@ ClearanceField::ClearanceField(const Grid& grid, bool unknown_blocks)
   std::transform(grid.cells().begin(), grid.cells().end(), blocked.begin(),
                  [&](Cell cell) { return static_cast<uint8_t>(isBlocked(cell, unknown_blocks)); });
   runs_ = freeRuns(blocked, width_, height_);
-  clearance_ = columnDistances(blocked, width_, height_, unknown_blocks);
+  // In half cells; the largest number of rows is far less than the limit for no cap.
+  const double cap_steps = std::min(cap / (0.5 * cell_size_), 1e6);
+  clearance_ =
+      columnDistances(blocked, width_, height_, unknown_blocks, static_cast<float>(cap_steps));
   for (float& value : clearance_) value = value >= kFar ? kFar : value * value;
   RowEnvelope envelope(width_);
   std::vector<float> row(static_cast<size_t>(width_));
@@ -130,8 +136,7 @@ ClearanceField::ClearanceField(const Grid& grid, bool unknown_blocks)
     float* const values = clearance_.data() + static_cast<size_t>(y) * row.size();
     envelope.transform(values, width_, unknown_blocks, row.data());
     for (size_t x = 0; x < row.size(); ++x)
-      values[x] =
-          row[x] >= kFar ? std::numeric_limits<float>::infinity() : std::sqrt(row[x]) * half_cell;
+      values[x] = row[x] >= kFar ? cap_ : std::min(cap_, std::sqrt(row[x]) * half_cell);
   }
 }
 
@@ -150,7 +155,8 @@ ClearanceField::Bounds ClearanceField::bounds(const Eigen::Vector2d& p_map) cons
   if (value == 0.0 || value == kInfinity) return {value, value};
   // A float may be off by half its last digit: both bounds stay bounds.
   const double from_centre = std::sqrt(dx * dx + dy * dy) * cell_size_ + 6e-8 * value;
-  return {std::max(0.0, value - from_centre), value + from_centre};
+  const bool capped = value >= static_cast<double>(cap_);
+  return {std::max(0.0, value - from_centre), capped ? kInfinity : value + from_centre};
 }
 
 ClearanceField::Verdict ClearanceField::compareClosely(double x, double y, float near,

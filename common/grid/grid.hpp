@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -91,7 +92,10 @@ class ClearanceField {
   };
 
   ClearanceField() = default;
-  ClearanceField(const Grid& grid, bool unknown_blocks);
+  /// `cap` [m]: clearances from there on are not told apart, which is quicker; no upper bound is
+  /// known there.
+  ClearanceField(const Grid& grid, bool unknown_blocks,
+                 double cap = std::numeric_limits<double>::infinity());
 
   /// Clearance at a point of map [m]: a lower bound of the distance to the nearest blocked cell's
   /// area, at most 0.71 cells too low; 0 in a blocked cell; infinite if nothing blocks. Outside the
@@ -128,7 +132,7 @@ class ClearanceField {
           clearance_[static_cast<size_t>(static_cast<int>(row)) * static_cast<size_t>(width_) +
                      static_cast<size_t>(static_cast<int>(column))];
       if (value - half_diagonal_ >= far) return Verdict::kAtLeast;
-      if (value + half_diagonal_ < near) return Verdict::kLess;
+      if (value + half_diagonal_ < near && value < cap_) return Verdict::kLess;
     }
     return compareClosely(x, y, near, far);
   }
@@ -137,6 +141,7 @@ class ClearanceField {
   Bounds bounds(const Eigen::Vector2d& p_map) const;
 
   bool unknownBlocks() const { return unknown_blocks_; }
+  CellIndex lower() const { return lower_; }
   double cellSize() const { return cell_size_; }
 
   /// Whether any of the cells (first..last, row) is blocked, in constant time. At most 65535 cells.
@@ -147,8 +152,9 @@ class ClearanceField {
   Verdict compareClosely(double x, double y, float near, float far) const;
 
   double cell_size_ = 0.1;
-  double per_cell_ = 10.0;       // [1/m]
-  float half_diagonal_ = 0.08F;  // [m] of a cell, a little more
+  double per_cell_ = 10.0;                              // [1/m]
+  float cap_ = std::numeric_limits<float>::infinity();  // [m]
+  float half_diagonal_ = 0.08F;                         // [m] of a cell, a little more
   CellIndex lower_;
   int width_ = 0;
   int height_ = 0;

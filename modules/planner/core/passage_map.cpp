@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace tread::planner {
 namespace {
 
+/// So many times as many tiles may lie in a rectangle as need room there.
+constexpr size_t kTogether = 2;
 /// Room that differs by less than this changes nobody's way [m].
 constexpr float kSameRoom = 0.005F;
 
@@ -98,12 +101,17 @@ void PassageMap::fill(PassageWindow& window) const {
 }
 
 void PassageMap::refresh() {
-  for (const auto& [key, change] : dirty_)
-    if (change != Change::kNone && tiles_.tiles().count(key) > 0) refreshTile(key);
+  std::vector<std::pair<int, int>> rooms;  // tiles whose room may have changed
+  for (const auto& [key, change] : dirty_) {
+    if (change == Change::kNone || tiles_.tiles().count(key) == 0) continue;
+    if (change == Change::kObstacles || passages_.count(key) == 0) rooms.push_back(key);
+    refreshKnowledge(key);
+  }
+  refreshRooms(rooms);
   dirty_.clear();
 }
 
-void PassageMap::refreshTile(std::pair<int, int> key) {
+void PassageMap::refreshKnowledge(std::pair<int, int> key) {
   const bool is_new = passages_.count(key) == 0;
   PassageTile& passage = passages_[key];
   if (is_new) {
@@ -111,9 +119,25 @@ void PassageMap::refreshTile(std::pair<int, int> key) {
     passage.room.assign(cells, static_cast<float>(config_.room_cap));
     passage.unknown.assign(cells, 1);
   }
-  bool changed = refreshUnknown(tiles_.tiles().at(key), passage);
-  if (is_new || dirty_[key] == Change::kObstacles) changed = refreshRoom(key, passage) || changed;
-  if (changed) ++passage_revision_;
+  if (refreshUnknown(tiles_.tiles().at(key), passage)) ++passage_revision_;
+}
+
+void PassageMap::refreshRooms(const std::vector<std::pair<int, int>>& keys) {
+  if (keys.empty()) return;
+  TileBox box{keys.front().first, keys.front().second, keys.front().first, keys.front().second};
+  for (const auto& [x, y] : keys)
+    box = {std::min(box.left, x), std::min(box.bottom, y), std::max(box.right, x),
+           std::max(box.top, y)};
+  const size_t tiles =
+      static_cast<size_t>(box.right - box.left + 1) * static_cast<size_t>(box.top - box.bottom + 1);
+  // A tile of its own needs a wide ring: where many lie close together one field serves them all.
+  const bool together = tiles <= kTogether * keys.size();
+  const ClearanceField shared = together ? fieldOver(box) : ClearanceField();
+  for (const auto& key : keys) {
+    ClearanceField own;
+    if (!together) own = fieldOver({key.first, key.second, key.first, key.second});
+    if (refreshRoom(key, together ? shared : own, passages_[key])) ++passage_revision_;
+  }
 }
 
 bool PassageMap::refreshUnknown(const Tile& tile, PassageTile& passage) const {
@@ -135,28 +159,33 @@ bool PassageMap::refreshUnknown(const Tile& tile, PassageTile& passage) const {
   return changed;
 }
 
-bool PassageMap::refreshRoom(std::pair<int, int> key, PassageTile& passage) const {
+/// Clearance to obstacles in a rectangle of tiles, and in as wide a ring around it as counts.
+ClearanceField PassageMap::fieldOver(const TileBox& box) const {
   const int ring = static_cast<int>(std::ceil(config_.room_cap / cellSize()));
-  const CellIndex lower{key.first * tileCells(), key.second * tileCells()};
-  const int width = tileCells() + 2 * ring;
-  const Grid grid = tiles_.window({lower.x - ring, lower.y - ring}, width, width);
-  const ClearanceField field(grid, false);
-  bool changed = false;
+  const CellIndex lower{box.left * tileCells() - ring, box.bottom * tileCells() - ring};
+  const int width = (box.right - box.left + 1) * tileCells() + 2 * ring;
+  const int height = (box.top - box.bottom + 1) * tileCells() + 2 * ring;
+  return ClearanceField(tiles_.window(lower, width, height), false, config_.room_cap);
+}
+
+bool PassageMap::refreshRoom(std::pair<int, int> key, const ClearanceField& field,
+                             PassageTile& passage) const {
+  const auto cap = static_cast<float>(config_.room_cap);
   const int side = coarsePerTile();
-  for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) {
-      double room = 0.0;
-      for (int k = 0; k < coarse_ * coarse_; ++k) {
-        const CellIndex cell{lower.x + x * coarse_ + k % coarse_,
-                             lower.y + y * coarse_ + k / coarse_};
-        room = std::max(room, field.at(grid.centre(cell)));
-      }
-      const float value = static_cast<float>(std::min(room, config_.room_cap));
-      float& cell = passage.room[at(y, side, x)];
-      changed = changed || std::abs(cell - value) > kSameRoom;
-      cell = value;
-    }
+  const int column = key.first * tileCells() - field.lower().x;
+  const int row = key.second * tileCells() - field.lower().y;
+  std::vector<float> rooms(static_cast<size_t>(side * side), 0.0F);
+  for (int y = 0; y < side * coarse_; ++y) {
+    const float* clearance = field.row(row + y) + column;
+    float* room = rooms.data() + at(y / coarse_, side, 0);
+    for (int x = 0; x < side; ++x)
+      for (int k = 0; k < coarse_; ++k)
+        room[x] = std::max(room[x], std::min(cap, clearance[x * coarse_ + k]));
   }
+  const auto differs = [](float a, float b) { return std::abs(a - b) > kSameRoom; };
+  const bool changed =
+      !std::equal(rooms.begin(), rooms.end(), passage.room.begin(), std::not_fn(differs));
+  passage.room = std::move(rooms);
   return changed;
 }
 

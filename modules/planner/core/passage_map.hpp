@@ -64,9 +64,19 @@ class PassageMap : public PassageSource {
   /// What a new tile means for the room around it.
   enum class Change { kNone, kKnowledge, kObstacles };
   Change merge(Tile& tile) const;
-  void refreshTile(std::pair<int, int> key);
+  /// Tiles from left to right and from bottom to top, all included.
+  struct TileBox {
+    int left;
+    int bottom;
+    int right;
+    int top;
+  };
+  void refreshKnowledge(std::pair<int, int> key);
+  void refreshRooms(const std::vector<std::pair<int, int>>& keys);
   bool refreshUnknown(const Tile& tile, PassageTile& passage) const;
-  bool refreshRoom(std::pair<int, int> key, PassageTile& passage) const;
+  bool refreshRoom(std::pair<int, int> key, const ClearanceField& field,
+                   PassageTile& passage) const;
+  ClearanceField fieldOver(const TileBox& box) const;
 
   TileMap tiles_;
   PassageConfig config_;

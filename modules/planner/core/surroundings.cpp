@@ -8,6 +8,9 @@
 namespace tread::planner {
 namespace {
 
+/// Beyond the footprint nobody needs to know how far off things are [m].
+constexpr double kFarthestLook = 1.5;
+
 Footprint withMargin(const FootprintSize& size, double margin) {
   return Footprint(size.front, size.rear, size.half_width, margin);
 }
@@ -26,9 +29,10 @@ Surroundings::Surroundings(Grid grid, const FootprintSize& size, const Margins& 
                            bool unknown_blocks)
     : grid_(std::move(grid)),
       unknown_blocks_(unknown_blocks),
-      field_(grid_, unknown_blocks),
       margins_(margins),
       arm_(withMargin(size, 0.0).circumscribed()) {
+  const double most = arm_ + 2.0 * std::max(margins.plan, margins.largest);
+  field_ = ClearanceField(grid_, unknown_blocks, most + kFarthestLook);
   const double check = std::min(margins.check, margins.plan);
   level_margins_ = {0.0, check / 2.0, check, (check + margins.plan) / 2.0};
   for (int i = kPlan; i < kLevels; ++i) {

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+//
+// One cycle of the planner when everything has changed at once: the local map of 40 x 40 m at 10
+// cm, and the pattern set. As a ratio to the clearance transform of that map, timed between the
+// cycles.
+#include "modules/planner/core/search.hpp"
+#include "modules/planner/core/world.hpp"
+#include "tests/bench/planner/path_figures.hpp"
+#include "tests/planner/kit/playground.hpp"
+#include "tests/planner/kit/sample_patterns.hpp"
+
+namespace {
+
+using namespace tread;
+using namespace tread::planner;
+using namespace tread::planner::testkit;
+
+constexpr double kSide = 40.0;  // [m]
+
+/// The first fifteen driving patterns of the samples.
+PatternSet fifteenPatterns(double turn_error) {
+  PatternSetContent content = samplePatterns(1, turn_error).content();
+  if (content.patterns.size() > 15) content.patterns.resize(15);
+  std::vector<MotionClass> used;
+  for (const MotionClass& motion_class : content.classes)
+    for (const MotionPattern& pattern : content.patterns)
+      if (pattern.entry_class == motion_class.name || pattern.exit_class == motion_class.name) {
+        used.push_back(motion_class);
+        break;
+      }
+  content.classes = used;
+  std::string why;
+  const std::optional<PatternSet> set = PatternSet::make(std::move(content), why);
+  if (!set) throw std::logic_error(why);
+  return *set;
+}
+
+/// A cycle: field and way to go of the changed map, the table of the changed set, the search.
+void replan(benchmark::State& state) {
+  WorldConfig config;
+  config.window = kSide;
+  config.window_period = config.field_period = 0;
+  std::vector<double> cycles, transforms;
+  uint64_t seed = 0;
+  int64_t now = 0;
+  std::vector<World> worlds(20, World(config));
+  std::vector<Mission> missions;
+  std::vector<Grid> grids;
+  std::vector<std::vector<Tile>> tiles;
+  for (size_t i = 0; i < worlds.size(); ++i) {
+    missions.push_back(randomMission(i + 1));
+    grids.push_back(missions[i].ground.paint(0.1, {-16.0, -19.2}, {24.0, 20.8}));
+    tiles.push_back(tilesOf(grids[i], ToyMapping::kTileCells, 1));
+    // The robot has been there for a while.
+    for (const Tile& tile : tiles[i])
+      worlds[i].put(tile, ToyMapping::kCell, ToyMapping::kTileCells);
+    worlds[i].lookAround(missions[i].T_map_start, 1);
+    worlds[i].lookAhead(missions[i].T_map_start, missions[i].goal, 1);
+  }
+  Search search(SearchConfig{});
+  for (auto _ : state) {
+    const size_t i = seed++ % worlds.size();
+    const Mission& mission = missions[i];
+    now += 1'000'000;
+    const PatternSet set = fifteenPatterns(1.0 + 0.01 * static_cast<double>(seed % 7));
+    // An obstacle comes and goes, so that no map is like the one before.
+    for (Tile& tile : tiles[i]) {
+      tile.utime = now;
+      Cell& cell = tile.cells[tile.cells.size() / 3];
+      cell = cell == kObstacle ? kFree : kObstacle;
+    }
+    for (const Tile& tile : tiles[i])
+      worlds[i].put(tile, ToyMapping::kCell, ToyMapping::kTileCells);
+    const bench::StopWatch watch;
+    worlds[i].lookAround(mission.T_map_start, now);
+    worlds[i].lookAhead(mission.T_map_start, mission.goal, now);
+    const PatternTable table(set, SweepStep{}, {});
+    SearchProblem problem;
+    problem.T_map_start = mission.T_map_start;
+    problem.start_class = table.restClass();
+    problem.patterns = &table;
+    problem.surroundings = &worlds[i].surroundings();
+    problem.cost_to_go = &worlds[i].costToGo();
+    problem.goal = mission.goal;
+    benchmark::DoNotOptimize(search.run(problem, [](int count) { return count >= 3000; }));
+    cycles.push_back(watch.ms());
+    transforms.push_back(bench::transformTime(grids[i]));
+  }
+  const double reference = bench::quantile(transforms, 0.5);
+  bench::countQuantiles(state, "cycle", cycles);
+  state.counters["transform_ms"] = reference;
+  state.counters["p50_over_transform"] = bench::quantile(cycles, 0.5) / reference;
+  state.counters["p99_over_transform"] = bench::quantile(cycles, 0.99) / reference;
+}
+BENCHMARK(replan)->Unit(benchmark::kMillisecond)->Iterations(400);
+
+}  // namespace
