@@ -43,9 +43,9 @@ struct Count {
 /// Draws grounds and motions; counts what is accepted although a footprint that is `smaller` [m] on
 /// all sides meets something on the way.
 template <class DrawPoses>
-Count judge(uint64_t seed, SweepStep step, double smaller, const DrawPoses& draw) {
+Count judge(uint64_t seed, SweepStep step, double smaller, const DrawPoses& draw,
+            const FootprintSize& size = {}) {
   std::mt19937_64 random(seed);
-  const FootprintSize size;
   const Footprint exact(size.front, size.rear, size.half_width, -smaller);
   Count count;
   RandomGround ground;
@@ -87,6 +87,13 @@ std::vector<Pose2> randomSpotTurn(std::mt19937_64& random) {
 TEST_CASE("a straight sweep that is accepted touches nothing between the poses that are checked") {
   const auto straight = [](std::mt19937_64& random) { return randomArc(random, 0.0); };
   CHECK(judge(1, SweepStep{}, 1e-6, straight).refused == 0);
+}
+
+TEST_CASE("a vehicle of 20 cm needs poses as close as that, or it would jump over what is thin") {
+  const auto straight = [](std::mt19937_64& random) { return randomArc(random, 0.0); };
+  const FootprintSize small{0.1, 0.1, 0.1};
+  CHECK(judge(7, SweepStep{0.1, 0.105, 0.2}, 1e-6, straight, small).refused == 0);
+  CHECK(judge(7, SweepStep{0.1, 0.105, 0.4}, 1e-6, straight, small).refused > 0);
 }
 
 TEST_CASE("an arc or a turn that is accepted cuts no obstacle by more than 3 cm") {
