@@ -148,6 +148,8 @@ class ClearanceField {
   bool anyBlocked(int row, int first, int last) const;
 
  private:
+  void lookNearby(const std::vector<uint8_t>& blocked, int cap_steps);
+  void lookEverywhere(const std::vector<uint8_t>& blocked, float cap_steps);
   double outside(const Eigen::Vector2d& p_map) const;
   Verdict compareClosely(double x, double y, float near, float far) const;
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace tread::planner {
 namespace {
@@ -30,17 +31,18 @@ float slownessOf(float room, const FieldConfig& config) {
 
 /// Cells waiting to be settled, in buckets of nearly equal length.
 struct CostToGo::Front {
-  std::vector<std::vector<size_t>> buckets = std::vector<std::vector<size_t>>(256);
-  std::vector<size_t> taken;
+  std::vector<std::vector<uint32_t>> buckets = std::vector<std::vector<uint32_t>>(256);
+  std::vector<uint32_t> taken;
   size_t current = 0;
   size_t waiting = 0;
 
   void add(size_t cell, float length) {
     const size_t wanted = std::max(current, static_cast<size_t>(length / kBucket));
-    buckets[std::min(wanted, current + buckets.size() - 1) % buckets.size()].push_back(cell);
+    buckets[std::min(wanted, current + buckets.size() - 1) % buckets.size()].push_back(
+        static_cast<uint32_t>(cell));
     ++waiting;
   }
-  const std::vector<size_t>& take() {
+  const std::vector<uint32_t>& take() {
     while (buckets[current % buckets.size()].empty()) ++current;
     taken.clear();
     taken.swap(buckets[current % buckets.size()]);
@@ -160,7 +162,7 @@ bool CostToGo::march(const Goal& goal, const Eigen::Vector2d& p_vehicle,
   const auto further = static_cast<float>(config.reach);
   float stop_at = kNoWay;
   while (front.waiting > 0) {
-    for (const size_t cell : front.take()) {
+    for (const uint32_t cell : front.take()) {
       if (settled_[cell] < kOpen) continue;
       settle(cell);
       relax(cell, front);
@@ -191,6 +193,7 @@ void CostToGo::settle(size_t cell) {
   Slope& slope = slopes_[cell];
   slope = Slope{};
   slope.step = slowness_[cell] * static_cast<float>(size_);
+  const float slowness = std::exchange(slowness_[cell], kNoWay);  // relax() looks no more at it
   const float x = std::min(left, right);
   const float y = std::min(below, above);
   const float along_x = x < own ? (left < right ? x - own : own - x) : 0.0F;
@@ -204,24 +207,24 @@ void CostToGo::settle(size_t cell) {
   if (std::min(x, y) < own) {
     const size_t next = x < y ? (left < right ? cell - 1 : cell + 1)
                               : (below < above ? cell - stride : cell + stride);
-    until = slopes_[next].until_unknown + (own - settled_[next]) / slowness_[cell];
+    until = slopes_[next].until_unknown + (own - settled_[next]) / slowness;
   }
   slope.until_unknown = unknown_[cell] != 0 ? 0.0F : std::min(until, kUnknownCap);
 }
 
 void CostToGo::relax(size_t cell, Front& front) {
   const auto stride = static_cast<size_t>(stride_);
+  const auto size = static_cast<float>(size_);
   for (const size_t next : {cell - 1, cell + 1, cell - stride, cell + stride}) {
     const float slowness = slowness_[next];
-    if (settled_[next] < kOpen || slowness == kNoWay) continue;
-    const float step = slowness * static_cast<float>(size_);
+    if (slowness == kNoWay) continue;
+    const float step = slowness * size;
     const float a = std::min(settled_[next - 1], settled_[next + 1]);
     const float b = std::min(settled_[next - stride], settled_[next + stride]);
-    const float apart = std::abs(a - b);
+    const float nearer = std::min(a, b);
+    const float apart = std::min(std::max(a, b) - nearer, step);
     // Upwind solution of |grad| = slowness; one-sided where the two sides are too far apart.
-    const float value = apart < step
-                            ? (a + b + std::sqrt(2.0F * step * step - apart * apart)) / 2.0F
-                            : std::min(a, b) + step;
+    const float value = nearer + 0.5F * (apart + std::sqrt(2.0F * step * step - apart * apart));
     if (value >= tentative_[next]) continue;
     tentative_[next] = value;
     front.add(next, value);
@@ -246,7 +249,8 @@ double CostToGo::length(const Eigen::Vector2d& p_map) const {
     weight += weights[k];
   }
   if (weight > 0.05) return sum / weight;
-  const bool passable = slowness_[cellAt(p_map)] != kNoWay;
+  const size_t cell = cellAt(p_map);
+  const bool passable = slowness_[cell] != kNoWay || settled_[cell] < kOpen;
   if (passable && cut_short_) return static_cast<double>(cut_);
   return lengthNearby(p_map);
 }

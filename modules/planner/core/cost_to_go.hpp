@@ -134,7 +134,7 @@ class CostToGo {
   int width_ = 0;
   int height_ = 0;
   int stride_ = 0;
-  std::vector<float> slowness_;   // [m of way per m]; infinite where blocked
+  std::vector<float> slowness_;   // [m of way per m]; infinite where blocked or settled
   std::vector<float> tentative_;  // [m] as short as was found
   std::vector<float> settled_;    // [m] final; infinite before
   std::vector<Slope> slopes_;     // of settled cells

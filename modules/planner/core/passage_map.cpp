@@ -141,22 +141,25 @@ void PassageMap::refreshRooms(const std::vector<std::pair<int, int>>& keys) {
 }
 
 bool PassageMap::refreshUnknown(const Tile& tile, PassageTile& passage) const {
-  bool changed = false;
   const int side = coarsePerTile();
+  std::vector<uint8_t> unknown(static_cast<size_t>(side * side), 0);
+  std::vector<uint8_t> counts(static_cast<size_t>(side));
   for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) {
-      int unknown = 0;
-      for (int k = 0; k < coarse_ * coarse_; ++k) {
-        const size_t cell = at(y * coarse_ + k / coarse_, tileCells(), x * coarse_ + k % coarse_);
-        unknown += tile.cells[cell] == kUnknown ? 1 : 0;
+    std::fill(counts.begin(), counts.end(), uint8_t{0});
+    for (int row = y * coarse_; row < (y + 1) * coarse_; ++row) {
+      const Cell* const cells = tile.cells.data() + at(row, tileCells(), 0);
+      for (int x = 0; x < side; ++x) {
+        int count = counts[static_cast<size_t>(x)];
+        for (int k = 0; k < coarse_; ++k) count += cells[x * coarse_ + k] == kUnknown ? 1 : 0;
+        counts[static_cast<size_t>(x)] = static_cast<uint8_t>(count);
       }
-      const uint8_t value = 2 * unknown >= coarse_ * coarse_ ? 1 : 0;
-      uint8_t& cell = passage.unknown[at(y, side, x)];
-      changed = changed || cell != value;
-      cell = value;
     }
+    for (int x = 0; x < side; ++x)
+      unknown[at(y, side, x)] = 2 * counts[static_cast<size_t>(x)] >= coarse_ * coarse_ ? 1 : 0;
   }
-  return changed;
+  if (unknown == passage.unknown) return false;
+  passage.unknown = std::move(unknown);
+  return true;
 }
 
 /// Clearance to obstacles in a rectangle of tiles, and in as wide a ring around it as counts.

@@ -71,6 +71,21 @@ TEST_CASE("anywhere the clearance is a lower bound, and the truth lies between t
   }
 }
 
+TEST_CASE("with a cap the clearance is the same to the bit up to there, however it is worked out") {
+  std::mt19937_64 random(3);
+  for (const double density : {0.0, 0.002, 0.02, 0.3, 1.0})
+    for (const bool unknown_blocks : {false, true})
+      for (const double cap : {0.0, 0.01, 0.33, 0.8, 1.55, 3.2, 3.3}) {
+        const Grid grid = randomGrid(random, {-7, 11}, 57, 43, density, 0.01);
+        const ClearanceField whole(grid, unknown_blocks);
+        const ClearanceField capped(grid, unknown_blocks, cap);
+        CAPTURE(density, unknown_blocks, cap);
+        for (int y = 0; y < grid.height(); ++y)
+          for (int x = 0; x < grid.width(); ++x)
+            REQUIRE(capped.row(y)[x] == std::min(whole.row(y)[x], static_cast<float>(cap)));
+      }
+}
+
 TEST_CASE("blocked cells have no clearance anywhere in them") {
   Grid grid(0.1, {0, 0}, 20, 20);
   std::fill(grid.cells().begin(), grid.cells().end(), kFree);
