@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/planner/planner_node.hpp"
 
+#include <algorithm>
+
 #include "common/messages/ins_messages.hpp"
 #include "modules/planner/planner_messages.hpp"
 
@@ -76,8 +78,10 @@ void PlannerNode::take(const pattern_set_part_t& message) {
   if (sets_.refused() > refused) return health_.addToCounter("PATTERN_SET refused");
   situation_.set_received = bus_.now();
   if (!set) return;
-  supervisor_.takeSet(*set);
-  health_.setCounter("pattern set version", set->version());
+  const int64_t started = bus_.now();
+  if (!supervisor_.takeSet(*set)) return health_.addToCounter("PATTERN_SET refused: it waits");
+  longest_swap_ = std::max(longest_swap_, bus_.now() - started);
+  health_.setCounter("longest swap of a set [us]", longest_swap_);
 }
 
 void PlannerNode::take(const motor_t& message) {
@@ -166,8 +170,9 @@ void PlannerNode::publishTree(const PlanReport& report) {
 
 void PlannerNode::publishHealth(int64_t utime, const PlanReport& report) {
   const bool waits = report.status == PlanStatus::kWaiting;
-  health_.setState(waits ? health_t::HEALTH_DEGRADED : health_t::HEALTH_OK,
-                   waits ? report.reason : "");
+  const std::string problem = waits ? report.reason : supervisor_.setRefusal();
+  health_.setState(problem.empty() ? health_t::HEALTH_OK : health_t::HEALTH_DEGRADED, problem);
+  health_.setCounter("pattern set version", report.set_version);
   for (const auto& [name, value] : supervisor_.counters()) health_.setCounter(name, value);
   health_.step(utime);
 }

@@ -59,6 +59,7 @@ class PlannerNode : public Node {
   Situation situation_;
   StopPredicate stop_;  ///< empty = the deadline
   int64_t executions_utime_ = 0;
+  int64_t longest_swap_ = 0;  ///< [us]
   int64_t next_plan_ = 0;
   int64_t next_tree_ = 0;
   int64_t seq_program_ = 0;

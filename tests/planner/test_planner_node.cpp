@@ -7,83 +7,11 @@
 
 #include "common/bus/virtual_bus.hpp"
 #include "modules/planner/planner_node.hpp"
-#include "tests/planner/kit/toy_robot.hpp"
+#include "tests/planner/kit/yard.hpp"
 
 using namespace tread;
 using namespace tread::planner;
 using namespace tread::planner::testkit;
-
-namespace {
-
-/// The planner node and a toy robot on a virtual bus, and somebody who listens.
-struct Yard {
-  explicit Yard(FaultPlan faults = {}) : bus(7, std::move(faults)), start(bus.now()) {
-    bus.addNode("robot", [](Bus& end) { return std::make_unique<ToyRobot>(end); });
-    bus.addNode("planner",
-                [](Bus& end) { return std::make_unique<PlannerNode>(PlannerConfig{}, end); },
-                {8'000, 3'000});
-    bus.outside().subscribe<plan_t>(kPlan, [this](const plan_t& message) {
-      plan = message;
-      ++plans;
-    });
-    bus.outside().subscribe<plan_tree_t>(kPlanTree,
-                                         [this](const plan_tree_t& message) { tree = message; });
-    bus.outside().subscribe<program_t>(kProgram, [this](const program_t& message) {
-      longest_silence = std::max(longest_silence, message.utime - last_program);
-      last_program = message.utime;
-      ++programs;
-      if (message.running.execution_id != 0) run_id = message.run_id;
-    });
-    bus.outside().subscribe<health_t>(kHealth, [this](const health_t& message) {
-      if (message.process == "planner") health = message;
-    });
-  }
-
-  void sendGoal(double x, double tolerance = 0.5) {
-    goal_t message{};
-    message.utime = bus.now();
-    message.seq = seq++;
-    message.goal_id = 1;
-    message.goal_pose[0] = x;
-    message.position_tolerance = tolerance;
-    message.yaw_tolerance = 4.0;
-    bus.outside().publish(kGoal, message);
-  }
-
-  void arm(bool armed = true) {
-    arm_t message{};
-    message.utime = bus.now();
-    message.seq = seq++;
-    message.armed = armed;
-    message.armed_by = "test";
-    bus.outside().publish(kArm, message);
-  }
-
-  void estop(bool engaged) {
-    estop_t message{};
-    message.utime = bus.now();
-    message.seq = seq++;
-    message.engaged = engaged;
-    bus.outside().publish(kEstop, message);
-  }
-
-  void run(double seconds) { bus.runUntil(bus.now() + static_cast<int64_t>(seconds * 1e6)); }
-  ToyRobot& robot() { return *dynamic_cast<ToyRobot*>(bus.node("robot")); }
-
-  VirtualBus bus;
-  int64_t start;
-  int64_t seq = 0;
-  plan_t plan{};
-  plan_tree_t tree{};
-  health_t health{};
-  int plans = 0;
-  int programs = 0;
-  int64_t run_id = 0;
-  int64_t last_program = 0;
-  int64_t longest_silence = 0;
-};
-
-}  // namespace
 
 TEST_CASE(
     "Armed and given a goal the node drives the robot there, joining patterns without a gap") {

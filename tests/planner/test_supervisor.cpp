@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "tests/planner/kit/closed_loop.hpp"
+#include "tests/planner/kit/policy_rig.hpp"
 
 using namespace tread;
 using namespace tread::planner;
@@ -12,77 +12,7 @@ using namespace tread::planner::testkit;
 
 namespace {
 
-constexpr int64_t kSecond = 1'000'000;
-
-/// A supervisor with an ideal robot: poses come true exactly, MOTOR and EXECUTION are prompt.
-class Rig {
- public:
-  explicit Rig(const Playground& ground = {}) : supervisor_(PlannerConfig{}, 77) {
-    supervisor_.takeSet(samplePatterns());
-    paint(ground);
-    situation_.armed_by_operator = true;
-    situation_.goal = Goal{1, {12.0, 0.0, 0.0}, 0.5, 4.0};
-  }
-
-  void paint(const Playground& ground) {
-    ++painted_;
-    for (Tile& tile : tilesOf(ground.paint(0.1, {-9.6, -9.6}, {16.0, 9.6}), 32, 1 + painted_))
-      supervisor_.world().put(std::move(tile), 0.1, 32);
-  }
-
-  /// Runs for a time [s]; `tamper` may spoil the situation of each step.
-  Decision run(double seconds, const std::function<void(Situation&)>& tamper = nullptr) {
-    Decision decision;
-    const int64_t end = now_ + static_cast<int64_t>(seconds * 1e6);
-    for (; now_ < end; now_ += 10'000) {
-      state_ = moveOn(state_, bridge_.step(now_), 0.01, TrackModel{});
-      if (now_ % 50'000 != 0) continue;
-      decision = step(tamper);
-    }
-    return decision;
-  }
-
-  Decision step(const std::function<void(Situation&)>& tamper) {
-    if (maps_) freshMap();
-    situation_.now = now_;
-    const double speed = (state_.left + state_.right) / 2.0;
-    situation_.pose = PoseReading{
-        now_, state_.pose, Twist2{speed, 0.0, (state_.right - state_.left) / TrackModel{}.gauge}};
-    situation_.bridge = bridge_.reading();
-    situation_.executions = bridge_.executions();
-    situation_.set_received = now_;
-    Situation seen = situation_;
-    if (tamper) tamper(seen);
-    const Decision decision = supervisor_.step(seen, nullptr);
-    bridge_.receive(77, supervisor_.program().running(), supervisor_.program().next(), now_);
-    return decision;
-  }
-
-  /// From now on no new scans enter the map.
-  void stopMapping() { maps_ = false; }
-  double speed() const { return (state_.left + state_.right) / 2.0; }
-  const Pose2& pose() const { return state_.pose; }
-  const MotionPattern& running() const { return supervisor_.program().running().pattern(); }
-  const MotionPattern& next() const { return supervisor_.program().next().pattern(); }
-  Supervisor& supervisor() { return supervisor_; }
-  Situation& situation() { return situation_; }
-  ToyBridge& bridge() { return bridge_; }
-  int64_t now() const { return now_; }
-
- private:
-  void freshMap() {
-    Tile tile{500, 500, now_, std::vector<Cell>(32 * 32, kFree)};
-    supervisor_.world().put(std::move(tile), 0.1, 32);
-  }
-
-  Supervisor supervisor_;
-  ToyBridge bridge_;
-  TrackState state_;
-  Situation situation_;
-  int64_t now_ = 10 * kSecond;
-  int64_t painted_ = 0;
-  bool maps_ = true;
-};
+constexpr int64_t kSecond = 1'000'000;  // [us]
 
 }  // namespace
 

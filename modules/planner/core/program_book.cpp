@@ -13,7 +13,35 @@ constexpr int64_t kSettle = 300'000;
 /// A pattern that the bridge has not begun after this long will not be begun [us].
 constexpr int64_t kStartLimit = 1'000'000;
 
+/// Why the set has not got what the slot holds; empty if it has.
+std::string clashWith(const PatternSet& set, const Slot& slot) {
+  if (slot.empty()) return {};
+  const MotionPattern& ours = slot.pattern();
+  const MotionPattern* const theirs = set.find(slot.pattern_id);
+  const std::string where =
+      "PATTERN_SET version " + std::to_string(set.version()) + " waits: in it";
+  const std::string pattern = " pattern " + std::to_string(ours.id) + " (" + ours.name + ")";
+  if (theirs == nullptr) return where + " there is no" + pattern + ", which is under way";
+  const bool same_timing = set.content().kind == slot.set->content().kind &&
+                           set.content().period_us == slot.set->content().period_us;
+  const bool same_ends =
+      theirs->entry_class == ours.entry_class && theirs->exit_class == ours.exit_class;
+  const bool same_commands =
+      std::equal(ours.commands.begin(), ours.commands.end(), theirs->commands.begin(),
+                 theirs->commands.end(), [](const TrackCommand& a, const TrackCommand& b) {
+                   return a.left == b.left && a.right == b.right;
+                 });
+  if (same_timing && same_ends && same_commands) return {};
+  return where + pattern + ", which is under way, has other " +
+         (same_ends ? "commands" : "motion classes");
+}
+
 }  // namespace
+
+std::string ProgramBook::clash(const PatternSet& set) const {
+  const std::string with_running = clashWith(set, running_);
+  return with_running.empty() ? clashWith(set, next_) : with_running;
+}
 
 void ProgramBook::begin(const PatternSet& set, int pattern_id, int64_t now) {
   running_ = {++last_id_, pattern_id, set};

@@ -45,6 +45,10 @@ class ProgramBook {
   /// Learns what the bridge does. Call before anything else in a step.
   Event follow(const Situation& situation);
 
+  /// Why a set cannot take the place of the one that was driven with: what was handed over has
+  /// other commands in it, or none. Empty if it can.
+  std::string clash(const PatternSet& set) const;
+
   const Slot& running() const { return running_; }
   const Slot& next() const { return next_; }
   /// The bridge has begun the running pattern.

@@ -27,8 +27,24 @@ Supervisor::Supervisor(const PlannerConfig& config, int64_t run_id)
       book_(run_id),
       progress_(config.policy.patience) {}
 
-void Supervisor::takeSet(const PatternSet& set) {
+bool Supervisor::takeSet(const PatternSet& set) {
+  set_refusal_ = book_.clash(set);
+  if (!set_refusal_.empty()) {
+    waiting_set_ = set;
+    return false;
+  }
+  waiting_set_.reset();
   table_ = std::make_shared<const PatternTable>(set, config_.sweep, config_.default_sigma);
+  ++counters_["sets taken"];
+  cycles_with_old_set_ = 0;
+  // The rest of the plan was predicted with the old one.
+  last_plan_ = 0;
+  return true;
+}
+
+void Supervisor::followSet() {
+  if (waiting_set_ && book_.clash(*waiting_set_).empty()) takeSet(PatternSet(*waiting_set_));
+  if (searched_table_ != table_ && mode_ == Mode::kDriving) ++cycles_with_old_set_;
 }
 
 Decision Supervisor::step(const Situation& s, const StopPredicate& stop) {
@@ -41,6 +57,7 @@ Decision Supervisor::step(const Situation& s, const StopPredicate& stop) {
   }
   noteGoal(s);
   followBridge(s);
+  followSet();
   was_armed_ = was_armed_ || (s.bridge && s.bridge->armed());
   const Supplies supplies{world_.newestUtime(), table_ ? table_->defect() : "no PATTERN_SET yet",
                           was_armed_};
@@ -144,6 +161,8 @@ SearchResult Supervisor::searchFrom(const Situation& s, const PlanStep& start, i
   problem.cost_to_go = &world_.costToGo();
   problem.goal = *s.goal;
   for (const PlanStep& step : plan_) problem.committed.push_back(step.pattern_id);
+  if (searched_table_ != table_)
+    counters_["cycles driven until a plan with the newest set"] = cycles_with_old_set_;
   searched_table_ = table_;
   const SearchResult result = search_.run(
       problem, [&](int count) { return count >= expansions || (stop_ && stop_(count)); });
