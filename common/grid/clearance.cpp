@@ -270,6 +270,17 @@ ClearanceField::Verdict ClearanceField::compareClosely(double x, double y, float
   return close.upper < static_cast<double>(near) ? Verdict::kLess : Verdict::kUnsure;
 }
 
+bool ClearanceField::squareFree(double column, double row, float reach) const {
+  // No farther than the window, lest numbers get too great; what lies outside blocks or not.
+  const double cells = std::min(static_cast<double>(reach) * per_cell_, 1.0 + width_ + height_);
+  const int first = lower_.x + static_cast<int>(std::floor(column - cells));
+  const int last = lower_.x + static_cast<int>(std::floor(column + cells));
+  const int end = lower_.y + static_cast<int>(std::floor(row + cells));
+  for (int y = lower_.y + static_cast<int>(std::floor(row - cells)); y <= end; ++y)
+    if (anyBlocked(y, first, last)) return false;
+  return true;
+}
+
 bool ClearanceField::anyBlocked(int row, int first, int last) const {
   const int y = row - lower_.y;
   int x = first - lower_.x;

@@ -14,19 +14,26 @@ namespace {
 /// Less than this share of a cell is rounding, not overlap.
 constexpr double kTouch = 1e-8;
 
+/// A rectangle in the body's axes, from `rear` to `front` along x [m].
+struct Extent {
+  double rear;
+  double front;
+  double half_width;
+};
+
 /// The rows of cells that an oriented rectangle overlaps, each with its span of columns.
 /** A row's band cuts a convex piece out of the rectangle, so the cells between the ends of that
  *  piece, and only they, overlap the rectangle. Lengths are cells, relative to the cell `base`. */
 class RowSpans {
  public:
-  RowSpans(const Footprint& footprint, const TurnedPose& T_map_body, double cell_size)
+  RowSpans(const Extent& extent, const TurnedPose& T_map_body, double cell_size)
       : base_{static_cast<int>(std::floor(T_map_body.x / cell_size)),
               static_cast<int>(std::floor(T_map_body.y / cell_size))} {
     const double c = T_map_body.cos_yaw;
     const double s = T_map_body.sin_yaw;
-    const double front = footprint.front() / cell_size;
-    const double rear = -footprint.rear() / cell_size;
-    const double w = footprint.halfWidth() / cell_size;
+    const double front = extent.front / cell_size;
+    const double rear = extent.rear / cell_size;
+    const double w = extent.half_width / cell_size;
     const double x = T_map_body.x / cell_size - base_.x;
     const double y = T_map_body.y / cell_size - base_.y;
     y_min_ = y + s * (s > 0.0 ? rear : front) - std::abs(c) * w;
@@ -102,7 +109,8 @@ float roundedDown(double length) {
 template <class Visit>
 void visitCells(const Footprint& footprint, const Pose2& T_map_body, double cell_size,
                 const Visit& visit) {
-  const RowSpans rows(footprint, turned(T_map_body), cell_size);
+  const RowSpans rows({-footprint.rear(), footprint.front(), footprint.halfWidth()},
+                      turned(T_map_body), cell_size);
   for (int y = rows.firstRow(); y <= rows.lastRow(); ++y) {
     const RowSpans::Span span = rows.span(y);
     for (int x = span.first; x <= span.last; ++x) visit(CellIndex{x, y});
@@ -121,31 +129,35 @@ Footprint::Footprint(double front, double rear, double half_width, double margin
   const double count = std::min(8.0, std::max(1.0, std::ceil(length / half_width_)));
   const double step = length / count;
   for (double i = 0.5; i < count; ++i) disc_x_.push_back(-rear_ + i * step);
+  half_step_ = 0.5 * step;
   circumscribed_up_ = roundedUp(circumscribed_);
   disc_radius_ = roundedUp(std::hypot(0.5 * step, half_width_));
   inscribed_radius_ = roundedDown(std::min(0.5 * step, half_width_));
 }
 
-Footprint::Verdict Footprint::judgeByDiscs(const ClearanceField& clearance,
-                                           const TurnedPose& T_map_body) const {
-  Verdict verdict = Verdict::kAtLeast;
+Footprint::Unsure Footprint::judgeByDiscs(const ClearanceField& clearance,
+                                          const TurnedPose& T_map_body) const {
+  Unsure unsure;
   for (const double along : disc_x_) {
     const double x = T_map_body.x + T_map_body.cos_yaw * along;
     const double y = T_map_body.y + T_map_body.sin_yaw * along;
     const Verdict disc = clearance.compare(x, y, inscribed_radius_, disc_radius_);
-    if (disc == Verdict::kLess) return disc;
-    if (disc == Verdict::kUnsure) verdict = disc;
+    if (disc == Verdict::kAtLeast) continue;
+    unsure.blocked = disc == Verdict::kLess;
+    if (unsure.blocked) return unsure;
+    unsure.rear = std::min(unsure.rear, along - half_step_);
+    unsure.front = along + half_step_;
   }
-  return verdict;
+  return unsure;
 }
 
 bool Footprint::isFree(const ClearanceField& clearance, const TurnedPose& T_map_body) const {
   if (!isUsable(T_map_body, clearance.cellSize())) return false;
   const Verdict whole = clearance.compare(T_map_body.x, T_map_body.y, circumscribed_up_);
   if (whole == Verdict::kAtLeast) return true;
-  const Verdict verdict = judgeByDiscs(clearance, T_map_body);
-  if (verdict != Verdict::kUnsure) return verdict == Verdict::kAtLeast;
-  const RowSpans rows(*this, T_map_body, clearance.cellSize());
+  const Unsure unsure = judgeByDiscs(clearance, T_map_body);
+  if (unsure.blocked || unsure.front < unsure.rear) return !unsure.blocked;
+  const RowSpans rows({unsure.rear, unsure.front, half_width_}, T_map_body, clearance.cellSize());
   for (int y = rows.firstRow(); y <= rows.lastRow(); ++y) {
     const RowSpans::Span span = rows.span(y);
     if (clearance.anyBlocked(y, span.first, span.last)) return false;

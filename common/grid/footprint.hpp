@@ -55,13 +55,21 @@ class Footprint {
  private:
   using Verdict = ClearanceField::Verdict;
 
-  Verdict judgeByDiscs(const ClearanceField& clearance, const TurnedPose& T_map_body) const;
+  /// What the discs leave to be found out.
+  struct Unsure {
+    bool blocked = false;  // it is certain that something is overlapped
+    double rear = 1e9;     // else the part along x that may overlap something [m], empty if none
+    double front = -1e9;
+  };
+
+  Unsure judgeByDiscs(const ClearanceField& clearance, const TurnedPose& T_map_body) const;
 
   double front_;
   double rear_;
   double half_width_;
   double circumscribed_;
   std::vector<double> disc_x_;  // centres of the covering discs along the body's x axis
+  double half_step_;            // [m] half the distance between them
   float circumscribed_up_;      // as the next, rounded to the safe side
   float disc_radius_;
   float inscribed_radius_;  // discs of this radius around the same centres lie inside

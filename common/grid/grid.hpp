@@ -137,6 +137,18 @@ class ClearanceField {
     return compareClosely(x, y, near, far);
   }
 
+  /// Whether a disc meets no blocked cell: from one number, or from the cells of the square around
+  /// it, of which none may be blocked. False around a point outside the window.
+  bool discFree(double x, double y, float radius) const {
+    const double column = x * per_cell_ - lower_.x;
+    const double row = y * per_cell_ - lower_.y;
+    if (!(column >= 0.0 && row >= 0.0 && column < width_ && row < height_)) return false;
+    const float value =
+        clearance_[static_cast<size_t>(static_cast<int>(row)) * static_cast<size_t>(width_) +
+                   static_cast<size_t>(static_cast<int>(column))];
+    return value - half_diagonal_ >= radius || squareFree(column, row, radius);
+  }
+
   /// Both bounds of the clearance; outside the window the upper one is infinite.
   Bounds bounds(const Eigen::Vector2d& p_map) const;
 
@@ -151,6 +163,7 @@ class ClearanceField {
   void lookNearby(const std::vector<uint8_t>& blocked, int cap_steps);
   void lookEverywhere(const std::vector<uint8_t>& blocked, float cap_steps);
   double outside(const Eigen::Vector2d& p_map) const;
+  bool squareFree(double column, double row, float reach) const;
   Verdict compareClosely(double x, double y, float near, float far) const;
 
   double cell_size_ = 0.1;

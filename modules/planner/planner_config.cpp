@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/planner/planner_config.hpp"
 
+#include <algorithm>
+
 namespace tread::planner {
 namespace {
 
@@ -108,7 +110,9 @@ PlannerConfig readPlannerConfig(ConfigReader& reader) {
   ConfigReader sweep = reader.section("sweep");
   sweep.number("distance", config.sweep.distance, {0.01, 0.5}, "m");
   sweep.number("turn", config.sweep.turn, {0.01, 0.5}, "rad");
-  config.sweep.covered = coveredBy(config.world.footprint, config.sweep);
+  const Margins& margins = config.world.margins;
+  config.sweep =
+      stepFor(config.world.footprint, std::max(margins.plan, margins.largest), config.sweep);
   reader.number("default_sigma", config.default_sigma.position, {0.0, 1.0}, "m");
   reader.number("default_yaw_sigma", config.default_sigma.yaw, {0.0, 1.0}, "rad");
   reader.seconds("lease", config.lease, {0.1, 0.2});

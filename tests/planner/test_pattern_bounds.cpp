@@ -160,7 +160,7 @@ TEST_CASE("a table of primitives begins and stops at rest with each, ending wher
       CHECK(pattern.pattern == nullptr);
       CHECK(pattern.cost == primitive.cost);
       CHECK(pattern.duration == primitive.duration);
-      for (const SweepPose& end : {pattern.sweep.back(), pattern.cover.back()}) {
+      for (const SweepPose& end : {pattern.sweep.back(), pattern.cover.poses.back().at}) {
         CHECK(end.pose.x == primitive.poses.back().x);
         CHECK(end.pose.y == primitive.poses.back().y);
         CHECK(end.pose.yaw == primitive.poses.back().yaw);

@@ -110,8 +110,9 @@ planner::FootprintSize footprintOf(const RobotShape& shape) {
 /// How finely sweeps are checked: a point must not jump over a cell.
 planner::SweepStep sweepStep(const PlanTask& task) {
   planner::SweepStep step;
-  if (!task.shape.isRectangle()) step.distance = std::min(step.distance, task.grid.cellSize() / 2);
-  step.covered = planner::coveredBy(footprintOf(task.shape), step);
+  if (task.shape.isRectangle()) return planner::stepFor(footprintOf(task.shape), 0.0, step);
+  step.distance = step.covered = std::min(step.distance, task.grid.cellSize() / 2);
+  step.outline = footprintOf(task.shape);
   return step;
 }
 

@@ -12,50 +12,8 @@ namespace {
 /// Slower than this counts as standing [m/s, rad/s].
 constexpr double kStanding = 0.02;
 
-/// An arc may bulge so much between two poses that are checked [m].
-constexpr double kSagitta = 0.0015;
-
-/// How far from the body's origin its outline is, about: what a turn moves [m].
-constexpr double kArm = 0.7;
-
 double distanceBetween(const Pose2& a, const Pose2& b) {
   return std::hypot(b.x - a.x, b.y - a.y);
-}
-
-SweepPose sweepPose(const Pose2& pose, double time) {
-  return {pose, std::cos(pose.yaw), std::sin(pose.yaw), time, 0.0};
-}
-
-/// A pose between two: the twist that joins them, followed for a part of the way.
-Pose2 partOf(const Pose2& from, const Pose2& to, double share) {
-  return from * integrate(twistTo(between(from, to), 1.0), share);
-}
-
-void addReach(std::vector<SweepPose>& sweep) {
-  SweepPose before;
-  for (SweepPose& at : sweep) {
-    at.reach = before.reach + distanceBetween(before.pose, at.pose) +
-               kArm * std::abs(at.pose.yaw - before.pose.yaw);
-    before = at;
-  }
-}
-
-/// The poses of a sweep that a footprint needs, the end last.
-std::vector<SweepPose> coverOf(const std::vector<SweepPose>& sweep, SweepStep step) {
-  std::vector<SweepPose> cover;
-  Pose2 last;
-  for (size_t i = 0; i < sweep.size(); ++i) {
-    const bool is_end = i + 1 == sweep.size();
-    const Pose2& after = sweep[is_end ? i : i + 1].pose;
-    const double distance = distanceBetween(last, after);
-    const double turn = std::abs(after.yaw - last.yaw);
-    const bool next_too_far =
-        distance > step.covered || turn > step.turn + 1e-9 || distance * turn > 8.0 * kSagitta;
-    if (!is_end && !next_too_far) continue;
-    cover.push_back(sweep[i]);
-    last = sweep[i].pose;
-  }
-  return cover;
 }
 
 /// Smallest disc around the middle of the positions that holds them all.
@@ -88,16 +46,16 @@ Uncertainty uncertaintyOf(const DefaultSigma& sigma) {
   return result;
 }
 
-TablePattern prepare(const Primitive& primitive, SweepStep step) {
+TablePattern prepare(const Primitive& primitive, const SweepStep& step) {
   TablePattern entry;
   entry.number = primitive.id;
   entry.duration = primitive.duration;
   entry.cost = primitive.cost;
   entry.length = lengthOf(primitive.poses);
   entry.reverses = primitive.poses.back().x < -kStanding;
-  entry.sweep = sampleSweep(primitive.poses,
-                            primitive.duration / static_cast<double>(primitive.poses.size()), step);
-  entry.cover = coverOf(entry.sweep, step);
+  const double period = primitive.duration / static_cast<double>(primitive.poses.size());
+  entry.sweep = sampleSweep(primitive.poses, period, step);
+  entry.cover = coverOf(entry.sweep, primitive.poses, period, step);
   entry.start_bin = primitive.start_bin;
   entry.cells = primitive.cells;
   addDisc(entry);
@@ -106,34 +64,7 @@ TablePattern prepare(const Primitive& primitive, SweepStep step) {
 
 }  // namespace
 
-std::vector<SweepPose> sampleSweep(const std::vector<Pose2>& trajectory, double period,
-                                   SweepStep step) {
-  std::vector<SweepPose> sweep;
-  Pose2 last;  // the start
-  for (size_t i = 0; i < trajectory.size(); ++i) {
-    const bool is_end = i + 1 == trajectory.size();
-    const Pose2& after = trajectory[is_end ? i : i + 1];
-    const bool next_too_far =
-        distanceBetween(last, after) > step.distance || std::abs(after.yaw - last.yaw) > step.turn;
-    if (!is_end && !next_too_far) continue;
-    const Pose2& here = trajectory[i];
-    const double steps = std::max(distanceBetween(last, here) / step.distance,
-                                  std::abs(here.yaw - last.yaw) / step.turn);
-    const int pieces = std::max(1, static_cast<int>(std::ceil(steps - 1e-9)));
-    const double last_time = sweep.empty() ? 0.0 : sweep.back().time;
-    const double time = period * static_cast<double>(i + 1);
-    for (int k = 1; k <= pieces; ++k) {
-      const double share = static_cast<double>(k) / pieces;
-      const Pose2 pose = k == pieces ? here : partOf(last, here, share);
-      sweep.push_back(sweepPose(pose, last_time + share * (time - last_time)));
-    }
-    last = here;
-  }
-  addReach(sweep);
-  return sweep;
-}
-
-PatternTable::PatternTable(PatternSet set, SweepStep step, const DefaultSigma& sigma)
+PatternTable::PatternTable(PatternSet set, const SweepStep& step, const DefaultSigma& sigma)
     : set_(std::move(set)), rest_class_(findRestClass()) {
   for (const MotionPattern& pattern : set_->patterns())
     patterns_.push_back(prepare(pattern, step, sigma));
@@ -141,7 +72,7 @@ PatternTable::PatternTable(PatternSet set, SweepStep step, const DefaultSigma& s
   bound();
 }
 
-PatternTable::PatternTable(const std::vector<Primitive>& primitives, SweepStep step)
+PatternTable::PatternTable(const std::vector<Primitive>& primitives, const SweepStep& step)
     : rest_class_(0) {
   for (const Primitive& primitive : primitives)
     patterns_.push_back(planner::prepare(primitive, step));
@@ -187,7 +118,7 @@ void PatternTable::bound() {
     *value = std::isfinite(*value) ? std::max(0.0, *value) : 0.0;
 }
 
-TablePattern PatternTable::prepare(const MotionPattern& pattern, SweepStep step,
+TablePattern PatternTable::prepare(const MotionPattern& pattern, const SweepStep& step,
                                    const DefaultSigma& sigma) const {
   TablePattern entry;
   entry.pattern = &pattern;
@@ -199,7 +130,7 @@ TablePattern PatternTable::prepare(const MotionPattern& pattern, SweepStep step,
   entry.length = pattern.pathLength();
   entry.reverses = pattern.end().x < -kStanding;
   entry.sweep = sampleSweep(pattern.trajectory, set_->periodSeconds(), step);
-  entry.cover = coverOf(entry.sweep, step);
+  entry.cover = coverOf(entry.sweep, pattern.trajectory, set_->periodSeconds(), step);
   entry.uncertainty = uncertaintyOf(pattern.end_covariance, uncertaintyOf(sigma));
   addDisc(entry);
   return entry;

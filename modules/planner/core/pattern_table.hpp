@@ -9,18 +9,10 @@
 
 #include "common/grid/grid.hpp"
 #include "common/pattern/pattern.hpp"
+#include "modules/planner/core/sweep.hpp"
 #include "modules/planner/core/uncertainty.hpp"
 
 namespace tread::planner {
-
-/// A pose along a pattern, relative to its start, with its turn worked out.
-struct SweepPose {
-  Pose2 pose;
-  double cos_yaw = 1.0;
-  double sin_yaw = 0.0;
-  double time = 0.0;   ///< [s] from the start of the pattern
-  double reach = 0.0;  ///< [m] that a point of the outline has moved since then, about
-};
 
 /// A motion of another planner, from rest to rest, that is searched with like a pattern.
 struct Primitive {
@@ -43,7 +35,7 @@ struct TablePattern {
   double length = 0.0;                     ///< [m] of its path
   bool reverses = false;                   ///< ends behind its start
   std::vector<SweepPose> sweep;      ///< poses to check, without the start, at most a step apart
-  std::vector<SweepPose> cover;      ///< those of them that are enough for a footprint (SweepStep)
+  SweepCover cover;                  ///< those of them that are enough for a footprint
   Eigen::Vector2d centre{0.0, 0.0};  ///< of a disc that holds all positions, relative to the start
   double radius = 0.0;               ///< [m] of that disc
   Uncertainty uncertainty;           ///< of its end, in the axes of its start
@@ -52,15 +44,6 @@ struct TablePattern {
 
   int id() const { return number; }
   const SweepPose& end() const { return sweep.back(); }
-};
-
-/// How finely a pattern is sampled for collision checks.
-struct SweepStep {
-  double distance = 0.10;  ///< [m]
-  double turn = 0.105;     ///< [rad]
-  /// [m] The footprint's sweep over so much of a straight way is the footprint at both ends, if it
-  /// is at least so long: the search checks no more poses than that, and as many as turns need.
-  double covered = 0.3;
 };
 
 /// Standard deviations of the end of a pattern whose covariance nobody has stated.
@@ -80,9 +63,9 @@ struct LeastCost {
 /** Nothing is assumed about where patterns end: the learner may bend them at will. */
 class PatternTable {
  public:
-  PatternTable(PatternSet set, SweepStep step, const DefaultSigma& sigma);
+  PatternTable(PatternSet set, const SweepStep& step, const DefaultSigma& sigma);
   /// Of primitives; the only class is rest.
-  PatternTable(const std::vector<Primitive>& primitives, SweepStep step);
+  PatternTable(const std::vector<Primitive>& primitives, const SweepStep& step);
   PatternTable(const PatternTable&) = delete;  // its lists point into itself
   PatternTable& operator=(const PatternTable&) = delete;
 
@@ -116,7 +99,7 @@ class PatternTable {
   std::string defect() const;
 
  private:
-  TablePattern prepare(const MotionPattern& pattern, SweepStep step,
+  TablePattern prepare(const MotionPattern& pattern, const SweepStep& step,
                        const DefaultSigma& sigma) const;
   int findRestClass() const;
   void index(size_t classes);
@@ -131,9 +114,5 @@ class PatternTable {
   double best_turn_rate_ = 0.0;
   std::array<LeastCost, 2> least_costs_;
 };
-
-/// Poses along a trajectory of equal periods, the origin left out, neighbours at most a step apart.
-std::vector<SweepPose> sampleSweep(const std::vector<Pose2>& trajectory, double period,
-                                   SweepStep step);
 
 }  // namespace tread::planner

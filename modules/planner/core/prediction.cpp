@@ -16,15 +16,6 @@ constexpr double kMostRatio = 1.6;
 
 }  // namespace
 
-Pose2 poseAlong(const std::vector<Pose2>& trajectory, double period, double time) {
-  const double steps = std::clamp(time / period, 0.0, static_cast<double>(trajectory.size()));
-  const auto whole = static_cast<size_t>(steps);
-  const Pose2 before = whole == 0 ? Pose2{} : trajectory[whole - 1];
-  if (whole == trajectory.size()) return before;
-  const Twist2 twist = twistTo(between(before, trajectory[whole]), 1.0);
-  return before * integrate(twist, steps - static_cast<double>(whole));
-}
-
 Fulfilment compare(const Pose2& T_start_now, double time, const TablePattern& pattern,
                    double period) {
   const Pose2 expected = poseAlong(pattern.pattern->trajectory, period, time);

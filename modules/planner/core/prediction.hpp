@@ -36,9 +36,6 @@ struct Fulfilment {
 Fulfilment compare(const Pose2& T_start_now, double time, const TablePattern& pattern,
                    double period);
 
-/// Pose along a trajectory of equal periods, `time` [s] after its start; held at both ends.
-Pose2 poseAlong(const std::vector<Pose2>& trajectory, double period, double time);
-
 /// What is left of a pattern that has been running for `time` [s] when the vehicle was measured at
 /// a pose.
 /** What is left is scaled by what has come true so far: on ground that turns the vehicle more than

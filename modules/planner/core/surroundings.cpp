@@ -88,11 +88,35 @@ bool Surroundings::isFarFromAll(const TurnedPose& at, const TablePattern& patter
 bool Surroundings::sweepFree(const TurnedPose& start, const TablePattern& pattern,
                              int level) const {
   if (isFarFromAll(start, pattern, level)) return true;
-  const Footprint& footprint = levels_[static_cast<size_t>(level)];
+  return coverFree(start, pattern.cover, levels_[static_cast<size_t>(level)]);
+}
+
+bool Surroundings::coverFree(const TurnedPose& start, const SweepCover& cover,
+                             const Footprint& footprint) const {
   // The end first: patterns that hit something mostly hit it with their end.
-  for (auto at = pattern.cover.rbegin(); at != pattern.cover.rend(); ++at) {
-    if (!footprint.isFree(field_, alongFrom(start, *at))) return false;
+  for (auto pose = cover.poses.rbegin(); pose != cover.poses.rend(); ++pose)
+    if (!footprint.isFree(field_, alongFrom(start, pose->at))) return false;
+  const auto inset = static_cast<float>(cover.front - footprint.front());
+  int free_way = -1;  // the last one that was checked in full
+  for (const CornerDisc& disc : cover.discs) {
+    const auto x = static_cast<double>(disc.x - inset * disc.out_x);
+    const auto y = static_cast<double>(disc.y - inset * disc.out_y);
+    const float radius = disc.radius + std::abs(inset) * disc.spread;
+    if (field_.discFree(start.x + start.cos_yaw * x - start.sin_yaw * y,
+                        start.y + start.sin_yaw * x + start.cos_yaw * y, radius) ||
+        disc.way == free_way)
+      continue;
+    if (!betweenFree(start, cover, cover.poses[static_cast<size_t>(disc.way)], footprint))
+      return false;
+    free_way = disc.way;
   }
+  return true;
+}
+
+bool Surroundings::betweenFree(const TurnedPose& start, const SweepCover& cover,
+                               const CoverPose& way, const Footprint& footprint) const {
+  for (size_t i = way.first_between; i < way.first_between + way.between_count; ++i)
+    if (!footprint.isFree(field_, alongFrom(start, cover.between[i]))) return false;
   return true;
 }
 
@@ -100,6 +124,7 @@ bool Surroundings::sweepRegains(const TurnedPose& start, int start_level,
                                 const TablePattern& pattern, int wanted) const {
   if (isFarFromAll(start, pattern, wanted)) return true;
   const double margin = marginOf(start_level);
+  if (!coverFree(start, pattern.cover, levels_[static_cast<size_t>(start_level)])) return false;
   return std::all_of(pattern.sweep.begin(), pattern.sweep.end(), [&](const SweepPose& at) {
     const int level = std::min(wanted, levelWithin(margin + margins_.regain * at.reach));
     const TurnedPose pose = alongFrom(start, at);

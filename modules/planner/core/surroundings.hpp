@@ -12,18 +12,6 @@
 
 namespace tread::planner {
 
-/// The vehicle's rectangle in the body frame [m].
-struct FootprintSize {
-  double front = 0.65;       ///< from the body origin forward
-  double rear = 0.65;        ///< and backward
-  double half_width = 0.34;  ///< to both sides
-};
-
-/// SweepStep::covered for a footprint [m]: never less than its distance.
-inline double coveredBy(const FootprintSize& size, const SweepStep& step) {
-  return std::max(step.distance, std::min(step.covered, 0.45 * (size.front + size.rear)));
-}
-
 /// How much room is kept around the footprint [m].
 struct Margins {
   double check = 0.03;    ///< when what is already under way is checked again
@@ -82,7 +70,8 @@ class Surroundings {
   bool isFree(const TurnedPose& T_map_body, int level) const;
   /// Highest level, at most `wanted`, at which a pose is free; -1 if it is not free at all.
   int freeLevel(const Pose2& T_map_body, int wanted) const;
-  /// Whether every pose of a pattern is free, begun at a pose.
+  /// Whether every pose of a pattern is free, begun at a free pose.
+  /** Between poses that are checked a corner may be hit by no more than 5 mm. */
   bool sweepFree(const TurnedPose& T_map_start, const TablePattern& pattern, int level) const;
   bool sweepFree(const Pose2& T_map_start, const TablePattern& pattern, int level) const {
     return sweepFree(turned(T_map_start), pattern, level);
@@ -102,6 +91,10 @@ class Surroundings {
   int levelWithin(double margin) const;
   bool touchesObstacle(const TurnedPose& T_map_body, int level) const;
   bool isFarFromAll(const TurnedPose& T_map_start, const TablePattern& pattern, int level) const;
+  bool coverFree(const TurnedPose& T_map_start, const SweepCover& cover,
+                 const Footprint& footprint) const;
+  bool betweenFree(const TurnedPose& T_map_start, const SweepCover& cover, const CoverPose& way,
+                   const Footprint& footprint) const;
 
   Grid grid_;
   bool unknown_blocks_;

@@ -53,6 +53,27 @@ TEST_CASE("a comparison says what the bounds say, for every distance") {
   for (const int count : verdicts) CHECK(count > 100);
 }
 
+TEST_CASE("a disc that is free meets no blocked cell, and where all is far off it is free") {
+  int counts[2] = {0, 0};
+  visitPoints(3, [&](const ClearanceField& field, const Grid&, const Eigen::Vector2d& p,
+                     std::mt19937_64& random) {
+    const auto radius = std::uniform_real_distribution<float>(0.0F, 0.6F)(random);
+    const bool is_free = field.discFree(p.x(), p.y(), radius);
+    ++counts[is_free ? 1 : 0];
+    const ClearanceField::Bounds bounds = field.bounds(p);
+    if (is_free) REQUIRE(bounds.upper >= static_cast<double>(radius));
+    const bool is_inside = std::isfinite(bounds.upper);
+    if (is_inside && bounds.lower >= 1.5 * static_cast<double>(radius)) REQUIRE(is_free);
+  });
+  CHECK(counts[0] > testing::effort(1000));
+  CHECK(counts[1] > testing::effort(1000));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const ClearanceField open(Grid(0.1, {0, 0}, 20, 20), false);
+  CHECK(open.discFree(1.0, 1.0, 1e30F));
+  CHECK_FALSE(open.discFree(nan, 1.0, 0.1F));
+  CHECK_FALSE(open.discFree(-0.5, 1.0, 0.1F));
+}
+
 TEST_CASE("compared with two distances, each verdict is certain of its own") {
   visitPoints(2, [](const ClearanceField& field, const Grid&, const Eigen::Vector2d& p,
                     std::mt19937_64& random) {
