@@ -243,29 +243,3 @@ TEST_CASE("A time before all clocks is refused: no age overflows, and nothing is
   CHECK(counters["MOTOR refused: no such time"] == 3);
   CHECK(counters["EXECUTION refused: no such time"] == 3);
 }
-
-TEST_CASE("A configuration is read with its ranges, and mistakes are named at file and line") {
-  ConfigReader good = ConfigReader::fromText(
-      "footprint: {front: 0.8, rear: 0.7, half_width: 0.5}\n"
-      "search: {horizon: 6}\npolicy: {plan_period: 0.25}\n",
-      "planner.yaml");
-  const PlannerConfig config = readPlannerConfig(good);
-  CHECK(config.world.footprint.half_width == 0.5);
-  CHECK(config.world.field.inflation == 0.5);
-  CHECK(config.search.horizon == 6.0);
-  CHECK(config.policy.plan_period == 250'000);
-  CHECK(config.effective.find("switch_penalty") != std::string::npos);
-  const auto refusal = [](const std::string& text) {
-    ConfigReader reader = ConfigReader::fromText(text, "planner.yaml");
-    try {
-      readPlannerConfig(reader);
-    } catch (const ConfigError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
-  CHECK(refusal("search: {horizn: 6}\n").find("planner.yaml:1") == 0);
-  CHECK(refusal("margins:\n  plan: -1\n").find("planner.yaml:2") == 0);
-  CHECK(refusal("margins:\n  check: 0.3\n").find("must not be more than plan") !=
-        std::string::npos);
-}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <string>
+
+#include "modules/planner/planner_config.hpp"
+
+using namespace tread;
+using namespace tread::planner;
+
+TEST_CASE("A configuration is read with its ranges, and mistakes are named at file and line") {
+  ConfigReader good = ConfigReader::fromText(
+      "footprint: {front: 0.8, rear: 0.7, half_width: 0.5}\n"
+      "search: {horizon: 6}\npolicy: {plan_period: 0.25}\n",
+      "planner.yaml");
+  const PlannerConfig config = readPlannerConfig(good);
+  CHECK(config.world.footprint.half_width == 0.5);
+  CHECK(config.world.field.inflation == 0.5);
+  CHECK(config.search.horizon == 6.0);
+  CHECK(config.policy.plan_period == 250'000);
+  CHECK(config.effective.find("switch_penalty") != std::string::npos);
+  const auto refusal = [](const std::string& text) {
+    ConfigReader reader = ConfigReader::fromText(text, "planner.yaml");
+    try {
+      readPlannerConfig(reader);
+    } catch (const ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(refusal("search: {horizn: 6}\n").find("planner.yaml:1") == 0);
+  CHECK(refusal("margins:\n  plan: -1\n").find("planner.yaml:2") == 0);
+  CHECK(refusal("margins:\n  check: 0.3\n").find("must not be more than plan") !=
+        std::string::npos);
+}
+
+TEST_CASE("A short vehicle's patterns are checked at poses as close as it is short") {
+  ConfigReader reader = ConfigReader::fromText(
+      "footprint: {front: 0.05, rear: 0.05, half_width: 0.05}\n"
+      "sweep: {distance: 0.5}\n",
+      "planner.yaml");
+  const PlannerConfig config = readPlannerConfig(reader);
+  CHECK(config.sweep.distance < 0.05);
+  CHECK(config.sweep.covered < 0.05);
+  const Margins& margins = config.world.margins;
+  CHECK(config.sweep.outline.front == Approx(0.05 + std::max(margins.plan, margins.largest)));
+  ConfigReader usual = ConfigReader::fromText("sweep: {distance: 0.08}\n", "planner.yaml");
+  CHECK(readPlannerConfig(usual).sweep.distance == 0.08);
+}
