@@ -35,6 +35,7 @@ void readMap(ConfigReader reader, WorldConfig& world) {
   reader.number("keep_radius", world.passage.keep_radius, {10.0, 500.0}, "m");
   reader.number("room_cap", world.passage.room_cap, {0.1, 5.0}, "m");
   count(reader, "coarse", world.passage.coarse, {1, 8});
+  reader.flag("unknown_blocks", world.unknown_blocks);
 }
 
 void readField(ConfigReader reader, WorldConfig& world) {
@@ -63,6 +64,7 @@ void readSearch(ConfigReader reader, SearchConfig& search) {
   reader.number("turn_penalty", search.turn_penalty, {0.0, 20.0}, "s/rad");
   reader.number("near_penalty", search.near_penalty, {0.0, 20.0}, "1");
   reader.number("near_distance", search.near_distance, {0.05, 5.0}, "m");
+  reader.number("unknown_penalty", search.unknown_penalty, {0.0, 20.0}, "1");
   reader.number("switch_penalty", search.switch_penalty, {0.0, 20.0}, "s");
   reader.number("horizon", search.horizon, {1.0, 60.0}, "s");
   reader.number("least_rate", search.least_rate, {0.0, 1.0}, "1");
@@ -106,6 +108,7 @@ PlannerConfig readPlannerConfig(ConfigReader& reader) {
   readField(reader.section("field"), config.world);
   readSearch(reader.section("search"), config.search);
   readPolicy(reader.section("policy"), config.policy);
+  reader.flag("come_close", config.world.come_close);
   readAges(reader.section("ages"), config.ages);
   ConfigReader sweep = reader.section("sweep");
   sweep.number("distance", config.sweep.distance, {0.01, 0.5}, "m");

@@ -14,6 +14,8 @@ void describeQuery(CLI::App& app, PlanOptions& options) {
   app.add_option("--tolerance", options.tolerance,
                  "METRES,RADIANS from the goal within which a plan may end")
       ->capture_default_str();
+  app.add_flag("--come-close", options.come_close,
+               "plan to where the vehicle can come nearest if the goal cannot be reached");
   app.add_option("--queries", options.queries,
                  "file of many queries, x y yaw x y yaw (start, goal) a line");
   app.add_option("--random", options.random, "so many random queries whose start and goal are free")

@@ -22,6 +22,7 @@ struct PlanOptions {
   std::string start;             ///< "x,y,yaw" [m, m, rad] in the map's frame
   std::string goal;
   std::string tolerance = "0.25,0.26";  ///< "METRES,RADIANS"
+  bool come_close = false;              ///< plan to the nearest place if the goal is unreachable
   std::optional<double> deadline_ms;
   std::optional<double> speed;      ///< [m/s]
   std::optional<double> turn_time;  ///< [s]

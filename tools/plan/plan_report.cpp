@@ -193,7 +193,8 @@ void writeJson(const std::string& path, const Json& json) {
 }
 
 std::string headline(const PlanAnswer& answer) {
-  if (answer.status == PlanStatus::kSolved) return "solved: " + planText(answer);
+  if (answer.status == PlanStatus::kSolved)
+    return "solved: " + planText(answer) + (answer.reason.empty() ? "" : "; " + answer.reason);
   const bool never = answer.status == PlanStatus::kUnreachable;
   return std::string(never ? "unreachable: " : "none in time: ") + answer.reason;
 }

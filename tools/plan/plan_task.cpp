@@ -147,6 +147,7 @@ PlanTask loadTask(const PlanOptions& options) {
       readList("--tolerance", options.tolerance, "METRES,RADIANS", 2, {1e-3, 1e3});
   task.position_tolerance = tolerance[0];
   task.yaw_tolerance = tolerance[1];
+  task.come_close = options.come_close;
   task.deadline_ms = options.deadline_ms;
   if (!task.deadline_ms && !task.exact) task.deadline_ms = kDeadline;
   readWanted(options, task);

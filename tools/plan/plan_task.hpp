@@ -34,7 +34,8 @@ struct PlanTask {
   bool exact = false;                       ///< and used on their lattice
   double position_tolerance = 0.25;         ///< [m]
   double yaw_tolerance = 0.26;              ///< [rad]
-  std::optional<double> deadline_ms;        ///< none = until nothing is left to search
+  bool come_close = false;
+  std::optional<double> deadline_ms;  ///< none = until nothing is left to search
   std::vector<PlanQuery> queries;
   bool many = false;  ///< a report on all queries is wanted, not a plan
 };

@@ -165,6 +165,7 @@ PlanAnswer TaskPlanner::answer(const PlanQuery& query, double spent_ms) {
   wanted.T_map_goal = between(task_.map.T_map_grid, query.T_map_goal);
   wanted.position_tolerance = task_.position_tolerance;
   wanted.yaw_tolerance = task_.yaw_tolerance;
+  wanted.come_close = task_.come_close;
   const planner::PathEvents events{[&watch] { watch.noteSearch(); },
                                    [&watch](double, int) { watch.noteSolution(); }};
   const planner::PathAnswer found = planner_->answer(
@@ -177,7 +178,8 @@ PlanAnswer TaskPlanner::answer(const PlanQuery& query, double spent_ms) {
   answer.status = statusOf(found.end);
   answer.reason = found.reason;
   tellPlan(wanted.T_map_start, found.search, answer);
-  if (answer.status != PlanStatus::kSolved) answer.closest = closestApproach(found, query, answer);
+  if (answer.status != PlanStatus::kSolved || found.closest)
+    answer.closest = closestApproach(found, query, answer);
   answer.memory_mb = peakMegabytes();
   return answer;
 }

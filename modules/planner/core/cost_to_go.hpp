@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -96,6 +97,14 @@ class CostToGo {
   /// empty if there is one.
   const std::string& problem() const { return problem_; }
   bool unreachable() const { return !problem_.empty(); }
+  /// Where there is no way to the goal: the place nearest to it among those that the vehicle can
+  /// get to. Nothing if the vehicle stands on blocked ground, or nothing was worked out.
+  /** `before`, what was chosen the last time, is kept where nothing else is nearer by kMuchNearer:
+   * of two places that are as good the vehicle must not go from the one to the other. */
+  std::optional<Eigen::Vector2d> nearestWithinReach(
+      const Eigen::Vector2d& p_vehicle, const Eigen::Vector2d& p_goal,
+      const std::optional<Eigen::Vector2d>& before = std::nullopt) const;
+  static constexpr double kMuchNearer = 0.5;  ///< [m]
   /// Whether a point lies well within the area that was worked out.
   bool covers(const Eigen::Vector2d& p_map, double reach) const;
   /// Number of coarse cells filled in, for measuring.
@@ -103,6 +112,7 @@ class CostToGo {
 
  private:
   struct Front;
+  static constexpr float kUnknownCap = 10.0F;  // [m]
   static constexpr float kOpen = std::numeric_limits<float>::infinity();
   /// How the length changes around a cell.
   struct Slope {

@@ -145,7 +145,9 @@ CostToGo PathPlanner::wayTo(const SearchProblem& problem) const {
 
 PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop,
                                const PathEvents& events) {
-  if (std::optional<PathAnswer> refusal = this->refusal(query)) return *refusal;
+  if (std::optional<PathAnswer> refusal = this->refusal(query))
+    return query.come_close && refusal->closest ? comeClose(query, *refusal, stop, events)
+                                                : *refusal;
   SearchProblem problem = problemOf(query);
   CostToGo way;
   PoseToGo guide;
@@ -171,6 +173,21 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
     answer.search.expansions += before;
   }
   judge(answer);
+  return answer;
+}
+
+PathAnswer PathPlanner::comeClose(const PathQuery& query, const PathAnswer& refusal,
+                                  const StopPredicate& stop, const PathEvents& events) {
+  PathQuery nearer = query;
+  nearer.T_map_goal = {refusal.closest->x(), refusal.closest->y(), query.T_map_goal.yaw};
+  nearer.yaw_tolerance = kPi;
+  // The inscribed disc has room there; the vehicle may not be able to turn so.
+  nearer.position_tolerance =
+      std::max(query.position_tolerance, surroundings_->circumscribedRadius());
+  nearer.come_close = false;
+  PathAnswer answer = this->answer(nearer, stop, events);
+  if (answer.end == PathEnd::kSolved) answer.reason = "as close as possible: " + refusal.reason;
+  answer.closest = refusal.closest;
   return answer;
 }
 

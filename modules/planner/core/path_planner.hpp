@@ -29,6 +29,9 @@ struct PathQuery {
   Pose2 T_map_goal;
   double position_tolerance = 0.25;  ///< [m] > 0
   double yaw_tolerance = 0.26;       ///< [rad] > 0; pi or more = any heading
+  /// A goal that is certainly unreachable is replaced by the place nearest to it at which the
+  /// vehicle can be, with any heading (the paper's "come as close as possible").
+  bool come_close = false;
 };
 
 /// What became of a query.
@@ -46,7 +49,7 @@ struct PathEvents {
 
 struct PathAnswer {
   PathEnd end = PathEnd::kNoneInTime;
-  std::string reason;   ///< why there is no path, in words; empty if solved
+  std::string reason;   ///< why there is none to the goal itself, in words; empty if there is one
   SearchResult search;  ///< its steps lead to the goal, or as near to it as was found
   /// Where the vehicle could stand nearest to an unreachable goal, in p_map.
   std::optional<Eigen::Vector2d> closest;
@@ -77,6 +80,8 @@ class PathPlanner {
 
  private:
   std::optional<PathAnswer> refusalOfAreas(const PathQuery& query) const;
+  PathAnswer comeClose(const PathQuery& query, const PathAnswer& refusal, const StopPredicate& stop,
+                       const PathEvents& events);
   void placeOnLattice(SearchProblem& problem) const;
   SearchProblem problemOf(const PathQuery& query) const;
   void judge(PathAnswer& answer) const;

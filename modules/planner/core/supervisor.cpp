@@ -159,7 +159,7 @@ SearchResult Supervisor::searchFrom(const Situation& s, const PlanStep& start, i
   problem.patterns = table_.get();
   problem.surroundings = &world_.surroundings();
   problem.cost_to_go = &world_.costToGo();
-  problem.goal = *s.goal;
+  problem.goal = world_.aim();
   for (const PlanStep& step : plan_) problem.committed.push_back(step.pattern_id);
   if (searched_table_ != table_)
     counters_["cycles driven until a plan with the newest set"] = cycles_with_old_set_;
@@ -213,7 +213,8 @@ void Supervisor::addDetour(const Situation& s) {
 }
 
 void Supervisor::sayDriving(const Situation& s) {
-  say(PlanStatus::kDriving, s.now < note_until_ ? note_ : stopAhead());
+  const std::string& aim = world_.detraction();
+  say(PlanStatus::kDriving, s.now < note_until_ ? note_ : aim.empty() ? stopAhead() : aim);
 }
 
 bool Supervisor::leadsToRest(const Slot& slot) const {

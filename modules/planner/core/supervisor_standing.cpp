@@ -26,6 +26,9 @@ void Supervisor::stand(const Situation& s, const Readiness& ready) {
     ++counters_["arrived"];
   }
   if (arrived_) return say(PlanStatus::kArrived, "");
+  // The map may change: it goes on as soon as there is a way.
+  if (!world_.detraction().empty() && within(world_.aim(), s.pose->T_map_body))
+    return say(PlanStatus::kUnreachable, world_.detraction());
   const int64_t period =
       nothing_since_ ? config_.policy.blocked_period : config_.policy.plan_period;
   if (s.now - last_plan_ >= period) planStart(s);

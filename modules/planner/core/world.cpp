@@ -45,7 +45,8 @@ void World::lookAround(const Pose2& T_map_body, int64_t now) {
   const int cells = static_cast<int>(std::ceil(config_.window / cell));
   const CellIndex lower{static_cast<int>(std::floor(p.x() / cell)) - cells / 2,
                         static_cast<int>(std::floor(p.y() / cell)) - cells / 2};
-  surroundings_.emplace(map_->window(lower, cells, cells), config_.footprint, config_.margins);
+  surroundings_.emplace(map_->window(lower, cells, cells), config_.footprint, config_.margins,
+                        config_.unknown_blocks);
   window_revision_ = map_->revision();
   p_window_ = p;
 }
@@ -60,8 +61,9 @@ bool World::sameGoal(const Goal& goal) const {
 void World::lookAhead(const Pose2& T_map_body, const Goal& goal, int64_t now) {
   if (field_goal_ && field_goal_->id != goal.id) forgetDetours();
   const Eigen::Vector2d p = T_map_body.position();
+  const bool same = sameGoal(goal);
   const bool covered =
-      sameGoal(goal) && cost_to_go_.covers(p, kFieldSlack) && (p - p_field_).norm() < kFieldSlack;
+      same && cost_to_go_.covers(p, kFieldSlack) && (p - p_field_).norm() < kFieldSlack;
   if (covered && now - field_time_ < config_.field_period) return;
   map_->refresh();
   field_time_ = now;
@@ -71,6 +73,28 @@ void World::lookAhead(const Pose2& T_map_body, const Goal& goal, int64_t now) {
   field_revision_ = map_->passageRevision();
   p_field_ = p;
   detours_changed_ = false;
+  std::optional<Eigen::Vector2d> before;
+  if (same && !detraction_.empty()) before = aim_.T_map_goal.position();
+  aim_ = goal;
+  detraction_.clear();
+  if (config_.come_close && cost_to_go_.unreachable()) comeClose(p, before);
+}
+
+void World::comeClose(const Eigen::Vector2d& p_vehicle,
+                      const std::optional<Eigen::Vector2d>& before) {
+  const Eigen::Vector2d p_goal = aim_.T_map_goal.position();
+  const std::optional<Eigen::Vector2d> nearest =
+      cost_to_go_.nearestWithinReach(p_vehicle, p_goal, before);
+  if (!nearest) return;
+  const int tenths = static_cast<int>(std::lround(10.0 * (*nearest - p_goal).norm()));
+  detraction_ = "as close as possible, " + std::to_string(tenths / 10) + "." +
+                std::to_string(tenths % 10) + " m: " + cost_to_go_.problem();
+  aim_.T_map_goal = {nearest->x(), nearest->y(), aim_.T_map_goal.yaw};
+  aim_.yaw_tolerance = kPi;
+  // Half the width has room there; the vehicle may not be able to turn so.
+  const double arm = surroundings_->circumscribedRadius() + config_.margins.plan;
+  aim_.position_tolerance = std::max(aim_.position_tolerance, arm);
+  cost_to_go_ = CostToGo(*map_, aim_, p_vehicle, detours_, config_.field);
 }
 
 void World::addDetour(const Eigen::Vector2d& p_map) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "modules/planner/core/cost_to_go.hpp"
@@ -20,6 +21,8 @@ struct WorldConfig {
   double window = 24.0;             ///< [m] side of the surroundings
   int64_t window_period = 100'000;  ///< [us] the surroundings are cut no more often than this
   int64_t field_period = 400'000;   ///< [us] the way to go is worked out no more often than this
+  bool unknown_blocks = true;       ///< whether unknown ground may not be driven on
+  bool come_close = false;          ///< to goals that cannot be reached, instead of standing
 };
 
 /// The map as it was received, and what is derived from it when it is needed.
@@ -46,11 +49,17 @@ class World {
 
   const Surroundings& surroundings() const { return *surroundings_; }
   const CostToGo& costToGo() const { return cost_to_go_; }
+  /// What to drive to: the goal, or the place nearest to one that cannot be reached, if that is
+  /// wanted. Needs lookAhead().
+  const Goal& aim() const { return aim_; }
+  /// Why the aim is not the goal, in words; empty if it is.
+  const std::string& detraction() const { return detraction_; }
   const WorldConfig& config() const { return config_; }
 
  private:
   void freeUnder(const Pose2& T_map_body);
   bool sameGoal(const Goal& goal) const;
+  void comeClose(const Eigen::Vector2d& p_vehicle, const std::optional<Eigen::Vector2d>& before);
 
   WorldConfig config_;
   std::optional<PassageMap> map_;
@@ -60,6 +69,8 @@ class World {
   int64_t window_time_ = 0;
   CostToGo cost_to_go_;
   std::optional<Goal> field_goal_;
+  Goal aim_;
+  std::string detraction_;
   int64_t field_revision_ = -1;
   Eigen::Vector2d p_field_{0.0, 0.0};
   int64_t field_time_ = 0;

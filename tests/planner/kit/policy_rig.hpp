@@ -11,7 +11,8 @@ namespace tread::planner::testkit {
 /// A supervisor with an ideal robot: poses come true exactly, MOTOR and EXECUTION are prompt.
 class Rig {
  public:
-  explicit Rig(const Playground& ground = {}) : supervisor_(PlannerConfig{}, 77) {
+  explicit Rig(const Playground& ground = {}, const PlannerConfig& config = {})
+      : supervisor_(config, 77) {
     supervisor_.takeSet(samplePatterns());
     paint(ground);
     situation_.armed_by_operator = true;

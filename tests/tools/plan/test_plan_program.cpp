@@ -86,6 +86,19 @@ TEST_CASE("tread-plan ends with 1 for a goal that cannot be come to, and says wh
   CHECK(folder.text("a.png").substr(1, 3) == "PNG");
 }
 
+TEST_CASE(
+    "tread-plan told to come close plans to the nearest place, and says why not to the goal") {
+  const Folder folder;
+  const Run result = run(kOffice + kSet + kRobot + "--start -13.5,0.1,0 --goal 80,0.1,0 " +
+                         "--deadline-ms 20000 --come-close --json " + folder.path("a.json"));
+  CHECK(result.status == 0);
+  CHECK_THAT(result.printed, Contains("as close as possible: the goal lies outside the map"));
+  const Json json = Json::parse(folder.text("a.json"));
+  CHECK(json["solved"] == true);
+  const double nearest = json["closest_approach"]["x"].get<double>();
+  CHECK(json["poses"].back()[0].get<double>() == Approx(nearest).margin(0.8));
+}
+
 TEST_CASE("tread-plan takes start, goal and pace from an SBPL environment") {
   const Folder folder;
   std::string environment = kEnvironment;

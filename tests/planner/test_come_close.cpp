@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// Goals that cannot be reached, where the vehicle is to come as close as possible.
+#include <catch2/catch.hpp>
+
+#include "modules/planner/core/path_planner.hpp"
+#include "tests/planner/kit/policy_rig.hpp"
+
+using namespace tread;
+using namespace tread::planner;
+using namespace tread::planner::testkit;
+
+namespace {
+
+PlannerConfig closeConfig() {
+  PlannerConfig config;
+  config.world.come_close = true;
+  return config;
+}
+
+/// A closed box of 3 m around the goal of the rig, which lies at (12, 0).
+Playground walledGoal(bool closed) {
+  Playground ground;
+  ground.addWall({10.5, -1.5}, {13.5, -1.5});
+  ground.addWall({10.5, 1.5}, {13.5, 1.5});
+  ground.addWall({13.5, -1.5}, {13.5, 1.5});
+  if (closed) ground.addWall({10.5, -1.5}, {10.5, 1.5});
+  return ground;
+}
+
+}  // namespace
+
+TEST_CASE("The nearest place within reach is the nearest of all that a flood fill gets to") {
+  for (uint64_t seed = 1; seed <= 10; ++seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> draw(-4.0, 4.0);
+    Playground ground;
+    // Around the goal a wall, and some boxes anywhere.
+    for (const double s : {-1.0, 1.0}) {
+      ground.addWall({4.0, s}, {6.0, s}, 0.2);
+      ground.addWall({5.0 + s, -1.0}, {5.0 + s, 1.0}, 0.2);
+    }
+    for (int i = 0; i < 8; ++i) ground.add({{draw(random), draw(random), draw(random)}, 0.4, 0.2});
+    PassageMap map(0.1, 32, PassageConfig{});
+    for (Tile& tile : tilesOf(ground.paint(0.1, {-9.6, -9.6}, {9.6, 9.6}), 32, 1))
+      map.put(std::move(tile));
+    map.refresh();
+    const Goal goal{1, {5.0, 0.0, 0.0}, 0.3, 4.0};
+    FieldConfig config;
+    const Eigen::Vector2d p_vehicle(-5.0, draw(random));
+    const CostToGo way(map, goal, p_vehicle, {}, config);
+    REQUIRE(way.unreachable());
+    const auto nearest = way.nearestWithinReach(p_vehicle, {5.0, 0.0});
+    if (!nearest) continue;  // the vehicle stands on a box
+    CAPTURE(seed, nearest->transpose());
+    const double off = (*nearest - Eigen::Vector2d(5.0, 0.0)).norm();
+    // Outside of the wall and its inflation, but not much.
+    CHECK(off > 1.0 + config.inflation);
+    CHECK(off < 1.0 + config.inflation + 0.5);
+    // There is a way to it, and no other place that is nearer has one.
+    const Goal there{2, {nearest->x(), nearest->y(), 0.0}, 0.05, 4.0};
+    CHECK_FALSE(CostToGo(map, there, p_vehicle, {}, config).unreachable());
+    for (double angle = 0.0; angle < 6.2; angle += 0.1) {
+      const double radius = off - 0.15;
+      const Goal nearer{
+          3, {5.0 + radius * std::cos(angle), radius * std::sin(angle), 0.0}, 0.05, 4.0};
+      CHECK(CostToGo(map, nearer, p_vehicle, {}, config).unreachable());
+    }
+  }
+}
+
+TEST_CASE(
+    "Told to come close, the vehicle drives to an enclosed goal's wall, and in when it opens") {
+  Rig rig(walledGoal(true), closeConfig());
+  Decision decision = rig.run(3.0);
+  CHECK(decision.report.status == PlanStatus::kDriving);
+  CHECK_THAT(decision.report.reason, Catch::Contains("as close as possible"));
+  decision = rig.run(25.0);
+  CHECK(decision.report.status == PlanStatus::kUnreachable);
+  CHECK_THAT(decision.report.reason, Catch::Contains("obstacles enclose"));
+  CHECK(std::hypot(rig.pose().x - 12.0, rig.pose().y) < 3.2);
+  CHECK(std::abs(rig.speed()) < 0.02);
+  rig.paint(walledGoal(false));
+  decision = rig.run(40.0);
+  CHECK(decision.report.status == PlanStatus::kArrived);
+  CHECK(std::hypot(rig.pose().x - 12.0, rig.pose().y) < 0.6);
+}
+
+TEST_CASE("Not told so, the vehicle stands and says that the goal cannot be reached") {
+  Rig rig(walledGoal(true));
+  const Decision decision = rig.run(3.0);
+  CHECK(decision.report.status == PlanStatus::kUnreachable);
+  CHECK(std::abs(rig.pose().x) < 0.01);
+}
+
+TEST_CASE("A path query that is to come close ends at the nearest place, and says why there") {
+  const Grid grid = walledGoal(true).paint(0.1, {-3.0, -6.0}, {16.0, 6.0});
+  const PatternTable table(samplePatterns(), SweepStep{}, {});
+  PathPlanner planner(grid, table, PathConfig{});
+  PathQuery query{{0.0, 0.0, 0.0}, {12.0, 0.0, 0.0}, 0.25, 4.0};
+  const StopPredicate stop = [](int count) { return count > 20'000; };
+  const PathAnswer refused = planner.answer(query, stop);
+  CHECK(refused.end == PathEnd::kUnreachable);
+  query.come_close = true;
+  const PathAnswer answer = planner.answer(query, stop);
+  REQUIRE(answer.end == PathEnd::kSolved);
+  REQUIRE(refused.closest);
+  CHECK((answer.search.steps.back().T_map_end.position() - *refused.closest).norm() <= 0.75);
+  CHECK_THAT(answer.reason, Catch::Contains("as close as possible: " + refused.reason));
+}
