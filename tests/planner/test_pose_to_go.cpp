@@ -163,6 +163,21 @@ TEST_CASE("filled in as far as the start, the guide is right wherever it may be 
   CHECK(right > testing::effort(20));
 }
 
+TEST_CASE("filled in as far as the start, the guide is nowhere more than what brute force finds") {
+  int less = 0;
+  onRandomGrounds(3, testing::effort(60), [&](Bench& bench, const Pose2& start, const Goal& goal) {
+    const PoseToGo guide = bench.guide(start, goal, 0.05);
+    const GuideReference truth(bench.places, goal, start, bench.rates);
+    visitStates(bench, [&](int column, int row, int heading) {
+      const double expected = truth.at(column, row, heading);
+      const double value = bench.at(guide, column, row, heading);
+      REQUIRE(value <= expected * (1.0 + 1e-4) + 1e-4);
+      less += value < 0.99 * expected ? 1 : 0;
+    });
+  });
+  CHECK(less > testing::effort(10'000));  // enough was not filled in
+}
+
 TEST_CASE("on empty ground a way ahead and a turn cost what the patterns charge for them") {
   const PatternTable table(plainMoves(true), SweepStep{});
   Bench bench(openGround(6.0), false, table);

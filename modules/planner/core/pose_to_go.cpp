@@ -216,10 +216,8 @@ void PoseToGo::fill(const Pose2& start, double beyond, Front& front) {
 
 float PoseToGo::fromStart(size_t square) const {
   const auto stride = static_cast<size_t>(places_->stride());
-  const auto dx =
-      static_cast<float>(static_cast<int>(square % stride) - Places::kRim - start_column_);
-  const auto dy = static_cast<float>(static_cast<int>(square / stride) - Places::kRim - start_row_);
-  return square_cost_ * std::sqrt(dx * dx + dy * dy);
+  return fromStart(static_cast<int>(square % stride) - Places::kRim,
+                   static_cast<int>(square / stride) - Places::kRim);
 }
 
 void PoseToGo::relax(size_t state, Front& front) {

@@ -2,7 +2,9 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -45,17 +47,18 @@ class PoseToGo {
 
   bool empty() const { return cost_.empty(); }
   /// Cost from a pose to the goal, yaw within half a turn; infinite where there is no way. What was
-  /// not filled in costs, with the way there from the start, more than what was: the least that it
-  /// can be, or what some way costs.
+  /// not filled in costs, with the way there from the start, more than what was: there it is the
+  /// least that it can be.
   float at(double x, double y, float yaw) const {
     const double column = (x - lower_.x()) * per_size_;
     const double row = (y - lower_.y()) * per_size_;
     if (!(column >= 0.0 && row >= 0.0 && column < places_->width() && row < places_->height()))
       return cut_;
-    const size_t square = places_->number(static_cast<int>(column), static_cast<int>(row));
-    const float value = cost_[square * kHeadings + static_cast<size_t>(binOf(yaw))];
-    if (value + square_cost_ < cut_) return value;
-    return std::min(value, std::max(0.0F, cut_ - fromStart(square)));
+    const int c = static_cast<int>(column);
+    const int r = static_cast<int>(row);
+    const float value = cost_[places_->number(c, r) * kHeadings + static_cast<size_t>(binOf(yaw))];
+    // A cost that was found but not settled may be more than the least.
+    return std::min(value, std::max(0.0F, cut_ - fromStart(c, r)));
   }
   /// Whether the start can be reached from the goal.
   bool reached() const { return reached_; }
@@ -82,6 +85,11 @@ class PoseToGo {
   void fill(const Pose2& T_map_start, double beyond, Front& front);
   void relax(size_t state, Front& front);
   /// Least cost between the start and a square.
+  float fromStart(int column, int row) const {
+    const auto dx = static_cast<float>(column - start_column_);
+    const auto dy = static_cast<float>(row - start_row_);
+    return square_cost_ * std::sqrt(dx * dx + dy * dy);
+  }
   float fromStart(size_t square) const;
 
   Places* places_ = nullptr;
