@@ -118,15 +118,54 @@ TEST_CASE("each refusal says why, and where the vehicle could stand nearest to t
   CHECK(room.answer(start, {-1.5, -1.0, 1.0}).end == PathEnd::kSolved);
 }
 
-TEST_CASE("a start deep in obstacles is told so, one at their border may leave them") {
+TEST_CASE("a start on obstacles is left if so many patterns as may overlap them lead off") {
   Room room;
   room.block({-40, -30}, {-10, 29});
-  const PathAnswer deep = room.answer({-3.0, 0.0, 0.0}, {2.0, 0.0, 0.0});
+  // 15 cm, and more than the whole of the vehicle.
+  for (const double x : {-0.4, -2.0, -3.0}) {
+    const Pose2 start{x, 0.0, 0.0};
+    const PathAnswer answer = room.answer(start, {2.0, 0.0, 0.0});
+    INFO("from x = " << x << ": " << answer.reason);
+    REQUIRE(answer.end == PathEnd::kSolved);
+    const FootprintSize size;
+    const Footprint footprint(size.front, size.rear, size.half_width, 0.0);
+    const auto blocked = [&](const Pose2& pose) {
+      return footprint.blockedCells(room.grid, pose, true);
+    };
+    int overlapping = 0;
+    for (const PlanStep& step : answer.search.steps) {
+      CHECK(blocked(step.T_map_end) <= blocked(start));
+      if (blocked(step.T_map_end) > 0) ++overlapping;
+    }
+    CHECK(overlapping < room.config.search.escape_patterns);
+    CHECK(blocked(answer.search.steps.back().T_map_end) == 0);
+  }
+}
+
+TEST_CASE("a start so deep in obstacles that they may not be left is told so") {
+  Room room;
+  room.block({-40, -30}, {19, 29});
+  const PathAnswer deep = room.answer({-3.0, 0.0, 0.0}, {3.0, 0.0, 0.0});
   CHECK(deep.end == PathEnd::kUnreachable);
   CHECK(deep.reason == "the start lies on obstacles");
-  // The rear overlaps by 15 cm: going ahead is a way out.
-  const PathAnswer border = room.answer({-0.4, 0.0, 0.0}, {2.0, 0.0, 0.0});
-  CHECK(border.end == PathEnd::kSolved);
+  CHECK(room.answer({0.0, 0.0, 0.0}, {3.0, 0.0, 0.0}).end == PathEnd::kSolved);
+  room.config.search.escape_patterns = 0;
+  CHECK(room.answer({1.5, 0.0, 0.0}, {3.0, 0.0, 0.0}).end == PathEnd::kUnreachable);
+}
+
+TEST_CASE("a start that no pattern may leave because it would deepen the overlap is told so") {
+  // One obstacle under the vehicle, and nothing but obstacles around it.
+  Room room;
+  room.block({-40, -30}, {39, 29});
+  const Pose2 start{0.0, 0.0, 0.0};
+  for (int y = -4; y <= 3; ++y)
+    for (int x = -7; x <= 6; ++x) room.grid.set({x, y}, kFree);
+  room.grid.set({0, 3}, kObstacle);
+  for (int y = 20; y < 29; ++y)
+    for (int x = -30; x < 30; ++x) room.grid.set({x, y}, kFree);
+  const PathAnswer answer = room.answer(start, {0.0, 2.5, 0.0}, 0.25);
+  CHECK(answer.end == PathEnd::kUnreachable);
+  CHECK(answer.reason.find("no legal successor") != std::string::npos);
 }
 
 TEST_CASE("a start that no pattern may leave is told so") {

@@ -112,9 +112,7 @@ std::optional<PathAnswer> PathPlanner::refusalOfAreas(const PathQuery& query) co
   const Eigen::Vector2d p_goal = query.T_map_goal.position();
   if (!surroundings_->grid().contains(surroundings_->grid().indexOf(p_start)))
     return refused("the start lies outside the map");
-  // On blocked ground the start may be left to all sides.
-  std::vector<int> from{passages_->areaAt(p_start)};
-  if (from.front() == 0) from = passages_->areasNear(p_start, 2.0 * inscribed_);
+  const std::vector<int> from = areasFrom(query.T_map_start);
   const std::vector<int> to = passages_->areasNear(p_goal, query.position_tolerance);
   const bool connected = std::any_of(from.begin(), from.end(), [&](int area) {
     return std::find(to.begin(), to.end(), area) != to.end();
@@ -129,6 +127,37 @@ std::optional<PathAnswer> PathPlanner::refusalOfAreas(const PathQuery& query) co
     answer.reason = "the goal lies on obstacles, or too near to them";
   answer.closest = passages_->nearestIn(from, p_goal);
   return answer;
+}
+
+/// Numbers of the areas in which the disc inside the footprint may be after the start was left.
+std::vector<int> PathPlanner::areasFrom(const Pose2& start) const {
+  const int own = passages_->areaAt(start.position());
+  if (own != 0 && isFree(start)) return {own};
+  double longest = 0.0;
+  for (const TablePattern& pattern : patterns_.patterns())
+    longest = std::max(longest, pattern.end().pose.position().norm());
+  return passages_->areasNear(start.position(), config_.search.escape_patterns * longest);
+}
+
+/// Whether a pattern may be driven from the start, and the vehicle stopped after it.
+bool PathPlanner::anyBegins(const Pose2& start) const {
+  const Surroundings& around = *surroundings_;
+  const bool is_free = isFree(start);
+  const auto mayFollow = [&](const Pose2& from, const Overlap& overlap, const TablePattern& p) {
+    if (is_free) return around.sweepFree(from, p, Surroundings::kBare);
+    return config_.search.escape_patterns > 0 && around.escape(from, overlap, p).has_value();
+  };
+  const Overlap at_start = around.overlap(start);
+  const auto& first = patterns_.from(patterns_.restClass());
+  return std::any_of(first.begin(), first.end(), [&](const TablePattern* pattern) {
+    if (!mayFollow(start, at_start, *pattern)) return false;
+    if (pattern->exit == patterns_.restClass()) return true;
+    const Pose2 end = start * pattern->end().pose;
+    const Overlap at_end = around.overlap(end);
+    const auto& stops = patterns_.stopsFrom(pattern->exit);
+    return std::any_of(stops.begin(), stops.end(),
+                       [&](const TablePattern* stop) { return mayFollow(end, at_end, *stop); });
+  });
 }
 
 CostToGo PathPlanner::wayTo(const SearchProblem& problem) const {
@@ -172,7 +201,7 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
     answer.search = search_.run(problem, [&](int count) { return stop(before + count); });
     answer.search.expansions += before;
   }
-  judge(answer);
+  judge(query, answer);
   return answer;
 }
 
@@ -204,7 +233,7 @@ void PathPlanner::placeOnLattice(SearchProblem& problem) const {
   problem.cell_costs = costs_;
 }
 
-void PathPlanner::judge(PathAnswer& answer) const {
+void PathPlanner::judge(const PathQuery& query, PathAnswer& answer) const {
   const SearchResult& result = answer.search;
   if (result.end == SearchEnd::kGoal) {
     answer.end = PathEnd::kSolved;
@@ -214,7 +243,8 @@ void PathPlanner::judge(PathAnswer& answer) const {
     answer.reason = "none was found before the search was stopped";
     return;
   }
-  const bool none_begins = result.expansions <= 1;
+  const bool none_begins =
+      result.expansions <= 1 && (costs_ != nullptr || !anyBegins(query.T_map_start));
   // A lattice has no other states than those that were looked at.
   if (none_begins || costs_ != nullptr) answer.end = PathEnd::kUnreachable;
   answer.reason = none_begins

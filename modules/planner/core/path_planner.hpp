@@ -59,7 +59,8 @@ struct PathAnswer {
 /** What all queries share is worked out once: clearance, passages, connected areas. Unreachable is
  * only what is certain: the goal lies outside the map or where not even the disc inside the
  * footprint has room, that disc cannot be moved from start to goal, or no pattern can begin at the
- * start; on a lattice also that all states were seen. */
+ * start; on a lattice also that all states were seen. A start on blocked ground is connected to
+ * all that the patterns may reach that may lead off it (SearchConfig::escape_patterns). */
 class PathPlanner {
  public:
   PathPlanner(const Grid& grid, const PatternTable& patterns, const PathConfig& config);
@@ -84,7 +85,9 @@ class PathPlanner {
                        const PathEvents& events);
   void placeOnLattice(SearchProblem& problem) const;
   SearchProblem problemOf(const PathQuery& query) const;
-  void judge(PathAnswer& answer) const;
+  std::vector<int> areasFrom(const Pose2& T_map_start) const;
+  bool anyBegins(const Pose2& T_map_start) const;
+  void judge(const PathQuery& query, PathAnswer& answer) const;
   CostToGo wayTo(const SearchProblem& problem) const;
 
   const PatternTable& patterns_;

@@ -115,15 +115,15 @@ void Search::beginAgain(const Weights& weights) {
   root.number = -1;
   root.uncertainty = problem.start_uncertainty;
   root.motion_class = static_cast<int8_t>(problem.start_class);
-  const ToGo to_go = toGo(root);
-  root.bound = to_go.bound;
-  root.guess = guess_at_start_ = to_go.guess;
   if (problem.cell_costs == nullptr) {
     const Surroundings& around = *problem.surroundings;
     root.level = static_cast<int8_t>(
         around.freeLevel(problem.T_map_start, around.level(problem.start_uncertainty)));
     if (root.level < 0) root.overlap = around.overlap(problem.T_map_start);
   }
+  const ToGo to_go = toGo(root, root.level < 0);
+  root.bound = to_go.bound;
+  root.guess = guess_at_start_ = to_go.guess;
   // Estimates hardly fall below that at the start.
   open_.clear(std::isfinite(root.guess) ? 0.5F * root.guess : 0.0F);
   NodeTable::Slot& slot = best_[keyOf(root)];
@@ -244,7 +244,7 @@ void Search::addChild(Node& node, uint64_t key) {
   }
   NodeTable::Slot& slot = best_[key];
   if (slot.node >= 0 && slot.cost <= node.cost * (1.0F + kSame)) return;
-  const ToGo to_go = toGo(node);
+  const ToGo to_go = toGo(node, nodes_[static_cast<size_t>(parent)].level < 0);
   if (node.cost + to_go.bound >= best_cost_) return;
   node.bound = to_go.bound;
   node.guess = to_go.guess;
@@ -347,13 +347,15 @@ float Search::switchPenalty(const Node& parent, const TablePattern& pattern) con
   return static_cast<float>(config_.switch_penalty * std::exp2(-parent.depth));
 }
 
-Search::ToGo Search::toGo(const Node& node) const {
+/// There is no way over blocked ground; who leaves it may go straight.
+Search::ToGo Search::toGo(const Node& node, bool on_blocked_ground) const {
   const Goal& goal = problem_->goal;
   CostToGo::Sample at;
   if (problem_->cost_to_go != nullptr) {
     at = problem_->cost_to_go->sample(node.x, node.y);
-    if (!(at.length < kNever)) return {kNever, kNever};
-  } else {
+    if (!(at.length < kNever) && !on_blocked_ground) return {kNever, kNever};
+  }
+  if (problem_->cost_to_go == nullptr || !(at.length < kNever)) {
     const double dx = goal.T_map_goal.x - node.x;
     const double dy = goal.T_map_goal.y - node.y;
     const double distance = std::sqrt(dx * dx + dy * dy);

@@ -192,7 +192,7 @@ class Search {
   bool canStop(const Node& node) const;
   float edgeCost(const Node& parent, const TablePattern& pattern, const Node& end) const;
   float switchPenalty(const Node& parent, const TablePattern& pattern) const;
-  ToGo toGo(const Node& node) const;
+  ToGo toGo(const Node& node, bool on_blocked_ground) const;
   bool isGoal(const Node& node) const;
   bool isFarEnough(const Node& node) const;
   int bestLeaf() const;
