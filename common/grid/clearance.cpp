@@ -130,11 +130,11 @@ std::vector<uint16_t> freeRuns(const std::vector<uint8_t>& blocked, int width, i
   const auto w = static_cast<size_t>(width);
   std::vector<uint16_t> runs(blocked.size());
   for (size_t row = 0; row < static_cast<size_t>(height); ++row) {
-    uint16_t run = 0;
+    int run = 0;
     for (size_t x = w; x-- > 0;) {
       const size_t at = row * w + x;
-      run = blocked[at] ? uint16_t{0} : static_cast<uint16_t>(std::min(run + 1, 65535));
-      runs[at] = run;
+      run = blocked[at] ? 0 : run + 1;
+      runs[at] = static_cast<uint16_t>(std::min(run, 65535));
     }
   }
   return runs;
@@ -221,11 +221,16 @@ void ClearanceField::lookNearby(const std::vector<uint8_t>& blocked, int cap_ste
   clearance_.resize(blocked.size());
   const auto w = static_cast<size_t>(width_);
   const auto half_cell = static_cast<float>(0.5 * cell_size_);
+  // A square is a whole number: its root is looked up.
+  const int farthest = cap_steps * cap_steps;
+  std::vector<float> roots(static_cast<size_t>(farthest) + 1);
+  for (size_t i = 0; i < roots.size(); ++i)
+    roots[i] = std::min(cap_, std::sqrt(static_cast<float>(i)) * half_cell);
   NearSquares near(blocked, width_, height_, unknown_blocks_, cap_steps);
   near.forEachRow([&](size_t y, const int16_t* squares) {
     float* const values = clearance_.data() + y * w;
     for (size_t x = 0; x < w; ++x)
-      values[x] = std::min(cap_, std::sqrt(static_cast<float>(squares[x])) * half_cell);
+      values[x] = roots[static_cast<size_t>(std::min<int>(squares[x], farthest))];
   });
 }
 

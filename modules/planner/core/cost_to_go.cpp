@@ -3,6 +3,7 @@
 #include "modules/planner/core/cost_to_go.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -14,6 +15,8 @@ constexpr float kNoWay = std::numeric_limits<float>::infinity();
 constexpr float kOpenGround = 1e6F;
 /// Cells whose lengths differ by less than this may be settled in any order [m].
 constexpr float kBucket = 0.05F;
+/// No step from a neighbour is shorter, in slowness times size of a cell: half a diagonal.
+constexpr float kLeastStep = 0.707F;
 /// Around vehicle and goal there is at least so much of the area, however far apart they are [m].
 constexpr double kLeastMargin = 8.0;
 
@@ -28,30 +31,33 @@ float slownessOf(float room, const FieldConfig& config) {
 
 /// Cells waiting to be settled, in buckets of nearly equal length.
 struct CostToGo::Front {
-  std::vector<std::vector<uint32_t>> buckets = std::vector<std::vector<uint32_t>>(256);
+  static constexpr size_t kBuckets = 256;  // a power of two: their number is found without division
+  std::array<std::vector<uint32_t>, kBuckets> buckets;
   std::vector<uint32_t> taken;
   size_t current = 0;
   size_t waiting = 0;
 
   void add(size_t cell, float length) {
-    const size_t wanted = std::max(current, static_cast<size_t>(length / kBucket));
-    buckets[std::min(wanted, current + buckets.size() - 1) % buckets.size()].push_back(
-        static_cast<uint32_t>(cell));
+    const size_t wanted = std::max(current, static_cast<size_t>(length * (1.0F / kBucket)));
+    const size_t bucket = std::min(wanted, current + kBuckets - 1) % kBuckets;
+    buckets[bucket].push_back(static_cast<uint32_t>(cell));
     ++waiting;
   }
   const std::vector<uint32_t>& take() {
-    while (buckets[current % buckets.size()].empty()) ++current;
+    while (buckets[current % kBuckets].empty()) ++current;
     taken.clear();
-    taken.swap(buckets[current % buckets.size()]);
+    taken.swap(buckets[current % kBuckets]);
     waiting -= taken.size();
     return taken;
   }
 };
 
-CostToGo::CostToGo(const PassageSource& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
-                   const std::vector<Detour>& detours, const FieldConfig& config) {
+void CostToGo::workOut(const PassageSource& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
+                       const std::vector<Detour>& detours, const FieldConfig& config) {
+  problem_.clear();
   const double distance = (goal.T_map_goal.position() - p_vehicle).norm();
   if (!(distance <= config.max_distance)) {
+    *this = CostToGo();
     problem_ = "the goal is farther away than " + std::to_string(std::lround(config.max_distance)) +
                " m: give nearer ones on the way";
     return;
@@ -219,6 +225,7 @@ void CostToGo::relax(size_t cell, Front& front) {
     const float a = std::min(settled_[next - 1], settled_[next + 1]);
     const float b = std::min(settled_[next - stride], settled_[next + stride]);
     const float nearer = std::min(a, b);
+    if (nearer + kLeastStep * step >= tentative_[next]) continue;
     const float apart = std::min(std::max(a, b) - nearer, step);
     // Upwind solution of |grad| = slowness; one-sided where the two sides are too far apart.
     const float value = nearer + 0.5F * (apart + std::sqrt(2.0F * step * step - apart * apart));

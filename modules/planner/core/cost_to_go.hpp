@@ -52,7 +52,12 @@ class CostToGo {
 
   CostToGo() = default;
   CostToGo(const PassageSource& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
-           const std::vector<Detour>& detours, const FieldConfig& config);
+           const std::vector<Detour>& detours, const FieldConfig& config) {
+    workOut(map, goal, p_vehicle, detours, config);
+  }
+  /// As if newly made, in the memory that it has.
+  void workOut(const PassageSource& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
+               const std::vector<Detour>& detours, const FieldConfig& config);
 
   bool empty() const { return settled_.empty(); }
   /// Way from a point to the rim of the goal's tolerance [m]; infinite if there is none.
@@ -147,7 +152,7 @@ class CostToGo {
   std::vector<float> slowness_;   // [m of way per m]; infinite where blocked or settled
   std::vector<float> tentative_;  // [m] as short as was found
   std::vector<float> settled_;    // [m] final; infinite before
-  std::vector<Slope> slopes_;     // of settled cells
+  std::vector<Slope> slopes_;     // of settled cells; of others anything
   std::vector<uint8_t> unknown_;
   float cut_ = 0.0F;  // beyond this nothing was filled in
   bool cut_short_ = false;

@@ -31,7 +31,7 @@ struct PolicyConfig {
   int64_t recovery_wait = 1'500'000;  ///< [us] with nothing free until a recovery is tried
   int recoveries = 4;                 ///< tries until the goal counts as blocked
   int detours = 6;                    ///< ways given up until it counts as blocked
-  int driving_expansions = 3000;      ///< per plan
+  int driving_expansions = 2000;      ///< per plan
   int standing_expansions = 15000;    ///< per plan
 };
 

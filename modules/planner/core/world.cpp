@@ -68,7 +68,7 @@ void World::lookAhead(const Pose2& T_map_body, const Goal& goal, int64_t now) {
   map_->refresh();
   field_time_ = now;
   if (covered && field_revision_ == map_->passageRevision() && !detours_changed_) return;
-  cost_to_go_ = CostToGo(*map_, goal, p, detours_, config_.field);
+  cost_to_go_.workOut(*map_, goal, p, detours_, config_.field);
   field_goal_ = goal;
   field_revision_ = map_->passageRevision();
   p_field_ = p;
@@ -94,7 +94,7 @@ void World::comeClose(const Eigen::Vector2d& p_vehicle,
   // Half the width has room there; the vehicle may not be able to turn so.
   const double arm = surroundings_->circumscribedRadius() + config_.margins.plan;
   aim_.position_tolerance = std::max(aim_.position_tolerance, arm);
-  cost_to_go_ = CostToGo(*map_, aim_, p_vehicle, detours_, config_.field);
+  cost_to_go_.workOut(*map_, aim_, p_vehicle, detours_, config_.field);
 }
 
 void World::addDetour(const Eigen::Vector2d& p_map) {

@@ -5,6 +5,7 @@
 // cm, and the pattern set. As a ratio to the clearance transform of that map, timed between the
 // cycles.
 #include "modules/planner/core/search.hpp"
+#include "modules/planner/core/supervisor.hpp"
 #include "modules/planner/core/world.hpp"
 #include "tests/bench/planner/path_figures.hpp"
 #include "tests/planner/kit/playground.hpp"
@@ -83,7 +84,8 @@ void replan(benchmark::State& state) {
     problem.surroundings = &worlds[i].surroundings();
     problem.cost_to_go = &worlds[i].costToGo();
     problem.goal = mission.goal;
-    benchmark::DoNotOptimize(search.run(problem, [](int count) { return count >= 3000; }));
+    benchmark::DoNotOptimize(
+        search.run(problem, [](int count) { return count >= PolicyConfig{}.driving_expansions; }));
     cycles.push_back(watch.ms());
     transforms.push_back(bench::transformTime(grids[i]));
   }
