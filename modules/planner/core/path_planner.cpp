@@ -17,6 +17,9 @@ constexpr double kUsualSlack = 0.25;
 constexpr int kFiner = 2;
 constexpr double kMostSlack = 0.71;
 
+constexpr const char* kNoneBegins =
+    "the start has no legal successor: each pattern would leave the map or hit something";
+
 SearchConfig latticeSearch(double cell_size, int bins) {
   SearchConfig config = PathConfig::pathSearch();
   config.cell = cell_size;
@@ -117,7 +120,9 @@ std::optional<PathAnswer> PathPlanner::refusalOfAreas(const PathQuery& query) co
   const bool connected = std::any_of(from.begin(), from.end(), [&](int area) {
     return std::find(to.begin(), to.end(), area) != to.end();
   });
-  if (connected) return std::nullopt;
+  // Nothing needs to be worked out for a start that no pattern can leave.
+  if (connected && (isInGoal(query) || anyBegins(query.T_map_start))) return std::nullopt;
+  if (connected) return refused(kNoneBegins);
   PathAnswer answer = refused("obstacles enclose the goal or the vehicle");
   if (from.empty())
     answer.reason = "the start lies on obstacles";
@@ -127,6 +132,14 @@ std::optional<PathAnswer> PathPlanner::refusalOfAreas(const PathQuery& query) co
     answer.reason = "the goal lies on obstacles, or too near to them";
   answer.closest = passages_->nearestIn(from, p_goal);
   return answer;
+}
+
+bool PathPlanner::isInGoal(const PathQuery& query) const {
+  const Pose2 off = between(query.T_map_goal, query.T_map_start);
+  const double share = config_.search.goal_share;
+  return off.position().norm() <= share * query.position_tolerance &&
+         (query.yaw_tolerance >= kPi ||
+          std::abs(wrapAngle(off.yaw)) <= share * query.yaw_tolerance);
 }
 
 /// Numbers of the areas in which the disc inside the footprint may be after the start was left.
@@ -201,7 +214,7 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
     answer.search = search_.run(problem, [&](int count) { return stop(before + count); });
     answer.search.expansions += before;
   }
-  judge(query, answer);
+  judge(answer);
   return answer;
 }
 
@@ -233,7 +246,7 @@ void PathPlanner::placeOnLattice(SearchProblem& problem) const {
   problem.cell_costs = costs_;
 }
 
-void PathPlanner::judge(const PathQuery& query, PathAnswer& answer) const {
+void PathPlanner::judge(PathAnswer& answer) const {
   const SearchResult& result = answer.search;
   if (result.end == SearchEnd::kGoal) {
     answer.end = PathEnd::kSolved;
@@ -243,13 +256,11 @@ void PathPlanner::judge(const PathQuery& query, PathAnswer& answer) const {
     answer.reason = "none was found before the search was stopped";
     return;
   }
-  const bool none_begins =
-      result.expansions <= 1 && (costs_ != nullptr || !anyBegins(query.T_map_start));
+  const bool none_begins = costs_ != nullptr && result.expansions <= 1;
   // A lattice has no other states than those that were looked at.
   if (none_begins || costs_ != nullptr) answer.end = PathEnd::kUnreachable;
   answer.reason = none_begins
-                      ? "the start has no legal successor: each pattern would leave the map or hit "
-                        "something"
+                      ? kNoneBegins
                       : "the goal is not among all that the patterns lead to, " +
                             std::to_string(result.expansions) + " expansions at this resolution";
 }

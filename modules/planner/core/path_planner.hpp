@@ -87,7 +87,8 @@ class PathPlanner {
   SearchProblem problemOf(const PathQuery& query) const;
   std::vector<int> areasFrom(const Pose2& T_map_start) const;
   bool anyBegins(const Pose2& T_map_start) const;
-  void judge(const PathQuery& query, PathAnswer& answer) const;
+  bool isInGoal(const PathQuery& query) const;
+  void judge(PathAnswer& answer) const;
   CostToGo wayTo(const SearchProblem& problem) const;
 
   const PatternTable& patterns_;
