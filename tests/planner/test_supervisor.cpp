@@ -238,3 +238,22 @@ TEST_CASE("Plans are reported with the ids under which they were handed over") {
   CHECK(decision.report.time_to_go > 5.0);
   CHECK(decision.report.time_to_go < 20.0);
 }
+
+TEST_CASE("A vehicle that is pushed off its way is planned for anew at once, from where it is") {
+  const double push = GENERATE(0.0, 0.02, 0.4);
+  Rig rig;
+  rig.run(4.0);
+  // To the middle of a pattern, just after a plan.
+  const ProgramBook& program = rig.supervisor().program();
+  const auto due = [&] { return program.ends() - rig.now(); };
+  while (due() < 300'000 || due() > 700'000) rig.run(0.05);
+  while (!rig.run(0.05).planned) continue;
+  const auto pushed = [&](Situation& seen) { seen.pose->T_map_body.y += push; };
+  const double before = rig.run(0.05).report.steps.front().T_map_end.y;
+  const Decision decision = rig.run(0.05, pushed);
+  CAPTURE(push);
+  CHECK(rig.supervisor().counters().count("left the predicted corridor") == (push > 0.1 ? 1 : 0));
+  if (push < 0.1) return;
+  CHECK(decision.planned);
+  CHECK(decision.report.steps.front().T_map_end.y == Approx(before + push).margin(0.1));
+}

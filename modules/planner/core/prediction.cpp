@@ -61,4 +61,15 @@ std::optional<double> firstConflict(const Surroundings& surroundings,
   return std::nullopt;
 }
 
+bool leftCorridor(const Prediction& then, const Prediction& now) {
+  constexpr double kSigmas = 3.0;
+  constexpr double kLeastWay = 0.1;   // [m]
+  constexpr double kLeastTurn = 0.1;  // [rad]
+  const Pose2 off = between(then.T_map_end, now.T_map_end);
+  const double way = kSigmas * std::sqrt(static_cast<double>(then.uncertainty.position()));
+  const double turn = kSigmas * std::sqrt(static_cast<double>(then.uncertainty.yawyaw));
+  return std::hypot(off.x, off.y) > std::max(kLeastWay, way) ||
+         std::abs(wrapAngle(off.yaw)) > std::max(kLeastTurn, turn);
+}
+
 }  // namespace tread::planner

@@ -23,6 +23,11 @@ struct Prediction {
   Uncertainty uncertainty;  ///< of the end, in map axes
 };
 
+/// Whether a pattern leads elsewhere than was expected when the plan behind it was made.
+/** Its end as it is expected now lies more than three standard deviations from where it was
+ * expected then, and more than 10 cm or .1 rad: less is not worth a plan. */
+bool leftCorridor(const Prediction& then, const Prediction& now);
+
 /// How much of what a running pattern promised has come true so far, each about 1.
 struct Fulfilment {
   double way = 1.0;

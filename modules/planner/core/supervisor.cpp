@@ -105,6 +105,7 @@ void Supervisor::followBridge(const Situation& s) {
     case ProgramBook::Event::kNone:
       return;
     case ProgramBook::Event::kSwitched: {
+      planned_on_.reset();
       const bool as_planned =
           !plan_.empty() && plan_.front().pattern_id == book_.running().pattern_id;
       if (as_planned)
@@ -132,6 +133,7 @@ void Supervisor::followBridge(const Situation& s) {
   mode_ = Mode::kSettling;
   settling_since_ = s.now;
   plan_.clear();
+  planned_on_.reset();
 }
 
 void Supervisor::halt(const Situation& s, const std::string& why) {

@@ -97,6 +97,7 @@ class Supervisor {
   // Driving.
   void drive(const Situation& s, const Readiness& ready);
   Prediction predictRunning(const Situation& s) const;
+  void watchCorridor();
   bool frozen(const Situation& s) const;
   bool nextCollides(const Prediction& running) const;
   void planNext(const Situation& s, const Readiness& ready, const Prediction& running);
@@ -153,6 +154,7 @@ class Supervisor {
   std::optional<int64_t> nothing_since_;  ///< standing, and nothing was free since then
   std::vector<PlanStep> plan_;            ///< from the end of the running pattern on
   std::optional<Prediction> prediction_;  ///< of the running pattern in this step
+  std::optional<Prediction> planned_on_;  ///< of the running pattern when the plan was made
   SearchEnd plan_end_ = SearchEnd::kNothing;
   double time_to_go_ = 0.0;
   int expansions_ = 0;

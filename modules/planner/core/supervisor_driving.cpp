@@ -24,6 +24,7 @@ std::string seconds(double time) {
 void Supervisor::drive(const Situation& s, const Readiness& ready) {
   if (runningPattern() == nullptr) return halt(s, "the running pattern is gone from the set");
   prediction_ = predictRunning(s);
+  watchCorridor();
   planNext(s, ready, *prediction_);
   keepClear(s, *prediction_);
 }
@@ -39,6 +40,14 @@ Prediction Supervisor::predictRunning(const Situation& s) const {
   if (start && now && time > 0.0)
     so_far = compare(between(*start, *now), time, pattern, table_->set().periodSeconds());
   return predict(here, time, pattern, *table_, so_far);
+}
+
+/// What follows was planned from another place than the vehicle will come to: plan again now.
+void Supervisor::watchCorridor() {
+  if (!planned_on_ || !leftCorridor(*planned_on_, *prediction_)) return;
+  planned_on_.reset();
+  last_plan_ = 0;
+  ++counters_["left the predicted corridor"];
 }
 
 bool Supervisor::frozen(const Situation& s) const {
@@ -96,6 +105,7 @@ PlanStep Supervisor::endOf(const Prediction& running) const {
 }
 
 void Supervisor::searchNext(const Situation& s, const Prediction& running) {
+  planned_on_ = running;
   if (sayUnreachable()) {
     last_plan_ = s.now;
     stopNext(running);

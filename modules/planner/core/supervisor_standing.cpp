@@ -55,6 +55,7 @@ void Supervisor::begin(const Situation& s, const std::vector<PlanStep>& steps) {
   plan_.assign(steps.begin() + 1, steps.end());
   if (!plan_.empty()) book_.setNext(table_->set(), plan_.front().pattern_id);
   mode_ = Mode::kDriving;
+  planned_on_.reset();
   prediction_ = predictRunning(s);
   if (plan_.empty()) stopNext(*prediction_);
 }
