@@ -104,6 +104,10 @@ SearchProblem PathPlanner::problemOf(const PathQuery& query) const {
 }
 
 std::optional<PathAnswer> PathPlanner::refusal(const PathQuery& query) const {
+  if (!std::isfinite(query.T_map_start.yaw)) return refused("the start's heading is no number");
+  if (!std::isfinite(query.T_map_goal.yaw)) return refused("the goal's heading is no number");
+  if (!(query.position_tolerance > 0.0) || !(query.yaw_tolerance > 0.0))
+    return refused("the goal's tolerances are not above 0");
   if (costs_ == nullptr) return refusalOfAreas(query);
   if (!isFree(query.T_map_start)) return refused("the start lies on obstacles");
   if (!isFree(query.T_map_goal)) return refused("the goal lies on obstacles");
@@ -209,8 +213,9 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
   answer.search = search_.run(problem, stop);
   // Where the vehicle has to manoeuvre in little space, cells may hide the moves that it takes.
   for (int finer = 0; finer < kFiner && isWanting(answer.search) && costs_ == nullptr; ++finer) {
-    problem.cell = (problem.cell > 0.0 ? problem.cell : config_.search.cell) / 2.0;
     const int before = answer.search.expansions;
+    if (stop(before)) break;
+    problem.cell = (problem.cell > 0.0 ? problem.cell : config_.search.cell) / 2.0;
     answer.search = search_.run(problem, [&](int count) { return stop(before + count); });
     answer.search.expansions += before;
   }
