@@ -89,6 +89,12 @@ void readPolicy(ConfigReader reader, PolicyConfig& policy) {
   count(reader, "standing_expansions", policy.standing_expansions, {100, 1e6});
 }
 
+void readCommitment(ConfigReader reader, CommitmentConfig& commitment) {
+  reader.number("gain", commitment.gain, {0.0, 60.0}, "s");
+  reader.number("turn", commitment.turn, {0.01, 3.0}, "rad");
+  reader.number("ahead", commitment.ahead, {0.0, 30.0}, "s");
+}
+
 /// The limits can be made stricter, or a little wider; none can be switched off.
 void readAges(ConfigReader reader, AgeLimits& ages) {
   reader.seconds("pose", ages.pose, {0.02, 0.3});
@@ -109,6 +115,7 @@ PlannerConfig readPlannerConfig(ConfigReader& reader) {
   readSearch(reader.section("search"), config.search);
   readPolicy(reader.section("policy"), config.policy);
   reader.flag("come_close", config.world.come_close);
+  readCommitment(reader.section("commitment"), config.commitment);
   readAges(reader.section("ages"), config.ages);
   ConfigReader sweep = reader.section("sweep");
   sweep.number("distance", config.sweep.distance, {0.01, 0.5}, "m");

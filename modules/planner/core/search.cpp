@@ -167,11 +167,11 @@ bool Search::visit(int index) {
   ++expansions_;
   Node& node = nodes_[static_cast<size_t>(index)];
   node.number = expansions_;
-  if (isGoal(node)) {
+  if (!onBranch(node) && isGoal(node)) {
     keepBest(index, SearchEnd::kGoal);
     return true;
   }
-  if (isFarEnough(node)) {
+  if (!onBranch(node) && isFarEnough(node)) {
     keepBest(index, SearchEnd::kHorizon);
     return true;
   }
@@ -203,6 +203,8 @@ void Search::expand(int parent) {
   children_.clear();
   for (const TablePattern* pattern : problem_->patterns->from(node.motion_class)) {
     if (pattern->start_bin >= 0 && pattern->start_bin != bin) continue;
+    if (onBranch(node) && pattern->id() != problem_->branch[static_cast<size_t>(node.depth)])
+      continue;
     Child child{nodeAfter(node, *pattern), 0};
     child.node.parent = parent;
     child.key = keyOf(child.node);
@@ -292,7 +294,7 @@ bool Search::freeFromParent(const Node& parent, Node& node) const {
     return true;
   }
   node.uncertainty = uncertaintyAfter(parent, *node.by);
-  const int wanted = around.level(node.uncertainty);
+  const int wanted = onBranch(parent) ? Surroundings::kCheck : around.level(node.uncertainty);
   if (around.sweepFree(parent.pose(), *node.by, wanted)) {
     node.level = static_cast<int8_t>(wanted);
     return true;
@@ -332,6 +334,11 @@ float Search::edgeCost(const Node& parent, const TablePattern& pattern, const No
   if (pattern.exit == rest && pattern.entry != rest) cost += config_.stop_penalty;
   if (config_.turn_penalty > 0.0) cost += config_.turn_penalty * std::abs(pattern.end().pose.yaw);
   return static_cast<float>(cost);
+}
+
+/// Whether what follows a node is given.
+bool Search::onBranch(const Node& parent) const {
+  return static_cast<size_t>(parent.depth) < problem_->branch.size();
 }
 
 bool Search::staysOnPlan(const Node& parent, const TablePattern& pattern) const {
@@ -408,7 +415,7 @@ int Search::bestLeaf() const {
   float best_value = limit;
   for (size_t i = kept_ + 1; i < nodes_.size(); ++i) {
     const Node& node = nodes_[i];
-    if (!node.expanded() || node.guess >= limit) continue;
+    if (!node.expanded() || node.guess >= limit || onBranch(node)) continue;
     const float value = node.guess + kLeafCost * node.cost;
     if (best >= 0 && value >= best_value) continue;
     best = static_cast<int>(i);

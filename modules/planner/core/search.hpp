@@ -55,6 +55,9 @@ struct SearchProblem {
   Goal goal;
   double cell = 0.0;           ///< [m] in the place of SearchConfig::cell; 0 = as configured
   std::vector<int> committed;  ///< ids of the patterns that the plan before wanted from here on
+  /// Ids of the patterns that the plan has to begin with; the margin for checking is enough for
+  /// them.
+  std::vector<int> branch;
   /// Told whenever a plan, or a cheaper one, was found, with its cost.
   std::function<void(double cost, int expansions)> on_better;
 };
@@ -86,6 +89,7 @@ struct SearchResult {
   SearchEnd end = SearchEnd::kNothing;
   std::vector<PlanStep> steps;
   double cost = 0.0;        ///< [s] of the steps, with penalties
+  double expected = 0.0;    ///< [s] and from there on, as the search weighs it
   double time_to_go = 0.0;  ///< [s] the steps, and from there on the bound
   double way_to_go = 0.0;   ///< [m] from the end of the plan
   int expansions = 0;
@@ -186,6 +190,7 @@ class Search {
   Node nodeAfter(const Node& from, const TablePattern& pattern) const;
   void addChild(Node& node, uint64_t key);
   bool leaveCell(const Node& from, Node& node) const;
+  bool onBranch(const Node& parent) const;
   bool staysOnPlan(const Node& parent, const TablePattern& pattern) const;
   bool admit(const Node& parent, Node& node) const;
   bool freeFromParent(const Node& parent, Node& node) const;

@@ -43,6 +43,7 @@ SearchResult Search::finish(int leaf, SearchEnd end) {
   }
   const Node& last = nodes_[static_cast<size_t>(leaf)];
   result.cost = static_cast<double>(last.cost);
+  result.expected = static_cast<double>(last.guess);
   const bool any_field = problem_->cost_to_go != nullptr;
   result.way_to_go =
       any_field ? problem_->cost_to_go->length({last.x, last.y})

@@ -24,6 +24,8 @@ Supervisor::Supervisor(const PlannerConfig& config, int64_t run_id)
     : config_(config),
       world_(config.world),
       search_(config.search),
+      branch_search_(config.search),
+      commitment_(config.commitment),
       book_(run_id),
       progress_(config.policy.patience) {}
 
@@ -92,6 +94,7 @@ void Supervisor::noteGoal(const Situation& s) {
   arrived_ = false;
   nothing_since_.reset();
   recovery_.restart();
+  commitment_.forget();
   world_.forgetDetours();
   progress_.restart(s.now);
   note_until_ = 0;
@@ -112,6 +115,7 @@ void Supervisor::followBridge(const Situation& s) {
         plan_.erase(plan_.begin());
       else
         plan_.clear();
+      commitment_.begun(book_.running().pattern_id);
       last_plan_ = 0;
       if (++switches_ >= kRecovered) recovery_.restart();
       ++counters_["patterns joined"];
@@ -166,8 +170,10 @@ SearchResult Supervisor::searchFrom(const Situation& s, const PlanStep& start, i
   if (searched_table_ != table_)
     counters_["cycles driven until a plan with the newest set"] = cycles_with_old_set_;
   searched_table_ = table_;
-  const SearchResult result = search_.run(
-      problem, [&](int count) { return count >= expansions || (stop_ && stop_(count)); });
+  const StopPredicate enough = [&](int count) {
+    return count >= expansions || (stop_ && stop_(count));
+  };
+  const SearchResult result = keepSide(problem, search_.run(problem, enough), enough);
   last_plan_ = s.now;
   planned_ = true;
   expansions_ = result.expansions;
@@ -177,6 +183,22 @@ SearchResult Supervisor::searchFrom(const Situation& s, const PlanStep& start, i
   ++counters_["plans"];
   counters_["expansions"] += result.expansions;
   return result;
+}
+
+/// The fresh plan, or the best along the branch if that turns to the other side and is as good.
+SearchResult Supervisor::keepSide(SearchProblem& problem, SearchResult fresh,
+                                  const StopPredicate& stop) {
+  problem.branch = commitment_.opposedBy(fresh.steps, *table_);
+  if (problem.branch.empty()) return fresh;
+  SearchResult along = branch_search_.run(problem, stop);
+  along.expansions += fresh.expansions;
+  if (commitment_.isWorth(fresh, along)) {
+    ++counters_["turned to the other side"];
+    return fresh;
+  }
+  ++counters_["kept to its side"];
+  std::swap(search_, branch_search_);
+  return along;
 }
 
 bool Supervisor::sayUnreachable() {

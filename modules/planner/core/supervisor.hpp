@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/geometry/track.hpp"
+#include "modules/planner/core/commitment.hpp"
 #include "modules/planner/core/motion_watch.hpp"
 #include "modules/planner/core/prediction.hpp"
 #include "modules/planner/core/program_book.hpp"
@@ -40,6 +41,7 @@ struct PlannerConfig {
   WorldConfig world;
   SearchConfig search;
   PolicyConfig policy;
+  CommitmentConfig commitment;
   AgeLimits ages;
   SweepStep sweep;
   DefaultSigma default_sigma;  ///< errors at the end of a pattern of unknown covariance
@@ -116,6 +118,7 @@ class Supervisor {
   void tryRecovery(const Situation& s);
   // Both.
   SearchResult searchFrom(const Situation& s, const PlanStep& start, int expansions);
+  SearchResult keepSide(SearchProblem& problem, SearchResult fresh, const StopPredicate& stop);
   bool sayUnreachable();
   void watchProgress(const Situation& s);
   void addDetour(const Situation& s);
@@ -130,6 +133,8 @@ class Supervisor {
   PlannerConfig config_;
   World world_;
   Search search_;
+  Search branch_search_;  ///< along the branch that the planner is committed to
+  Commitment commitment_;
   ProgramBook book_;
   std::shared_ptr<const PatternTable> table_;
   /// Of the last search: its tree, which is drawn later, points into it.

@@ -118,6 +118,7 @@ void Supervisor::searchNext(const Situation& s, const Prediction& running) {
     return say(PlanStatus::kBlocked, stops ? "stopping: " + result.reason : result.reason);
   }
   plan_ = result.steps;
+  commitment_.take(plan_, *table_);
   if (plan_.empty())
     book_.clearNext();
   else

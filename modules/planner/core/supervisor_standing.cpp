@@ -53,6 +53,8 @@ void Supervisor::planStart(const Situation& s) {
 void Supervisor::begin(const Situation& s, const std::vector<PlanStep>& steps) {
   book_.begin(table_->set(), steps.front().pattern_id, s.now);
   plan_.assign(steps.begin() + 1, steps.end());
+  commitment_.begun(steps.front().pattern_id);
+  commitment_.take(plan_, *table_);
   if (!plan_.empty()) book_.setNext(table_->set(), plan_.front().pattern_id);
   mode_ = Mode::kDriving;
   planned_on_.reset();
