@@ -13,13 +13,14 @@ using namespace tread::planner;
 TEST_CASE("A configuration is read with its ranges, and mistakes are named at file and line") {
   ConfigReader good = ConfigReader::fromText(
       "footprint: {front: 0.8, rear: 0.7, half_width: 0.5}\n"
-      "search: {horizon: 6}\npolicy: {plan_period: 0.25}\n",
+      "search: {horizon: 6}\npolicy: {plan_period: 0.25}\ncommitment: {gain: 2.5}\n",
       "planner.yaml");
   const PlannerConfig config = readPlannerConfig(good);
   CHECK(config.world.footprint.half_width == 0.5);
   CHECK(config.world.field.inflation == 0.5);
   CHECK(config.search.horizon == 6.0);
   CHECK(config.policy.plan_period == 250'000);
+  CHECK(config.commitment.gain == 2.5);
   CHECK(config.effective.find("switch_penalty") != std::string::npos);
   const auto refusal = [](const std::string& text) {
     ConfigReader reader = ConfigReader::fromText(text, "planner.yaml");

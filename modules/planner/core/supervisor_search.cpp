@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <limits>
+#include <utility>
+
+#include "modules/planner/core/supervisor.hpp"
+
+namespace tread::planner {
+
+SearchResult Supervisor::searchFrom(const Situation& s, const PlanStep& start, int expansions) {
+  SearchProblem problem;
+  problem.T_map_start = start.T_map_end;
+  problem.start_class = start.exit_class;
+  problem.start_uncertainty = start.uncertainty;
+  problem.patterns = table_.get();
+  problem.surroundings = &world_.surroundings();
+  problem.cost_to_go = &world_.costToGo();
+  problem.goal = world_.aim();
+  for (const PlanStep& step : plan_) problem.committed.push_back(step.pattern_id);
+  if (searched_table_ != table_)
+    counters_["cycles driven until a plan with the newest set"] = cycles_with_old_set_;
+  searched_table_ = table_;
+  const StopPredicate enough = [&](int count) {
+    return count >= expansions || (stop_ && stop_(count));
+  };
+  const SearchResult result = keepSide(problem, search_.run(problem, enough), enough);
+  last_plan_ = s.now;
+  planned_ = true;
+  expansions_ = result.expansions;
+  plan_end_ = result.end;
+  time_to_go_ = result.end == SearchEnd::kNothing ? std::numeric_limits<double>::quiet_NaN()
+                                                  : result.time_to_go;
+  ++counters_["plans"];
+  counters_["expansions"] += result.expansions;
+  return result;
+}
+
+/// The fresh plan, or the best along the branch if that turns to the other side and is as good.
+SearchResult Supervisor::keepSide(SearchProblem& problem, SearchResult fresh,
+                                  const StopPredicate& stop) {
+  problem.branch = commitment_.opposedBy(fresh.steps, *table_);
+  if (problem.branch.empty()) return fresh;
+  SearchResult along = branch_search_.run(problem, stop);
+  const int expansions = fresh.expansions + along.expansions;
+  fresh.expansions = along.expansions = expansions;
+  if (commitment_.isWorth(fresh, along)) {
+    ++counters_["turned to the other side"];
+    return fresh;
+  }
+  ++counters_["kept to its side"];
+  std::swap(search_, branch_search_);
+  return along;
+}
+
+}  // namespace tread::planner
