@@ -36,7 +36,7 @@ std::optional<Goal> goalFrom(const goal_t& message) {
   const bool finite =
       std::abs(pose[0]) < kFarthest && std::abs(pose[1]) < kFarthest && std::isfinite(pose[2]);
   const bool tolerant = message.position_tolerance > 0.0 && message.yaw_tolerance > 0.0 &&
-                        std::isfinite(message.position_tolerance);
+                        message.position_tolerance < kFarthest;
   if (!finite || !tolerant || message.goal_id == 0) return std::nullopt;
   return Goal{message.goal_id,
               {pose[0], pose[1], pose[2]},

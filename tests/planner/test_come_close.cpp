@@ -30,7 +30,8 @@ Playground walledGoal(bool closed) {
 
 }  // namespace
 
-TEST_CASE("The nearest place within reach is the nearest of all that a flood fill gets to") {
+TEST_CASE("The nearest place within reach has a way to it, and no nearer one has") {
+  int found = 0;
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> draw(-4.0, 4.0);
@@ -52,6 +53,7 @@ TEST_CASE("The nearest place within reach is the nearest of all that a flood fil
     REQUIRE(way.unreachable());
     const auto nearest = way.nearestWithinReach(p_vehicle, {5.0, 0.0});
     if (!nearest) continue;  // the vehicle stands on a box
+    ++found;
     CAPTURE(seed, nearest->transpose());
     const double off = (*nearest - Eigen::Vector2d(5.0, 0.0)).norm();
     // Outside of the wall and its inflation, but not much.
@@ -67,6 +69,24 @@ TEST_CASE("The nearest place within reach is the nearest of all that a flood fil
       CHECK(CostToGo(map, nearer, p_vehicle, {}, config).unreachable());
     }
   }
+  CHECK(found >= 8);
+}
+
+TEST_CASE("Of two places that are as near the one that was chosen before is kept") {
+  PassageMap map(0.1, 32, PassageConfig{});
+  for (Tile& tile : tilesOf(walledGoal(true).paint(0.1, {-3.2, -9.6}, {16.0, 9.6}), 32, 1))
+    map.put(std::move(tile));
+  map.refresh();
+  const CostToGo way(map, {1, {12.0, 0.0, 0.0}, 0.3, 4.0}, {0.0, 0.0}, {}, FieldConfig{});
+  REQUIRE(way.unreachable());
+  const Eigen::Vector2d p_goal(12.0, 0.0);
+  const auto nearest = way.nearestWithinReach({0.0, 0.0}, p_goal);
+  REQUIRE(nearest);
+  // The walls are the same on both sides.
+  const Eigen::Vector2d mirrored(nearest->x(), -nearest->y());
+  CHECK(*way.nearestWithinReach({0.0, 0.0}, p_goal, mirrored) == mirrored);
+  CHECK(*way.nearestWithinReach({0.0, 0.0}, p_goal, Eigen::Vector2d(8.0, 0.0)) == *nearest);
+  CHECK(*way.nearestWithinReach({0.0, 0.0}, p_goal, p_goal) == *nearest);
 }
 
 TEST_CASE(
@@ -80,6 +100,8 @@ TEST_CASE(
   CHECK_THAT(decision.report.reason, Catch::Contains("obstacles enclose"));
   CHECK(std::hypot(rig.pose().x - 12.0, rig.pose().y) < 3.2);
   CHECK(std::abs(rig.speed()) < 0.02);
+  rig.run(60.0);
+  CHECK(rig.supervisor().counters().count("no progress: a way given up") == 0);
   rig.paint(walledGoal(false));
   decision = rig.run(40.0);
   CHECK(decision.report.status == PlanStatus::kArrived);

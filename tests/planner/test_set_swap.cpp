@@ -68,3 +68,20 @@ TEST_CASE("A set with other commands for what is under way waits until that has 
   CHECK(decision.report.set_version == 2);
   CHECK(supervisor.program().running().set->version() == 2);
 }
+
+TEST_CASE("A set that cannot be driven with is not taken while something runs") {
+  Rig rig;
+  rig.run(4.0);
+  // The same names, but nothing stands any more.
+  PatternSetContent content = samplePatterns(2).content();
+  for (MotionClass& motion_class : content.classes) motion_class.twist.v_x += 0.05;
+  std::string why;
+  const auto set = PatternSet::make(content, why);
+  INFO(why);
+  REQUIRE(set);
+  CHECK_FALSE(rig.supervisor().takeSet(*set));
+  CHECK_THAT(rig.supervisor().setRefusal(), Catch::Contains("version 2 waits"));
+  rig.run(2.0);
+  CHECK(rig.speed() > 0.2);
+  CHECK(rig.supervisor().program().running().set->version() == 1);
+}

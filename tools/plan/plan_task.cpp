@@ -148,6 +148,8 @@ PlanTask loadTask(const PlanOptions& options) {
   task.position_tolerance = tolerance[0];
   task.yaw_tolerance = tolerance[1];
   task.come_close = options.come_close;
+  if (task.come_close && task.exact)
+    throw std::runtime_error("--come-close is for footprints; leave it out with --mprim-exact");
   task.deadline_ms = options.deadline_ms;
   if (!task.deadline_ms && !task.exact) task.deadline_ms = kDeadline;
   readWanted(options, task);

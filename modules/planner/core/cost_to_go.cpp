@@ -138,7 +138,8 @@ void CostToGo::paint(const PassageSource& map, const std::vector<Detour>& detour
 }
 
 bool CostToGo::seed(const Goal& goal, Front& front) {
-  const int reach = static_cast<int>(std::ceil(goal.position_tolerance / size_));
+  const double most = width_ + height_;
+  const int reach = static_cast<int>(std::min(std::ceil(goal.position_tolerance / size_), most));
   const Eigen::Vector2d p_goal = goal.T_map_goal.position();
   const int own_x = static_cast<int>(std::floor(p_goal.x() / size_)) - lower_x_;
   const int own_y = static_cast<int>(std::floor(p_goal.y() / size_)) - lower_y_;

@@ -13,9 +13,11 @@ namespace {
 constexpr double kCoarseShare = 0.5;
 /// Room that a cell may have beyond that at its centre, in cells: as a rule, and at most.
 constexpr double kUsualSlack = 0.25;
+constexpr double kMostSlack = 0.71;
 /// So often the cells of the search are halved where all was seen and no plan found.
 constexpr int kFiner = 2;
-constexpr double kMostSlack = 0.71;
+/// Goals beyond lie on no map, and their cells have no numbers [m].
+constexpr double kFarthest = 1e7;
 
 constexpr const char* kNoneBegins =
     "the start has no legal successor: each pattern would leave the map or hit something";
@@ -106,6 +108,8 @@ SearchProblem PathPlanner::problemOf(const PathQuery& query) const {
 std::optional<PathAnswer> PathPlanner::refusal(const PathQuery& query) const {
   if (!std::isfinite(query.T_map_start.yaw)) return refused("the start's heading is no number");
   if (!std::isfinite(query.T_map_goal.yaw)) return refused("the goal's heading is no number");
+  if (!(query.T_map_goal.position().norm() < kFarthest))
+    return refused("the goal lies outside the map");
   if (!(query.position_tolerance > 0.0) || !(query.yaw_tolerance > 0.0))
     return refused("the goal's tolerances are not above 0");
   if (costs_ == nullptr) return refusalOfAreas(query);
@@ -233,7 +237,9 @@ PathAnswer PathPlanner::comeClose(const PathQuery& query, const PathAnswer& refu
       std::max(query.position_tolerance, surroundings_->circumscribedRadius());
   nearer.come_close = false;
   PathAnswer answer = this->answer(nearer, stop, events);
-  if (answer.end == PathEnd::kSolved) answer.reason = "as close as possible: " + refusal.reason;
+  answer.reason = answer.end == PathEnd::kSolved
+                      ? "as close as possible: " + refusal.reason
+                      : refusal.reason + "; coming close: " + answer.reason;
   answer.closest = refusal.closest;
   return answer;
 }

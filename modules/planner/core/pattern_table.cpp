@@ -12,10 +12,6 @@ namespace {
 /// Slower than this counts as standing [m/s, rad/s].
 constexpr double kStanding = 0.02;
 
-double distanceBetween(const Pose2& a, const Pose2& b) {
-  return std::hypot(b.x - a.x, b.y - a.y);
-}
-
 /// Smallest disc around the middle of the positions that holds them all.
 void addDisc(TablePattern& entry) {
   Eigen::Vector2d lower(0.0, 0.0), upper(0.0, 0.0);

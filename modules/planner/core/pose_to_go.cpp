@@ -174,7 +174,8 @@ void PoseToGo::seed(const Goal& goal, Front& front) {
   const double reach = goal.position_tolerance;
   const int column = places_->column(at.x);
   const int row = places_->row(at.y);
-  const int around = static_cast<int>(std::ceil(reach * per_size_));
+  const double most = places_->width() + places_->height();
+  const int around = static_cast<int>(std::min(std::ceil(reach * per_size_), most));
   for (int y = std::max(0, row - around); y <= std::min(places_->height() - 1, row + around); ++y) {
     for (int x = std::max(0, column - around); x <= std::min(places_->width() - 1, column + around);
          ++x) {

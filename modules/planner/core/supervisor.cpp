@@ -30,22 +30,29 @@ Supervisor::Supervisor(const PlannerConfig& config, int64_t run_id)
       progress_(config.policy.patience) {}
 
 bool Supervisor::takeSet(const PatternSet& set) {
-  set_refusal_ = book_.clash(set);
-  if (!set_refusal_.empty()) {
-    waiting_set_ = set;
-    return false;
-  }
-  waiting_set_.reset();
-  table_ = std::make_shared<const PatternTable>(set, config_.sweep, config_.default_sigma);
+  waiting_table_ = std::make_shared<const PatternTable>(set, config_.sweep, config_.default_sigma);
+  return takeWaitingSet();
+}
+
+bool Supervisor::takeWaitingSet() {
+  set_refusal_ = book_.clash(waiting_table_->set());
+  // Such a set would stop the vehicle, and what runs could not be told from it.
+  const std::string defect = waiting_table_->defect();
+  if (set_refusal_.empty() && !book_.running().empty() && !defect.empty())
+    set_refusal_ = "PATTERN_SET version " + std::to_string(waiting_table_->set().version()) +
+                   " waits: " + defect;
+  if (!set_refusal_.empty()) return false;
+  table_ = std::move(waiting_table_);
   ++counters_["sets taken"];
   cycles_with_old_set_ = 0;
   // The rest of the plan was predicted with the old one.
   last_plan_ = 0;
+  planned_on_.reset();
   return true;
 }
 
 void Supervisor::followSet() {
-  if (waiting_set_ && book_.clash(*waiting_set_).empty()) takeSet(PatternSet(*waiting_set_));
+  if (waiting_table_) takeWaitingSet();
   if (searched_table_ != table_ && mode_ == Mode::kDriving) ++cycles_with_old_set_;
 }
 

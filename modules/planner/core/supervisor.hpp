@@ -71,8 +71,9 @@ class Supervisor {
   Supervisor(const PlannerConfig& config, int64_t run_id);
 
   /// From the next step on plans are made with this set; what is handed over keeps its version.
-  /** A set with other commands for what runs or comes next is refused: false, and setRefusal() says
-   * why. It waits, and is taken in the first step in which it fits. */
+  /** A set with other commands for what runs or comes next, or one that cannot be driven with while
+   * something runs, is refused: false, and setRefusal() says why. It waits, and is taken in the
+   * first step in which it fits, which may be when the vehicle stands. */
   bool takeSet(const PatternSet& set);
   const std::string& setRefusal() const { return set_refusal_; }
   World& world() { return world_; }
@@ -91,6 +92,7 @@ class Supervisor {
   static constexpr int64_t kTrackSpan = 5'000'000;  ///< [us]
 
   void followBridge(const Situation& s);
+  bool takeWaitingSet();
   void followSet();
   void noteGoal(const Situation& s);
   void act(const Situation& s, const Readiness& ready);
@@ -139,8 +141,7 @@ class Supervisor {
   std::shared_ptr<const PatternTable> table_;
   /// Of the last search: its tree, which is drawn later, points into it.
   std::shared_ptr<const PatternTable> searched_table_;
-  std::optional<PatternSet>
-      waiting_set_;  ///< refused as long as its commands are not those that run
+  std::shared_ptr<const PatternTable> waiting_table_;  ///< of a set that is refused so far
   std::string set_refusal_;
   int cycles_with_old_set_ = 0;  ///< since the newest set was taken
   PoseTrack track_{kTrackSpan};

@@ -27,8 +27,10 @@ void Supervisor::stand(const Situation& s, const Readiness& ready) {
   }
   if (arrived_) return say(PlanStatus::kArrived, "");
   // The map may change: it goes on as soon as there is a way.
-  if (!world_.detraction().empty() && within(world_.aim(), s.pose->T_map_body))
+  if (!world_.detraction().empty() && within(world_.aim(), s.pose->T_map_body)) {
+    progress_.restart(s.now);
     return say(PlanStatus::kUnreachable, world_.detraction());
+  }
   const int64_t period =
       nothing_since_ ? config_.policy.blocked_period : config_.policy.plan_period;
   if (s.now - last_plan_ >= period) planStart(s);

@@ -34,7 +34,7 @@ struct Overlap {
 };
 
 /// What is around the vehicle at one moment: asked whether poses and patterns are free. Unknown is
-/// not free.
+/// not free unless it is said to be.
 class Surroundings {
  public:
   /// `unknown_blocks`: false lets the vehicle drive where nothing is known.

@@ -27,10 +27,6 @@ constexpr double kDisc = 0.25;
 /// Parts of a way for which the swing of its corners is worked out.
 constexpr int kParts = 8;
 
-double distanceBetween(const Pose2& a, const Pose2& b) {
-  return std::hypot(b.x - a.x, b.y - a.y);
-}
-
 SweepPose sweepPose(const Pose2& pose, double time) {
   return {pose, std::cos(pose.yaw), std::sin(pose.yaw), time, 0.0};
 }
@@ -229,7 +225,8 @@ std::vector<SweepPose> sampleSweep(const std::vector<Pose2>& trajectory, double 
 }
 
 Pose2 poseAlong(const std::vector<Pose2>& trajectory, double period, double time) {
-  const double steps = std::clamp(time / period, 0.0, static_cast<double>(trajectory.size()));
+  const auto size = static_cast<double>(trajectory.size());
+  const double steps = period > 0.0 ? std::clamp(time / period, 0.0, size) : size;
   const auto whole = static_cast<size_t>(steps);
   const Pose2 before = whole == 0 ? Pose2{} : trajectory[whole - 1];
   if (whole == trajectory.size()) return before;

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "common/geometry/se2.hpp"
@@ -71,6 +72,10 @@ struct SweepCover {
   std::vector<SweepPose> between;
   double front = 0.0;  ///< [m] of the outline that they were worked out for
 };
+
+inline double distanceBetween(const Pose2& a, const Pose2& b) {
+  return std::hypot(b.x - a.x, b.y - a.y);
+}
 
 /// Poses along a trajectory of equal periods, the origin left out, neighbours at most a step apart.
 std::vector<SweepPose> sampleSweep(const std::vector<Pose2>& trajectory, double period,

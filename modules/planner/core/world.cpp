@@ -55,7 +55,8 @@ bool World::sameGoal(const Goal& goal) const {
   const Pose2& a = goal.T_map_goal;
   return field_goal_ && field_goal_->id == goal.id && field_goal_->T_map_goal.x == a.x &&
          field_goal_->T_map_goal.y == a.y && field_goal_->T_map_goal.yaw == a.yaw &&
-         field_goal_->position_tolerance == goal.position_tolerance;
+         field_goal_->position_tolerance == goal.position_tolerance &&
+         field_goal_->yaw_tolerance == goal.yaw_tolerance;
 }
 
 void World::lookAhead(const Pose2& T_map_body, const Goal& goal, int64_t now) {

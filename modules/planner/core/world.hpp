@@ -22,7 +22,7 @@ struct WorldConfig {
   int64_t window_period = 100'000;  ///< [us] the surroundings are cut no more often than this
   int64_t field_period = 400'000;   ///< [us] the way to go is worked out no more often than this
   bool unknown_blocks = true;       ///< whether unknown ground may not be driven on
-  bool come_close = false;          ///< to goals that cannot be reached, instead of standing
+  bool come_close = false;          ///< to goals that obstacles enclose, instead of standing
 };
 
 /// The map as it was received, and what is derived from it when it is needed.

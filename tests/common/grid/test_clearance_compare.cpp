@@ -53,7 +53,7 @@ TEST_CASE("a comparison says what the bounds say, for every distance") {
   for (const int count : verdicts) CHECK(count > 100);
 }
 
-TEST_CASE("a disc that is free meets no blocked cell, and where all is far off it is free") {
+TEST_CASE("a disc that is free has room by the upper bound, and where all is far off it is free") {
   int counts[2] = {0, 0};
   visitPoints(3, [&](const ClearanceField& field, const Grid&, const Eigen::Vector2d& p,
                      std::mt19937_64& random) {
