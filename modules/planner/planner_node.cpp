@@ -79,7 +79,8 @@ void PlannerNode::take(const pattern_set_part_t& message) {
   situation_.set_received = bus_.now();
   if (!set) return;
   const int64_t started = bus_.now();
-  if (!supervisor_.takeSet(*set)) return health_.addToCounter("PATTERN_SET refused: it waits");
+  const bool taken = supervisor_.takeSet(*set);
+  if (!taken) health_.addToCounter("PATTERN_SET refused: it waits");
   longest_swap_ = std::max(longest_swap_, bus_.now() - started);
   health_.setCounter("longest swap of a set [us]", longest_swap_);
 }

@@ -212,6 +212,16 @@ TEST_CASE("what a coarse search has not found, though it saw all it could, is no
   CHECK(differs >= 3);
 }
 
+TEST_CASE("a goal that may be anywhere is met at once, however far its tolerance reaches") {
+  Room room;
+  const Pose2 start{-1.5, 0.0, 0.0};
+  for (const double tolerance : {100.0, 1e12, 1e300, std::numeric_limits<double>::infinity()}) {
+    CAPTURE(tolerance);
+    CHECK(room.answer(start, {2.5, 0.0, 0.0}, tolerance).end == PathEnd::kSolved);
+  }
+  CHECK(room.answer(start, {1e300, 0.0, 0.0}, 1e300).reason == "the goal lies outside the map");
+}
+
 TEST_CASE("goals that are no numbers are refused") {
   Room room;
   const double nan = std::numeric_limits<double>::quiet_NaN();

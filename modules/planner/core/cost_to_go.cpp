@@ -11,7 +11,6 @@
 namespace tread::planner {
 namespace {
 
-constexpr float kNoWay = std::numeric_limits<float>::infinity();
 constexpr float kOpenGround = 1e6F;
 /// Cells whose lengths differ by less than this may be settled in any order [m].
 constexpr float kBucket = 0.05F;
@@ -21,7 +20,8 @@ constexpr float kLeastStep = 0.707F;
 constexpr double kLeastMargin = 8.0;
 
 float slownessOf(float room, const FieldConfig& config) {
-  if (room <= 0.0F || room < static_cast<float>(config.inflation)) return kNoWay;
+  if (room <= 0.0F || room < static_cast<float>(config.inflation))
+    return std::numeric_limits<float>::infinity();
   const double tight =
       (config.wide - static_cast<double>(room)) / std::max(1e-3, config.wide - config.inflation);
   return static_cast<float>(1.0 + config.tight_weight * std::clamp(tight, 0.0, 1.0));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -21,6 +22,16 @@ struct Goal {
   double position_tolerance = 0.5;  ///< [m] > 0
   double yaw_tolerance = 4.0;       ///< [rad] > 0; pi or more = any heading
 };
+
+/// Whether a pose lies within a share [1] of a goal's tolerances.
+inline bool isWithin(const Goal& goal, const Pose2& T_map_body, double share = 1.0) {
+  const double dx = T_map_body.x - goal.T_map_goal.x;
+  const double dy = T_map_body.y - goal.T_map_goal.y;
+  const double near = share * goal.position_tolerance;
+  if (dx * dx + dy * dy > near * near) return false;
+  return goal.yaw_tolerance >= kPi ||
+         std::abs(wrapAngle(T_map_body.yaw - goal.T_map_goal.yaw)) <= share * goal.yaw_tolerance;
+}
 
 /// What makes a way long for the cost to go.
 struct FieldConfig {
@@ -119,6 +130,7 @@ class CostToGo {
   struct Front;
   static constexpr float kUnknownCap = 10.0F;  // [m]
   static constexpr float kOpen = std::numeric_limits<float>::infinity();
+  static constexpr float kNoWay = kOpen;
   /// How the length changes around a cell.
   struct Slope {
     float along_x = 0.0F;  // unit vector towards the goal

@@ -9,7 +9,6 @@
 namespace tread::planner {
 namespace {
 
-constexpr float kNoWay = std::numeric_limits<float>::infinity();
 /// Where the vehicle's own cell is too near to something, the best cell this near counts [m].
 constexpr double kNearby = 0.5;
 

@@ -22,6 +22,10 @@ constexpr double kFarthest = 1e7;
 constexpr const char* kNoneBegins =
     "the start has no legal successor: each pattern would leave the map or hit something";
 
+Goal goalOf(const PathQuery& query) {
+  return {1, query.T_map_goal, query.position_tolerance, query.yaw_tolerance};
+}
+
 SearchConfig latticeSearch(double cell_size, int bins) {
   SearchConfig config = PathConfig::pathSearch();
   config.cell = cell_size;
@@ -101,7 +105,7 @@ SearchProblem PathPlanner::problemOf(const PathQuery& query) const {
   problem.T_map_start = query.T_map_start;
   problem.start_class = patterns_.restClass();
   problem.patterns = &patterns_;
-  problem.goal = {1, query.T_map_goal, query.position_tolerance, query.yaw_tolerance};
+  problem.goal = goalOf(query);
   return problem;
 }
 
@@ -129,7 +133,9 @@ std::optional<PathAnswer> PathPlanner::refusalOfAreas(const PathQuery& query) co
     return std::find(to.begin(), to.end(), area) != to.end();
   });
   // Nothing needs to be worked out for a start that no pattern can leave.
-  if (connected && (isInGoal(query) || anyBegins(query.T_map_start))) return std::nullopt;
+  if (connected && (isWithin(goalOf(query), query.T_map_start, config_.search.goal_share) ||
+                    anyBegins(query.T_map_start)))
+    return std::nullopt;
   if (connected) return refused(kNoneBegins);
   PathAnswer answer = refused("obstacles enclose the goal or the vehicle");
   if (from.empty())
@@ -140,14 +146,6 @@ std::optional<PathAnswer> PathPlanner::refusalOfAreas(const PathQuery& query) co
     answer.reason = "the goal lies on obstacles, or too near to them";
   answer.closest = passages_->nearestIn(from, p_goal);
   return answer;
-}
-
-bool PathPlanner::isInGoal(const PathQuery& query) const {
-  const Pose2 off = between(query.T_map_goal, query.T_map_start);
-  const double share = config_.search.goal_share;
-  return off.position().norm() <= share * query.position_tolerance &&
-         (query.yaw_tolerance >= kPi ||
-          std::abs(wrapAngle(off.yaw)) <= share * query.yaw_tolerance);
 }
 
 /// Numbers of the areas in which the disc inside the footprint may be after the start was left.

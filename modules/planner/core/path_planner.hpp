@@ -30,7 +30,8 @@ struct PathQuery {
   double position_tolerance = 0.25;  ///< [m] > 0
   double yaw_tolerance = 0.26;       ///< [rad] > 0; pi or more = any heading
   /// A goal that is certainly unreachable is replaced by the place nearest to it at which the
-  /// vehicle can be, with any heading (the paper's "come as close as possible").
+  /// disc inside the footprint has room, or within the vehicle's outermost corner of that, with any
+  /// heading (the paper's "come as close as possible").
   bool come_close = false;
 };
 
@@ -87,7 +88,6 @@ class PathPlanner {
   SearchProblem problemOf(const PathQuery& query) const;
   std::vector<int> areasFrom(const Pose2& T_map_start) const;
   bool anyBegins(const Pose2& T_map_start) const;
-  bool isInGoal(const PathQuery& query) const;
   void judge(PathAnswer& answer) const;
   CostToGo wayTo(const SearchProblem& problem) const;
 

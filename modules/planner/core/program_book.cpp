@@ -13,16 +13,6 @@ constexpr int64_t kSettle = 300'000;
 /// A pattern that the bridge has not begun after this long will not be begun [us].
 constexpr int64_t kStartLimit = 1'000'000;
 
-/// Only the rest class has a twist that must be kept: the learner moves the others.
-bool sameClass(const PatternSet& set, const std::string& name, const PatternSet& other,
-               const std::string& other_name) {
-  const auto stands = [](const Twist2& twist) {
-    return twist.v_x == 0.0 && twist.v_y == 0.0 && twist.omega == 0.0;
-  };
-  return name == other_name &&
-         stands(set.classNamed(name).twist) == stands(other.classNamed(other_name).twist);
-}
-
 /// Why the set has not got what the slot holds; empty if it has.
 std::string clashWith(const PatternSet& set, const Slot& slot) {
   if (slot.empty()) return {};
@@ -34,8 +24,8 @@ std::string clashWith(const PatternSet& set, const Slot& slot) {
   if (theirs == nullptr) return where + " there is no" + pattern + ", which is under way";
   const bool same_timing = set.content().kind == slot.set->content().kind &&
                            set.content().period_us == slot.set->content().period_us;
-  const bool same_ends = sameClass(set, theirs->entry_class, *slot.set, ours.entry_class) &&
-                         sameClass(set, theirs->exit_class, *slot.set, ours.exit_class);
+  const bool same_ends =
+      theirs->entry_class == ours.entry_class && theirs->exit_class == ours.exit_class;
   const bool same_commands =
       std::equal(ours.commands.begin(), ours.commands.end(), theirs->commands.begin(),
                  theirs->commands.end(), [](const TrackCommand& a, const TrackCommand& b) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -187,6 +188,13 @@ class Search {
   bool visit(int index);
   void keepBest(int leaf, SearchEnd end);
   void expand(int parent);
+  static constexpr float kNever = std::numeric_limits<float>::infinity();
+  static float wrapped(float yaw) {
+    constexpr auto pi = static_cast<float>(kPi);
+    while (yaw > pi) yaw -= 2.0F * pi;
+    while (yaw < -pi) yaw += 2.0F * pi;
+    return yaw;
+  }
   Node nodeAfter(const Node& from, const TablePattern& pattern) const;
   void addChild(Node& node, uint64_t key);
   bool leaveCell(const Node& from, Node& node) const;

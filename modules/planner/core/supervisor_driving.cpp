@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "modules/planner/core/supervisor.hpp"
+#include "modules/planner/core/words.hpp"
 
 namespace tread::planner {
 namespace {
@@ -13,11 +14,6 @@ constexpr double kMicro = 1e-6;
 constexpr int64_t kTrackGap = 150'000;
 /// Steps in which coasting on is checked [s].
 constexpr double kCoastStep = 0.1;
-
-std::string seconds(double time) {
-  const int tenths = static_cast<int>(std::lround(10.0 * std::max(0.0, time)));
-  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " s";
-}
 
 }  // namespace
 
@@ -182,7 +178,7 @@ void Supervisor::keepClear(const Situation& s, const Prediction& running) {
     ++counters_["went on: a stop would have kept less clear"];
     return;
   }
-  halt(s, "something is in the way in " + seconds(*found - age));
+  halt(s, "something is in the way in " + withTenths(std::max(0.0, *found - age)) + " s");
 }
 
 }  // namespace tread::planner

@@ -20,10 +20,16 @@ SearchResult Supervisor::searchFrom(const Situation& s, const PlanStep& start, i
   if (searched_table_ != table_)
     counters_["cycles driven until a plan with the newest set"] = cycles_with_old_set_;
   searched_table_ = table_;
+  // Whoever stops a step counts all expansions in it, so that a replay stops at the same one.
+  int before = 0;
+  bool late = false;
   const StopPredicate enough = [&](int count) {
-    return count >= expansions || (stop_ && stop_(count));
+    late = late || (stop_ && stop_(before + count));
+    return late || count >= expansions;
   };
-  const SearchResult result = keepSide(problem, search_.run(problem, enough), enough);
+  SearchResult result = search_.run(problem, enough);
+  before = result.expansions;
+  if (!late) result = keepSide(problem, std::move(result), enough);
   last_plan_ = s.now;
   planned_ = true;
   expansions_ = result.expansions;

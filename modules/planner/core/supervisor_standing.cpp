@@ -1,33 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <cmath>
-
 #include "modules/planner/core/supervisor.hpp"
 
 namespace tread::planner {
-namespace {
-
-bool within(const Goal& goal, const Pose2& pose) {
-  const Pose2& at = goal.T_map_goal;
-  return std::hypot(pose.x - at.x, pose.y - at.y) <= goal.position_tolerance &&
-         (goal.yaw_tolerance >= kPi ||
-          std::abs(wrapAngle(pose.yaw - at.yaw)) <= goal.yaw_tolerance);
-}
-
-}  // namespace
-
 void Supervisor::stand(const Situation& s, const Readiness& ready) {
   if (ready.level != Readiness::Level::kGo) {
     nothing_since_.reset();
     return say(ready.status, ready.reason);
   }
-  if (!arrived_ && within(*s.goal, s.pose->T_map_body)) {
+  if (!arrived_ && isWithin(*s.goal, s.pose->T_map_body)) {
     arrived_ = true;
     ++counters_["arrived"];
   }
   if (arrived_) return say(PlanStatus::kArrived, "");
   // The map may change: it goes on as soon as there is a way.
-  if (!world_.detraction().empty() && within(world_.aim(), s.pose->T_map_body)) {
+  if (!world_.detraction().empty() && isWithin(world_.aim(), s.pose->T_map_body)) {
     progress_.restart(s.now);
     return say(PlanStatus::kUnreachable, world_.detraction());
   }

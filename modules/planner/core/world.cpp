@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "modules/planner/core/words.hpp"
+
 namespace tread::planner {
 namespace {
 
@@ -87,9 +89,8 @@ void World::comeClose(const Eigen::Vector2d& p_vehicle,
   const std::optional<Eigen::Vector2d> nearest =
       cost_to_go_.nearestWithinReach(p_vehicle, p_goal, before);
   if (!nearest) return;
-  const int tenths = static_cast<int>(std::lround(10.0 * (*nearest - p_goal).norm()));
-  detraction_ = "as close as possible, " + std::to_string(tenths / 10) + "." +
-                std::to_string(tenths % 10) + " m: " + cost_to_go_.problem();
+  detraction_ = "as close as possible, " + withTenths((*nearest - p_goal).norm()) +
+                " m: " + cost_to_go_.problem();
   aim_.T_map_goal = {nearest->x(), nearest->y(), aim_.T_map_goal.yaw};
   aim_.yaw_tolerance = kPi;
   // Half the width has room there; the vehicle may not be able to turn so.

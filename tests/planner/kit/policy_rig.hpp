@@ -48,10 +48,12 @@ class Rig {
     situation_.set_received = now_;
     Situation seen = situation_;
     if (tamper) tamper(seen);
-    const Decision decision = supervisor_.step(seen, nullptr);
+    const Decision decision = supervisor_.step(seen, stop);
     bridge_.receive(77, supervisor_.program().running(), supervisor_.program().next(), now_);
     return decision;
   }
+
+  StopPredicate stop;  ///< may end the searches of a step early
 
   /// From now on no new scans enter the map.
   void stopMapping() { maps_ = false; }
