@@ -178,13 +178,12 @@ ClearanceField::Bounds ClearanceField::bounds(const Eigen::Vector2d& p_map) cons
   const double dx = x - column - 0.5;
   const double dy = y - row - 0.5;
   if (value == 0.0 || value == kInfinity) return {value, value};
-  // A float may be off by half its last digit: both bounds stay bounds.
-  const double from_centre = std::sqrt(dx * dx + dy * dy) * cell_size_ + 6e-8 * value;
+  const double from_centre = std::sqrt(dx * dx + dy * dy) * cell_size_ + kRounding * value;
   const bool capped = value >= static_cast<double>(cap_);
   return {std::max(0.0, value - from_centre), capped ? kInfinity : value + from_centre};
 }
 
-ClearanceField::Verdict ClearanceField::compareClosely(double x, double y, float near,
+ClearanceField::Verdict ClearanceField::compareOutside(double x, double y, float near,
                                                        float far) const {
   const Bounds close = bounds({x, y});
   if (close.lower >= static_cast<double>(far)) return Verdict::kAtLeast;
@@ -202,20 +201,13 @@ bool ClearanceField::squareFree(double column, double row, float reach) const {
   return true;
 }
 
-bool ClearanceField::anyBlocked(int row, int first, int last) const {
-  const int y = row - lower_.y;
-  int x = first - lower_.x;
-  const int end = last - lower_.x;
-  if (x > end) return false;
-  const bool inside = y >= 0 && y < height_ && x >= 0 && end < width_;
-  if (!inside) {
-    if (unknown_blocks_) return true;
-    if (y < 0 || y >= height_ || end < 0 || x >= width_) return false;
-    x = std::max(x, 0);
-  }
-  const int length = std::min(end, width_ - 1) - x + 1;
-  return runs_[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)] <
-         length;
+/// For cells of which some lie outside the window.
+bool ClearanceField::anyBlockedBeyond(int y, int x, int end) const {
+  if (unknown_blocks_) return true;
+  if (y < 0 || y >= height_ || end < 0 || x >= width_) return false;
+  const int first = std::max(x, 0);
+  return runs_[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(first)] <=
+         std::min(end, width_ - 1) - first;
 }
 
 double ClearanceField::outside(const Eigen::Vector2d& p_map) const {

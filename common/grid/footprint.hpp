@@ -70,7 +70,8 @@ class Footprint {
   double circumscribed_;
   std::vector<double> disc_x_;  // centres of the covering discs along the body's x axis
   double half_step_;            // [m] half the distance between them
-  float circumscribed_up_;      // as the next, rounded to the safe side
+  float circumscribed_up_;      // around the body origin, rounded to the safe side as the others
+  float inscribed_;
   float disc_radius_;
   float inscribed_radius_;  // discs of this radius around the same centres lie inside
 };

@@ -118,7 +118,7 @@ class ClearanceField {
   /// What is certain about the clearance compared with a distance.
   enum class Verdict { kLess, kAtLeast, kUnsure };
   /// Compares at() and the upper bound with a distance [m]; most of the time from one number.
-  /** kAtLeast exactly if at(p) >= distance, kLess only if bounds(p).upper < distance. */
+  /** As at(p) >= distance and bounds(p).upper < distance tell, but for rounding. */
   Verdict compare(double x, double y, float distance) const {
     return compare(x, y, distance, distance);
   }
@@ -128,13 +128,15 @@ class ClearanceField {
     const double column = x * per_cell_ - lower_.x;
     const double row = y * per_cell_ - lower_.y;
     if (column >= 0.0 && row >= 0.0 && column < width_ && row < height_) {
-      const float value =
-          clearance_[static_cast<size_t>(static_cast<int>(row)) * static_cast<size_t>(width_) +
-                     static_cast<size_t>(static_cast<int>(column))];
+      const int cx = static_cast<int>(column);
+      const int cy = static_cast<int>(row);
+      const float value = clearance_[static_cast<size_t>(cy) * static_cast<size_t>(width_) +
+                                     static_cast<size_t>(cx)];
       if (value - half_diagonal_ >= far) return Verdict::kAtLeast;
       if (value + half_diagonal_ < near && value < cap_) return Verdict::kLess;
+      return compareClosely(column - cx - 0.5, row - cy - 0.5, value, near, far);
     }
-    return compareClosely(x, y, near, far);
+    return compareOutside(x, y, near, far);
   }
 
   /// Whether a disc meets no blocked cell: from one number, or from the cells of the square around
@@ -157,14 +159,36 @@ class ClearanceField {
   double cellSize() const { return cell_size_; }
 
   /// Whether any of the cells (first..last, row) is blocked, in constant time. At most 65535 cells.
-  bool anyBlocked(int row, int first, int last) const;
+  bool anyBlocked(int row, int first, int last) const {
+    const int y = row - lower_.y;
+    const int x = first - lower_.x;
+    const int end = last - lower_.x;
+    if (x > end) return false;
+    if (y < 0 || y >= height_ || x < 0 || end >= width_) return anyBlockedBeyond(y, x, end);
+    return runs_[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)] <=
+           end - x;
+  }
 
  private:
+  /// A float may be off by half its last digit: both bounds stay bounds.
+  static constexpr double kRounding = 6e-8;
+
   void lookNearby(const std::vector<uint8_t>& blocked, int cap_steps);
   void lookEverywhere(const std::vector<uint8_t>& blocked, float cap_steps);
   double outside(const Eigen::Vector2d& p_map) const;
   bool squareFree(double column, double row, float reach) const;
-  Verdict compareClosely(double x, double y, float near, float far) const;
+  bool anyBlockedBeyond(int y, int x, int end) const;
+  Verdict compareOutside(double x, double y, float near, float far) const;
+  /// As bounds() would, without its root: at (dx, dy) [cells] from the centre of a cell.
+  Verdict compareClosely(double dx, double dy, float clearance, float near, float far) const {
+    const auto value = static_cast<double>(clearance);
+    if (value == 0.0) return near > 0.0F ? Verdict::kLess : Verdict::kAtLeast;
+    const double off = (dx * dx + dy * dy) * cell_size_ * cell_size_;
+    const double room = value - kRounding * value - static_cast<double>(far);
+    if (far <= 0.0F || (room >= 0.0 && room * room >= off)) return Verdict::kAtLeast;
+    const double lack = static_cast<double>(near) - value - kRounding * value;
+    return lack > 0.0 && lack * lack > off && clearance < cap_ ? Verdict::kLess : Verdict::kUnsure;
+  }
 
   double cell_size_ = 0.1;
   double per_cell_ = 10.0;                              // [1/m]

@@ -70,7 +70,7 @@ class CostToGo {
   void workOut(const PassageSource& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
                const std::vector<Detour>& detours, const FieldConfig& config);
 
-  bool empty() const { return settled_.empty(); }
+  bool empty() const { return width_ == 0 || height_ == 0; }
   /// Way from a point to the rim of the goal's tolerance [m]; infinite if there is none.
   /** Interpolated between coarse cells. On ground that is blocked: from the best cell within half a
    * metre. */
@@ -85,26 +85,22 @@ class CostToGo {
   /// Quicker than length(): from one cell, whose slope is followed. Off by at most cellSlack() from
   /// what the cells around would tell.
   Sample sample(double x, double y) const {
-    const double column = x * per_size_ - lower_x_;
-    const double row = y * per_size_ - lower_y_;
-    if (column >= 0.0 && row >= 0.0 && column < width_ && row < height_) {
-      const int cx = static_cast<int>(column);
-      const int cy = static_cast<int>(row);
-      const auto at = static_cast<size_t>((cy + 1) * stride_ + cx + 1);
-      if (settled_[at] < kOpen) {
-        const Slope& slope = slopes_[at];
-        const auto dx = static_cast<float>(column - cx - 0.5);
-        const auto dy = static_cast<float>(row - cy - 0.5);
-        const float gone = slope.step * (slope.along_x * dx + slope.along_y * dy);
-        return {std::max(0.0F, settled_[at] - gone), slope.along_x, slope.along_y};
-      }
-    }
-    return {static_cast<float>(length({x, y})), 0.0F, 0.0F};
+    const Place at = placeOf(x, y);
+    if (!(settled_[at.cell] < kOpen)) return {static_cast<float>(length({x, y})), 0.0F, 0.0F};
+    const Slope& slope = slopes_[at.cell];
+    const float gone = slope.step * (slope.along_x * at.dx + slope.along_y * at.dy);
+    return {std::max(0.0F, settled_[at.cell] - gone), slope.along_x, slope.along_y};
   }
+  /// Whether sample() needs no length(), which takes long and is wanted on blocked ground mostly.
+  bool isSettled(double x, double y) const { return settled_[placeOf(x, y).cell] < kOpen; }
   /// What the length at a point may be off by, because cells are coarse [m].
   double cellSlack() const { return 0.75 * size_; }
   /// Way from a point until the way to the goal leaves what is known [m]; capped at 10 m.
-  double untilUnknown(const Eigen::Vector2d& p_map) const;
+  double untilUnknown(const Eigen::Vector2d& p_map) const {
+    const size_t cell = placeOf(p_map.x(), p_map.y()).cell;
+    return static_cast<double>(settled_[cell] < kOpen ? slopes_[cell].until_unknown
+                                                      : untilUnknownUnsettled(p_map));
+  }
   /// Unit vector along the way to the goal at a point; zero at the goal or where there is no way.
   Eigen::Vector2d direction(const Eigen::Vector2d& p_map) const;
   /// Points down the way to the goal, a step apart, at most `count`.
@@ -150,6 +146,22 @@ class CostToGo {
   void relax(size_t cell, Front& front);
   void settle(size_t cell);
   double lengthNearby(const Eigen::Vector2d& p_map) const;
+  /// A cell, and how far from its centre a point lies [cells]; cell 0, of the rim, for all outside.
+  struct Place {
+    size_t cell = 0;
+    float dx = 0.0F;
+    float dy = 0.0F;
+  };
+  Place placeOf(double x, double y) const {
+    const double column = x * per_size_ - lower_x_;
+    const double row = y * per_size_ - lower_y_;
+    if (!(column >= 0.0 && row >= 0.0 && column < width_ && row < height_)) return {};
+    const int cx = static_cast<int>(column);
+    const int cy = static_cast<int>(row);
+    return {static_cast<size_t>((cy + 1) * stride_ + cx + 1), static_cast<float>(column - cx - 0.5),
+            static_cast<float>(row - cy - 0.5)};
+  }
+  float untilUnknownUnsettled(const Eigen::Vector2d& p_map) const;
   size_t cellAt(const Eigen::Vector2d& p_map) const;
   Eigen::Vector2d centreOf(size_t cell) const;
 
@@ -161,10 +173,10 @@ class CostToGo {
   int width_ = 0;
   int height_ = 0;
   int stride_ = 0;
-  std::vector<float> slowness_;   // [m of way per m]; infinite where blocked or settled
-  std::vector<float> tentative_;  // [m] as short as was found
-  std::vector<float> settled_;    // [m] final; infinite before
-  std::vector<Slope> slopes_;     // of settled cells; of others anything
+  std::vector<float> slowness_;        // [m of way per m]; infinite where blocked or settled
+  std::vector<float> tentative_;       // [m] as short as was found
+  std::vector<float> settled_{kOpen};  // [m] final; infinite before
+  std::vector<Slope> slopes_;          // of settled cells; of others anything
   std::vector<uint8_t> unknown_;
   float cut_ = 0.0F;  // beyond this nothing was filled in
   bool cut_short_ = false;

@@ -55,11 +55,11 @@ double CostToGo::lengthNearby(const Eigen::Vector2d& p_map) const {
   return best;
 }
 
-double CostToGo::untilUnknown(const Eigen::Vector2d& p_map) const {
-  if (empty()) return 0.0;
+float CostToGo::untilUnknownUnsettled(const Eigen::Vector2d& p_map) const {
+  if (empty()) return 0.0F;
   const size_t cell = cellAt(p_map);
-  if (settled_[cell] < kOpen) return static_cast<double>(slopes_[cell].until_unknown);
-  return unknown_[cell] != 0 ? 0.0 : static_cast<double>(kUnknownCap);
+  if (settled_[cell] < kOpen) return slopes_[cell].until_unknown;
+  return unknown_[cell] != 0 ? 0.0F : kUnknownCap;
 }
 
 Eigen::Vector2d CostToGo::direction(const Eigen::Vector2d& p_map) const {

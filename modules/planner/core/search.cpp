@@ -10,27 +10,18 @@ namespace {
 
 /// The predicate is asked once per so many expansions.
 constexpr int kAskEvery = 16;
-/// Nearer to the goal than this its heading counts, farther off that of the way [m].
-constexpr double kNearGoal = 1.0;
 /// Where progress is slow the search looks so many times the horizon ahead.
 constexpr float kLookAhead = 2.0F;
 /// Patterns so short that they do not leave a cell in so many repetitions lead nowhere.
 constexpr int kMostRepeats = 32;
-/// Where the guide knows no way it may be wrong, but not often [1].
-constexpr float kUnlikely = 100.0F;
 /// What is cheaper by less than this share is not cheaper.
 constexpr float kSame = 1e-6F;
 
 uint64_t cellBits(double coordinate, double per_cell) {
-  return static_cast<uint64_t>(static_cast<int64_t>(std::floor(coordinate * per_cell))) & 0xFFFFFU;
-}
-
-/// Arc cosine to within 7e-5 rad (Abramowitz and Stegun 1964, 4.4.45), clamped.
-float arcCosine(float x) {
-  const float a = std::min(1.0F, std::abs(x));
-  const float value =
-      std::sqrt(1.0F - a) * (1.5707288F + a * (-0.2121144F + a * (0.0742610F - 0.0187293F * a)));
-  return x < 0.0F ? static_cast<float>(kPi) - value : value;
+  const double cells = coordinate * per_cell;
+  const auto whole = static_cast<int64_t>(cells);
+  return static_cast<uint64_t>(whole - static_cast<int64_t>(cells < static_cast<double>(whole))) &
+         0xFFFFFU;
 }
 
 }  // namespace
@@ -126,11 +117,16 @@ void Search::addChild(Node& node, uint64_t key) {
   }
   NodeTable::Slot& slot = best_[key];
   if (slot.node >= 0 && slot.cost <= node.cost * (1.0F + kSame)) return;
-  const ToGo to_go = toGo(node, nodes_[static_cast<size_t>(parent)].level < 0);
+  const Node& from = nodes_[static_cast<size_t>(parent)];
+  const CostToGo* const way = problem_->cost_to_go;
+  // Where the way takes long to find out the ground is blocked more often than not.
+  const bool is_slow = way != nullptr && !way->isSettled(node.x, node.y);
+  if (is_slow && node.repeats == 1 && !admit(from, node)) return;
+  const ToGo to_go = toGo(node, from.level < 0);
   if (node.cost + to_go.bound >= best_cost_) return;
   node.bound = to_go.bound;
   node.guess = to_go.guess;
-  if (node.repeats == 1 && !admit(nodes_[static_cast<size_t>(parent)], node)) return;
+  if (!is_slow && node.repeats == 1 && !admit(from, node)) return;
   const bool waits = slot.node >= 0 && !nodes_[static_cast<size_t>(slot.node)].expanded();
   if (waits)
     nodes_[static_cast<size_t>(slot.node)] = node;
@@ -195,75 +191,9 @@ bool Search::canStop(const Node& node) const {
   });
 }
 
-float Search::edgeCost(const Node& parent, const TablePattern& pattern, const Node& end) const {
-  if (problem_->cell_costs != nullptr) {
-    const CellIndex from{static_cast<int>(std::floor(parent.x * per_cell_)),
-                         static_cast<int>(std::floor(parent.y * per_cell_))};
-    const int worst = problem_->cell_costs->worst(from, pattern.cells);
-    return worst < 0 ? kNever : static_cast<float>(pattern.cost * (worst + 1));
-  }
-  double weight = 1.0;
-  const Surroundings& around = *problem_->surroundings;
-  if (config_.near_penalty > 0.0)
-    weight += config_.near_penalty * around.nearness(end.x, end.y, config_.near_distance);
-  if (config_.unknown_penalty > 0.0 && around.isUnknown({end.x, end.y}))
-    weight += config_.unknown_penalty;
-  if (pattern.reverses) weight += config_.reverse_penalty;
-  double cost = pattern.cost * weight;
-  const int rest = problem_->patterns->restClass();
-  if (pattern.exit == rest && pattern.entry != rest) cost += config_.stop_penalty;
-  if (config_.turn_penalty > 0.0) cost += config_.turn_penalty * std::abs(pattern.end().pose.yaw);
-  return static_cast<float>(cost);
-}
-
 /// Whether what follows a node is given.
 bool Search::onBranch(const Node& parent) const {
   return static_cast<size_t>(parent.depth) < problem_->branch.size();
-}
-
-bool Search::staysOnPlan(const Node& parent, const TablePattern& pattern) const {
-  const auto depth = static_cast<size_t>(parent.depth);
-  return parent.on_plan == parent.depth && depth < problem_->committed.size() &&
-         problem_->committed[depth] == pattern.id();
-}
-
-float Search::switchPenalty(const Node& parent, const TablePattern& pattern) const {
-  const auto depth = static_cast<size_t>(parent.depth);
-  if (parent.on_plan != parent.depth || depth >= problem_->committed.size()) return 0.0F;
-  if (problem_->committed[depth] == pattern.id()) return 0.0F;
-  return static_cast<float>(config_.switch_penalty * std::exp2(-parent.depth));
-}
-
-/// There is no way over blocked ground; who leaves it may go straight.
-Search::ToGo Search::toGo(const Node& node, bool on_blocked_ground) const {
-  const Goal& goal = problem_->goal;
-  CostToGo::Sample at;
-  if (problem_->cost_to_go != nullptr) {
-    at = problem_->cost_to_go->sample(node.x, node.y);
-    if (!(at.length < kNever) && !on_blocked_ground) return {kNever, kNever};
-  }
-  if (problem_->cost_to_go == nullptr || !(at.length < kNever)) {
-    const double dx = goal.T_map_goal.x - node.x;
-    const double dy = goal.T_map_goal.y - node.y;
-    const double distance = std::sqrt(dx * dx + dy * dy);
-    at.length = static_cast<float>(std::max(0.0, distance - goal.position_tolerance));
-  }
-  float off_goal = 0.0F;
-  if (goal.yaw_tolerance < kPi)
-    off_goal = std::max(0.0F, std::abs(wrapped(node.yaw - goal_yaw_)) - yaw_tolerance_);
-  const float way = std::max(0.0F, way_share_ * at.length - slack_);
-  const float bound = std::max(metre_cost_[0] * way + radian_cost_[0] * off_goal,
-                               metre_cost_[1] * way + radian_cost_[1] * off_goal);
-  if (problem_->pose_to_go != nullptr) {
-    const float known = problem_->pose_to_go->at(node.x, node.y, node.yaw);
-    return {bound, weights_.bound * std::max(bound, std::min(known, kUnlikely * (1.0F + bound)))};
-  }
-  float turn = off_goal;
-  if (weights_.turn > 0.0F && at.length > kNearGoal)
-    turn = arcCosine(at.along_x * node.cos_yaw + at.along_y * node.sin_yaw);
-  const float expected =
-      std::max(bound, metre_cost_[0] * std::max(0.0F, guess_share_ * at.length - slack_));
-  return {bound, weights_.bound * expected + weights_.turn * radian_cost_[1] * turn};
 }
 
 bool Search::isGoal(const Node& node) const {
@@ -285,10 +215,10 @@ bool Search::isFarEnough(const Node& node) const {
 }
 
 int Search::headingBin(const Node& node) const {
-  const float bins = static_cast<float>(config_.heading_bins);
-  // Never negative: a node's yaw is within half a turn.
-  const int bin = static_cast<int>(node.yaw * (bins / static_cast<float>(2.0 * kPi)) + bins + 0.5F);
-  return bin % config_.heading_bins;
+  // A node's yaw is within half a turn: from half of the bins to one and a half times as many.
+  int bin = static_cast<int>(node.yaw * bins_per_radian_ + first_bin_);
+  while (bin >= config_.heading_bins) bin -= config_.heading_bins;
+  return bin;
 }
 
 uint64_t Search::keyOf(const Node& node) const {

@@ -229,6 +229,8 @@ class Search {
   float guess_at_start_ = 0.0F;
   double speed_ = 1.0;
   double per_cell_ = 1.0;
+  float bins_per_radian_ = 0.0F;
+  float first_bin_ = 0.0F;  // so that bins are numbered around 0 rad, rounded and never negative
   float goal_yaw_ = 0.0F;
   float yaw_tolerance_ = 0.0F;
   float metre_cost_[2] = {0.0F, 0.0F};   // [s/m] of the two bounds, see PatternTable::leastCosts()

@@ -47,6 +47,9 @@ void Search::prepareBound() {
   const PatternTable& patterns = *problem_->patterns;
   speed_ = patterns.bestSpeed();
   per_cell_ = 1.0 / (problem_->cell > 0.0 ? problem_->cell : config_.cell);
+  const auto bins = static_cast<float>(config_.heading_bins);
+  bins_per_radian_ = bins / static_cast<float>(2.0 * kPi);
+  first_bin_ = bins + 0.5F;
   goal_yaw_ = static_cast<float>(wrapAngle(problem_->goal.T_map_goal.yaw));
   yaw_tolerance_ = static_cast<float>(problem_->goal.yaw_tolerance);
   for (size_t i = 0; i < 2; ++i) {

@@ -54,7 +54,11 @@ int Surroundings::levelWithin(double margin) const {
 }
 
 int Surroundings::level(const Uncertainty& uncertainty) const {
-  const float variance = uncertainty.ofPoint(static_cast<float>(arm_));
+  // Most nodes are that uncertain, as two sums tell.
+  const auto arm = static_cast<float>(arm_);
+  const float least = std::max(uncertainty.xx, uncertainty.yy) + arm * arm * uncertainty.yawyaw;
+  if (level_variances_.back() <= least) return kLevels - 1;
+  const float variance = uncertainty.ofPoint(arm);
   int level = kPlan;
   while (level + 1 < kLevels && level_variances_[static_cast<size_t>(level + 1)] <= variance)
     ++level;
