@@ -182,10 +182,11 @@ class ClearanceField {
   /// As bounds() would, without its root: at (dx, dy) [cells] from the centre of a cell.
   Verdict compareClosely(double dx, double dy, float clearance, float near, float far) const {
     const auto value = static_cast<double>(clearance);
-    if (value == 0.0) return near > 0.0F ? Verdict::kLess : Verdict::kAtLeast;
+    if (far <= 0.0F) return Verdict::kAtLeast;
+    if (value == 0.0) return near > 0.0F ? Verdict::kLess : Verdict::kUnsure;
     const double off = (dx * dx + dy * dy) * cell_size_ * cell_size_;
     const double room = value - kRounding * value - static_cast<double>(far);
-    if (far <= 0.0F || (room >= 0.0 && room * room >= off)) return Verdict::kAtLeast;
+    if (room >= 0.0 && room * room >= off) return Verdict::kAtLeast;
     const double lack = static_cast<double>(near) - value - kRounding * value;
     return lack > 0.0 && lack * lack > off && clearance < cap_ ? Verdict::kLess : Verdict::kUnsure;
   }
