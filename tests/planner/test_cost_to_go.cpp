@@ -161,6 +161,28 @@ TEST_CASE("What mapping has forgotten stays known: a dead end is not forgotten")
   CHECK(field.length({0.0, 0.0}) > 12.0);
 }
 
+TEST_CASE("A way that is interrupted is known near the goal, and nowhere longer than in full") {
+  Playground ground;
+  ground.addWall({5.0, -4.0}, {5.0, 4.0});
+  const PassageMap map = mapOf(ground.paint(kCell, {-6.4, -9.6}, {16.0, 9.6}));
+  const Goal goal{1, {10.0, 0.0, 0.0}, 0.3, 4.0};
+  const CostToGo full(map, goal, {0.0, 0.0}, {}, plain());
+  for (const int most : {1, 5, 30, 70}) {
+    int asked = 0;
+    CostToGo part;
+    part.workOut(map, goal, {0.0, 0.0}, {}, plain(), [&] { return ++asked >= most; });
+    CHECK(asked == most);
+    CHECK_FALSE(part.unreachable());
+    CHECK(part.filled() < full.filled());
+    for (double x = -6.0; x < 15.0; x += 0.7)
+      for (double y = -9.0; y < 9.0; y += 0.7) {
+        const Eigen::Vector2d p(x, y);
+        if (std::isfinite(full.length(p))) CHECK(part.length(p) <= full.length(p) + 0.3);
+      }
+    CHECK(part.length({10.0, 0.0}) == full.length({10.0, 0.0}));
+  }
+}
+
 TEST_CASE("Changes that concern nobody's way do not count as changes of the passages") {
   Playground ground;
   ground.add({{3.0, 3.0, 0.0}, 1.0, 1.0});

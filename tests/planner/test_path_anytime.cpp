@@ -110,6 +110,25 @@ TEST_CASE("a search that is told to stop does so within the 16 expansions betwee
   CHECK(stopped > testing::effort(150));
 }
 
+TEST_CASE("a stop while the way is worked out is heard as soon as one while searching") {
+  int heard = 0;
+  onQueries(1100, testing::effort(10), [&](PathBench& bench, const PathQuery& query) {
+    for (int limit = 1; limit <= 64; limit *= 2) {
+      int asked = 0;
+      const Told told = ask(bench, query, [&](int expansions) {
+        ++asked;
+        return expansions > 0 || asked >= limit;
+      });
+      if (asked == 0 || told.answer.search.exhausted) continue;
+      // The guide, the search and a finer one may ask once more each.
+      CHECK(asked <= limit + 3);
+      CHECK(told.answer.search.expansions <= 16);
+      heard += told.begun == 1 && asked >= limit ? 1 : 0;
+    }
+  });
+  CHECK(heard > testing::effort(60));
+}
+
 TEST_CASE("a stop before anything was found says so and promises nothing") {
   int none = 0;
   onQueries(1300, testing::effort(20), [&](PathBench& bench, const PathQuery& query) {

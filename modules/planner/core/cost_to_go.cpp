@@ -53,7 +53,8 @@ struct CostToGo::Front {
 };
 
 void CostToGo::workOut(const PassageSource& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
-                       const std::vector<Detour>& detours, const FieldConfig& config) {
+                       const std::vector<Detour>& detours, const FieldConfig& config,
+                       const Interruption& interruption) {
   problem_.clear();
   const double distance = (goal.T_map_goal.position() - p_vehicle).norm();
   if (!(distance <= config.max_distance)) {
@@ -65,7 +66,7 @@ void CostToGo::workOut(const PassageSource& map, const Goal& goal, const Eigen::
   for (double margin = config.area_margin;; margin *= 2.0) {
     layOut(map, goal, p_vehicle, margin, config);
     paint(map, detours, config);
-    if (march(goal, p_vehicle, config)) return;
+    if (march(goal, p_vehicle, config, interruption)) return;
     const double longest = size_ * std::max(width_, height_);
     const bool all_seen = !touched_border_ || map.bounds().has_value();
     if (goal_blocked_ || all_seen || longest >= config.max_area - size_) break;
@@ -158,8 +159,8 @@ bool CostToGo::seed(const Goal& goal, Front& front) {
   return any;
 }
 
-bool CostToGo::march(const Goal& goal, const Eigen::Vector2d& p_vehicle,
-                     const FieldConfig& config) {
+bool CostToGo::march(const Goal& goal, const Eigen::Vector2d& p_vehicle, const FieldConfig& config,
+                     const Interruption& interruption) {
   Front front;
   goal_blocked_ = !seed(goal, front);
   if (goal_blocked_) return false;
@@ -173,7 +174,7 @@ bool CostToGo::march(const Goal& goal, const Eigen::Vector2d& p_vehicle,
     }
     cut_ = static_cast<float>(front.current) * kBucket;
     if (stop_at == kNoWay && std::isfinite(length(p_vehicle))) stop_at = cut_ + further;
-    if (cut_ > stop_at) {
+    if (cut_ > stop_at || (interruption && interruption())) {
       cut_short_ = true;
       return true;
     }

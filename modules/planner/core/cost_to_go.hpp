@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -51,6 +52,9 @@ struct Detour {
   double radius = 0.6;  ///< [m]
 };
 
+/// Asked now and then while something is worked out: whether to leave off with what there is.
+using Interruption = std::function<bool()>;
+
 /// Length of the shortest way to the goal from everywhere, around all that is known [m].
 /** Fast marching (first order, upwind) from the goal over coarse cells: obstacles are grown by half
  * the vehicle's width, unknown is passable. With all weights 0 the length over the best speed of a
@@ -66,9 +70,11 @@ class CostToGo {
            const std::vector<Detour>& detours, const FieldConfig& config) {
     workOut(map, goal, p_vehicle, detours, config);
   }
-  /// As if newly made, in the memory that it has.
+  /// As if newly made, in the memory that it has. Interrupted, what was not filled in is as long as
+  /// the longest way that was.
   void workOut(const PassageSource& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
-               const std::vector<Detour>& detours, const FieldConfig& config);
+               const std::vector<Detour>& detours, const FieldConfig& config,
+               const Interruption& interruption = {});
 
   bool empty() const { return width_ == 0 || height_ == 0; }
   /// Way from a point to the rim of the goal's tolerance [m]; infinite if there is none.
@@ -142,7 +148,8 @@ class CostToGo {
   void paint(const PassageSource& map, const std::vector<Detour>& detours,
              const FieldConfig& config);
   bool seed(const Goal& goal, Front& front);
-  bool march(const Goal& goal, const Eigen::Vector2d& p_vehicle, const FieldConfig& config);
+  bool march(const Goal& goal, const Eigen::Vector2d& p_vehicle, const FieldConfig& config,
+             const Interruption& interruption);
   void relax(size_t cell, Front& front);
   void settle(size_t cell);
   double lengthNearby(const Eigen::Vector2d& p_map) const;

@@ -47,9 +47,12 @@ double CostToGo::lengthNearby(const Eigen::Vector2d& p_map) const {
   for (int y = std::max(1, own_y - reach); y <= std::min(height_, own_y + reach); ++y) {
     for (int x = std::max(1, own_x - reach); x <= std::min(width_, own_x + reach); ++x) {
       const auto cell = static_cast<size_t>(y * stride_ + x);
-      if (settled_[cell] == kOpen) continue;
+      // What is passable and was not filled in is as far as the longest way that was.
+      const float open = cut_short_ && slowness_[cell] != kNoWay ? cut_ : kNoWay;
+      const float way = std::min(settled_[cell], open);
+      if (way == kNoWay) continue;
       const double away = (centreOf(cell) - p_map).norm();
-      if (away <= kNearby) best = std::min(best, static_cast<double>(settled_[cell]) + away);
+      if (away <= kNearby) best = std::min(best, static_cast<double>(way) + away);
     }
   }
   return best;

@@ -179,13 +179,13 @@ bool PathPlanner::anyBegins(const Pose2& start) const {
   });
 }
 
-CostToGo PathPlanner::wayTo(const SearchProblem& problem) const {
+CostToGo PathPlanner::wayTo(const SearchProblem& problem, const Interruption& interruption) const {
   const Eigen::Vector2d p_start = problem.T_map_start.position();
   FieldConfig config = config_.field;
   CostToGo way;
   for (const double slack : {kUsualSlack, kMostSlack}) {
     config.inflation = std::max(0.0, inscribed_ - slack * surroundings_->grid().cellSize());
-    way = CostToGo(*passages_, problem.goal, p_start, {}, config);
+    way.workOut(*passages_, problem.goal, p_start, {}, config, interruption);
     if (!way.unreachable()) break;
   }
   return way;
@@ -200,11 +200,12 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
   CostToGo way;
   PoseToGo guide;
   if (costs_ == nullptr) {
-    way = wayTo(problem);
+    const Interruption interruption = [&stop] { return stop(0); };
+    way = wayTo(problem, interruption);
     problem.surroundings = &*surroundings_;
     problem.cost_to_go = &way;
     guide = PoseToGo(*places_, problem.goal, problem.T_map_start, motionRates(patterns_),
-                     config_.guide_beyond);
+                     config_.guide_beyond, interruption);
     if (!guide.empty() && guide.reached()) problem.pose_to_go = &guide;
   } else {
     placeOnLattice(problem);

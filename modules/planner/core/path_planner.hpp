@@ -69,6 +69,7 @@ class PathPlanner {
   /// headings of the lattice; the goal is one cell and one heading.
   PathPlanner(const CellCosts& costs, double cell_size, int bins, const PatternTable& patterns);
 
+  /// `stop` is asked with 0 expansions while the way is worked out, too.
   PathAnswer answer(const PathQuery& query, const StopPredicate& stop,
                     const PathEvents& events = {});
   /// Only the first part of answer(): whether the goal is certainly unreachable, and why.
@@ -89,7 +90,7 @@ class PathPlanner {
   std::vector<int> areasFrom(const Pose2& T_map_start) const;
   bool anyBegins(const Pose2& T_map_start) const;
   void judge(PathAnswer& answer) const;
-  CostToGo wayTo(const SearchProblem& problem) const;
+  CostToGo wayTo(const SearchProblem& problem, const Interruption& interruption) const;
 
   const PatternTable& patterns_;
   PathConfig config_;

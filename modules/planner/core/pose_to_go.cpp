@@ -114,7 +114,7 @@ struct PoseToGo::Front {
 };
 
 PoseToGo::PoseToGo(Places& places, const Goal& goal, const Pose2& T_map_start,
-                   const MotionRates& rates, double beyond)
+                   const MotionRates& rates, double beyond, const Interruption& interruption)
     : places_(&places), per_size_(1.0 / places.size()), lower_(places.lower()) {
   prepareMoves(rates);
   if (!(least_move_ > 0.0F) || places.count() == 0) return;
@@ -123,7 +123,7 @@ PoseToGo::PoseToGo(Places& places, const Goal& goal, const Pose2& T_map_start,
   cost_.assign(places.count() * kHeadings, kNever);
   Front front(least_move_);
   seed(goal, front);
-  fill(T_map_start, beyond, front);
+  fill(T_map_start, beyond, front, interruption);
 }
 
 void PoseToGo::prepareMoves(const MotionRates& rates) {
@@ -194,7 +194,8 @@ void PoseToGo::seed(const Goal& goal, Front& front) {
   }
 }
 
-void PoseToGo::fill(const Pose2& start, double beyond, Front& front) {
+void PoseToGo::fill(const Pose2& start, double beyond, Front& front,
+                    const Interruption& interruption) {
   const size_t own = places_->number(start_column_, start_row_) * kHeadings +
                      static_cast<size_t>(binOf(static_cast<float>(wrapAngle(start.yaw))));
   start_ = own;
@@ -202,6 +203,7 @@ void PoseToGo::fill(const Pose2& start, double beyond, Front& front) {
   for (; front.current < front.buckets.size(); ++front.current) {
     const float now = static_cast<float>(front.current) / front.per_width;
     if (now > stop_at) break;
+    if (!reached_ && interruption && interruption()) return;
     // A move may come back into its own bucket.
     for (size_t i = 0; i < front.buckets[front.current].size(); ++i) {
       const Front::Entry entry = front.buckets[front.current][i];

@@ -42,8 +42,9 @@ class PoseToGo {
 
   PoseToGo() = default;
   /// `beyond`: share of the start's cost [1] by which more is filled in. `places` must stay.
+  /// Interrupted, it does not reach the start.
   PoseToGo(Places& places, const Goal& goal, const Pose2& T_map_start, const MotionRates& rates,
-           double beyond);
+           double beyond, const Interruption& interruption = {});
 
   bool empty() const { return cost_.empty(); }
   /// Cost from a pose to the goal, yaw within half a turn; infinite where there is no way. What was
@@ -82,7 +83,8 @@ class PoseToGo {
   void prepareMoves(const MotionRates& rates);
   void addMoves(int heading, int direction, const MotionRates::Rate& rate);
   void seed(const Goal& goal, Front& front);
-  void fill(const Pose2& T_map_start, double beyond, Front& front);
+  void fill(const Pose2& T_map_start, double beyond, Front& front,
+            const Interruption& interruption);
   void relax(size_t state, Front& front);
   /// Least cost between the start and a square.
   float fromStart(int column, int row) const {
