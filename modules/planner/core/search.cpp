@@ -46,6 +46,7 @@ bool Search::visit(int index) {
   ++expansions_;
   Node& node = nodes_[static_cast<size_t>(index)];
   node.number = expansions_;
+  noteProgress(index);
   if (!onBranch(node) && isGoal(node)) {
     keepBest(index, SearchEnd::kGoal);
     return true;

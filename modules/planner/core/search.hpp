@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "modules/planner/core/block_list.hpp"
 #include "modules/planner/core/cell_costs.hpp"
 #include "modules/planner/core/cost_to_go.hpp"
 #include "modules/planner/core/node_table.hpp"
@@ -208,7 +209,7 @@ class Search {
   ToGo toGo(const Node& node, bool on_blocked_ground) const;
   bool isGoal(const Node& node) const;
   bool isFarEnough(const Node& node) const;
-  int bestLeaf() const;
+  void noteProgress(int index);
   uint64_t keyOf(const Node& node) const;
   int headingBin(const Node& node) const;
   Uncertainty uncertaintyAfter(const Node& parent, const TablePattern& pattern) const;
@@ -217,7 +218,7 @@ class Search {
 
   SearchConfig config_;
   const SearchProblem* problem_ = nullptr;
-  std::vector<Node> nodes_;
+  BlockList<Node> nodes_;
   std::vector<Child> children_;  // of the node that is being expanded
   OpenList open_;
   NodeTable best_;
@@ -241,6 +242,8 @@ class Search {
   size_t kept_ = 0;  // nodes of the best plan of an earlier search, at the front
   int best_leaf_ = -1;
   SearchEnd best_end_ = SearchEnd::kNothing;
+  int farthest_ = -1;  // where to go if there is no plan: of what was expanded
+  float farthest_value_ = 0.0F;
   uint64_t from_key_ = 0;   // of the node that is being expanded
   float best_cost_ = 0.0F;  // of the best plan, what is left to go included
 };

@@ -92,7 +92,7 @@ std::vector<TreeNode> Search::drawn(const std::vector<int>& wanted) const {
 }
 
 size_t Search::bytes() const {
-  return nodes_.capacity() * sizeof(Node) + best_.bytes() + open_.bytes();
+  return nodes_.bytes() + best_.bytes() + open_.bytes();
 }
 
 }  // namespace tread::planner

@@ -24,7 +24,7 @@ SearchResult Search::run(const SearchProblem& problem, const StopPredicate& stop
     while (outcome == Outcome::kBetter && weights_.exact()) outcome = search(stop);
   }
   SearchResult result =
-      best_leaf_ >= 0 ? finish(best_leaf_, best_end_) : finish(bestLeaf(), SearchEnd::kProgress);
+      best_leaf_ >= 0 ? finish(best_leaf_, best_end_) : finish(farthest_, SearchEnd::kProgress);
   result.exhausted = outcome == Outcome::kAllSeen;
   return result;
 }
@@ -75,6 +75,7 @@ void Search::beginAgain(const Weights& weights) {
   weights_ = weights;
   keepBranch();
   best_.clear();
+  farthest_ = -1;
   const SearchProblem& problem = *problem_;
   Node root{};
   root.x = problem.T_map_start.x;
@@ -113,7 +114,8 @@ void Search::keepBranch() {
     branch.push_back(nodes_[static_cast<size_t>(i)]);
   std::reverse(branch.begin(), branch.end());
   for (size_t i = 0; i < branch.size(); ++i) branch[i].parent = static_cast<int>(i) - 1;
-  nodes_.assign(branch.begin(), branch.end());
+  nodes_.clear();
+  for (const Node& node : branch) nodes_.push_back(node);
   best_leaf_ = static_cast<int>(nodes_.size()) - 1;
   kept_ = nodes_.size();
 }
@@ -126,19 +128,14 @@ void Search::keepBest(int leaf, SearchEnd end) {
   if (problem_->on_better) problem_->on_better(static_cast<double>(best_cost_), expansions_);
 }
 
-int Search::bestLeaf() const {
-  int best = -1;
+void Search::noteProgress(int index) {
+  const Node& node = nodes_[static_cast<size_t>(index)];
   const float limit = guess_at_start_ - static_cast<float>(config_.least_progress);
-  float best_value = limit;
-  for (size_t i = kept_ + 1; i < nodes_.size(); ++i) {
-    const Node& node = nodes_[i];
-    if (!node.expanded() || node.guess >= limit || onBranch(node)) continue;
-    const float value = node.guess + kLeafCost * node.cost;
-    if (best >= 0 && value >= best_value) continue;
-    best = static_cast<int>(i);
-    best_value = value;
-  }
-  return best;
+  if (node.guess >= limit || onBranch(node)) return;
+  const float value = node.guess + kLeafCost * node.cost;
+  if (farthest_ >= 0 && value >= farthest_value_) return;
+  farthest_ = index;
+  farthest_value_ = value;
 }
 
 }  // namespace tread::planner
