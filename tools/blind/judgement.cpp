@@ -146,7 +146,7 @@ bool isNamedInGroup(const CaseRecord& record) {
       });
 }
 
-bool isExcited(const Truth& truth) {
+bool showsEnough(const Truth& truth) {
   if (truth.effects.empty() || !(truth.floor.position > 0.0)) return true;
   return truth.gap.position > kLeastVisible * truth.floor.position ||
          truth.gap.yaw > kLeastVisible * truth.floor.yaw ||
@@ -207,7 +207,7 @@ Judgement judge(const CaseRecord& record) {
   judgement.flagged = answer.verdict == "PARTIAL" || answer.verdict == "NOT_IN_CATALOGUE";
   judgement.grouped = saysGroup(record);
   judgement.right_variable = judgement.flagged && rightVariable(record);
-  judgement.excited = isExcited(record.truth);
+  judgement.excited = showsEnough(record.truth);
   judgement.closed = closedShare(answer.before, answer.after, record.truth.floor);
   judgement.closed_median =
       closedShare(answer.before.median, answer.after.median, record.truth.floor.median);

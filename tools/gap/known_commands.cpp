@@ -59,7 +59,7 @@ class SpanFinder {
   bool open_ = false;
 };
 
-bool isZero(const TrackCommand& command) {
+bool isStill(const TrackCommand& command) {
   return command.left == 0.0 && command.right == 0.0;
 }
 
@@ -99,11 +99,11 @@ TrackCommand commandAt(const CommandSpan& span, double time) {
 }
 
 bool standsBetween(const CommandSpan& span, double from, double to) {
-  if (!isZero(commandAt(span, from))) return false;
+  if (!isStill(commandAt(span, from))) return false;
   auto sample = std::upper_bound(span.commands.begin(), span.commands.end(), from,
                                  [](double t, const CommandSample& c) { return t < c.time; });
   for (; sample != span.commands.end() && sample->time < to; ++sample)
-    if (!isZero(sample->command)) return false;
+    if (!isStill(sample->command)) return false;
   return true;
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr auto kFound = static_cast<size_t>(Rung::kDiscovered);
+constexpr auto kFoundRung = static_cast<size_t>(Rung::kDiscovered);
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -41,7 +41,7 @@ Json foldJson(const LadderFold& fold) {
     fitted[rungKey(static_cast<Rung>(r))] = numbers;
   }
   Json effects = nullptr;
-  if (fold.models[kFound]) effects = fold.models[kFound]->effects;
+  if (fold.models[kFoundRung]) effects = fold.models[kFoundRung]->effects;
   return {{"trained_on", fold.trained_on}, {"effects", effects}, {"fitted", fitted}};
 }
 

@@ -8,27 +8,27 @@
 namespace tread::gap {
 namespace {
 
-constexpr size_t kWidth = 96;
-constexpr size_t kIndent = 20;
+constexpr size_t kTopicWidth = 96;
+constexpr size_t kTopicIndent = 20;
 
-std::string entry(const std::string& heading, const std::string& text) {
-  const std::string gap(heading.size() < kIndent ? kIndent - heading.size() : 1, ' ');
-  return wrapped(heading + gap + text, kWidth, kIndent) + "\n";
+std::string topicEntry(const std::string& heading, const std::string& text) {
+  const std::string gap(heading.size() < kTopicIndent ? kTopicIndent - heading.size() : 1, ' ');
+  return wrapped(heading + gap + text, kTopicWidth, kTopicIndent) + "\n";
 }
 
 std::string entries(const std::vector<Word>& words) {
   std::string text;
-  for (const Word& word : words) text += entry(word.word, word.meaning);
+  for (const Word& word : words) text += topicEntry(word.word, word.meaning);
   return text;
 }
 
 std::string verdicts() {
   std::string text;
   for (const Advice& advice : advices())
-    text +=
-        entry(std::to_string(static_cast<int>(advice.verdict)) + " " + verdictName(advice.verdict),
-              advice.meaning + ". " + advice.next);
-  return text + entry("2", "bad input, in one line");
+    text += topicEntry(
+        std::to_string(static_cast<int>(advice.verdict)) + " " + verdictName(advice.verdict),
+        advice.meaning + ". " + advice.next);
+  return text + topicEntry("2", "bad input, in one line");
 }
 
 }  // namespace

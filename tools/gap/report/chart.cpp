@@ -12,7 +12,7 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kWidth = 320.0;
+constexpr double kChartWidth = 320.0;
 constexpr double kHeight = 230.0;
 constexpr double kLeft = 44.0;
 constexpr double kRight = 8.0;
@@ -105,9 +105,9 @@ ChartRange ChartRange::widened(double least) const {
 }
 
 ChartRange ChartRange::withEqualScales() const {
-  const double per_x = (x_max - x_min) / (kWidth - kLeft - kRight);
+  const double per_x = (x_max - x_min) / (kChartWidth - kLeft - kRight);
   const double per_y = (y_max - y_min) / (kHeight - kTop - kBottom);
-  const double grow_x = 0.5 * std::max(0.0, per_y - per_x) * (kWidth - kLeft - kRight);
+  const double grow_x = 0.5 * std::max(0.0, per_y - per_x) * (kChartWidth - kLeft - kRight);
   const double grow_y = 0.5 * std::max(0.0, per_x - per_y) * (kHeight - kTop - kBottom);
   return {x_min - grow_x, x_max + grow_x, y_min - grow_y, y_max + grow_y};
 }
@@ -121,7 +121,7 @@ Chart::Chart(std::string title, std::string x_words, std::string y_words, const 
 
 double Chart::px(double x) const {
   const double share = (x - range_.x_min) / (range_.x_max - range_.x_min);
-  return kLeft + std::clamp(share, -0.5, 1.5) * (kWidth - kLeft - kRight);
+  return kLeft + std::clamp(share, -0.5, 1.5) * (kChartWidth - kLeft - kRight);
 }
 
 double Chart::py(double y) const {
@@ -156,7 +156,7 @@ void Chart::band(const std::vector<ChartPoint>& low, const std::vector<ChartPoin
 
 void Chart::tube(const std::vector<ChartPoint>& points, const std::vector<double>& radii,
                  const std::string& colour) {
-  const double scale = (kWidth - kLeft - kRight) / (range_.x_max - range_.x_min);
+  const double scale = (kChartWidth - kLeft - kRight) / (range_.x_max - range_.x_min);
   std::string pieces;
   for (size_t i = 1; i < std::min(points.size(), radii.size()); ++i) {
     if (!isFinite(points[i - 1]) || !isFinite(points[i])) continue;
@@ -202,7 +202,8 @@ void Chart::labelBelow(double x, const std::string& label) {
 
 void Chart::level(double y) {
   if (y < range_.y_min || y > range_.y_max) return;
-  shapes_ += stroke(kLeft, py(y), kWidth - kRight, py(y), kGrey, " stroke-width=\"0.8\"") + "\n";
+  shapes_ +=
+      stroke(kLeft, py(y), kChartWidth - kRight, py(y), kGrey, " stroke-width=\"0.8\"") + "\n";
 }
 
 void Chart::legend(const std::string& entry, const std::string& colour, bool dashed) {
@@ -226,7 +227,7 @@ std::string Chart::axes() const {
   }
   const double step_y = tickStep(range_.y_max - range_.y_min, 5.0);
   for (const double tick : ticks(range_.y_min, range_.y_max, step_y))
-    text += stroke(kLeft, py(tick), kWidth - kRight, py(tick), "#e8ebee") +
+    text += stroke(kLeft, py(tick), kChartWidth - kRight, py(tick), "#e8ebee") +
             words(kLeft - 4.0, py(tick) + 3.0, tickWords(tick, step_y), "text-anchor=\"end\"") +
             "\n";
   return text;
@@ -240,7 +241,7 @@ std::string Chart::svg() const {
          escaped(title_) + "</title>\n<rect width=\"320\" height=\"230\" fill=\"#fff\"/>\n" +
          words(4.0, 13.0, title_, "font-size=\"11.5\" font-weight=\"600\" fill=\"#1c2126\"") +
          "\n" + legend_ + "<g " + small + ">\n" + axes() +
-         words(0.5 * (kLeft + kWidth - kRight), kHeight - 8.0, x_words_,
+         words(0.5 * (kLeft + kChartWidth - kRight), kHeight - 8.0, x_words_,
                "text-anchor=\"middle\" font-size=\"10\"") +
          words(0.0, 0.0, y_words_,
                "text-anchor=\"middle\" font-size=\"10\" transform=\"translate(10 " +
@@ -251,13 +252,13 @@ std::string Chart::svg() const {
 std::string sheetOf(const std::vector<std::string>& charts, size_t columns) {
   const size_t rows = (charts.size() + columns - 1) / columns;
   std::string text = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" +
-                     at(kWidth * static_cast<double>(columns)) + "\" height=\"" +
+                     at(kChartWidth * static_cast<double>(columns)) + "\" height=\"" +
                      at(kHeight * static_cast<double>(rows)) + "\">\n";
   for (size_t i = 0; i < charts.size(); ++i) {
     const size_t row = i / columns;
     const size_t column = i % columns;
-    const std::string place = "<svg x=\"" + at(kWidth * static_cast<double>(column)) + "\" y=\"" +
-                              at(kHeight * static_cast<double>(row)) +
+    const std::string place = "<svg x=\"" + at(kChartWidth * static_cast<double>(column)) +
+                              "\" y=\"" + at(kHeight * static_cast<double>(row)) +
                               "\" width=\"320\" height=\"230\"";
     text += place + charts[i].substr(4) + "\n";  // behind the chart's own "<svg"
   }
