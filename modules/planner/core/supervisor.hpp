@@ -121,6 +121,7 @@ class Supervisor {
   // Both.
   SearchResult searchFrom(const Situation& s, const PlanStep& start, int expansions);
   SearchResult keepSide(SearchProblem& problem, SearchResult fresh, const StopPredicate& stop);
+  SearchResult keepNext(SearchProblem& problem, SearchResult fresh, const StopPredicate& stop);
   bool sayUnreachable();
   void watchProgress(const Situation& s);
   void addDetour(const Situation& s);

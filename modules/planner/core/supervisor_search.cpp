@@ -29,7 +29,10 @@ SearchResult Supervisor::searchFrom(const Situation& s, const PlanStep& start, i
   };
   SearchResult result = search_.run(problem, enough);
   before = result.expansions;
-  if (!late) result = keepSide(problem, std::move(result), enough);
+  if (!late && result.end == SearchEnd::kNothing)
+    result = keepNext(problem, std::move(result), enough);
+  else if (!late)
+    result = keepSide(problem, std::move(result), enough);
   last_plan_ = s.now;
   planned_ = true;
   expansions_ = result.expansions;
@@ -54,6 +57,21 @@ SearchResult Supervisor::keepSide(SearchProblem& problem, SearchResult fresh,
     return fresh;
   }
   ++counters_["kept to its side"];
+  std::swap(search_, branch_search_);
+  return along;
+}
+
+/// Where there is no plan with the margin for planning, what was about to follow the running
+/// pattern is gone on with if it is still free with the margin for checking.
+SearchResult Supervisor::keepNext(SearchProblem& problem, SearchResult fresh,
+                                  const StopPredicate& stop) {
+  if (runningPattern() == nullptr || plan_.empty()) return fresh;
+  problem.branch = {plan_.front().pattern_id};
+  SearchResult along = branch_search_.run(problem, stop);
+  const int expansions = fresh.expansions + along.expansions;
+  fresh.expansions = along.expansions = expansions;
+  if (along.end == SearchEnd::kNothing) return fresh;
+  ++counters_["kept to its next pattern"];
   std::swap(search_, branch_search_);
   return along;
 }

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+#include "tests/planner/kit/policy_rig.hpp"
+
+using namespace tread;
+using namespace tread::planner;
+using namespace tread::planner::testkit;
+
+namespace {
+
+int64_t keptBy(Rig& rig) {
+  const auto& counters = rig.supervisor().counters();
+  const auto found = counters.find("kept to its next pattern");
+  return found == counters.end() ? 0 : found->second;
+}
+
+/// Id of what was handed over to follow the running pattern; 0 = nothing.
+int nextOf(Rig& rig) {
+  const ProgramBook& book = rig.supervisor().program();
+  return book.next().empty() ? 0 : book.next().pattern_id;
+}
+
+/// A door across the way with 6 cm of room on each side: enough for what is under way, too little
+/// for a new plan.
+Playground doorAt(double x) {
+  Playground ground;
+  for (const double side : {-1.0, 1.0})
+    ground.addWall({x + 0.1, side * 0.5}, {x + 0.1, side * 9.0});
+  return ground;
+}
+
+/// What was seen while a vehicle in full drive came to a door that was not there before.
+struct Approach {
+  int kept = 0;          ///< steps in which the next pattern was kept to
+  int kept_to_it = 0;    ///< those after which it was still the next one, or had begun
+  double closest = 1e9;  ///< [m] to the door
+};
+
+Approach approach(double ahead) {
+  Approach seen;
+  Rig rig;
+  rig.situation().goal->T_map_goal.x = 14.0;
+  rig.run(3.5);
+  const Playground ground = doorAt(rig.pose().x + FootprintSize{}.front + ahead);
+  rig.paint(ground);
+  for (int i = 0; i < 50; ++i) {
+    const int wanted = nextOf(rig);
+    const int64_t count = keptBy(rig);
+    rig.run(0.05);
+    seen.closest = std::min(seen.closest, ground.clearance(FootprintSize{}, rig.pose()));
+    if (keptBy(rig) == count) continue;
+    ++seen.kept;
+    const bool begun = !rig.supervisor().program().running().empty() && rig.running().id == wanted;
+    seen.kept_to_it += begun || nextOf(rig) == wanted ? 1 : 0;
+  }
+  return seen;
+}
+
+}  // namespace
+
+TEST_CASE("Where only the margin for a new plan is missing the next pattern is gone on with") {
+  int kept = 0;
+  for (int k = 8; k < 40; ++k) {
+    const Approach seen = approach(0.1 * k);
+    CAPTURE(k);
+    CHECK(seen.kept_to_it == seen.kept);
+    CHECK(seen.closest > 0.0);
+    kept += seen.kept;
+  }
+  CHECK(kept > 5);
+}
