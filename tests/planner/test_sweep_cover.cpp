@@ -40,13 +40,12 @@ struct Count {
   int refused = 0;  // by the exact test, with a smaller footprint
 };
 
-/// Draws grounds and motions; counts what is accepted although a footprint that is `smaller` [m] on
-/// all sides meets something on the way.
+/// Draws grounds and motions, and levels of margin if there are any; counts what is accepted
+/// although a footprint that is `smaller` [m] on all sides meets something on the way.
 template <class DrawPoses>
 Count judge(uint64_t seed, const SweepStep& step, double smaller, const DrawPoses& draw,
-            const FootprintSize& size = {}) {
+            const FootprintSize& size = {}, const Margins& margins = withoutMargin()) {
   std::mt19937_64 random(seed);
-  const Footprint exact(size.front, size.rear, size.half_width, -smaller);
   Count count;
   RandomGround ground;
   ground.blocks = 4;
@@ -54,15 +53,17 @@ Count judge(uint64_t seed, const SweepStep& step, double smaller, const DrawPose
   for (int i = 0; i < testing::effort(700); ++i) {
     ground.cell_size = i % 4 == 0 ? 0.05 : 0.1;
     const Grid grid = ground.draw(random);
-    const Surroundings around(grid, size, withoutMargin());
+    const Surroundings around(grid, size, margins);
+    const int level = margins.largest > 0.0 ? i % Surroundings::kLevels : Surroundings::kBare;
+    const Footprint exact(size.front, size.rear, size.half_width, around.marginOf(level) - smaller);
     for (int k = 0; k < 4; ++k) {
       Primitive primitive;
       primitive.poses = draw(random);
       primitive.duration = primitive.cost = 1.0;
       const PatternTable table({primitive}, step);
       const Pose2 start = ground.pose(random);
-      if (!around.isFree(start, Surroundings::kBare)) continue;
-      if (!around.sweepFree(start, table.patterns().front(), Surroundings::kBare)) continue;
+      if (!around.isFree(start, level)) continue;
+      if (!around.sweepFree(start, table.patterns().front(), level)) continue;
       ++count.accepted;
       for (const SweepPose& at : finePoses(primitive.poses, 1.0 / 40.0)) {
         if (exact.blockedCells(grid, start * at.pose, true) == 0) continue;
@@ -106,6 +107,18 @@ TEST_CASE("an arc or a turn that is accepted cuts no obstacle by more than 5 mm"
   const auto arc = [](std::mt19937_64& random) { return randomArc(random, 2.0); };
   CHECK(judge(2, SweepStep{}, 0.005, arc).refused == 0);
   CHECK(judge(3, SweepStep{}, 0.005, randomSpotTurn).refused == 0);
+}
+
+TEST_CASE("with each margin that the search knows no more is cut than without") {
+  const auto arc = [](std::mt19937_64& random) { return randomArc(random, 2.0); };
+  const FootprintSize size;
+  Margins wide;
+  wide.largest = 0.2;
+  for (const Margins& margins : {Margins{}, wide}) {
+    const SweepStep step = stepFor(size, margins.largest, {});
+    CHECK(judge(20, step, 0.005, arc, size, margins).refused == 0);
+    CHECK(judge(21, step, 0.005, randomSpotTurn, size, margins).refused == 0);
+  }
 }
 
 TEST_CASE("coarser turns are no reason to cut more") {
