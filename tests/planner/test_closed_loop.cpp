@@ -39,9 +39,9 @@ void mustArrive(const DriveOutcome& outcome) {
 }  // namespace
 
 TEST_CASE("With 5 % prediction error the slalom is driven without touching") {
-  for (uint64_t seed = 1; seed <= 3; ++seed) {
+  for (int seed = 1; seed <= testing::effort(3); ++seed) {
     DriveOptions options;
-    options.seed = seed;
+    options.seed = static_cast<uint64_t>(seed);
     mustArrive(driveMission(slalom(), samplePatterns(), options));
   }
 }
@@ -65,9 +65,9 @@ TEST_CASE("A gap of the vehicle's width and 0.4 m is driven through in a walled 
   mission.ground.addWall({-4.0, -8.0}, {-4.0, 8.0});
   mission.ground.addWall({16.0, -8.0}, {16.0, 8.0});
   mission.goal = {1, {12.0, -3.0, 0.0}, 0.5, 4.0};
-  for (uint64_t seed = 1; seed <= 3; ++seed) {
+  for (int seed = 1; seed <= testing::effort(3); ++seed) {
     DriveOptions options;
-    options.seed = seed;
+    options.seed = static_cast<uint64_t>(seed);
     mustArrive(driveMission(mission, samplePatterns(), options));
   }
 }

@@ -242,3 +242,59 @@ TEST_CASE("a map without cells, and one of a single cell, refuse in words") {
     CHECK_FALSE(answer.reason.empty());
   }
 }
+
+TEST_CASE("a goal in a thin wall is refused, and come close to as near as the vehicle has room") {
+  Grid grid(0.05, {0, 0}, 160, 120);
+  for (Cell& cell : grid.cells()) cell = kFree;
+  for (int x = 0; x < 120; ++x) grid.set({x, 60}, kObstacle);
+  const PatternTable table(samplePatterns(), SweepStep{}, {});
+  PathPlanner planner(grid, table, PathConfig{});
+  for (double x = 1.5; x < 5.0; x += 0.5) {
+    PathQuery query{{2.0, 1.5, 0.0}, {x, 3.02, 0.0}};
+    CAPTURE(x);
+    const PathAnswer refused = planner.answer(query, after(20'000));
+    CHECK(refused.end == PathEnd::kUnreachable);
+    CHECK(refused.reason.find("the goal lies on obstacles") == 0);
+    query.come_close = true;
+    const PathAnswer close = planner.answer(query, after(20'000));
+    REQUIRE(close.end == PathEnd::kSolved);
+    REQUIRE(close.closest.has_value());
+    CHECK((*close.closest - query.T_map_goal.position()).norm() < 0.5);
+    const Pose2 start = query.T_map_start;
+    const Pose2 end = close.search.steps.empty() ? start : close.search.steps.back().T_map_end;
+    CHECK((end.position() - *close.closest).norm() <= query.position_tolerance);
+  }
+}
+
+TEST_CASE("where obstacles were grown coarse cells find the same ways") {
+  int solved = 0;
+  int lost = 0;
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    PathBench bench(seed);
+    Grid grown = bench.grid;
+    const ClearanceField field(bench.grid, true);
+    for (int y = 0; y < grown.height(); ++y)
+      for (int x = 0; x < grown.width(); ++x) {
+        const CellIndex cell{grown.lower().x + x, grown.lower().y + y};
+        if (field.at(grown.centre(cell)) < 0.35) grown.set(cell, kObstacle);
+      }
+    PathConfig config;
+    config.footprint = {5e-4, 5e-4, 5e-4};
+    const PatternTable table(samplePatterns(), SweepStep{0.05, 0.105, 0.05}, {});
+    PathPlanner fine(grown, table, config);
+    config.grown = 0.35;
+    PathPlanner coarse(grown, table, config);
+    for (int k = 0; k < 4; ++k) {
+      const PathQuery query = bench.query();
+      const PathEnd by_fine = fine.answer(query, after(3000)).end;
+      const PathEnd by_coarse = coarse.answer(query, after(3000)).end;
+      CAPTURE(seed, k);
+      if (by_coarse == PathEnd::kUnreachable) CHECK(by_fine == PathEnd::kUnreachable);
+      if (by_fine != PathEnd::kSolved) continue;
+      ++solved;
+      lost += by_coarse == PathEnd::kSolved ? 0 : 1;
+    }
+  }
+  CHECK(solved > 20);
+  CHECK(lost <= 1);
+}

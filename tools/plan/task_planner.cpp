@@ -155,6 +155,7 @@ void TaskPlanner::preparePlanner() {
   }
   planner::PathConfig config;
   config.footprint = footprintOf(task_.shape);
+  if (!task_.shape.isRectangle()) config.grown = task_.shape.radius;
   planner_ = std::make_unique<planner::PathPlanner>(task_.grid, *patterns_, config);
 }
 

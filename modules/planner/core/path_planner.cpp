@@ -11,21 +11,10 @@ namespace {
 
 /// A coarse cell is at most this share of the disc inside the footprint, so that walls stay walls.
 constexpr double kCoarseShare = 0.5;
-/// Room that a cell may have beyond that at its centre, in cells: as a rule, and at most.
+/// Room that a cell may have beyond that at its centre, in cells, as a rule.
 constexpr double kUsualSlack = 0.25;
-constexpr double kMostSlack = 0.71;
 /// So often the cells of the search are halved where all was seen and no plan found.
 constexpr int kFiner = 2;
-/// Goals beyond lie on no map, and their cells have no numbers [m].
-constexpr double kFarthest = 1e7;
-
-constexpr const char* kNoneBegins =
-    "the start has no legal successor: each pattern would leave the map or hit something";
-
-Goal goalOf(const PathQuery& query) {
-  return {1, query.T_map_goal, query.position_tolerance, query.yaw_tolerance};
-}
-
 SearchConfig latticeSearch(double cell_size, int bins) {
   SearchConfig config = PathConfig::pathSearch();
   config.cell = cell_size;
@@ -39,13 +28,6 @@ SearchConfig latticeSearch(double cell_size, int bins) {
 
 bool isWanting(const SearchResult& result) {
   return result.exhausted && result.end != SearchEnd::kGoal && result.expansions > 1;
-}
-
-PathAnswer refused(const std::string& reason) {
-  PathAnswer answer;
-  answer.end = PathEnd::kUnreachable;
-  answer.reason = reason;
-  return answer;
 }
 
 }  // namespace
@@ -80,9 +62,10 @@ PathPlanner::PathPlanner(const Grid& grid, const PatternTable& patterns, const P
   Margins none;
   none.check = none.plan = none.growth = none.largest = 0.0;
   surroundings_.emplace(grid, size, none, config.unknown_blocks);
-  places_.emplace(*surroundings_, inscribed_);
+  places_.emplace(*surroundings_, inscribed_, config.grown);
   const double cell = grid.cellSize();
-  const int coarse = std::max(1, static_cast<int>(kCoarseShare * inscribed_ / cell));
+  const int coarse =
+      std::max(1, static_cast<int>(kCoarseShare * (inscribed_ + config.grown) / cell));
   passages_.emplace(grid, surroundings_->field(), coarse);
   passages_->label(inscribed_ - kMostSlack * cell);
 }
@@ -105,78 +88,8 @@ SearchProblem PathPlanner::problemOf(const PathQuery& query) const {
   problem.T_map_start = query.T_map_start;
   problem.start_class = patterns_.restClass();
   problem.patterns = &patterns_;
-  problem.goal = goalOf(query);
+  problem.goal = query.goal();
   return problem;
-}
-
-std::optional<PathAnswer> PathPlanner::refusal(const PathQuery& query) const {
-  if (!std::isfinite(query.T_map_start.yaw)) return refused("the start's heading is no number");
-  if (!std::isfinite(query.T_map_goal.yaw)) return refused("the goal's heading is no number");
-  if (!(query.T_map_goal.position().norm() < kFarthest))
-    return refused("the goal lies outside the map");
-  if (!(query.position_tolerance > 0.0) || !(query.yaw_tolerance > 0.0))
-    return refused("the goal's tolerances are not above 0");
-  if (costs_ == nullptr) return refusalOfAreas(query);
-  if (!isFree(query.T_map_start)) return refused("the start lies on obstacles");
-  if (!isFree(query.T_map_goal)) return refused("the goal lies on obstacles");
-  return std::nullopt;
-}
-
-std::optional<PathAnswer> PathPlanner::refusalOfAreas(const PathQuery& query) const {
-  const Eigen::Vector2d p_start = query.T_map_start.position();
-  const Eigen::Vector2d p_goal = query.T_map_goal.position();
-  if (!surroundings_->grid().contains(surroundings_->grid().indexOf(p_start)))
-    return refused("the start lies outside the map");
-  const std::vector<int> from = areasFrom(query.T_map_start);
-  const std::vector<int> to = passages_->areasNear(p_goal, query.position_tolerance);
-  const bool connected = std::any_of(from.begin(), from.end(), [&](int area) {
-    return std::find(to.begin(), to.end(), area) != to.end();
-  });
-  // Nothing needs to be worked out for a start that no pattern can leave.
-  if (connected && (isWithin(goalOf(query), query.T_map_start, config_.search.goal_share) ||
-                    anyBegins(query.T_map_start)))
-    return std::nullopt;
-  if (connected) return refused(kNoneBegins);
-  PathAnswer answer = refused("obstacles enclose the goal or the vehicle");
-  if (from.empty())
-    answer.reason = "the start lies on obstacles";
-  else if (!surroundings_->grid().contains(surroundings_->grid().indexOf(p_goal)))
-    answer.reason = "the goal lies outside the map";
-  else if (to.empty())
-    answer.reason = "the goal lies on obstacles, or too near to them";
-  answer.closest = passages_->nearestIn(from, p_goal);
-  return answer;
-}
-
-/// Numbers of the areas in which the disc inside the footprint may be after the start was left.
-std::vector<int> PathPlanner::areasFrom(const Pose2& start) const {
-  const int own = passages_->areaAt(start.position());
-  if (own != 0 && isFree(start)) return {own};
-  double longest = 0.0;
-  for (const TablePattern& pattern : patterns_.patterns())
-    longest = std::max(longest, pattern.end().pose.position().norm());
-  return passages_->areasNear(start.position(), config_.search.escape_patterns * longest);
-}
-
-/// Whether a pattern may be driven from the start, and the vehicle stopped after it.
-bool PathPlanner::anyBegins(const Pose2& start) const {
-  const Surroundings& around = *surroundings_;
-  const bool is_free = isFree(start);
-  const auto mayFollow = [&](const Pose2& from, const Overlap& overlap, const TablePattern& p) {
-    if (is_free) return around.sweepFree(from, p, Surroundings::kBare);
-    return config_.search.escape_patterns > 0 && around.escape(from, overlap, p).has_value();
-  };
-  const Overlap at_start = around.overlap(start);
-  const auto& first = patterns_.from(patterns_.restClass());
-  return std::any_of(first.begin(), first.end(), [&](const TablePattern* pattern) {
-    if (!mayFollow(start, at_start, *pattern)) return false;
-    if (pattern->exit == patterns_.restClass()) return true;
-    const Pose2 end = start * pattern->end().pose;
-    const Overlap at_end = around.overlap(end);
-    const auto& stops = patterns_.stopsFrom(pattern->exit);
-    return std::any_of(stops.begin(), stops.end(),
-                       [&](const TablePattern* stop) { return mayFollow(end, at_end, *stop); });
-  });
 }
 
 CostToGo PathPlanner::wayTo(const SearchProblem& problem, const Interruption& interruption) const {
@@ -202,6 +115,7 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
   if (costs_ == nullptr) {
     const Interruption interruption = [&stop] { return stop(0); };
     way = wayTo(problem, interruption);
+    if (way.unreachable() && isFree(query.T_map_start)) return withoutWay(query, way, stop, events);
     problem.surroundings = &*surroundings_;
     problem.cost_to_go = &way;
     guide = PoseToGo(*places_, problem.goal, problem.T_map_start, motionRates(patterns_),
@@ -223,23 +137,6 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
     answer.search.expansions += before;
   }
   judge(answer);
-  return answer;
-}
-
-PathAnswer PathPlanner::comeClose(const PathQuery& query, const PathAnswer& refusal,
-                                  const StopPredicate& stop, const PathEvents& events) {
-  PathQuery nearer = query;
-  nearer.T_map_goal = {refusal.closest->x(), refusal.closest->y(), query.T_map_goal.yaw};
-  nearer.yaw_tolerance = kPi;
-  // The inscribed disc has room there; the vehicle may not be able to turn so.
-  nearer.position_tolerance =
-      std::max(query.position_tolerance, surroundings_->circumscribedRadius());
-  nearer.come_close = false;
-  PathAnswer answer = this->answer(nearer, stop, events);
-  answer.reason = answer.end == PathEnd::kSolved
-                      ? "as close as possible: " + refusal.reason
-                      : refusal.reason + "; coming close: " + answer.reason;
-  answer.closest = refusal.closest;
   return answer;
 }
 
@@ -270,7 +167,7 @@ void PathPlanner::judge(PathAnswer& answer) const {
   // A lattice has no other states than those that were looked at.
   if (none_begins || costs_ != nullptr) answer.end = PathEnd::kUnreachable;
   answer.reason = none_begins
-                      ? kNoneBegins
+                      ? kNoneBeginsReason
                       : "the goal is not among all that the patterns lead to, " +
                             std::to_string(result.expansions) + " expansions at this resolution";
 }

@@ -18,6 +18,7 @@ struct PathConfig {
   double guide_beyond = 0.15;  ///< [1] of the cost at the start that it is filled in beyond it
   FieldConfig field = pathField();
   bool unknown_blocks = true;
+  double grown = 0.0;  ///< [m] by which obstacles were grown already: for a round robot, a point
   /// The whole way at once, the cheapest there is, and nothing but time and turns counts.
   static SearchConfig pathSearch();
   static FieldConfig pathField();
@@ -29,10 +30,12 @@ struct PathQuery {
   Pose2 T_map_goal;
   double position_tolerance = 0.25;  ///< [m] > 0
   double yaw_tolerance = 0.26;       ///< [rad] > 0; pi or more = any heading
-  /// A goal that is certainly unreachable is replaced by the place nearest to it at which the
-  /// disc inside the footprint has room, or within the vehicle's outermost corner of that, with any
-  /// heading (the paper's "come as close as possible").
+  /// A goal to which there is no way is replaced by the place nearest to it at which the disc
+  /// inside the footprint has room, with any heading; where the vehicle does not get there, by what
+  /// is within its outermost corner of that (the paper's "come as close as possible").
   bool come_close = false;
+
+  Goal goal() const { return {1, T_map_goal, position_tolerance, yaw_tolerance}; }
 };
 
 /// What became of a query.
@@ -83,14 +86,22 @@ class PathPlanner {
 
  private:
   std::optional<PathAnswer> refusalOfAreas(const PathQuery& query) const;
+  PathAnswer withoutWay(const PathQuery& query, const CostToGo& way, const StopPredicate& stop,
+                        const PathEvents& events);
   PathAnswer comeClose(const PathQuery& query, const PathAnswer& refusal, const StopPredicate& stop,
                        const PathEvents& events);
   void placeOnLattice(SearchProblem& problem) const;
   SearchProblem problemOf(const PathQuery& query) const;
   std::vector<int> areasFrom(const Pose2& T_map_start) const;
+  std::vector<int> areasAround(const Eigen::Vector2d& p_goal, double tolerance) const;
   bool anyBegins(const Pose2& T_map_start) const;
   void judge(PathAnswer& answer) const;
   CostToGo wayTo(const SearchProblem& problem, const Interruption& interruption) const;
+
+  static constexpr const char* kNoneBeginsReason =
+      "the start has no legal successor: each pattern would leave the map or hit something";
+  /// A cell's corner may have so much more room than its centre, in cells.
+  static constexpr double kMostSlack = 0.71;
 
   const PatternTable& patterns_;
   PathConfig config_;

@@ -15,10 +15,11 @@ constexpr double kTurn = 2.0 * kPi / Places::kHeadings;
 
 }  // namespace
 
-Places::Places(const Surroundings& surroundings, double radius) : surroundings_(surroundings) {
+Places::Places(const Surroundings& surroundings, double radius, double grown)
+    : surroundings_(surroundings) {
   const Grid& grid = surroundings.grid();
   const double cell = grid.cellSize();
-  const int side = std::max(1, static_cast<int>(kSizeShare * radius / cell));
+  const int side = std::max(1, static_cast<int>(kSizeShare * (radius + grown) / cell));
   size_ = cell * side;
   lower_ = cell * Eigen::Vector2d(grid.lower().x, grid.lower().y);
   width_ = (grid.width() + side - 1) / side;

@@ -19,8 +19,9 @@ class Places {
   static constexpr int kRim = 2;
 
   /// `radius`: of the disc inside the footprint [m]; a square's side is a little less, so that no
-  /// wall is lost between two squares. `surroundings` must stay.
-  Places(const Surroundings& surroundings, double radius);
+  /// wall is lost between two squares. `grown`: by so much obstacles were grown before [m], which
+  /// makes walls thicker. `surroundings` must stay.
+  Places(const Surroundings& surroundings, double radius, double grown = 0.0);
 
   double size() const { return size_; }
   int width() const { return width_; }
