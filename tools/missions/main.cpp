@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <optional>
 
@@ -11,6 +12,7 @@
 #include "tools/missions/comparison_report.hpp"
 #include "tools/missions/fault_file.hpp"
 #include "tools/missions/omniscient_report.hpp"
+#include "tools/patterns/output.hpp"
 
 namespace {
 
@@ -178,7 +180,18 @@ void compareRules(const Arguments& arguments, const RobotConfig& robot) {
   if (!arguments.json.empty()) writeComparison(arguments.json, comparison);
 }
 
+/// Campaigns take long: what they are written to is looked at before.
+void protectInputs(const Arguments& arguments) {
+  std::vector<std::string> inputs{arguments.fault_file};
+  std::error_code failure;
+  for (const auto& file : std::filesystem::directory_iterator(arguments.robot, failure))
+    inputs.push_back(file.path().string());
+  patterns::checkOutputs({arguments.json, arguments.show ? arguments.picture : "", arguments.log},
+                         inputs);
+}
+
 void drive(const Arguments& arguments) {
+  protectInputs(arguments);
   if (!showsOneOfThem(arguments))
     throw std::invalid_argument("--show: the seed is not among those of --seed and --missions");
   const RobotConfig robot = readRobot(arguments.robot, arguments.overrides);
@@ -203,7 +216,7 @@ int main(int argc, char** argv) {
     drive(arguments);
   } catch (const std::exception& error) {
     std::cerr << "tread-missions: " << error.what() << std::endl;
-    return 1;
+    return 2;
   }
   return 0;
 }

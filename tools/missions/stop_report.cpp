@@ -24,6 +24,7 @@ std::string withoutNumbers(const std::string& reason) {
     if (after_number && (isDigit(reason[i]) || point)) continue;
     kind += isDigit(reason[i]) ? '#' : reason[i];
   }
+  std::replace(kind.begin(), kind.end(), '#', 'N');
   return kind;
 }
 

@@ -30,7 +30,7 @@ Steadiness steadinessOf(const std::vector<MissionResult>& results);
 /// Flips per minute driven, stops per mission, and the reasons, the most frequent first.
 void printSteadiness(std::ostream& out, const std::vector<MissionResult>& results);
 
-/// A reason without its numbers, so that equal ones can be counted.
+/// A reason with N in the place of each number, so that equal ones can be counted.
 std::string withoutNumbers(const std::string& reason);
 
 }  // namespace tread::missions

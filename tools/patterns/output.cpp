@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/patterns/output.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
@@ -16,6 +17,22 @@ void refuseToReplace(const std::string& output, const std::vector<std::string>& 
     if (std::filesystem::equivalent(output, input, failure))
       throw std::runtime_error(output + ": this is the input " + input +
                                "; give another file to write");
+  }
+}
+
+void checkOutputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
+  std::vector<std::filesystem::path> named;
+  for (const std::string& output : outputs) {
+    if (output.empty()) continue;
+    refuseToReplace(output, inputs);
+    recordings::requireWritable(output);
+    std::error_code failure;
+    const std::filesystem::path target = std::filesystem::weakly_canonical(output, failure);
+    const bool is_device = std::filesystem::exists(target, failure) &&
+                           !std::filesystem::is_regular_file(target, failure);
+    if (!is_device && std::find(named.begin(), named.end(), target) != named.end())
+      throw std::runtime_error(output + ": two results cannot be written to one file");
+    named.push_back(target);
   }
 }
 

@@ -72,17 +72,16 @@ Grid gridOf(const GreyImage& image, double resolution, const PixelRule& rule) {
 /// Keys that we do not know are others' business and stay unread.
 MapFile readNav2(const std::string& path) {
   ConfigReader reader = ConfigReader::fromFile(path);
-  std::string image;
-  reader.path("image", image, true);
+  MapFile map;
+  reader.path("image", map.image, true);
   double resolution = 0.05;
   reader.number("resolution", resolution, {1e-3, 100.0}, "m", true);
   std::vector<double> origin;
   reader.numbers("origin", origin, 3, {-1e6, 1e6}, "m, m, rad", true);
   const PixelRule rule = readRule(reader);
-  MapFile map;
   map.name = path;
   map.T_map_grid = {origin[0], origin[1], origin[2]};
-  map.grid = gridOf(readPgm(image), resolution, rule);
+  map.grid = gridOf(readPgm(map.image), resolution, rule);
   return map;
 }
 

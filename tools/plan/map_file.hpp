@@ -24,7 +24,8 @@ struct CostThresholds {
  * frame has its origin in the lower left corner of the map, the corner of the cell (0, 0), whatever
  * the map's own origin is: convert with T_map_grid. */
 struct MapFile {
-  std::string name;  ///< the file that it was read from
+  std::string name;   ///< the file that it was read from
+  std::string image;  ///< and that of its pixels; empty if it has none
   Pose2 T_map_grid;
   Grid grid;                   ///< free, obstacle, unknown; of SBPL's costs what is lethal
   std::vector<uint8_t> costs;  ///< cell by cell as in the grid; empty unless SBPL's

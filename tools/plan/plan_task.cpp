@@ -124,19 +124,19 @@ void readWanted(const PlanOptions& options, PlanTask& task) {
   }
 }
 
-/// Nothing that was read may be written over.
-void protectInputs(const PlanOptions& options) {
-  for (const std::string& output : {options.json, options.picture, options.write_queries})
-    if (!output.empty())
-      patterns::refuseToReplace(output, {options.map, options.patterns, options.queries});
+/// Nothing that is read may be written over.
+void protectInputs(const PlanOptions& options, const std::string& image) {
+  patterns::checkOutputs({options.json, options.picture, options.write_queries},
+                         {options.map, image, options.patterns, options.queries});
 }
 
 }  // namespace
 
 PlanTask loadTask(const PlanOptions& options) {
-  protectInputs(options);
+  protectInputs(options, "");
   PlanTask task;
   task.map = readMap(options.map);
+  protectInputs(options, task.map.image);
   task.shape = readShape(options, task.map);
   task.grid = task.shape.isPoint() ? gridForPoint(task.map) : gridForFootprint(task.map);
   if (task.shape.radius > 0.0) task.grid = grownBy(task.grid, task.shape.radius);

@@ -29,6 +29,10 @@ fs::path targetOf(const std::string& path) {
   return failure ? fs::path(path) : target;
 }
 
+[[noreturn]] void refuse(const std::string& path) {
+  throw std::runtime_error(path + ": cannot be written; check folder and rights");
+}
+
 }  // namespace
 
 std::string readText(const std::string& path) {
@@ -54,7 +58,18 @@ void writeText(const std::string& path, const std::string& text) {
     written = written && !failure;
     if (!written) fs::remove(fresh, failure);
   }
-  if (!written) throw std::runtime_error(path + ": cannot be written; check folder and rights");
+  if (!written) refuse(path);
+}
+
+void requireWritable(const std::string& path) {
+  std::error_code failure;
+  const fs::path target = targetOf(path);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const bool there = fs::exists(target, failure);
+  if (fs::is_directory(target, failure) ||
+      ::access(there && !fs::is_regular_file(target, failure) ? target.c_str() : folder.c_str(),
+               W_OK) != 0)
+    refuse(path);
 }
 
 }  // namespace tread::recordings

@@ -14,4 +14,8 @@ std::string readText(const std::string& path);
  * std::runtime_error with one line that names the file. */
 void writeText(const std::string& path, const std::string& text);
 
+/// Throws as writeText() would where it is known before that a file cannot be written: for those
+/// who work long before they write.
+void requireWritable(const std::string& path);
+
 }  // namespace tread::recordings

@@ -164,6 +164,13 @@ TEST_CASE("tread-plan refuses bad input in one line that says what to do") {
   checkRefused(cfg + mprim + "--mprim-exact --radius 1", "plans for a point");
   checkRefused(kOffice + mprim + kTask + "--mprim-exact --radius 0", "needs --map with an SBPL");
   checkRefused(cfg + mprim + "--json " + folder.path("a.cfg"), "this is the input");
+  for (const char* const name : {"office.yaml", "office.pgm"})
+    std::filesystem::copy_file(kSource + "/tests/data/planning/" + name, folder.path(name));
+  const std::string own = "--map " + folder.path("office.yaml") + " " + kSet + kRobot + kTask;
+  checkRefused(own + "--picture " + folder.path("office.pgm"), "this is the input");
+  checkRefused(own + "--json " + folder.path("a") + " --picture " + folder.path("./a"),
+               "two results cannot be written to one file");
+  checkRefused(own + "--json /nowhere/a.json", "/nowhere/a.json: cannot be written");
   const Run unwritten = run(cfg + mprim + "--json /nowhere/a.json");
   CHECK(unwritten.status == 2);
   CHECK_THAT(unwritten.printed, Contains("tread-plan: /nowhere/a.json: cannot be written"));
