@@ -30,6 +30,7 @@ struct ClosestApproach {
 /// All that is told about the answer to one query. Poses are in the map's own frame.
 struct PlanAnswer {
   PlanStatus status = PlanStatus::kNoneInTime;
+  bool all_seen = false;              ///< no more time would help: there is nothing better
   std::string reason;                 ///< in words; empty if it is solved
   double cost = 0.0;                  ///< of the plan, as the planner counts it
   double time = 0.0;                  ///< [s] to drive it

@@ -196,7 +196,8 @@ std::string headline(const PlanAnswer& answer) {
   if (answer.status == PlanStatus::kSolved)
     return "solved: " + planText(answer) + (answer.reason.empty() ? "" : "; " + answer.reason);
   const bool never = answer.status == PlanStatus::kUnreachable;
-  return std::string(never ? "unreachable: " : "none in time: ") + answer.reason;
+  const char* const none = answer.all_seen ? "none found: " : "none in time: ";
+  return (never ? "unreachable: " : none) + answer.reason;
 }
 
 std::string answerText(const PlanAnswer& answer) {

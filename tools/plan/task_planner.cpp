@@ -177,6 +177,7 @@ PlanAnswer TaskPlanner::answer(const PlanQuery& query, double spent_ms) {
   if (!task_.exact) answer.heuristic_ms = watch.searching().value_or(0.0);
   answer.expansions = found.search.expansions;
   answer.status = statusOf(found.end);
+  answer.all_seen = found.search.exhausted;
   answer.reason = found.reason;
   tellPlan(wanted.T_map_start, found.search, answer);
   if (answer.status != PlanStatus::kSolved || found.closest)

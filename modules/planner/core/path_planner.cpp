@@ -137,6 +137,8 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
     answer.search.expansions += before;
   }
   judge(answer);
+  if (answer.end != PathEnd::kSolved && !isFree(query.T_map_start))
+    answer.reason += "; the start lies on obstacles";
   return answer;
 }
 

@@ -129,6 +129,7 @@ bool PathPlanner::anyBegins(const Pose2& start) const {
 PathAnswer PathPlanner::withoutWay(const PathQuery& query, const CostToGo& way,
                                    const StopPredicate& stop, const PathEvents& events) {
   PathAnswer answer;
+  answer.search.exhausted = true;
   answer.reason = way.problem();
   answer.closest =
       way.nearestWithinReach(query.T_map_start.position(), query.T_map_goal.position());

@@ -137,6 +137,9 @@ TEST_CASE("people read how a query ended, how good the plan is and what it took"
   partial.first_solution_ms.reset();
   CHECK_THAT(answerText(partial),
              Contains("none in time: the deadline came first\nbest so far: 2"));
+  partial.all_seen = true;
+  partial.reason = "nothing more to see";
+  CHECK_THAT(answerText(partial), Contains("none found: nothing more to see\n"));
   CHECK_THAT(answersText({solvedAnswer(), unreachableAnswer()}, 1.0),
              Contains("2 queries: 1 solved, 1 unreachable, 0 none in time\n"));
 }
