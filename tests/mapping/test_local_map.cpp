@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include "tests/effort.hpp"
 #include "tests/mapping/small_world.hpp"
 
 using namespace tread;
@@ -177,7 +178,7 @@ TEST_CASE("on rolling ground of a few degrees nothing near the robot is an obsta
     return 0.11 * std::sin(0.449 * x + 0.7) + 0.02 * std::sin(0.4 * y);
   };
   Mapper mapper;
-  for (double x = 0.0; x < 40.0; x += 0.1) {
+  for (double x = 0.0; x < testing::effort(40); x += 0.1) {
     mapper.look(world, world.stand(x, 0, 0));
     CAPTURE(x);
     REQUIRE(count(mapper, kObstacle, x - 10.0, -4.0, x + 4.0, 4.0) == 0);

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <cstdio>
 
 #include "tests/effort.hpp"
@@ -110,7 +111,9 @@ TEST_CASE("A goal that is enclosed is called unreachable, and the vehicle stays"
 TEST_CASE("A boulder that appears ahead is not driven into") {
   Mission mission;
   mission.goal = {1, {20.0, 0.0, 0.0}, 0.5, 4.0};
-  for (const double ahead : {1.6, 2.2, 3.0}) {
+  const std::array<double, 3> distances{1.6, 2.2, 3.0};
+  for (int i = 0; i < testing::effort(3); ++i) {
+    const double ahead = distances[static_cast<size_t>(i)];
     DriveOptions options;
     bool dropped = false;
     options.on_step = [&](double time, const Pose2& pose, Supervisor&, Playground& ground) {

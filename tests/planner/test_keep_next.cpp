@@ -73,3 +73,22 @@ TEST_CASE("Where only the margin for a new plan is missing the next pattern is g
   }
   CHECK(kept > 5);
 }
+
+TEST_CASE("Standing boxed in there is no next pattern to keep to, not even one of the id 0") {
+  PatternSetContent content = samplePatterns(2).content();
+  content.patterns.front().id = 0;
+  std::string why;
+  const std::optional<PatternSet> set = PatternSet::make(std::move(content), why);
+  REQUIRE(set.has_value());
+  Playground ground;
+  for (const double side : {-1.0, 1.0}) {
+    ground.addWall({-1.0, side * 0.7}, {1.0, side * 0.7}, 0.1);
+    ground.addWall({side, -0.7}, {side, 0.7}, 0.1);
+  }
+  Rig rig(ground);
+  rig.supervisor().takeSet(*set);
+  const Decision decision = rig.run(3.0);
+  CHECK(decision.report.status != PlanStatus::kDriving);
+  CHECK(!decision.report.reason.empty());
+  CHECK(keptBy(rig) == 0);
+}

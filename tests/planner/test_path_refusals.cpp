@@ -266,6 +266,40 @@ TEST_CASE("a goal in a thin wall is refused, and come close to as near as the ve
   }
 }
 
+TEST_CASE("a round robot comes as near to a wall as the tolerance says, and close to one inside") {
+  for (const double radius : {0.35, 1.0}) {
+    for (int column = 100; column < 112; column += 3) {
+      Grid grid(0.05, {0, 0}, 160, 120);
+      for (Cell& cell : grid.cells()) cell = kFree;
+      for (int y = 0; y < 120; ++y)
+        for (int x = column; x < 160; ++x) grid.set({x, y}, kObstacle);
+      const ClearanceField field(grid, false);
+      Grid grown = grid;
+      for (int y = 0; y < 120; ++y)
+        for (int x = 0; x < 160; ++x)
+          if (field.at(grid.centre({x, y})) < radius) grown.set({x, y}, kObstacle);
+      PathConfig config;
+      config.footprint = {5e-4, 5e-4, 5e-4};
+      config.grown = radius;
+      config.unknown_blocks = false;
+      const PatternTable table(samplePatterns(), SweepStep{0.05, 0.105, 0.05}, {});
+      PathPlanner planner(grown, table, config);
+      const double wall = 0.05 * column;
+      CAPTURE(radius, wall);
+      PathQuery query{{2.0, 3.0, 0.0}, {wall - radius + 0.1, 2.6, 0.0}, 0.25, kPi};
+      CHECK(planner.answer(query, after(20'000)).end == PathEnd::kSolved);
+      query.T_map_goal.x = wall + 0.1;
+      query.come_close = true;
+      const PathAnswer close = planner.answer(query, after(20'000));
+      CAPTURE(close.reason);
+      REQUIRE(close.end == PathEnd::kSolved);
+      const double away = wall - close.search.steps.back().T_map_end.x;
+      CHECK(away >= radius);
+      CHECK(away < 2.0 * radius + 0.3);
+    }
+  }
+}
+
 TEST_CASE("where obstacles were grown coarse cells find the same ways") {
   int solved = 0;
   int lost = 0;

@@ -27,10 +27,12 @@ void checkOutputs(const std::vector<std::string>& outputs, const std::vector<std
     refuseToReplace(output, inputs);
     recordings::requireWritable(output);
     std::error_code failure;
-    const std::filesystem::path target = std::filesystem::weakly_canonical(output, failure);
-    const bool is_device = std::filesystem::exists(target, failure) &&
-                           !std::filesystem::is_regular_file(target, failure);
-    if (!is_device && std::find(named.begin(), named.end(), target) != named.end())
+    const bool is_device = std::filesystem::exists(output, failure) &&
+                           !std::filesystem::is_regular_file(output, failure);
+    if (is_device) continue;
+    const std::filesystem::path target =
+        std::filesystem::weakly_canonical(std::filesystem::absolute(output), failure);
+    if (!failure && std::find(named.begin(), named.end(), target) != named.end())
       throw std::runtime_error(output + ": two results cannot be written to one file");
     named.push_back(target);
   }

@@ -65,11 +65,11 @@ void requireWritable(const std::string& path) {
   std::error_code failure;
   const fs::path target = targetOf(path);
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  const bool there = fs::exists(target, failure);
-  if (fs::is_directory(target, failure) ||
-      ::access(there && !fs::is_regular_file(target, failure) ? target.c_str() : folder.c_str(),
-               W_OK) != 0)
-    refuse(path);
+  const bool there = fs::exists(path, failure);
+  const bool may =
+      there ? ::access(path.c_str(), W_OK) == 0
+            : fs::is_directory(folder, failure) && ::access(folder.c_str(), W_OK | X_OK) == 0;
+  if (!may || fs::is_directory(path, failure)) refuse(path);
 }
 
 }  // namespace tread::recordings

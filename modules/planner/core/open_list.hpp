@@ -8,6 +8,8 @@
 #include <cstring>
 #include <vector>
 
+#include "modules/planner/core/block_list.hpp"
+
 namespace tread::planner {
 
 /// Nodes waiting to be expanded, in buckets of nearly equal estimate: constant time per node.
@@ -43,7 +45,7 @@ class OpenList {
       free_ = entries_[static_cast<size_t>(at)].next;
     } else {
       at = static_cast<int>(entries_.size());
-      entries_.emplace_back();
+      entries_.push_back({});
     }
     entries_[static_cast<size_t>(at)] = {node, cost, heads_[bucket]};
     heads_[bucket] = at;
@@ -59,9 +61,7 @@ class OpenList {
     return entry;
   }
 
-  size_t bytes() const {
-    return heads_.capacity() * sizeof(int) + entries_.capacity() * sizeof(Entry);
-  }
+  size_t bytes() const { return heads_.capacity() * sizeof(int) + entries_.bytes(); }
 
  private:
   /// Bits of a float that tell no buckets apart.
@@ -77,7 +77,7 @@ class OpenList {
   }
 
   std::vector<int> heads_;
-  std::vector<Entry> entries_;
+  BlockList<Entry> entries_;
   float least_ = 1e-3F;
   int free_ = -1;
   size_t first_ = 0;

@@ -64,8 +64,9 @@ PathPlanner::PathPlanner(const Grid& grid, const PatternTable& patterns, const P
   surroundings_.emplace(grid, size, none, config.unknown_blocks);
   places_.emplace(*surroundings_, inscribed_, config.grown);
   const double cell = grid.cellSize();
+  const int largest = std::max({1, grid.width(), grid.height()});
   const int coarse =
-      std::max(1, static_cast<int>(kCoarseShare * (inscribed_ + config.grown) / cell));
+      std::clamp(static_cast<int>(kCoarseShare * (inscribed_ + config.grown) / cell), 1, largest);
   passages_.emplace(grid, surroundings_->field(), coarse);
   passages_->label(inscribed_ - kMostSlack * cell);
 }
@@ -98,7 +99,10 @@ CostToGo PathPlanner::wayTo(const SearchProblem& problem, const Interruption& in
   CostToGo way;
   for (const double slack : {kUsualSlack, kMostSlack}) {
     config.inflation = std::max(0.0, inscribed_ - slack * surroundings_->grid().cellSize());
-    way.workOut(*passages_, problem.goal, p_start, {}, config, interruption);
+    // At last a coarse cell counts as in the goal if any point of it may be.
+    Goal goal = problem.goal;
+    if (slack == kMostSlack) goal.position_tolerance += kMostSlack * passages_->coarseSize();
+    way.workOut(*passages_, goal, p_start, {}, config, interruption);
     if (!way.unreachable()) break;
   }
   return way;
@@ -131,7 +135,10 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
   // Where the vehicle has to manoeuvre in little space, cells may hide the moves that it takes.
   for (int finer = 0; finer < kFiner && isWanting(answer.search) && costs_ == nullptr; ++finer) {
     const int before = answer.search.expansions;
-    if (stop(before)) break;
+    if (stop(before)) {
+      answer.search.exhausted = false;  // finer cells were not looked at
+      break;
+    }
     problem.cell = (problem.cell > 0.0 ? problem.cell : config_.search.cell) / 2.0;
     answer.search = search_.run(problem, [&](int count) { return stop(before + count); });
     answer.search.expansions += before;

@@ -48,6 +48,7 @@ enum class PathEnd {
 /// Called while a query is answered, for those who measure.
 struct PathEvents {
   std::function<void()> search_begins;  ///< the way to go is worked out
+  /// A plan, or a better one; one that comes closer to a goal that cannot be reached may cost more.
   std::function<void(double cost, int expansions)> better_plan;
 };
 

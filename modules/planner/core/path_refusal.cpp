@@ -10,6 +10,8 @@
 namespace tread::planner {
 namespace {
 
+/// Goals with more cells than that across are judged by coarse ones.
+constexpr double kLargeGoal = 100.0;
 /// Goals beyond lie on no map, and their cells have no numbers [m].
 constexpr double kFarthest = 1e7;
 
@@ -72,9 +74,10 @@ std::vector<int> PathPlanner::areasFrom(const Pose2& start) const {
 }
 
 /// Numbers of the areas in which the disc inside the footprint may be in the goal.
-/** Cell by cell: what the coarse ones say is too kind to goals on walls. */
+/** Cell by cell: what the coarse ones say is too kind to goals on walls, unless these are large. */
 std::vector<int> PathPlanner::areasAround(const Eigen::Vector2d& p_goal, double tolerance) const {
   const Grid& grid = surroundings_->grid();
+  if (!(tolerance < kLargeGoal * grid.cellSize())) return passages_->areasNear(p_goal, tolerance);
   const double corner = kMostSlack * grid.cellSize();
   const double reach = tolerance + corner;
   const auto bound = [&](double value, int lower, int size) {
@@ -133,7 +136,10 @@ PathAnswer PathPlanner::withoutWay(const PathQuery& query, const CostToGo& way,
   answer.reason = way.problem();
   answer.closest =
       way.nearestWithinReach(query.T_map_start.position(), query.T_map_goal.position());
-  return query.come_close && answer.closest ? comeClose(query, answer, stop, events) : answer;
+  if (!query.come_close || !answer.closest) return answer;
+  PathAnswer close = comeClose(query, answer, stop, events);
+  if (close.end == PathEnd::kUnreachable) close.end = PathEnd::kNoneInTime;
+  return close;
 }
 
 PathAnswer PathPlanner::comeClose(const PathQuery& query, const PathAnswer& refusal,
@@ -146,12 +152,16 @@ PathAnswer PathPlanner::comeClose(const PathQuery& query, const PathAnswer& refu
   // anywhere around is there soon; then nearer ones are looked for, the last as long as there is
   // time.
   bool found = false;
+  int before = 0;
   PathEvents noted = events;
   noted.better_plan = [&](double cost, int expansions) {
     found = true;
-    if (events.better_plan) events.better_plan(cost, expansions);
+    if (events.better_plan) events.better_plan(cost, before + expansions);
   };
-  const double widest = std::max(query.position_tolerance, surroundings_->circumscribedRadius());
+  // Of the coarse cell that is nearest a corner may be all that is free.
+  const double corner = kMostSlack * (passages_->coarseSize() + surroundings_->grid().cellSize());
+  const double widest =
+      std::max({query.position_tolerance, surroundings_->circumscribedRadius(), corner});
   PathAnswer answer;
   for (const double tolerance : {widest, widest / 2.0, query.position_tolerance}) {
     if (tolerance < query.position_tolerance) continue;
@@ -159,12 +169,14 @@ PathAnswer PathPlanner::comeClose(const PathQuery& query, const PathAnswer& refu
     nearer.position_tolerance = tolerance;
     found = false;
     PathAnswer next = this->answer(
-        nearer, [&](int count) { return stop(count) || (found && !is_last); }, noted);
+        nearer, [&](int count) { return stop(before + count) || (found && !is_last); }, noted);
     const bool solved = next.end == PathEnd::kSolved;
+    before += next.search.expansions;
     if (solved || answer.end != PathEnd::kSolved) answer = std::move(next);
-    if (!solved || is_last) break;
+    if (!solved || is_last || stop(before)) break;
     noted.search_begins = nullptr;
   }
+  answer.search.expansions = before;
   answer.reason = answer.end == PathEnd::kSolved
                       ? "as close as possible: " + refusal.reason
                       : refusal.reason + "; coming close: " + answer.reason;

@@ -203,7 +203,10 @@ void PoseToGo::fill(const Pose2& start, double beyond, Front& front,
   for (; front.current < front.buckets.size(); ++front.current) {
     const float now = static_cast<float>(front.current) / front.per_width;
     if (now > stop_at) break;
-    if (!reached_ && interruption && interruption()) return;
+    if (interruption && interruption()) {
+      if (!reached_) return;
+      break;
+    }
     // A move may come back into its own bucket.
     for (size_t i = 0; i < front.buckets[front.current].size(); ++i) {
       const Front::Entry entry = front.buckets[front.current][i];

@@ -231,6 +231,7 @@ void Supervisor::say(PlanStatus status, const std::string& reason) {
 }
 
 const TablePattern* Supervisor::runningPattern() const {
+  if (book_.running().empty()) return nullptr;  // whose id 0 a set may have
   const TablePattern* newest = table_->find(book_.running().pattern_id);
   // The learner bends trajectories, never commands: another length is another pattern.
   const bool same = newest != nullptr &&

@@ -170,6 +170,8 @@ TEST_CASE("tread-plan refuses bad input in one line that says what to do") {
   checkRefused(own + "--picture " + folder.path("office.pgm"), "this is the input");
   checkRefused(own + "--json " + folder.path("a") + " --picture " + folder.path("./a"),
                "two results cannot be written to one file");
+  checkRefused(own + "--json never.json --picture ./never.json",
+               "two results cannot be written to one file");
   checkRefused(own + "--json /nowhere/a.json", "/nowhere/a.json: cannot be written");
   const Run unwritten = run(cfg + mprim + "--json /nowhere/a.json");
   CHECK(unwritten.status == 2);

@@ -50,7 +50,7 @@ class Display {
     std::string number;
     for (int i = 0; i < 200 && number.empty(); ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
-      std::istringstream(contentOf(folder.file("display"))) >> number;
+      number = displayIn(contentOf(folder.file("display")));
     }
     REQUIRE_FALSE(number.empty());
     setenv("DISPLAY", (":" + number).c_str(), 1);
@@ -58,6 +58,15 @@ class Display {
   ~Display() { unsetenv("DISPLAY"); }
 
  private:
+  /// The line that is a number: beside another display it first complains of those that are taken.
+  static std::string displayIn(const std::string& said) {
+    std::istringstream lines(said);
+    std::string line;
+    while (std::getline(lines, line))
+      if (!line.empty() && line.find_first_not_of("0123456789") == std::string::npos) return line;
+    return "";
+  }
+
   Process process_;
 };
 
