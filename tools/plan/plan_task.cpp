@@ -125,18 +125,17 @@ void readWanted(const PlanOptions& options, PlanTask& task) {
 }
 
 /// Nothing that is read may be written over.
-void protectInputs(const PlanOptions& options, const std::string& image) {
+void protectInputs(const PlanOptions& options, const MapFile& map) {
   patterns::checkOutputs({options.json, options.picture, options.write_queries},
-                         {options.map, image, options.patterns, options.queries});
+                         {options.map, map.image, options.patterns, options.queries});
 }
 
 }  // namespace
 
 PlanTask loadTask(const PlanOptions& options) {
-  protectInputs(options, "");
   PlanTask task;
   task.map = readMap(options.map);
-  protectInputs(options, task.map.image);
+  protectInputs(options, task.map);
   task.shape = readShape(options, task.map);
   task.grid = task.shape.isPoint() ? gridForPoint(task.map) : gridForFootprint(task.map);
   if (task.shape.radius > 0.0) task.grid = grownBy(task.grid, task.shape.radius);

@@ -80,22 +80,17 @@ std::vector<int> PathPlanner::areasAround(const Eigen::Vector2d& p_goal, double 
   if (!(tolerance < kLargeGoal * grid.cellSize())) return passages_->areasNear(p_goal, tolerance);
   const double corner = kMostSlack * grid.cellSize();
   const double reach = tolerance + corner;
-  const auto bound = [&](double value, int lower, int size) {
-    // In this order what is no number counts as outside.
-    return static_cast<int>(std::min(double(lower + size), std::max(double(lower) - 1.0, value)));
+  const Eigen::Vector2d lower = grid.centre(grid.lower());
+  const Eigen::Vector2d upper =
+      grid.centre({grid.lower().x + grid.width() - 1, grid.lower().y + grid.height() - 1});
+  const auto cellAt = [&](const Eigen::Vector2d& p) {
+    return grid.indexOf(p.cwiseMax(lower).cwiseMin(upper));
   };
-  const auto from = [&](double p, int lower, int size) {
-    return std::max(lower, bound(std::floor((p - reach) / grid.cellSize()), lower, size));
-  };
-  const auto to = [&](double p, int lower, int size) {
-    return std::min(lower + size - 1,
-                    bound(std::floor((p + reach) / grid.cellSize()), lower, size));
-  };
-  const int last_x = to(p_goal.x(), grid.lower().x, grid.width());
-  const int last_y = to(p_goal.y(), grid.lower().y, grid.height());
+  const CellIndex first = cellAt(p_goal - Eigen::Vector2d::Constant(reach));
+  const CellIndex last = cellAt(p_goal + Eigen::Vector2d::Constant(reach));
   std::vector<int> areas;
-  for (int y = from(p_goal.y(), grid.lower().y, grid.height()); y <= last_y; ++y) {
-    for (int x = from(p_goal.x(), grid.lower().x, grid.width()); x <= last_x; ++x) {
+  for (int y = first.y; y <= last.y; ++y) {
+    for (int x = first.x; x <= last.x; ++x) {
       const Eigen::Vector2d p = grid.centre({x, y});
       if (surroundings_->field().quick(p.x(), p.y()) < inscribed_ - corner) continue;
       if ((p - p_goal).norm() > reach) continue;
