@@ -11,17 +11,17 @@ namespace tread {
 namespace {
 
 /// Index of the sample with which the interval around `time` begins.
-size_t intervalAt(const std::vector<TimedPose>& motion, double time) {
+size_t intervalAt(const std::vector<MotionSample>& motion, double time) {
   const auto later =
       std::upper_bound(motion.begin(), motion.end(), time,
-                       [](double moment, const TimedPose& pose) { return moment < pose.time; });
+                       [](double moment, const MotionSample& pose) { return moment < pose.time; });
   const auto index = static_cast<size_t>(std::distance(motion.begin(), later));
   return std::min(std::max<size_t>(index, 1) - 1, motion.size() - 2);
 }
 
-TimedPose measured(const std::vector<TimedPose>& motion, const MeasurementModel& ins,
-                   const TimedPose& now) {
-  TimedPose said = now;
+MotionSample measured(const std::vector<MotionSample>& motion, const MeasurementModel& ins,
+                      const MotionSample& now) {
+  MotionSample said = now;
   Pose2& pose = said.T_map_body;
   if (ins.ins_latency != 0.0) pose = poseAt(motion, now.time - ins.ins_latency);
   if (ins.lever_arm_x != 0.0 || ins.lever_arm_y != 0.0) {
@@ -43,18 +43,18 @@ TimedPose measured(const std::vector<TimedPose>& motion, const MeasurementModel&
 
 }  // namespace
 
-Pose2 poseAt(const std::vector<TimedPose>& motion, double time) {
+Pose2 poseAt(const std::vector<MotionSample>& motion, double time) {
   if (motion.size() < 2) return motion.front().T_map_body;
   const size_t i = intervalAt(motion, time);
-  const TimedPose& from = motion[i];
-  const TimedPose& to = motion[i + 1];
+  const MotionSample& from = motion[i];
+  const MotionSample& to = motion[i + 1];
   if (time == from.time || to.time <= from.time) return from.T_map_body;
   if (time == to.time) return to.T_map_body;
   const Twist2 v_body = twistTo(between(from.T_map_body, to.T_map_body), to.time - from.time);
   return from.T_map_body * integrate(v_body, time - from.time);
 }
 
-double yawRateAt(const std::vector<TimedPose>& motion, double time) {
+double yawRateAt(const std::vector<MotionSample>& motion, double time) {
   if (motion.size() < 2 || time <= motion.front().time) return motion.front().omega;
   if (time >= motion.back().time) return motion.back().omega;
   const size_t i = intervalAt(motion, time);
@@ -71,16 +71,16 @@ bool isPerfect(const MeasurementModel& measurement) {
   });
 }
 
-std::vector<TimedPose> measure(const std::vector<TimedPose>& motion,
-                               const MeasurementModel& measurement) {
-  std::vector<TimedPose> said;
+std::vector<MotionSample> measure(const std::vector<MotionSample>& motion,
+                                  const MeasurementModel& measurement) {
+  std::vector<MotionSample> said;
   said.reserve(motion.size());
-  for (const TimedPose& now : motion) said.push_back(measured(motion, measurement, now));
+  for (const MotionSample& now : motion) said.push_back(measured(motion, measurement, now));
   return said;
 }
 
-TimedPose measuredAt(const std::vector<TimedPose>& motion, const MeasurementModel& measurement,
-                     double time) {
+MotionSample measuredAt(const std::vector<MotionSample>& motion,
+                        const MeasurementModel& measurement, double time) {
   return measured(motion, measurement, {time, poseAt(motion, time), yawRateAt(motion, time)});
 }
 

@@ -7,7 +7,7 @@
 #include <tread/arm_t.hpp>
 #include <tread/estop_t.hpp>
 
-#include "modules/planner/core/situation.hpp"
+#include "modules/planner/core/execution/situation.hpp"
 
 namespace tread::planner {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/config/config_reader.hpp"
-#include "modules/planner/core/supervisor.hpp"
+#include "modules/planner/core/execution/supervisor.hpp"
 
 namespace tread::planner {
 

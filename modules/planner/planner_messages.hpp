@@ -12,8 +12,8 @@
 #include <tread/plan_tree_t.hpp>
 #include <tread/program_slot_t.hpp>
 
-#include "modules/planner/core/program_book.hpp"
-#include "modules/planner/core/situation.hpp"
+#include "modules/planner/core/execution/program_book.hpp"
+#include "modules/planner/core/execution/situation.hpp"
 
 namespace tread::planner {
 

@@ -13,11 +13,11 @@ constexpr size_t kMostRemembered = 1000;
 
 }  // namespace
 
-void ModelIns::remember(const TimedPose& now, const InsInput& truth) {
+void ModelIns::remember(const MotionSample& now, const InsInput& truth) {
   motion_.push_back(now);
   truths_.push_back(truth);
   if (motion_.size() < kMostRemembered) return;
-  const auto old = std::find_if(motion_.begin(), motion_.end(), [&](const TimedPose& pose) {
+  const auto old = std::find_if(motion_.begin(), motion_.end(), [&](const MotionSample& pose) {
     return pose.time >= now.time - kMemory;
   });
   truths_.erase(truths_.begin(), truths_.begin() + (old - motion_.begin()));
@@ -26,7 +26,7 @@ void ModelIns::remember(const TimedPose& now, const InsInput& truth) {
 
 InsInput ModelIns::inputAt(double time) const {
   const auto earlier = std::find_if(motion_.rbegin(), motion_.rend(),
-                                    [&](const TimedPose& pose) { return pose.time <= time; });
+                                    [&](const MotionSample& pose) { return pose.time <= time; });
   if (earlier == motion_.rend()) return truths_.front();
   const size_t i = static_cast<size_t>(motion_.rend() - earlier) - 1;
   if (i + 1 == motion_.size()) return truths_.back();
@@ -45,7 +45,7 @@ InsInput ModelIns::sensed(int64_t utime, const InsInput& truth) {
   const double now = static_cast<double>(utime - start_utime_) * 1e-6;
   const Eigen::Vector3d& p_map = truth.body.p_map;
   remember({now, {p_map.x(), p_map.y(), truth.yaw}, truth.rate_body.z()}, truth);
-  const TimedPose said = measuredAt(motion_, measurement_, now);
+  const MotionSample said = measuredAt(motion_, measurement_, now);
   const double then = now - measurement_.ins_latency;
   InsInput input = inputAt(then);
   const double omega = yawRateAt(motion_, then);

@@ -23,13 +23,13 @@ class ModelIns final : public InsErrors {
   InsInput sensed(int64_t utime, const InsInput& truth) override;
 
  private:
-  void remember(const TimedPose& now, const InsInput& truth);
+  void remember(const MotionSample& now, const InsInput& truth);
   InsInput inputAt(double time) const;
 
   MeasurementModel measurement_;
   int64_t start_utime_;
-  std::vector<TimedPose> motion_;  ///< of the last seconds
-  std::vector<InsInput> truths_;   ///< at the same moments
+  std::vector<MotionSample> motion_;  ///< of the last seconds
+  std::vector<InsInput> truths_;      ///< at the same moments
 };
 
 }  // namespace tread::sim

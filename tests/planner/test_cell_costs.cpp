@@ -9,7 +9,7 @@
 #include <random>
 #include <tuple>
 
-#include "modules/planner/core/path_planner.hpp"
+#include "modules/planner/core/search/path_planner.hpp"
 #include "tests/effort.hpp"
 
 using namespace tread;

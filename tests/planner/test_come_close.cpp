@@ -3,7 +3,7 @@
 // Goals that cannot be reached, where the vehicle is to come as close as possible.
 #include <catch2/catch.hpp>
 
-#include "modules/planner/core/path_planner.hpp"
+#include "modules/planner/core/search/path_planner.hpp"
 #include "tests/planner/kit/policy_rig.hpp"
 
 using namespace tread;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/planner/core/commitment.hpp"
+#include "modules/planner/core/execution/commitment.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <queue>
 
-#include "modules/planner/core/cost_to_go.hpp"
-#include "modules/planner/core/passage_map.hpp"
+#include "modules/planner/core/map/cost_to_go.hpp"
+#include "modules/planner/core/map/passage_map.hpp"
 #include "tests/planner/kit/playground.hpp"
 
 using namespace tread;

@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "modules/planner/core/grid_passages.hpp"
+#include "modules/planner/core/map/grid_passages.hpp"
 #include "tests/effort.hpp"
 #include "tests/planner/kit/random_ground.hpp"
 

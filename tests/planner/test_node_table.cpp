@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "modules/planner/core/node_table.hpp"
+#include "modules/planner/core/search/node_table.hpp"
 #include "tests/effort.hpp"
 
 using namespace tread::planner;

@@ -7,7 +7,7 @@
 #include <random>
 #include <utility>
 
-#include "modules/planner/core/open_list.hpp"
+#include "modules/planner/core/search/open_list.hpp"
 #include "tests/effort.hpp"
 
 using namespace tread::planner;

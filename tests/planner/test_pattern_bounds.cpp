@@ -6,8 +6,8 @@
 #include <limits>
 #include <random>
 
-#include "modules/planner/core/pattern_table.hpp"
-#include "modules/planner/core/pose_to_go.hpp"
+#include "modules/planner/core/map/pose_to_go.hpp"
+#include "modules/planner/core/search/pattern_table.hpp"
 #include "tests/effort.hpp"
 #include "tests/planner/kit/random_ground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "modules/planner/core/pattern_table.hpp"
-#include "modules/planner/core/prediction.hpp"
-#include "modules/planner/core/surroundings.hpp"
+#include "modules/planner/core/map/surroundings.hpp"
+#include "modules/planner/core/search/pattern_table.hpp"
+#include "modules/planner/core/search/prediction.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
 

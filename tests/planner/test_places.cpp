@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "modules/planner/core/places.hpp"
+#include "modules/planner/core/map/places.hpp"
 #include "tests/effort.hpp"
 #include "tests/planner/kit/random_ground.hpp"
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "modules/planner/core/pose_to_go.hpp"
+#include "modules/planner/core/map/pose_to_go.hpp"
 #include "tests/effort.hpp"
 #include "tests/planner/kit/guide_reference.hpp"
 #include "tests/planner/kit/playground.hpp"

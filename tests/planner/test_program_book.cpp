@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "modules/planner/core/motion_watch.hpp"
-#include "modules/planner/core/program_book.hpp"
+#include "modules/planner/core/execution/motion_watch.hpp"
+#include "modules/planner/core/execution/program_book.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
 
 using namespace tread;

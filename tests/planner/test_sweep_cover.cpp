@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "modules/planner/core/surroundings.hpp"
+#include "modules/planner/core/map/surroundings.hpp"
 #include "tests/effort.hpp"
 #include "tests/planner/kit/random_ground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"

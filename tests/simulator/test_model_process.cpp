@@ -25,11 +25,11 @@ const std::string kHidden =
     "envelope: {v: 0.3, omega: 3, v_omega: 3}\n";
 
 /// What a model makes of the powers that were really on the motors, at each 2 ms.
-std::vector<TimedPose> predicted(const ModelDocument& model,
-                                 const std::vector<sim::TruthRow>& truth) {
+std::vector<MotionSample> predicted(const ModelDocument& model,
+                                    const std::vector<sim::TruthRow>& truth) {
   constexpr double kStep = 0.002;
   VehicleKernel kernel(model.vehicle, EntryState{});
-  std::vector<TimedPose> motion{{0.0, {}, 0.0}};
+  std::vector<MotionSample> motion{{0.0, {}, 0.0}};
   const auto span = static_cast<double>(truth.back().utime - truth.front().utime) * 1e-6;
   for (size_t row = 0; motion.back().time < span;) {
     const double time = motion.back().time;
@@ -73,11 +73,11 @@ TEST_CASE("a model file in the simulator's process is what the robot's INS drive
   CHECK(run.end("simulator") == 0);
   const std::vector<sim::TruthRow> truth = run.truth();
   const ModelDocument model = parseModelDocument(kHidden, "m");
-  const std::vector<TimedPose> wanted = predicted(model, truth);
+  const std::vector<MotionSample> wanted = predicted(model, truth);
   ModelDocument plain = model;
   plain.vehicle.effects = {};
   plain.measurement = {};
-  const std::vector<TimedPose> without = predicted(plain, truth);
+  const std::vector<MotionSample> without = predicted(plain, truth);
   double largest = 0.0, largest_yaw = 0.0, largest_without = 0.0;
   for (const auto& [utime, T_map_body] : said) {
     const double time = static_cast<double>(utime - truth.front().utime) * 1e-6;

@@ -109,9 +109,9 @@ class Bench {
   }
 
   /// What simulate() and measure() make of the same commands with a model file.
-  std::vector<TimedPose> predicted(const std::string& model) const {
+  std::vector<MotionSample> predicted(const std::string& model) const {
     const ModelDocument document = parseModelDocument(model, "m.yaml");
-    std::vector<TimedPose> motion{{0.0, settings_.robot.start, 0.0}};
+    std::vector<MotionSample> motion{{0.0, settings_.robot.start, 0.0}};
     const std::vector<Pose2> poses =
         simulate(document.vehicle, powers, 1e-6 * kSlice, EntryState{});
     for (const Pose2& T_start_body : poses) {
@@ -124,7 +124,7 @@ class Bench {
   }
 
   /// Largest distances of the INS from a prediction: m, rad, rad/s.
-  std::array<double, 3> apartFrom(const std::vector<TimedPose>& said_by_ins) const {
+  std::array<double, 3> apartFrom(const std::vector<MotionSample>& said_by_ins) const {
     std::array<double, 3> apart{};
     for (const ins::InsEstimate& estimate : estimates) {
       const double time = 1e-6 * static_cast<double>(estimate.utime - kStart);
@@ -235,7 +235,7 @@ TEST_CASE("the velocity that the INS says is that of the point that it reports")
                             "  heading_misalignment: {angle: 0.1}\n";
   Bench bench(model);
   bench.drive(3.9);  // the end of a steady turn
-  const std::vector<TimedPose> said = bench.predicted(model);
+  const std::vector<MotionSample> said = bench.predicted(model);
   const ins::InsEstimate& newest = bench.estimates.back();
   const double time = 1e-6 * static_cast<double>(newest.utime - kStart);
   const Twist2 v_said = twistTo(between(poseAt(said, time - 0.05), poseAt(said, time + 0.05)), 0.1);

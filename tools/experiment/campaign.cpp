@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "common/config/scalars.hpp"
-#include "tools/drive_patterns/drive_book.hpp"
+#include "common/recordings/drive_book.hpp"
 #include "tools/experiment/seeds.hpp"
 #include "tools/experiment/transition_world.hpp"
 

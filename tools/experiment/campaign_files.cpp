@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "common/recordings/text_file.hpp"
 #include "tools/experiment/campaign.hpp"
 #include "tools/experiment/figures.hpp"
-#include "tools/recordings/text_file.hpp"
 
 namespace tread::experiment {
 

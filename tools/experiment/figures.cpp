@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include "common/report/plot.hpp"
 #include "tools/experiment/paper_numbers.hpp"
-#include "tools/picture/plot.hpp"
 
 namespace tread::experiment {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/pattern/pattern.hpp"
+#include "common/recordings/recordings.hpp"
 #include "modules/learner/core/trajectory_table.hpp"
-#include "tools/recordings/recordings.hpp"
 
 namespace tread::experiment {
 

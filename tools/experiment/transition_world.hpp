@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "common/recordings/recordings.hpp"
 #include "common/vehicle/model.hpp"
-#include "tools/recordings/recordings.hpp"
 
 namespace tread::experiment {
 

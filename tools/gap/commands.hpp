@@ -19,7 +19,6 @@ CLI::App* addExplain(CLI::App& app);
 CLI::App* addWhatIf(CLI::App& app);
 CLI::App* addPlan(CLI::App& app, int& status);
 CLI::App* addCompare(CLI::App& app, int& status);
-CLI::App* addLadder(CLI::App& app);
 
 /// Adds --seed, and --threads with as many as the machine has, to a subcommand; both variables must
 /// outlive it.

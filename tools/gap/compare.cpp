@@ -8,10 +8,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "tools/gap/core/end_errors.hpp"
-#include "tools/gap/core/enough_driving.hpp"
-#include "tools/gap/core/search.hpp"
-#include "tools/gap/core/student.hpp"
+#include "modules/identification/core/end_errors.hpp"
+#include "modules/identification/core/enough_driving.hpp"
+#include "modules/identification/core/search.hpp"
+#include "modules/identification/core/student.hpp"
 #include "tools/gap/report/words.hpp"
 
 namespace tread::gap {

@@ -7,7 +7,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "tools/gap/core/hygiene.hpp"
+#include "modules/identification/core/hygiene.hpp"
 #include "tools/gap/file_hash.hpp"
 #include "tools/gap/known_commands.hpp"
 #include "tools/gap/log_checks.hpp"

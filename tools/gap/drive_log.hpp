@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/log/event_log.hpp"
-#include "tools/gap/core/drive.hpp"
+#include "modules/identification/core/drive.hpp"
 
 // How a log becomes a drive.
 //   Commands   from MOTOR. Known while the bridge drives, stands armed, stops, or is disarmed by

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "common/vehicle/model_file.hpp"
+#include "modules/identification/core/discovery.hpp"
 #include "tools/gap/commands.hpp"
-#include "tools/gap/core/discovery.hpp"
 #include "tools/gap/decisions.hpp"
 #include "tools/gap/file_hash.hpp"
 #include "tools/gap/find_output.hpp"

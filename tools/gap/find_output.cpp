@@ -12,9 +12,9 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "common/recordings/text_file.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/gap/report/sections.hpp"
-#include "tools/recordings/text_file.hpp"
 
 namespace fs = std::filesystem;
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/gap/core/finding.hpp"
+#include "modules/identification/core/finding.hpp"
 #include "tools/gap/verdict_json.hpp"
 
 namespace tread::gap {

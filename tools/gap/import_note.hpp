@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "common/bus/channels.hpp"
-#include "tools/gap/core/drive.hpp"
+#include "modules/identification/core/drive.hpp"
 
 namespace tread::gap {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "tools/gap/core/drive.hpp"
+#include "modules/identification/core/drive.hpp"
 #include "tools/gap/log_messages.hpp"
 
 namespace tread::gap {

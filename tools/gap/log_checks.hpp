@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "tools/gap/core/note_book.hpp"
+#include "modules/identification/core/note_book.hpp"
 #include "tools/gap/log_messages.hpp"
 #include "tools/gap/stretches.hpp"
 

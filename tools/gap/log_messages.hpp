@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/log/event_log.hpp"
-#include "tools/gap/core/drive.hpp"
+#include "modules/identification/core/drive.hpp"
 
 namespace tread::gap {
 

@@ -17,7 +17,6 @@ int main(int argc, char** argv) {
     tread::gap::addWhatIf(app);
     tread::gap::addPlan(app, status);
     tread::gap::addCompare(app, status);
-    tread::gap::addLadder(app);
     if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "tread-gap: %s\n", error.what());

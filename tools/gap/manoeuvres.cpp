@@ -39,7 +39,7 @@ EntryState entryOf(const ModelDocument& model, const Manoeuvre& manoeuvre,
 }
 
 void drive(VehicleKernel& kernel, const TrackCommand& command, double& time,
-           std::vector<TimedPose>& motion) {
+           std::vector<MotionSample>& motion) {
   kernel.step(command, kManoeuvrePeriod);
   time += kManoeuvrePeriod;
   motion.push_back({time, kernel.pose(), kernel.twist().omega});
@@ -80,20 +80,20 @@ std::vector<Manoeuvre> standardManoeuvres(double full) {
   };
 }
 
-std::vector<TimedPose> drivenByModel(const ModelDocument& model, const Manoeuvre& manoeuvre,
-                                     const Circumstances& circumstances,
-                                     const ExecutionNoise& noise) {
+std::vector<MotionSample> drivenByModel(const ModelDocument& model, const Manoeuvre& manoeuvre,
+                                        const Circumstances& circumstances,
+                                        const ExecutionNoise& noise) {
   VehicleKernel kernel(model.vehicle, entryOf(model, manoeuvre, circumstances));
   double time = std::max(0.0, circumstances.session_time - kLead);
-  std::vector<TimedPose> motion{{time, kernel.pose(), kernel.twist().omega}};
+  std::vector<MotionSample> motion{{time, kernel.pose(), kernel.twist().omega}};
   const auto lead = static_cast<size_t>(std::lround(kLead / kManoeuvrePeriod));
   for (size_t i = 0; i < lead; ++i) drive(kernel, manoeuvre.before, time, motion);
   kernel.setNoise(noise);
   for (const TrackCommand& command : manoeuvre.commands) drive(kernel, command, time, motion);
   const auto tail = static_cast<size_t>(std::lround(kTail / kManoeuvrePeriod));
   for (size_t i = 0; i < tail; ++i) drive(kernel, manoeuvre.commands.back(), time, motion);
-  const std::vector<TimedPose> said = measure(motion, model.measurement);
-  std::vector<TimedPose> driven;
+  const std::vector<MotionSample> said = measure(motion, model.measurement);
+  std::vector<MotionSample> driven;
   for (size_t i = lead; i <= lead + manoeuvre.commands.size(); ++i)
     driven.push_back({static_cast<double>(i - lead) * kManoeuvrePeriod,
                       between(said[lead].T_map_body, said[i].T_map_body), said[i].omega});

@@ -38,8 +38,8 @@ std::vector<Manoeuvre> standardManoeuvres(double full_command);
 
 /// Poses and yaw rates as the INS says them, from the begin of the manoeuvre to its end, one per
 /// command and one before; poses relative to the first, times from 0 on.
-std::vector<TimedPose> drivenByModel(const ModelDocument& model, const Manoeuvre& manoeuvre,
-                                     const Circumstances& circumstances = {},
-                                     const ExecutionNoise& noise = {});
+std::vector<MotionSample> drivenByModel(const ModelDocument& model, const Manoeuvre& manoeuvre,
+                                        const Circumstances& circumstances = {},
+                                        const ExecutionNoise& noise = {});
 
 }  // namespace tread::gap

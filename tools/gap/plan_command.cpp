@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/pattern/pattern_file.hpp"
+#include "common/recordings/text_file.hpp"
 #include "common/vehicle/degeneracy.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/gap/commands.hpp"
@@ -20,7 +21,6 @@
 #include "tools/gap/plan_patterns.hpp"
 #include "tools/gap/report/words.hpp"
 #include "tools/patterns/envelope.hpp"
-#include "tools/recordings/text_file.hpp"
 
 namespace tread::gap {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "tools/gap/core/search.hpp"
+#include "modules/identification/core/search.hpp"
 #include "tools/gap/model_change.hpp"
 #include "tools/gap/plan_rival.hpp"
 

@@ -29,7 +29,7 @@ ExecutionSpread spreadOf(const VehicleModel& vehicle) {
 /// Pose and mean yaw rate of each half second, one below the other.
 Eigen::VectorXd observed(const ModelDocument& model, const Manoeuvre& manoeuvre,
                          const ExecutionNoise& noise = {}) {
-  const std::vector<TimedPose> motion = drivenByModel(model, manoeuvre, circumstances(), noise);
+  const std::vector<MotionSample> motion = drivenByModel(model, manoeuvre, circumstances(), noise);
   std::vector<double> values;
   double turned = 0.0;
   size_t held = 0;

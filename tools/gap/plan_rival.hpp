@@ -7,7 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include "tools/gap/core/fit.hpp"
+#include "modules/identification/core/fit.hpp"
 #include "tools/gap/manoeuvres.hpp"
 
 namespace tread::gap {

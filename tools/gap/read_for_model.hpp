@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/vehicle/model_document.hpp"
-#include "tools/gap/core/drive.hpp"
+#include "modules/identification/core/drive.hpp"
 
 namespace tread::gap {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tools/gap/core/end_errors.hpp"
-#include "tools/gap/core/rows.hpp"
+#include "modules/identification/core/end_errors.hpp"
+#include "modules/identification/core/rows.hpp"
 #include "tools/gap/report/chart.hpp"
 #include "tools/gap/report/pictures.hpp"
 #include "tools/gap/report/words.hpp"
@@ -18,10 +18,10 @@ namespace {
 constexpr size_t kShownExecutions = 9;
 constexpr double kRounding = 1e-9;  // [m] and [rad]
 
-std::vector<Pose2> posesOf(const std::vector<TimedPose>& motion) {
+std::vector<Pose2> posesOf(const std::vector<MotionSample>& motion) {
   std::vector<Pose2> poses;
   poses.reserve(motion.size());
-  for (const TimedPose& moment : motion) poses.push_back(moment.T_map_body);
+  for (const MotionSample& moment : motion) poses.push_back(moment.T_map_body);
   return poses;
 }
 

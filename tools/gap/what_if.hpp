@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/gap/core/drive.hpp"
-#include "tools/gap/core/finding.hpp"
+#include "modules/identification/core/drive.hpp"
+#include "modules/identification/core/finding.hpp"
 #include "tools/gap/manoeuvres.hpp"
 #include "tools/gap/report/page.hpp"
 

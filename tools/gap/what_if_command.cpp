@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "common/recordings/text_file.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/gap/commands.hpp"
 #include "tools/gap/model_change.hpp"
 #include "tools/gap/read_for_model.hpp"
 #include "tools/gap/report/words.hpp"
 #include "tools/gap/what_if.hpp"
-#include "tools/recordings/text_file.hpp"
 
 namespace tread::gap {
 namespace {

@@ -8,8 +8,8 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
-#include "tools/import/csv_table.hpp"
-#include "tools/import/drive_log.hpp"
+#include "common/recordings/csv_table.hpp"
+#include "common/recordings/drive_log.hpp"
 
 using namespace tread;
 using namespace tread::importer;

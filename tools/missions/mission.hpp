@@ -9,7 +9,7 @@
 #include "common/geometry/se2.hpp"
 #include "tools/missions/flip_watch.hpp"
 #include "tools/missions/stop_watch.hpp"
-#include "tools/shadow/shadow_learners.hpp"
+#include "tools/replay/shadow_learners.hpp"
 
 namespace tread::missions {
 

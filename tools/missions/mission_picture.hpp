@@ -5,9 +5,9 @@
 #include <string>
 
 #include "common/grid/grid.hpp"
+#include "common/report/drive_picture.hpp"
 #include "tools/missions/mission.hpp"
 #include "tools/missions/mission_world.hpp"
-#include "tools/picture/drive_picture.hpp"
 
 namespace tread::missions {
 

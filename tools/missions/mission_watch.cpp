@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "common/grid/footprint.hpp"
-#include "tools/operator/drive_progress.hpp"
+#include "tools/robot/operator/drive_progress.hpp"
 
 namespace tread::missions {
 namespace {

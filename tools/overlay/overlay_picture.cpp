@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "tools/picture/plot.hpp"
+#include "common/report/plot.hpp"
 
 namespace tread::overlay {
 namespace {

@@ -51,10 +51,10 @@ bool moves(const std::vector<Pose2>& poses) {
 }
 
 /// A model's motion under the drive's commands, from rest.
-std::vector<TimedPose> driven(const LoggedDrive& drive, const VehicleModel& model, double begin,
-                              double end) {
+std::vector<MotionSample> driven(const LoggedDrive& drive, const VehicleModel& model, double begin,
+                                 double end) {
   VehicleKernel kernel(model, EntryState{});
-  std::vector<TimedPose> motion{{begin, {}, 0.0}};
+  std::vector<MotionSample> motion{{begin, {}, 0.0}};
   size_t command = indexAt(drive.commands, begin);
   for (double time = begin; time < end;) {
     double next = std::min(time + kFine, end);
@@ -76,7 +76,7 @@ std::vector<TimedPose> driven(const LoggedDrive& drive, const VehicleModel& mode
 std::vector<Pose2> predicted(const LoggedDrive& drive, const ModelDocument& model, double begin,
                              size_t samples) {
   const double end = begin + kSample * static_cast<double>(samples);
-  const std::vector<TimedPose> motion = driven(drive, model.vehicle, begin - kLeadIn, end);
+  const std::vector<MotionSample> motion = driven(drive, model.vehicle, begin - kLeadIn, end);
   const Pose2 T_start_begin = measuredAt(motion, model.measurement, begin).T_map_body;
   std::vector<Pose2> poses;
   for (size_t i = 0; i < samples; ++i) {

@@ -8,10 +8,10 @@
 
 #include "common/pattern/pattern_check.hpp"
 #include "common/pattern/pattern_file.hpp"
+#include "common/recordings/recordings.hpp"
 #include "tools/patterns/commands.hpp"
 #include "tools/patterns/output.hpp"
 #include "tools/patterns/table.hpp"
-#include "tools/recordings/recordings.hpp"
 
 namespace tread::patterns {
 namespace {

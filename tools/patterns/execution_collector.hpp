@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "common/recordings/recordings.hpp"
 #include "modules/learner/command_watch.hpp"
 #include "modules/learner/core/measurement.hpp"
 #include "modules/learner/execution_queue.hpp"
 #include "modules/learner/ins_queue.hpp"
-#include "tools/recordings/recordings.hpp"
 
 namespace tread::patterns {
 

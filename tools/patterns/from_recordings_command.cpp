@@ -11,9 +11,9 @@
 
 #include "common/log/event_log.hpp"
 #include "common/pattern/pattern_file.hpp"
-#include "tools/drive_patterns/drive_book.hpp"
-#include "tools/drive_patterns/drive_error.hpp"
-#include "tools/drive_patterns/execution_log.hpp"
+#include "common/recordings/drive_book.hpp"
+#include "common/recordings/drive_error.hpp"
+#include "common/recordings/execution_log.hpp"
 #include "tools/patterns/output.hpp"
 
 namespace tread::patterns {

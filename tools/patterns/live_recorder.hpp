@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/bus/health.hpp"
-#include "modules/planner/core/program_book.hpp"
+#include "modules/planner/core/execution/program_book.hpp"
 #include "modules/planner/permission.hpp"
 #include "tools/patterns/execution_collector.hpp"
 #include "tools/patterns/tour.hpp"

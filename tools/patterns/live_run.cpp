@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "common/bus/lcm_bus.hpp"
-#include "tools/recordings/surface_csv.hpp"
-#include "tools/recordings/text_file.hpp"
+#include "common/recordings/surface_csv.hpp"
+#include "common/recordings/text_file.hpp"
 
 namespace tread::patterns {
 namespace {

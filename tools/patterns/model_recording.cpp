@@ -25,13 +25,13 @@ recordings::Execution seenByIns(const ModelDocument& model, const MotionPattern&
   const double begin = -period * static_cast<double>(before);
   entry.context.session_time = begin;
   VehicleKernel kernel(model.vehicle, entry, noise);
-  std::vector<TimedPose> motion{{begin, kernel.pose(), kernel.twist().omega}};
+  std::vector<MotionSample> motion{{begin, kernel.pose(), kernel.twist().omega}};
   for (size_t i = 0; i < before + pattern.commands.size(); ++i) {
     kernel.step(i < before ? entry.command : pattern.commands[i - before], period);
     const double time = begin + period * static_cast<double>(motion.size());
     motion.push_back({time, kernel.pose(), kernel.twist().omega});
   }
-  const std::vector<TimedPose> said = measure(motion, model.measurement);
+  const std::vector<MotionSample> said = measure(motion, model.measurement);
   recordings::Execution seen;
   for (size_t i = before + 1; i < said.size(); ++i)
     seen.push_back(between(said[before].T_map_body, said[i].T_map_body));

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
+#include "common/recordings/recordings.hpp"
 #include "common/vehicle/model_document.hpp"
-#include "tools/recordings/recordings.hpp"
 
 namespace tread::patterns {
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "tools/recordings/text_file.hpp"
+#include "common/recordings/text_file.hpp"
 
 namespace tread::patterns {
 

@@ -7,12 +7,12 @@
 #include <system_error>
 
 #include "common/pattern/pattern_file.hpp"
+#include "common/recordings/book_update.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/patterns/commands.hpp"
 #include "tools/patterns/envelope.hpp"
 #include "tools/patterns/live_run.hpp"
 #include "tools/patterns/model_recording.hpp"
-#include "tools/recordings/book_update.hpp"
 
 namespace tread::patterns {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "tools/picture/plot.hpp"
+#include "common/report/plot.hpp"
 
 namespace tread::patterns {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "tools/picture/plot.hpp"
+#include "common/report/plot.hpp"
 
 namespace tread::plan {
 namespace {

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "common/config/scalars.hpp"
-#include "tools/recordings/text_file.hpp"
+#include "common/recordings/text_file.hpp"
 
 namespace tread::plan {
 namespace {

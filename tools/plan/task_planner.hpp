@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "modules/planner/core/path_planner.hpp"
+#include "modules/planner/core/search/path_planner.hpp"
 #include "tools/plan/plan_answer.hpp"
 #include "tools/plan/plan_picture.hpp"
 #include "tools/plan/plan_task.hpp"

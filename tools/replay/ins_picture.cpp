@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/messages/ins_messages.hpp"
-#include "tools/picture/plot.hpp"
+#include "common/report/plot.hpp"
 
 namespace tread {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "tools/picture/plot.hpp"
+#include "common/report/plot.hpp"
 #include "tools/replay/learner_report.hpp"
 
 namespace tread::replay {

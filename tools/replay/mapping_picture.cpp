@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/replay/mapping_picture.hpp"
 
-#include "tools/picture/plot.hpp"
+#include "common/report/plot.hpp"
 
 namespace tread {
 

@@ -11,7 +11,7 @@
 
 #include "common/grid/grid.hpp"
 #include "common/log/event_log.hpp"
-#include "tools/picture/drive_picture.hpp"
+#include "common/report/drive_picture.hpp"
 #include "tools/report/latency.hpp"
 
 namespace tread::report {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/shadow/shadow_learners.hpp"
+#include "tools/replay/shadow_learners.hpp"
 
 namespace tread::report {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "tests/tools/gap/synthetic_drive.hpp"
-#include "tools/gap/core/discovery.hpp"
+#include "modules/identification/core/discovery.hpp"
+#include "tests/identification/synthetic_drive.hpp"
 
 // What `tread-gap find` computes between the log and the report, on ten minutes of driving: the
 // test of the whole catalogue, refits, pruning, the nested halves, adequacy and the residual maps,

@@ -5,9 +5,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "modules/planner/core/passage_map.hpp"
-#include "modules/planner/core/search.hpp"
-#include "modules/planner/core/world.hpp"
+#include "modules/planner/core/map/passage_map.hpp"
+#include "modules/planner/core/map/world.hpp"
+#include "modules/planner/core/search/search.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
 

@@ -14,9 +14,9 @@ using namespace tread;
 namespace {
 
 /// The rich drive, level, as a time series with its beginning at rest at time 0.
-std::vector<TimedPose> drive(const VehicleModel& model) {
+std::vector<MotionSample> drive(const VehicleModel& model) {
   VehicleKernel kernel(model, {});
-  std::vector<TimedPose> motion{{0.0, {}, 0.0}};
+  std::vector<MotionSample> motion{{0.0, {}, 0.0}};
   for (const TrackCommand& command : richCommands())
     for (int i = 0; i < 30; ++i) {
       kernel.step(command, 0.05);
@@ -27,21 +27,21 @@ std::vector<TimedPose> drive(const VehicleModel& model) {
 }
 
 /// A steady circle, sampled at 20 Hz.
-std::vector<TimedPose> circle(const Twist2& v_body, int samples = 60) {
-  std::vector<TimedPose> motion;
+std::vector<MotionSample> circle(const Twist2& v_body, int samples = 60) {
+  std::vector<MotionSample> motion;
   for (int i = 0; i < samples; ++i)
     motion.push_back({0.05 * i, integrate(v_body, 0.05 * i), v_body.omega});
   return motion;
 }
 
 /// Body twist that the INS saw between samples `i` and `i + 1`.
-Twist2 seen(const std::vector<TimedPose>& said, size_t i) {
+Twist2 seen(const std::vector<MotionSample>& said, size_t i) {
   return twistTo(between(said[i].T_map_body, said[i + 1].T_map_body),
                  said[i + 1].time - said[i].time);
 }
 
 /// Largest difference of poses relative to the first one [m and rad].
-double apart(const std::vector<TimedPose>& a, const std::vector<TimedPose>& b) {
+double apart(const std::vector<MotionSample>& a, const std::vector<MotionSample>& b) {
   double largest = 0.0;
   for (size_t i = 0; i < a.size(); ++i) {
     const Pose2 from_a = between(a[0].T_map_body, a[i].T_map_body);
@@ -61,11 +61,11 @@ MeasurementModel ins(double MeasurementModel::*place, double value) {
 }  // namespace
 
 TEST_CASE("An INS without effects says the true motion bit for bit, whatever the shapes") {
-  const std::vector<TimedPose> motion = drive(plainVehicle());
+  const std::vector<MotionSample> motion = drive(plainVehicle());
   MeasurementModel measurement;
   measurement.ins_latency_gyro = 1.0;
   measurement.gyro_bias_heading = 1.0;
-  const std::vector<TimedPose> said = measure(motion, measurement);
+  const std::vector<MotionSample> said = measure(motion, measurement);
   for (size_t i = 0; i < motion.size(); ++i) {
     CHECK(said[i].T_map_body.x == motion[i].T_map_body.x);
     CHECK(said[i].T_map_body.y == motion[i].T_map_body.y);
@@ -75,9 +75,9 @@ TEST_CASE("An INS without effects says the true motion bit for bit, whatever the
 }
 
 TEST_CASE("ins_latency says older poses, and the yaw rate only with gyro_share") {
-  const std::vector<TimedPose> motion = drive(plainVehicle());
+  const std::vector<MotionSample> motion = drive(plainVehicle());
   MeasurementModel late = ins(&MeasurementModel::ins_latency, 0.2);
-  std::vector<TimedPose> said = measure(motion, late);
+  std::vector<MotionSample> said = measure(motion, late);
   for (size_t i = 4; i < motion.size(); ++i) {
     CHECK(said[i].T_map_body.x == Approx(motion[i - 4].T_map_body.x).margin(1e-6));
     CHECK(said[i].T_map_body.yaw == Approx(motion[i - 4].T_map_body.yaw).margin(1e-6));
@@ -132,7 +132,7 @@ TEST_CASE("position_scale lengthens the way and leaves the heading") {
 
 TEST_CASE("Poses between samples lie on the arc, beyond the ends on its continuation") {
   const Twist2 v_body{1.0, 0.1, 0.8};
-  const std::vector<TimedPose> motion = circle(v_body);
+  const std::vector<MotionSample> motion = circle(v_body);
   for (const double time : {-0.3, 0.0, 0.012, 1.0, 1.234, 3.3}) {
     const Pose2 expected = time < 0.0 ? inverse(integrate(v_body, -time)) : integrate(v_body, time);
     const Pose2 pose = poseAt(motion, time);

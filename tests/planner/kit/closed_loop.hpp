@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "modules/planner/core/supervisor.hpp"
+#include "modules/planner/core/execution/supervisor.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "modules/planner/core/pose_to_go.hpp"
+#include "modules/planner/core/map/pose_to_go.hpp"
 
 namespace tread::planner::testkit {
 

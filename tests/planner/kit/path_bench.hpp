@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "modules/planner/core/path_planner.hpp"
+#include "modules/planner/core/search/path_planner.hpp"
 #include "tests/planner/kit/random_ground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
 #include "tests/planner/kit/search_bench.hpp"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "common/grid/grid.hpp"
-#include "modules/planner/core/cost_to_go.hpp"
-#include "modules/planner/core/surroundings.hpp"
+#include "modules/planner/core/map/cost_to_go.hpp"
+#include "modules/planner/core/map/surroundings.hpp"
 
 namespace tread::planner::testkit {
 

@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include "modules/planner/core/passage_map.hpp"
-#include "modules/planner/core/search.hpp"
+#include "modules/planner/core/map/passage_map.hpp"
+#include "modules/planner/core/search/search.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/vehicle/kernel.hpp"
-#include "tools/gap/core/finding.hpp"
+#include "modules/identification/core/finding.hpp"
 #include "tools/gap/verdict_json.hpp"
 
 /// Findings made by hand, to look at what is written of them.

@@ -2,9 +2,9 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "core_rig.hpp"
+#include "modules/identification/core/student.hpp"
+#include "tests/identification/core_rig.hpp"
 #include "tools/gap/compare.hpp"
-#include "tools/gap/core/student.hpp"
 
 using namespace tread;
 using namespace tread::gap;

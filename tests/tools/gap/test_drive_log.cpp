@@ -7,12 +7,12 @@
 #include <filesystem>
 #include <fstream>
 
+#include "common/recordings/drive_log.hpp"
 #include "tests/tools/gap/small_log.hpp"
 #include "tests/tools/import/drive_samples.hpp"
 #include "tools/gap/drive_log.hpp"
 #include "tools/gap/file_hash.hpp"
 #include "tools/gap/import_note.hpp"
-#include "tools/import/drive_log.hpp"
 
 using namespace tread;
 using namespace tread::gap;

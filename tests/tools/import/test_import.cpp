@@ -10,9 +10,9 @@
 #include <fstream>
 #include <iterator>
 
+#include "common/recordings/csv_table.hpp"
+#include "common/recordings/drive_log.hpp"
 #include "tests/tools/import/drive_samples.hpp"
-#include "tools/import/csv_table.hpp"
-#include "tools/import/drive_log.hpp"
 
 using namespace tread;
 using namespace tread::importer;

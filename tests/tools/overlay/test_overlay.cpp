@@ -31,7 +31,7 @@ class Log {
       : path_((std::filesystem::temp_directory_path() /
                ("tread-overlay-" + std::to_string(getpid()) + ".lcmlog"))
                   .string()) {
-    const std::vector<TimedPose> said = drive(model);
+    const std::vector<MotionSample> said = drive(model);
     LogWriter writer(path_);
     for (int i = 0; i < 40 * 20; ++i) writer.write(kMotor, motor(i));
     for (size_t i = 0; with_ins && i < said.size(); ++i)
@@ -47,9 +47,9 @@ class Log {
     return kCommands[i / 30 % 5];
   }
 
-  static std::vector<TimedPose> drive(const ModelDocument& model) {
+  static std::vector<MotionSample> drive(const ModelDocument& model) {
     VehicleKernel kernel(model.vehicle, EntryState{});
-    std::vector<TimedPose> motion{{0.0, {5.0, -3.0, 1.0}, 0.0}};
+    std::vector<MotionSample> motion{{0.0, {5.0, -3.0, 1.0}, 0.0}};
     for (int i = 0; i < 40 * 100; ++i) {
       kernel.step(commandAt(i / 5), 0.01);
       const Pose2 T_map_body = Pose2{5.0, -3.0, 1.0} * kernel.pose();
@@ -68,7 +68,7 @@ class Log {
     return message;
   }
 
-  static ins_t ins(const TimedPose& said, int64_t i) {
+  static ins_t ins(const MotionSample& said, int64_t i) {
     ins_t message{};
     message.utime = 1'000'000 + 20'000 * i;
     message.position[0] = said.T_map_body.x;

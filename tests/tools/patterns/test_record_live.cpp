@@ -9,9 +9,9 @@
 #include <catch2/catch.hpp>
 
 #include "common/pattern/pattern_file.hpp"
+#include "common/recordings/recordings.hpp"
 #include "tests/system/robot_run.hpp"
 #include "tests/system/worlds.hpp"
-#include "tools/recordings/recordings.hpp"
 
 using namespace tread;
 using testing::Process;

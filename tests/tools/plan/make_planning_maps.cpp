@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "common/config/command_line.hpp"
+#include "common/recordings/text_file.hpp"
 #include "tests/tools/plan/planning_maps.hpp"
-#include "tools/recordings/text_file.hpp"
 
 namespace {
 

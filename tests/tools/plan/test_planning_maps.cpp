@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "common/grid/grid.hpp"
+#include "common/recordings/text_file.hpp"
 #include "tests/tools/plan/plan_samples.hpp"
 #include "tests/tools/plan/planning_maps.hpp"
 #include "tools/plan/map_file.hpp"
-#include "tools/recordings/text_file.hpp"
 
 using namespace tread;
 using namespace tread::plan;

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "common/recordings/drive_log.hpp"
 #include "common/vehicle/kernel.hpp"
-#include "tools/import/drive_log.hpp"
 #include "tools/replay/drive_log_reader.hpp"
 
 namespace tread::samples {

@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <limits>
 
+#include "common/recordings/csv_table.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tests/tools/replay/synthetic_drive.hpp"
-#include "tools/import/csv_table.hpp"
 #include "tools/replay/learner_report.hpp"
 
 using namespace tread;

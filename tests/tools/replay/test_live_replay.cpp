@@ -12,10 +12,10 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/pattern/pattern_file.hpp"
+#include "common/recordings/csv_table.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tests/system/process.hpp"
 #include "tests/tools/replay/synthetic_drive.hpp"
-#include "tools/import/csv_table.hpp"
 #include "tools/replay/live_run.hpp"
 #include "tools/replay/recipe.hpp"
 

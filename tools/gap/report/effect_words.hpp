@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/gap/core/finding.hpp"
+#include "modules/identification/core/finding.hpp"
 
 namespace tread::gap {
 

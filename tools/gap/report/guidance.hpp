@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/gap/core/finding.hpp"
+#include "modules/identification/core/finding.hpp"
 
 /// What one must know to read a report and to act on it.
 namespace tread::gap {

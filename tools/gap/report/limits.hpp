@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "tools/gap/core/finding.hpp"
+#include "modules/identification/core/finding.hpp"
 
 namespace tread::gap {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "tools/gap/core/finding.hpp"
+#include "modules/identification/core/finding.hpp"
 #include "tools/gap/report/page.hpp"
 #include "tools/gap/verdict_json.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/vehicle/effects.hpp"
-#include "tools/gap/core/finding.hpp"
+#include "modules/identification/core/finding.hpp"
 
 namespace tread::gap {
 

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/recordings/local_motion.hpp"
+#include "common/recordings/recordings.hpp"
+#include "common/recordings/session_choice.hpp"
+
+// Recordings of the same patterns on several surfaces, built from drives in which no command was
+// ever given twice: windows of each surface are moved to the patterns' commands (local_motion.hpp)
+// and integrated. Nothing about any robot, surface or session is known here. Units: m, rad, s.
+namespace tread::drive_patterns {
+
+/// What is made of a folder of drives.
+struct DriveRequest {
+  std::string folder;                 ///< sessions.csv, steps_quality.csv, steps/
+  std::string robot;                  ///< part of its name; empty = the only one
+  std::vector<std::string> sessions;  ///< empty = all that are comparable
+  PatternRecipe recipe = defaultRecipe();
+  /// The commands may be made smaller where too few surfaces were driven with as large ones.
+  bool fit_recipe = true;
+  size_t min_surfaces = 2;
+  SmoothingLimits smoothing;
+  ComparableLimits comparable;
+};
+
+/// Windows of a surface.
+struct SurfaceWindows {
+  std::string surface;                ///< as the sessions call it
+  std::vector<std::string> sessions;  ///< that it was driven in
+  std::vector<SteadyWindow> used;
+  std::map<std::string, int> left_out;  ///< windows by reason
+};
+
+/// What came of a surface.
+struct SurfaceSummary {
+  std::string surface;  ///< the name of its recordings
+  std::vector<std::string> sessions;
+  size_t windows = 0;
+  std::map<std::string, int> left_out;
+  std::vector<LocalMotion> motions;  ///< by pattern
+};
+
+/// A book and how it came about.
+struct DriveBook {
+  recordings::RecordingBook book;
+  std::string robot;
+  std::vector<std::string> notes;  ///< sessions and surfaces left out, commands made smaller
+  std::vector<SurfaceSummary> surfaces;
+};
+
+/// A surface's name as a file may be called: letters, digits, '-' and '_'.
+std::string fileName(const std::string& surface);
+
+/// The book of windows that are already there; `notes` gets a line for each surface left out.
+/** Track commands by `baseline` [m]. Entry and exit class of a pattern is its own steady motion,
+ * the mean over the surfaces. Throws DriveError if fewer than `min_surfaces` are left. */
+DriveBook bookOf(const std::vector<SurfaceWindows>& windows, const PatternRecipe& recipe,
+                 double baseline, size_t min_surfaces);
+
+/// Reads the folder and makes the book; throws DriveError or importer::ImportError, one line each.
+DriveBook makeDriveBook(const DriveRequest& request);
+
+/// The averaged set of a surface (index into the book): what a robot that knows this surface ships
+/// with. Its classes are this surface's own steady motions.
+PatternSet averagedSet(const DriveBook& drives, size_t surface);
+
+/// Lines for people: what was used and left out, and each pattern's mean twist and spread.
+std::string reportOf(const DriveBook& drives);
+
+}  // namespace tread::drive_patterns

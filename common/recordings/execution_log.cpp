@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/recordings/execution_log.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <utility>
+
+#include "common/recordings/drive_error.hpp"
+
+namespace tread::drive_patterns {
+namespace {
+
+using recordings::Execution;
+using recordings::SurfaceRecordings;
+
+constexpr int64_t kOriginUs = 10'000'000;
+constexpr int64_t kInsPeriodUs = 10'000;
+constexpr int64_t kMotorPeriodUs = 50'000;
+constexpr int64_t kRunId = 1;
+constexpr size_t kRepeated = 8;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+int64_t microseconds(double seconds) {
+  return std::llround(seconds * 1e6);
+}
+
+/// Own draws: those of the standard library differ between its makers.
+void shuffle(std::vector<size_t>& values, std::mt19937_64& random) {
+  for (size_t i = values.size(); i > 1; --i)
+    std::swap(values[i - 1], values[static_cast<size_t>(random() % i)]);
+}
+
+std::vector<size_t> shuffled(size_t count, std::mt19937_64& random) {
+  std::vector<size_t> values(count);
+  for (size_t i = 0; i < count; ++i) values[i] = i;
+  shuffle(values, random);
+  return values;
+}
+
+/// A recording as a motion in continuous time, with its steady motion before and after it.
+class Motion {
+ public:
+  Motion(const Execution& poses, double period)
+      : poses_(poses), period_(period), length_(period * static_cast<double>(poses.size())) {
+    const double n = static_cast<double>(poses.size());
+    for (size_t i = 0; i < poses.size(); ++i) {
+      const Twist2 twist = twistOf(i);
+      steady_.v_x += twist.v_x / n;
+      steady_.v_y += twist.v_y / n;
+      steady_.omega += twist.omega / n;
+    }
+  }
+
+  Twist2 twistAt(double time) const { return outside(time) ? steady_ : twistOf(indexAt(time)); }
+
+  Pose2 poseAt(double time) const {
+    if (time < 0.0) return integrate(steady_, time);
+    if (time > length_) return poses_.back() * integrate(steady_, time - length_);
+    const size_t index = indexAt(time);
+    const double begin = static_cast<double>(index) * period_;
+    return before(index) * integrate(twistOf(index), time - begin);
+  }
+
+ private:
+  bool outside(double time) const { return time < 0.0 || time > length_; }
+  size_t indexAt(double time) const {
+    const double index = std::floor(time / period_ + 1e-9);
+    return static_cast<size_t>(std::clamp(index, 0.0, static_cast<double>(poses_.size() - 1)));
+  }
+  Pose2 before(size_t index) const { return index == 0 ? Pose2{} : poses_[index - 1]; }
+  Twist2 twistOf(size_t index) const {
+    return twistTo(between(before(index), poses_[index]), period_);
+  }
+
+  const Execution& poses_;
+  double period_;
+  double length_;
+  Twist2 steady_;
+};
+
+class LogMaker {
+ public:
+  LogMaker(const PatternSet& shipped, const ExecutionLogRequest& request)
+      : shipped_(shipped), request_(request) {}
+
+  void addSurface(const SurfaceRecordings& surface, std::mt19937_64& random) {
+    addMark(surface.surface);
+    const size_t count = shipped_.patterns().size();
+    std::vector<std::vector<size_t>> order(count);
+    std::vector<size_t> turns;
+    for (int n = 0; n < request_.executions; ++n) {
+      if (turns.empty()) turns = shuffled(count, random);
+      const size_t pattern = turns.back();
+      turns.pop_back();
+      std::vector<size_t>& left = order[pattern];
+      if (left.empty()) left = shuffled(surface.executions[pattern].size(), random);
+      addExecution(shipped_.patterns()[pattern], surface.executions[pattern][left.back()]);
+      left.pop_back();
+    }
+  }
+
+  std::vector<LogEvent> sorted() {
+    std::stable_sort(events_.begin(), events_.end(),
+                     [](const LogEvent& a, const LogEvent& b) { return a.utime < b.utime; });
+    return std::move(events_);
+  }
+
+ private:
+  template <class Message>
+  void add(const Channel<Message>& channel, const Message& message) {
+    events_.push_back(eventOf(channel, message));
+  }
+
+  void addMark(const std::string& surface) {
+    mark_t mark{};
+    mark.utime = now_;
+    mark.seq = seq_mark_++;
+    mark.mark_kind = "surface";
+    mark.mark_value = surface;
+    add(kMark, mark);
+  }
+
+  void addExecution(const MotionPattern& pattern, const Execution& poses) {
+    const Motion motion(poses, shipped_.periodSeconds());
+    const int64_t start = now_ + microseconds(request_.lead);
+    const int64_t end =
+        start + static_cast<int64_t>(pattern.commands.size()) * shipped_.content().period_us;
+    const int64_t last = end + microseconds(request_.tail);
+    ++execution_;
+    addIns(motion, start, last);
+    addMotor(pattern, start, end, last);
+    addRecords(pattern, start, end);
+    // The robot drives on unmeasured; where to is of no interest, since a new track begins.
+    T_map_start_ = T_map_start_ * motion.poseAt(static_cast<double>(last - start) * 1e-6);
+    now_ = last + microseconds(request_.silence);
+  }
+
+  void addIns(const Motion& motion, int64_t start, int64_t last) {
+    bool first = true;
+    for (int64_t utime = now_; utime <= last; utime += kInsPeriodUs) {
+      const double time = static_cast<double>(utime - start) * 1e-6;
+      ins_t ins = blankIns();
+      ins.utime = utime;
+      ins.seq = seq_ins_++;
+      fill(ins, T_map_start_ * motion.poseAt(time), motion.twistAt(time));
+      if (first && seq_ins_ > 1) ins.ins_status |= ins_t::STATUS_GAP | ins_t::STATUS_JUMP;
+      first = false;
+      add(kIns, ins);
+    }
+  }
+
+  static ins_t blankIns() {
+    ins_t ins{};
+    ins.device_utc = -1;
+    ins.satellites = -1;
+    ins.ins_status = ins_t::STATUS_NO_ATTITUDE;
+    for (int i = 0; i < 3; ++i)
+      ins.velocity[i] = ins.rate[i] = ins.position_std[i] = ins.attitude_std[i] = kNone;
+    return ins;
+  }
+
+  static void fill(ins_t& ins, const Pose2& T_map_body, const Twist2& twist) {
+    ins.position[0] = T_map_body.x;
+    ins.position[1] = T_map_body.y;
+    ins.orientation[0] = std::cos(T_map_body.yaw / 2.0);
+    ins.orientation[3] = std::sin(T_map_body.yaw / 2.0);
+    ins.velocity[0] = twist.v_x;
+    ins.velocity[1] = twist.v_y;
+    ins.velocity[2] = 0.0;
+    ins.rate[2] = twist.omega;
+  }
+
+  void addMotor(const MotionPattern& pattern, int64_t start, int64_t end, int64_t last) {
+    const int64_t period = shipped_.content().period_us;
+    for (int64_t utime = now_; utime <= last; utime += kMotorPeriodUs) {
+      motor_t motor{};
+      motor.utime = utime;
+      motor.seq = seq_motor_++;
+      motor.bridge_state = motor_t::STATE_DRIVING;
+      motor.motor_command_kind = static_cast<int16_t>(shipped_.content().kind);
+      motor.command_index = -1;
+      TrackCommand command = utime < start ? pattern.commands.front() : pattern.commands.back();
+      if (utime >= start && utime < end) {
+        motor.motor_run_id = kRunId;
+        motor.execution_id = execution_;
+        motor.command_index = static_cast<int32_t>((utime - start) / period);
+        command = pattern.commands[static_cast<size_t>(motor.command_index)];
+      }
+      motor.command_left = static_cast<float>(command.left);
+      motor.command_right = static_cast<float>(command.right);
+      motor.battery_voltage = motor.current_left = motor.current_right = static_cast<float>(kNone);
+      motor.track_speed_left = motor.track_speed_right = static_cast<float>(kNone);
+      add(kMotor, motor);
+    }
+  }
+
+  void addRecords(const MotionPattern& pattern, int64_t start, int64_t end) {
+    execution_record_t record{};
+    record.record_run_id = kRunId;
+    record.record_execution_id = execution_;
+    record.record_pattern_id = pattern.id;
+    record.record_set_version = shipped_.version();
+    record.started = start;
+    record.ended = -1;
+    record.commands_total = static_cast<int32_t>(pattern.commands.size());
+    records_.push_back(record);
+    if (records_.size() > kRepeated) records_.erase(records_.begin());
+    say(start);
+    records_.back().ended = end;
+    records_.back().outcome = execution_record_t::OUTCOME_COMPLETED;
+    records_.back().commands_played = record.commands_total;
+    say(end);
+  }
+
+  void say(int64_t utime) {
+    execution_t message{};
+    message.utime = utime;
+    message.seq = seq_execution_++;
+    message.records = records_;
+    message.num_records = static_cast<int32_t>(records_.size());
+    add(kExecution, message);
+  }
+
+  const PatternSet& shipped_;
+  const ExecutionLogRequest& request_;
+  std::vector<LogEvent> events_;
+  std::vector<execution_record_t> records_;
+  int64_t now_ = kOriginUs;  ///< [us] when the next execution's lead begins
+  int64_t execution_ = 0;
+  int64_t seq_ins_ = 0, seq_motor_ = 0, seq_execution_ = 0, seq_mark_ = 0;
+  Pose2 T_map_start_;
+};
+
+void requireFit(const PatternSet& shipped, const SurfaceRecordings& surface) {
+  const std::string place = "surface '" + surface.surface + "': ";
+  if (surface.executions.size() != shipped.patterns().size())
+    throw DriveError(place + "recordings of " + std::to_string(surface.executions.size()) +
+                     " patterns, the set has " + std::to_string(shipped.patterns().size()));
+  for (size_t p = 0; p < surface.executions.size(); ++p) {
+    const MotionPattern& pattern = shipped.patterns()[p];
+    if (surface.executions[p].empty())
+      throw DriveError(place + "pattern '" + pattern.name + "' has no recording");
+    for (const Execution& poses : surface.executions[p])
+      if (poses.size() != pattern.commands.size())
+        throw DriveError(place + "pattern '" + pattern.name + "' has a recording of " +
+                         std::to_string(poses.size()) + " poses and " +
+                         std::to_string(pattern.commands.size()) + " commands");
+  }
+}
+
+}  // namespace
+
+std::vector<LogEvent> executionLog(const PatternSet& shipped, const SurfaceRecordings& from,
+                                   const SurfaceRecordings& to,
+                                   const ExecutionLogRequest& request) {
+  requireFit(shipped, from);
+  requireFit(shipped, to);
+  std::mt19937_64 random(request.seed);
+  LogMaker maker(shipped, request);
+  maker.addSurface(from, random);
+  maker.addSurface(to, random);
+  return maker.sorted();
+}
+
+}  // namespace tread::drive_patterns

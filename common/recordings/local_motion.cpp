@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/recordings/local_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <tuple>
+
+#include "common/recordings/drive_error.hpp"
+#include "common/recordings/robust_fit.hpp"
+
+namespace tread::drive_patterns {
+namespace {
+
+/// Beyond the farthest neighbour, so that it counts a little, too.
+constexpr double kBandwidth = 1.1;
+/// Differences beyond so many robust standard deviations are no motion of a vehicle.
+constexpr double kPlausible = 3.5;
+constexpr double kMadToSigma = 1.4826;  // of a normal distribution
+/// Residuals below these are never called large: m/s, m/s, rad/s and the same per second.
+constexpr double kSmall[6] = {0.01, 0.01, 0.01, 0.01, 0.01, 0.01};
+
+struct Neighbour {
+  double distance;
+  const SteadyWindow* window;
+};
+
+/// All windows, the nearest first; a tie is decided by session, step and window.
+std::vector<Neighbour> byDistance(const std::vector<SteadyWindow>& windows,
+                                  const BodyCommand& command, const BodyCommand& reach) {
+  std::vector<Neighbour> sorted;
+  sorted.reserve(windows.size());
+  for (const SteadyWindow& window : windows)
+    sorted.push_back({std::hypot((window.command.v - command.v) / reach.v,
+                                 (window.command.w - command.w) / reach.w),
+                      &window});
+  std::sort(sorted.begin(), sorted.end(), [](const Neighbour& a, const Neighbour& b) {
+    return std::tie(a.distance, a.window->session, a.window->step, a.window->window) <
+           std::tie(b.distance, b.window->session, b.window->step, b.window->window);
+  });
+  return sorted;
+}
+
+TwistProfile regressed(const std::vector<Neighbour>& neighbours, const BodyCommand& command,
+                       const BodyCommand& reach) {
+  const auto n = static_cast<Eigen::Index>(neighbours.size());
+  const double bandwidth = kBandwidth * std::max(neighbours.back().distance, 1e-6);
+  Eigen::MatrixXd A(n, 3);
+  Eigen::MatrixXd targets(n, 6);
+  Eigen::VectorXd prior(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Neighbour& near = neighbours[static_cast<size_t>(i)];
+    A.row(i) << 1.0, (near.window->command.v - command.v) / reach.v,
+        (near.window->command.w - command.w) / reach.w;
+    targets.row(i) = near.window->profile.vector().transpose();
+    prior[i] = std::pow(1.0 - std::pow(near.distance / bandwidth, 3), 3);
+  }
+  Eigen::Matrix<double, 6, 1> mean;
+  for (Eigen::Index c = 0; c < 6; ++c)
+    mean[c] = huberFit(A, targets.col(c), prior, {1, kSmall[c]})[0];
+  return TwistProfile::of(mean);
+}
+
+/// The other window of a step, or nullptr.
+const SteadyWindow* partnerOf(const std::vector<SteadyWindow>& windows, const SteadyWindow& first) {
+  for (const SteadyWindow& window : windows)
+    if (window.session == first.session && window.step == first.step &&
+        window.window > first.window)
+      return &window;
+  return nullptr;
+}
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+/// (c_1 - c_2) / sqrt(2) of each step of which both windows are there, in the order of `sorted`.
+std::vector<Vector6> differencesOf(const std::vector<SteadyWindow>& windows,
+                                   const std::vector<Neighbour>& sorted) {
+  std::vector<Vector6> differences;
+  for (const Neighbour& near : sorted) {
+    const SteadyWindow* partner = partnerOf(windows, *near.window);
+    if (partner != nullptr)
+      differences.push_back((near.window->profile.vector() - partner->profile.vector()) /
+                            std::sqrt(2.0));
+  }
+  return differences;
+}
+
+/// What a component's difference may be at most, from the `count` nearest steps.
+Vector6 plausibleDifference(const std::vector<Vector6>& differences, size_t count) {
+  Vector6 bound;
+  count = std::min(count, differences.size());
+  for (Eigen::Index c = 0; c < 6; ++c) {
+    Eigen::VectorXd sizes(static_cast<Eigen::Index>(count));
+    for (size_t i = 0; i < count; ++i)
+      sizes[static_cast<Eigen::Index>(i)] = std::abs(differences[i][c]);
+    bound[c] = kPlausible * std::max(kSmall[c], kMadToSigma * medianOf(sizes));
+  }
+  return bound;
+}
+
+void addDeviations(const std::vector<SteadyWindow>& windows, const std::vector<Neighbour>& sorted,
+                   size_t wanted, LocalMotion& motion) {
+  const std::vector<Vector6> differences = differencesOf(windows, sorted);
+  const Vector6 bound = plausibleDifference(differences, 2 * wanted)
+                            .cwiseMax(plausibleDifference(differences, differences.size()));
+  for (const Vector6& difference : differences) {
+    if (motion.deviations.size() == wanted) return;
+    if ((difference.cwiseAbs() - bound).maxCoeff() > 0.0)
+      ++motion.implausible;
+    else
+      motion.deviations.push_back(TwistProfile::of(difference));
+  }
+}
+
+/// A command that is larger than any that was driven would be a guess.
+void requireWithin(const std::vector<SteadyWindow>& windows, const BodyCommand& command) {
+  BodyCommand driven;
+  for (const SteadyWindow& window : windows) {
+    driven.v = std::max(driven.v, std::abs(window.command.v));
+    driven.w = std::max(driven.w, std::abs(window.command.w));
+  }
+  if (driven.v >= std::abs(command.v) && driven.w >= std::abs(command.w)) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "its commands reach %.2f m/s and %.2f rad/s, a pattern has %.2f and %.2f", driven.v,
+                driven.w, command.v, command.w);
+  throw DriveError(text);
+}
+
+}  // namespace
+
+LocalMotion localMotion(const std::vector<SteadyWindow>& windows, const BodyCommand& command,
+                        const PatternRecipe& recipe) {
+  const auto needed = static_cast<size_t>(recipe.neighbours);
+  if (windows.size() < needed)
+    throw DriveError("only " + std::to_string(windows.size()) + " steady windows; " +
+                     std::to_string(needed) + " are needed around each pattern's command");
+  requireWithin(windows, command);
+  std::vector<Neighbour> sorted = byDistance(windows, command, recipe.reach());
+  LocalMotion motion;
+  addDeviations(windows, sorted, static_cast<size_t>(recipe.deviations), motion);
+  if (motion.deviations.size() < static_cast<size_t>(recipe.deviations))
+    throw DriveError("only " + std::to_string(motion.deviations.size()) +
+                     " steps with two steady windows that agree; " +
+                     std::to_string(recipe.deviations) +
+                     " are needed to tell how executions differ");
+  sorted.resize(needed);
+  motion.mean = regressed(sorted, command, recipe.reach());
+  motion.reach = sorted.back().distance;
+  motion.windows = needed;
+  return motion;
+}
+
+std::vector<TwistProfile> recordedProfiles(const LocalMotion& motion) {
+  std::vector<TwistProfile> profiles;
+  const Eigen::Matrix<double, 6, 1> mean = motion.mean.vector();
+  for (const TwistProfile& deviation : motion.deviations) {
+    profiles.push_back(TwistProfile::of(mean + deviation.vector()));
+    profiles.push_back(TwistProfile::of(mean - deviation.vector()));
+  }
+  return profiles;
+}
+
+}  // namespace tread::drive_patterns

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/recordings/session_choice.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+
+#include "common/recordings/drive_error.hpp"
+
+namespace tread::drive_patterns {
+namespace {
+
+std::string lowered(std::string text) {
+  for (char& letter : text)
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return text;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
+  return text;
+}
+
+std::string number(double value, int decimals) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  return text;
+}
+
+double quantileOf(std::vector<double> values, double quantile) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<size_t>(quantile * static_cast<double>(values.size() - 1))];
+}
+
+std::vector<std::string> robotsOf(const std::vector<DriveSession>& sessions) {
+  std::vector<std::string> robots;
+  for (const DriveSession& session : sessions)
+    if (std::find(robots.begin(), robots.end(), session.robot) == robots.end())
+      robots.push_back(session.robot);
+  return robots;
+}
+
+bool sameGeometry(const DriveSession& a, const DriveSession& b, double tolerance) {
+  return std::abs(a.baseline - b.baseline) <= tolerance * b.baseline &&
+         std::abs(a.wheel_radius - b.wheel_radius) <= tolerance * b.wheel_radius;
+}
+
+/// The session whose geometry is that of most ok steps.
+const DriveSession& ofUsualGeometry(const std::vector<DriveSession>& sessions, double tolerance) {
+  size_t best = 0;
+  size_t most = 0;
+  for (size_t i = 0; i < sessions.size(); ++i) {
+    size_t steps = 0;
+    for (const DriveSession& other : sessions)
+      if (sameGeometry(other, sessions[i], tolerance)) steps += other.okSteps();
+    if (steps <= most) continue;
+    most = steps;
+    best = i;
+  }
+  return sessions[best];
+}
+
+/// Why a session's commands are not enough, in words; empty if they are.
+std::string commandProblem(const DriveSession& session, const BodyCommand& needed,
+                           const ComparableLimits& limits) {
+  if (!session.problem.empty()) return session.problem;
+  if (session.okSteps() < limits.min_steps)
+    return "has " + std::to_string(session.okSteps()) + " ok steps, needed " +
+           std::to_string(limits.min_steps);
+  const BodyCommand reach = reachOf(session, limits.reach_quantile);
+  if (reach.v < needed.v || reach.w < needed.w)
+    return "commands reach " + number(reach.v, 2) + " m/s and " + number(reach.w, 2) +
+           " rad/s, the patterns need " + number(needed.v, 2) + " and " + number(needed.w, 2);
+  return "";
+}
+
+std::string leftOut(const DriveSession& session, const std::string& why) {
+  return session.name + " (" + session.surface + "): " + why;
+}
+
+}  // namespace
+
+std::string chooseRobot(const std::vector<DriveSession>& sessions, const std::string& wanted) {
+  const std::vector<std::string> robots = robotsOf(sessions);
+  const std::string key = lowered(wanted);
+  std::vector<std::string> prefixed;
+  std::vector<std::string> containing;
+  for (const std::string& robot : robots) {
+    const std::string name = lowered(robot);
+    if (name == key) return robot;
+    if (name.rfind(key, 0) == 0) prefixed.push_back(robot);
+    if (name.find(key) != std::string::npos) containing.push_back(robot);
+  }
+  const std::vector<std::string>& meant = prefixed.empty() ? containing : prefixed;
+  if (meant.size() == 1) return meant.front();
+  if (wanted.empty())
+    throw DriveError("sessions of several robots; choose one with --robot: " + listed(robots));
+  if (meant.empty())
+    throw DriveError("no robot is called '" + wanted + "'; there are " + listed(robots));
+  throw DriveError("'" + wanted + "' may be any of " + listed(meant) + "; say more of the name");
+}
+
+BodyCommand reachOf(const DriveSession& session, double quantile) {
+  std::vector<double> v;
+  std::vector<double> w;
+  for (const CommandStep& step : session.steps) {
+    if (!step.ok) continue;
+    const BodyCommand command = bodyCommand(step.tracks, session.baseline);
+    v.push_back(std::abs(command.v));
+    w.push_back(std::abs(command.w));
+  }
+  return {quantileOf(v, quantile), quantileOf(w, quantile)};
+}
+
+SessionChoice comparableSessions(const std::vector<DriveSession>& sessions,
+                                 const std::string& robot, const BodyCommand& needed,
+                                 const ComparableLimits& limits) {
+  SessionChoice choice;
+  std::vector<DriveSession> able;
+  for (const DriveSession& session : sessions) {
+    if (session.robot != robot) continue;
+    const std::string problem = commandProblem(session, needed, limits);
+    if (problem.empty())
+      able.push_back(session);
+    else
+      choice.left_out.push_back(leftOut(session, problem));
+  }
+  if (able.empty()) return choice;
+  const DriveSession usual = ofUsualGeometry(able, limits.geometry_tolerance);
+  choice.baseline = usual.baseline;
+  for (const DriveSession& session : able) {
+    if (sameGeometry(session, usual, limits.geometry_tolerance)) {
+      choice.taken.push_back(session);
+      continue;
+    }
+    choice.left_out.push_back(
+        leftOut(session, "wheel radius " + number(session.wheel_radius, 3) + " m and baseline " +
+                             number(session.baseline, 3) + " m, most steps of this robot have " +
+                             number(usual.wheel_radius, 3) + " and " + number(usual.baseline, 3) +
+                             ": another set-up (--sessions takes it all the same)"));
+  }
+  return choice;
+}
+
+SessionChoice namedSessions(const std::vector<DriveSession>& sessions, const std::string& robot,
+                            const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const DriveSession& session : sessions)
+    if (session.robot == robot) known.push_back(session.name);
+  for (const std::string& name : names)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw DriveError("no session '" + name + "' of " + robot + "; there are " + listed(known));
+  SessionChoice choice;
+  for (const DriveSession& session : sessions) {
+    if (session.robot != robot) continue;
+    const bool named = std::find(names.begin(), names.end(), session.name) != names.end();
+    if (named && !session.problem.empty()) throw DriveError(session.problem);
+    if (named)
+      choice.taken.push_back(session);
+    else
+      choice.left_out.push_back(leftOut(session, "was not asked for"));
+  }
+  if (!choice.taken.empty()) choice.baseline = ofUsualGeometry(choice.taken, 0.02).baseline;
+  return choice;
+}
+
+std::vector<std::string> surfacesOf(const std::vector<DriveSession>& sessions) {
+  std::vector<std::string> surfaces;
+  for (const DriveSession& session : sessions)
+    if (std::find(surfaces.begin(), surfaces.end(), session.surface) == surfaces.end())
+      surfaces.push_back(session.surface);
+  return surfaces;
+}
+
+}  // namespace tread::drive_patterns

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/recordings/twist_profile.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/recordings/robust_fit.hpp"
+
+namespace tread::drive_patterns {
+namespace {
+
+constexpr double kFineStep = 0.01;  // [s] of the numerical integral
+
+/// Integrals from 0 to t of (cos yaw, sin yaw) and of (s - T/2) times them.
+struct HeadingIntegrals {
+  double cosine = 0.0, sine = 0.0, timed_cosine = 0.0, timed_sine = 0.0;
+};
+
+/// yaw(t) = c_0 + c_1 (t - T/2) + c_2 (t - T/2)^2.
+double yawAt(const Eigen::VectorXd& c, double centred) {
+  return c[0] + centred * (c[1] + centred * c[2]);
+}
+
+Eigen::VectorXd fitYaw(const std::vector<WindowPose>& poses, double duration,
+                       const SmoothingLimits& limits) {
+  const auto n = static_cast<Eigen::Index>(poses.size());
+  Eigen::MatrixXd A(n, 3);
+  Eigen::VectorXd b(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const WindowPose& pose = poses[static_cast<size_t>(i)];
+    const double centred = pose.time - duration / 2.0;
+    A.row(i) << 1.0, centred, centred * centred;
+    b[i] = pose.T_map_body.yaw;
+  }
+  return huberFit(A, b, Eigen::VectorXd::Ones(n), {1, limits.yaw_noise});
+}
+
+/// Goes on with the integrals from one time to a later one, by the midpoint rule.
+void advance(HeadingIntegrals& integrals, const Eigen::VectorXd& yaw, double from, double to,
+             double duration) {
+  const int steps = std::max(1, static_cast<int>(std::ceil((to - from) / kFineStep)));
+  const double h = (to - from) / steps;
+  for (int i = 0; i < steps; ++i) {
+    const double centred = from + (i + 0.5) * h - duration / 2.0;
+    const double c = std::cos(yawAt(yaw, centred));
+    const double s = std::sin(yawAt(yaw, centred));
+    integrals.cosine += h * c;
+    integrals.sine += h * s;
+    integrals.timed_cosine += h * centred * c;
+    integrals.timed_sine += h * centred * s;
+  }
+}
+
+/// p_0, v_x, v_x', v_y, v_y' as a vector of six.
+Eigen::VectorXd fitPosition(const std::vector<WindowPose>& poses, const Eigen::VectorXd& yaw,
+                            double duration, const SmoothingLimits& limits) {
+  const auto n = static_cast<Eigen::Index>(poses.size());
+  Eigen::MatrixXd A(2 * n, 6);
+  Eigen::VectorXd b(2 * n);
+  HeadingIntegrals k;
+  double reached = poses.front().time;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const WindowPose& pose = poses[static_cast<size_t>(i)];
+    advance(k, yaw, reached, pose.time, duration);
+    reached = pose.time;
+    A.row(2 * i) << 1.0, 0.0, k.cosine, k.timed_cosine, -k.sine, -k.timed_sine;
+    A.row(2 * i + 1) << 0.0, 1.0, k.sine, k.timed_sine, k.cosine, k.timed_cosine;
+    b.segment<2>(2 * i) = pose.T_map_body.position() - poses.front().T_map_body.position();
+  }
+  return huberFit(A, b, Eigen::VectorXd::Ones(n), {2, limits.position_noise});
+}
+
+std::string rounded(double value) {
+  const std::string text = std::to_string(std::round(value * 100.0) / 100.0);
+  return text.substr(0, text.find('.') + 3);
+}
+
+}  // namespace
+
+Eigen::Matrix<double, 6, 1> TwistProfile::vector() const {
+  Eigen::Matrix<double, 6, 1> all;
+  all << mean.v_x, mean.v_y, mean.omega, slope.v_x, slope.v_y, slope.omega;
+  return all;
+}
+
+TwistProfile TwistProfile::of(const Eigen::Matrix<double, 6, 1>& vector) {
+  return {{vector[0], vector[1], vector[2]}, {vector[3], vector[4], vector[5]}};
+}
+
+Twist2 TwistProfile::at(double time, double duration) const {
+  const double centred = time - duration / 2.0;
+  return {mean.v_x + centred * slope.v_x, mean.v_y + centred * slope.v_y,
+          mean.omega + centred * slope.omega};
+}
+
+TwistProfile TwistProfile::mirrored() const {
+  return {{mean.v_x, -mean.v_y, -mean.omega}, {slope.v_x, -slope.v_y, -slope.omega}};
+}
+
+std::string windowProblem(const std::vector<WindowPose>& poses, double duration,
+                          const SmoothingLimits& limits) {
+  double last = 0.0;
+  double gap = 0.0;
+  for (const WindowPose& pose : poses) {
+    gap = std::max(gap, pose.time - last);
+    last = pose.time;
+  }
+  gap = std::max(gap, duration - last);
+  if (gap > limits.max_gap + 1e-9)
+    return "no new pose for more than " + rounded(limits.max_gap) + " s";
+  if (static_cast<int>(poses.size()) < limits.min_poses)
+    return "fewer than " + std::to_string(limits.min_poses) + " poses";
+  return "";
+}
+
+TwistProfile smoothed(const std::vector<WindowPose>& poses, double duration,
+                      const SmoothingLimits& limits) {
+  const Eigen::VectorXd yaw = fitYaw(poses, duration, limits);
+  const Eigen::VectorXd motion = fitPosition(poses, yaw, duration, limits);
+  return {{motion[2], motion[4], yaw[1]}, {motion[3], motion[5], 2.0 * yaw[2]}};
+}
+
+std::vector<Pose2> integrated(const TwistProfile& profile, size_t samples, double period) {
+  const double duration = static_cast<double>(samples) * period;
+  std::vector<Pose2> trajectory;
+  trajectory.reserve(samples);
+  Pose2 pose;
+  for (size_t i = 0; i < samples; ++i) {
+    const double middle = (static_cast<double>(i) + 0.5) * period;
+    pose = pose * integrate(profile.at(middle, duration), period);
+    trajectory.push_back(pose);
+  }
+  return trajectory;
+}
+
+}  // namespace tread::drive_patterns

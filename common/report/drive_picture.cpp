@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/report/drive_picture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <set>
+
+#include <tread/plan_tree_t.hpp>
+
+#include "common/report/plot.hpp"
+
+namespace tread::picture {
+namespace {
+
+using Eigen::Vector2d;
+
+struct NamedColour {
+  const char* surface;
+  Colour colour;
+};
+constexpr NamedColour kSurfaces[] = {{"cinder", {0.93, 0.80, 0.72}},
+                                     {"tarmac", {0.84, 0.86, 0.90}},
+                                     {"grass", {0.80, 0.92, 0.76}},
+                                     {"gravel", {0.95, 0.92, 0.76}}};
+
+Colour surfaceColour(const std::string& surface) {
+  for (const NamedColour& known : kSurfaces)
+    if (surface == known.surface) return known.colour;
+  return {0.95, 0.95, 0.95};
+}
+
+/// The outline of the vehicle of which the track is, about; only to show its size.
+std::vector<Vector2d> outlineAt(const Pose2& pose) {
+  constexpr double kHalfLength = 0.65;  // [m]
+  constexpr double kHalfWidth = 0.34;
+  return {pose * Vector2d(kHalfLength, kHalfWidth), pose * Vector2d(-kHalfLength, kHalfWidth),
+          pose * Vector2d(-kHalfLength, -kHalfWidth), pose * Vector2d(kHalfLength, -kHalfWidth)};
+}
+
+struct Bounds {
+  Vector2d low{1e9, 1e9};
+  Vector2d high{-1e9, -1e9};
+  void add(const Vector2d& p, double margin) {
+    low = low.cwiseMin(p - Vector2d(margin, margin));
+    high = high.cwiseMax(p + Vector2d(margin, margin));
+  }
+};
+
+Bounds boundsOf(const DriveScene& scene) {
+  Bounds bounds;
+  bounds.add(scene.T_map_start.position(), 6.0);
+  bounds.add(scene.T_map_goal.position(), 6.0);
+  for (const DriveMoment& moment : scene.track) bounds.add(moment.T_map_body.position(), 4.0);
+  return bounds;
+}
+
+void drawSurfaces(Panel& panel, const DriveScene& scene, const Bounds& bounds) {
+  if (scene.base_surface.empty()) return;
+  const Vector2d more(60.0, 60.0);
+  const Vector2d low = bounds.low - more;
+  const Vector2d high = bounds.high + more;
+  panel.polygon({low, {high.x(), low.y()}, high, {low.x(), high.y()}},
+                surfaceColour(scene.base_surface));
+  for (const GroundPatch& patch : scene.patches)
+    panel.polygon(patch.corners, surfaceColour(patch.surface));
+}
+
+/// What mapping published: obstacles dark; free and unknown cells do not hide the world.
+void drawMap(Panel& panel, const TileMap& map) {
+  for (const auto& [index, tile] : map.tiles()) {
+    const CellIndex lower{index.first * map.tileCells(), index.second * map.tileCells()};
+    Grid grid(map.cellSize(), lower, map.tileCells(), map.tileCells());
+    grid.cells() = tile.cells;
+    for (Cell& cell : grid.cells())
+      if (cell == kUnknown) cell = kFree;
+    panel.grid(grid, 0.75);
+  }
+}
+
+void drawObstacles(Panel& panel, const DriveScene& scene) {
+  const Colour fill{0.45, 0.38, 0.35, 0.55};
+  for (const ObstacleShape& obstacle : scene.obstacles) {
+    if (obstacle.corners.empty()) {
+      panel.disc(obstacle.centre, obstacle.radius, fill);
+    } else {
+      panel.polygon(obstacle.corners, fill);
+    }
+  }
+}
+
+void drawTree(Panel& panel, const std::vector<TreeEdge>& tree) {
+  for (const TreeEdge& edge : tree)
+    if (!edge.chosen) panel.line({edge.from, edge.to}, {{0.34, 0.71, 0.91, 0.5}, 1.0, false, ""});
+  for (const TreeEdge& edge : tree)
+    if (edge.chosen) panel.line({edge.from, edge.to}, {kOrange, 2.5, false, ""});
+}
+
+void drawTrack(Panel& panel, const DriveScene& scene) {
+  std::vector<Vector2d> points;
+  double next_outline = 0.0;
+  for (const DriveMoment& moment : scene.track) {
+    points.push_back(moment.T_map_body.position());
+    if (moment.time < next_outline) continue;
+    panel.polygon(outlineAt(moment.T_map_body), {0.0, 0.45, 0.70, 0.13});
+    next_outline = moment.time + 2.0;
+  }
+  panel.line(points, {kBlue, 2.2, false, "driven"});
+}
+
+void drawWay(Picture& picture, const DriveScene& scene) {
+  const Bounds bounds = boundsOf(scene);
+  Panel panel(picture, {60, 70, 760, 640},
+              {"the way", "x [m]", "y [m]", bounds.low.x(), bounds.high.x(), bounds.low.y(),
+               bounds.high.y(), true});
+  drawSurfaces(panel, scene, bounds);
+  drawObstacles(panel, scene);
+  drawMap(panel, scene.map);
+  drawTree(panel, scene.tree);
+  drawTrack(panel, scene);
+  panel.dot(scene.T_map_start.position(), kGreen, 7.0);
+  panel.dot(scene.T_map_goal.position(), kRed, 7.0);
+  for (const Vector2d& contact : scene.contacts) panel.dot(contact, kPink, 6.0);
+  if (!scene.contacts.empty()) panel.legendEntry({kPink, 6.0, false, "contact"});
+  if (!scene.tree.empty()) {
+    panel.legendEntry({kOrange, 2.5, false, "a plan on the way"});
+    panel.legendEntry({kSkyBlue, 1.0, false, "its tree"});
+  }
+  panel.legendEntry({kGreen, 6.0, false, "start"});
+  panel.legendEntry({kRed, 6.0, false, "goal"});
+  panel.legendEntry({{0.15, 0.15, 0.15}, 6.0, false, "obstacle as mapped"});
+  panel.finish();
+}
+
+/// Patterns that a running mean of errors takes together, the newest last.
+constexpr size_t kRunning = 5;
+constexpr Colour kRuleColours[] = {kGrey, kOrange, kGreen, kPink, kRed, kBlack};
+
+std::vector<Vector2d> runningMeans(const std::vector<PatternError>& errors,
+                                   double PatternError::*error) {
+  std::vector<Vector2d> means;
+  for (size_t i = 0; i < errors.size(); ++i) {
+    const size_t count = std::min(kRunning, i + 1);
+    double sum = 0.0;
+    for (size_t k = i + 1 - count; k <= i; ++k) sum += std::abs(errors[k].*error);
+    means.emplace_back(errors[i].time, sum / static_cast<double>(count));
+  }
+  return means;
+}
+
+void drawRules(Panel& panel, const DriveScene& scene, double PatternError::*error) {
+  for (size_t rule = 0; rule < scene.by_rule.size(); ++rule)
+    panel.line(runningMeans(scene.by_rule[rule].errors, error),
+               {kRuleColours[rule % std::size(kRuleColours)], 2.2, false, ""});
+}
+
+void drawErrors(Picture& picture, Box box, const std::string& title, const std::string& unit,
+                const DriveScene& scene, double PatternError::*error) {
+  double largest = 0.02;
+  for (const PatternError& at : scene.errors) largest = std::max(largest, std::abs(at.*error));
+  for (const RuleSeries& rule : scene.by_rule)
+    for (const Vector2d& mean : runningMeans(rule.errors, error))
+      largest = std::max(largest, mean.y());
+  Panel panel(picture, box,
+              {title, "time [s]", unit, 0.0, std::max(1.0, scene.duration), 0.0, 1.15 * largest});
+  for (const PatternError& at : scene.errors) {
+    const double value = std::abs(at.*error);
+    panel.line({{at.time, 0.0}, {at.time, value}}, {kSkyBlue, 1.5, false, ""});
+    panel.dot({at.time, value}, kBlue, 3.0);
+  }
+  drawRules(panel, scene, error);
+  double height = 1.07;
+  double last = -1e9;
+  for (const BorderCrossing& crossing : scene.crossings) {
+    panel.verticalLine(crossing.time, {kRed, 1.2, true, ""});
+    // Names that would overlap step down.
+    height = crossing.time - last < 0.16 * scene.duration ? height - 0.07 : 1.07;
+    last = crossing.time;
+    panel.text({crossing.time, height * largest}, " " + crossing.to, kRed);
+  }
+  panel.finish();
+}
+
+void drawSurfaceLegend(Picture& picture, const DriveScene& scene) {
+  if (scene.base_surface.empty()) return;
+  double x = 900;
+  for (const NamedColour& known : kSurfaces) {
+    picture.fill({x, 648, 16, 16}, known.colour);
+    picture.text(x + 22, 661, known.surface, 12.0);
+    x += 95;
+  }
+}
+
+void drawRuleLegend(Picture& picture, const DriveScene& scene) {
+  if (scene.by_rule.empty()) return;
+  picture.fill({906, 690, 6, 6}, kBlue);
+  picture.text(922, 697, "as driven; the same executions by rule, mean of the last five:", 12.0);
+  double x = 900;
+  for (size_t rule = 0; rule < scene.by_rule.size(); ++rule) {
+    picture.fill({x, 714, 16, 3}, kRuleColours[rule % std::size(kRuleColours)]);
+    picture.text(x + 22, 720, scene.by_rule[rule].rule, 12.0);
+    x += 100;
+  }
+}
+
+}  // namespace
+
+void drawDrive(const std::string& path, const DriveScene& scene) {
+  Picture picture(1300, 760, scene.title);
+  drawWay(picture, scene);
+  drawErrors(picture, {900, 70, 370, 210}, "prediction error of each pattern: position", "[m]",
+             scene, &PatternError::position);
+  drawErrors(picture, {900, 365, 370, 210}, "prediction error of each pattern: yaw", "[rad]", scene,
+             &PatternError::yaw);
+  drawSurfaceLegend(picture, scene);
+  drawRuleLegend(picture, scene);
+  picture.save(path);
+}
+
+std::vector<TreeEdge> edgesOf(const plan_tree_t& message) {
+  std::vector<TreeEdge> edges;
+  const std::set<int> chosen(message.best.begin(), message.best.end());
+  for (int i = 0; i < message.num_nodes; ++i) {
+    const auto node = static_cast<size_t>(i);
+    const int parent = message.parent[node];
+    if (parent < 0 || parent >= message.num_nodes) continue;
+    const auto& from = message.node_pose[static_cast<size_t>(parent)];
+    const auto& to = message.node_pose[node];
+    edges.push_back(
+        {{from[0], from[1]}, {to[0], to[1]}, chosen.count(i) > 0 && chosen.count(parent) > 0});
+  }
+  return edges;
+}
+
+}  // namespace tread::picture

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <vector>
+
+#include "modules/identification/core/finding.hpp"
+#include "modules/identification/core/search.hpp"
+
+namespace tread::gap {
+
+/// What `tread-gap find` is asked.
+struct GapTask {
+  ModelDocument model;
+  std::vector<Drive> train;
+  std::vector<Drive> test;           ///< never used for structure or parameters; may be empty
+  std::vector<HygieneNote> hygiene;  ///< what is known of the logs (stage 0)
+  /// Lag, delay and gains of the nominal model are fitted, too: makes a model of a new vehicle.
+  bool calibrate = false;
+  /// What is real stays in, however little it changes the end error.
+  bool keep_small = false;
+  /// Accepted effects are in the model from the start and stay; rejected ones are never considered.
+  std::vector<Decision> decisions;
+  uint64_t seed = 1;
+  int threads = 1;  ///< does not change a bit of the result
+};
+
+/// Where simulation and measurement disagree, what it is most likely called, how sure that is.
+/** Stages 1 to 7 of gap.md 4.2; the error figures come from driving that was used neither for the
+ * choice of effects nor for their size: the test drives, or else alternate blocks of the training
+ * drives, each half judged by what the other half found. Deterministic for a seed. Throws
+ * std::invalid_argument for an accepted effect that the drives cannot size. */
+Finding findGap(const GapTask& task, const Progress& say);
+
+/// Members of an effect's degeneracy groups that hold for every drive (without itself), effects
+/// only.
+std::vector<std::string> twinsOf(const std::string& effect, const ModelDocument& model);
+
+}  // namespace tread::gap

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/vehicle/model_document.hpp"
+#include "modules/identification/core/drive.hpp"
+
+namespace tread::gap {
+
+/// The headline; the number is the exit status of `tread-gap find`.
+enum class Verdict {
+  kNoDiscrepancy = 0,
+  kFound = 10,
+  kAmbiguous = 11,
+  kPartial = 12,
+  kNotInCatalogue = 13,
+  kMeasurement = 14,
+  kCannotTell = 15
+};
+
+/// Name as in verdict.json: NO_DISCREPANCY, FOUND, ...
+const char* verdictName(Verdict verdict);
+
+/// A parameter as it was estimated.
+struct Estimate {
+  std::string parameter;  ///< path as in findParameter(): effect.parameter or a nominal number
+  std::string unit;
+  double value = 0.0;
+  double low = 0.0;   ///< of the 95 % interval
+  double high = 0.0;  ///< infinite bounds where the drive does not say
+  double before = 0.0;
+  /// Of a term that the model has: it is another one now, beyond chance and what the model's own
+  /// covariance allows.
+  bool moved = false;
+};
+
+/// The effect that a parameter belongs to; of a number of the nominal model the effect that changes
+/// the same.
+std::string effectOf(const Estimate& estimate);
+
+/// Another effect that explains the data as well or nearly so.
+struct RunnerUp {
+  std::string effect;
+  double behind = 0.0;  ///< [nats] cross-validated log likelihood behind the winner
+  double error = 0.0;   ///< [nats] standard error of that difference
+};
+
+/// An effect that was found.
+struct FoundEffect {
+  std::string name;
+  EffectKind kind = EffectKind::kVehicle;
+  std::vector<Estimate> parameters;
+  std::vector<std::string> group;  ///< members it cannot be told from (without itself)
+  std::vector<RunnerUp> runner_ups;
+  double score = 0.0;    ///< T of the score test in the presence of all others
+  double p_value = 1.0;  ///< of the largest T over the whole catalogue
+  double gain = 0.0;     ///< [nats] on blocks that were not fitted
+  double gain_error = 0.0;
+  bool accepted = false;  ///< by a person: it stands whatever the numbers above say
+};
+
+/// Probability of chance from which on an accepted effect is not shown by the drive itself.
+inline constexpr double kShownBelow = 0.05;
+
+/// Whether tests speak for an effect, and not a person alone.
+inline bool isShown(const FoundEffect& effect) {
+  return !effect.accepted || effect.p_value <= kShownBelow;
+}
+
+/// Median and root mean square over executions.
+struct ErrorFigure {
+  double median = 0.0;
+  double rms = 0.0;
+};
+
+/// End errors after the horizon, from where the execution begins.
+struct EndErrors {
+  ErrorFigure position;  ///< [m]
+  ErrorFigure yaw;       ///< [rad]
+  size_t executions = 0;
+};
+
+/// One execution predicted by two models, for pictures; poses relative to its beginning.
+struct Overlay {
+  size_t drive = 0;
+  double begin = 0.0;           ///< [s]
+  double duration = 2.0;        ///< [s]
+  std::vector<Pose2> measured;  ///< at equal times over the horizon
+  std::vector<Pose2> before;
+  std::vector<Pose2> after;
+  double error_before = 0.0;  ///< [m] at the end
+  double error_after = 0.0;   ///< [m]
+  /// Radius about each point of `after` within which nine of ten executions are [m]; may be empty.
+  std::vector<double> band;
+};
+
+/// What two models err at the end of an execution, and where that was.
+struct PlaceError {
+  size_t drive = 0;
+  double x = 0.0;  ///< [m] halfway, in the frame of the log
+  double y = 0.0;
+  double before = 0.0;  ///< [m]
+  double after = 0.0;   ///< [m]
+};
+
+/// How far simulation and measurement are apart after 2 s, on executions not used for the fit.
+struct Gap {
+  double horizon = 2.0;  ///< [s]
+  EndErrors before;
+  EndErrors after;
+  std::optional<EndErrors> floor;  ///< dead reckoning with encoders and gyro, where those exist
+  bool structure_nested = true;    ///< the effects, too, were chosen without these executions
+};
+
+/// One cell of the residual atlas.
+struct AtlasCell {
+  double from = 0.0;  ///< of the variable
+  double to = 0.0;
+  double mean = 0.0;  ///< of the residual (measured - predicted), per second
+  double low = 0.0;   ///< 95 % interval over blocks
+  double high = 0.0;
+  size_t rows = 0;
+  bool marked = false;  ///< the interval excludes 0 after correction for the number of cells
+};
+
+/// Residual of one channel over one variable.
+struct AtlasCurve {
+  std::string channel;   ///< along, lateral, yaw rate
+  std::string unit;      ///< of the residual: m/s or rad/s
+  std::string variable;  ///< speed, yaw rate, speed x yaw rate, ...
+  std::string variable_unit;
+  std::vector<AtlasCell> before;
+  std::vector<AtlasCell> after;
+};
+
+/// Mean residual of one channel over speed and yaw rate, for a picture.
+struct AtlasMap {
+  std::string channel;
+  std::string unit;                 ///< of the residual
+  std::vector<double> v_edges;      ///< [m/s] ascending
+  std::vector<double> omega_edges;  ///< [rad/s] ascending
+  /// One value per field, rows of equal omega; NaN = never driven.
+  std::vector<double> before;
+  std::vector<double> after;
+};
+
+/// What the residuals still depend on.
+struct Unexplained {
+  std::string channel;
+  std::string variable;
+  double score = 0.0;
+  double p_value = 1.0;
+};
+
+/// One step of the ladder: what was added and what it brought.
+struct LadderStep {
+  std::string effect;  ///< added, or removed
+  bool removed = false;
+  double score = 0.0;
+  double p_value = 1.0;
+  double gain = 0.0;  ///< [nats] cross-validated
+  double gain_error = 0.0;
+  std::vector<RunnerUp> runner_ups;
+  std::string remark;  ///< why it was removed or refused; empty else
+};
+
+/// One candidate of the first test.
+struct CandidateTest {
+  std::string effect;
+  std::string parameter;
+  double score = 0.0;
+  double p_value = 1.0;     ///< family-wise
+  double uniqueness = 1.0;  ///< share of its signature that no active term has
+  /// Smallest size found with 80 % power, in the parameter's unit, of a limit the gentlest one that
+  /// was tried; infinite = not excited.
+  double detectable = 0.0;
+};
+
+/// Everything that `tread-gap find` says.
+struct Finding {
+  Verdict verdict = Verdict::kCannotTell;
+  std::string reason;  ///< of CANNOT_TELL; empty else
+  ModelDocument before;
+  ModelDocument after;
+  std::vector<FoundEffect> effects;
+  std::vector<Estimate> calibrated;  ///< of terms that were already on
+  std::optional<Gap> gap;
+  std::vector<Unexplained> unexplained;
+  std::vector<std::string> not_excited;  ///< effects that this drive could not have shown
+  std::vector<AtlasCurve> atlas;
+  std::vector<AtlasMap> maps;  ///< may be empty
+  /// Six typical, then the three worst, of driving that was not used for the fit.
+  std::vector<Overlay> overlays;
+  std::vector<PlaceError> places;  ///< of all such executions
+  std::vector<LadderStep> ladder;
+  std::vector<CandidateTest> candidates;
+  std::vector<HygieneNote> hygiene;
+  std::vector<std::string> negligible;  ///< real but below 1 % of the end error: not added
+  std::vector<std::string> at_bound;    ///< seen, but their sizes ran to the ends of their ranges
+  size_t blocks = 0;
+  double block_length = 0.0;  ///< [s]
+  double adequacy_p = 1.0;
+  uint64_t seed = 0;
+  std::vector<Decision> decisions;  ///< of people, in the order given
+};
+
+}  // namespace tread::gap

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/identification/core/fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <thread>
+
+#include <Eigen/Cholesky>
+
+namespace tread::gap {
+namespace {
+
+constexpr int kMostSteps = 25;
+constexpr int kMostRounds = 8;    // with new Jacobians
+constexpr double kEnough = 0.02;  // [nats] a step that gains less ends a fit
+constexpr double kRoughlyEnough = 0.5;
+constexpr double kMostDamping = 1e6;  // beyond it no step is left
+constexpr double kShareOfTypical = 0.02;
+
+double& valueOf(ModelDocument& model, const std::string& path) {
+  double* value = findParameter(model, path);
+  if (value == nullptr) throw std::out_of_range("no parameter '" + path + "' in a vehicle model");
+  return *value;
+}
+
+double valueOf(const ModelDocument& model, const std::string& path) {
+  return valueOf(const_cast<ModelDocument&>(model), path);
+}
+
+FreeParameter nominalNumber(const std::string& path) {
+  if (path == "lag") return {path, 0.0, 3.0, 0.005};
+  if (path == "delay") return {path, 0.0, 2.0, 0.005};
+  if (path == "gauge") return {path, 0.05, 10.0, 0.01};
+  return {path, 0.02, 5.0, 0.01};  // gains and full speed
+}
+
+double priorLoss(const FitState& state) {
+  double sum = 0.0;
+  for (const FreeParameter& parameter : state.free) {
+    const double off =
+        (valueOf(state.model, parameter.path) - parameter.expected) / parameter.deviation;
+    sum += 0.5 * off * off;
+  }
+  return sum;
+}
+
+/// Normal equations of one iterated least squares step.
+struct Normal {
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd pull;
+};
+
+Normal normalOf(const FitState& state, const Eigen::VectorXd& residuals,
+                const std::vector<char>& mask) {
+  const Eigen::Index count = state.jacobian.cols();
+  Eigen::VectorXd weights(residuals.size());
+  for (Eigen::Index i = 0; i < residuals.size(); ++i)
+    weights[i] = mask[static_cast<size_t>(i)] ? weightOf(residuals[i], state.scales[i]) : 0.0;
+  Normal normal;
+  const Eigen::MatrixXd weighted = weights.asDiagonal() * state.jacobian;
+  normal.matrix = state.jacobian.transpose() * weighted;
+  normal.pull = weighted.transpose() * residuals;
+  const Eigen::VectorXd prior = priorPrecision(state.free);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const FreeParameter& parameter = state.free[static_cast<size_t>(i)];
+    normal.matrix(i, i) += prior[i];
+    normal.pull[i] -= prior[i] * (valueOf(state.model, parameter.path) - parameter.expected);
+  }
+  return normal;
+}
+
+/// A damped step that holds parameters which stand on a bound and are pulled outwards.
+Eigen::VectorXd dampedStep(const FitState& state, Normal normal, double damping) {
+  for (Eigen::Index i = 0; i < normal.pull.size(); ++i) {
+    const FreeParameter& parameter = state.free[static_cast<size_t>(i)];
+    const double value = valueOf(state.model, parameter.path);
+    const bool held = (value <= parameter.min && normal.pull[i] < 0.0) ||
+                      (value >= parameter.max && normal.pull[i] > 0.0);
+    if (held || normal.matrix(i, i) <= 0.0) {
+      normal.matrix.row(i).setZero();
+      normal.matrix.col(i).setZero();
+      normal.matrix(i, i) = 1.0;
+      normal.pull[i] = 0.0;
+    }
+    normal.matrix(i, i) *= 1.0 + damping;
+  }
+  return normal.matrix.ldlt().solve(normal.pull);
+}
+
+}  // namespace
+
+FreeParameter freeParameter(const ModelDocument& model, const std::string& path) {
+  const double value = valueOf(model, path);
+  const size_t dot = path.find('.');
+  FreeParameter free;
+  if (dot == std::string::npos) {
+    free = nominalNumber(path);
+  } else {
+    const EffectParameter& known =
+        parameterNamed(effectNamed(path.substr(0, dot)), path.substr(dot + 1));
+    free = {path, known.min, known.max, kShareOfTypical * std::abs(known.typical)};
+    if (known.role == ParameterRole::kShape && known.unit == "s") free.step = 1.0;
+  }
+  // A sum of times that is negative does nothing more.
+  if (path == "command_delay.delay") free.min = -model.vehicle.delay;
+  if (path == "actuator_lag.lag") free.min = -model.vehicle.lag;
+  for (const ParameterBounds& bounds : model.bounds)
+    if (bounds.parameter == path) {
+      free.min = bounds.min;
+      free.max = bounds.max;
+    }
+  free.expected = value;
+  return free;
+}
+
+void inParallel(size_t count, int threads, const std::function<void(size_t)>& body) {
+  const size_t workers = std::min(count, static_cast<size_t>(std::max(1, threads)));
+  if (workers <= 1) {
+    for (size_t i = 0; i < count; ++i) body(i);
+    return;
+  }
+  std::vector<std::thread> pool;
+  for (size_t w = 0; w < workers; ++w)
+    pool.emplace_back([&, w] {
+      for (size_t i = w; i < count; i += workers) body(i);
+    });
+  for (std::thread& worker : pool) worker.join();
+}
+
+Eigen::VectorXd priorPrecision(const std::vector<FreeParameter>& free) {
+  Eigen::VectorXd precision(static_cast<Eigen::Index>(free.size()));
+  for (size_t i = 0; i < free.size(); ++i)
+    precision[static_cast<Eigen::Index>(i)] = 1.0 / (free[i].deviation * free[i].deviation);
+  return precision;
+}
+
+bool onBound(const ModelDocument& model, const FreeParameter& parameter) {
+  const double value = valueOf(model, parameter.path);
+  const double near = 1e-6 * (parameter.max - parameter.min);
+  return value <= parameter.min + near || value >= parameter.max - near;
+}
+
+bool runsToBound(const ModelDocument& model, const FreeParameter& parameter) {
+  const double value = valueOf(model, parameter.path);
+  const bool to_nothing = value < 0.0 && (parameter.path == "command_delay.delay" ||
+                                          parameter.path == "actuator_lag.lag");
+  return value != 0.0 && !to_nothing && parameter.path.find(".time") == std::string::npos &&
+         onBound(model, parameter);
+}
+
+FitState Fitter::start(const ModelDocument& model, std::vector<FreeParameter> free,
+                       const std::vector<char>& mask) const {
+  FitState state;
+  state.model = model;
+  state.free = std::move(free);
+  state.predicted = rows_.predict(model);
+  renewNoise(state, mask);
+  return state;
+}
+
+void Fitter::renewNoise(FitState& state, const std::vector<char>& mask) const {
+  const Eigen::VectorXd activity = activityOf(rows_.rows(), state.predicted);
+  const Noise noise = estimateNoise(rows_.rows(), rows_.residuals(state.predicted), activity, mask);
+  state.scales = scalesOf(rows_.rows(), noise, activity);
+  state.loss = lossOf(state, mask);
+}
+
+void Fitter::add(FitState& state, const FreeParameter& parameter, double value,
+                 const std::vector<char>& mask) const {
+  if (state.jacobian.cols() != static_cast<Eigen::Index>(state.free.size())) renewJacobian(state);
+  state.free.push_back(parameter);
+  valueOf(state.model, parameter.path) = value;
+  state.predicted = rows_.predict(state.model);
+  state.loss = lossOf(state, mask);
+  state.jacobian.conservativeResize(state.predicted.size(), state.jacobian.cols() + 1);
+  state.jacobian.rightCols(1) = column(state, state.free.size() - 1);
+}
+
+void Fitter::release(FitState& state, size_t index) const {
+  const auto at = static_cast<Eigen::Index>(index);
+  state.free.erase(state.free.begin() + static_cast<std::ptrdiff_t>(index));
+  if (state.jacobian.cols() <= at) return;
+  for (Eigen::Index i = at; i + 1 < state.jacobian.cols(); ++i)
+    state.jacobian.col(i) = state.jacobian.col(i + 1);
+  state.jacobian.conservativeResize(state.jacobian.rows(), state.jacobian.cols() - 1);
+}
+
+double Fitter::lossOf(const FitState& state, const std::vector<char>& mask) const {
+  return totalLoss(rows_.residuals(state.predicted), state.scales, mask) + priorLoss(state);
+}
+
+Eigen::VectorXd Fitter::secant(const FitState& state, const ModelDocument& changed,
+                               double change) const {
+  return (rows_.predict(changed) - state.predicted) / change;
+}
+
+Eigen::VectorXd Fitter::column(const FitState& state, size_t index) const {
+  const FreeParameter& parameter = state.free[index];
+  ModelDocument changed = state.model;
+  double& value = valueOf(changed, parameter.path);
+  // Inwards where the next step would leave the bounds.
+  const double step = value + parameter.step > parameter.max ? -parameter.step : parameter.step;
+  value += step;
+  return secant(state, changed, step);
+}
+
+void Fitter::renewJacobian(FitState& state) const {
+  state.jacobian.resize(state.predicted.size(), static_cast<Eigen::Index>(state.free.size()));
+  inParallel(state.free.size(), threads_, [&](size_t i) {
+    state.jacobian.col(static_cast<Eigen::Index>(i)) = column(state, i);
+  });
+}
+
+bool Fitter::stepOnce(FitState& state, const std::vector<char>& mask, double& damping,
+                      double& gained) const {
+  const Normal normal = normalOf(state, rows_.residuals(state.predicted), mask);
+  while (damping < kMostDamping) {
+    FitState tried = state;
+    const Eigen::VectorXd step = dampedStep(state, normal, damping);
+    Eigen::VectorXd taken(step.size());
+    for (Eigen::Index i = 0; i < step.size(); ++i) {
+      const FreeParameter& parameter = state.free[static_cast<size_t>(i)];
+      double& value = valueOf(tried.model, parameter.path);
+      const double old = value;
+      value = std::clamp(old + step[i], parameter.min, parameter.max);
+      taken[i] = value - old;
+    }
+    tried.predicted = rows_.predict(tried.model);
+    tried.loss = lossOf(tried, mask);
+    gained = state.loss - tried.loss;
+    if (std::isfinite(tried.loss) && gained > 0.0) {
+      // Broyden: the Jacobian along the step is now known for nothing.
+      const Eigen::VectorXd seen = tried.predicted - state.predicted;
+      const Eigen::VectorXd metric = normal.matrix.diagonal().cwiseProduct(taken);
+      const double size = metric.dot(taken);
+      if (size > 0.0) tried.jacobian += (seen - state.jacobian * taken) * metric.transpose() / size;
+      state = std::move(tried);
+      damping = std::max(1e-6, damping / 10.0);
+      return true;
+    }
+    damping *= 10.0;
+  }
+  return false;
+}
+
+void Fitter::fitRoughly(FitState& state, const std::vector<char>& mask) const {
+  if (state.free.empty()) return;
+  if (state.jacobian.cols() != static_cast<Eigen::Index>(state.free.size())) renewJacobian(state);
+  state.loss = lossOf(state, mask);
+  double damping = 1e-3;
+  double gained = 0.0;
+  for (int i = 0; i < kMostSteps; ++i)
+    if (!stepOnce(state, mask, damping, gained) || gained < kRoughlyEnough) return;
+}
+
+void Fitter::fit(FitState& state, const std::vector<char>& mask) const {
+  if (state.free.empty()) return;
+  fitRoughly(state, mask);
+  for (int round = 0; round < kMostRounds; ++round) {
+    // With a Jacobian of these values: what is left is found, and covariances hold.
+    renewJacobian(state);
+    double damping = 1e-3;
+    double gained = 0.0;
+    double together = 0.0;
+    while (stepOnce(state, mask, damping, gained)) {
+      together += gained;
+      if (gained < kEnough) break;
+    }
+    if (together < kEnough * 5.0) return;
+  }
+}
+
+}  // namespace tread::gap

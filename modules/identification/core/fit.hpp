@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "modules/identification/core/likelihood.hpp"
+#include "modules/identification/core/rows.hpp"
+
+namespace tread::gap {
+
+/// A number of a model that a fit may change.
+struct FreeParameter {
+  std::string path;  ///< see findParameter()
+  double min = 0.0;  ///< hard bounds: what is physically plausible
+  double max = 0.0;
+  double step = 0.0;  ///< of differences, in the parameter's unit
+  /// What is known of it beforehand; infinite deviation = nothing.
+  double expected = 0.0;
+  double deviation = std::numeric_limits<double>::infinity();
+};
+
+/// A parameter of the catalogue or of the nominal model, free within its plausible bounds.
+/** Throws std::out_of_range for a path that names nothing. */
+FreeParameter freeParameter(const ModelDocument& model, const std::string& path);
+
+/// The model, the data and how they compare.
+struct FitState {
+  ModelDocument model;
+  std::vector<FreeParameter> free;
+  Eigen::VectorXd predicted;  ///< rows x 1
+  Eigen::VectorXd scales;     ///< rows x 1, held during a fit
+  Eigen::MatrixXd jacobian;   ///< rows x free: change of the prediction; may be of earlier values
+  double loss = 0.0;          ///< of the rows of the mask, with what is known beforehand [nats]
+};
+
+/// Runs body(0) .. body(count - 1) on so many threads; results must not depend on the order.
+void inParallel(size_t count, int threads, const std::function<void(size_t)>& body);
+
+/// Fits models to rows by iterated, damped least squares within bounds.
+class Fitter {
+ public:
+  Fitter(const Rows& rows, int threads) : rows_(rows), threads_(threads) {}
+
+  /// A state of a model with its prediction and own noise; nothing is fitted.
+  FitState start(const ModelDocument& model, std::vector<FreeParameter> free,
+                 const std::vector<char>& mask) const;
+  /// Noise and scales of the state's residuals (and its loss with them).
+  void renewNoise(FitState& state, const std::vector<char>& mask) const;
+  /// Takes a parameter into the state, with a value to begin at.
+  void add(FitState& state, const FreeParameter& parameter, double value,
+           const std::vector<char>& mask) const;
+  /// Takes one out; it keeps its value.
+  void release(FitState& state, size_t index) const;
+  /// Minimises the loss; columns that are missing in the Jacobian are made first.
+  void fit(FitState& state, const std::vector<char>& mask) const;
+  /// The same to within half a nat, with the Jacobian as the steps taught it: for comparisons.
+  void fitRoughly(FitState& state, const std::vector<char>& mask) const;
+  /// The Jacobian at the state's values.
+  void renewJacobian(FitState& state) const;
+  /// Change of the prediction per change of a parameter to `value` (rows x 1); 0 where it is equal.
+  Eigen::VectorXd secant(const FitState& state, const ModelDocument& changed, double change) const;
+
+  const Rows& rows() const { return rows_; }
+  int threads() const { return threads_; }
+
+ private:
+  double lossOf(const FitState& state, const std::vector<char>& mask) const;
+  Eigen::VectorXd column(const FitState& state, size_t index) const;
+  bool stepOnce(FitState& state, const std::vector<char>& mask, double& damping,
+                double& gained) const;
+
+  const Rows& rows_;
+  int threads_;
+};
+
+/// Prior precision of the free parameters (diagonal).
+Eigen::VectorXd priorPrecision(const std::vector<FreeParameter>& free);
+
+/// Whether a parameter stands on one of its bounds.
+bool onBound(const ModelDocument& model, const FreeParameter& parameter);
+
+/// Whether a size ran to the end of its plausible range, which makes it none.
+/** Off is no size and a moment has no range; of the lag or delay that a model has nothing may be
+ * left. */
+bool runsToBound(const ModelDocument& model, const FreeParameter& parameter);
+
+}  // namespace tread::gap

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "modules/identification/core/rows.hpp"
+
+namespace tread::gap {
+
+/// Degrees of freedom of the residuals' Student distribution: a jump of the INS must not decide.
+inline constexpr double kFreedom = 4.0;
+
+/// Negative log likelihood of a residual over its scale, without constants [nats].
+double lossOf(double residual, double scale);
+/// Its derivative by the prediction, negated: positive for a positive residual.
+double pullOf(double residual, double scale);
+/// Weight with which an iterated least squares fit takes a row: pull over residual.
+double weightOf(double residual, double scale);
+
+/// How large residuals of one channel are: scale^2 = still^2 + (share activity)^2.
+/** The ground disturbs a motion in proportion to it, the INS by itself. */
+struct ChannelNoise {
+  double still = 1.0;  ///< [rad/s or m/s]
+  double share = 0.0;  ///< [1]
+};
+using Noise = std::array<ChannelNoise, kChannels>;
+
+/// How much goes on in each row: |yaw rate| for the yaw channels, speed for the others.
+Eigen::VectorXd activityOf(const std::vector<Row>& rows, const Eigen::VectorXd& predicted);
+
+/// Noise of greatest likelihood for residuals; rows whose mask is 0 do not count.
+Noise estimateNoise(const std::vector<Row>& rows, const Eigen::VectorXd& residuals,
+                    const Eigen::VectorXd& activity, const std::vector<char>& mask);
+
+/// Scale of every row.
+Eigen::VectorXd scalesOf(const std::vector<Row>& rows, const Noise& noise,
+                         const Eigen::VectorXd& activity);
+
+/// Sum of the losses of rows whose mask is not 0.
+double totalLoss(const Eigen::VectorXd& residuals, const Eigen::VectorXd& scales,
+                 const std::vector<char>& mask);
+
+}  // namespace tread::gap

@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/identification/core/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "modules/identification/core/acceptance.hpp"
+#include "modules/identification/core/moments.hpp"
+#include "modules/identification/core/pruning.hpp"
+#include "modules/identification/core/replacement.hpp"
+#include "modules/identification/core/round.hpp"
+
+namespace tread::gap {
+namespace {
+
+constexpr size_t kRenewed = 10;  // directions that are simulated again in a round
+
+/// Plain causes that everything else must be told from.
+const std::vector<std::string>& coverPaths() {
+  static const std::vector<std::string> paths{"slip_ratio.slip", "track_width.widening",
+                                              "actuator_lag.lag", "command_delay.delay",
+                                              "ins_latency.latency"};
+  return paths;
+}
+
+std::string effectOf(const std::string& path) {
+  return path.substr(0, path.find('.'));
+}
+
+bool hasVanished(const ModelDocument& model, const Candidate& candidate) {
+  const double size = *findParameter(model, candidate.effect + "." + candidate.parameter) -
+                      (candidate.value - candidate.change);
+  return isVanishing(candidate.effect, candidate.parameter, size);
+}
+
+class Search {
+ public:
+  Search(const Fitter& fitter, const std::vector<char>& mask, const SearchSettings& settings,
+         SearchMemory& memory, const Progress& say)
+      : fitter_(fitter), mask_(mask), settings_(settings), memory_(memory), say_(say) {}
+
+  SearchResult run(const ModelDocument& model) {
+    calibrate(model);
+    takeInAccepted();
+    if (settings_.all_sized && !result_.unsized.empty()) return std::move(result_);
+    Round round = test(memory_.calibrated);
+    result_.tests = round.tests;
+    const Round first = round;
+    if (!significant(round).empty()) {
+      cover();
+      round = test(memory_.covered);
+      while (result_.effects.size() < settings_.most + covered_ && addBest(round)) {
+        renewLikeliest(round);
+        round = test(memory_.covered);
+      }
+      prune(round);
+      noteDetectable(test(memory_.covered));
+      if (foundNothing()) searchUncovered(first);
+    } else if (!result_.effects.empty()) {
+      prune(round);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  FitState& state() { return result_.state; }
+  const FitState& state() const { return result_.state; }
+
+  /// Neither an effect nor a term that is another now nor something too small to matter.
+  bool foundNothing() const {
+    const bool only_accepted = std::all_of(
+        result_.effects.begin(), result_.effects.end(),
+        [this](const std::string& effect) { return contains(settings_.accepted, effect); });
+    return only_accepted && result_.negligible.empty() && result_.released.empty();
+  }
+
+  /// The cover can imitate an effect and then go part by part, each as superfluous: once more with
+  /// nothing but what the first test shows.
+  void searchUncovered(Round round) {
+    state() = result_.calibrated;
+    DirectionBook book = memory_.calibrated;
+    while (result_.effects.size() < settings_.most && addBest(round)) {
+      book.renew(fitter_, state(), likeliestOf(round));
+      round = test(book);
+    }
+    if (!result_.effects.empty()) prune(round);
+  }
+
+  void calibrate(const ModelDocument& model) {
+    state() = fitter_.start(model, givenParameters(model, settings_.calibrate), mask_);
+    settle(state());
+    result_.calibrated = state();
+  }
+
+  /// What a person has accepted is there before anything is tested.
+  void takeInAccepted() {
+    result_.accepted = settings_.accepted;
+    result_.rejected = settings_.rejected;
+    for (const std::string& effect : settings_.accepted) {
+      if (isOn(effectNamed(effect), state().model.vehicle.effects, state().model.measurement))
+        continue;
+      const std::string why = takeIn(fitter_, state(), effect, mask_);
+      if (why.empty())
+        result_.effects.push_back(effect);
+      else
+        result_.unsized[effect] = why;
+    }
+    result_.calibrated = state();
+  }
+
+  /// Fit and noise in turn: the noise of a worse fit is too large.
+  void settle(FitState& fitted) const {
+    fitter_.fitRoughly(fitted, mask_);
+    fitter_.renewNoise(fitted, mask_);
+    fitter_.fit(fitted, mask_);
+    if (fitted.jacobian.rows() == 0) fitter_.renewJacobian(fitted);
+  }
+
+  Round test(DirectionBook& book) const {
+    return testedRound(fitter_, state(), mask_, settings_, !has_cover_, book);
+  }
+
+  /// What could have been seen beside what was found: before, its size hid the rest.
+  void noteDetectable(const Round& last) {
+    for (CandidateTest& first : result_.tests)
+      for (const CandidateTest& now : last.tests)
+        if (now.effect == first.effect) first.detectable = now.detectable;
+  }
+
+  /// The likeliest candidates of the last round get directions of the model as it is now.
+  void renewLikeliest(const Round& round) {
+    memory_.covered.renew(fitter_, state(), likeliestOf(round));
+  }
+
+  std::vector<Candidate> likeliestOf(const Round& round) const {
+    std::vector<Candidate> likeliest;
+    for (size_t i : round.best)
+      if (likeliest.size() < kRenewed &&
+          !isOn(effectNamed(round.candidates[i].effect), state().model.vehicle.effects,
+                state().model.measurement))
+        likeliest.push_back(round.candidates[i]);
+    return likeliest;
+  }
+
+  void cover() {
+    for (const std::string& path : coverPaths()) {
+      const std::string effect = effectOf(path);
+      // Numbers of the nominal model that are free cover the same.
+      if (settings_.calibrate && effect != "ins_latency") continue;
+      if (contains(settings_.rejected, effect)) continue;
+      if (isOn(effectNamed(effect), state().model.vehicle.effects, state().model.measurement))
+        continue;
+      FreeParameter parameter = freeParameter(state().model, path);
+      parameter.expected = 0.0;
+      fitter_.add(state(), parameter, 0.0, mask_);
+      result_.effects.push_back(effect);
+      ++covered_;
+    }
+    settle(state());
+    has_cover_ = true;
+  }
+
+  /// A candidate that was refitted, and what that brings on blocks left out.
+  struct Trial {
+    size_t candidate = 0;
+    FitState state;
+    Eigen::VectorXd loss;
+    Gain gain;
+    std::string refused;
+  };
+
+  Trial tryOut(const Round& round, size_t index, const Eigen::VectorXd& loss_now) const {
+    Trial trial;
+    trial.candidate = index;
+    trial.state = state();
+    addCandidate(fitter_, trial.state, round.candidates[index], round.sizes[index], mask_);
+    fitter_.fitRoughly(trial.state, mask_);
+    if (!round.candidates[index].moment.empty()) {
+      refineMoment(fitter_, trial.state, round.candidates[index].moment, mask_);
+      fitter_.fitRoughly(trial.state, mask_);
+    }
+    if (hasVanished(trial.state.model, round.candidates[index]))
+      trial.refused = "its size vanishes in the fit";
+    for (const FreeParameter& parameter : trial.state.free)
+      if (effectOf(parameter.path) == round.candidates[index].effect &&
+          *findParameter(trial.state.model, parameter.path) != 0.0 &&
+          onBound(trial.state.model, parameter))
+        trial.refused = parameter.path + " runs to the end of its plausible range";
+    trial.loss = heldOutLoss(fitter_.rows(), trial.state, mask_);
+    trial.gain = gainOf(loss_now, trial.loss, blocksThatCount(fitter_.rows(), mask_));
+    // First order may promise more than the refit keeps.
+    trial.gain.value = std::min(trial.gain.value, state().loss - trial.state.loss);
+    return trial;
+  }
+
+  /// Refits the most promising effects and adds the one that helps most on blocks left out; the
+  /// next ones if none of them is possible.
+  bool addBest(const Round& round) {
+    const std::vector<size_t> found = significant(round);
+    if (found.empty()) return false;
+    const Eigen::VectorXd now = heldOutLoss(fitter_.rows(), state(), mask_);
+    std::vector<Trial> trials;
+    const Trial* best = nullptr;
+    for (size_t begin = 0; begin < found.size() && best == nullptr; begin += settings_.tried) {
+      const size_t end = std::min(found.size(), begin + settings_.tried);
+      for (size_t i = begin; i < end; ++i) trials.push_back(tryOut(round, found[i], now));
+      for (const Trial& trial : trials)
+        if (trial.refused.empty() && trial.gain.value > 0.0 &&
+            (best == nullptr || trial.gain.value > best->gain.value))
+          best = &trial;
+    }
+    noteTrials(round, trials, best);
+    if (best == nullptr) return false;
+    const Candidate& added = round.candidates[best->candidate];
+    state() = best->state;
+    settle(state());
+    if (added.release) result_.released.push_back(added.effect);
+    if (!added.release && !contains(result_.effects, added.effect))
+      result_.effects.push_back(added.effect);
+    return true;
+  }
+
+  void noteTrials(const Round& round, const std::vector<Trial>& trials, const Trial* best) {
+    LadderStep step;
+    for (const Trial& trial : trials) {
+      const std::string& effect = round.candidates[trial.candidate].effect;
+      if (&trial == best) {
+        step.effect = effect;
+        step.score = round.scores[trial.candidate];
+        step.p_value = pValueOf(round, step.score, round.evidence[trial.candidate]);
+        step.gain = trial.gain.value;
+        step.gain_error = trial.gain.error;
+        if (round.candidates[trial.candidate].release) step.remark = "is not what the model says";
+      } else if (!trial.refused.empty() && round.candidates[trial.candidate].release) {
+        continue;  // the term stays what the model says
+      } else if (!trial.refused.empty()) {
+        LadderStep refused;
+        refused.effect = effect;
+        refused.score = round.scores[trial.candidate];
+        refused.p_value = pValueOf(round, refused.score, round.evidence[trial.candidate]);
+        refused.removed = true;
+        refused.remark = trial.refused;
+        result_.ladder.push_back(refused);
+      } else if (best != nullptr) {
+        const Gain behind = gainOf(trial.loss, best->loss, blocksThatCount(fitter_.rows(), mask_));
+        step.runner_ups.push_back({effect, behind.value, behind.error});
+      }
+    }
+    if (best == nullptr) return;
+    result_.runner_ups[step.effect] = step.runner_ups;
+    result_.p_values[step.effect] = step.p_value;
+    result_.ladder.push_back(step);
+    char line[160];
+    std::snprintf(line, sizeof line, "  + %s: score %.1f, held-out gain %.1f +- %.1f",
+                  step.effect.c_str(), step.score, step.gain, step.gain_error);
+    say_(line);
+  }
+
+  void prune(const Round& last) {
+    const Needed needed{criticalScore(last.chance, settings_.alpha_more), last.overdispersion,
+                        false, true};
+    pruneEffects(fitter_, mask_, needed, settings_.least_gain, result_, say_);
+    const size_t before = result_.ladder.size();
+    replacePairs(fitter_, mask_, result_, say_);
+    if (result_.ladder.size() > before)
+      pruneEffects(fitter_, mask_, needed, settings_.least_gain, result_, say_);
+    for (const std::string& effect : result_.effects) {
+      double& p = result_.p_values.emplace(effect, 1.0).first->second;
+      const double last_p = pValueOf(last, result_.scores[effect], result_.evidence[effect]);
+      // What stays for its gain, and not for its score, keeps the p of its acceptance.
+      if (result_.evidence[effect] >= 1.0 || last_p < p) p = last_p;
+    }
+    settle(state());
+  }
+
+  const Fitter& fitter_;
+  const std::vector<char>& mask_;
+  const SearchSettings& settings_;
+  SearchMemory& memory_;
+  const Progress& say_;
+  SearchResult result_;
+  size_t covered_ = 0;
+  bool has_cover_ = false;
+};
+
+/// A parameter held by what the model's covariance says of it, if it does.
+FreeParameter heldParameter(const ModelDocument& model, const std::string& path) {
+  FreeParameter parameter = freeParameter(model, path);
+  const ParameterCovariance& known = model.covariance;
+  for (size_t i = 0; i < known.parameters.size(); ++i) {
+    const double deviation = known.parameters[i] == path ? std::sqrt(known.matrix[i][i]) : 0.0;
+    if (deviation > 0.0 && std::isfinite(deviation)) parameter.deviation = deviation;
+  }
+  return parameter;
+}
+
+}  // namespace
+
+std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool calibrate) {
+  std::vector<FreeParameter> free;
+  if (calibrate)
+    for (const char* number : {"lag", "delay", "forward_gain", "yaw_gain"})
+      free.push_back(freeParameter(model, number));
+  const ParameterCovariance& known = model.covariance;
+  for (const std::string& path : known.parameters) {
+    if (calibrate || path.find('.') != std::string::npos) continue;
+    const FreeParameter number = heldParameter(model, path);
+    if (std::isfinite(number.deviation)) free.push_back(number);
+  }
+  for (const Effect& effect : effectCatalogue())
+    for (const EffectParameter& parameter : effect.parameters) {
+      const std::string path = effect.name + "." + parameter.name;
+      if (parameter.role == ParameterRole::kStrength && *findParameter(model, path) != 0.0)
+        free.push_back(calibrate ? freeParameter(model, path) : heldParameter(model, path));
+    }
+  return free;
+}
+
+SearchResult search(const Fitter& fitter, const ModelDocument& model, const std::vector<char>& mask,
+                    const SearchSettings& settings, SearchMemory& memory, const Progress& say) {
+  return Search(fitter, mask, settings, memory, say).run(model);
+}
+
+FitState refitted(const Fitter& fitter, const SearchResult& result, const std::vector<char>& mask) {
+  FitState state = result.state;
+  fitter.fit(state, mask);
+  return state;
+}
+
+}  // namespace tread::gap

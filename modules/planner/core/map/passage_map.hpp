@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "common/grid/grid.hpp"
+#include "modules/planner/core/map/passage_source.hpp"
+
+namespace tread::planner {
+
+/// What is remembered of the map, and how coarsely.
+struct PassageConfig {
+  double keep_radius = 40.0;  ///< [m] tiles farther from the vehicle are forgotten
+  double room_cap = 0.8;      ///< [m] more room than this is not told apart
+  int coarse = 2;             ///< cells of the map per side of a coarse cell
+};
+
+/// Coarse cells of one tile.
+struct PassageTile {
+  std::vector<float> room;       ///< [m] greatest distance to an obstacle in the cell, capped
+  std::vector<uint8_t> unknown;  ///< 1 where at least half of the cell is unknown
+};
+
+/// Everything of the map that was seen, also where mapping has forgotten it, with the room for
+/// passing.
+/** Dead ends stay known after the local map has moved on. Here unknown is passable: it may be free.
+ */
+class PassageMap : public PassageSource {
+ public:
+  PassageMap(double cell_size, int tile_cells, const PassageConfig& config);
+
+  /// Takes a tile. What it does not know keeps what was known before. Returns whether anything
+  /// changed.
+  bool put(Tile tile);
+  /// Cells of which nothing was seen are free from now on: the vehicle stands on them.
+  void markFree(const std::vector<CellIndex>& cells);
+  void forgetBeyond(const Eigen::Vector2d& p_map);
+  /// Works out the room in the tiles that changed, and in their neighbours.
+  void refresh();
+
+  /// Window of the map with full resolution.
+  Grid window(CellIndex lower, int width, int height) const {
+    return tiles_.window(lower, width, height);
+  }
+  double cellSize() const { return tiles_.cellSize(); }
+  int tileCells() const { return tiles_.tileCells(); }
+  double coarseSize() const override { return cellSize() * coarse_; }
+  void fill(PassageWindow& window) const override;
+  /// Counts up whenever a cell changes.
+  int64_t revision() const { return revision_; }
+  /// Counts up whenever the room or what is unknown changes in a coarse cell.
+  int64_t passageRevision() const { return passage_revision_; }
+  /// [us] of the newest scan in any tile; 0 before the first.
+  int64_t newestUtime() const { return newest_utime_; }
+  bool empty() const { return tiles_.tiles().empty(); }
+  const std::map<std::pair<int, int>, PassageTile>& passages() const { return passages_; }
+  int coarsePerTile() const { return tileCells() / coarse_; }
+
+ private:
+  /// What a new tile means for the room around it.
+  enum class Change { kNone, kKnowledge, kObstacles };
+  Change merge(Tile& tile) const;
+  /// Tiles from left to right and from bottom to top, all included.
+  struct TileBox {
+    int left;
+    int bottom;
+    int right;
+    int top;
+  };
+  void refreshKnowledge(std::pair<int, int> key);
+  void refreshRooms(const std::vector<std::pair<int, int>>& keys);
+  bool refreshUnknown(const Tile& tile, PassageTile& passage) const;
+  bool refreshRoom(std::pair<int, int> key, const ClearanceField& field,
+                   PassageTile& passage) const;
+  ClearanceField fieldOver(const TileBox& box) const;
+
+  TileMap tiles_;
+  PassageConfig config_;
+  int coarse_;
+  std::map<std::pair<int, int>, PassageTile> passages_;
+  std::map<std::pair<int, int>, Change> dirty_;
+  int64_t revision_ = 0;
+  int64_t passage_revision_ = 0;
+  int64_t newest_utime_ = 0;
+};
+
+}  // namespace tread::planner

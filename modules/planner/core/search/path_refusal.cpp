@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// Queries to which there is certainly no plan, and how close the vehicle can come to such a goal.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "modules/planner/core/search/path_planner.hpp"
+
+namespace tread::planner {
+namespace {
+
+/// Goals with more cells than that across are judged by coarse ones.
+constexpr double kLargeGoal = 100.0;
+/// Goals beyond lie on no map, and their cells have no numbers [m].
+constexpr double kFarthest = 1e7;
+
+PathAnswer refused(const std::string& reason) {
+  PathAnswer answer;
+  answer.end = PathEnd::kUnreachable;
+  answer.reason = reason;
+  return answer;
+}
+
+}  // namespace
+
+std::optional<PathAnswer> PathPlanner::refusal(const PathQuery& query) const {
+  if (!std::isfinite(query.T_map_start.yaw)) return refused("the start's heading is no number");
+  if (!std::isfinite(query.T_map_goal.yaw)) return refused("the goal's heading is no number");
+  if (!(query.T_map_goal.position().norm() < kFarthest))
+    return refused("the goal lies outside the map");
+  if (!(query.position_tolerance > 0.0) || !(query.yaw_tolerance > 0.0))
+    return refused("the goal's tolerances are not above 0");
+  if (costs_ == nullptr) return refusalOfAreas(query);
+  if (!isFree(query.T_map_start)) return refused("the start lies on obstacles");
+  if (!isFree(query.T_map_goal)) return refused("the goal lies on obstacles");
+  return std::nullopt;
+}
+
+std::optional<PathAnswer> PathPlanner::refusalOfAreas(const PathQuery& query) const {
+  const Eigen::Vector2d p_start = query.T_map_start.position();
+  const Eigen::Vector2d p_goal = query.T_map_goal.position();
+  if (!surroundings_->grid().contains(surroundings_->grid().indexOf(p_start)))
+    return refused("the start lies outside the map");
+  const std::vector<int> from = areasFrom(query.T_map_start);
+  const std::vector<int> to = areasAround(p_goal, query.position_tolerance);
+  const bool connected = std::any_of(from.begin(), from.end(), [&](int area) {
+    return std::find(to.begin(), to.end(), area) != to.end();
+  });
+  // Nothing needs to be worked out for a start that no pattern can leave.
+  if (connected && (isWithin(query.goal(), query.T_map_start, config_.search.goal_share) ||
+                    anyBegins(query.T_map_start)))
+    return std::nullopt;
+  if (connected) return refused(kNoneBeginsReason);
+  PathAnswer answer = refused("obstacles enclose the goal or the vehicle");
+  if (from.empty())
+    answer.reason = "the start lies on obstacles";
+  else if (!surroundings_->grid().contains(surroundings_->grid().indexOf(p_goal)))
+    answer.reason = "the goal lies outside the map";
+  else if (to.empty())
+    answer.reason = "the goal lies on obstacles, or too near to them";
+  answer.closest = passages_->nearestIn(from, p_goal);
+  return answer;
+}
+
+/// Numbers of the areas in which the disc inside the footprint may be after the start was left.
+std::vector<int> PathPlanner::areasFrom(const Pose2& start) const {
+  const int own = passages_->areaAt(start.position());
+  if (own != 0 && isFree(start)) return {own};
+  double longest = 0.0;
+  for (const TablePattern& pattern : patterns_.patterns())
+    longest = std::max(longest, pattern.end().pose.position().norm());
+  return passages_->areasNear(start.position(), config_.search.escape_patterns * longest);
+}
+
+/// Numbers of the areas in which the disc inside the footprint may be in the goal.
+/** Cell by cell: what the coarse ones say is too kind to goals on walls, unless these are large. */
+std::vector<int> PathPlanner::areasAround(const Eigen::Vector2d& p_goal, double tolerance) const {
+  const Grid& grid = surroundings_->grid();
+  if (!(tolerance < kLargeGoal * grid.cellSize())) return passages_->areasNear(p_goal, tolerance);
+  const double corner = kMostSlack * grid.cellSize();
+  const double reach = tolerance + corner;
+  const Eigen::Vector2d lower = grid.centre(grid.lower());
+  const Eigen::Vector2d upper =
+      grid.centre({grid.lower().x + grid.width() - 1, grid.lower().y + grid.height() - 1});
+  const auto cellAt = [&](const Eigen::Vector2d& p) {
+    return grid.indexOf(p.cwiseMax(lower).cwiseMin(upper));
+  };
+  const CellIndex first = cellAt(p_goal - Eigen::Vector2d::Constant(reach));
+  const CellIndex last = cellAt(p_goal + Eigen::Vector2d::Constant(reach));
+  std::vector<int> areas;
+  for (int y = first.y; y <= last.y; ++y) {
+    for (int x = first.x; x <= last.x; ++x) {
+      const Eigen::Vector2d p = grid.centre({x, y});
+      if (surroundings_->field().quick(p.x(), p.y()) < inscribed_ - corner) continue;
+      if ((p - p_goal).norm() > reach) continue;
+      const int area = passages_->areaAt(p);
+      if (area != 0 && std::find(areas.begin(), areas.end(), area) == areas.end())
+        areas.push_back(area);
+    }
+  }
+  return areas;
+}
+
+/// Whether a pattern may be driven from the start, and the vehicle stopped after it.
+bool PathPlanner::anyBegins(const Pose2& start) const {
+  const Surroundings& around = *surroundings_;
+  const bool is_free = isFree(start);
+  const auto mayFollow = [&](const Pose2& from, const Overlap& overlap, const TablePattern& p) {
+    if (is_free) return around.sweepFree(from, p, Surroundings::kBare);
+    return config_.search.escape_patterns > 0 && around.escape(from, overlap, p).has_value();
+  };
+  const Overlap at_start = around.overlap(start);
+  const auto& first = patterns_.from(patterns_.restClass());
+  return std::any_of(first.begin(), first.end(), [&](const TablePattern* pattern) {
+    if (!mayFollow(start, at_start, *pattern)) return false;
+    if (pattern->exit == patterns_.restClass()) return true;
+    const Pose2 end = start * pattern->end().pose;
+    const Overlap at_end = around.overlap(end);
+    const auto& stops = patterns_.stopsFrom(pattern->exit);
+    return std::any_of(stops.begin(), stops.end(),
+                       [&](const TablePattern* stop) { return mayFollow(end, at_end, *stop); });
+  });
+}
+
+/// The disc inside the footprint finds no way though its area reaches to the goal: all but certain.
+PathAnswer PathPlanner::withoutWay(const PathQuery& query, const CostToGo& way,
+                                   const StopPredicate& stop, const PathEvents& events) {
+  PathAnswer answer;
+  answer.search.exhausted = true;
+  answer.reason = way.problem();
+  answer.closest =
+      way.nearestWithinReach(query.T_map_start.position(), query.T_map_goal.position());
+  if (!query.come_close || !answer.closest) return answer;
+  PathAnswer close = comeClose(query, answer, stop, events);
+  if (close.end == PathEnd::kUnreachable) close.end = PathEnd::kNoneInTime;
+  return close;
+}
+
+PathAnswer PathPlanner::comeClose(const PathQuery& query, const PathAnswer& refusal,
+                                  const StopPredicate& stop, const PathEvents& events) {
+  PathQuery nearer = query;
+  nearer.T_map_goal = {refusal.closest->x(), refusal.closest->y(), query.T_map_goal.yaw};
+  nearer.yaw_tolerance = kPi;
+  nearer.come_close = false;
+  // The inscribed disc has room there; the vehicle may not be able to turn so. A plan that ends
+  // anywhere around is there soon; then nearer ones are looked for, the last as long as there is
+  // time.
+  bool found = false;
+  int before = 0;
+  PathEvents noted = events;
+  noted.better_plan = [&](double cost, int expansions) {
+    found = true;
+    if (events.better_plan) events.better_plan(cost, before + expansions);
+  };
+  // Of the coarse cell that is nearest a corner may be all that is free.
+  const double corner = kMostSlack * (passages_->coarseSize() + surroundings_->grid().cellSize());
+  const double widest =
+      std::max({query.position_tolerance, surroundings_->circumscribedRadius(), corner});
+  PathAnswer answer;
+  for (const double tolerance : {widest, widest / 2.0, query.position_tolerance}) {
+    if (tolerance < query.position_tolerance) continue;
+    const bool is_last = tolerance <= query.position_tolerance;
+    nearer.position_tolerance = tolerance;
+    found = false;
+    PathAnswer next = this->answer(
+        nearer, [&](int count) { return stop(before + count) || (found && !is_last); }, noted);
+    const bool solved = next.end == PathEnd::kSolved;
+    before += next.search.expansions;
+    if (solved || answer.end != PathEnd::kSolved) answer = std::move(next);
+    if (!solved || is_last || stop(before)) break;
+    noted.search_begins = nullptr;
+  }
+  answer.search.expansions = before;
+  answer.reason = answer.end == PathEnd::kSolved
+                      ? "as close as possible: " + refusal.reason
+                      : refusal.reason + "; coming close: " + answer.reason;
+  answer.closest = refusal.closest;
+  return answer;
+}
+
+}  // namespace tread::planner

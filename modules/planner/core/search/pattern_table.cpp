@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/planner/core/search/pattern_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tread::planner {
+namespace {
+
+/// Slower than this counts as standing [m/s, rad/s].
+constexpr double kStanding = 0.02;
+
+/// Smallest disc around the middle of the positions that holds them all.
+void addDisc(TablePattern& entry) {
+  Eigen::Vector2d lower(0.0, 0.0), upper(0.0, 0.0);
+  for (const SweepPose& at : entry.sweep) {
+    lower = lower.cwiseMin(at.pose.position());
+    upper = upper.cwiseMax(at.pose.position());
+  }
+  entry.centre = (lower + upper) / 2.0;
+  entry.radius = entry.centre.norm();
+  for (const SweepPose& at : entry.sweep)
+    entry.radius = std::max(entry.radius, (at.pose.position() - entry.centre).norm());
+}
+
+double lengthOf(const std::vector<Pose2>& poses) {
+  double length = 0.0;
+  Pose2 before;
+  for (const Pose2& pose : poses) {
+    length += distanceBetween(before, pose);
+    before = pose;
+  }
+  return length;
+}
+
+Uncertainty uncertaintyOf(const DefaultSigma& sigma) {
+  Uncertainty result;
+  result.xx = result.yy = static_cast<float>(sigma.position * sigma.position);
+  result.yawyaw = static_cast<float>(sigma.yaw * sigma.yaw);
+  return result;
+}
+
+TablePattern prepare(const Primitive& primitive, const SweepStep& step) {
+  TablePattern entry;
+  entry.number = primitive.id;
+  entry.duration = primitive.duration;
+  entry.cost = primitive.cost;
+  entry.length = lengthOf(primitive.poses);
+  entry.reverses = primitive.poses.back().x < -kStanding;
+  const double period = primitive.duration / static_cast<double>(primitive.poses.size());
+  entry.sweep = sampleSweep(primitive.poses, period, step);
+  entry.cover = coverOf(entry.sweep, primitive.poses, period, step);
+  entry.start_bin = primitive.start_bin;
+  entry.cells = primitive.cells;
+  addDisc(entry);
+  return entry;
+}
+
+}  // namespace
+
+PatternTable::PatternTable(PatternSet set, const SweepStep& step, const DefaultSigma& sigma)
+    : set_(std::move(set)), rest_class_(findRestClass()) {
+  for (const MotionPattern& pattern : set_->patterns())
+    patterns_.push_back(prepare(pattern, step, sigma));
+  index(set_->content().classes.size());
+  bound();
+}
+
+PatternTable::PatternTable(const std::vector<Primitive>& primitives, const SweepStep& step)
+    : rest_class_(0) {
+  for (const Primitive& primitive : primitives)
+    patterns_.push_back(planner::prepare(primitive, step));
+  index(1);
+  bound();
+}
+
+void PatternTable::index(size_t classes) {
+  from_.resize(classes);
+  stops_.resize(classes);
+  for (const TablePattern& entry : patterns_) {
+    from_[static_cast<size_t>(entry.entry)].push_back(&entry);
+    if (entry.exit == rest_class_) stops_[static_cast<size_t>(entry.entry)].push_back(&entry);
+  }
+}
+
+void PatternTable::bound() {
+  double most_metres = 0.0;  // per cost, as the next
+  double most_radians = 0.0;
+  for (const TablePattern& entry : patterns_) {
+    const double turn = std::abs(entry.end().pose.yaw);
+    best_speed_ = std::max(best_speed_, entry.length / entry.duration);
+    best_turn_rate_ = std::max(best_turn_rate_, turn / entry.duration);
+    most_metres = std::max(most_metres, entry.length / entry.cost);
+    most_radians = std::max(most_radians, turn / entry.cost);
+  }
+  LeastCost& by_way = least_costs_[0];
+  LeastCost& by_turn = least_costs_[1];
+  by_way = {most_metres > 0.0 ? 1.0 / most_metres : 0.0, std::numeric_limits<double>::infinity()};
+  by_turn = {std::numeric_limits<double>::infinity(),
+             most_radians > 0.0 ? 1.0 / most_radians : 0.0};
+  for (const TablePattern& entry : patterns_) {
+    const double turn = std::abs(entry.end().pose.yaw);
+    if (turn > 0.0)
+      by_way.per_radian =
+          std::min(by_way.per_radian, (entry.cost - by_way.per_metre * entry.length) / turn);
+    if (entry.length > 0.0)
+      by_turn.per_metre =
+          std::min(by_turn.per_metre, (entry.cost - by_turn.per_radian * turn) / entry.length);
+  }
+  // Rounding can leave a little below nothing; a set that never turns or moves leaves no bound.
+  for (double* value : {&by_way.per_radian, &by_turn.per_metre})
+    *value = std::isfinite(*value) ? std::max(0.0, *value) : 0.0;
+}
+
+TablePattern PatternTable::prepare(const MotionPattern& pattern, const SweepStep& step,
+                                   const DefaultSigma& sigma) const {
+  TablePattern entry;
+  entry.pattern = &pattern;
+  entry.number = pattern.id;
+  entry.entry = classIndex(pattern.entry_class);
+  entry.exit = classIndex(pattern.exit_class);
+  entry.duration = set_->periodSeconds() * static_cast<double>(pattern.commands.size());
+  entry.cost = entry.duration;
+  entry.length = pattern.pathLength();
+  entry.reverses = pattern.end().x < -kStanding;
+  entry.sweep = sampleSweep(pattern.trajectory, set_->periodSeconds(), step);
+  entry.cover = coverOf(entry.sweep, pattern.trajectory, set_->periodSeconds(), step);
+  entry.uncertainty = uncertaintyOf(pattern.end_covariance, uncertaintyOf(sigma));
+  addDisc(entry);
+  return entry;
+}
+
+const TablePattern* PatternTable::find(int id) const {
+  const auto found = std::find_if(patterns_.begin(), patterns_.end(),
+                                  [id](const TablePattern& entry) { return entry.id() == id; });
+  return found == patterns_.end() ? nullptr : &*found;
+}
+
+int PatternTable::classIndex(const std::string& name) const {
+  const auto& classes = set_->content().classes;
+  for (size_t i = 0; i < classes.size(); ++i)
+    if (classes[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
+int PatternTable::findRestClass() const {
+  const auto& classes = set_->content().classes;
+  for (size_t i = 0; i < classes.size(); ++i) {
+    const Twist2& twist = classes[i].twist;
+    if (std::hypot(twist.v_x, twist.v_y) < kStanding && std::abs(twist.omega) < kStanding)
+      return static_cast<int>(i);
+  }
+  return -1;
+}
+
+std::string PatternTable::defect() const {
+  if (rest_class_ < 0) return "the pattern set has no class of standing";
+  if (from(rest_class_).empty()) return "the pattern set has no pattern that begins at rest";
+  for (int i = 0; i < classCount(); ++i) {
+    const bool entered = std::any_of(patterns_.begin(), patterns_.end(),
+                                     [i](const TablePattern& entry) { return entry.exit == i; });
+    if (i != rest_class_ && entered && stopsFrom(i).empty())
+      return "the pattern set has no pattern that stops from class " + motionClass(i).name;
+  }
+  return best_speed_ > 0.0 ? "" : "no pattern of the set moves";
+}
+
+}  // namespace tread::planner

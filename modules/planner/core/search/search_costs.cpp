@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// What a node of the search costs, and what is left from it on.
+#include <algorithm>
+#include <cmath>
+
+#include "modules/planner/core/search/search.hpp"
+
+namespace tread::planner {
+namespace {
+
+/// Nearer to the goal than this its heading counts, farther off that of the way [m].
+constexpr double kNearGoal = 1.0;
+/// Where the guide knows no way it may be wrong, but not often [1].
+constexpr float kUnlikely = 100.0F;
+
+/// Arc cosine to within 7e-5 rad (Abramowitz and Stegun 1964, 4.4.45), clamped.
+float arcCosine(float x) {
+  const float a = std::min(1.0F, std::abs(x));
+  const float value =
+      std::sqrt(1.0F - a) * (1.5707288F + a * (-0.2121144F + a * (0.0742610F - 0.0187293F * a)));
+  return x < 0.0F ? static_cast<float>(kPi) - value : value;
+}
+
+}  // namespace
+
+float Search::edgeCost(const Node& parent, const TablePattern& pattern, const Node& end) const {
+  if (problem_->cell_costs != nullptr) {
+    const CellIndex from{static_cast<int>(std::floor(parent.x * per_cell_)),
+                         static_cast<int>(std::floor(parent.y * per_cell_))};
+    const int worst = problem_->cell_costs->worst(from, pattern.cells);
+    return worst < 0 ? kNever : static_cast<float>(pattern.cost * (worst + 1));
+  }
+  double weight = 1.0;
+  const Surroundings& around = *problem_->surroundings;
+  if (config_.near_penalty > 0.0)
+    weight += config_.near_penalty * around.nearness(end.x, end.y, config_.near_distance);
+  if (config_.unknown_penalty > 0.0 && around.isUnknown({end.x, end.y}))
+    weight += config_.unknown_penalty;
+  if (pattern.reverses) weight += config_.reverse_penalty;
+  double cost = pattern.cost * weight;
+  const int rest = problem_->patterns->restClass();
+  if (pattern.exit == rest && pattern.entry != rest) cost += config_.stop_penalty;
+  if (config_.turn_penalty > 0.0) cost += config_.turn_penalty * std::abs(pattern.end().pose.yaw);
+  return static_cast<float>(cost);
+}
+
+bool Search::staysOnPlan(const Node& parent, const TablePattern& pattern) const {
+  const auto depth = static_cast<size_t>(parent.depth);
+  return parent.on_plan == parent.depth && depth < problem_->committed.size() &&
+         problem_->committed[depth] == pattern.id();
+}
+
+float Search::switchPenalty(const Node& parent, const TablePattern& pattern) const {
+  const auto depth = static_cast<size_t>(parent.depth);
+  if (parent.on_plan != parent.depth || depth >= problem_->committed.size()) return 0.0F;
+  if (problem_->committed[depth] == pattern.id()) return 0.0F;
+  return static_cast<float>(config_.switch_penalty * std::exp2(-parent.depth));
+}
+
+/// There is no way over blocked ground; who leaves it may go straight.
+Search::ToGo Search::toGo(const Node& node, bool on_blocked_ground) const {
+  const Goal& goal = problem_->goal;
+  CostToGo::Sample at;
+  if (problem_->cost_to_go != nullptr) {
+    at = problem_->cost_to_go->sample(node.x, node.y);
+    if (!(at.length < kNever) && !on_blocked_ground) return {kNever, kNever};
+  }
+  if (problem_->cost_to_go == nullptr || !(at.length < kNever)) {
+    const double dx = goal.T_map_goal.x - node.x;
+    const double dy = goal.T_map_goal.y - node.y;
+    const double distance = std::sqrt(dx * dx + dy * dy);
+    at.length = static_cast<float>(std::max(0.0, distance - goal.position_tolerance));
+  }
+  float off_goal = 0.0F;
+  if (goal.yaw_tolerance < kPi)
+    off_goal = std::max(0.0F, std::abs(wrapped(node.yaw - goal_yaw_)) - yaw_tolerance_);
+  const float way = std::max(0.0F, way_share_ * at.length - slack_);
+  const float bound = std::max(metre_cost_[0] * way + radian_cost_[0] * off_goal,
+                               metre_cost_[1] * way + radian_cost_[1] * off_goal);
+  if (problem_->pose_to_go != nullptr) {
+    const float known = problem_->pose_to_go->at(node.x, node.y, node.yaw);
+    return {bound, weights_.bound * std::max(bound, std::min(known, kUnlikely * (1.0F + bound)))};
+  }
+  float turn = off_goal;
+  if (weights_.turn > 0.0F && at.length > kNearGoal)
+    turn = arcCosine(at.along_x * node.cos_yaw + at.along_y * node.sin_yaw);
+  const float expected =
+      std::max(bound, metre_cost_[0] * std::max(0.0F, guess_share_ * at.length - slack_));
+  return {bound, weights_.bound * expected + weights_.turn * radian_cost_[1] * turn};
+}
+
+}  // namespace tread::planner

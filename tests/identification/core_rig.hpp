@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "modules/identification/core/fit.hpp"
+#include "synthetic_drive.hpp"
+
+namespace tread::gap::samples {
+
+using Values = std::vector<std::pair<std::string, double>>;
+
+/// The synthetic vehicle with numbers changed.
+inline ModelDocument vehicleWith(const Values& changed) {
+  ModelDocument model = syntheticVehicle();
+  for (const auto& [path, value] : changed)
+    *findParameter(model, freeParameter(model, path).path) = value;  // throws for a typing error
+  return model;
+}
+
+/// Rows of one synthetic drive, to which a stage of the workflow is put alone.
+struct Rig {
+  Rig(const Values& hidden, double seconds, uint64_t seed, const SyntheticNoise& noise = {})
+      : drives{syntheticDrive(vehicleWith(hidden), seconds, seed, noise)},
+        rows(drives, {}),
+        fitter(rows, 1),
+        all(rows.rows().size(), 1) {}
+
+  /// A state of the nominal vehicle whose residuals are these; no parameter is free.
+  FitState stateOf(const Eigen::VectorXd& residuals, double scale) const {
+    FitState state;
+    state.model = syntheticVehicle();
+    state.predicted = rows.residuals(residuals);  // measured less residuals
+    state.scales = Eigen::VectorXd::Constant(residuals.size(), scale);
+    state.jacobian.resize(residuals.size(), 0);
+    return state;
+  }
+
+  /// The nominal vehicle with these parameters free, fitted, with its own noise.
+  FitState fitted(const Values& begin) const {
+    FitState state = fitter.start(syntheticVehicle(), {}, all);
+    for (const auto& [path, value] : begin) {
+      FreeParameter parameter = freeParameter(state.model, path);
+      fitter.add(state, parameter, value, all);
+    }
+    fitter.fitRoughly(state, all);
+    fitter.renewNoise(state, all);
+    fitter.fit(state, all);
+    return state;
+  }
+
+  Eigen::Index size() const { return static_cast<Eigen::Index>(rows.rows().size()); }
+
+  std::vector<Drive> drives;
+  Rows rows;
+  Fitter fitter;
+  std::vector<char> all;
+};
+
+/// Noise of size 1 of whose variance a share is common to all rows of a channel and block.
+inline Eigen::VectorXd blockNoise(const Rows& rows, uint64_t seed, double share = 0.5) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> gauss(0.0, 1.0);
+  Eigen::MatrixXd common(rows.blocks(), static_cast<Eigen::Index>(kChannels));
+  for (Eigen::Index i = 0; i < common.size(); ++i) common(i) = gauss(random);
+  Eigen::VectorXd noise(static_cast<Eigen::Index>(rows.rows().size()));
+  for (Eigen::Index i = 0; i < noise.size(); ++i) {
+    const Row& row = rows.rows()[static_cast<size_t>(i)];
+    noise[i] = std::sqrt(1.0 - share) * gauss(random) +
+               std::sqrt(share) * common(row.block, static_cast<Eigen::Index>(row.channel));
+  }
+  return noise;
+}
+
+/// Directions, each a wave of its own period in the rows of one channel.
+inline Eigen::MatrixXd waves(const Rows& rows, int count) {
+  Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.rows().size()),
+                                                     static_cast<Eigen::Index>(count));
+  for (Eigen::Index i = 0; i < directions.rows(); ++i) {
+    const Row& row = rows.rows()[static_cast<size_t>(i)];
+    for (int c = static_cast<int>(row.channel); c < count; c += static_cast<int>(kChannels))
+      directions(i, c) = std::cos(row.begin / (3.0 + 2.0 * c) + c);
+  }
+  return directions;
+}
+
+}  // namespace tread::gap::samples

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include "modules/identification/core/discovery.hpp"
+#include "synthetic_drive.hpp"
+
+using namespace tread;
+using namespace tread::gap;
+
+namespace {
+
+const Progress kSilent = [](const std::string&) {};
+
+using Values = std::vector<std::pair<std::string, double>>;
+
+/// What is found with a model on a drive of the synthetic vehicle in which numbers were changed.
+Finding findOn(const Values& hidden, const ModelDocument& model, double seconds, uint64_t seed,
+               int threads = 2) {
+  ModelDocument truth = syntheticVehicle();
+  for (const auto& [path, value] : hidden) *findParameter(truth, path) = value;
+  GapTask task;
+  task.model = model;
+  task.seed = seed;
+  task.threads = threads;
+  task.train.push_back(syntheticDrive(truth, seconds, seed));
+  return findGap(task, kSilent);
+}
+
+Finding findAfter(const Values& hidden, double seconds, uint64_t seed, int threads = 2) {
+  return findOn(hidden, syntheticVehicle(), seconds, seed, threads);
+}
+
+/// The synthetic vehicle with terms of which its file says how sure they are.
+ModelDocument sureOf(const Values& known, double deviation) {
+  ModelDocument model = syntheticVehicle();
+  for (const auto& [path, value] : known) {
+    *findParameter(model, path) = value;
+    model.covariance.parameters.push_back(path);
+    model.covariance.matrix.emplace_back(known.size(), 0.0);
+    model.covariance.matrix.back()[model.covariance.matrix.size() - 1] = deviation * deviation;
+  }
+  return model;
+}
+
+std::vector<std::string> namesIn(const Finding& finding) {
+  std::vector<std::string> names;
+  for (const FoundEffect& effect : finding.effects) names.push_back(effect.name);
+  return names;
+}
+
+using Names = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("a drive of the model itself shows no discrepancy, and says what it would have seen") {
+  const Finding finding = findAfter({}, 400.0, 3);
+  CHECK(finding.verdict == Verdict::kNoDiscrepancy);
+  CHECK(finding.effects.empty());
+  REQUIRE(!finding.candidates.empty());
+  REQUIRE(finding.gap);
+  CHECK(finding.gap->after.position.median == Approx(finding.gap->before.position.median));
+}
+
+TEST_CASE("a hidden effect of the drive is named, sized within its interval, and closes the gap") {
+  const Finding finding = findAfter({{"motor_deadband.speed", 0.1}}, 400.0, 2);
+  CHECK(finding.verdict == Verdict::kFound);
+  REQUIRE(namesIn(finding) == Names{"motor_deadband"});
+  const Estimate& speed = finding.effects[0].parameters.at(0);
+  CHECK(speed.value == Approx(0.1).margin(0.01));
+  CHECK(speed.low < speed.value);
+  CHECK(speed.value < speed.high);
+  CHECK(finding.after.vehicle.effects.motor_deadband == speed.value);
+  REQUIRE(finding.gap);
+  CHECK(finding.gap->after.position.median < 0.5 * finding.gap->before.position.median);
+}
+
+TEST_CASE("an effect of the calibrated set that the model lacks is found, not swallowed") {
+  CHECK(namesIn(findAfter({{"slip_ratio.slip", 0.1}}, 400.0, 4)) == Names{"slip_ratio"});
+}
+
+TEST_CASE("what the INS does is named as the INS's") {
+  const Finding finding = findAfter({{"lever_arm_y.offset", 0.1}}, 400.0, 5);
+  CHECK(finding.verdict == Verdict::kMeasurement);
+  CHECK(namesIn(finding) == Names{"lever_arm_y"});
+  CHECK(finding.after.vehicle.effects.icr_offset == 0.0);
+}
+
+TEST_CASE("what no drive can tell apart is ambiguous, with both names") {
+  const Finding finding = findAfter({{"icr_offset.offset", 0.1}}, 400.0, 6);
+  CHECK(finding.verdict == Verdict::kAmbiguous);
+  REQUIRE(finding.effects.size() == 1);
+  Names both = finding.effects[0].group;
+  both.push_back(finding.effects[0].name);
+  std::sort(both.begin(), both.end());
+  CHECK(both == Names{"icr_offset", "lever_arm_x"});
+}
+
+TEST_CASE("a bias of the gyro is found though it moves no pose") {
+  const Finding finding = findAfter({{"gyro_bias.rate", 0.03}}, 400.0, 10);
+  CHECK(finding.verdict == Verdict::kMeasurement);
+  CHECK(namesIn(finding) == Names{"gyro_bias"});
+}
+
+TEST_CASE("a large effect is found in the shortest drive that counts") {
+  CHECK(namesIn(findAfter({{"lever_arm_y.offset", 0.1}}, 204.0, 11)) == Names{"lever_arm_y"});
+}
+
+TEST_CASE("a term that the model was sure of and that is another now has moved") {
+  const Finding finding = findOn({{"track_width.widening", 0.4}},
+                                 sureOf({{"track_width.widening", 0.2}}, 0.004), 400.0, 12);
+  CHECK(finding.verdict == Verdict::kFound);
+  CHECK(namesIn(finding).empty());
+  REQUIRE(!finding.calibrated.empty());
+  const Estimate& width = finding.calibrated.front();
+  CHECK(width.parameter == "track_width.widening");
+  CHECK(width.moved);
+  CHECK(width.value == Approx(0.4).margin(0.03));
+}
+
+TEST_CASE("terms that the model is sure of do not give way to what is new") {
+  // Free, the two inertias together would be the lag.
+  const Values known{{"yaw_inertia.lag", 0.05}, {"body_inertia.lag", 0.05}};
+  Values hidden = known;
+  hidden.emplace_back("actuator_lag.lag", 0.15);
+  const Finding finding = findOn(hidden, sureOf(known, 0.002), 400.0, 13);
+  CHECK(namesIn(finding) == Names{"actuator_lag"});
+  for (const Estimate& estimate : finding.calibrated) CHECK(!estimate.moved);
+}
+
+TEST_CASE("95 % intervals hold the truth about as often as they say") {
+  const Values hidden{{"motor_deadband.speed", 0.1},    {"yaw_breakaway.rate", 0.12},
+                      {"track_asymmetry.share", 0.05},  {"lever_arm_y.offset", 0.1},
+                      {"slope_pitch.compliance", 0.06}, {"turn_speed_loss.loss", 0.15}};
+  int held = 0;
+  int named = 0;
+  for (uint64_t seed = 100; seed < 136; ++seed) {
+    const auto& [path, value] = hidden[seed % hidden.size()];
+    for (const FoundEffect& effect : findAfter({{path, value}}, 300.0, seed).effects)
+      for (const Estimate& estimate : effect.parameters) {
+        if (estimate.parameter != path) continue;
+        ++named;
+        held += estimate.low <= value && value <= estimate.high;
+      }
+  }
+  INFO(held << " of " << named);
+  CHECK(named >= 32);
+  CHECK(held >= 0.85 * named);
+}
+
+TEST_CASE("two hidden effects are both named") {
+  Names names = namesIn(
+      findAfter({{"track_asymmetry.share", 0.05}, {"centrifugal_drift.time", 0.2}}, 500.0, 7));
+  std::sort(names.begin(), names.end());
+  CHECK(names == Names{"centrifugal_drift", "track_asymmetry"});
+}
+
+TEST_CASE("effects that are both found do not stand in each other's place") {
+  const Finding finding = findAfter({{"speed_saturation.inverse_limit", 1.3},
+                                     {"turn_power_limit.inverse_limit", 1.5},
+                                     {"turn_speed_loss.loss", 0.15}},
+                                    500.0, 7);
+  const Names names = namesIn(finding);
+  REQUIRE(names.size() > 1);
+  for (const FoundEffect& effect : finding.effects)
+    for (const RunnerUp& other : effect.runner_ups) {
+      INFO(effect.name << " or " << other.effect);
+      CHECK(std::find(names.begin(), names.end(), other.effect) == names.end());
+    }
+}
+
+TEST_CASE("a drive of two minutes is too short to tell chance from cause") {
+  const Finding finding = findAfter({{"motor_deadband.speed", 0.1}}, 120.0, 8);
+  CHECK(finding.verdict == Verdict::kCannotTell);
+  CHECK(finding.reason.find("drive at least 200 s") != std::string::npos);
+}
+
+TEST_CASE("the number of threads does not change a bit of what is found") {
+  const Finding one = findAfter({{"yaw_pull.pull", 0.06}}, 300.0, 9, 1);
+  const Finding three = findAfter({{"yaw_pull.pull", 0.06}}, 300.0, 9, 3);
+  REQUIRE(namesIn(one) == namesIn(three));
+  REQUIRE(!one.effects.empty());
+  for (size_t i = 0; i < one.effects[0].parameters.size(); ++i) {
+    CHECK(one.effects[0].parameters[i].value == three.effects[0].parameters[i].value);
+    CHECK(one.effects[0].parameters[i].low == three.effects[0].parameters[i].low);
+  }
+  CHECK(one.gap->after.yaw.rms == three.gap->after.yaw.rms);
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include "core_rig.hpp"
+#include "modules/identification/core/adequacy.hpp"
+#include "modules/identification/core/moments.hpp"
+
+// The rest of the stages: moments of change, and whether anything is left.
+
+using namespace tread;
+using namespace tread::gap;
+using samples::blockNoise;
+using samples::Rig;
+
+TEST_CASE("the moment of a change is found from seconds away, and its interval holds the truth") {
+  const Rig rig({{"terrain_change.width_1", 0.3}, {"terrain_change.time_1", 133.0}}, 240.0, 1);
+  const std::string path = "terrain_change.time_1";
+  ModelDocument model = syntheticVehicle();
+  *findParameter(model, path) = 100.0;
+  FitState state = rig.fitter.start(model, {}, rig.all);
+  const double before = state.loss;
+  rig.fitter.add(state, freeParameter(model, "terrain_change.width_1"), 0.2, rig.all);
+  CHECK(momentsOf(state.model) == std::vector<std::string>{path});
+  rig.fitter.fitRoughly(state, rig.all);
+  refineMoment(rig.fitter, state, path, rig.all);
+  rig.fitter.fit(state, rig.all);
+  CHECK(*findParameter(state.model, path) == Approx(133.0).margin(2.0));
+  CHECK(*findParameter(state.model, "terrain_change.width_1") == Approx(0.3).margin(0.03));
+  CHECK(state.loss < before);
+  const auto [low, high] = momentInterval(rig.fitter, state, path, rig.all, 10.0);
+  CHECK(low < 133.0);
+  CHECK(133.0 < high);
+  CHECK(high - low < 20.0);
+}
+
+TEST_CASE("a model without a change has no moments, and one with two has both") {
+  ModelDocument model = syntheticVehicle();
+  CHECK(momentsOf(model).empty());
+  *findParameter(model, "payload_change.time") = 50.0;
+  CHECK(momentsOf(model).empty());  // a moment of nothing
+  *findParameter(model, "payload_change.speed") = 0.1;
+  *findParameter(model, "terrain_change.slip_2") = 0.1;
+  CHECK(momentsOf(model) ==
+        std::vector<std::string>{"payload_change.time", "terrain_change.time_2"});
+}
+
+TEST_CASE(
+    "noise that blocks have in common leaves nothing unexplained more often than alpha says") {
+  const Rig rig({}, 300.0, 1);
+  constexpr double kAlpha = 0.05;
+  int false_alarms = 0;
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    const FitState state = rig.stateOf(blockNoise(rig.rows, seed), 1.0);
+    const Adequacy adequacy = testAdequacy(rig.fitter, state, rig.all, kAlpha, seed);
+    CHECK((adequacy.p_value <= kAlpha) == !adequacy.unexplained.empty());
+    false_alarms += adequacy.p_value <= kAlpha;
+  }
+  CHECK(false_alarms <= 9);  // 3 are expected; a thousandth of all honest tests has more than 9
+}
+
+TEST_CASE("what no effect explains is named by its channel and by what it depends on") {
+  const Rig rig({}, 300.0, 2);
+  const ModelDocument model = syntheticVehicle();
+  const std::vector<Variable> variables = variablesOf(rig.rows, model);
+  const auto squared = std::find_if(variables.begin(), variables.end(),
+                                    [](const Variable& v) { return v.name == "v x yaw rate"; });
+  REQUIRE(squared != variables.end());
+  Eigen::VectorXd residuals = blockNoise(rig.rows, 2);
+  for (size_t i = 0; i < rig.rows.rows().size(); ++i)
+    if (rig.rows.rows()[i].channel == Channel::kAcross)
+      residuals[static_cast<Eigen::Index>(i)] +=
+          4.0 * squared->values[static_cast<Eigen::Index>(i)];
+  const Adequacy adequacy = testAdequacy(rig.fitter, rig.stateOf(residuals, 1.0), rig.all, 0.01, 2);
+  CHECK(adequacy.p_value <= 0.01);
+  REQUIRE_FALSE(adequacy.unexplained.empty());
+  CHECK(adequacy.unexplained[0].channel == "lateral");
+  CHECK(adequacy.unexplained[0].variable.find("yaw rate") != std::string::npos);
+  for (const Unexplained& rest : adequacy.unexplained) CHECK(rest.channel == "lateral");
+}

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include "core_rig.hpp"
+#include "modules/identification/core/pruning.hpp"
+#include "modules/identification/core/replacement.hpp"
+
+using namespace tread;
+using namespace tread::gap;
+using samples::Rig;
+using samples::Values;
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+const Progress kSilent = [](const std::string&) {};
+const Needed kNeeded{3.0, 1.0};
+
+/// A search that has ended with the parameters that begin so.
+SearchResult resultOf(const Rig& rig, const Values& begin) {
+  SearchResult result;
+  result.state = rig.fitted(begin);
+  for (const auto& [path, value] : begin) {
+    const std::string effect = path.substr(0, path.find('.'));
+    result.effects.push_back(effect);
+    result.p_values[effect] = 0.001;
+  }
+  return result;
+}
+
+SearchResult pruned(const Rig& rig, SearchResult result) {
+  pruneEffects(rig.fitter, rig.all, kNeeded, 0.01, result, kSilent);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("a superfluous effect goes, with a word on the ladder, and a real one stays") {
+  const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
+  const SearchResult result =
+      pruned(rig, resultOf(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}}));
+  CHECK(result.effects == Names{"motor_deadband"});
+  CHECK(result.state.free.size() == 1);
+  CHECK(*findParameter(result.state.model, "yaw_pull.pull") == 0.0);
+  CHECK(*findParameter(result.state.model, "motor_deadband.speed") == Approx(0.1).margin(0.01));
+  CHECK(result.scores.at("motor_deadband") > kNeeded.score);
+  CHECK(result.gains.at("motor_deadband").value > 0.0);
+  REQUIRE(result.ladder.size() == 1);
+  CHECK(result.ladder[0].effect == "yaw_pull");
+  CHECK(result.ladder[0].removed);
+  CHECK(result.ladder[0].remark == "chance explains it beside the others");
+  CHECK(result.negligible.empty());
+}
+
+TEST_CASE("an accepted effect stays though it is superfluous, and its numbers are told") {
+  const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
+  SearchResult begin = resultOf(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}});
+  begin.accepted = {"yaw_pull"};
+  const SearchResult result = pruned(rig, begin);
+  CHECK(result.effects == Names{"motor_deadband", "yaw_pull"});
+  CHECK(result.ladder.empty());
+  CHECK(std::abs(result.scores.at("yaw_pull")) < kNeeded.score);
+}
+
+TEST_CASE("a plain cause that was only a cover goes without a word") {
+  const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
+  SearchResult covered = resultOf(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}});
+  covered.p_values.erase("yaw_pull");
+  const SearchResult result = pruned(rig, covered);
+  CHECK(result.effects == Names{"motor_deadband"});
+  CHECK(result.ladder.empty());
+}
+
+TEST_CASE("an effect that is real but does not change where drives end is negligible") {
+  SyntheticNoise noise;
+  noise.gyro = 0.002;
+  const Rig rig({{"gyro_bias.rate", 0.002}}, 300.0, 3, noise);
+  const SearchResult begin = resultOf(rig, {{"gyro_bias.rate", 0.001}});
+  const SearchResult result = pruned(rig, begin);
+  CHECK(result.effects.empty());
+  CHECK(result.negligible == Names{"gyro_bias"});
+  SearchResult kept = begin;
+  pruneEffects(rig.fitter, rig.all, kNeeded, 0.0, kept, kSilent);  // small ones are wanted, too
+  CHECK(kept.effects == Names{"gyro_bias"});
+}
+
+TEST_CASE("an effect that runs to the end of its plausible range goes, for that reason") {
+  const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
+  SearchResult begin;
+  ModelDocument model = syntheticVehicle();
+  model.bounds.push_back({"motor_deadband.speed", 0.0, 0.05});
+  begin.state = rig.fitter.start(model, {}, rig.all);
+  rig.fitter.add(begin.state, freeParameter(model, "motor_deadband.speed"), 0.02, rig.all);
+  rig.fitter.fit(begin.state, rig.all);
+  begin.effects = {"motor_deadband"};
+  begin.p_values["motor_deadband"] = 0.001;
+  const SearchResult result = pruned(rig, begin);
+  CHECK(result.effects.empty());
+  REQUIRE(result.ladder.size() == 1);
+  CHECK(result.ladder[0].remark == "runs to the end of its plausible range");
+  begin.accepted = {"motor_deadband"};
+  CHECK(pruned(rig, begin).effects == Names{"motor_deadband"});
+}
+
+TEST_CASE("without an effect the others are fitted anew, and the loss tells what it was worth") {
+  const Rig rig({{"motor_deadband.speed", 0.1}}, 240.0, 4);
+  const FitState with = rig.fitted({{"motor_deadband.speed", 0.05}, {"slip_ratio.slip", 0.01}});
+  const FitState reduced = without(rig.fitter, with, "motor_deadband", rig.all);
+  CHECK(*findParameter(reduced.model, "motor_deadband.speed") == 0.0);
+  REQUIRE(reduced.free.size() == 1);
+  CHECK(reduced.free[0].path == "slip_ratio.slip");
+  CHECK(reduced.loss > with.loss + 10.0);
+  // Slip is what comes nearest to a dead band.
+  CHECK(*findParameter(reduced.model, "slip_ratio.slip") >
+        *findParameter(with.model, "slip_ratio.slip") + 0.02);
+}
+
+TEST_CASE("two effects that imitate one become that one") {
+  const Rig rig({{"position_scale.scale", -0.06}}, 300.0, 5);
+  SearchResult result = resultOf(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.01}});
+  replacePairs(rig.fitter, rig.all, result, kSilent);
+  CHECK(result.effects == Names{"position_scale"});
+  CHECK(result.replaced["position_scale"] == Names{"slip_ratio", "track_width"});
+  CHECK(*findParameter(result.state.model, "position_scale.scale") == Approx(-0.06).margin(0.01));
+  CHECK(*findParameter(result.state.model, "slip_ratio.slip") == 0.0);
+  REQUIRE(result.ladder.size() == 1);
+  CHECK(result.ladder[0].remark.find("in the place of") == 0);
+}
+
+TEST_CASE("neither does an accepted effect go into another one, nor does a rejected one come") {
+  const Rig rig({{"position_scale.scale", -0.06}}, 300.0, 5);
+  const SearchResult begin =
+      resultOf(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.01}});
+  for (const bool accepted : {false, true}) {
+    SearchResult result = begin;
+    if (accepted)
+      result.accepted = {"track_width"};
+    else
+      result.rejected = {"position_scale"};
+    replacePairs(rig.fitter, rig.all, result, kSilent);
+    CHECK(result.effects == Names{"slip_ratio", "track_width"});
+  }
+}
+
+TEST_CASE("two effects that no single one fits as well stay two") {
+  const Rig rig({{"slip_ratio.slip", 0.1}, {"track_width.widening", 0.25}}, 300.0, 6);
+  SearchResult result = resultOf(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.1}});
+  const double loss = result.state.loss;
+  replacePairs(rig.fitter, rig.all, result, kSilent);
+  CHECK(result.effects == Names{"slip_ratio", "track_width"});
+  CHECK(result.ladder.empty());
+  CHECK(result.state.loss == loss);
+}

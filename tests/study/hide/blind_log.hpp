@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/log/event_log.hpp"
+#include "modules/simulator/core/ins.hpp"
+#include "tests/study/hide/hidden_drive.hpp"
+
+namespace tread::blind {
+
+/// The log of a drive as a robot's logger would have it: CONFIG, MARK, MOTOR 20 Hz, INS 50 Hz,
+/// EXECUTION 5 Hz and on change, in order of time. Nothing in it tells what is hidden.
+std::vector<LogEvent> makeLog(const HiddenDrive& drive, const std::vector<sim::InsSample>& measured,
+                              const std::string& name, uint64_t seed);
+
+/// utime of the beginning of the log of a seed [us]: a robot that has been on for a while.
+int64_t startUtime(uint64_t seed);
+
+}  // namespace tread::blind

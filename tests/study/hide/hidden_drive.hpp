@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/study/hide/effect_list.hpp"
+#include "tests/study/hide/programme.hpp"
+#include "tests/study/hide/test_field.hpp"
+
+namespace tread::blind {
+
+/// The truth every 10 ms.
+struct Track {
+  static constexpr int64_t kStepUs = 10'000;
+
+  std::vector<Pose2> T_map_body;   ///< as it was, ground's noise included; yaw unwrapped
+  std::vector<Pose2> T_map_clean;  ///< the same speeds without the ground's noise
+  std::vector<Twist2> v_body;      ///< with the ground's noise
+  std::vector<Twist2> v_clean;     ///< without
+  std::vector<float> pitch;        ///< nose down positive [rad]
+  std::vector<float> roll;         ///< left side up positive [rad]
+  std::vector<float> height;       ///< of the ground [m]
+};
+
+/// What motor_bridge hears from the motors with each command.
+struct MotorSample {
+  double voltage = 0.0;        ///< [V]
+  double current_left = 0.0;   ///< [A]
+  double current_right = 0.0;  ///< [A]
+};
+
+/// One drive of one vehicle.
+struct HiddenDrive {
+  Programme programme;
+  Track track;
+  std::vector<MotorSample> motor;  ///< one a command period
+};
+
+/// A hider with its name and size.
+struct Hidden {
+  const EffectSpec* spec = nullptr;
+  double size = 0.0;
+  Hider hider;
+};
+
+/// The hiders of a case, in the order of the power path. Same seed, same hiders.
+std::vector<Hidden> makeHidden(const std::vector<std::string>& effects, double size,
+                               double duration, uint64_t seed);
+
+/// Drives a programme at 1 kHz. Programme, ground and noise depend on the seed alone, not on what
+/// is hidden. Hiders keep state: use them once.
+HiddenDrive drive(const Programme& programme, std::vector<Hidden> hidden, const NoiseLevel& noise,
+                  uint64_t seed);
+
+/// Means of the steady half of each pattern of a drive and of its twin without effects.
+Comparison compare(const HiddenDrive& with, const HiddenDrive& without);
+
+}  // namespace tread::blind

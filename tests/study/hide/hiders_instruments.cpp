@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// Effects that are not in the vehicle but in what the INS says of it.
+#include "tests/study/hide/effect_list.hpp"
+
+namespace tread::blind {
+namespace {
+
+Hider instrument(const char* lever, const char* symbol, double value, const char* unit,
+                 double symbol_sign, std::function<void(InstrumentFault&)> sense) {
+  Hider hider;
+  hider.sense = std::move(sense);
+  hider.levers = {{lever, value, unit, false}};
+  hider.equivalent = {{symbol, symbol_sign * value, unit, false}};
+  return hider;
+}
+
+}  // namespace
+
+Hider hideInsLatency(double size, double, Dice&) {
+  const double late = 0.075 * size;
+  return instrument("pose_latency", "L", late, "s", 1.0,
+                    [=](InstrumentFault& fault) { fault.pose_latency = late; });
+}
+
+Hider hideInsLatencyAll(double size, double, Dice&) {
+  const double late = 0.075 * size;
+  return instrument("latency_of_all_channels", "L", late, "s", 1.0,
+                    [=](InstrumentFault& fault) { fault.all_latency = late; });
+}
+
+Hider hideHeadingLatency(double size, double, Dice&) {
+  // heading(t - T_h) beside position(t): v_y gains T_h v omega, a drift of -T_h.
+  const double late = 0.06 * size;
+  return instrument("heading_latency", "T_h", late, "s", 1.0,
+                    [=](InstrumentFault& fault) { fault.heading_latency = late; });
+}
+
+Hider hideGyroBias(double size, double, Dice& dice) {
+  const double bias = 0.015 * size * dice.sign();
+  Hider hider = instrument("bias", "b", bias, "rad/s", 1.0, [=](InstrumentFault& fault) {
+    fault.gyro_bias = bias;
+    fault.gyro_warm_up = 0.3 * bias;
+  });
+  hider.levers.push_back({"more_when_cold", 0.3 * bias, "rad/s", false});
+  return hider;
+}
+
+Hider hideHeadingMisalignment(double size, double, Dice& dice) {
+  const double psi = 0.025 * size * dice.sign();
+  return instrument("misalignment", "psi_0", psi, "rad", 1.0,
+                    [=](InstrumentFault& fault) { fault.misalignment = psi; });
+}
+
+Hider hideLeverArmX(double size, double, Dice& dice) {
+  // The field's sign, that of a centre of rotation as far ahead: v_y loses l_x omega, so the
+  // antenna sits behind for l_x > 0.
+  const double arm = 0.05 * size * dice.sign();
+  return instrument("antenna_ahead", "l_x", arm, "m", -1.0,
+                    [=](InstrumentFault& fault) { fault.antenna_x = arm; });
+}
+
+Hider hideLeverArmY(double size, double, Dice& dice) {
+  // The catalogue's sign: v_x grows by l_y omega, so the antenna sits on the right for l_y > 0.
+  const double arm = 0.05 * size * dice.sign();
+  return instrument("antenna_left", "l_y", arm, "m", -1.0,
+                    [=](InstrumentFault& fault) { fault.antenna_y = arm; });
+}
+
+Hider hidePositionScale(double size, double, Dice& dice) {
+  const double scale = 0.025 * size * dice.sign();
+  return instrument("scale", "k", scale, "1", 1.0,
+                    [=](InstrumentFault& fault) { fault.position_scale = scale; });
+}
+
+}  // namespace tread::blind

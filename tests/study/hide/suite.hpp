@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/study/hide/blind_case.hpp"
+
+namespace tread::blind {
+
+/// One group that no drive of a kind can tell apart.
+struct DegenerateGroup {
+  std::vector<std::string> hidden;  ///< one of these is hidden
+  std::vector<std::string> right;   ///< right answers
+  Choice choice = Choice::kFull;    ///< drives in which they are alike
+};
+
+/// Groups after gap.md Part 2: exact ones, then those of poor drives.
+const std::vector<DegenerateGroup>& degenerateGroups();
+
+/// small, medium, full.
+const std::vector<std::string>& suiteNames();
+
+/// All cases of a suite in the order of their shuffled names. Short logs (200 s beside 10 min) have
+/// a third of `minutes`. Throws std::invalid_argument for another name. Same seed, same cases.
+std::vector<CasePlan> suiteOf(const std::string& name, double minutes, uint64_t seed);
+
+}  // namespace tread::blind

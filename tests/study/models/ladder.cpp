@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tests/study/models/ladder.hpp"
+
+#include <functional>
+
+#include "modules/identification/core/dead_reckoning.hpp"
+#include "modules/identification/core/enough_driving.hpp"
+
+namespace tread::gap {
+namespace {
+
+constexpr int kLeastForNestedEffects = 2 * kLeastBlocks;  // as find
+constexpr auto kFound = static_cast<size_t>(Rung::kDiscovered);
+
+using RungErrors = std::array<std::optional<std::vector<EndError>>, kRungs>;
+
+std::string joinedNames(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+  return all.empty() ? "nothing" : all;
+}
+
+void sayFound(const RungModel& rung, const Progress& say) {
+  say("  discovered: " + joinedNames(rung.effects));
+}
+
+/// Adds the errors of a fold's models on executions that count.
+void addErrors(const Rows& rows, const RungModels& models,
+               const std::function<bool(const EndError&)>& counts, RungErrors& all) {
+  for (size_t r = 0; r < kRungs; ++r) {
+    if (!models[r]) continue;
+    if (!all[r]) all[r].emplace();
+    for (const EndError& error : endErrors(rows, *models[r]))
+      if (counts(error)) all[r]->push_back(error);
+  }
+}
+
+void summarise(const RungErrors& errors, LadderRow& row) {
+  for (size_t r = 0; r < kRungs; ++r) {
+    if (!errors[r]) continue;
+    row.errors[r] = summaryOf(*errors[r], [](const EndError&) { return true; });
+    if (r != kFound && errors[kFound]) row.behind[r] = differenceOf(*errors[r], *errors[kFound]);
+  }
+}
+
+/// Why nothing can be concluded from a log; empty if it is sound.
+std::string fatalNote(const Drive& drive) {
+  for (const HygieneNote& note : drive.notes)
+    if (note.fatal) return note.what;
+  return "";
+}
+
+LadderRow rowOf(const Drive& drive, const Rows& rows) {
+  LadderRow row;
+  row.log = drive.name;
+  row.blocks = measuredBlocks(rows);
+  row.driven = drive.driven();
+  row.floor = deadReckoningFloor(rows.drives());
+  row.remark = fatalNote(drive);
+  return row;
+}
+
+std::vector<char> halfMask(const Rows& rows, int half) {
+  std::vector<char> mask;
+  mask.reserve(rows.rows().size());
+  for (const Row& row : rows.rows()) mask.push_back(row.block % 2 == half);
+  return mask;
+}
+
+/// What the search of a log is to the rung of one of its halves.
+class Discoverer {
+ public:
+  Discoverer(const Fitter& fitter, const ModelDocument& ideal, uint64_t seed, bool nested,
+             const Progress& say)
+      : fitter_(fitter), ideal_(ideal), seed_(seed), say_(say) {
+    if (nested) return;
+    const std::vector<char> all(fitter.rows().rows().size(), 1);
+    say_("  effects on the whole log");
+    whole_ = searchOn(all);
+  }
+
+  RungModel on(const std::vector<char>& mask) const {
+    say_("  search");
+    RungModel rung;
+    if (whole_) {
+      rung = discoveredRung(*whole_, refitted(fitter_, *whole_, mask));
+    } else {
+      const SearchResult found = searchOn(mask);
+      rung = discoveredRung(found, found.state);
+    }
+    sayFound(rung, say_);
+    return rung;
+  }
+
+ private:
+  SearchResult searchOn(const std::vector<char>& mask) const {
+    const ModelDocument begin = calibratedNumbers(fitter_, ideal_, mask);
+    const Progress silent = [](const std::string&) {};
+    return discover(fitter_, begin, mask, seed_, silent);
+  }
+
+  const Fitter& fitter_;
+  const ModelDocument& ideal_;
+  uint64_t seed_;
+  const Progress& say_;
+  std::optional<SearchResult> whole_;
+};
+
+LadderRow nestedRow(const LadderLog& log, const LadderTask& task, const Progress& say) {
+  const std::vector<Drive> drives{log.drive};
+  const Rows rows(drives, {});
+  LadderRow row = rowOf(log.drive, rows);
+  say(row.log + ": " + std::to_string(row.blocks) + " blocks");
+  if (row.remark.empty()) row.remark = tooLittleDriving(rows);
+  if (!row.remark.empty()) {
+    say("  left out: " + row.remark);
+    return row;
+  }
+  const Fitter fitter(rows, task.threads);
+  row.structure_nested = row.blocks >= kLeastForNestedEffects;
+  const Discoverer discoverer(fitter, log.ideal, task.seed, row.structure_nested, say);
+  RungErrors errors;
+  for (int half : {0, 1}) {
+    say("  from half " + std::to_string(half + 1));
+    const std::vector<char> mask = halfMask(rows, half);
+    LadderFold fold;
+    fold.trained_on = "half " + std::to_string(half + 1);
+    fold.models = fitRungs(fitter, log.ideal, log.ideal_known, mask, say);
+    fold.models[kFound] = discoverer.on(mask);
+    addErrors(
+        rows, fold.models, [half](const EndError& error) { return error.block % 2 != half; },
+        errors);
+    row.folds.push_back(std::move(fold));
+  }
+  summarise(errors, row);
+  return row;
+}
+
+LadderRow pooledRow(const LadderTask& task, size_t left_out, const Progress& say) {
+  const LadderLog& log = task.logs[left_out];
+  std::vector<Drive> train;
+  for (size_t i = 0; i < task.logs.size(); ++i) {
+    const bool sound = fatalNote(task.logs[i].drive).empty();
+    if (i != left_out && sound) train.push_back(task.logs[i].drive);
+  }
+  const std::vector<Drive> test{log.drive};
+  const Rows test_rows(test, {});
+  LadderRow row = rowOf(log.drive, test_rows);
+  const Rows rows(train, {});
+  say(row.log + " left out, from " + std::to_string(rows.blocks()) + " blocks of the others");
+  if (row.remark.empty() && !tooLittleDriving(rows).empty())
+    row.remark = "of the others " + tooLittleDriving(rows);
+  if (!row.remark.empty()) {
+    say("  left out: " + row.remark);
+    return row;
+  }
+  const Fitter fitter(rows, task.threads);
+  const std::vector<char> all(rows.rows().size(), 1);
+  LadderFold fold;
+  fold.trained_on = "all but " + row.log;
+  fold.models = fitRungs(fitter, log.ideal, log.ideal_known, all, say);
+  fold.models[kFound] = Discoverer(fitter, log.ideal, task.seed, true, say).on(all);
+  RungErrors errors;
+  addErrors(
+      test_rows, fold.models, [](const EndError&) { return true; }, errors);
+  row.folds.push_back(std::move(fold));
+  summarise(errors, row);
+  return row;
+}
+
+}  // namespace
+
+std::string unusable(const Drive& drive) {
+  const std::string fatal = fatalNote(drive);
+  if (!fatal.empty()) return fatal;
+  const std::vector<Drive> drives{drive};
+  return tooLittleDriving(Rows(drives, {}));
+}
+
+Ladder climbLadder(const LadderTask& task, const Progress& say) {
+  Ladder ladder;
+  ladder.seed = task.seed;
+  for (const LadderLog& log : task.logs) ladder.nested.push_back(nestedRow(log, task, say));
+  for (size_t i = 0; task.pool && i < task.logs.size(); ++i)
+    ladder.pooled.push_back(pooledRow(task, i, say));
+  return ladder;
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include "tests/study/models/ladder_models.hpp"
+
+namespace tread::gap {
+
+/// A log and the ideal model of the vehicle that drove it.
+struct LadderLog {
+  Drive drive;
+  ModelDocument ideal;
+  bool ideal_known = true;  ///< else the track of `ideal` is a guess, and there is no first rung
+};
+
+struct LadderTask {
+  std::vector<LadderLog> logs;
+  bool pool = false;  ///< also learn from all logs but one, for each
+  uint64_t seed = 1;
+  int threads = 1;  ///< does not change a bit of the result
+};
+
+/// A mean difference of end errors over executions; standard error over blocks of driving.
+struct MeanDifference {
+  double mean = 0.0;
+  double error = 0.0;
+};
+
+/// By how much `discovered` errs more than another rung, on the same executions.
+struct RungDifference {
+  MeanDifference yaw;       ///< [rad]
+  MeanDifference position;  ///< [m]
+};
+
+/// Models that were fitted to the same driving.
+struct LadderFold {
+  std::string trained_on;
+  RungModels models;
+};
+
+/// How far each rung is from one log, on driving that it was not fitted to.
+struct LadderRow {
+  std::string log;
+  std::string remark;  ///< why there is nothing; empty else
+  int blocks = 0;
+  double driven = 0.0;           ///< [s]
+  bool structure_nested = true;  ///< effects, too, were chosen without the driving that judges
+  std::array<std::optional<EndErrors>, kRungs> errors;
+  std::array<std::optional<RungDifference>, kRungs> behind;  ///< of discovered less this rung
+  std::optional<EndErrors> floor;  ///< encoders and gyro, see deadReckoningFloor()
+  std::vector<LadderFold> folds;
+};
+
+struct Ladder {
+  uint64_t seed = 0;
+  std::vector<LadderRow> nested;  ///< each log: one half of its blocks judges the other half's fits
+  std::vector<LadderRow> pooled;  ///< each log judges what all others teach; empty = not asked
+};
+
+/// The table of gap.md 3.3 (and 3.4) on any drives: errors 2 s after the beginning of an execution,
+/// simulated open loop, of models that did not see that driving.
+/** Nested: alternate blocks of a log, structure and parameters of each half from the other. As
+ * find does, effects are chosen on the whole log where it has less than 20 blocks; below 10 there
+ * is nothing. Pooled: structure and parameters from all other logs. Deterministic for a seed. */
+Ladder climbLadder(const LadderTask& task, const Progress& say);
+
+/// Why a log by itself gives no row, in one line; empty if it gives one.
+std::string unusable(const Drive& drive);
+
+/// Mean of second less first over executions, its standard error clustered by blocks.
+/** Both of the same executions in the same order. */
+RungDifference differenceOf(const std::vector<EndError>& first,
+                            const std::vector<EndError>& second);
+
+}  // namespace tread::gap

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tests/study/models/ladder_models.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "modules/identification/core/candidates.hpp"
+#include "tests/study/models/twist_dictionary.hpp"
+
+namespace tread::gap {
+namespace {
+
+constexpr double kFirstLag = 0.2;    // [s] at which fits begin
+constexpr double kFirstDelay = 0.1;  // [s]
+constexpr double kBites = 1.0;       // [nats] that a limit of speed must gain to be one
+constexpr double kSlipPrior = 1.0;   // [m/s or rad/s], wide
+constexpr double kRidges[] = {3.0, 1.0, 0.3, 0.1, 0.03, 0.01, 0.003};  // [m/s or rad/s]
+
+std::vector<FreeParameter> freeParameters(const ModelDocument& model,
+                                          const std::vector<std::string>& paths) {
+  std::vector<FreeParameter> free;
+  for (const std::string& path : paths) free.push_back(freeParameter(model, path));
+  return free;
+}
+
+/// Fit and noise in turn: the noise of a worse fit is too large.
+void settle(const Fitter& fitter, FitState& state, const std::vector<char>& mask) {
+  fitter.fitRoughly(state, mask);
+  fitter.renewNoise(state, mask);
+  fitter.fit(state, mask);
+}
+
+/// The fits of one set of rows, each beginning where the one before ended.
+class Climb {
+ public:
+  Climb(const Fitter& fitter, const std::vector<char>& mask) : fitter_(fitter), mask_(mask) {}
+
+  FitState gains(const ModelDocument& ideal) const {
+    FitState state = fitter_.start(
+        ideal,
+        freeParameters(ideal, {"slip_ratio.slip", "track_width.widening", "ins_latency.latency"}),
+        mask_);
+    settle(fitter_, state, mask_);
+    return state;
+  }
+
+  FitState lags(FitState state) const {
+    add(state, "actuator_lag.lag", std::max(0.0, kFirstLag - state.model.vehicle.lag));
+    add(state, "command_delay.delay", std::max(0.0, kFirstDelay - state.model.vehicle.delay));
+    settle(fitter_, state, mask_);
+    return state;
+  }
+
+  /// A limit has no slope where it does not bite: several are tried.
+  FitState limit(const FitState& state) const {
+    const double most = excitationOf(fitter_.rows(), state.model).track_speed;
+    FitState best = state;
+    for (double share : {0.92, 0.8, 0.65, 0.45}) {
+      FitState tried = state;
+      add(tried, "speed_saturation.inverse_limit", 1.0 / std::max(1e-3, share * most));
+      fitter_.fitRoughly(tried, mask_);
+      if (tried.loss < best.loss && tried.loss < state.loss - kBites) best = tried;
+    }
+    settle(fitter_, best, mask_);
+    return best;
+  }
+
+  FitState asymmetry(FitState state) const {
+    add(state, "track_asymmetry.share", 0.0);
+    add(state, "icr_offset.offset", 0.0);
+    settle(fitter_, state, mask_);
+    return state;
+  }
+
+ private:
+  void add(FitState& state, const std::string& path, double value) const {
+    fitter_.add(state, freeParameter(state.model, path), value, mask_);
+  }
+
+  const Fitter& fitter_;
+  const std::vector<char>& mask_;
+};
+
+RungModel rungOf(const FitState& state) {
+  RungModel rung;
+  rung.model = state.model;
+  for (const FreeParameter& parameter : state.free)
+    rung.numbers.emplace_back(parameter.path, *findParameter(state.model, parameter.path));
+  return rung;
+}
+
+RungModel corrected(const FitState& state, TwistRegression correction) {
+  RungModel rung = rungOf(state);
+  rung.correction = std::move(correction);
+  return rung;
+}
+
+/// Coefficients of a regression in SI units, beside what was fitted before.
+void addCoefficients(RungModel& rung) {
+  const char* const kParts[] = {"forward", "sideways", "turning"};
+  for (size_t i = 0; i < rung.correction.terms.size(); ++i) {
+    const TwistTerm& term = rung.correction.terms[i];
+    rung.numbers.emplace_back(
+        std::string(kParts[static_cast<size_t>(term.part)]) + " ~ " + term.name,
+        rung.correction.coefficients[static_cast<Eigen::Index>(i)]);
+  }
+}
+
+constexpr const char* kNames[kRungs] = {"ideal",           "gain + track", "powertrain + ICR",
+                                        "slip regression", "black box",    "discovered"};
+constexpr const char* kKeys[kRungs] = {"ideal",           "gain_track", "powertrain_icr",
+                                       "slip_regression", "black_box",  "discovered"};
+
+}  // namespace
+
+const char* rungName(Rung rung) {
+  return kNames[static_cast<size_t>(rung)];
+}
+
+const char* rungKey(Rung rung) {
+  return kKeys[static_cast<size_t>(rung)];
+}
+
+RungModels fitRungs(const Fitter& fitter, const ModelDocument& ideal, bool ideal_known,
+                    const std::vector<char>& mask, const Progress& say) {
+  RungModels models;
+  const auto set = [&models](Rung rung, RungModel model) {
+    models[static_cast<size_t>(rung)] = std::move(model);
+  };
+  const Climb climb(fitter, mask);
+  if (ideal_known) set(Rung::kIdeal, {ideal, {}, {}, {}});
+  say("  gain, track, powertrain, ICR");
+  const FitState gains = climb.gains(ideal);
+  set(Rung::kGains, rungOf(gains));
+  const FitState limited = climb.limit(climb.lags(gains));
+  const FitState powertrain = climb.asymmetry(limited);
+  set(Rung::kPowertrain, rungOf(powertrain));
+  say("  slip regression, black box");
+  RungModel slip = corrected(
+      limited, fitRegression(fitter, limited.model, slipTerms(), {{kSlipPrior}, false}, mask));
+  addCoefficients(slip);
+  set(Rung::kSlipRegression, std::move(slip));
+  RungModel box =
+      corrected(powertrain, fitRegression(fitter, powertrain.model, blackBoxTerms(),
+                                          {{std::begin(kRidges), std::end(kRidges)}, true}, mask));
+  box.numbers.emplace_back("ridge", box.correction.deviation);
+  set(Rung::kBlackBox, std::move(box));
+  return models;
+}
+
+ModelDocument calibratedNumbers(const Fitter& fitter, const ModelDocument& ideal,
+                                const std::vector<char>& mask) {
+  const Climb climb(fitter, mask);
+  const FitState fitted = climb.lags(climb.gains(ideal));
+  const VehicleModel& vehicle = fitted.model.vehicle;
+  ModelDocument model = ideal;
+  model.vehicle.lag = vehicle.driveLag();
+  model.vehicle.delay = vehicle.commandDelay();
+  model.vehicle.forward_gain *= 1.0 - vehicle.effects.slip_ratio;
+  model.vehicle.yaw_gain *=
+      (1.0 - vehicle.effects.slip_ratio) / (1.0 + vehicle.effects.track_width);
+  return model;
+}
+
+SearchResult discover(const Fitter& fitter, const ModelDocument& begin,
+                      const std::vector<char>& mask, uint64_t seed, const Progress& say) {
+  SearchSettings settings;
+  settings.seed = seed;
+  settings.calibrate = true;
+  SearchMemory memory;  // of its own: nothing of other driving
+  return search(fitter, begin, mask, settings, memory, say);
+}
+
+RungModel discoveredRung(const SearchResult& found, const FitState& state) {
+  RungModel rung = rungOf(state);
+  rung.effects = found.effects;
+  return rung;
+}
+
+std::vector<EndError> endErrors(const Rows& rows, const RungModel& rung) {
+  return endErrors(rows, simulateCorrected(rows, rung.model.vehicle, rung.correction),
+                   rung.model.measurement);
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "modules/identification/core/end_errors.hpp"
+#include "modules/identification/core/search.hpp"
+#include "tests/study/models/twist_regression.hpp"
+
+namespace tread::gap {
+
+/// What people use in turn, each more than the one before (gap.md 3.3).
+/** kIdeal          the given model, nothing fitted.
+ *  kGains          slip_ratio, track_width: command gain and track fitted; and ins_latency, of the
+ *                  pose alone, as in all rungs below.
+ *  kPowertrain     and actuator_lag, command_delay, speed_saturation, track_asymmetry, icr_offset.
+ *  kSlipRegression the published slip model: lag, delay, saturation, gain, track and latency as
+ *                  above, then held, and Bayesian linear regression of the slip velocities on the
+ *                  simulated twist: forward ~ v, sideways ~ v omega, turning ~ v omega, v, omega;
+ *                  prior N(0, 1 m/s or rad/s) of terms scaled to a root mean square of 1. Unlike in
+ *                  the papers powertrain and slip come from the poses alone, not from encoders, and
+ *                  from all driving, not from steady windows.
+ *  kBlackBox       kPowertrain, then held, and ridge regression of all parts of the twist on a
+ *                  dictionary of 37 polynomials, thresholds and transients of filtered twist and
+ *                  commands; its strength by blocked cross-validation within the training driving.
+ *  kDiscovered     what search() finds with the numbers of the nominal model free: find
+ * --calibrate. They begin where a fit of lag, delay, gain and track ends. */
+enum class Rung { kIdeal, kGains, kPowertrain, kSlipRegression, kBlackBox, kDiscovered };
+inline constexpr size_t kRungs = 6;
+
+/// "ideal", "gain + track", ... as in tables.
+const char* rungName(Rung rung);
+/// "ideal", "gain_track", ... as in files.
+const char* rungKey(Rung rung);
+
+/// A model of one rung.
+struct RungModel {
+  ModelDocument model;
+  TwistRegression correction;        ///< without terms where the rung has none
+  std::vector<std::string> effects;  ///< that were named; of kDiscovered only
+  /// What was fitted: paths and values.
+  std::vector<std::pair<std::string, double>> numbers;
+};
+
+/// Models by rung; nothing where a rung cannot be had.
+using RungModels = std::array<std::optional<RungModel>, kRungs>;
+
+/// The rungs up to the black box, from rows of the mask.
+/** Without kIdeal where the ideal model is not known and only a guess to begin at. */
+RungModels fitRungs(const Fitter& fitter, const ModelDocument& ideal, bool ideal_known,
+                    const std::vector<char>& mask, const Progress& say);
+
+/// Lag, delay and gains where a fit to rows of the mask puts them, as numbers of the nominal model.
+ModelDocument calibratedNumbers(const Fitter& fitter, const ModelDocument& ideal,
+                                const std::vector<char>& mask);
+
+/// What find --calibrate finds on rows of the mask, beginning at a model.
+SearchResult discover(const Fitter& fitter, const ModelDocument& begin,
+                      const std::vector<char>& mask, uint64_t seed, const Progress& say);
+/// As a rung, with the state of the search or one refitted elsewhere.
+RungModel discoveredRung(const SearchResult& found, const FitState& state);
+
+/// End errors of a rung on executions of any rows.
+std::vector<EndError> endErrors(const Rows& rows, const RungModel& rung);
+
+}  // namespace tread::gap

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "common/config/command_line.hpp"
+#include "common/vehicle/model_file.hpp"
+#include "tests/study/models/ladder_output.hpp"
+#include "tools/gap/commands.hpp"
+#include "tools/gap/drive_log.hpp"
+#include "tools/gap/find_output.hpp"
+#include "tools/gap/import_note.hpp"
+#include "tools/gap/read_for_model.hpp"
+
+namespace tread::gap {
+namespace {
+
+struct Options {
+  std::vector<std::string> logs;
+  std::string model;
+  std::string out;
+  bool pool = false;
+  int64_t seed = 1;
+  int threads = 1;
+};
+
+constexpr const char* kFooter =
+    "Rungs: the ideal model; gain and track fitted; powertrain and centre of rotation; the\n"
+    "literature's slip regression; a black box; what find discovers. Each is judged on driving\n"
+    "that it was not fitted to: alternate blocks of the log; with --pool also the log that all\n"
+    "others did not see. Without --model the ideal one is a differential drive with the track\n"
+    "that an imported recording names. Into --out: ladder.json and ladder.md. Exit status 0,\n"
+    "or 2 for bad input. The same files and the same seed give the same bytes, with any number\n"
+    "of threads.";
+
+/// What is on in a model could not be told from what is found.
+ModelDocument readIdeal(const std::string& path) {
+  ModelDocument model = readModelDocument(path);
+  for (const Effect& effect : effectCatalogue())
+    if (isOn(effect, model.vehicle.effects, model.measurement))
+      throw std::runtime_error(path + ": the effect " + effect.name +
+                               " is on; a ladder begins with a model without effects");
+  return model;
+}
+
+/// A differential drive that does what its track speeds say.
+LadderLog recordedIdeal(const std::string& path) {
+  LadderLog log;
+  log.drive = readDrive(path);
+  if (log.drive.kind != CommandKind::kTrackSpeed)
+    throw std::runtime_error(path +
+                             ": its commands are powers, so that the ideal model must say how fast "
+                             "full power is; give --model");
+  const double baseline = log.drive.imported ? log.drive.imported->baseline : 0.0;
+  log.ideal.vehicle.name = "ideal differential drive";
+  log.ideal.vehicle.kind = CommandKind::kTrackSpeed;
+  log.ideal.vehicle.gauge = baseline > 0.0 ? baseline : 1.0;
+  log.ideal_known = baseline > 0.0;
+  return log;
+}
+
+std::vector<LadderLog> readLogs(const Options& options) {
+  std::optional<ModelDocument> ideal;
+  if (!options.model.empty()) ideal = readIdeal(options.model);
+  std::vector<LadderLog> logs;
+  for (const std::string& path : options.logs) {
+    LadderLog log = ideal ? LadderLog{readDriveFor(*ideal, path), *ideal} : recordedIdeal(path);
+    for (const LadderLog& other : logs)
+      if (other.drive.sha256 == log.drive.sha256)
+        throw std::runtime_error(path + ": the same file as " + other.drive.name +
+                                 "; give each log once");
+    for (const LadderLog& other : logs) {
+      requireSameImport(other.drive, log.drive);
+      if (options.pool) requireSameRobot(other.drive, log.drive);
+    }
+    logs.push_back(std::move(log));
+  }
+  return logs;
+}
+
+/// A table without a row would look like a result. Pooled, short logs may be enough together.
+void requireRows(const LadderTask& task) {
+  for (const LadderLog& log : task.logs)
+    if (task.pool || unusable(log.drive).empty()) return;
+  const Drive& first = task.logs.front().drive;
+  throw std::runtime_error(first.name + ": " + unusable(first));
+}
+
+void requireRows(const Ladder& ladder) {
+  for (const auto* rows : {&ladder.nested, &ladder.pooled})
+    for (const LadderRow& row : *rows)
+      if (row.remark.empty()) return;
+  throw std::runtime_error(ladder.nested.front().log + ": " + ladder.nested.front().remark);
+}
+
+/// Lines about how much of a log was lost.
+void tellLosses(const LadderTask& task) {
+  for (const LadderLog& log : task.logs)
+    if (!log.drive.lost.empty()) std::cout << log.drive.lost << std::endl;
+}
+
+void ladder(const Options& options) {
+  if (options.pool && options.logs.size() < 2)
+    throw std::runtime_error("--pool: learning from all logs but one wants at least two --log");
+  LadderTask task;
+  task.logs = readLogs(options);
+  task.pool = options.pool;
+  task.seed = static_cast<uint64_t>(options.seed);
+  task.threads = options.threads;
+  requireRows(task);
+  makeFolder(options.out);
+  tellLosses(task);
+  LadderReport report;
+  report.model = std::filesystem::path(options.model).filename().string();
+  for (const LadderLog& log : task.logs) report.sha256.push_back(log.drive.sha256);
+  report.ladder =
+      climbLadder(task, [](const std::string& line) { std::cout << line << std::endl; });
+  requireRows(report.ladder);
+  writeLadder(options.out, report);
+  std::cout << ladderText(report) << options.out << "/ladder.md" << std::endl;
+}
+
+}  // namespace
+
+}  // namespace tread::gap
+
+int main(int argc, char** argv) {
+  try {
+    CLI::App app{"How good is what tread-gap discovers, beside the models that others use?",
+                 "tread-compare-models"};
+    tread::gap::Options options;
+    app.footer(tread::gap::kFooter);
+    app.add_option("--log", options.logs, "logs of drives")->required()->expected(-1);
+    app.add_option("--model", options.model, "the ideal model (YAML), without effects");
+    app.add_option("--out", options.out, "folder for ladder.json and ladder.md; made if needed")
+        ->required();
+    app.add_flag("--pool", options.pool, "also judge each log by what all others teach");
+    tread::gap::addSeedAndThreads(app, options.seed, options.threads);
+    if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
+    tread::gap::ladder(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "tread-compare-models: %s\n", error.what());
+    return tread::gap::kBadInput;
+  }
+  return 0;
+}

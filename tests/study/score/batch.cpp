@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tests/study/score/batch.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include "tests/study/score/child.hpp"
+#include "tests/study/score/nominal_numbers.hpp"
+#include "tests/study/score/seal_watch.hpp"
+#include "tools/gap/file_hash.hpp"
+
+namespace fs = std::filesystem;
+
+namespace tread::blindtest {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kFindLimit = 900;  // [s] a hundred times what a log takes
+constexpr int kBadInput = 2;     // what tread-gap ends with after its one line
+
+std::string foundFile(const HiddenCase& one, const std::string& name) {
+  return "found/" + one.name + "/" + name;
+}
+
+/// Runs a batch step by step.
+class Runner {
+ public:
+  Runner(const Study& study, const Batch& batch, const std::map<std::string, std::string>& models)
+      : study_(study), batch_(batch), models_(models), folder_(batch.folder) {}
+
+  void run() {
+    clear();
+    hide();
+    findAll();
+    hashVerdicts();
+    runOrThrow({{program("tread-hide"), "unseal", "--out", "."}, batch_.folder, "unseal.log", ""});
+    writeRecords();
+    if (!study_.keep) tidy();
+  }
+
+ private:
+  std::string program(const char* name) const { return study_.programs + "/" + name; }
+
+  /// What an interrupted run has left.
+  void clear() const {
+    if (fs::exists(folder_ / "sealed")) fs::permissions(folder_ / "sealed", fs::perms::owner_all);
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "found");
+  }
+
+  void hide() const {
+    const std::string log = "hide.log";
+    const auto of_suite = [](const HiddenCase& one) { return one.arguments.empty(); };
+    if (std::any_of(batch_.cases.begin(), batch_.cases.end(), of_suite)) {
+      const std::string shard =
+          std::to_string(batch_.first + 1) + "/" + std::to_string(batch_.stride);
+      runOrThrow({{program("tread-hide"), "--suite", study_.suite, "--minutes",
+                   std::to_string(study_.minutes), "--seed", std::to_string(study_.seed), "--shard",
+                   shard, "--out", "."},
+                  batch_.folder,
+                  log,
+                  ""});
+    }
+    for (const HiddenCase& one : batch_.cases) {
+      if (of_suite(one)) continue;
+      std::vector<std::string> command{program("tread-hide")};
+      command.insert(command.end(), one.arguments.begin(), one.arguments.end());
+      command.insert(command.end(), {"--out", "."});
+      runOrThrow({command, batch_.folder, log, ""});
+    }
+  }
+
+  void findAll() {
+    SealWatch watch((folder_ / "sealed").string());
+    std::vector<std::thread> workers;
+    for (size_t i = 0; i < std::min(study_.jobs, batch_.cases.size()); ++i)
+      workers.emplace_back([this] { work(); });
+    for (std::thread& worker : workers) worker.join();
+    if (problem_) std::rethrow_exception(problem_);
+    const std::vector<std::string> touched = watch.touched();
+    if (!touched.empty())
+      throw std::runtime_error(batch_.folder + "/sealed: " + touched.front() +
+                               " was opened before its time; nothing of this batch counts");
+  }
+
+  void work() {
+    try {
+      for (size_t i; !stop_ && (i = next_++) < batch_.cases.size();) find(batch_.cases[i]);
+    } catch (...) {
+      const std::lock_guard<std::mutex> guard(mutex_);
+      if (!problem_) problem_ = std::current_exception();
+      stop_ = true;
+    }
+  }
+
+  void find(const HiddenCase& one) {
+    fs::create_directories(folder_ / "found" / one.name);
+    const Ended ended = blindtest::run(
+        {{program("tread-gap"), "find", "--threads", "1", "--model", models_.at(one.nominal),
+          "--train", "blind/" + one.name + ".lcm", "--out", "found/" + one.name},
+         batch_.folder,
+         foundFile(one, "log.txt"),
+         (folder_ / "sealed").string(),
+         kFindLimit});
+    const std::lock_guard<std::mutex> guard(mutex_);
+    ended_[one.name] = ended;
+  }
+
+  void hashVerdicts() const {
+    std::ofstream list(folder_ / "verdicts.txt", std::ios::binary);
+    for (const HiddenCase& one : batch_.cases) list << verdictHash(one) << "\n";
+    list << std::flush;
+    if (!list) throw std::runtime_error(batch_.folder + "/verdicts.txt: cannot be written");
+  }
+
+  /// A line as `sha256sum -c` reads it.
+  std::string verdictHash(const HiddenCase& one) const {
+    const std::string file = foundFile(one, hasVerdict(one) ? "verdict.json" : "log.txt");
+    return gap::sha256OfFile((folder_ / file).string()) + "  " + file;
+  }
+
+  bool hasVerdict(const HiddenCase& one) const {
+    return fs::exists(folder_ / foundFile(one, "verdict.json"));
+  }
+
+  static Json readJson(const fs::path& path) {
+    std::ifstream file(path);
+    return Json::parse(file);
+  }
+
+  Json recordOf(const HiddenCase& one) const {
+    Json record = {{"case", one.name}};
+    record["truth"] = readJson(folder_ / "sealed" / (one.name + ".json"));
+    record["truth"].erase("salt");
+    Json answer = {{"exit", ended_.at(one.name).status}, {"message", ""}, {"verdict", nullptr}};
+    if (hasVerdict(one))
+      answer["verdict"] = readJson(folder_ / foundFile(one, "verdict.json"));
+    else if (ended_.at(one.name).status == kBadInput)
+      answer["message"] = lastLine((folder_ / foundFile(one, "log.txt")).string());
+    record["nominal"] = nominalNumbers(models_.at(one.nominal), answer["verdict"]);
+    record["answer"] = std::move(answer);
+    record["verdict_sha256"] = verdictHash(one).substr(0, 64);
+    return record;
+  }
+
+  void writeRecords() const {
+    const fs::path part = folder_ / "cases.part";
+    std::ofstream times(folder_ / "times.csv");
+    times << "case,cpu_s\n";
+    {
+      std::ofstream lines(part, std::ios::binary);
+      for (const HiddenCase& one : batch_.cases) {
+        lines << recordOf(one).dump() << "\n";
+        times << one.name << "," << ended_.at(one.name).cpu_seconds << "\n";
+      }
+      lines << std::flush;
+      if (!lines) throw std::runtime_error(part.string() + ": cannot be written");
+    }
+    fs::rename(part, folder_ / kBatchRecords);
+  }
+
+  /// Logs are made again by the same command; verdicts and models stay.
+  void tidy() const {
+    for (const HiddenCase& one : batch_.cases) {
+      fs::remove(folder_ / "blind" / (one.name + ".lcm"));
+      fs::remove(folder_ / foundFile(one, "report.html"));
+    }
+  }
+
+  const Study& study_;
+  const Batch& batch_;
+  const std::map<std::string, std::string>& models_;
+  const fs::path folder_;
+  std::atomic<size_t> next_{0};
+  std::atomic<bool> stop_{false};
+  std::mutex mutex_;
+  std::exception_ptr problem_;
+  std::map<std::string, Ended> ended_;
+};
+
+}  // namespace
+
+void runBatch(const Study& study, const Batch& batch,
+              const std::map<std::string, std::string>& models) {
+  Runner(study, batch, models).run();
+}
+
+}  // namespace tread::blindtest

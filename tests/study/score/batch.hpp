@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/study/score/study.hpp"
+
+namespace tread::blindtest {
+
+/// Cases that are hidden, run and opened together.
+struct Batch {
+  std::string folder;
+  size_t first = 0;   ///< of the suite's cases
+  size_t stride = 1;  ///< every so many of them
+  std::vector<HiddenCase> cases;
+};
+
+/// Records of a batch; it is there when the batch is done.
+inline constexpr const char* kBatchRecords = "cases.jsonl";
+
+/// Hides the batch, runs tread-gap on each log, hashes the verdicts, unseals, writes the records.
+/** `models`: the nominal model of each noise level. Leaves verdicts.txt (hashes of all verdicts,
+ * from before unsealing), commitments.txt and times.csv. */
+void runBatch(const Study& study, const Batch& batch,
+              const std::map<std::string, std::string>& models);
+
+}  // namespace tread::blindtest

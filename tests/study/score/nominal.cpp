@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <set>
+#include <stdexcept>
+
+#include "tests/study/score/child.hpp"
+#include "tests/study/score/recordings.hpp"
+#include "tests/study/score/study.hpp"
+#include "tools/gap/file_hash.hpp"
+
+namespace fs = std::filesystem;
+
+namespace tread::blindtest {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kRounds = 4;
+constexpr int kLimit = 3600;  // [s] of a calibration that does not end
+constexpr int kFound = 10;
+constexpr int kCannotTell = 15;
+constexpr const char* kStory = "story.json";
+
+/// Held by one process at a time.
+class Lock {
+ public:
+  explicit Lock(const std::string& path)
+      : descriptor_(open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644)) {
+    if (descriptor_ < 0 || flock(descriptor_, LOCK_EX) != 0)
+      throw std::runtime_error(path + ": cannot be locked");
+  }
+  ~Lock() { close(descriptor_); }
+  Lock(const Lock&) = delete;
+  Lock& operator=(const Lock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+/// No case of a suite has these seeds: theirs are drawn from the suite's.
+uint64_t hourSeed(const Study& study, const std::string& noise, int round) {
+  return 100 * study.seed + 10 * static_cast<uint64_t>(round) +
+         (noise == "low"   ? 1
+          : noise == "mid" ? 2
+                           : 3);
+}
+
+Json readJson(const fs::path& path) {
+  std::ifstream file(path);
+  return Json::parse(file);
+}
+
+/// A log that tells of the plain vehicle, and where its calibration begins.
+struct Plain {
+  std::string log;
+  std::string model;
+  std::string sealed;  ///< folder that calibration must not see; empty = none
+};
+
+/// One round of calibration; its verdict.
+Json calibrate(const Study& study, const fs::path& folder, const Plain& plain,
+               const std::string& model, int round) {
+  const std::string out = "round" + std::to_string(round);
+  const Ended ended = run({{study.programs + "/tread-gap", "find", "--calibrate", "--keep-small",
+                            "--threads", "1", "--model", model, "--train", plain.log, "--out", out},
+                           folder.string(),
+                           out + ".log",
+                           plain.sealed,
+                           kLimit});
+  if (ended.status != 0 && (ended.status < kFound || ended.status >= kCannotTell))
+    throw std::runtime_error("calibration ended with " + std::to_string(ended.status) + ": " +
+                             lastLine((folder / (out + ".log")).string()));
+  return readJson(folder / out / "verdict.json");
+}
+
+/// An hour of the plain vehicle with the noise of a level; another one in each round.
+Plain hideHour(const Study& study, const fs::path& folder, const std::string& noise, int round) {
+  fs::remove_all(folder / "hour");
+  std::ofstream(folder / "base.yaml") << kBaseModel;
+  runOrThrow({{study.programs + "/tread-hide", "--null", "--minutes", std::to_string(study.hour),
+               "--noise", noise, "--seed", std::to_string(hourSeed(study, noise, round)), "--name",
+               "hour", "--out", "hour"},
+              folder.string(),
+              "hide.log",
+              ""});
+  return {"hour/blind/hour.lcm", "base.yaml", (folder / "hour/sealed").string()};
+}
+
+void make(const Study& study, const fs::path& folder, const std::string& name) {
+  const auto recording = recordingNamed(study, name);
+  std::string model;
+  Json verdict;
+  int round = 0;
+  bool may_change = true;
+  do {
+    ++round;
+    const Plain plain = recording ? Plain{recording->log, recording->model, ""}
+                                  : hideHour(study, folder, name, round);
+    verdict = calibrate(study, folder, plain, model.empty() ? plain.model : model, round);
+    model = "round" + std::to_string(round) + "/model.yaml";
+    // The same log says the same of a model that stays as it is; another hour may not.
+    may_change = !recording || !verdict.at("effects").empty();
+  } while (!verdict.at("unexplained").empty() && may_change && round < kRounds);
+  Json story = {{"rounds", round}, {"verdict", verdict.at("verdict")}, {"named", Json::array()}};
+  for (const Json& effect : verdict.at("effects")) story["named"].push_back(effect.at("name"));
+  story["unexplained"] = verdict.at("unexplained");
+  std::ofstream(folder / kStory) << story.dump(2) << "\n";
+  std::cout << "nominal model " << name << " after " << round << " round(s): "
+            << (verdict.at("unexplained").empty()
+                    ? "the adequacy test passes"
+                    : "the adequacy test does not pass: " + verdict.at("unexplained").dump())
+            << std::endl;
+  fs::copy_file(folder / model, folder / "model.part", fs::copy_options::overwrite_existing);
+  fs::remove_all(folder / "hour");
+  fs::rename(folder / "model.part", folder / "model.yaml");
+}
+
+}  // namespace
+
+std::string nominalModel(const Study& study, const std::string& name) {
+  if (!study.nominal.empty() && !recordingNamed(study, name))
+    return fs::absolute(study.nominal).string();
+  const fs::path folder = fs::absolute(study.out) / "nominal" / name;
+  fs::create_directories(folder);
+  const Lock lock((folder / "lock").string());
+  if (!fs::exists(folder / "model.yaml")) make(study, folder, name);
+  return (folder / "model.yaml").string();
+}
+
+Json nominalStory(const Study& study, const std::vector<HiddenCase>& cases) {
+  std::set<std::string> names;
+  for (const HiddenCase& one : cases) names.insert(one.nominal);
+  Json all = Json::object();
+  for (const std::string& name : names) {
+    const std::string model = nominalModel(study, name);
+    Json story = {{"sha256", gap::sha256OfFile(model)}};
+    const fs::path told = fs::path(model).parent_path() / kStory;
+    if (study.nominal.empty() || recordingNamed(study, name)) {
+      const Json told_story = readJson(told);
+      for (const auto& [key, value] : told_story.items()) story[key] = value;
+    }
+    all[name] = story;
+  }
+  return all;
+}
+
+}  // namespace tread::blindtest

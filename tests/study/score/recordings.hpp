@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/study/score/study.hpp"
+
+namespace tread::blindtest {
+
+/// A log of a real drive, and the model file that its calibration begins with.
+struct Recording {
+  std::string nominal;  ///< name of its nominal model: recording-NAME
+  std::string log;      ///< FOLDER/NAME.lcmlog, absolute
+  std::string model;    ///< FOLDER/NAME.yaml, absolute
+};
+
+/// The recordings of a folder, by name: each NAME.lcmlog that has a NAME.yaml beside it.
+std::vector<Recording> recordingsIn(const std::string& folder);
+
+/// The recording whose nominal model has this name; nothing for that of a noise level.
+std::optional<Recording> recordingNamed(const Study& study, const std::string& nominal);
+
+/// Effects hidden in the study's recordings by exact transformations (gap.md 3.6).
+/** Small: none; medium: each effect once in each recording; full: in two sizes. Where there is no
+ * recording, or one of which nothing can be said, a line tells that it is left out. */
+std::vector<HiddenCase> recordingSuite(const Study& study);
+
+}  // namespace tread::blindtest

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include "tools/robot/launch/launch_file.hpp"
+
+using namespace tread;
+using namespace tread::launch;
+
+namespace {
+
+const LaunchSettings kSettings{"/etc/robots/launch/r.yaml", "/run/r", "/opt/tread/bin", "", {}};
+
+LaunchFile read(const std::string& text, const LaunchSettings& settings = kSettings) {
+  ConfigReader reader = ConfigReader::fromText(text, "r.yaml");
+  return readLaunchFile(reader, settings);
+}
+
+/// The one line that a mistaken file gives.
+std::string mistake(const std::string& text, const LaunchSettings& settings = kSettings) {
+  try {
+    read(text, settings);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no mistake found";
+}
+
+using Catch::Contains;
+using Catch::StartsWith;
+using Words = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("a launch file becomes processes in its order, with placeholders and paths put in") {
+  const LaunchFile launch = read(R"(
+name: robot
+values: {robot: ../robots/teodor}
+environment: {MODE: "{robot}"}
+processes:
+  - {name: logger, program: lcm-logger, foreign: true, stop_time: 9,
+     arguments: ["--lcm-url={lcm_url}", "{run}/log/x"]}
+  - {name: planner, program: tread-planner, config: "{robot}/planner.yaml", restart: false,
+     stop_signal: TERM}
+  - {name: own, program: ../tools/own}
+)");
+  CHECK(launch.name == "robot");
+  CHECK(launch.lcm_url == "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=2097152");
+  CHECK(launch.environment.at("MODE") == "../robots/teodor");
+  REQUIRE(launch.processes.size() == 3);
+  const LaunchProcess& logger = launch.processes[0];
+  CHECK(logger.foreign);
+  CHECK(logger.restart);
+  CHECK(logger.stop_signal == "INT");
+  CHECK(logger.stop_time == 9);
+  CHECK(logger.arguments == Words{"--lcm-url=" + launch.lcm_url, "/run/r/log/x"});
+  const LaunchProcess& planner = launch.processes[1];
+  CHECK(planner.config == "/etc/robots/robots/teodor/planner.yaml");
+  CHECK_FALSE(planner.restart);
+  CHECK(planner.stop_signal == "TERM");
+  CHECK(launch.processes[2].program == "/etc/robots/tools/own");
+}
+
+TEST_CASE("the command line replaces the address and the values of a launch file") {
+  LaunchSettings settings = kSettings;
+  settings.lcm_url = "udpm://239.255.76.67:9000?ttl=0";
+  settings.values = {{"robot", "/mine"}};
+  const std::string text =
+      "name: r\nlcm_url: udpm://239.255.76.67:1?ttl=0\nvalues: {robot: x}\n"
+      "processes: [{name: p, program: p, config: \"{robot}/p.yaml\"}]";
+  const LaunchFile launch = read(text, settings);
+  CHECK(launch.lcm_url == settings.lcm_url);
+  CHECK(launch.processes[0].config == "/mine/p.yaml");
+  settings.values = {{"robbot", "/mine"}};
+  CHECK(mistake(text, settings) ==
+        "/etc/robots/launch/r.yaml: has no value 'robbot' to set; there is robot");
+}
+
+TEST_CASE("mistakes in a launch file are named with file and line") {
+  CHECK_THAT(mistake("name: r\n"), StartsWith("r.yaml:") && Contains("processes"));
+  CHECK_THAT(mistake("name: r\nprocesses: []\n"), StartsWith("r.yaml:2: processes: is empty"));
+  CHECK_THAT(mistake("name: R 2\nprocesses: []\n"), StartsWith("r.yaml:1: name: 'R 2' is no name"));
+  CHECK_THAT(mistake("name: r\nprocesses:\n  - name: p\n"), Contains("program"));
+  CHECK_THAT(mistake("name: r\nprocesses:\n  - name: p\n    program: x\n    restrat: true\n"),
+             StartsWith("r.yaml:5:") && Contains("restrat"));
+  CHECK_THAT(mistake("name: r\nprocesses:\n  - {name: p, program: x}\n  - {name: p, program: y}\n"),
+             StartsWith("r.yaml:4:") && Contains("'p' is taken"));
+  CHECK_THAT(mistake("name: r\nprocesses:\n  - name: p\n    program: x\n    stop_time: 900\n"),
+             StartsWith("r.yaml:5:") && Contains("1..60 s"));
+  CHECK_THAT(mistake("name: r\nprocesses:\n  - name: p\n    program: x\n    stop_signal: SIGINT\n"),
+             StartsWith("r.yaml:5:") && Contains("INT, TERM"));
+  CHECK_THAT(mistake("name: r\nprocesses:\n  - name: p\n    program: \"{rnu}/x\"\n"),
+             StartsWith("r.yaml:4:") && Contains("'{rnu}' stands for nothing; known are {bin}"));
+  CHECK_THAT(mistake("name: r\nprocesses:\n  - name: p\n    program: x{\n"),
+             StartsWith("r.yaml:4:") && Contains("stands for nothing"));
+  CHECK_THAT(mistake("name: r\nvalues:\n  run: /x\nprocesses: [{name: p, program: p}]"),
+             StartsWith("r.yaml:3:") && Contains("has a meaning already"));
+  CHECK_THAT(mistake("name: r\nprocesses:\n  - {name: p, program: x, foreign: true, config: y}\n"),
+             StartsWith("r.yaml:3:") && Contains("a foreign one takes it in arguments"));
+  CHECK_THAT(mistake("name: r\nprocesses:\n  - {name: supervisord, program: x}\n"),
+             Contains("is taken"));
+}
+
+TEST_CASE("our programs watch their parent by themselves, foreign ones with setpriv") {
+  LaunchProcess process;
+  process.config = "/c.yaml";
+  process.arguments = {"--set", "a=b"};
+  CHECK(startCommand(process, "/bin/p", "udpm://") == Words{"/bin/p", "--config", "/c.yaml",
+                                                            "--lcm-url", "udpm://", "--with-parent",
+                                                            "--set", "a=b"});
+  CHECK(checkCommand(process, "/bin/p", "udpm://") ==
+        Words{"/bin/p", "--config", "/c.yaml", "--lcm-url", "udpm://", "--check", "--set", "a=b"});
+  process.foreign = true;
+  process.config.clear();
+  CHECK(startCommand(process, "/bin/p", "udpm://") ==
+        Words{"setpriv", "--pdeathsig", "INT", "--", "/bin/p", "--set", "a=b"});
+  CHECK(checkCommand(process, "/bin/p", "udpm://").empty());
+}

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// The launch files that are shipped, with the real processes.
+#include <catch2/catch.hpp>
+
+#include "tests/tools/robot/launch/launched.hpp"
+#include "tools/robot/launch/run_command.hpp"
+
+using namespace tread::testing;
+using Catch::Contains;
+using tread::launch::CommandOutcome;
+using tread::launch::runCommand;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string kLaunch = std::string(TREAD_SOURCE_DIR) + "/config/launch/";
+
+/// A folder that goes with its test, and a bus and a port of its own.
+struct Place {
+  Place() { fs::create_directories(folder); }
+  ~Place() { fs::remove_all(folder); }
+  std::vector<std::string> simulated() const {
+    const std::string port = std::to_string(30000 + (getpid() * 7) % 20000);
+    return {kLaunch + "simulated.yaml",
+            "--run",
+            (folder / "run").string(),
+            "--lcm-url",
+            ownLcmUrl(),
+            "--set",
+            "laser_port=" + port};
+  }
+  const fs::path folder =
+      fs::temp_directory_path() / ("tread_launch_robot_" + std::to_string(getpid()));
+};
+
+std::vector<int> workersIn(const fs::path& run) {
+  std::vector<int> pids;
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    std::error_code gone;
+    if (fs::read_symlink(entry.path() / "cwd", gone) == run && !gone)
+      pids.push_back(std::stoi(entry.path().filename().string()));
+  }
+  return pids;
+}
+
+}  // namespace
+
+TEST_CASE("the shipped launch files pass the start-up checks, absent instruments are an advice") {
+  const Place place;
+  const CommandOutcome robot =
+      runCommand({std::string(TREAD_BIN_DIR) + "/tread-launch", kLaunch + "robot.yaml", "--run",
+                  (place.folder / "run").string(), "--check"},
+                 60.0);
+  INFO(robot.output);
+  CHECK(robot.code == 0);
+  CHECK_THAT(robot.output, Contains("robot: ready to start"));
+  std::vector<std::string> words{std::string(TREAD_BIN_DIR) + "/tread-launch"};
+  for (const std::string& word : place.simulated()) words.push_back(word);
+  words.push_back("--check");
+  const CommandOutcome simulated = runCommand(words, 60.0);
+  INFO(simulated.output);
+  CHECK(simulated.code == 0);
+  CHECK_THAT(simulated.output, !Contains("device"));
+}
+
+TEST_CASE("a mistake in a robot's configuration stops the start with its file and line") {
+  const Place place;
+  fs::copy(std::string(TREAD_SOURCE_DIR) + "/config/robots/teodor", place.folder / "robot");
+  std::ofstream(place.folder / "robot/mapping.yaml", std::ios::app) << "\ncell_sise: 0.1\n";
+  const CommandOutcome outcome =
+      runCommand({std::string(TREAD_BIN_DIR) + "/tread-launch", kLaunch + "robot.yaml", "--run",
+                  (place.folder / "run").string(), "--set",
+                  "robot=" + (place.folder / "robot").string(), "--check"},
+                 60.0);
+  CHECK(outcome.code == 1);
+  CHECK_THAT(outcome.output,
+             Contains("robot: mapping: ") && Contains("mapping.yaml:") && Contains("cell_sise"));
+}
+
+TEST_CASE("the simulated robot starts, records, and leaves no process when its supervisor dies") {
+  const Place place;
+  const fs::path run = place.folder / "run";
+  const fs::path output = place.folder / "output.txt";
+  const auto says = [&](const std::string& text) {
+    return within(30, [&] { return contentOf(output).find(text) != std::string::npos; });
+  };
+  {
+    Process launch("tread-launch", place.simulated(), output);
+    REQUIRE(says("simulated: all 8 processes run after"));
+    CHECK(within(10, [&] { return fs::exists(run / "devices/motor"); }));
+    CHECK(within(20, [&] {
+      std::error_code none;
+      return fs::file_size(run / "log/robot.lcmlog.0", none) > 20000 && !none;
+    }));
+    launch.signal(SIGINT);
+    REQUIRE(launch.waitFor(20));
+    CHECK(launch.exitCode() == 0);
+    CHECK(workersIn(run).empty());
+  }
+  fs::remove(output);
+  Process launch("tread-launch", place.simulated(), output);
+  REQUIRE(says("simulated: all 8 processes run after"));
+  kill(std::stoi(contentOf(run / "supervisord.pid")), SIGKILL);
+  CHECK(launch.waitFor(20));
+  CHECK(workersIn(run).empty());
+  CHECK(fs::exists(run / "log/robot.lcmlog.1"));
+}

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include "tests/tools/robot/launch/launched.hpp"
+#include "tools/robot/launch/run_command.hpp"
+
+using namespace tread::testing;
+using Catch::Contains;
+using tread::launch::CommandOutcome;
+using tread::launch::runCommand;
+
+namespace {
+
+CommandOutcome call(const Launched& launched, const std::vector<std::string>& more) {
+  std::vector<std::string> words{std::string(TREAD_BIN_DIR) + "/tread-launch"};
+  for (const std::string& word : launched.arguments(more)) words.push_back(word);
+  return runCommand(words, 30.0);
+}
+
+}  // namespace
+
+TEST_CASE("processes start, one that is killed comes back, and all are gone after the stop") {
+  const Launched launched({"good", "good"}, TREAD_STAND_IN);
+  Process launch("tread-launch", launched.arguments(), launched.output());
+  REQUIRE(launched.says("trial: all 3 processes run after"));
+  CHECK(launched.pids().size() == 3);
+  const int first = launched.pidOf("p1.txt");
+  REQUIRE(first > 0);
+  kill(first, SIGKILL);
+  CHECK(within(10, [&] {
+    const int now = launched.pidOf("p1.txt");
+    return now > 0 && now != first;
+  }));
+  CHECK(launched.says("trial: p1 ended (terminated by SIGKILL; not expected)"));
+  CHECK(launched.says("trial: p1 runs again"));
+  launch.signal(SIGINT);
+  REQUIRE(launch.waitFor(10));
+  CHECK(launch.exitCode() == 0);
+  CHECK(launched.says("trial: stopped after"));
+  CHECK(launched.pids().empty());
+  CHECK_FALSE(std::filesystem::exists(launched.run() / "supervisor.sock"));
+  // They were asked, not killed, the last one first.
+  CHECK_THAT(contentOf(launched.run() / "log/p0.log"), Contains("ends by signal 2"));
+  const std::string log = contentOf(launched.run() / "log/supervisord.log");
+  CHECK(log.find("stopped: p1 (exit status 0)") < log.find("stopped: p0 (exit status 0)"));
+}
+
+TEST_CASE("a second launch in the same folder is refused with one line, and the first goes on") {
+  const Launched launched({"good"}, TREAD_STAND_IN);
+  Process launch("tread-launch", launched.arguments(), launched.output());
+  REQUIRE(launched.says("processes run after"));
+  const CommandOutcome second = call(launched, {});
+  CHECK(second.code == 1);
+  CHECK_THAT(second.output, Contains("trial: runs already in " + launched.run().string()));
+  CHECK(withoutAdvice(second.output).size() == 1);
+  const CommandOutcome status = call(launched, {"--status"});
+  CHECK(status.code == 0);
+  CHECK_THAT(status.output, Contains("p0") && Contains("RUNNING"));
+  const CommandOutcome stop = call(launched, {"--stop"});
+  CHECK(stop.code == 0);
+  CHECK_THAT(stop.output, Contains("trial: stopped after"));
+  CHECK(launch.waitFor(5));
+  CHECK(call(launched, {"--status"}).code == 3);
+  CHECK_THAT(call(launched, {"--stop"}).output, Contains("nothing runs"));
+}
+
+TEST_CASE("two runs in one folder, one after another") {
+  const Launched launched({"good"}, TREAD_STAND_IN);
+  for (int i = 0; i < 2; ++i) {
+    std::filesystem::remove(launched.output());
+    Process launch("tread-launch", launched.arguments(), launched.output());
+    REQUIRE(launched.says("trial: all 2 processes run after"));
+    launch.signal(SIGTERM);
+    REQUIRE(launch.waitFor(10));
+    CHECK(launch.exitCode() == 0);
+    CHECK(launched.pids().empty());
+  }
+}
+
+TEST_CASE("under nohup all goes on when the terminal closes") {
+  const Launched launched({"good"}, TREAD_STAND_IN);
+  std::vector<std::string> words{"-c", "trap '' HUP; exec \"$0\" \"$@\"",
+                                 std::string(TREAD_BIN_DIR) + "/tread-launch"};
+  for (const std::string& word : launched.arguments()) words.push_back(word);
+  Process launch("/bin/sh", words, launched.output());
+  REQUIRE(launched.says("processes run after"));
+  launch.signal(SIGHUP);
+  CHECK_FALSE(launched.says("stopping", 0.5));
+  CHECK(launch.running());
+  launch.signal(SIGINT);
+  REQUIRE(launch.waitFor(10));
+  CHECK(launch.exitCode() == 0);
+}
+
+TEST_CASE("a process that ends at once is tried again, told twice, and does not stop the others") {
+  const Launched launched({"good", "brief"}, TREAD_STAND_IN);
+  Process launch("tread-launch", launched.arguments(), launched.output());
+  CHECK(launched.says("trial: p1 ended (exit status 4; not expected)"));
+  CHECK(launched.says("trial: p1 ended again (exit status 4; not expected)"));
+  CHECK(launched.pidOf("p0.txt") > 0);
+  launch.signal(SIGTERM);
+  CHECK(launch.waitFor(10));
+}
+
+TEST_CASE("start-up checks name what is wrong and nothing is started") {
+  const Launched launched({"wrong"}, TREAD_STAND_IN);
+  const CommandOutcome check = call(launched, {"--check"});
+  CHECK(check.code == 1);
+  CHECK_THAT(check.output, Contains("trial: p0: planner.yaml:3: lease is 9 s; allowed 0.05..1 s; "
+                                    "mend: edit " +
+                                    launched.folder.string() + "/p0.txt"));
+  CHECK(call(launched, {}).code == 1);
+  CHECK_FALSE(std::filesystem::exists(launched.run()));
+  std::filesystem::remove(launched.folder / "p0.txt");
+  CHECK_THAT(call(launched, {"--check"}).output, Contains("p0.txt cannot be read"));
+  std::ofstream(launched.folder / "p0.txt") << "good";
+  CHECK(call(launched, {"--no-such-option"}).code == 2);
+  const CommandOutcome good = call(launched, {"--check"});
+  CHECK(good.code == 0);
+  CHECK_THAT(good.output, Contains("trial: ready to start"));
+}
+
+TEST_CASE("one process alone can be started for systemd") {
+  const Launched launched({"good", "good"}, TREAD_STAND_IN);
+  Process launch("tread-launch", launched.arguments({"--only", "p1"}), launched.output());
+  CHECK(launched.says("runs as"));
+  CHECK(launched.pids().size() == 1);
+  CHECK(launched.pidOf("p1.txt") > 0);
+  launch.signal(SIGINT);
+  REQUIRE(launch.waitFor(5));
+  CHECK(launch.exitCode() == 0);
+  CHECK_THAT(call(launched, {"--only", "p7"}).output, Contains("has no process 'p7'"));
+}

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <memory>
+
+#include <catch2/catch.hpp>
+
+#include "common/bus/virtual_bus.hpp"
+#include "tools/robot/operator/goal_call.hpp"
+#include "tools/robot/operator/permission_call.hpp"
+
+namespace tread::operators {
+namespace {
+
+/// A robot that answers as it is told to, on the operator's own endpoint.
+struct Stand {
+  explicit Stand(Bus& operators_bus) : bus(operators_bus) {
+    bus.subscribe<arm_t>(kArm, [this](const arm_t& message) {
+      ++arms;
+      last_arm = message;
+    });
+    bus.subscribe<estop_t>(kEstop, [this](const estop_t& message) {
+      ++stops;
+      last_stop = message;
+    });
+    bus.subscribe<goal_t>(kGoal, [this](const goal_t& message) { goals.push_back(message); });
+  }
+  void motor(int64_t utime, int16_t state, const std::string& reason = "") {
+    motor_t message{};
+    message.utime = utime;
+    message.bridge_state = state;
+    message.state_reason = reason;
+    bus.publish(kMotor, message);
+  }
+  void plan(int64_t utime, int64_t goal_id, int16_t status) {
+    plan_t message{};
+    message.utime = utime;
+    message.goal_id = goal_id;
+    message.plan_status = status;
+    bus.publish(kPlan, message);
+  }
+
+  Bus& bus;
+  int arms = 0;
+  int stops = 0;
+  arm_t last_arm{};
+  estop_t last_stop{};
+  std::vector<goal_t> goals;
+};
+
+/// A node that does nothing by itself.
+class Seat : public Node {
+ public:
+  int64_t period() const override { return 1'000'000; }
+  void step(int64_t /*utime*/) override {}
+};
+
+/// A virtual bus with the operator outside and the robot as a node.
+struct Scene {
+  Scene() {
+    bus.addNode("robot", [this](Bus& end) {
+      stand = std::make_unique<Stand>(end);
+      return std::make_unique<Seat>();
+    });
+  }
+  VirtualBus bus{1};
+  Bus& desk = bus.outside();
+  std::unique_ptr<Stand> stand;
+
+  /// Steps a call each 20 ms until it ends or the time is over; `act` is the robot.
+  CallResult run(Call& call, double seconds, const std::function<void(int64_t)>& act) {
+    for (int i = 0; i < static_cast<int>(seconds * 50.0); ++i) {
+      act(bus.now());
+      const CallResult result = call.step(bus.now());
+      if (result != CallResult::kGoesOn) return result;
+      bus.runUntil(bus.now() + 20'000);
+    }
+    return CallResult::kGoesOn;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("arming is repeated until MOTOR shows it, and an answer from before does not count") {
+  Scene scene;
+  ArmCall call(scene.desk, {"me", "a try"}, true, 5.0);
+  const auto result = scene.run(call, 6.0, [&](int64_t now) {
+    scene.stand->motor(now,
+                       scene.stand->arms >= 5 ? motor_t::STATE_ARMED : motor_t::STATE_DISARMED);
+  });
+  CHECK(result == CallResult::kDone);
+  CHECK(scene.stand->arms >= 5);
+  CHECK(scene.stand->last_arm.armed_by == "me");
+  CHECK(scene.stand->last_arm.arm_reason == "a try");
+  CHECK(call.words(scene.bus.now()) == "armed");
+}
+
+TEST_CASE("a bridge that does not arm is quoted") {
+  Scene scene;
+  ArmCall call(scene.desk, {}, true, 1.0);
+  const auto result = scene.run(call, 3.0, [&](int64_t now) {
+    scene.stand->motor(now, motor_t::STATE_FAULT, "controller lost");
+  });
+  CHECK(result == CallResult::kRefused);
+  CHECK(call.words(scene.bus.now()) == "not armed; the motor bridge says: controller lost");
+}
+
+TEST_CASE("a stop is repeated fast, and a silent robot is told loudly") {
+  Scene scene;
+  StopCall call(scene.desk, {}, true, 1.0);
+  CHECK(scene.run(call, 3.0, [](int64_t) {}) == CallResult::kRefused);
+  CHECK(scene.stand->stops >= 16);
+  CHECK(scene.stand->last_stop.engaged);
+  CHECK_THAT(call.words(scene.bus.now()), Catch::StartsWith("NOBODY CONFIRMS THE STOP"));
+}
+
+TEST_CASE("a goal is repeated each second, ends with the arrival, and gives up where no way is") {
+  Scene scene;
+  GoalRequest request;
+  request.T_map_goal = {3.0, 4.0, 0.0};
+  request.patience = 2.0;
+  GoalCall call(scene.desk, request, 77, {});
+  const int64_t begun = scene.bus.now();
+  auto result = scene.run(call, 10.0, [&](int64_t now) {
+    // The arrival at somebody else's goal is none of ours.
+    const bool ours = now - begun > 4'000'000;
+    scene.stand->plan(now, ours ? 77 : 76, plan_t::PLAN_ARRIVED);
+  });
+  CHECK(result == CallResult::kDone);
+  CHECK(scene.stand->goals.size() == 5);
+  CHECK(scene.stand->goals.front().goal_id == 77);
+
+  GoalCall hopeless(scene.desk, request, 78, {});
+  const int64_t asked = scene.bus.now();
+  result = scene.run(hopeless, 10.0, [&](int64_t now) {
+    // A moment's block is no end.
+    const bool free = now - asked > 1'000'000 && now - asked < 1'500'000;
+    scene.stand->plan(now, 78, free ? plan_t::PLAN_DRIVING : plan_t::PLAN_BLOCKED);
+  });
+  CHECK(result == CallResult::kRefused);
+  CHECK(scene.bus.now() - asked > 3'400'000);
+  hopeless.cancel(scene.bus.now());
+  scene.bus.runUntil(scene.bus.now() + 100'000);
+  CHECK(scene.stand->goals.back().goal_id == 0);
+}
+
+TEST_CASE("a permission that is lost on the way ends the call with the bridge's reason") {
+  Scene scene;
+  GoalCall call(scene.desk, {}, 5, {});
+  const int64_t begun = scene.bus.now();
+  const auto result = scene.run(call, 10.0, [&](int64_t now) {
+    scene.stand->plan(now, 5, plan_t::PLAN_DRIVING);
+    // Not armed yet, then armed, then lost; a moment's loss alone would be none.
+    const double t = static_cast<double>(now - begun) * 1e-6;
+    const bool armed = t > 3.0 && t < 4.0;
+    scene.stand->motor(now, armed ? motor_t::STATE_DRIVING : motor_t::STATE_FAULT, "INS is stale");
+  });
+  CHECK(result == CallResult::kRefused);
+  CHECK(scene.bus.now() - begun > 5'900'000);
+  CHECK_THAT(call.words(scene.bus.now()), Catch::Contains("not armed any more (INS is stale)"));
+}
+
+}  // namespace tread::operators

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/replay/shadow_learners.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "common/store/store.hpp"
+#include "modules/learner/learner_node.hpp"
+#include "tools/replay/log_bus.hpp"
+
+namespace tread::shadow {
+namespace {
+
+learner::LearnerNodeConfig withRule(learner::LearnerNodeConfig config, learner::Rule rule) {
+  config.rule.rule = rule;
+  return config;
+}
+
+/// Where the patterns of a set end, from a time on.
+struct Predictions {
+  int64_t since = 0;
+  std::map<int, Pose2> ends;  ///< by pattern id
+};
+
+}  // namespace
+
+/// The learner process of one rule.
+class ShadowLearners::Shadow {
+ public:
+  Shadow(const learner::LearnerNodeConfig& config, learner::Rule rule, int64_t boot_id)
+      : bus_(boot_id), node_(withRule(config, rule), bus_, store_) {
+    notePredictions(boot_id);
+  }
+
+  bool hears(const std::string& channel) const { return bus_.hears(channel); }
+
+  void hear(int64_t utime, const LogEvent& event) {
+    stepUntil(utime);
+    bus_.setNow(utime);
+    bus_.hear(event);
+  }
+
+  void stepUntil(int64_t utime) {
+    if (next_step_ < 0) next_step_ = utime;
+    for (; next_step_ <= utime; next_step_ += node_.period()) {
+      bus_.setNow(next_step_);
+      node_.step(next_step_);
+      takeWhatItSaid();
+    }
+  }
+
+  const std::map<ExecutionKey, learning_t>& judged() const { return judged_; }
+
+  /// Against what was predicted at that time.
+  std::optional<EndError> errorOf(const learning_t& said, int64_t decided) const {
+    const Pose2 end{said.measured_end[0], said.measured_end[1], said.measured_end[2]};
+    if (!said.accepted || !std::isfinite(end.x)) return std::nullopt;
+    auto newer = std::upper_bound(
+        predictions_.begin(), predictions_.end(), decided,
+        [](int64_t time, const Predictions& predicted) { return time < predicted.since; });
+    if (newer != predictions_.begin()) --newer;
+    const auto predicted = newer->ends.find(said.learned_pattern_id);
+    if (predicted == newer->ends.end()) return std::nullopt;
+    const Pose2& expected = predicted->second;
+    return EndError{std::hypot(end.x - expected.x, end.y - expected.y),
+                    wrapAngle(end.yaw - expected.yaw)};
+  }
+
+ private:
+  void takeWhatItSaid() {
+    for (const LogEvent& event : bus_.takePublished()) {
+      learning_t said;
+      if (decode(event, kLearning, said))
+        judged_.insert({{said.learned_run_id, said.learned_execution_id}, said});
+      // A planner has a set when the last part of it has come.
+      pattern_set_part_t part;
+      if (node_.set().version() != version_ && decode(event, kPatternSet, part) &&
+          part.set_version == node_.set().version() && part.part + 1 == part.part_count)
+        notePredictions(next_step_);
+    }
+  }
+
+  void notePredictions(int64_t since) {
+    version_ = node_.set().version();
+    Predictions predicted;
+    predicted.since = since;
+    for (const MotionPattern& pattern : node_.set().patterns())
+      predicted.ends[pattern.id] = pattern.end();
+    predictions_.push_back(std::move(predicted));
+  }
+
+  MemoryStore store_;
+  replay::LogBus bus_;
+  learner::LearnerNode node_;
+  int64_t next_step_ = -1;
+  int64_t version_ = 0;
+  std::vector<Predictions> predictions_;  ///< oldest first
+  std::map<ExecutionKey, learning_t> judged_;
+};
+
+ShadowLearners::ShadowLearners(const learner::LearnerNodeConfig& config,
+                               std::vector<learner::Rule> rules, int64_t boot_id)
+    : rules_(std::move(rules)), newest_(boot_id) {
+  for (const learner::Rule rule : rules_)
+    shadows_.push_back(std::make_unique<Shadow>(config, rule, boot_id));
+}
+
+ShadowLearners::~ShadowLearners() = default;
+
+bool ShadowLearners::hears(const std::string& channel) const {
+  return !shadows_.empty() && (channel == kProgram.name || shadows_.front()->hears(channel));
+}
+
+void ShadowLearners::note(const program_slot_t& slot, int64_t run_id, int64_t utime) {
+  if (slot.execution_id == 0) return;
+  Decision& known = decisions_[{run_id, slot.execution_id}];
+  if (known.pattern_id == slot.slot_pattern_id && known.set_version == slot.slot_set_version)
+    return;
+  known = {slot.slot_pattern_id, slot.slot_set_version, utime};
+}
+
+int64_t ShadowLearners::decisionTime(const ExecutionKey& key) const {
+  const auto decided = decisions_.find(key);
+  if (decided != decisions_.end()) return decided->second.since;
+  const auto began = began_.find(key);
+  return began == began_.end() ? newest_ : began->second;
+}
+
+void ShadowLearners::hear(int64_t utime, const LogEvent& event) {
+  newest_ = std::max(newest_, utime);
+  if (!hears(event.channel)) return;
+  program_t program;
+  if (decode(event, kProgram, program)) {
+    note(program.running, program.run_id, program.utime);
+    note(program.next, program.run_id, program.utime);
+    return;
+  }
+  execution_t executions;
+  if (decode(event, kExecution, executions))
+    for (const execution_record_t& record : executions.records)
+      began_[{record.record_run_id, record.record_execution_id}] = record.started;
+  for (const auto& shadow : shadows_) shadow->hear(utime, event);
+}
+
+void ShadowLearners::finish() {
+  // Longer than a learner waits for an INS that does not come.
+  constexpr int64_t kLastWords = 5'000'000;
+  for (const auto& shadow : shadows_) shadow->stepUntil(newest_ + kLastWords);
+}
+
+std::vector<ShadowedExecution> ShadowLearners::executions() const {
+  std::vector<ShadowedExecution> executions;
+  if (shadows_.empty()) return executions;
+  for (const auto& [key, first] : shadows_.front()->judged()) {
+    ShadowedExecution execution;
+    execution.key = key;
+    execution.ended = first.utime;
+    const auto began = began_.find(key);
+    if (began != began_.end()) execution.began = began->second;
+    const int64_t decided = decisionTime(key);
+    for (const auto& shadow : shadows_) {
+      const auto judged = shadow->judged().find(key);
+      const auto error = judged == shadow->judged().end()
+                             ? std::nullopt
+                             : shadow->errorOf(judged->second, decided);
+      if (error) execution.by_rule.push_back(*error);
+    }
+    // The gates are the same, so all have measured it or none.
+    execution.measured = execution.by_rule.size() == shadows_.size();
+    if (!execution.measured) execution.by_rule.clear();
+    executions.push_back(std::move(execution));
+  }
+  std::stable_sort(
+      executions.begin(), executions.end(),
+      [](const ShadowedExecution& a, const ShadowedExecution& b) { return a.ended < b.ended; });
+  return executions;
+}
+
+}  // namespace tread::shadow

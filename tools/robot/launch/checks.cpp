@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/robot/launch/checks.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "common/link/address.hpp"
+#include "tools/robot/launch/supervisor_config.hpp"
+
+namespace tread::launch {
+namespace {
+
+constexpr int64_t kWantedSpace = 2'000'000'000;  // an hour or so of logs
+constexpr int64_t kNeededSpace = 20'000'000;     // for the states and some lines of log
+constexpr const char* kRouteRemedy =
+    "ip link set lo up multicast on; ip route replace 224.0.0.0/4 dev lo  (as root)";
+
+std::optional<int64_t> wholeNumber(const std::string& text) {
+  if (text.empty() || text.size() > 12 ||
+      !std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }))
+    return std::nullopt;
+  return std::stoll(text);
+}
+
+/// ttl=0&recv_buf_size=2097152; false if a number cannot be read.
+bool readOptions(const std::string& text, LcmAddress& address) {
+  std::istringstream options(text);
+  for (std::string option; std::getline(options, option, '&');) {
+    const size_t equals = option.find('=');
+    const std::string key = option.substr(0, equals);
+    if (key != "ttl" && key != "recv_buf_size") continue;
+    const auto number = wholeNumber(equals == std::string::npos ? "" : option.substr(equals + 1));
+    if (!number) return false;
+    if (key == "ttl") address.ttl = static_cast<int>(std::min<int64_t>(*number, 255));
+    if (key == "recv_buf_size") address.receive_buffer = *number;
+  }
+  return true;
+}
+
+std::string megabytes(int64_t bytes) {
+  return std::to_string(bytes / 1'000'000) + " MB";
+}
+
+}  // namespace
+
+std::string findingLine(const std::string& launch_name, const Finding& finding) {
+  return launch_name + (finding.critical ? ": " : ": advice: ") + finding.problem +
+         "; mend: " + finding.remedy;
+}
+
+bool anyCritical(const std::vector<Finding>& findings) {
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const Finding& finding) { return finding.critical; });
+}
+
+std::optional<LcmAddress> parseLcmUrl(const std::string& url) {
+  const size_t colon = url.find("://");
+  if (colon == std::string::npos || colon == 0) return std::nullopt;
+  LcmAddress address;
+  address.provider = url.substr(0, colon);
+  if (address.provider != "udpm") return address;
+  const size_t question = url.find('?');
+  const std::string place = url.substr(
+      colon + 3, question == std::string::npos ? std::string::npos : question - colon - 3);
+  const size_t port_colon = place.find(':');
+  if (port_colon > 0 && !place.empty()) address.group = place.substr(0, port_colon);
+  if (port_colon != std::string::npos) {
+    const auto port = wholeNumber(place.substr(port_colon + 1));
+    if (!port || *port < 1 || *port > 65535) return std::nullopt;
+    address.port = static_cast<uint16_t>(*port);
+  }
+  if (question != std::string::npos && !readOptions(url.substr(question + 1), address))
+    return std::nullopt;
+  return address;
+}
+
+std::string routeDevice(const std::string& answer) {
+  std::istringstream words(answer);
+  std::string word;
+  while (words >> word)
+    if (word == "dev" && words >> word) return word;
+  return "";
+}
+
+std::vector<Finding> checkNetwork(const LcmAddress& address, const NetworkFacts& facts) {
+  std::vector<Finding> findings;
+  if (address.provider != "udpm") {
+    findings.push_back(
+        {true, "LCM URL with provider " + address.provider + " does not connect these processes",
+         "--lcm-url udpm://239.255.76.67:7667?ttl=0"});
+    return findings;
+  }
+  if (!facts.can_ask) return {missingTool("ip", "iproute2")};
+  const bool local = address.ttl == 0;
+  const size_t before = findings.size();
+  if (facts.route_device.empty())
+    findings.push_back(
+        {true, "there is no route for LCM's multicast group " + address.group, kRouteRemedy});
+  else if (local && facts.route_device != "lo")
+    findings.push_back({true,
+                        "LCM's multicast group " + address.group + " is routed to " +
+                            facts.route_device +
+                            ", so messages stop with that link, though ttl is 0",
+                        kRouteRemedy});
+  else if (facts.route_device == "lo" && !(facts.loopback_up && facts.loopback_multicast))
+    findings.push_back({true,
+                        facts.loopback_up ? "the loopback device lo has multicast off"
+                                          : "the loopback device lo is down",
+                        kRouteRemedy});
+  if (findings.size() == before && !facts.delivered)
+    findings.push_back(
+        {true,
+         "a datagram sent to " + address.group + " by " + facts.route_device + " did not come back",
+         "look for a packet filter: nft list ruleset  (as root)"});
+  const int64_t wanted = std::max(kWantedBuffer, address.receive_buffer);
+  if (facts.receive_buffer < wanted)
+    findings.push_back({false,
+                        "net.core.rmem_max is " + std::to_string(facts.receive_buffer) +
+                            ", so bursts of messages are lost",
+                        "sysctl -w net.core.rmem_max=" + std::to_string(wanted) +
+                            "  (as root; for good: config/sysctl/60-tread.conf)"});
+  return findings;
+}
+
+std::vector<Finding> checkProcess(const ProcessFacts& facts) {
+  std::vector<Finding> findings;
+  if (!facts.program_found)
+    findings.push_back(
+        {true, facts.name + ": there is no program " + facts.program,
+         facts.program.rfind("lcm-", 0) == 0 ? "apt-get install liblcm-bin" : "tools/build"});
+  if (!facts.config.empty() && !facts.config_readable)
+    findings.push_back({true, facts.name + ": " + facts.config + " cannot be read",
+                        "check the path and the rights, or name another file"});
+  else if (facts.check_code != 0)
+    findings.push_back({true,
+                        facts.name + ": " +
+                            (facts.check_line.empty()
+                                 ? "--check ended with code " + std::to_string(facts.check_code)
+                                 : facts.check_line),
+                        facts.config.empty() ? "correct the launch file" : "edit " + facts.config});
+  const std::string device = facts.name + ": device " + facts.device;
+  if (facts.device.empty()) return findings;
+  if (!facts.device_present)
+    findings.push_back({false, device + " is absent; it is tried again and again",
+                        "plug it in, or change address" +
+                            (facts.config.empty() ? std::string() : " in " + facts.config)});
+  else if (!facts.device_usable)
+    findings.push_back({false, device + " may not be read and written",
+                        "usermod -a -G dialout USER  (as root), then log in again"});
+  return findings;
+}
+
+std::string deviceOf(const std::vector<std::string>& arguments, const std::string& config_address,
+                     const std::string& run) {
+  std::string text = config_address;
+  for (size_t i = 0; i < arguments.size(); ++i) {
+    std::string set;
+    if (arguments[i] == "--set" && i + 1 < arguments.size()) set = arguments[i + 1];
+    if (arguments[i].rfind("--set=", 0) == 0) set = arguments[i].substr(6);
+    if (set.rfind("address=", 0) == 0) text = set.substr(8);
+  }
+  if (text.empty()) return "";
+  try {
+    const LinkAddress address = parseLinkAddress(text);
+    if (address.kind != LinkAddress::Kind::kTty) return "";
+    return address.path.rfind(run + "/", 0) == 0 ? "" : address.path;
+  } catch (const std::invalid_argument&) {
+    return "";  // the program's own --check tells what is wrong with it
+  }
+}
+
+std::vector<Finding> checkFolder(const FolderFacts& facts) {
+  std::vector<Finding> findings;
+  if (facts.occupied) {
+    const std::string owner = facts.owner > 0 ? " (pid " + std::to_string(facts.owner) + ")" : "";
+    findings.push_back({true, "runs already in " + facts.path + owner,
+                        "stop it with --stop, or use another folder with --run"});
+    return findings;
+  }
+  if (facts.longest_socket > kMaxSocketPath)
+    findings.push_back({true,
+                        "the path " + facts.path + " is " +
+                            std::to_string(facts.longest_socket - kMaxSocketPath) +
+                            " bytes too long for the supervisor's socket in it",
+                        "use a shorter folder with --run"});
+  if (!facts.writable) {
+    findings.push_back({true, "the run folder " + facts.path + " cannot be written",
+                        "mkdir -p " + facts.path + "; chown it to yourself; or use --run DIR"});
+    return findings;
+  }
+  if (facts.free_bytes < kWantedSpace)
+    findings.push_back(
+        {facts.free_bytes < kNeededSpace,
+         "only " + megabytes(facts.free_bytes) + " are free for logs in " + facts.path,
+         "remove old logs, or use another disk with --run"});
+  return findings;
+}
+
+Finding missingTool(const std::string& tool, const std::string& package) {
+  return {true, "there is no program " + tool,
+          "tools/setup, or apt-get install " + package + "  (as root)"};
+}
+
+}  // namespace tread::launch

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/robot/launch/checks.hpp"
+#include "tools/robot/launch/launch_file.hpp"
+#include "tools/robot/launch/supervisor_config.hpp"
+
+namespace tread::launch {
+
+/// The folder of the program that runs.
+std::string ownFolder();
+
+/// $XDG_STATE_HOME/tread/NAME or ~/.local/state/tread/NAME; throws std::runtime_error without HOME.
+std::string defaultRunFolder(const std::string& name);
+
+/// An executable file: a path as it is, a name beside our programs or in PATH; empty if none.
+std::string findProgram(const std::string& word, const std::string& bin);
+
+/// The start-up checks of a launch: all that is missing on this host.
+std::vector<Finding> checkHost(const LaunchFile& launch, const LaunchSettings& settings);
+
+/// For a run folder without asking for its owner.
+FolderFacts folderFacts(const RunPaths& paths);
+
+}  // namespace tread::launch

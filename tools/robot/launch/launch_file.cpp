@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/robot/launch/launch_file.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+namespace tread::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Placeholders = std::map<std::string, std::string>;
+
+/// LCM's own group and port; the buffer holds a burst of maps (net.core.rmem_max allowing).
+constexpr const char* kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=2097152";
+
+bool isName(const std::string& text) {
+  const auto allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+  };
+  return !text.empty() && text.size() <= 32 && text.front() != '-' &&
+         std::all_of(text.begin(), text.end(), allowed);
+}
+
+void checkName(const ConfigReader& reader, const std::string& key, const std::string& name) {
+  if (!isName(name))
+    throw reader.error(
+        key, "'" + name + "' is no name; allowed are 1 to 32 of a-z, 0-9, - and _, not - first");
+}
+
+std::string known(const Placeholders& placeholders) {
+  std::string words;
+  for (const auto& [name, value] : placeholders)
+    words += (words.empty() ? "{" : ", {") + name + "}";
+  return words;
+}
+
+/// Replaces the placeholders of a text that stands under `key`.
+std::string replaced(const ConfigReader& reader, const std::string& key, const std::string& text,
+                     const Placeholders& placeholders) {
+  std::string result;
+  for (size_t at = 0; at < text.size(); ++at) {
+    if (static_cast<unsigned char>(text[at]) < ' ')
+      throw reader.error(key, "has a control character; plain text is needed");
+    if (text[at] != '{') {
+      result += text[at];
+      continue;
+    }
+    const size_t end = text.find('}', at);
+    const std::string name = end == std::string::npos ? "" : text.substr(at + 1, end - at - 1);
+    const auto found = placeholders.find(name);
+    if (found == placeholders.end())
+      throw reader.error(key, "'" + text.substr(at, end == std::string::npos ? end : end - at + 1) +
+                                  "' stands for nothing; known are " + known(placeholders));
+    result += found->second;
+    at = end;
+  }
+  return result;
+}
+
+std::string absolutePath(const std::string& path, const std::string& folder) {
+  return (fs::path(folder) / path).lexically_normal().string();
+}
+
+/// The file's own placeholders, with those of the command line put in.
+void readValues(ConfigReader& reader, const LaunchSettings& settings, Placeholders& placeholders) {
+  ConfigReader values = reader.section("values");
+  std::string names;
+  for (const std::string& key : values.keys()) {
+    std::string value;
+    values.text(key, value, true);
+    checkName(values, key, key);
+    if (!placeholders.emplace(key, value).second)
+      throw values.error(key, "has a meaning already; choose another name");
+    names += (names.empty() ? "" : ", ") + key;
+  }
+  for (const auto& [key, value] : settings.values) {
+    if (!values.has(key))
+      throw ConfigError(settings.file + ": has no value '" + key + "' to set; there " +
+                        (names.empty() ? "are none" : "is " + names));
+    placeholders[key] = value;
+  }
+}
+
+LaunchProcess readProcess(ConfigReader& reader, const Placeholders& placeholders,
+                          const std::string& folder) {
+  LaunchProcess process;
+  reader.text("name", process.name, true);
+  checkName(reader, "name", process.name);
+  reader.text("program", process.program, true);
+  reader.text("config", process.config);
+  reader.texts("arguments", process.arguments);
+  reader.flag("foreign", process.foreign);
+  reader.flag("restart", process.restart);
+  reader.choice("stop_signal", process.stop_signal, {"INT", "TERM", "HUP", "QUIT"});
+  reader.integer("stop_time", process.stop_time, {1, 60}, "s");
+  if (process.foreign && !process.config.empty())
+    throw reader.error("config", "is for programs of Tread; a foreign one takes it in arguments");
+  process.program = replaced(reader, "program", process.program, placeholders);
+  if (process.program.empty()) throw reader.error("program", "is empty; name a program");
+  if (process.program.find('/') != std::string::npos)
+    process.program = absolutePath(process.program, folder);
+  process.config = replaced(reader, "config", process.config, placeholders);
+  if (!process.config.empty()) process.config = absolutePath(process.config, folder);
+  for (std::string& argument : process.arguments)
+    argument = replaced(reader, "arguments", argument, placeholders);
+  return process;
+}
+
+}  // namespace
+
+std::string readLaunchName(const std::string& file) {
+  ConfigReader reader = ConfigReader::fromFile(file);
+  std::string name;
+  reader.text("name", name, true);
+  checkName(reader, "name", name);
+  return name;
+}
+
+LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings) {
+  LaunchFile launch;
+  const std::string folder = fs::path(settings.file).parent_path().string();
+  reader.text("name", launch.name, true);
+  checkName(reader, "name", launch.name);
+  launch.lcm_url = kDefaultUrl;
+  reader.text("lcm_url", launch.lcm_url);
+  if (!settings.lcm_url.empty()) launch.lcm_url = settings.lcm_url;
+  Placeholders placeholders{
+      {"run", settings.run}, {"bin", settings.bin}, {"here", folder}, {"lcm_url", launch.lcm_url}};
+  readValues(reader, settings, placeholders);
+  ConfigReader environment = reader.section("environment");
+  for (const std::string& key : environment.keys()) {
+    std::string value;
+    environment.text(key, value, true);
+    launch.environment[key] = replaced(environment, key, value, placeholders);
+  }
+  std::set<std::string> names{"supervisord"};  // whose log is beside theirs
+  for (ConfigReader& item : reader.sections("processes", true)) {
+    launch.processes.push_back(readProcess(item, placeholders, folder));
+    if (!names.insert(launch.processes.back().name).second)
+      throw item.error("name", "'" + launch.processes.back().name + "' is taken; choose another");
+  }
+  if (launch.processes.empty()) throw reader.error("processes", "is empty; nothing to start");
+  reader.finish();
+  return launch;
+}
+
+std::vector<std::string> startCommand(const LaunchProcess& process, const std::string& program,
+                                      const std::string& lcm_url) {
+  std::vector<std::string> words;
+  if (process.foreign) {
+    words = {"setpriv", "--pdeathsig", process.stop_signal, "--", program};
+    words.insert(words.end(), process.arguments.begin(), process.arguments.end());
+    return words;
+  }
+  words.push_back(program);
+  if (!process.config.empty()) words.insert(words.end(), {"--config", process.config});
+  words.insert(words.end(), {"--lcm-url", lcm_url, "--with-parent"});
+  words.insert(words.end(), process.arguments.begin(), process.arguments.end());
+  return words;
+}
+
+std::vector<std::string> checkCommand(const LaunchProcess& process, const std::string& program,
+                                      const std::string& lcm_url) {
+  if (process.foreign) return {};
+  std::vector<std::string> words = startCommand(process, program, lcm_url);
+  std::replace(words.begin(), words.end(), std::string("--with-parent"), std::string("--check"));
+  return words;
+}
+
+}  // namespace tread::launch

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+
+#include "common/config/command_line.hpp"
+#include "tools/robot/launch/host.hpp"
+#include "tools/robot/launch/run_command.hpp"
+#include "tools/robot/launch/supervision.hpp"
+
+namespace {
+
+using namespace tread;
+using namespace tread::launch;
+
+struct Options {
+  LaunchSettings settings;
+  std::vector<std::string> values;
+  std::string only;
+  bool check = false;
+  bool status = false;
+  bool stop = false;
+};
+
+void declare(CLI::App& app, Options& options) {
+  app.add_option("FILE", options.settings.file, "launch file (YAML), see config/launch")
+      ->required();
+  app.add_option("--run", options.settings.run,
+                 "folder for states and logs; default ~/.local/state/tread/NAME");
+  app.add_option("--lcm-url", options.settings.lcm_url, "LCM provider, instead of the file's");
+  app.add_option(
+         "--set", options.values,
+         "KEY=VALUE: replaces one of the file's values; where it is a relative path, program "
+         "and config take it from the file's folder, arguments from the run folder")
+      ->expected(1)
+      ->take_all();
+  auto* check = app.add_flag("--check", options.check, "only the start-up checks");
+  auto* status = app.add_flag("--status", options.status, "what runs in the run folder");
+  auto* stop = app.add_flag("--stop", options.stop, "stops what runs in the run folder");
+  auto* only = app.add_option("--only", options.only,
+                              "becomes this one process, without a supervisor (for systemd)");
+  check->excludes(status)->excludes(stop)->excludes(only);
+  status->excludes(stop)->excludes(only);
+  stop->excludes(only);
+}
+
+void complete(Options& options) {
+  LaunchSettings& settings = options.settings;
+  settings.file = std::filesystem::absolute(settings.file).lexically_normal().string();
+  settings.bin = ownFolder();
+  for (const std::string& pair : options.values) {
+    const size_t equals = pair.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw std::runtime_error("--set " + pair + ": KEY=VALUE is needed");
+    settings.values[pair.substr(0, equals)] = pair.substr(equals + 1);
+  }
+  if (settings.run.empty()) settings.run = defaultRunFolder(readLaunchName(settings.file));
+  settings.run = std::filesystem::absolute(settings.run).lexically_normal().string();
+  if (settings.run.size() > 1 && settings.run.back() == '/') settings.run.pop_back();
+}
+
+std::vector<SupervisedProcess> withCommands(const LaunchFile& launch,
+                                            const LaunchSettings& settings) {
+  std::vector<SupervisedProcess> supervised;
+  for (const LaunchProcess& process : launch.processes) {
+    const std::string program = findProgram(process.program, settings.bin);
+    supervised.push_back({process, startCommand(process, program, launch.lcm_url)});
+  }
+  return supervised;
+}
+
+void setEnvironment(const LaunchFile& launch) {
+  for (const auto& [key, value] : launch.environment) setenv(key.c_str(), value.c_str(), 1);
+}
+
+[[noreturn]] void become(const std::vector<std::string>& words) {
+  becomeProgram(words);
+  throw std::runtime_error(words.front() + ": cannot be started");
+}
+
+/// The checks on the screen; false if starting makes no sense.
+bool checksPass(const LaunchFile& launch, const LaunchSettings& settings) {
+  const std::vector<Finding> findings = checkHost(launch, settings);
+  for (const Finding& finding : findings)
+    std::cerr << findingLine(launch.name, finding) << std::endl;
+  return !anyCritical(findings);
+}
+
+int start(const LaunchFile& launch, const LaunchSettings& settings) {
+  setEnvironment(launch);
+  if (!checksPass(launch, settings)) return 1;
+  const RunPaths paths(settings.run);
+  std::filesystem::create_directories(paths.logs);
+  const RunLock lock(paths.lock);
+  std::ofstream file(paths.config, std::ios::trunc);
+  file << supervisorConfig(launch.name, withCommands(launch, settings), paths, geteuid() == 0);
+  file.close();
+  if (!file) throw std::runtime_error(paths.config + ": cannot be written");
+  int64_t stop_time = 0;
+  for (const LaunchProcess& process : launch.processes)
+    stop_time = std::max(stop_time, process.stop_time);
+  std::cout << launch.name << ": starting " << launch.processes.size() << " processes; logs in "
+            << paths.logs << std::endl;
+  return supervise(launch.name, launch.processes.size(), paths, lock,
+                   static_cast<double>(stop_time));
+}
+
+int only(const LaunchFile& launch, const Options& options) {
+  for (const LaunchProcess& process : launch.processes) {
+    if (process.name != options.only) continue;
+    const std::string program = findProgram(process.program, options.settings.bin);
+    if (program.empty()) throw std::runtime_error("there is no program " + process.program);
+    setEnvironment(launch);
+    std::filesystem::create_directories(RunPaths(options.settings.run).logs);
+    std::filesystem::current_path(options.settings.run);
+    become(startCommand(process, program, launch.lcm_url));
+  }
+  throw std::runtime_error(options.settings.file + ": has no process '" + options.only + "'");
+}
+
+int status(const LaunchFile& launch, const RunPaths& paths) {
+  if (!RunLock::isHeld(paths.lock)) {
+    std::cout << launch.name << ": nothing runs in " << paths.folder << std::endl;
+    return 3;  // as systemctl and supervisorctl do
+  }
+  become({"supervisorctl", "--configuration", paths.config, "status"});
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Starts, watches and restarts the processes of a launch file.", "tread-launch"};
+  Options options;
+  declare(app, options);
+  if (const auto code = parseCommandLine(app, argc, argv)) return *code;
+  complete(options);
+  ConfigReader reader = ConfigReader::fromFile(options.settings.file);
+  const LaunchFile launch = readLaunchFile(reader, options.settings);
+  const RunPaths paths(options.settings.run);
+  if (options.stop) return stopRun(launch.name, paths);
+  if (options.status) return status(launch, paths);
+  if (!options.only.empty()) return only(launch, options);
+  if (!options.check) return start(launch, options.settings);
+  setEnvironment(launch);
+  if (!checksPass(launch, options.settings)) return 1;
+  std::cout << launch.name << ": ready to start" << std::endl;
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "tread-launch: " << error.what() << std::endl;
+    return 1;
+  }
+}

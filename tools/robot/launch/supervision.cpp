@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/robot/launch/supervision.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <stdexcept>
+#include <thread>
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "tools/robot/launch/log_follower.hpp"
+#include "tools/robot/launch/narrator.hpp"
+#include "tools/robot/launch/orphans.hpp"
+
+namespace tread::launch {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr timespec kPatience{0, 50'000'000};
+constexpr int kCallsAtStart = 60;  // one each 50 ms
+constexpr int kCallsAfterEnd = 3;
+constexpr double kLongestStop = 120.0;  // s
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::string oneDecimal(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f s", seconds);
+  return text;
+}
+
+/// Supervisord looks at its processes once a second, or when somebody calls: a call that says
+/// nothing makes it start, restart and stop at once.
+void call(const std::string& socket_path) {
+  sockaddr_un address{};
+  if (socket_path.size() >= sizeof address.sun_path) return;
+  address.sun_family = AF_UNIX;
+  std::memcpy(address.sun_path, socket_path.data(), socket_path.size());
+  const int caller = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (caller < 0) return;
+  // Nobody there yet, or a full queue: it will look by itself.
+  [[maybe_unused]] const int answer =
+      connect(caller, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  close(caller);
+}
+
+/// As nohup leaves it: this process outlives its terminal.
+bool ignoresHangup() {
+  struct sigaction now {};
+  return sigaction(SIGHUP, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+}
+
+/// One run of supervisord.
+class Run {
+ public:
+  Run(const std::string& name, size_t processes, const RunPaths& paths)
+      : name_(name),
+        paths_(paths),
+        log_(paths.supervisor_log),
+        narrator_(name, processes),
+        start_(Clock::now()) {}
+
+  void begin(const RunLock& lock);
+  /// Waits for the end of supervisord.
+  void wait();
+  /// Says how it ended; the exit code.
+  int conclude() const;
+
+ private:
+  [[noreturn]] void becomeSupervisor(int lock, const sigset_t& mask, pid_t parent) const;
+  void stop();
+  void reap();
+  void tell();
+
+  std::string name_;
+  RunPaths paths_;
+  LogFollower log_;
+  Narrator narrator_;
+  Clock::time_point start_;
+  Clock::time_point stop_{};
+  sigset_t waited_{};
+  pid_t supervisor_ = -1;
+  bool stopping_ = false;
+  bool ended_ = false;
+  int calls_left_ = kCallsAtStart;
+  int status_ = 0;
+};
+
+void Run::begin(const RunLock& lock) {
+  sigset_t before;
+  sigemptyset(&waited_);
+  for (const int number : {SIGINT, SIGTERM, SIGCHLD}) sigaddset(&waited_, number);
+  if (!ignoresHangup()) sigaddset(&waited_, SIGHUP);
+  sigprocmask(SIG_BLOCK, &waited_, &before);
+  std::signal(SIGPIPE, SIG_IGN);  // whoever reads what we say may leave
+  prctl(PR_SET_CHILD_SUBREAPER, 1);
+  const pid_t parent = getpid();
+  supervisor_ = fork();
+  if (supervisor_ == 0) becomeSupervisor(lock.descriptor(), before, parent);
+  if (supervisor_ < 0) throw std::runtime_error("no further process can be started");
+}
+
+/// In a process group of its own, so that Ctrl-C reaches us alone.
+void Run::becomeSupervisor(int lock, const sigset_t& mask, pid_t parent) const {
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != parent) _exit(1);
+  // The lock as 3: supervisord closes what is above 4, and its processes inherit nothing above 2.
+  if (lock != 3)
+    dup2(lock, 3);
+  else
+    fcntl(lock, F_SETFD, 0);
+  std::signal(SIGPIPE, SIG_DFL);
+  sigprocmask(SIG_SETMASK, &mask, nullptr);
+  execlp("supervisord", "supervisord", "--configuration", paths_.config.c_str(), nullptr);
+  std::perror("tread-launch: supervisord");
+  _exit(127);
+}
+
+void Run::wait() {
+  while (!ended_) {
+    const int number = sigtimedwait(&waited_, nullptr, &kPatience);
+    if (number > 0 && number != SIGCHLD) stop();
+    reap();
+    tell();
+    if (stopping_ || calls_left_ > 0) call(paths_.socket);
+    if (calls_left_ > 0) --calls_left_;
+  }
+}
+
+void Run::stop() {
+  if (!stopping_) {
+    std::cout << name_ << ": stopping" << std::endl;
+    stop_ = Clock::now();
+  }
+  stopping_ = true;
+  kill(supervisor_, SIGTERM);
+}
+
+void Run::reap() {
+  int status = 0;
+  for (pid_t pid = 0; (pid = waitpid(-1, &status, WNOHANG)) > 0;) {
+    if (pid != supervisor_) continue;
+    ended_ = true;
+    status_ = status;
+  }
+}
+
+void Run::tell() {
+  for (const std::string& line : log_.newLines()) {
+    const auto event = parseSupervisorLine(line);
+    if (!event) continue;
+    if (event->kind == SupervisorEvent::Kind::kEnded)
+      calls_left_ = std::max(calls_left_, kCallsAfterEnd);
+    if (const auto told = narrator_.tell(*event, secondsSince(start_)))
+      std::cout << *told << std::endl;
+  }
+}
+
+int Run::conclude() const {
+  const bool clean = WIFEXITED(status_) && WEXITSTATUS(status_) == 0;
+  if (stopping_ && clean) {
+    std::cout << name_ << ": stopped after " << oneDecimal(secondsSince(stop_)) << std::endl;
+    return 0;
+  }
+  std::cerr << name_ << ": the supervisor "
+            << (WIFSIGNALED(status_) ? "was killed by signal " + std::to_string(WTERMSIG(status_))
+                                     : "ended with code " + std::to_string(WEXITSTATUS(status_)))
+            << ", so everything is stopped; see " << paths_.supervisor_log << std::endl;
+  return 1;
+}
+
+}  // namespace
+
+int supervise(const std::string& name, size_t processes, const RunPaths& paths, const RunLock& lock,
+              double stop_time) {
+  Run run(name, processes, paths);
+  run.begin(lock);
+  run.wait();
+  endChildren(stop_time);
+  std::error_code none;
+  std::filesystem::remove(paths.socket, none);
+  return run.conclude();
+}
+
+int stopRun(const std::string& name, const RunPaths& paths) {
+  const int pid = RunLock::owner(paths.lock);
+  if (pid == 0 && !RunLock::isHeld(paths.lock)) {
+    std::cout << name << ": nothing runs in " << paths.folder << std::endl;
+    return 0;
+  }
+  const auto start = Clock::now();
+  if (pid > 0 && kill(pid, SIGTERM) != 0) {
+    std::cerr << name << ": pid " << pid << " is not ours to stop (" << std::strerror(errno)
+              << "); stop it as the user who started it" << std::endl;
+    return 1;
+  }
+  while (RunLock::isHeld(paths.lock)) {
+    if (secondsSince(start) > kLongestStop) {
+      std::cerr << name << ": still runs after " << oneDecimal(kLongestStop)
+                << "; its supervisor's pid is in " << paths.pid << std::endl;
+      return 1;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  std::cout << name << ": stopped after " << oneDecimal(secondsSince(start)) << std::endl;
+  return 0;
+}
+
+}  // namespace tread::launch

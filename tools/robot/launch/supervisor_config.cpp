@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/robot/launch/supervisor_config.hpp"
+
+#include <sstream>
+#include <stdexcept>
+
+namespace tread::launch {
+namespace {
+
+/// Supervisor replaces %(name)s everywhere; a plain percent sign is written twice.
+std::string withoutPercent(const std::string& text) {
+  std::string result;
+  for (const char c : text) result += c == '%' ? "%%" : std::string(1, c);
+  return result;
+}
+
+/// A path as the value of a key.
+std::string value(const std::string& path) {
+  for (const char* comment : {" ;", " #", "\t;", "\t#", "\n"})
+    if (path.find(comment) != std::string::npos)
+      throw std::invalid_argument("'" + path +
+                                  "' has a blank before ; or #, which supervisor takes for a "
+                                  "comment; choose another folder");
+  return withoutPercent(path);
+}
+
+bool isPlain(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+         std::string("-_./:=@,+%").find(c) != std::string::npos;
+}
+
+std::string quotedWord(const std::string& word) {
+  if (word.empty()) return "''";
+  std::string result;
+  for (const char c : word) {
+    // A backslash before each special character keeps blank and # apart, which would begin a
+    // comment; a blank itself must not be the last character of the line.
+    if (isPlain(c) || static_cast<unsigned char>(c) >= 0x80)
+      result += c;
+    else
+      result += c == ' ' ? "' '" : std::string("\\") + c;
+  }
+  return result;
+}
+
+void writeCommon(std::ostream& out, const std::string& name, const RunPaths& paths, bool as_root) {
+  out << "; Written by tread-launch at each start; changes are lost.\n"
+      << "[unix_http_server]\n"
+      << "file=" << value(paths.socket) << "\n"
+      << "chmod=0700\n\n"
+      << "[supervisord]\n"
+      << "identifier=tread-" << name << "\n"
+      << "nodaemon=true\n"
+      << "silent=true\n"  // tread-launch tells what happens
+      << "directory=" << value(paths.folder) << "\n"
+      << "logfile=" << value(paths.supervisor_log) << "\n"
+      << "logfile_maxbytes=1MB\n"
+      << "logfile_backups=3\n"
+      << "pidfile=" << value(paths.pid) << "\n";
+  if (as_root) out << "user=root\n";  // else it warns of it at each start
+  out << "\n[rpcinterface:supervisor]\n"
+      << "supervisor.rpcinterface_factory = supervisor.rpcinterface:make_main_rpcinterface\n\n"
+      << "[supervisorctl]\n"
+      << "serverurl=unix://" << value(paths.socket) << "\n";
+}
+
+void writeProcess(std::ostream& out, const SupervisedProcess& supervised, size_t place,
+                  const RunPaths& paths) {
+  const LaunchProcess& process = supervised.process;
+  out << "\n[program:" << process.name << "]\n"
+      << "command=" << supervisorCommand(supervised.command) << "\n"
+      << "directory=" << value(paths.folder) << "\n"
+      << "priority=" << 10 * (place + 1) << "\n"  // the order of starting; stopped in reverse
+      << "autorestart=" << (process.restart ? "true" : "false") << "\n"
+      << "startsecs=" << (process.restart ? 1 : 0) << "\n"
+      << "startretries=1000000\n"
+      << "stopsignal=" << process.stop_signal << "\n"
+      << "stopwaitsecs=" << process.stop_time << "\n"
+      << "killasgroup=true\n"
+      << "redirect_stderr=true\n"
+      << "stdout_logfile=" << value(paths.logs + "/" + process.name + ".log") << "\n"
+      << "stdout_logfile_maxbytes=5MB\n"
+      << "stdout_logfile_backups=3\n";
+}
+
+}  // namespace
+
+RunPaths::RunPaths(const std::string& run)
+    : folder(run),
+      lock(run + "/lock"),
+      config(run + "/supervisord.conf"),
+      socket(run + "/supervisor.sock"),
+      pid(run + "/supervisord.pid"),
+      logs(run + "/log"),
+      supervisor_log(run + "/log/supervisord.log") {}
+
+std::string supervisorCommand(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words)
+    line += (line.empty() ? "" : " ") + withoutPercent(quotedWord(word));
+  return line;
+}
+
+std::string supervisorConfig(const std::string& name,
+                             const std::vector<SupervisedProcess>& processes, const RunPaths& paths,
+                             bool as_root) {
+  std::ostringstream out;
+  writeCommon(out, name, paths, as_root);
+  for (size_t i = 0; i < processes.size(); ++i) writeProcess(out, processes[i], i, paths);
+  return out.str();
+}
+
+}  // namespace tread::launch

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+
+#include "common/config/command_line.hpp"
+#include "tools/robot/logger/recorder.hpp"
+
+namespace {
+
+// A signal handler can reach nothing but a global; it lives in this file only.
+std::atomic<bool> g_stop{false};
+
+void requestStop(int /*signal*/) {
+  g_stop = true;
+}
+
+struct Options {
+  std::string file;
+  std::string lcm_url;
+  int keep = 20;
+  int split_mb = 200;
+  bool check = false;
+  bool with_parent = false;
+};
+
+void declare(CLI::App& app, Options& options) {
+  app.add_option("FILE", options.file, "log; FILE.0 is the newest, FILE.1 the one before")
+      ->required();
+  app.add_option("--lcm-url", options.lcm_url, "LCM provider");
+  app.add_option("--keep", options.keep, "files that are kept")->check(CLI::Range(1, 10000));
+  app.add_option("--split-mb", options.split_mb, "size of a file [MB]")
+      ->check(CLI::Range(1, 100000));
+  app.add_flag("--check", options.check, "only read the command line");
+  app.add_flag("--with-parent", options.with_parent, "end when the starting process is gone");
+}
+
+int run(int argc, char** argv) {
+  const pid_t parent = getppid();
+  CLI::App app{"Records all messages as LCM event logs, rotated; no earlier log is overwritten.",
+               "tread-logger"};
+  Options options;
+  declare(app, options);
+  if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
+  if (options.check) return 0;
+  std::signal(SIGINT, requestStop);
+  std::signal(SIGTERM, requestStop);
+  // A terminal that is closed, unless nohup says that the process outlives it.
+  if (std::signal(SIGHUP, requestStop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+  if (options.with_parent) {
+    prctl(PR_SET_PDEATHSIG, SIGINT);
+    if (getppid() != parent) return 0;
+  }
+  const auto folder = std::filesystem::path(options.file).parent_path();
+  if (!folder.empty()) std::filesystem::create_directories(folder);
+  tread::launch::RecorderSettings settings;
+  settings.file = options.file;
+  settings.lcm_url = options.lcm_url;
+  settings.keep = options.keep;
+  settings.split = 1'000'000LL * options.split_mb;
+  tread::launch::Recorder recorder(settings);
+  recorder.run(g_stop);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "tread-logger: %s\n", error.what());
+    return 1;
+  }
+}

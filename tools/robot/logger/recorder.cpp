@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/robot/logger/recorder.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+
+#include <lcm/lcm-cpp.hpp>
+
+#include "common/bus/host_clock.hpp"
+#include "tools/robot/logger/log_rotation.hpp"
+
+namespace tread::launch {
+namespace {
+
+constexpr int kQueue = 100'000;          // messages
+constexpr int64_t kCareEvery = 250'000;  // [us] between flushes
+constexpr int kWaitMs = 100;
+constexpr int kMostFailures = 10;  // of LCM in a row
+constexpr int64_t kOverhead = 60;  // [bytes] of an event beside its message, about
+
+int64_t utcNow() {
+  using std::chrono::duration_cast;
+  using std::chrono::microseconds;
+  return duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+Recorder::Recorder(const RecorderSettings& settings)
+    : settings_(settings), lcm_(std::make_unique<lcm::LCM>(settings.lcm_url)) {
+  if (!lcm_->good())
+    throw std::runtime_error("LCM cannot be used" +
+                             (settings.lcm_url.empty() ? "" : " at " + settings.lcm_url) +
+                             "; tread-launch FILE --check says what is missing");
+  begin();
+  lcm::Subscription* all = lcm_->subscribeFunction(
+      ".*",
+      +[](const lcm::ReceiveBuffer* buffer, const std::string& channel, Recorder* self) {
+        self->take(channel, static_cast<const uint8_t*>(buffer->data), buffer->data_size);
+      },
+      this);
+  if (all == nullptr) throw std::runtime_error("LCM does not let us subscribe");
+  all->setQueueCapacity(kQueue);
+}
+
+Recorder::~Recorder() = default;
+
+void Recorder::begin() {
+  makeRoomForLog(settings_.file, settings_.keep);
+  writer_ = std::make_unique<LogWriter>(settings_.file + ".0");
+  written_ = 0;
+}
+
+void Recorder::giveUp(const std::string& why) {
+  std::fprintf(stderr, "tread-logger: %s; recording goes on when there is room\n", why.c_str());
+  writer_.reset();
+  next_try_ = hostNow() + static_cast<int64_t>(settings_.retry * 1e6);
+}
+
+void Recorder::take(const std::string& channel, const uint8_t* bytes, size_t size) {
+  if (!writer_) {
+    ++lost_;
+    return;
+  }
+  try {
+    writer_->write(utcNow(), channel, bytes, size);
+    written_ += kOverhead + static_cast<int64_t>(size);
+  } catch (const std::exception& error) {
+    ++lost_;
+    giveUp(error.what());
+  }
+}
+
+void Recorder::care(int64_t now) {
+  next_care_ = now + kCareEvery;
+  try {
+    if (writer_) {
+      writer_->flush();
+      if (written_ >= settings_.split) begin();
+    } else if (now >= next_try_) {
+      const auto folder = std::filesystem::absolute(settings_.file).parent_path();
+      const auto room = static_cast<int64_t>(std::filesystem::space(folder).available);
+      next_try_ = now + static_cast<int64_t>(settings_.retry * 1e6);
+      if (room < settings_.reserve) return;
+      begin();
+      std::fprintf(stderr, "tread-logger: recording again; %lld messages are lost\n",
+                   static_cast<long long>(lost_));
+    }
+  } catch (const std::exception& error) {
+    giveUp(error.what());
+  }
+}
+
+void Recorder::run(const std::atomic<bool>& stop) {
+  int failures = 0;
+  while (!stop) {
+    // A queue's length at a time, so that a flood does not keep the disk waiting.
+    const int handled = lcm_->handleTimeout(kWaitMs);
+    if (handled > 0)
+      for (int i = 0; i < kQueue && lcm_->handleTimeout(0) > 0; ++i) {
+      }
+    // A signal fails it once.
+    failures = handled < 0 ? failures + 1 : 0;
+    if (failures >= kMostFailures)
+      throw std::runtime_error(
+          "LCM fails again and again, so nothing more can be recorded; start again");
+    if (const int64_t now = hostNow(); now >= next_care_) care(now);
+  }
+  for (int i = 0; i < kQueue && lcm_->handleTimeout(0) > 0; ++i) {
+  }
+  care(hostNow());
+}
+
+}  // namespace tread::launch

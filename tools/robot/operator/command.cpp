@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/robot/operator/command.hpp"
+
+#include <csignal>
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "common/bus/lcm_bus.hpp"
+
+namespace tread::operators {
+namespace {
+
+// A signal handler can reach nothing but a global; it lives in this file only.
+volatile std::sig_atomic_t g_interrupted = 0;
+
+void noteSignal(int /*signal*/) {
+  g_interrupted = 1;
+}
+
+constexpr int kStepMs = 20;
+
+int run(const std::string& name, const CommandOptions& options, Bus& bus, Call& call,
+        const std::function<void(int)>& wait) {
+  const int64_t begun = bus.now();
+  int64_t next_line = begun;
+  while (g_interrupted == 0) {
+    const int64_t now = bus.now();
+    const CallResult result = call.step(now);
+    const bool late =
+        options.timeout > 0.0 && static_cast<double>(now - begun) * 1e-6 > options.timeout;
+    if (result != CallResult::kGoesOn || late) {
+      if (result != CallResult::kDone) call.cancel(now);
+      (result == CallResult::kDone ? std::cout : std::cerr)
+          << name << ": " << (late ? "out of time: " : "") << call.words(now) << std::endl;
+      return result == CallResult::kDone ? 0 : 1;
+    }
+    if (options.progress > 0.0 && now >= next_line) {
+      std::cout << call.words(now) << std::endl;
+      next_line = now + static_cast<int64_t>(options.progress * 1e6);
+    }
+    wait(kStepMs);
+  }
+  call.cancel(bus.now());
+  std::cerr << name << ": interrupted" << std::endl;
+  return 130;
+}
+
+}  // namespace
+
+int runCall(const std::string& name, const CommandOptions& options,
+            const std::function<std::unique_ptr<Call>(Bus&)>& make) {
+  std::signal(SIGINT, noteSignal);
+  std::signal(SIGTERM, noteSignal);
+  try {
+    LcmBus bus(options.lcm_url, TimeSource::kHost);
+    const std::unique_ptr<Call> call = make(bus);
+    return run(name, options, bus, *call, [&bus](int ms) { bus.handle(ms); });
+  } catch (const std::exception& error) {
+    std::cerr << name << ": " << error.what() << std::endl;
+    return 1;
+  }
+}
+
+int parseCommand(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return -1;
+}
+
+}  // namespace tread::operators

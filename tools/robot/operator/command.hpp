@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "common/bus/bus.hpp"
+#include "tools/robot/operator/call.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace tread::operators {
+
+/// How a command runs its call.
+struct CommandOptions {
+  std::string lcm_url;    ///< empty = LCM_DEFAULT_URL or LCM's own default
+  double timeout = 0.0;   ///< [s] after which the call is cancelled; 0 = never
+  double progress = 0.0;  ///< [s] between lines of progress; 0 = none
+};
+
+/// Runs a call over real LCM to its end, SIGINT, SIGTERM or the timeout.
+/** Exit code: 0 done, 1 refused, out of time, or one clear line of what is wrong with LCM, 130
+ * interrupted. */
+int runCall(const std::string& name, const CommandOptions& options,
+            const std::function<std::unique_ptr<Call>(Bus&)>& make);
+
+/// Parses a command line; the exit code if the command ends here (--help, usage error), else -1.
+int parseCommand(CLI::App& app, int argc, char** argv);
+
+}  // namespace tread::operators

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include "tools/robot/operator/call.hpp"
+#include "tools/robot/operator/drive_progress.hpp"
+
+namespace tread::operators {
+
+/// Where to go, and how exactly.
+struct GoalRequest {
+  Pose2 T_map_goal;
+  double position_tolerance = 0.6;  ///< [m]
+  double yaw_tolerance = kPi;       ///< [rad]; pi = any heading
+  /// [s] for which blocked or unreachable may last before the call gives up.
+  double patience = 30.0;
+};
+
+/// Repeats GOAL until the planner has arrived, gives up for good, or the permission to drive is
+/// lost on the way.
+class GoalCall : public Call {
+ public:
+  /// `goal_id` must be new to the planner.
+  GoalCall(Bus& bus, const GoalRequest& request, int64_t goal_id, SurfaceNames surface_names);
+
+  CallResult step(int64_t utime) override;
+  std::string words(int64_t utime) const override;
+  /// Sends goal 0: the planner stops.
+  void cancel(int64_t utime) override;
+
+ private:
+  void send(int64_t utime, int64_t goal_id);
+  bool lostPermission(int64_t utime);
+  bool isOurs(const plan_t& plan) const { return plan.goal_id == goal_id_; }
+
+  Bus& bus_;
+  GoalRequest request_;
+  int64_t goal_id_;
+  DriveProgress progress_;
+  int64_t begun_ = -1;
+  int64_t next_ = 0;
+  int64_t stuck_since_ = -1;
+  bool was_armed_ = false;
+  int64_t disarmed_since_ = -1;  ///< [us]; -1 = armed, or never was
+  int64_t seq_ = 0;
+};
+
+}  // namespace tread::operators
