@@ -146,7 +146,7 @@ Section sectionOf(const std::string& title, const std::vector<LadderRow>& rows) 
 
 Page ladderPage(const LadderReport& report) {
   Page page;
-  page.title = "tread-gap ladder";
+  page.title = "tread-compare-models";
   page.verdict = "Errors of models that did not see the driving that judges them";
   page.mood = "change";
   page.first = {Points{

@@ -56,8 +56,6 @@ TEST_CASE("bad input ends with 2 and one line that says what and where") {
   folder.write(
       "typo.yaml",
       "name: a\nkind: power\nfull_speed: 1\ngauge: 0.6\neffects:\n  slip_ratoi:\n    slip: 0.1\n");
-  folder.write("on.yaml",
-               "name: a\nkind: track_speed\ngauge: 1\neffects:\n  slip_ratio:\n    slip: 0.1\n");
   folder.write("power.yaml", "name: a\nkind: power\nfull_speed: 1\ngauge: 0.6\n");
   folder.write("no.lcmlog", "this is no log\n");
   writeDrive(folder.path("speeds.lcmlog"), 10.0);
@@ -84,17 +82,7 @@ TEST_CASE("bad input ends with 2 and one line that says what and where") {
       {"what-if " + grass + "--add slip", "did you mean "},
       {"what-if " + grass + "--add slip", "slip_ratio"},
       {"plan slip_ratio slip_ratio " + grass, "name two effects"},
-      {"plan slip_ratio grip " + grass, "'grip' is no effect"},
-      {"ladder --log none.lcmlog" + out, "none.lcmlog"},
-      {"ladder --log " + folder.path("no.lcmlog") + out, "no.lcmlog"},
-      {"ladder --pool --log " + folder.path("speeds.lcmlog") + out, "at least two --log"},
-      {"ladder --log " + folder.path("speeds.lcmlog") + " " + folder.path("speeds.lcmlog") + out,
-       "give each log once"},
-      {"ladder --model " + folder.path("power.yaml") + " --log " + folder.path("speeds.lcmlog") +
-           out,
-       "its commands are track speeds"},
-      {"ladder --model " + folder.path("on.yaml") + " --log " + folder.path("speeds.lcmlog") + out,
-       "the effect slip_ratio is on"}};
+      {"plan slip_ratio grip " + grass, "'grip' is no effect"}};
   for (const auto& [arguments, words] : kBad) {
     const Run bad = run(arguments);
     INFO(arguments << "\n" << bad.printed);
@@ -154,44 +142,6 @@ TEST_CASE("a log that is too short cannot tell: status 15, the reason, and no mo
       CHECK(folder.text(std::string("a/") + file) == folder.text(std::string("b/") + file));
     }
   }
-}
-
-TEST_CASE("a ladder of a log is a table, a file for people and one for programs, always the same") {
-  const Folder folder;
-  writeDrive(folder.path("drive.lcmlog"), 220.0);
-  writeDrive(folder.path("short.lcmlog"), 30.0);
-  const std::string ladder = "ladder --model " + kModels + "warthog_nominal.yaml --log " +
-                             folder.path("drive.lcmlog") + " " + folder.path("short.lcmlog");
-  const Run one = run(ladder + " --threads 1 --out " + folder.path("a"));
-  INFO(one.printed);
-  CHECK(one.status == 0);
-  CHECK(one.says("Yaw error after 2 s"));
-  CHECK(one.says("short.lcmlog: only 30 s of measured driving, too little to tell chance"));
-  const auto json = nlohmann::json::parse(folder.text("a/ladder.json"));
-  const auto& rungs = json["nested"][0]["rungs"];
-  CHECK(rungs["gain_track"]["yaw_rad"]["median"] < rungs["ideal"]["yaw_rad"]["median"]);
-  CHECK(rungs.contains("discovered"));
-  CHECK(run(ladder + " --threads 2 --out " + folder.path("b")).status == 0);
-  for (const char* file : {"ladder.json", "ladder.md"})
-    CHECK(folder.text(std::string("a/") + file) == folder.text(std::string("b/") + file));
-}
-
-TEST_CASE("without a model a ladder begins with the track that a recording names, or above it") {
-  const Folder folder;
-  writeDrive(folder.path("named.lcmlog"), 202.0, 0.49, "recording: a\nbaseline: 1.08\n");
-  writeDrive(folder.path("nameless.lcmlog"), 202.0);
-  const Run both = run("ladder --log " + folder.path("named.lcmlog") + " " +
-                       folder.path("nameless.lcmlog") + " --out " + folder.path("out"));
-  INFO(both.printed);
-  CHECK(both.status == 0);
-  const auto json = nlohmann::json::parse(folder.text("out/ladder.json"));
-  const auto& named = json["nested"][0]["rungs"];
-  const auto& nameless = json["nested"][1]["rungs"];
-  CHECK(named.contains("ideal"));
-  CHECK_FALSE(nameless.contains("ideal"));
-  // The effective track is fitted, so that it does not matter where it began.
-  CHECK(nameless["gain_track"]["yaw_rad"]["rms"].get<double>() ==
-        Approx(named["gain_track"]["yaw_rad"]["rms"].get<double>()).epsilon(0.05));
 }
 
 }  // namespace tread::gap
