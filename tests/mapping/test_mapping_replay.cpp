@@ -122,9 +122,9 @@ TEST_CASE("an MBot log that is cut off says so") {
     log.write(1'000'000, "LIDAR", scan.data(), scan.size());
     log.write(1'100'000, "LIDAR", scan.data(), scan.size());
   }
-  REQUIRE(readMbotLog(file.path()).problem.empty());
+  REQUIRE(readMappingRecording(file.path()).problem.empty());
   std::filesystem::resize_file(file.path(), std::filesystem::file_size(file.path()) - 5);
-  const MappingRecording cut = readMbotLog(file.path());
+  const MappingRecording cut = readMappingRecording(file.path());
   REQUIRE(cut.scans.size() == 1);
   REQUIRE_FALSE(cut.problem.empty());
 }
@@ -139,7 +139,7 @@ TEST_CASE("foreign messages on the MBot's channels are skipped and counted") {
     const std::vector<uint8_t> truncated{0x89, 0xdc, 0x5b, 0x87, 0x9a, 0x50, 0x56, 0xcf, 0, 0};
     log.write(1'000'200, "LIDAR", truncated.data(), truncated.size());
   }
-  REQUIRE_THROWS_WITH(readMbotLog(file.path()), Catch::Contains("holds no LIDAR message"));
+  REQUIRE_THROWS_WITH(readMappingRecording(file.path()), Catch::Contains("holds no LIDAR message"));
 }
 
 TEST_CASE("the Freiburg campus goes through mapping: every scan taken, walls where they stand") {

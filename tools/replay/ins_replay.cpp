@@ -3,13 +3,13 @@
 #include "tools/replay/ins_replay.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <iomanip>
 #include <sstream>
-#include <stdexcept>
 
 #include "common/bus/virtual_bus.hpp"
 #include "common/messages/ins_messages.hpp"
+#include "common/recordings/text_file.hpp"
+#include "common/report/plot.hpp"
 #include "modules/ins_driver/core/nmea_log.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"
 
@@ -57,6 +57,35 @@ void writePose(std::ostream& out, const char* which, const std::optional<ins_t>&
       << " s\n";
 }
 
+/// Headings drawn along a track, whatever its length.
+constexpr size_t kHeadings = 40;
+
+std::vector<Pose2> posesOf(const InsReplay& replay) {
+  std::vector<Pose2> poses;
+  for (const ins_t& message : replay.track)
+    if (const auto pose = planarPose(message)) poses.push_back(*pose);
+  return poses;
+}
+
+picture::Panel::Axes axesAround(const std::vector<Pose2>& poses) {
+  Eigen::Array2d low = poses.front().position().array();
+  Eigen::Array2d high = low;
+  for (const Pose2& pose : poses) {
+    low = low.min(pose.position().array());
+    high = high.max(pose.position().array());
+  }
+  const double margin = std::max(1.0, 0.05 * (high - low).maxCoeff());
+  picture::Panel::Axes axes;
+  axes.x_label = "x [m]";
+  axes.y_label = "y [m]";
+  axes.x_min = low.x() - margin;
+  axes.x_max = high.x() + margin;
+  axes.y_min = low.y() - margin;
+  axes.y_max = high.y() + margin;
+  axes.equal = true;
+  return axes;
+}
+
 }  // namespace
 
 InsReplay replayIns(const std::string& log, const ins::InsDriverConfig& config) {
@@ -82,12 +111,7 @@ InsReplay replayIns(const std::string& log, const ins::InsDriverConfig& config) 
 }
 
 InsReplay replayInsFile(const std::string& path, const ins::InsDriverConfig& config) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream content;
-  if (!file || !(content << file.rdbuf())) {
-    throw std::runtime_error(path + ": cannot be read, or is empty");
-  }
-  return replayIns(content.str(), config);
+  return replayIns(recordings::readText(path), config);
 }
 
 std::string reportOf(const InsReplay& replay) {
@@ -112,6 +136,36 @@ std::string reportOf(const InsReplay& replay) {
   writePose(out, "first", replay.first_pose);
   writePose(out, "last", replay.last_pose);
   return out.str();
+}
+
+void drawTrack(const InsReplay& replay, const std::string& title, const std::string& path) {
+  picture::Picture canvas(900, 900, title);
+  const std::vector<Pose2> poses = posesOf(replay);
+  if (poses.empty()) {
+    canvas.text(60, 100, "no pose in this log");
+    return canvas.save(path);
+  }
+  const picture::Panel::Axes axes = axesAround(poses);
+  picture::Panel panel(canvas, {80, 60, 780, 760}, axes);
+  std::vector<Eigen::Vector2d> track;
+  track.reserve(poses.size());
+  for (const Pose2& pose : poses) track.push_back(pose.position());
+  picture::Style line;
+  line.colour = picture::kBlue;
+  line.label = "position";
+  panel.line(track, line);
+  const double length = 0.03 * std::max(axes.x_max - axes.x_min, axes.y_max - axes.y_min);
+  picture::Style heading;
+  heading.colour = picture::kOrange;
+  heading.label = "heading";
+  for (size_t i = 0; i < poses.size(); i += std::max<size_t>(1, poses.size() / kHeadings)) {
+    panel.line({poses[i].position(), poses[i] * Eigen::Vector2d(length, 0.0)}, heading);
+    heading.label.clear();
+  }
+  panel.dot(track.front(), picture::kGreen, 6.0);
+  panel.dot(track.back(), picture::kRed, 6.0);
+  panel.finish();
+  canvas.save(path);
 }
 
 }  // namespace tread

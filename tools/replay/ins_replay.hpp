@@ -36,4 +36,7 @@ InsReplay replayInsFile(const std::string& path, const ins::InsDriverConfig& con
 /// Counts, refusals with reasons, first and last pose: a few lines of text.
 std::string reportOf(const InsReplay& replay);
 
+/// Draws the track with headings; throws std::runtime_error if the file cannot be written.
+void drawTrack(const InsReplay& replay, const std::string& title, const std::string& path);
+
 }  // namespace tread

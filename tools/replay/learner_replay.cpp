@@ -3,8 +3,6 @@
 #include "tools/replay/learner_replay.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <sstream>
 
 #include "common/bus/virtual_bus.hpp"
 
@@ -22,7 +20,7 @@ class Player {
 
   void play(const LogEvent& event) {
     bus_.runUntil(std::max(bus_.now(), event.utime));
-    if (event.channel != kExecution.name || commitment_ == Commitment::kRecorded)
+    if (event.channel != kExecution.name)
       return bus_.inject(event.channel.c_str(), event.bytes.data(), event.bytes.size());
     execution_t message;
     if (!decode(event, kExecution, message)) return;
@@ -69,21 +67,6 @@ LearnerRun runLearner(const DriveLog& log, const learner::LearnerNodeConfig& con
   // Executions without INS at their end are given up after a while; HEALTH follows within a second.
   bus.runUntil(bus.now() + config.settle_us + config.give_up_us + 2 * kSecond);
   return run;
-}
-
-std::string processConfig(const learner::LearnerNodeConfig& config, const std::string& rule,
-                          const std::string& patterns) {
-  std::ostringstream out;
-  out << "# made by tread-replay learner --write-config\npatterns: \"" << patterns
-      << "\"\nstore: state/replayed_learner\nrule: " << rule << "\nmemory: " << config.rule.memory
-      << "\ngates:\n  max_gap: " << static_cast<double>(config.limits.max_gap_us) * 1e-6
-      << "\n  max_speed: " << config.limits.max_speed << "\n";
-  if (std::isinf(config.limits.entry_speed))
-    out << "  any_entry: true\n";
-  else
-    out << "  entry_speed: " << config.limits.entry_speed
-        << "\n  entry_yaw_rate: " << config.limits.entry_yaw_rate << "\n";
-  return out.str();
 }
 
 }  // namespace tread::replay

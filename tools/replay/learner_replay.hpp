@@ -13,9 +13,8 @@ namespace tread::replay {
 
 /// Which set an execution is scored with.
 enum class Commitment {
-  kAhead,     ///< the newest when it began: what a planner knew, who commits the successor early
-  kPrompt,    ///< the newest when it ended: corrections of all executions before it are known
-  kRecorded,  ///< the one that the log names, as a running learner hears it
+  kAhead,   ///< the newest when it began: what a planner knew, which commits to patterns early
+  kPrompt,  ///< the newest when it ended: corrections of all executions before it are known
 };
 
 /// One run of the learner over a log.
@@ -29,10 +28,5 @@ struct LearnerRun {
 /// Feeds a log to the real learner node on the virtual bus, from an empty store. Deterministic.
 LearnerRun runLearner(const DriveLog& log, const learner::LearnerNodeConfig& config,
                       Commitment commitment, const std::string& title);
-
-/// Configuration file for tread-learner that does with a played log what runLearner() does: this
-/// rule, the gates of `config`, the pattern file of this name.
-std::string processConfig(const learner::LearnerNodeConfig& config, const std::string& rule,
-                          const std::string& patterns);
 
 }  // namespace tread::replay

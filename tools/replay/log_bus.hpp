@@ -27,17 +27,31 @@ class LogBus : public Bus {
   bool knowsTime() const { return !start_ || start_->started(); }
 
   /// Hands an event to the node's handlers.
-  void hear(const LogEvent& event);
+  void hear(const LogEvent& event) {
+    const auto found = handlers_.find(event.channel);
+    if (found == handlers_.end()) return;
+    for (const RawHandler& handler : found->second)
+      deliver(handler, event.channel.c_str(), event.bytes.data(), event.bytes.size());
+  }
   bool hears(const std::string& channel) const { return handlers_.count(channel) > 0; }
   /// The channels that the node has subscribed to, sorted.
-  std::vector<std::string> heard() const;
+  std::vector<std::string> heard() const {
+    std::vector<std::string> channels;
+    for (const auto& [channel, handlers] : handlers_) channels.push_back(channel);
+    return channels;
+  }
 
   /// What the node has published since the last call; the time is that of publishing.
   std::vector<LogEvent> takePublished() { return std::move(published_); }
 
  protected:
-  bool send(const char* channel, const uint8_t* bytes, size_t size) override;
-  void listen(const char* channel, RawHandler handler) override;
+  bool send(const char* channel, const uint8_t* bytes, size_t size) override {
+    published_.push_back({now_, channel, {bytes, bytes + size}});
+    return true;
+  }
+  void listen(const char* channel, RawHandler handler) override {
+    handlers_[channel].push_back(std::move(handler));
+  }
   bool onReceipt(int64_t utime) override { return knowsTime() || start_->hear(utime, now_); }
 
  private:

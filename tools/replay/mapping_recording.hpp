@@ -22,17 +22,9 @@ struct MappingRecording {
   mapping::MappingConfig config;  ///< that fits its robot and its surroundings
 };
 
-/// Reads a CARMEN text log with corrected poses (FLASER lines), plain or gzipped.
-/** Such logs have a pose about every metre and no times. Times are made up as if the robot had
- *  driven at 1 m/s and turned at no more than 0.5 rad/s between the poses, along arcs. Throws
- *  std::runtime_error with one clear line if it cannot be read or holds no scan. */
-MappingRecording readCarmenLog(const std::string& path);
-
-/// Reads an LCM log of an MBot (2017): LIDAR and TRUE_POSE of foreign types.
-/** Its beams run clockwise and unevenly, so each sweep becomes a slice of points. A sweep is taken
- * to end when it was logged: that fits the poses, which are stamped on arrival too, better than the
- *  stamps of LIDAR. Throws std::runtime_error with one clear line if it cannot be read or holds no
- *  scan. */
-MappingRecording readMbotLog(const std::string& path);
+/// Reads a recording by its name: *.gz and *.clf as CARMEN text with corrected poses (FLASER
+/// lines), others as the LCM log of an MBot (2017).
+/** Throws std::runtime_error with one clear line if it cannot be read or holds no scan. */
+MappingRecording readMappingRecording(const std::string& path);
 
 }  // namespace tread

@@ -9,6 +9,7 @@
 
 #include "common/bus/virtual_bus.hpp"
 #include "common/messages/ins_messages.hpp"
+#include "common/report/plot.hpp"
 #include "modules/mapping/mapping_node.hpp"
 
 namespace tread {
@@ -17,6 +18,7 @@ namespace {
 /// Poses go on so long after the last scan, and then tiles and counts come out.
 constexpr int64_t kPosesAfterUs = 200'000;
 constexpr int64_t kAfterwardsUs = 2'000'000;
+
 /// Puts a tile over what is known; what it does not know stays.
 void take(const map_tile_t& message, TileMap& map) {
   Tile tile{message.tile_x, message.tile_y, message.utime, message.cells};
@@ -103,14 +105,6 @@ MappingReplay replayMapping(const MappingRecording& recording) {
   return replay;
 }
 
-MappingRecording readMappingRecording(const std::string& path) {
-  const auto endsWith = [&](const std::string& ending) {
-    return path.size() >= ending.size() &&
-           path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
-  };
-  return endsWith(".gz") || endsWith(".clf") ? readCarmenLog(path) : readMbotLog(path);
-}
-
 std::string reportOf(const MappingReplay& replay) {
   std::ostringstream out;
   const auto count = [&](auto wanted) {
@@ -129,6 +123,32 @@ std::string reportOf(const MappingReplay& replay) {
       << static_cast<double>(count([](Cell cell) { return cell == kObstacle; })) * cell_area
       << " m2 obstacle, " << replay.tiles << " tiles sent\n";
   return out.str();
+}
+
+void drawMap(const MappingReplay& replay, const std::string& path) {
+  picture::Picture canvas(1200, 1000, replay.name + " through mapping");
+  const Grid& window = replay.window;
+  const double size = window.cellSize();
+  picture::Panel::Axes axes;
+  axes.x_label = "x [m]";
+  axes.y_label = "y [m]";
+  axes.x_min = window.lower().x * size;
+  axes.y_min = window.lower().y * size;
+  axes.x_max = (window.lower().x + std::max(1, window.width())) * size;
+  axes.y_max = (window.lower().y + std::max(1, window.height())) * size;
+  axes.equal = true;
+  picture::Panel panel(canvas, {80, 60, 1080, 860}, axes);
+  panel.grid(window);
+  std::vector<Eigen::Vector2d> way;
+  for (const TimedPose& pose : replay.track) way.push_back(pose.T_map_body.position());
+  picture::Style line;
+  line.colour = picture::kOrange;
+  line.label = "robot";
+  panel.line(way, line);
+  panel.legendEntry({picture::kBlack, 6.0, false, "obstacle"});
+  panel.legendEntry({picture::kGrey, 6.0, false, "unknown"});
+  panel.finish();
+  canvas.save(path);
 }
 
 }  // namespace tread

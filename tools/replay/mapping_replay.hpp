@@ -30,10 +30,10 @@ struct MappingReplay {
 /// Plays a recording to the real mapping node on the virtual bus. Same recording, same result.
 MappingReplay replayMapping(const MappingRecording& recording);
 
-/// Reads a recording by its name: *.log.gz and *.clf as CARMEN text, other logs as the MBot's.
-MappingRecording readMappingRecording(const std::string& path);
-
 /// Scans in, taken, refused with reasons; the way, the area known: a few lines of text.
 std::string reportOf(const MappingReplay& replay);
+
+/// Draws the map with the track; throws std::runtime_error if the file cannot be written.
+void drawMap(const MappingReplay& replay, const std::string& path);
 
 }  // namespace tread

@@ -2,40 +2,26 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "modules/learner/learner_config.hpp"
-#include "tools/replay/robot_log.hpp"
+#include "tools/replay/replay_check.hpp"
 
 namespace tread::replay {
 
-/// The log of a robot's drive through the learner: what it holds, what came out, how they compare.
-/** The learner begins as the first LEARNER_STATE of each of its lives in the log says, and hears
- * INS, MOTOR and EXECUTION. Compared: PATTERN_SET part by part and version by version, LEARNING per
+/// A robot's log through the learner.
+/** In each of its lives the learner begins with the life's first LEARNER_STATE and receives INS,
+ * MOTOR and EXECUTION. Compared: PATTERN_SET part by part and version by version, LEARNING per
  * execution; to the bit where the log holds the learner's start. */
-struct LearnerCheck {
-  std::string name;
-  int lives = 0;           ///< starts of the learner, with the one under way when the log begins
+struct LearnerCheck : ReplayCheck {
   bool from_start = true;  ///< the log holds the start of the first life
   double tolerance = 0.0;  ///< of numbers; 0 = to the bit
   int64_t first_version = 0;
   int64_t last_version = 0;
-  int64_t versions_equal = 0;
-  int64_t versions_different = 0;
-  int64_t versions_only_in_log = 0;
-  int64_t versions_only_in_replay = 0;  ///< the recorder lost them, or recorded no further
-  int64_t learning_equal = 0;
-  int64_t learning_different = 0;
-  int64_t learning_only_in_log = 0;
-  int64_t learning_only_in_replay = 0;
-  int64_t measured = 0;          ///< executions that the replay measured; the others were refused
-  std::string first_difference;  ///< in words; empty = none
-  bool same_twice = true;        ///< a second replay published the same bytes
-  std::vector<std::string> notes;
+  MessageCounts versions;  ///< of PATTERN_SET
+  MessageCounts learning;  ///< LEARNING, by execution
+  int64_t measured = 0;    ///< executions that the replay measured; it refused the others
 
-  /// Whether the replay says what the log says, and says it twice. The replay may say more: as many
-  /// messages as the log lacks by seq, and what comes after the learner's last word in the log.
+  /// Whether both replays published what the log holds. They may publish more: as many messages as
+  /// the log lacks by seq, and those after the learner's last message in the log.
   bool equal() const;
 };
 

@@ -9,9 +9,8 @@
 
 #include "modules/planner/planner_node.hpp"
 #include "tools/replay/log_bus.hpp"
-#include "tools/replay/plan_difference.hpp"
+#include "tools/replay/message_difference.hpp"
 #include "tools/replay/planner_inputs.hpp"
-#include "tools/replay/recipe.hpp"
 
 namespace tread::replay {
 namespace {
@@ -137,24 +136,21 @@ std::vector<Step> replayed(const RobotLog& log, const Life& life,
   return steps;
 }
 
-void note(PlannerCheck& check, const std::string& difference) {
-  if (check.first_difference.empty()) check.first_difference = difference;
-}
-
 void compare(const Step& log, const Step& replay, PlannerCheck& check) {
   const std::string program = differenceOf(log.program, replay.program);
-  ++(program.empty() ? check.programs_equal : check.programs_different);
+  ++(program.empty() ? check.programs.equal : check.programs.different);
   if (log.plan && replay.plan) {
     const std::string plan = differenceOf(*log.plan, *replay.plan);
-    ++(plan.empty() ? check.plans_equal : check.plans_different);
-    if (!plan.empty()) note(check, plan);
+    ++(plan.empty() ? check.plans.equal : check.plans.different);
+    if (!plan.empty()) check.noteDifference(plan);
   } else if (log.plan) {
-    ++check.plans_only_in_log;
-    note(check, "PLAN on INS of " + std::to_string(log.plan->utime) + " us: only in the log");
+    ++check.plans.only_in_log;
+    check.noteDifference("PLAN on INS of " + std::to_string(log.plan->utime) +
+                         " us: only in the log");
   } else if (replay.plan) {
-    ++check.plans_only_in_replay;
+    ++check.plans.only_in_replay;
   }
-  if (!program.empty()) note(check, program);
+  if (!program.empty()) check.noteDifference(program);
 }
 
 std::vector<LogEvent> replayAll(const RobotLog& log, const std::vector<Life>& lives,
@@ -175,13 +171,6 @@ std::vector<LogEvent> replayAll(const RobotLog& log, const std::vector<Life>& li
     }
   }
   return all;
-}
-
-bool sameBytes(const std::vector<LogEvent>& a, const std::vector<LogEvent>& b) {
-  bool same = a.size() == b.size();
-  for (size_t i = 0; same && i < a.size(); ++i)
-    same = a[i].utime == b[i].utime && a[i].channel == b[i].channel && a[i].bytes == b[i].bytes;
-  return same;
 }
 
 std::string verdictOf(const PlannerCheck& check) {
@@ -220,10 +209,7 @@ PlannerCheck checkPlanner(const RobotLog& log, const planner::PlannerConfig& con
     check.lacking += life.hearing.lacking;
     check.notes.push_back(hearingLine(life.hearing));
   }
-  check.notes.push_back(intakeLine(log, "planner", playedChannels("planner")));
-  for (const auto& [channel, missing] : log.missing)
-    check.notes.push_back("the log misses " + std::to_string(missing) + " messages on " + channel);
-  if (!log.problem.empty()) check.notes.push_back(log.problem);
+  check.noteLog(log, "planner");
   return check;
 }
 
@@ -232,14 +218,9 @@ std::string reportOf(const PlannerCheck& check) {
   out << check.name << ": " << check.lives << (check.lives == 1 ? " planner, " : " planners, ")
       << check.steps << " steps, " << check.searches_cut
       << " searches cut by the deadline on the robot (replayed with the same count)\n";
-  for (const std::string& line : check.notes) out << "  " << line << "\n";
-  out << "  replayed twice: " << (check.same_twice ? "the same bytes" : "NOT the same bytes")
-      << "\n  PROGRAM: " << check.programs_equal << " equal, " << check.programs_different
-      << " different\n  PLAN: " << check.plans_equal << " equal, " << check.plans_different
-      << " different, " << check.plans_only_in_log << " only in the log, "
-      << check.plans_only_in_replay << " only in the replay\n";
-  if (!check.first_difference.empty())
-    out << "  first difference: " << check.first_difference << "\n";
+  out << notesText(check) << "  PROGRAM: " << check.programs.equal << " equal, "
+      << check.programs.different << " different\n  PLAN: " << countsText(check.plans, "") << "\n"
+      << differenceText(check);
   out << check.name << ": planner " << verdictOf(check) << "\n";
   return out.str();
 }

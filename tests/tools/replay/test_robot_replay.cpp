@@ -113,8 +113,8 @@ std::vector<LogEvent> recordedInUtc(std::vector<LogEvent> events) {
 TEST_CASE("a robot's log through the learner gives the sets of the log, twice") {
   const LearnerCheck check = learnerCheck(plainDrive());
   REQUIRE(check.from_start);
-  REQUIRE(check.versions_equal >= 10);
-  REQUIRE(check.learning_equal >= 10);
+  REQUIRE(check.versions.equal >= 10);
+  REQUIRE(check.learning.equal >= 10);
   REQUIRE(check.same_twice);
   REQUIRE(check.equal());
 }
@@ -131,7 +131,7 @@ TEST_CASE("a log that begins in the middle is replayed from the first state that
                  events.begin() + static_cast<std::ptrdiff_t>(events.size() / share));
     const LearnerCheck check = learnerCheck(std::move(events));
     REQUIRE_FALSE(check.from_start);
-    REQUIRE(check.versions_equal >= 4);
+    REQUIRE(check.versions.equal >= 4);
     REQUIRE(check.equal());
   }
 }
@@ -139,7 +139,7 @@ TEST_CASE("a log that begins in the middle is replayed from the first state that
 TEST_CASE("a learner that was killed and started again is replayed in both lives") {
   const LearnerCheck check = learnerCheck(drivenLog(30.0, killed("learner")));
   REQUIRE(check.lives == 2);
-  REQUIRE(check.versions_equal >= 10);
+  REQUIRE(check.versions.equal >= 10);
   REQUIRE(check.equal());
 }
 
@@ -153,7 +153,7 @@ TEST_CASE("a changed sample of a set is named with version, pattern, sample and 
     return true;
   });
   const LearnerCheck check = learnerCheck(std::move(events));
-  REQUIRE(check.versions_different == 1);
+  REQUIRE(check.versions.different == 1);
   REQUIRE(contains(check.first_difference, "version " + std::to_string(version) + ", pattern "));
   REQUIRE(contains(check.first_difference, "trajectory sample 3 y [m]: log 0.125, replay "));
   REQUIRE_FALSE(check.equal());
@@ -178,7 +178,7 @@ TEST_CASE("a LEARNING that only the replay has is a difference unless seq shows 
   const bool shown = GENERATE(true, false);
   lose(events, kLearning, 1, shown);
   const LearnerCheck check = learnerCheck(std::move(events));
-  REQUIRE(check.learning_only_in_replay == 1);
+  REQUIRE(check.learning.only_in_replay == 1);
   REQUIRE(check.equal() == shown);
 }
 
@@ -187,7 +187,7 @@ TEST_CASE("a PLAN that only the replay has is a difference unless seq shows that
   const bool shown = GENERATE(true, false);
   lose(events, kPlan, 2, shown);
   const PlannerCheck check = plannerCheck(std::move(events));
-  REQUIRE(check.plans_only_in_replay == 2);
+  REQUIRE(check.plans.only_in_replay == 2);
   REQUIRE(check.equal() == shown);
 }
 
@@ -207,8 +207,8 @@ TEST_CASE("an INS message that the robot had heard otherwise makes other sets") 
     return true;
   });
   const LearnerCheck check = learnerCheck(std::move(events));
-  REQUIRE(check.versions_equal >= 3);
-  REQUIRE(check.versions_different >= 1);
+  REQUIRE(check.versions.equal >= 3);
+  REQUIRE(check.versions.different >= 1);
   REQUIRE(check.same_twice);
   REQUIRE_FALSE(check.equal());
 }
@@ -245,8 +245,8 @@ TEST_CASE("a log without the learner's state or configuration is refused with on
 
 TEST_CASE("a robot's log through the planner gives the programs and plans of the log, twice") {
   const PlannerCheck check = plannerCheck(plainDrive());
-  REQUIRE(check.programs_equal >= 590);
-  REQUIRE(check.plans_equal >= 100);
+  REQUIRE(check.programs.equal >= 590);
+  REQUIRE(check.plans.equal >= 100);
   REQUIRE(check.same_twice);
   REQUIRE(check.equal());
 }
@@ -276,7 +276,7 @@ TEST_CASE(
   REQUIRE(later > 200);
   REQUIRE(earlier > 200);
   const PlannerCheck check = plannerCheck(std::move(events));
-  REQUIRE(check.programs_equal >= 590);
+  REQUIRE(check.programs.equal >= 590);
   REQUIRE(check.equal());
 }
 
@@ -309,7 +309,7 @@ TEST_CASE("what the recorder lost, and what the planner did not hear, is told be
   const PlannerCheck check = plannerCheck(std::move(events));
   REQUIRE(contains(reportOf(check), "; " + std::to_string((motors + 100) / 200) +
                                         " that it heard are not in the log"));
-  REQUIRE(check.programs_equal >= 580);
+  REQUIRE(check.programs.equal >= 580);
 
   FaultPlan faults;
   MessageFault fault;
@@ -319,7 +319,7 @@ TEST_CASE("what the recorder lost, and what the planner did not hear, is told be
   faults.messages.push_back(fault);
   const PlannerCheck deaf = plannerCheck(drivenLog(20.0, faults));
   REQUIRE(contains(reportOf(deaf), " of the log it did not hear"));
-  REQUIRE(deaf.programs_equal >= 350);
+  REQUIRE(deaf.programs.equal >= 350);
 }
 
 TEST_CASE("a log that begins in the middle of a planner's life is stepped, not compared") {
@@ -356,7 +356,7 @@ TEST_CASE("another goal than the planner had heard makes other plans, and the fi
     return true;
   });
   const PlannerCheck check = plannerCheck(std::move(events));
-  REQUIRE(check.plans_different > 0);
+  REQUIRE(check.plans.different > 0);
   REQUIRE(check.same_twice);
   REQUIRE(contains(check.first_difference, ": log "));
 }

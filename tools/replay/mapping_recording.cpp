@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/replay/mapping_recording.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+
+#include "common/geometry/se2.hpp"
+#include "common/log/event_log.hpp"
+
+namespace tread {
+namespace {
+
+constexpr int64_t kStartUs = 2'000'000;
+
+// CARMEN logs.
+constexpr int64_t kInsPeriodUs = 20'000;
+constexpr double kSpeed = 1.0;              // [m/s]
+constexpr double kTurnRate = 0.5;           // [rad/s]
+constexpr double kCarmenLaserHeight = 0.3;  // [m] the logs do not tell
+/// Ranges from here on are the device's way to say that nothing came back [m].
+constexpr double kNoReturn = 80.0;
+
+// The MBot's logs.
+constexpr int64_t kSweepUs = 200'000;
+constexpr uint64_t kLidarType = 0x89dc5b879a5056cf;  // lidar_t of that project
+constexpr uint64_t kPoseType = 0x1f317af1246276ac;   // pose_xyt_t of that project
+constexpr double kMbotLaserHeight = 0.15;            // [m]
+constexpr float kNearest = 0.12f;                    // [m] nearer returns are the robot's own
+constexpr float kFarthest = 6.0f;                    // [m]
+
+ins_t insAt(int64_t utime, const Pose2& pose) {
+  ins_t message{};
+  message.utime = utime;
+  message.device_utc = -1;
+  message.position[0] = pose.x;
+  message.position[1] = pose.y;
+  message.orientation[0] = std::cos(pose.yaw / 2.0);
+  message.orientation[3] = std::sin(pose.yaw / 2.0);
+  message.ins_status = ins_t::STATUS_NO_VELOCITY | ins_t::STATUS_NO_ATTITUDE;
+  message.satellites = -1;
+  for (double& speed : message.velocity) speed = std::nan("");
+  return message;
+}
+
+scan_t scanFrom(int64_t utime, double laser_height) {
+  scan_t message{};
+  message.utime = utime;
+  message.sensor_position[2] = laser_height;
+  message.sensor_orientation[0] = 1.0;
+  return message;
+}
+
+/// One FLASER line: ranges over the half turn ahead, and the pose of the laser.
+struct LaserLine {
+  std::vector<float> ranges;
+  Pose2 T_map_laser;
+};
+
+std::optional<LaserLine> parse(const std::string& line) {
+  std::istringstream words(line);
+  std::string keyword;
+  size_t count = 0;
+  LaserLine laser;
+  if (!(words >> keyword >> count) || count < 2 || count > 10000) return std::nullopt;
+  laser.ranges.resize(count);
+  for (float& range : laser.ranges) words >> range;
+  Pose2& pose = laser.T_map_laser;
+  words >> pose.x >> pose.y >> pose.yaw;
+  if (!words || !std::isfinite(pose.x + pose.y + pose.yaw)) return std::nullopt;
+  return laser;
+}
+
+/// `problem`: one clear line if the file ends too early.
+std::vector<std::string> linesOf(const std::string& path, std::string& problem) {
+  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
+  if (!file) throw std::runtime_error(path + ": cannot be opened");
+  std::string text;
+  char buffer[65536];
+  int got = 0;
+  while ((got = gzread(file.get(), buffer, sizeof(buffer))) > 0)
+    text.append(buffer, static_cast<size_t>(got));
+  if (got < 0) throw std::runtime_error(path + ": is damaged: its compressed bytes do not unpack");
+  // A file that is cut off gives what it has, and this error.
+  int error = Z_OK;
+  gzerror(file.get(), &error);
+  if (error == Z_BUF_ERROR)
+    problem = path + ": ends in the middle of its compressed bytes; is the file truncated?";
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(std::move(line));
+  return lines;
+}
+
+scan_t scanAt(int64_t utime, const std::vector<float>& ranges) {
+  scan_t message = scanFrom(utime, kCarmenLaserHeight);
+  message.angle_step = kPi / static_cast<double>(ranges.size());
+  message.angle_first = -kPi / 2.0;
+  message.range_max = kNoReturn;
+  message.ranges = ranges;
+  message.num_beams = static_cast<int32_t>(ranges.size());
+  return message;
+}
+
+/// INS messages on the arc between two poses, the second one included.
+void drive(const Pose2& from, const Pose2& to, int64_t start, int64_t end,
+           std::vector<ins_t>& poses) {
+  const Pose2 step = between(from, {to.x, to.y, from.yaw + wrapAngle(to.yaw - from.yaw)});
+  const double duration = static_cast<double>(end - start);
+  const Twist2 twist = twistTo(step, 1.0);
+  for (int64_t utime = start + kInsPeriodUs; utime < end; utime += kInsPeriodUs)
+    poses.push_back(
+        insAt(utime, from * integrate(twist, static_cast<double>(utime - start) / duration)));
+  poses.push_back(insAt(end, to));
+}
+
+int64_t durationOf(const Pose2& from, const Pose2& to) {
+  const double way = (to.position() - from.position()).norm() / kSpeed;
+  const double turn = std::abs(wrapAngle(to.yaw - from.yaw)) / kTurnRate;
+  return std::max<int64_t>(100'000, std::llround(1e6 * std::max(way, turn)));
+}
+
+mapping::MappingConfig outdoorConfig() {
+  mapping::MappingConfig config;
+  config.map.marking_range = config.map.clearing_range = 20.0;
+  config.map.window_tiles = 14;
+  config.map.robot = {0.25, 0.25, 0.21};
+  config.map.ground.slope_doubt = 0.0;  // the poses are level: nothing is known of slopes
+  return config;
+}
+
+/// A CARMEN text log with corrected poses (FLASER lines), plain or gzipped.
+/** Such logs have a pose about every metre and no times. Times are made up as if the robot had
+ * driven at 1 m/s and turned at no more than 0.5 rad/s between the poses, along arcs. */
+void readCarmenLog(const std::string& path, MappingRecording& recording) {
+  recording.config = outdoorConfig();
+  Pose2 last;
+  int64_t utime = kStartUs;
+  for (const std::string& line : linesOf(path, recording.problem)) {
+    if (line.compare(0, 7, "FLASER ") != 0) continue;
+    const auto laser = parse(line);
+    if (!laser) {
+      ++recording.skipped;
+      continue;
+    }
+    if (recording.scans.empty()) {
+      recording.poses.push_back(insAt(utime, laser->T_map_laser));
+    } else {
+      const int64_t end = utime + durationOf(last, laser->T_map_laser);
+      drive(last, laser->T_map_laser, utime, end, recording.poses);
+      utime = end;
+    }
+    last = laser->T_map_laser;
+    recording.scans.push_back(scanAt(utime, laser->ranges));
+  }
+  if (recording.scans.empty())
+    throw std::runtime_error(path + ": holds no FLASER line; is it a CARMEN log with poses?");
+}
+
+/// Takes big-endian fields from a message's bytes; ok() turns false where they end.
+class Fields {
+ public:
+  explicit Fields(const std::vector<uint8_t>& bytes) : bytes_(bytes) {}
+
+  template <class Value>
+  Value take() {
+    uint8_t reversed[sizeof(Value)] = {};
+    Value value{};
+    if (bytes_.size() - at_ < sizeof(Value)) {
+      ok_ = false;
+      return value;
+    }
+    for (size_t i = 0; i < sizeof(Value); ++i) reversed[sizeof(Value) - 1 - i] = bytes_[at_ + i];
+    at_ += sizeof(Value);
+    std::memcpy(&value, reversed, sizeof(Value));
+    return value;
+  }
+  bool ok() const { return ok_; }
+
+ private:
+  const std::vector<uint8_t>& bytes_;
+  size_t at_ = 0;
+  bool ok_ = true;
+};
+
+std::optional<ins_t> poseOf(const LogEvent& event, int64_t utime) {
+  Fields fields(event.bytes);
+  if (fields.take<uint64_t>() != kPoseType) return std::nullopt;
+  fields.take<int64_t>();
+  Pose2 pose;
+  for (double* value : {&pose.x, &pose.y, &pose.yaw}) *value = double(fields.take<float>());
+  if (!fields.ok()) return std::nullopt;
+  return insAt(utime, pose);
+}
+
+/// Beams that are no return stay in the slice as NaN: a point's place in it tells its time.
+std::vector<float> pointOf(float range, float clockwise) {
+  if (!(range > kNearest) || !(range < kFarthest)) return std::vector<float>(3, std::nanf(""));
+  return {range * std::cos(clockwise), -range * std::sin(clockwise), 0.0f};
+}
+
+std::optional<scan_t> scanOf(const LogEvent& event, int64_t utime) {
+  Fields fields(event.bytes);
+  if (fields.take<uint64_t>() != kLidarType) return std::nullopt;
+  fields.take<int64_t>();
+  const auto count = fields.take<int32_t>();
+  if (!fields.ok() || count < 2 || count > 10000) return std::nullopt;
+  std::vector<float> ranges(static_cast<size_t>(count));
+  for (float& range : ranges) range = fields.take<float>();
+  scan_t message = scanFrom(utime, kMbotLaserHeight);
+  message.duration = static_cast<int32_t>(kSweepUs);
+  for (const float range : ranges) message.points.push_back(pointOf(range, fields.take<float>()));
+  message.num_points = count;
+  if (!fields.ok()) return std::nullopt;
+  return message;
+}
+
+mapping::MappingConfig indoorConfig() {
+  mapping::MappingConfig config;
+  config.map.voxels.cell_size = 0.05;
+  config.map.marking_range = config.map.clearing_range = 5.0;
+  config.map.robot = {0.1, 0.1, 0.1};
+  config.map.start_free_radius = 0.2;
+  config.map.judge = {0.05, 0.3};
+  config.map.ground.slope_doubt = 0.0;  // a level floor
+  config.max_ins_gap = 0.3;             // the motion capture loses the robot now and then
+  return config;
+}
+
+template <class Message>
+void keep(const std::optional<Message>& message, std::vector<Message>& messages,
+          MappingRecording& recording) {
+  if (message)
+    messages.push_back(*message);
+  else
+    ++recording.skipped;
+}
+
+template <class Message>
+void number(std::vector<Message>& messages) {
+  for (size_t i = 0; i < messages.size(); ++i) messages[i].seq = static_cast<int64_t>(i);
+}
+
+/// An LCM log of an MBot (2017): LIDAR and TRUE_POSE of types of its own.
+/** Its beams run clockwise and unevenly, so each sweep becomes a slice of points. A sweep is taken
+ * to end when it was logged: that fits the poses, which are stamped on arrival too, better than the
+ * stamps of LIDAR. */
+void readMbotLog(const std::string& path, MappingRecording& recording) {
+  recording.config = indoorConfig();
+  LogReader log(path);
+  LogEvent event;
+  std::optional<int64_t> first;
+  while (log.next(event)) {
+    if (!first) first = event.utime;
+    const int64_t utime = kStartUs + event.utime - *first;
+    if (event.channel == "TRUE_POSE") {
+      keep(poseOf(event, utime), recording.poses, recording);
+    } else if (event.channel == "LIDAR") {
+      keep(scanOf(event, utime - kSweepUs), recording.scans, recording);
+    }
+  }
+  recording.problem = log.problem();
+  if (recording.scans.empty())
+    throw std::runtime_error(path + ": holds no LIDAR message of the MBot's type");
+}
+
+bool endsWith(const std::string& text, const std::string& ending) {
+  return text.size() >= ending.size() &&
+         text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+}  // namespace
+
+MappingRecording readMappingRecording(const std::string& path) {
+  MappingRecording recording;
+  recording.name = path.substr(path.find_last_of('/') + 1);
+  if (endsWith(path, ".gz") || endsWith(path, ".clf"))
+    readCarmenLog(path, recording);
+  else
+    readMbotLog(path, recording);
+  number(recording.poses);
+  number(recording.scans);
+  return recording;
+}
+
+}  // namespace tread
