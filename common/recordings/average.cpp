@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <utility>
 
@@ -11,6 +9,7 @@
 
 #include "common/pattern/pattern_check.hpp"
 #include "common/recordings/recordings.hpp"
+#include "common/report/text.hpp"
 
 namespace tread::recordings {
 namespace {
@@ -18,12 +17,6 @@ namespace {
 constexpr double kSpeedSpan = 0.1;      // [s]: shorter steps are mostly noise
 constexpr double kMedianMargin = 1.5;   // [1] on the median's largest speed
 constexpr double kLeastMaxSpeed = 0.3;  // [m/s]: a set that only turns on the spot has noise alone
-
-std::string number(const char* format, double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), format, value);
-  return text.data();
-}
 
 bool finite(const Pose2& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
@@ -83,11 +76,11 @@ std::string fault(const Execution& poses, const MotionPattern& pattern, double p
     if (!finite(poses[t])) return "sample " + std::to_string(t + 1) + " is not finite";
   const double speed = fastest(poses, period);
   if (speed > max_speed)
-    return "it moves at " + number("%.2f", speed) + " m/s, possible are " +
-           number("%.2f", max_speed) + " m/s";
+    return "it moves at " + formatted("%.2f", speed) + " m/s, possible are " +
+           formatted("%.2f", max_speed) + " m/s";
   const double rate = fastestTurn(poses, period);
   if (rate > PatternLimits::kMaxYawRate)
-    return "its yaw jumps (" + number("%.1f", rate) + " rad/s); is it wrapped?";
+    return "its yaw jumps (" + formatted("%.1f", rate) + " rad/s); is it wrapped?";
   return "";
 }
 

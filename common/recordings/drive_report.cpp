@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <array>
 #include <cmath>
-#include <cstdio>
+
+#include "common/report/text.hpp"
 
 #include "common/recordings/drive_book.hpp"
 
 namespace tread::drive_patterns {
 namespace {
-
-template <typename... Values>
-std::string line(const char* format, Values... values) {
-  std::array<char, 300> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
-}
 
 /// Root mean square of the mean twist's deviations, per component.
 Twist2 spreadOf(const LocalMotion& motion) {
@@ -26,9 +19,10 @@ Twist2 spreadOf(const LocalMotion& motion) {
 }
 
 std::string windowsLine(const SurfaceSummary& surface) {
-  std::string text = line("%s: %zu steady windows used", surface.surface.c_str(), surface.windows);
+  std::string text =
+      formatted("%s: %zu steady windows used", surface.surface.c_str(), surface.windows);
   for (const auto& [reason, count] : surface.left_out)
-    text += line(", %d left out: %s", count, reason.c_str());
+    text += formatted(", %d left out: %s", count, reason.c_str());
   text += "\n  from";
   for (const std::string& session : surface.sessions) text += " " + session;
   return text + "\n";
@@ -37,9 +31,10 @@ std::string windowsLine(const SurfaceSummary& surface) {
 std::string motionLine(const std::string& name, const LocalMotion& motion) {
   const Twist2& mean = motion.mean.mean;
   const Twist2 spread = spreadOf(motion);
-  return line("  %-14s %7.3f %7.3f %7.3f   %6.3f %6.3f %6.3f   %7zu %6.2f %10zu %6zu\n",
-              name.c_str(), mean.v_x, mean.v_y, mean.omega, spread.v_x, spread.v_y, spread.omega,
-              motion.windows, motion.reach, 2 * motion.deviations.size(), motion.implausible);
+  return formatted("  %-14s %7.3f %7.3f %7.3f   %6.3f %6.3f %6.3f   %7zu %6.2f %10zu %6zu\n",
+                   name.c_str(), mean.v_x, mean.v_y, mean.omega, spread.v_x, spread.v_y,
+                   spread.omega, motion.windows, motion.reach, 2 * motion.deviations.size(),
+                   motion.implausible);
 }
 
 }  // namespace
@@ -50,8 +45,9 @@ std::string reportOf(const DriveBook& drives) {
   const std::vector<MotionPattern>& patterns = drives.book.patterns.patterns();
   for (const SurfaceSummary& surface : drives.surfaces) {
     text += "\n" + windowsLine(surface);
-    text += line("  %-14s %23s   %20s   %7s %6s %10s %6s\n", "pattern", "v_x m/s, v_y m/s, w r/s",
-                 "spread of executions", "windows", "reach", "recordings", "unfit");
+    text +=
+        formatted("  %-14s %23s   %20s   %7s %6s %10s %6s\n", "pattern", "v_x m/s, v_y m/s, w r/s",
+                  "spread of executions", "windows", "reach", "recordings", "unfit");
     for (size_t p = 0; p < patterns.size(); ++p)
       text += motionLine(patterns[p].name, surface.motions[p]);
   }

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 
 #include "common/recordings/drive_error.hpp"
+#include "common/report/text.hpp"
 
 namespace tread::drive_patterns {
 namespace {
@@ -21,12 +21,6 @@ std::string lowered(std::string text) {
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
-  return text;
-}
-
-std::string number(double value, int decimals) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
   return text;
 }
 
@@ -73,8 +67,8 @@ std::string commandProblem(const DriveSession& session, const BodyCommand& neede
            std::to_string(limits.min_steps);
   const BodyCommand reach = reachOf(session, limits.reach_quantile);
   if (reach.v < needed.v || reach.w < needed.w)
-    return "commands reach " + number(reach.v, 2) + " m/s and " + number(reach.w, 2) +
-           " rad/s, the patterns need " + number(needed.v, 2) + " and " + number(needed.w, 2);
+    return "commands reach " + fixed(reach.v, 2) + " m/s and " + fixed(reach.w, 2) +
+           " rad/s, the patterns need " + fixed(needed.v, 2) + " and " + fixed(needed.w, 2);
   return "";
 }
 
@@ -138,9 +132,9 @@ SessionChoice comparableSessions(const std::vector<DriveSession>& sessions,
       continue;
     }
     choice.left_out.push_back(
-        leftOut(session, "wheel radius " + number(session.wheel_radius, 3) + " m and baseline " +
-                             number(session.baseline, 3) + " m, most steps of this robot have " +
-                             number(usual.wheel_radius, 3) + " and " + number(usual.baseline, 3) +
+        leftOut(session, "wheel radius " + fixed(session.wheel_radius, 3) + " m and baseline " +
+                             fixed(session.baseline, 3) + " m, most steps of this robot have " +
+                             fixed(usual.wheel_radius, 3) + " and " + fixed(usual.baseline, 3) +
                              ": another set-up (--sessions takes it all the same)"));
   }
   return choice;

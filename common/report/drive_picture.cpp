@@ -11,7 +11,7 @@
 
 #include "common/report/plot.hpp"
 
-namespace tread::picture {
+namespace tread::report {
 namespace {
 
 using Eigen::Vector2d;
@@ -233,4 +233,4 @@ std::vector<TreeEdge> edgesOf(const plan_tree_t& message) {
   return edges;
 }
 
-}  // namespace tread::picture
+}  // namespace tread::report

@@ -12,7 +12,7 @@ namespace tread {
 class plan_tree_t;
 }
 
-namespace tread::picture {
+namespace tread::report {
 
 /// A patch of ground; later ones lie on top.
 struct GroundPatch {
@@ -84,4 +84,4 @@ void drawDrive(const std::string& path, const DriveScene& scene);
 /// The branches of a tree as it is published.
 std::vector<TreeEdge> edgesOf(const plan_tree_t& message);
 
-}  // namespace tread::picture
+}  // namespace tread::report

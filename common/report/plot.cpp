@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 #include <cairo.h>
 
-namespace tread::picture {
+#include "common/report/ticks.hpp"
+
+namespace tread::report {
 
 struct Picture::Surface {
   cairo_surface_t* surface;
@@ -40,22 +41,6 @@ double textWidth(cairo_t* context, const std::string& words) {
   cairo_text_extents_t extents;
   cairo_text_extents(context, words.c_str(), &extents);
   return extents.x_advance;
-}
-
-/// Distance of about `count` round ticks over a range: 1, 2 or 5 times a power of ten.
-double tickStep(double range, int count) {
-  const double raw = range / count;
-  const double power = std::pow(10.0, std::floor(std::log10(raw)));
-  for (const double factor : {1.0, 2.0, 5.0})
-    if (raw <= factor * power) return factor * power;
-  return 10.0 * power;
-}
-
-std::string tickText(double value, double step) {
-  const int digits = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", digits, std::abs(value) < step * 1e-6 ? 0.0 : value);
-  return text;
 }
 
 bool isFinite(const Eigen::Vector2d& point) {
@@ -118,8 +103,6 @@ Panel::Panel(Picture& picture, Box box, Axes axes)
   cairo_rectangle(context, box_.x, box_.y, box_.width, box_.height);
   cairo_clip(context);
 }
-
-Panel::~Panel() = default;
 
 Eigen::Vector2d Panel::toPixels(const Eigen::Vector2d& point) const {
   return {box_.x + (point.x() - axes_.x_min) / (axes_.x_max - axes_.x_min) * box_.width,
@@ -218,10 +201,6 @@ void Panel::legendEntry(const Style& style) {
   if (!style.label.empty()) legend_.push_back(style);
 }
 
-void Panel::xNames(const std::vector<std::string>& names) {
-  x_names_ = names;
-}
-
 void Panel::finish() {
   cairo_t* context = picture_.surface_->context;
   cairo_restore(context);
@@ -244,15 +223,13 @@ void Panel::xTicks() {
     const double width = textWidth(context, x_names_[i]);
     picture_.text(pixel.x() - width / 2, bottom + 15, x_names_[i], 11.0);
   }
-  if (x_names_.empty()) {
-    const double step = tickStep(axes_.x_max - axes_.x_min, 7);
-    for (double x = std::ceil(axes_.x_min / step) * step; x <= axes_.x_max + step * 1e-6;
-         x += step) {
-      const Eigen::Vector2d pixel = toPixels({x, axes_.y_min});
-      const std::string words = tickText(x, step);
-      picture_.text(pixel.x() - textWidth(context, words) / 2, bottom + 15, words, 11.0);
-      setFont(context, 11.0, false);
-    }
+  const double step = tickStep(axes_.x_max - axes_.x_min, 7);
+  for (const double x : ticks(axes_.x_min, axes_.x_max, step)) {
+    if (!x_names_.empty()) break;
+    const Eigen::Vector2d pixel = toPixels({x, axes_.y_min});
+    const std::string words = tickText(x, step);
+    picture_.text(pixel.x() - textWidth(context, words) / 2, bottom + 15, words, 11.0);
+    setFont(context, 11.0, false);
   }
   const double width = textWidth(context, axes_.x_label);
   picture_.text(box_.x + (box_.width - width) / 2, bottom + 32, axes_.x_label, 11.0);
@@ -262,7 +239,7 @@ void Panel::yTicks() {
   cairo_t* context = picture_.surface_->context;
   setFont(context, 11.0, false);
   const double step = tickStep(axes_.y_max - axes_.y_min, 5);
-  for (double y = std::ceil(axes_.y_min / step) * step; y <= axes_.y_max + step * 1e-6; y += step) {
+  for (const double y : ticks(axes_.y_min, axes_.y_max, step)) {
     const Eigen::Vector2d pixel = toPixels({axes_.x_min, y});
     const std::string words = tickText(y, step);
     picture_.text(box_.x - textWidth(context, words) - 5, pixel.y() + 4, words, 11.0);
@@ -305,4 +282,4 @@ void Panel::legend() {
   }
 }
 
-}  // namespace tread::picture
+}  // namespace tread::report

@@ -10,7 +10,7 @@
 
 #include "common/grid/grid.hpp"
 
-namespace tread::picture {
+namespace tread::report {
 
 struct Colour {
   double red = 0.0;  ///< 0..1, as the others
@@ -82,7 +82,6 @@ class Panel {
     bool equal = false;  ///< same scale on both axes (maps): the range is widened to fit the box
   };
   Panel(Picture& picture, Box box, Axes axes);
-  ~Panel();
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
 
@@ -101,7 +100,7 @@ class Panel {
   /// Adds an entry without drawing anything.
   void legendEntry(const Style& style);
   /// Names instead of numbers below the x axis; call before finish().
-  void xNames(const std::vector<std::string>& names);
+  void xNames(std::vector<std::string> names) { x_names_ = std::move(names); }
   /// Draws frame, ticks and legend over what was drawn. Call once, last.
   void finish();
 
@@ -118,4 +117,4 @@ class Panel {
   std::vector<std::string> x_names_;
 };
 
-}  // namespace tread::picture
+}  // namespace tread::report

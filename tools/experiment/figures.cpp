@@ -11,10 +11,10 @@
 namespace tread::experiment {
 namespace {
 
-using picture::Box;
-using picture::Panel;
-using picture::Picture;
-using picture::Style;
+using report::Box;
+using report::Panel;
+using report::Picture;
+using report::Style;
 using Points = std::vector<Eigen::Vector2d>;
 
 constexpr double kWidth = 1400.0;
@@ -22,18 +22,18 @@ constexpr double kRow = 330.0;  // height of a row of panels with its legend
 constexpr double kLeft = 75.0;  // of each panel, for its numbers
 
 Style styleOf(const std::string& rule) {
-  static const std::map<std::string, picture::Colour> colours{{"off", picture::kGrey},
-                                                              {"single", picture::kBlue},
-                                                              {"collective", picture::kRed},
-                                                              {"telescoping", picture::kPink},
-                                                              {"local_filter", picture::kOrange},
-                                                              {"bank", picture::kGreen},
-                                                              {kBankUnseen, picture::kSkyBlue},
-                                                              {kBankEmpty, picture::kBlue},
-                                                              {kOmniscient, picture::kBlack}};
+  static const std::map<std::string, report::Colour> colours{{"off", report::kGrey},
+                                                             {"single", report::kBlue},
+                                                             {"collective", report::kRed},
+                                                             {"telescoping", report::kPink},
+                                                             {"local_filter", report::kOrange},
+                                                             {"bank", report::kGreen},
+                                                             {kBankUnseen, report::kSkyBlue},
+                                                             {kBankEmpty, report::kBlue},
+                                                             {kOmniscient, report::kBlack}};
   const auto colour = colours.find(rule);
   Style style;
-  style.colour = colour == colours.end() ? picture::kBlack : colour->second;
+  style.colour = colour == colours.end() ? report::kBlack : colour->second;
   style.dashed = rule == "off" || rule == kOmniscient;
   // Collective and telescoping scaling are often the same to a line's width: both show.
   style.width = style.dashed ? 1.5 : rule == "telescoping" ? 5.0 : 2.0;

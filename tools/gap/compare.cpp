@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
 
@@ -148,17 +147,13 @@ LogChange compareLogs(const ModelDocument& model, const Drive& first, const Driv
 
 std::string textOf(const LogChange& change) {
   std::string text = headline(change) + "\n";
-  char line[240];
-  std::snprintf(line, sizeof line, "%-34s %-26s %-26s %s\n", "parameter", "first log", "second log",
-                "sigma");
-  text += line;
+  text += formatted("%-34s %-26s %-26s %s\n", "parameter", "first log", "second log", "sigma");
   for (const Movement& movement : change.movements) {
     // The sign of plus and minus has two bytes and one place.
-    std::snprintf(line, sizeof line, "%-34s %-27s %-27s %+.1f%s\n", nameOf(movement).c_str(),
-                  saidWithError(movement, movement.first, movement.first_error).c_str(),
-                  saidWithError(movement, movement.second, movement.second_error).c_str(),
-                  movement.sigmas(), change.moved(movement) ? "  moved" : "");
-    text += line;
+    text += formatted("%-34s %-27s %-27s %+.1f%s\n", nameOf(movement).c_str(),
+                      saidWithError(movement, movement.first, movement.first_error).c_str(),
+                      saidWithError(movement, movement.second, movement.second_error).c_str(),
+                      movement.sigmas(), change.moved(movement) ? "  moved" : "");
   }
   const auto errors = [](const EndErrors& of) {
     return saidDistance(of.position.median) + " and " + saidAngle(of.yaw.median);

@@ -7,8 +7,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "common/report/hash.hpp"
 #include "modules/identification/core/hygiene.hpp"
-#include "tools/gap/file_hash.hpp"
 #include "tools/gap/known_commands.hpp"
 #include "tools/gap/log_checks.hpp"
 #include "tools/gap/log_messages.hpp"

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "common/report/hash.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "modules/identification/core/discovery.hpp"
 #include "tools/gap/commands.hpp"
 #include "tools/gap/decisions.hpp"
-#include "tools/gap/file_hash.hpp"
 #include "tools/gap/find_output.hpp"
 #include "tools/gap/import_note.hpp"
 #include "tools/gap/read_for_model.hpp"

@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -91,11 +90,8 @@ std::string sequenceText(const DesignTask& task, const Design& design) {
   std::string text;
   for (size_t i = 0; i < task.manoeuvres.size(); ++i) {
     if (design.counts[i] == 0) continue;
-    char line[120];
-    std::snprintf(line, sizeof line, "  %zu x %-24s %.1f s\n", design.counts[i],
-                  task.manoeuvres[i].name.c_str(),
-                  kManoeuvrePeriod * static_cast<double>(task.manoeuvres[i].commands.size()));
-    text += line;
+    text += formatted("  %zu x %-24s %.1f s\n", design.counts[i], task.manoeuvres[i].name.c_str(),
+                      kManoeuvrePeriod * static_cast<double>(task.manoeuvres[i].commands.size()));
   }
   return text;
 }

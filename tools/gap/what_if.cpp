@@ -4,15 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "common/report/chart.hpp"
 #include "modules/identification/core/end_errors.hpp"
 #include "modules/identification/core/rows.hpp"
-#include "tools/gap/report/chart.hpp"
 #include "tools/gap/report/pictures.hpp"
 #include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
+
+using namespace report;
+
 namespace {
 
 constexpr size_t kShownExecutions = 9;
@@ -27,20 +29,14 @@ std::vector<Pose2> posesOf(const std::vector<MotionSample>& motion) {
 
 /// Millimetres below a decimetre; nobody measures tenths of them.
 std::string shownDistance(double distance) {
-  char text[40];
-  if (std::abs(distance) < 0.1)
-    std::snprintf(text, sizeof text, "%.0f mm", 1000.0 * distance);
-  else
-    std::snprintf(text, sizeof text, "%.2f m", distance);
-  return text;
+  return std::abs(distance) < 0.1 ? formatted("%.0f mm", 1000.0 * distance)
+                                  : formatted("%.2f m", distance);
 }
 
 /// Tenths of a degree; no -0.0.
 std::string shownAngle(double angle) {
-  char text[40];
   const double tenths = std::round(10.0 * angle * 180.0 / kPi);
-  std::snprintf(text, sizeof text, "%.1f deg", tenths == 0.0 ? 0.0 : 0.1 * tenths);
-  return text;
+  return formatted("%.1f deg", tenths == 0.0 ? 0.0 : 0.1 * tenths);
 }
 
 std::string picture(const Comparison& comparison) {
@@ -76,10 +72,7 @@ double apart(const Overlay& overlay) {
 }
 
 std::string row(const std::string& name, const std::string& position, const std::string& yaw) {
-  char text[160];
-  std::snprintf(text, sizeof text, "%-28s %14s %14s\n", name.c_str(), position.c_str(),
-                yaw.c_str());
-  return text;
+  return formatted("%-28s %14s %14s\n", name.c_str(), position.c_str(), yaw.c_str());
 }
 
 Table tableOf(const LogComparison& comparison) {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "common/report/page.hpp"
 #include "modules/identification/core/drive.hpp"
 #include "modules/identification/core/finding.hpp"
 #include "tools/gap/manoeuvres.hpp"
-#include "tools/gap/report/page.hpp"
 
 namespace tread::gap {
 
@@ -46,8 +46,9 @@ LogComparison compareOnLog(const Drive& drive, const ModelDocument& first,
 /// The answer as a table in text, as a page, and its pictures in one SVG.
 std::string textOf(const std::vector<Comparison>& comparisons);
 std::string textOf(const LogComparison& comparison);
-Page pageOf(const std::string& question, const std::string& setting,
-            const std::vector<Comparison>& comparisons, const std::vector<LogComparison>& on_log);
+report::Page pageOf(const std::string& question, const std::string& setting,
+                    const std::vector<Comparison>& comparisons,
+                    const std::vector<LogComparison>& on_log);
 std::string svgOf(const std::vector<Comparison>& comparisons,
                   const std::vector<LogComparison>& on_log);
 

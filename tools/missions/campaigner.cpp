@@ -56,7 +56,7 @@ class Campaigner {
     MissionRun run = runMission(robot_, seed, options);
     if (log) log->flush();
     if (order_.show == seed) {
-      picture::drawDrive(order_.picture, driveSceneOf(run.result, run.scene));
+      report::drawDrive(order_.picture, driveSceneOf(run.result, run.scene));
       const std::lock_guard<std::mutex> lock(mutex_);
       std::cout << "picture: " << order_.picture << std::endl;
     }

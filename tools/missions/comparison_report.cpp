@@ -3,9 +3,9 @@
 #include "tools/missions/comparison_report.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <ostream>
 
+#include "common/report/text.hpp"
 #include "tools/missions/campaign_json.hpp"
 #include "tools/missions/settling.hpp"
 
@@ -16,13 +16,6 @@ using Json = nlohmann::ordered_json;
 
 /// Executions on the new surface after which the text shows the pooled ratios.
 constexpr size_t kShownAfter[] = {0, 5, 10, 20};
-
-template <class... Arguments>
-std::string format(const char* pattern, Arguments... arguments) {
-  char text[400];
-  std::snprintf(text, sizeof text, pattern, arguments...);
-  return text;
-}
 
 /// One rule on some executions.
 struct Row {
@@ -91,8 +84,8 @@ std::vector<Row> rowsOfExecutions(const Comparison& comparison, const Omniscient
 void printErrors(std::ostream& out, const std::string& rule, const char* when,
                  const MeanError& error) {
   if (error.count == 0) return;
-  out << format("  %-12s %-18s %6d  %12.4f  %9.4f  %14.4f  %13.4f\n", rule.c_str(), when,
-                error.count, error.position, error.yaw, error.position_per_m, error.yaw_per_rad);
+  out << formatted("  %-12s %-18s %6d  %12.4f  %9.4f  %14.4f  %13.4f\n", rule.c_str(), when,
+                   error.count, error.position, error.yaw, error.position_per_m, error.yaw_per_rad);
 }
 
 void printTable(std::ostream& out, const std::vector<Row>& rows) {
@@ -108,7 +101,7 @@ void printTable(std::ostream& out, const std::vector<Row>& rows) {
 }
 
 std::string countText(double count) {
-  return std::isfinite(count) ? format("%.0f", count) : "never";
+  return std::isfinite(count) ? formatted("%.0f", count) : "never";
 }
 
 std::string firstWithin(const std::vector<double>& ratios) {
@@ -121,13 +114,13 @@ std::string firstWithin(const std::vector<double>& ratios) {
 std::string ratiosText(const std::vector<double>& ratios) {
   std::string text;
   for (const size_t n : kShownAfter)
-    text += n < ratios.size() ? format(" %5.2f", ratios[n]) : std::string("     -");
+    text += n < ratios.size() ? formatted(" %5.2f", ratios[n]) : std::string("     -");
   return text;
 }
 
 void printSettling(std::ostream& out, const Row& row, const char* which, const Settling& settling) {
   if (settling.changes == 0) return;
-  out << format(
+  out << formatted(
       "  %-12s %-10s %7d %8d  %11s %5s %5s  %9s %5s  %s  %s\n", row.rule.c_str(), which,
       settling.changes, settling.missions, countText(settling.position).c_str(),
       countText(settling.yaw).c_str(), countText(settling.both).c_str(),
@@ -136,7 +129,7 @@ void printSettling(std::ostream& out, const Row& row, const char* which, const S
 }
 
 void printSettlingTable(std::ostream& out, const std::vector<Row>& rows) {
-  out << format(
+  out << formatted(
       "  executions on a new surface until the mean error of the next %zu is within %.1f of the "
       "omniscient one's,\n  as the median of changes and of all changes pooled, and that error "
       "over the omniscient one's after 0, 5, 10, 20:\n",
@@ -157,10 +150,11 @@ void printDrives(std::ostream& out, const Comparison& comparison) {
       metres += result.distance;
       patterns += result.completed;
     }
-    out << format("  %-12s %8zu %8d %8d %5d %8d %9d %7.0f %9d\n", campaign.rule.c_str(),
-                  campaign.results.size(), countOf(campaign, Outcome::kArrived),
-                  countOf(campaign, Outcome::kRefused), countOf(campaign, Outcome::kIdle),
-                  countOf(campaign, Outcome::kStopped), collisionsOf(campaign), metres, patterns);
+    out << formatted("  %-12s %8zu %8d %8d %5d %8d %9d %7.0f %9d\n", campaign.rule.c_str(),
+                     campaign.results.size(), countOf(campaign, Outcome::kArrived),
+                     countOf(campaign, Outcome::kRefused), countOf(campaign, Outcome::kIdle),
+                     countOf(campaign, Outcome::kStopped), collisionsOf(campaign), metres,
+                     patterns);
   }
 }
 

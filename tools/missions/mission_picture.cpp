@@ -2,26 +2,24 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/missions/mission_picture.hpp"
 
-#include <cstdio>
+#include "common/report/text.hpp"
 
 namespace tread::missions {
 namespace {
 
 std::string titleOf(const MissionResult& result) {
-  char text[300];
-  std::snprintf(text, sizeof text,
-                "Mission %llu: %s after %.0f s and %.1f m (straight line %.1f m), %d patterns, %d "
-                "collisions%s%s",
-                static_cast<unsigned long long>(result.seed), nameOf(result.outcome), result.time,
-                result.distance, result.straight_line, result.completed, result.collisions,
-                result.reason.empty() ? "" : ": ", result.reason.c_str());
-  return text;
+  return formatted(
+      "Mission %llu: %s after %.0f s and %.1f m (straight line %.1f m), %d patterns, %d "
+      "collisions%s%s",
+      static_cast<unsigned long long>(result.seed), nameOf(result.outcome), result.time,
+      result.distance, result.straight_line, result.completed, result.collisions,
+      result.reason.empty() ? "" : ": ", result.reason.c_str());
 }
 
 }  // namespace
 
-picture::DriveScene driveSceneOf(const MissionResult& result, const MissionScene& scene) {
-  picture::DriveScene drive;
+report::DriveScene driveSceneOf(const MissionResult& result, const MissionScene& scene) {
+  report::DriveScene drive;
   const sim::WorldDescription& world = scene.world.description;
   drive.title = titleOf(result);
   drive.base_surface = world.base_surface;

@@ -14,11 +14,11 @@ namespace tread::missions {
 /// What a picture of a mission shows beside its result.
 struct MissionScene {
   MissionWorld world;
-  TileMap map{0.1, 32};                 ///< what mapping published
-  std::vector<picture::TreeEdge> tree;  ///< of a plan on the way
+  TileMap map{0.1, 32};                ///< what mapping published
+  std::vector<report::TreeEdge> tree;  ///< of a plan on the way
 };
 
 /// World, map, surfaces, true track, a tree and the prediction errors, to be drawn.
-picture::DriveScene driveSceneOf(const MissionResult& result, const MissionScene& scene);
+report::DriveScene driveSceneOf(const MissionResult& result, const MissionScene& scene);
 
 }  // namespace tread::missions

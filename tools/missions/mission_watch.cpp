@@ -128,7 +128,7 @@ void MissionWatch::hear(const learning_t& message) {
 void MissionWatch::hear(const plan_tree_t& message) {
   // The last plans before the goal are short; the one worth drawing was made on the way.
   if (!tree_.empty() && toGo() < 10.0) return;
-  tree_ = picture::edgesOf(message);
+  tree_ = report::edgesOf(message);
 }
 
 void MissionWatch::hear(const map_tile_t& message) {

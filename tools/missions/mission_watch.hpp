@@ -71,7 +71,7 @@ class MissionWatch {
   Pose2 last_pose_;
   Pose2 moved_from_;
   TileMap map_;
-  std::vector<picture::TreeEdge> tree_;
+  std::vector<report::TreeEdge> tree_;
 };
 
 }  // namespace tread::missions

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <ostream>
 
+#include "common/report/text.hpp"
 #include "tools/missions/campaign_json.hpp"
 
 namespace tread::missions {
@@ -43,22 +43,19 @@ double quantileOf(const std::vector<TimeRatio>& sorted, double share) {
 
 void printOmniscient(std::ostream& out, const OmniscientComparison& comparison) {
   const std::vector<TimeRatio> ratios = timeRatios(comparison);
-  char line[200];
-  std::snprintf(line, sizeof line,
-                "arrived: %d learning with rule %s, %d omniscient, both in %zu\n",
-                countOf(comparison.learning, Outcome::kArrived), comparison.learning.rule.c_str(),
-                countOf(comparison.omniscient, Outcome::kArrived), ratios.size());
-  out << line;
+  out << formatted("arrived: %d learning with rule %s, %d omniscient, both in %zu\n",
+                   countOf(comparison.learning, Outcome::kArrived),
+                   comparison.learning.rule.c_str(),
+                   countOf(comparison.omniscient, Outcome::kArrived), ratios.size());
   if (ratios.empty()) return;
-  std::snprintf(line, sizeof line,
-                "time to the goal over the omniscient robot's: median %.3f, p90 %.3f, worst %.3f\n",
-                quantileOf(ratios, 0.5), quantileOf(ratios, 0.9), ratios.back().ratio());
-  out << line;
+  out << formatted(
+      "time to the goal over the omniscient robot's: median %.3f, p90 %.3f, worst %.3f\n",
+      quantileOf(ratios, 0.5), quantileOf(ratios, 0.9), ratios.back().ratio());
   for (size_t i = 0; i < std::min(kShown, ratios.size()); ++i) {
     const TimeRatio& at = ratios[ratios.size() - 1 - i];
-    std::snprintf(line, sizeof line, "  seed %-6llu %.2f  (%.1f s, %.1f s)\n",
-                  static_cast<unsigned long long>(at.seed), at.ratio(), at.learning, at.omniscient);
-    out << line;
+    out << formatted("  seed %-6llu %.2f  (%.1f s, %.1f s)\n",
+                     static_cast<unsigned long long>(at.seed), at.ratio(), at.learning,
+                     at.omniscient);
   }
 }
 

@@ -4,45 +4,37 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <map>
 #include <ostream>
 #include <stdexcept>
 
+#include "common/report/text.hpp"
 #include "tools/missions/campaign_json.hpp"
 #include "tools/missions/stop_report.hpp"
 
 namespace tread::missions {
 namespace {
 
-/// snprintf into a string: columns of a report are easier to read so than with stream manipulators.
-template <class... Arguments>
-std::string format(const char* pattern, Arguments... arguments) {
-  char text[400];
-  std::snprintf(text, sizeof text, pattern, arguments...);
-  return text;
-}
-
 void printShares(std::ostream& out, const Campaign& campaign) {
   const auto total = static_cast<double>(std::max<size_t>(1, campaign.results.size()));
   for (const Outcome outcome :
        {Outcome::kArrived, Outcome::kRefused, Outcome::kIdle, Outcome::kStopped}) {
     const int count = countOf(campaign, outcome);
-    out << format("%-9s %4d  %5.1f %%\n", nameOf(outcome), count, 100.0 * count / total);
+    out << formatted("%-9s %4d  %5.1f %%\n", nameOf(outcome), count, 100.0 * count / total);
     std::map<std::string, int> reasons;
     for (const MissionResult& result : campaign.results)
       if (result.outcome == outcome && !result.reason.empty()) ++reasons[result.reason];
     for (const auto& [reason, times] : reasons)
-      out << format("          %4d  %s\n", times, reason.c_str());
+      out << formatted("          %4d  %s\n", times, reason.c_str());
   }
 }
 
 void printErrors(std::ostream& out, const Campaign& campaign, int first, int last) {
   const auto errors = errorsAfterChange(campaign.results, first, last);
   if (errors.empty()) return;
-  out << format("prediction error of patterns %d..%d after a change of surface, rule %s:\n", first,
-                last, campaign.rule.c_str());
+  out << formatted("prediction error of patterns %d..%d after a change of surface, rule %s:\n",
+                   first, last, campaign.rule.c_str());
   out << "  from     to        count  position [m]  yaw [rad]  position [m/m]  yaw [rad/rad]\n";
   ErrorAfterChange all;
   for (const ErrorAfterChange& error : errors) {
@@ -52,18 +44,18 @@ void printErrors(std::ostream& out, const Campaign& campaign, int first, int las
     all.yaw += error.count * error.yaw;
   }
   for (const ErrorAfterChange& error : errors)
-    out << format("  %-8s %-8s %6d  %12.4f  %9.4f  %14.4f  %13.4f\n", error.from.c_str(),
-                  error.to.c_str(), error.count, error.position, error.yaw, error.position_per_m,
-                  error.yaw_per_rad);
+    out << formatted("  %-8s %-8s %6d  %12.4f  %9.4f  %14.4f  %13.4f\n", error.from.c_str(),
+                     error.to.c_str(), error.count, error.position, error.yaw, error.position_per_m,
+                     error.yaw_per_rad);
   if (all.count > 0)
-    out << format("  %-17s %6d  %12.4f  %9.4f\n", "all changes", all.count,
-                  all.position / all.count, all.yaw / all.count);
+    out << formatted("  %-17s %6d  %12.4f  %9.4f\n", "all changes", all.count,
+                     all.position / all.count, all.yaw / all.count);
 }
 
 /// Position and yaw error; a dash where nothing was measured.
 std::string errorText(double position, double yaw) {
   if (!std::isfinite(position)) return "-";
-  return format("%.3f m %.3f rad", position, yaw);
+  return formatted("%.3f m %.3f rad", position, yaw);
 }
 
 nlohmann::ordered_json errorsJson(const Campaign& campaign, int first, int last) {
@@ -166,7 +158,7 @@ int collisionsOf(const Campaign& campaign) {
 }
 
 std::string lineOf(const MissionResult& result) {
-  return format(
+  return formatted(
       "seed %-6llu %-8s %5.1f s  %5.1f m  detour %4.2f  patterns %3d  crossings %zu of %d  "
       "collisions %d  stops %zu  flips %zu%s%s",
       static_cast<unsigned long long>(result.seed), nameOf(result.outcome), result.time,
@@ -180,8 +172,8 @@ std::string crossingsOf(const MissionResult& result) {
   for (size_t i = 0; i < result.crossings.size(); ++i) {
     const Crossing& crossing = result.crossings[i];
     const ErrorAroundChange errors = errorsAround(result, i);
-    lines += format("  %6.1f s  %-6s to %-6s  error before / after / settled: ", crossing.time,
-                    crossing.from.c_str(), crossing.to.c_str());
+    lines += formatted("  %6.1f s  %-6s to %-6s  error before / after / settled: ", crossing.time,
+                       crossing.from.c_str(), crossing.to.c_str());
     lines += errorText(errors.before_position, errors.before_yaw) + " / " +
              errorText(errors.after_position, errors.after_yaw) + " / " +
              errorText(errors.settled_position, errors.settled_yaw) + '\n';
@@ -193,12 +185,12 @@ void printSummary(std::ostream& out, const Campaign& campaign) {
   printShares(out, campaign);
   int blocked = 0;
   for (const MissionResult& result : campaign.results) blocked += result.line_blocked ? 1 : 0;
-  out << format("collisions %d; straight line blocked in %d of %zu missions\n",
-                collisionsOf(campaign), blocked, campaign.results.size());
+  out << formatted("collisions %d; straight line blocked in %d of %zu missions\n",
+                   collisionsOf(campaign), blocked, campaign.results.size());
   printSteadiness(out, campaign.results);
-  out << format("%.0f s of virtual time in %.0f s: %.1f times real time per core\n",
-                campaign.virtual_time, campaign.wall_time,
-                campaign.virtual_time / std::max(1e-9, campaign.cpu_time));
+  out << formatted("%.0f s of virtual time in %.0f s: %.1f times real time per core\n",
+                   campaign.virtual_time, campaign.wall_time,
+                   campaign.virtual_time / std::max(1e-9, campaign.cpu_time));
   printErrors(out, campaign, 1, 3);
   printErrors(out, campaign, 5, 15);
 }

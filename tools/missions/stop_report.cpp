@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
 #include <ostream>
+
+#include "common/report/text.hpp"
 
 namespace tread::missions {
 namespace {
@@ -48,21 +49,17 @@ Steadiness steadinessOf(const std::vector<MissionResult>& results) {
 void printSteadiness(std::ostream& out, const std::vector<MissionResult>& results) {
   const Steadiness steadiness = steadinessOf(results);
   const auto missions = static_cast<double>(std::max<size_t>(1, results.size()));
-  char line[200];
-  std::snprintf(line, sizeof line, "flips %d: %.2f per minute driven (%.0f s)\n", steadiness.flips,
-                steadiness.flipsPerMinute(), steadiness.driven);
-  out << line;
-  std::snprintf(line, sizeof line,
-                "stops %d: %.2f per mission, at most %d (seed %llu), %.0f s in all\n",
-                steadiness.stops, steadiness.stops / missions, steadiness.most_stops,
-                static_cast<unsigned long long>(steadiness.most_seed), steadiness.stood);
-  out << line;
+  out << formatted("flips %d: %.2f per minute driven (%.0f s)\n", steadiness.flips,
+                   steadiness.flipsPerMinute(), steadiness.driven);
+  out << formatted("stops %d: %.2f per mission, at most %d (seed %llu), %.0f s in all\n",
+                   steadiness.stops, steadiness.stops / missions, steadiness.most_stops,
+                   static_cast<unsigned long long>(steadiness.most_seed), steadiness.stood);
   std::vector<std::pair<int, std::string>> reasons;
   for (const auto& [reason, count] : steadiness.reasons) reasons.emplace_back(-count, reason);
   std::sort(reasons.begin(), reasons.end());
   for (const auto& [count, reason] : reasons) {
-    std::snprintf(line, sizeof line, "          %4d  ", -count);
-    out << line << (reason.empty() ? "(no reason published)" : reason) << '\n';
+    out << formatted("          %4d  ", -count)
+        << (reason.empty() ? "(no reason published)" : reason) << '\n';
   }
 }
 

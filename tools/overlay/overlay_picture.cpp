@@ -10,10 +10,10 @@
 namespace tread::overlay {
 namespace {
 
-using picture::Box;
-using picture::Panel;
-using picture::Picture;
-using picture::Style;
+using report::Box;
+using report::Panel;
+using report::Picture;
+using report::Style;
 
 constexpr double kDegrees = 180.0 / kPi;
 constexpr size_t kColumns = 3;
@@ -31,10 +31,10 @@ Points pointsOf(const std::vector<Pose2>& poses) {
 Style styleOf(const std::vector<std::string>& names, size_t model) {
   // The last model is the one that matters: what the others are is told by their colour.
   const bool last = model + 1 == names.size();
-  return {last ? picture::kBlue : picture::kRed, last ? 2.0 : 1.8, !last, names[model]};
+  return {last ? report::kBlue : report::kRed, last ? 2.0 : 1.8, !last, names[model]};
 }
 
-const Style kMeasured{picture::kBlack, 4.0, false, "measured"};
+const Style kMeasured{report::kBlack, 4.0, false, "measured"};
 
 void drawPiece(Picture& page, Box box, const Piece& piece, const std::vector<std::string>& names) {
   Points all = pointsOf(piece.measured);
@@ -63,7 +63,7 @@ void drawPiece(Picture& page, Box box, const Piece& piece, const std::vector<std
     panel.line(pointsOf(piece.predicted[m]), style);
     panel.dot(piece.predicted[m].back().position(), style.colour, 4.0);
   }
-  panel.dot(piece.measured.back().position(), picture::kBlack, 5.0);
+  panel.dot(piece.measured.back().position(), report::kBlack, 5.0);
   panel.finish();
 }
 

@@ -13,9 +13,9 @@
 namespace tread::patterns {
 namespace {
 
-using picture::Box;
-using picture::Colour;
-using picture::Panel;
+using report::Box;
+using report::Colour;
+using report::Panel;
 
 // Squared Mahalanobis distance that 95 % of a normal distribution in the plane stay below.
 constexpr double kChi2Of95 = 5.991;
@@ -115,7 +115,7 @@ class ClassPanel {
     middle_ = middle + Eigen::Vector2d(35.0 * scale, 0.0);
   }
 
-  void draw(picture::Picture& picture) {
+  void draw(report::Picture& picture) {
     const Eigen::Vector2d half(box_.width / 2.0 * metres_per_pixel_,
                                box_.height / 2.0 * metres_per_pixel_);
     const std::string title =
@@ -123,11 +123,11 @@ class ClassPanel {
     Panel panel(picture, box_,
                 {title, "forward [m]", "left [m]", middle_.x() - half.x(), middle_.x() + half.x(),
                  middle_.y() - half.y(), middle_.y() + half.y(), false});
-    panel.line({{-1e3, 0.0}, {1e3, 0.0}}, {picture::kLightGrey, 1.0, false, ""});
-    panel.line({{0.0, -1e3}, {0.0, 1e3}}, {picture::kLightGrey, 1.0, false, ""});
+    panel.line({{-1e3, 0.0}, {1e3, 0.0}}, {report::kLightGrey, 1.0, false, ""});
+    panel.line({{0.0, -1e3}, {0.0, 1e3}}, {report::kLightGrey, 1.0, false, ""});
     for (size_t s = 0; s < sets_.size(); ++s) drawSet(panel, s);
     drawLabels(panel);
-    panel.dot({0.0, 0.0}, picture::kBlack, 3.5);
+    panel.dot({0.0, 0.0}, report::kBlack, 3.5);
     if (sets_.size() > 1)
       for (size_t s = 0; s < sets_.size(); ++s)
         panel.legendEntry({setColour(s), 2.0, s > 0, sets_[s].label});
@@ -147,11 +147,11 @@ class ClassPanel {
     for (const Eigen::Vector2d& point : endEllipse(pattern)) bounds_.add(point);
   }
 
-  static Colour setColour(size_t s) { return s == 0 ? picture::kBlue : picture::kRed; }
+  static Colour setColour(size_t s) { return s == 0 ? report::kBlue : report::kRed; }
 
   /// One set: a colour a pattern; two: a colour a set.
   Colour colourOf(size_t s, size_t pattern) const {
-    return sets_.size() > 1 ? setColour(s) : picture::seriesColour(pattern);
+    return sets_.size() > 1 ? setColour(s) : report::seriesColour(pattern);
   }
 
   Eigen::Vector2d tipOf(const MotionPattern& pattern) const {
@@ -185,7 +185,7 @@ class ClassPanel {
       const auto patterns = shownOf(sets_[s].set);
       for (size_t p = 0; p < patterns.size(); ++p) {
         if (s > 0 && sets_[0].set.findByName(patterns[p]->name) != nullptr) continue;
-        const Colour colour = sets_.size() > 1 ? picture::kBlack : colourOf(s, p);
+        const Colour colour = sets_.size() > 1 ? report::kBlack : colourOf(s, p);
         drawLabel(panel, *patterns[p], colour, places);
       }
     }
@@ -218,7 +218,7 @@ class ClassPanel {
     if (std::abs(place.y() - wanted.y()) > kLabelHeight) {
       const Eigen::Vector2d anchor(leftwards ? place.x() + width + 2.0 : place.x() - 2.0,
                                    place.y() - 4.0);
-      panel.line({tipOf(pattern), toMetres(anchor)}, {picture::kGrey, 0.6, false, ""});
+      panel.line({tipOf(pattern), toMetres(anchor)}, {report::kGrey, 0.6, false, ""});
     }
     panel.text(toMetres(place), pattern.name, colour, kLabelSize);
   }
@@ -254,9 +254,8 @@ void drawSets(const std::vector<PicturedSet>& sets, const std::string& path) {
   std::string title = sets.front().label;
   if (sets.size() > 1) title += " and " + sets.back().label;
   const double total_height = static_cast<double>(rows) * (height + kSpaceY);
-  picture::Picture picture(
-      static_cast<int>(static_cast<double>(columns) * (width + kSpaceX) + 20.0),
-      static_cast<int>(total_height + 50.0), title);
+  report::Picture picture(static_cast<int>(static_cast<double>(columns) * (width + kSpaceX) + 20.0),
+                          static_cast<int>(total_height + 50.0), title);
   for (size_t i = 0; i < classes.size(); ++i) {
     const double x = 65.0 + static_cast<double>(i % columns) * (width + kSpaceX);
     const double y = 75.0 + static_cast<double>(i / columns) * (height + kSpaceY);
@@ -265,7 +264,7 @@ void drawSets(const std::vector<PicturedSet>& sets, const std::string& path) {
   picture.text(65.0, total_height + 35.0,
                "Start at the dot, heading to the right. At each end: heading, and the ellipse that "
                "holds 95 % of the ends.",
-               11.0, picture::kGrey);
+               11.0, report::kGrey);
   picture.save(path);
 }
 

@@ -12,9 +12,9 @@ namespace tread::plan {
 namespace {
 
 using Eigen::Vector2d;
-using picture::Box;
-using picture::Colour;
-using picture::Panel;
+using report::Box;
+using report::Colour;
+using report::Panel;
 
 constexpr double kMargin = 70.0;     // [pixels] around the panel for its axes
 constexpr double kLongest = 1000.0;  // [pixels] longer side of the panel
@@ -95,7 +95,7 @@ void drawPose(Panel& panel, const Pose2& T_map_body, double length, Colour colou
 }
 
 /// Below the map, where it hides nothing.
-void drawLegend(picture::Picture& sheet, const PlanScene& scene, const Box& box) {
+void drawLegend(report::Picture& sheet, const PlanScene& scene, const Box& box) {
   double x = box.x;
   const double y = box.y + box.height + 50.0;
   const auto entry = [&](Colour colour, const std::string& words, double width) {
@@ -103,10 +103,10 @@ void drawLegend(picture::Picture& sheet, const PlanScene& scene, const Box& box)
     sheet.text(x + 19.0, y, words, 11.0);
     x += width;
   };
-  entry(picture::kGreen, "start", 65.0);
-  entry(picture::kRed, "goal", 62.0);
-  if (!scene.path.empty()) entry(picture::kOrange, "plan", 60.0);
-  if (!scene.tree.empty()) entry(picture::kBlue, "search tree", 90.0);
+  entry(report::kGreen, "start", 65.0);
+  entry(report::kRed, "goal", 62.0);
+  if (!scene.path.empty()) entry(report::kOrange, "plan", 60.0);
+  if (!scene.tree.empty()) entry(report::kBlue, "search tree", 90.0);
 }
 
 }  // namespace
@@ -122,8 +122,8 @@ void drawPlan(const std::string& path, const PlanScene& scene) {
   const Box box = boxFor(extent);
   const double metres_per_pixel =
       std::max(extent.size().x() / box.width, extent.size().y() / box.height);
-  picture::Picture sheet(static_cast<int>(box.width + 2.0 * kMargin),
-                         static_cast<int>(box.height + 2.0 * kMargin), scene.title);
+  report::Picture sheet(static_cast<int>(box.width + 2.0 * kMargin),
+                        static_cast<int>(box.height + 2.0 * kMargin), scene.title);
   sheet.text(20.0, 50.0, scene.result);
   Panel panel(sheet, box,
               {"", "x [m]", "y [m]", extent.low.x(), extent.high.x(), extent.low.y(),
@@ -132,9 +132,9 @@ void drawPlan(const std::string& path, const PlanScene& scene) {
   for (const auto& branch : scene.tree)
     panel.line(branch, {{0.00, 0.45, 0.70, 0.25}, 0.6, false, ""});
   drawFootprints(panel, scene);
-  panel.line(scene.path, {picture::kOrange, 2.5, false, ""});
-  drawPose(panel, scene.T_map_start, 14.0 * metres_per_pixel, picture::kGreen);
-  drawPose(panel, scene.T_map_goal, 14.0 * metres_per_pixel, picture::kRed);
+  panel.line(scene.path, {report::kOrange, 2.5, false, ""});
+  drawPose(panel, scene.T_map_start, 14.0 * metres_per_pixel, report::kGreen);
+  drawPose(panel, scene.T_map_goal, 14.0 * metres_per_pixel, report::kRed);
   panel.finish();
   drawLegend(sheet, scene, box);
   sheet.save(path);

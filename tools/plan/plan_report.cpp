@@ -3,13 +3,12 @@
 #include "tools/plan/plan_report.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "common/config/scalars.hpp"
 #include "common/recordings/text_file.hpp"
+#include "common/report/text.hpp"
 
 namespace tread::plan {
 namespace {
@@ -74,12 +73,6 @@ Json spreadJson(const std::vector<double>& values) {
 /// A number of a plan, or null where there is no plan.
 Json ofPlan(const PlanAnswer& answer, double value) {
   return answer.poses.empty() ? Json(nullptr) : Json(value);
-}
-
-std::string fixed(double value, int digits) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  return text.data();
 }
 
 std::string spreadText(const std::string& what, const std::vector<double>& values) {

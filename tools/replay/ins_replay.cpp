@@ -67,7 +67,7 @@ std::vector<Pose2> posesOf(const InsReplay& replay) {
   return poses;
 }
 
-picture::Panel::Axes axesAround(const std::vector<Pose2>& poses) {
+report::Panel::Axes axesAround(const std::vector<Pose2>& poses) {
   Eigen::Array2d low = poses.front().position().array();
   Eigen::Array2d high = low;
   for (const Pose2& pose : poses) {
@@ -75,7 +75,7 @@ picture::Panel::Axes axesAround(const std::vector<Pose2>& poses) {
     high = high.max(pose.position().array());
   }
   const double margin = std::max(1.0, 0.05 * (high - low).maxCoeff());
-  picture::Panel::Axes axes;
+  report::Panel::Axes axes;
   axes.x_label = "x [m]";
   axes.y_label = "y [m]";
   axes.x_min = low.x() - margin;
@@ -139,31 +139,31 @@ std::string reportOf(const InsReplay& replay) {
 }
 
 void drawTrack(const InsReplay& replay, const std::string& title, const std::string& path) {
-  picture::Picture canvas(900, 900, title);
+  report::Picture canvas(900, 900, title);
   const std::vector<Pose2> poses = posesOf(replay);
   if (poses.empty()) {
     canvas.text(60, 100, "no pose in this log");
     return canvas.save(path);
   }
-  const picture::Panel::Axes axes = axesAround(poses);
-  picture::Panel panel(canvas, {80, 60, 780, 760}, axes);
+  const report::Panel::Axes axes = axesAround(poses);
+  report::Panel panel(canvas, {80, 60, 780, 760}, axes);
   std::vector<Eigen::Vector2d> track;
   track.reserve(poses.size());
   for (const Pose2& pose : poses) track.push_back(pose.position());
-  picture::Style line;
-  line.colour = picture::kBlue;
+  report::Style line;
+  line.colour = report::kBlue;
   line.label = "position";
   panel.line(track, line);
   const double length = 0.03 * std::max(axes.x_max - axes.x_min, axes.y_max - axes.y_min);
-  picture::Style heading;
-  heading.colour = picture::kOrange;
+  report::Style heading;
+  heading.colour = report::kOrange;
   heading.label = "heading";
   for (size_t i = 0; i < poses.size(); i += std::max<size_t>(1, poses.size() / kHeadings)) {
     panel.line({poses[i].position(), poses[i] * Eigen::Vector2d(length, 0.0)}, heading);
     heading.label.clear();
   }
-  panel.dot(track.front(), picture::kGreen, 6.0);
-  panel.dot(track.back(), picture::kRed, 6.0);
+  panel.dot(track.front(), report::kGreen, 6.0);
+  panel.dot(track.back(), report::kRed, 6.0);
   panel.finish();
   canvas.save(path);
 }

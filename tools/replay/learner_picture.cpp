@@ -10,8 +10,8 @@
 namespace tread::replay {
 namespace {
 
-using picture::Panel;
-using picture::Picture;
+using report::Panel;
+using report::Picture;
 using Error = double (*)(const learning_t&);
 
 constexpr double kDegrees = 180.0 / kPi;
@@ -40,7 +40,7 @@ std::vector<Eigen::Vector2d> runningMean(const std::vector<learning_t>& learned,
   return points;
 }
 
-void drawCurves(Picture& canvas, const picture::Box& box, const std::vector<LearnerRun>& runs,
+void drawCurves(Picture& canvas, const report::Box& box, const std::vector<LearnerRun>& runs,
                 Error error, const std::string& label) {
   double highest = 0.0;
   double longest = 2.0;
@@ -58,8 +58,8 @@ void drawCurves(Picture& canvas, const picture::Box& box, const std::vector<Lear
   axes.y_max = highest > 0.0 ? 1.1 * highest : 1.0;
   Panel panel(canvas, box, axes);
   for (size_t r = 0; r < runs.size(); ++r) {
-    picture::Style style;
-    style.colour = r == 0 ? picture::kGrey : picture::seriesColour(r - 1);
+    report::Style style;
+    style.colour = r == 0 ? report::kGrey : report::seriesColour(r - 1);
     style.width = 2.0;
     style.label = runs[r].title;
     panel.line(runningMean(runs[r].learned, error), style);
@@ -81,7 +81,7 @@ double meanOf(const LearnerRun& run, const PatternSet& set, const std::string& n
   return count > 0 ? sum / count : 0.0;
 }
 
-void drawBars(Picture& canvas, const picture::Box& box, const PatternSet& set,
+void drawBars(Picture& canvas, const report::Box& box, const PatternSet& set,
               const std::vector<LearnerRun>& runs, Error error, const std::string& label) {
   std::set<std::string> known;
   for (const learning_t& one : runs.front().learned)
@@ -104,7 +104,7 @@ void drawBars(Picture& canvas, const picture::Box& box, const PatternSet& set,
     for (size_t r = 0; r < runs.size(); ++r) {
       const double at = static_cast<double>(n) - 0.4 + (static_cast<double>(r) + 0.5) * width;
       panel.bar(at, meanOf(runs[r], set, names[n], error), 0.9 * width,
-                r == 0 ? picture::kGrey : picture::seriesColour(r - 1));
+                r == 0 ? report::kGrey : report::seriesColour(r - 1));
     }
   panel.finish();
 }

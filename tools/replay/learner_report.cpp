@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <functional>
 #include <set>
 #include <sstream>
+
+#include "common/report/text.hpp"
 
 namespace tread::replay {
 namespace {
@@ -36,16 +36,6 @@ std::vector<learning_t> filtered(const std::vector<learning_t>& learned, const B
   return result;
 }
 
-std::string line(const char* format, ...) __attribute__((format(printf, 1, 2)));
-std::string line(const char* format, ...) {
-  char text[240];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
-
 /// One group of executions: a line per run.
 void writeGroup(std::ostream& out, const std::string& name, const std::vector<LearnerRun>& runs,
                 const Belongs& belongs) {
@@ -53,19 +43,19 @@ void writeGroup(std::ostream& out, const std::string& name, const std::vector<Le
   for (const LearnerRun& run : runs) {
     const ErrorSummary errors = summarise(filtered(run.learned, belongs));
     if (errors.count == 0) return;
-    const std::string count = first ? line("%4zu", errors.count) : "    ";
-    out << line("  %-22s %s  %-22s %7.3f %7.3f   %7.2f %7.2f\n", first ? name.c_str() : "",
-                count.c_str(), run.title.c_str(), errors.position_mean, errors.position_median,
-                errors.yaw_mean * kDegrees, errors.yaw_median * kDegrees);
+    const std::string count = first ? formatted("%4zu", errors.count) : "    ";
+    out << formatted("  %-22s %s  %-22s %7.3f %7.3f   %7.2f %7.2f\n", first ? name.c_str() : "",
+                     count.c_str(), run.title.c_str(), errors.position_mean, errors.position_median,
+                     errors.yaw_mean * kDegrees, errors.yaw_median * kDegrees);
     first = false;
   }
 }
 
 void writeHead(std::ostream& out, const std::string& what) {
   out << "\nprediction error at the end of each execution, by " << what << "\n"
-      << line("  %-22s %4s  %-22s %15s   %15s\n", "", "n", "", "position [m]", "|yaw| [deg]")
-      << line("  %-22s %4s  %-22s %7s %7s   %7s %7s\n", "", "", "", "mean", "median", "mean",
-              "median");
+      << formatted("  %-22s %4s  %-22s %15s   %15s\n", "", "n", "", "position [m]", "|yaw| [deg]")
+      << formatted("  %-22s %4s  %-22s %7s %7s   %7s %7s\n", "", "", "", "mean", "median", "mean",
+                   "median");
 }
 
 void writeIntake(std::ostream& out, const DriveLog& log, const LearnerRun& run) {
@@ -75,7 +65,7 @@ void writeIntake(std::ostream& out, const DriveLog& log, const LearnerRun& run) 
   out << log.name << ": " << log.executions.size() << " executions in, " << accepted
       << " measured, " << (static_cast<int64_t>(run.learned.size()) - accepted) << " refused\n";
   for (const auto& [name, count] : run.counters)
-    if (name.rfind("refused: ", 0) == 0) out << line("  %5ld %s\n", long{count}, name.c_str());
+    if (name.rfind("refused: ", 0) == 0) out << formatted("  %5ld %s\n", long{count}, name.c_str());
   if (static_cast<int64_t>(scored) != accepted)
     out << "  of the measured ones " << scored
         << " have a measured end; only those are in the errors below\n";
@@ -98,7 +88,7 @@ void writeGuards(std::ostream& out, const LearnerRun& run) {
   }
   if (guards.empty()) return;
   out << "\nguards of '" << run.title << "'\n";
-  for (const auto& [guard, count] : guards) out << line("  %5d %s\n", count, guard.c_str());
+  for (const auto& [guard, count] : guards) out << formatted("  %5d %s\n", count, guard.c_str());
 }
 
 /// The result in one line.
@@ -107,8 +97,8 @@ std::string resultLine(const DriveLog& log, const std::vector<LearnerRun>& runs)
                        std::to_string(summarise(runs.front().learned).count) + " executions: ";
   for (const LearnerRun& run : runs) {
     const ErrorSummary errors = summarise(run.learned);
-    result += line("%s%s %.3f m %.1f deg", &run == &runs.front() ? "" : "; ", run.title.c_str(),
-                   errors.position_mean, errors.yaw_mean * kDegrees);
+    result += formatted("%s%s %.3f m %.1f deg", &run == &runs.front() ? "" : "; ",
+                        run.title.c_str(), errors.position_mean, errors.yaw_mean * kDegrees);
   }
   return result + "\n";
 }
@@ -127,8 +117,8 @@ void writeComparison(std::ostream& out, const std::vector<LearnerRun>& runs) {
       position += other.error_position < base[i].error_position ? 1 : 0;
       yaw += std::abs(other.error_yaw) < std::abs(base[i].error_yaw) ? 1 : 0;
     }
-    out << line("  '%s' is nearer than '%s' in %zu of %zu positions and %zu of %zu yaws\n",
-                runs[r].title.c_str(), runs.front().title.c_str(), position, all, yaw, all);
+    out << formatted("  '%s' is nearer than '%s' in %zu of %zu positions and %zu of %zu yaws\n",
+                     runs[r].title.c_str(), runs.front().title.c_str(), position, all, yaw, all);
   }
 }
 

@@ -73,7 +73,7 @@ class Reader {
     drive_.ended = plan.utime;
   }
   void hear(const plan_tree_t& tree) {
-    std::vector<picture::TreeEdge> edges = picture::edgesOf(tree);
+    std::vector<report::TreeEdge> edges = report::edgesOf(tree);
     if (toGo() > kNear && edges.size() >= drive_.tree.size()) drive_.tree = std::move(edges);
   }
   void hear(const map_tile_t& message) {

@@ -28,11 +28,11 @@ struct DriveRecord {
   std::string last_status;  ///< the planner's last word and reason
   int completed = 0;        ///< executions
   int aborted = 0;
-  int refused = 0;                            ///< executions that were no fair measurement
-  int disarmed = 0;                           ///< times that a permission to drive was lost
-  std::vector<picture::PatternError> errors;  ///< time since begun
-  std::vector<picture::DriveMoment> track;    ///< as the INS measured, time since begun
-  std::vector<picture::TreeEdge> tree;        ///< the richest one on the way
+  int refused = 0;                           ///< executions that were no fair measurement
+  int disarmed = 0;                          ///< times that a permission to drive was lost
+  std::vector<report::PatternError> errors;  ///< time since begun
+  std::vector<report::DriveMoment> track;    ///< as the INS measured, time since begun
+  std::vector<report::TreeEdge> tree;        ///< the richest one on the way
   std::unique_ptr<TileMap> map;
   Latencies latencies;
 

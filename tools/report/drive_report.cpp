@@ -4,21 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "common/report/text.hpp"
 
 namespace tread::report {
 namespace {
 
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
-double mean(const DriveRecord& drive, double picture::PatternError::*error) {
+double mean(const DriveRecord& drive, double report::PatternError::*error) {
   double sum = 0.0;
-  for (const picture::PatternError& at : drive.errors) sum += std::abs(at.*error);
+  for (const report::PatternError& at : drive.errors) sum += std::abs(at.*error);
   return sum / static_cast<double>(std::max<size_t>(1, drive.errors.size()));
 }
 
@@ -29,10 +23,10 @@ std::string latencyLine(const char* name, const Durations& durations) {
 }
 
 /// Borders that the robot crossed, from the true surface along the way; short visits left out.
-std::vector<picture::BorderCrossing> crossingsOf(const DriveRecord& drive,
-                                                 const SimulationTruth& truth) {
+std::vector<report::BorderCrossing> crossingsOf(const DriveRecord& drive,
+                                                const SimulationTruth& truth) {
   constexpr double kVisit = 0.5;  // [s]
-  std::vector<picture::BorderCrossing> crossings;
+  std::vector<report::BorderCrossing> crossings;
   std::string present;
   std::string perhaps;
   double since = 0.0;
@@ -49,10 +43,10 @@ std::vector<picture::BorderCrossing> crossingsOf(const DriveRecord& drive,
   return crossings;
 }
 
-std::vector<picture::RuleSeries> seriesOf(const RuleErrors& by_rule, int64_t begun) {
-  std::vector<picture::RuleSeries> series;
+std::vector<report::RuleSeries> seriesOf(const RuleErrors& by_rule, int64_t begun) {
+  std::vector<report::RuleSeries> series;
   for (size_t rule = 0; rule < by_rule.rules.size(); ++rule) {
-    picture::RuleSeries one;
+    report::RuleSeries one;
     one.rule = learner::ruleName(by_rule.rules[rule]);
     for (const shadow::ShadowedExecution& execution : by_rule.executions)
       if (execution.measured)
@@ -83,11 +77,11 @@ std::string wordsOf(const DriveRecord& drive, const SimulationTruth& truth,
                     const RuleErrors& by_rule) {
   std::string words = resultLine(drive, truth) + "\n";
   words += formatted("prediction error at a pattern's end: mean %.3f m, %.2f deg over %zu measured",
-                     mean(drive, &picture::PatternError::position),
-                     mean(drive, &picture::PatternError::yaw) * 180.0 / kPi, drive.errors.size());
+                     mean(drive, &report::PatternError::position),
+                     mean(drive, &report::PatternError::yaw) * 180.0 / kPi, drive.errors.size());
   words += formatted(" (%d refused)\n", drive.refused);
   std::vector<int64_t> changes;
-  for (const picture::BorderCrossing& crossing : crossingsOf(drive, truth))
+  for (const report::BorderCrossing& crossing : crossingsOf(drive, truth))
     changes.push_back(drive.begun + std::llround(crossing.time * 1e6));
   if (!by_rule.rules.empty()) words += wordsOf(by_rule, changes);
   words += "latency, as the logger received:\n";
@@ -98,9 +92,9 @@ std::string wordsOf(const DriveRecord& drive, const SimulationTruth& truth,
   return words;
 }
 
-picture::DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth,
-                            const RuleErrors& by_rule) {
-  picture::DriveScene scene;
+report::DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth,
+                           const RuleErrors& by_rule) {
+  report::DriveScene scene;
   scene.title = resultLine(drive, truth);
   if (truth.world) {
     scene.base_surface = truth.world->base_surface;

@@ -25,7 +25,7 @@ std::string wordsOf(const DriveRecord& drive, const SimulationTruth& truth,
 /// The one line of result alone.
 std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth);
 /// The drive to be drawn.
-picture::DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth,
-                            const RuleErrors& by_rule);
+report::DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth,
+                           const RuleErrors& by_rule);
 
 }  // namespace tread::report

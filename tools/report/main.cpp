@@ -32,7 +32,7 @@ int run(const Arguments& arguments) {
   if (!rules.empty()) by_rule = errorsByRule(arguments.logs, TREAD_CONFIG_DIR "/patterns", rules);
   std::cout << wordsOf(drive, truth, by_rule);
   if (!arguments.picture.empty()) {
-    picture::drawDrive(arguments.picture, sceneOf(drive, truth, by_rule));
+    report::drawDrive(arguments.picture, sceneOf(drive, truth, by_rule));
     std::cout << "picture: " << arguments.picture << std::endl;
   }
   const bool touched = !truth.rows.empty() && truth.rows.back().contacts > 0;

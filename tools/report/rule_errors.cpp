@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
+#include "common/report/text.hpp"
 #include "tools/replay/robot_learner.hpp"
 #include "tools/replay/robot_log.hpp"
 
@@ -77,10 +77,7 @@ std::string meanText(const Executions& executions, size_t rule) {
     yaw += std::abs(execution->by_rule[rule].yaw);
   }
   const auto count = static_cast<double>(executions.size());
-  char text[60];
-  std::snprintf(text, sizeof text, "%7.3f m %5.2f deg", position / count,
-                yaw / count * 180.0 / kPi);
-  return text;
+  return formatted("%7.3f m %5.2f deg", position / count, yaw / count * 180.0 / kPi);
 }
 
 }  // namespace
@@ -112,18 +109,15 @@ std::string wordsOf(const RuleErrors& errors, const std::vector<int64_t>& change
   std::string words =
       "the same executions predicted by each rule, from the shipped set on (driven: " +
       errors.driven + "):\n";
-  char line[200];
-  std::snprintf(line, sizeof line, "  %-12s  %-18s", "rule", "all on one surface");
-  words += line;
+  words += formatted("  %-12s  %-18s", "rule", "all on one surface");
   if (!changes.empty()) {
-    std::snprintf(line, sizeof line, "  %-18s  %-18s  %-18s", "before a change", "1..3 after it",
-                  "5..15 after it");
-    words += line;
+    words +=
+        formatted("  %-18s  %-18s  %-18s", "before a change", "1..3 after it", "5..15 after it");
   }
   words += "\n";
   for (size_t rule = 0; rule < errors.rules.size(); ++rule) {
-    std::snprintf(line, sizeof line, "  %-12s", learner::ruleName(errors.rules[rule]));
-    words += line + ("  " + meanText(whole, rule));
+    words += formatted("  %-12s", learner::ruleName(errors.rules[rule]));
+    words += "  " + meanText(whole, rule);
     if (!changes.empty())
       words += "  " + meanText(beforeChanges(all, changes.size()), rule) + "  " +
                meanText(afterChanges(all, 1, 3), rule) + "  " +

@@ -11,7 +11,7 @@
 #include "common/report/plot.hpp"
 
 using namespace tread;
-using namespace tread::picture;
+using namespace tread::report;
 
 TEST_CASE("a picture with a map and a curve is a PNG of the asked size") {
   const std::string path = "test_plot_" + std::to_string(getpid()) + ".png";

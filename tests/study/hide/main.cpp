@@ -8,11 +8,11 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
+#include "common/report/hash.hpp"
 #include "tests/study/hide/bad_log.hpp"
 #include "tests/study/hide/effect_list.hpp"
 #include "tests/study/hide/sealed_folder.hpp"
 #include "tests/study/hide/semi.hpp"
-#include "tests/study/hide/sha256.hpp"
 #include "tests/study/hide/suite.hpp"
 
 using namespace tread::blind;
@@ -119,7 +119,7 @@ void hideInRecording(const SemiArguments& arguments) {
   std::ifstream file(arguments.log, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   const SemiTruth truth = hideInLog(arguments.effect, arguments.size, arguments.seed, made.events);
-  made.truth = semiTruthText(arguments.name, truth, arguments.size, arguments.seed, sha256(bytes));
+  made.truth = semiTruthText(arguments.name, truth, arguments.size, arguments.seed, tread::sha256(bytes));
   SealedFolder(arguments.out).add(arguments.name, made);
   std::printf("%s: %s hidden in %s\n", arguments.out.c_str(), arguments.name.c_str(),
               arguments.log.c_str());

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "tests/study/hide/sha256.hpp"
+#include "common/report/hash.hpp"
 
 namespace fs = std::filesystem;
 

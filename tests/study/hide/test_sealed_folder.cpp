@@ -7,10 +7,10 @@
 #include <map>
 #include <set>
 
+#include "common/report/hash.hpp"
 #include "tests/study/hide/bad_log.hpp"
 #include "tests/study/hide/blind_bench.hpp"
 #include "tests/study/hide/sealed_folder.hpp"
-#include "tests/study/hide/sha256.hpp"
 #include "tests/study/hide/suite.hpp"
 
 using namespace tread;

@@ -3,13 +3,15 @@
 #include "tests/study/models/ladder_output.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include "common/recordings/text_file.hpp"
 #include "tools/gap/find_output.hpp"
 #include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
+
+using namespace report;
+
 namespace {
 
 constexpr Rung kRivals[] = {Rung::kSlipRegression, Rung::kBlackBox};
@@ -31,20 +33,16 @@ const Quantity kPosition{"Position error after 2 s, open loop [m]", 1.0, 2, &End
 std::string cell(const std::optional<EndErrors>& errors, const Quantity& quantity) {
   if (!errors || errors->executions == 0) return "-";
   const ErrorFigure& figure = (*errors).*quantity.figure;
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f / %.*f", quantity.digits, figure.median / quantity.unit,
-                quantity.digits, figure.rms / quantity.unit);
-  return text;
+  return formatted("%.*f / %.*f", quantity.digits, figure.median / quantity.unit, quantity.digits,
+                   figure.rms / quantity.unit);
 }
 
 std::string cell(const std::optional<RungDifference>& behind, const Quantity& quantity) {
   if (!behind) return "-";
   const MeanDifference& difference = (*behind).*quantity.difference;
   if (!std::isfinite(difference.error)) return "-";
-  char text[64];
-  std::snprintf(text, sizeof text, "%+.*f +- %.*f", quantity.digits,
-                difference.mean / quantity.unit, quantity.digits, difference.error / quantity.unit);
-  return text;
+  return formatted("%+.*f +- %.*f", quantity.digits, difference.mean / quantity.unit,
+                   quantity.digits, difference.error / quantity.unit);
 }
 
 size_t executionsOf(const LadderRow& row) {

@@ -7,10 +7,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/report/page.hpp"
 #include "tests/study/models/ladder.hpp"
-#include "tools/gap/report/page.hpp"
 
 namespace tread::gap {
+
+using report::Page;
 
 /// A ladder and the files that it was made from.
 struct LadderReport {

@@ -5,6 +5,9 @@
 #include "tests/study/models/ladder_output.hpp"
 
 namespace tread::gap {
+
+using namespace report;
+
 namespace {
 
 /// Columns of spaces; the last one is not filled up.

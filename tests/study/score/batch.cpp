@@ -11,10 +11,10 @@
 #include <stdexcept>
 #include <thread>
 
+#include "common/report/hash.hpp"
 #include "tests/study/score/child.hpp"
 #include "tests/study/score/nominal_numbers.hpp"
 #include "tests/study/score/seal_watch.hpp"
-#include "tools/gap/file_hash.hpp"
 
 namespace fs = std::filesystem;
 
@@ -124,7 +124,7 @@ class Runner {
   /// A line as `sha256sum -c` reads it.
   std::string verdictHash(const HiddenCase& one) const {
     const std::string file = foundFile(one, hasVerdict(one) ? "verdict.json" : "log.txt");
-    return gap::sha256OfFile((folder_ / file).string()) + "  " + file;
+    return sha256OfFile((folder_ / file).string()) + "  " + file;
   }
 
   bool hasVerdict(const HiddenCase& one) const {

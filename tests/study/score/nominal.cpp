@@ -10,10 +10,10 @@
 #include <set>
 #include <stdexcept>
 
+#include "common/report/hash.hpp"
 #include "tests/study/score/child.hpp"
 #include "tests/study/score/recordings.hpp"
 #include "tests/study/score/study.hpp"
-#include "tools/gap/file_hash.hpp"
 
 namespace fs = std::filesystem;
 
@@ -140,7 +140,7 @@ Json nominalStory(const Study& study, const std::vector<HiddenCase>& cases) {
   Json all = Json::object();
   for (const std::string& name : names) {
     const std::string model = nominalModel(study, name);
-    Json story = {{"sha256", gap::sha256OfFile(model)}};
+    Json story = {{"sha256", sha256OfFile(model)}};
     const fs::path told = fs::path(model).parent_path() / kStory;
     if (study.nominal.empty() || recordingNamed(study, name)) {
       const Json told_story = readJson(told);

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <openssl/evp.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "common/report/plot.hpp"
+#include "common/report/text.hpp"
 #include "tests/study/score/score_files.hpp"
 
 namespace tread::blindtest {
 namespace {
 
-using picture::Box;
-using picture::Colour;
-using picture::Picture;
+using report::Box;
+using report::Colour;
+using report::Picture;
 
 constexpr double kCell = 22.0;    // [pixels]
 constexpr double kLeft = 230.0;   // names of rows
@@ -31,36 +29,15 @@ td { padding: .12em .8em .12em 0; border-bottom: 1px solid #ddd; } img { max-wid
 </style></head><body>
 )";
 
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char letter : text)
-    safe += letter == '<'   ? std::string("&lt;")
-            : letter == '>' ? std::string("&gt;")
-            : letter == '&' ? std::string("&amp;")
-                            : std::string(1, letter);
-  return safe;
-}
-
-std::string base64(const std::string& bytes) {
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
-  const int size = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                                   reinterpret_cast<const unsigned char*>(bytes.data()),
-                                   static_cast<int>(bytes.size()));
-  text.resize(static_cast<size_t>(size));
-  return text;
-}
-
 /// White for never, dark for always; what is wrong is red.
 Colour shade(double share, bool right) {
-  const Colour full = right ? picture::kBlue : picture::kRed;
+  const Colour full = right ? report::kBlue : report::kRed;
   const auto mix = [&](double part) { return 1.0 + share * (part - 1.0); };
   return {mix(full.red), mix(full.green), mix(full.blue)};
 }
 
 std::string percentWord(double share) {
-  char text[8];
-  std::snprintf(text, sizeof text, "%.0f", 100.0 * share);
-  return text;
+  return fixed(100.0 * share, 0);
 }
 
 void drawRow(const Confusion& confusion, size_t row, Picture& picture) {
@@ -79,7 +56,7 @@ void drawRow(const Confusion& confusion, size_t row, Picture& picture) {
     picture.fill(box, share > 0.0 ? shade(0.15 + 0.85 * share, right) : Colour{0.96, 0.96, 0.96});
     if (share > 0.0)
       picture.text(box.x + (share < 0.995 ? 4.0 : 1.0), y + 15.0, percentWord(share), 10.0,
-                   share > 0.5 ? Colour{1.0, 1.0, 1.0} : picture::kBlack);
+                   share > 0.5 ? Colour{1.0, 1.0, 1.0} : report::kBlack);
   }
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <cmath>
-#include <cstdio>
 #include <sstream>
+
+#include "common/report/text.hpp"
 
 #include "tests/study/score/score_files.hpp"
 
@@ -10,18 +11,14 @@ namespace tread::blindtest {
 namespace {
 
 std::string percent(double share, int digits) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", digits, 100.0 * share);
-  return text;
+  return fixed(100.0 * share, digits);
 }
 
 /// A figure of a line without its unit; an interval that is open at an end has no number there.
 std::string number(const ScoreLine& line, double value, int digits) {
   if (!std::isfinite(value)) return "?";
   if (line.unit == std::string("%")) return percent(value, digits);
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
+  return fixed(value, digits);
 }
 
 /// Words with a bar between them stay one field of a CSV file.
@@ -115,10 +112,9 @@ std::string tableText(const ScoredStudy& study) {
   std::string section;
   for (const ScoreLine& line : study.scores) {
     if (line.section != section) text << "\n" << (section = line.section) << "\n";
-    char row[240];
-    std::snprintf(row, sizeof row, "  %-72s %-36s %-28s %s", line.what.c_str(),
-                  figureWords(line).c_str(), mustWords(line).c_str(), metWords(line).c_str());
-    std::string words(row);
+    std::string words =
+        formatted("  %-72s %-36s %-28s %s", line.what.c_str(), figureWords(line).c_str(),
+                  mustWords(line).c_str(), metWords(line).c_str());
     words.erase(words.find_last_not_of(' ') + 1);
     text << words << "\n";
   }
@@ -140,10 +136,8 @@ std::string casesCsv(const std::vector<JudgedCase>& cases) {
     addNumber(one.judgement.closed, text);
     std::vector<std::string> errors;
     for (const ParameterError& error : one.judgement.parameters) {
-      char word[96];
-      std::snprintf(word, sizeof word, "%s %.3f %s", error.path.c_str(), error.relative,
-                    error.inside ? "in" : "out");
-      errors.emplace_back(word);
+      errors.push_back(
+          formatted("%s %.3f %s", error.path.c_str(), error.relative, error.inside ? "in" : "out"));
     }
     text << field(joined(errors)) << "," << field(one.record.answer.reason) << "\n";
   }

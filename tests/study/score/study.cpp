@@ -10,10 +10,10 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "common/report/hash.hpp"
 #include "tests/study/score/batch.hpp"
 #include "tests/study/score/child.hpp"
 #include "tests/study/score/recordings.hpp"
-#include "tools/gap/file_hash.hpp"
 
 namespace fs = std::filesystem;
 
@@ -58,7 +58,7 @@ void claim(const Study& study, const Json& header) {
   const fs::path note = fs::path(shardFolder(study)) / "study.json";
   Json all = header;
   for (const char* program : {"tread-hide", "tread-gap"})
-    all[program] = gap::sha256OfFile(study.programs + "/" + program);
+    all[program] = sha256OfFile(study.programs + "/" + program);
   const std::string text = all.dump(2) + "\n";
   if (fs::exists(note) && contentOf(note) != text)
     throw std::runtime_error(note.string() +

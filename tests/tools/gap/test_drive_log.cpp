@@ -8,10 +8,10 @@
 #include <fstream>
 
 #include "common/recordings/drive_log.hpp"
+#include "common/report/hash.hpp"
 #include "tests/tools/gap/small_log.hpp"
 #include "tests/tools/import/drive_samples.hpp"
 #include "tools/gap/drive_log.hpp"
-#include "tools/gap/file_hash.hpp"
 #include "tools/gap/import_note.hpp"
 
 using namespace tread;

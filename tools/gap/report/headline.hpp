@@ -5,10 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "common/report/page.hpp"
 #include "modules/identification/core/finding.hpp"
-#include "tools/gap/report/page.hpp"
 
 namespace tread::gap {
+
+using report::Block, report::Paragraph, report::Pictures, report::Points;
 
 /// The headline of a report in one line, for instance "Found: Limit of turning power"; where the
 /// drive cannot tell, "A or B: this drive cannot tell them apart".

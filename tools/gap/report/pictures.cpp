@@ -8,6 +8,9 @@
 #include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
+
+using namespace report;
+
 namespace {
 
 double middle(const AtlasCell& cell) {
@@ -187,12 +190,12 @@ std::string ladderPicture(const std::vector<LadderStep>& ladder) {
   for (size_t i = 0; i < ladder.size(); ++i) {
     const LadderStep& step = ladder[i];
     const double x = static_cast<double>(i) + 1.0;
-    chart.field({x - 0.3, 0.0}, {x + 0.3, step.gain}, step.removed ? kGrey : kAfterColour);
+    chart.field({x - 0.3, 0.0}, {x + 0.3, step.gain}, step.removed ? kGreyInk : kAfterColour);
     chart.bar(x, step.gain - step.gain_error, step.gain + step.gain_error, kInk);
     chart.labelBelow(x, std::to_string(i + 1));
   }
   chart.legend("added", kAfterColour);
-  chart.legend("removed or refused", kGrey);
+  chart.legend("removed or refused", kGreyInk);
   return chart.svg();
 }
 
@@ -211,7 +214,7 @@ std::string gapPicture(const Gap& gap, bool yaw) {
               "", yaw ? "deg" : "m", range);
   chart.field({0.7, 0.0}, {1.3, before}, kBeforeColour);
   chart.field({1.7, 0.0}, {2.3, after}, kAfterColour);
-  if (gap.floor) chart.field({2.7, 0.0}, {3.3, median(*gap.floor)}, kGrey);
+  if (gap.floor) chart.field({2.7, 0.0}, {3.3, median(*gap.floor)}, kGreyInk);
   chart.labelBelow(1.0, "before");
   chart.labelBelow(2.0, "after");
   // No floor where the model is below it.
@@ -219,7 +222,7 @@ std::string gapPicture(const Gap& gap, bool yaw) {
   if (gap.floor) chart.labelBelow(3.0, floor);
   chart.legend("before " + threeDigits(before), kBeforeColour);
   chart.legend("after " + threeDigits(after), kAfterColour);
-  if (gap.floor) chart.legend(floor + " " + threeDigits(median(*gap.floor)), kGrey);
+  if (gap.floor) chart.legend(floor + " " + threeDigits(median(*gap.floor)), kGreyInk);
   return chart.svg();
 }
 

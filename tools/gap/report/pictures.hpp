@@ -5,10 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "common/report/chart.hpp"
 #include "modules/identification/core/finding.hpp"
-#include "tools/gap/report/chart.hpp"
 
 namespace tread::gap {
+
+using report::Chart, report::ChartPoint, report::ChartRange;
 
 /// A residual over a variable, before and after, with 95 % intervals; filled dots are marked cells.
 std::string atlasPicture(const AtlasCurve& curve);

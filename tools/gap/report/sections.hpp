@@ -4,12 +4,15 @@
 
 #include <vector>
 
+#include "common/report/page.hpp"
 #include "modules/identification/core/finding.hpp"
-#include "tools/gap/report/page.hpp"
 #include "tools/gap/verdict_json.hpp"
 
 /// The sections of a report behind its first screen; a section without blocks is left out.
 namespace tread::gap {
+
+using report::Block, report::Commands, report::Page, report::Paragraph, report::Pictures;
+using report::Points, report::Section, report::Table;
 
 Section effectsSection(const Finding& finding);
 Section atlasSection(const Finding& finding);

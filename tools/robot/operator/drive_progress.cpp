@@ -3,20 +3,15 @@
 #include "tools/robot/operator/drive_progress.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
+
+#include "common/report/text.hpp"
 
 namespace tread::operators {
 namespace {
 
 constexpr int64_t kFreshAge = 1'000'000;  // [us]
-
-std::string formatted(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 }  // namespace
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/gap/report/chart.hpp"
+#include "common/report/chart.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
-#include "tools/gap/report/page.hpp"
+#include "common/report/text.hpp"
+#include "common/report/ticks.hpp"
 
-namespace tread::gap {
+namespace tread::report {
 namespace {
 
 constexpr double kChartWidth = 320.0;
@@ -21,9 +21,8 @@ constexpr double kBottom = 36.0;
 
 /// Tenths of a unit are finer than any screen.
 std::string at(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", value);
-  return std::string(text) == "-0.0" ? "0.0" : text;
+  std::string text = fixed(value, 1);
+  return text == "-0.0" ? "0.0" : text;
 }
 
 std::string words(double x, double y, const std::string& text, const std::string& more) {
@@ -36,30 +35,6 @@ std::string stroke(double x1, double y1, double x2, double y2, const std::string
          "\" stroke=\"" + colour + "\"" + more + "/>";
 }
 
-/// A step of 1, 2 or 5 times a power of ten that cuts a range into about so many pieces.
-double tickStep(double range, double pieces) {
-  const double rough = range / pieces;
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  for (const double factor : {1.0, 2.0, 5.0})
-    if (factor * power >= rough) return factor * power;
-  return 10.0 * power;
-}
-
-std::string tickWords(double value, double step) {
-  const int decimals = std::clamp(static_cast<int>(-std::floor(std::log10(step) + 1e-9)), 0, 6);
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
-
-/// Whole multiples of a step within a range.
-std::vector<double> ticks(double low, double high, double step) {
-  std::vector<double> all;
-  for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1.0)
-    all.push_back(k == 0.0 ? 0.0 : k * step);
-  return all;
-}
-
 bool isFinite(const ChartPoint& point) {
   return std::isfinite(point.x) && std::isfinite(point.y);
 }
@@ -69,12 +44,10 @@ bool isFinite(const ChartPoint& point) {
 std::string divergingColour(double share) {
   const double s = std::isfinite(share) ? std::clamp(share, -1.0, 1.0) : 0.0;
   const double full[3] = {s < 0.0 ? 31.0 : 208.0, s < 0.0 ? 111.0 : 102.0, s < 0.0 ? 178.0 : 28.0};
-  char text[16];
   int rgb[3];
   for (int i = 0; i < 3; ++i)
     rgb[i] = static_cast<int>(std::lround(245.0 + std::abs(s) * (full[i] - 245.0)));
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
-  return text;
+  return formatted("#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
 }
 
 ChartRange ChartRange::empty() {
@@ -203,7 +176,7 @@ void Chart::labelBelow(double x, const std::string& label) {
 void Chart::level(double y) {
   if (y < range_.y_min || y > range_.y_max) return;
   shapes_ +=
-      stroke(kLeft, py(y), kChartWidth - kRight, py(y), kGrey, " stroke-width=\"0.8\"") + "\n";
+      stroke(kLeft, py(y), kChartWidth - kRight, py(y), kGreyInk, " stroke-width=\"0.8\"") + "\n";
 }
 
 void Chart::legend(const std::string& entry, const std::string& colour, bool dashed) {
@@ -218,17 +191,16 @@ void Chart::legend(const std::string& entry, const std::string& colour, bool das
 std::string Chart::axes() const {
   const double bottom = kHeight - kBottom;
   std::string text;
-  const double step_x = tickStep(range_.x_max - range_.x_min, 6.0);
+  const double step_x = tickStep(range_.x_max - range_.x_min, 6);
   for (const double tick : ticks(range_.x_min, range_.x_max, step_x)) {
     if (x_words_.empty()) break;
     text += stroke(px(tick), kTop, px(tick), bottom, "#e8ebee") +
-            words(px(tick), bottom + 12.0, tickWords(tick, step_x), "text-anchor=\"middle\"") +
-            "\n";
+            words(px(tick), bottom + 12.0, tickText(tick, step_x), "text-anchor=\"middle\"") + "\n";
   }
-  const double step_y = tickStep(range_.y_max - range_.y_min, 5.0);
+  const double step_y = tickStep(range_.y_max - range_.y_min, 5);
   for (const double tick : ticks(range_.y_min, range_.y_max, step_y))
     text += stroke(kLeft, py(tick), kChartWidth - kRight, py(tick), "#e8ebee") +
-            words(kLeft - 4.0, py(tick) + 3.0, tickWords(tick, step_y), "text-anchor=\"end\"") +
+            words(kLeft - 4.0, py(tick) + 3.0, tickText(tick, step_y), "text-anchor=\"end\"") +
             "\n";
   return text;
 }
@@ -265,4 +237,4 @@ std::string sheetOf(const std::vector<std::string>& charts, size_t columns) {
   return text + "</svg>\n";
 }
 
-}  // namespace tread::gap
+}  // namespace tread::report

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace tread::gap {
+namespace tread::report {
 
 /// A point of a chart, in its quantities.
 struct ChartPoint {
@@ -15,7 +15,7 @@ struct ChartPoint {
 
 /// Colours of the pictures; told apart by colour-blind people, too.
 inline constexpr const char* kInk = "#1c2126";
-inline constexpr const char* kGrey = "#8a949e";
+inline constexpr const char* kGreyInk = "#8a949e";
 inline constexpr const char* kBeforeColour = "#d0661c";
 inline constexpr const char* kAfterColour = "#1f6fb2";
 
@@ -87,4 +87,4 @@ class Chart {
 /// Charts in rows of so many, as one SVG file.
 std::string sheetOf(const std::vector<std::string>& charts, size_t columns);
 
-}  // namespace tread::gap
+}  // namespace tread::report

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-namespace tread::gap {
+namespace tread::report {
 
 /// A sentence or more.
 struct Paragraph {
@@ -54,13 +54,10 @@ struct Page {
   std::vector<Section> sections;
 };
 
-/// Letters that HTML and SVG read as their own are written as entities.
-std::string escaped(const std::string& text);
-
 /// One self-contained HTML file: no scripts, nothing from elsewhere.
 std::string htmlOf(const Page& page);
 
 /// The same in Markdown; pictures are in the HTML only.
 std::string markdownOf(const Page& page);
 
-}  // namespace tread::gap
+}  // namespace tread::report

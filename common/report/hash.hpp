@@ -4,10 +4,13 @@
 
 #include <string>
 
-namespace tread::gap {
+namespace tread {
 
-/// SHA-256 of a file: 64 hexadecimal digits. Uses OpenSSL's libcrypto.
+/// SHA-256 (FIPS 180-4) of bytes, as 64 hexadecimal digits.
+std::string sha256(const std::string& bytes);
+
+/// SHA-256 of a file.
 /** Throws std::runtime_error with one clear line if it cannot be read. */
 std::string sha256OfFile(const std::string& path);
 
-}  // namespace tread::gap
+}  // namespace tread
