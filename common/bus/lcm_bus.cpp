@@ -41,8 +41,10 @@ LcmBus::LcmBus(const std::string& url, TimeSource time_source, int64_t max_jump_
   if (!lcm_->good() || lcm_->getFileno() < 0)
     throw std::runtime_error(
         "LCM cannot use '" + (url.empty() ? std::string("the default URL") : url) +
-        "': is there a multicast route? type: sudo ip link set lo multicast on && "
-        "sudo ip route add 224.0.0.0/4 dev lo");
+        (url.rfind("tcpq:", 0) == 0
+             ? "': no tread-launch with this --lcm-url runs"
+             : "': is there a multicast route? type: sudo ip link set lo multicast on && "
+               "sudo ip route add 224.0.0.0/4 dev lo"));
 }
 
 LcmBus::~LcmBus() = default;

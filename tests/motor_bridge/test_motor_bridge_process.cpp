@@ -18,6 +18,7 @@
 #include "tests/motor_bridge/endless_planner.hpp"
 #include "tests/motor_bridge/messages.hpp"
 #include "tests/motor_bridge/scripted_roboteq.hpp"
+#include "tests/system/own_bus.hpp"
 
 using namespace tread;
 using namespace tread::motor;
@@ -90,7 +91,7 @@ class Process {
 /// A planner, an INS, an operator and a controller in real time around the process.
 class Rig {
  public:
-  Rig() : url_("udpm://239.255.76.67:" + std::to_string(20000 + getpid() % 20000) + "?ttl=0") {
+  Rig() : url_(tread::testing::ownLcmUrl()) {
     config_ = "/tmp/tread_motor_bridge_" + std::to_string(getpid()) + ".yaml";
     std::ofstream(config_) << "address: tty:" << terminal_.name() << "\n";
     bus_ = std::make_unique<LcmBus>(url_, TimeSource::kHost);

@@ -12,6 +12,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/system/own_bus.hpp"
+
 namespace tread::testing {
 
 /// A program of the house run as a user runs it; killed at the end of the test if it still lives.
@@ -70,12 +72,5 @@ class Process {
   bool ended_ = false;
   int exit_code_ = -1;
 };
-
-/// A bus of this test alone: with LCM 1.3.1 only the port separates buses.
-inline std::string ownLcmUrl() {
-  static int count = 0;
-  return "udpm://239.255.76.67:" + std::to_string(20000 + (getpid() * 7 + count++) % 20000) +
-         "?ttl=0";
-}
 
 }  // namespace tread::testing

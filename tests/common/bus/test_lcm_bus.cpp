@@ -2,23 +2,18 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include <unistd.h>
-
 #include <chrono>
 #include <thread>
 
 #include "common/bus/health.hpp"
+#include "common/bus/host_clock.hpp"
 #include "common/bus/lcm_bus.hpp"
+#include "common/bus/tcp_relay.hpp"
+#include "tests/system/own_bus.hpp"
 
 using namespace tread;
 
 namespace {
-
-/// A port of its own per test process: with LCM 1.3.1 only the port separates buses (lcm.md, row
-/// 8).
-std::string ownUrl() {
-  return "udpm://239.255.76.67:" + std::to_string(20000 + getpid() % 20000) + "?ttl=0";
-}
 
 class Pinger : public Node {
  public:
@@ -61,8 +56,9 @@ TEST_CASE("over real LCM a node steps at its period, is heard, and shuts down cl
   std::unique_ptr<LcmBus> speaker;
   std::unique_ptr<LcmBus> hearer;
   try {
-    speaker = std::make_unique<LcmBus>(ownUrl(), TimeSource::kHost);
-    hearer = std::make_unique<LcmBus>(ownUrl(), TimeSource::kFollow);
+    const std::string url = tread::testing::ownLcmUrl();
+    speaker = std::make_unique<LcmBus>(url, TimeSource::kHost);
+    hearer = std::make_unique<LcmBus>(url, TimeSource::kFollow);
   } catch (const std::runtime_error& error) {
     WARN("skipped: " << error.what());
     return;
@@ -183,4 +179,38 @@ TEST_CASE("an LCM that cannot be used is one clear line with the command that me
   REQUIRE_THROWS_WITH(
       LcmBus("nosuchprovider://", TimeSource::kHost),
       Catch::Contains("LCM cannot use 'nosuchprovider://'") && Catch::Contains("ip route add"));
+}
+
+TEST_CASE("without multicast messages go over a relay, each channel to whoever subscribed to it") {
+  const TcpRelay relay(0);
+  CHECK_THROWS_WITH(TcpRelay(static_cast<uint16_t>(std::stoi(relay.url().substr(17)))),
+                    Catch::Contains("cannot be used"));
+  LcmBus listener(relay.url(), TimeSource::kHost);
+  std::vector<std::string> heard;
+  listener.subscribe<mark_t>(kMark, [&](const mark_t& mark) { heard.push_back(mark.mark_value); });
+  LcmBus halted(relay.url(), TimeSource::kHost);  // never reads
+  halted.subscribe<mark_t>(kMark, [](const mark_t&) {});
+  LcmBus speaker(relay.url(), TimeSource::kHost);
+  estop_t stop{};
+  stop.utime = hostNow();
+  mark_t mark{};
+  const int64_t started = hostNow();
+  for (int i = 0; i < 20000; ++i) {
+    mark.utime = hostNow();
+    mark.seq = i;
+    mark.mark_value = std::string(900, 'x') + std::to_string(i);
+    REQUIRE(speaker.publish(kMark, mark));
+    if (i % 100 == 0) REQUIRE(speaker.publish(kEstop, stop));
+    while (static_cast<int>(heard.size()) <= i && hostNow() - started < 60'000'000)
+      listener.handle(10);
+  }
+  CHECK(heard.size() == 20000);
+  CHECK(listener.statistics().lost == 0);
+  // An answer within a millisecond or so each, not after a delayed acknowledgement.
+  CHECK(hostNow() - started < 20'000'000);
+}
+
+TEST_CASE("where no relay runs, that is said") {
+  CHECK_THROWS_WITH(LcmBus("tcpq://127.0.0.1:1", TimeSource::kHost),
+                    Catch::Contains("no tread-launch with this --lcm-url runs"));
 }

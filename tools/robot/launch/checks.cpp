@@ -16,6 +16,7 @@ constexpr int64_t kWantedSpace = 2'000'000'000;  // an hour or so of logs
 constexpr int64_t kNeededSpace = 20'000'000;     // for the states and some lines of log
 constexpr const char* kRouteRemedy =
     "ip link set lo up multicast on; ip route replace 224.0.0.0/4 dev lo  (as root)";
+constexpr const char* kRemedyWithoutRoot = "; or without root: --lcm-url tcpq://127.0.0.1:7668";
 
 std::optional<int64_t> wholeNumber(const std::string& text) {
   if (text.empty() || text.size() > 12 ||
@@ -60,7 +61,12 @@ std::optional<LcmAddress> parseLcmUrl(const std::string& url) {
   if (colon == std::string::npos || colon == 0) return std::nullopt;
   LcmAddress address;
   address.provider = url.substr(0, colon);
-  if (address.provider != "udpm") return address;
+  if (address.provider == "tcpq") {
+    address.group = "127.0.0.1";
+    address.port = 7700;
+  } else if (address.provider != "udpm") {
+    return address;
+  }
   const size_t question = url.find('?');
   const std::string place = url.substr(
       colon + 3, question == std::string::npos ? std::string::npos : question - colon - 3);
@@ -84,43 +90,59 @@ std::string routeDevice(const std::string& answer) {
   return "";
 }
 
-std::vector<Finding> checkNetwork(const LcmAddress& address, const NetworkFacts& facts) {
+namespace {
+
+/// What is wrong with the multicast to the group; empty if nothing.
+std::string multicastProblem(const LcmAddress& address, const NetworkFacts& facts) {
+  if (facts.can_ask && facts.route_device.empty())
+    return "there is no route for LCM's multicast group " + address.group;
+  if (facts.route_device == "lo" && !facts.loopback_up) return "the loopback device lo is down";
+  if (facts.route_device == "lo" && !facts.loopback_multicast)
+    return "the loopback device lo has multicast off";
+  return "";
+}
+
+Finding smallBuffer(int64_t granted, int64_t wanted) {
+  return {false,
+          "net.core.rmem_max is " + std::to_string(granted) + ", so bursts of messages are lost",
+          "sysctl -w net.core.rmem_max=" + std::to_string(wanted) +
+              "  (as root; for good: config/sysctl/60-tread.conf)"};
+}
+
+}  // namespace
+
+std::vector<Finding> checkNetwork(const LcmAddress& address, const NetworkFacts& facts,
+                                  bool simulated) {
+  if (address.provider == "tcpq" && address.group == "127.0.0.1" && simulated) return {};
+  if (address.provider == "tcpq")
+    return {{true, "LCM URL with provider tcpq is for simulated launches, on 127.0.0.1",
+             "--lcm-url udpm://239.255.76.67:7667?ttl=0"}};
+  if (address.provider != "udpm")
+    return {{true,
+             "LCM URL with provider " + address.provider + " does not connect these processes",
+             "--lcm-url udpm://239.255.76.67:7667?ttl=0"}};
+  if (!facts.can_ask && !(simulated && facts.delivered)) return {missingTool("ip", "iproute2")};
   std::vector<Finding> findings;
-  if (address.provider != "udpm") {
+  const std::string problem = multicastProblem(address, facts);
+  const bool elsewhere =
+      address.ttl == 0 && !facts.route_device.empty() && facts.route_device != "lo";
+  if (!problem.empty())
     findings.push_back(
-        {true, "LCM URL with provider " + address.provider + " does not connect these processes",
-         "--lcm-url udpm://239.255.76.67:7667?ttl=0"});
-    return findings;
-  }
-  if (!facts.can_ask) return {missingTool("ip", "iproute2")};
-  const bool local = address.ttl == 0;
-  const size_t before = findings.size();
-  if (facts.route_device.empty())
-    findings.push_back(
-        {true, "there is no route for LCM's multicast group " + address.group, kRouteRemedy});
-  else if (local && facts.route_device != "lo")
-    findings.push_back({true,
+        {true, problem, std::string(kRouteRemedy) + (simulated ? kRemedyWithoutRoot : "")});
+  else if (elsewhere && (facts.delivered || !simulated))
+    findings.push_back({!simulated,
                         "LCM's multicast group " + address.group + " is routed to " +
                             facts.route_device +
                             ", so messages stop with that link, though ttl is 0",
                         kRouteRemedy});
-  else if (facts.route_device == "lo" && !(facts.loopback_up && facts.loopback_multicast))
-    findings.push_back({true,
-                        facts.loopback_up ? "the loopback device lo has multicast off"
-                                          : "the loopback device lo is down",
-                        kRouteRemedy});
-  if (findings.size() == before && !facts.delivered)
+  else if (!facts.delivered)
     findings.push_back(
         {true,
          "a datagram sent to " + address.group + " by " + facts.route_device + " did not come back",
-         "look for a packet filter: nft list ruleset  (as root)"});
+         std::string("look for a packet filter: nft list ruleset  (as root)") +
+             (simulated ? kRemedyWithoutRoot : "")});
   const int64_t wanted = std::max(kWantedBuffer, address.receive_buffer);
-  if (facts.receive_buffer < wanted)
-    findings.push_back({false,
-                        "net.core.rmem_max is " + std::to_string(facts.receive_buffer) +
-                            ", so bursts of messages are lost",
-                        "sysctl -w net.core.rmem_max=" + std::to_string(wanted) +
-                            "  (as root; for good: config/sysctl/60-tread.conf)"});
+  if (facts.receive_buffer < wanted) findings.push_back(smallBuffer(facts.receive_buffer, wanted));
   return findings;
 }
 

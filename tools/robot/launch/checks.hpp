@@ -26,7 +26,7 @@ Finding missingTool(const std::string& tool, const std::string& package);
 /// An LCM URL in parts, as liblcm 1.3.1 reads it.
 struct LcmAddress {
   std::string provider = "udpm";
-  std::string group = "239.255.76.67";
+  std::string group = "239.255.76.67";  ///< with tcpq the server's host
   uint16_t port = 7667;
   int ttl = 0;
   int64_t receive_buffer = 0;  ///< byte; 0 = the kernel's default
@@ -52,8 +52,9 @@ struct NetworkFacts {
 std::string routeDevice(const std::string& answer);
 
 /// With ttl 0 messages must stay on the loopback device: there they also survive an unplugged
-/// network cable.
-std::vector<Finding> checkNetwork(const LcmAddress& address, const NetworkFacts& facts);
+/// network cable. A simulated launch may go over another device or TCP (tcpq), as in a container.
+std::vector<Finding> checkNetwork(const LcmAddress& address, const NetworkFacts& facts,
+                                  bool simulated);
 
 /// One process: what the host says about its program, configuration and device.
 struct ProcessFacts {

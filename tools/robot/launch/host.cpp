@@ -114,7 +114,7 @@ std::vector<Finding> checkHost(const LaunchFile& launch, const LaunchSettings& s
     findings.push_back(missingTool("supervisord", "supervisor"));
   if (findProgram("setpriv", "").empty()) findings.push_back(missingTool("setpriv", "util-linux"));
   if (const auto address = parseLcmUrl(launch.lcm_url))
-    add(checkNetwork(*address, networkFacts(*address)));
+    add(checkNetwork(*address, networkFacts(*address), launch.simulated));
   else
     findings.push_back({true, "LCM URL '" + launch.lcm_url + "' cannot be read",
                         "--lcm-url udpm://239.255.76.67:7667?ttl=0"});

@@ -127,6 +127,7 @@ LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings) 
   launch.lcm_url = kDefaultUrl;
   reader.text("lcm_url", launch.lcm_url);
   if (!settings.lcm_url.empty()) launch.lcm_url = settings.lcm_url;
+  reader.flag("simulated", launch.simulated);
   Placeholders placeholders{
       {"run", settings.run}, {"bin", settings.bin}, {"here", folder}, {"lcm_url", launch.lcm_url}};
   readValues(reader, settings, placeholders);

@@ -28,6 +28,7 @@ struct LaunchProcess {
 struct LaunchFile {
   std::string name;
   std::string lcm_url;
+  bool simulated = false;  ///< no robot: what only a robot's network needs is an advice
   std::map<std::string, std::string> environment;
   std::vector<LaunchProcess> processes;
 };
@@ -45,7 +46,7 @@ struct LaunchSettings {
 std::string readLaunchName(const std::string& file);
 
 /// Reads a launch file; throws ConfigError with file:line.
-/** Keys: name, lcm_url, values (a map of own placeholders with their defaults), environment (a map)
+/** Keys: name, lcm_url, simulated, values (a map of own placeholders with their defaults), environment (a map)
  * and processes, a list of maps: name, program, config, arguments, foreign, restart, stop_signal,
  * stop_time. Placeholders in environment, program, config and arguments: {run}, {lcm_url}, {bin},
  * {here} (the file's folder) and the own ones. Relative paths are taken from the file's folder. */

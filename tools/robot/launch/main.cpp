@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/bus/tcp_relay.hpp"
 #include "common/config/command_line.hpp"
 #include "tools/robot/launch/host.hpp"
 #include "tools/robot/launch/run_command.hpp"
@@ -103,6 +105,9 @@ int start(const LaunchFile& launch, const LaunchSettings& settings) {
   const RunPaths paths(settings.run);
   std::filesystem::create_directories(paths.logs);
   const RunLock lock(paths.lock);
+  std::optional<TcpRelay> relay;
+  if (const auto address = parseLcmUrl(launch.lcm_url); address && address->provider == "tcpq")
+    relay.emplace(address->port);
   std::ofstream file(paths.config, std::ios::trunc);
   file << supervisorConfig(launch.name, withCommands(launch, settings), paths, geteuid() == 0);
   file.close();

@@ -82,12 +82,13 @@ int64_t grantedBuffer(int64_t wanted) {
 
 NetworkFacts networkFacts(const LcmAddress& address) {
   NetworkFacts facts;
+  if (address.provider != "udpm") return facts;
   facts.can_ask = !findProgram("ip", "").empty();
   facts.route_device = routeDevice(runCommand({"ip", "route", "get", address.group}, 5.0).output);
   const unsigned int flags = loopbackFlags();
   facts.loopback_up = (flags & IFF_UP) != 0;
   facts.loopback_multicast = (flags & IFF_MULTICAST) != 0;
-  if (address.provider == "udpm") facts.delivered = delivered(address);
+  facts.delivered = delivered(address);
   facts.receive_buffer = grantedBuffer(std::max(kWantedBuffer, address.receive_buffer));
   return facts;
 }

@@ -31,7 +31,7 @@ int64_t utcNow() {
 
 Recorder::Recorder(const RecorderSettings& settings)
     : settings_(settings), lcm_(std::make_unique<lcm::LCM>(settings.lcm_url)) {
-  if (!lcm_->good())
+  if (!lcm_->good() || lcm_->getFileno() < 0)
     throw std::runtime_error("LCM cannot be used" +
                              (settings.lcm_url.empty() ? "" : " at " + settings.lcm_url) +
                              "; tread-launch FILE --check says what is missing");

@@ -48,14 +48,15 @@ inline std::vector<std::string> withoutAdvice(const std::string& output) {
 class Launched {
  public:
   /// `natures` are those of the stand-ins p0, p1, ...: good, deaf, brief, wrong. The last process
-  /// is a foreign one, which knows nothing of its parent.
-  explicit Launched(const std::vector<std::string>& natures, const std::string& stand_in)
+  /// is a foreign one, which knows nothing of its parent. `more` are further lines of the file.
+  explicit Launched(const std::vector<std::string>& natures, const std::string& stand_in,
+                    const std::string& more = "simulated: true\n")
       : folder(std::filesystem::temp_directory_path() /
                ("tread_launch_" + std::to_string(getpid()) + "_" + std::to_string(count()))) {
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
     std::ofstream file(folder / "trial.yaml");
-    file << "name: trial\nlcm_url: " << ownLcmUrl() << "\nprocesses:\n";
+    file << "name: trial\nlcm_url: " << launchedLcmUrl() << "\n" << more << "processes:\n";
     for (size_t i = 0; i < natures.size(); ++i) {
       const std::string name = "p" + std::to_string(i);
       std::ofstream(folder / (name + ".txt")) << natures[i];

@@ -56,12 +56,12 @@ TEST_CASE("LCM's URL is read as LCM reads it") {
 }
 
 TEST_CASE("a good host has nothing to mend") {
-  CHECK(checkNetwork({}, goodNetwork()).empty());
+  CHECK(checkNetwork({}, goodNetwork(), false).empty());
   NetworkFacts wide = goodNetwork();
   wide.route_device = "eth0";
   LcmAddress address;
   address.ttl = 1;
-  CHECK(checkNetwork(address, wide).empty());
+  CHECK(checkNetwork(address, wide, false).empty());
   CHECK(checkProcess({"planner", "tread-planner", true, "p.yaml", true, 0, "", "", true, true})
             .empty());
   CHECK(checkFolder({"/run", true, 1'000'000'000'000, 20, 0, false}).empty());
@@ -72,35 +72,56 @@ TEST_CASE("multicast that is missing, elsewhere, off or filtered gives one line 
       "; mend: ip link set lo up multicast on; ip route replace 224.0.0.0/4 dev lo  (as root)\n";
   NetworkFacts facts = goodNetwork();
   facts.delivered = false;
-  CHECK_THAT(oneLine(checkNetwork({}, facts)),
+  CHECK_THAT(oneLine(checkNetwork({}, facts, false)),
              Contains("did not come back; mend: look for a packet filter"));
   facts.route_device.clear();
-  CHECK(oneLine(checkNetwork({}, facts)) ==
+  CHECK(oneLine(checkNetwork({}, facts, false)) ==
         "robot: there is no route for LCM's multicast group 239.255.76.67" + remedy);
   facts.route_device = "eth0";
-  CHECK(oneLine(checkNetwork({}, facts)) ==
+  CHECK(oneLine(checkNetwork({}, facts, false)) ==
         "robot: LCM's multicast group 239.255.76.67 is routed to eth0, so messages stop with that "
         "link, though ttl is 0" +
             remedy);
   facts = goodNetwork();
   facts.loopback_multicast = false;
-  CHECK(oneLine(checkNetwork({}, facts)) ==
+  CHECK(oneLine(checkNetwork({}, facts, false)) ==
         "robot: the loopback device lo has multicast off" + remedy);
   facts.loopback_up = false;
-  CHECK(oneLine(checkNetwork({}, facts)) == "robot: the loopback device lo is down" + remedy);
+  CHECK(oneLine(checkNetwork({}, facts, false)) ==
+        "robot: the loopback device lo is down" + remedy);
   facts.can_ask = false;
   CHECK(
-      oneLine(checkNetwork({}, facts)) ==
+      oneLine(checkNetwork({}, facts, false)) ==
       "robot: there is no program ip; mend: tools/setup, or apt-get install iproute2  (as root)\n");
   LcmAddress memory;
   memory.provider = "memq";
-  CHECK_THAT(oneLine(checkNetwork(memory, facts)), Contains("memq does not connect"));
+  CHECK_THAT(oneLine(checkNetwork(memory, facts, false)), Contains("memq does not connect"));
+}
+
+TEST_CASE("a simulated launch goes over what there is") {
+  NetworkFacts facts = goodNetwork();
+  facts.route_device = "eth0";
+  CHECK_THAT(oneLine(checkNetwork({}, facts, true)),
+             StartsWith("robot: advice: LCM's multicast group 239.255.76.67 is routed to eth0"));
+  facts.can_ask = false;
+  facts.route_device.clear();
+  CHECK(checkNetwork({}, facts, true).empty());
+  facts.can_ask = true;
+  const std::string without_route = oneLine(checkNetwork({}, facts, true));
+  CHECK_THAT(without_route, StartsWith("robot: there is no route") &&
+                                Contains("or without root: --lcm-url tcpq://127.0.0.1:7668"));
+  const auto tcp = parseLcmUrl("tcpq://127.0.0.1:7668");
+  REQUIRE(tcp);
+  CHECK(tcp->port == 7668);
+  CHECK(checkNetwork(*tcp, {}, true).empty());
+  CHECK(anyCritical(checkNetwork(*tcp, {}, false)));
+  CHECK(anyCritical(checkNetwork(*parseLcmUrl("tcpq://192.0.2.1"), {}, true)));
 }
 
 TEST_CASE("a small receive buffer is an advice, not an obstacle") {
   NetworkFacts facts = goodNetwork();
   facts.receive_buffer = 212992;
-  const auto findings = checkNetwork({}, facts);
+  const auto findings = checkNetwork({}, facts, false);
   CHECK_FALSE(anyCritical(findings));
   CHECK_THAT(oneLine(findings), StartsWith("robot: advice: net.core.rmem_max is 212992") &&
                                     Contains("sysctl -w net.core.rmem_max=2097152"));

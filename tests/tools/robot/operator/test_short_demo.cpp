@@ -49,6 +49,9 @@ class Desk {
                                  "laser_port=" + std::to_string(port), "--set",
                                  "record=" + folder + "/truth.csv"},
         folder + "/launch.txt");
+    for (int i = 0; i < 1000 && read(folder + "/launch.txt").find("starting") == std::string::npos;
+         ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   int stop() {
     launch->signal(SIGINT);
@@ -62,7 +65,7 @@ class Desk {
 
   std::string folder = fs::temp_directory_path() / ("tread_desk_" + std::to_string(::getpid()));
   std::string run = folder + "/run";
-  std::string url = ownLcmUrl() + "&recv_buf_size=2097152";
+  std::string url = launchedLcmUrl() + "&recv_buf_size=2097152";
   std::unique_ptr<Process> launch;
 };
 
@@ -115,6 +118,7 @@ TEST_CASE("the short demo: launch, arm, drive, stop, go on, arrive, report, repl
 
 TEST_CASE("without a robot the operator's commands say who is missing") {
   Desk desk;
+  desk.url = ownLcmUrl();
   const auto armed = desk.call("tread-arm", {"--timeout", "1"});
   CHECK(armed.code == 1);
   CHECK_THAT(armed.words, Catch::Contains("is tread-motor-bridge running on this LCM URL?"));

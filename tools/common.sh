@@ -1,0 +1,89 @@
+# Shared by the scripts beside it, which source it from the checkout's top folder.
+
+me=$(basename "$0")
+
+# The comment at a script's head is its help.
+print_usage() {
+  sed -n '2,/^[^#]/s/^# \{0,1\}//p' "tools/$me"
+}
+
+# usage_error TEXT: one line, and the end.
+usage_error() {
+  echo "$me: $1; see tools/$me --help" >&2
+  exit 2
+}
+
+# find_apart [NAMESPACE...]: puts into `apart` the words before a command that give it a network of its own and these
+# further namespaces; none, and status 1, where that is not allowed (most containers).
+find_apart() {
+  local root
+  for root in '' '--user --map-root-user'; do
+    # shellcheck disable=SC2206  # words, or none
+    apart=(unshare $root --net "$@" sh -c
+      'ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo && exec "$@"' sh)
+    if "${apart[@]}" true 2>/dev/null; then return 0; fi
+  done
+  apart=()
+  return 1
+}
+
+# Becomes the same command once more, with its arguments, apart: its processes and network are gone with the first of
+# them, and that one goes with whoever started it. Returns in the new command, or where nothing is allowed.
+become_apart() {
+  if [ -n "${TREAD_APART:-}" ]; then return 0; fi
+  find_apart --pid --fork --kill-child --mount-proc || find_apart || return 0
+  TREAD_APART=yes exec setpriv --pdeathsig KILL "${apart[@]}" "tools/$me" "$@"
+}
+
+# Puts into `lcm_url` the bus of a simulated drive: multicast, or TCP through tread-launch where there is none.
+choose_lcm_url() {
+  lcm_url='udpm://239.255.76.67:7668?ttl=0&recv_buf_size=2097152'
+  if ! ip route get 239.255.76.67 >/dev/null 2>&1; then
+    lcm_url=tcpq://127.0.0.1:7668
+    echo "$me: there is no multicast here, so messages go over $lcm_url"
+  fi
+}
+
+# start_launch FILE ARGUMENT...: tread-launch in the background, which goes with this script; its pid is in `launch`.
+start_launch() {
+  setpriv --pdeathsig TERM "$bin/tread-launch" "$@" --lcm-url "$lcm_url" &
+  launch=$!
+  # Whoever comes before the server of the bus is refused.
+  while [[ $lcm_url == tcpq* ]] && kill -0 $launch 2>/dev/null && ! true 2>/dev/null >/dev/tcp/127.0.0.1/7668; do
+    sleep 0.1
+  done
+}
+
+# lock_folder FOLDER: makes it, and ends here where another script works in it.
+lock_folder() {
+  mkdir -p "$1"
+  exec 9>"$1/lock"
+  if ! flock --nonblock 9; then
+    echo "$me: another one runs in this checkout" >&2
+    exit 1
+  fi
+}
+
+# remove_old PATH...: what an earlier run left, or ends here.
+remove_old() {
+  if ! rm -rf "$@" 2>/dev/null; then
+    echo "$me: $* cannot be removed; it may be another user's" >&2
+    exit 1
+  fi
+}
+
+# build_programs LOG TARGET...: only what these need, or ends here.
+build_programs() {
+  local log=$1
+  shift
+  if ! tools/build release "$@" >"$log" 2>&1; then
+    tail -30 "$log" >&2
+    echo "$me: the build failed ($log)" >&2
+    exit 1
+  fi
+  echo "$me: built"
+}
+
+# The programs of a simulated drive (config/launch/simulated*.yaml) and of its operator.
+robot_programs=(tread-launch tread-logger tread-simulator tread-ins-driver tread-lidar-driver tread-mapping tread-learner
+  tread-planner tread-motor-bridge tread-arm tread-goal)
