@@ -2,7 +2,11 @@
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <string>
 
+#include "common/messages/ins_messages.hpp"
 #include "tools/gap/log_checks.hpp"
 
 namespace tread::gap {
@@ -63,22 +67,22 @@ void checkHeld(const std::vector<HeardSpan>& spans, NoteBook& notes) {
                " % of its messages while it drives; only new poses count");
 }
 
-void checkKinds(const LogMessages& messages, NoteBook& notes) {
+void checkKinds(const SortedLog& log, NoteBook& notes) {
   size_t power = 0;
   size_t speed = 0;
-  size_t senseless = 0;
-  for (const motor_t& motor : messages.motor) {
+  size_t invalid = 0;
+  for (const motor_t& motor : log.motor) {
     if (motor.bridge_state != motor_t::STATE_DRIVING) continue;
     power += motor.motor_command_kind == static_cast<int16_t>(CommandKind::kPower) ? 1 : 0;
     speed += motor.motor_command_kind == static_cast<int16_t>(CommandKind::kTrackSpeed) ? 1 : 0;
-    senseless += obeyed(motor) ? 0 : 1;
+    invalid += obeyed(motor) ? 0 : 1;
   }
   if (static_cast<double>(std::min(power, speed)) >
       kSecondKind * static_cast<double>(power + speed))
     notes.fatal("commands of two kinds: " + std::to_string(power) + " power, " +
                 std::to_string(speed) + " track speed; cut the log where the kind changes");
-  if (senseless > 0)
-    notes.note(std::to_string(senseless) + " MOTOR messages without a number as command; left out");
+  if (invalid > 0)
+    notes.note(std::to_string(invalid) + " MOTOR messages without a number as command; left out");
 }
 
 /// INS poses that stay away in the middle of a span.
@@ -121,25 +125,126 @@ void checkCommandGaps(const std::vector<HeardSpan>& spans, NoteBook& notes) {
                " s); each silence ends a stretch");
 }
 
+constexpr size_t kFewClashes = 5;
+constexpr size_t kRepeated = 20;  // the same message so many times: its publisher hangs
+
+bool sameMessage(const Stamp& a, const Stamp& b) {
+  return a.seq == b.seq && a.utime == b.utime;
+}
+
+/// How often seq does not grow although the message is another one.
+size_t seqFallsBack(const std::vector<Stamp>& stamps) {
+  size_t count = 0;
+  bool counts = false;
+  for (size_t i = 1; i < stamps.size(); ++i) {
+    counts = counts || stamps[i].seq != stamps[0].seq;
+    if (stamps[i].seq <= stamps[i - 1].seq && !sameMessage(stamps[i], stamps[i - 1])) ++count;
+  }
+  return counts ? count : 0;
+}
+
+/// Whether messages of one time say different things.
+bool clash(const ins_t& a, const ins_t& b) {
+  const auto first = planarPose(a);
+  const auto second = planarPose(b);
+  return a.utime == b.utime && first && second &&
+         (first->position() - second->position()).norm() > 1e-6;
+}
+bool clash(const motor_t& a, const motor_t& b) {
+  return a.utime == b.utime &&
+         (a.command_left != b.command_left || a.command_right != b.command_right);
+}
+
+/// How often neighbours in the log contradict each other.
+template <class Message>
+size_t clashes(const std::vector<Message>& messages) {
+  size_t count = 0;
+  for (size_t i = 1; i < messages.size(); ++i) count += clash(messages[i - 1], messages[i]) ? 1 : 0;
+  return count;
+}
+
+bool bootsAlternate(std::vector<int64_t> boots) {
+  std::sort(boots.begin(), boots.end());
+  return std::adjacent_find(boots.begin(), boots.end()) != boots.end();
+}
+
+/// One publisher whose clock went back: in the order of their numbers, which have no gap, the
+/// messages go back in time once or twice. The number of the message before that, or none.
+std::optional<Stamp> clockWentBack(std::vector<Stamp> stamps) {
+  std::stable_sort(stamps.begin(), stamps.end(),
+                   [](const Stamp& a, const Stamp& b) { return a.seq < b.seq; });
+  std::optional<Stamp> place;
+  size_t times = 0;
+  for (size_t i = 1; i < stamps.size(); ++i) {
+    if (stamps[i].utime >= stamps[i - 1].utime - kOvertaking) continue;
+    if (!isNext(stamps[i].seq, stamps[i - 1].seq) || ++times > 2) return std::nullopt;
+    if (!place) place = stamps[i - 1];
+  }
+  return place;
+}
+
+void checkRepeated(const std::string& channel, const std::vector<Stamp>& stamps,
+                   const SortedLog& log, NoteBook& notes) {
+  size_t run = 1;
+  for (size_t i = 1; i < stamps.size(); ++i) {
+    run = sameMessage(stamps[i], stamps[i - 1]) ? run + 1 : 1;
+    if (run == kRepeated)
+      return notes.fatal("the " + channel + " is frozen: one message of " +
+                         digits(log.seconds(stamps[i].utime)) + " s comes again and again");
+  }
+}
+
+void checkChannel(const std::string& channel, const std::vector<Stamp>& stamps, size_t clashes,
+                  const SortedLog& log, NoteBook& notes) {
+  checkRepeated(channel, stamps, log, notes);
+  const size_t falls = seqFallsBack(stamps);
+  if (std::max(falls, clashes) < std::max(kFewClashes, stamps.size() / 100)) {
+    if (falls > 0)
+      notes.note(channel + "'s publisher was started again " + std::to_string(falls) +
+                 " times, or messages came out of order");
+    return;
+  }
+  if (const auto place = clockWentBack(stamps))
+    return notes.fatal("clock jump: " + channel + " goes back at " +
+                       digits(log.seconds(place->utime)) +
+                       " s, and its messages of both times are mixed; cut the log there");
+  notes.fatal("two robots in one log: " + channel + " has two publishers (its seq falls back " +
+              std::to_string(falls) + " times, " + std::to_string(clashes) +
+              " messages contradict another one of the same time); record one robot");
+}
+
 }  // namespace
 
-void checkChannels(const LogMessages& messages, const std::vector<HeardSpan>& spans,
-                   NoteBook& notes) {
-  const std::string of = " among " + std::to_string(messages.events) + " events";
-  if (messages.motor.empty())
+void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, NoteBook& notes) {
+  const std::string of = " among " + std::to_string(log.drive.events.size()) + " events";
+  if (log.motor.empty())
     notes.fatal("no MOTOR message" + of + ": the commands are unknown; record channel MOTOR");
-  if (messages.ins.empty())
+  if (log.ins.empty())
     notes.fatal("no INS message" + of + ": the motion is unknown; record channel INS");
-  if (messages.foreign > 0)
+  if (log.drive.invalid > 0)
     notes.note(
-        std::to_string(messages.foreign) +
+        std::to_string(log.drive.invalid) +
         " events on our channels are of another type or time; left out (another version's log?)");
-  if (!messages.motor.empty() && spans.empty())
+  if (!log.motor.empty() && spans.empty())
     notes.fatal("the bridge never drives or stands armed for a second: no command is known");
-  checkKinds(messages, notes);
+  checkKinds(log, notes);
   checkHeld(spans, notes);
   checkSilences(spans, notes);
   checkCommandGaps(spans, notes);
+}
+
+void checkPublishers(const SortedLog& log, NoteBook& notes) {
+  checkChannel("MOTOR", log.drive.motor_stamps, clashes(log.drive.motor), log, notes);
+  checkChannel("INS", log.drive.ins_stamps, clashes(log.drive.ins), log, notes);
+  std::map<std::string, std::vector<int64_t>> boots;  // by process, as they follow each other
+  for (const config_t& config : log.drive.configs) {
+    std::vector<int64_t>& ids = boots[config.config_process];
+    if (ids.empty() || ids.back() != config.config_boot_id) ids.push_back(config.config_boot_id);
+  }
+  for (const auto& [process, ids] : boots)
+    if (bootsAlternate(ids))
+      return notes.fatal("two robots in one log: CONFIG of " + process +
+                         " alternates between two boots; record one robot");
 }
 
 }  // namespace tread::gap

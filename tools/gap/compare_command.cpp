@@ -10,8 +10,7 @@
 #include "common/vehicle/model_file.hpp"
 #include "tools/gap/commands.hpp"
 #include "tools/gap/compare.hpp"
-#include "tools/gap/import_note.hpp"
-#include "tools/gap/read_for_model.hpp"
+#include "tools/gap/drive_log.hpp"
 
 namespace tread::gap {
 namespace {

@@ -3,15 +3,17 @@
 #include "tools/gap/drive_log.hpp"
 
 #include <algorithm>
-#include <filesystem>
+#include <cmath>
 #include <map>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
+#include "common/config/scalars.hpp"
+#include "common/log/drive_log.hpp"
 #include "common/report/hash.hpp"
 #include "modules/identification/core/hygiene.hpp"
-#include "tools/gap/known_commands.hpp"
 #include "tools/gap/log_checks.hpp"
-#include "tools/gap/log_messages.hpp"
 #include "tools/gap/stretches.hpp"
 
 namespace tread::gap {
@@ -20,29 +22,37 @@ namespace {
 constexpr double kManyBroken = 0.2;  // of the stretches
 
 /// The kind of most commands while it drove.
-CommandKind kindOf(const LogMessages& messages) {
+CommandKind kindOf(const SortedLog& log) {
   std::map<int16_t, size_t> counts;
-  for (const motor_t& motor : messages.motor)
+  for (const motor_t& motor : log.motor)
     if (motor.bridge_state == motor_t::STATE_DRIVING) ++counts[motor.motor_command_kind];
   const auto power = static_cast<int16_t>(CommandKind::kPower);
   const auto speed = static_cast<int16_t>(CommandKind::kTrackSpeed);
   return counts[speed] > counts[power] ? CommandKind::kTrackSpeed : CommandKind::kPower;
 }
 
-std::vector<HeardSpan> heardSpans(const LogMessages& messages) {
+std::vector<HeardSpan> heardSpans(const SortedLog& log) {
   std::vector<HeardSpan> spans;
-  for (CommandSpan& span : knownCommands(messages)) {
-    SpanReadings readings = insReadings(messages, span);
+  for (CommandSpan& span : knownCommands(log)) {
+    SpanReadings readings = insReadings(log, span);
     spans.push_back({std::move(span), std::move(readings)});
   }
   return spans;
 }
 
-std::vector<Execution> recordsOf(const LogMessages& messages) {
-  std::vector<Execution> records;
-  for (const execution_record_t& record : messages.executions)
-    records.push_back({0, messages.seconds(record.started), messages.seconds(record.ended)});
-  return records;
+/// The completed executions, in order of their begin.
+std::vector<Execution> recordsOf(const SortedLog& log) {
+  std::vector<execution_record_t> records;
+  for (const execution_record_t& record : log.drive.executions)
+    if (record.outcome == execution_record_t::OUTCOME_COMPLETED && record.ended > record.started)
+      records.push_back(record);
+  std::sort(records.begin(), records.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.started, keyOf(a)) < std::pair(b.started, keyOf(b));
+  });
+  std::vector<Execution> executions;
+  for (const execution_record_t& record : records)
+    executions.push_back({0, log.seconds(record.started), log.seconds(record.ended)});
+  return executions;
 }
 
 /// Steps of a recording whose poses lie in a wrong frame say nothing.
@@ -61,23 +71,65 @@ void takeOutBroken(Drive& drive, NoteBook& notes) {
   removeStretches(broken, drive);
 }
 
+constexpr double kSameGauge = 0.02;  // relative: tape measures and data sheets agree that well
+
+/// What stands behind "key: " at the beginning of a line; empty if there is no such line.
+std::string valueOf(const std::string& text, const std::string& key) {
+  const std::string begin = "\n" + key + ": ";
+  const size_t at = ("\n" + text).find(begin);
+  if (at == std::string::npos) return "";
+  const size_t from = at + begin.size() - 1;
+  std::string value = text.substr(from, text.find('\n', from) - from);
+  if (value.size() >= 2 && value.front() == '"' && value.back() == '"')
+    value = value.substr(1, value.size() - 2);
+  return value;
+}
+
+/// What two imports note, if both do and it differs.
+std::optional<std::pair<std::string, std::string>> otherwise(const Drive& first,
+                                                             const Drive& second,
+                                                             std::string ImportNote::*what) {
+  if (!first.imported || !second.imported) return std::nullopt;
+  const std::string& one = (*first.imported).*what;
+  const std::string& two = (*second.imported).*what;
+  if (one.empty() || two.empty() || one == two) return std::nullopt;
+  return std::pair{one, two};
+}
+
+/// What tread-import notes in CONFIG of the recording that it imported; nothing for other
+/// processes.
+std::optional<ImportNote> importNoteOf(const config_t& config) {
+  if (config.config_process != "tread-import") return std::nullopt;
+  const std::string& text = config.config_text;
+  ImportNote note;
+  note.robot = valueOf(text, "robot");
+  const double baseline = parseNumber(valueOf(text, "baseline")).value_or(0.0);
+  if (baseline > 0.05 && baseline < 10.0) note.baseline = baseline;
+  const std::string poses = valueOf(text, "poses");
+  const std::string gyro = valueOf(text, "gyro");
+  if (!poses.empty() && !gyro.empty())
+    note.options = "--format " + valueOf(text, "format") + ", poses " + poses + ", gyro " + gyro;
+  return note;
+}
+
 }  // namespace
 
-Drive toDrive(const std::string& name, const std::vector<LogEvent>& events) {
-  const LogMessages messages = sortMessages(events);
-  const std::vector<HeardSpan> spans = heardSpans(messages);
+Drive toDrive(const DriveLog& messages) {
+  const SortedLog log(messages);
+  const std::vector<HeardSpan> spans = heardSpans(log);
   Drive drive;
-  drive.name = name;
-  drive.kind = kindOf(messages);
-  drive.imported = messages.imported;
-  drive.voltage = voltageSamples(messages);
-  drive.encoders = encoderSamples(messages);
+  drive.name = messages.name;
+  drive.kind = kindOf(log);
+  for (const config_t& config : messages.configs)
+    if (auto note = importNoteOf(config)) drive.imported = std::move(note);
+  drive.voltage = voltageSamples(log);
+  drive.encoders = encoderSamples(log);
   drive.stretches = stretchesOf(spans, drive.encoders);
-  drive.executions = executionsOf(drive.stretches, recordsOf(messages));
-  NoteBook notes(name);
-  checkPublishers(messages, notes);
-  checkClocks(messages, notes);
-  checkChannels(messages, spans, notes);
+  drive.executions = executionsOf(drive.stretches, recordsOf(log));
+  NoteBook notes(drive.name);
+  checkPublishers(log, notes);
+  checkClocks(log, notes);
+  checkChannels(log, spans, notes);
   takeOutBroken(drive, notes);
   drive.notes = notes.notes();
   const std::vector<HygieneNote> rest = checkHygiene(drive);
@@ -86,21 +138,62 @@ Drive toDrive(const std::string& name, const std::vector<LogEvent>& events) {
 }
 
 Drive readDrive(const std::string& path) {
-  LogReader reader(path);
-  std::vector<LogEvent> events;
-  for (LogEvent event; reader.next(event);) events.push_back(event);
+  const DriveLog log = readDriveLog({path});
+  const std::vector<LogEvent>& events = log.events;
   if (events.empty())
-    throw std::runtime_error(reader.problem().empty()
+    throw std::runtime_error(log.problem.empty()
                                  ? "log " + path + ": no event in it; is this an LCM log?"
-                                 : reader.problem());
-  Drive drive = toDrive(std::filesystem::path(path).filename().string(), events);
+                                 : log.problem);
+  Drive drive = toDrive(log);
   drive.sha256 = sha256OfFile(path);
-  if (reader.problem().empty()) return drive;
+  if (log.problem.empty()) return drive;
   // Whole events are as good as in a whole log; whether they are enough is judged later.
   const double span = 1e-6 * static_cast<double>(events.back().utime - events.front().utime);
-  drive.lost = reader.problem() + "; its " + std::to_string(events.size()) + " whole events, " +
+  drive.lost = log.problem + "; its " + std::to_string(events.size()) + " whole events, " +
                digits(span, 0) + " s, are used; copy the log again if the robot still has it";
   drive.notes.insert(drive.notes.begin(), HygieneNote{drive.name, drive.lost, false});
+  return drive;
+}
+
+void requireSameGauge(const Drive& drive, double gauge) {
+  if (!drive.imported || drive.imported->baseline <= 0.0) return;
+  const double recorded = drive.imported->baseline;
+  if (std::abs(recorded - gauge) <= kSameGauge * gauge) return;
+  throw std::runtime_error(
+      drive.name + ": its commands were made for tracks " + formatNumber(recorded) +
+      " m apart, the model says gauge: " + formatNumber(gauge) + "; give a model of this robot");
+}
+
+void requireSameImport(const Drive& first, const Drive& second) {
+  if (const auto other = otherwise(first, second, &ImportNote::options))
+    throw std::runtime_error(second.name + ": imported with " + other->second + ", but " +
+                             first.name + " with " + other->first +
+                             "; import both in the same way");
+}
+
+void requireSameRobot(const Drive& first, const Drive& second) {
+  if (const auto other = otherwise(first, second, &ImportNote::robot))
+    throw std::runtime_error(second.name + ": of the robot " + other->second + ", but " +
+                             first.name + " of the robot " + other->first +
+                             "; give logs of one robot");
+}
+
+Drive readDriveFor(const ModelDocument& model, const std::string& path) {
+  Drive drive = readDrive(path);
+  requireSameGauge(drive, model.vehicle.gauge);
+  if (drive.stretches.empty() || drive.kind == model.vehicle.kind) return drive;
+  const bool power = drive.kind == CommandKind::kPower;
+  throw std::runtime_error(path + ": its commands are " + (power ? "powers" : "track speeds") +
+                           ", those of the model " + (power ? "track speeds" : "powers") +
+                           "; give a model with kind: " + (power ? "power" : "track_speed"));
+}
+
+Drive readSoundDriveFor(const ModelDocument& model, const std::string& path) {
+  Drive drive = readDriveFor(model, path);
+  for (const HygieneNote& note : drive.notes)
+    if (note.fatal) throw std::runtime_error(path + ": " + note.what);
+  if (drive.executions.empty())
+    throw std::runtime_error(path + ": nothing was driven for two seconds; give a log of a drive");
   return drive;
 }
 

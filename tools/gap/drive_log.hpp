@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "common/log/event_log.hpp"
+#include "common/log/drive_log.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "modules/identification/core/drive.hpp"
 
 // How a log becomes a drive.
@@ -26,10 +27,25 @@ namespace tread::gap {
 /** Throws std::runtime_error with one clear line if the file cannot be read or is no LCM log. */
 Drive readDrive(const std::string& path);
 
-/// The same from events in memory; `name` stands for the file, without a hash.
-Drive toDrive(const std::string& name, const std::vector<LogEvent>& events);
+/// The same of a log in memory, without a hash.
+Drive toDrive(const DriveLog& log);
 
-/// Length of an execution [s].
-inline constexpr double kExecutionLength = 2.0;
+/// Throws std::runtime_error with one line if a model is of another robot than a log: its gauge
+/// differs by more than 2 % from the track with which the recording's commands were made.
+void requireSameGauge(const Drive& drive, double gauge);
+
+/// Throws std::runtime_error with one line if two recordings were imported in different ways, so
+/// that what differs between them may be the import.
+void requireSameImport(const Drive& first, const Drive& second);
+
+/// The same if they are said to be of different robots.
+void requireSameRobot(const Drive& first, const Drive& second);
+
+/// Reads a log for a model; throws std::runtime_error with one line if it cannot be read, or is of
+/// another robot: its commands are of another kind than the model's, or for another gauge.
+Drive readDriveFor(const ModelDocument& model, const std::string& path);
+
+/// The same, and throws if the log is not sound or nothing was driven in it.
+Drive readSoundDriveFor(const ModelDocument& model, const std::string& path);
 
 }  // namespace tread::gap

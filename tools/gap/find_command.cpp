@@ -13,9 +13,8 @@
 #include "modules/identification/core/discovery.hpp"
 #include "tools/gap/commands.hpp"
 #include "tools/gap/decisions.hpp"
+#include "tools/gap/drive_log.hpp"
 #include "tools/gap/find_output.hpp"
-#include "tools/gap/import_note.hpp"
-#include "tools/gap/read_for_model.hpp"
 #include "tools/gap/report/headline.hpp"
 #include "tools/gap/report/words.hpp"
 

@@ -5,23 +5,20 @@
 #include <vector>
 
 #include "modules/identification/core/note_book.hpp"
-#include "tools/gap/log_messages.hpp"
-#include "tools/gap/stretches.hpp"
+#include "tools/gap/spans.hpp"
 
 namespace tread::gap {
 
-/// Missing or foreign channels, commands of two kinds, silences, jumps and frozen poses.
-void checkChannels(const LogMessages& messages, const std::vector<HeardSpan>& spans,
-                   NoteBook& notes);
+inline constexpr int64_t kOvertaking = 200'000;  ///< [us] by which messages may come out of order
 
-/// Clocks that jump or go back.
-void checkClocks(const LogMessages& messages, NoteBook& notes);
+/// Missing channels, messages of another type, commands of two kinds, silences, jumps and frozen
+/// poses.
+void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, NoteBook& notes);
 
-/// A pause after which the robot is where it was one message later, although it moves: time went
-/// on, the robot did not. Part of checkClocks().
-void checkPauses(const LogMessages& messages, NoteBook& notes);
+/// Clocks that jump or go back, pauses over which the robot did not move among them.
+void checkClocks(const SortedLog& log, NoteBook& notes);
 
 /// Two robots (or two publishers of a channel) in one log.
-void checkPublishers(const LogMessages& messages, NoteBook& notes);
+void checkPublishers(const SortedLog& log, NoteBook& notes);
 
 }  // namespace tread::gap

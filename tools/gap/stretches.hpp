@@ -4,15 +4,12 @@
 
 #include <vector>
 
-#include "tools/gap/ins_readings.hpp"
+#include "tools/gap/spans.hpp"
 
 namespace tread::gap {
 
-/// A span with what the INS said in it.
-struct HeardSpan {
-  CommandSpan commands;
-  SpanReadings ins;
-};
+/// Length of an execution [s].
+inline constexpr double kExecutionLength = 2.0;
 
 /// The stretches of a log: spans, cut where the INS begins a new track.
 std::vector<Stretch> stretchesOf(const std::vector<HeardSpan>& spans,

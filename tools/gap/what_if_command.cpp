@@ -9,8 +9,8 @@
 #include "common/recordings/text_file.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/gap/commands.hpp"
+#include "tools/gap/drive_log.hpp"
 #include "tools/gap/model_change.hpp"
-#include "tools/gap/read_for_model.hpp"
 #include "tools/gap/report/words.hpp"
 #include "tools/gap/what_if.hpp"
 

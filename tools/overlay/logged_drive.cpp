@@ -6,43 +6,46 @@
 #include <optional>
 #include <stdexcept>
 
-#include <tread/ins_t.hpp>
-#include <tread/motor_t.hpp>
-
-#include "common/log/event_log.hpp"
+#include "common/log/drive_log.hpp"
 #include "common/messages/ins_messages.hpp"
 
 namespace tread::overlay {
 namespace {
 
-/// Collects the two channels with the device times they carry.
-class Collector {
- public:
-  void take(const motor_t& motor) {
-    if (!begin_) begin_ = motor.utime;
-    if (motor.motor_command_kind != 0) {
-      drive_.kind = static_cast<CommandKind>(motor.motor_command_kind);
-      driven_ = true;
-    }
+double secondsBetween(int64_t from, int64_t to) {
+  return 1e-6 * static_cast<double>(to - from);
+}
+
+std::vector<GivenCommand> commandsOf(const DriveLog& log) {
+  std::vector<GivenCommand> commands;
+  double full_voltage = 0.0;
+  for (const motor_t& motor : log.motor) {
     const auto voltage = static_cast<double>(motor.battery_voltage);
-    if (full_voltage_ == 0.0 && std::isfinite(voltage)) full_voltage_ = voltage;
+    if (full_voltage == 0.0 && std::isfinite(voltage)) full_voltage = voltage;
     GivenCommand given;
-    given.time = seconds(motor.utime);
+    given.time = secondsBetween(log.motor.front().utime, motor.utime);
     given.command = {static_cast<double>(motor.command_left),
                      static_cast<double>(motor.command_right)};
-    if (full_voltage_ > 0.0 && std::isfinite(voltage))
-      given.battery_drop = 1.0 - voltage / full_voltage_;
-    drive_.commands.push_back(given);
+    if (full_voltage > 0.0 && std::isfinite(voltage))
+      given.battery_drop = 1.0 - voltage / full_voltage;
+    commands.push_back(given);
   }
+  return commands;
+}
 
-  void take(const ins_t& ins) {
+/// The poses since the first MOTOR message.
+std::vector<MeasuredPose> trackOf(const DriveLog& log) {
+  std::vector<MeasuredPose> track;
+  if (log.motor.empty()) return track;
+  const int64_t begin = log.motor.front().utime;
+  for (const ins_t& ins : log.ins) {
     const std::optional<Pose2> T_map_body = planarPose(ins);
-    if (!begin_ || !T_map_body) return;
+    if (!T_map_body || ins.utime < begin) continue;
     MeasuredPose measured;
-    measured.time = seconds(ins.utime);
+    measured.time = secondsBetween(begin, ins.utime);
     measured.T_map_body = *T_map_body;
-    if (!drive_.track.empty()) {
-      const double last = drive_.track.back().T_map_body.yaw;
+    if (!track.empty()) {
+      const double last = track.back().T_map_body.yaw;
       measured.T_map_body.yaw = last + wrapAngle(T_map_body->yaw - last);
     }
     if (const auto T = spatialPose(ins)) {
@@ -50,42 +53,26 @@ class Collector {
       measured.roll = angles.roll;
       measured.pitch = angles.pitch;
     }
-    drive_.track.push_back(measured);
+    track.push_back(measured);
   }
-
-  const LoggedDrive& drive() const { return drive_; }
-  bool driven() const { return driven_; }
-
- private:
-  double seconds(int64_t utime) const { return 1e-6 * static_cast<double>(utime - *begin_); }
-
-  LoggedDrive drive_;
-  std::optional<int64_t> begin_;
-  double full_voltage_ = 0.0;
-  bool driven_ = false;
-};
+  return track;
+}
 
 }  // namespace
 
 LoggedDrive readLoggedDrive(const std::vector<std::string>& logs) {
-  Collector collector;
-  for (const std::string& path : logs) {
-    LogReader reader(path);
-    LogEvent event;
-    motor_t motor;
-    ins_t ins;
-    while (reader.next(event)) {
-      if (decode(event, kMotor, motor)) collector.take(motor);
-      if (decode(event, kIns, ins)) collector.take(ins);
-    }
-  }
-  const LoggedDrive& drive = collector.drive();
+  const DriveLog log = readDriveLog(logs);
+  LoggedDrive drive{CommandKind::kPower, commandsOf(log), trackOf(log)};
   for (const auto& [channel, empty] :
        {std::pair{"MOTOR", drive.commands.empty()}, std::pair{"INS", drive.track.empty()}})
     if (empty)
       throw std::runtime_error(logs.front() + ": holds no " + channel +
                                "; a log of a drive has MOTOR and INS");
-  if (!collector.driven()) throw std::runtime_error(logs.front() + ": nothing was driven in it");
+  int16_t kind = 0;
+  for (const motor_t& motor : log.motor)
+    if (motor.motor_command_kind != 0) kind = motor.motor_command_kind;
+  if (kind == 0) throw std::runtime_error(logs.front() + ": nothing was driven in it");
+  drive.kind = static_cast<CommandKind>(kind);
   return drive;
 }
 

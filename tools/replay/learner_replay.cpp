@@ -34,7 +34,7 @@ class Player {
     const int64_t newest =
         static_cast<const learner::LearnerNode*>(bus_.node(kNode))->set().version();
     const bool running = record.outcome == execution_record_t::OUTCOME_RUNNING;
-    const ExecutionKey key{record.record_run_id, record.record_execution_id};
+    const ExecutionKey key = keyOf(record);
     if (commitment_ == Commitment::kPrompt && running) return newest;
     return versions_.emplace(key, newest).first->second;
   }

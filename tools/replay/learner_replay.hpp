@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "modules/learner/learner_node.hpp"
-#include "tools/replay/drive_log_reader.hpp"
+#include "tools/replay/learner_log.hpp"
 
 namespace tread::replay {
 

@@ -119,7 +119,7 @@ void compareLearner(LearnerArguments& arguments) {
 
 /// A log without a learner: how well the rules would have predicted its executions.
 void replayLearner(LearnerArguments& arguments) {
-  const replay::DriveLog log = replay::readDriveLog(arguments.log);
+  const tread::DriveLog log = replay::readLearnerLog(arguments.log);
   const PatternSet set = arguments.model.empty()
                              ? readPatternFile(arguments.patterns)
                              : replay::predictedSet(log, readModelFile(arguments.model));

@@ -18,37 +18,26 @@ constexpr int kBelievedAfter = 5;
 /// set.
 constexpr int64_t kLongestSilence = 1'000'000;
 
-struct Stamp {
-  int64_t utime;
-  int64_t seq;
-};
-
-template <class Message>
-bool stampAs(const LogEvent& event, const Channel<Message>& channel, Stamp& stamp) {
-  Message message;
-  if (!decode(event, channel, message)) return false;
-  stamp = {message.utime, message.seq};
-  return true;
-}
-
 /// Time and number of an event on a channel that one process publishes with the time of sending or
 /// of a measurement just made. Not PROGRAM: a planner that has just started does not know the time.
 std::optional<Stamp> stampOf(const LogEvent& event) {
-  Stamp stamp{};
-  if (stampAs(event, kIns, stamp) || stampAs(event, kMotor, stamp) ||
-      stampAs(event, kExecution, stamp))
-    return stamp;
-  return std::nullopt;
+  std::optional<Stamp> stamp;
+  dispatch(
+      event,
+      [&](const auto& message) {
+        stamp = Stamp{event.utime, message.utime, message.seq};
+      },
+      kIns, kMotor, kExecution);
+  return stamp;
 }
 
 /// Number of an event on a channel of one publisher.
-std::optional<Stamp> numberOf(const LogEvent& event) {
-  Stamp stamp{};
-  if (stampAs(event, kPatternSet, stamp) || stampAs(event, kLearning, stamp) ||
-      stampAs(event, kMap, stamp) || stampAs(event, kPlan, stamp) ||
-      stampAs(event, kProgram, stamp))
-    return stamp;
-  return stampOf(event);
+std::optional<int64_t> numberOf(const LogEvent& event) {
+  std::optional<int64_t> seq;
+  dispatch(
+      event, [&](const auto& message) { seq = message.seq; }, kPatternSet, kLearning, kMap, kPlan,
+      kProgram, kIns, kMotor, kExecution);
+  return seq;
 }
 
 /// Follows the robot's clock through a log.
@@ -77,13 +66,13 @@ class Clock {
   int doubted_ = 0;  ///< stamps in a row that are far from now_
 };
 
-void noteSeq(const LogEvent& event, const Stamp& stamp, std::map<std::string, int64_t>& last,
+void noteSeq(const LogEvent& event, int64_t seq, std::map<std::string, int64_t>& last,
              std::map<std::string, int64_t>& missing) {
-  const auto [known, first] = last.try_emplace(event.channel, stamp.seq);
-  const int64_t gap = stamp.seq - known->second - 1;
+  const auto [known, first] = last.try_emplace(event.channel, seq);
+  const int64_t gap = seq - known->second - 1;
   // Who starts again counts from the beginning; a gap of thousands is a broken number.
   if (!first && gap > 0 && gap < 100'000) missing[event.channel] += gap;
-  known->second = stamp.seq;
+  known->second = seq;
 }
 
 bool inVirtualTime(const std::vector<LogEvent>& events) {
@@ -151,17 +140,15 @@ std::string intakeLine(const RobotLog& log, const std::string& process,
 }
 
 RobotLog readRobotLog(const std::string& path) {
-  LogReader reader(path);
-  std::vector<LogEvent> events;
-  for (LogEvent event; reader.next(event);) {
-    const bool ours = std::any_of(kChannels.begin(), kChannels.end(), [&](const ChannelSpec& spec) {
-      return event.channel == spec.name;
-    });
-    if (ours && event.channel != kScan.name && event.channel != kPlanTree.name)
-      events.push_back(event);
-  }
+  const auto isOurs = [](const LogEvent& event) {
+    return event.channel != kScan.name && event.channel != kPlanTree.name &&
+           std::any_of(kChannels.begin(), kChannels.end(),
+                       [&](const ChannelSpec& spec) { return event.channel == spec.name; });
+  };
+  std::string problem;
+  std::vector<LogEvent> events = readEvents({path}, problem, isOurs);
   RobotLog log = toRobotLog(std::filesystem::path(path).filename().string(), std::move(events));
-  log.problem = reader.problem();
+  log.problem = problem;
   if (log.events.empty())
     throw std::runtime_error(path + ": no event on any of our channels" +
                              (log.problem.empty() ? "" : "; " + log.problem));

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/log/event_log.hpp"
+#include "common/log/drive_log.hpp"
 
 namespace tread::replay {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "common/log/drive_log.hpp"
 #include "common/messages/ins_messages.hpp"
 
 namespace tread::report {
@@ -27,22 +28,12 @@ class Reader {
   void take(const LogEvent& event) {
     ++drive_.events;
     drive_.latencies.add(event);
-    const bool known = takeAs(event, kIns) || takeAs(event, kGoal) || takeAs(event, kPlan) ||
-                       takeAs(event, kPlanTree) || takeAs(event, kMap) ||
-                       takeAs(event, kLearning) || takeAs(event, kExecution) ||
-                       takeAs(event, kMotor);
-    static_cast<void>(known);  // other channels have no part in a report
+    dispatch(
+        event, [&](const auto& message) { hear(message); }, kIns, kGoal, kPlan, kPlanTree, kMap,
+        kLearning, kExecution, kMotor);
   }
 
  private:
-  template <class Message>
-  bool takeAs(const LogEvent& event, const Channel<Message>& channel) {
-    Message message;
-    if (!decode(event, channel, message)) return false;
-    hear(message);
-    return true;
-  }
-
   double sinceBegin(int64_t utime) const {
     return static_cast<double>(utime - drive_.begun) * 1e-6;
   }
@@ -95,7 +86,7 @@ class Reader {
   void hear(const execution_t& message) {
     for (const execution_record_t& record : message.records) {
       if (record.outcome == execution_record_t::OUTCOME_RUNNING) continue;
-      if (!closed_.insert({record.record_run_id, record.record_execution_id}).second) continue;
+      if (!ended_.insert(keyOf(record)).second) continue;
       ++(record.outcome == execution_record_t::OUTCOME_COMPLETED ? drive_.completed
                                                                  : drive_.aborted);
     }
@@ -107,7 +98,7 @@ class Reader {
   }
 
   DriveRecord& drive_;
-  std::set<std::pair<int64_t, int64_t>> closed_;  ///< executions by run and id
+  std::set<ExecutionKey> ended_;
   bool may_drive_ = false;
 };
 

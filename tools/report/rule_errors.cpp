@@ -20,13 +20,10 @@ using Executions = std::vector<const shadow::ShadowedExecution*>;
 replay::RobotLog relevantLog(const std::vector<std::string>& paths) {
   constexpr std::array<const char*, 4> kTooMuch{kScan.name, kPlanTree.name, kMap.name,
                                                 kLearnerState.name};
-  std::vector<LogEvent> events;
-  for (const std::string& path : paths) {
-    LogReader reader(path);
-    for (LogEvent event; reader.next(event);)
-      if (std::find(kTooMuch.begin(), kTooMuch.end(), event.channel) == kTooMuch.end())
-        events.push_back(event);
-  }
+  std::string ignored;
+  std::vector<LogEvent> events = readEvents(paths, ignored, [&](const LogEvent& event) {
+    return std::find(kTooMuch.begin(), kTooMuch.end(), event.channel) == kTooMuch.end();
+  });
   return replay::toRobotLog(paths.empty() ? "no log" : paths.front(), std::move(events));
 }
 

@@ -36,7 +36,7 @@ replay::LearnerRun learned(const DriveBook& drives, size_t from, std::vector<Log
                            learner::Rule rule) {
   learner::LearnerNodeConfig config(averagedSet(drives, from));
   config.rule.rule = rule;
-  return replay::runLearner(replay::toDriveLog("drives", std::move(events)), config,
+  return replay::runLearner(replay::toLearnerLog("drives", std::move(events)), config,
                             replay::Commitment::kAhead, "run");
 }
 

@@ -17,8 +17,6 @@
 #include "tools/gap/commands.hpp"
 #include "tools/gap/drive_log.hpp"
 #include "tools/gap/find_output.hpp"
-#include "tools/gap/import_note.hpp"
-#include "tools/gap/read_for_model.hpp"
 
 namespace tread::gap {
 namespace {

@@ -12,7 +12,6 @@
 #include "tests/tools/gap/small_log.hpp"
 #include "tests/tools/import/drive_samples.hpp"
 #include "tools/gap/drive_log.hpp"
-#include "tools/gap/import_note.hpp"
 
 using namespace tread;
 using namespace tread::gap;
@@ -36,8 +35,9 @@ Drive importedSteps(int steps, bool keep_lag, importer::Gyro gyro) {
   session.lag_kept = keep_lag;
   if (keep_lag) session.pose_lag = 0.0;
   importer::LogCounts counts;
-  return toDrive("drive.lcmlog", importer::makeLog(importer::readSteps(csv, session, gyro), session,
-                                                   "steps", {}, counts));
+  return toDrive(toDriveLog(
+      "drive.lcmlog",
+      importer::makeLog(importer::readSteps(csv, session, gyro), session, "steps", {}, counts)));
 }
 
 }  // namespace
@@ -50,7 +50,7 @@ TEST_CASE(
     log.ins(0.05 * i, {}, 0.0);
   }
   drive(log, 1.0, 21.0, {1.0, 0.0, 0.8}, {});
-  const Drive result = toDrive("a.lcmlog", log.sorted());
+  const Drive result = toDrive(toDriveLog("a.lcmlog", log.sorted()));
   REQUIRE(result.stretches.size() == 1);
   const Stretch& stretch = result.stretches[0];
   REQUIRE(result.kind == CommandKind::kTrackSpeed);
@@ -72,7 +72,7 @@ TEST_CASE("missing commands end a stretch, and where the robot still moves after
   SmallLog log;
   const Pose2 T_map_body = drive(log, 0.0, 10.0, {1.0, 0.0, 0.0}, {});
   drive(log, 10.5, 20.5, {1.0, 0.0, 0.0}, T_map_body);
-  const Drive result = toDrive("a", log.sorted());
+  const Drive result = toDrive(toDriveLog("a", log.sorted()));
   REQUIRE(result.stretches.size() == 2);
   REQUIRE(result.stretches[0].end == Approx(10.0));
   REQUIRE(result.stretches[1].begin() == Approx(10.5));
@@ -95,7 +95,7 @@ TEST_CASE(
     else
       log.motor(time, {}, motor_t::STATE_ESTOP);
   }
-  const Drive result = toDrive("a", log.sorted());
+  const Drive result = toDrive(toDriveLog("a", log.sorted()));
   REQUIRE(result.stretches.size() == 2);
   REQUIRE(result.stretches[0].commands.size() == 1);
   REQUIRE(result.stretches[0].commands[0].command == TrackCommand{});
@@ -113,7 +113,7 @@ TEST_CASE("a jump or a silence of the INS begins a stretch whose commands begin 
     const Pose2 pose{time + (i >= 200 ? 50.0 : 0.0), 0.0, 0.0};
     if (!silent) log.ins(time, pose, 0.0, i == 200 ? ins_t::STATUS_JUMP : 0);
   }
-  const Drive result = toDrive("a", log.sorted());
+  const Drive result = toDrive(toDriveLog("a", log.sorted()));
   REQUIRE(result.stretches.size() == 3);
   REQUIRE(result.stretches[0].ins.back().time == Approx(9.95));
   REQUIRE(result.stretches[1].begin() == Approx(7.0));
@@ -137,7 +137,7 @@ TEST_CASE(
     log.motor(time, drives ? TrackCommand{1.0, 1.0} : TrackCommand{});
     log.ins(time, {drives ? 0.05 * (i / 4) : 0.0, 0.0, 0.0}, 0.1);
   }
-  const Drive result = toDrive("a", log.sorted());
+  const Drive result = toDrive(toDriveLog("a", log.sorted()));
   REQUIRE(result.stretches.size() == 1);
   const auto& ins = result.stretches[0].ins;
   REQUIRE(ins.size() == 200);
@@ -165,7 +165,7 @@ TEST_CASE("whole turns between two late poses are those of the gyro") {
               ins_t::STATUS_NO_POSITION | ins_t::STATUS_NO_HEADING);
     yaw += 0.05 * omega;
   }
-  const Drive result = toDrive("a", log.sorted());
+  const Drive result = toDrive(toDriveLog("a", log.sorted()));
   REQUIRE(result.stretches.size() == 1);
   const auto& last = result.stretches[0].ins[384];
   REQUIRE(last.T_map_body.yaw == Approx(4.0 * 0.05 * 384));
@@ -178,20 +178,20 @@ TEST_CASE(
   SECTION("two seconds") {
     for (int n = 0; n < 12; ++n) log.execution(n + 1, 2.2 * n + 0.5, 2.2 * n + 2.5);
     log.execution(99, 28.0, 29.5, execution_record_t::OUTCOME_ABORTED);
-    const Drive result = toDrive("a", log.sorted());
+    const Drive result = toDrive(toDriveLog("a", log.sorted()));
     REQUIRE(result.executions.size() == 12);
     REQUIRE(result.executions[1].begin == Approx(2.7));
     REQUIRE(result.executions[1].end == Approx(4.7));
   }
   SECTION("five seconds") {
     for (int n = 0; n < 5; ++n) log.execution(n + 1, 5.0 * n + 0.5, 5.0 * n + 5.5);
-    const Drive result = toDrive("a", log.sorted());
+    const Drive result = toDrive(toDriveLog("a", log.sorted()));
     REQUIRE(result.executions.size() == 10);
     REQUIRE(result.executions[1].begin == Approx(2.5));
   }
   SECTION("one second, or none") {
     for (int n = 0; n < 20; ++n) log.execution(n + 1, 1.0 * n, 1.0 * n + 1.0);
-    const Drive result = toDrive("a", log.sorted());
+    const Drive result = toDrive(toDriveLog("a", log.sorted()));
     REQUIRE(result.executions.size() == 15);
     REQUIRE(result.executions[14].end == Approx(30.0));
   }
@@ -286,7 +286,7 @@ TEST_CASE("a drive says of which robot it was imported, and how") {
                     "100 kg; give logs of one robot");
   SmallLog own;
   drive(own, 0.0, 10.0, {1.0, 0.0, 0.1}, {});
-  const Drive live = toDrive("live.lcmlog", own.sorted());
+  const Drive live = toDrive(toDriveLog("live.lcmlog", own.sorted()));
   CHECK_FALSE(live.imported);
   CHECK_NOTHROW(requireSameImport(live, fixes));
   CHECK_NOTHROW(requireSameGauge(live, 3.0));
@@ -321,7 +321,8 @@ TEST_CASE(
     importer::LogCounts counts;
     const auto recording =
         importer::readSteps(folder + "steps/" + name + ".csv", session, importer::Gyro::kAll);
-    const Drive result = toDrive(name, importer::makeLog(recording, session, "steps", {}, counts));
+    const Drive result =
+        toDrive(toDriveLog(name, importer::makeLog(recording, session, "steps", {}, counts)));
     INFO(name);
     for (const HygieneNote& note : result.notes) {
       INFO(note.what);

@@ -21,7 +21,7 @@ SmallLog goodLog(double length = 30.0) {
 
 /// The first fatal line; empty if nothing is fatal.
 std::string fatal(const std::vector<LogEvent>& events) {
-  for (const HygieneNote& note : toDrive("a.lcmlog", events).notes)
+  for (const HygieneNote& note : toDrive(toDriveLog("a.lcmlog", events)).notes)
     if (note.fatal) return note.what;
   return "";
 }
@@ -40,7 +40,7 @@ void shift(std::vector<LogEvent>& events, const Channel<Message>& channel, doubl
 }
 
 bool noted(const std::vector<LogEvent>& events, const std::string& part) {
-  for (const HygieneNote& note : toDrive("a.lcmlog", events).notes)
+  for (const HygieneNote& note : toDrive(toDriveLog("a.lcmlog", events)).notes)
     if (note.what.find(part) != std::string::npos) return true;
   return false;
 }
@@ -48,7 +48,7 @@ bool noted(const std::vector<LogEvent>& events, const std::string& part) {
 }  // namespace
 
 TEST_CASE("a good log is not complained of") {
-  const auto notes = toDrive("a.lcmlog", goodLog().sorted()).notes;
+  const auto notes = toDrive(toDriveLog("a.lcmlog", goodLog().sorted())).notes;
   for (const HygieneNote& note : notes) REQUIRE_FALSE(note.fatal);
   REQUIRE(notes.size() == 4);  // gyro, poses, standstill, driving
   REQUIRE(notes[0].log == "a.lcmlog");
@@ -217,7 +217,7 @@ TEST_CASE("what hung while it drove is no measurement at the standstill after it
     log.motor(time, time < 20.0 ? TrackCommand{1.0, 1.0} : TrackCommand{});
     log.ins(time, {std::min(time, 10.0), 0.0, 0.0}, 0.2);
   }
-  const Drive result = toDrive("a", log.sorted());
+  const Drive result = toDrive(toDriveLog("a", log.sorted()));
   REQUIRE(fatal(log.sorted()).find("the INS is frozen: one pose from 10.0 to 29.9") == 0);
   for (const Stretch& stretch : result.stretches)
     for (const InsSample& sample : stretch.ins)

@@ -8,7 +8,7 @@
 
 #include "common/recordings/drive_log.hpp"
 #include "common/vehicle/kernel.hpp"
-#include "tools/replay/drive_log_reader.hpp"
+#include "tools/replay/learner_log.hpp"
 
 namespace tread::samples {
 
@@ -55,15 +55,15 @@ inline importer::Recording syntheticRecording(const VehicleModel& truth, int ste
   return recording;
 }
 
-inline replay::DriveLog syntheticLog(const importer::Recording& recording) {
+inline DriveLog syntheticLog(const importer::Recording& recording) {
   importer::Session session;
   session.name = "synthetic";
   session.robot = "a model";
   session.surface = "ice";
   session.pose_rate = 20.0;
   importer::LogCounts counts;
-  return replay::toDriveLog("synthetic",
-                            importer::makeLog(recording, session, "steps", {}, counts));
+  return replay::toLearnerLog("synthetic",
+                              importer::makeLog(recording, session, "steps", {}, counts));
 }
 
 }  // namespace tread::samples

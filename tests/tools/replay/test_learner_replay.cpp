@@ -165,8 +165,8 @@ TEST_CASE("foreign messages in a log are skipped and counted") {
   events.push_back(foreign);
   foreign.channel = "POSE";
   events.push_back(foreign);
-  const DriveLog log = toDriveLog("foreign", events);
-  REQUIRE(log.skipped == 1);
+  const DriveLog log = toLearnerLog("foreign", events);
+  REQUIRE(log.invalid == 1);
   REQUIRE(log.executions.size() == 4);
 }
 
@@ -174,9 +174,9 @@ TEST_CASE("a log without executions is refused with what to do") {
   const std::string path =
       (std::filesystem::temp_directory_path() / "tread_empty_drive.log").string();
   { LogWriter writer(path); }
-  REQUIRE_THROWS_WITH(readDriveLog(path), Catch::Contains("tread-import makes one"));
+  REQUIRE_THROWS_WITH(readLearnerLog(path), Catch::Contains("tread-import makes one"));
   std::filesystem::remove(path);
-  REQUIRE_THROWS(readDriveLog("/nowhere/at/all.log"));
+  REQUIRE_THROWS(readLearnerLog("/nowhere/at/all.log"));
 }
 
 TEST_CASE("real grass goes through the learner") {
@@ -188,7 +188,7 @@ TEST_CASE("real grass goes through the learner") {
   }
   const auto session = importer::readSession(drive + "sessions.csv", "warthog_grass_20240729c");
   importer::LogCounts counts;
-  const DriveLog log = toDriveLog(
+  const DriveLog log = toLearnerLog(
       session.name,
       importer::makeLog(importer::readSteps(drive + "steps/warthog_grass_20240729c.csv", session),
                         session, "steps", {}, counts));

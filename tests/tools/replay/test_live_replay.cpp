@@ -54,7 +54,7 @@ class LiveLearner {
   LiveLearner(const std::string& name, std::vector<LogEvent> events, const VehicleModel& model,
               const std::string& speed)
       : folder_(name), name_(name) {
-    const PatternSet set = predictedSet(toDriveLog(name, events), model);
+    const PatternSet set = predictedSet(toLearnerLog(name, events), model);
     std::ofstream(folder_.file("patterns.yaml")) << formatPatterns(set);
     std::ofstream(folder_.file("learner.yaml")) << learnerYaml(folder_.file("patterns.yaml"));
     LogWriter writer(folder_.file("played.lcmlog"));

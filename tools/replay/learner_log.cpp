@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/replay/drive_log_reader.hpp"
+#include "tools/replay/learner_log.hpp"
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -12,66 +13,29 @@
 namespace tread::replay {
 namespace {
 
-/// Sorts events into a DriveLog.
-class Reader {
- public:
-  explicit Reader(DriveLog& log) : log_(log) {}
+/// The commands of an execution by index, as applied.
+using AppliedCommands = std::map<int32_t, TrackCommand>;
 
-  void take(LogEvent event) {
-    if (event.channel == kMark.name) return takeMark(event);
-    const bool good = event.channel == kIns.name         ? isIns(event)
-                      : event.channel == kExecution.name ? takeExecution(event)
-                      : event.channel == kMotor.name     ? takeMotor(event)
-                                                         : false;
-    if (good) log_.events.push_back(std::move(event));
-  }
+std::map<ExecutionKey, AppliedCommands> appliedCommands(const DriveLog& log) {
+  std::map<ExecutionKey, AppliedCommands> commands;
+  for (const motor_t& motor : log.motor)
+    if (motor.execution_id != 0 && motor.command_index >= 0)
+      commands[{motor.motor_run_id, motor.execution_id}].emplace(
+          motor.command_index, TrackCommand{static_cast<double>(motor.command_left),
+                                            static_cast<double>(motor.command_right)});
+  return commands;
+}
 
- private:
-  bool isIns(const LogEvent& event) {
-    ins_t ins;
-    return counted(decode(event, kIns, ins));
-  }
-
-  void takeMark(const LogEvent& event) {
-    mark_t mark;
-    if (!counted(decode(event, kMark, mark))) return;
-    if (mark.mark_kind == "surface") log_.surfaces[mark.utime] = mark.mark_value;
-  }
-
-  bool takeExecution(const LogEvent& event) {
-    execution_t message;
-    if (!counted(decode(event, kExecution, message))) return false;
-    for (const execution_record_t& record : message.records) {
-      const ExecutionKey key{record.record_run_id, record.record_execution_id};
-      if (record.outcome == execution_record_t::OUTCOME_RUNNING || !seen_.insert(key).second)
-        continue;
-      log_.executions.push_back(record);
-    }
-    return true;
-  }
-
-  bool takeMotor(const LogEvent& event) {
-    motor_t motor;
-    if (!counted(decode(event, kMotor, motor))) return false;
-    if (motor.execution_id == 0 || motor.command_index < 0) return true;
-    log_.kind = static_cast<CommandKind>(motor.motor_command_kind);
-    log_.commands[{motor.motor_run_id, motor.execution_id}].emplace(
-        motor.command_index, TrackCommand{static_cast<double>(motor.command_left),
-                                          static_cast<double>(motor.command_right)});
-    return true;
-  }
-
-  bool counted(bool good) {
-    if (!good) ++log_.skipped;
-    return good;
-  }
-
-  DriveLog& log_;
-  std::set<ExecutionKey> seen_;
-};
+/// The kind of the last command that belongs to an execution.
+CommandKind kindOf(const DriveLog& log) {
+  for (auto motor = log.motor.rbegin(); motor != log.motor.rend(); ++motor)
+    if (motor->execution_id != 0 && motor->command_index >= 0)
+      return static_cast<CommandKind>(motor->motor_command_kind);
+  return CommandKind::kTrackSpeed;
+}
 
 /// The series that was applied in an execution; a sample that the log misses holds the one before.
-std::vector<TrackCommand> seriesOf(const std::map<int32_t, TrackCommand>& applied, int32_t count) {
+std::vector<TrackCommand> seriesOf(const AppliedCommands& applied, int32_t count) {
   std::vector<TrackCommand> series;
   TrackCommand held = applied.begin()->second;
   for (int32_t index = 0; index < count; ++index) {
@@ -110,29 +74,26 @@ void addPattern(PatternSetContent& content, const VehicleModel& model, int id,
 
 }  // namespace
 
-std::string DriveLog::surfaceAt(int64_t utime) const {
-  const auto after = surfaces.upper_bound(utime);
-  return after == surfaces.begin() ? "unknown" : std::prev(after)->second;
-}
-
-DriveLog toDriveLog(const std::string& name, std::vector<LogEvent> events) {
-  DriveLog log;
-  log.name = name;
-  Reader reader(log);
+DriveLog toLearnerLog(const std::string& name, std::vector<LogEvent> events) {
   std::stable_sort(events.begin(), events.end(),
                    [](const LogEvent& a, const LogEvent& b) { return a.utime < b.utime; });
-  for (LogEvent& event : events) reader.take(std::move(event));
+  DriveLog log = toDriveLog(name, std::move(events));
+  const auto ignore = [](const auto&) {};
+  log.events.erase(std::remove_if(log.events.begin(), log.events.end(),
+                                  [&](const LogEvent& event) {
+                                    return !dispatch(event, ignore, kIns, kExecution, kMotor);
+                                  }),
+                   log.events.end());
   std::stable_sort(log.executions.begin(), log.executions.end(),
                    [](const auto& a, const auto& b) { return a.ended < b.ended; });
   return log;
 }
 
-DriveLog readDriveLog(const std::string& path) {
-  LogReader reader(path);
-  std::vector<LogEvent> events;
-  for (LogEvent event; reader.next(event);) events.push_back(event);
-  DriveLog log = toDriveLog(std::filesystem::path(path).stem().string(), std::move(events));
-  log.problem = reader.problem();
+DriveLog readLearnerLog(const std::string& path) {
+  std::string problem;
+  std::vector<LogEvent> events = readEvents({path}, problem);
+  DriveLog log = toLearnerLog(std::filesystem::path(path).stem().string(), std::move(events));
+  log.problem = problem;
   if (log.executions.empty())
     throw std::runtime_error(path +
                              ": no execution that has ended; a log with INS, MOTOR and EXECUTION "
@@ -141,17 +102,18 @@ DriveLog readDriveLog(const std::string& path) {
 }
 
 PatternSet predictedSet(const DriveLog& log, const VehicleModel& model) {
-  if (log.kind != model.kind)
+  if (kindOf(log) != model.kind)
     throw std::runtime_error(log.name + ": its commands are not of the kind of model '" +
                              model.name + "' (power or track speed); give another --model");
   PatternSetContent content;
   content.name = log.name;
   content.kind = model.kind;
+  const std::map<ExecutionKey, AppliedCommands> commands = appliedCommands(log);
   std::set<int> known;
   for (const execution_record_t& record : log.executions) {
-    const auto applied = log.commands.find({record.record_run_id, record.record_execution_id});
+    const auto applied = commands.find(keyOf(record));
     if (record.outcome != execution_record_t::OUTCOME_COMPLETED || record.commands_total < 1 ||
-        applied == log.commands.end() || !known.insert(record.record_pattern_id).second)
+        applied == commands.end() || !known.insert(record.record_pattern_id).second)
       continue;
     const int64_t period = (record.ended - record.started) / record.commands_total;
     if (!content.patterns.empty() && period != content.period_us)

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/log/drive_log.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <set>
+
+#include <Eigen/Geometry>
+
+namespace tread {
+namespace {
+
+constexpr size_t kRepeated = 8;  // executions in an EXECUTION message
+
+/// A time that a clock can show; others are broken bytes.
+bool isPossible(int64_t utime) {
+  constexpr int64_t kThreeCenturies = 10'000'000'000'000'000;  // [us]
+  return utime >= 0 && utime < kThreeCenturies;
+}
+
+/// Sorts the events of a log by their meaning.
+class Reader {
+ public:
+  explicit Reader(DriveLog& log) : log_(log) {}
+
+  void take(const LogEvent& event) {
+    const auto is = [&](const ChannelSpec& channel) { return event.channel == channel.name; };
+    if (!is(kMotor) && !is(kIns) && !is(kExecution) && !is(kConfig) && !is(kMark)) return;
+    bool valid = true;
+    const bool decoded = dispatch(
+        event, [&](const auto& message) { valid = take(message, event.utime); }, kMotor, kIns,
+        kExecution, kConfig, kMark);
+    if (!decoded || !valid) ++log_.invalid;
+  }
+
+ private:
+  template <class Message>
+  static bool addTimed(const Message& message, int64_t logged, std::vector<Message>& messages,
+                       std::vector<Stamp>& stamps) {
+    if (!isPossible(message.utime)) return false;
+    stamps.push_back({isPossible(logged) ? logged : message.utime, message.utime, message.seq});
+    messages.push_back(message);
+    return true;
+  }
+  bool take(const motor_t& motor, int64_t logged) {
+    return addTimed(motor, logged, log_.motor, log_.motor_stamps);
+  }
+  bool take(const ins_t& ins, int64_t logged) {
+    return addTimed(ins, logged, log_.ins, log_.ins_stamps);
+  }
+  bool take(const execution_t& message, int64_t) {
+    for (const execution_record_t& record : message.records)
+      if (record.outcome != execution_record_t::OUTCOME_RUNNING && isPossible(record.started) &&
+          isPossible(record.ended) && ended_.insert(keyOf(record)).second)
+        log_.executions.push_back(record);
+    return true;
+  }
+  bool take(const config_t& config, int64_t) {
+    log_.configs.push_back(config);
+    return true;
+  }
+  bool take(const mark_t& mark, int64_t) {
+    if (mark.mark_kind == "surface") log_.surfaces[mark.utime] = mark.mark_value;
+    return true;
+  }
+
+  DriveLog& log_;
+  std::set<ExecutionKey> ended_;
+};
+
+}  // namespace
+
+std::string DriveLog::surfaceAt(int64_t utime) const {
+  const auto after = surfaces.upper_bound(utime);
+  return after == surfaces.begin() ? "unknown" : std::prev(after)->second;
+}
+
+std::vector<LogEvent> readEvents(const std::vector<std::string>& paths, std::string& problem,
+                                 const std::function<bool(const LogEvent&)>& keep) {
+  std::vector<LogEvent> events;
+  for (const std::string& path : paths) {
+    LogReader reader(path);
+    for (LogEvent event; reader.next(event);)
+      if (keep(event)) events.push_back(std::move(event));
+    if (problem.empty()) problem = reader.problem();
+  }
+  return events;
+}
+
+DriveLog toDriveLog(const std::string& name, std::vector<LogEvent> events) {
+  DriveLog log;
+  log.name = name;
+  Reader reader(log);
+  for (const LogEvent& event : events) reader.take(event);
+  log.events = std::move(events);
+  return log;
+}
+
+DriveLog readDriveLog(const std::vector<std::string>& paths) {
+  std::string problem;
+  std::vector<LogEvent> events = readEvents(paths, problem);
+  DriveLog log =
+      toDriveLog(std::filesystem::path(paths.front()).filename().string(), std::move(events));
+  log.problem = problem;
+  return log;
+}
+
+void DriveLogBuilder::addMark(int64_t utime, const std::string& kind, const std::string& value) {
+  mark_t mark{};
+  mark.utime = utime;
+  mark.mark_kind = kind;
+  mark.mark_value = value;
+  add(kMark, mark);
+}
+
+void DriveLogBuilder::addConfig(int64_t utime, const std::string& process, int64_t boot_id,
+                                const std::string& text) {
+  config_t config{};
+  config.utime = utime;
+  config.config_process = process;
+  config.config_boot_id = boot_id;
+  config.config_text = text;
+  add(kConfig, config);
+}
+
+void DriveLogBuilder::start(const execution_record_t& record) {
+  if (records_.size() == kRepeated) records_.erase(records_.begin());
+  records_.push_back(record);
+}
+
+void DriveLogBuilder::publishExecutions(int64_t utime) {
+  execution_t message{};
+  message.utime = utime;
+  message.records = records_;
+  message.num_records = static_cast<int32_t>(records_.size());
+  add(kExecution, message);
+}
+
+std::vector<LogEvent> DriveLogBuilder::sorted() {
+  std::stable_sort(events_.begin(), events_.end(),
+                   [](const LogEvent& a, const LogEvent& b) { return a.utime < b.utime; });
+  return std::move(events_);
+}
+
+ins_t DriveLogBuilder::blankIns() {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  ins_t ins{};
+  ins.device_utc = -1;
+  ins.satellites = -1;
+  ins.ins_status = ins_t::STATUS_NO_VELOCITY;
+  for (int i = 0; i < 3; ++i)
+    ins.velocity[i] = ins.rate[i] = ins.position_std[i] = ins.attitude_std[i] = kUnknown;
+  return ins;
+}
+
+void DriveLogBuilder::setAttitude(ins_t& ins, double yaw, double pitch, double roll) {
+  using Eigen::AngleAxisd;
+  using Eigen::Vector3d;
+  Eigen::Quaterniond q(AngleAxisd(yaw, Vector3d::UnitZ()));
+  if (pitch != 0.0 || roll != 0.0)
+    q = q * AngleAxisd(pitch, Vector3d::UnitY()) * AngleAxisd(roll, Vector3d::UnitX());
+  ins.orientation[0] = q.w();
+  ins.orientation[1] = q.x();
+  ins.orientation[2] = q.y();
+  ins.orientation[3] = q.z();
+}
+
+execution_record_t DriveLogBuilder::runningExecution(ExecutionKey key, int64_t started) {
+  execution_record_t record{};
+  record.record_run_id = key.first;
+  record.record_execution_id = key.second;
+  record.started = started;
+  record.ended = -1;
+  return record;
+}
+
+}  // namespace tread

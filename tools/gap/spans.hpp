@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "common/log/drive_log.hpp"
+#include "modules/identification/core/drive.hpp"
+
+namespace tread::gap {
+
+/// Commands and measurements of a log in order of their own time.
+struct SortedLog {
+  explicit SortedLog(const DriveLog& drive_log);
+
+  const DriveLog& drive;
+  std::vector<motor_t> motor;
+  std::vector<ins_t> ins;
+  int64_t origin = 0;  ///< [us] utime of the first INS or MOTOR; time 0 of the drive
+
+  /// Seconds since time 0.
+  double seconds(int64_t utime) const { return 1e-6 * static_cast<double>(utime - origin); }
+};
+
+/// Whether a number follows another one directly; any bytes may stand in a log.
+inline bool isNext(int64_t seq, int64_t before) {
+  return static_cast<uint64_t>(seq) - static_cast<uint64_t>(before) == 1;
+}
+
+/// What was before a span of known commands.
+enum class Before {
+  kLogBegins,
+  kUnknownCommands,  ///< a fault, an emergency stop or an operator
+  kMotorSilent       ///< messages are missing
+};
+
+/// A time in which all commands are known.
+struct CommandSpan {
+  std::vector<CommandSample> commands;  ///< changes only, the first one at the begin; not empty
+  double end = 0.0;                     ///< [s]
+  Before before = Before::kLogBegins;
+
+  double begin() const { return commands.front().time; }
+};
+
+/// What the machine obeys at a MOTOR message; nothing where that is unknown.
+std::optional<TrackCommand> obeyed(const motor_t& motor);
+
+/// The spans of a log, at least a second long, in order of time.
+std::vector<CommandSpan> knownCommands(const SortedLog& log);
+
+/// The command that acts at a time [s] within a span (the first one before it).
+TrackCommand commandAt(const CommandSpan& span, double time);
+
+/// Whether the span commands zero from `from` to `to` [s].
+bool standsBetween(const CommandSpan& span, double from, double to);
+
+/// Track speeds as the encoders say, where they do.
+std::vector<EncoderSample> encoderSamples(const SortedLog& log);
+
+/// Voltages of the battery, where they are measured.
+std::vector<VoltageSample> voltageSamples(const SortedLog& log);
+
+/// An INS message within a span of known commands.
+struct InsReading {
+  InsSample sample;        ///< yaw as the message says; pose NaN where there is none or it is held
+  bool fresh = false;      ///< whether the sample has a pose
+  bool new_track = false;  ///< the first pose after a jump
+};
+
+/// A time in which the INS repeated its pose although the vehicle was told to move.
+struct HeldPose {
+  double begin = 0.0;  ///< [s]
+  double end = 0.0;    ///< [s]
+};
+
+/// What the INS said in a span.
+struct SpanReadings {
+  std::vector<InsReading> readings;  ///< in order of time
+  std::vector<HeldPose> held;        ///< in order of time
+  size_t poses = 0;                  ///< messages with a pose, held ones too, while it drove
+  size_t repeated = 0;               ///< of these: held
+};
+
+/// The INS messages in a span. Equal poses are real where nothing is commanded for a second, and
+/// held elsewhere.
+SpanReadings insReadings(const SortedLog& log, const CommandSpan& span);
+
+/// A span with what the INS said in it.
+struct HeardSpan {
+  CommandSpan commands;
+  SpanReadings ins;
+};
+
+}  // namespace tread::gap
