@@ -1,8 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+// From the command to the speed of a track.
 #include "common/vehicle/catalogue_parts.hpp"
 
 namespace tread {
+namespace {
+
+std::optional<double> totalDelay(const VehicleModel& model) {
+  if (model.delay == 0.0) return std::nullopt;
+  return model.commandDelay();
+}
+
+std::optional<double> totalLag(const VehicleModel& model) {
+  if (model.lag == 0.0) return std::nullopt;
+  return model.driveLag();
+}
+
+std::optional<double> lagWhileSlowing(const VehicleModel& model) {
+  return std::max(0.0, model.driveLag() + model.effects.lag_asymmetry);
+}
+
+}  // namespace
 
 std::vector<Effect> driveEffects() {
   using V = EffectValues;
@@ -18,7 +36,11 @@ std::vector<Effect> driveEffects() {
        "A witness that does not pass through the INS: wheel encoders, motor current or a hardware "
        "time stamp. Without one, delay and INS latency add up to one number.",
        "Film the tracks and a lamp on the command line during one start; count the frames.",
-       {strength("delay", "s", -2.0, 2.0, 0.1, &V::command_delay, {0.05, 0.1, 0.2, 0.3})}},
+       {searchedFromSlope(addedTo(
+           &VehicleModel::delay, {"delay in all", "s", totalDelay},
+           strength("delay", "s", -2.0, 2.0, 0.1, &V::command_delay, {0.05, 0.1, 0.2, 0.3})))},
+       "A command acts earlier than the model says",
+       {{"delay"}, 4}},
       {"motor_deadband",
        "Motor deadband, stiction",
        EffectKind::kVehicle,
@@ -43,7 +65,7 @@ std::vector<Effect> driveEffects() {
        "straight drive alone, a weak battery shrinks all commands.",
        "Drive straight at 70, 85 and 100 % of the command and compare the three speeds.",
        {inverseLimit("s/m", 10.0, 0.8, &V::speed_saturation, {0.25, 0.4, 0.6, 0.9, 1.2}, "limit",
-                     "m/s")}},
+                     "m/s", LimitedQuantity::kTrackSpeed)}},
       {"battery_sag",
        "Battery sag",
        EffectKind::kVehicle,
@@ -56,7 +78,8 @@ std::vector<Effect> driveEffects() {
        "battery does not.",
        "Read the voltage at the start and now, standing and at full speed.",
        {strength("per_hour", "1/h", -3.0, 6.0, 0.3, &V::battery_sag_per_hour),
-        strength("per_drop", "1", -1.0, 3.0, 1.0, &V::battery_sag_per_drop)}},
+        needsVoltage(strength("per_drop", "1", -1.0, 3.0, 1.0, &V::battery_sag_per_drop))},
+       "The tracks get faster with time"},
       {"thermal_derating",
        "Thermal derating",
        EffectKind::kVehicle,
@@ -69,8 +92,8 @@ std::vector<Effect> driveEffects() {
        "stays.",
        "Feel or read the temperature of motors and controller after ten minutes of full power.",
        {strength("loss", "1", 0.0, 0.9, 0.15, &V::thermal_derating),
-        shape(strength("time_constant", "s", 10.0, 3600.0, 240.0, &V::thermal_time,
-                       {60.0, 240.0, 600.0}))}},
+        fitted(shape(strength("time_constant", "s", 10.0, 3600.0, 240.0, &V::thermal_time,
+                              {60.0, 240.0, 900.0})))}},
       {"track_asymmetry",
        "Left-right asymmetry",
        EffectKind::kVehicle,
@@ -82,7 +105,59 @@ std::vector<Effect> driveEffects() {
        "Drive the same line forwards and backwards: asymmetry flips the sign of the yaw rate, a "
        "gyro bias does not; drive it both ways: a slope to the side flips in the body.",
        "Drive 20 m along a line with equal commands, then back in reverse; measure both misses.",
-       {strength("share", "1", -0.3, 0.3, 0.03, &V::track_asymmetry)}},
+       {withSigns(strength("share", "1", -0.3, 0.3, 0.03, &V::track_asymmetry),
+                  "the left track is the faster one", "the right track is the faster one")}},
+      {"actuator_lag",
+       "First-order lag of the drive",
+       EffectKind::kVehicle,
+       "xw",
+       "The tracks approach a new speed gradually, fast at first.",
+       "w' = (u - w) / lag, each track; adds to the model's lag",
+       "Residuals after each change of command, in proportion to the change, gone in steady "
+       "motion.",
+       "Steps of different size, sampled at 10 Hz or more: a lag decays from the start, a delay "
+       "shifts, an acceleration limit takes longer for larger steps.",
+       "Step the command from rest to half speed and look how long the last third takes.",
+       {addedTo(&VehicleModel::lag, {"lag in all", "s", totalLag},
+                strength("lag", "s", -5.0, 5.0, 0.2, &V::actuator_lag))},
+       "The tracks take up a new speed sooner than the model says",
+       {{"lag"}, 3}},
+      {"lag_asymmetry",
+       "Slowing unlike speeding up",
+       EffectKind::kVehicle,
+       "xw",
+       "Braking takes longer or shorter than speeding up.",
+       "w' = (u - w) / (lag + slowing) while a track slows down or reverses",
+       "Residuals in speed and yaw rate only when a track slows down.",
+       "Up-steps and down-steps of the same size; slack of a track costs a distance instead and "
+       "only after a reversal.",
+       "Time the start to half speed and the stop from it.",
+       {withTotal(
+           {"lag while slowing", "s", lagWhileSlowing},
+           withSigns(strength("slowing", "s", -2.0, 2.0, 0.15, &V::lag_asymmetry, {-0.1, 0.15}),
+                     "braking takes longer", "braking is quicker"))}},
+      {"slew_limit",
+       "Acceleration limit",
+       EffectKind::kVehicle,
+       "xw",
+       "A track's speed changes no faster than a certain rate.",
+       "|w'| <= limit, each track; inverse_limit = 1 / limit",
+       "Straight ramps after a change of command; twice the step takes twice the time.",
+       "Steps of three sizes: with a lag the time does not depend on the size.",
+       "Step from rest to a third, two thirds and all of full speed and time each.",
+       {inverseLimit("s2/m", 20.0, 0.5, &V::slew_limit, {0.2, 0.4, 0.8, 1.6}, "limit", "m/s2")}},
+      {"track_backlash",
+       "Track slack, backlash",
+       EffectKind::kVehicle,
+       "xw",
+       "After a reversal a track does not pull until its slack is taken up.",
+       "no motion of a track until its drive has gone slack metres after a change of direction; a "
+       "track at rest is taken up forwards",
+       "Residuals only after the sign of a track's command has changed: always the same distance, "
+       "not the same time.",
+       "Reversals at two speeds: the time lost halves when the speed doubles.",
+       "Rock the vehicle by hand, or turn the sprocket back and forth and measure the play.",
+       {strength("slack", "m", 0.0, 0.3, 0.04, &V::track_backlash, {0.02, 0.06})}},
   };
 }
 

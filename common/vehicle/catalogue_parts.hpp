@@ -2,22 +2,29 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "common/vehicle/effects.hpp"
+#include "common/vehicle/model.hpp"
 
-/// The catalogue by chapters; use effectCatalogue().
+/// The catalogue by chapters; use effectCatalogue() and confoundedGroups().
 namespace tread {
 
-std::vector<Effect> driveEffects();        ///< from the command to the speed asked of a track
-std::vector<Effect> trackEffects();        ///< how a track gets to that speed
-std::vector<Effect> turningEffects();      ///< what the ground makes of it: slip and turning
-std::vector<Effect> yawEffects();          ///< limits and disturbances of turning
-std::vector<Effect> speedEffects();        ///< losses of forward speed
-std::vector<Effect> bodyEffects();         ///< inertia, motion to the side, slopes
-std::vector<Effect> measurementEffects();  ///< what the INS makes of the true motion
+std::vector<Effect> driveEffects();                 ///< from the command to the speed of a track
+std::vector<Effect> groundEffects();                ///< slip, turning and losses of forward speed
+std::vector<Effect> bodyEffects();                  ///< inertia, motion to the side, slopes
+std::vector<Effect> measurementEffects();           ///< what the INS makes of the true motion
+std::vector<ConfoundedGroup> groupsOfEveryDrive();  ///< that no drive tells apart
+std::vector<ConfoundedGroup> groupsOfPoorDrives();  ///< that a better drive tells apart
+
+/// Search settings of an effect that another one is under a second name.
+inline EffectSearch secondName() {
+  EffectSearch search;
+  search.second_name = true;
+  return search;
+}
 
 /// A strength of a vehicle effect.
 inline EffectParameter strength(std::string name, std::string unit, double min, double max,
@@ -37,18 +44,54 @@ inline EffectParameter strength(std::string name, std::string unit, double min, 
 /// The reciprocal of a limit, called inverse_limit in files; natural: what people call the limit.
 inline EffectParameter inverseLimit(std::string unit, double max, double typical,
                                     double EffectValues::*value, std::vector<double> probes,
-                                    std::string natural_name, std::string natural_unit) {
+                                    std::string natural_name, std::string natural_unit,
+                                    LimitedQuantity limited = LimitedQuantity::kNone) {
   EffectParameter parameter =
       strength("inverse_limit", std::move(unit), 0.0, max, typical, value, std::move(probes));
   parameter.natural_name = std::move(natural_name);
   parameter.natural_unit = std::move(natural_unit);
+  parameter.limited = limited;
   return parameter;
 }
 
-/// Turns a parameter into a shape.
-inline EffectParameter shape(EffectParameter parameter) {
+/// Turns a parameter into a shape; a search tries the strengths with each of the probes.
+inline EffectParameter shape(EffectParameter parameter, std::vector<double> probes = {}) {
   parameter.role = ParameterRole::kShape;
+  if (!probes.empty()) parameter.probes = std::move(probes);
   return parameter;
+}
+
+inline EffectParameter fitted(EffectParameter parameter) {
+  parameter.fitted = true;
+  return parameter;
+}
+
+inline EffectParameter searchedFromSlope(EffectParameter parameter) {
+  parameter.search_from_slope = true;
+  return parameter;
+}
+
+inline EffectParameter needsVoltage(EffectParameter parameter) {
+  parameter.needs_voltage = true;
+  return parameter;
+}
+
+inline EffectParameter withSigns(EffectParameter parameter, std::string positive,
+                                 std::string negative) {
+  parameter.positive = std::move(positive);
+  parameter.negative = std::move(negative);
+  return parameter;
+}
+
+inline EffectParameter withTotal(ParameterTotal total, EffectParameter parameter) {
+  parameter.total = std::move(total);
+  return parameter;
+}
+
+inline EffectParameter addedTo(double VehicleModel::*number, ParameterTotal total,
+                               EffectParameter parameter) {
+  parameter.adds_to = number;
+  return withTotal(std::move(total), std::move(parameter));
 }
 
 }  // namespace tread

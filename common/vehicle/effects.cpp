@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/vehicle/effects.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -12,8 +13,7 @@ namespace {
 
 std::vector<Effect> allEffects() {
   std::vector<Effect> all;
-  for (auto part : {driveEffects, trackEffects, turningEffects, yawEffects, speedEffects,
-                    bodyEffects, measurementEffects})
+  for (auto part : {driveEffects, groundEffects, bodyEffects, measurementEffects})
     for (Effect& effect : part()) all.push_back(std::move(effect));
   return all;
 }
@@ -42,6 +42,31 @@ const EffectParameter& parameterNamed(const Effect& effect, const std::string& p
   throw std::out_of_range("effect '" + effect.name + "' has no parameter '" + parameter + "'");
 }
 
+const EffectParameter* findEffectParameter(const std::string& path) {
+  for (const Effect& effect : effectCatalogue())
+    for (const EffectParameter& parameter : effect.parameters)
+      if (path == effect.name + "." + parameter.name) return &parameter;
+  return nullptr;
+}
+
+std::string effectOfPath(const std::string& path) {
+  const size_t dot = path.find('.');
+  if (dot != std::string::npos) return path.substr(0, dot);
+  for (const Effect& effect : effectCatalogue())
+    if (contains(effect.search.nominal, path)) return effect.name;
+  return path;
+}
+
+std::vector<const Effect*> nuisanceEffects() {
+  std::vector<const Effect*> nuisance;
+  for (const Effect& effect : effectCatalogue())
+    if (effect.search.nuisance_rank > 0) nuisance.push_back(&effect);
+  std::sort(nuisance.begin(), nuisance.end(), [](const Effect* a, const Effect* b) {
+    return a->search.nuisance_rank < b->search.nuisance_rank;
+  });
+  return nuisance;
+}
+
 bool isOn(const Effect& effect, const EffectValues& vehicle, const MeasurementModel& measurement) {
   for (const EffectParameter& parameter : effect.parameters) {
     if (parameter.role == ParameterRole::kShape) continue;
@@ -63,6 +88,41 @@ std::vector<std::string> effectsOn(const EffectValues& vehicle) {
 double naturalValue(const EffectParameter& parameter, double value) {
   if (!parameter.reciprocal()) return value;
   return value == 0.0 ? std::numeric_limits<double>::infinity() : 1.0 / value;
+}
+
+const std::vector<ConfoundedGroup>& confoundedGroups() {
+  static const std::vector<ConfoundedGroup> groups = [] {
+    std::vector<ConfoundedGroup> all = groupsOfEveryDrive();
+    for (ConfoundedGroup& group : groupsOfPoorDrives()) all.push_back(std::move(group));
+    return all;
+  }();
+  return groups;
+}
+
+std::vector<const ConfoundedGroup*> confoundedGroupsOf(const std::string& effect) {
+  std::vector<const ConfoundedGroup*> found;
+  for (const ConfoundedGroup& group : confoundedGroups())
+    if (contains(group.members, effect)) found.push_back(&group);
+  return found;
+}
+
+std::vector<std::string> confoundedEffects(const std::string& effect,
+                                           const MeasurementModel& measurement) {
+  const auto isEffect = [](const std::string& name) {
+    const std::vector<Effect>& all = effectCatalogue();
+    return std::any_of(all.begin(), all.end(),
+                       [&name](const Effect& known) { return known.name == name; });
+  };
+  std::vector<std::string> others;
+  for (const ConfoundedGroup* group : confoundedGroupsOf(effect)) {
+    const bool lacks_share = group->share != nullptr &&
+                             effectNamed(effect).kind == EffectKind::kMeasurement &&
+                             !(measurement.*group->share > 0.5);
+    if (!group->named_beside || lacks_share) continue;
+    for (const std::string& member : group->members)
+      if (member != effect && isEffect(member)) others.push_back(member);
+  }
+  return others;
 }
 
 }  // namespace tread

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/geometry/se2.hpp"
-#include "common/vehicle/effect_values.hpp"
+#include "common/vehicle/effects.hpp"
 
 namespace tread {
 

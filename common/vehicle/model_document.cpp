@@ -59,18 +59,25 @@ double* findParameter(ModelDocument& document, const std::string& path) {
       {"yaw_gain", &VehicleModel::yaw_gain}};
   const auto number = nominal.find(path);
   if (number != nominal.end()) return &(document.vehicle.*number->second);
-  for (const Effect& effect : effectCatalogue()) {
-    for (const EffectParameter& parameter : effect.parameters) {
-      if (path != effect.name + "." + parameter.name) continue;
-      if (parameter.vehicle != nullptr) return &(document.vehicle.effects.*parameter.vehicle);
-      return &(document.measurement.*parameter.measured);
-    }
-  }
-  return nullptr;
+  const EffectParameter* parameter = findEffectParameter(path);
+  if (parameter == nullptr) return nullptr;
+  if (parameter->vehicle != nullptr) return &(document.vehicle.effects.*parameter->vehicle);
+  return &(document.measurement.*parameter->measured);
 }
 
 const double* findParameter(const ModelDocument& document, const std::string& path) {
   return findParameter(const_cast<ModelDocument&>(document), path);
+}
+
+std::optional<ParameterBounds> plausibleBounds(const ModelDocument& document,
+                                               const std::string& path) {
+  for (const ParameterBounds& bounds : document.bounds)
+    if (bounds.parameter == path) return bounds;
+  const EffectParameter* parameter = findEffectParameter(path);
+  if (parameter == nullptr) return std::nullopt;
+  const double min =
+      parameter->adds_to != nullptr ? -(document.vehicle.*parameter->adds_to) : parameter->min;
+  return ParameterBounds{path, min, parameter->max};
 }
 
 }  // namespace tread

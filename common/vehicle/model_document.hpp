@@ -77,4 +77,10 @@ Envelope envelopeOf(const VehicleModel& model, const std::vector<TrackCommand>& 
 double* findParameter(ModelDocument& document, const std::string& path);
 const double* findParameter(const ModelDocument& document, const std::string& path);
 
+/// Values between which a parameter is plausible: the document's bounds, else the catalogue's; what
+/// is added to a number of the model can take no more away than it has. Nothing is said of numbers
+/// of the nominal model without bounds.
+std::optional<ParameterBounds> plausibleBounds(const ModelDocument& document,
+                                               const std::string& path);
+
 }  // namespace tread

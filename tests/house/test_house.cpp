@@ -185,6 +185,42 @@ TEST_CASE("what hides effects shares no source with what finds them") {
     }
 }
 
+// A new effect is one entry of the catalogue and one line of the kernel; nothing else knows it by
+// name. The values in common/vehicle are C++ members, not names.
+TEST_CASE("only the catalogue names effects") {
+  const fs::path catalogue = fs::path(TREAD_SOURCE_DIR) / "common/vehicle";
+  const std::regex entry("\n *\\{\"([a-z_]+)\",\\s*\"[^\"]+\",\\s*(EffectKind::|kMeasured)");
+  std::string effects;
+  size_t count = 0;
+  for (const auto& file : fs::directory_iterator(catalogue)) {
+    if (!startsWith(file.path().filename().string(), "catalogue_")) continue;
+    const std::string text = contentOf(file.path());
+    for (std::sregex_iterator found(text.begin(), text.end(), entry), end; found != end; ++found) {
+      effects += (count++ == 0 ? "" : "|") + (*found)[1].str();
+    }
+  }
+  CHECK(count >= 40);
+  // The same word for another quantity: spread between executions, learned gains, moment of
+  // inertia.
+  const std::set<std::pair<std::string, std::string>> others{
+      {"common/vehicle/model_file.cpp", "crab"},
+      {"modules/learner/core/bank_text.cpp", "crab"},
+      {"modules/simulator/vehicle_config.cpp", "yaw_inertia"},
+      {"tools/experiment/transition_world.cpp", "crab"}};
+  const std::regex literal("\"(" + effects + ")[\".]");
+  for (const char* folder : {"common", "modules", "tools"})
+    for (const fs::path& path : sourcesUnder(folder)) {
+      const std::string file = fs::relative(path, TREAD_SOURCE_DIR).string();
+      if (startsWith(file, "common/vehicle/catalogue_")) continue;
+      const std::string text = contentOf(path);
+      for (std::sregex_iterator found(text.begin(), text.end(), literal), end; found != end;
+           ++found) {
+        CAPTURE(file, (*found)[1].str());
+        CHECK(others.count({file, (*found)[1].str()}) == 1);
+      }
+    }
+}
+
 TEST_CASE("only lidar_driver knows mrpt-hwdrivers") {
   for (const char* folder : {"common", "modules", "tools"})
     for (const Include& include : includesUnder(folder)) {

@@ -4,6 +4,7 @@
 
 #include "core_rig.hpp"
 #include "modules/identification/core/adequacy.hpp"
+#include "modules/identification/core/candidates.hpp"
 #include "modules/identification/core/moments.hpp"
 
 // The rest of the stages: moments of change, and whether anything is left.
@@ -21,7 +22,7 @@ TEST_CASE("the moment of a change is found from seconds away, and its interval h
   FitState state = rig.fitter.start(model, {}, rig.all);
   const double before = state.loss;
   rig.fitter.add(state, freeParameter(model, "terrain_change.width_1"), 0.2, rig.all);
-  CHECK(momentsOf(state.model) == std::vector<std::string>{path});
+  CHECK(changePointsOn(state.model) == std::vector<std::string>{path});
   rig.fitter.fitRoughly(state, rig.all);
   refineMoment(rig.fitter, state, path, rig.all);
   rig.fitter.fit(state, rig.all);
@@ -36,13 +37,13 @@ TEST_CASE("the moment of a change is found from seconds away, and its interval h
 
 TEST_CASE("a model without a change has no moments, and one with two has both") {
   ModelDocument model = syntheticVehicle();
-  CHECK(momentsOf(model).empty());
+  CHECK(changePointsOn(model).empty());
   *findParameter(model, "payload_change.time") = 50.0;
-  CHECK(momentsOf(model).empty());  // a moment of nothing
+  CHECK(changePointsOn(model).empty());  // a moment of nothing
   *findParameter(model, "payload_change.speed") = 0.1;
   *findParameter(model, "terrain_change.slip_2") = 0.1;
-  CHECK(momentsOf(model) ==
-        std::vector<std::string>{"payload_change.time", "terrain_change.time_2"});
+  CHECK(changePointsOn(model) ==
+        std::vector<std::string>{"terrain_change.time_2", "payload_change.time"});
 }
 
 TEST_CASE(

@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "common/config/scalars.hpp"
-#include "common/vehicle/degeneracy.hpp"
 #include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
@@ -46,7 +45,7 @@ std::string parameterWords(const EffectParameter& parameter) {
          ")" + (shape ? "; says when or how, not how much" : "");
 }
 
-std::string groupWords(const Effect& effect, const DegeneracyGroup& group) {
+std::string groupWords(const Effect& effect, const ConfoundedGroup& group) {
   std::vector<std::string> others;
   for (const std::string& member : group.members)
     if (member != effect.name) others.push_back(member);
@@ -105,7 +104,7 @@ std::string explanation(const Effect& effect) {
   text += entry("looks like", effect.looks_like);
   text += entry("tell it apart", effect.separates);
   heading = "confused with";
-  for (const DegeneracyGroup* group : groupsOf(effect.name)) {
+  for (const ConfoundedGroup* group : confoundedGroupsOf(effect.name)) {
     text += entry(heading, groupWords(effect, *group));
     heading.clear();
   }

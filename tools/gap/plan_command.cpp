@@ -11,7 +11,6 @@
 
 #include "common/pattern/pattern_file.hpp"
 #include "common/recordings/text_file.hpp"
-#include "common/vehicle/degeneracy.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/gap/commands.hpp"
 #include "tools/gap/explain.hpp"
@@ -43,10 +42,10 @@ constexpr const char* kFooter =
     "is a pattern set for tread-patterns record. Where no drive tells the two apart, the\n"
     "measurement that does is printed instead, and the exit status is 1.";
 
-/// What the degeneracy table says of two effects; empty where it does not know them.
+/// What the catalogue says of two confounded effects; empty where it knows no common group.
 std::string fromTable(const std::string& a, const std::string& b) {
   std::string text;
-  for (const DegeneracyGroup* group : groupsOf(a)) {
+  for (const ConfoundedGroup* group : confoundedGroupsOf(a)) {
     if (std::find(group->members.begin(), group->members.end(), b) == group->members.end())
       continue;
     const std::string when = group->when.empty() ? "" : " (" + group->when + ")";

@@ -12,12 +12,10 @@
 namespace tread::gap {
 namespace {
 
-/// Effects that begin at a moment have begun.
+/// Effects with a change point have changed.
 void beginAtOnce(ModelDocument& model, const Effect& effect) {
-  for (const EffectParameter& parameter : effect.parameters)
-    if (parameter.role == ParameterRole::kShape && parameter.name.rfind("time", 0) == 0 &&
-        parameter.name != "time_constant")
-      *findParameter(model, effect.name + "." + parameter.name) = 0.0;
+  for (const ChangePoint& change : effect.search.change_points)
+    *findParameter(model, effect.name + "." + change.time) = 0.0;
 }
 
 /// The model with one of the two effects and without the other.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
 namespace tread::gap {
 namespace {
@@ -13,32 +12,43 @@ namespace {
 constexpr double kGravity = 9.81;     // [m/s2]
 constexpr double kSmallProbe = 0.25;  // of the typical value: smooth effects are straight there
 constexpr double kVanished = 2e-3;    // of an effect's typical size
-constexpr int kMoments = 15;          // at which a change is looked for
-constexpr double kEdge = 0.06;        // share of the drive without moments at either end
+constexpr int kChanges = 15;          // times at which a change is looked for
+constexpr double kEdge = 0.06;        // share of the drive without changes at either end
 
 double& numberIn(ModelDocument& model, const std::string& path) {
   return *findParameter(model, path);
 }
 
-/// Reciprocals of limits that bite: just, and more and more.
-std::vector<double> limitsBelow(double most) {
-  std::vector<double> probes;
-  if (most <= 0.0) return probes;
-  for (double share : {0.92, 0.8, 0.65, 0.45}) probes.push_back(1.0 / (share * most));
-  return probes;
+/// The most that a drive demands of what a limit limits, in the unit of the limit.
+double demandOn(LimitedQuantity limited, const Excitation& most) {
+  switch (limited) {
+    case LimitedQuantity::kTrackSpeed:
+      return most.track_speed;
+    case LimitedQuantity::kYawRate:
+      return most.omega;
+    case LimitedQuantity::kLateralAcceleration:
+      return most.v_omega;
+    case LimitedQuantity::kNone:
+      break;
+  }
+  return 0.0;
 }
 
-std::vector<double> probesOf(const Effect& effect, const EffectParameter& parameter,
-                             const Excitation& most) {
-  if (effect.name == "speed_saturation") return limitsBelow(most.track_speed);
-  if (effect.name == "turn_power_limit") return limitsBelow(most.omega);
-  if (effect.name == "grip_limit") {
-    std::vector<double> probes = limitsBelow(most.v_omega);
-    for (double& probe : probes) probe *= kGravity;
-    return probes;
+std::vector<double> probesOf(const EffectParameter& parameter, const Excitation& most) {
+  if (parameter.limited == LimitedQuantity::kNone)
+    return parameter.probes.empty() || parameter.search_from_slope
+               ? std::vector<double>{kSmallProbe * parameter.typical}
+               : parameter.probes;
+  // Reciprocals of limits that bite: just, and more and more.
+  std::vector<double> probes;
+  const double demand = demandOn(parameter.limited, most);
+  if (demand <= 0.0) return probes;
+  for (double share : {0.92, 0.8, 0.65, 0.45}) {
+    probes.push_back(1.0 / (share * demand));
+    // A grip limit is a share of gravity.
+    if (parameter.limited == LimitedQuantity::kLateralAcceleration) probes.back() *= kGravity;
   }
-  if (effect.name != "command_delay" && !parameter.probes.empty()) return parameter.probes;
-  return {kSmallProbe * parameter.typical};
+  return probes;
 }
 
 /// With what values of other parameters a strength is tried.
@@ -47,84 +57,87 @@ struct Setting {
   double since = kNotMeasured;
 };
 
-/// Changes at moments all over the drive, later than `after`.
-std::vector<Setting> momentsFor(const std::string& path, const Excitation& most, double after) {
-  std::vector<Setting> moments;
+/// The change point with which a strength begins to act; none = it always acts.
+const ChangePoint* changePointOf(const Effect& effect, const std::string& strength) {
+  for (const ChangePoint& change : effect.search.change_points)
+    if (contains(change.strengths, strength)) return &change;
+  return nullptr;
+}
+
+/// Whether a strength of a change point is not 0.
+bool isOn(const Effect& effect, const ChangePoint& change, const ModelDocument& model) {
+  return std::any_of(change.strengths.begin(), change.strengths.end(),
+                     [&](const std::string& strength) {
+                       return *findParameter(model, effect.name + "." + strength) != 0.0;
+                     });
+}
+
+/// The change point before another one of the same effect; none before the first.
+const ChangePoint* previousTo(const Effect& effect, const ChangePoint& change) {
+  return &change == &effect.search.change_points.front() ? nullptr : &change - 1;
+}
+
+/// Changes at times all over the drive, later than the previous change of the same effect, which
+/// they first repeat.
+std::vector<Setting> changesOf(const Effect& effect, const ChangePoint& change,
+                               const ModelDocument& model, const Excitation& most) {
+  const ChangePoint* previous = previousTo(effect, change);
+  const auto valueOf = [&](const std::string& name) {
+    return *findParameter(model, effect.name + "." + name);
+  };
+  const double after = previous != nullptr ? valueOf(previous->time) + 1.0 : -1.0;
+  std::vector<Setting> settings;
   const double length = most.end - most.begin;
-  for (int i = 0; i < kMoments; ++i) {
-    const double share = kEdge + (1.0 - 2.0 * kEdge) * i / (kMoments - 1.0);
-    const double moment = most.begin + share * length;
-    if (moment > after) moments.push_back({{{path, moment}}, moment});
+  for (int i = 0; i < kChanges; ++i) {
+    const double share = kEdge + (1.0 - 2.0 * kEdge) * i / (kChanges - 1.0);
+    const double time = most.begin + share * length;
+    if (time <= after) continue;
+    settings.push_back({{{effect.name + "." + change.time, time}}, time});
+    for (size_t n = 0; previous != nullptr && n < change.strengths.size(); ++n)
+      settings.back().shapes.emplace_back(effect.name + "." + change.strengths[n],
+                                          valueOf(previous->strengths[n]));
   }
-  return moments;
+  return settings;
 }
 
-/// A second change of ground begins as a repetition of the first.
-std::vector<Setting> secondChanges(const EffectValues& effects, const Excitation& most) {
-  auto moments = momentsFor("terrain_change.time_2", most, effects.terrain_time_1 + 1.0);
-  for (Setting& moment : moments) {
-    moment.shapes.emplace_back("terrain_change.width_2", effects.terrain_width_1);
-    moment.shapes.emplace_back("terrain_change.slip_2", effects.terrain_slip_1);
-    moment.shapes.emplace_back("terrain_change.breakaway_2", effects.terrain_breakaway_1);
-  }
-  return moments;
-}
-
-std::vector<Setting> settingsFor(const std::string& effect, const std::string& parameter,
+std::vector<Setting> settingsFor(const Effect& effect, const std::string& strength,
                                  const ModelDocument& model, const Excitation& most) {
-  if (effect == "payload_change") return momentsFor("payload_change.time", most, -1.0);
-  if (effect == "terrain_change")
-    return parameter.back() == '2' ? secondChanges(model.vehicle.effects, most)
-                                   : momentsFor("terrain_change.time_1", most, -1.0);
-  if (effect == "thermal_derating") {
-    std::vector<Setting> times;
-    for (double time : {60.0, 240.0, 900.0})
-      times.push_back({{{"thermal_derating.time_constant", time}}});
-    return times;
+  if (const ChangePoint* change = changePointOf(effect, strength))
+    return changesOf(effect, *change, model, most);
+  for (const EffectParameter& shape : effect.parameters) {
+    if (shape.role != ParameterRole::kShape) continue;
+    std::vector<Setting> settings;
+    for (double value : shape.probes)
+      settings.push_back({{{effect.name + "." + shape.name, value}}});
+    return settings;
   }
-  if (effect == "ins_latency")
-    return {{{{"ins_latency.gyro_share", 0.0}}}, {{{"ins_latency.gyro_share", 1.0}}}};
-  if (effect == "gyro_bias")
-    return {{{{"gyro_bias.heading_share", 0.0}}}, {{{"gyro_bias.heading_share", 1.0}}}};
   return {{}};
 }
 
 /// What is fitted together with a strength.
-std::vector<std::string> freedWith(const std::string& effect, const std::string& parameter) {
-  if (effect == "payload_change") return {"payload_change.yaw", "payload_change.speed"};
-  if (effect == "thermal_derating")
-    return {"thermal_derating.loss", "thermal_derating.time_constant"};
-  if (effect == "terrain_change") {
-    const std::string number = parameter.substr(parameter.size() - 1);
-    return {"terrain_change.width_" + number, "terrain_change.slip_" + number};
-  }
-  return {effect + "." + parameter};
-}
-
-bool firstChangeOn(const EffectValues& effects) {
-  return effects.terrain_width_1 != 0.0 || effects.terrain_slip_1 != 0.0 ||
-         effects.terrain_breakaway_1 != 0.0;
-}
-
-bool secondChangeOn(const EffectValues& effects) {
-  return effects.terrain_width_2 != 0.0 || effects.terrain_slip_2 != 0.0 ||
-         effects.terrain_breakaway_2 != 0.0;
+std::vector<std::string> freedWith(const Effect& effect, const std::string& strength) {
+  std::vector<std::string> names{strength};
+  if (const ChangePoint* change = changePointOf(effect, strength))
+    names.assign(change->strengths.begin(),
+                 change->strengths.begin() + static_cast<std::ptrdiff_t>(change->fitted));
+  for (const EffectParameter& shape : effect.parameters)
+    if (shape.fitted) names.push_back(shape.name);
+  for (std::string& name : names) name = effect.name + "." + name;
+  return names;
 }
 
 /// Whether a strength of an effect can be switched on in this model.
 bool isOpen(const Effect& effect, const EffectParameter& parameter, const ModelDocument& model,
             const Excitation& most) {
   if (parameter.role == ParameterRole::kShape) return false;
-  const EffectValues& effects = model.vehicle.effects;
-  // A load that only moves its centre looks like the centre itself from early on.
-  if (effect.name == "payload_change" && parameter.name == "icr") return false;
-  if (effect.name == "terrain_change") {
-    if (parameter.name.find("breakaway") == 0) return false;
-    const bool second = parameter.name.back() == '2';
-    return second ? firstChangeOn(effects) && !secondChangeOn(effects) : !firstChangeOn(effects);
-  }
-  if (parameter.name == "per_drop" && !most.voltage) return false;
-  return !isOn(effect, effects, model.measurement);
+  if (parameter.needs_voltage && !most.voltage) return false;
+  const ChangePoint* change = changePointOf(effect, parameter.name);
+  if (change == nullptr) return !isOn(effect, model.vehicle.effects, model.measurement);
+  // The others, a load that only moves its centre for one, look like a constant from early on.
+  const auto tested = change->strengths.begin() + static_cast<std::ptrdiff_t>(change->fitted);
+  if (std::find(change->strengths.begin(), tested, parameter.name) == tested) return false;
+  const ChangePoint* previous = previousTo(effect, *change);
+  return !isOn(effect, *change, model) && (previous == nullptr || isOn(effect, *previous, model));
 }
 
 /// All directions of an effect that can be switched on.
@@ -132,13 +145,13 @@ void addCandidates(const Effect& effect, const ModelDocument& model, const Excit
                    std::vector<Candidate>& all) {
   for (const EffectParameter& parameter : effect.parameters) {
     if (!isOpen(effect, parameter, model, most)) continue;
-    for (double change : probesOf(effect, parameter, most))
-      for (const Setting& setting : settingsFor(effect.name, parameter.name, model, most)) {
+    for (double change : probesOf(parameter, most))
+      for (const Setting& setting : settingsFor(effect, parameter.name, model, most)) {
         double begin = 0.0;
         for (const auto& [path, value] : setting.shapes)
           if (path == effect.name + "." + parameter.name) begin = value;
         all.push_back({effect.name, parameter.name, begin + change, change, setting.since,
-                       setting.shapes, freedWith(effect.name, parameter.name),
+                       setting.shapes, freedWith(effect, parameter.name),
                        std::isfinite(setting.since) ? setting.shapes.front().first : ""});
       }
   }
@@ -167,11 +180,9 @@ void addReleases(const FitState& state, std::vector<Candidate>& candidates) {
 
 /// Effects that are a number of the nominal model under another name.
 void forgetNominal(std::vector<Candidate>& candidates) {
-  static const std::set<std::string> kNumbers{"slip_ratio", "track_width", "actuator_lag",
-                                              "command_delay"};
   candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
                                   [](const Candidate& candidate) {
-                                    return kNumbers.count(candidate.effect) != 0;
+                                    return !effectNamed(candidate.effect).search.nominal.empty();
                                   }),
                    candidates.end());
 }
@@ -206,10 +217,9 @@ Excitation excitationOf(const Rows& rows, const ModelDocument& model) {
 }
 
 std::vector<Candidate> candidatesFor(const ModelDocument& model, const Excitation& most) {
-  static const std::set<std::string> kSecondNames{"crab", "yaw_rate_offset"};
   std::vector<Candidate> all;
   for (const Effect& effect : effectCatalogue())
-    if (kSecondNames.count(effect.name) == 0) addCandidates(effect, model, most, all);
+    if (!effect.search.second_name) addCandidates(effect, model, most, all);
   return all;
 }
 
@@ -288,8 +298,7 @@ void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candid
   for (const auto& [path, value] : candidate.shapes) numberIn(state.model, path) = value;
   // Thresholds begin at their probe, whose slope is known; the others at their first order size.
   const EffectParameter& known = parameterNamed(effectNamed(candidate.effect), candidate.parameter);
-  const bool threshold =
-      known.reciprocal() || (!known.probes.empty() && candidate.effect != "command_delay");
+  const bool threshold = known.reciprocal() || (!known.probes.empty() && !known.search_from_slope);
   const double from = candidate.value - candidate.change;
   const double begin =
       threshold ? candidate.value : std::clamp(from + size, known.min * 0.9, known.max * 0.9);
@@ -307,8 +316,12 @@ bool isVanishing(const std::string& effect, const std::string& parameter, double
          kVanished * std::abs(parameterNamed(effectNamed(effect), parameter).typical);
 }
 
-bool hasMoment(const std::string& effect) {
-  return effect == "payload_change" || effect == "terrain_change";
+std::vector<std::string> changePointsOn(const ModelDocument& model) {
+  std::vector<std::string> paths;
+  for (const Effect& effect : effectCatalogue())
+    for (const ChangePoint& change : effect.search.change_points)
+      if (isOn(effect, change, model)) paths.push_back(effect.name + "." + change.time);
+  return paths;
 }
 
 }  // namespace tread::gap

@@ -67,7 +67,7 @@ void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candid
 /// Whether a size is nothing beside what is typical.
 bool isVanishing(const std::string& effect, const std::string& parameter, double size);
 
-/// Whether an effect begins at a moment that is searched for.
-bool hasMoment(const std::string& effect);
+/// Paths of the change points at which effects of a model that are on begin to act.
+std::vector<std::string> changePointsOn(const ModelDocument& model);
 
 }  // namespace tread::gap

@@ -8,7 +8,6 @@
 #include <optional>
 #include <tuple>
 
-#include "common/vehicle/degeneracy.hpp"
 #include "modules/identification/core/adequacy.hpp"
 #include "modules/identification/core/atlas.hpp"
 #include "modules/identification/core/atlas_maps.hpp"
@@ -196,7 +195,7 @@ class Discovery {
       if (!isNew(effect))
         finding_.calibrated.back().moved = hasMoved(estimate, std::sqrt(covariance(at, at)));
     }
-    for (const std::string& path : momentsOf(state.model)) {
+    for (const std::string& path : changePointsOn(state.model)) {
       const std::string effect = path.substr(0, path.find('.'));
       if (isNew(effect)) estimates[effect].push_back(momentEstimate(path));
     }
@@ -268,7 +267,7 @@ class Discovery {
     effect.name = name;
     effect.kind = effectNamed(name).kind;
     effect.parameters = std::move(parameters);
-    effect.group = twinsOf(name, result_.state.model);
+    effect.group = confoundedEffects(name, result_.state.model.measurement);
     for (const std::string& pair : result_.replaced[name]) effect.group.push_back(pair);
     // What came in beside it later does not stand in its place.
     for (const RunnerUp& other : result_.runner_ups[name])
@@ -371,24 +370,6 @@ class Discovery {
 };
 
 }  // namespace
-
-std::vector<std::string> twinsOf(const std::string& effect, const ModelDocument& model) {
-  std::vector<std::string> twins;
-  for (const DegeneracyGroup* group : groupsOf(effect)) {
-    const bool late = group->name == "late" &&
-                      (effect == "command_delay" || model.measurement.ins_latency_gyro > 0.5);
-    const bool change = group->name == "payload_or_ground";
-    if ((!group->when.empty() && !late && !change) || group->name == "scale") continue;
-    for (const std::string& member : group->members) {
-      const auto& catalogue = effectCatalogue();
-      const bool is_effect =
-          std::any_of(catalogue.begin(), catalogue.end(),
-                      [&member](const Effect& known) { return known.name == member; });
-      if (is_effect && member != effect) twins.push_back(member);
-    }
-  }
-  return twins;
-}
 
 Finding findGap(const GapTask& task, const Progress& say) {
   return Discovery(task, say).run();

@@ -32,8 +32,4 @@ struct GapTask {
  * std::invalid_argument for an accepted effect that the drives cannot size. */
 Finding findGap(const GapTask& task, const Progress& say);
 
-/// Members of an effect's degeneracy groups that hold for every drive (without itself), effects
-/// only.
-std::vector<std::string> twinsOf(const std::string& effect, const ModelDocument& model);
-
 }  // namespace tread::gap

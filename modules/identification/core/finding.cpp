@@ -24,12 +24,4 @@ const char* verdictName(Verdict verdict) {
   return "";
 }
 
-std::string effectOf(const Estimate& estimate) {
-  if (estimate.parameter == "delay") return "command_delay";
-  if (estimate.parameter == "lag") return "actuator_lag";
-  if (estimate.parameter == "forward_gain") return "slip_ratio";
-  if (estimate.parameter == "yaw_gain" || estimate.parameter == "gauge") return "track_width";
-  return estimate.parameter.substr(0, estimate.parameter.find('.'));
-}
-
 }  // namespace tread::gap

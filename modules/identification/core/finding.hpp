@@ -40,10 +40,6 @@ struct Estimate {
   bool moved = false;
 };
 
-/// The effect that a parameter belongs to; of a number of the nominal model the effect that changes
-/// the same.
-std::string effectOf(const Estimate& estimate);
-
 /// Another effect that explains the data as well or nearly so.
 struct RunnerUp {
   std::string effect;

@@ -29,11 +29,11 @@ double valueOf(const ModelDocument& model, const std::string& path) {
   return valueOf(const_cast<ModelDocument&>(model), path);
 }
 
-FreeParameter nominalNumber(const std::string& path) {
-  if (path == "lag") return {path, 0.0, 3.0, 0.005};
-  if (path == "delay") return {path, 0.0, 2.0, 0.005};
-  if (path == "gauge") return {path, 0.05, 10.0, 0.01};
-  return {path, 0.02, 5.0, 0.01};  // gains and full speed
+FreeParameter nominalNumber(const std::string& path, double value) {
+  if (path == "lag") return {path, 0.0, 3.0, 0.005, value};
+  if (path == "delay") return {path, 0.0, 2.0, 0.005, value};
+  if (path == "gauge") return {path, 0.05, 10.0, 0.01, value};
+  return {path, 0.02, 5.0, 0.01, value};  // gains and full speed
 }
 
 double priorLoss(const FitState& state) {
@@ -92,26 +92,21 @@ Eigen::VectorXd dampedStep(const FitState& state, Normal normal, double damping)
 }  // namespace
 
 FreeParameter freeParameter(const ModelDocument& model, const std::string& path) {
-  const double value = valueOf(model, path);
-  const size_t dot = path.find('.');
   FreeParameter free;
-  if (dot == std::string::npos) {
-    free = nominalNumber(path);
+  free.path = path;
+  free.expected = valueOf(model, path);
+  const EffectParameter* known = findEffectParameter(path);
+  if (known == nullptr) {
+    free = nominalNumber(path, free.expected);
   } else {
-    const EffectParameter& known =
-        parameterNamed(effectNamed(path.substr(0, dot)), path.substr(dot + 1));
-    free = {path, known.min, known.max, kShareOfTypical * std::abs(known.typical)};
-    if (known.role == ParameterRole::kShape && known.unit == "s") free.step = 1.0;
+    free.step = known->role == ParameterRole::kShape && known->unit == "s"
+                    ? 1.0
+                    : kShareOfTypical * std::abs(known->typical);
   }
-  // A sum of times that is negative does nothing more.
-  if (path == "command_delay.delay") free.min = -model.vehicle.delay;
-  if (path == "actuator_lag.lag") free.min = -model.vehicle.lag;
-  for (const ParameterBounds& bounds : model.bounds)
-    if (bounds.parameter == path) {
-      free.min = bounds.min;
-      free.max = bounds.max;
-    }
-  free.expected = value;
+  if (const auto bounds = plausibleBounds(model, path)) {
+    free.min = bounds->min;
+    free.max = bounds->max;
+  }
   return free;
 }
 
@@ -144,8 +139,8 @@ bool onBound(const ModelDocument& model, const FreeParameter& parameter) {
 
 bool runsToBound(const ModelDocument& model, const FreeParameter& parameter) {
   const double value = valueOf(model, parameter.path);
-  const bool to_nothing = value < 0.0 && (parameter.path == "command_delay.delay" ||
-                                          parameter.path == "actuator_lag.lag");
+  const EffectParameter* known = findEffectParameter(parameter.path);
+  const bool to_nothing = value < 0.0 && known != nullptr && known->adds_to != nullptr;
   return value != 0.0 && !to_nothing && parameter.path.find(".time") == std::string::npos &&
          onBound(model, parameter);
 }

@@ -21,18 +21,6 @@ double lossAt(const Fitter& fitter, const FitState& state, const std::string& pa
 
 }  // namespace
 
-std::vector<std::string> momentsOf(const ModelDocument& model) {
-  const EffectValues& effects = model.vehicle.effects;
-  std::vector<std::string> paths;
-  if (effects.payload_yaw != 0.0 || effects.payload_speed != 0.0 || effects.payload_icr != 0.0)
-    paths.emplace_back("payload_change.time");
-  if (effects.terrain_width_1 != 0.0 || effects.terrain_slip_1 != 0.0)
-    paths.emplace_back("terrain_change.time_1");
-  if (effects.terrain_width_2 != 0.0 || effects.terrain_slip_2 != 0.0)
-    paths.emplace_back("terrain_change.time_2");
-  return paths;
-}
-
 void refineMoment(const Fitter& fitter, FitState& state, const std::string& path,
                   const std::vector<char>& mask) {
   double& moment = *findParameter(state.model, path);

@@ -10,9 +10,6 @@
 
 namespace tread::gap {
 
-/// Paths of the moments at which effects of a model that are on begin to act.
-std::vector<std::string> momentsOf(const ModelDocument& model);
-
 /// Moves the moment of a change to where the loss is least, all else as it is.
 /** The loss over a moment is not smooth (each moment concerns other rows), so it is searched, not
  * followed downhill: halving steps down to a quarter of a second. */

@@ -171,7 +171,7 @@ class Pruning {
     for (const std::string& effect : leastSureFirst(fitter_, result_, mask_)) {
       // What is beyond doubt in first order needs no simulation without it.
       Needed needed = needed_;
-      needed.size_counts = !hasMoment(effect);
+      needed.size_counts = effectNamed(effect).search.change_points.empty();
       const bool straight = isStraight(result_.state, effect);
       Removal removed;
       if (straight) removed = linearRemoval(fitter_, result_.state, loss, effect, mask_, needed);

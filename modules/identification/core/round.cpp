@@ -31,7 +31,8 @@ std::vector<size_t> bestOfEffects(const Round& round) {
 /// Evidence for a candidate over what is needed; less than 1 if chance explains it.
 double evidenceOf(const ScoreTest& test, Eigen::Index candidate, const Round& round, bool first) {
   // A change finds a few blocks of chance wherever they are: it has to show in many.
-  const bool moment = hasMoment(round.candidates[static_cast<size_t>(candidate)].effect);
+  const bool moment = !effectNamed(round.candidates[static_cast<size_t>(candidate)].effect)
+                           .search.change_points.empty();
   const double level = moment ? std::min(round.alpha, kMomentAlpha) : round.alpha;
   const Needed needed{criticalScore(round.chance, level), round.overdispersion, first, !moment};
   const double found = evidence(test, candidate, needed);

@@ -17,14 +17,6 @@ namespace {
 
 constexpr size_t kRenewed = 10;  // directions that are simulated again in a round
 
-/// Plain causes that everything else must be told from.
-const std::vector<std::string>& coverPaths() {
-  static const std::vector<std::string> paths{"slip_ratio.slip", "track_width.widening",
-                                              "actuator_lag.lag", "command_delay.delay",
-                                              "ins_latency.latency"};
-  return paths;
-}
-
 std::string effectOf(const std::string& path) {
   return path.substr(0, path.find('.'));
 }
@@ -145,17 +137,16 @@ class Search {
   }
 
   void cover() {
-    for (const std::string& path : coverPaths()) {
-      const std::string effect = effectOf(path);
+    for (const Effect* effect : nuisanceEffects()) {
       // Numbers of the nominal model that are free cover the same.
-      if (settings_.calibrate && effect != "ins_latency") continue;
-      if (contains(settings_.rejected, effect)) continue;
-      if (isOn(effectNamed(effect), state().model.vehicle.effects, state().model.measurement))
-        continue;
-      FreeParameter parameter = freeParameter(state().model, path);
+      if (settings_.calibrate && !effect->search.nominal.empty()) continue;
+      if (contains(settings_.rejected, effect->name)) continue;
+      if (isOn(*effect, state().model.vehicle.effects, state().model.measurement)) continue;
+      FreeParameter parameter =
+          freeParameter(state().model, effect->name + "." + effect->parameters.front().name);
       parameter.expected = 0.0;
       fitter_.add(state(), parameter, 0.0, mask_);
-      result_.effects.push_back(effect);
+      result_.effects.push_back(effect->name);
       ++covered_;
     }
     settle(state());

@@ -25,9 +25,4 @@ struct SearchSettings {
   uint64_t seed = 1;
 };
 
-/// Whether a name is among these.
-inline bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 }  // namespace tread::gap

@@ -19,7 +19,7 @@ bool isAmbiguous(const FoundEffect& effect) {
 }
 
 EffectKind kindOf(const Estimate& estimate) {
-  return effectNamed(effectOf(estimate)).kind;
+  return effectNamed(effectOfPath(estimate.parameter)).kind;
 }
 
 /// Whether a term of the INS is another by a share of what is usual: where executions end does not
@@ -27,8 +27,9 @@ EffectKind kindOf(const Estimate& estimate) {
 bool isAnotherInstrument(const Estimate& estimate) {
   const size_t dot = estimate.parameter.find('.');
   if (dot == std::string::npos || kindOf(estimate) != EffectKind::kMeasurement) return false;
-  const double typical =
-      parameterNamed(effectNamed(effectOf(estimate)), estimate.parameter.substr(dot + 1)).typical;
+  const double typical = parameterNamed(effectNamed(effectOfPath(estimate.parameter)),
+                                        estimate.parameter.substr(dot + 1))
+                             .typical;
   return std::abs(estimate.value - estimate.before) > kShareOfTypical * std::abs(typical);
 }
 

@@ -7,7 +7,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "common/vehicle/degeneracy.hpp"
 #include "common/vehicle/effects.hpp"
 #include "tests/common/vehicle/rich_drive.hpp"
 
@@ -85,8 +84,9 @@ TEST_CASE("Every entry of the catalogue is complete") {
       CHECK_FALSE(parameter.unit.empty());
       CHECK(parameter.min < parameter.max);
       CHECK((parameter.typical >= parameter.min && parameter.typical <= parameter.max));
+      const bool strength = parameter.role == ParameterRole::kStrength;
       for (const double probe : parameter.probes)
-        CHECK((probe >= parameter.min && probe <= parameter.max && probe != 0.0));
+        CHECK((probe >= parameter.min && probe <= parameter.max && (probe != 0.0 || !strength)));
       if (parameter.role == ParameterRole::kStrength) CHECK(parameter.min <= 0.0);
       CHECK((parameter.reciprocal() == (parameter.name == "inverse_limit")));
     }
@@ -176,7 +176,7 @@ TEST_CASE("A kernel with state of every kind goes on like its copy and on its ow
 
 TEST_CASE("Groups name effects that exist, or numbers of the nominal model") {
   const std::set<std::string> nominal{"forward_gain", "full_speed"};
-  for (const DegeneracyGroup& group : degeneracyGroups()) {
+  for (const ConfoundedGroup& group : confoundedGroups()) {
     INFO(group.name);
     CHECK(group.members.size() >= 2);
     CHECK_FALSE(group.because.empty());
@@ -184,7 +184,7 @@ TEST_CASE("Groups name effects that exist, or numbers of the nominal model") {
     for (const std::string& member : group.members)
       if (nominal.count(member) == 0) CHECK_NOTHROW(effectNamed(member));
   }
-  REQUIRE(groupsOf("icr_offset").size() == 1);
-  CHECK(groupsOf("icr_offset").front()->name == "body_point");
-  CHECK(groupsOf("turn_speed_loss").empty());
+  REQUIRE(confoundedGroupsOf("icr_offset").size() == 1);
+  CHECK(confoundedGroupsOf("icr_offset").front()->name == "body_point");
+  CHECK(confoundedGroupsOf("turn_speed_loss").empty());
 }

@@ -6,7 +6,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "common/vehicle/degeneracy.hpp"
 #include "common/vehicle/effects.hpp"
 #include "common/vehicle/measurement.hpp"
 #include "common/vehicle/model_document.hpp"
@@ -106,7 +105,7 @@ TEST_CASE("what no drive can tell apart is alike for the generator and for the w
     CAPTURE(spec->name);
     Names alike;
     std::vector<Names> together;
-    for (const DegeneracyGroup* group : groupsOf(spec->name)) {
+    for (const ConfoundedGroup* group : confoundedGroupsOf(spec->name)) {
       Names others = setOf(group->members);
       others.erase(spec->name);
       // A delay is a latency of all channels; one of the poses alone is no delay.

@@ -28,7 +28,7 @@ constexpr const char* kFittedNumbers =
 std::vector<std::string> movedIn(const Finding& finding) {
   std::vector<std::string> names;
   for (const Estimate& estimate : finding.calibrated) {
-    const std::string effect = effectOf(estimate);
+    const std::string effect = effectOfPath(estimate.parameter);
     if (estimate.moved && std::find(names.begin(), names.end(), effect) == names.end())
       names.push_back(effect);
   }

@@ -4,15 +4,10 @@
 
 #include <algorithm>
 
-#include "common/vehicle/degeneracy.hpp"
 #include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {
-
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 bool isKnown(const std::vector<RivalPair>& pairs, const std::string& one,
              const std::string& other) {
@@ -36,14 +31,17 @@ std::vector<std::string> rivalsOf(const FoundEffect& effect) {
 std::string rivalTitle(const std::string& found, const std::string& other) {
   const std::string title = inSentence(shortTitleOf(other));
   // A model may have a latency of the poses alone, which is another one.
-  return found == "command_delay" && other == "ins_latency" ? title + " of poses and gyro alike"
-                                                            : title;
+  if (effectNamed(other).kind == EffectKind::kMeasurement)
+    for (const ConfoundedGroup* group : confoundedGroupsOf(found))
+      if (group->share != nullptr && contains(group->members, other))
+        return title + group->share_words;
+  return title;
 }
 
 std::vector<std::string> waysToTell(const FoundEffect& effect) {
   const std::vector<std::string> rivals = rivalsOf(effect);
   std::vector<std::string> ways;
-  for (const DegeneracyGroup* group : groupsOf(effect.name))
+  for (const ConfoundedGroup* group : confoundedGroupsOf(effect.name))
     if (std::any_of(group->members.begin(), group->members.end(),
                     [&](const std::string& member) { return contains(rivals, member); }))
       ways.push_back(group->separates);
@@ -52,9 +50,9 @@ std::vector<std::string> waysToTell(const FoundEffect& effect) {
 }
 
 bool driveMayTell(const RivalPair& pair) {
-  const std::vector<const DegeneracyGroup*> groups = groupsOf(pair.found);
+  const std::vector<const ConfoundedGroup*> groups = confoundedGroupsOf(pair.found);
   return !pair.twin ||
-         std::none_of(groups.begin(), groups.end(), [&pair](const DegeneracyGroup* group) {
+         std::none_of(groups.begin(), groups.end(), [&pair](const ConfoundedGroup* group) {
            return contains(group->members, pair.other);
          });
 }

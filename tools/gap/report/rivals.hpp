@@ -21,7 +21,7 @@ std::vector<std::string> rivalsOf(const FoundEffect& effect);
 /// What another effect is called beside a found one, within a sentence.
 std::string rivalTitle(const std::string& found, const std::string& other);
 
-/// What tells an effect from its rivals: of the degeneracy table, else of the catalogue.
+/// What tells an effect from its rivals: of their common group, else of the effect.
 std::vector<std::string> waysToTell(const FoundEffect& effect);
 
 /// Two effects that may be taken for each other.
@@ -33,7 +33,7 @@ struct RivalPair {
   double error = 0.0;   ///< [nats]
 };
 
-/// Whether a drive may tell a pair: twins of the degeneracy table want another measurement.
+/// Whether a drive may tell a pair: members of one group want another measurement.
 bool driveMayTell(const RivalPair& pair);
 
 /// All pairs of a finding, each once, whichever of the two was found first.

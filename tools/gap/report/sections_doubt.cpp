@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/vehicle/degeneracy.hpp"
 #include "tools/gap/report/guidance.hpp"
 #include "tools/gap/report/headline.hpp"
 #include "tools/gap/report/rivals.hpp"
@@ -18,13 +17,13 @@ bool isEffect(const std::string& name) {
                      [&](const Effect& effect) { return effect.name == name; });
 }
 
-bool isMember(const DegeneracyGroup& group, const std::string& name) {
+bool isMember(const ConfoundedGroup& group, const std::string& name) {
   return std::find(group.members.begin(), group.members.end(), name) != group.members.end();
 }
 
 /// Why two effects look the same, and what tells them apart; empty where no table knows them.
 std::string groupWords(const std::string& effect, const std::string& other) {
-  for (const DegeneracyGroup* group : groupsOf(effect))
+  for (const ConfoundedGroup* group : confoundedGroupsOf(effect))
     if (isMember(*group, other))
       return " " + asSentence(group->because) + (group->when.empty() ? "" : ": " + group->when) +
              ". To tell: " + group->separates;
