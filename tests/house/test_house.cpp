@@ -283,6 +283,6 @@ TEST_CASE("the table of channels says what the table in code says") {
   }
 }
 
-TEST_CASE("README is short: at most 9 kB; manuals stand in the folders") {
+TEST_CASE("README is short (at most 9 kB) and manuals stand in the folders") {
   CHECK(contentOf(fs::path(TREAD_SOURCE_DIR) / "README.md").size() <= 9000);
 }
