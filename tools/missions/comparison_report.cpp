@@ -2,11 +2,12 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/missions/comparison_report.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <ostream>
 
 #include "common/report/text.hpp"
-#include "tools/missions/campaign_json.hpp"
 #include "tools/missions/settling.hpp"
 
 namespace tread::missions {
@@ -35,18 +36,18 @@ Row rowOf(const std::string& rule, const std::vector<MissionResult>& results, co
           settlingOf(results, error, omniscient, Met::kBefore)};
 }
 
-Omniscient omniscientOf(const Comparison& comparison) {
+Omniscient omniscientOf(const RuleComparison& comparison) {
   Omniscient omniscient;
-  for (const Campaign& campaign : comparison.campaigns)
-    for (const MissionResult& result : campaign.results) omniscient.add(result);
+  for (const Batch& batch : comparison.batches)
+    for (const MissionResult& result : batch.results) omniscient.add(result);
   return omniscient;
 }
 
 /// Each rule in its own drives.
-std::vector<Row> rowsOfWorlds(const Comparison& comparison, const Omniscient& omniscient) {
+std::vector<Row> rowsOfWorlds(const RuleComparison& comparison, const Omniscient& omniscient) {
   std::vector<Row> rows;
-  for (const Campaign& campaign : comparison.campaigns)
-    rows.push_back(rowOf(campaign.rule, campaign.results, errorAsDriven(), omniscient));
+  for (const Batch& batch : comparison.batches)
+    rows.push_back(rowOf(batch.rule, batch.results, errorAsDriven(), omniscient));
   return rows;
 }
 
@@ -55,12 +56,13 @@ Row omniscientRow(const std::vector<MissionResult>& results, const Omniscient& o
   Row row;
   row.rule = "omniscient";
   // An execution does not know its world's seed, so the missions are taken one by one.
-  std::map<const ScoredExecution*, shadow::EndError> errors;
+  std::map<const ScoredExecution*, shadow::EndPoseError> errors;
   for (const MissionResult& result : results)
     for (const ScoredExecution& execution : result.executions)
       if (const auto error = omniscient.errorOf(execution, result.seed))
         errors.emplace(&execution, *error);
-  const ErrorOf known = [&](const ScoredExecution& execution) -> std::optional<shadow::EndError> {
+  const ErrorOf known =
+      [&](const ScoredExecution& execution) -> std::optional<shadow::EndPoseError> {
     const auto found = errors.find(&execution);
     if (!execution.measured || found == errors.end()) return std::nullopt;
     return found->second;
@@ -71,9 +73,9 @@ Row omniscientRow(const std::vector<MissionResult>& results, const Omniscient& o
 }
 
 /// Each rule on the executions of the first rule's drives.
-std::vector<Row> rowsOfExecutions(const Comparison& comparison, const Omniscient& omniscient) {
+std::vector<Row> rowsOfExecutions(const RuleComparison& comparison, const Omniscient& omniscient) {
   std::vector<Row> rows;
-  const std::vector<MissionResult>& results = comparison.campaigns.front().results;
+  const std::vector<MissionResult>& results = comparison.batches.front().results;
   if (results.empty()) return rows;
   const std::vector<learner::Rule>& rules = results.front().shadow_rules;
   for (size_t i = 0; i < rules.size(); ++i)
@@ -141,20 +143,20 @@ void printSettlingTable(std::ostream& out, const std::vector<Row>& rows) {
   for (const Row& row : rows) printSettling(out, row, "met before", row.met_before);
 }
 
-void printDrives(std::ostream& out, const Comparison& comparison) {
+void printDrives(std::ostream& out, const RuleComparison& comparison) {
   out << "  rule         missions  arrived  refused  idle  stopped  contacts  metres  patterns\n";
-  for (const Campaign& campaign : comparison.campaigns) {
+  for (const Batch& batch : comparison.batches) {
     double metres = 0.0;
     int patterns = 0;
-    for (const MissionResult& result : campaign.results) {
+    for (const MissionResult& result : batch.results) {
       metres += result.distance;
       patterns += result.completed;
     }
-    out << formatted("  %-12s %8zu %8d %8d %5d %8d %9d %7.0f %9d\n", campaign.rule.c_str(),
-                     campaign.results.size(), countOf(campaign, Outcome::kArrived),
-                     countOf(campaign, Outcome::kRefused), countOf(campaign, Outcome::kIdle),
-                     countOf(campaign, Outcome::kStopped), collisionsOf(campaign), metres,
-                     patterns);
+    out << formatted(
+        "  %-12s %8zu %8d %8d %5d %8d %9d %7.0f %9d\n", batch.rule.c_str(), batch.results.size(),
+        countOf(batch, MissionOutcome::kArrived), countOf(batch, MissionOutcome::kRefused),
+        countOf(batch, MissionOutcome::kIdle), countOf(batch, MissionOutcome::kStopped),
+        collisionsOf(batch), metres, patterns);
   }
 }
 
@@ -195,9 +197,15 @@ Json rowsJson(const std::vector<Row>& rows) {
   return json;
 }
 
+constexpr size_t kShown = 5;  ///< missions with the largest ratios
+
+double timeOf(const MissionResult& result) {
+  return result.time - result.begun;
+}
+
 }  // namespace
 
-void printComparison(std::ostream& out, const Comparison& comparison) {
+void printComparison(std::ostream& out, const RuleComparison& comparison) {
   const Omniscient omniscient = omniscientOf(comparison);
   out << "the same worlds, each rule drives:\n";
   printDrives(out, comparison);
@@ -206,7 +214,7 @@ void printComparison(std::ostream& out, const Comparison& comparison) {
   printSettlingTable(out, own);
   std::vector<Row> same = rowsOfExecutions(comparison, omniscient);
   if (same.empty()) return;
-  const Campaign& driven = comparison.campaigns.front();
+  const Batch& driven = comparison.batches.front();
   out << "the same executions, those of the drives with " << driven.rule
       << ", predicted by each rule:\n";
   std::vector<Row> with_best = same;
@@ -215,9 +223,9 @@ void printComparison(std::ostream& out, const Comparison& comparison) {
   printSettlingTable(out, same);
 }
 
-void writeComparison(const std::string& path, const Comparison& comparison) {
+void writeComparison(const std::string& path, const RuleComparison& comparison) {
   const Omniscient omniscient = omniscientOf(comparison);
-  const Campaign& driven = comparison.campaigns.front();
+  const Batch& driven = comparison.batches.front();
   Json json;
   json["same_worlds"] = rowsJson(rowsOfWorlds(comparison, omniscient));
   json["same_executions_driven_with"] = driven.rule;
@@ -228,8 +236,63 @@ void writeComparison(const std::string& path, const Comparison& comparison) {
                         {"settled_5_to_15", errorJson(best.errors.settled)},
                         {"all", errorJson(best.all)}};
   json["campaigns"] = Json::array();
-  for (const Campaign& campaign : comparison.campaigns)
-    json["campaigns"].push_back(campaignJson(campaign));
+  for (const Batch& batch : comparison.batches) json["campaigns"].push_back(batchJson(batch));
+  writeJsonFile(path, json);
+}
+
+std::vector<TimeRatio> timeRatios(const OmniscientComparison& comparison) {
+  std::vector<TimeRatio> ratios;
+  for (size_t i = 0; i < comparison.learning.results.size(); ++i) {
+    const MissionResult& learning = comparison.learning.results[i];
+    const MissionResult& omniscient = comparison.omniscient.results[i];
+    const bool both = learning.outcome == MissionOutcome::kArrived &&
+                      omniscient.outcome == MissionOutcome::kArrived;
+    if (both) ratios.push_back({learning.seed, timeOf(learning), timeOf(omniscient)});
+  }
+  std::sort(ratios.begin(), ratios.end(),
+            [](const TimeRatio& a, const TimeRatio& b) { return a.ratio() < b.ratio(); });
+  return ratios;
+}
+
+double quantileOf(const std::vector<TimeRatio>& sorted, double share) {
+  if (sorted.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto rank = static_cast<size_t>(std::ceil(share * static_cast<double>(sorted.size())));
+  return sorted[std::min(sorted.size(), std::max<size_t>(1, rank)) - 1].ratio();
+}
+
+void printOmniscient(std::ostream& out, const OmniscientComparison& comparison) {
+  const std::vector<TimeRatio> ratios = timeRatios(comparison);
+  out << formatted("arrived: %d learning with rule %s, %d omniscient, both in %zu\n",
+                   countOf(comparison.learning, MissionOutcome::kArrived),
+                   comparison.learning.rule.c_str(),
+                   countOf(comparison.omniscient, MissionOutcome::kArrived), ratios.size());
+  if (ratios.empty()) return;
+  out << formatted(
+      "time to the goal over the omniscient robot's: median %.3f, p90 %.3f, worst %.3f\n",
+      quantileOf(ratios, 0.5), quantileOf(ratios, 0.9), ratios.back().ratio());
+  for (size_t i = 0; i < std::min(kShown, ratios.size()); ++i) {
+    const TimeRatio& at = ratios[ratios.size() - 1 - i];
+    out << formatted("  seed %-6llu %.2f  (%.1f s, %.1f s)\n",
+                     static_cast<unsigned long long>(at.seed), at.ratio(), at.learning,
+                     at.omniscient);
+  }
+}
+
+void writeOmniscient(const std::string& path, const OmniscientComparison& comparison) {
+  const std::vector<TimeRatio> ratios = timeRatios(comparison);
+  Json json;
+  json["both_arrived"] = ratios.size();
+  json["time_ratio"] = {{"median", quantileOf(ratios, 0.5)},
+                        {"p90", quantileOf(ratios, 0.9)},
+                        {"worst", quantileOf(ratios, 1.0)}};
+  json["missions"] = Json::array();
+  for (const TimeRatio& at : ratios)
+    json["missions"].push_back({{"seed", at.seed},
+                                {"learning_s", at.learning},
+                                {"omniscient_s", at.omniscient},
+                                {"ratio", at.ratio()}});
+  json["learning"] = batchJson(comparison.learning);
+  json["omniscient"] = batchJson(comparison.omniscient);
   writeJsonFile(path, json);
 }
 

@@ -8,10 +8,8 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
-#include "tools/missions/campaigner.hpp"
 #include "tools/missions/comparison_report.hpp"
-#include "tools/missions/fault_file.hpp"
-#include "tools/missions/omniscient_report.hpp"
+#include "tools/missions/mission_runner.hpp"
 #include "tools/patterns/output.hpp"
 
 namespace {
@@ -100,8 +98,9 @@ bool showsOneOfThem(const Arguments& arguments) {
           *arguments.show - arguments.seed < static_cast<uint64_t>(arguments.missions));
 }
 
-CampaignOrder orderOf(const Arguments& arguments, const std::string& name) {
-  CampaignOrder order;
+/// Only the first batch is drawn and recorded.
+BatchOrder orderOf(const Arguments& arguments, const std::string& name, bool first = true) {
+  BatchOrder order;
   order.missions = arguments.missions;
   order.seed = arguments.seed;
   order.threads = arguments.threads;
@@ -110,42 +109,26 @@ CampaignOrder orderOf(const Arguments& arguments, const std::string& name) {
   order.options.shortest_line = arguments.length;
   if (!arguments.fault_file.empty()) order.options.faults = readFaultFile(arguments.fault_file);
   if (arguments.live) order.options.progress = printProgress;
+  if (!first) return order;
   order.show = arguments.show;
   order.picture = arguments.picture;
   order.log = arguments.log;
   return order;
 }
 
-/// The same without picture and log: those are of the first campaign.
-CampaignOrder nextOrderOf(const Arguments& arguments, const std::string& name) {
-  CampaignOrder order = orderOf(arguments, name);
-  order.show.reset();
-  order.log.clear();
-  return order;
-}
-
-Campaign driveLearning(const Arguments& arguments, const RobotConfig& robot) {
+Batch driveLearning(const Arguments& arguments, const RobotConfig& robot) {
   const std::string rule =
       arguments.rule.empty() ? learner::ruleName(robot.learner.rule.rule) : arguments.rule;
-  CampaignOrder order = orderOf(arguments, rule);
+  BatchOrder order = orderOf(arguments, rule);
   order.options.rule = rule;
-  return runCampaign(robot, order);
+  return runBatch(robot, order);
 }
 
-void report(const Arguments& arguments, const Campaign& campaign) {
-  printSummary(std::cout, campaign);
-  if (!arguments.json.empty()) writeJson(arguments.json, campaign);
-}
-
-TruePatterns truePatternsOf(const RobotConfig& robot) {
-  return TruePatterns(robot.learner.shipped, sim::VehicleParameters{});
-}
-
-void driveOmniscient(const Arguments& arguments, const RobotConfig& robot) {
-  const TruePatterns true_patterns = truePatternsOf(robot);
-  CampaignOrder order = orderOf(arguments, "omniscient");
+Batch driveOmniscient(const Arguments& arguments, const RobotConfig& robot, bool first) {
+  const TruePatterns true_patterns(robot.learner.shipped, sim::VehicleParameters{});
+  BatchOrder order = orderOf(arguments, "omniscient", first);
   order.options.true_patterns = &true_patterns;
-  report(arguments, runCampaign(robot, order));
+  return runBatch(robot, order);
 }
 
 void compareOmniscient(const Arguments& arguments, const RobotConfig& robot) {
@@ -154,10 +137,7 @@ void compareOmniscient(const Arguments& arguments, const RobotConfig& robot) {
   comparison.learning = driveLearning(arguments, robot);
   printSummary(std::cout, comparison.learning);
   std::cout << "omniscient" << std::endl;
-  const TruePatterns true_patterns = truePatternsOf(robot);
-  CampaignOrder order = nextOrderOf(arguments, "omniscient");
-  order.options.true_patterns = &true_patterns;
-  comparison.omniscient = runCampaign(robot, order);
+  comparison.omniscient = driveOmniscient(arguments, robot, false);
   printSummary(std::cout, comparison.omniscient);
   printOmniscient(std::cout, comparison);
   if (!arguments.json.empty()) writeOmniscient(arguments.json, comparison);
@@ -166,21 +146,21 @@ void compareOmniscient(const Arguments& arguments, const RobotConfig& robot) {
 void compareRules(const Arguments& arguments, const RobotConfig& robot) {
   std::vector<learner::Rule> rules;
   for (const std::string& name : arguments.rules) rules.push_back(*learner::ruleNamed(name));
-  Comparison comparison;
+  RuleComparison comparison;
   for (size_t i = 0; i < rules.size(); ++i) {
     const std::string& rule = arguments.rules[i];
     if (i > 0 && arguments.only_first_drives) break;
     std::cout << "rule " << rule << std::endl;
-    CampaignOrder order = i == 0 ? orderOf(arguments, rule) : nextOrderOf(arguments, rule);
+    BatchOrder order = orderOf(arguments, rule, i == 0);
     order.options.rule = rule;
     if (i == 0) order.options.shadows = rules;
-    comparison.campaigns.push_back(runCampaign(robot, order));
+    comparison.batches.push_back(runBatch(robot, order));
   }
   printComparison(std::cout, comparison);
   if (!arguments.json.empty()) writeComparison(arguments.json, comparison);
 }
 
-/// Campaigns take long: what they are written to is looked at before.
+/// Batches take long: what they are written to is looked at before.
 void protectInputs(const Arguments& arguments) {
   std::vector<std::string> inputs{arguments.fault_file};
   std::error_code failure;
@@ -197,8 +177,10 @@ void drive(const Arguments& arguments) {
   const RobotConfig robot = readRobot(arguments.robot, arguments.overrides);
   if (!arguments.rules.empty()) return compareRules(arguments, robot);
   if (arguments.compare_omniscient) return compareOmniscient(arguments, robot);
-  if (arguments.omniscient) return driveOmniscient(arguments, robot);
-  report(arguments, driveLearning(arguments, robot));
+  const Batch batch = arguments.omniscient ? driveOmniscient(arguments, robot, true)
+                                           : driveLearning(arguments, robot);
+  printSummary(std::cout, batch);
+  if (!arguments.json.empty()) writeJson(arguments.json, batch);
 }
 
 }  // namespace

@@ -7,21 +7,23 @@
 #include <vector>
 
 #include "common/geometry/se2.hpp"
-#include "tools/missions/flip_watch.hpp"
-#include "tools/missions/stop_watch.hpp"
+#include "tools/missions/steadiness.hpp"
 #include "tools/replay/shadow_learners.hpp"
 
 namespace tread::missions {
 
 /// How a mission ended. Every mission ends in exactly one of these.
-enum class Outcome {
+enum class MissionOutcome {
   kArrived,  ///< the robot stands within the goal's tolerances (checked against the true pose)
   kRefused,  ///< the planner said that the goal is unreachable or that it is blocked for good
   kIdle,     ///< nothing moved for too long
   kStopped   ///< a failsafe kept it from going on, or the time ran out while driving
 };
 
-const char* nameOf(Outcome outcome);
+inline const char* nameOf(MissionOutcome outcome) {
+  constexpr const char* kNames[] = {"arrived", "refused", "idle", "stopped"};
+  return kNames[static_cast<size_t>(outcome)];
+}
 
 /// One execution of a pattern as the learner scored it, with the true surface under it.
 struct ScoredExecution {
@@ -38,7 +40,7 @@ struct ScoredExecution {
   double slope = 0.0;           ///< [rad] mean inclination; NaN = not known
   Pose2 measured_end;           ///< in the frame of its start
   /// What each of MissionResult::shadow_rules made of it; empty where not measured.
-  std::vector<shadow::EndError> by_rule;
+  std::vector<shadow::EndPoseError> by_rule;
 };
 
 /// A change of the true surface under the robot. Who turns round on a border crosses it again.
@@ -65,7 +67,7 @@ struct Contact {
 /// What happened in one mission.
 struct MissionResult {
   uint64_t seed = 0;
-  Outcome outcome = Outcome::kStopped;
+  MissionOutcome outcome = MissionOutcome::kStopped;
   std::string reason;          ///< in words; empty when arrived
   int collisions = 0;          ///< contacts of the true footprint with true obstacles
   double time = 0.0;           ///< [s] from the goal to the end
@@ -89,39 +91,5 @@ struct MissionResult {
 
   double detour() const { return straight_line > 0.0 ? distance / straight_line : 0.0; }
 };
-
-/// Errors of the executions with index first..last after each change of surface (1 = the first
-/// whole one after it).
-struct ErrorAfterChange {
-  std::string from;
-  std::string to;
-  int count = 0;
-  double position = 0.0;        ///< [m] mean error at the end of a pattern
-  double yaw = 0.0;             ///< [rad] mean absolute error
-  double position_per_m = 0.0;  ///< pooled: sum of errors over metres driven
-  double yaw_per_rad = 0.0;     ///< pooled: sum of errors over radians turned
-};
-
-/// Mean errors around one change of surface in one mission; NaN where nothing was measured.
-struct ErrorAroundChange {
-  double before_position = 0.0;   ///< [m] the last five executions on the old surface
-  double before_yaw = 0.0;        ///< [rad]
-  double after_position = 0.0;    ///< [m] the first three on the new one
-  double after_yaw = 0.0;         ///< [rad]
-  double settled_position = 0.0;  ///< [m] the fifth to the fifteenth on the new one
-  double settled_yaw = 0.0;       ///< [rad]
-};
-
-/// Measured executions that lie wholly on one stretch of surface: after crossing `index` - 1,
-/// before crossing `index`; 0 = before the first.
-std::vector<const ScoredExecution*> stretchOf(const MissionResult& result, size_t index);
-
-/// `change` is an index into crossings.
-ErrorAroundChange errorsAround(const MissionResult& result, size_t change);
-
-/// Per pair of surfaces, sorted by name; pooled over all missions. Pair from "start" = before the
-/// first change.
-std::vector<ErrorAfterChange> errorsAfterChange(const std::vector<MissionResult>& results,
-                                                int first, int last);
 
 }  // namespace tread::missions

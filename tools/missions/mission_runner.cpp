@@ -2,14 +2,18 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/missions/mission_runner.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include <atomic>
+#include <chrono>
 #include <ctime>
+#include <iostream>
 #include <map>
+#include <mutex>
+#include <thread>
 
 #include "common/bus/virtual_bus.hpp"
-#include "tools/missions/mission_watch.hpp"
+#include "common/report/text.hpp"
 #include "tools/missions/operator.hpp"
+#include "tools/missions/referee.hpp"
 
 namespace tread::missions {
 namespace {
@@ -22,7 +26,7 @@ double threadSeconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-void tell(const MissionOptions& options, const MissionWatch& watch, int64_t tick) {
+void tell(const MissionOptions& options, const Referee& watch, int64_t tick) {
   if (options.progress && tick % 20 == 0) options.progress(watch.progress());
 }
 
@@ -30,11 +34,80 @@ void tell(const MissionOptions& options, const MissionWatch& watch, int64_t tick
 void addShadows(shadow::ShadowLearners& shadows, MissionResult& result) {
   shadows.finish();
   result.shadow_rules = shadows.rules();
-  std::map<shadow::ExecutionKey, std::vector<shadow::EndError>> errors;
+  std::map<shadow::ExecutionKey, std::vector<shadow::EndPoseError>> errors;
   for (shadow::ShadowedExecution& execution : shadows.executions())
     errors[execution.key] = std::move(execution.by_rule);
   for (ScoredExecution& execution : result.executions) execution.by_rule = errors[execution.key];
 }
+
+std::string titleOf(const MissionResult& result) {
+  return formatted(
+      "Mission %llu: %s after %.0f s and %.1f m (straight line %.1f m), %d patterns, %d "
+      "collisions%s%s",
+      static_cast<unsigned long long>(result.seed), nameOf(result.outcome), result.time,
+      result.distance, result.straight_line, result.completed, result.collisions,
+      result.reason.empty() ? "" : ": ", result.reason.c_str());
+}
+
+/// The threads that share the missions of one order.
+class BatchRun {
+ public:
+  BatchRun(const RobotConfig& robot, const BatchOrder& order) : robot_(robot), order_(order) {}
+
+  Batch run() {
+    batch_.seed = order_.seed;
+    batch_.rule = order_.name;
+    batch_.overrides = order_.overrides;
+    batch_.results.resize(static_cast<size_t>(order_.missions));
+    const auto started = std::chrono::steady_clock::now();
+    std::vector<std::thread> threads;
+    for (int i = 0; i < order_.threads; ++i) threads.emplace_back([this] { work(); });
+    for (std::thread& thread : threads) thread.join();
+    if (error_) std::rethrow_exception(error_);
+    batch_.wall_time =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    return std::move(batch_);
+  }
+
+ private:
+  void work() {
+    try {
+      for (int i = next_++; i < order_.missions; i = next_++) {
+        MissionRun run = drive(order_.seed + static_cast<uint64_t>(i));
+        const std::lock_guard<std::mutex> lock(mutex_);
+        batch_.virtual_time += run.virtual_time;
+        batch_.cpu_time += run.cpu_time;
+        std::cout << lineOf(run.result) << '\n' << crossingsOf(run.result) << std::flush;
+        batch_.results[static_cast<size_t>(i)] = std::move(run.result);
+      }
+    } catch (...) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      error_ = std::current_exception();
+      next_ = order_.missions;
+    }
+  }
+
+  MissionRun drive(uint64_t seed) {
+    MissionOptions options = order_.options;
+    std::optional<LogWriter> log;
+    if (!order_.log.empty() && seed == order_.seed) options.log = &log.emplace(order_.log);
+    MissionRun run = runMission(robot_, seed, options);
+    if (log) log->flush();
+    if (order_.show == seed) {
+      report::drawDrive(order_.picture, driveSceneOf(run.result, run.scene));
+      const std::lock_guard<std::mutex> lock(mutex_);
+      std::cout << "picture: " << order_.picture << std::endl;
+    }
+    return run;
+  }
+
+  const RobotConfig& robot_;
+  const BatchOrder& order_;
+  Batch batch_;
+  std::atomic<int> next_{0};
+  std::mutex mutex_;
+  std::exception_ptr error_;
+};
 
 }  // namespace
 
@@ -51,7 +124,7 @@ MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOpti
       if (shadows.hears(channel)) shadows.hear(utime, {utime, channel, {bytes, bytes + size}});
     });
   Operator person(system.bus().outside(), run.scene.world.T_map_goal);
-  MissionWatch watch(system, run.scene.world);
+  Referee watch(system, run.scene.world);
   const int64_t start = system.bus().now();
   for (int64_t tick = 1; !watch.ended(); ++tick) {
     system.bus().runUntil(start + tick * kTick);
@@ -67,6 +140,36 @@ MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOpti
   run.virtual_time = static_cast<double>(system.bus().now() - start) * 1e-6;
   run.cpu_time = threadSeconds() - cpu_start;
   return run;
+}
+
+report::DriveScene driveSceneOf(const MissionResult& result, const MissionScene& scene) {
+  report::DriveScene drive;
+  const sim::WorldDescription& world = scene.world.description;
+  drive.title = titleOf(result);
+  drive.base_surface = world.base_surface;
+  for (const sim::SurfaceRegion& region : world.regions)
+    drive.patches.push_back({region.surface, region.corners});
+  for (const sim::Obstacle& obstacle : world.obstacles)
+    drive.obstacles.push_back({obstacle.corners, obstacle.centre, obstacle.radius});
+  drive.map = scene.map;
+  drive.tree = scene.tree;
+  for (const TrackPoint& point : result.track)
+    drive.track.push_back({point.time, point.T_map_body});
+  drive.T_map_start = scene.world.T_map_start;
+  drive.T_map_goal = scene.world.T_map_goal;
+  for (const Contact& contact : result.contacts)
+    drive.contacts.push_back(contact.T_map_body.position());
+  for (const ScoredExecution& execution : result.executions)
+    if (execution.measured)
+      drive.errors.push_back({execution.time, execution.error_position, execution.error_yaw});
+  for (const Crossing& crossing : result.crossings)
+    drive.crossings.push_back({crossing.time, crossing.to});
+  drive.duration = result.time;
+  return drive;
+}
+
+Batch runBatch(const RobotConfig& robot, const BatchOrder& order) {
+  return BatchRun(robot, order).run();
 }
 
 }  // namespace tread::missions

@@ -3,10 +3,14 @@
 #pragma once
 
 #include <functional>
-#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "common/log/event_log.hpp"
-#include "tools/missions/mission_picture.hpp"
+#include "common/report/drive_picture.hpp"
+#include "tools/missions/mission_world.hpp"
+#include "tools/missions/report.hpp"
 #include "tools/missions/robot_system.hpp"
 
 namespace tread::missions {
@@ -32,6 +36,13 @@ struct MissionOptions {
   std::function<void(const Progress&)> progress;  ///< may be empty
 };
 
+/// What a picture of a mission shows beside its result.
+struct MissionScene {
+  MissionWorld world;
+  TileMap map{0.1, 32};                ///< what mapping published
+  std::vector<report::TreeEdge> tree;  ///< of a plan on the way
+};
+
 struct MissionRun {
   MissionResult result;
   MissionScene scene;
@@ -43,5 +54,24 @@ struct MissionRun {
 /** The operator's part: the goal at 1 Hz, arming at the start, and arming again 2 s after a
  * failsafe has disarmed. */
 MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOptions& options);
+
+/// World, map, surfaces, true track, a tree and the prediction errors, to be drawn.
+report::DriveScene driveSceneOf(const MissionResult& result, const MissionScene& scene);
+
+/// Missions to be driven one way.
+struct BatchOrder {
+  int missions = 1;
+  uint64_t seed = 1;                   ///< of the first; the others count up from it
+  int threads = 1;                     ///< missions at the same time
+  std::string name;                    ///< of the batch: its rule, or that it is omniscient
+  std::vector<std::string> overrides;  ///< of the configuration, for the report
+  MissionOptions options;              ///< of each mission; its log is set here
+  std::optional<uint64_t> show;        ///< seed of the mission to draw
+  std::string picture;                 ///< the file of that
+  std::string log;                     ///< of the first mission; empty = none
+};
+
+/// Drives the missions; results are in the order of the seeds, lines go to stdout as they come.
+Batch runBatch(const RobotConfig& robot, const BatchOrder& order);
 
 }  // namespace tread::missions

@@ -18,9 +18,9 @@ constexpr double kRobotWidth = 0.68;
 constexpr double kFreeRadius = 2.2;
 
 /// Draws numbers in the same way on every machine (the standard's distributions do not).
-class Dice {
+class Rng {
  public:
-  explicit Dice(uint64_t seed) : engine_(seed) {}
+  explicit Rng(uint64_t seed) : engine_(seed) {}
   double between(double low, double high) {
     return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1.0p-53;
   }
@@ -75,72 +75,64 @@ bool nearEnds(const Layout& layout, const sim::Obstacle& obstacle) {
          distanceTo(obstacle, {layout.length, 0.0}) < kFreeRadius;
 }
 
-/// Adds a free-standing obstacle unless it would make a gap that is too narrow.
-bool addApart(Layout& layout, const sim::Obstacle& obstacle) {
-  if (nearEnds(layout, obstacle)) return false;
-  for (const sim::Obstacle& other : layout.obstacles)
-    if (gapBetween(obstacle, other) < kNarrowestGap) return false;
-  layout.obstacles.push_back(obstacle);
+/// Adds obstacles that belong together unless one is near the start or the goal, or nearer to
+/// another obstacle than `gap` [m].
+bool addApart(Layout& layout, const std::vector<sim::Obstacle>& parts, double gap) {
+  for (const sim::Obstacle& part : parts) {
+    if (nearEnds(layout, part)) return false;
+    for (const sim::Obstacle& other : layout.obstacles)
+      if (gapBetween(part, other) < gap) return false;
+  }
+  layout.obstacles.insert(layout.obstacles.end(), parts.begin(), parts.end());
   return true;
 }
 
 /// A wall across the way with one gap beside the straight line.
-bool addWall(Layout& layout, Dice& dice, double x) {
-  const double yaw = kPi / 2 + dice.between(-0.3, 0.3);
-  const double gap = dice.between(kNarrowestGap, 2.0);
-  const double gap_at = dice.sign() * dice.between(1.6, 4.5);
-  const double half = dice.between(7.0, 11.0);
-  const double thickness = dice.between(0.25, 0.5);
+void addWall(Layout& layout, Rng& rng, double x) {
+  const double yaw = kPi / 2 + rng.between(-0.3, 0.3);
+  const double gap = rng.between(kNarrowestGap, 2.0);
+  const double gap_at = rng.sign() * rng.between(1.6, 4.5);
+  const double half = rng.between(7.0, 11.0);
+  const double thickness = rng.between(0.25, 0.5);
   const double first = gap_at - gap / 2 + half;
   const double second = half - gap_at - gap / 2;
   const Pose2 middle{x, 0.0, yaw};
   const Pose2 low = middle * Pose2{-half + first / 2, 0.0, 0.0};
   const Pose2 high = middle * Pose2{half - second / 2, 0.0, 0.0};
-  const double height = dice.between(0.9, 1.6);
-  std::vector<sim::Obstacle> parts{sim::boxObstacle(low, first, thickness, height),
-                                   sim::boxObstacle(high, second, thickness, height)};
-  for (const sim::Obstacle& part : parts) {
-    if (nearEnds(layout, part)) return false;
-    for (const sim::Obstacle& other : layout.obstacles)
-      if (gapBetween(part, other) < 2.0) return false;
-  }
-  layout.obstacles.insert(layout.obstacles.end(), parts.begin(), parts.end());
-  return true;
+  const double height = rng.between(0.9, 1.6);
+  addApart(layout,
+           {sim::boxObstacle(low, first, thickness, height),
+            sim::boxObstacle(high, second, thickness, height)},
+           2.0);
 }
 
 /// A pocket that opens towards the start and lies on the straight line.
-bool addPocket(Layout& layout, Dice& dice, double x) {
-  const double width = dice.between(3.0, 5.0);
-  const double depth = dice.between(2.0, 4.0);
-  const Pose2 back{x, dice.between(-0.8, 0.8), dice.between(-0.3, 0.3)};
-  const double height = dice.between(0.9, 1.6);
+void addPocket(Layout& layout, Rng& rng, double x) {
+  const double width = rng.between(3.0, 5.0);
+  const double depth = rng.between(2.0, 4.0);
+  const Pose2 back{x, rng.between(-0.8, 0.8), rng.between(-0.3, 0.3)};
+  const double height = rng.between(0.9, 1.6);
   const double thickness = 0.3;
   // The sides overlap the back by its thickness, so that no slit is left.
-  std::vector<sim::Obstacle> parts{
-      sim::boxObstacle(back, thickness, width, height),
-      sim::boxObstacle(back * Pose2{-depth / 2, width / 2 - thickness / 2, 0.0}, depth + thickness,
-                       thickness, height),
-      sim::boxObstacle(back * Pose2{-depth / 2, -width / 2 + thickness / 2, 0.0}, depth + thickness,
-                       thickness, height)};
-  for (const sim::Obstacle& part : parts) {
-    if (nearEnds(layout, part)) return false;
-    for (const sim::Obstacle& other : layout.obstacles)
-      if (gapBetween(part, other) < 1.5) return false;
-  }
-  layout.obstacles.insert(layout.obstacles.end(), parts.begin(), parts.end());
-  return true;
+  addApart(layout,
+           {sim::boxObstacle(back, thickness, width, height),
+            sim::boxObstacle(back * Pose2{-depth / 2, width / 2 - thickness / 2, 0.0},
+                             depth + thickness, thickness, height),
+            sim::boxObstacle(back * Pose2{-depth / 2, -width / 2 + thickness / 2, 0.0},
+                             depth + thickness, thickness, height)},
+           1.5);
 }
 
-void addBoulders(Layout& layout, Dice& dice) {
-  const int wanted = 20 + dice.below(26);
+void addBoulders(Layout& layout, Rng& rng) {
+  const int wanted = 20 + rng.below(26);
   for (int i = 0, tries = 0; i < wanted && tries < 600; ++tries) {
-    const Vector2d at(dice.between(2.0, layout.length + 2.0), dice.between(-9.0, 9.0));
-    const double height = dice.between(0.8, 2.0);
+    const Vector2d at(rng.between(2.0, layout.length + 2.0), rng.between(-9.0, 9.0));
+    const double height = rng.between(0.8, 2.0);
     const sim::Obstacle boulder =
-        dice.chance(0.6) ? sim::discObstacle(at, dice.between(0.15, 0.7), height)
-                         : sim::boxObstacle({at.x(), at.y(), dice.between(0.0, kPi)},
-                                            dice.between(0.4, 1.6), dice.between(0.3, 1.0), height);
-    if (addApart(layout, boulder)) ++i;
+        rng.chance(0.6) ? sim::discObstacle(at, rng.between(0.15, 0.7), height)
+                        : sim::boxObstacle({at.x(), at.y(), rng.between(0.0, kPi)},
+                                           rng.between(0.4, 1.6), rng.between(0.3, 1.0), height);
+    if (addApart(layout, {boulder}, kNarrowestGap)) ++i;
   }
 }
 
@@ -189,33 +181,33 @@ bool hasWay(const Layout& layout) {
   return false;
 }
 
-Layout drawLayout(Dice& dice, double shortest) {
+Layout drawLayout(Rng& rng, double shortest) {
   Layout layout;
-  layout.length = dice.between(shortest, 1.68 * shortest);
-  const int barriers = 1 + dice.below(3);
+  layout.length = rng.between(shortest, 1.68 * shortest);
+  const int barriers = 1 + rng.below(3);
   for (int i = 0; i < barriers; ++i) {
-    const double share = (i + dice.between(0.3, 0.7)) / barriers;
+    const double share = (i + rng.between(0.3, 0.7)) / barriers;
     const double x = 5.0 + share * (layout.length - 10.0);
-    if (dice.chance(0.65)) {
-      addWall(layout, dice, x);
+    if (rng.chance(0.65)) {
+      addWall(layout, rng, x);
     } else {
-      addPocket(layout, dice, x);
+      addPocket(layout, rng, x);
     }
   }
-  addBoulders(layout, dice);
+  addBoulders(layout, rng);
   return layout;
 }
 
-void addSurfaces(MissionWorld& world, Dice& dice, double length, const Pose2& T_map_way) {
+void addSurfaces(MissionWorld& world, Rng& rng, double length, const Pose2& T_map_way) {
   const std::vector<std::string> names{"cinder", "tarmac", "grass", "gravel"};
-  const int changes = 1 + dice.below(3);
+  const int changes = 1 + rng.below(3);
   world.surface_changes = changes;
-  int present = dice.below(4);
+  int present = rng.below(4);
   world.description.base_surface = names[static_cast<size_t>(present)];
   for (int i = 0; i < changes; ++i) {
-    present = (present + 1 + dice.below(3)) % 4;
-    const double x = length * (i + 1 + dice.between(-0.15, 0.15)) / (changes + 1);
-    const double tilt = dice.between(-0.2, 0.2);
+    present = (present + 1 + rng.below(3)) % 4;
+    const double x = length * (i + 1 + rng.between(-0.15, 0.15)) / (changes + 1);
+    const double tilt = rng.between(-0.2, 0.2);
     const Pose2 border = T_map_way * Pose2{x, 0.0, tilt};
     sim::SurfaceRegion strip;
     strip.surface = names[static_cast<size_t>(present)];
@@ -227,16 +219,16 @@ void addSurfaces(MissionWorld& world, Dice& dice, double length, const Pose2& T_
   }
 }
 
-void addTerrain(MissionWorld& world, Dice& dice) {
-  const int waves = 1 + dice.below(3);
+void addTerrain(MissionWorld& world, Rng& rng) {
+  const int waves = 1 + rng.below(3);
   for (int i = 0; i < waves; ++i) {
     sim::TerrainWave wave;
-    const double k = 2.0 * kPi / dice.between(14.0, 35.0);
-    const double direction = dice.between(0.0, 2.0 * kPi);
+    const double k = 2.0 * kPi / rng.between(14.0, 35.0);
+    const double direction = rng.between(0.0, 2.0 * kPi);
     wave.k = {k * std::cos(direction), k * std::sin(direction)};
     // Together at most 5 % of slope.
-    wave.amplitude = dice.between(0.0, 0.05) / waves / k;
-    wave.phase = dice.between(0.0, 2.0 * kPi);
+    wave.amplitude = rng.between(0.0, 0.05) / waves / k;
+    wave.phase = rng.between(0.0, 2.0 * kPi);
     world.description.terrain.waves.push_back(wave);
   }
 }
@@ -252,15 +244,15 @@ sim::Obstacle moved(const sim::Obstacle& obstacle, const Pose2& T_map_way) {
 
 MissionWorld makeMissionWorld(uint64_t seed, double shortest) {
   // Neighbouring seeds must not give similar engines: spread them first (Weyl constant).
-  Dice dice(seed * 0x9e3779b97f4a7c15ull + 1);
+  Rng rng(seed * 0x9e3779b97f4a7c15ull + 1);
   MissionWorld world;
   world.seed = seed;
-  Layout layout = drawLayout(dice, shortest);
-  const bool may_be_open = dice.chance(0.1);
+  Layout layout = drawLayout(rng, shortest);
+  const bool may_be_open = rng.chance(0.1);
   while (!hasWay(layout) || (!may_be_open && !lineBlocked(layout)))
-    layout = drawLayout(dice, shortest);
-  const Pose2 T_map_way{0.0, 0.0, dice.between(-kPi, kPi)};
-  world.T_map_start = T_map_way * Pose2{0.0, 0.0, dice.between(-0.8, 0.8)};
+    layout = drawLayout(rng, shortest);
+  const Pose2 T_map_way{0.0, 0.0, rng.between(-kPi, kPi)};
+  world.T_map_start = T_map_way * Pose2{0.0, 0.0, rng.between(-0.8, 0.8)};
   world.T_map_goal = T_map_way * Pose2{layout.length, 0.0, 0.0};
   world.T_map_start.yaw = wrapAngle(world.T_map_start.yaw);
   world.T_map_goal.yaw = wrapAngle(world.T_map_goal.yaw);
@@ -271,8 +263,8 @@ MissionWorld makeMissionWorld(uint64_t seed, double shortest) {
   world.line_blocked = lineBlocked(layout);
   for (const sim::Obstacle& obstacle : layout.obstacles)
     world.description.obstacles.push_back(moved(obstacle, T_map_way));
-  addSurfaces(world, dice, layout.length, T_map_way);
-  addTerrain(world, dice);
+  addSurfaces(world, rng, layout.length, T_map_way);
+  addTerrain(world, rng);
   return world;
 }
 

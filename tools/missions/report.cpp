@@ -3,38 +3,60 @@
 #include "tools/missions/report.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <ostream>
-#include <stdexcept>
 
+#include "common/recordings/text_file.hpp"
 #include "common/report/text.hpp"
-#include "tools/missions/campaign_json.hpp"
-#include "tools/missions/stop_report.hpp"
+#include "tools/missions/prediction_errors.hpp"
 
 namespace tread::missions {
 namespace {
 
-void printShares(std::ostream& out, const Campaign& campaign) {
-  const auto total = static_cast<double>(std::max<size_t>(1, campaign.results.size()));
-  for (const Outcome outcome :
-       {Outcome::kArrived, Outcome::kRefused, Outcome::kIdle, Outcome::kStopped}) {
-    const int count = countOf(campaign, outcome);
+using Json = nlohmann::ordered_json;
+
+bool isDigit(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+void printShares(std::ostream& out, const Batch& batch) {
+  const auto total = static_cast<double>(std::max<size_t>(1, batch.results.size()));
+  for (const MissionOutcome outcome : {MissionOutcome::kArrived, MissionOutcome::kRefused,
+                                       MissionOutcome::kIdle, MissionOutcome::kStopped}) {
+    const int count = countOf(batch, outcome);
     out << formatted("%-9s %4d  %5.1f %%\n", nameOf(outcome), count, 100.0 * count / total);
     std::map<std::string, int> reasons;
-    for (const MissionResult& result : campaign.results)
+    for (const MissionResult& result : batch.results)
       if (result.outcome == outcome && !result.reason.empty()) ++reasons[result.reason];
     for (const auto& [reason, times] : reasons)
       out << formatted("          %4d  %s\n", times, reason.c_str());
   }
 }
 
-void printErrors(std::ostream& out, const Campaign& campaign, int first, int last) {
-  const auto errors = errorsAfterChange(campaign.results, first, last);
+void printSteadiness(std::ostream& out, const std::vector<MissionResult>& results) {
+  const Steadiness steadiness = steadinessOf(results);
+  const auto missions = static_cast<double>(std::max<size_t>(1, results.size()));
+  out << formatted("flips %d: %.2f per minute driven (%.0f s)\n", steadiness.flips,
+                   steadiness.flipsPerMinute(), steadiness.driven);
+  out << formatted("stops %d: %.2f per mission, at most %d (seed %llu), %.0f s in all\n",
+                   steadiness.stops, steadiness.stops / missions, steadiness.most_stops,
+                   static_cast<unsigned long long>(steadiness.most_seed), steadiness.stood);
+  std::vector<std::pair<int, std::string>> reasons;
+  for (const auto& [reason, count] : steadiness.reasons) reasons.emplace_back(-count, reason);
+  std::sort(reasons.begin(), reasons.end());
+  for (const auto& [count, reason] : reasons) {
+    out << formatted("          %4d  ", -count)
+        << (reason.empty() ? "(no reason published)" : reason) << '\n';
+  }
+}
+
+void printErrors(std::ostream& out, const Batch& batch, int first, int last) {
+  const auto errors = errorsAfterChange(batch.results, first, last);
   if (errors.empty()) return;
   out << formatted("prediction error of patterns %d..%d after a change of surface, rule %s:\n",
-                   first, last, campaign.rule.c_str());
+                   first, last, batch.rule.c_str());
   out << "  from     to        count  position [m]  yaw [rad]  position [m/m]  yaw [rad/rad]\n";
   ErrorAfterChange all;
   for (const ErrorAfterChange& error : errors) {
@@ -53,14 +75,13 @@ void printErrors(std::ostream& out, const Campaign& campaign, int first, int las
 }
 
 /// Position and yaw error; a dash where nothing was measured.
-std::string errorText(double position, double yaw) {
-  if (!std::isfinite(position)) return "-";
-  return formatted("%.3f m %.3f rad", position, yaw);
+std::string errorText(const MeanError& error) {
+  return error.count == 0 ? "-" : formatted("%.3f m %.3f rad", error.position, error.yaw);
 }
 
-nlohmann::ordered_json errorsJson(const Campaign& campaign, int first, int last) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const ErrorAfterChange& error : errorsAfterChange(campaign.results, first, last))
+Json errorsJson(const Batch& batch, int first, int last) {
+  Json rows = Json::array();
+  for (const ErrorAfterChange& error : errorsAfterChange(batch.results, first, last))
     rows.push_back({{"from", error.from},
                     {"to", error.to},
                     {"count", error.count},
@@ -71,49 +92,50 @@ nlohmann::ordered_json errorsJson(const Campaign& campaign, int first, int last)
   return rows;
 }
 
-nlohmann::ordered_json stopsJson(const MissionResult& result) {
-  nlohmann::ordered_json stops = nlohmann::ordered_json::array();
+Json stopsJson(const MissionResult& result) {
+  Json stops = Json::array();
   for (const Stop& stop : result.stops)
     stops.push_back(
         {{"time_s", stop.time}, {"duration_s", stop.duration}, {"reason", stop.reason}});
   return stops;
 }
 
-nlohmann::ordered_json flipsJson(const MissionResult& result) {
-  nlohmann::ordered_json flips = nlohmann::ordered_json::array();
+Json flipsJson(const MissionResult& result) {
+  Json flips = Json::array();
   for (const Flip& flip : result.flips)
     flips.push_back({{"time_s", flip.time}, {"from", flip.from}, {"to", flip.to}});
   return flips;
 }
 
-void addSteadiness(nlohmann::ordered_json& json, const Campaign& campaign) {
-  const Steadiness steadiness = steadinessOf(campaign.results);
+void addSteadiness(Json& json, const Batch& batch) {
+  const Steadiness steadiness = steadinessOf(batch.results);
   json["driven_s"] = steadiness.driven;
   json["flips"] = steadiness.flips;
   json["flips_per_min"] = steadiness.flipsPerMinute();
   json["stops"] = steadiness.stops;
   json["stops_per_mission"] =
-      steadiness.stops / static_cast<double>(std::max<size_t>(1, campaign.results.size()));
-  json["stop_reasons"] = nlohmann::ordered_json::object();
+      steadiness.stops / static_cast<double>(std::max<size_t>(1, batch.results.size()));
+  json["stop_reasons"] = Json::object();
   for (const auto& [reason, count] : steadiness.reasons) json["stop_reasons"][reason] = count;
 }
 
-nlohmann::ordered_json runJson(const MissionResult& result) {
-  nlohmann::ordered_json crossings = nlohmann::ordered_json::array();
+/// null where nothing was measured.
+void addError(Json& json, const std::string& when, const MeanError& error) {
+  json[when + "_m"] = error.count > 0 ? Json(error.position) : Json(nullptr);
+  json[when + "_rad"] = error.count > 0 ? Json(error.yaw) : Json(nullptr);
+}
+
+Json runJson(const MissionResult& result) {
+  Json crossings = Json::array();
   for (size_t i = 0; i < result.crossings.size(); ++i) {
     const Crossing& crossing = result.crossings[i];
-    const ErrorAroundChange errors = errorsAround(result, i);
-    crossings.push_back({{"time_s", crossing.time},
-                         {"from", crossing.from},
-                         {"to", crossing.to},
-                         {"before_m", errors.before_position},
-                         {"before_rad", errors.before_yaw},
-                         {"after_m", errors.after_position},
-                         {"after_rad", errors.after_yaw},
-                         {"settled_m", errors.settled_position},
-                         {"settled_rad", errors.settled_yaw}});
+    const ErrorsAroundChanges errors = errorsAroundChange(result, i);
+    crossings.push_back({{"time_s", crossing.time}, {"from", crossing.from}, {"to", crossing.to}});
+    addError(crossings.back(), "before", errors.before);
+    addError(crossings.back(), "after", errors.after);
+    addError(crossings.back(), "settled", errors.settled);
   }
-  nlohmann::ordered_json contacts = nlohmann::ordered_json::array();
+  Json contacts = Json::array();
   for (const Contact& contact : result.contacts)
     contacts.push_back({{"time_s", contact.time},
                         {"pattern", contact.pattern},
@@ -145,15 +167,44 @@ nlohmann::ordered_json runJson(const MissionResult& result) {
 
 }  // namespace
 
-int countOf(const Campaign& campaign, Outcome outcome) {
+std::string withoutNumbers(const std::string& reason) {
+  std::string kind;
+  for (size_t i = 0; i < reason.size(); ++i) {
+    const bool after_number = !kind.empty() && kind.back() == '#';
+    const bool point = reason[i] == '.' && i + 1 < reason.size() && isDigit(reason[i + 1]);
+    if (after_number && (isDigit(reason[i]) || point)) continue;
+    kind += isDigit(reason[i]) ? '#' : reason[i];
+  }
+  std::replace(kind.begin(), kind.end(), '#', 'N');
+  return kind;
+}
+
+Steadiness steadinessOf(const std::vector<MissionResult>& results) {
+  Steadiness steadiness;
+  for (const MissionResult& result : results) {
+    const auto stops = static_cast<int>(result.stops.size());
+    steadiness.driven += result.driven;
+    steadiness.flips += static_cast<int>(result.flips.size());
+    steadiness.stops += stops;
+    if (stops > steadiness.most_stops) steadiness.most_seed = result.seed;
+    steadiness.most_stops = std::max(steadiness.most_stops, stops);
+    for (const Stop& stop : result.stops) {
+      steadiness.stood += stop.duration;
+      ++steadiness.reasons[withoutNumbers(stop.reason)];
+    }
+  }
+  return steadiness;
+}
+
+int countOf(const Batch& batch, MissionOutcome outcome) {
   return static_cast<int>(
-      std::count_if(campaign.results.begin(), campaign.results.end(),
+      std::count_if(batch.results.begin(), batch.results.end(),
                     [&](const MissionResult& r) { return r.outcome == outcome; }));
 }
 
-int collisionsOf(const Campaign& campaign) {
+int collisionsOf(const Batch& batch) {
   int collisions = 0;
-  for (const MissionResult& result : campaign.results) collisions += result.collisions;
+  for (const MissionResult& result : batch.results) collisions += result.collisions;
   return collisions;
 }
 
@@ -171,62 +222,58 @@ std::string crossingsOf(const MissionResult& result) {
   std::string lines;
   for (size_t i = 0; i < result.crossings.size(); ++i) {
     const Crossing& crossing = result.crossings[i];
-    const ErrorAroundChange errors = errorsAround(result, i);
+    const ErrorsAroundChanges errors = errorsAroundChange(result, i);
     lines += formatted("  %6.1f s  %-6s to %-6s  error before / after / settled: ", crossing.time,
                        crossing.from.c_str(), crossing.to.c_str());
-    lines += errorText(errors.before_position, errors.before_yaw) + " / " +
-             errorText(errors.after_position, errors.after_yaw) + " / " +
-             errorText(errors.settled_position, errors.settled_yaw) + '\n';
+    lines += errorText(errors.before) + " / " + errorText(errors.after) + " / " +
+             errorText(errors.settled) + '\n';
   }
   return lines;
 }
 
-void printSummary(std::ostream& out, const Campaign& campaign) {
-  printShares(out, campaign);
+void printSummary(std::ostream& out, const Batch& batch) {
+  printShares(out, batch);
   int blocked = 0;
-  for (const MissionResult& result : campaign.results) blocked += result.line_blocked ? 1 : 0;
+  for (const MissionResult& result : batch.results) blocked += result.line_blocked ? 1 : 0;
   out << formatted("collisions %d; straight line blocked in %d of %zu missions\n",
-                   collisionsOf(campaign), blocked, campaign.results.size());
-  printSteadiness(out, campaign.results);
+                   collisionsOf(batch), blocked, batch.results.size());
+  printSteadiness(out, batch.results);
   out << formatted("%.0f s of virtual time in %.0f s: %.1f times real time per core\n",
-                   campaign.virtual_time, campaign.wall_time,
-                   campaign.virtual_time / std::max(1e-9, campaign.cpu_time));
-  printErrors(out, campaign, 1, 3);
-  printErrors(out, campaign, 5, 15);
+                   batch.virtual_time, batch.wall_time,
+                   batch.virtual_time / std::max(1e-9, batch.cpu_time));
+  printErrors(out, batch, 1, 3);
+  printErrors(out, batch, 5, 15);
 }
 
-nlohmann::ordered_json campaignJson(const Campaign& campaign) {
-  nlohmann::ordered_json json;
-  json["missions"] = campaign.results.size();
-  json["arrived"] = countOf(campaign, Outcome::kArrived);
-  json["refused"] = countOf(campaign, Outcome::kRefused);
-  json["idle"] = countOf(campaign, Outcome::kIdle);
-  json["stopped"] = countOf(campaign, Outcome::kStopped);
-  json["collisions"] = collisionsOf(campaign);
-  addSteadiness(json, campaign);
-  json["virtual_s"] = campaign.virtual_time;
-  json["wall_s"] = campaign.wall_time;
-  json["cpu_s"] = campaign.cpu_time;
-  json["seed"] = campaign.seed;
-  json["rule"] = campaign.rule;
-  json["set"] = campaign.overrides;
-  json["errors_1_to_3"] = errorsJson(campaign, 1, 3);
-  json["errors_5_to_15"] = errorsJson(campaign, 5, 15);
-  json["runs"] = nlohmann::ordered_json::array();
-  for (const MissionResult& result : campaign.results) json["runs"].push_back(runJson(result));
+nlohmann::ordered_json batchJson(const Batch& batch) {
+  Json json;
+  json["missions"] = batch.results.size();
+  json["arrived"] = countOf(batch, MissionOutcome::kArrived);
+  json["refused"] = countOf(batch, MissionOutcome::kRefused);
+  json["idle"] = countOf(batch, MissionOutcome::kIdle);
+  json["stopped"] = countOf(batch, MissionOutcome::kStopped);
+  json["collisions"] = collisionsOf(batch);
+  addSteadiness(json, batch);
+  json["virtual_s"] = batch.virtual_time;
+  json["wall_s"] = batch.wall_time;
+  json["cpu_s"] = batch.cpu_time;
+  json["seed"] = batch.seed;
+  json["rule"] = batch.rule;
+  json["set"] = batch.overrides;
+  json["errors_1_to_3"] = errorsJson(batch, 1, 3);
+  json["errors_5_to_15"] = errorsJson(batch, 5, 15);
+  json["runs"] = Json::array();
+  for (const MissionResult& result : batch.results) json["runs"].push_back(runJson(result));
   return json;
 }
 
 void writeJsonFile(const std::string& path, const nlohmann::ordered_json& json) {
-  std::ofstream file(path);
   // A reason comes from a message, which may have been broken: its bytes need not be UTF-8.
-  file << json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
-  file.close();
-  if (!file) throw std::runtime_error(path + ": cannot write the report");
+  recordings::writeText(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n');
 }
 
-void writeJson(const std::string& path, const Campaign& campaign) {
-  writeJsonFile(path, campaignJson(campaign));
+void writeJson(const std::string& path, const Batch& batch) {
+  writeJsonFile(path, batchJson(batch));
 }
 
 }  // namespace tread::missions

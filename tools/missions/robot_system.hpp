@@ -44,6 +44,11 @@ const std::vector<std::string>& robotNodes();
  * that process says. */
 RobotConfig readRobot(const std::string& folder, const std::vector<std::string>& overrides = {});
 
+/// Reads a fault file: `messages` (channel, receiver, drop, duplicate, corrupt, reorder, reorder_s,
+/// delay_s, from_s, until_s) and `nodes` (node, kill_at_s, restart_after_s). Throws ConfigError
+/// with file:line.
+FaultPlan readFaultFile(const std::string& path);
+
 /// The whole robot and its world on a virtual bus: real nodes, real device bytes, real messages.
 /** Device lines are in-memory pipes between drivers and emulators; the laser's scans enter behind
  * the range finder's library (lidar::ScanSource). Links, stores and the simulated robot outlive a

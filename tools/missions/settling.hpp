@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/missions/rule_comparison.hpp"
+#include "tools/missions/prediction_errors.hpp"
 
 namespace tread::missions {
 
@@ -22,7 +22,8 @@ class Omniscient {
   /// Takes in the executions of a mission.
   void add(const MissionResult& result);
   /// Error of an execution in the world with this seed.
-  std::optional<shadow::EndError> errorOf(const ScoredExecution& execution, uint64_t seed) const;
+  std::optional<shadow::EndPoseError> errorOf(const ScoredExecution& execution,
+                                              uint64_t seed) const;
 
  private:
   struct Ends {

@@ -19,7 +19,7 @@ namespace tread::shadow {
 using ExecutionKey = std::pair<int64_t, int64_t>;
 
 /// How far an execution ended from what a rule had predicted.
-struct EndError {
+struct EndPoseError {
   double position = 0.0;  ///< [m]
   double yaw = 0.0;       ///< [rad] measured - predicted, wrapped
 };
@@ -30,7 +30,7 @@ struct ShadowedExecution {
   int64_t began = 0;  ///< [us]; 0 = not known
   int64_t ended = 0;  ///< [us]
   bool measured = false;
-  std::vector<EndError> by_rule;  ///< in the order of the rules; empty where not measured
+  std::vector<EndPoseError> by_rule;  ///< in the order of the rules; empty where not measured
 };
 
 /// The learner process once for each rule, beside a drive that goes on without them.

@@ -11,11 +11,11 @@
 
 #include <unistd.h>
 
-#include "tools/missions/fault_file.hpp"
 #include "tools/missions/mission_runner.hpp"
-#include "tools/missions/mission_watch.hpp"
 #include "tools/missions/operator.hpp"
+#include "tools/missions/referee.hpp"
 #include "tools/missions/report.hpp"
+#include "tools/missions/robot_system.hpp"
 
 using namespace tread;
 using namespace tread::missions;
@@ -79,7 +79,7 @@ struct Bench {
 
   MissionWorld world;
   RobotSystem system;
-  MissionWatch watch;
+  Referee watch;
   Operator person;
   bool operator_there = true;
   motor_t motor{};
@@ -124,7 +124,7 @@ TEST_CASE("a mission drives from start to goal over changing ground without touc
   for (const uint64_t seed : {8u, 22u}) {
     CAPTURE(seed);
     const MissionRun run = runMission(teodor(), seed, {});
-    CHECK(run.result.outcome == Outcome::kArrived);
+    CHECK(run.result.outcome == MissionOutcome::kArrived);
     CHECK(run.result.reason.empty());
     CHECK(run.result.collisions == 0);
     CHECK(run.result.distance > run.result.straight_line - 1.5);
@@ -155,7 +155,7 @@ TEST_CASE(
   Bench bench(22, lossyBus());
   bench.runToEnd();
   CAPTURE(bench.watch.result().reason);
-  CHECK(bench.watch.result().outcome == Outcome::kArrived);
+  CHECK(bench.watch.result().outcome == MissionOutcome::kArrived);
   CHECK(bench.watch.result().collisions == 0);
   CHECK_FALSE(bench.version_went_back);
 }
@@ -183,7 +183,7 @@ TEST_CASE(
     bench.system.bus().restart(node);
     bench.runToEnd();
     CAPTURE(bench.watch.result().reason);
-    CHECK(bench.watch.result().outcome == Outcome::kArrived);
+    CHECK(bench.watch.result().outcome == MissionOutcome::kArrived);
     CHECK(bench.watch.result().collisions == 0);
     CHECK_FALSE(bench.version_went_back);
   }
@@ -231,7 +231,7 @@ TEST_CASE("a cut line to the motor controller stops the motors by the controller
   bench.run(2.0);
   bench.system.connect("motor", true);
   bench.runToEnd();
-  CHECK(bench.watch.result().outcome == Outcome::kArrived);
+  CHECK(bench.watch.result().outcome == MissionOutcome::kArrived);
   CHECK(bench.person.rearmed() >= 1);
 }
 
@@ -256,24 +256,24 @@ TEST_CASE(
   bench.run(2.0);
   bench.system.devices().ins().setFaults({});
   bench.runToEnd();
-  CHECK(bench.watch.result().outcome == Outcome::kArrived);
+  CHECK(bench.watch.result().outcome == MissionOutcome::kArrived);
 }
 
 TEST_CASE("a report says what happened, in text and in JSON") {
-  Campaign campaign;
-  campaign.seed = 8;
-  campaign.rule = "off";
+  Batch batch;
+  batch.seed = 8;
+  batch.rule = "off";
   MissionOptions options;
   options.rule = "off";
   const MissionRun run = runMission(teodor(), 8, options);
-  campaign.virtual_time = run.virtual_time;
-  campaign.cpu_time = campaign.wall_time = run.cpu_time;
-  campaign.results.push_back(run.result);
+  batch.virtual_time = run.virtual_time;
+  batch.cpu_time = batch.wall_time = run.cpu_time;
+  batch.results.push_back(run.result);
   // As a broken message may have left it: no UTF-8.
-  campaign.results.back().reason = "bro\xff\xc0ken";
+  batch.results.back().reason = "bro\xff\xc0ken";
   CHECK(run.result.set_versions == 0);
   std::ostringstream text;
-  printSummary(text, campaign);
+  printSummary(text, batch);
   CHECK(text.str().find("arrived      1  100.0 %") != std::string::npos);
   CHECK(text.str().find("per minute driven") != std::string::npos);
   CHECK(text.str().find("per mission, at most") != std::string::npos);
@@ -282,7 +282,7 @@ TEST_CASE("a report says what happened, in text and in JSON") {
         static_cast<std::ptrdiff_t>(run.result.crossings.size()));
   CHECK(crossings.find(run.result.crossings.at(0).to) != std::string::npos);
   const std::string path = "test_missions_" + std::to_string(getpid()) + ".json";
-  writeJson(path, campaign);
+  writeJson(path, batch);
   const std::string json = bytesOf(path);
   std::remove(path.c_str());
   for (const char* key : {"missions", "arrived", "refused", "idle", "stopped", "collisions",
@@ -292,7 +292,7 @@ TEST_CASE("a report says what happened, in text and in JSON") {
   for (const char* key : {"flips", "flips_per_min", "stops", "stops_per_mission", "stop_reasons",
                           "driven_s", "begun_s"})
     CHECK(json.find('"' + std::string(key) + "\":") != std::string::npos);
-  CHECK_THROWS_WITH(writeJson("/nowhere/report.json", campaign),
+  CHECK_THROWS_WITH(writeJson("/nowhere/report.json", batch),
                     Catch::Contains("/nowhere/report.json"));
 }
 

@@ -162,14 +162,14 @@ TEST_CASE("the median of times counts those that were not seen to the end as not
 }
 
 TEST_CASE("a comparison says in text and in JSON what each rule did") {
-  Comparison comparison;
+  RuleComparison comparison;
   for (const char* rule : {"collective", "off"}) {
-    Campaign campaign;
-    campaign.rule = rule;
-    campaign.results = inventedMissions(campaign.rule == "off" ? 20 : 3);
-    comparison.campaigns.push_back(campaign);
+    Batch batch;
+    batch.rule = rule;
+    batch.results = inventedMissions(batch.rule == "off" ? 20 : 3);
+    comparison.batches.push_back(batch);
   }
-  for (MissionResult& result : comparison.campaigns.front().results) {
+  for (MissionResult& result : comparison.batches.front().results) {
     result.shadow_rules = {learner::Rule::kCollective, learner::Rule::kOff};
     for (ScoredExecution& execution : result.executions)
       execution.by_rule = {{execution.error_position, execution.error_yaw}, {0.2, 0.3}};

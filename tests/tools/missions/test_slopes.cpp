@@ -6,9 +6,9 @@
 #include <cmath>
 #include <map>
 
-#include "tools/missions/mission_watch.hpp"
 #include "tools/missions/operator.hpp"
-#include "tools/missions/rule_comparison.hpp"
+#include "tools/missions/prediction_errors.hpp"
+#include "tools/missions/referee.hpp"
 
 using namespace tread;
 using namespace tread::missions;
@@ -47,7 +47,7 @@ const std::vector<learner::Rule> kRules{learner::Rule::kCollective, learner::Rul
 
 void fillByRule(shadow::ShadowLearners& shadows, MissionResult& result) {
   shadows.finish();
-  std::map<shadow::ExecutionKey, std::vector<shadow::EndError>> errors;
+  std::map<shadow::ExecutionKey, std::vector<shadow::EndPoseError>> errors;
   for (auto& execution : shadows.executions()) errors[execution.key] = execution.by_rule;
   for (ScoredExecution& execution : result.executions) execution.by_rule = errors[execution.key];
 }
@@ -65,7 +65,7 @@ HillsideDrive driveHillside(uint64_t seed) {
     with.hear(utime, event);
     without.hear(utime, event);
   });
-  MissionWatch watch(system, world);
+  Referee watch(system, world);
   Operator person(system.bus().outside(), world.T_map_goal);
   while (!watch.ended()) {
     system.bus().runUntil(system.bus().now() + 50'000);
@@ -112,7 +112,7 @@ TEST_CASE("what a slope did is not learned with the gate, and spoils level groun
   for (uint64_t seed = 1; seed <= 2; ++seed) {
     CAPTURE(seed);
     const HillsideDrive drive = driveHillside(seed);
-    CHECK(drive.result.outcome == Outcome::kArrived);
+    CHECK(drive.result.outcome == MissionOutcome::kArrived);
     for (const ScoredExecution& execution : drive.result.executions) {
       if (!(execution.slope > teodor().learner.limits.max_slope)) continue;
       CHECK_FALSE(execution.measured);

@@ -12,9 +12,9 @@
 #include <unistd.h>
 
 #include "modules/simulator/core/surface.hpp"
-#include "tools/missions/mission_watch.hpp"
-#include "tools/missions/omniscient_report.hpp"
+#include "tools/missions/comparison_report.hpp"
 #include "tools/missions/operator.hpp"
+#include "tools/missions/referee.hpp"
 #include "tools/missions/true_patterns.hpp"
 
 using namespace tread;
@@ -43,7 +43,7 @@ std::vector<ScoredExecution> driveOn(const std::string& surface, const PatternSe
   world.description.terrain.waves.clear();
   RobotSystem system(robot, world.description, world.T_map_start, 8, "off", {});
   Operator person(system.bus().outside(), world.T_map_goal);
-  MissionWatch watch(system, world);
+  Referee watch(system, world);
   while (!watch.ended()) {
     system.bus().runUntil(system.bus().now() + 50'000);
     person.step(system.bus().now());
@@ -66,7 +66,7 @@ double meanErrorOn(const std::string& surface, const PatternSet& set) {
 MissionResult arrivedAfter(uint64_t seed, double seconds) {
   MissionResult result;
   result.seed = seed;
-  result.outcome = Outcome::kArrived;
+  result.outcome = MissionOutcome::kArrived;
   result.begun = 3.0;
   result.time = 3.0 + seconds;
   return result;
@@ -115,7 +115,7 @@ TEST_CASE("the omniscient robot gets another set where the ground becomes anothe
   const MissionWorld world = makeMissionWorld(seed);
   RobotSystem system(teodor(), world.description, world.T_map_start, seed, "", {}, &truePatterns());
   Operator person(system.bus().outside(), world.T_map_goal);
-  MissionWatch watch(system, world);
+  Referee watch(system, world);
   PatternSetAssembler sets;
   std::optional<PatternSet> newest;
   system.bus().outside().subscribe<pattern_set_part_t>(kPatternSet,
@@ -140,7 +140,7 @@ TEST_CASE("the omniscient robot gets another set where the ground becomes anothe
     if (system.bus().now() - since < 400'000 || plan.message().num_patterns == 0) continue;
     always_planned = always_planned && plan.message().set_version == newest->version();
   }
-  CHECK(watch.result().outcome == Outcome::kArrived);
+  CHECK(watch.result().outcome == MissionOutcome::kArrived);
   CHECK(watch.result().set_versions >= 2);
   CHECK(watch.result().executions.empty());  // nobody learns
   CHECK(always_true);
@@ -153,7 +153,7 @@ TEST_CASE("times are compared from the first motion, where both arrive") {
     comparison.learning.results.push_back(arrivedAfter(seed, 40.0 + static_cast<double>(seed)));
     comparison.omniscient.results.push_back(arrivedAfter(seed, 40.0));
   }
-  comparison.omniscient.results[10].outcome = Outcome::kRefused;
+  comparison.omniscient.results[10].outcome = MissionOutcome::kRefused;
   const std::vector<TimeRatio> ratios = timeRatios(comparison);
   REQUIRE(ratios.size() == 10);
   CHECK(quantileOf(ratios, 0.5) == Approx(45.0 / 40.0));

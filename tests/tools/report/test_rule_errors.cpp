@@ -37,13 +37,13 @@ TEST_CASE("a log tells what each rule would have predicted, as shadows of the dr
   std::remove(path.c_str());
   REQUIRE(errors.problem.empty());
   CHECK(errors.driven == "collective");
-  std::map<shadow::ExecutionKey, std::vector<shadow::EndError>> in_log;
+  std::map<shadow::ExecutionKey, std::vector<shadow::EndPoseError>> in_log;
   for (const shadow::ShadowedExecution& execution : errors.executions)
     in_log[execution.key] = execution.by_rule;
   int compared = 0, equal = 0;
   for (const missions::ScoredExecution& execution : run.result.executions) {
     if (!execution.measured) continue;
-    const std::vector<shadow::EndError>& replayed = in_log[execution.key];
+    const std::vector<shadow::EndPoseError>& replayed = in_log[execution.key];
     REQUIRE(replayed.size() == rules.size());
     for (size_t rule = 0; rule < rules.size(); ++rule, ++compared)
       equal += std::abs(replayed[rule].position - execution.by_rule[rule].position) < 1e-6 ? 1 : 0;

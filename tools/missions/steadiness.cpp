@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/missions/flip_watch.hpp"
+#include "tools/missions/steadiness.hpp"
 
 #include <cmath>
 
 namespace tread::missions {
 
-std::optional<FlipWatch::Patterns> FlipWatch::patternsOf(const std::vector<int32_t>& ids) const {
+std::optional<FlipDetector::Patterns> FlipDetector::patternsOf(
+    const std::vector<int32_t>& ids) const {
   Patterns patterns;
   for (const int32_t id : ids) patterns.push_back(set_->find(id));
   for (const MotionPattern* pattern : patterns)
@@ -14,7 +15,7 @@ std::optional<FlipWatch::Patterns> FlipWatch::patternsOf(const std::vector<int32
   return patterns;
 }
 
-const MotionPattern* FlipWatch::turnOf(const Patterns& patterns) const {
+const MotionPattern* FlipDetector::turnOf(const Patterns& patterns) const {
   double time = 0.0;
   for (const MotionPattern* pattern : patterns) {
     if (time >= kAhead) break;
@@ -24,7 +25,7 @@ const MotionPattern* FlipWatch::turnOf(const Patterns& patterns) const {
   return nullptr;
 }
 
-std::optional<Flip> FlipWatch::hear(const plan_t& plan) {
+std::optional<Flip> FlipDetector::hear(const plan_t& plan) {
   if (!set_ || plan.pattern_id.empty()) return std::nullopt;
   const bool begun = plan.execution_id.front() != running_;
   const bool as_intended = begun && !intended_.empty() && intended_.front() == plan.pattern_id[0];
@@ -45,6 +46,32 @@ std::optional<Flip> FlipWatch::hear(const plan_t& plan) {
                       std::signbit(to->end().yaw) != std::signbit(from->end().yaw);
   if (!turned || !is_free_(T_map_start, *before)) return std::nullopt;
   return Flip{0.0, from->name, to->name};
+}
+
+void StopDetector::step(int64_t utime, const Twist2& v_body, const SaidReason& said) {
+  const bool slow = std::hypot(v_body.v_x, v_body.v_y) < kSlow && std::abs(v_body.omega) < kSlow;
+  if (!slow && begun_ == 0) begun_ = utime;
+  if (!slow && last_step_ != 0) driven_ += utime - last_step_;
+  last_step_ = utime;
+  if (slow && !slow_) slowed_ = {utime, utime, said.planner.empty() ? said.bridge : said.planner};
+  slow_ = slow;
+  if (!slow) resting_ = false;
+  if (!slow || begun_ == 0) return;
+  if (resting_) {
+    rests_.back().to = utime;
+  } else if (utime - slowed_.from >= kMoment) {
+    rests_.push_back({slowed_.from, utime, slowed_.reason});
+    resting_ = true;
+  }
+}
+
+std::vector<Stop> StopDetector::stops(int64_t start, bool arrived) const {
+  std::vector<Stop> stops;
+  for (const Rest& rest : rests_)
+    stops.push_back({static_cast<double>(rest.from - start) * 1e-6,
+                     static_cast<double>(rest.to - rest.from) * 1e-6, rest.reason});
+  if (arrived && resting_) stops.pop_back();
+  return stops;
 }
 
 }  // namespace tread::missions

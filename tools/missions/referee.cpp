@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/missions/mission_watch.hpp"
+#include "tools/missions/referee.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,27 +21,25 @@ constexpr int64_t kSurfaceConfirmed =
 
 }  // namespace
 
-MissionWatch::MissionWatch(RobotSystem& system, const MissionWorld& world)
+Referee::Referee(RobotSystem& system, const MissionWorld& world)
     : system_(system),
       world_(world),
       start_(system.bus().now()),
-      time_limit_(60.0 + 8.0 * world.straight_line),
       flips_([this](const Pose2& start, const auto& patterns) { return isFree(start, patterns); }),
-      moved_at_(start_),
+      surfaces_(start_, system.robot().truth().surface),
       last_pose_(system.robot().truth().T_map_body),
+      moved_at_(start_),
       moved_from_(last_pose_),
       map_(system.map().voxels.cell_size, system.map().tile_cells) {
   result_.straight_line = world.straight_line;
   result_.line_blocked = world.line_blocked;
   result_.surface_changes = world.surface_changes;
-  surface_ = system.robot().truth().surface;
-  surfaces_.push_back({start_, surface_});
   for (const MotionPattern& pattern : system.patterns().patterns())
     pattern_names_[pattern.id] = pattern.name;
   listen(system.bus().outside());
 }
 
-void MissionWatch::listen(Bus& bus) {
+void Referee::listen(Bus& bus) {
   bus.subscribe<plan_t>(kPlan, [this](const plan_t& message) { hear(message); });
   bus.subscribe<motor_t>(kMotor, [this](const motor_t& message) { motor_ = message; });
   bus.subscribe<execution_t>(kExecution, [this](const execution_t& message) { hear(message); });
@@ -52,21 +50,21 @@ void MissionWatch::listen(Bus& bus) {
                                     [this](const pattern_set_part_t& part) { hear(part); });
 }
 
-MissionResult MissionWatch::result() const {
+MissionResult Referee::result() const {
   MissionResult result = result_;
-  result.stops = stops_.stops(start_, result.outcome == Outcome::kArrived);
+  result.stops = stops_.stops(start_, result.outcome == MissionOutcome::kArrived);
   result.begun = stops_.begun() == 0 ? result.time : seconds(stops_.begun());
   result.driven = stops_.driven();
   return result;
 }
 
-void MissionWatch::hear(const pattern_set_part_t& part) {
+void Referee::hear(const pattern_set_part_t& part) {
   versions_.insert(part.set_version);
   result_.set_versions = static_cast<int64_t>(versions_.size()) - 1;
   if (const auto set = sets_.add(part)) flips_.take(*set);
 }
 
-void MissionWatch::hear(const plan_t& message) {
+void Referee::hear(const plan_t& message) {
   plan_ = message;
   std::optional<Flip> flip = flips_.hear(message);
   if (!flip) return;
@@ -74,8 +72,8 @@ void MissionWatch::hear(const plan_t& message) {
   result_.flips.push_back(*flip);
 }
 
-bool MissionWatch::isFree(const Pose2& T_map_start,
-                          const std::vector<const MotionPattern*>& patterns) const {
+bool Referee::isFree(const Pose2& T_map_start,
+                     const std::vector<const MotionPattern*>& patterns) const {
   const planner::WorldConfig& world = system_.planner().world;
   const Footprint footprint(world.footprint.front, world.footprint.rear, world.footprint.half_width,
                             world.margins.check);
@@ -91,7 +89,7 @@ bool MissionWatch::isFree(const Pose2& T_map_start,
   return true;
 }
 
-void MissionWatch::hear(const execution_t& message) {
+void Referee::hear(const execution_t& message) {
   abort_reason_.clear();
   for (const execution_record_t& record : message.records) {
     const bool aborted = record.outcome == execution_record_t::OUTCOME_ABORTED;
@@ -105,7 +103,7 @@ void MissionWatch::hear(const execution_t& message) {
   }
 }
 
-void MissionWatch::hear(const learning_t& message) {
+void Referee::hear(const learning_t& message) {
   ScoredExecution execution;
   execution.key = {message.learned_run_id, message.learned_execution_id};
   execution.time = seconds(message.utime);
@@ -121,17 +119,17 @@ void MissionWatch::hear(const learning_t& message) {
                             message.measured_end[2]};
   const auto record = records_.find(execution.key);
   if (record != records_.end())
-    execution.surface = surfaceBetween(record->second.started, record->second.ended);
+    execution.surface = surfaces_.between(record->second.started, record->second.ended);
   result_.executions.push_back(execution);
 }
 
-void MissionWatch::hear(const plan_tree_t& message) {
+void Referee::hear(const plan_tree_t& message) {
   // The last plans before the goal are short; the one worth drawing was made on the way.
   if (!tree_.empty() && toGo() < 10.0) return;
   tree_ = report::edgesOf(message);
 }
 
-void MissionWatch::hear(const map_tile_t& message) {
+void Referee::hear(const map_tile_t& message) {
   Tile tile;
   tile.tile_x = message.tile_x;
   tile.tile_y = message.tile_y;
@@ -140,26 +138,31 @@ void MissionWatch::hear(const map_tile_t& message) {
   map_.put(std::move(tile));
 }
 
-void MissionWatch::step() {
-  const sim::RobotTruth& truth = system_.robot().truth();
+void Referee::step() {
   const int64_t now = system_.bus().now();
-  const Pose2 step = between(last_pose_, truth.T_map_body);
-  result_.distance += std::hypot(step.x, step.y);
-  last_pose_ = truth.T_map_body;
-  if (result_.track.empty() || seconds(now) - result_.track.back().time > 0.2)
-    result_.track.push_back({seconds(now), truth.T_map_body});
-  const Pose2 since = between(moved_from_, truth.T_map_body);
-  if (std::hypot(since.x, since.y) > 0.1 || std::abs(since.yaw) > 0.1) {
-    moved_from_ = truth.T_map_body;
-    moved_at_ = now;
-  }
-  stops_.step(now, truth.v_body, {plan_.reason, abort_reason_});
+  result_.time = seconds(now);
+  noteMotion();
+  stops_.step(now, system_.robot().truth().v_body, {plan_.reason, abort_reason_});
   noteContacts();
-  followSurface();
+  noteSurface();
   judge();
 }
 
-void MissionWatch::noteContacts() {
+void Referee::noteMotion() {
+  const Pose2& T_map_body = system_.robot().truth().T_map_body;
+  const Pose2 step = between(last_pose_, T_map_body);
+  result_.distance += std::hypot(step.x, step.y);
+  last_pose_ = T_map_body;
+  if (result_.track.empty() || result_.time - result_.track.back().time > 0.2)
+    result_.track.push_back({result_.time, T_map_body});
+  const Pose2 since = between(moved_from_, T_map_body);
+  if (std::hypot(since.x, since.y) > 0.1 || std::abs(since.yaw) > 0.1) {
+    moved_at_ = system_.bus().now();
+    moved_from_ = T_map_body;
+  }
+}
+
+void Referee::noteContacts() {
   const sim::RobotTruth& truth = system_.robot().truth();
   for (size_t i = result_.contacts.size(); i < truth.collisions.size(); ++i) {
     Contact contact;
@@ -173,79 +176,79 @@ void MissionWatch::noteContacts() {
   result_.collisions = static_cast<int>(truth.collisions.size());
 }
 
-std::string MissionWatch::presentPattern() const {
+std::string Referee::presentPattern() const {
   const auto record = records_.find({motor_.motor_run_id, motor_.execution_id});
   if (motor_.execution_id == 0 || record == records_.end()) return {};
   const auto name = pattern_names_.find(record->second.record_pattern_id);
   return name == pattern_names_.end() ? std::string() : name->second;
 }
 
-void MissionWatch::followSurface() {
-  const std::string& present = system_.robot().truth().surface;
-  const int64_t now = system_.bus().now();
-  if (present == surface_) {
-    new_surface_.clear();
-    return;
+std::optional<int64_t> SurfaceTracker::step(int64_t utime, const std::string& present) {
+  if (present == surface()) {
+    next_.clear();
+    return std::nullopt;
   }
-  if (present != new_surface_) {
-    new_surface_ = present;
-    new_surface_since_ = now;
+  if (present != next_) {
+    next_ = present;
+    next_since_ = utime;
   }
-  if (now - new_surface_since_ < kSurfaceConfirmed) return;
-  result_.crossings.push_back({seconds(new_surface_since_), surface_, present});
-  surfaces_.push_back({new_surface_since_, present});
-  surface_ = present;
-  new_surface_.clear();
+  if (utime - next_since_ < kSurfaceConfirmed) return std::nullopt;
+  changes_.emplace_back(next_since_, present);
+  next_.clear();
+  return next_since_;
 }
 
-std::string MissionWatch::surfaceBetween(int64_t from, int64_t to) const {
+std::string SurfaceTracker::between(int64_t from, int64_t to) const {
   std::string at_start;
-  for (const auto& [since, surface] : surfaces_) {
+  for (const auto& [since, surface] : changes_) {
     if (since <= from) at_start = surface;
     if (since > from && since <= to) return {};
   }
-  return !new_surface_.empty() && new_surface_since_ <= to ? std::string() : at_start;
+  return !next_.empty() && next_since_ <= to ? std::string() : at_start;
 }
 
-double MissionWatch::toGo() const {
+void Referee::noteSurface() {
+  const std::string before = surfaces_.surface();
+  if (const auto since = surfaces_.step(system_.bus().now(), system_.robot().truth().surface))
+    result_.crossings.push_back({seconds(*since), before, surfaces_.surface()});
+}
+
+double Referee::toGo() const {
   return (world_.T_map_goal.position() - last_pose_.position()).norm();
 }
 
-void MissionWatch::judge() {
-  const int64_t now = system_.bus().now();
-  result_.time = seconds(now);
+void Referee::judge() {
   const bool refused =
       plan_.plan_status == plan_t::PLAN_BLOCKED || plan_.plan_status == plan_t::PLAN_UNREACHABLE;
-  if (!refused) refused_since_ = -1;
-  if (refused && refused_since_ < 0) refused_since_ = now;
+  const int64_t now = system_.bus().now();
+  if (!refused) refused_since_.reset();
+  if (refused && !refused_since_) refused_since_ = now;
   if (plan_.plan_status == plan_t::PLAN_ARRIVED) {
-    if (toGo() <= kArrivedWithin) return end(Outcome::kArrived, "");
-    return end(Outcome::kStopped,
+    if (toGo() <= kArrivedWithin) return end(MissionOutcome::kArrived, "");
+    return end(MissionOutcome::kStopped,
                "the planner believes that it has arrived, the true pose says no");
   }
-  if (refused_since_ >= 0 && static_cast<double>(now - refused_since_) * 1e-6 > kRefusedAfter)
-    return end(Outcome::kRefused, operators::statusWord(plan_.plan_status) + ": " + plan_.reason);
+  const std::string plan = operators::statusWord(plan_.plan_status) + ": " + plan_.reason;
+  if (refused_since_ && static_cast<double>(now - *refused_since_) * 1e-6 > kRefusedAfter)
+    return end(MissionOutcome::kRefused, plan);
   if (static_cast<double>(now - moved_at_) * 1e-6 > kIdleAfter)
-    return end(Outcome::kIdle, "nothing moved for a minute; planner " +
-                                   operators::statusWord(plan_.plan_status) + ": " + plan_.reason +
-                                   "; bridge: " + motor_.state_reason);
-  if (result_.time > time_limit_)
-    return end(
-        Outcome::kStopped,
-        "time ran out; planner " + operators::statusWord(plan_.plan_status) + ": " + plan_.reason);
+    return end(MissionOutcome::kIdle,
+               "nothing moved for a minute; planner " + plan + "; bridge: " + motor_.state_reason);
+  if (result_.time > 60.0 + 8.0 * world_.straight_line)
+    return end(MissionOutcome::kStopped, "time ran out; planner " + plan);
 }
 
-void MissionWatch::end(Outcome outcome, const std::string& reason) {
+void Referee::end(MissionOutcome outcome, const std::string& reason) {
   result_.outcome = outcome;
   result_.reason = reason;
   ended_ = true;
 }
 
-Progress MissionWatch::progress() const {
+Progress Referee::progress() const {
   Progress progress;
   progress.time = result_.time;
   progress.to_go = toGo();
-  progress.surface = surface_;
+  progress.surface = surfaces_.surface();
   progress.plan = operators::statusWord(plan_.plan_status) +
                   (plan_.reason.empty() ? "" : " (" + plan_.reason + ")");
   progress.pattern = presentPattern();

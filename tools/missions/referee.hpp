@@ -7,16 +7,32 @@
 
 #include "common/messages/pattern_messages.hpp"
 
-#include "tools/missions/flip_watch.hpp"
 #include "tools/missions/mission_runner.hpp"
-#include "tools/missions/stop_watch.hpp"
+#include "tools/missions/steadiness.hpp"
 
 namespace tread::missions {
 
-/// The referee: looks at the true world and at the bus, and says when and how a mission has ended.
-class MissionWatch {
+/// The true surface under the robot; a change counts after a second on the new one.
+class SurfaceTracker {
  public:
-  MissionWatch(RobotSystem& system, const MissionWorld& world);
+  SurfaceTracker(int64_t start, const std::string& surface) : changes_{{start, surface}} {}
+
+  /// Returns since when the robot has been on another surface, once that is confirmed.
+  std::optional<int64_t> step(int64_t utime, const std::string& present);
+  const std::string& surface() const { return changes_.back().second; }
+  /// The surface of a time span; empty if it changed in it.
+  std::string between(int64_t from, int64_t to) const;
+
+ private:
+  std::vector<std::pair<int64_t, std::string>> changes_;  ///< since when [us], confirmed
+  std::string next_;                                      ///< perhaps the next surface
+  int64_t next_since_ = 0;
+};
+
+/// The referee: looks at the true world and at the bus, and says when and how a mission has ended.
+class Referee {
+ public:
+  Referee(RobotSystem& system, const MissionWorld& world);
 
   /// Call every 50 ms of virtual time.
   void step();
@@ -39,36 +55,31 @@ class MissionWatch {
   bool isFree(const Pose2& T_map_start, const std::vector<const MotionPattern*>& patterns) const;
   void noteContacts();
   std::string presentPattern() const;
-  void followSurface();
-  std::string surfaceBetween(int64_t from, int64_t to) const;
+  void noteSurface();
+  void noteMotion();
   void judge();
-  void end(Outcome outcome, const std::string& reason);
+  void end(MissionOutcome outcome, const std::string& reason);
   double seconds(int64_t utime) const { return static_cast<double>(utime - start_) * 1e-6; }
   double toGo() const;
 
   RobotSystem& system_;
   const MissionWorld& world_;
   int64_t start_;
-  double time_limit_;
   MissionResult result_;
   bool ended_ = false;
   plan_t plan_{};
   motor_t motor_{};
   std::set<int64_t> versions_;  ///< of pattern sets that were published
   PatternSetAssembler sets_;
-  FlipWatch flips_;
-  StopWatch stops_;
+  FlipDetector flips_;
+  StopDetector stops_;
   std::string abort_reason_;  ///< of the newest execution, if it was aborted
   std::map<int, std::string> pattern_names_;
   std::map<std::pair<int64_t, int64_t>, execution_record_t> records_;  ///< by run and execution id
-  std::vector<std::pair<int64_t, std::string>>
-      surfaces_;             ///< where the true surface became another
-  std::string surface_;      ///< present one, confirmed
-  std::string new_surface_;  ///< perhaps the next one
-  int64_t new_surface_since_ = 0;
-  int64_t refused_since_ = -1;
-  int64_t moved_at_;
+  SurfaceTracker surfaces_;
+  std::optional<int64_t> refused_since_;
   Pose2 last_pose_;
+  int64_t moved_at_;  ///< when and where it last was 10 cm or 0.1 rad from where it is
   Pose2 moved_from_;
   TileMap map_;
   std::vector<report::TreeEdge> tree_;

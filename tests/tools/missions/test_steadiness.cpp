@@ -6,9 +6,8 @@
 #include <cmath>
 
 #include "common/pattern/pattern_file.hpp"
-#include "tools/missions/flip_watch.hpp"
-#include "tools/missions/stop_report.hpp"
-#include "tools/missions/stop_watch.hpp"
+#include "tools/missions/report.hpp"
+#include "tools/missions/steadiness.hpp"
 
 using namespace tread;
 using namespace tread::missions;
@@ -47,13 +46,14 @@ class Published {
   std::vector<std::string> asked_for;
 
  private:
-  FlipWatch watch_{[this](const Pose2& start, const std::vector<const MotionPattern*>& patterns) {
-    ++asked;
-    asked_from = start;
-    asked_for.clear();
-    for (const MotionPattern* pattern : patterns) asked_for.push_back(pattern->name);
-    return is_free;
-  }};
+  FlipDetector watch_{
+      [this](const Pose2& start, const std::vector<const MotionPattern*>& patterns) {
+        ++asked;
+        asked_from = start;
+        asked_for.clear();
+        for (const MotionPattern* pattern : patterns) asked_for.push_back(pattern->name);
+        return is_free;
+      }};
 };
 
 }  // namespace
@@ -125,7 +125,7 @@ TEST_CASE("beginning another pattern than was planned is compared from its start
 }
 
 TEST_CASE("a stop is a rest of 0.2 s after a motion, with the planner's reason or the bridge's") {
-  StopWatch watch;
+  StopDetector watch;
   int64_t now = 1'000'000;
   const auto drive = [&](double seconds, double speed, const SaidReason& said) {
     for (const int64_t end = now + std::llround(seconds * 1e6); now < end; now += 50'000)

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "tools/missions/mission.hpp"
@@ -11,7 +12,7 @@
 namespace tread::missions {
 
 /// Prediction error of a measured execution; nothing where there is none to speak of.
-using ErrorOf = std::function<std::optional<shadow::EndError>(const ScoredExecution&)>;
+using ErrorOf = std::function<std::optional<shadow::EndPoseError>(const ScoredExecution&)>;
 
 /// Against the set that the planner had used.
 ErrorOf errorAsDriven();
@@ -27,17 +28,36 @@ struct MeanError {
   double yaw_per_rad = 0.0;     ///< pooled: sum of errors over radians turned
 };
 
-/// Errors around all changes of surface together.
+/// Errors around changes of surface, each mean over the executions of all changes.
 struct ErrorsAroundChanges {
   MeanError before;   ///< the last five executions on the old surface
   MeanError after;    ///< the first three on the new one
   MeanError settled;  ///< the fifth to the fifteenth
 };
 
+/// Measured executions that lie wholly on one stretch of surface: after crossing `index` - 1,
+/// before crossing `index`; 0 = before the first.
+std::vector<const ScoredExecution*> stretchOf(const MissionResult& result, size_t index);
+
+/// Of one change, an index into crossings, as driven.
+ErrorsAroundChanges errorsAroundChange(const MissionResult& result, size_t change);
+
+/// Of all changes of all missions.
 ErrorsAroundChanges errorsAroundChanges(const std::vector<MissionResult>& results,
                                         const ErrorOf& error);
 
 /// Over all measured executions that lie wholly on one surface.
 MeanError meanErrorOf(const std::vector<MissionResult>& results, const ErrorOf& error);
+
+/// After changes between two surfaces; from "start" = before the first change.
+struct ErrorAfterChange : MeanError {
+  std::string from;
+  std::string to;
+};
+
+/// Of the executions with index first..last after each change of surface (1 = the first whole one
+/// after it), as driven. Per pair of surfaces, sorted by name, pooled over all missions.
+std::vector<ErrorAfterChange> errorsAfterChange(const std::vector<MissionResult>& results,
+                                                int first, int last);
 
 }  // namespace tread::missions
