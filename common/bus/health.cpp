@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/bus/health.hpp"
 
+#include "common/messages/blank.hpp"
+
 namespace tread {
 namespace {
 
@@ -46,7 +48,7 @@ void HealthReporter::step(int64_t utime) {
 
 void HealthReporter::publishHealth(int64_t utime) {
   const BusStatistics& statistics = bus_.statistics();
-  health_t health{};
+  auto health = blank<health_t>();
   health.utime = utime;
   health.seq = seq_health_++;
   health.utc = bus_.utc();
@@ -60,18 +62,14 @@ void HealthReporter::publishHealth(int64_t utime) {
   health.late = statistics.late;
   // A foreign message does not make a process ill, but its line must be seen somewhere.
   if (health.health_reason.empty()) health.health_reason = statistics.last_refusal;
-  for (const auto& [name, value] : counters_) {
-    counter_t counter;
+  const auto add = [&health](const std::string& name, int64_t value) {
+    auto counter = blank<counter_t>();
     counter.counter_name = name;
     counter.counted = value;
     health.counters.push_back(counter);
-  }
-  if (statistics.jumps > 0) {
-    counter_t jumps;
-    jumps.counter_name = "time jumps refused";
-    jumps.counted = statistics.jumps;
-    health.counters.push_back(jumps);
-  }
+  };
+  for (const auto& [name, value] : counters_) add(name, value);
+  if (statistics.jumps > 0) add("time jumps refused", statistics.jumps);
   health.num_counters = static_cast<int32_t>(health.counters.size());
   const CycleTimes cycles = bus_.takeCycleTimes();
   health.cycle_mean = cycles.mean_us;
@@ -80,7 +78,7 @@ void HealthReporter::publishHealth(int64_t utime) {
 }
 
 void HealthReporter::publishConfig(int64_t utime) {
-  config_t config{};
+  auto config = blank<config_t>();
   config.utime = utime;
   config.seq = seq_config_++;
   config.config_process = process_;

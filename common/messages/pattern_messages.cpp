@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/messages/blank.hpp"
+
 namespace tread {
 namespace {
 
 pattern_set_part_t partOf(const PatternSet& set, size_t index) {
   const PatternSetContent& content = set.content();
   const MotionPattern& pattern = content.patterns[index];
-  pattern_set_part_t part{};
+  auto part = blank<pattern_set_part_t>();
   part.utime = content.utime;
   part.set_version = content.version;
   part.parent_version = content.parent_version;

@@ -9,6 +9,8 @@
 
 #include <Eigen/Geometry>
 
+#include "common/messages/blank.hpp"
+
 namespace tread::importer {
 namespace {
 
@@ -24,7 +26,7 @@ int64_t utimeOf(double seconds) {
 
 /// One execution of the log.
 struct Planned {
-  execution_record_t record{};
+  execution_record_t record = blank<execution_record_t>();
   int64_t end = 0;  ///< [us]
   bool completed = false;
   std::string reason;
@@ -50,7 +52,6 @@ std::vector<Planned> plannedExecutions(const std::vector<CommandRun>& runs,
       planned.record.record_pattern_id = run.step;
       planned.record.record_set_version = 1;
       planned.record.started = started;
-      planned.record.ended = -1;
       planned.record.commands_total = static_cast<int32_t>(std::lround(layout.length / kPeriod));
       all.push_back(planned);
     }
@@ -72,7 +73,7 @@ class LogMaker {
          << "\nbaseline: " << session.baseline << "\npose_lag_removed: " << session.pose_lag
          << "\nposes: " << poses << "\ngyro: " << gyro << "\noffset: " << layout.offset
          << "\nlength: " << layout.length << "\nexecutions: " << layout.executions << "\n";
-    config_t config{};
+    auto config = blank<config_t>();
     config.utime = utimeOf(begin);
     config.config_process = "tread-import";
     config.config_boot_id = config.utime;
@@ -94,7 +95,7 @@ class LogMaker {
       const int64_t utime = utimeOf(fix.time);
       // Two fixes within a millisecond are one.
       if (utime <= last) continue;
-      ins_t ins = blankIns();
+      auto ins = blank<ins_t>();
       fill(ins, fix);
       const bool gap = last > 0 && utime - last > std::llround(longest_step * 1e6);
       if (gap) ins.ins_status |= ins_t::STATUS_GAP;
@@ -103,7 +104,8 @@ class LogMaker {
       messages[last = utime] = ins;
     }
     for (const GyroReading& reading : gyro)
-      messages.emplace(utimeOf(reading.time), gyroOnly()).first->second.rate[2] = reading.yaw_rate;
+      messages.emplace(utimeOf(reading.time), blank<ins_t>()).first->second.rate[2] =
+          reading.yaw_rate;
     int64_t seq = 0;
     for (auto& [utime, ins] : messages) {
       ins.utime = utime;
@@ -117,7 +119,7 @@ class LogMaker {
     int64_t seq = 0;
     size_t at = 0;
     for (const DriveSample& sample : drive) {
-      motor_t motor = blankMotor();
+      auto motor = blank<motor_t>();
       motor.utime = utimeOf(sample.time);
       motor.seq = seq++;
       fill(motor, sample);
@@ -160,7 +162,7 @@ class LogMaker {
   }
 
   void addMark(int64_t utime, int64_t seq, const std::string& kind, const std::string& value) {
-    mark_t mark{};
+    auto mark = blank<mark_t>();
     mark.utime = utime;
     mark.seq = seq;
     mark.mark_kind = kind;
@@ -169,7 +171,7 @@ class LogMaker {
   }
 
   void say(int64_t utime) {
-    execution_t message{};
+    auto message = blank<execution_t>();
     message.utime = utime;
     message.seq = seq_execution_++;
     message.records = records_;
@@ -177,27 +179,8 @@ class LogMaker {
     add(kExecution, message);
   }
 
-  static ins_t blankIns() {
-    ins_t ins{};
-    ins.device_utc = -1;
-    ins.satellites = -1;
-    ins.ins_status = ins_t::STATUS_NO_VELOCITY;
-    for (int i = 0; i < 3; ++i)
-      ins.velocity[i] = ins.rate[i] = ins.position_std[i] = ins.attitude_std[i] = kUnknown;
-    return ins;
-  }
-
-  /// A message between two fixes: only the gyro speaks.
-  static ins_t gyroOnly() {
-    ins_t ins = blankIns();
-    ins.ins_status |=
-        ins_t::STATUS_NO_POSITION | ins_t::STATUS_NO_HEADING | ins_t::STATUS_NO_ATTITUDE;
-    for (double& value : ins.position) value = kUnknown;
-    for (double& value : ins.orientation) value = kUnknown;
-    return ins;
-  }
-
   static void fill(ins_t& ins, const Fix& fix) {
+    ins.ins_status = ins_t::STATUS_NO_VELOCITY;
     ins.position[0] = fix.T_map_body.x;
     ins.position[1] = fix.T_map_body.y;
     ins.position[2] = fix.z;
@@ -217,17 +200,10 @@ class LogMaker {
     if (std::isfinite(fix.unix_time)) ins.device_utc = std::llround(fix.unix_time * 1e6);
   }
 
-  static motor_t blankMotor() {
-    motor_t motor{};
-    motor.command_index = -1;
-    motor.motor_command_kind = static_cast<int16_t>(CommandKind::kTrackSpeed);
-    return motor;
-  }
-
   static void fill(motor_t& motor, const DriveSample& sample) {
     motor.bridge_state = sample.automatic ? motor_t::STATE_DRIVING : motor_t::STATE_DISARMED;
     motor.state_reason = sample.automatic ? "" : "idle or driven by the operator";
-    if (!sample.automatic) motor.motor_command_kind = 0;
+    if (sample.automatic) motor.motor_command_kind = static_cast<int16_t>(CommandKind::kTrackSpeed);
     motor.command_left = static_cast<float>(sample.command.left);
     motor.command_right = static_cast<float>(sample.command.right);
     motor.battery_voltage = static_cast<float>(sample.voltage);

@@ -8,6 +8,7 @@
 #include <random>
 #include <utility>
 
+#include "common/messages/blank.hpp"
 #include "common/recordings/drive_error.hpp"
 
 namespace tread::drive_patterns {
@@ -115,7 +116,7 @@ class LogMaker {
   }
 
   void addMark(const std::string& surface) {
-    mark_t mark{};
+    auto mark = blank<mark_t>();
     mark.utime = now_;
     mark.seq = seq_mark_++;
     mark.mark_kind = "surface";
@@ -142,7 +143,7 @@ class LogMaker {
     bool first = true;
     for (int64_t utime = now_; utime <= last; utime += kInsPeriodUs) {
       const double time = static_cast<double>(utime - start) * 1e-6;
-      ins_t ins = blankIns();
+      auto ins = blank<ins_t>();
       ins.utime = utime;
       ins.seq = seq_ins_++;
       fill(ins, T_map_start_ * motion.poseAt(time), motion.twistAt(time));
@@ -152,20 +153,13 @@ class LogMaker {
     }
   }
 
-  static ins_t blankIns() {
-    ins_t ins{};
-    ins.device_utc = -1;
-    ins.satellites = -1;
-    ins.ins_status = ins_t::STATUS_NO_ATTITUDE;
-    for (int i = 0; i < 3; ++i)
-      ins.velocity[i] = ins.rate[i] = ins.position_std[i] = ins.attitude_std[i] = kNone;
-    return ins;
-  }
-
   static void fill(ins_t& ins, const Pose2& T_map_body, const Twist2& twist) {
+    ins.ins_status = ins_t::STATUS_NO_ATTITUDE;
     ins.position[0] = T_map_body.x;
     ins.position[1] = T_map_body.y;
+    ins.position[2] = 0.0;
     ins.orientation[0] = std::cos(T_map_body.yaw / 2.0);
+    ins.orientation[1] = ins.orientation[2] = 0.0;
     ins.orientation[3] = std::sin(T_map_body.yaw / 2.0);
     ins.velocity[0] = twist.v_x;
     ins.velocity[1] = twist.v_y;
@@ -176,12 +170,11 @@ class LogMaker {
   void addMotor(const MotionPattern& pattern, int64_t start, int64_t end, int64_t last) {
     const int64_t period = shipped_.content().period_us;
     for (int64_t utime = now_; utime <= last; utime += kMotorPeriodUs) {
-      motor_t motor{};
+      auto motor = blank<motor_t>();
       motor.utime = utime;
       motor.seq = seq_motor_++;
       motor.bridge_state = motor_t::STATE_DRIVING;
       motor.motor_command_kind = static_cast<int16_t>(shipped_.content().kind);
-      motor.command_index = -1;
       TrackCommand command = utime < start ? pattern.commands.front() : pattern.commands.back();
       if (utime >= start && utime < end) {
         motor.motor_run_id = kRunId;
@@ -191,20 +184,17 @@ class LogMaker {
       }
       motor.command_left = static_cast<float>(command.left);
       motor.command_right = static_cast<float>(command.right);
-      motor.battery_voltage = motor.current_left = motor.current_right = static_cast<float>(kNone);
-      motor.track_speed_left = motor.track_speed_right = static_cast<float>(kNone);
       add(kMotor, motor);
     }
   }
 
   void addRecords(const MotionPattern& pattern, int64_t start, int64_t end) {
-    execution_record_t record{};
+    auto record = blank<execution_record_t>();
     record.record_run_id = kRunId;
     record.record_execution_id = execution_;
     record.record_pattern_id = pattern.id;
     record.record_set_version = shipped_.version();
     record.started = start;
-    record.ended = -1;
     record.commands_total = static_cast<int32_t>(pattern.commands.size());
     records_.push_back(record);
     if (records_.size() > kRepeated) records_.erase(records_.begin());
@@ -216,7 +206,7 @@ class LogMaker {
   }
 
   void say(int64_t utime) {
-    execution_t message{};
+    auto message = blank<execution_t>();
     message.utime = utime;
     message.seq = seq_execution_++;
     message.records = records_;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "common/messages/blank.hpp"
+
 namespace tread::ins {
 namespace {
 
@@ -42,7 +44,7 @@ void copy(const Eigen::Vector3d& from, double* to) {
 }
 
 ins_t messageOf(const InsEstimate& estimate, int64_t seq) {
-  ins_t message{};
+  auto message = blank<ins_t>();
   message.utime = estimate.utime;
   message.seq = seq;
   message.device_utc = estimate.device_utc;

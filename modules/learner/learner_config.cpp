@@ -2,22 +2,13 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/learner/learner_config.hpp"
 
-#include <array>
-#include <charconv>
+#include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "common/pattern/pattern_file.hpp"
 
 namespace tread::learner {
 namespace {
-
-/// The shortest text that reads back as the same number: a replay takes it from CONFIG.
-std::string number(double value) {
-  std::array<char, 40> text;
-  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
-  return {text.data(), result.ptr};
-}
 
 void readScaling(ConfigReader& reader, RuleConfig& rule) {
   ConfigReader section = reader.section("scaling");
@@ -65,19 +56,12 @@ void readGates(ConfigReader& reader, MeasurementLimits& limits) {
   gates.seconds("entry_window", limits.entry_window_us, {0.01, 2.0});
   gates.number("entry_speed", limits.entry_speed, {0.01, 40.0}, "m/s");
   gates.number("entry_yaw_rate", limits.entry_yaw_rate, {0.01, 40.0}, "rad/s");
-  bool any_entry = false;
+  // A file cannot say "infinite".
+  bool any_entry = std::isinf(limits.entry_speed) && std::isinf(limits.entry_yaw_rate);
   gates.flag("any_entry", any_entry);
   if (any_entry)
     limits.entry_speed = limits.entry_yaw_rate = std::numeric_limits<double>::infinity();
   gates.number("max_slope", limits.max_slope, {0.0, 1.6}, "rad");
-}
-
-/// A file cannot say "infinite".
-std::string entryGate(const MeasurementLimits& limits) {
-  if (std::isinf(limits.entry_speed) && std::isinf(limits.entry_yaw_rate))
-    return "\n  any_entry: true";
-  return "\n  entry_speed: " + number(limits.entry_speed) +
-         "\n  entry_yaw_rate: " + number(limits.entry_yaw_rate);
 }
 
 }  // namespace
@@ -112,42 +96,12 @@ void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config) {
 }
 
 std::string LearnerNodeConfig::effective() const {
-  std::ostringstream out;
-  const auto seconds = [](int64_t us) { return number(static_cast<double>(us) * 1e-6); };
-  const Axes& box = rule.scaling.min_box;
-  out << "shipped_set: " << shipped.content().name << "\nshipped_checksum: " << shipped.checksum()
-      << "\nrule: " << ruleName(rule.rule) << "\nmemory: " << number(rule.memory)
-      << "\nscaling:\n  min_box: [" << number(box[0]) << ", " << number(box[1]) << ", "
-      << number(box[2]) << "]\n  min_box_sigmas: " << number(rule.scaling.min_box_sigmas)
-      << "\n  min_turn: " << number(rule.scaling.min_turn)
-      << "\n  min_length: " << number(rule.scaling.min_length)
-      << "\n  min_factor: " << number(rule.scaling.min_factor)
-      << "\n  max_factor: " << number(rule.scaling.max_factor)
-      << "\n  sign_sigmas: " << number(rule.sign_sigmas)
-      << "\nfilter:\n  forward_noise: " << number(rule.filter.noise.forward)
-      << "\n  lateral_noise: " << number(rule.filter.noise.lateral)
-      << "\n  yaw_noise: " << number(rule.filter.noise.yaw)
-      << "\n  recorded: " << number(rule.filter.recorded)
-      << "\n  caution: " << number(rule.filter.caution)
-      << "\n  hazard: " << number(rule.filter.hazard)
-      << "\n  steady: " << number(rule.filter.steady) << "\n  drift: " << number(rule.filter.drift)
-      << "\nbank:\n  hazard: " << number(rule.bank.hazard)
-      << "\n  unknown_prior: " << number(rule.bank.unknown_prior)
-      << "\n  settled_after: " << rule.bank.settled_after
-      << "\n  new_margin: " << number(rule.bank.new_margin)
-      << "\n  capacity: " << rule.bank.capacity
-      << "\ngates:\n  max_gap: " << seconds(limits.max_gap_us)
-      << "\n  min_covered: " << number(limits.min_covered)
-      << "\n  max_speed: " << number(limits.max_speed)
-      << "\n  speed_margin: " << number(limits.speed_margin)
-      << "\n  min_motion: " << number(limits.min_motion)
-      << "\n  min_turn: " << number(limits.min_turn)
-      << "\n  entry_window: " << seconds(limits.entry_window_us) << entryGate(limits)
-      << "\n  max_slope: " << number(limits.max_slope) << "\nperiod: " << seconds(period_us)
-      << "\nsettle: " << seconds(settle_us) << "\ngive_up: " << seconds(give_up_us)
-      << "\nrepeat: " << seconds(repeat_us) << "\ntrack_span: " << seconds(track_span_us)
-      << "\nremembered_versions: " << remembered_versions << "\n";
-  return out.str();
+  // Reading nothing over these values writes them.
+  ConfigReader reader = ConfigReader::fromText("{}", "learner");
+  LearnerNodeConfig copy = *this;
+  readLearnerSettings(reader, copy);
+  return "shipped_set: " + shipped.content().name +
+         "\nshipped_checksum: " + std::to_string(shipped.checksum()) + "\n" + reader.effective();
 }
 
 }  // namespace tread::learner

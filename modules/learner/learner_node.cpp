@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/messages/blank.hpp"
+
 namespace tread::learner {
 namespace {
 
@@ -27,22 +29,14 @@ ExecutionKey keyOf(const execution_record_t& record) {
   return {record.record_run_id, record.record_execution_id};
 }
 
-learning_t blankReport(const execution_record_t& record, Rule rule) {
-  learning_t message{};
+learning_t reportOf(const execution_record_t& record, Rule rule) {
+  auto message = blank<learning_t>();
   message.utime = record.ended;
   message.learned_run_id = record.record_run_id;
   message.learned_execution_id = record.record_execution_id;
   message.learned_pattern_id = record.record_pattern_id;
   message.learning_rule = ruleName(rule);
   message.scored_version = record.record_set_version;
-  message.error_position = message.error_yaw = kUnknown;
-  message.error_position_after = message.error_yaw_after = kUnknown;
-  fill(message.measured_end, {kUnknown, kUnknown, kUnknown});
-  fill(message.predicted_end, {kUnknown, kUnknown, kUnknown});
-  fill(message.scaling, {kUnknown, kUnknown, kUnknown});
-  fill(message.measured_entry, {kUnknown, kUnknown, kUnknown});
-  message.path_length = message.slope = kUnknown;
-  message.ground_changed = message.surface_probability = kUnknown;
   return message;
 }
 
@@ -146,7 +140,7 @@ void LearnerNode::goAbove(int64_t version) {
 }
 
 void LearnerNode::handle(const execution_record_t& record) {
-  learning_t message = blankReport(record, config_.rule.rule);
+  learning_t message = reportOf(record, config_.rule.rule);
   message.seq = seq_learning_++;
   message.result_version = learner_.set().version();
   health_.addToCounter("executions");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/messages/blank.hpp"
 #include "common/messages/pattern_messages.hpp"
 
 namespace tread::learner {
@@ -28,7 +29,7 @@ void Outbox::putState(const PatternSet& set, const std::string& rule, const std:
   if (static_cast<size_t>(last_parts) >= kWaitingStates) states_.clear();
   const auto count = static_cast<int32_t>((text.size() + kStateBytes - 1) / kStateBytes);
   for (int32_t part = 0; part < count; ++part) {
-    learner_state_t message{};
+    auto message = blank<learner_state_t>();
     message.state_version = set.version();
     message.state_part = part;
     message.state_part_count = count;

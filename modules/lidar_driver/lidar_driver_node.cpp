@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "common/geometry/se3.hpp"
+#include "common/messages/blank.hpp"
 
 namespace tread::lidar {
 
@@ -61,7 +62,7 @@ void LidarDriverNode::step(int64_t utime) {
 }
 
 void LidarDriverNode::publish(const RangeScan& scan) {
-  scan_t message{};
+  auto message = blank<scan_t>();
   message.utime = scan.utime;
   message.seq = seq_++;
   const Eigen::Vector3d& position = config_.p_body_sensor;

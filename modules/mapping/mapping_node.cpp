@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "common/messages/blank.hpp"
 #include "common/messages/ins_messages.hpp"
 
 namespace tread::mapping {
@@ -150,7 +151,7 @@ void MappingNode::publishTiles(int64_t utime) {
 
 void MappingNode::send(CellIndex index) {
   Tile tile = map_->tile(index);
-  map_tile_t message{};
+  auto message = blank<map_tile_t>();
   message.utime = tile.utime;
   message.seq = seq_++;
   message.tile_x = tile.tile_x;

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "common/messages/blank.hpp"
 #include "modules/motor_bridge/motor_messages.hpp"
 
 namespace tread::motor {
@@ -128,7 +129,7 @@ void MotorBridgeNode::publishExecutions(int64_t utime) {
   if (utime < next_execution_ && log.revision() == published_revision_) {
     return;
   }
-  execution_t message{};
+  auto message = blank<execution_t>();
   message.utime = utime;
   message.seq = seq_execution_++;
   for (const ExecutionRecord& record : log.records()) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/messages/blank.hpp"
+
 namespace tread::motor {
 namespace {
 
@@ -71,7 +73,7 @@ InsNotice fromMessage(const ins_t& message) {
 }
 
 execution_record_t toMessage(const ExecutionRecord& record) {
-  execution_record_t message{};
+  auto message = blank<execution_record_t>();
   message.record_run_id = record.run_id;
   message.record_execution_id = record.execution_id;
   message.record_pattern_id = record.pattern_id;
@@ -86,7 +88,7 @@ execution_record_t toMessage(const ExecutionRecord& record) {
 }
 
 motor_t toMessage(const BridgeOutput& output, const RoboteqTelemetry& telemetry) {
-  motor_t message{};
+  auto message = blank<motor_t>();
   message.motor_run_id = output.run_id;
   message.execution_id = output.execution_id;
   message.command_index = output.command_index;

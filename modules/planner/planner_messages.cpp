@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/messages/blank.hpp"
+
 namespace tread::planner {
 namespace {
 
@@ -84,7 +86,7 @@ std::vector<ExecutionReading> readingsFrom(const execution_t& message) {
 }
 
 program_slot_t toMessage(const Slot& slot) {
-  program_slot_t message{};
+  auto message = blank<program_slot_t>();
   if (slot.empty()) return message;
   const PatternSetContent& content = slot.set->content();
   message.execution_id = slot.execution_id;
@@ -101,7 +103,7 @@ program_slot_t toMessage(const Slot& slot) {
 }
 
 plan_t toMessage(const PlanReport& report) {
-  plan_t message{};
+  auto message = blank<plan_t>();
   message.utime = report.utime;
   message.goal_id = report.goal_id;
   message.set_version = report.set_version;
@@ -121,7 +123,7 @@ plan_t toMessage(const PlanReport& report) {
 }
 
 plan_tree_t toMessage(const std::vector<TreeNode>& tree, const std::vector<int>& branch) {
-  plan_tree_t message{};
+  auto message = blank<plan_tree_t>();
   message.num_nodes = static_cast<int32_t>(tree.size());
   for (const TreeNode& node : tree) {
     message.parent.push_back(node.parent);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/messages/blank.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "modules/planner/planner_messages.hpp"
 
@@ -128,7 +129,7 @@ void PlannerNode::shutdown(int64_t utime) {
 }
 
 program_t PlannerNode::emptyProgram(int64_t utime) {
-  program_t message{};
+  auto message = blank<program_t>();
   message.utime = utime;
   message.seq = seq_program_++;
   message.run_id = supervisor_.program().runId();

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/missions/operator.hpp"
 
+#include "common/messages/blank.hpp"
+
 namespace tread::missions {
 namespace {
 
@@ -42,7 +44,7 @@ bool Operator::needsArming(int64_t utime) {
 }
 
 void Operator::sendGoal(int64_t utime) {
-  goal_t goal{};
+  auto goal = blank<goal_t>();
   goal.utime = utime;
   goal.seq = seq_goal_++;
   goal.goal_id = 1;
@@ -55,7 +57,7 @@ void Operator::sendGoal(int64_t utime) {
 }
 
 void Operator::sendArm(int64_t utime) {
-  arm_t arm{};
+  auto arm = blank<arm_t>();
   arm.utime = utime;
   arm.seq = seq_arm_++;
   arm.armed = true;

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <utility>
 
+#include "common/messages/blank.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "modules/planner/planner_messages.hpp"
 
@@ -272,7 +273,7 @@ void LiveRecorder::publishProgram(int64_t utime) {
   if (silent_ || utime < begun_ + kListenFirst) return;
   // Before the robot speaks its time is not known, and one that were told would be followed.
   if (!situation_.pose && !situation_.bridge) return;
-  program_t message{};
+  auto message = blank<program_t>();
   message.utime = utime;
   message.seq = seq_program_++;
   message.run_id = book_.runId();

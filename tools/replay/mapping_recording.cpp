@@ -13,6 +13,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "common/log/event_log.hpp"
+#include "common/messages/blank.hpp"
 
 namespace tread {
 namespace {
@@ -36,24 +37,25 @@ constexpr float kNearest = 0.12f;                    // [m] nearer returns are t
 constexpr float kFarthest = 6.0f;                    // [m]
 
 ins_t insAt(int64_t utime, const Pose2& pose) {
-  ins_t message{};
+  auto message = blank<ins_t>();
   message.utime = utime;
-  message.device_utc = -1;
   message.position[0] = pose.x;
   message.position[1] = pose.y;
+  message.position[2] = 0.0;
+  message.orientation[1] = message.orientation[2] = 0.0;
   message.orientation[0] = std::cos(pose.yaw / 2.0);
   message.orientation[3] = std::sin(pose.yaw / 2.0);
   message.ins_status = ins_t::STATUS_NO_VELOCITY | ins_t::STATUS_NO_ATTITUDE;
-  message.satellites = -1;
-  for (double& speed : message.velocity) speed = std::nan("");
   return message;
 }
 
 scan_t scanFrom(int64_t utime, double laser_height) {
-  scan_t message{};
+  auto message = blank<scan_t>();
   message.utime = utime;
-  message.sensor_position[2] = laser_height;
-  message.sensor_orientation[0] = 1.0;
+  const double position[3] = {0.0, 0.0, laser_height};
+  const double level[4] = {1.0, 0.0, 0.0, 0.0};
+  std::copy(std::begin(position), std::end(position), message.sensor_position);
+  std::copy(std::begin(level), std::end(level), message.sensor_orientation);
   return message;
 }
 
@@ -102,6 +104,7 @@ scan_t scanAt(int64_t utime, const std::vector<float>& ranges) {
   scan_t message = scanFrom(utime, kCarmenLaserHeight);
   message.angle_step = kPi / static_cast<double>(ranges.size());
   message.angle_first = -kPi / 2.0;
+  message.range_min = 0.0;
   message.range_max = kNoReturn;
   message.ranges = ranges;
   message.num_beams = static_cast<int32_t>(ranges.size());

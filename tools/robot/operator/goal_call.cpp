@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "common/messages/blank.hpp"
+
 namespace tread::operators {
 namespace {
 
@@ -32,7 +34,7 @@ GoalCall::GoalCall(Bus& bus, const GoalRequest& request, int64_t goal_id,
       progress_(bus, request.T_map_goal, std::move(surface_names)) {}
 
 void GoalCall::send(int64_t utime, int64_t goal_id) {
-  goal_t goal{};
+  auto goal = blank<goal_t>();
   goal.utime = utime;
   goal.seq = seq_++;
   goal.goal_id = goal_id;

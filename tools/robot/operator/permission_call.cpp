@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "common/messages/blank.hpp"
+
 namespace tread::operators {
 namespace {
 
@@ -50,7 +52,7 @@ ArmCall::ArmCall(Bus& bus, Asker asker, bool arm, double patience)
     : PermissionCall(bus, patience, kArmRepeat), asker_(std::move(asker)), arm_(arm) {}
 
 void ArmCall::send(Bus& bus, int64_t utime, int64_t seq) {
-  arm_t message{};
+  auto message = blank<arm_t>();
   message.utime = utime;
   message.seq = seq;
   message.armed = arm_;
@@ -78,7 +80,7 @@ StopCall::StopCall(Bus& bus, Asker asker, bool engage, double patience)
     : PermissionCall(bus, patience, kStopRepeat), asker_(std::move(asker)), engage_(engage) {}
 
 void StopCall::send(Bus& bus, int64_t utime, int64_t seq) {
-  estop_t message{};
+  auto message = blank<estop_t>();
   message.utime = utime;
   message.seq = seq;
   message.engaged = engage_;
