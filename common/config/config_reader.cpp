@@ -31,15 +31,7 @@ std::string listAnswer(const std::vector<double>& values) {
   return "[" + joinWords(words) + "]";
 }
 
-}  // namespace
-
-ConfigReader::ConfigReader(std::shared_ptr<Level> level) : level_(std::move(level)) {}
-ConfigReader::ConfigReader(ConfigReader&&) noexcept = default;
-ConfigReader& ConfigReader::operator=(ConfigReader&&) noexcept = default;
-ConfigReader::~ConfigReader() = default;
-
-ConfigReader ConfigReader::fromFile(const std::string& path,
-                                    const std::vector<std::string>& overrides) {
+std::string textOf(const std::string& path) {
   std::error_code none;
   if (std::filesystem::is_directory(path, none))
     throw ConfigError(path + ": is a folder; a YAML file is needed");
@@ -50,7 +42,19 @@ ConfigReader ConfigReader::fromFile(const std::string& path,
   std::ostringstream text;
   text << file.rdbuf();
   if (file.bad()) throw ConfigError(path + ": reading failed (" + std::strerror(errno) + ")");
-  return fromText(text.str(), path, overrides);
+  return text.str();
+}
+
+}  // namespace
+
+ConfigReader::ConfigReader(std::shared_ptr<Level> level) : level_(std::move(level)) {}
+ConfigReader::ConfigReader(ConfigReader&&) noexcept = default;
+ConfigReader& ConfigReader::operator=(ConfigReader&&) noexcept = default;
+ConfigReader::~ConfigReader() = default;
+
+ConfigReader ConfigReader::fromFile(const std::string& path,
+                                    const std::vector<std::string>& overrides) {
+  return fromText(textOf(path), path, overrides);
 }
 
 ConfigReader ConfigReader::fromText(const std::string& text, const std::string& name,
@@ -203,6 +207,20 @@ ConfigReader ConfigReader::section(const std::string& key, bool required) {
     const int line = entry != nullptr ? entry->line : level_->line;
     answer.children = {Level::of(level_->source, level_->path(key) + ".", map, line)};
   }
+  return ConfigReader(answer.children.front());
+}
+
+ConfigReader ConfigReader::file(const std::string& key, const std::string& usual_name) {
+  const auto* entry = level_->find(key);
+  if (entry != nullptr && entry->value.IsMap()) return section(key);
+  const std::string& own = level_->source->name;
+  std::string name = own.substr(0, own.rfind('/') + 1) + usual_name;
+  path(key, name);
+  if (entry == nullptr && !std::filesystem::exists(name))
+    throw ConfigError(own + ": " + name + " is needed and not there; write it, or name another " +
+                      "file with " + key + ":");
+  auto& answer = level_->answer(key, "");
+  if (answer.children.empty()) answer.children = {Level::parse(textOf(name), name, {})};
   return ConfigReader(answer.children.front());
 }
 

@@ -72,6 +72,9 @@ class ConfigReader {
   void texts(const std::string& key, std::vector<std::string>& values, bool required = false);
   /// A map under this key; an empty reader if it is absent.
   ConfigReader section(const std::string& key, bool required = false);
+  /// A section that has a file of its own: the map under this key, or the file that the key names,
+  /// else the file of the usual name beside this one. It counts as part of this configuration.
+  ConfigReader file(const std::string& key, const std::string& usual_name);
   /// A list of maps under this key; empty if it is absent.
   std::vector<ConfigReader> sections(const std::string& key, bool required = false);
   /// The keys of this map in the order of the file (for maps whose keys are names).

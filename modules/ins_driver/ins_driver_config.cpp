@@ -7,6 +7,8 @@
 #include <iterator>
 #include <sstream>
 
+#include "common/vehicle/robot_file.hpp"
+
 namespace tread::ins {
 namespace {
 
@@ -23,15 +25,6 @@ GeoOrigin readOrigin(ConfigReader& reader) {
   reader.number("yaw", origin.yaw, {-kPi, kPi}, "rad");
   origin.point = {latitude / kDegPerRad, longitude / kDegPerRad};
   return origin;
-}
-
-void readMounting(ConfigReader& reader, InsConfig& ins) {
-  std::vector<double> antenna(3, 0.0);
-  std::vector<double> angles(3, 0.0);
-  reader.numbers("antenna", antenna, 3, {-20.0, 20.0}, "m");
-  reader.numbers("mounting", angles, 3, {-kPi, kPi}, "rad");
-  ins.p_body_antenna = {antenna[0], antenna[1], antenna[2]};
-  ins.body_device = {angles[0], angles[1], angles[2]};
 }
 
 void readTiming(ConfigReader& reader, InsConfig& ins) {
@@ -60,13 +53,16 @@ void readLastType(ConfigReader& reader, InsConfig& ins) {
 InsDriverConfig readInsDriverConfig(ConfigReader& reader) {
   InsDriverConfig config;
   InsConfig& ins = config.ins;
+  reader.choice("source", config.source, {"nmea"});
   reader.text("address", config.address);
   reader.text("store", config.store);
-  readMounting(reader, ins);
+  const RobotDescription robot = readRobot(reader);
+  ins.p_body_antenna = robot.ins.p_body;
+  ins.body_device = robot.ins.angles;
+  ins.max_speed = robot.max_speed;
   readTiming(reader, ins);
   readLastType(reader, ins);
   reader.number("standstill_speed", ins.standstill_speed, {0.0, 1.0}, "m/s");
-  reader.number("max_speed", ins.max_speed, {0.5, 100.0}, "m/s");
   reader.number("jump_slack", ins.jump_slack, {0.01, 100.0}, "m");
   reader.flag("attitude_epochs", ins.attitude_epochs);
   reader.number("origin_max_hdop", ins.origin_max_hdop, {0.5, 100.0}, "1");

@@ -11,7 +11,8 @@ namespace tread::ins {
 
 /// Configuration of ins_driver, with its defaults.
 struct InsDriverConfig {
-  std::string address = "tty:/dev/ttyUSB0?baud=115200";  ///< of the NMEA 0183 device
+  std::string source = "nmea";  ///< kind of the device, see makeInsSource()
+  std::string address = "tty:/dev/ttyUSB0?baud=115200";  ///< of the device
   std::string store = "state/ins_driver";                ///< folder that keeps the map's origin
   InsConfig ins;
   double silence = 1.0;       ///< [s] without what is expected after which health says so

@@ -4,22 +4,17 @@
 
 #include <sstream>
 
-#include "common/geometry/se3.hpp"
 #include "common/messages/blank.hpp"
+#include "common/vehicle/robot_file.hpp"
 
 namespace tread::lidar {
 
 LidarDriverConfig readLidarDriverConfig(ConfigReader& reader) {
   LidarDriverConfig config;
-  std::vector<double> position{config.p_body_sensor.x(), config.p_body_sensor.y(),
-                               config.p_body_sensor.z()};
   int64_t max_beams = config.limits.max_beams;
   int64_t stride = config.limits.beam_stride;
+  reader.choice("device", config.device, {"hokuyo"});
   reader.text("address", config.address);
-  reader.numbers("position", position, 3, {-10.0, 10.0}, "m");
-  reader.number("yaw", config.yaw, {-kPi, kPi}, "rad");
-  reader.number("pitch", config.pitch, {-kPi / 2, kPi / 2}, "rad");
-  reader.number("roll", config.roll, {-kPi, kPi}, "rad");
   reader.number("latency", config.latency, {0.0, 0.5}, "s");
   reader.number("silence", config.silence, {0.1, 60.0}, "s");
   reader.number("range_min", config.limits.range_min, {0.0, 10.0}, "m");
@@ -28,8 +23,8 @@ LidarDriverConfig readLidarDriverConfig(ConfigReader& reader) {
     throw reader.error("range_max", "must be above range_min");
   reader.integer("max_beams", max_beams, {2, 10000}, "beams");
   reader.integer("beam_stride", stride, {1, 20}, "beams");
+  config.mounting = readRobot(reader).range_finder;
   reader.finish();
-  config.p_body_sensor = {position[0], position[1], position[2]};
   config.limits.max_beams = static_cast<int>(max_beams);
   config.limits.beam_stride = static_cast<int>(stride);
   config.effective = reader.effective();
@@ -42,8 +37,7 @@ LidarDriverNode::LidarDriverNode(const LidarDriverConfig& config, Bus& bus, Scan
       source_(source),
       check_(config.limits),
       health_(bus, "lidar_driver", config.effective),
-      R_body_sensor_(
-          isometryFrom(config.p_body_sensor, {config.yaw, config.pitch, config.roll}).linear()),
+      R_body_sensor_(isometryFrom(config.mounting.p_body, config.mounting.angles).linear()),
       last_scan_(bus.now()) {}
 
 void LidarDriverNode::step(int64_t utime) {
@@ -65,7 +59,7 @@ void LidarDriverNode::publish(const RangeScan& scan) {
   auto message = blank<scan_t>();
   message.utime = scan.utime;
   message.seq = seq_++;
-  const Eigen::Vector3d& position = config_.p_body_sensor;
+  const Eigen::Vector3d& position = config_.mounting.p_body;
   for (int i = 0; i < 3; ++i) message.sensor_position[i] = position[i];
   message.sensor_orientation[0] = R_body_sensor_.w();
   message.sensor_orientation[1] = R_body_sensor_.x();

@@ -6,17 +6,16 @@
 
 #include "common/bus/health.hpp"
 #include "common/config/config_reader.hpp"
+#include "common/vehicle/robot_description.hpp"
 #include "modules/lidar_driver/scan_source.hpp"
 
 namespace tread::lidar {
 
 /// Configuration of lidar_driver, with its defaults.
 struct LidarDriverConfig {
-  std::string address = "tcp:192.168.0.10:10940";  ///< of the SCIP 2.0 device
-  Eigen::Vector3d p_body_sensor{0.25, 0.0, 0.5};   ///< [m]
-  double yaw = 0.0;                                ///< [rad] of the sensor in body, as the next two
-  double pitch = 0.0;
-  double roll = 0.0;
+  std::string device = "hokuyo";                   ///< kind of the device, see makeScanSource()
+  std::string address = "tcp:192.168.0.10:10940";  ///< of the device
+  Mounting mounting;                               ///< of the sensor in body
   double latency = 0.002;  ///< [s] from the last beam to the arrival of its bytes
   double silence = 1.0;    ///< [s] without a scan after which the device counts as silent
   ScanLimits limits;

@@ -4,6 +4,8 @@
 
 #include <cstdio>
 
+#include "common/vehicle/robot_file.hpp"
+
 namespace tread::mapping {
 namespace {
 
@@ -27,25 +29,26 @@ void readGrid(ConfigReader& reader, LocalMapConfig& map) {
   map.window_tiles = static_cast<int>(window_tiles);
 }
 
+void takeRobot(const ConfigReader& reader, const RobotDescription& robot, LocalMapConfig& map) {
+  map.robot = robot.outline;
+  map.judge.robot_height = robot.height;
+  if (robot.height <= map.judge.step)
+    throw reader.error("step",
+                       "must be below the robot's height of " + metres(robot.height) + " m");
+  const double highest = kVoxelsAboveGround * map.voxels.cell_size;
+  if (robot.height > highest)
+    throw reader.error("cell_size", "a robot of " + metres(robot.height) +
+                                        " m needs larger cells: the map keeps " +
+                                        std::to_string(kVoxelsAboveGround) +
+                                        " of them above the ground, which is " + metres(highest) +
+                                        " m");
+}
+
 void readMap(ConfigReader& reader, LocalMapConfig& map) {
   reader.number("marking_range", map.marking_range, {0.5, 100.0}, "m");
   reader.number("clearing_range", map.clearing_range, {0.5, 100.0}, "m");
   reader.number("start_free_radius", map.start_free_radius, {0.0, 5.0}, "m");
   reader.number("step", map.judge.step, {0.02, 1.0}, "m");
-  reader.number("robot_height", map.judge.robot_height, {0.1, 5.0}, "m");
-  if (map.judge.robot_height <= map.judge.step)
-    throw reader.error("robot_height", "must be above step");
-  const double highest = kVoxelsAboveGround * map.voxels.cell_size;
-  if (map.judge.robot_height > highest)
-    throw reader.error("robot_height", "a robot of " + metres(map.judge.robot_height) +
-                                           " m needs larger cells: the map keeps " +
-                                           std::to_string(kVoxelsAboveGround) +
-                                           " of them above the ground, which is " +
-                                           metres(highest) + " m");
-  ConfigReader footprint = reader.section("footprint");
-  footprint.number("front", map.robot.front, {0.05, 5.0}, "m");
-  footprint.number("rear", map.robot.rear, {0.05, 5.0}, "m");
-  footprint.number("half_width", map.robot.half_width, {0.05, 3.0}, "m");
   ConfigReader evidence = reader.section("evidence");
   evidence.number("hit", map.voxels.hit, {0.51, 0.99}, "");
   evidence.number("miss", map.voxels.miss, {0.01, 0.49}, "");
@@ -64,11 +67,13 @@ MappingConfig readMappingConfig(ConfigReader& reader) {
   MappingConfig config;
   readGrid(reader, config.map);
   readMap(reader, config.map);
+  const RobotDescription robot = readRobot(reader);
+  takeRobot(reader, robot, config.map);
+  config.top_speed = robot.max_speed;
   reader.number("publish_period", config.publish_period, {0.02, 2.0}, "s");
   reader.number("refresh_period", config.refresh_period, {0.2, 60.0}, "s");
   reader.number("max_ins_gap", config.max_ins_gap, {0.005, 2.0}, "s");
   reader.number("max_wait", config.max_wait, {0.02, 5.0}, "s");
-  reader.number("top_speed", config.top_speed, {0.1, 50.0}, "m/s");
   reader.number("silence", config.silence, {0.1, 60.0}, "s");
   reader.finish();
   config.effective = reader.effective();

@@ -16,9 +16,9 @@ struct MappingConfig {
   double refresh_period = 2.0;  ///< [s] in which every tile is sent at least once
   double max_ins_gap = 0.1;     ///< [s] between two poses that a beam's pose may lie between
   double max_wait = 0.5;        ///< [s] that a scan waits for INS
-  double top_speed = 10.0;      ///< [m/s] faster is a jump of the INS: a new map begins
-  double silence = 1.0;         ///< [s] without a scan taken after which mapping is not well
-  std::string effective;        ///< the whole as YAML, for CONFIG
+  double top_speed = 10.0;  ///< [m/s] of the robot; faster is a jump of the INS: a new map begins
+  double silence = 1.0;     ///< [s] without a scan taken after which mapping is not well
+  std::string effective;    ///< the whole as YAML, for CONFIG
 };
 
 /// Reads the configuration; throws ConfigError with file:line.

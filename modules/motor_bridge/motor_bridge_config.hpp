@@ -12,7 +12,8 @@ namespace tread::motor {
 
 /// Configuration of motor_bridge, with its defaults.
 struct MotorBridgeConfig {
-  std::string address = "tty:/dev/ttyACM0?baud=115200";  ///< of the Roboteq controller
+  std::string kind = "roboteq";  ///< of the controller, see makeMotorController()
+  std::string address = "tty:/dev/ttyACM0?baud=115200";  ///< of the controller
   BridgeConfig bridge;
   RoboteqConfig controller;
   std::string effective;  ///< the whole as YAML, for CONFIG

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "common/vehicle/robot_file.hpp"
+
 namespace tread::planner {
 namespace {
 
@@ -13,10 +15,13 @@ void count(ConfigReader& reader, const std::string& key, int& value, Range range
   value = static_cast<int>(wide);
 }
 
-void readFootprint(ConfigReader reader, FootprintSize& size) {
-  reader.number("front", size.front, {0.05, 10.0}, "m");
-  reader.number("rear", size.rear, {0.05, 10.0}, "m");
-  reader.number("half_width", size.half_width, {0.05, 5.0}, "m");
+/// What plans keep free is the robot's; logs from before robots were described in a file of their
+/// own have it here.
+FootprintSize footprintOf(ConfigReader& reader) {
+  const tread::FootprintSize size = reader.has("footprint")
+                                        ? readFootprint(reader.section("footprint"))
+                                        : readRobot(reader).footprint;
+  return {size.front, size.rear, size.half_width};
 }
 
 void readMargins(ConfigReader reader, Margins& margins) {
@@ -108,7 +113,7 @@ void readAges(ConfigReader reader, AgeLimits& ages) {
 
 PlannerConfig readPlannerConfig(ConfigReader& reader) {
   PlannerConfig config;
-  readFootprint(reader.section("footprint"), config.world.footprint);
+  config.world.footprint = footprintOf(reader);
   readMargins(reader.section("margins"), config.world.margins);
   readMap(reader.section("map"), config.world);
   readField(reader.section("field"), config.world);

@@ -52,6 +52,7 @@ SimulatorConfig readSimulatorConfig(ConfigReader& reader) {
   robot.seed = static_cast<uint64_t>(seed);
   reader.flag("motion_noise", robot.motion_noise);
   config.model = readModel(reader);
+  readSimulatedRobot(reader, robot);
   readVehicle(reader.section("vehicle"), robot.vehicle);
   readAddress(reader, "ins", config.ins);
   readAddress(reader, "motor", config.motor);

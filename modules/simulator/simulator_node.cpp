@@ -68,7 +68,7 @@ void SimulatorNode::advanceTo(int64_t utime) {
   for (int64_t t = devices_.robot().truth().utime; t < utime;) {
     t = std::min(t + period(), utime);
     devices_.advanceTo(t);
-    record_->note(devices_.robot().truth(), devices_.motor().output(t));
+    record_->note(devices_.robot().truth(), devices_.power(t));
   }
 }
 

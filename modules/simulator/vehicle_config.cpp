@@ -2,18 +2,18 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/simulator/vehicle_config.hpp"
 
+#include "common/vehicle/robot_file.hpp"
+
 namespace tread::sim {
 namespace {
 
-void readBody(ConfigReader& reader, VehicleParameters& vehicle) {
-  reader.number("mass", vehicle.mass, {100.0, 2000.0}, "kg");
-  reader.number("yaw_inertia", vehicle.yaw_inertia, {5.0, 500.0}, "kg m2");
-  reader.number("gauge", vehicle.gauge, {0.2, 2.0}, "m");
-  reader.number("contact_length", vehicle.contact_length, {0.2, 3.0}, "m");
-  reader.number("centre", vehicle.centre, {-0.5, 0.5}, "m");
-  reader.number("mass_height", vehicle.mass_height, {0.0, 2.0}, "m");
-  reader.number("length", vehicle.length, {0.2, 5.0}, "m");
-  reader.number("width", vehicle.width, {0.2, 5.0}, "m");
+void readBody(ConfigReader& reader, VehicleParameters& vehicle, bool required) {
+  reader.number("mass", vehicle.mass, {100.0, 2000.0}, "kg", required);
+  reader.number("yaw_inertia", vehicle.yaw_inertia, {5.0, 500.0}, "kg m2", required);
+  reader.number("gauge", vehicle.gauge, {0.2, 2.0}, "m", required);
+  reader.number("contact_length", vehicle.contact_length, {0.2, 3.0}, "m", required);
+  reader.number("centre", vehicle.centre, {-0.5, 0.5}, "m", required);
+  reader.number("mass_height", vehicle.mass_height, {0.0, 2.0}, "m", required);
 }
 
 void readDrive(ConfigReader& reader, DriveParameters& drive) {
@@ -43,12 +43,37 @@ void readBattery(ConfigReader& reader, VehicleParameters& vehicle) {
 
 }  // namespace
 
-void readVehicle(ConfigReader reader, VehicleParameters& vehicle) {
-  readBody(reader, vehicle);
+void readVehicle(ConfigReader reader, VehicleParameters& vehicle, bool whole) {
+  readBody(reader, vehicle, whole);
   reader.number("left_power", vehicle.left_power, {0.0, 1.5}, "");
   reader.number("right_power", vehicle.right_power, {0.0, 1.5}, "");
   readDrive(reader, vehicle.drive);
   readBattery(reader, vehicle);
+}
+
+void readSimulatedRobot(ConfigReader& reader, RobotSettings& settings) {
+  const RobotDescription robot = readRobot(reader);
+  settings.vehicle.outline = robot.outline;
+  settings.wiring = {robot.drive.left_channel, robot.drive.invert_left, robot.drive.invert_right};
+  LaserParameters& laser = settings.laser;
+  laser.p_body = robot.range_finder.p_body;
+  laser.yaw = robot.range_finder.angles.yaw;
+  laser.pitch = robot.range_finder.angles.pitch;
+  laser.roll = robot.range_finder.angles.roll;
+  InsParameters& ins = settings.ins;
+  ins.p_body = robot.ins.p_body;
+  ins.yaw = robot.ins.angles.yaw;
+  ins.pitch = robot.ins.angles.pitch;
+  ins.roll = robot.ins.angles.roll;
+  readVehicle(reader.file("dynamics", "dynamics.yaml"), settings.vehicle, true);
+}
+
+RobotSettings readSimulatedRobot(const std::string& folder) {
+  ConfigReader reader = ConfigReader::fromText("{}", folder + "/simulator");
+  RobotSettings settings;
+  readSimulatedRobot(reader, settings);
+  reader.finish();
+  return settings;
 }
 
 }  // namespace tread::sim

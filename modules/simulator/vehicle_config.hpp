@@ -3,13 +3,21 @@
 #pragma once
 
 #include "common/config/config_reader.hpp"
-#include "modules/simulator/core/vehicle.hpp"
+#include "modules/simulator/core/robot.hpp"
 
 namespace tread::sim {
 
-/// Reads what differs from the calibrated dynamic vehicle, in physical quantities: how a drive that
-/// has lost power or a weak battery is hidden behind the serial lines.
-/** What is not named stays as it is. The ranges keep the integration stable at 1 ms. */
-void readVehicle(ConfigReader reader, VehicleParameters& vehicle);
+/// Reads a dynamic vehicle in physical quantities. The ranges keep the integration stable at 1 ms.
+/** What is not named stays as it is; with `whole`, the body must be named. So a drive that has lost
+ * power or a weak battery is hidden behind the serial lines. */
+void readVehicle(ConfigReader reader, VehicleParameters& vehicle, bool whole = false);
+
+/// The simulated robot of a configuration: keys `robot` and `dynamics`, each a file or a map.
+/** Outline and mountings are the described robot's (robot.yaml), the rest of the vehicle stands in
+ * dynamics.yaml; both beside the configuration if they are not named. */
+void readSimulatedRobot(ConfigReader& reader, RobotSettings& settings);
+
+/// The same from a robot's folder.
+RobotSettings readSimulatedRobot(const std::string& folder);
 
 }  // namespace tread::sim

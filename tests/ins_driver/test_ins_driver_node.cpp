@@ -20,7 +20,7 @@ constexpr double kDeg = kPi / 180.0;
 constexpr int64_t kSecond = 1'000'000;
 
 InsDriverConfig configured(const std::string& yaml = "{}") {
-  ConfigReader reader = ConfigReader::fromText(yaml, "test");
+  ConfigReader reader = ConfigReader::fromText(yaml, TREAD_SOURCE_DIR "/config/robots/teodor/test");
   return readInsDriverConfig(reader);
 }
 
@@ -365,10 +365,11 @@ TEST_CASE("the configuration is checked: unknown keys, ranges and wrong types na
       return error.what();
     }
   };
-  CHECK(problem("antena: [0, 0, 0]").find("antena") != std::string::npos);
-  CHECK(problem("antenna: [0, 0]").find("test:1") != std::string::npos);
-  CHECK(problem("max_speed: 1000").find("test:1") != std::string::npos);
-  CHECK(problem("max_speed: fast").find("test:1") != std::string::npos);
+  CHECK(problem("latenci: 0.1").find("latenci") != std::string::npos);
+  CHECK(problem("latency: [0, 0]").find("test:1") != std::string::npos);
+  CHECK(problem("latency: 1000").find("test:1") != std::string::npos);
+  CHECK(problem("latency: soon").find("test:1") != std::string::npos);
+  CHECK(problem("source: nmae").find("allowed nmea") != std::string::npos);
   CHECK(problem("origin: {latitude: 42}").find("longitude") != std::string::npos);
   CHECK(problem("{}").empty());
 }

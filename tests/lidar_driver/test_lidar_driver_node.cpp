@@ -10,6 +10,9 @@ using namespace tread::lidar;
 
 namespace {
 
+/// As if it stood beside the shipped files.
+const std::string kHere = TREAD_SOURCE_DIR "/config/robots/teodor/lidar.yaml";
+
 /// Gives what a test puts in.
 class ScriptedSource : public ScanSource {
  public:
@@ -34,7 +37,7 @@ TEST_CASE("lidar_driver publishes good scans with the sensor's pose and counts t
   VirtualBus bus(1);
   ScriptedSource source;
   LidarDriverConfig config;
-  config.yaw = M_PI / 2;
+  config.mounting = {{0.25, 0.0, 0.5}, {M_PI / 2, 0.0, 0.0}};
   std::vector<scan_t> scans;
   bus.outside().subscribe<scan_t>(kScan, [&](const scan_t& scan) { scans.push_back(scan); });
   bus.addNode("lidar_driver",
@@ -93,13 +96,13 @@ TEST_CASE("a range finder whose every scan is refused is not well, and the reaso
 }
 
 TEST_CASE("ranges that leave nothing between them are refused in one line") {
-  ConfigReader reader = ConfigReader::fromText("range_min: 5\nrange_max: 5\n", "lidar.yaml");
+  ConfigReader reader = ConfigReader::fromText("range_min: 5\nrange_max: 5\n", kHere);
   REQUIRE_THROWS_WITH(readLidarDriverConfig(reader),
                       Catch::Contains("lidar.yaml:2") && Catch::Contains("range_max"));
 }
 
 TEST_CASE("a mistyped key of lidar_driver's configuration is one line with file and line") {
-  ConfigReader reader = ConfigReader::fromText("latency: 0.01\nrange_maks: 20\n", "lidar.yaml");
+  ConfigReader reader = ConfigReader::fromText("latency: 0.01\nrange_maks: 20\n", kHere);
   REQUIRE_THROWS_WITH(readLidarDriverConfig(reader),
                       Catch::Contains("lidar.yaml:2") && Catch::Contains("range_maks"));
 }

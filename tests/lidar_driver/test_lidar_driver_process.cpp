@@ -17,6 +17,8 @@ using namespace tread::testing;
 
 namespace {
 
+const std::string kRobot = "robot: " TREAD_SOURCE_DIR "/config/robots/teodor/robot.yaml\n";
+
 /// The process, a bus that hears it, and its configuration file.
 class Driven {
  public:
@@ -29,7 +31,7 @@ class Driven {
     });
     bus_->subscribe<health_t>(kHealth, [this](const health_t& message) { health = message; });
     file_ = "lidar_" + std::to_string(getpid()) + ".yaml";
-    std::ofstream(file_) << "address: " << address << "\nrange_max: 12\n";
+    std::ofstream(file_) << "address: " << address << "\nrange_max: 12\n" << kRobot;
     process = std::make_unique<Process>(
         "tread-lidar-driver", std::vector<std::string>{"--config", file_, "--lcm-url", url});
   }
@@ -153,7 +155,7 @@ TEST_CASE("a silent device, a deaf port and a mistyped key are each one clear li
   }
   SECTION("mistyped key") {
     const std::string file = "lidar_typo_" + std::to_string(getpid());
-    std::ofstream(file + ".yaml") << "adress: tcp:127.0.0.1:1\n";
+    std::ofstream(file + ".yaml") << "adress: tcp:127.0.0.1:1\n" << kRobot;
     Process process("tread-lidar-driver", {"--config", file + ".yaml"}, file + ".txt");
     REQUIRE(process.waitFor(10));
     REQUIRE(process.exitCode() == 1);
@@ -167,8 +169,10 @@ TEST_CASE("a silent device, a deaf port and a mistyped key are each one clear li
   }
   SECTION("not an address of a range finder, told by --check already") {
     for (const char* address : {"tty:/dev/ttyACM0", "tcp:host", "tcp:host:99999"}) {
-      Process process("tread-lidar-driver",
-                      {"--check", "--set", std::string("address=") + address});
+      Process process(
+          "tread-lidar-driver",
+          {"--check", "--config", TREAD_SOURCE_DIR "/config/robots/teodor/lidar_driver.yaml",
+           "--set", std::string("address=") + address});
       REQUIRE(process.waitFor(10));
       REQUIRE(process.exitCode() == 1);
     }

@@ -78,9 +78,17 @@ struct RangeFinder {
   }
 };
 
+/// The usual map of a robot of the usual size.
+inline LocalMapConfig usualMap() {
+  LocalMapConfig config;
+  config.robot = {0.65, 0.65, 0.34};
+  config.judge.robot_height = 1.2;
+  return config;
+}
+
 /// A map with its range finder and clock.
 struct Mapper {
-  explicit Mapper(const LocalMapConfig& config = {}) : map(config) {}
+  explicit Mapper(const LocalMapConfig& config = usualMap()) : map(config) {}
 
   LocalMap::Refusal look(const SmallWorld& world, const Eigen::Isometry3d& T_map_body,
                          int scans = 1) {

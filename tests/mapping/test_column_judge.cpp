@@ -21,7 +21,8 @@ Column columnOf(uint64_t free, uint64_t occupied) {
 }
 
 Cell judged(uint64_t free, uint64_t occupied, double ground = 0.0, double doubt = 0.0) {
-  return ColumnJudge(JudgeConfig{}, 0.1).judge(columnOf(free, occupied), kLower, {ground, doubt});
+  return ColumnJudge(JudgeConfig{0.15, 1.2}, 0.1)
+      .judge(columnOf(free, occupied), kLower, {ground, doubt});
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ TEST_CASE(
     "nothing") {
   SmallWorld world;
   world.boxes = {wall(9.0, -1.0, 9.3, 1.0)};
-  LocalMapConfig config;
+  LocalMapConfig config = usualMap();
   config.marking_range = 6.0;
   config.clearing_range = 8.0;
   Mapper mapper(config);

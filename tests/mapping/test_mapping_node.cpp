@@ -13,6 +13,15 @@ using namespace tread::mapping;
 
 namespace {
 
+/// As if it stood beside the shipped files.
+const std::string kHere = TREAD_SOURCE_DIR "/config/robots/teodor/mapping.yaml";
+
+MappingConfig usualConfig() {
+  MappingConfig config;
+  config.map = usualMap();
+  return config;
+}
+
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 ins_t insAt(int64_t utime, int64_t seq, const Eigen::Isometry3d& T_map_body) {
@@ -139,7 +148,7 @@ struct Rig {
   }
 
   SmallWorld world;
-  MappingConfig config;
+  MappingConfig config = usualConfig();
   VirtualBus bus;
   TileMap tiles{0.1, 32};
   health_t health{};
@@ -210,7 +219,7 @@ TEST_CASE("a scan without INS around it is dropped and counted, and the map goes
 
 TEST_CASE("silence is counted from when the robot's time is known, not from zero") {
   FollowingBus bus;
-  MappingNode node(MappingConfig{}, bus);
+  MappingNode node(usualConfig(), bus);
   bus.time = 20'000;
   node.step(bus.time);
   // The robot has run for six days.
@@ -381,19 +390,22 @@ TEST_CASE("killed and started again mapping has its map back with the next scans
 TEST_CASE(
     "mapping says its whole configuration, and a mistyped key is one line with file and line") {
   ConfigReader good =
-      ConfigReader::fromText("cell_size: 0.2\nground: {slope_doubt: 0.05}\n", "mapping.yaml");
+      ConfigReader::fromText("cell_size: 0.2\nground: {slope_doubt: 0.05}\n", kHere);
   const MappingConfig config = readMappingConfig(good);
   REQUIRE(config.map.voxels.cell_size == 0.2);
   REQUIRE(config.map.ground.slope_doubt == 0.05);
   REQUIRE(config.effective.find("marking_range: 10") != std::string::npos);
-  ConfigReader typo = ConfigReader::fromText("step: 0.1\nmarking_ranje: 9\n", "mapping.yaml");
+  ConfigReader typo = ConfigReader::fromText("step: 0.1\nmarking_ranje: 9\n", kHere);
   REQUIRE_THROWS_WITH(readMappingConfig(typo),
                       Catch::Contains("mapping.yaml:2") && Catch::Contains("marking_ranje"));
-  ConfigReader odd = ConfigReader::fromText("tile_cells: 20\n", "mapping.yaml");
+  ConfigReader odd = ConfigReader::fromText("tile_cells: 20\n", kHere);
   REQUIRE_THROWS_WITH(readMappingConfig(odd), Catch::Contains("mapping.yaml:1"));
-  ConfigReader low = ConfigReader::fromText("robot_height: 0.12\n", "mapping.yaml");
-  REQUIRE_THROWS_WITH(readMappingConfig(low), Catch::Contains("must be above step"));
-  ConfigReader fine = ConfigReader::fromText("cell_size: 0.05\n", "mapping.yaml");
+  ConfigReader low = ConfigReader::fromText(
+      "step: 1.0\ncell_size: 0.2\nrobot: ../../../tests/data/robots/small/robot.yaml\n", kHere);
+  REQUIRE_THROWS_WITH(
+      readMappingConfig(low),
+      Catch::Contains("mapping.yaml:1") && Catch::Contains("must be below the robot's height"));
+  ConfigReader fine = ConfigReader::fromText("cell_size: 0.05\n", kHere);
   REQUIRE_THROWS_WITH(readMappingConfig(fine),
                       Catch::Contains("mapping.yaml") &&
                           Catch::Contains("a robot of 1.20 m needs larger cells") &&

@@ -9,8 +9,11 @@ using namespace tread::motor;
 
 namespace {
 
+/// As if it stood beside the shipped files.
+const std::string kFolder = TREAD_SOURCE_DIR "/config/robots/teodor/";
+
 MotorBridgeConfig read(const std::string& text) {
-  ConfigReader reader = ConfigReader::fromText(text, "bridge.yaml");
+  ConfigReader reader = ConfigReader::fromText(text, kFolder + "bridge.yaml");
   return readMotorBridgeConfig(reader);
 }
 
@@ -45,16 +48,21 @@ step: 0.005
 command_interval: 0.025
 lease: 0.1
 ins_period: 0.01
-command_kind: track_speed
-full_scale: 2.5
-max_command: 2.0
-controller:
+controller: roboteq
+roboteq:
   watchdog: 0.2
   both_in_one_line: false
-  left_channel: 2
-  invert_left: true
-  invert_right: false
   rpm_per_mps: 400
+robot:
+  name: other
+  outline: {front: 1, rear: 1, half_width: 0.5}
+  footprint: {front: 1, rear: 1, half_width: 0.5}
+  height: 1
+  gauge: 1
+  drive: {kind: track_speed, full_speed: 2.5, max_command: 2, left_channel: 2, invert_left: true}
+  ins: {antenna: [0, 0, 0]}
+  range_finder: {position: [0, 0, 0]}
+  limits: {speed: 9}
 )");
   CHECK(config.bridge.gate.slot.step_us == 5'000);
   CHECK(config.bridge.command_interval_us == 25'000);
@@ -70,13 +78,12 @@ controller:
 
 TEST_CASE("no safeguard can be switched off, and every refusal is one line with its place") {
   for (const char* text :
-       {"lease: 0", "lease: 1.0", "ins_period: 0", "ins_period: 10", "controller: {watchdog: 0}",
-        "controller: {watchdog: 65}", "step: 0", "command_interval: 1", "max_command: 2",
-        "command_kind: torque", "command_kind: track_speed", "watchdog: 0.25",
-        "controller: {left_channel: 3}", "command_interval: 0.025", "lease: .nan"}) {
+       {"lease: 0", "lease: 1.0", "ins_period: 0", "ins_period: 10", "roboteq: {watchdog: 0}",
+        "roboteq: {watchdog: 65}", "step: 0", "command_interval: 1", "controller: robotec",
+        "watchdog: 0.25", "command_interval: 0.025", "lease: .nan"}) {
     const std::string line = refusal(text);
     INFO(text << " -> " << line);
-    CHECK(line.rfind("bridge.yaml:1", 0) == 0);
+    CHECK(line.rfind(kFolder + "bridge.yaml:1", 0) == 0);
     CHECK(line.find('\n') == std::string::npos);
   }
 }

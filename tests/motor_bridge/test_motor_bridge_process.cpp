@@ -93,7 +93,8 @@ class Rig {
  public:
   Rig() : url_(tread::testing::ownLcmUrl()) {
     config_ = "/tmp/tread_motor_bridge_" + std::to_string(getpid()) + ".yaml";
-    std::ofstream(config_) << "address: tty:" << terminal_.name() << "\n";
+    std::ofstream(config_) << "address: tty:" << terminal_.name()
+                           << "\nrobot: " TREAD_SOURCE_DIR "/config/robots/teodor/robot.yaml\n";
     bus_ = std::make_unique<LcmBus>(url_, TimeSource::kHost);
     bus_->subscribe<motor_t>(kMotor, [this](const motor_t& m) { motor_ = m; });
     bus_->subscribe<execution_t>(kExecution, [this](const execution_t& m) { last_ = newest(m); });

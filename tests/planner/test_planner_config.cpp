@@ -10,20 +10,25 @@
 using namespace tread;
 using namespace tread::planner;
 
+namespace {
+
+/// As if it stood beside the shipped files.
+const std::string kHere = TREAD_SOURCE_DIR "/config/robots/teodor/planner.yaml";
+
+}  // namespace
+
 TEST_CASE("A configuration is read with its ranges, and mistakes are named at file and line") {
   ConfigReader good = ConfigReader::fromText(
-      "footprint: {front: 0.8, rear: 0.7, half_width: 0.5}\n"
-      "search: {horizon: 6}\npolicy: {plan_period: 0.25}\ncommitment: {gain: 2.5}\n",
-      "planner.yaml");
+      "search: {horizon: 6}\npolicy: {plan_period: 0.25}\ncommitment: {gain: 2.5}\n", kHere);
   const PlannerConfig config = readPlannerConfig(good);
-  CHECK(config.world.footprint.half_width == 0.5);
-  CHECK(config.world.field.inflation == 0.5);
+  CHECK(config.world.footprint.half_width == 0.415);
+  CHECK(config.world.field.inflation == 0.415);
   CHECK(config.search.horizon == 6.0);
   CHECK(config.policy.plan_period == 250'000);
   CHECK(config.commitment.gain == 2.5);
   CHECK(config.effective.find("switch_penalty") != std::string::npos);
   const auto refusal = [](const std::string& text) {
-    ConfigReader reader = ConfigReader::fromText(text, "planner.yaml");
+    ConfigReader reader = ConfigReader::fromText(text, kHere);
     try {
       readPlannerConfig(reader);
     } catch (const ConfigError& error) {
@@ -31,8 +36,8 @@ TEST_CASE("A configuration is read with its ranges, and mistakes are named at fi
     }
     return std::string();
   };
-  CHECK(refusal("search: {horizn: 6}\n").find("planner.yaml:1") == 0);
-  CHECK(refusal("margins:\n  plan: -1\n").find("planner.yaml:2") == 0);
+  CHECK(refusal("search: {horizn: 6}\n").find(kHere + ":1") == 0);
+  CHECK(refusal("margins:\n  plan: -1\n").find(kHere + ":2") == 0);
   CHECK(refusal("margins:\n  check: 0.3\n").find("must not be more than plan") !=
         std::string::npos);
 }
@@ -41,12 +46,12 @@ TEST_CASE("A short vehicle's patterns are checked at poses as close as it is sho
   ConfigReader reader = ConfigReader::fromText(
       "footprint: {front: 0.05, rear: 0.05, half_width: 0.05}\n"
       "sweep: {distance: 0.5}\n",
-      "planner.yaml");
+      kHere);
   const PlannerConfig config = readPlannerConfig(reader);
   CHECK(config.sweep.distance < 0.05);
   CHECK(config.sweep.covered < 0.05);
   const Margins& margins = config.world.margins;
   CHECK(config.sweep.outline.front == Approx(0.05 + std::max(margins.plan, margins.largest)));
-  ConfigReader usual = ConfigReader::fromText("sweep: {distance: 0.08}\n", "planner.yaml");
+  ConfigReader usual = ConfigReader::fromText("sweep: {distance: 0.08}\n", kHere);
   CHECK(readPlannerConfig(usual).sweep.distance == 0.08);
 }

@@ -14,6 +14,7 @@
 #include "common/geometry/se2.hpp"
 #include "modules/simulator/core/motion_noise.hpp"
 #include "modules/simulator/core/vehicle.hpp"
+#include "tests/simulator/shipped_robot.hpp"
 
 namespace tread::sim {
 namespace {
@@ -68,7 +69,7 @@ Trajectory calibrated(const CalibratedSurface& surface, const MotorPower& power)
 /// The dynamic vehicle after 3 s at full power; noise may be null.
 Trajectory simulated(const SurfaceParameters& surface, const MotorPower& power,
                      MotionNoise* noise) {
-  TrackedVehicle vehicle{VehicleParameters{}};
+  TrackedVehicle vehicle{shippedVehicle()};
   const Ground ground = levelGround(surface);
   for (int i = 0; i < 3000; ++i) vehicle.step({1.0, 1.0}, ground, kStep);
   Pose2 T_start_body;
@@ -144,7 +145,7 @@ TEST_CASE(
   for (const CalibratedSurface& reference : kSurfaces) {
     const SurfaceParameters surface = *builtInSurface(reference.name);
     for (const double power : {0.35, 0.4, 0.6}) {
-      TrackedVehicle vehicle{VehicleParameters{}};
+      TrackedVehicle vehicle{shippedVehicle()};
       const Ground ground = levelGround(surface);
       for (int i = 0; i < 2000; ++i) vehicle.step({-power, power}, ground, kStep);
       const double wanted = reference.g_psi * 2.0 * 1.10 * power / 0.60;

@@ -11,6 +11,7 @@
 #include "modules/ins_driver/core/nmea_ins.hpp"
 #include "modules/motor_bridge/core/roboteq_connection.hpp"
 #include "modules/simulator/emulators/simulated_devices.hpp"
+#include "tests/simulator/shipped_robot.hpp"
 
 namespace tread::sim {
 namespace {
@@ -31,6 +32,7 @@ struct Loop {
   }
   static SimulatorSettings settings() {
     SimulatorSettings settings;
+    settings.robot = shippedRobot();
     settings.robot.start_utime = kStart;
     settings.robot.start = {2.0, 3.0, 2.0};
     settings.robot.ins.position_bias = 0.0;

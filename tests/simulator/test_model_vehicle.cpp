@@ -17,6 +17,7 @@
 #include "modules/ins_driver/core/nmea_ins.hpp"
 #include "modules/simulator/model_vehicle.hpp"
 #include "modules/simulator/simulator_node.hpp"
+#include "tests/simulator/shipped_robot.hpp"
 
 namespace tread::sim {
 namespace {
@@ -41,6 +42,7 @@ const std::string kEverythingOff = kPlain +
 /// Instruments without noise: what is left is what they can resolve.
 SimulatorSettings settingsOf(bool motion_noise = false) {
   SimulatorSettings settings;
+  settings.robot = shippedRobot();
   InsParameters& ins = settings.robot.ins;
   ins.position_noise = ins.position_bias = ins.height_noise = ins.heading_noise = 0.0;
   ins.heading_bias = ins.attitude_noise = ins.velocity_noise = ins.rate_noise = 0.0;

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/simulator/core/robot.hpp"
+#include "tests/simulator/shipped_robot.hpp"
 
 namespace tread::sim {
 namespace {
@@ -32,7 +33,7 @@ void append(std::string& bytes, const Value& value) {
 
 /// All that the robot says while it drives for a while, as bytes. `slice` is how often it is asked.
 std::string bytesOfDrive(uint64_t seed, int64_t slice_us) {
-  RobotSettings settings;
+  RobotSettings settings = shippedRobot();
   settings.seed = seed;
   SimulatedRobot robot(worldOf(hillyWorld()), settings);
   std::string bytes;
@@ -56,7 +57,7 @@ std::string bytesOfDrive(uint64_t seed, int64_t slice_us) {
 
 /// Measurements only, in order of kind: the order between kinds depends on how often one asks.
 Pose2 endOfDrive(uint64_t seed, int64_t slice_us) {
-  RobotSettings settings;
+  RobotSettings settings = shippedRobot();
   settings.seed = seed;
   SimulatedRobot robot(worldOf(hillyWorld()), settings);
   for (int64_t t = 0; t <= 3000000; t += slice_us) {
@@ -85,7 +86,7 @@ TEST_CASE("how often the robot is asked does not change where it drives") {
 TEST_CASE("an obstacle stops the body, is counted once and can be backed away from") {
   WorldDescription description;
   description.obstacles = {boxObstacle({3.0, 0.0, 0.0}, 1.0, 4.0, 1.0)};
-  RobotSettings settings;
+  RobotSettings settings = shippedRobot();
   settings.motion_noise = false;
   SimulatedRobot robot(worldOf(description), settings);
   robot.setPower({1.0, 1.0});
@@ -114,7 +115,7 @@ TEST_CASE("power that is not a number stands for zero") {
 
 TEST_CASE("the robot lies on the ground with the attitude of the slope") {
   const auto world = worldOf(hillyWorld());
-  RobotSettings settings;
+  RobotSettings settings = shippedRobot();
   settings.start = {2.0, -3.0, 1.0};
   SimulatedRobot robot(world, settings);
   robot.setPower({0.8, 0.5});
@@ -134,7 +135,7 @@ TEST_CASE("the robot lies on the ground with the attitude of the slope") {
 
 TEST_CASE(
     "INS measurements come out in order, at their rate, after their latency, with their noise") {
-  RobotSettings settings;
+  RobotSettings settings = shippedRobot();
   settings.ins.position_bias = 0.0;
   settings.ins.heading_bias = 0.0;
   settings.start = {1.0, 2.0, 3.0};
@@ -161,7 +162,7 @@ TEST_CASE(
 }
 
 TEST_CASE("INS velocity and rates are those of the motion") {
-  RobotSettings settings;
+  RobotSettings settings = shippedRobot();
   settings.motion_noise = false;
   SimulatedRobot robot(worldOf({}), settings);
   robot.setPower({0.6, 1.0});
@@ -187,7 +188,7 @@ TEST_CASE("INS velocity and rates are those of the motion") {
 TEST_CASE("the laser measures what stands around it and tells nothing from no measurement") {
   WorldDescription description;
   description.obstacles = {boxObstacle({5.25, 0.0, 0.0}, 1.0, 40.0, 1.0)};
-  RobotSettings settings;
+  RobotSettings settings = shippedRobot();
   settings.laser.range_noise = 0.0;
   SimulatedRobot robot(worldOf(description), settings);
   robot.advanceTo(1000000);
@@ -211,7 +212,7 @@ TEST_CASE("the laser measures what stands around it and tells nothing from no me
 TEST_CASE("beams of one sweep are measured where the sensor is at their time") {
   WorldDescription description;
   description.obstacles = {boxObstacle({0.0, 12.0, 0.0}, 60.0, 1.0, 1.0)};
-  RobotSettings settings;
+  RobotSettings settings = shippedRobot();
   settings.motion_noise = false;
   settings.laser.range_noise = 0.0;
   settings.laser.sweep_us = 75000;
@@ -244,7 +245,7 @@ TEST_CASE("on a slope the level laser sees the ground rise") {
   WorldDescription description;
   // A valley: the ground rises on both sides.
   description.terrain.waves = {{1.0, {0.15, 0.0}, -kPi / 2.0}};
-  RobotSettings settings;
+  RobotSettings settings = shippedRobot();
   settings.laser.range_noise = 0.0;
   SimulatedRobot robot(worldOf(description), settings);
   robot.advanceTo(200000);

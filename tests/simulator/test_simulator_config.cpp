@@ -10,7 +10,9 @@ namespace {
 const std::string kSimulators = TREAD_SOURCE_DIR "/config/simulators/";
 /// As if it stood among the shipped ones.
 const std::string kHere = kSimulators + "test.yaml";
-const std::string kWorld = "world: ../worlds/meadow.yaml\n";
+const std::string kWorld =
+    "world: ../worlds/meadow.yaml\nrobot: ../robots/teodor/robot.yaml\n"
+    "dynamics: ../robots/teodor/dynamics.yaml\n";
 
 SimulatorConfig read(const std::string& text, const std::vector<std::string>& overrides = {}) {
   ConfigReader reader = ConfigReader::fromText(text, kHere, overrides);
@@ -59,10 +61,10 @@ TEST_CASE("a simulator's model is a file beside its configuration, or none") {
 TEST_CASE("a model that the simulator cannot drive is refused in one line") {
   using Catch::Contains;
   CHECK_THAT(refusalOf("model: ../models/warthog_nominal.yaml\n"),
-             Contains("test.yaml:2") && Contains("track speeds") && Contains("only power"));
+             Contains("test.yaml:4") && Contains("track speeds") && Contains("only power"));
   CHECK_THAT(refusalOf("model: nowhere.yaml\n"), Contains("nowhere.yaml: cannot be read"));
   CHECK_THAT(refusalOf("model: ../models/teodor_grass.yaml\nvehicle: {mass: 300}\n"),
-             Contains("test.yaml:3") && Contains("one of them"));
+             Contains("test.yaml:5") && Contains("one of them"));
 }
 
 TEST_CASE("the dynamic vehicle's physical parameters are read strictly") {
@@ -74,9 +76,9 @@ TEST_CASE("the dynamic vehicle's physical parameters are read strictly") {
   CHECK(config.settings.robot.vehicle.drive.capacity == 50.0 * 3600.0);
   CHECK(read(kWorld).settings.robot.vehicle.drive.capacity == DriveParameters{}.capacity);
   CHECK_THAT(refusalOf("vehicle: {left_pover: 0.9}\n"), Contains("left_pover"));
-  CHECK_THAT(refusalOf("vehicle:\n  left_power: 3\n"), Contains("test.yaml:3"));
+  CHECK_THAT(refusalOf("vehicle:\n  left_power: 3\n"), Contains("test.yaml:5"));
   CHECK_THAT(refusalOf("vehicle:\n  empty_voltage: 30\n"),
-             Contains("test.yaml:3") && Contains("full_voltage"));
+             Contains("test.yaml:5") && Contains("full_voltage"));
 }
 
 TEST_CASE("what is changed in the dynamic vehicle shows in its motion") {

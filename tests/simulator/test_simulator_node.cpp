@@ -7,6 +7,7 @@
 
 #include "common/bus/virtual_bus.hpp"
 #include "modules/simulator/simulator_node.hpp"
+#include "tests/simulator/shipped_robot.hpp"
 
 namespace tread::sim {
 namespace {
@@ -50,6 +51,7 @@ class Bench {
   }
   static SimulatorSettings settings(uint64_t seed) {
     SimulatorSettings settings;
+    settings.robot = shippedRobot();
     settings.robot.seed = seed;
     settings.robot.start_utime = kStart;
     return settings;

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/simulator/core/vehicle.hpp"
+#include "tests/simulator/shipped_robot.hpp"
 
 namespace tread::sim {
 namespace {
@@ -27,7 +28,7 @@ constexpr double kRest = 1e-9;
 
 TEST_CASE("without power on level ground the vehicle does not move at all") {
   for (const SurfaceParameters& surface : builtInSurfaces()) {
-    TrackedVehicle vehicle{VehicleParameters{}};
+    TrackedVehicle vehicle{shippedVehicle()};
     const Pose2 moved = drive(vehicle, {0.0, 0.0}, levelGround(surface), 60.0);
     CHECK(moved.x == 0.0);
     CHECK(moved.y == 0.0);
@@ -39,7 +40,7 @@ TEST_CASE("after driving the vehicle comes to rest within a second and stays the
   for (const SurfaceParameters& surface : builtInSurfaces()) {
     if (surface.name == "ice") continue;
     const Ground ground = levelGround(surface);
-    TrackedVehicle vehicle{VehicleParameters{}};
+    TrackedVehicle vehicle{shippedVehicle()};
     drive(vehicle, {1.0, 0.6}, ground, 3.0);
     const Pose2 stopping = drive(vehicle, {0.0, 0.0}, ground, 1.0);
     INFO(surface.name);
@@ -61,7 +62,7 @@ TEST_CASE("the parking brake holds on a slope of ten degrees in any direction") 
       Ground ground = levelGround(surface);
       ground.slope_along = slope * std::cos(direction);
       ground.slope_across = slope * std::sin(direction);
-      TrackedVehicle vehicle{VehicleParameters{}};
+      TrackedVehicle vehicle{shippedVehicle()};
       const Pose2 settling = drive(vehicle, {0.0, 0.0}, ground, 10.0);
       const Pose2 creeping = drive(vehicle, {0.0, 0.0}, ground, 60.0);
       INFO(name << " direction " << direction);
@@ -76,7 +77,7 @@ TEST_CASE("on ice the same slope cannot be held") {
   const SurfaceParameters ice = *builtInSurface("ice");
   Ground ground = levelGround(ice);
   ground.slope_along = std::tan(10.0 * kPi / 180.0);
-  TrackedVehicle vehicle{VehicleParameters{}};
+  TrackedVehicle vehicle{shippedVehicle()};
   CHECK(drive(vehicle, {0.0, 0.0}, ground, 5.0).x < -1.0);
 }
 
@@ -86,8 +87,8 @@ TEST_CASE("driving uphill is slower and takes more current than downhill") {
   up.slope_along = 0.1;
   Ground down = levelGround(grass);
   down.slope_along = -0.1;
-  TrackedVehicle climbing{VehicleParameters{}};
-  TrackedVehicle descending{VehicleParameters{}};
+  TrackedVehicle climbing{shippedVehicle()};
+  TrackedVehicle descending{shippedVehicle()};
   const double climbed = drive(climbing, {1.0, 1.0}, up, 5.0).x;
   const double descended = drive(descending, {1.0, 1.0}, down, 5.0).x;
   CHECK(climbed < descended - 0.2);
@@ -98,8 +99,8 @@ TEST_CASE("driving uphill is slower and takes more current than downhill") {
 TEST_CASE("left and right are mirror images") {
   const SurfaceParameters gravel = *builtInSurface("gravel");
   const Ground ground = levelGround(gravel);
-  TrackedVehicle to_left{VehicleParameters{}};
-  TrackedVehicle to_right{VehicleParameters{}};
+  TrackedVehicle to_left{shippedVehicle()};
+  TrackedVehicle to_right{shippedVehicle()};
   const Pose2 left = drive(to_left, {0.3, 0.9}, ground, 3.0);
   const Pose2 right = drive(to_right, {0.9, 0.3}, ground, 3.0);
   CHECK(left.x == Approx(right.x).margin(kRest));
@@ -110,19 +111,19 @@ TEST_CASE("left and right are mirror images") {
 TEST_CASE("opposite powers turn in place, equal negative powers reverse") {
   const SurfaceParameters tarmac = *builtInSurface("tarmac");
   const Ground ground = levelGround(tarmac);
-  TrackedVehicle spinning{VehicleParameters{}};
+  TrackedVehicle spinning{shippedVehicle()};
   const Pose2 spun = drive(spinning, {-0.5, 0.5}, ground, 3.0);
   CHECK(spun.yaw > 3.0);
   CHECK(std::hypot(spun.x, spun.y) < 0.3);
-  TrackedVehicle reversing{VehicleParameters{}};
+  TrackedVehicle reversing{shippedVehicle()};
   CHECK(drive(reversing, {-1.0, -1.0}, ground, 3.0).x < -2.5);
 }
 
 TEST_CASE("the battery pays for what the tracks do and slowly runs down") {
   const SurfaceParameters cinder = *builtInSurface("cinder");
   const Ground ground = levelGround(cinder);
-  TrackedVehicle vehicle{VehicleParameters{}};
-  const VehicleParameters parameters;
+  TrackedVehicle vehicle{shippedVehicle()};
+  const VehicleParameters parameters = shippedVehicle();
   drive(vehicle, {1.0, 1.0}, ground, 5.0);
   const Battery& battery = vehicle.battery();
   // Rolling resistance times speed is what leaves the vehicle; the rest is heat.
@@ -147,7 +148,7 @@ TEST_CASE("a step of two milliseconds gives the same motion as one of half a mil
     const SurfaceParameters surface = *builtInSurface(name);
     const Ground ground = levelGround(surface);
     const auto drivenWith = [&](double step) {
-      TrackedVehicle vehicle{VehicleParameters{}};
+      TrackedVehicle vehicle{shippedVehicle()};
       Pose2 pose;
       for (int i = 0; i < static_cast<int>(std::lround(4.0 / step)); ++i) {
         vehicle.step({1.0, i * step < 2.0 ? 1.0 : 0.5}, ground, step);

@@ -177,7 +177,7 @@ TEST_CASE("footprint and obstacle touch exactly when some point belongs to both"
   Random random(4);
   const std::vector<Obstacle> obstacles = randomObstacles(random, 300);
   const World world(flatWorld(obstacles));
-  const Rectangle footprint;
+  const Rectangle footprint{1.30, 0.68};
   int touches = 0, near = 0;
   for (int trial = 0; trial < testing::effort(1500); ++trial) {
     const Pose2 pose{uniform(random, -20, 20), uniform(random, -20, 20), uniform(random, -4, 4)};

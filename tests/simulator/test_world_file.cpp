@@ -28,7 +28,7 @@ TEST_CASE("the shipped worlds can be read and built, and their slopes are gentle
   CHECK(world.surface({-15.0, 0.0}).name == "grass");
   CHECK(world.surface({18.0, 0.0}).name == "tarmac");
   CHECK(world.description().terrain.steepestSlope() < 0.09);
-  const Rectangle footprint;
+  const Rectangle footprint{1.30, 0.68};
   CHECK_FALSE(world.collision(footprint, {-16.0, 0.0, 0.0}));
   CHECK(world.collision(footprint, {-8.0, 3.0, 0.0})->obstacle == 0);
 }

@@ -66,6 +66,8 @@ std::vector<std::string> RobotRun::argumentsOf(const std::string& name) const {
     for (const std::string& setting : others->second) words.insert(words.end(), {"--set", setting});
   if (name == "simulator") {
     set("world", folder_ + "/world.yaml");
+    set("robot", robot + "robot.yaml");
+    set("dynamics", robot + "dynamics.yaml");
     set("start", start_pose_);
     set("ins", "pty:" + device("ins"));
     set("motor", "pty:" + device("motor"));

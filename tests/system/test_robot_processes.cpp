@@ -8,6 +8,11 @@
 #include "tests/system/worlds.hpp"
 
 namespace tread::testing {
+namespace {
+
+const std::string kRobot = TREAD_SOURCE_DIR "/config/robots/teodor/";
+
+}  // namespace
 
 TEST_CASE("every process starts alone, tells its health, and ends with code 0") {
   for (const std::string& name : RobotRun::names()) {
@@ -29,7 +34,8 @@ TEST_CASE("a second simulator on the same lines says so and ends") {
   const std::string port = run.laserAddress();
   Process second("tread-simulator",
                  {"--lcm-url", run.url(), "--set", "world=" + run.folder() + "/world.yaml", "--set",
-                  "ins=pty:" + run.folder() + "/ins2", "--set",
+                  "robot=" + kRobot + "robot.yaml", "--set", "dynamics=" + kRobot + "dynamics.yaml",
+                  "--set", "ins=pty:" + run.folder() + "/ins2", "--set",
                   "motor=pty:" + run.folder() + "/motor2", "--set", "laser=" + port},
                  run.folder() + "/second.log");
   REQUIRE(second.waitFor(10.0));

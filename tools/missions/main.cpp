@@ -125,7 +125,7 @@ Batch driveLearning(const Arguments& arguments, const RobotConfig& robot) {
 }
 
 Batch driveOmniscient(const Arguments& arguments, const RobotConfig& robot, bool first) {
-  const TruePatterns true_patterns(robot.learner.shipped, sim::VehicleParameters{});
+  const TruePatterns true_patterns(robot.learner.shipped, robot.simulated.vehicle);
   BatchOrder order = orderOf(arguments, "omniscient", first);
   order.options.true_patterns = &true_patterns;
   return runBatch(robot, order);

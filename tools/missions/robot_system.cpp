@@ -13,6 +13,7 @@
 #include "modules/learner/learner_node.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 #include "modules/simulator/simulator_node.hpp"
+#include "modules/simulator/vehicle_config.hpp"
 
 namespace tread::missions {
 namespace {
@@ -158,6 +159,7 @@ RobotConfig readRobot(const std::string& folder, const std::vector<std::string>&
   config.mapping = files.read("mapping", mapping::readMappingConfig);
   config.planner = files.read("planner", planner::readPlannerConfig);
   config.motor_bridge = files.read("motor_bridge", motor::readMotorBridgeConfig);
+  config.simulated = sim::readSimulatedRobot(folder);
   config.timing = usualTiming();
   return config;
 }
@@ -172,6 +174,7 @@ RobotSystem::RobotSystem(const RobotConfig& config, const sim::WorldDescription&
   std::tie(ins_line_, ins_device_) = makePipe();
   std::tie(motor_line_, motor_device_) = makePipe();
   sim::SimulatorSettings settings;
+  settings.robot = config.simulated;
   settings.robot.start = T_map_start;
   settings.robot.start_utime = bus_->now();
   settings.robot.seed = seed;

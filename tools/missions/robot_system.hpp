@@ -32,6 +32,7 @@ struct RobotConfig {
   mapping::MappingConfig mapping;
   planner::PlannerConfig planner;
   motor::MotorBridgeConfig motor_bridge;
+  sim::RobotSettings simulated;              ///< what the simulator drives in its place
   std::map<std::string, NodeTiming> timing;  ///< how long each node computes, as a model
 };
 

@@ -45,9 +45,12 @@ struct Arguments {
 };
 
 void replayInsLog(const Arguments& arguments) {
-  ConfigReader reader = arguments.config.empty() ? ConfigReader::fromText("{}", "defaults")
-                                                 : ConfigReader::fromFile(arguments.config);
-  const InsReplay replay = replayInsFile(arguments.log, ins::readInsDriverConfig(reader));
+  ins::InsDriverConfig config;
+  if (!arguments.config.empty()) {
+    ConfigReader reader = ConfigReader::fromFile(arguments.config);
+    config = ins::readInsDriverConfig(reader);
+  }
+  const InsReplay replay = replayInsFile(arguments.log, config);
   say(arguments.log + "\n" + reportOf(replay), arguments.output);
   if (!arguments.output.picture.empty())
     drawTrack(replay, arguments.log + " through ins_driver", arguments.output.picture);

@@ -134,6 +134,7 @@ mapping::MappingConfig outdoorConfig() {
   config.map.marking_range = config.map.clearing_range = 20.0;
   config.map.window_tiles = 14;
   config.map.robot = {0.25, 0.25, 0.21};
+  config.map.judge.robot_height = 1.2;
   config.map.ground.slope_doubt = 0.0;  // the poses are level: nothing is known of slopes
   return config;
 }

@@ -9,8 +9,8 @@ namespace tread::mapping {
 
 /// What counts as an obstacle for this robot.
 struct JudgeConfig {
-  double step = 0.15;          ///< [m] above the ground: lower things are driven over
-  double robot_height = 1.20;  ///< [m] above the ground: higher things are driven under
+  double step = 0.15;         ///< [m] above the ground: lower things are driven over
+  double robot_height = 0.0;  ///< [m] above the ground: higher things are driven under
 };
 
 /// Says what a column is, by heights above the ground of its voxels' centres.

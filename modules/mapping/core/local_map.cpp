@@ -156,7 +156,7 @@ void LocalMap::standAt(const Pose2& T_map_body) {
 }
 
 bool LocalMap::isOwnBody(const Eigen::Vector3d& p_body) const {
-  const RobotSize& robot = config_.robot;
+  const FootprintSize& robot = config_.robot;
   return p_body.x() < robot.front + kOwnBodyMargin && p_body.x() > -robot.rear - kOwnBodyMargin &&
          std::abs(p_body.y()) < robot.half_width + kOwnBodyMargin &&
          p_body.z() < config_.judge.robot_height;

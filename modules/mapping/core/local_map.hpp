@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/geometry/footprint_size.hpp"
 #include "common/grid/footprint.hpp"
 #include "modules/mapping/core/column_judge.hpp"
 #include "modules/mapping/core/ground_model.hpp"
@@ -19,19 +20,12 @@ inline constexpr int kMostOffHeight = kColumnHeight / 6;
 /// Voxels of a column that are above the robot's ground at any time; what is higher is not kept.
 inline constexpr int kVoxelsAboveGround = kColumnHeight / 2 - kMostOffHeight;
 
-/// The robot's rectangle in the body frame [m].
-struct RobotSize {
-  double front = 0.65;       ///< from the body origin forward
-  double rear = 0.65;        ///< and backward
-  double half_width = 0.34;  ///< to both sides
-};
-
 /// Everything that shapes the local map.
 struct LocalMapConfig {
   VoxelConfig voxels;
   GroundConfig ground;
   JudgeConfig judge;
-  RobotSize robot;
+  FootprintSize robot;             ///< its outline
   int tile_cells = 32;             ///< a multiple of GroundModel::kPatchCells
   int window_tiles = 8;            ///< tiles per side of the window
   double marking_range = 10.0;     ///< [m] returns from farther away mark nothing

@@ -2,6 +2,10 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/simulator/core/ins.hpp"
 
+#include <cmath>
+
+#include <Eigen/Geometry>
+
 namespace tread::sim {
 namespace {
 
@@ -13,6 +17,8 @@ OrnsteinUhlenbeck biasProcess(const InsParameters& parameters, Gaussian& gaussia
 
 Ins::Ins(const InsParameters& parameters, uint64_t seed, int64_t start_utime)
     : parameters_(parameters),
+      at_origin_(parameters.p_body.isZero(0.0) && parameters.yaw == 0.0 &&
+                 parameters.pitch == 0.0 && parameters.roll == 0.0),
       gaussian_(seed),
       bias_x_(biasProcess(parameters, gaussian_)),
       bias_y_(biasProcess(parameters, gaussian_)),
@@ -26,7 +32,26 @@ Eigen::Vector3d Ins::noise3(double sigma) {
   return sigma * Eigen::Vector3d(x, y, z);
 }
 
-void Ins::measure(int64_t utime, const InsInput& truth) {
+InsInput Ins::atInstrument(InsInput truth) const {
+  if (at_origin_) return truth;
+  using Eigen::AngleAxisd;
+  using Eigen::Vector3d;
+  truth.body.p_map += truth.body.R_map_body * parameters_.p_body;
+  truth.v_body += truth.rate_body.cross(parameters_.p_body);
+  const Eigen::Matrix3d R_body_device = (AngleAxisd(parameters_.yaw, Vector3d::UnitZ()) *
+                                         AngleAxisd(parameters_.pitch, Vector3d::UnitY()) *
+                                         AngleAxisd(parameters_.roll, Vector3d::UnitX()))
+                                            .toRotationMatrix();
+  const Eigen::Matrix3d R = truth.body.R_map_body * R_body_device;
+  truth.v_body = R_body_device.transpose() * truth.v_body;
+  truth.yaw += wrapAngle(std::atan2(R(1, 0), R(0, 0)) - truth.yaw);
+  truth.body.pitch = -std::asin(R(2, 0));
+  truth.body.roll = std::atan2(R(2, 1), R(2, 2));
+  return truth;
+}
+
+void Ins::measure(int64_t utime, const InsInput& of_body) {
+  const InsInput truth = atInstrument(of_body);
   next_ += parameters_.period_us;
   bias_x_.step(gaussian_);
   bias_y_.step(gaussian_);

@@ -14,20 +14,23 @@
 
 namespace tread::sim {
 
-/// An inertial navigation system with satellite positions, at the body origin. Noise is per sample,
-/// one sigma.
+/// An inertial navigation system with satellite positions. Noise is per sample, one sigma.
 struct InsParameters {
-  int64_t period_us = 20000;      ///< from measurement to measurement
-  int64_t latency_us = 20000;     ///< from measurement to output
-  double position_noise = 0.003;  ///< [m]
-  double position_bias = 0.02;    ///< wanders slowly, one sigma [m]
-  double height_noise = 0.005;    ///< [m]
-  double heading_noise = 0.001;   ///< [rad]
-  double heading_bias = 0.002;    ///< wanders slowly, one sigma [rad]
-  double attitude_noise = 0.001;  ///< of roll and pitch [rad]
-  double velocity_noise = 0.01;   ///< per axis [m/s]
-  double rate_noise = 0.002;      ///< per axis [rad/s]
-  double bias_time = 120.0;       ///< correlation time of both biases [s]
+  Eigen::Vector3d p_body{0.0, 0.0, 0.0};  ///< the point whose position it reports [m]
+  double yaw = 0.0;                       ///< mounting, R = Rz(yaw) Ry(pitch) Rx(roll) [rad]
+  double pitch = 0.0;                     ///< nose down positive [rad]
+  double roll = 0.0;                      ///< [rad]
+  int64_t period_us = 20000;              ///< from measurement to measurement
+  int64_t latency_us = 20000;             ///< from measurement to output
+  double position_noise = 0.003;          ///< [m]
+  double position_bias = 0.02;            ///< wanders slowly, one sigma [m]
+  double height_noise = 0.005;            ///< [m]
+  double heading_noise = 0.001;           ///< [rad]
+  double heading_bias = 0.002;            ///< wanders slowly, one sigma [rad]
+  double attitude_noise = 0.001;          ///< of roll and pitch [rad]
+  double velocity_noise = 0.01;           ///< per axis [m/s]
+  double rate_noise = 0.002;              ///< per axis [rad/s]
+  double bias_time = 120.0;               ///< correlation time of both biases [s]
 };
 
 /// The truth that the INS senses.
@@ -49,11 +52,11 @@ class InsErrors {
 /// One measurement.
 struct InsSample {
   int64_t utime = 0;                                    ///< of the measurement [us]
-  Eigen::Vector3d p_map = Eigen::Vector3d::Zero();      ///< of the body origin [m]
+  Eigen::Vector3d p_map = Eigen::Vector3d::Zero();      ///< of the reported point [m]
   double yaw = 0.0;                                     ///< [rad], unwrapped, counter-clockwise
   double pitch = 0.0;                                   ///< nose down positive [rad]
   double roll = 0.0;                                    ///< left side up positive [rad]
-  Eigen::Vector3d v_body = Eigen::Vector3d::Zero();     ///< [m/s]
+  Eigen::Vector3d v_body = Eigen::Vector3d::Zero();     ///< of that point, device's axes [m/s]
   Eigen::Vector3d rate_body = Eigen::Vector3d::Zero();  ///< [rad/s]
 };
 
@@ -74,9 +77,11 @@ class Ins {
   const InsParameters& parameters() const { return parameters_; }
 
  private:
+  InsInput atInstrument(InsInput truth) const;
   Eigen::Vector3d noise3(double sigma);
 
   InsParameters parameters_;
+  bool at_origin_;  ///< of the body, and straight
   Gaussian gaussian_;
   OrnsteinUhlenbeck bias_x_;
   OrnsteinUhlenbeck bias_y_;

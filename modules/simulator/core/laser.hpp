@@ -15,7 +15,7 @@ namespace tread::sim {
 
 /// A scanning laser range finder: one plane, beams in turn from right to left.
 struct LaserParameters {
-  Eigen::Vector3d p_body{0.25, 0.0, 0.50};     ///< where it is mounted [m]
+  Eigen::Vector3d p_body{0.0, 0.0, 0.0};       ///< where it is mounted [m]
   double yaw = 0.0;                            ///< mounting, R = Rz(yaw) Ry(pitch) Rx(roll) [rad]
   double pitch = 0.0;                          ///< nose down positive [rad]
   double roll = 0.0;                           ///< [rad]

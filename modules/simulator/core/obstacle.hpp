@@ -54,8 +54,8 @@ std::optional<Crossing> crossingOf(const Obstacle& obstacle, const Eigen::Vector
 
 /// A rectangle in the body frame, centred at the body origin.
 struct Rectangle {
-  double length = 1.30;  ///< along x_body [m]
-  double width = 0.68;   ///< along y_body [m]
+  double length = 0.0;  ///< along x_body [m]
+  double width = 0.0;   ///< along y_body [m]
 };
 
 /// How deep a rectangle is in an obstacle [m]: the shortest way out; 0 or less if they do not

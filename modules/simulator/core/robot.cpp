@@ -122,8 +122,10 @@ void SimulatedRobot::updateRates(double dt) {
 }
 
 void SimulatedRobot::checkCollision() {
-  const Rectangle footprint{settings_.vehicle.length, settings_.vehicle.width};
-  const auto collision = world_->collision(footprint, truth_.T_map_body);
+  const FootprintSize& outline = settings_.vehicle.outline;
+  const Pose2 T_body_middle{(outline.front - outline.rear) / 2.0, 0.0, 0.0};
+  const auto collision = world_->collision({outline.length(), 2.0 * outline.half_width},
+                                           truth_.T_map_body * T_body_middle);
   if (!collision) {
     T_map_free_ = truth_.T_map_body;
     return;

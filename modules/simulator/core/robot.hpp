@@ -15,11 +15,19 @@
 
 namespace tread::sim {
 
+/// How the motors hang on the channels of their controller.
+struct MotorWiring {
+  int left_channel = 1;  ///< 1 or 2; the right track has the other one
+  bool invert_left = false;
+  bool invert_right = false;
+};
+
 /// How a simulated robot is built.
 struct RobotSettings {
   VehicleParameters vehicle;
   LaserParameters laser;
   InsParameters ins;
+  MotorWiring wiring;
   Pose2 start;               ///< T_map_body at the beginning
   int64_t start_utime = 0;   ///< [us]
   uint64_t seed = 1;         ///< of ground and instruments

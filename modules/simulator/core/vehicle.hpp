@@ -2,24 +2,24 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include "common/geometry/footprint_size.hpp"
 #include "modules/simulator/core/plant.hpp"
 
 namespace tread::sim {
 
-/// A tracked machine of the size of a Telerob Teodor.
+/// A tracked machine; no robot's size is a default.
 /** Body origin on the ground midway between the tracks, x forward, y left. */
 struct VehicleParameters {
-  double mass = 400.0;           ///< [kg]
-  double yaw_inertia = 34.0;     ///< about the centre of mass, tracks included [kg m^2]
-  double gauge = 0.43;           ///< between the middles of the tracks [m]
-  double contact_length = 0.56;  ///< of each track on the ground [m]
-  double centre = -0.08;      ///< x_body of the middle of the contact patches and of the mass [m]
-  double mass_height = 0.35;  ///< of the centre of mass above the ground [m]
-  double length = 1.30;       ///< footprint [m]
-  double width = 0.68;        ///< footprint [m]
-  double left_power = 1.0;    ///< what the left drive gives of the power that it is told to [1]
-  double right_power = 1.0;   ///< the same on the right [1]
-  double charge = 1.0;        ///< of the battery at the beginning, 1 = full
+  double mass = 0.0;            ///< [kg]
+  double yaw_inertia = 0.0;     ///< about the centre of mass, tracks included [kg m^2]
+  double gauge = 0.0;           ///< effective, between the middles of the tracks [m]
+  double contact_length = 0.0;  ///< of each track on the ground [m]
+  double centre = 0.0;          ///< x_body of the middle of the contact patches and of the mass [m]
+  double mass_height = 0.0;     ///< of the centre of mass above the ground [m]
+  FootprintSize outline;        ///< what obstacles stop
+  double left_power = 1.0;      ///< what the left drive gives of the power that it is told to [1]
+  double right_power = 1.0;     ///< the same on the right [1]
+  double charge = 1.0;          ///< of the battery at the beginning, 1 = full
   DriveParameters drive;
 };
 

@@ -32,8 +32,8 @@ SimulatedDevices::SimulatedDevices(std::shared_ptr<const World> world,
 
 void SimulatedDevices::advanceTo(int64_t utime) {
   while (robot_.truth().utime + kStepUs <= utime) {
-    const std::array<double, 2> power = motor_.output(robot_.truth().utime);
-    robot_.setPower({power[0], power[1]});
+    const std::array<double, 2> motors = power(robot_.truth().utime);
+    robot_.setPower({motors[0], motors[1]});
     robot_.advanceTo(robot_.truth().utime + kStepUs);
     measureDrive();
   }
@@ -45,12 +45,28 @@ void SimulatedDevices::advanceTo(int64_t utime) {
   if (scans_.size() > kMostScans) scans_.erase(scans_.begin(), scans_.end() - kMostScans);
 }
 
+std::array<double, 2> SimulatedDevices::power(int64_t utime) {
+  const MotorWiring& wiring = robot_.settings().wiring;
+  std::array<double, 2> power = motor_.output(utime);
+  if (wiring.left_channel == 2) std::swap(power[0], power[1]);
+  if (wiring.invert_left) power[0] = -power[0];
+  if (wiring.invert_right) power[1] = -power[1];
+  return power;
+}
+
 void SimulatedDevices::measureDrive() {
+  const MotorWiring& wiring = robot_.settings().wiring;
   const TrackDrive& left = robot_.vehicle().left();
   const TrackDrive& right = robot_.vehicle().right();
-  motor_.measure({robot_.vehicle().battery().voltage,
-                  {drivingCurrent(left), drivingCurrent(right)},
-                  {left.speed, right.speed}});
+  RoboteqMeasurements seen{robot_.vehicle().battery().voltage,
+                           {drivingCurrent(left), drivingCurrent(right)},
+                           {wiring.invert_left ? -left.speed : left.speed,
+                            wiring.invert_right ? -right.speed : right.speed}};
+  if (wiring.left_channel == 2) {
+    std::swap(seen.motor_current[0], seen.motor_current[1]);
+    std::swap(seen.track_speed[0], seen.track_speed[1]);
+  }
+  motor_.measure(seen);
 }
 
 std::vector<LaserScan> SimulatedDevices::takeScans() {

@@ -22,7 +22,7 @@ struct SimulatorSettings {
 };
 
 /// The simulated robot with its three devices: bytes in and out are all that a driver sees of it.
-/** Pure: no clock, no links. Channel 1 of the motor controller is the left track. */
+/** Pure: no clock, no links. */
 class SimulatedDevices {
  public:
   SimulatedDevices(std::shared_ptr<const World> world, const SimulatorSettings& settings,
@@ -30,6 +30,9 @@ class SimulatedDevices {
 
   /// Simulates up to a time; the motors follow the controller's output in steps of 1 ms.
   void advanceTo(int64_t utime);
+
+  /// Power that the controller gives to the left and the right motor now, -1..1.
+  std::array<double, 2> power(int64_t utime);
 
   /// Laser scans finished since the last call: the interface behind the range finder's library.
   std::vector<LaserScan> takeScans();

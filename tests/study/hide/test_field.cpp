@@ -26,8 +26,11 @@ std::optional<NoiseLevel> noiseLevel(const std::string& name) {
 
 sim::VehicleParameters plainVehicle() {
   sim::VehicleParameters vehicle;
-  vehicle.centre = 0.0;
+  vehicle.mass = 400.0;
+  vehicle.gauge = 0.43;
   vehicle.contact_length = 0.4;
+  vehicle.mass_height = 0.35;
+  vehicle.outline = {0.65, 0.65, 0.34};
   // Turning follows the tracks as promptly as driving does.
   vehicle.yaw_inertia = 28.3;
   vehicle.drive.stiffness = 8000.0;

@@ -120,6 +120,19 @@ FaultPlan lossyBus() {
 
 }  // namespace
 
+TEST_CASE("a robot of another size drives by its configuration alone") {
+  const RobotConfig small = readRobot(std::string(TREAD_SOURCE_DIR) + "/tests/data/robots/small");
+  CHECK(small.planner.world.footprint.half_width == 0.31);
+  CHECK(small.mapping.map.robot.rear == 0.3);
+  CHECK(small.motor_bridge.controller.layout.left_channel == 2);
+  MissionOptions options;
+  options.shortest_line = 8.0;
+  const MissionRun run = runMission(small, 8, options);
+  CAPTURE(run.result.reason);
+  CHECK(run.result.outcome == Outcome::kArrived);
+  CHECK(run.result.collisions == 0);
+}
+
 TEST_CASE("a mission drives from start to goal over changing ground without touching anything") {
   for (const uint64_t seed : {8u, 22u}) {
     CAPTURE(seed);

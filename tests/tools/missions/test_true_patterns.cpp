@@ -29,7 +29,7 @@ const RobotConfig& teodor() {
 }
 
 const TruePatterns& truePatterns() {
-  static const TruePatterns patterns(teodor().learner.shipped, sim::VehicleParameters{});
+  static const TruePatterns patterns(teodor().learner.shipped, teodor().simulated.vehicle);
   return patterns;
 }
 

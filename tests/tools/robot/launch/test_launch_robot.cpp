@@ -43,6 +43,14 @@ std::vector<int> workersIn(const fs::path& run) {
 
 TEST_CASE("the shipped launch files pass the start-up checks, absent instruments are an advice") {
   const Place place;
+  // A robot of another size, by its configuration alone.
+  const CommandOutcome small =
+      runCommand({std::string(TREAD_BIN_DIR) + "/tread-launch", kLaunch + "robot.yaml", "--run",
+                  (place.folder / "run").string(), "--set",
+                  "robot=" + std::string(TREAD_SOURCE_DIR) + "/tests/data/robots/small", "--check"},
+                 60.0);
+  INFO(small.output);
+  CHECK(small.code == 0);
   const CommandOutcome robot =
       runCommand({std::string(TREAD_BIN_DIR) + "/tread-launch", kLaunch + "robot.yaml", "--run",
                   (place.folder / "run").string(), "--check"},

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+
+#include <Eigen/Core>
+
+#include "common/geometry/footprint_size.hpp"
+#include "common/geometry/se3.hpp"
+#include "common/pattern/pattern.hpp"
+
+namespace tread {
+
+/// Where an instrument sits in the body.
+struct Mounting {
+  Eigen::Vector3d p_body = Eigen::Vector3d::Zero();  ///< [m]
+  YawPitchRoll angles;                               ///< of its forward-left-up axes [rad]
+};
+
+/// What drives the tracks, and how it is wired.
+struct DriveDescription {
+  CommandKind kind = CommandKind::kPower;
+  double full_speed = 0.0;   ///< [m/s] of a track at full command
+  double max_command = 0.0;  ///< largest magnitude of a command: power [1] or track speed [m/s]
+  int left_channel = 1;      ///< 1 or 2, of the motor controller; the right track has the other one
+  bool invert_left = false;  ///< the left motor is mounted the other way round
+  bool invert_right = false;
+
+  /// Command at which the controller gives all it can: power 1, or the full track speed [m/s].
+  double fullCommand() const { return kind == CommandKind::kPower ? 1.0 : full_speed; }
+};
+
+/// One robot: all that more than one process or tool has to know of it. Nothing has a default that
+/// would fit any robot.
+struct RobotDescription {
+  std::string name;
+  FootprintSize outline;    ///< the body seen from above
+  FootprintSize footprint;  ///< what plans keep free: the outline, and what turns swing beyond it
+  double height = 0.0;      ///< [m] above the ground
+  double gauge = 0.0;       ///< [m] between the middles of the tracks
+  DriveDescription drive;
+  Mounting ins;  ///< p_body: the point whose position the INS reports
+  Mounting range_finder;
+  double max_speed = 0.0;  ///< [m/s] it is never faster: what is, is an error of the INS
+};
+
+}  // namespace tread

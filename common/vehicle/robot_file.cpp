@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/vehicle/robot_file.hpp"
+
+namespace tread {
+namespace {
+
+DriveDescription readDrive(ConfigReader reader) {
+  DriveDescription drive;
+  std::string kind;
+  reader.choice("kind", kind, {"power", "track_speed"}, true);
+  drive.kind = kind == "power" ? CommandKind::kPower : CommandKind::kTrackSpeed;
+  reader.number("full_speed", drive.full_speed, {0.05, 20.0}, "m/s", true);
+  reader.number("max_command", drive.max_command, {0.0, drive.fullCommand()},
+                kind == "power" ? "1" : "m/s", true);
+  int64_t left_channel = drive.left_channel;
+  reader.integer("left_channel", left_channel, {1, 2}, "1");
+  drive.left_channel = static_cast<int>(left_channel);
+  reader.flag("invert_left", drive.invert_left);
+  reader.flag("invert_right", drive.invert_right);
+  return drive;
+}
+
+Mounting readMounting(ConfigReader reader, const std::string& position_key) {
+  std::vector<double> position;
+  std::vector<double> angles(3, 0.0);
+  reader.numbers(position_key, position, 3, {-20.0, 20.0}, "m", true);
+  reader.numbers("mounting", angles, 3, {-kPi, kPi}, "rad");
+  return {{position[0], position[1], position[2]}, {angles[0], angles[1], angles[2]}};
+}
+
+RobotDescription readDescription(ConfigReader& reader) {
+  RobotDescription robot;
+  reader.text("name", robot.name, true);
+  robot.outline = readFootprint(reader.section("outline", true));
+  robot.footprint = readFootprint(reader.section("footprint", true));
+  if (robot.footprint.front < robot.outline.front || robot.footprint.rear < robot.outline.rear ||
+      robot.footprint.half_width < robot.outline.half_width)
+    throw reader.error("footprint", "must not be smaller than the outline");
+  reader.number("height", robot.height, {0.1, 5.0}, "m", true);
+  reader.number("gauge", robot.gauge, {0.05, 10.0}, "m", true);
+  robot.drive = readDrive(reader.section("drive", true));
+  robot.ins = readMounting(reader.section("ins", true), "antenna");
+  robot.range_finder = readMounting(reader.section("range_finder", true), "position");
+  ConfigReader limits = reader.section("limits", true);
+  limits.number("speed", robot.max_speed, {0.5, 50.0}, "m/s", true);
+  return robot;
+}
+
+}  // namespace
+
+FootprintSize readFootprint(ConfigReader reader) {
+  FootprintSize size;
+  reader.number("front", size.front, {0.05, 10.0}, "m", true);
+  reader.number("rear", size.rear, {0.05, 10.0}, "m", true);
+  reader.number("half_width", size.half_width, {0.05, 5.0}, "m", true);
+  return size;
+}
+
+RobotDescription readRobot(ConfigReader& reader) {
+  ConfigReader robot = reader.file("robot", "robot.yaml");
+  return readDescription(robot);
+}
+
+RobotDescription readRobotFile(const std::string& path) {
+  ConfigReader reader = ConfigReader::fromFile(path);
+  RobotDescription robot = readDescription(reader);
+  reader.finish();
+  return robot;
+}
+
+}  // namespace tread

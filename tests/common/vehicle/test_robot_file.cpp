@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <fstream>
+#include <sstream>
+
+#include "common/vehicle/robot_file.hpp"
+
+using namespace tread;
+using Catch::Contains;
+
+namespace {
+
+const std::string kTeodor = TREAD_SOURCE_DIR "/config/robots/teodor/";
+const std::string kSmall = TREAD_SOURCE_DIR "/tests/data/robots/small/";
+
+RobotDescription robotOf(const std::string& process_text, const std::string& process_file) {
+  ConfigReader reader = ConfigReader::fromText(process_text, process_file);
+  RobotDescription robot = readRobot(reader);
+  reader.finish();
+  return robot;
+}
+
+std::string refusalOf(const std::string& process_text, const std::string& process_file) {
+  try {
+    robotOf(process_text, process_file);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+/// The small robot's description as one map, with one line of it replaced.
+std::string smallWith(const std::string& line, const std::string& other) {
+  std::ostringstream text;
+  text << "robot:\n";
+  std::ifstream file(kSmall + "robot.yaml");
+  for (std::string word; std::getline(file, word);)
+    text << "  " << (word.rfind(line, 0) == 0 ? other : word) << "\n";
+  return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("a process finds its robot beside its own file, by name, or in its own text") {
+  const RobotDescription beside = robotOf("{}", kTeodor + "planner.yaml");
+  CHECK(beside.name == "teodor");
+  CHECK(beside.outline.length() == 1.3);
+  CHECK(beside.footprint.half_width == 0.415);
+  CHECK(beside.drive.fullCommand() == 1.0);
+  CHECK(beside.range_finder.p_body.z() == 0.5);
+  CHECK(robotOf("robot: ../../../tests/data/robots/small/robot.yaml", kTeodor + "x.yaml").name ==
+        "small");
+  const RobotDescription within = robotOf(smallWith("name:", "name: another"), "log");
+  CHECK(within.name == "another");
+  CHECK(within.ins.p_body.z() == 0.6);
+  CHECK(within.ins.angles.yaw == 0.02);
+  CHECK(within.drive.left_channel == 2);
+  CHECK(readRobotFile(kSmall + "robot.yaml").drive.invert_left);
+}
+
+TEST_CASE("what a process says of its configuration holds the robot, and can be read again") {
+  ConfigReader reader = ConfigReader::fromText("{}", kTeodor + "planner.yaml");
+  readRobot(reader);
+  const RobotDescription again = robotOf(reader.effective(), "CONFIG of a log");
+  CHECK(again.name == "teodor");
+  CHECK(again.footprint.front == 0.735);
+}
+
+TEST_CASE("what is missing or wrong in a robot is told with its key and file") {
+  CHECK_THAT(
+      refusalOf("{}", "/nowhere/planner.yaml"),
+      Contains("/nowhere/planner.yaml: /nowhere/robot.yaml is needed") && Contains("robot:"));
+  CHECK_THAT(refusalOf("robot: none.yaml", "/nowhere/planner.yaml"),
+             Contains("/nowhere/none.yaml: cannot be read"));
+  CHECK_THAT(refusalOf(smallWith("gauge:", ""), "p.yaml"),
+             Contains("required key robot.gauge is missing"));
+  CHECK_THAT(refusalOf(smallWith("outline:", "outline: {front: 1, rear: 1}"), "p.yaml"),
+             Contains("p.yaml:") && Contains("robot.outline.half_width"));
+  CHECK_THAT(refusalOf(smallWith("footprint:",
+                                 "footprint: {front: 0.5, rear: 0.3, "
+                                 "half_width: 0.2}"),
+                       "p.yaml"),
+             Contains("not be smaller than the outline"));
+  CHECK_THAT(refusalOf(smallWith("height:", "hight: 1"), "p.yaml"), Contains("height"));
+  CHECK_THAT(refusalOf(smallWith("drive:", "drive: {kind: torque}"), "p.yaml"),
+             Contains("power, track_speed"));
+}
