@@ -107,7 +107,7 @@ TEST_CASE("an obstacle stops the body, is counted once and can be backed away fr
 }
 
 TEST_CASE("power that is not a number stands for zero") {
-  SimulatedRobot robot(worldOf({}), {});
+  SimulatedRobot robot(worldOf({}), shippedRobot());
   robot.setPower({std::nan(""), INFINITY});
   robot.advanceTo(2000000);
   CHECK(robot.truth().distance == 0.0);
