@@ -9,7 +9,7 @@
 #include <iostream>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+#include "common/config/command_line.hpp"
 
 namespace tread {
 namespace {
@@ -40,13 +40,22 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_flag("--with-parent", arguments.with_parent, "end when the starting process is gone");
 }
 
-void endWithParent(pid_t parent) {
-  ::prctl(PR_SET_PDEATHSIG, SIGINT);
-  // It may be gone already.
-  if (::getppid() != parent) g_stop = true;
-}
-
 }  // namespace
+
+const std::atomic<bool>& stopRequest(pid_t parent) {
+  std::signal(SIGINT, requestStop);
+  std::signal(SIGTERM, requestStop);
+  // A terminal that is closed, unless nohup says that the process outlives it.
+  if (std::signal(SIGHUP, requestStop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+  // A device that goes away while it is written to must not end the process.
+  std::signal(SIGPIPE, SIG_IGN);
+  if (parent != 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGINT);
+    // It may be gone already.
+    if (::getppid() != parent) g_stop = true;
+  }
+  return g_stop;
+}
 
 int runShell(int argc, char** argv, const std::string& name, const std::string& description,
              const ShellPreparation& prepare) {
@@ -54,26 +63,15 @@ int runShell(int argc, char** argv, const std::string& name, const std::string& 
   CLI::App app{description, name};
   Arguments arguments;
   describe(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : 2;
-  }
-  std::signal(SIGINT, requestStop);
-  std::signal(SIGTERM, requestStop);
-  // A terminal that is closed, unless nohup says that the process outlives it.
-  if (std::signal(SIGHUP, requestStop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
-  // A device that goes away while it is written to must not end the process.
-  std::signal(SIGPIPE, SIG_IGN);
-  if (arguments.with_parent) endWithParent(parent);
+  if (const auto code = parseCommandLine(app, argc, argv)) return *code;
+  const std::atomic<bool>& stop = stopRequest(arguments.with_parent ? parent : 0);
   try {
     ConfigReader reader =
         arguments.config_path.empty()
             ? ConfigReader::fromText("{}", "defaults (no --config)", arguments.overrides)
             : ConfigReader::fromFile(arguments.config_path, arguments.overrides);
     const ShellBody body = prepare(reader);
-    if (!arguments.check) body(arguments.lcm_url, g_stop);
+    if (!arguments.check) body(arguments.lcm_url, stop);
   } catch (const std::exception& error) {
     std::cerr << name << ": " << error.what() << std::endl;
     return 1;

@@ -6,6 +6,8 @@
 #include <functional>
 #include <string>
 
+#include <sys/types.h>
+
 #include "common/config/config_reader.hpp"
 
 namespace tread {
@@ -16,12 +18,15 @@ using ShellBody = std::function<void(const std::string& lcm_url, const std::atom
 /// Reads the configuration, all of it, without opening anything; throws ConfigError.
 using ShellPreparation = std::function<ShellBody(ConfigReader& reader)>;
 
+/// Becomes true by SIGINT, SIGTERM or SIGHUP (a closed terminal; not under nohup), and, where
+/// `parent` is not 0, as soon as that process is no longer our parent.
+const std::atomic<bool>& stopRequest(pid_t parent);
+
 /// The main function of a process.
 /** Command line: --config FILE, --set KEY=VALUE (again and again), --lcm-url URL, --check (only
  * reads the configuration), --with-parent (ends as by SIGINT when the process that started it is
- * gone: a supervisor that is killed leaves nothing driving), --help. SIGINT, SIGTERM and SIGHUP (a
- * closed terminal; not under nohup) become `stop`. Where something throws, one clear line and code
- * 1; usage errors end with code 2. */
+ * gone: a supervisor that is killed leaves nothing driving), --help. stopRequest() becomes `stop`.
+ * Where something throws, one clear line and code 1; usage errors end with code 2. */
 int runShell(int argc, char** argv, const std::string& name, const std::string& description,
              const ShellPreparation& prepare);
 

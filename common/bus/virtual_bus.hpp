@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <map>
 #include <memory>
 
 #include "common/bus/bus.hpp"
@@ -11,8 +12,8 @@ namespace tread {
 
 /// How long a node takes, as a model: what a step or handler publishes leaves this much later.
 struct NodeTiming {
-  int64_t compute_us =
-      0;  ///< [us] from the start of a step to its messages' departure; the node is busy meanwhile
+  /// [us] from the start of a step to its messages' departure; the node is busy meanwhile
+  int64_t compute_us = 0;
   int64_t phase_us = 0;  ///< [us] of the first step after the start
 };
 
@@ -42,18 +43,38 @@ class VirtualBus {
 
   /// An endpoint for the tool or test itself: hears and says without delay and without faults.
   Bus& outside();
-  void setTap(Tap tap);
+  void setTap(Tap tap) { tap_ = std::move(tap); }
 
   /// Puts raw bytes on a channel, as a foreign process would.
   void inject(const char* channel, const uint8_t* bytes, size_t size);
 
   /// Runs until virtual time reaches `utime`.
   void runUntil(int64_t utime);
-  int64_t now() const;
+  int64_t now() const { return now_; }
 
  private:
-  class Core;
-  std::unique_ptr<Core> core_;
+  struct Letter;
+  class End;
+  struct Station;
+  class MessageFaults;
+
+  Station& station(const std::string& name) const;
+  void start(Station& station);
+  static void kill(Station& station);
+  void schedule(int64_t utime, std::function<void()> action);
+  void publish(Station& sender, const char* channel, const uint8_t* bytes, size_t size);
+  void step(Station& station, uint64_t life, int64_t planned);
+  void depart(const Station& sender, uint64_t life, const Letter& letter);
+  void route(const Letter& letter, Station& receiver);
+  void arrive(Station& receiver, uint64_t life, const Letter& letter);
+
+  int64_t start_;  ///< [us]
+  int64_t now_;    ///< [us]
+  Tap tap_;
+  std::unique_ptr<MessageFaults> faults_;
+  std::vector<std::unique_ptr<Station>> stations_;  ///< the first is outside()
+  /// What happens, by time; what is due at the same time in the order in which it was scheduled.
+  std::multimap<int64_t, std::function<void()>> events_;
 };
 
 }  // namespace tread

@@ -170,9 +170,7 @@ void RobotRun::sendGoal() {
 }
 
 bool RobotRun::armed() const {
-  const int16_t state = motor_.message().bridge_state;
-  return motor_.any() && (state == motor_t::STATE_ARMED || state == motor_t::STATE_DRIVING ||
-                          state == motor_t::STATE_STOPPING);
+  return motor_.any() && operators::mayDrive(motor_.message().bridge_state);
 }
 
 bool RobotRun::untilDriving(double seconds, const std::function<bool()>& condition) {

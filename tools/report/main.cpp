@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/config/command_line.hpp"
 #include "modules/simulator/world_file.hpp"
 #include "tools/report/drive_report.hpp"
 
@@ -58,11 +59,7 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->check(CLI::IsMember(names));
   app.add_option("--picture", arguments.picture, "file of the picture (PNG)");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   try {
     return run(arguments);
   } catch (const std::exception& error) {

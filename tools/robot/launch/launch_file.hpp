@@ -46,10 +46,11 @@ struct LaunchSettings {
 std::string readLaunchName(const std::string& file);
 
 /// Reads a launch file; throws ConfigError with file:line.
-/** Keys: name, lcm_url, simulated, values (a map of own placeholders with their defaults), environment (a map)
- * and processes, a list of maps: name, program, config, arguments, foreign, restart, stop_signal,
- * stop_time. Placeholders in environment, program, config and arguments: {run}, {lcm_url}, {bin},
- * {here} (the file's folder) and the own ones. Relative paths are taken from the file's folder. */
+/** Keys: name, lcm_url, simulated, values (a map of own placeholders with their defaults),
+ * environment (a map) and processes, a list of maps: name, program, config, arguments, foreign,
+ * restart, stop_signal, stop_time. Placeholders in environment, program, config and arguments:
+ * {run}, {lcm_url}, {bin}, {here} (the file's folder) and the own ones. Relative paths are taken
+ * from the file's folder. */
 LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings);
 
 /// The words that start a process: ours get --config, --lcm-url and --with-parent, foreign ones

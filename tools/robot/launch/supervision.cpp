@@ -9,20 +9,22 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include <fcntl.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "tools/robot/launch/log_follower.hpp"
-#include "tools/robot/launch/narrator.hpp"
-#include "tools/robot/launch/orphans.hpp"
+#include "tools/robot/launch/launch_progress.hpp"
 
 namespace tread::launch {
 namespace {
@@ -59,6 +61,93 @@ void call(const std::string& socket_path) {
   close(caller);
 }
 
+/// 0 if there is no such file.
+ino_t inodeOf(const std::string& path) {
+  struct stat facts {};
+  return stat(path.c_str(), &facts) == 0 ? facts.st_ino : 0;
+}
+
+/// Reads the lines that somebody appends to a log file, also after it was rotated.
+class LogFollower {
+ public:
+  /// What stands in the file already is skipped.
+  explicit LogFollower(std::string path);
+  /// The whole lines that have come since the last call.
+  std::vector<std::string> newLines();
+
+ private:
+  void readRest(std::vector<std::string>& lines);
+
+  std::string path_;
+  std::ifstream file_;
+  ino_t inode_ = 0;
+  std::string partial_;
+};
+
+LogFollower::LogFollower(std::string path)
+    : path_(std::move(path)), file_(path_), inode_(inodeOf(path_)) {
+  file_.seekg(0, std::ios::end);
+}
+
+std::vector<std::string> LogFollower::newLines() {
+  std::vector<std::string> lines;
+  readRest(lines);
+  if (const ino_t inode = inodeOf(path_); inode != 0 && inode != inode_) {
+    readRest(lines);  // what was written between the reading and the renaming
+    inode_ = inode;
+    file_ = std::ifstream(path_);
+    readRest(lines);
+  }
+  return lines;
+}
+
+void LogFollower::readRest(std::vector<std::string>& lines) {
+  file_.clear();
+  partial_.append(std::istreambuf_iterator<char>(file_), {});
+  for (size_t end = partial_.find('\n'); end != std::string::npos; end = partial_.find('\n')) {
+    lines.push_back(partial_.substr(0, end));
+    partial_.erase(0, end + 1);
+  }
+}
+
+/// The parent in the text of /proc/PID/stat; 0 if it cannot be read.
+pid_t parentIn(const std::string& stat) {
+  const size_t bracket = stat.rfind(") ");  // a program's name may hold blanks and brackets
+  pid_t parent = 0;
+  if (bracket == std::string::npos || std::sscanf(stat.c_str() + bracket, ") %*c %d", &parent) != 1)
+    return 0;
+  return parent;
+}
+
+std::vector<pid_t> children() {
+  std::vector<pid_t> pids;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename().string();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    std::ifstream file(entry.path() / "stat");
+    const std::string stat{std::istreambuf_iterator<char>(file), {}};
+    if (parentIn(stat) == getpid()) pids.push_back(std::stoi(name));
+  }
+  return pids;
+}
+
+/// Asks all children of this process to end, and kills those that have not after `stop_time`
+/// seconds.
+void endChildren(double stop_time) {
+  const auto deadline = std::chrono::steady_clock::now() +
+                        std::chrono::milliseconds(static_cast<int64_t>(1000.0 * stop_time));
+  for (const pid_t pid : children()) kill(pid, SIGINT);
+  for (;;) {
+    const pid_t pid = waitpid(-1, nullptr, WNOHANG);
+    if (pid < 0) return;  // nobody is left
+    if (pid > 0) continue;
+    // A halted process sees nothing but SIGKILL; a grandchild may come to us late.
+    if (std::chrono::steady_clock::now() > deadline)
+      for (const pid_t child : children()) kill(child, SIGKILL);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
 /// As nohup leaves it: this process outlives its terminal.
 bool ignoresHangup() {
   struct sigaction now {};
@@ -72,7 +161,7 @@ class Run {
       : name_(name),
         paths_(paths),
         log_(paths.supervisor_log),
-        narrator_(name, processes),
+        progress_(name, processes),
         start_(Clock::now()) {}
 
   void begin(const RunLock& lock);
@@ -90,7 +179,7 @@ class Run {
   std::string name_;
   RunPaths paths_;
   LogFollower log_;
-  Narrator narrator_;
+  LaunchProgress progress_;
   Clock::time_point start_;
   Clock::time_point stop_{};
   sigset_t waited_{};
@@ -163,11 +252,8 @@ void Run::reap() {
 
 void Run::tell() {
   for (const std::string& line : log_.newLines()) {
-    const auto event = parseSupervisorLine(line);
-    if (!event) continue;
-    if (event->kind == SupervisorEvent::Kind::kEnded)
-      calls_left_ = std::max(calls_left_, kCallsAfterEnd);
-    if (const auto told = narrator_.tell(*event, secondsSince(start_)))
+    if (LaunchProgress::isEnd(line)) calls_left_ = std::max(calls_left_, kCallsAfterEnd);
+    if (const auto told = progress_.lineFor(line, secondsSince(start_)))
       std::cout << *told << std::endl;
   }
 }

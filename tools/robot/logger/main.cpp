@@ -1,28 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <string>
 
-#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 
+#include "common/bus/shell.hpp"
 #include "common/config/command_line.hpp"
 #include "tools/robot/logger/recorder.hpp"
 
 namespace {
-
-// A signal handler can reach nothing but a global; it lives in this file only.
-std::atomic<bool> g_stop{false};
-
-void requestStop(int /*signal*/) {
-  g_stop = true;
-}
 
 struct Options {
   std::string file;
@@ -52,14 +44,7 @@ int run(int argc, char** argv) {
   declare(app, options);
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   if (options.check) return 0;
-  std::signal(SIGINT, requestStop);
-  std::signal(SIGTERM, requestStop);
-  // A terminal that is closed, unless nohup says that the process outlives it.
-  if (std::signal(SIGHUP, requestStop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
-  if (options.with_parent) {
-    prctl(PR_SET_PDEATHSIG, SIGINT);
-    if (getppid() != parent) return 0;
-  }
+  const std::atomic<bool>& stop = tread::stopRequest(options.with_parent ? parent : 0);
   const auto folder = std::filesystem::path(options.file).parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder);
   tread::launch::RecorderSettings settings;
@@ -68,7 +53,7 @@ int run(int argc, char** argv) {
   settings.keep = options.keep;
   settings.split = 1'000'000LL * options.split_mb;
   tread::launch::Recorder recorder(settings);
-  recorder.run(g_stop);
+  recorder.run(stop);
   return 0;
 }
 

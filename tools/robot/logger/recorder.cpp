@@ -10,7 +10,6 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "common/bus/host_clock.hpp"
-#include "tools/robot/logger/log_rotation.hpp"
 
 namespace tread::launch {
 namespace {
@@ -27,7 +26,24 @@ int64_t utcNow() {
   return duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
+namespace fs = std::filesystem;
+
+std::string numbered(const std::string& file, int number) {
+  return file + "." + std::to_string(number);
+}
+
 }  // namespace
+
+void makeRoomForLog(const std::string& file, int keep) {
+  int gap = 0;
+  while (gap < keep && fs::exists(numbered(file, gap))) ++gap;
+  for (int i = gap - 1; i >= 0; --i) {
+    if (i + 1 >= keep)
+      fs::remove(numbered(file, i));
+    else
+      fs::rename(numbered(file, i), numbered(file, i + 1));
+  }
+}
 
 Recorder::Recorder(const RecorderSettings& settings)
     : settings_(settings), lcm_(std::make_unique<lcm::LCM>(settings.lcm_url)) {
@@ -81,8 +97,8 @@ void Recorder::care(int64_t now) {
       writer_->flush();
       if (written_ >= settings_.split) begin();
     } else if (now >= next_try_) {
-      const auto folder = std::filesystem::absolute(settings_.file).parent_path();
-      const auto room = static_cast<int64_t>(std::filesystem::space(folder).available);
+      const auto folder = fs::absolute(settings_.file).parent_path();
+      const auto room = static_cast<int64_t>(fs::space(folder).available);
       next_try_ = now + static_cast<int64_t>(settings_.retry * 1e6);
       if (room < settings_.reserve) return;
       begin();

@@ -15,6 +15,10 @@ class LCM;
 
 namespace tread::launch {
 
+/// Moves FILE.0 to FILE.1, FILE.1 to FILE.2 and so on, up to the first gap, so that FILE.0 is free;
+/// what would become FILE.<keep> is removed. Throws std::filesystem::filesystem_error.
+void makeRoomForLog(const std::string& file, int keep);
+
 /// Where a recorder writes, and how much it keeps.
 struct RecorderSettings {
   std::string file;  ///< FILE.0 is the newest, FILE.1 the one before

@@ -5,8 +5,6 @@
 #include <csignal>
 #include <iostream>
 
-#include <CLI/CLI.hpp>
-
 #include "common/bus/lcm_bus.hpp"
 
 namespace tread::operators {
@@ -61,15 +59,6 @@ int runCall(const std::string& name, const CommandOptions& options,
     std::cerr << name << ": " << error.what() << std::endl;
     return 1;
   }
-}
-
-int parseCommand(CLI::App& app, int argc, char** argv) {
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  return -1;
 }
 
 }  // namespace tread::operators

@@ -7,11 +7,7 @@
 #include <string>
 
 #include "common/bus/bus.hpp"
-#include "tools/robot/operator/call.hpp"
-
-namespace CLI {
-class App;
-}
+#include "tools/robot/operator/permission_call.hpp"
 
 namespace tread::operators {
 
@@ -27,8 +23,5 @@ struct CommandOptions {
  * interrupted. */
 int runCall(const std::string& name, const CommandOptions& options,
             const std::function<std::unique_ptr<Call>(Bus&)>& make);
-
-/// Parses a command line; the exit code if the command ends here (--help, usage error), else -1.
-int parseCommand(CLI::App& app, int argc, char** argv);
 
 }  // namespace tread::operators

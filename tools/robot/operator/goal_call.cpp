@@ -15,11 +15,6 @@ constexpr int64_t kRepeat = 1'000'000;  // [us]
 /// A robot that lost its permission on the way does not go on by itself [us].
 constexpr int64_t kDisarmedPatience = 2'000'000;
 
-bool mayDrive(int16_t state) {
-  return state == motor_t::STATE_ARMED || state == motor_t::STATE_DRIVING ||
-         state == motor_t::STATE_STOPPING;
-}
-
 bool isStuck(int16_t status) {
   return status == plan_t::PLAN_BLOCKED || status == plan_t::PLAN_UNREACHABLE;
 }
@@ -47,7 +42,7 @@ void GoalCall::send(int64_t utime, int64_t goal_id) {
 }
 
 CallResult GoalCall::step(int64_t utime) {
-  if (begun_ < 0) begun_ = utime;
+  if (!begun_) begun_ = utime;
   if (utime >= next_) {
     send(utime, goal_id_);
     next_ = utime + kRepeat;
@@ -56,11 +51,11 @@ CallResult GoalCall::step(int64_t utime) {
   if (!progress_.plan().any() || !isOurs(progress_.plan().message())) return CallResult::kGoesOn;
   const int16_t status = progress_.plan().message().plan_status;
   if (status == plan_t::PLAN_ARRIVED) return CallResult::kDone;
-  if (!isStuck(status)) stuck_since_ = -1;
-  if (isStuck(status) && stuck_since_ < 0) stuck_since_ = utime;
+  if (!isStuck(status)) stuck_since_.reset();
+  if (isStuck(status) && !stuck_since_) stuck_since_ = utime;
   const auto patience = static_cast<int64_t>(request_.patience * 1e6);
-  return stuck_since_ >= 0 && utime - stuck_since_ > patience ? CallResult::kRefused
-                                                              : CallResult::kGoesOn;
+  return stuck_since_ && utime - *stuck_since_ > patience ? CallResult::kRefused
+                                                          : CallResult::kGoesOn;
 }
 
 /// Was armed, and is not any more for a while. Before the first arming the goal just waits.
@@ -68,16 +63,17 @@ bool GoalCall::lostPermission(int64_t utime) {
   if (!progress_.motor().any()) return false;
   const bool may = mayDrive(progress_.motor().message().bridge_state);
   was_armed_ = was_armed_ || may;
-  if (may || !was_armed_) disarmed_since_ = -1;
-  if (!may && was_armed_ && disarmed_since_ < 0) disarmed_since_ = utime;
-  return disarmed_since_ >= 0 && utime - disarmed_since_ > kDisarmedPatience;
+  if (may) disarmed_since_.reset();
+  if (!may && was_armed_ && !disarmed_since_) disarmed_since_ = utime;
+  return disarmed_since_ && utime - *disarmed_since_ > kDisarmedPatience;
 }
 
 std::string GoalCall::words(int64_t utime) const {
-  char time[32];
-  std::snprintf(time, sizeof time, "%5.0f s  ", static_cast<double>(utime - begun_) * 1e-6);
-  std::string words = (begun_ < 0 ? std::string() : time) + progress_.line(utime);
-  if (disarmed_since_ >= 0)
+  char time[32] = "";
+  if (begun_)
+    std::snprintf(time, sizeof time, "%5.0f s  ", static_cast<double>(utime - *begun_) * 1e-6);
+  std::string words = time + progress_.line(utime);
+  if (disarmed_since_)
     words += "; not armed any more (" + progress_.motor().message().state_reason +
              "): tread-arm, then again";
   return words;

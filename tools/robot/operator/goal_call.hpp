@@ -2,8 +2,10 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include "tools/robot/operator/call.hpp"
+#include <optional>
+
 #include "tools/robot/operator/drive_progress.hpp"
+#include "tools/robot/operator/permission_call.hpp"
 
 namespace tread::operators {
 
@@ -37,11 +39,11 @@ class GoalCall : public Call {
   GoalRequest request_;
   int64_t goal_id_;
   DriveProgress progress_;
-  int64_t begun_ = -1;
-  int64_t next_ = 0;
-  int64_t stuck_since_ = -1;
+  std::optional<int64_t> begun_;  ///< [us]
+  int64_t next_ = 0;              ///< [us]
+  std::optional<int64_t> stuck_since_;
   bool was_armed_ = false;
-  int64_t disarmed_since_ = -1;  ///< [us]; -1 = armed, or never was
+  std::optional<int64_t> disarmed_since_;  ///< [us]; none while armed, and before the first arming
   int64_t seq_ = 0;
 };
 

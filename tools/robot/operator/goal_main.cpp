@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/config/command_line.hpp"
 #include "modules/simulator/world_file.hpp"
 #include "tools/robot/operator/command.hpp"
 #include "tools/robot/operator/goal_call.hpp"
@@ -46,7 +47,7 @@ int main(int argc, char** argv) {
   app.add_option("--world", world, "world file of a simulation: names the ground in the progress");
   app.add_flag("--quiet", quiet, "no progress");
   app.add_option("--lcm-url", options.lcm_url, "LCM provider");
-  if (const int code = parseCommand(app, argc, argv); code >= 0) return code;
+  if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   request.T_map_goal.yaw = yaw_degrees * kPi / 180.0;
   request.yaw_tolerance *= kPi / 180.0;
   options.progress = quiet ? 0.0 : 1.0;

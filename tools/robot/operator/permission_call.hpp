@@ -2,10 +2,36 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <functional>
+#include <optional>
+#include <string>
+
 #include "common/bus/bus.hpp"
-#include "tools/robot/operator/call.hpp"
 
 namespace tread::operators {
+
+/// What came of a call to the robot.
+enum class CallResult { kGoesOn, kDone, kRefused };
+
+/// Something that the operator asks of the robot, repeated until the robot shows that it did it.
+/** It listens to its bus and so must live until the bus is no longer handled. */
+class Call {
+ public:
+  virtual ~Call() = default;
+  Call() = default;
+  Call(const Call&) = delete;
+  Call& operator=(const Call&) = delete;
+
+  /// Call every 20 ms or so. Sends what is due and looks at what came.
+  virtual CallResult step(int64_t utime) = 0;
+  /// What to tell the operator now; the outcome in words once the call has ended.
+  virtual std::string words(int64_t utime) const = 0;
+  /// The operator has lost patience: takes back what must not go on.
+  virtual void cancel(int64_t /*utime*/) {}
+};
+
+/// Whether the permission to drive is there in this state of the motor bridge (motor_t::STATE_*).
+bool mayDrive(int16_t bridge_state);
 
 /// Who asks, and why; both go into the log.
 struct Asker {
@@ -20,55 +46,38 @@ class PermissionCall : public Call {
   std::string words(int64_t utime) const override;
 
  protected:
-  /// `patience` [s] for which it is repeated; `repeat` [us] between two.
-  PermissionCall(Bus& bus, double patience, int64_t repeat);
-
-  virtual void send(Bus& bus, int64_t utime, int64_t seq) = 0;
-  /// Whether a bridge in this state (motor_t::STATE_*) has served the request.
-  virtual bool served(int16_t bridge_state) const = 0;
-  virtual std::string wordsWhenServed() const = 0;
-  virtual std::string wordsWhenNot() const = 0;
+  struct Request {
+    std::function<void(int64_t utime, int64_t seq)> send;
+    /// Whether a bridge in this state (motor_t::STATE_*) has served it.
+    std::function<bool(int16_t bridge_state)> served;
+    std::string words_if_served;
+    std::string words_if_not;
+    int64_t repeat;  ///< [us]
+  };
+  /// `patience` [s] for which it is repeated.
+  PermissionCall(Bus& bus, double patience, Request request);
 
  private:
   bool shown(int64_t utime) const;
 
-  Bus& bus_;
+  Request request_;
   int64_t patience_;  ///< [us]
-  int64_t repeat_;    ///< [us]
   Latest<motor_t> motor_;
-  int64_t begun_ = -1;
-  int64_t next_ = 0;
+  std::optional<int64_t> begun_;  ///< [us]
+  int64_t next_ = 0;              ///< [us]
   int64_t seq_ = 0;
 };
 
 /// Arms or disarms.
 class ArmCall : public PermissionCall {
  public:
-  ArmCall(Bus& bus, Asker asker, bool arm, double patience);
-
- private:
-  void send(Bus& bus, int64_t utime, int64_t seq) override;
-  bool served(int16_t bridge_state) const override;
-  std::string wordsWhenServed() const override;
-  std::string wordsWhenNot() const override;
-
-  Asker asker_;
-  bool arm_;
+  ArmCall(Bus& bus, const Asker& asker, bool arm, double patience);
 };
 
 /// Engages or clears the emergency stop.
 class StopCall : public PermissionCall {
  public:
-  StopCall(Bus& bus, Asker asker, bool engage, double patience);
-
- private:
-  void send(Bus& bus, int64_t utime, int64_t seq) override;
-  bool served(int16_t bridge_state) const override;
-  std::string wordsWhenServed() const override;
-  std::string wordsWhenNot() const override;
-
-  Asker asker_;
-  bool engage_;
+  StopCall(Bus& bus, const Asker& asker, bool engage, double patience);
 };
 
 }  // namespace tread::operators

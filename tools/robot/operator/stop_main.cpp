@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include <CLI/CLI.hpp>
 
+#include "common/config/command_line.hpp"
 #include "tools/robot/operator/command.hpp"
-#include "tools/robot/operator/permission_call.hpp"
 
 int main(int argc, char** argv) {
   using namespace tread::operators;
@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
   app.add_flag("--clear", clear, "clear the stop; arming is still needed");
   app.add_option("--timeout", patience, "how long to try [s]")->check(CLI::Range(0.5, 600.0));
   app.add_option("--lcm-url", options.lcm_url, "LCM provider");
-  if (const int code = parseCommand(app, argc, argv); code >= 0) return code;
+  if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   return runCall("tread-stop", options, [&](tread::Bus& bus) {
     return std::make_unique<StopCall>(bus, asker, !clear, patience);
   });

@@ -4,9 +4,8 @@
 
 #include <stdexcept>
 
-#include "tools/robot/launch/narrator.hpp"
+#include "tools/robot/launch/launch_progress.hpp"
 #include "tools/robot/launch/supervisor_config.hpp"
-#include "tools/robot/launch/supervisor_log.hpp"
 
 using namespace tread::launch;
 using Catch::Contains;
@@ -60,8 +59,9 @@ TEST_CASE("words survive the supervisor's percent signs, quotes and comments") {
 }
 
 TEST_CASE("the supervisor's log is told in a few plain lines") {
-  Narrator narrator("robot", 2);
+  LaunchProgress progress("robot", 2);
   std::string told;
+  int ends = 0;
   for (const char* line :
        {"2026-01-01 10:00:00,000 INFO spawned: 'planner' with pid 12",
         "2026-01-01 10:00:01,000 INFO success: planner entered RUNNING state, process has stayed "
@@ -74,16 +74,18 @@ TEST_CASE("the supervisor's log is told in a few plain lines") {
         "2026-01-01 10:00:07,000 WARN killing 'learner' (12) with SIGKILL",
         "2026-01-01 10:00:08,000 WARN stopped: learner (terminated by SIGKILL)",
         "2026-01-01 10:00:08,000 INFO RPC interface 'supervisor' initialized"}) {
-    if (const auto event = parseSupervisorLine(line))
-      told += narrator.tell(*event, 1.62).value_or("-") + "\n";
+    told += progress.lineFor(line, 1.62).value_or("-") + "\n";
+    ends += LaunchProgress::isEnd(line) ? 1 : 0;
   }
   CHECK(told ==
         "-\n-\nrobot: all 2 processes run after 1.6 s\n"
         "robot: planner ended (terminated by SIGKILL; not expected)\n"
-        "robot: planner ended again (exit status 1; not expected); it is tried ever more rarely, "
-        "see log/planner.log\n"
+        "robot: planner ended again (exit status 1; not expected); the pauses before it is started "
+        "grow, see log/planner.log\n"
         "-\n"
         "robot: planner runs again\n"
         "robot: learner did not stop in time and is killed\n"
+        "-\n"
         "-\n");
+  CHECK(ends == 3);
 }

@@ -10,12 +10,14 @@
 #include "common/bus/host_clock.hpp"
 #include "common/bus/lcm_bus.hpp"
 #include "common/log/event_log.hpp"
-#include "tests/system/process.hpp"
+#include "tests/tools/robot/launch/launched.hpp"
+#include "tools/robot/logger/recorder.hpp"
 
 namespace tread::testing {
 namespace {
 
 namespace fs = std::filesystem;
+using launch::makeRoomForLog;
 
 struct Folder {
   Folder() { fs::create_directories(path); }
@@ -144,6 +146,28 @@ TEST_CASE("a recorder under nohup goes on when its terminal closes") {
   recorder.signal(SIGINT);
   REQUIRE(recorder.waitFor(5.0));
   CHECK(recorder.exitCode() == 0);
+}
+
+TEST_CASE("a new log moves the earlier ones up and removes the oldest") {
+  const Folder own;
+  const fs::path folder = own.path;
+  const std::string log = (folder / "x").string();
+  makeRoomForLog(log, 3);
+  for (const char* content : {"first", "second", "third"}) {
+    makeRoomForLog(log, 3);
+    std::ofstream(log + ".0") << content;
+  }
+  CHECK(contentOf(log + ".2") == "first");
+  CHECK(contentOf(log + ".0") == "third");
+  makeRoomForLog(log, 3);
+  CHECK_FALSE(fs::exists(log + ".0"));
+  CHECK(contentOf(log + ".1") == "third");
+  CHECK(contentOf(log + ".2") == "second");
+  CHECK_FALSE(fs::exists(log + ".3"));
+  // Beyond a gap nothing has to move.
+  makeRoomForLog(log, 3);
+  CHECK(contentOf(log + ".2") == "second");
+  makeRoomForLog((folder / "none/x").string(), 3);
 }
 
 }  // namespace tread::testing

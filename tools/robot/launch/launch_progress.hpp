@@ -7,21 +7,21 @@
 #include <set>
 #include <string>
 
-#include "tools/robot/launch/supervisor_log.hpp"
-
 namespace tread::launch {
 
-/// Tells in one line each what a person wants to know of a launch: that all processes run, which
+/// Turns supervisord's log (version 4.2) into a few lines for people: that all processes run, which
 /// one ended and how, that it runs again.
-class Narrator {
+class LaunchProgress {
  public:
-  Narrator(std::string name, size_t processes);
-  /// The line for an event, if it is worth one; `seconds` since the start.
-  std::optional<std::string> tell(const SupervisorEvent& event, double seconds);
+  LaunchProgress(std::string name, size_t processes);
+  /// What to print for a line of the log, if anything; `seconds` since the start.
+  std::optional<std::string> lineFor(const std::string& log_line, double seconds);
+  /// Whether a line of the log says that a process ended by itself.
+  static bool isEnd(const std::string& log_line);
 
  private:
-  std::optional<std::string> ended(const SupervisorEvent& event);
   std::optional<std::string> running(const std::string& process, double seconds);
+  std::optional<std::string> ended(const std::string& process, const std::string& how);
 
   std::string name_;
   size_t processes_;
