@@ -269,9 +269,9 @@ void LearnerNode::reportHealth(int64_t utime) {
   if (const SurfaceBank* bank = learner_.rule().bank())
     health_.setCounter("surfaces remembered", static_cast<int64_t>(bank->size()));
   health_.setCounter("INS too late", ins_.tooLate());
-  health_.setCounter("INS at senseless times", ins_.senseless());
+  health_.setCounter("INS at senseless times", ins_.invalid());
   health_.setCounter("INS without pose", ins_.withoutPose());
-  health_.setCounter("senseless execution records", executions_.senseless());
+  health_.setCounter("senseless execution records", executions_.invalid());
   health_.step(utime);
 }
 

@@ -34,18 +34,18 @@ void readMargins(ConfigReader reader, Margins& margins) {
   if (margins.largest < margins.plan) throw reader.error("largest", "must not be less than plan");
 }
 
-void readMap(ConfigReader reader, WorldConfig& world) {
-  reader.number("window", world.window, {5.0, 100.0}, "m");
-  reader.seconds("window_period", world.window_period, {0.02, 0.5});
-  reader.number("keep_radius", world.passage.keep_radius, {10.0, 500.0}, "m");
-  reader.number("room_cap", world.passage.room_cap, {0.1, 5.0}, "m");
-  count(reader, "coarse", world.passage.coarse, {1, 8});
-  reader.flag("unknown_blocks", world.unknown_blocks);
+void readMap(ConfigReader reader, LocalMapConfig& local_map) {
+  reader.number("window", local_map.window, {5.0, 100.0}, "m");
+  reader.seconds("window_period", local_map.window_period, {0.02, 0.5});
+  reader.number("keep_radius", local_map.clearance.keep_radius, {10.0, 500.0}, "m");
+  reader.number("room_cap", local_map.clearance.clearance_cap, {0.1, 5.0}, "m");
+  count(reader, "coarse", local_map.clearance.coarse, {1, 8});
+  reader.flag("unknown_blocks", local_map.unknown_blocks);
 }
 
-void readField(ConfigReader reader, WorldConfig& world) {
-  FieldConfig& field = world.field;
-  field.inflation = world.footprint.half_width;
+void readField(ConfigReader reader, LocalMapConfig& local_map) {
+  DistanceFieldConfig& field = local_map.field;
+  field.inflation = local_map.footprint.half_width;
   reader.number("inflation", field.inflation, {0.0, 5.0}, "m");
   reader.number("wide", field.wide, {0.0, 5.0}, "m");
   reader.number("tight_weight", field.tight_weight, {0.0, 20.0}, "1");
@@ -54,14 +54,14 @@ void readField(ConfigReader reader, WorldConfig& world) {
   reader.number("max_area", field.max_area, {20.0, 1000.0}, "m");
   reader.number("max_distance", field.max_distance, {10.0, 1000.0}, "m");
   reader.number("reach", field.reach, {5.0, 100.0}, "m");
-  reader.seconds("period", world.field_period, {0.05, 10.0});
+  reader.seconds("period", local_map.field_period, {0.05, 10.0});
 }
 
 void readSearch(ConfigReader reader, SearchConfig& search) {
   reader.number("cell", search.cell, {0.02, 1.0}, "m");
   count(reader, "heading_bins", search.heading_bins, {8, 255});
-  reader.number("bound_share", search.bound_share, {0.1, 1.0}, "1");
-  reader.number("bound_weight", search.bound_weight, {1.0, 10.0}, "1");
+  reader.number("distance_share", search.distance_share, {0.1, 1.0}, "1");
+  reader.number("heuristic_weight", search.heuristic_weight, {1.0, 10.0}, "1");
   reader.number("turn_weight", search.turn_weight, {0.0, 5.0}, "1");
   count(reader, "improvements", search.improvements, {0, 10});
   reader.number("reverse_penalty", search.reverse_penalty, {0.0, 20.0}, "1");
@@ -94,10 +94,10 @@ void readPolicy(ConfigReader reader, PolicyConfig& policy) {
   count(reader, "standing_expansions", policy.standing_expansions, {100, 1e6});
 }
 
-void readCommitment(ConfigReader reader, CommitmentConfig& commitment) {
-  reader.number("gain", commitment.gain, {0.0, 60.0}, "s");
-  reader.number("turn", commitment.turn, {0.01, 3.0}, "rad");
-  reader.number("ahead", commitment.ahead, {0.0, 30.0}, "s");
+void readCommitment(ConfigReader reader, SideHysteresisConfig& side_hysteresis) {
+  reader.number("gain", side_hysteresis.gain, {0.0, 60.0}, "s");
+  reader.number("turn", side_hysteresis.turn, {0.01, 3.0}, "rad");
+  reader.number("ahead", side_hysteresis.ahead, {0.0, 30.0}, "s");
 }
 
 /// The limits can be made stricter, or a little wider; none can be switched off.
@@ -113,21 +113,21 @@ void readAges(ConfigReader reader, AgeLimits& ages) {
 
 PlannerConfig readPlannerConfig(ConfigReader& reader) {
   PlannerConfig config;
-  config.world.footprint = footprintOf(reader);
-  readMargins(reader.section("margins"), config.world.margins);
-  readMap(reader.section("map"), config.world);
-  readField(reader.section("field"), config.world);
+  config.local_map.footprint = footprintOf(reader);
+  readMargins(reader.section("margins"), config.local_map.margins);
+  readMap(reader.section("map"), config.local_map);
+  readField(reader.section("field"), config.local_map);
   readSearch(reader.section("search"), config.search);
   readPolicy(reader.section("policy"), config.policy);
-  reader.flag("come_close", config.world.come_close);
-  readCommitment(reader.section("commitment"), config.commitment);
+  reader.flag("come_close", config.local_map.come_close);
+  readCommitment(reader.section("commitment"), config.side_hysteresis);
   readAges(reader.section("ages"), config.ages);
   ConfigReader sweep = reader.section("sweep");
   sweep.number("distance", config.sweep.distance, {0.01, 0.5}, "m");
   sweep.number("turn", config.sweep.turn, {0.01, 0.5}, "rad");
-  const Margins& margins = config.world.margins;
-  config.sweep =
-      stepFor(config.world.footprint, std::max(margins.plan, margins.largest), config.sweep);
+  const Margins& margins = config.local_map.margins;
+  config.sweep = resolutionFor(config.local_map.footprint, std::max(margins.plan, margins.largest),
+                               config.sweep);
   reader.number("default_sigma", config.default_sigma.position, {0.0, 1.0}, "m");
   reader.number("default_yaw_sigma", config.default_sigma.yaw, {0.0, 1.0}, "rad");
   reader.seconds("lease", config.lease, {0.1, 0.2});

@@ -4,26 +4,18 @@
 
 #include <optional>
 
-#include <tread/execution_t.hpp>
 #include <tread/goal_t.hpp>
 #include <tread/map_tile_t.hpp>
-#include <tread/motor_t.hpp>
 #include <tread/plan_t.hpp>
 #include <tread/plan_tree_t.hpp>
-#include <tread/program_slot_t.hpp>
 
-#include "modules/planner/core/execution/program_book.hpp"
-#include "modules/planner/core/execution/situation.hpp"
+#include "modules/planner/core/execution/planner_inputs.hpp"
 
 namespace tread::planner {
 
-/// Between the planner's core and its messages. What makes no sense becomes nothing.
+/// Conversions between the planner's core and its messages; nothing for an invalid message.
 std::optional<Goal> goalFrom(const goal_t& message);
 std::optional<Tile> tileFrom(const map_tile_t& message);
-BridgeReading readingFrom(const motor_t& message);
-std::vector<ExecutionReading> readingsFrom(const execution_t& message);
-
-program_slot_t toMessage(const Slot& slot);
 /// Without seq and search_time.
 plan_t toMessage(const PlanReport& report);
 /// Without utime and seq.

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "common/messages/blank.hpp"
-#include "common/messages/ins_messages.hpp"
 #include "modules/planner/planner_messages.hpp"
 
 namespace tread::planner {
@@ -13,7 +11,6 @@ namespace {
 
 constexpr int64_t kPlanRepeat = 200'000;    // [us]
 constexpr int64_t kTreeRepeat = 1'000'000;  // [us]
-constexpr int64_t kMaxFuture = 100'000;     // [us] by which a utime may be ahead
 constexpr size_t kTreeNodes = 600;          // drawn at most: 15 kB
 
 }  // namespace
@@ -22,62 +19,37 @@ PlannerNode::PlannerNode(const PlannerConfig& config, Bus& bus)
     : config_(config),
       bus_(bus),
       health_(bus, "planner", config.effective),
-      supervisor_(config, bus.bootId()),
-      permission_(bus.now()) {
+      robot_(bus, health_),
+      supervisor_(config, bus.bootId()) {
   subscribe();
 }
 
 void PlannerNode::subscribe() {
-  bus_.subscribe<ins_t>(kIns, [this](const ins_t& message) { take(message); });
   bus_.subscribe<map_tile_t>(kMap, [this](const map_tile_t& message) { take(message); });
   bus_.subscribe<goal_t>(kGoal, [this](const goal_t& message) { take(message); });
   bus_.subscribe<pattern_set_part_t>(kPatternSet,
                                      [this](const pattern_set_part_t& message) { take(message); });
-  bus_.subscribe<motor_t>(kMotor, [this](const motor_t& message) { take(message); });
-  bus_.subscribe<execution_t>(kExecution, [this](const execution_t& message) { take(message); });
-  bus_.subscribe<arm_t>(kArm,
-                        [this](const arm_t& message) { permission_.take(message, bus_.now()); });
-  bus_.subscribe<estop_t>(
-      kEstop, [this](const estop_t& message) { permission_.take(message, bus_.now()); });
-}
-
-/// A time that has not come yet would look fresh for ever, and so would one whose age overflows.
-bool PlannerNode::senselessTime(int64_t utime, const char* channel) {
-  const bool future = utime > bus_.now() + kMaxFuture;
-  if (utime > 0 && !future) return false;
-  health_.addToCounter(std::string(channel) +
-                       (future ? " refused: from the future" : " refused: no such time"));
-  return true;
-}
-
-void PlannerNode::take(const ins_t& message) {
-  if (senselessTime(message.utime, "INS")) return;
-  const std::optional<Pose2> pose = planarPose(message);
-  if (!pose) return health_.addToCounter("INS without a pose");
-  if (situation_.pose && message.utime <= situation_.pose->utime)
-    return health_.addToCounter("INS out of order");
-  situation_.pose = PoseReading{message.utime, *pose, planarTwist(message)};
 }
 
 void PlannerNode::take(const map_tile_t& message) {
-  if (senselessTime(message.utime, "MAP")) return;
+  if (robot_.invalidTime(message.utime, "MAP")) return;
   std::optional<Tile> tile = tileFrom(message);
-  if (!tile || !supervisor_.world().put(std::move(*tile), message.cell_size, message.tile_cells))
-    health_.addToCounter("MAP refused: sizes make no sense");
+  if (!tile || !supervisor_.localMap().put(std::move(*tile), message.cell_size, message.tile_cells))
+    health_.addToCounter("MAP refused: invalid sizes");
 }
 
 void PlannerNode::take(const goal_t& message) {
   const std::optional<Goal> goal = goalFrom(message);
   if (!goal && message.goal_id != 0)
-    return health_.addToCounter("GOAL refused: pose or tolerances make no sense");
-  situation_.goal = goal;
+    return health_.addToCounter("GOAL refused: invalid pose or tolerances");
+  inputs_.goal = goal;
 }
 
 void PlannerNode::take(const pattern_set_part_t& message) {
   const int64_t refused = sets_.refused();
   const std::optional<PatternSet> set = sets_.add(message);
   if (sets_.refused() > refused) return health_.addToCounter("PATTERN_SET refused");
-  situation_.set_received = bus_.now();
+  inputs_.set_received = bus_.now();
   if (!set) return;
   const int64_t started = bus_.now();
   const bool taken = supervisor_.takeSet(*set);
@@ -86,67 +58,24 @@ void PlannerNode::take(const pattern_set_part_t& message) {
   health_.setCounter("longest swap of a set [us]", longest_swap_);
 }
 
-void PlannerNode::take(const motor_t& message) {
-  if (senselessTime(message.utime, "MOTOR")) return;
-  if (situation_.bridge && message.utime < situation_.bridge->utime) return;
-  situation_.bridge = readingFrom(message);
-  permission_.take(*situation_.bridge);
-}
-
-void PlannerNode::take(const execution_t& message) {
-  if (senselessTime(message.utime, "EXECUTION")) return;
-  if (message.utime < executions_utime_) return;
-  executions_utime_ = message.utime;
-  situation_.executions = readingsFrom(message);
-}
-
-void PlannerNode::followTime(int64_t utime) {
-  // A process that only hears the time does not know it at first, and may be frozen later: what it
-  // noted before such a jump has no age, and who armed then did not arm this run.
-  const bool jumped = stepped_ && std::abs(utime - *stepped_) > kTimeJump;
-  stepped_ = utime;
-  if (!jumped) return;
-  if (situation_.set_received != 0) situation_.set_received = utime;
-  permission_.restart(utime);
-}
-
 void PlannerNode::step(int64_t utime) {
-  followTime(utime);
-  situation_.now = utime;
-  situation_.armed_by_operator = permission_.armed();
-  situation_.estopped = permission_.estopped();
+  if (robot_.timeJumped(utime) && inputs_.set_received != 0) inputs_.set_received = utime;
+  static_cast<RobotReadings&>(inputs_) = robot_.readings(utime);
   const int64_t started = bus_.now();
-  const Decision decision = supervisor_.step(situation_, [&](int expansions) {
+  const Decision decision = supervisor_.step(inputs_, [&](int expansions) {
     return stop_ ? stop_(expansions) : bus_.now() - started > config_.deadline;
   });
-  publishProgram(utime);
+  publishProgram(utime, supervisor_.program());
   publishPlan(utime, decision, bus_.now() - started);
   publishHealth(utime, decision.report);
 }
 
 void PlannerNode::shutdown(int64_t utime) {
-  bus_.publish(kProgram, emptyProgram(utime));
+  publishProgram(utime, ExecutionTracker(supervisor_.program().runId()));
 }
 
-program_t PlannerNode::emptyProgram(int64_t utime) {
-  auto message = blank<program_t>();
-  message.utime = utime;
-  message.seq = seq_program_++;
-  message.run_id = supervisor_.program().runId();
-  message.lease = static_cast<int32_t>(config_.lease);
-  const BusStatistics& statistics = bus_.statistics();
-  message.inputs_heard = statistics.received;
-  message.newest_input = statistics.newest.channel;
-  message.newest_input_utime = statistics.newest.utime;
-  message.newest_input_seq = statistics.newest.seq;
-  return message;
-}
-
-void PlannerNode::publishProgram(int64_t utime) {
-  program_t message = emptyProgram(utime);
-  message.running = toMessage(supervisor_.program().running());
-  message.next = toMessage(supervisor_.program().next());
-  bus_.publish(kProgram, message);
+void PlannerNode::publishProgram(int64_t utime, const ExecutionTracker& program) {
+  bus_.publish(kProgram, programOf(program, bus_, utime, seq_program_++, config_.lease));
 }
 
 void PlannerNode::publishPlan(int64_t utime, const Decision& decision, int64_t search_time) {

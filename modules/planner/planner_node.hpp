@@ -2,11 +2,9 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <optional>
-
 #include "common/bus/health.hpp"
 #include "common/messages/pattern_messages.hpp"
-#include "modules/planner/permission.hpp"
+#include "common/messages/robot_inputs.hpp"
 #include "modules/planner/planner_config.hpp"
 
 namespace tread::planner {
@@ -31,20 +29,11 @@ class PlannerNode : public Node {
   const Supervisor& supervisor() const { return supervisor_; }
 
  private:
-  static constexpr int64_t kTimeJump = 1'000'000;  ///< [us] between two steps
-
   void subscribe();
-  void followTime(int64_t utime);
-  bool senselessTime(int64_t utime, const char* channel);
-  void take(const ins_t& message);
   void take(const map_tile_t& message);
   void take(const goal_t& message);
   void take(const pattern_set_part_t& message);
-  void take(const motor_t& message);
-  void take(const execution_t& message);
-  /// A program that lets the robot stand, with what was heard until now.
-  program_t emptyProgram(int64_t utime);
-  void publishProgram(int64_t utime);
+  void publishProgram(int64_t utime, const ExecutionTracker& program);
   void publishPlan(int64_t utime, const Decision& decision, int64_t search_time);
   void publishTree(const PlanReport& report);
   void publishHealth(int64_t utime, const PlanReport& report);
@@ -52,13 +41,11 @@ class PlannerNode : public Node {
   PlannerConfig config_;
   Bus& bus_;
   HealthReporter health_;
+  RobotInputs robot_;
   Supervisor supervisor_;
   PatternSetAssembler sets_;
-  std::optional<int64_t> stepped_;  ///< utime of the last step
-  Permission permission_;
-  Situation situation_;
-  StopPredicate stop_;  ///< empty = the deadline
-  int64_t executions_utime_ = 0;
+  PlannerInputs inputs_;
+  StopPredicate stop_;        ///< empty = the deadline
   int64_t longest_swap_ = 0;  ///< [us]
   int64_t next_plan_ = 0;
   int64_t next_tree_ = 0;

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "common/execution/measurement.hpp"
 #include "common/pattern/pattern.hpp"
-#include "modules/learner/core/measurement.hpp"
 
 namespace tread::learner::samples {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "modules/learner/core/measurement.hpp"
+#include "common/execution/measurement.hpp"
 #include "tests/learner/samples.hpp"
 
 using namespace tread;

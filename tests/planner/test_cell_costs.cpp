@@ -119,7 +119,7 @@ TEST_CASE("the worst of some cells is the dearest of them and of where they begi
 TEST_CASE("on a lattice with costs the plan is as cheap as brute force finds it") {
   std::mt19937_64 random(7);
   const std::vector<Primitive> primitives = quarterLattice();
-  const PatternTable table(primitives, SweepStep{});
+  const PatternTable table(primitives, SweepResolution{});
   int solved = 0;
   int unreachable = 0;
   for (int i = 0; i < testing::effort(400); ++i) {

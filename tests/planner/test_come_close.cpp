@@ -14,7 +14,7 @@ namespace {
 
 PlannerConfig closeConfig() {
   PlannerConfig config;
-  config.world.come_close = true;
+  config.local_map.come_close = true;
   return config;
 }
 
@@ -42,14 +42,14 @@ TEST_CASE("The nearest place within reach has a way to it, and no nearer one has
       ground.addWall({5.0 + s, -1.0}, {5.0 + s, 1.0}, 0.2);
     }
     for (int i = 0; i < 8; ++i) ground.add({{draw(random), draw(random), draw(random)}, 0.4, 0.2});
-    PassageMap map(0.1, 32, PassageConfig{});
+    ClearanceMap map(0.1, 32, ClearanceMapConfig{});
     for (Tile& tile : tilesOf(ground.paint(0.1, {-9.6, -9.6}, {9.6, 9.6}), 32, 1))
       map.put(std::move(tile));
     map.refresh();
     const Goal goal{1, {5.0, 0.0, 0.0}, 0.3, 4.0};
-    FieldConfig config;
+    DistanceFieldConfig config;
     const Eigen::Vector2d p_vehicle(-5.0, draw(random));
-    const CostToGo way(map, goal, p_vehicle, {}, config);
+    const DistanceToGoal way(map, goal, p_vehicle, {}, config);
     REQUIRE(way.unreachable());
     const auto nearest = way.nearestWithinReach(p_vehicle, {5.0, 0.0});
     if (!nearest) continue;  // the vehicle stands on a box
@@ -61,23 +61,24 @@ TEST_CASE("The nearest place within reach has a way to it, and no nearer one has
     CHECK(off < 1.0 + config.inflation + 0.5);
     // There is a way to it, and no other place that is nearer has one.
     const Goal there{2, {nearest->x(), nearest->y(), 0.0}, 0.05, 4.0};
-    CHECK_FALSE(CostToGo(map, there, p_vehicle, {}, config).unreachable());
+    CHECK_FALSE(DistanceToGoal(map, there, p_vehicle, {}, config).unreachable());
     for (double angle = 0.0; angle < 6.2; angle += 0.1) {
       const double radius = off - 0.15;
       const Goal nearer{
           3, {5.0 + radius * std::cos(angle), radius * std::sin(angle), 0.0}, 0.05, 4.0};
-      CHECK(CostToGo(map, nearer, p_vehicle, {}, config).unreachable());
+      CHECK(DistanceToGoal(map, nearer, p_vehicle, {}, config).unreachable());
     }
   }
   CHECK(found >= 8);
 }
 
 TEST_CASE("Of two places that are as near the one that was chosen before is kept") {
-  PassageMap map(0.1, 32, PassageConfig{});
+  ClearanceMap map(0.1, 32, ClearanceMapConfig{});
   for (Tile& tile : tilesOf(walledGoal(true).paint(0.1, {-3.2, -9.6}, {16.0, 9.6}), 32, 1))
     map.put(std::move(tile));
   map.refresh();
-  const CostToGo way(map, {1, {12.0, 0.0, 0.0}, 0.3, 4.0}, {0.0, 0.0}, {}, FieldConfig{});
+  const DistanceToGoal way(map, {1, {12.0, 0.0, 0.0}, 0.3, 4.0}, {0.0, 0.0}, {},
+                           DistanceFieldConfig{});
   REQUIRE(way.unreachable());
   const Eigen::Vector2d p_goal(12.0, 0.0);
   const auto nearest = way.nearestWithinReach({0.0, 0.0}, p_goal);
@@ -117,7 +118,7 @@ TEST_CASE("Not told so, the vehicle stands and says that the goal cannot be reac
 
 TEST_CASE("A path query that is to come close ends at the nearest place, and says why there") {
   const Grid grid = walledGoal(true).paint(0.1, {-3.0, -6.0}, {16.0, 6.0});
-  const PatternTable table(samplePatterns(), SweepStep{}, {});
+  const PatternTable table(samplePatterns(), SweepResolution{}, {});
   PathPlanner planner(grid, table, PathConfig{});
   PathQuery query{{0.0, 0.0, 0.0}, {12.0, 0.0, 0.0}, 0.25, 4.0};
   const StopPredicate stop = [](int count) { return count > 20'000; };

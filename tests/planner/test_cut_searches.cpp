@@ -25,7 +25,7 @@ struct Drive {
 
   Decision step(int number) {
     const double off = 0.05 * (number % 3 - 1);
-    return rig.run(0.05, [&](Situation& seen) {
+    return rig.run(0.05, [&](PlannerInputs& seen) {
       seen.pose->T_map_body.y += off;
       seen.pose->T_map_body.yaw += off;
     });

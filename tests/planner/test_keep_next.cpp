@@ -20,7 +20,7 @@ int64_t keptBy(Rig& rig) {
 
 /// Id of what was handed over to follow the running pattern; 0 = nothing.
 int nextOf(Rig& rig) {
-  const ProgramBook& book = rig.supervisor().program();
+  const ExecutionTracker& book = rig.supervisor().program();
   return book.next().empty() ? 0 : book.next().pattern_id;
 }
 
@@ -43,7 +43,7 @@ struct Approach {
 Approach approach(double ahead) {
   Approach seen;
   Rig rig;
-  rig.situation().goal->T_map_goal.x = 14.0;
+  rig.inputs().goal->T_map_goal.x = 14.0;
   rig.run(3.5);
   const Playground ground = doorAt(rig.pose().x + FootprintSize{}.front + ahead);
   rig.paint(ground);

@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "modules/planner/core/search/node_table.hpp"
+#include "modules/planner/core/search/search_containers.hpp"
 #include "tests/effort.hpp"
 
 using namespace tread::planner;
@@ -19,7 +19,7 @@ using Known = std::unordered_map<uint64_t, std::pair<float, int>>;
 
 /// Asks for a key and compares with what is known; then stores something new in it.
 void visit(NodeTable& table, Known& known, uint64_t key, int number) {
-  NodeTable::Slot& slot = table[key];
+  NodeTable::Entry& slot = table[key];
   const auto found = known.find(key);
   if (found == known.end()) {
     REQUIRE(slot.node == -1);
@@ -62,8 +62,8 @@ TEST_CASE("a table holds what was put in, however large it has to grow") {
     REQUIRE(table[key].cost == value.first);
   }
   CHECK(table.bytes() > small);
-  CHECK(table.bytes() >= known.size() * sizeof(NodeTable::Slot));
-  CHECK(table.bytes() <= 8 * known.size() * sizeof(NodeTable::Slot));
+  CHECK(table.bytes() >= known.size() * sizeof(NodeTable::Entry));
+  CHECK(table.bytes() <= 8 * known.size() * sizeof(NodeTable::Entry));
 }
 
 TEST_CASE("what was cleared never comes back, also after many more clears than a byte counts") {

@@ -7,7 +7,7 @@
 #include <random>
 #include <utility>
 
-#include "modules/planner/core/search/open_list.hpp"
+#include "modules/planner/core/search/search_containers.hpp"
 #include "tests/effort.hpp"
 
 using namespace tread::planner;

@@ -149,7 +149,7 @@ TEST_CASE("an exhausted search is at least as cheap as one that begins with grea
     const Told greedy = ask(bench, query, after(40'000));
     if (!greedy.answer.search.exhausted || greedy.answer.end != PathEnd::kSolved) return;
     PathConfig careful = bench.config;
-    careful.search.bound_weight = 1.0;
+    careful.search.heuristic_weight = 1.0;
     careful.search.turn_weight = 0.0;
     careful.search.improvements = 0;
     PathPlanner planner(bench.grid, *bench.table, careful);

@@ -81,7 +81,7 @@ TEST_CASE("whatever map, set, footprint and query, an answer is whole and comes 
                                : i % 5 == 1 ? FootprintSize{0.05, 0.05, 0.05}
                                             : FootprintSize{0.3, 0.2, 0.2};
     const int count = i % 10 == 3 ? 200 : drawn(random, 1, 12);
-    const PatternTable table(strangePatterns(random, count), stepFor(size, 0.0, {}));
+    const PatternTable table(strangePatterns(random, count), resolutionFor(size, 0.0, {}));
     PathConfig config;
     config.footprint = size;
     config.unknown_blocks = i % 2 == 0;

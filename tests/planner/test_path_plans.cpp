@@ -17,7 +17,7 @@ constexpr int kExpansions = 3000;
 
 /// Calls visit(bench, query, answer) for many grounds and queries.
 template <class Visit>
-void onQueries(uint64_t seed, int grounds, SweepStep step, const Visit& visit) {
+void onQueries(uint64_t seed, int grounds, SweepResolution step, const Visit& visit) {
   for (int i = 0; i < grounds; ++i) {
     PathBench bench(seed + static_cast<uint64_t>(i), i % 3 != 0, step);
     for (int k = 0; k < 4; ++k) {
@@ -29,9 +29,9 @@ void onQueries(uint64_t seed, int grounds, SweepStep step, const Visit& visit) {
   }
 }
 
-std::vector<SweepPose> finePoses(const PathBench& bench, const TablePattern& pattern) {
+std::vector<SweptPose> finePoses(const PathBench& bench, const TablePattern& pattern) {
   return sampleSweep(pattern.pattern->trajectory, bench.table->set().periodSeconds(),
-                     SweepStep{0.01, 0.01});
+                     SweepResolution{0.01, 0.01});
 }
 
 /// Whether the footprint, made smaller by so much [m] on all sides, still meets something; on all
@@ -44,7 +44,7 @@ bool cutsBy(double smaller, const PathBench& bench, const PathQuery& query,
   for (const PlanStep& step : answer.search.steps) {
     const TablePattern& pattern = *bench.table->find(step.pattern_id);
     const bool straight = std::abs(pattern.end().pose.yaw) < 1e-9;
-    for (const SweepPose& at : finePoses(bench, pattern))
+    for (const SweptPose& at : finePoses(bench, pattern))
       if ((straight || !straight_only) &&
           footprint.blockedCells(bench.grid, from * at.pose, bench.config.unknown_blocks) > 0)
         return true;
@@ -57,7 +57,7 @@ bool cutsBy(double smaller, const PathBench& bench, const PathQuery& query,
 
 TEST_CASE("no solved plan meets anything in its straight parts, and in turns by less than 5 mm") {
   int plans = 0;
-  onQueries(1, testing::effort(50), SweepStep{},
+  onQueries(1, testing::effort(50), SweepResolution{},
             [&](const PathBench& bench, const PathQuery& query, const PathAnswer& answer) {
               if (answer.end != PathEnd::kSolved) return;
               ++plans;
@@ -69,7 +69,7 @@ TEST_CASE("no solved plan meets anything in its straight parts, and in turns by 
 
 TEST_CASE("the poses of a solved plan join, and it ends at rest in the goal") {
   int plans = 0;
-  onQueries(2000, testing::effort(50), SweepStep{},
+  onQueries(2000, testing::effort(50), SweepResolution{},
             [&](const PathBench& bench, const PathQuery& query, const PathAnswer& answer) {
               CHECK(answer.reason.empty() == (answer.end == PathEnd::kSolved));
               if (answer.end != PathEnd::kSolved) return;

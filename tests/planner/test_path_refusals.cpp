@@ -39,7 +39,7 @@ bool anyBegins(const PathBench& bench, const Pose2& start) {
   const Footprint exact(size.front, size.rear, size.half_width, 0.0);
   for (const TablePattern* pattern : bench.table->from(bench.table->restClass())) {
     bool hit = false;
-    for (const SweepPose& at : pattern->sweep)
+    for (const SweptPose& at : pattern->swept_poses)
       hit = hit || exact.blockedCells(bench.grid, start * at.pose, bench.config.unknown_blocks) > 0;
     if (!hit) return true;
   }
@@ -61,7 +61,7 @@ struct Room {
   }
 
   Grid grid{0.1, {-40, -30}, 80, 60};
-  PatternTable table{samplePatterns(), SweepStep{}, {}};
+  PatternTable table{samplePatterns(), SweepResolution{}, {}};
   PathConfig config;
 };
 
@@ -177,7 +177,7 @@ TEST_CASE("a start that no pattern may leave is told so") {
     if (content.patterns[i].name == "back")
       content.patterns.erase(content.patterns.begin() + long(i));
   std::string why;
-  const PatternTable forward(*PatternSet::make(std::move(content), why), SweepStep{}, {});
+  const PatternTable forward(*PatternSet::make(std::move(content), why), SweepResolution{}, {});
   room.block({-40, 4}, {7, 29});
   room.block({-40, -30}, {7, -5});
   room.block({7, -4}, {7, 3});
@@ -232,7 +232,7 @@ TEST_CASE("goals that are no numbers are refused") {
 }
 
 TEST_CASE("a map without cells, and one of a single cell, refuse in words") {
-  const PatternTable table(samplePatterns(), SweepStep{}, {});
+  const PatternTable table(samplePatterns(), SweepResolution{}, {});
   for (const int size : {0, 1}) {
     Grid grid(0.1, {0, 0}, size, size);
     for (Cell& cell : grid.cells()) cell = kFree;
@@ -247,7 +247,7 @@ TEST_CASE("a goal in a thin wall is refused, and come close to as near as the ve
   Grid grid(0.05, {0, 0}, 160, 120);
   for (Cell& cell : grid.cells()) cell = kFree;
   for (int x = 0; x < 120; ++x) grid.set({x, 60}, kObstacle);
-  const PatternTable table(samplePatterns(), SweepStep{}, {});
+  const PatternTable table(samplePatterns(), SweepResolution{}, {});
   PathPlanner planner(grid, table, PathConfig{});
   for (double x = 1.5; x < 5.0; x += 0.5) {
     PathQuery query{{2.0, 1.5, 0.0}, {x, 3.02, 0.0}};
@@ -282,7 +282,7 @@ TEST_CASE("a round robot comes as near to a wall as the tolerance says, and clos
       config.footprint = {5e-4, 5e-4, 5e-4};
       config.grown = radius;
       config.unknown_blocks = false;
-      const PatternTable table(samplePatterns(), SweepStep{0.05, 0.105, 0.05}, {});
+      const PatternTable table(samplePatterns(), SweepResolution{0.05, 0.105, 0.05}, {});
       PathPlanner planner(grown, table, config);
       const double wall = 0.05 * column;
       CAPTURE(radius, wall);
@@ -314,7 +314,7 @@ TEST_CASE("where obstacles were grown coarse cells find the same ways") {
       }
     PathConfig config;
     config.footprint = {5e-4, 5e-4, 5e-4};
-    const PatternTable table(samplePatterns(), SweepStep{0.05, 0.105, 0.05}, {});
+    const PatternTable table(samplePatterns(), SweepResolution{0.05, 0.105, 0.05}, {});
     PathPlanner fine(grown, table, config);
     config.grown = 0.35;
     PathPlanner coarse(grown, table, config);

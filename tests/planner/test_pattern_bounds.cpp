@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "modules/planner/core/map/pose_to_go.hpp"
+#include "modules/planner/core/map/heading_aware_heuristic.hpp"
 #include "modules/planner/core/search/pattern_table.hpp"
 #include "tests/effort.hpp"
 #include "tests/planner/kit/random_ground.hpp"
@@ -72,15 +72,15 @@ void checkBounds(const PatternTable& table) {
 TEST_CASE("no pattern of any set costs less than its way and its turn at the least costs") {
   std::mt19937_64 random(1);
   for (int i = 0; i < testing::effort(2000); ++i)
-    checkBounds(PatternTable(randomPrimitives(random), SweepStep{}));
-  checkBounds(PatternTable(samplePatterns(), SweepStep{}, {}));
-  checkBounds(PatternTable(latticePatterns(), SweepStep{}, {}));
+    checkBounds(PatternTable(randomPrimitives(random), SweepResolution{}));
+  checkBounds(PatternTable(samplePatterns(), SweepResolution{}, {}));
+  checkBounds(PatternTable(latticePatterns(), SweepResolution{}, {}));
 }
 
 TEST_CASE("a chain of patterns costs no less than both bounds of its whole way and net turn") {
   std::mt19937_64 random(2);
   for (int i = 0; i < testing::effort(300); ++i) {
-    const PatternTable table(randomPrimitives(random), SweepStep{});
+    const PatternTable table(randomPrimitives(random), SweepResolution{});
     Pose2 end;
     double cost = 0.0;
     for (int k = 0; k < 8; ++k) {
@@ -97,9 +97,9 @@ TEST_CASE("a chain of patterns costs no less than both bounds of its whole way a
 
 TEST_CASE("each pattern costs at least what its direction is said to cost at least") {
   std::mt19937_64 random(3);
-  constexpr double kBin = 2.0 * kPi / PoseToGo::kHeadings;
+  constexpr double kBin = 2.0 * kPi / HeadingAwareHeuristic::kHeadings;
   for (int i = 0; i < testing::effort(1000); ++i) {
-    const PatternTable table(randomPrimitives(random), SweepStep{});
+    const PatternTable table(randomPrimitives(random), SweepResolution{});
     const MotionRates rates = motionRates(table);
     for (const TablePattern& pattern : table.patterns()) {
       const Pose2& end = pattern.end().pose;
@@ -116,8 +116,8 @@ TEST_CASE("each pattern costs at least what its direction is said to cost at lea
       const double towards = wrapAngle(std::atan2(end.y, end.x) - end.yaw / 2.0);
       const double bins = towards / kBin;
       if (std::abs(bins - std::round(bins)) > 0.499) continue;
-      const int bin =
-          (static_cast<int>(std::lround(bins)) + PoseToGo::kHeadings) % PoseToGo::kHeadings;
+      const int bin = (static_cast<int>(std::lround(bins)) + HeadingAwareHeuristic::kHeadings) %
+                      HeadingAwareHeuristic::kHeadings;
       const MotionRates::Rate& rate = rates.along[static_cast<size_t>(bin)];
       REQUIRE(rate.any);
       REQUIRE(rate.turns >= (turn > 0.0));
@@ -127,14 +127,14 @@ TEST_CASE("each pattern costs at least what its direction is said to cost at lea
 }
 
 TEST_CASE("a set that only turns, only drives or does neither leaves no bound of what it lacks") {
-  const PatternTable turns({arc(0, {0.0, 0.0, 0.5}, 1.0, 2.0)}, SweepStep{});
+  const PatternTable turns({arc(0, {0.0, 0.0, 0.5}, 1.0, 2.0)}, SweepResolution{});
   CHECK(turns.leastCosts()[0].per_metre == 0.0);
   CHECK(turns.leastCosts()[1].per_radian == Approx(4.0));
-  const PatternTable drives({arc(0, {0.5, 0.0, 0.0}, 1.0, 2.0)}, SweepStep{});
+  const PatternTable drives({arc(0, {0.5, 0.0, 0.0}, 1.0, 2.0)}, SweepResolution{});
   CHECK(drives.leastCosts()[0].per_metre == Approx(4.0));
   CHECK(drives.leastCosts()[1].per_radian == 0.0);
   CHECK_FALSE(motionRates(drives).turn.any);
-  const PatternTable stands({arc(0, {}, 1.0, 2.0)}, SweepStep{});
+  const PatternTable stands({arc(0, {}, 1.0, 2.0)}, SweepResolution{});
   for (const LeastCost& least : stands.leastCosts()) {
     CHECK(least.per_metre == 0.0);
     CHECK(least.per_radian == 0.0);
@@ -147,7 +147,7 @@ TEST_CASE("a table of primitives begins and stops at rest with each, ending wher
     std::vector<Primitive> primitives = randomPrimitives(random);
     primitives.front().start_bin = 3;
     primitives.front().cells = {{1, 0}, {2, 1}};
-    const PatternTable table(primitives, SweepStep{});
+    const PatternTable table(primitives, SweepResolution{});
     REQUIRE(table.patterns().size() == primitives.size());
     CHECK(table.classCount() == 1);
     CHECK(table.from(table.restClass()).size() == primitives.size());
@@ -160,7 +160,8 @@ TEST_CASE("a table of primitives begins and stops at rest with each, ending wher
       CHECK(pattern.pattern == nullptr);
       CHECK(pattern.cost == primitive.cost);
       CHECK(pattern.duration == primitive.duration);
-      for (const SweepPose& end : {pattern.sweep.back(), pattern.cover.poses.back().at}) {
+      for (const SweptPose& end :
+           {pattern.swept_poses.back(), pattern.swept_footprint.poses.back().at}) {
         CHECK(end.pose.x == primitive.poses.back().x);
         CHECK(end.pose.y == primitive.poses.back().y);
         CHECK(end.pose.yaw == primitive.poses.back().yaw);

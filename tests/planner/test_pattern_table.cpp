@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "modules/planner/core/map/surroundings.hpp"
+#include "modules/planner/core/map/collision_checker.hpp"
 #include "modules/planner/core/search/pattern_table.hpp"
 #include "modules/planner/core/search/prediction.hpp"
 #include "tests/planner/kit/playground.hpp"
@@ -28,11 +28,11 @@ std::optional<PatternSet> without(const PatternSet& set, const std::string& name
 }  // namespace
 
 TEST_CASE("Poses to check are nowhere farther apart than the step and end at the pattern's end") {
-  const SweepStep step{0.07, 0.05};
+  const SweepResolution step{0.07, 0.05};
   const PatternTable table(samplePatterns(), step, {});
   for (const TablePattern& pattern : table.patterns()) {
     Pose2 last;
-    for (const SweepPose& at : pattern.sweep) {
+    for (const SweptPose& at : pattern.swept_poses) {
       CHECK(std::hypot(at.pose.x - last.x, at.pose.y - last.y) <= step.distance + 1e-9);
       CHECK(std::abs(at.pose.yaw - last.yaw) <= step.turn + 1e-9);
       CHECK((at.pose.position() - pattern.centre).norm() <= pattern.radius + 1e-9);
@@ -40,12 +40,12 @@ TEST_CASE("Poses to check are nowhere farther apart than the step and end at the
     }
     CHECK(last.x == pattern.pattern->end().x);
     CHECK(last.yaw == pattern.pattern->end().yaw);
-    CHECK(pattern.sweep.back().time == Approx(pattern.duration));
+    CHECK(pattern.swept_poses.back().time == Approx(pattern.duration));
   }
 }
 
 TEST_CASE("The table knows the class of standing, what begins where, and what stops") {
-  const PatternTable table(samplePatterns(), SweepStep{}, {});
+  const PatternTable table(samplePatterns(), SweepResolution{}, {});
   REQUIRE(table.restClass() >= 0);
   CHECK(table.motionClass(table.restClass()).name == "rest");
   for (int i = 0; i < table.classCount(); ++i)
@@ -60,12 +60,12 @@ TEST_CASE("The table knows the class of standing, what begins where, and what st
 TEST_CASE("A set without a way to stop is refused in words") {
   const std::optional<PatternSet> set = without(samplePatterns(), "stop");
   REQUIRE(set);
-  const PatternTable table(*set, SweepStep{}, {});
+  const PatternTable table(*set, SweepResolution{}, {});
   CHECK(table.defect() == "the pattern set has no pattern that stops from class cruise");
 }
 
 TEST_CASE("What is left of a pattern is laid on the measured pose") {
-  const PatternTable table(samplePatterns(), SweepStep{}, {});
+  const PatternTable table(samplePatterns(), SweepResolution{}, {});
   const TablePattern& left = *table.find(3);
   REQUIRE(left.pattern->name == "left");
   const Pose2 start{3.0, -2.0, 1.0};
@@ -82,7 +82,7 @@ TEST_CASE("What is left of a pattern is laid on the measured pose") {
 }
 
 TEST_CASE("Before a pattern begins the vehicle keeps the twist of its entry class") {
-  const PatternTable table(samplePatterns(), SweepStep{}, {});
+  const PatternTable table(samplePatterns(), SweepResolution{}, {});
   const TablePattern& straight = *table.find(1);
   const Prediction prediction = predict(Pose2{}, -0.1, straight, table);
   CHECK(prediction.T_map_end.x == Approx(straight.pattern->end().x + 0.11).margin(1e-6));
@@ -90,20 +90,20 @@ TEST_CASE("Before a pattern begins the vehicle keeps the twist of its entry clas
 }
 
 TEST_CASE("What is left of a running pattern is scaled by how much of it has come true") {
-  const PatternTable table(samplePatterns(), SweepStep{}, {});
+  const PatternTable table(samplePatterns(), SweepResolution{}, {});
   const double period = table.set().periodSeconds();
   for (const TablePattern& pattern : table.patterns()) {
     const double half = pattern.duration / 2.0;
     const Pose2 expected = poseAlong(pattern.pattern->trajectory, period, half);
-    const Fulfilment as_promised = compare(expected, half, pattern, period);
+    const MotionRatio as_promised = motionRatio(expected, half, pattern, period);
     CHECK(as_promised.way == Approx(1.0));
     CHECK(as_promised.turn == Approx(1.0));
     const Prediction plain = predict(expected, half, pattern, table);
     CHECK(plain.T_map_end.yaw == Approx(pattern.end().pose.yaw).margin(1e-9));
     CHECK(plain.T_map_end.x == Approx(pattern.end().pose.x).margin(1e-9));
     // Ground that turns the vehicle half as far again will go on to do so, doubt subtracted.
-    const Fulfilment more =
-        compare({expected.x, expected.y, 1.5 * expected.yaw}, half, pattern, period);
+    const MotionRatio more =
+        motionRatio({expected.x, expected.y, 1.5 * expected.yaw}, half, pattern, period);
     CHECK(more.turn >= 1.0);
     CHECK(more.turn <= 1.5);
     const double rest_of_turn = pattern.end().pose.yaw - expected.yaw;
@@ -117,17 +117,18 @@ TEST_CASE("A start without margin may go on only where room is gained") {
   const FootprintSize body;
   Playground ground;
   ground.addWall({-3.0, body.half_width + 0.12}, {5.0, body.half_width + 0.12}, 0.2);
-  const Surroundings around(ground.paint(0.01, {-3.0, -3.0}, {5.0, 3.0}), body, Margins{});
+  const CollisionChecker around(ground.paint(0.01, {-3.0, -3.0}, {5.0, 3.0}), body, Margins{});
   const Pose2 start{0.0, 0.0, 0.0};
-  const int level = around.freeLevel(start, Surroundings::kPlan);
-  REQUIRE(level >= Surroundings::kBare);
-  REQUIRE(level < Surroundings::kCheck);
-  const PatternTable table(samplePatterns(), SweepStep{}, {});
+  const int level = around.freeLevel(start, CollisionChecker::kPlan);
+  REQUIRE(level >= CollisionChecker::kBare);
+  REQUIRE(level < CollisionChecker::kCheck);
+  const PatternTable table(samplePatterns(), SweepResolution{}, {});
   int along = 0;
   int away = 0;
   for (const TablePattern& pattern : table.patterns()) {
     const Pose2& end = pattern.end().pose;
-    const bool regains = around.sweepRegains(turned(start), level, pattern, Surroundings::kPlan);
+    const bool regains =
+        around.sweepRegains(turned(start), level, pattern, CollisionChecker::kPlan);
     if (std::abs(end.x) > 0.9 && std::abs(end.y) < 0.01) {
       ++along;
       CHECK(around.sweepFree(start, pattern, level));  // nothing is touched, yet no room is gained
@@ -136,7 +137,7 @@ TEST_CASE("A start without margin may go on only where room is gained") {
     if (regains) {
       ++away;
       CHECK(around.sweepFree(start, pattern, level));
-      if (pattern.end().reach > 0.25) CHECK(around.freeLevel(end, Surroundings::kPlan) > level);
+      if (pattern.end().reach > 0.25) CHECK(around.freeLevel(end, CollisionChecker::kPlan) > level);
     }
   }
   CHECK(along > 0);

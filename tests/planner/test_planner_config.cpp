@@ -21,11 +21,11 @@ TEST_CASE("A configuration is read with its ranges, and mistakes are named at fi
   ConfigReader good = ConfigReader::fromText(
       "search: {horizon: 6}\npolicy: {plan_period: 0.25}\ncommitment: {gain: 2.5}\n", kHere);
   const PlannerConfig config = readPlannerConfig(good);
-  CHECK(config.world.footprint.half_width == 0.415);
-  CHECK(config.world.field.inflation == 0.415);
+  CHECK(config.local_map.footprint.half_width == 0.415);
+  CHECK(config.local_map.field.inflation == 0.415);
   CHECK(config.search.horizon == 6.0);
   CHECK(config.policy.plan_period == 250'000);
-  CHECK(config.commitment.gain == 2.5);
+  CHECK(config.side_hysteresis.gain == 2.5);
   CHECK(config.effective.find("switch_penalty") != std::string::npos);
   const auto refusal = [](const std::string& text) {
     ConfigReader reader = ConfigReader::fromText(text, kHere);
@@ -50,7 +50,7 @@ TEST_CASE("A short vehicle's patterns are checked at poses as close as it is sho
   const PlannerConfig config = readPlannerConfig(reader);
   CHECK(config.sweep.distance < 0.05);
   CHECK(config.sweep.covered < 0.05);
-  const Margins& margins = config.world.margins;
+  const Margins& margins = config.local_map.margins;
   CHECK(config.sweep.outline.front == Approx(0.05 + std::max(margins.plan, margins.largest)));
   ConfigReader usual = ConfigReader::fromText("sweep: {distance: 0.08}\n", kHere);
   CHECK(readPlannerConfig(usual).sweep.distance == 0.08);

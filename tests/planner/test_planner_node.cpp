@@ -76,7 +76,7 @@ TEST_CASE("The node comes up disarmed: a permission from before its start counts
 
 TEST_CASE("When the time jumps, as at the start of a real process, an earlier permission is void") {
   // A process that only hears the time starts near zero.
-  Permission permission(300'000);
+  DrivingPermission permission(300'000);
   arm_t arm{};
   arm.armed = true;
   arm.utime = 1'000'000'000;
@@ -200,8 +200,8 @@ TEST_CASE("Messages that make no sense are counted and change nothing") {
   std::map<std::string, int64_t> counters;
   for (const counter_t& counter : yard.health.counters)
     counters[counter.counter_name] = counter.counted;
-  CHECK(counters["GOAL refused: pose or tolerances make no sense"] == 2);
-  CHECK(counters["MAP refused: sizes make no sense"] == 1);
+  CHECK(counters["GOAL refused: invalid pose or tolerances"] == 2);
+  CHECK(counters["MAP refused: invalid sizes"] == 1);
   CHECK(counters["MAP refused: from the future"] == 1);
 }
 

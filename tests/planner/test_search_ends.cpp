@@ -20,7 +20,7 @@ TEST_CASE("From the end of a pocket the plan leads out and around") {
   const SearchBench bench(grid, samplePatterns(), {1, {9.0, 0.0, 0.0}, 0.5, 4.0});
   SearchConfig config;
   config.horizon = 1000.0;
-  Search search(config);
+  PatternSearch search(config);
   const SearchResult result = search.run(bench.problem({1.2, 0.0, 0.0}), after(50'000));
   CHECK(result.end == SearchEnd::kGoal);
 }
@@ -32,19 +32,19 @@ TEST_CASE(
   const SearchBench bench(grid, samplePatterns(), mission.goal);
   SearchConfig config;
   config.horizon = 1000.0;
-  Search search(config);
+  PatternSearch search(config);
   const SearchResult result = search.run(bench.problem(mission.T_map_start), after(48));
   CHECK(result.end == SearchEnd::kProgress);
   CHECK(result.expansions <= 64);
   REQUIRE(!result.steps.empty());
-  CHECK(result.way_to_go < bench.cost_to_go.length(mission.T_map_start.position()));
+  CHECK(result.way_to_go < bench.distance_to_goal.length(mission.T_map_start.position()));
 }
 
 TEST_CASE("At the border of the known the plan ends in front of it, free and able to stop") {
   Playground ground;
   const Grid grid = ground.paint(0.1, {-6.4, -6.4}, {6.4, 6.4});
   const SearchBench bench(grid, samplePatterns(), {1, {30.0, 0.0, 0.0}, 0.5, 4.0});
-  Search search(SearchConfig{});
+  PatternSearch search(SearchConfig{});
   const SearchResult result = search.run(bench.problem({}), after(20'000));
   REQUIRE(result.end == SearchEnd::kHorizon);
   CHECK(result.steps.back().T_map_end.x > 3.0);
@@ -61,7 +61,7 @@ TEST_CASE("Boxed in, nothing is found and it says so") {
   const Grid grid = ground.paint(0.1, {-6.4, -6.4}, {12.8, 6.4});
   // Seen from the way to go there must be one: the goal is taken near.
   SearchBench bench(grid, samplePatterns(), {1, {0.8, 0.0, 0.0}, 0.3, 4.0});
-  Search search(SearchConfig{});
+  PatternSearch search(SearchConfig{});
   const SearchResult result = search.run(bench.problem({}), after(20'000));
   CHECK(result.end == SearchEnd::kNothing);
   CHECK(result.steps.empty());
@@ -73,15 +73,15 @@ TEST_CASE("From a start on blocked ground only patterns that do not make it wors
   Grid grid = ground.paint(0.1, {-6.4, -6.4}, {12.8, 6.4});
   for (int y = -3; y <= 3; ++y) grid.set({-6, y}, kObstacle);  // under the tail
   const SearchBench bench(grid, samplePatterns(), {1, {6.0, 0.0, 0.0}, 0.5, 4.0});
-  REQUIRE(bench.surroundings.overlap({}).obstacles > 0);
-  Search search(SearchConfig{});
+  REQUIRE(bench.collision_checker.overlap({}).obstacles > 0);
+  PatternSearch search(SearchConfig{});
   const SearchResult result = search.run(bench.problem({}), after(20'000));
   REQUIRE(!result.steps.empty());
-  const Overlap at_start = bench.surroundings.overlap({});
+  const Overlap at_start = bench.collision_checker.overlap({});
   const TablePattern& first = *bench.table.find(result.steps.front().pattern_id);
-  for (const SweepPose& at : first.sweep)
-    CHECK(bench.surroundings.overlap(at.pose).within(at_start));
-  CHECK(bench.surroundings.overlap(result.steps.front().T_map_end).none());
+  for (const SweptPose& at : first.swept_poses)
+    CHECK(bench.collision_checker.overlap(at.pose).within(at_start));
+  CHECK(bench.collision_checker.overlap(result.steps.front().T_map_end).none());
 }
 
 TEST_CASE(
@@ -93,16 +93,16 @@ TEST_CASE(
   const SearchBench bench(grid, samplePatterns(), {1, {6.0, 0.0, 0.0}, 0.5, 4.0});
   SearchConfig config;
   config.horizon = 1000.0;
-  Search search(config);
+  PatternSearch search(config);
   const SearchResult result = search.run(bench.problem({}), after(20'000));
   REQUIRE(result.steps.size() > 3);
   Pose2 pose;
   size_t used = 0;
-  while (!bench.surroundings.overlap(pose).none()) {
-    const Overlap before = bench.surroundings.overlap(pose);
+  while (!bench.collision_checker.overlap(pose).none()) {
+    const Overlap before = bench.collision_checker.overlap(pose);
     const TablePattern& pattern = *bench.table.find(result.steps[used++].pattern_id);
-    for (const SweepPose& at : pattern.sweep)
-      REQUIRE(bench.surroundings.overlap(pose * at.pose).within(before));
+    for (const SweptPose& at : pattern.swept_poses)
+      REQUIRE(bench.collision_checker.overlap(pose * at.pose).within(before));
     pose = pose * pattern.pattern->end();
   }
   CHECK(used <= 3);
@@ -116,7 +116,7 @@ TEST_CASE("A plan is kept while another is hardly better, and left when it is bl
     if (block_right) ground.addWall({4.0, -8.0}, {4.0, 0.0});
     const Grid grid = ground.paint(0.02, {-2.0, -6.0}, {12.0, 6.0});
     const SearchBench bench(grid, samplePatterns(), {1, {9.0, 0.0, 0.0}, 0.5, 4.0});
-    Search search(SearchConfig{});
+    PatternSearch search(SearchConfig{});
     SearchProblem task = bench.problem({1.0, 0.0, 0.0}, "cruise");
     task.committed = std::move(committed);
     const SearchResult result = search.run(task, after(20'000));
@@ -142,7 +142,7 @@ TEST_CASE("The drawn tree has every parent before its children, and the branch i
   const Mission mission = randomMission(6);
   const Grid grid = mission.ground.paint(0.1, {-6.4, -12.8}, {38.4, 12.8});
   const SearchBench bench(grid, samplePatterns(), mission.goal);
-  Search search(SearchConfig{});
+  PatternSearch search(SearchConfig{});
   const SearchResult result = search.run(bench.problem(mission.T_map_start), after(20'000));
   for (const size_t count : {5U, 50U, 5000U}) {
     const std::vector<TreeNode> tree = search.tree(count);

@@ -59,11 +59,11 @@ TEST_CASE("A set with other commands for what is under way waits until that has 
   rig.run(0.05);
   CHECK(supervisor.program().running().set->version() == 1);
   // Without a goal the vehicle comes to rest: nothing is under way, and the set is taken.
-  rig.situation().goal.reset();
+  rig.inputs().goal.reset();
   rig.run(8.0);
   CHECK(rig.speed() < 0.05);
   CHECK(supervisor.setRefusal().empty());
-  rig.situation().goal = Goal{2, {12.0, 3.0, 0.0}, 0.5, 4.0};
+  rig.inputs().goal = Goal{2, {12.0, 3.0, 0.0}, 0.5, 4.0};
   const Decision decision = rig.run(2.0);
   CHECK(decision.report.set_version == 2);
   CHECK(supervisor.program().running().set->version() == 2);

@@ -34,7 +34,7 @@ TEST_CASE(
   bool always = true;
   for (int i = 0; i < 400; ++i) {
     rig.run(0.05);
-    const ProgramBook& program = rig.supervisor().program();
+    const ExecutionTracker& program = rig.supervisor().program();
     if (program.running().empty() || rig.running().exit_class == "rest") continue;
     const bool soon_over = program.confirmed() && program.ends() - rig.now() < 130'000;
     always = always && (!program.next().empty() || !soon_over);
@@ -48,7 +48,7 @@ TEST_CASE("Arrived, it stands and says so until there is another goal") {
   CHECK(rig.run(18.0).report.status == PlanStatus::kArrived);
   CHECK(rig.run(2.0).report.status == PlanStatus::kArrived);
   CHECK(std::abs(rig.speed()) < 1e-3);
-  rig.situation().goal = Goal{2, {6.0, 4.0, 0.0}, 0.5, 4.0};
+  rig.inputs().goal = Goal{2, {6.0, 4.0, 0.0}, 0.5, 4.0};
   CHECK(rig.run(1.0).report.status == PlanStatus::kDriving);
 }
 
@@ -56,7 +56,7 @@ TEST_CASE("Without a goal it is idle, a goal taken back lets it finish and stop"
   Rig rig;
   rig.run(3.0);
   CHECK(rig.speed() > 0.9);
-  rig.situation().goal.reset();
+  rig.inputs().goal.reset();
   const Decision decision = rig.run(4.0);
   CHECK(decision.report.status == PlanStatus::kIdle);
   CHECK(std::abs(rig.speed()) < 1e-3);
@@ -65,12 +65,12 @@ TEST_CASE("Without a goal it is idle, a goal taken back lets it finish and stop"
 
 TEST_CASE("It does not drive unless the bridge is armed and the operator's permission was seen") {
   Rig rig;
-  rig.situation().armed_by_operator = false;
+  rig.inputs().armed_by_operator = false;
   Decision decision = rig.run(1.0);
   CHECK(decision.report.status == PlanStatus::kWaiting);
   CHECK(decision.report.reason == "not armed since the planner's start");
   CHECK(rig.supervisor().program().running().empty());
-  rig.situation().armed_by_operator = true;
+  rig.inputs().armed_by_operator = true;
   rig.bridge().setArmed(false);
   decision = rig.run(1.0);
   CHECK(decision.report.status == PlanStatus::kStopped);
@@ -81,7 +81,7 @@ TEST_CASE("An INS that falls silent empties the program within 150 ms and a step
   Rig rig;
   rig.run(3.0);
   const int64_t last = rig.now();
-  const auto silent = [&](Situation& s) { s.pose->utime = std::min(s.pose->utime, last); };
+  const auto silent = [&](PlannerInputs& s) { s.pose->utime = std::min(s.pose->utime, last); };
   rig.run(0.15, silent);
   CHECK(!rig.supervisor().program().running().empty());
   const Decision decision = rig.run(0.1, silent);
@@ -92,7 +92,7 @@ TEST_CASE("An INS that falls silent empties the program within 150 ms and a step
 
 TEST_CASE("A map without new scans: it comes to rest after 2 s by a stop pattern, and says why") {
   Rig rig;
-  rig.situation().goal->T_map_goal.x = 40.0;
+  rig.inputs().goal->T_map_goal.x = 40.0;
   rig.run(3.0);
   rig.stopMapping();
   CHECK(rig.run(1.5).report.status == PlanStatus::kDriving);
@@ -105,9 +105,9 @@ TEST_CASE("A map without new scans: it comes to rest after 2 s by a stop pattern
 
 TEST_CASE("Without the learner it drives on for 5 s and then stops with that reason") {
   Rig rig;
-  rig.situation().goal->T_map_goal.x = 40.0;
+  rig.inputs().goal->T_map_goal.x = 40.0;
   const int64_t lost = rig.now() + 2 * kSecond;
-  const auto tamper = [&](Situation& s) { s.set_received = std::min(s.set_received, lost); };
+  const auto tamper = [&](PlannerInputs& s) { s.set_received = std::min(s.set_received, lost); };
   CHECK(rig.run(6.5, tamper).report.status == PlanStatus::kDriving);
   CHECK(rig.speed() > 0.9);
   const Decision decision = rig.run(3.5, tamper);
@@ -117,7 +117,7 @@ TEST_CASE("Without the learner it drives on for 5 s and then stops with that rea
 
 TEST_CASE("A wall that appears close ahead while driving: the running pattern is stopped in time") {
   Rig rig;
-  rig.situation().goal->T_map_goal.x = 14.0;
+  rig.inputs().goal->T_map_goal.x = 14.0;
   rig.run(3.5);
   REQUIRE(rig.speed() > 0.9);
   Playground ground;
@@ -134,7 +134,7 @@ TEST_CASE("A wall that appears close ahead while driving: the running pattern is
 
 TEST_CASE("A wall that only the next pattern would hit replaces the next, the running goes on") {
   Rig rig;
-  rig.situation().goal->T_map_goal.x = 14.0;
+  rig.inputs().goal->T_map_goal.x = 14.0;
   rig.run(3.5);
   const int64_t before = rig.supervisor().program().running().execution_id;
   Playground ground;
@@ -159,7 +159,7 @@ TEST_CASE("After an abort it waits until the vehicle stands, then begins again f
   CHECK(rig.supervisor().program().running().empty());
   rig.run(1.5);
   REQUIRE(!rig.supervisor().program().running().empty());
-  const ProgramBook& program = rig.supervisor().program();
+  const ExecutionTracker& program = rig.supervisor().program();
   CHECK((rig.running().entry_class == "rest" || program.running().execution_id > 5));
 }
 
@@ -169,7 +169,7 @@ TEST_CASE("Before it comes to rest it has said why: at the goal, or what it does
   const auto listen = [&](double seconds) {
     for (double t = 0.0; t < seconds; t += 0.05) {
       const Decision decision = rig.run(0.05);
-      const ProgramBook& program = rig.supervisor().program();
+      const ExecutionTracker& program = rig.supervisor().program();
       if (program.running().empty() || decision.report.status != PlanStatus::kDriving) continue;
       if (rig.running().exit_class == "rest") CHECK_FALSE(decision.report.reason.empty());
       reasons.insert(decision.report.reason);
@@ -177,7 +177,7 @@ TEST_CASE("Before it comes to rest it has said why: at the goal, or what it does
   };
   listen(18.0);
   CHECK(reasons == std::set<std::string>{"", "stopping at the goal"});
-  rig.situation().goal = Goal{2, {-6.0, 0.0, 0.0}, 0.5, 4.0};
+  rig.inputs().goal = Goal{2, {-6.0, 0.0, 0.0}, 0.5, 4.0};
   listen(1.0);
   CHECK(reasons.count("stopping to turn on the spot") == 1);
 }
@@ -188,7 +188,7 @@ TEST_CASE("A pattern that the bridge ends early is told with the bridge's reason
   rig.bridge().setArmed(false);
   // Without the news of being disarmed: what is left is the aborted execution.
   const Decision decision =
-      rig.run(0.1, [](Situation& s) { s.bridge->state = BridgeReading::State::kArmed; });
+      rig.run(0.1, [](PlannerInputs& s) { s.bridge->state = BridgeReading::State::kArmed; });
   CHECK(decision.report.status == PlanStatus::kWaiting);
   CHECK(decision.report.reason.find("stopped by motor_bridge: ") == 0);
 }
@@ -228,7 +228,7 @@ TEST_CASE("Plans are reported with the ids under which they were handed over") {
   rig.run(2.0);
   Decision decision;
   while (!decision.planned) decision = rig.run(0.05);
-  const ProgramBook& program = rig.supervisor().program();
+  const ExecutionTracker& program = rig.supervisor().program();
   REQUIRE(decision.report.steps.size() >= 3);
   REQUIRE(decision.report.execution_ids.size() == decision.report.steps.size());
   CHECK(decision.report.execution_ids[0] == program.running().execution_id);
@@ -244,11 +244,11 @@ TEST_CASE("A vehicle that is pushed off its way is planned for anew at once, fro
   Rig rig;
   rig.run(4.0);
   // To the middle of a pattern, just after a plan.
-  const ProgramBook& program = rig.supervisor().program();
+  const ExecutionTracker& program = rig.supervisor().program();
   const auto due = [&] { return program.ends() - rig.now(); };
   while (due() < 300'000 || due() > 700'000) rig.run(0.05);
   while (!rig.run(0.05).planned) continue;
-  const auto pushed = [&](Situation& seen) { seen.pose->T_map_body.y += push; };
+  const auto pushed = [&](PlannerInputs& seen) { seen.pose->T_map_body.y += push; };
   const double before = rig.run(0.05).report.steps.front().T_map_end.y;
   const Decision decision = rig.run(0.05, pushed);
   CAPTURE(push);

@@ -25,21 +25,22 @@ void noteSignal(int /*signal*/) {
 /// The recorder, ending its own run once it is done or has failed.
 class RunToItsEnd : public Node {
  public:
-  explicit RunToItsEnd(LiveRecorder& recorder) : recorder_(recorder) {}
+  explicit RunToItsEnd(pattern_recorder::RecorderNode& recorder) : recorder_(recorder) {}
 
   int64_t period() const override { return recorder_.period(); }
   void step(int64_t utime) override {
     recorder_.step(utime);
-    if (recorder_.state() != LiveRecorder::State::kGoesOn) g_stop = true;
+    if (recorder_.state() != pattern_recorder::RecorderNode::State::kRunning) g_stop = true;
   }
   void shutdown(int64_t utime) override { recorder_.shutdown(utime); }
 
  private:
-  LiveRecorder& recorder_;
+  pattern_recorder::RecorderNode& recorder_;
 };
 
 /// Where the part was written, in words; empty if there was nothing to write.
-std::string keepPart(const std::string& path, const PatternSet& set, const LiveRecorder& recorder) {
+std::string keepPart(const std::string& path, const PatternSet& set,
+                     const pattern_recorder::RecorderNode& recorder) {
   size_t executions = 0;
   for (const auto& of_pattern : recorder.recorded()) executions += of_pattern.size();
   if (executions == 0) return "";
@@ -49,18 +50,17 @@ std::string keepPart(const std::string& path, const PatternSet& set, const LiveR
 
 }  // namespace
 
-std::vector<std::vector<recordings::Execution>> recordLive(const PatternSet& set,
-                                                           const LiveRecording& how,
-                                                           const std::string& lcm_url,
-                                                           const std::string& part) {
+std::vector<std::vector<recordings::Execution>> recordLive(
+    const PatternSet& set, const pattern_recorder::RecordingConfig& how, const std::string& lcm_url,
+    const std::string& part) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, noteSignal);
   LcmBus bus(lcm_url, TimeSource::kFollow);
-  LiveRecorder recorder(set, how, bus,
-                        [](const std::string& line) { std::cout << line << std::endl; });
+  pattern_recorder::RecorderNode recorder(
+      set, how, bus, [](const std::string& line) { std::cout << line << std::endl; });
   RunToItsEnd node(recorder);
   bus.run(node, g_stop);
-  if (recorder.state() == LiveRecorder::State::kDone) return recorder.recorded();
-  const bool failed = recorder.state() == LiveRecorder::State::kFailed;
+  if (recorder.state() == pattern_recorder::RecorderNode::State::kDone) return recorder.recorded();
+  const bool failed = recorder.state() == pattern_recorder::RecorderNode::State::kFailed;
   throw std::runtime_error((failed ? recorder.reason() : "interrupted, the robot was stopped") +
                            keepPart(part, set, recorder));
 }

@@ -5,17 +5,17 @@
 #include <string>
 #include <vector>
 
-#include "tools/patterns/live_recorder.hpp"
+#include "modules/pattern_recorder/recorder_node.hpp"
 
 namespace tread::patterns {
 
-/// Runs a LiveRecorder over real LCM to its end and prints what it says; the executions by pattern.
+/// Runs a pattern_recorder::RecorderNode over real LCM to its end and prints what it says; the
+/// executions by pattern.
 /** Throws std::runtime_error if it fails or is interrupted (SIGINT, SIGTERM, SIGHUP), after the
  * robot was told to stop; what was recorded until then is written to `part`, in a folder that is
  * there, as far as it goes. */
-std::vector<std::vector<recordings::Execution>> recordLive(const PatternSet& set,
-                                                           const LiveRecording& how,
-                                                           const std::string& lcm_url,
-                                                           const std::string& part);
+std::vector<std::vector<recordings::Execution>> recordLive(
+    const PatternSet& set, const pattern_recorder::RecordingConfig& how, const std::string& lcm_url,
+    const std::string& part);
 
 }  // namespace tread::patterns

@@ -25,7 +25,7 @@ struct Options {
   bool live = false;
   int executions = 30;
   ModelRecording how;
-  LiveRecording live_how;
+  pattern_recorder::RecordingConfig live_how;
   std::string lcm_url;
 };
 
@@ -45,7 +45,7 @@ void record(const Options& options) {
   recordings::SurfaceRecordings surface{options.surface, {}};
   const std::string part = options.book + "/" + options.surface + ".csv.part";
   if (options.live) {
-    LiveRecording how = options.live_how;
+    pattern_recorder::RecordingConfig how = options.live_how;
     how.executions = options.executions;
     surface.executions = recordLive(set, how, options.lcm_url, part);
   } else {
@@ -76,7 +76,8 @@ void addModelOptions(CLI::App& command, ModelRecording& how) {
       ->check(CLI::Range(0.0, 3.0));
 }
 
-void addLiveOptions(CLI::App& command, LiveRecording& how, std::string& lcm_url) {
+void addLiveOptions(CLI::App& command, pattern_recorder::RecordingConfig& how,
+                    std::string& lcm_url) {
   command.add_option("--room", how.room, "with --live: m around where it begins that must be free")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 1000.0));

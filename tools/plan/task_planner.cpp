@@ -108,9 +108,9 @@ planner::FootprintSize footprintOf(const RobotShape& shape) {
 }
 
 /// How finely sweeps are checked: a point must not jump over a cell.
-planner::SweepStep sweepStep(const PlanTask& task) {
-  planner::SweepStep step;
-  if (task.shape.isRectangle()) return planner::stepFor(footprintOf(task.shape), 0.0, step);
+planner::SweepResolution sweepStep(const PlanTask& task) {
+  planner::SweepResolution step;
+  if (task.shape.isRectangle()) return planner::resolutionFor(footprintOf(task.shape), 0.0, step);
   step.distance = step.covered = std::min(step.distance, task.grid.cellSize() / 2);
   step.outline = footprintOf(task.shape);
   return step;
@@ -204,7 +204,7 @@ void TaskPlanner::tellPlan(const Pose2& T_grid_start, const planner::SearchResul
   tell(T_grid_begin);
   for (const planner::PlanStep& step : result.steps) {
     const planner::TablePattern& pattern = *patterns_->find(step.pattern_id);
-    for (const planner::SweepPose& at : pattern.sweep) tell(T_grid_begin * at.pose);
+    for (const planner::SweptPose& at : pattern.swept_poses) tell(T_grid_begin * at.pose);
     T_grid_begin = step.T_map_end;
     answer.ends.push_back(answer.poses.size() - 1);
     answer.patterns.push_back(nameOf(step.pattern_id));
@@ -236,7 +236,7 @@ PlanScene TaskPlanner::scene(const PlanQuery& query, const PlanAnswer& answer) c
     const Pose2 T_map_begin =
         task_.map.T_map_grid * tree[static_cast<size_t>(node.parent)].T_map_body;
     scene.tree.push_back({T_map_begin.position()});
-    for (const planner::SweepPose& at : patterns_->find(node.pattern_id)->sweep)
+    for (const planner::SweptPose& at : patterns_->find(node.pattern_id)->swept_poses)
       scene.tree.back().push_back(T_map_begin * at.pose.position());
   }
   for (const Pose2& pose : answer.poses) scene.path.push_back(pose.position());

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "common/execution/measurement.hpp"
 #include "common/pattern/pattern.hpp"
-#include "modules/learner/core/measurement.hpp"
 #include "modules/learner/core/rules/learning_rule.hpp"
 
 namespace tread::learner {

@@ -18,18 +18,6 @@ Axes variances(const PoseCovariance& covariance) {
 
 }  // namespace
 
-Axes boundingBox(const std::vector<Pose2>& trajectory) {
-  // The start pose (0, 0, 0) belongs to the box: a reversing pattern is as long as a forward one.
-  Axes low = Axes::Zero();
-  Axes high = Axes::Zero();
-  for (const Pose2& pose : trajectory) {
-    const Axes at(pose.x, pose.y, pose.yaw);
-    low = low.min(at);
-    high = high.max(at);
-  }
-  return high - low;
-}
-
 Axes boundingBox(const ConstTrajectory& trajectory) {
   Axes box;
   for (Eigen::Index axis = 0; axis < 3; ++axis)

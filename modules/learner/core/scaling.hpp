@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "common/execution/measurement.hpp"
 #include "common/pattern/pattern.hpp"
 #include "modules/learner/core/trajectory_table.hpp"
 
@@ -33,9 +34,7 @@ struct ScalingLimits {
   double max_factor = 2.0;
 };
 
-/// Length and width [m] of the box around the start pose and all poses, and the interval of yaw
-/// [rad].
-Axes boundingBox(const std::vector<Pose2>& trajectory);
+/// See tread::boundingBox().
 Axes boundingBox(const ConstTrajectory& trajectory);
 
 /// What a pattern may give to the others and take from them.

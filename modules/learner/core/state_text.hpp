@@ -4,15 +4,12 @@
 
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "common/execution/readings.hpp"
 #include "modules/learner/core/learner.hpp"
 
 namespace tread::learner {
-
-/// (run id, execution id): names one execution for ever.
-using ExecutionKey = std::pair<int64_t, int64_t>;
 
 /// Everything that the learner needs to go on after a restart, apart from the shipped set.
 struct LearnerState {

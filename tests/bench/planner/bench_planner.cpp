@@ -5,9 +5,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "modules/planner/core/map/passage_map.hpp"
-#include "modules/planner/core/map/world.hpp"
-#include "modules/planner/core/search/search.hpp"
+#include "modules/planner/core/map/clearance_map.hpp"
+#include "modules/planner/core/map/local_map.hpp"
+#include "modules/planner/core/search/pattern_search.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
 
@@ -21,26 +21,27 @@ using namespace tread::planner::testkit;
 struct Scene {
   explicit Scene(uint64_t seed)
       : mission(randomMission(seed)),
-        map(ToyMapping::kCell, ToyMapping::kTileCells, PassageConfig{}) {
+        map(ToyMapping::kCell, ToyMapping::kTileCells, ClearanceMapConfig{}) {
     const Grid grid = mission.ground.paint(ToyMapping::kCell, {-16.0, -16.0}, {48.0, 16.0});
     tiles = tilesOf(grid, ToyMapping::kTileCells, 1);
     for (const Tile& tile : tiles) map.put(tile);
     map.refresh();
   }
   Grid window() const { return map.window({-120, -120}, 240, 240); }
-  CostToGo field() const {
-    return CostToGo(map, mission.goal, mission.T_map_start.position(), {}, FieldConfig{});
+  DistanceToGoal field() const {
+    return DistanceToGoal(map, mission.goal, mission.T_map_start.position(), {},
+                          DistanceFieldConfig{});
   }
 
   Mission mission;
   std::vector<Tile> tiles;
-  PassageMap map;
+  ClearanceMap map;
 };
 
 void cutSurroundings(benchmark::State& state) {
   const Scene scene(3);
   for (auto _ : state)
-    benchmark::DoNotOptimize(Surroundings(scene.window(), FootprintSize{}, Margins{}));
+    benchmark::DoNotOptimize(CollisionChecker(scene.window(), FootprintSize{}, Margins{}));
 }
 BENCHMARK(cutSurroundings)->Unit(benchmark::kMicrosecond);
 
@@ -67,7 +68,7 @@ BENCHMARK(wayToGo)->Unit(benchmark::kMicrosecond);
 
 void preparePatterns(benchmark::State& state) {
   const PatternSet set = samplePatterns();
-  for (auto _ : state) benchmark::DoNotOptimize(PatternTable(set, SweepStep{}, {}));
+  for (auto _ : state) benchmark::DoNotOptimize(PatternTable(set, SweepResolution{}, {}));
 }
 BENCHMARK(preparePatterns)->Unit(benchmark::kMicrosecond);
 
@@ -89,7 +90,7 @@ PatternSet fivePatterns() {
 
 /// Worlds with all that a search wants of them.
 struct Worlds {
-  explicit Worlds(const PatternSet& set) : table(set, SweepStep{}, {}) {
+  explicit Worlds(const PatternSet& set) : table(set, SweepResolution{}, {}) {
     for (uint64_t seed = 1; seed <= 10; ++seed) scenes.emplace_back(seed);
     for (const Scene& scene : scenes) {
       around.emplace_back(scene.window(), FootprintSize{}, Margins{});
@@ -101,21 +102,21 @@ struct Worlds {
     problem.T_map_start = scenes[i].mission.T_map_start;
     problem.start_class = table.restClass();
     problem.patterns = &table;
-    problem.surroundings = &around[i];
-    problem.cost_to_go = &fields[i];
+    problem.collision_checker = &around[i];
+    problem.distance_to_goal = &fields[i];
     problem.goal = scenes[i].mission.goal;
     return problem;
   }
 
   PatternTable table;
   std::vector<Scene> scenes;
-  std::vector<Surroundings> around;
-  std::vector<CostToGo> fields;
+  std::vector<CollisionChecker> around;
+  std::vector<DistanceToGoal> fields;
 };
 
 void searchWorlds(benchmark::State& state, const PatternSet& set, const SearchConfig& config) {
   const Worlds worlds(set);
-  Search engine(config);
+  PatternSearch engine(config);
   int64_t expansions = 0;
   size_t turn = 0;
   for (auto _ : state) {

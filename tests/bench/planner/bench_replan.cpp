@@ -5,8 +5,8 @@
 // cm, and the pattern set. As a ratio to the clearance transform of that map, timed between the
 // cycles.
 #include "modules/planner/core/execution/supervisor.hpp"
-#include "modules/planner/core/map/world.hpp"
-#include "modules/planner/core/search/search.hpp"
+#include "modules/planner/core/map/local_map.hpp"
+#include "modules/planner/core/search/pattern_search.hpp"
 #include "tests/bench/planner/path_figures.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
@@ -39,29 +39,28 @@ PatternSet fifteenPatterns(double turn_error) {
 
 /// A cycle: field and way to go of the changed map, the table of the changed set, the search.
 void replan(benchmark::State& state) {
-  WorldConfig config;
+  LocalMapConfig config;
   config.window = kSide;
   config.window_period = config.field_period = 0;
   std::vector<double> cycles, transforms;
   uint64_t seed = 0;
   int64_t now = 0;
-  std::vector<World> worlds(20, World(config));
+  std::vector<LocalMap> maps(20, LocalMap(config));
   std::vector<Mission> missions;
   std::vector<Grid> grids;
   std::vector<std::vector<Tile>> tiles;
-  for (size_t i = 0; i < worlds.size(); ++i) {
+  for (size_t i = 0; i < maps.size(); ++i) {
     missions.push_back(randomMission(i + 1));
     grids.push_back(missions[i].ground.paint(0.1, {-16.0, -19.2}, {24.0, 20.8}));
     tiles.push_back(tilesOf(grids[i], ToyMapping::kTileCells, 1));
     // The robot has been there for a while.
-    for (const Tile& tile : tiles[i])
-      worlds[i].put(tile, ToyMapping::kCell, ToyMapping::kTileCells);
-    worlds[i].lookAround(missions[i].T_map_start, 1);
-    worlds[i].lookAhead(missions[i].T_map_start, missions[i].goal, 1);
+    for (const Tile& tile : tiles[i]) maps[i].put(tile, ToyMapping::kCell, ToyMapping::kTileCells);
+    maps[i].updateSurroundings(missions[i].T_map_start, 1);
+    maps[i].updateDistance(missions[i].T_map_start, missions[i].goal, 1);
   }
-  Search search(SearchConfig{});
+  PatternSearch search(SearchConfig{});
   for (auto _ : state) {
-    const size_t i = seed++ % worlds.size();
+    const size_t i = seed++ % maps.size();
     const Mission& mission = missions[i];
     now += 1'000'000;
     const PatternSet set = fifteenPatterns(1.0 + 0.01 * static_cast<double>(seed % 7));
@@ -71,18 +70,17 @@ void replan(benchmark::State& state) {
       Cell& cell = tile.cells[tile.cells.size() / 3];
       cell = cell == kObstacle ? kFree : kObstacle;
     }
-    for (const Tile& tile : tiles[i])
-      worlds[i].put(tile, ToyMapping::kCell, ToyMapping::kTileCells);
+    for (const Tile& tile : tiles[i]) maps[i].put(tile, ToyMapping::kCell, ToyMapping::kTileCells);
     const bench::StopWatch watch;
-    worlds[i].lookAround(mission.T_map_start, now);
-    worlds[i].lookAhead(mission.T_map_start, mission.goal, now);
-    const PatternTable table(set, SweepStep{}, {});
+    maps[i].updateSurroundings(mission.T_map_start, now);
+    maps[i].updateDistance(mission.T_map_start, mission.goal, now);
+    const PatternTable table(set, SweepResolution{}, {});
     SearchProblem problem;
     problem.T_map_start = mission.T_map_start;
     problem.start_class = table.restClass();
     problem.patterns = &table;
-    problem.surroundings = &worlds[i].surroundings();
-    problem.cost_to_go = &worlds[i].costToGo();
+    problem.collision_checker = &maps[i].collisionChecker();
+    problem.distance_to_goal = &maps[i].distanceToGoal();
     problem.goal = mission.goal;
     benchmark::DoNotOptimize(
         search.run(problem, [](int count) { return count >= PolicyConfig{}.driving_expansions; }));

@@ -10,11 +10,11 @@
 
 namespace tread::planner::testkit {
 
-void ToyBridge::receive(int64_t run_id, const Slot& running, const Slot& next, int64_t now) {
+void ToyBridge::receive(int64_t run_id, const ProgramSlot& running, const ProgramSlot& next,
+                        int64_t now) {
   run_id_ = run_id;
   if (running.empty() || !armed_) {
-    if (!current_.empty())
-      close(now, ExecutionReading::Outcome::kAborted, "stopped by the planner");
+    if (!current_.empty()) close(ExecutionReading::State::kAborted, "stopped by the planner");
     current_ = pending_ = {};
     return;
   }
@@ -26,7 +26,7 @@ void ToyBridge::receive(int64_t run_id, const Slot& running, const Slot& next, i
   }
 }
 
-void ToyBridge::begin(const Slot& slot, int64_t started) {
+void ToyBridge::begin(const ProgramSlot& slot, int64_t started) {
   current_ = slot;
   pending_ = {};
   started_ = started;
@@ -40,17 +40,16 @@ void ToyBridge::begin(const Slot& slot, int64_t started) {
   if (executions_.size() > 8) executions_.erase(executions_.begin());
 }
 
-void ToyBridge::close(int64_t now, ExecutionReading::Outcome outcome, const std::string& reason) {
-  executions_.back().ended = now;
-  executions_.back().outcome = outcome;
+void ToyBridge::close(ExecutionReading::State state, const std::string& reason) {
+  executions_.back().state = state;
   executions_.back().reason = reason;
 }
 
 TrackCommand ToyBridge::step(int64_t now) {
   while (!current_.empty() && now >= started_ + current_.durationUs()) {
     const int64_t end = started_ + current_.durationUs();
-    close(end, ExecutionReading::Outcome::kCompleted, "");
-    const Slot next = pending_;
+    close(ExecutionReading::State::kCompleted, "");
+    const ProgramSlot next = pending_;
     current_ = {};
     if (!next.empty()) begin(next, end);
   }
@@ -74,8 +73,8 @@ constexpr int64_t kScanPeriod = 100'000;
 
 struct Orders {
   int64_t due;
-  Slot running;
-  Slot next;
+  ProgramSlot running;
+  ProgramSlot next;
 };
 
 /// A drive under way.
@@ -92,7 +91,7 @@ class Drive {
     if (!options.whole_map_known) return;
     const Grid grid = mission_.ground.paint(ToyMapping::kCell, {-16.0, -16.0}, {48.0, 16.0});
     for (const Tile& tile : tilesOf(grid, ToyMapping::kTileCells, 1))
-      supervisor_.world().put(tile, ToyMapping::kCell, ToyMapping::kTileCells);
+      supervisor_.localMap().put(tile, ToyMapping::kCell, ToyMapping::kTileCells);
   }
 
   DriveOutcome run() {
@@ -141,15 +140,15 @@ class Drive {
     if (options_.whole_map_known) {
       Tile tick{1000, 1000, now_,
                 std::vector<Cell>(ToyMapping::kTileCells * ToyMapping::kTileCells, kUnknown)};
-      supervisor_.world().put(tick, ToyMapping::kCell, ToyMapping::kTileCells);
+      supervisor_.localMap().put(tick, ToyMapping::kCell, ToyMapping::kTileCells);
       return;
     }
     for (Tile& tile : mapping_.scan(mission_.ground, state_.pose, now_))
-      supervisor_.world().put(std::move(tile), ToyMapping::kCell, ToyMapping::kTileCells);
+      supervisor_.localMap().put(std::move(tile), ToyMapping::kCell, ToyMapping::kTileCells);
   }
 
-  Situation situation() {
-    Situation s;
+  PlannerInputs inputs() {
+    PlannerInputs s;
     s.now = now_;
     PoseReading pose = readings_.front();
     pose.T_map_body.x += normal(options_.errors.pose_noise);
@@ -165,7 +164,7 @@ class Drive {
   }
 
   void plan() {
-    const Situation s = situation();
+    const PlannerInputs s = inputs();
     const std::clock_t before = std::clock();
     const Decision decision = supervisor_.step(s, nullptr);
     const double took = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
@@ -176,7 +175,7 @@ class Drive {
     orders_.push_back(
         {now_ + options_.latency, supervisor_.program().running(), supervisor_.program().next()});
     const double clearance =
-        mission_.ground.clearance(options_.config.world.footprint, state_.pose);
+        mission_.ground.clearance(options_.config.local_map.footprint, state_.pose);
     outcome_.least_clearance = std::min(outcome_.least_clearance, clearance);
     if (clearance <= 0.0) ++outcome_.collisions;
     done_ = decision.report.status == PlanStatus::kArrived;

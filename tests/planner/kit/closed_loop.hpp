@@ -16,7 +16,7 @@ namespace tread::planner::testkit {
 class ToyBridge {
  public:
   /// What the planner wants, received at now [us].
-  void receive(int64_t run_id, const Slot& running, const Slot& next, int64_t now);
+  void receive(int64_t run_id, const ProgramSlot& running, const ProgramSlot& next, int64_t now);
   /// The command of now.
   TrackCommand step(int64_t now);
   void setArmed(bool armed) { armed_ = armed; }
@@ -27,16 +27,16 @@ class ToyBridge {
   int begun() const { return begun_; }
 
  private:
-  void begin(const Slot& slot, int64_t started);
-  void close(int64_t now, ExecutionReading::Outcome outcome, const std::string& reason);
+  void begin(const ProgramSlot& slot, int64_t started);
+  void close(ExecutionReading::State outcome, const std::string& reason);
 
   bool armed_ = true;
   int64_t run_id_ = 0;
   int64_t last_id_ = 0;
   int begun_ = 0;
   int64_t started_ = 0;
-  Slot current_;
-  Slot pending_;
+  ProgramSlot current_;
+  ProgramSlot pending_;
   BridgeReading reading_;
   std::vector<ExecutionReading> executions_;
 };

@@ -8,18 +8,20 @@
 #include <utility>
 #include <vector>
 
-#include "modules/planner/core/map/pose_to_go.hpp"
+#include "modules/planner/core/map/heading_aware_heuristic.hpp"
 
 namespace tread::planner::testkit {
 
-/// The costs that PoseToGo stands for: Dijkstra over all squares and headings, nothing left out.
+/// The costs that HeadingAwareHeuristic stands for: Dijkstra over all squares and headings, nothing
+/// left out.
 /** Written from the description of the moves: each of 16 directions goes to one square, next or
  * one beyond; the heading turns by at most one bin on the way, or by one on the spot. */
 class GuideReference {
  public:
-  GuideReference(Places& places, const Goal& goal, const Pose2& start, const MotionRates& rates)
-      : places_(places), rates_(rates), start_(start) {
-    cost_.assign(places.count() * kHeadings, std::numeric_limits<double>::infinity());
+  GuideReference(FreeConfigurations& configurations, const Goal& goal, const Pose2& start,
+                 const MotionRates& rates)
+      : configurations_(configurations), rates_(rates), start_(start) {
+    cost_.assign(configurations.count() * kHeadings, std::numeric_limits<double>::infinity());
     seed(goal);
     while (!open_.empty()) {
       const auto [cost, state] = open_.top();
@@ -30,15 +32,16 @@ class GuideReference {
   double at(int column, int row, int heading) const { return cost_[number(column, row, heading)]; }
 
  private:
-  static constexpr int kHeadings = PoseToGo::kHeadings;
+  static constexpr int kHeadings = HeadingAwareHeuristic::kHeadings;
   static constexpr double kBin = 2.0 * kPi / kHeadings;
   using Entry = std::pair<double, size_t>;
 
   size_t number(int column, int row, int heading) const {
-    return places_.number(column, row) * kHeadings + static_cast<size_t>(heading);
+    return configurations_.number(column, row) * kHeadings + static_cast<size_t>(heading);
   }
   bool contains(int column, int row) const {
-    return column >= 0 && row >= 0 && column < places_.width() && row < places_.height();
+    return column >= 0 && row >= 0 && column < configurations_.width() &&
+           row < configurations_.height();
   }
   void offer(double cost, size_t state) {
     if (cost >= cost_[state]) return;
@@ -47,15 +50,15 @@ class GuideReference {
   }
   void seed(const Goal& goal) {
     const Pose2& at = goal.T_map_goal;
-    for (int row = 0; row < places_.height(); ++row) {
-      for (int column = 0; column < places_.width(); ++column) {
-        const bool own = column == places_.column(at.x) && row == places_.row(at.y);
-        const double off = (places_.centre(column, row) - at.position()).norm();
+    for (int row = 0; row < configurations_.height(); ++row) {
+      for (int column = 0; column < configurations_.width(); ++column) {
+        const bool own = column == configurations_.column(at.x) && row == configurations_.row(at.y);
+        const double off = (configurations_.centre(column, row) - at.position()).norm();
         if (!own && off > goal.position_tolerance) continue;
         for (int heading = 0; heading < kHeadings; ++heading) {
           const double turn = std::abs(wrapAngle(heading * kBin - at.yaw));
           if (turn > std::max(goal.yaw_tolerance, kBin / 2.0)) continue;
-          if (own || places_.isFree(places_.number(column, row), heading))
+          if (own || configurations_.isFree(configurations_.number(column, row), heading))
             offer(0.0, number(column, row, heading));
         }
       }
@@ -72,8 +75,8 @@ class GuideReference {
   void relax(double cost, size_t state) {
     const auto square = static_cast<int>(state / kHeadings);
     const int heading = static_cast<int>(state % kHeadings);
-    const int column = square % places_.stride() - Places::kRim;
-    const int row = square / places_.stride() - Places::kRim;
+    const int column = square % configurations_.stride() - FreeConfigurations::kRim;
+    const int row = square / configurations_.stride() - FreeConfigurations::kRim;
     if (rates_.turn.any)
       for (const int turn : {-1, 1})
         from(column, row, heading + turn, cost + static_cast<double>(rates_.turn.cost(0.0, kBin)));
@@ -82,7 +85,7 @@ class GuideReference {
       if (!rate.any) continue;
       const auto [dx, dy] = stepIn((heading + direction) % kHeadings);
       if (!between(column, row, dx, dy)) continue;
-      const double way = std::hypot(dx, dy) * places_.size();
+      const double way = std::hypot(dx, dy) * configurations_.size();
       for (const int turn : {-1, 0, 1})
         if (turn == 0 || rate.turns)
           from(column - dx, row - dy, heading + turn,
@@ -96,20 +99,21 @@ class GuideReference {
     const int straight_y = std::abs(dy) == 2 ? dy / 2 : 0;
     const int corner_x = dx > 0 ? 1 : -1;
     const int corner_y = dy > 0 ? 1 : -1;
-    return places_.passable(places_.number(column - straight_x, row - straight_y)) ||
-           places_.passable(places_.number(column - corner_x, row - corner_y));
+    return configurations_.passable(
+               configurations_.number(column - straight_x, row - straight_y)) ||
+           configurations_.passable(configurations_.number(column - corner_x, row - corner_y));
   }
   void from(int column, int row, int heading, double cost) {
     if (!contains(column, row)) return;
     heading = (heading + kHeadings) % kHeadings;
     const int own = static_cast<int>(std::lround(start_.yaw / kBin) + kHeadings) % kHeadings;
-    const bool is_start =
-        column == places_.column(start_.x) && row == places_.row(start_.y) && heading == own;
-    if (is_start || places_.isFree(places_.number(column, row), heading))
+    const bool is_start = column == configurations_.column(start_.x) &&
+                          row == configurations_.row(start_.y) && heading == own;
+    if (is_start || configurations_.isFree(configurations_.number(column, row), heading))
       offer(cost, number(column, row, heading));
   }
 
-  Places& places_;
+  FreeConfigurations& configurations_;
   const MotionRates& rates_;
   Pose2 start_;
   std::vector<double> cost_;

@@ -16,7 +16,7 @@ namespace tread::planner::testkit {
 
 /// A random ground with queries on it, the patterns of the tests and a planner.
 struct PathBench {
-  explicit PathBench(uint64_t seed, bool unknown_blocks = true, SweepStep step = {})
+  explicit PathBench(uint64_t seed, bool unknown_blocks = true, SweepResolution step = {})
       : random(seed), ground(shape(random)), grid(ground.draw(random)) {
     table.emplace(samplePatterns(), step, DefaultSigma{});
     config.unknown_blocks = unknown_blocks;

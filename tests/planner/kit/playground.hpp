@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "common/grid/grid.hpp"
-#include "modules/planner/core/map/cost_to_go.hpp"
-#include "modules/planner/core/map/surroundings.hpp"
+#include "modules/planner/core/map/collision_checker.hpp"
+#include "modules/planner/core/map/distance_to_goal.hpp"
 
 namespace tread::planner::testkit {
 

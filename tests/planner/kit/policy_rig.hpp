@@ -15,18 +15,18 @@ class Rig {
       : supervisor_(config, 77) {
     supervisor_.takeSet(samplePatterns());
     paint(ground);
-    situation_.armed_by_operator = true;
-    situation_.goal = Goal{1, {12.0, 0.0, 0.0}, 0.5, 4.0};
+    inputs_.armed_by_operator = true;
+    inputs_.goal = Goal{1, {12.0, 0.0, 0.0}, 0.5, 4.0};
   }
 
   void paint(const Playground& ground) {
     ++painted_;
     for (Tile& tile : tilesOf(ground.paint(0.1, {-9.6, -9.6}, {16.0, 9.6}), 32, 1 + painted_))
-      supervisor_.world().put(std::move(tile), 0.1, 32);
+      supervisor_.localMap().put(std::move(tile), 0.1, 32);
   }
 
   /// Runs for a time [s]; `tamper` may spoil the situation of each step.
-  Decision run(double seconds, const std::function<void(Situation&)>& tamper = nullptr) {
+  Decision run(double seconds, const std::function<void(PlannerInputs&)>& tamper = nullptr) {
     Decision decision;
     const int64_t end = now_ + static_cast<int64_t>(seconds * 1e6);
     for (; now_ < end; now_ += 10'000) {
@@ -37,16 +37,16 @@ class Rig {
     return decision;
   }
 
-  Decision step(const std::function<void(Situation&)>& tamper) {
+  Decision step(const std::function<void(PlannerInputs&)>& tamper) {
     if (maps_) freshMap();
-    situation_.now = now_;
+    inputs_.now = now_;
     const double speed = (state_.left + state_.right) / 2.0;
-    situation_.pose = PoseReading{
+    inputs_.pose = PoseReading{
         now_, state_.pose, Twist2{speed, 0.0, (state_.right - state_.left) / TrackModel{}.gauge}};
-    situation_.bridge = bridge_.reading();
-    situation_.executions = bridge_.executions();
-    situation_.set_received = now_;
-    Situation seen = situation_;
+    inputs_.bridge = bridge_.reading();
+    inputs_.executions = bridge_.executions();
+    inputs_.set_received = now_;
+    PlannerInputs seen = inputs_;
     if (tamper) tamper(seen);
     const Decision decision = supervisor_.step(seen, stop);
     bridge_.receive(77, supervisor_.program().running(), supervisor_.program().next(), now_);
@@ -62,20 +62,20 @@ class Rig {
   const MotionPattern& running() const { return supervisor_.program().running().pattern(); }
   const MotionPattern& next() const { return supervisor_.program().next().pattern(); }
   Supervisor& supervisor() { return supervisor_; }
-  Situation& situation() { return situation_; }
+  PlannerInputs& inputs() { return inputs_; }
   ToyBridge& bridge() { return bridge_; }
   int64_t now() const { return now_; }
 
  private:
   void freshMap() {
     Tile tile{500, 500, now_, std::vector<Cell>(32 * 32, kFree)};
-    supervisor_.world().put(std::move(tile), 0.1, 32);
+    supervisor_.localMap().put(std::move(tile), 0.1, 32);
   }
 
   Supervisor supervisor_;
   ToyBridge bridge_;
   TrackState state_;
-  Situation situation_;
+  PlannerInputs inputs_;
   int64_t now_ = 10'000'000;
   int64_t painted_ = 0;
   bool maps_ = true;

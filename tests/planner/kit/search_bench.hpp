@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include "modules/planner/core/map/passage_map.hpp"
-#include "modules/planner/core/search/search.hpp"
+#include "modules/planner/core/map/clearance_map.hpp"
+#include "modules/planner/core/search/pattern_search.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
 
@@ -12,14 +12,14 @@ namespace tread::planner::testkit {
 /// A place, wholly known, with everything that a search wants of it.
 struct SearchBench {
   SearchBench(const Grid& grid, const PatternSet& set, const Goal& aim, const Margins& margins = {},
-              const FieldConfig& field = {})
-      : map(grid.cellSize(), 32, PassageConfig{}),
-        surroundings(grid, FootprintSize{}, margins),
-        table(set, SweepStep{}, {}) {
+              const DistanceFieldConfig& field = {})
+      : map(grid.cellSize(), 32, ClearanceMapConfig{}),
+        collision_checker(grid, FootprintSize{}, margins),
+        table(set, SweepResolution{}, {}) {
     for (const Tile& tile : tilesOf(grid, 32, 1)) map.put(tile);
     map.refresh();
     goal = aim;
-    cost_to_go = CostToGo(map, goal, {0.0, 0.0}, {}, field);
+    distance_to_goal = DistanceToGoal(map, goal, {0.0, 0.0}, {}, field);
   }
 
   SearchProblem problem(const Pose2& start, const std::string& motion_class = "rest") const {
@@ -27,17 +27,17 @@ struct SearchBench {
     task.T_map_start = start;
     task.start_class = table.classIndex(motion_class);
     task.patterns = &table;
-    task.surroundings = &surroundings;
-    task.cost_to_go = &cost_to_go;
+    task.collision_checker = &collision_checker;
+    task.distance_to_goal = &distance_to_goal;
     task.goal = goal;
     return task;
   }
 
-  PassageMap map;
-  Surroundings surroundings;
+  ClearanceMap map;
+  CollisionChecker collision_checker;
   PatternTable table;
   Goal goal;
-  CostToGo cost_to_go;
+  DistanceToGoal distance_to_goal;
 };
 
 /// A predicate that ends a search after so many expansions.

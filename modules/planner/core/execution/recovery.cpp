@@ -41,13 +41,13 @@ double worth(const Move& move, int number) {
 }
 
 /// Whether a move is free; if `regains`, only with more and more margin on its way.
-bool isFree(const Move& move, const Surroundings& around, const Pose2& start, bool regains) {
-  int level = around.freeLevel(start, Surroundings::kPlan);
+bool isFree(const Move& move, const CollisionChecker& around, const Pose2& start, bool regains) {
+  int level = around.freeLevel(start, CollisionChecker::kPlan);
   Overlap overlap = around.overlap(start);
   Pose2 pose = start;
   for (const TablePattern* pattern : move.patterns) {
     if (level >= 0) {
-      const int wanted = regains ? Surroundings::kPlan : level;
+      const int wanted = regains ? CollisionChecker::kPlan : level;
       if (!around.sweepRegains(turned(pose), level, *pattern, wanted)) return false;
       level = around.freeLevel(pose * pattern->end().pose, wanted);
     } else {
@@ -62,7 +62,8 @@ bool isFree(const Move& move, const Surroundings& around, const Pose2& start, bo
 
 }  // namespace
 
-std::vector<int> Recovery::propose(const PatternTable& table, const Surroundings& surroundings,
+std::vector<int> Recovery::propose(const PatternTable& table,
+                                   const CollisionChecker& collision_checker,
                                    const Pose2& T_map_body) {
   std::vector<Move> moves = movesFromRest(table);
   const int number = tries_++;
@@ -71,7 +72,7 @@ std::vector<int> Recovery::propose(const PatternTable& table, const Surroundings
   });
   for (const bool regains : {true, false}) {
     for (const Move& move : moves) {
-      if (!isFree(move, surroundings, T_map_body, regains)) continue;
+      if (!isFree(move, collision_checker, T_map_body, regains)) continue;
       std::vector<int> ids;
       for (const TablePattern* pattern : move.patterns) ids.push_back(pattern->id());
       return ids;

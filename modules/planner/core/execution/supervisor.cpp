@@ -22,11 +22,11 @@ constexpr double kDetourNear = 0.8;
 
 Supervisor::Supervisor(const PlannerConfig& config, int64_t run_id)
     : config_(config),
-      world_(config.world),
+      local_map_(config.local_map),
       search_(config.search),
       branch_search_(config.search),
-      commitment_(config.commitment),
-      book_(run_id),
+      hysteresis_(config.side_hysteresis),
+      tracker_(run_id),
       progress_(config.policy.patience) {}
 
 bool Supervisor::takeSet(const PatternSet& set) {
@@ -35,10 +35,10 @@ bool Supervisor::takeSet(const PatternSet& set) {
 }
 
 bool Supervisor::takeWaitingSet() {
-  set_refusal_ = book_.clash(waiting_table_->set());
+  set_refusal_ = tracker_.conflictWith(waiting_table_->set());
   // Such a set would stop the vehicle, and what runs could not be told from it.
   const std::string defect = waiting_table_->defect();
-  if (set_refusal_.empty() && !book_.running().empty() && !defect.empty())
+  if (set_refusal_.empty() && !tracker_.running().empty() && !defect.empty())
     set_refusal_ = "PATTERN_SET version " + std::to_string(waiting_table_->set().version()) +
                    " waits: " + defect;
   if (!set_refusal_.empty()) return false;
@@ -56,7 +56,7 @@ void Supervisor::followSet() {
   if (searched_table_ != table_ && mode_ == Mode::kDriving) ++cycles_with_old_set_;
 }
 
-Decision Supervisor::step(const Situation& s, const StopPredicate& stop) {
+Decision Supervisor::step(const PlannerInputs& s, const StopPredicate& stop) {
   stop_ = stop;
   planned_ = false;
   prediction_.reset();
@@ -68,32 +68,32 @@ Decision Supervisor::step(const Situation& s, const StopPredicate& stop) {
   followBridge(s);
   followSet();
   was_armed_ = was_armed_ || (s.bridge && s.bridge->armed());
-  const Supplies supplies{world_.newestUtime(), table_ ? table_->defect() : "no PATTERN_SET yet",
-                          was_armed_};
-  act(s, judge(s, supplies, config_.ages));
+  const MapAndSet supplies{local_map_.newestUtime(),
+                           table_ ? table_->defect() : "no PATTERN_SET yet", was_armed_};
+  act(s, checkPreconditions(s, supplies, config_.ages));
   Decision decision;
   decision.planned = planned_;
   decision.report = report(s);
   return decision;
 }
 
-void Supervisor::act(const Situation& s, const Readiness& ready) {
-  if (ready.level == Readiness::Level::kStop) {
+void Supervisor::act(const PlannerInputs& s, const Preconditions& ready) {
+  if (ready.level == Preconditions::Level::kStop) {
     if (mode_ == Mode::kDriving) halt(s, ready.reason);
     nothing_since_.reset();
     progress_.restart(s.now);
     if (!s.goal && ready.status == PlanStatus::kWaiting) return say(PlanStatus::kIdle, "");
     return say(ready.status, ready.reason);
   }
-  world_.lookAround(s.pose->T_map_body, s.now);
-  if (s.goal) world_.lookAhead(s.pose->T_map_body, *s.goal, s.now);
-  if (s.goal && ready.level == Readiness::Level::kGo && !arrived_) watchProgress(s);
+  local_map_.updateSurroundings(s.pose->T_map_body, s.now);
+  if (s.goal) local_map_.updateDistance(s.pose->T_map_body, *s.goal, s.now);
+  if (s.goal && ready.level == Preconditions::Level::kGo && !arrived_) watchProgress(s);
   if (mode_ == Mode::kSettling) settle(s);
   if (mode_ == Mode::kDriving) drive(s, ready);
   if (mode_ == Mode::kStanding) stand(s, ready);
 }
 
-void Supervisor::noteGoal(const Situation& s) {
+void Supervisor::noteGoal(const PlannerInputs& s) {
   std::optional<int64_t> id;
   if (s.goal) id = s.goal->id;
   if (id == goal_id_) return;
@@ -101,44 +101,44 @@ void Supervisor::noteGoal(const Situation& s) {
   arrived_ = false;
   nothing_since_.reset();
   recovery_.restart();
-  commitment_.forget();
-  world_.forgetDetours();
+  hysteresis_.forget();
+  local_map_.forgetDetours();
   progress_.restart(s.now);
   note_until_ = 0;
   last_plan_ = 0;
   planned_ = true;
 }
 
-void Supervisor::followBridge(const Situation& s) {
-  const bool led_to_rest = !book_.running().empty() && leadsToRest(book_.running());
-  switch (book_.follow(s)) {
-    case ProgramBook::Event::kNone:
+void Supervisor::followBridge(const PlannerInputs& s) {
+  const bool led_to_rest = !tracker_.running().empty() && leadsToRest(tracker_.running());
+  switch (tracker_.follow(s)) {
+    case ExecutionTracker::Event::kNone:
       return;
-    case ProgramBook::Event::kSwitched: {
+    case ExecutionTracker::Event::kSwitched: {
       planned_on_.reset();
       const bool as_planned =
-          !plan_.empty() && plan_.front().pattern_id == book_.running().pattern_id;
+          !plan_.empty() && plan_.front().pattern_id == tracker_.running().pattern_id;
       if (as_planned)
         plan_.erase(plan_.begin());
       else
         plan_.clear();
-      commitment_.begun(book_.running().pattern_id);
+      hysteresis_.begun(tracker_.running().pattern_id);
       last_plan_ = 0;
       if (++switches_ >= kRecovered) recovery_.restart();
       ++counters_["patterns joined"];
       return;
     }
-    case ProgramBook::Event::kEnded:
+    case ExecutionTracker::Event::kEnded:
       ++counters_["came to rest"];
       if (!led_to_rest) say(PlanStatus::kWaiting, "stopped: nothing was handed over in time");
       break;
-    case ProgramBook::Event::kAborted:
+    case ExecutionTracker::Event::kAborted:
       ++counters_["aborted by the bridge"];
-      say(PlanStatus::kWaiting, "stopped by motor_bridge: " + book_.abortReason());
+      say(PlanStatus::kWaiting, "stopped by motor_bridge: " + tracker_.abortReason());
       break;
-    case ProgramBook::Event::kNeverStarted:
+    case ExecutionTracker::Event::kNeverStarted:
       ++counters_["not begun by the bridge"];
-      say(PlanStatus::kWaiting, "stopped: " + book_.abortReason());
+      say(PlanStatus::kWaiting, "stopped: " + tracker_.abortReason());
       break;
   }
   mode_ = Mode::kSettling;
@@ -147,8 +147,8 @@ void Supervisor::followBridge(const Situation& s) {
   planned_on_.reset();
 }
 
-void Supervisor::halt(const Situation& s, const std::string& why) {
-  book_.stop();
+void Supervisor::halt(const PlannerInputs& s, const std::string& why) {
+  tracker_.stop();
   plan_.clear();
   mode_ = Mode::kSettling;
   settling_since_ = s.now;
@@ -157,7 +157,7 @@ void Supervisor::halt(const Situation& s, const std::string& why) {
   say(PlanStatus::kBlocked, "stopped at once: " + why);
 }
 
-void Supervisor::settle(const Situation& s) {
+void Supervisor::settle(const PlannerInputs& s) {
   const bool too_long = s.now - settling_since_ > config_.policy.settle_limit;
   if (!standstill_.stands(settling_since_) && !too_long) return;
   mode_ = Mode::kStanding;
@@ -165,14 +165,14 @@ void Supervisor::settle(const Situation& s) {
 }
 
 bool Supervisor::sayUnreachable() {
-  if (!world_.costToGo().unreachable()) return false;
+  if (!local_map_.distanceToGoal().unreachable()) return false;
   time_to_go_ = std::numeric_limits<double>::quiet_NaN();
-  say(PlanStatus::kUnreachable, world_.costToGo().problem());
+  say(PlanStatus::kUnreachable, local_map_.distanceToGoal().problem());
   return true;
 }
 
-void Supervisor::watchProgress(const Situation& s) {
-  const double way = world_.costToGo().length(s.pose->T_map_body.position());
+void Supervisor::watchProgress(const PlannerInputs& s) {
+  const double way = local_map_.distanceToGoal().length(s.pose->T_map_body.position());
   if (!std::isfinite(way) || !progress_.stuck(way, s.now)) return;
   ++counters_["no progress: a way given up"];
   note_ = "no progress for " + std::to_string(config_.policy.patience / 1'000'000) +
@@ -181,36 +181,36 @@ void Supervisor::watchProgress(const Situation& s) {
   addDetour(s);
 }
 
-void Supervisor::addDetour(const Situation& s) {
-  if (static_cast<int>(world_.detours()) >= config_.policy.detours) {
-    world_.forgetDetours();
+void Supervisor::addDetour(const PlannerInputs& s) {
+  if (static_cast<int>(local_map_.detours()) >= config_.policy.detours) {
+    local_map_.forgetDetours();
     return;
   }
   const Eigen::Vector2d p = s.pose->T_map_body.position();
   std::optional<Eigen::Vector2d> narrowest;
   double least = std::numeric_limits<double>::infinity();
   const int points = static_cast<int>(kDetourLook / kDetourStep);
-  for (const Eigen::Vector2d& at : world_.costToGo().descend(p, kDetourStep, points)) {
-    const double clearance = world_.surroundings().clearance(at);
+  for (const Eigen::Vector2d& at : local_map_.distanceToGoal().descend(p, kDetourStep, points)) {
+    const double clearance = local_map_.collisionChecker().clearance(at);
     if ((at - p).norm() < kDetourNear || clearance >= least) continue;
     least = clearance;
     narrowest = at;
   }
-  if (narrowest) world_.addDetour(*narrowest);
+  if (narrowest) local_map_.addDetour(*narrowest);
 }
 
-void Supervisor::sayDriving(const Situation& s) {
-  const std::string& aim = world_.detraction();
+void Supervisor::sayDriving(const PlannerInputs& s) {
+  const std::string& aim = local_map_.goalSubstitutionReason();
   say(PlanStatus::kDriving, s.now < note_until_ ? note_ : aim.empty() ? stopAhead() : aim);
 }
 
-bool Supervisor::leadsToRest(const Slot& slot) const {
+bool Supervisor::leadsToRest(const ProgramSlot& slot) const {
   return slot.pattern().exit_class == table_->motionClass(table_->restClass()).name;
 }
 
 std::string Supervisor::stopAhead() const {
   size_t after = 0;  // index in the plan of what begins when the vehicle stands
-  if (!leadsToRest(book_.running())) {
+  if (!leadsToRest(tracker_.running())) {
     if (plan_.empty() || plan_.front().exit_class != table_->restClass()) return {};
     after = 1;
   }
@@ -231,15 +231,15 @@ void Supervisor::say(PlanStatus status, const std::string& reason) {
 }
 
 const TablePattern* Supervisor::runningPattern() const {
-  if (book_.running().empty()) return nullptr;  // whose id 0 a set may have
-  const TablePattern* newest = table_->find(book_.running().pattern_id);
+  if (tracker_.running().empty()) return nullptr;  // whose id 0 a set may have
+  const TablePattern* newest = table_->find(tracker_.running().pattern_id);
   // The learner bends trajectories, never commands: another length is another pattern.
-  const bool same = newest != nullptr &&
-                    newest->pattern->commands.size() == book_.running().pattern().commands.size();
+  const bool same = newest != nullptr && newest->pattern->commands.size() ==
+                                             tracker_.running().pattern().commands.size();
   return same ? newest : nullptr;
 }
 
-PlanReport Supervisor::report(const Situation& s) const {
+PlanReport Supervisor::report(const PlannerInputs& s) const {
   PlanReport report;
   report.status = status_;
   report.reason = reason_;
@@ -250,15 +250,15 @@ PlanReport Supervisor::report(const Situation& s) const {
       mode_ == Mode::kDriving ? time_to_go_ : std::numeric_limits<double>::quiet_NaN();
   report.expansions = planned_ ? expansions_ : 0;
   double time = 0.0;
-  if (!book_.running().empty() && prediction_) {
+  if (!tracker_.running().empty() && prediction_) {
     time = prediction_->time_left;
-    report.execution_ids.push_back(book_.running().execution_id);
+    report.execution_ids.push_back(tracker_.running().execution_id);
     report.steps.push_back(
-        {book_.running().pattern_id, prediction_->T_map_end, 0, time, prediction_->uncertainty});
+        {tracker_.running().pattern_id, prediction_->T_map_end, 0, time, prediction_->uncertainty});
   }
   for (size_t i = 0; i < plan_.size(); ++i) {
-    const bool handed_over = i == 0 && plan_[i].pattern_id == book_.next().pattern_id;
-    report.execution_ids.push_back(handed_over ? book_.next().execution_id : 0);
+    const bool handed_over = i == 0 && plan_[i].pattern_id == tracker_.next().pattern_id;
+    report.execution_ids.push_back(handed_over ? tracker_.next().execution_id : 0);
     report.steps.push_back(plan_[i]);
     report.steps.back().time += time;
   }

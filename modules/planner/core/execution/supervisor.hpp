@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "common/execution/execution_tracker.hpp"
 #include "common/geometry/track.hpp"
-#include "modules/planner/core/execution/commitment.hpp"
-#include "modules/planner/core/execution/motion_watch.hpp"
-#include "modules/planner/core/execution/program_book.hpp"
-#include "modules/planner/core/execution/readiness.hpp"
+#include "modules/planner/core/execution/motion_monitors.hpp"
+#include "modules/planner/core/execution/planner_inputs.hpp"
 #include "modules/planner/core/execution/recovery.hpp"
-#include "modules/planner/core/map/world.hpp"
+#include "modules/planner/core/execution/side_hysteresis.hpp"
+#include "modules/planner/core/map/local_map.hpp"
+#include "modules/planner/core/search/pattern_search.hpp"
 #include "modules/planner/core/search/prediction.hpp"
-#include "modules/planner/core/search/search.hpp"
 
 namespace tread::planner {
 
@@ -38,12 +38,12 @@ struct PolicyConfig {
 
 /// All that the planner can be told about its behaviour.
 struct PlannerConfig {
-  WorldConfig world;
+  LocalMapConfig local_map;
   SearchConfig search;
   PolicyConfig policy;
-  CommitmentConfig commitment;
+  SideHysteresisConfig side_hysteresis;
   AgeLimits ages;
-  SweepStep sweep;
+  SweepResolution sweep;
   DefaultSigma default_sigma;  ///< errors at the end of a pattern of unknown covariance
   int64_t lease = 200'000;     ///< [us] the motors stop when nothing newer came for this long
   int64_t deadline = 30'000;   ///< [us] after which a search is cut off on the robot
@@ -57,7 +57,7 @@ struct Decision {
 };
 
 /// The planner without its wires: what to hand over to the motor bridge, from all that is known.
-/** Call takeSet() and world().put() as things come, then step() at 20 Hz. It
+/** Call takeSet() and localMap().put() as things come, then step() at 20 Hz. It
     1. learns from MOTOR and EXECUTION what became of what it handed over;
     2. judges the inputs, and empties the program or lets the vehicle come to rest;
     3. checks what is under way against the newest map: a running pattern that will hit something is
@@ -76,14 +76,14 @@ class Supervisor {
    * first step in which it fits, which may be when the vehicle stands. */
   bool takeSet(const PatternSet& set);
   const std::string& setRefusal() const { return set_refusal_; }
-  World& world() { return world_; }
-  const CostToGo& costToGo() const { return world_.costToGo(); }
+  LocalMap& localMap() { return local_map_; }
+  const DistanceToGoal& distanceToGoal() const { return local_map_.distanceToGoal(); }
 
   /// `stop` may end a search early (a deadline); the configured expansions end it in any case.
-  Decision step(const Situation& situation, const StopPredicate& stop);
+  Decision step(const PlannerInputs& inputs, const StopPredicate& stop);
 
-  const ProgramBook& program() const { return book_; }
-  const Search& search() const { return search_; }
+  const ExecutionTracker& program() const { return tracker_; }
+  const PatternSearch& search() const { return search_; }
   /// How often something noteworthy happened, by its name in words.
   const std::map<std::string, int64_t>& counters() const { return counters_; }
 
@@ -91,54 +91,54 @@ class Supervisor {
   enum class Mode { kStanding, kDriving, kSettling };
   static constexpr int64_t kTrackSpan = 5'000'000;  ///< [us]
 
-  void followBridge(const Situation& s);
+  void followBridge(const PlannerInputs& s);
   bool takeWaitingSet();
   void followSet();
-  void noteGoal(const Situation& s);
-  void act(const Situation& s, const Readiness& ready);
-  void settle(const Situation& s);
-  void halt(const Situation& s, const std::string& why);
+  void noteGoal(const PlannerInputs& s);
+  void act(const PlannerInputs& s, const Preconditions& ready);
+  void settle(const PlannerInputs& s);
+  void halt(const PlannerInputs& s, const std::string& why);
   // Driving.
-  void drive(const Situation& s, const Readiness& ready);
-  Prediction predictRunning(const Situation& s) const;
+  void drive(const PlannerInputs& s, const Preconditions& ready);
+  Prediction predictRunning(const PlannerInputs& s) const;
   void watchCorridor();
-  bool frozen(const Situation& s) const;
+  bool frozen(const PlannerInputs& s) const;
   bool nextCollides(const Prediction& running) const;
-  void planNext(const Situation& s, const Readiness& ready, const Prediction& running);
+  void planNext(const PlannerInputs& s, const Preconditions& ready, const Prediction& running);
   PlanStep endOf(const Prediction& running) const;
-  void searchNext(const Situation& s, const Prediction& running);
+  void searchNext(const PlannerInputs& s, const Prediction& running);
   bool stopNext(const Prediction& running);
-  void keepClear(const Situation& s, const Prediction& running);
-  bool stoppingIsBetter(const Situation& s, const std::vector<ExpectedPose>& poses) const;
+  void keepClear(const PlannerInputs& s, const Prediction& running);
+  bool stoppingIsBetter(const PlannerInputs& s, const std::vector<ExpectedPose>& poses) const;
   std::vector<ExpectedPose> posesAfter(const Prediction& running) const;
   std::optional<double> conflict(const Pose2& here, const std::vector<ExpectedPose>& poses) const;
   // Standing.
-  void stand(const Situation& s, const Readiness& ready);
-  void planStart(const Situation& s);
-  void begin(const Situation& s, const std::vector<PlanStep>& steps);
-  void noPlan(const Situation& s, const std::string& why);
-  void tryRecovery(const Situation& s);
+  void stand(const PlannerInputs& s, const Preconditions& ready);
+  void planStart(const PlannerInputs& s);
+  void begin(const PlannerInputs& s, const std::vector<PlanStep>& steps);
+  void noPlan(const PlannerInputs& s, const std::string& why);
+  void tryRecovery(const PlannerInputs& s);
   // Both.
-  SearchResult searchFrom(const Situation& s, const PlanStep& start, int expansions);
+  SearchResult searchFrom(const PlannerInputs& s, const PlanStep& start, int expansions);
   SearchResult keepSide(SearchProblem& problem, SearchResult fresh, const StopPredicate& stop);
   SearchResult keepNext(SearchProblem& problem, SearchResult fresh, const StopPredicate& stop);
   bool sayUnreachable();
-  void watchProgress(const Situation& s);
-  void addDetour(const Situation& s);
-  void sayDriving(const Situation& s);
-  bool leadsToRest(const Slot& slot) const;
+  void watchProgress(const PlannerInputs& s);
+  void addDetour(const PlannerInputs& s);
+  void sayDriving(const PlannerInputs& s);
+  bool leadsToRest(const ProgramSlot& slot) const;
   /// Why the running or the next pattern ends at rest, in words; empty if neither does.
   std::string stopAhead() const;
   void say(PlanStatus status, const std::string& reason);
   const TablePattern* runningPattern() const;
-  PlanReport report(const Situation& s) const;
+  PlanReport report(const PlannerInputs& s) const;
 
   PlannerConfig config_;
-  World world_;
-  Search search_;
-  Search branch_search_;  ///< along the branch that the planner is committed to
-  Commitment commitment_;
-  ProgramBook book_;
+  LocalMap local_map_;
+  PatternSearch search_;
+  PatternSearch branch_search_;  ///< along the branch that the planner is committed to
+  SideHysteresis hysteresis_;
+  ExecutionTracker tracker_;
   std::shared_ptr<const PatternTable> table_;
   /// Of the last search: its tree, which is drawn later, points into it.
   std::shared_ptr<const PatternTable> searched_table_;
@@ -146,8 +146,8 @@ class Supervisor {
   std::string set_refusal_;
   int cycles_with_old_set_ = 0;  ///< since the newest set was taken
   PoseTrack track_{kTrackSpan};
-  StandstillWatch standstill_;
-  ProgressWatch progress_;
+  StandstillDetector standstill_;
+  ProgressMonitor progress_;
   Recovery recovery_;
   StopPredicate stop_;
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "modules/planner/core/execution/supervisor.hpp"
-#include "modules/planner/core/search/words.hpp"
+#include "modules/planner/core/map/local_map.hpp"
 
 namespace tread::planner {
 namespace {
@@ -17,7 +17,7 @@ constexpr double kCoastStep = 0.1;
 
 }  // namespace
 
-void Supervisor::drive(const Situation& s, const Readiness& ready) {
+void Supervisor::drive(const PlannerInputs& s, const Preconditions& ready) {
   if (runningPattern() == nullptr) return halt(s, "the running pattern is gone from the set");
   prediction_ = predictRunning(s);
   watchCorridor();
@@ -25,16 +25,16 @@ void Supervisor::drive(const Situation& s, const Readiness& ready) {
   keepClear(s, *prediction_);
 }
 
-Prediction Supervisor::predictRunning(const Situation& s) const {
+Prediction Supervisor::predictRunning(const PlannerInputs& s) const {
   const TablePattern& pattern = *runningPattern();
   const Pose2& here = s.pose->T_map_body;
-  if (!book_.confirmed()) return predict(here, 0.0, pattern, *table_);
-  const double time = static_cast<double>(s.pose->utime - book_.started()) * kMicro;
-  const std::optional<Pose2> start = track_.at(book_.started(), kTrackGap);
+  if (!tracker_.confirmed()) return predict(here, 0.0, pattern, *table_);
+  const double time = static_cast<double>(s.pose->utime - tracker_.started()) * kMicro;
+  const std::optional<Pose2> start = track_.at(tracker_.started(), kTrackGap);
   const std::optional<Pose2> now = track_.at(s.pose->utime, kTrackGap);
-  Fulfilment so_far;
+  MotionRatio so_far;
   if (start && now && time > 0.0)
-    so_far = compare(between(*start, *now), time, pattern, table_->set().periodSeconds());
+    so_far = motionRatio(between(*start, *now), time, pattern, table_->set().periodSeconds());
   return predict(here, time, pattern, *table_, so_far);
 }
 
@@ -46,14 +46,14 @@ void Supervisor::watchCorridor() {
   ++counters_["left the predicted corridor"];
 }
 
-bool Supervisor::frozen(const Situation& s) const {
-  return book_.confirmed() && book_.ends() - s.now < config_.policy.freeze;
+bool Supervisor::frozen(const PlannerInputs& s) const {
+  return tracker_.confirmed() && tracker_.ends() - s.now < config_.policy.freeze;
 }
 
 std::optional<double> Supervisor::conflict(const Pose2& here,
                                            const std::vector<ExpectedPose>& poses) const {
-  const Surroundings& around = world_.surroundings();
-  const int level = around.freeLevel(here, Surroundings::kCheck);
+  const CollisionChecker& around = local_map_.collisionChecker();
+  const int level = around.freeLevel(here, CollisionChecker::kCheck);
   if (level >= 0) return firstConflict(around, poses, level);
   // On blocked ground already: it must not become worse.
   const Overlap now = around.overlap(here);
@@ -64,9 +64,10 @@ std::optional<double> Supervisor::conflict(const Pose2& here,
 
 std::vector<ExpectedPose> Supervisor::posesAfter(const Prediction& running) const {
   std::vector<ExpectedPose> poses;
-  const TablePattern* next = book_.next().empty() ? nullptr : table_->find(book_.next().pattern_id);
+  const TablePattern* next =
+      tracker_.next().empty() ? nullptr : table_->find(tracker_.next().pattern_id);
   if (next != nullptr) {
-    for (const SweepPose& at : next->sweep)
+    for (const SweptPose& at : next->swept_poses)
       poses.push_back({running.T_map_end * at.pose, running.time_left + at.time});
     return poses;
   }
@@ -78,16 +79,17 @@ std::vector<ExpectedPose> Supervisor::posesAfter(const Prediction& running) cons
 }
 
 bool Supervisor::nextCollides(const Prediction& running) const {
-  if (book_.next().empty()) return false;
+  if (tracker_.next().empty()) return false;
   return conflict(running.T_map_end, posesAfter(running)).has_value();
 }
 
-void Supervisor::planNext(const Situation& s, const Readiness& ready, const Prediction& running) {
+void Supervisor::planNext(const PlannerInputs& s, const Preconditions& ready,
+                          const Prediction& running) {
   if (frozen(s)) return;
-  const bool waits = !book_.confirmed() && !book_.next().empty();
+  const bool waits = !tracker_.confirmed() && !tracker_.next().empty();
   const bool due = s.now - last_plan_ >= config_.policy.plan_period && !waits;
   if (!due && !nextCollides(running)) return;
-  if (ready.level == Readiness::Level::kGo) return searchNext(s, running);
+  if (ready.level == Preconditions::Level::kGo) return searchNext(s, running);
   last_plan_ = s.now;
   planned_ = true;
   stopNext(running);
@@ -100,7 +102,7 @@ PlanStep Supervisor::endOf(const Prediction& running) const {
           running.uncertainty};
 }
 
-void Supervisor::searchNext(const Situation& s, const Prediction& running) {
+void Supervisor::searchNext(const PlannerInputs& s, const Prediction& running) {
   planned_on_ = running;
   if (sayUnreachable()) {
     last_plan_ = s.now;
@@ -114,19 +116,19 @@ void Supervisor::searchNext(const Situation& s, const Prediction& running) {
     return say(PlanStatus::kBlocked, stops ? "stopping: " + result.reason : result.reason);
   }
   plan_ = result.steps;
-  commitment_.take(plan_, *table_);
+  hysteresis_.take(plan_, *table_);
   if (plan_.empty())
-    book_.clearNext();
+    tracker_.clearNext();
   else
-    book_.setNext(table_->set(), plan_.front().pattern_id);
+    tracker_.setNext(table_->set(), plan_.front().pattern_id);
   sayDriving(s);
 }
 
 bool Supervisor::stopNext(const Prediction& running) {
-  const Surroundings& around = world_.surroundings();
+  const CollisionChecker& around = local_map_.collisionChecker();
   const int motion_class = runningPattern()->exit;
   const TablePattern* best = nullptr;
-  const int level = around.freeLevel(running.T_map_end, Surroundings::kCheck);
+  const int level = around.freeLevel(running.T_map_end, CollisionChecker::kCheck);
   if (motion_class != table_->restClass()) {
     for (const TablePattern* stop : table_->stopsFrom(motion_class)) {
       if (best != nullptr && best->duration <= stop->duration) continue;
@@ -139,10 +141,10 @@ bool Supervisor::stopNext(const Prediction& running) {
   }
   plan_.clear();
   if (best == nullptr) {
-    book_.clearNext();
+    tracker_.clearNext();
     return motion_class == table_->restClass();
   }
-  book_.setNext(table_->set(), best->id());
+  tracker_.setNext(table_->set(), best->id());
   plan_.push_back(stepAfter(endOf(running), *best));
   return true;
 }
@@ -150,12 +152,12 @@ bool Supervisor::stopNext(const Prediction& running) {
 /// Whether a stop now keeps more margin than going on. What is nearer than the stopping distance
 /// may be reached either way; then the better way is the one that keeps clear, and at equal margin
 /// to stand is better.
-bool Supervisor::stoppingIsBetter(const Situation& s,
+bool Supervisor::stoppingIsBetter(const PlannerInputs& s,
                                   const std::vector<ExpectedPose>& poses) const {
   if (!s.pose->twist) return true;
-  const Surroundings& around = world_.surroundings();
+  const CollisionChecker& around = local_map_.collisionChecker();
   const auto worst = [&](const std::vector<ExpectedPose>& way) {
-    int level = Surroundings::kCheck;
+    int level = CollisionChecker::kCheck;
     for (const ExpectedPose& at : way)
       level = std::min(level, around.freeLevel(at.T_map_body, level));
     return level;
@@ -166,7 +168,7 @@ bool Supervisor::stoppingIsBetter(const Situation& s,
   return worst(coast) >= worst(poses);
 }
 
-void Supervisor::keepClear(const Situation& s, const Prediction& running) {
+void Supervisor::keepClear(const PlannerInputs& s, const Prediction& running) {
   const double age = static_cast<double>(s.now - s.pose->utime) * kMicro;
   const double lead = static_cast<double>(config_.policy.stop_lead) * kMicro;
   std::vector<ExpectedPose> poses = running.ahead;

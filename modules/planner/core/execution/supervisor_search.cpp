@@ -7,15 +7,15 @@
 
 namespace tread::planner {
 
-SearchResult Supervisor::searchFrom(const Situation& s, const PlanStep& start, int expansions) {
+SearchResult Supervisor::searchFrom(const PlannerInputs& s, const PlanStep& start, int expansions) {
   SearchProblem problem;
   problem.T_map_start = start.T_map_end;
   problem.start_class = start.exit_class;
   problem.start_uncertainty = start.uncertainty;
   problem.patterns = table_.get();
-  problem.surroundings = &world_.surroundings();
-  problem.cost_to_go = &world_.costToGo();
-  problem.goal = world_.aim();
+  problem.collision_checker = &local_map_.collisionChecker();
+  problem.distance_to_goal = &local_map_.distanceToGoal();
+  problem.goal = local_map_.target();
   for (const PlanStep& step : plan_) problem.committed.push_back(step.pattern_id);
   if (searched_table_ != table_)
     counters_["cycles driven until a plan with the newest set"] = cycles_with_old_set_;
@@ -47,12 +47,12 @@ SearchResult Supervisor::searchFrom(const Situation& s, const PlanStep& start, i
 /// The fresh plan, or the best along the branch if that turns to the other side and is as good.
 SearchResult Supervisor::keepSide(SearchProblem& problem, SearchResult fresh,
                                   const StopPredicate& stop) {
-  problem.branch = commitment_.opposedBy(fresh.steps, *table_);
+  problem.branch = hysteresis_.opposedBy(fresh.steps, *table_);
   if (problem.branch.empty()) return fresh;
   SearchResult along = branch_search_.run(problem, stop);
   const int expansions = fresh.expansions + along.expansions;
   fresh.expansions = along.expansions = expansions;
-  if (commitment_.isWorth(fresh, along)) {
+  if (hysteresis_.isWorth(fresh, along)) {
     ++counters_["turned to the other side"];
     return fresh;
   }

@@ -19,7 +19,7 @@ SearchConfig latticeSearch(double cell_size, int bins) {
   SearchConfig config = PathConfig::pathSearch();
   config.cell = cell_size;
   config.heading_bins = bins;
-  config.bound_weight = 1.0;
+  config.heuristic_weight = 1.0;
   config.turn_weight = 0.0;
   config.improvements = 0;
   config.most_nodes = 40'000'000;
@@ -36,7 +36,7 @@ SearchConfig PathConfig::pathSearch() {
   SearchConfig config;
   config.cell = 0.1;
   config.heading_bins = 72;
-  config.bound_weight = 3.0;
+  config.heuristic_weight = 3.0;
   config.reverse_penalty = config.stop_penalty = config.switch_penalty = 0.0;
   config.near_penalty = 0.0;
   config.horizon = 1e6;
@@ -47,8 +47,8 @@ SearchConfig PathConfig::pathSearch() {
   return config;
 }
 
-FieldConfig PathConfig::pathField() {
-  FieldConfig config;
+DistanceFieldConfig PathConfig::pathDistanceField() {
+  DistanceFieldConfig config;
   config.tight_weight = 0.0;
   config.max_distance = 1e4;
   config.reach = 3.0;
@@ -61,14 +61,14 @@ PathPlanner::PathPlanner(const Grid& grid, const PatternTable& patterns, const P
   inscribed_ = std::max(0.0, std::min({size.front, size.rear, size.half_width}));
   Margins none;
   none.check = none.plan = none.growth = none.largest = 0.0;
-  surroundings_.emplace(grid, size, none, config.unknown_blocks);
-  places_.emplace(*surroundings_, inscribed_, config.grown);
+  checker_.emplace(grid, size, none, config.unknown_blocks);
+  configurations_.emplace(*checker_, inscribed_, config.grown);
   const double cell = grid.cellSize();
   const int largest = std::max({1, grid.width(), grid.height()});
   const int coarse =
       std::clamp(static_cast<int>(kCoarseShare * (inscribed_ + config.grown) / cell), 1, largest);
-  passages_.emplace(grid, surroundings_->field(), coarse);
-  passages_->label(inscribed_ - kMostSlack * cell);
+  clearances_.emplace(grid, checker_->field(), coarse);
+  clearances_->label(inscribed_ - kMostSlack * cell);
 }
 
 PathPlanner::PathPlanner(const CellCosts& costs, double cell_size, int bins,
@@ -79,7 +79,7 @@ PathPlanner::PathPlanner(const CellCosts& costs, double cell_size, int bins,
       cell_size_(cell_size) {}
 
 bool PathPlanner::isFree(const Pose2& T_map_body) const {
-  if (costs_ == nullptr) return surroundings_->isFree(T_map_body, Surroundings::kBare);
+  if (costs_ == nullptr) return checker_->isFree(T_map_body, CollisionChecker::kBare);
   return costs_->at({static_cast<int>(std::floor(T_map_body.x / cell_size_)),
                      static_cast<int>(std::floor(T_map_body.y / cell_size_))}) >= 0;
 }
@@ -93,16 +93,17 @@ SearchProblem PathPlanner::problemOf(const PathQuery& query) const {
   return problem;
 }
 
-CostToGo PathPlanner::wayTo(const SearchProblem& problem, const Interruption& interruption) const {
+DistanceToGoal PathPlanner::wayTo(const SearchProblem& problem,
+                                  const Interruption& interruption) const {
   const Eigen::Vector2d p_start = problem.T_map_start.position();
-  FieldConfig config = config_.field;
-  CostToGo way;
+  DistanceFieldConfig config = config_.field;
+  DistanceToGoal way;
   for (const double slack : {kUsualSlack, kMostSlack}) {
-    config.inflation = std::max(0.0, inscribed_ - slack * surroundings_->grid().cellSize());
+    config.inflation = std::max(0.0, inscribed_ - slack * checker_->grid().cellSize());
     // At last a coarse cell counts as in the goal if any point of it may be.
     Goal goal = problem.goal;
-    if (slack == kMostSlack) goal.position_tolerance += kMostSlack * passages_->coarseSize();
-    way.workOut(*passages_, goal, p_start, {}, config, interruption);
+    if (slack == kMostSlack) goal.position_tolerance += kMostSlack * clearances_->coarseSize();
+    way.compute(*clearances_, goal, p_start, {}, config, interruption);
     if (!way.unreachable()) break;
   }
   return way;
@@ -114,17 +115,17 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
     return query.come_close && refusal->closest ? comeClose(query, *refusal, stop, events)
                                                 : *refusal;
   SearchProblem problem = problemOf(query);
-  CostToGo way;
-  PoseToGo guide;
+  DistanceToGoal way;
+  HeadingAwareHeuristic guide;
   if (costs_ == nullptr) {
     const Interruption interruption = [&stop] { return stop(0); };
     way = wayTo(problem, interruption);
     if (way.unreachable() && isFree(query.T_map_start)) return withoutWay(query, way, stop, events);
-    problem.surroundings = &*surroundings_;
-    problem.cost_to_go = &way;
-    guide = PoseToGo(*places_, problem.goal, problem.T_map_start, motionRates(patterns_),
-                     config_.guide_beyond, interruption);
-    if (!guide.empty() && guide.reached()) problem.pose_to_go = &guide;
+    problem.collision_checker = &*checker_;
+    problem.distance_to_goal = &way;
+    guide = HeadingAwareHeuristic(*configurations_, problem.goal, problem.T_map_start,
+                                  motionRates(patterns_), config_.guide_beyond, interruption);
+    if (!guide.empty() && guide.reached()) problem.heading_heuristic = &guide;
   } else {
     placeOnLattice(problem);
   }
@@ -143,7 +144,7 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
     answer.search = search_.run(problem, [&](int count) { return stop(before + count); });
     answer.search.expansions += before;
   }
-  judge(answer);
+  classify(answer);
   if (answer.end != PathEnd::kSolved && !isFree(query.T_map_start))
     answer.reason += "; the start lies on obstacles";
   return answer;
@@ -162,7 +163,7 @@ void PathPlanner::placeOnLattice(SearchProblem& problem) const {
   problem.cell_costs = costs_;
 }
 
-void PathPlanner::judge(PathAnswer& answer) const {
+void PathPlanner::classify(PathAnswer& answer) const {
   const SearchResult& result = answer.search;
   if (result.end == SearchEnd::kGoal) {
     answer.end = PathEnd::kSolved;

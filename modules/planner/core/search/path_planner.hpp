@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "modules/planner/core/map/grid_passages.hpp"
-#include "modules/planner/core/search/search.hpp"
+#include "modules/planner/core/map/coarse_clearance.hpp"
+#include "modules/planner/core/search/pattern_search.hpp"
 
 namespace tread::planner {
 
@@ -16,12 +16,12 @@ struct PathConfig {
   FootprintSize footprint;
   SearchConfig search = pathSearch();
   double guide_beyond = 0.15;  ///< [1] of the cost at the start that it is filled in beyond it
-  FieldConfig field = pathField();
+  DistanceFieldConfig field = pathDistanceField();
   bool unknown_blocks = true;
   double grown = 0.0;  ///< [m] by which obstacles were grown already: for a round robot, a point
   /// The whole way at once, the cheapest there is, and nothing but time and turns counts.
   static SearchConfig pathSearch();
-  static FieldConfig pathField();
+  static DistanceFieldConfig pathDistanceField();
 };
 
 /// From where to where; all in the frame of the map.
@@ -79,7 +79,7 @@ class PathPlanner {
   /// Only the first part of answer(): whether the goal is certainly unreachable, and why.
   std::optional<PathAnswer> refusal(const PathQuery& query) const;
 
-  const Search& search() const { return search_; }
+  const PatternSearch& search() const { return search_; }
   /// Whether the footprint is free at a pose.
   bool isFree(const Pose2& T_map_body) const;
   /// [m] of the disc inside the footprint, around the body's origin.
@@ -87,8 +87,8 @@ class PathPlanner {
 
  private:
   std::optional<PathAnswer> refusalOfAreas(const PathQuery& query) const;
-  PathAnswer withoutWay(const PathQuery& query, const CostToGo& way, const StopPredicate& stop,
-                        const PathEvents& events);
+  PathAnswer withoutWay(const PathQuery& query, const DistanceToGoal& way,
+                        const StopPredicate& stop, const PathEvents& events);
   PathAnswer comeClose(const PathQuery& query, const PathAnswer& refusal, const StopPredicate& stop,
                        const PathEvents& events);
   void placeOnLattice(SearchProblem& problem) const;
@@ -96,8 +96,8 @@ class PathPlanner {
   std::vector<int> areasFrom(const Pose2& T_map_start) const;
   std::vector<int> areasAround(const Eigen::Vector2d& p_goal, double tolerance) const;
   bool anyBegins(const Pose2& T_map_start) const;
-  void judge(PathAnswer& answer) const;
-  CostToGo wayTo(const SearchProblem& problem, const Interruption& interruption) const;
+  void classify(PathAnswer& answer) const;
+  DistanceToGoal wayTo(const SearchProblem& problem, const Interruption& interruption) const;
 
   static constexpr const char* kNoneBeginsReason =
       "the start has no legal successor: each pattern would leave the map or hit something";
@@ -106,11 +106,11 @@ class PathPlanner {
 
   const PatternTable& patterns_;
   PathConfig config_;
-  Search search_;
+  PatternSearch search_;
   double inscribed_ = 0.0;
-  std::optional<Surroundings> surroundings_;
-  std::optional<Places> places_;
-  std::optional<GridPassages> passages_;
+  std::optional<CollisionChecker> checker_;
+  std::optional<FreeConfigurations> configurations_;
+  std::optional<CoarseClearance> clearances_;
   const CellCosts* costs_ = nullptr;
   double cell_size_ = 0.0;
 };

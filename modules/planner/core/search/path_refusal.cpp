@@ -40,7 +40,7 @@ std::optional<PathAnswer> PathPlanner::refusal(const PathQuery& query) const {
 std::optional<PathAnswer> PathPlanner::refusalOfAreas(const PathQuery& query) const {
   const Eigen::Vector2d p_start = query.T_map_start.position();
   const Eigen::Vector2d p_goal = query.T_map_goal.position();
-  if (!surroundings_->grid().contains(surroundings_->grid().indexOf(p_start)))
+  if (!checker_->grid().contains(checker_->grid().indexOf(p_start)))
     return refused("the start lies outside the map");
   const std::vector<int> from = areasFrom(query.T_map_start);
   const std::vector<int> to = areasAround(p_goal, query.position_tolerance);
@@ -55,29 +55,29 @@ std::optional<PathAnswer> PathPlanner::refusalOfAreas(const PathQuery& query) co
   PathAnswer answer = refused("obstacles enclose the goal or the vehicle");
   if (from.empty())
     answer.reason = "the start lies on obstacles";
-  else if (!surroundings_->grid().contains(surroundings_->grid().indexOf(p_goal)))
+  else if (!checker_->grid().contains(checker_->grid().indexOf(p_goal)))
     answer.reason = "the goal lies outside the map";
   else if (to.empty())
     answer.reason = "the goal lies on obstacles, or too near to them";
-  answer.closest = passages_->nearestIn(from, p_goal);
+  answer.closest = clearances_->nearestIn(from, p_goal);
   return answer;
 }
 
 /// Numbers of the areas in which the disc inside the footprint may be after the start was left.
 std::vector<int> PathPlanner::areasFrom(const Pose2& start) const {
-  const int own = passages_->areaAt(start.position());
+  const int own = clearances_->areaAt(start.position());
   if (own != 0 && isFree(start)) return {own};
   double longest = 0.0;
   for (const TablePattern& pattern : patterns_.patterns())
     longest = std::max(longest, pattern.end().pose.position().norm());
-  return passages_->areasNear(start.position(), config_.search.escape_patterns * longest);
+  return clearances_->areasNear(start.position(), config_.search.escape_patterns * longest);
 }
 
 /// Numbers of the areas in which the disc inside the footprint may be in the goal.
 /** Cell by cell: what the coarse ones say is too kind to goals on walls, unless these are large. */
 std::vector<int> PathPlanner::areasAround(const Eigen::Vector2d& p_goal, double tolerance) const {
-  const Grid& grid = surroundings_->grid();
-  if (!(tolerance < kLargeGoal * grid.cellSize())) return passages_->areasNear(p_goal, tolerance);
+  const Grid& grid = checker_->grid();
+  if (!(tolerance < kLargeGoal * grid.cellSize())) return clearances_->areasNear(p_goal, tolerance);
   const double corner = kMostSlack * grid.cellSize();
   const double reach = tolerance + corner;
   const Eigen::Vector2d lower = grid.centre(grid.lower());
@@ -92,9 +92,9 @@ std::vector<int> PathPlanner::areasAround(const Eigen::Vector2d& p_goal, double 
   for (int y = first.y; y <= last.y; ++y) {
     for (int x = first.x; x <= last.x; ++x) {
       const Eigen::Vector2d p = grid.centre({x, y});
-      if (surroundings_->field().quick(p.x(), p.y()) < inscribed_ - corner) continue;
+      if (checker_->field().quick(p.x(), p.y()) < inscribed_ - corner) continue;
       if ((p - p_goal).norm() > reach) continue;
-      const int area = passages_->areaAt(p);
+      const int area = clearances_->areaAt(p);
       if (area != 0 && std::find(areas.begin(), areas.end(), area) == areas.end())
         areas.push_back(area);
     }
@@ -104,10 +104,10 @@ std::vector<int> PathPlanner::areasAround(const Eigen::Vector2d& p_goal, double 
 
 /// Whether a pattern may be driven from the start, and the vehicle stopped after it.
 bool PathPlanner::anyBegins(const Pose2& start) const {
-  const Surroundings& around = *surroundings_;
+  const CollisionChecker& around = *checker_;
   const bool is_free = isFree(start);
   const auto mayFollow = [&](const Pose2& from, const Overlap& overlap, const TablePattern& p) {
-    if (is_free) return around.sweepFree(from, p, Surroundings::kBare);
+    if (is_free) return around.sweepFree(from, p, CollisionChecker::kBare);
     return config_.search.escape_patterns > 0 && around.escape(from, overlap, p).has_value();
   };
   const Overlap at_start = around.overlap(start);
@@ -124,7 +124,7 @@ bool PathPlanner::anyBegins(const Pose2& start) const {
 }
 
 /// The disc inside the footprint finds no way though its area reaches to the goal: all but certain.
-PathAnswer PathPlanner::withoutWay(const PathQuery& query, const CostToGo& way,
+PathAnswer PathPlanner::withoutWay(const PathQuery& query, const DistanceToGoal& way,
                                    const StopPredicate& stop, const PathEvents& events) {
   PathAnswer answer;
   answer.search.exhausted = true;
@@ -154,9 +154,9 @@ PathAnswer PathPlanner::comeClose(const PathQuery& query, const PathAnswer& refu
     if (events.better_plan) events.better_plan(cost, before + expansions);
   };
   // Of the coarse cell that is nearest a corner may be all that is free.
-  const double corner = kMostSlack * (passages_->coarseSize() + surroundings_->grid().cellSize());
+  const double corner = kMostSlack * (clearances_->coarseSize() + checker_->grid().cellSize());
   const double widest =
-      std::max({query.position_tolerance, surroundings_->circumscribedRadius(), corner});
+      std::max({query.position_tolerance, checker_->circumscribedRadius(), corner});
   PathAnswer answer;
   for (const double tolerance : {widest, widest / 2.0, query.position_tolerance}) {
     if (tolerance < query.position_tolerance) continue;

@@ -15,13 +15,13 @@ constexpr double kStanding = 0.02;
 /// Smallest disc around the middle of the positions that holds them all.
 void addDisc(TablePattern& entry) {
   Eigen::Vector2d lower(0.0, 0.0), upper(0.0, 0.0);
-  for (const SweepPose& at : entry.sweep) {
+  for (const SweptPose& at : entry.swept_poses) {
     lower = lower.cwiseMin(at.pose.position());
     upper = upper.cwiseMax(at.pose.position());
   }
   entry.centre = (lower + upper) / 2.0;
   entry.radius = entry.centre.norm();
-  for (const SweepPose& at : entry.sweep)
+  for (const SweptPose& at : entry.swept_poses)
     entry.radius = std::max(entry.radius, (at.pose.position() - entry.centre).norm());
 }
 
@@ -42,7 +42,7 @@ Uncertainty uncertaintyOf(const DefaultSigma& sigma) {
   return result;
 }
 
-TablePattern prepare(const Primitive& primitive, const SweepStep& step) {
+TablePattern prepare(const Primitive& primitive, const SweepResolution& step) {
   TablePattern entry;
   entry.number = primitive.id;
   entry.duration = primitive.duration;
@@ -50,8 +50,8 @@ TablePattern prepare(const Primitive& primitive, const SweepStep& step) {
   entry.length = lengthOf(primitive.poses);
   entry.reverses = primitive.poses.back().x < -kStanding;
   const double period = primitive.duration / static_cast<double>(primitive.poses.size());
-  entry.sweep = sampleSweep(primitive.poses, period, step);
-  entry.cover = coverOf(entry.sweep, primitive.poses, period, step);
+  entry.swept_poses = sampleSweep(primitive.poses, period, step);
+  entry.swept_footprint = sweptFootprintOf(entry.swept_poses, primitive.poses, period, step);
   entry.start_bin = primitive.start_bin;
   entry.cells = primitive.cells;
   addDisc(entry);
@@ -60,20 +60,20 @@ TablePattern prepare(const Primitive& primitive, const SweepStep& step) {
 
 }  // namespace
 
-PatternTable::PatternTable(PatternSet set, const SweepStep& step, const DefaultSigma& sigma)
+PatternTable::PatternTable(PatternSet set, const SweepResolution& step, const DefaultSigma& sigma)
     : set_(std::move(set)), rest_class_(findRestClass()) {
   for (const MotionPattern& pattern : set_->patterns())
     patterns_.push_back(prepare(pattern, step, sigma));
   index(set_->content().classes.size());
-  bound();
+  computeLeastCosts();
 }
 
-PatternTable::PatternTable(const std::vector<Primitive>& primitives, const SweepStep& step)
+PatternTable::PatternTable(const std::vector<Primitive>& primitives, const SweepResolution& step)
     : rest_class_(0) {
   for (const Primitive& primitive : primitives)
     patterns_.push_back(planner::prepare(primitive, step));
   index(1);
-  bound();
+  computeLeastCosts();
 }
 
 void PatternTable::index(size_t classes) {
@@ -85,7 +85,7 @@ void PatternTable::index(size_t classes) {
   }
 }
 
-void PatternTable::bound() {
+void PatternTable::computeLeastCosts() {
   double most_metres = 0.0;  // per cost, as the next
   double most_radians = 0.0;
   for (const TablePattern& entry : patterns_) {
@@ -114,7 +114,7 @@ void PatternTable::bound() {
     *value = std::isfinite(*value) ? std::max(0.0, *value) : 0.0;
 }
 
-TablePattern PatternTable::prepare(const MotionPattern& pattern, const SweepStep& step,
+TablePattern PatternTable::prepare(const MotionPattern& pattern, const SweepResolution& step,
                                    const DefaultSigma& sigma) const {
   TablePattern entry;
   entry.pattern = &pattern;
@@ -125,8 +125,9 @@ TablePattern PatternTable::prepare(const MotionPattern& pattern, const SweepStep
   entry.cost = entry.duration;
   entry.length = pattern.pathLength();
   entry.reverses = pattern.end().x < -kStanding;
-  entry.sweep = sampleSweep(pattern.trajectory, set_->periodSeconds(), step);
-  entry.cover = coverOf(entry.sweep, pattern.trajectory, set_->periodSeconds(), step);
+  entry.swept_poses = sampleSweep(pattern.trajectory, set_->periodSeconds(), step);
+  entry.swept_footprint =
+      sweptFootprintOf(entry.swept_poses, pattern.trajectory, set_->periodSeconds(), step);
   entry.uncertainty = uncertaintyOf(pattern.end_covariance, uncertaintyOf(sigma));
   addDisc(entry);
   return entry;

@@ -9,7 +9,7 @@
 
 #include "common/grid/grid.hpp"
 #include "common/pattern/pattern.hpp"
-#include "modules/planner/core/map/sweep.hpp"
+#include "modules/planner/core/map/swept_footprint.hpp"
 #include "modules/planner/core/search/uncertainty.hpp"
 
 namespace tread::planner {
@@ -34,8 +34,8 @@ struct TablePattern {
   double cost = 0.0;                       ///< [s] as a part of a plan's cost: its duration
   double length = 0.0;                     ///< [m] of its path
   bool reverses = false;                   ///< ends behind its start
-  std::vector<SweepPose> sweep;      ///< poses to check, without the start, at most a step apart
-  SweepCover cover;                  ///< those of them that are enough for a footprint
+  std::vector<SweptPose> swept_poses;  ///< poses to check, without the start, at most a step apart
+  SweptFootprint swept_footprint;      ///< those of them that are enough for a footprint
   Eigen::Vector2d centre{0.0, 0.0};  ///< of a disc that holds all positions, relative to the start
   double radius = 0.0;               ///< [m] of that disc
   Uncertainty uncertainty;           ///< of its end, in the axes of its start
@@ -43,7 +43,7 @@ struct TablePattern {
   std::vector<CellIndex> cells;      ///< see Primitive
 
   int id() const { return number; }
-  const SweepPose& end() const { return sweep.back(); }
+  const SweptPose& end() const { return swept_poses.back(); }
 };
 
 /// Standard deviations of the end of a pattern whose covariance nobody has stated.
@@ -63,9 +63,9 @@ struct LeastCost {
 /** Nothing is assumed about where patterns end: the learner may bend them at will. */
 class PatternTable {
  public:
-  PatternTable(PatternSet set, const SweepStep& step, const DefaultSigma& sigma);
+  PatternTable(PatternSet set, const SweepResolution& step, const DefaultSigma& sigma);
   /// Of primitives; the only class is rest.
-  PatternTable(const std::vector<Primitive>& primitives, const SweepStep& step);
+  PatternTable(const std::vector<Primitive>& primitives, const SweepResolution& step);
   PatternTable(const PatternTable&) = delete;  // its lists point into itself
   PatternTable& operator=(const PatternTable&) = delete;
 
@@ -99,11 +99,11 @@ class PatternTable {
   std::string defect() const;
 
  private:
-  TablePattern prepare(const MotionPattern& pattern, const SweepStep& step,
+  TablePattern prepare(const MotionPattern& pattern, const SweepResolution& step,
                        const DefaultSigma& sigma) const;
   int findRestClass() const;
   void index(size_t classes);
-  void bound();
+  void computeLeastCosts();
 
   std::optional<PatternSet> set_;
   std::vector<TablePattern> patterns_;

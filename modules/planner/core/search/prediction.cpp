@@ -16,13 +16,13 @@ constexpr double kMostRatio = 1.6;
 
 }  // namespace
 
-Fulfilment compare(const Pose2& T_start_now, double time, const TablePattern& pattern,
-                   double period) {
+MotionRatio motionRatio(const Pose2& T_start_now, double time, const TablePattern& pattern,
+                        double period) {
   const Pose2 expected = poseAlong(pattern.pattern->trajectory, period, time);
   const auto ratio = [](double measured, double promised, double doubt) {
     return std::clamp((measured + doubt) / (promised + doubt), kLeastRatio, kMostRatio);
   };
-  Fulfilment so_far;
+  MotionRatio so_far;
   // Along the way that was expected: sideways slip is not more way.
   const double length = std::hypot(expected.x, expected.y);
   const double along =
@@ -34,13 +34,13 @@ Fulfilment compare(const Pose2& T_start_now, double time, const TablePattern& pa
 }
 
 Prediction predict(const Pose2& T_map_body, double time, const TablePattern& pattern,
-                   const PatternTable& table, const Fulfilment& so_far) {
+                   const PatternTable& table, const MotionRatio& so_far) {
   Prediction prediction;
   Pose2 pose = T_map_body;
   if (time < 0.0) pose = pose * integrate(table.motionClass(pattern.entry).twist, -time);
   const double period = table.set().periodSeconds();
   Pose2 before = poseAlong(pattern.pattern->trajectory, period, time);
-  for (const SweepPose& at : pattern.sweep) {
+  for (const SweptPose& at : pattern.swept_poses) {
     if (at.time <= time) continue;
     const Pose2 step = between(before, at.pose);
     pose = pose * Pose2{so_far.way * step.x, so_far.way * step.y, so_far.turn * step.yaw};
@@ -54,10 +54,10 @@ Prediction predict(const Pose2& T_map_body, double time, const TablePattern& pat
   return prediction;
 }
 
-std::optional<double> firstConflict(const Surroundings& surroundings,
+std::optional<double> firstConflict(const CollisionChecker& collision_checker,
                                     const std::vector<ExpectedPose>& poses, int level) {
   for (const ExpectedPose& at : poses)
-    if (!surroundings.isFree(at.T_map_body, level)) return at.time;
+    if (!collision_checker.isFree(at.T_map_body, level)) return at.time;
   return std::nullopt;
 }
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "modules/planner/core/map/surroundings.hpp"
+#include "modules/planner/core/map/collision_checker.hpp"
 #include "modules/planner/core/search/pattern_table.hpp"
 
 namespace tread::planner {
@@ -29,7 +29,7 @@ struct Prediction {
 bool leftCorridor(const Prediction& then, const Prediction& now);
 
 /// How much of what a running pattern promised has come true so far, each about 1.
-struct Fulfilment {
+struct MotionRatio {
   double way = 1.0;
   double turn = 1.0;
 };
@@ -38,8 +38,8 @@ struct Fulfilment {
 /// `time` [s].
 /** Little motion tells little: the ratios are drawn towards 1 by as much motion as INS noise and a
  * moment's disturbance may make. Within 0.6 and 1.6. */
-Fulfilment compare(const Pose2& T_start_now, double time, const TablePattern& pattern,
-                   double period);
+MotionRatio motionRatio(const Pose2& T_start_now, double time, const TablePattern& pattern,
+                        double period);
 
 /// What is left of a pattern that has been running for `time` [s] when the vehicle was measured at
 /// a pose.
@@ -47,11 +47,11 @@ Fulfilment compare(const Pose2& T_start_now, double time, const TablePattern& pa
  * expected it will go on to do so. A negative time: it will begin that much later; until then the
  * vehicle keeps the twist of its entry class. */
 Prediction predict(const Pose2& T_map_body, double time, const TablePattern& pattern,
-                   const PatternTable& table, const Fulfilment& so_far = {});
+                   const PatternTable& table, const MotionRatio& so_far = {});
 
 /// Time until the first of the poses that is not free with a margin level [s]; nothing if all are
 /// free.
-std::optional<double> firstConflict(const Surroundings& surroundings,
+std::optional<double> firstConflict(const CollisionChecker& collision_checker,
                                     const std::vector<ExpectedPose>& poses, int level);
 
 }  // namespace tread::planner

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "modules/planner/core/search/search.hpp"
+#include "modules/planner/core/search/pattern_search.hpp"
 
 namespace tread::planner {
 namespace {
@@ -24,7 +24,8 @@ float arcCosine(float x) {
 
 }  // namespace
 
-float Search::edgeCost(const Node& parent, const TablePattern& pattern, const Node& end) const {
+float PatternSearch::edgeCost(const Node& parent, const TablePattern& pattern,
+                              const Node& end) const {
   if (problem_->cell_costs != nullptr) {
     const CellIndex from{static_cast<int>(std::floor(parent.x * per_cell_)),
                          static_cast<int>(std::floor(parent.y * per_cell_))};
@@ -32,7 +33,7 @@ float Search::edgeCost(const Node& parent, const TablePattern& pattern, const No
     return worst < 0 ? kNever : static_cast<float>(pattern.cost * (worst + 1));
   }
   double weight = 1.0;
-  const Surroundings& around = *problem_->surroundings;
+  const CollisionChecker& around = *problem_->collision_checker;
   if (config_.near_penalty > 0.0)
     weight += config_.near_penalty * around.nearness(end.x, end.y, config_.near_distance);
   if (config_.unknown_penalty > 0.0 && around.isUnknown({end.x, end.y}))
@@ -45,13 +46,13 @@ float Search::edgeCost(const Node& parent, const TablePattern& pattern, const No
   return static_cast<float>(cost);
 }
 
-bool Search::staysOnPlan(const Node& parent, const TablePattern& pattern) const {
+bool PatternSearch::staysOnPlan(const Node& parent, const TablePattern& pattern) const {
   const auto depth = static_cast<size_t>(parent.depth);
   return parent.on_plan == parent.depth && depth < problem_->committed.size() &&
          problem_->committed[depth] == pattern.id();
 }
 
-float Search::switchPenalty(const Node& parent, const TablePattern& pattern) const {
+float PatternSearch::switchPenalty(const Node& parent, const TablePattern& pattern) const {
   const auto depth = static_cast<size_t>(parent.depth);
   if (parent.on_plan != parent.depth || depth >= problem_->committed.size()) return 0.0F;
   if (problem_->committed[depth] == pattern.id()) return 0.0F;
@@ -59,14 +60,14 @@ float Search::switchPenalty(const Node& parent, const TablePattern& pattern) con
 }
 
 /// There is no way over blocked ground; who leaves it may go straight.
-Search::ToGo Search::toGo(const Node& node, bool on_blocked_ground) const {
+PatternSearch::Heuristic PatternSearch::heuristic(const Node& node, bool on_blocked_ground) const {
   const Goal& goal = problem_->goal;
-  CostToGo::Sample at;
-  if (problem_->cost_to_go != nullptr) {
-    at = problem_->cost_to_go->sample(node.x, node.y);
+  DistanceToGoal::Sample at;
+  if (problem_->distance_to_goal != nullptr) {
+    at = problem_->distance_to_goal->sample(node.x, node.y);
     if (!(at.length < kNever) && !on_blocked_ground) return {kNever, kNever};
   }
-  if (problem_->cost_to_go == nullptr || !(at.length < kNever)) {
+  if (problem_->distance_to_goal == nullptr || !(at.length < kNever)) {
     const double dx = goal.T_map_goal.x - node.x;
     const double dy = goal.T_map_goal.y - node.y;
     const double distance = std::sqrt(dx * dx + dy * dy);
@@ -78,16 +79,17 @@ Search::ToGo Search::toGo(const Node& node, bool on_blocked_ground) const {
   const float way = std::max(0.0F, way_share_ * at.length - slack_);
   const float bound = std::max(metre_cost_[0] * way + radian_cost_[0] * off_goal,
                                metre_cost_[1] * way + radian_cost_[1] * off_goal);
-  if (problem_->pose_to_go != nullptr) {
-    const float known = problem_->pose_to_go->at(node.x, node.y, node.yaw);
-    return {bound, weights_.bound * std::max(bound, std::min(known, kUnlikely * (1.0F + bound)))};
+  if (problem_->heading_heuristic != nullptr) {
+    const float known = problem_->heading_heuristic->at(node.x, node.y, node.yaw);
+    return {bound,
+            weights_.heuristic * std::max(bound, std::min(known, kUnlikely * (1.0F + bound)))};
   }
   float turn = off_goal;
   if (weights_.turn > 0.0F && at.length > kNearGoal)
     turn = arcCosine(at.along_x * node.cos_yaw + at.along_y * node.sin_yaw);
   const float expected =
-      std::max(bound, metre_cost_[0] * std::max(0.0F, guess_share_ * at.length - slack_));
-  return {bound, weights_.bound * expected + weights_.turn * radian_cost_[1] * turn};
+      std::max(bound, metre_cost_[0] * std::max(0.0F, distance_share_ * at.length - slack_));
+  return {bound, weights_.heuristic * expected + weights_.turn * radian_cost_[1] * turn};
 }
 
 }  // namespace tread::planner

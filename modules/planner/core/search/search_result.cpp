@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
 
-#include "modules/planner/core/search/search.hpp"
+#include "modules/planner/core/search/pattern_search.hpp"
 
 namespace tread::planner {
 
@@ -20,7 +20,7 @@ PlanStep stepAfter(const PlanStep& before, const TablePattern& pattern) {
   return step;
 }
 
-SearchResult Search::finish(int leaf, SearchEnd end) {
+SearchResult PatternSearch::finish(int leaf, SearchEnd end) {
   SearchResult result;
   result.expansions = expansions_;
   if (leaf < 0) {
@@ -43,16 +43,16 @@ SearchResult Search::finish(int leaf, SearchEnd end) {
   }
   const Node& last = nodes_[static_cast<size_t>(leaf)];
   result.cost = static_cast<double>(last.cost);
-  result.expected = static_cast<double>(last.guess);
-  const bool any_field = problem_->cost_to_go != nullptr;
+  result.expected = static_cast<double>(last.inflated);
+  const bool any_field = problem_->distance_to_goal != nullptr;
   result.way_to_go =
-      any_field ? problem_->cost_to_go->length({last.x, last.y})
+      any_field ? problem_->distance_to_goal->length({last.x, last.y})
                 : (problem_->goal.T_map_goal.position() - Eigen::Vector2d(last.x, last.y)).norm();
   result.time_to_go = static_cast<double>(last.time) + result.way_to_go / speed_;
   return result;
 }
 
-std::vector<TreeNode> Search::tree(size_t count) const {
+std::vector<TreeNode> PatternSearch::tree(size_t count) const {
   std::vector<int> order;  // of the nodes that were expanded in the last search
   for (size_t i = kept_; i < nodes_.size(); ++i)
     if (nodes_[i].expanded()) order.push_back(static_cast<int>(i));
@@ -75,7 +75,7 @@ std::vector<TreeNode> Search::tree(size_t count) const {
   return drawn(wanted);
 }
 
-std::vector<TreeNode> Search::drawn(const std::vector<int>& wanted) const {
+std::vector<TreeNode> PatternSearch::drawn(const std::vector<int>& wanted) const {
   std::vector<int> index(nodes_.size(), -1);
   std::vector<TreeNode> drawn;
   for (const int i : wanted) {
@@ -91,7 +91,7 @@ std::vector<TreeNode> Search::drawn(const std::vector<int>& wanted) const {
   return drawn;
 }
 
-size_t Search::bytes() const {
+size_t PatternSearch::bytes() const {
   return nodes_.bytes() + best_.bytes() + open_.bytes();
 }
 

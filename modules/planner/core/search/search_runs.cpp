@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "modules/planner/core/search/search.hpp"
+#include "modules/planner/core/search/pattern_search.hpp"
 
 namespace tread::planner {
 namespace {
@@ -14,22 +14,22 @@ constexpr float kLeafCost = 0.25F;
 
 }  // namespace
 
-SearchResult Search::run(const SearchProblem& problem, const StopPredicate& stop) {
+SearchResult PatternSearch::run(const SearchProblem& problem, const StopPredicate& stop) {
   begin(problem);
-  Outcome outcome = Outcome::kBetter;
-  for (int number = 0; number <= config_.improvements && outcome == Outcome::kBetter; ++number) {
+  RunEnd end = RunEnd::kBetterPlan;
+  for (int number = 0; number <= config_.improvements && end == RunEnd::kBetterPlan; ++number) {
     beginAgain(weightsOf(number));
-    outcome = search(stop);
+    end = search(stop);
     // An exact search goes on until nothing better can be left; the others leave off at a plan.
-    while (outcome == Outcome::kBetter && weights_.exact()) outcome = search(stop);
+    while (end == RunEnd::kBetterPlan && weights_.exact()) end = search(stop);
   }
   SearchResult result =
       best_leaf_ >= 0 ? finish(best_leaf_, best_end_) : finish(farthest_, SearchEnd::kProgress);
-  result.exhausted = outcome == Outcome::kAllSeen;
+  result.exhausted = end == RunEnd::kExhausted;
   return result;
 }
 
-void Search::begin(const SearchProblem& problem) {
+void PatternSearch::begin(const SearchProblem& problem) {
   problem_ = &problem;
   nodes_.clear();
   leaf_to_root_.clear();
@@ -37,13 +37,13 @@ void Search::begin(const SearchProblem& problem) {
   best_leaf_ = -1;
   best_end_ = SearchEnd::kNothing;
   best_cost_ = kNever;
-  prepareBound();
-  way_at_start_ = problem.cost_to_go == nullptr
+  prepareHeuristic();
+  way_at_start_ = problem.distance_to_goal == nullptr
                       ? 0.0
-                      : problem.cost_to_go->length(problem.T_map_start.position());
+                      : problem.distance_to_goal->length(problem.T_map_start.position());
 }
 
-void Search::prepareBound() {
+void PatternSearch::prepareHeuristic() {
   const PatternTable& patterns = *problem_->patterns;
   speed_ = patterns.bestSpeed();
   per_cell_ = 1.0 / (problem_->cell > 0.0 ? problem_->cell : config_.cell);
@@ -56,22 +56,22 @@ void Search::prepareBound() {
     metre_cost_[i] = static_cast<float>(patterns.leastCosts()[i].per_metre);
     radian_cost_[i] = static_cast<float>(patterns.leastCosts()[i].per_radian);
   }
-  const bool straight = problem_->cost_to_go == nullptr;
-  slack_ = straight ? 0.0F : static_cast<float>(problem_->cost_to_go->cellSlack());
-  way_share_ = straight ? 1.0F : static_cast<float>(CostToGo::kShare);
-  guess_share_ = static_cast<float>(config_.bound_share);
+  const bool straight = problem_->distance_to_goal == nullptr;
+  slack_ = straight ? 0.0F : static_cast<float>(problem_->distance_to_goal->cellSlack());
+  way_share_ = straight ? 1.0F : static_cast<float>(DistanceToGoal::kAdmissibleShare);
+  distance_share_ = static_cast<float>(config_.distance_share);
 }
 
-Search::Weights Search::weightsOf(int number) const {
+PatternSearch::Weights PatternSearch::weightsOf(int number) const {
   // From the greedy ones to 1 and 0, in equal ratios and equal steps.
   const double share = config_.improvements == 0
                            ? 0.0
                            : std::min(1.0, static_cast<double>(number) / config_.improvements);
-  return {static_cast<float>(std::pow(config_.bound_weight, 1.0 - share)),
+  return {static_cast<float>(std::pow(config_.heuristic_weight, 1.0 - share)),
           static_cast<float>(config_.turn_weight * (1.0 - share))};
 }
 
-void Search::beginAgain(const Weights& weights) {
+void PatternSearch::beginAgain(const Weights& weights) {
   weights_ = weights;
   keepBranch();
   best_.clear();
@@ -88,17 +88,17 @@ void Search::beginAgain(const Weights& weights) {
   root.uncertainty = problem.start_uncertainty;
   root.motion_class = static_cast<int8_t>(problem.start_class);
   if (problem.cell_costs == nullptr) {
-    const Surroundings& around = *problem.surroundings;
+    const CollisionChecker& around = *problem.collision_checker;
     root.level = static_cast<int8_t>(
         around.freeLevel(problem.T_map_start, around.level(problem.start_uncertainty)));
     if (root.level < 0) root.overlap = around.overlap(problem.T_map_start);
   }
-  const ToGo to_go = toGo(root, root.level < 0);
-  root.bound = to_go.bound;
-  root.guess = guess_at_start_ = to_go.guess;
+  const Heuristic to_go = heuristic(root, root.level < 0);
+  root.admissible = to_go.admissible;
+  root.inflated = inflated_at_start_ = to_go.inflated;
   // Estimates hardly fall below that at the start.
-  open_.clear(std::isfinite(root.guess) ? 0.5F * root.guess : 0.0F);
-  NodeTable::Slot& slot = best_[keyOf(root)];
+  open_.clear(std::isfinite(root.inflated) ? 0.5F * root.inflated : 0.0F);
+  NodeTable::Entry& slot = best_[keyOf(root)];
   slot.cost = 0.0F;
   slot.node = static_cast<int>(nodes_.size());
   nodes_.push_back(root);
@@ -106,7 +106,7 @@ void Search::beginAgain(const Weights& weights) {
 }
 
 /// Of what was searched before only the best plan is kept, at the front.
-void Search::keepBranch() {
+void PatternSearch::keepBranch() {
   kept_ = 0;
   if (best_leaf_ < 0) return nodes_.clear();
   std::vector<Node> branch;
@@ -120,19 +120,19 @@ void Search::keepBranch() {
   kept_ = nodes_.size();
 }
 
-void Search::keepBest(int leaf, SearchEnd end) {
+void PatternSearch::keepBest(int leaf, SearchEnd end) {
   const Node& node = nodes_[static_cast<size_t>(leaf)];
   best_leaf_ = leaf;
   best_end_ = end;
-  best_cost_ = node.cost + node.bound;
+  best_cost_ = node.cost + node.admissible;
   if (problem_->on_better) problem_->on_better(static_cast<double>(best_cost_), expansions_);
 }
 
-void Search::noteProgress(int index) {
+void PatternSearch::noteProgress(int index) {
   const Node& node = nodes_[static_cast<size_t>(index)];
-  const float limit = guess_at_start_ - static_cast<float>(config_.least_progress);
-  if (node.guess >= limit || onBranch(node)) return;
-  const float value = node.guess + kLeafCost * node.cost;
+  const float limit = inflated_at_start_ - static_cast<float>(config_.least_progress);
+  if (node.inflated >= limit || onBranch(node)) return;
+  const float value = node.inflated + kLeafCost * node.cost;
   if (farthest_ >= 0 && value >= farthest_value_) return;
   farthest_ = index;
   farthest_value_ = value;

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "common/execution/readings.hpp"
+#include "common/pattern/pattern.hpp"
+
+namespace tread {
+
+/// A pattern handed over to the motor bridge, with the set that its prediction was made with.
+struct ProgramSlot {
+  int64_t execution_id = 0;  ///< counts up within a run; 0 = empty
+  int pattern_id = 0;
+  std::optional<PatternSet> set;  ///< keeps its version even when a newer one has come
+
+  bool empty() const { return execution_id == 0; }
+  const MotionPattern& pattern() const { return *set->find(pattern_id); }
+  int64_t durationUs() const {
+    return set->content().period_us * static_cast<int64_t>(pattern().commands.size());
+  }
+};
+
+/// Tracks which patterns were handed over to the motor bridge and which of them it executes.
+/** The bridge joins `next` to `running` by itself. The tracker advances when MOTOR or EXECUTION
+ * says so or, should they be late, when the running pattern must have ended. */
+class ExecutionTracker {
+ public:
+  explicit ExecutionTracker(int64_t run_id) : run_id_(run_id) {}
+
+  /// What became of the running pattern.
+  enum class Event { kNone, kSwitched, kEnded, kAborted, kNeverStarted };
+
+  /// Hands over a pattern to a standing vehicle.
+  void begin(const PatternSet& set, int pattern_id, int64_t now);
+  /// Hands over the pattern that follows; the same pattern again keeps its slot.
+  void setNext(const PatternSet& set, int pattern_id);
+  void clearNext();
+  /// Empties both slots: stop now.
+  void stop();
+  /// Updates the tracker from MOTOR and EXECUTION. Call first in a step.
+  Event follow(const RobotReadings& readings);
+
+  /// Why a set cannot replace the one in use: it lacks a pattern that was handed over, or has other
+  /// commands for it. Empty if it can.
+  std::string conflictWith(const PatternSet& set) const;
+
+  const ProgramSlot& running() const { return running_; }
+  const ProgramSlot& next() const { return next_; }
+  /// The bridge has begun the running pattern.
+  bool confirmed() const { return confirmed_; }
+  /// [us] when the running pattern began, as well as is known.
+  int64_t started() const { return started_; }
+  int64_t ends() const { return started_ + running_.durationUs(); }
+  int64_t runId() const { return run_id_; }
+  /// Why the last execution was aborted, in words.
+  const std::string& abortReason() const { return abort_reason_; }
+
+ private:
+  Event followMotor(const RobotReadings& readings);
+  Event followExecutions(const RobotReadings& readings);
+  Event followTime(int64_t now);
+  void advanceTo(const ProgramSlot& to, int64_t started);
+  Event finish(Event event, const std::string& reason);
+  bool adopt(int64_t execution_id, int64_t started);
+
+  int64_t run_id_;
+  int64_t last_id_ = 0;
+  ProgramSlot running_;
+  ProgramSlot next_;
+  std::deque<ProgramSlot> replaced_;  ///< former next slots; the bridge may have begun one of them
+  int64_t previous_id_ = 0;
+  int64_t handed_over_ = 0;
+  int64_t started_ = 0;
+  bool confirmed_ = false;
+  std::string abort_reason_;
+};
+
+}  // namespace tread

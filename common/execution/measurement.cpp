@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/execution/measurement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace tread {
+namespace {
+
+/// Speeds are judged over this time: shorter steps are mostly INS noise.
+constexpr int64_t kSpeedSpanUs = 100'000;
+/// What must be predicted before "did not move" means anything [m, rad].
+constexpr double kExpectedMotion = 0.10;
+/// A PoseTrack decides about gaps itself; here they are judged for the whole execution.
+constexpr int64_t kAnyGap = std::numeric_limits<int64_t>::max();
+
+/// A number with so many decimals.
+std::string fixed(double value, int decimals) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(decimals) << value;
+  return out.str();
+}
+
+double seconds(int64_t us) {
+  return static_cast<double>(us) * 1e-6;
+}
+
+double distance(const Pose2& a, const Pose2& b) {
+  return std::hypot(b.x - a.x, b.y - a.y);
+}
+
+/// Fills a measurement step by step; the first gate that closes stays.
+class Cutter {
+ public:
+  Cutter(const TrackHistory& history, const ExecutionCut& cut, const MotionPattern& pattern,
+         int64_t period_us, const MeasurementLimits& limits)
+      : history_(history), cut_(cut), pattern_(pattern), period_us_(period_us), limits_(limits) {}
+
+  Measurement run(const MotionClass& entry_class) {
+    checkRecord();
+    if (!result_.fair()) return result_;
+    track_ = history_.covering(cut_.started);
+    if (track_ == nullptr) {
+      close(Gate::kNoTrack, "the INS has no pose at the start of the execution");
+      return result_;
+    }
+    cutTrajectory();
+    measureEntryAndSlope();
+    checkCover();
+    checkMotion();
+    checkEntry(entry_class);
+    if (result_.slope > limits_.max_slope)
+      close(Gate::kSlope,
+            "slope " + fixed(result_.slope, 3) + " rad, allowed " + fixed(limits_.max_slope, 3));
+    return result_;
+  }
+
+ private:
+  void close(Gate gate, const std::string& reason) {
+    if (!result_.fair()) return;
+    result_.gate = gate;
+    result_.reason = reason;
+  }
+
+  int64_t duration() const { return static_cast<int64_t>(pattern_.trajectory.size()) * period_us_; }
+
+  void checkRecord() {
+    if (!cut_.completed) close(Gate::kAborted, "aborted: " + cut_.outcome_reason);
+    if (!cut_.foreign_command.empty()) close(Gate::kCommands, cut_.foreign_command);
+    const int64_t took = cut_.ended - cut_.started;
+    const double longest = seconds(duration()) / limits_.min_covered;
+    if (took <= 0 || seconds(took) > longest)
+      close(Gate::kRecord, "the record says that it took " + fixed(seconds(took), 3) +
+                               " s; the pattern takes " + fixed(seconds(duration()), 3) + " s");
+  }
+
+  /// M at started + (t + 1) periods, as far as the record and the track go.
+  void cutTrajectory() {
+    const Pose2 T_map_start = *track_->at(cut_.started, kAnyGap);
+    const std::vector<Pose2>& predicted = pattern_.trajectory;
+    for (size_t t = 0; t < predicted.size(); ++t) {
+      const int64_t when = sampleTime(t);
+      // Half a period of tolerance: the record's end is the end of the last command's period.
+      const auto pose =
+          when <= cut_.ended + period_us_ / 2 ? track_->at(when, kAnyGap) : std::optional<Pose2>();
+      if (!pose) break;
+      result_.trajectory.push_back(between(T_map_start, *pose));
+    }
+    result_.covered = result_.trajectory.size();
+    measurePath();
+    continueAsPredicted();
+  }
+
+  int64_t sampleTime(size_t t) const {
+    return cut_.started + static_cast<int64_t>(t + 1) * period_us_;
+  }
+
+  void measurePath() {
+    if (result_.covered == 0) return;
+    result_.path_length = 0.0;
+    Pose2 last;
+    for (const Pose2& pose : result_.trajectory) {
+      result_.path_length += distance(last, pose);
+      last = pose;
+    }
+  }
+
+  /// Where the INS tells nothing, the prediction's own motion is kept, so that nothing is learned
+  /// there.
+  void continueAsPredicted() {
+    const std::vector<Pose2>& predicted = pattern_.trajectory;
+    if (result_.covered == 0) return;
+    const Pose2 measured = result_.trajectory.back();
+    const Pose2& left_at = predicted[result_.covered - 1];
+    for (size_t t = result_.covered; t < predicted.size(); ++t)
+      result_.trajectory.push_back(measured * between(left_at, predicted[t]));
+  }
+
+  void measureEntryAndSlope() {
+    const auto twist =
+        track_->twistBefore(cut_.started, limits_.entry_window_us, limits_.max_gap_us);
+    if (twist) result_.entry = *twist;
+    result_.slope = history_.meanInclination(cut_.started, cut_.ended);
+  }
+
+  void checkCover() {
+    const double share =
+        static_cast<double>(result_.covered) / static_cast<double>(pattern_.trajectory.size());
+    if (result_.covered > 0) {
+      const auto gap = track_->longestGap(cut_.started, sampleTime(result_.covered - 1));
+      if (gap && *gap > limits_.max_gap_us)
+        close(Gate::kInsGap, "INS silent for " + fixed(seconds(*gap), 3) + " s, allowed " +
+                                 fixed(seconds(limits_.max_gap_us), 3) + " s");
+    }
+    if (share < limits_.min_covered)
+      close(Gate::kCoveredTime, "the INS covers " + fixed(100.0 * share, 0) +
+                                    " % of the execution, needed " +
+                                    fixed(100.0 * limits_.min_covered, 0) + " %");
+  }
+
+  void checkMotion() {
+    for (const Pose2& pose : result_.trajectory)
+      if (!std::isfinite(pose.x) || !std::isfinite(pose.y) || !std::isfinite(pose.yaw))
+        close(Gate::kNotFinite, "lost poses in the measured trajectory");
+    const double fastest = fastestSpeed();
+    const double allowed = limits_.speed_margin * limits_.max_speed;
+    if (fastest > allowed)
+      close(Gate::kSpeed,
+            "measured " + fixed(fastest, 2) + " m/s, possible " + fixed(allowed, 2) + " m/s");
+    const Eigen::Array3d moved = boundingBox(result_.trajectory);
+    const Eigen::Array3d expected = boundingBox(pattern_.trajectory);
+    const bool should_move = (expected >= kExpectedMotion).any();
+    const bool stood = moved[0] < limits_.min_motion && moved[1] < limits_.min_motion &&
+                       moved[2] < limits_.min_turn;
+    if (should_move && stood)
+      close(Gate::kNoMotion, "the robot did not move; " +
+                                 fixed(std::max(expected[0], expected[1]), 2) + " m and " +
+                                 fixed(expected[2], 2) + " rad were predicted");
+  }
+
+  double fastestSpeed() const {
+    const auto stride = static_cast<size_t>((kSpeedSpanUs + period_us_ - 1) / period_us_);
+    double fastest = 0.0;
+    for (size_t t = stride - 1; t < result_.covered; ++t) {
+      const Pose2 before = t >= stride ? result_.trajectory[t - stride] : Pose2{};
+      const double span = static_cast<double>(stride) * seconds(period_us_);
+      fastest = std::max(fastest, distance(before, result_.trajectory[t]) / span);
+    }
+    return fastest;
+  }
+
+  void checkEntry(const MotionClass& entry_class) {
+    const bool any = std::isinf(limits_.entry_speed) && std::isinf(limits_.entry_yaw_rate);
+    if (any) return;
+    if (!std::isfinite(result_.entry.v_x)) {
+      close(Gate::kEntryTwist, "the twist before the start was not measured");
+      return;
+    }
+    const double speed = std::max(std::abs(result_.entry.v_x - entry_class.twist.v_x),
+                                  std::abs(result_.entry.v_y - entry_class.twist.v_y));
+    const double turn = std::abs(result_.entry.omega - entry_class.twist.omega);
+    if (speed > limits_.entry_speed || turn > limits_.entry_yaw_rate)
+      close(Gate::kEntryTwist, "entered " + fixed(speed, 2) + " m/s and " + fixed(turn, 2) +
+                                   " rad/s off its entry class " + entry_class.name);
+  }
+
+  const TrackHistory& history_;
+  const ExecutionCut& cut_;
+  const MotionPattern& pattern_;
+  const int64_t period_us_;
+  const MeasurementLimits& limits_;
+  const PoseTrack* track_ = nullptr;
+  Measurement result_;
+};
+
+}  // namespace
+
+const char* gateName(Gate gate) {
+  switch (gate) {
+    case Gate::kNone:
+      return "none";
+    case Gate::kAborted:
+      return "aborted";
+    case Gate::kUnknownPattern:
+      return "unknown pattern";
+    case Gate::kRecord:
+      return "senseless record";
+    case Gate::kCommands:
+      return "other commands";
+    case Gate::kNoTrack:
+      return "no INS at its start";
+    case Gate::kInsGap:
+      return "INS gap";
+    case Gate::kCoveredTime:
+      return "covered time";
+    case Gate::kNotFinite:
+      return "lost poses";
+    case Gate::kSpeed:
+      return "impossible speed";
+    case Gate::kNoMotion:
+      return "no motion";
+    case Gate::kEntryTwist:
+      return "entry twist";
+    case Gate::kSlope:
+      return "slope";
+  }
+  return "none";
+}
+
+Measurement measure(const TrackHistory& history, const ExecutionCut& cut,
+                    const MotionPattern& pattern, const MotionClass& entry_class, int64_t period_us,
+                    const MeasurementLimits& limits) {
+  return Cutter(history, cut, pattern, period_us, limits).run(entry_class);
+}
+
+double largestSpeed(const PatternSet& set) {
+  double largest = 0.0;
+  for (const MotionClass& motion : set.content().classes)
+    largest = std::max(largest, std::hypot(motion.twist.v_x, motion.twist.v_y));
+  for (const MotionPattern& pattern : set.patterns()) {
+    Pose2 last;
+    for (const Pose2& pose : pattern.trajectory) {
+      largest = std::max(largest, distance(last, pose) / set.periodSeconds());
+      last = pose;
+    }
+    if (set.content().kind != CommandKind::kTrackSpeed) continue;
+    for (const TrackCommand& command : pattern.commands)
+      largest = std::max(largest, std::abs(command.left + command.right) / 2.0);
+  }
+  return largest;
+}
+
+Eigen::Array3d boundingBox(const std::vector<Pose2>& trajectory) {
+  // The start pose (0, 0, 0) belongs to the box: a reversing pattern is as long as a forward one.
+  Eigen::Array3d low = Eigen::Array3d::Zero();
+  Eigen::Array3d high = Eigen::Array3d::Zero();
+  for (const Pose2& pose : trajectory) {
+    const Eigen::Array3d at(pose.x, pose.y, pose.yaw);
+    low = low.min(at);
+    high = high.max(at);
+  }
+  return high - low;
+}
+
+}  // namespace tread

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "common/execution/track_history.hpp"
+#include "common/pattern/pattern.hpp"
+
+// How an execution becomes a measured trajectory M:
+//   1. the record is checked (completed, times that fit the pattern, the pattern's own commands);
+//   2. the track is cut at the execution's start and interpolated at the pattern's sample times;
+//   3. what cannot be a fair measurement is refused, with its reason. There is no test for unusual
+//   motion: it would
+//      swallow ice. Only the physically impossible and the not comparable are refused.
+namespace tread {
+
+/// Why an execution is not learned from.
+enum class Gate {
+  kNone,            ///< it is a fair measurement
+  kAborted,         ///< did not run to its end
+  kUnknownPattern,  ///< not in the set
+  kRecord,          ///< times that make no sense
+  kCommands,        ///< what the motors got is not what the pattern says
+  kNoTrack,         ///< the INS has nothing at its start
+  kInsGap,          ///< INS silent for too long
+  kCoveredTime,     ///< too little of it is covered by the INS
+  kNotFinite,       ///< lost poses
+  kSpeed,           ///< faster than the vehicle can be
+  kNoMotion,        ///< should have moved, did not
+  kEntryTwist,      ///< did not begin in the pattern's entry class
+  kSlope,           ///< the ground was too steep
+};
+
+/// Every gate in a few words, for counters and reports.
+const char* gateName(Gate gate);
+
+/// What is still a fair measurement.
+struct MeasurementLimits {
+  int64_t max_gap_us = 300'000;  ///< [us] between two INS poses
+  double min_covered = 0.80;     ///< [1] share of the samples that the INS must cover
+  double max_speed = 0.0;        ///< [m/s] of the vehicle; 0 = the largest in the shipped set
+  double speed_margin = 1.5;     ///< [1] poses faster than this times max_speed are jumps
+  double min_motion = 0.03;      ///< [m] box below which nothing moved
+  double min_turn = 0.03;        ///< [rad] the same for yaw
+  int64_t entry_window_us =
+      200'000;  ///< [us] before the start over which the entry twist is measured
+  double entry_speed =
+      0.40;  ///< [m/s] allowed deviation of v_x and v_y from the class; infinite = any
+  double entry_yaw_rate = 0.50;  ///< [rad/s] allowed deviation of omega; infinite = any
+  double max_slope = 0.20;       ///< [rad] mean inclination during the execution
+};
+
+/// An execution as its record tells of it.
+struct ExecutionCut {
+  int64_t started = 0;  ///< [us] when the first command took effect
+  int64_t ended = 0;    ///< [us] end of the last command's period
+  bool completed = false;
+  std::string outcome_reason;  ///< why it was aborted
+  /// A command that differed from the pattern's, in words; empty = none seen.
+  std::string foreign_command;
+};
+
+/// M and what was measured beside it. Numbers that were not measured are NaN.
+struct Measurement {
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+  Gate gate = Gate::kNone;
+  std::string reason;             ///< of the gate: what, how much, what is allowed
+  std::vector<Pose2> trajectory;  ///< M at the pattern's sample times; empty if there is none
+  size_t covered = 0;  ///< leading samples that are measured; the rest moves on as predicted
+  Twist2 entry{kUnknown, kUnknown, kUnknown};  ///< v_body before the start
+  double slope = kUnknown;                     ///< [rad]
+  double path_length = kUnknown;               ///< [m] driven over the covered samples
+
+  bool fair() const { return gate == Gate::kNone; }
+  /// Whether the end pose itself was measured.
+  bool complete() const { return !trajectory.empty() && covered == trajectory.size(); }
+};
+
+/// Cuts and gates one execution of a pattern.
+/** `max_speed` of the limits must be set; `period_us` is that of the pattern's set. */
+Measurement measure(const TrackHistory& history, const ExecutionCut& cut,
+                    const MotionPattern& pattern, const MotionClass& entry_class, int64_t period_us,
+                    const MeasurementLimits& limits);
+
+/// Length and width [m] of the box around the start pose and all poses, and the interval of yaw
+/// [rad].
+Eigen::Array3d boundingBox(const std::vector<Pose2>& trajectory);
+
+/// The largest speed of classes, commands (if they are speeds) and predicted steps of a set [m/s].
+double largestSpeed(const PatternSet& set);
+
+}  // namespace tread

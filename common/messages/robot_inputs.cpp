@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/messages/robot_inputs.hpp"
+
+#include <cstdlib>
+#include <string>
+
+#include "common/messages/blank.hpp"
+#include "common/messages/ins_messages.hpp"
+
+namespace tread {
+
+RobotInputs::RobotInputs(Bus& bus, HealthReporter& health)
+    : bus_(bus), health_(health), permission_(bus.now()) {
+  bus.subscribe<ins_t>(kIns, [this](const ins_t& message) { take(message); });
+  bus.subscribe<motor_t>(kMotor, [this](const motor_t& message) { take(message); });
+  bus.subscribe<execution_t>(kExecution, [this](const execution_t& message) { take(message); });
+  bus.subscribe<arm_t>(kArm,
+                       [this](const arm_t& message) { permission_.take(message, bus_.now()); });
+  bus.subscribe<estop_t>(kEstop,
+                         [this](const estop_t& message) { permission_.take(message, bus_.now()); });
+}
+
+bool RobotInputs::timeJumped(int64_t utime) {
+  // A process that only hears the time does not know it at first, and may be frozen later.
+  const bool jumped = stepped_ && std::abs(utime - *stepped_) > kTimeJump;
+  stepped_ = utime;
+  if (jumped) permission_.restart(utime);
+  return jumped;
+}
+
+RobotReadings RobotInputs::readings(int64_t utime) const {
+  RobotReadings readings = readings_;
+  readings.now = utime;
+  readings.armed_by_operator = permission_.armed();
+  readings.estopped = permission_.estopped();
+  return readings;
+}
+
+bool RobotInputs::invalidTime(int64_t utime, const char* channel) {
+  const bool future = utime > bus_.now() + kMaxFuture;
+  if (utime > 0 && !future) return false;
+  health_.addToCounter(std::string(channel) +
+                       (future ? " refused: from the future" : " refused: no such time"));
+  return true;
+}
+
+void RobotInputs::take(const ins_t& message) {
+  if (invalidTime(message.utime, "INS")) return;
+  if (on_ins) on_ins(message);
+  const std::optional<Pose2> pose = planarPose(message);
+  if (!pose) return health_.addToCounter("INS without a pose");
+  if (readings_.pose && message.utime <= readings_.pose->utime)
+    return health_.addToCounter("INS out of order");
+  readings_.pose = PoseReading{message.utime, *pose, planarTwist(message)};
+}
+
+void RobotInputs::take(const motor_t& message) {
+  if (invalidTime(message.utime, "MOTOR")) return;
+  if (on_motor) on_motor(message);
+  if (readings_.bridge && message.utime < readings_.bridge->utime) return;
+  readings_.bridge = readingFrom(message);
+  permission_.take(*readings_.bridge);
+}
+
+void RobotInputs::take(const execution_t& message) {
+  if (invalidTime(message.utime, "EXECUTION")) return;
+  if (on_execution) on_execution(message);
+  if (message.utime < executions_utime_) return;
+  executions_utime_ = message.utime;
+  readings_.executions = readingsFrom(message);
+}
+
+program_t programOf(const ExecutionTracker& tracker, const Bus& bus, int64_t utime, int64_t seq,
+                    int64_t lease_us) {
+  auto message = blank<program_t>();
+  message.utime = utime;
+  message.seq = seq;
+  message.run_id = tracker.runId();
+  message.lease = static_cast<int32_t>(lease_us);
+  message.running = toMessage(tracker.running());
+  message.next = toMessage(tracker.next());
+  const BusStatistics& statistics = bus.statistics();
+  message.inputs_heard = statistics.received;
+  message.newest_input = statistics.newest.channel;
+  message.newest_input_utime = statistics.newest.utime;
+  message.newest_input_seq = statistics.newest.seq;
+  return message;
+}
+
+}  // namespace tread

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include <tread/ins_t.hpp>
+#include <tread/program_t.hpp>
+
+#include "common/bus/health.hpp"
+#include "common/messages/execution_messages.hpp"
+#include "common/messages/permission.hpp"
+
+namespace tread {
+
+/// Receives INS, MOTOR, EXECUTION, ARM and ESTOP for a node that drives the robot.
+/** Messages with an impossible time, out of order or without a pose are refused and counted in
+ * HEALTH. Comes up without permission: ARM must be seen after the start. */
+class RobotInputs {
+ public:
+  RobotInputs(Bus& bus, HealthReporter& health);
+  RobotInputs(const RobotInputs&) = delete;  // the bus calls it back
+  RobotInputs& operator=(const RobotInputs&) = delete;
+
+  /// Call first in each step. True if the time jumped: what was noted before has no age any more,
+  /// and the permission is revoked, because whoever armed then did not arm this run.
+  bool timeJumped(int64_t utime);
+  RobotReadings readings(int64_t utime) const;
+  DrivingPermission& permission() { return permission_; }
+
+  /// Whether a time is impossible: not positive, or so far ahead that it would look fresh for ever.
+  /** Counted in HEALTH as refused on that channel. */
+  bool invalidTime(int64_t utime, const char* channel);
+
+  // Called with each message whose time is possible, before it is used.
+  std::function<void(const ins_t&)> on_ins;
+  std::function<void(const motor_t&)> on_motor;
+  std::function<void(const execution_t&)> on_execution;
+
+ private:
+  static constexpr int64_t kTimeJump = 1'000'000;  ///< [us] between two steps
+  static constexpr int64_t kMaxFuture = 100'000;   ///< [us] by which a utime may be ahead
+
+  void take(const ins_t& message);
+  void take(const motor_t& message);
+  void take(const execution_t& message);
+
+  Bus& bus_;
+  HealthReporter& health_;
+  DrivingPermission permission_;
+  RobotReadings readings_;
+  std::optional<int64_t> stepped_;  ///< [us] the last step
+  int64_t executions_utime_ = 0;
+};
+
+/// PROGRAM with both slots of the tracker and the newest input of the bus.
+program_t programOf(const ExecutionTracker& tracker, const Bus& bus, int64_t utime, int64_t seq,
+                    int64_t lease_us);
+
+}  // namespace tread

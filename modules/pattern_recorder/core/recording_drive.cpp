@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/pattern_recorder/core/recording_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace tread::pattern_recorder {
+namespace {
+
+constexpr int64_t kMaxPoseAge = 150'000;    // [us] as the planner's
+constexpr int64_t kMaxBridgeAge = 500'000;  // [us] as the planner's
+constexpr int64_t kLead = 600'000;  // [us] before its end the running pattern gets its successor
+constexpr int64_t kLostAfter = 3'000'000;  // [us] of standing after which no record comes any more
+constexpr double kPlannedShare = 0.85;     // of the room; the rest is for deviations
+constexpr int kMaxWithoutGain = 60;        // patterns
+
+/// A number with one decimal, such as "-3.5".
+std::string withTenths(double value) {
+  const auto tenths = std::lround(10.0 * std::abs(value));
+  return (std::signbit(value) ? "-" : "") + std::to_string(tenths / 10) + "." +
+         std::to_string(tenths % 10);
+}
+
+std::string placeOf(const Pose2& pose) {
+  return "(" + withTenths(pose.x) + ", " + withTenths(pose.y) + ")";
+}
+
+}  // namespace
+
+RecordingDrive::RecordingDrive(const PatternSet& set, double room, int64_t run_id, Say say)
+    : set_(set),
+      room_(room),
+      say_(std::move(say)),
+      tour_(set, kPlannedShare * room),
+      tracker_(run_id) {}
+
+void RecordingDrive::step(const RobotReadings& readings, const RecordingProgress& progress,
+                          bool may_begin) {
+  for (const int64_t execution : progress.judged) under_way_.erase(execution);
+  if (!progress.hopeless.empty()) fail(progress.hopeless);
+  const ExecutionTracker::Event event = tracker_.follow(readings);
+  if (event == ExecutionTracker::Event::kAborted || event == ExecutionTracker::Event::kNeverStarted)
+    say_("stopped: " + tracker_.abortReason());
+  if (tracker_.running().empty()) forgetUnplayed(readings);
+  left_room_ = false;
+  if (state_ == State::kRunning) drive(readings, progress, may_begin);
+}
+
+/// Slots that the bridge never began will not be judged.
+void RecordingDrive::forgetUnplayed(const RobotReadings& readings) {
+  for (auto it = under_way_.begin(); it != under_way_.end();) {
+    const bool known =
+        std::any_of(readings.executions.begin(), readings.executions.end(),
+                    [&](const ExecutionReading& record) {
+                      return record.run_id == tracker_.runId() && record.execution_id == it->first;
+                    });
+    it = known ? std::next(it) : under_way_.erase(it);
+  }
+}
+
+std::string RecordingDrive::roomExceeded(const Pose2& T_map_body) {
+  if (!T_map_home_) return "";
+  const Pose2 T_home_body = fromHome(T_map_body);
+  const double away = std::hypot(T_home_body.x, T_home_body.y);
+  if (away <= room_) return "";
+  left_room_ = true;
+  return withTenths(std::ceil(away * 2.0) / 2.0) + " m from where it began " +
+         placeOf(*T_map_home_) + ", the room is " + withTenths(room_) +
+         " m: drive it back, then arm it again";
+}
+
+std::string RecordingDrive::obstacle(const RobotReadings& readings) {
+  if (!readings.pose) return "waiting for INS";
+  if (readings.now - readings.pose->utime > kMaxPoseAge) return "INS is silent";
+  if (!readings.bridge) return "waiting for MOTOR of motor_bridge";
+  if (readings.now - readings.bridge->utime > kMaxBridgeAge) return "MOTOR is silent";
+  if (readings.estopped) return "emergency stop: clear it (tread-stop --clear) and arm";
+  if (std::string away = roomExceeded(readings.pose->T_map_body); !away.empty()) return away;
+  if (!readings.armed_by_operator || !readings.bridge->armed())
+    return "not armed: tread-arm allows it to drive";
+  return "";
+}
+
+void RecordingDrive::drive(const RobotReadings& readings, const RecordingProgress& progress,
+                           bool may_begin) {
+  const std::string why = obstacle(readings);
+  if (!why.empty()) {
+    tracker_.stop();
+    forgetUnplayed(readings);
+    standing_since_.reset();
+    return setReason(why);
+  }
+  if (!tracker_.running().empty()) {
+    standing_since_.reset();
+    setReason("");
+    return appendNext(readings, progress.missing);
+  }
+  if (!standing_since_) standing_since_ = readings.now;
+  if (readings.now - *standing_since_ > kLostAfter) under_way_.clear();
+  const bool stands = readings.bridge->state == BridgeReading::State::kArmed && progress.standing;
+  if (!may_begin || !stands) return;
+  const auto& missing = progress.missing;
+  if (std::all_of(missing.begin(), missing.end(), [](int count) { return count <= 0; })) {
+    state_ = State::kDone;
+    return setReason("everything is recorded");
+  }
+  begin(readings, missing);
+}
+
+void RecordingDrive::begin(const RobotReadings& readings, const std::vector<int>& missing) {
+  const std::vector<int> open = needed(missing);
+  // What is under way may be refused, and then it is needed again.
+  if (*std::max_element(open.begin(), open.end()) <= 0) return;
+  if (!T_map_home_) T_map_home_ = readings.pose->T_map_body;
+  const std::optional<size_t> pattern =
+      tour_.next(tour_.standing(), fromHome(readings.pose->T_map_body), open);
+  if (!pattern)
+    return setReason("no pattern fits into the room from here: drive it back to where it began " +
+                     placeOf(*T_map_home_));
+  setReason("");
+  if (!gains(open[*pattern] > 0)) return;
+  tracker_.begin(set_, set_.patterns()[*pattern].id, readings.now);
+  under_way_[tracker_.running().execution_id] = *pattern;
+}
+
+void RecordingDrive::appendNext(const RobotReadings& readings, const std::vector<int>& missing) {
+  if (!tracker_.confirmed() || !tracker_.next().empty() || tracker_.ends() - readings.now > kLead)
+    return;
+  const std::vector<int> open = needed(missing);
+  const std::optional<size_t> pattern = tour_.next(tracker_.running().pattern().exit_class,
+                                                   fromHome(predictedEnd(*readings.pose)), open);
+  if (!pattern || !gains(open[*pattern] > 0)) return;
+  tracker_.setNext(set_, set_.patterns()[*pattern].id);
+  under_way_[tracker_.next().execution_id] = *pattern;
+}
+
+bool RecordingDrive::gains(bool is_needed) {
+  without_gain_ = is_needed ? 0 : without_gain_ + 1;
+  if (without_gain_ <= kMaxWithoutGain) return true;
+  fail("no pattern that is still needed fits into the room; give it a larger --room");
+  return false;
+}
+
+Pose2 RecordingDrive::predictedEnd(const PoseReading& pose) const {
+  const MotionPattern& pattern = tracker_.running().pattern();
+  const int64_t driven = (pose.utime - tracker_.started()) / set_.content().period_us;
+  const auto samples = static_cast<size_t>(
+      std::clamp<int64_t>(driven, 0, static_cast<int64_t>(pattern.trajectory.size())));
+  const Pose2 T_start_now = samples == 0 ? Pose2{} : pattern.trajectory[samples - 1];
+  return pose.T_map_body * between(T_start_now, pattern.end());
+}
+
+std::vector<int> RecordingDrive::needed(const std::vector<int>& missing) const {
+  std::vector<int> open = missing;
+  for (const auto& [execution, pattern] : under_way_) --open[pattern];
+  return open;
+}
+
+void RecordingDrive::setReason(const std::string& reason) {
+  if (reason == reason_) return;
+  reason_ = reason;
+  if (!reason_.empty()) say_(reason_);
+}
+
+void RecordingDrive::fail(const std::string& reason) {
+  if (state_ != State::kRunning) return;
+  tracker_.stop();
+  state_ = State::kFailed;
+  reason_ = reason;
+}
+
+}  // namespace tread::pattern_recorder

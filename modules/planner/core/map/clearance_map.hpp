@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "common/grid/grid.hpp"
+#include "modules/planner/core/map/distance_to_goal.hpp"
+
+namespace tread::planner {
+
+/// What is remembered of the map, and how coarsely.
+struct ClearanceMapConfig {
+  double keep_radius = 40.0;   ///< [m] tiles farther from the vehicle are forgotten
+  double clearance_cap = 0.8;  ///< [m] greater clearances are stored as this
+  int coarse = 2;              ///< cells of the map per side of a coarse cell
+};
+
+/// Coarse cells of one tile.
+struct ClearanceTile {
+  std::vector<float> clearance;  ///< [m] greatest distance to an obstacle in the cell, capped
+  std::vector<uint8_t> unknown;  ///< 1 where at least half of the cell is unknown
+};
+
+/// All tiles seen so far, also those that mapping has forgotten, and the clearance in coarse cells.
+/** Dead ends stay known after the local map has moved on. Unknown counts as passable: it may be
+ * free. */
+class ClearanceMap : public ClearanceSource {
+ public:
+  ClearanceMap(double cell_size, int tile_cells, const ClearanceMapConfig& config);
+
+  /// Takes a tile. What it does not know keeps what was known before. Returns whether anything
+  /// changed.
+  bool put(Tile tile);
+  /// Makes unknown cells free: the vehicle stands on them.
+  void assumeFree(const std::vector<CellIndex>& cells);
+  void forgetBeyond(const Eigen::Vector2d& p_map);
+  /// Updates the clearance in the tiles that changed, and in their neighbours.
+  void refresh();
+
+  /// Window of the map with full resolution.
+  Grid window(CellIndex lower, int width, int height) const {
+    return tiles_.window(lower, width, height);
+  }
+  double cellSize() const { return tiles_.cellSize(); }
+  int tileCells() const { return tiles_.tileCells(); }
+  double coarseSize() const override { return cellSize() * coarse_; }
+  void fill(ClearanceWindow& window) const override;
+  /// Counts up whenever a cell changes.
+  int64_t revision() const { return revision_; }
+  /// Counts up whenever the clearance or what is unknown changes in a coarse cell.
+  int64_t clearanceRevision() const { return clearance_revision_; }
+  /// [us] of the newest scan in any tile; 0 before the first.
+  int64_t newestUtime() const { return newest_utime_; }
+  bool empty() const { return tiles_.tiles().empty(); }
+  const std::map<std::pair<int, int>, ClearanceTile>& clearances() const { return clearances_; }
+  int coarsePerTile() const { return tileCells() / coarse_; }
+
+ private:
+  /// What a new tile changes.
+  enum class Change { kNone, kKnowledge, kObstacles };
+  Change merge(Tile& tile) const;
+  /// Tiles from left to right and from bottom to top, all included.
+  struct TileBox {
+    int left;
+    int bottom;
+    int right;
+    int top;
+  };
+  void refreshKnowledge(std::pair<int, int> key);
+  void refreshClearances(const std::vector<std::pair<int, int>>& keys);
+  bool refreshUnknown(const Tile& tile, ClearanceTile& coarse_tile) const;
+  bool refreshClearance(std::pair<int, int> key, const ClearanceField& field,
+                        ClearanceTile& coarse_tile) const;
+  ClearanceField fieldOver(const TileBox& box) const;
+
+  TileMap tiles_;
+  ClearanceMapConfig config_;
+  int coarse_;
+  std::map<std::pair<int, int>, ClearanceTile> clearances_;
+  std::map<std::pair<int, int>, Change> dirty_;
+  int64_t revision_ = 0;
+  int64_t clearance_revision_ = 0;
+  int64_t newest_utime_ = 0;
+};
+
+}  // namespace tread::planner

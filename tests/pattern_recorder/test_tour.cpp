@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "common/pattern/pattern_file.hpp"
+#include "modules/pattern_recorder/core/tour.hpp"
+#include "tests/tools/patterns/few_patterns.hpp"
+
+using namespace tread;
+using namespace tread::pattern_recorder;
+
+namespace {
+
+PatternSet shipped() {
+  return readPatternFile(std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor.yaml");
+}
+
+/// What a drive that goes exactly as predicted came to.
+struct Driven {
+  std::vector<std::string> names;
+  std::map<std::string, int> counts;
+  double farthest = 0.0;
+  std::string ends_in;
+};
+
+/// Drives until nothing is left to do, or 2000 patterns are driven.
+Driven drivenBy(const PatternSet& set, double room, int executions, const Pose2& start = {}) {
+  const Tour tour(set, room);
+  std::vector<int> needed(set.patterns().size(), executions);
+  Pose2 T_home_body = start;
+  Driven driven;
+  driven.ends_in = tour.standing();
+  while (driven.names.size() < 2000) {
+    const auto next = tour.next(driven.ends_in, T_home_body, needed);
+    if (!next) break;
+    const MotionPattern& pattern = set.patterns()[*next];
+    REQUIRE(pattern.entry_class == driven.ends_in);
+    driven.names.push_back(pattern.name);
+    ++driven.counts[pattern.name];
+    --needed[*next];
+    T_home_body = T_home_body * pattern.end();
+    driven.farthest = std::max(driven.farthest, std::hypot(T_home_body.x, T_home_body.y));
+    driven.ends_in = pattern.exit_class;
+  }
+  return driven;
+}
+
+}  // namespace
+
+TEST_CASE("A tour drives every shipped pattern often enough, near where it began, and stands") {
+  const PatternSet set = shipped();
+  const Driven driven = drivenBy(set, 4.0, 10);
+  for (const MotionPattern& pattern : set.patterns()) {
+    INFO(pattern.name);
+    CHECK(driven.counts.at(pattern.name) >= 10);
+  }
+  CHECK(driven.farthest < 4.0);
+  CHECK(driven.ends_in == "rest");
+  // Little is driven in vain.
+  CHECK(driven.names.size() < 250);
+}
+
+TEST_CASE("In a tour left and right take turns") {
+  const Driven driven = drivenBy(shipped(), 6.0, 10);
+  int balance = 0;
+  for (const std::string& name : driven.names) {
+    if (name == "hard_left") ++balance;
+    if (name == "hard_right") --balance;
+    CHECK(std::abs(balance) <= 3);
+  }
+}
+
+TEST_CASE("A tour that began too far away leads back") {
+  const Driven driven = drivenBy(shipped(), 4.0, 3, {7.0, 0.0, 0.0});
+  CHECK(driven.farthest <= 7.7);
+  CHECK(driven.counts.at("straight") >= 3);
+}
+
+TEST_CASE("Where nothing that is needed fits into the room any more, a tour ends standing") {
+  const Driven driven = drivenBy(tread::patterns::samples::withoutRight(), 5.0, 30);
+  CHECK(driven.names.size() < 20);
+  CHECK(driven.farthest <= 5.0);
+  CHECK(driven.ends_in == "rest");
+}
+
+TEST_CASE("A set without a way from standing and back is refused") {
+  const auto straight =
+      tread::patterns::samples::pattern(1, "straight", {0.5, 0.5}, {0.5, 0.0, 0.0});
+  CHECK_THROWS_WITH(Tour(tread::patterns::samples::setOf({straight}), 5.0),
+                    Catch::Contains("stands still"));
+  const auto start =
+      tread::patterns::samples::pattern(2, "start", {0.5, 0.5}, {0.5, 0.0, 0.0}, "rest", "cruise");
+  CHECK_THROWS_WITH(Tour(tread::patterns::samples::setOf({straight, start}, true), 5.0),
+                    Catch::Contains("class 'cruise' of set 'few' cannot be left"));
+  const auto stop =
+      tread::patterns::samples::pattern(3, "stop", {0.0, 0.0}, {0.0, 0.0, 0.0}, "cruise", "rest");
+  CHECK_THROWS_WITH(Tour(tread::patterns::samples::setOf({straight, stop}, true), 5.0),
+                    Catch::Contains("class 'cruise' of set 'few' cannot be reached"));
+}
