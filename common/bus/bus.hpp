@@ -47,7 +47,7 @@ class Bus {
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  /// Present time of the robot [us], monotonic. See design: only device processes take it from the
+  /// Present time of the robot [us], monotonic. Only processes with a device take it from the
   /// host.
   virtual int64_t now() const = 0;
   /// Differs for each start of a process on this robot [us]; the run id of a planner, the boot id
@@ -99,7 +99,7 @@ class Bus {
  private:
   template <class Message>
   bool decode(const ChannelSpec& spec, const uint8_t* bytes, size_t size, Message& message) {
-    // A negative length in a broken message makes the generated code throw: see lcm.md, row 11.
+    // A negative length in a broken message makes the generated code throw std::length_error.
     try {
       const int expected = static_cast<int>(size);
       if (message.decode(bytes, 0, expected) == expected) return true;

@@ -37,7 +37,7 @@ LcmBus::LcmBus(const std::string& url, TimeSource time_source, int64_t max_jump_
       time_source_(time_source),
       boot_id_(hostNow()),
       followed_(boot_id_, max_jump_us) {
-  // getFileno() runs LCM's self-test now instead of at the first subscription (lcm.md, row 14).
+  // getFileno() runs LCM's self-test now instead of at the first subscription.
   if (!lcm_->good() || lcm_->getFileno() < 0)
     throw std::runtime_error(
         "LCM cannot use '" + (url.empty() ? std::string("the default URL") : url) +
@@ -75,7 +75,7 @@ void LcmBus::listen(const char* channel, RawHandler handler) {
       lcm_->subscribeFunction(channel, &Subscription::receive, subscriptions_.back().get());
   if (subscription == nullptr)
     throw std::runtime_error(std::string("LCM does not let us subscribe to ") + channel);
-  // LCM drops the newest when its queue is full (lcm.md, row 6): never let it get full.
+  // LCM drops the newest when its queue is full: never let it get full.
   subscription->setQueueCapacity(kQueueCapacity);
 }
 

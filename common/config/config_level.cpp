@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "common/config/one_document.hpp"
 #include "common/config/scalars.hpp"
 
 namespace tread {

@@ -33,6 +33,10 @@ struct ConfigSource {
   std::map<int, std::string> overrides;  ///< by their last line
 };
 
+/// The only document of a YAML text; null for an empty text.
+/** Throws ConfigError with name:line for bad syntax and for a second document. */
+YAML::Node loadOneDocument(const std::string& text, const std::string& name);
+
 /// Puts "key=value" or "section.key=value" into the tree of a file; throws ConfigError.
 void applyOverride(ConfigSource& source, const std::string& words, YAML::Node& root);
 

@@ -12,7 +12,7 @@
 namespace tread {
 namespace {
 
-constexpr int kMostBytes = 60'000;  // lcm.md: from 130 kB on, most messages are lost in silence
+constexpr int kMostBytes = 60'000;  // from 130 kB on, LCM loses most messages in silence
 
 }  // namespace
 

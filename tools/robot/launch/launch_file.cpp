@@ -93,7 +93,6 @@ LaunchProcess readProcess(ConfigReader& reader, const Placeholders& placeholders
   reader.text("config", process.config);
   reader.texts("arguments", process.arguments);
   reader.flag("foreign", process.foreign);
-  reader.flag("restart", process.restart);
   reader.choice("stop_signal", process.stop_signal, {"INT", "TERM", "HUP", "QUIT"});
   reader.integer("stop_time", process.stop_time, {1, 60}, "s");
   if (process.foreign && !process.config.empty())
@@ -131,12 +130,6 @@ LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings) 
   Placeholders placeholders{
       {"run", settings.run}, {"bin", settings.bin}, {"here", folder}, {"lcm_url", launch.lcm_url}};
   readValues(reader, settings, placeholders);
-  ConfigReader environment = reader.section("environment");
-  for (const std::string& key : environment.keys()) {
-    std::string value;
-    environment.text(key, value, true);
-    launch.environment[key] = replaced(environment, key, value, placeholders);
-  }
   std::set<std::string> names{"supervisord"};  // whose log is beside theirs
   for (ConfigReader& item : reader.sections("processes", true)) {
     launch.processes.push_back(readProcess(item, placeholders, folder));

@@ -19,7 +19,6 @@ struct LaunchProcess {
   std::vector<std::string> arguments;  ///< further words
   /// Not a program of ours: no --config, --lcm-url, --with-parent and --check are given to it.
   bool foreign = false;
-  bool restart = true;              ///< started again when it ends by itself
   std::string stop_signal = "INT";  ///< asks it to end
   int64_t stop_time = 5;            ///< s until it is killed
 };
@@ -29,7 +28,6 @@ struct LaunchFile {
   std::string name;
   std::string lcm_url;
   bool simulated = false;  ///< no robot: what only a robot's network needs is an advice
-  std::map<std::string, std::string> environment;
   std::vector<LaunchProcess> processes;
 };
 
@@ -46,11 +44,10 @@ struct LaunchSettings {
 std::string readLaunchName(const std::string& file);
 
 /// Reads a launch file; throws ConfigError with file:line.
-/** Keys: name, lcm_url, simulated, values (a map of own placeholders with their defaults),
- * environment (a map) and processes, a list of maps: name, program, config, arguments, foreign,
- * restart, stop_signal, stop_time. Placeholders in environment, program, config and arguments:
- * {run}, {lcm_url}, {bin}, {here} (the file's folder) and the own ones. Relative paths are taken
- * from the file's folder. */
+/** Keys: name, lcm_url, simulated, values (a map of own placeholders with their defaults) and
+ * processes, a list of maps: name, program, config, arguments, foreign, stop_signal, stop_time.
+ * Placeholders in program, config and arguments: {run}, {lcm_url}, {bin}, {here} (the file's
+ * folder) and the own ones. Relative paths are taken from the file's folder. */
 LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings);
 
 /// The words that start a process: ours get --config, --lcm-url and --with-parent, foreign ones

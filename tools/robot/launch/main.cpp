@@ -82,10 +82,6 @@ std::vector<SupervisedProcess> withCommands(const LaunchFile& launch,
   return supervised;
 }
 
-void setEnvironment(const LaunchFile& launch) {
-  for (const auto& [key, value] : launch.environment) setenv(key.c_str(), value.c_str(), 1);
-}
-
 [[noreturn]] void become(const std::vector<std::string>& words) {
   becomeProgram(words);
   throw std::runtime_error(words.front() + ": cannot be started");
@@ -100,7 +96,6 @@ bool checksPass(const LaunchFile& launch, const LaunchSettings& settings) {
 }
 
 int start(const LaunchFile& launch, const LaunchSettings& settings) {
-  setEnvironment(launch);
   if (!checksPass(launch, settings)) return 1;
   const RunPaths paths(settings.run);
   std::filesystem::create_directories(paths.logs);
@@ -126,7 +121,6 @@ int only(const LaunchFile& launch, const Options& options) {
     if (process.name != options.only) continue;
     const std::string program = findProgram(process.program, options.settings.bin);
     if (program.empty()) throw std::runtime_error("there is no program " + process.program);
-    setEnvironment(launch);
     std::filesystem::create_directories(RunPaths(options.settings.run).logs);
     std::filesystem::current_path(options.settings.run);
     become(startCommand(process, program, launch.lcm_url));
@@ -155,7 +149,6 @@ int run(int argc, char** argv) {
   if (options.status) return status(launch, paths);
   if (!options.only.empty()) return only(launch, options);
   if (!options.check) return start(launch, options.settings);
-  setEnvironment(launch);
   if (!checksPass(launch, options.settings)) return 1;
   std::cout << launch.name << ": ready to start" << std::endl;
   return 0;

@@ -72,8 +72,8 @@ void writeProcess(std::ostream& out, const SupervisedProcess& supervised, size_t
       << "command=" << supervisorCommand(supervised.command) << "\n"
       << "directory=" << value(paths.folder) << "\n"
       << "priority=" << 10 * (place + 1) << "\n"  // the order of starting; stopped in reverse
-      << "autorestart=" << (process.restart ? "true" : "false") << "\n"
-      << "startsecs=" << (process.restart ? 1 : 0) << "\n"
+      << "autorestart=true\n"
+      << "startsecs=1\n"
       << "startretries=1000000\n"
       << "stopsignal=" << process.stop_signal << "\n"
       << "stopwaitsecs=" << process.stop_time << "\n"

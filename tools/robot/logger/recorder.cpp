@@ -17,8 +17,10 @@ namespace {
 constexpr int kQueue = 100'000;          // messages
 constexpr int64_t kCareEvery = 250'000;  // [us] between flushes
 constexpr int kWaitMs = 100;
-constexpr int kMostFailures = 10;  // of LCM in a row
-constexpr int64_t kOverhead = 60;  // [bytes] of an event beside its message, about
+constexpr int64_t kRetry = 1'000'000;     // [us] between attempts after the disk was full
+constexpr int64_t kReserve = 10'000'000;  // [bytes] that must be free to begin again
+constexpr int kMostFailures = 10;         // of LCM in a row
+constexpr int64_t kOverhead = 60;         // [bytes] of an event beside its message, about
 
 int64_t utcNow() {
   using std::chrono::duration_cast;
@@ -73,7 +75,7 @@ void Recorder::begin() {
 void Recorder::giveUp(const std::string& why) {
   std::fprintf(stderr, "tread-logger: %s; recording goes on when there is room\n", why.c_str());
   writer_.reset();
-  next_try_ = hostNow() + static_cast<int64_t>(settings_.retry * 1e6);
+  next_try_ = hostNow() + kRetry;
 }
 
 void Recorder::take(const std::string& channel, const uint8_t* bytes, size_t size) {
@@ -99,8 +101,8 @@ void Recorder::care(int64_t now) {
     } else if (now >= next_try_) {
       const auto folder = fs::absolute(settings_.file).parent_path();
       const auto room = static_cast<int64_t>(fs::space(folder).available);
-      next_try_ = now + static_cast<int64_t>(settings_.retry * 1e6);
-      if (room < settings_.reserve) return;
+      next_try_ = now + kRetry;
+      if (room < kReserve) return;
       begin();
       std::fprintf(stderr, "tread-logger: recording again; %lld messages are lost\n",
                    static_cast<long long>(lost_));

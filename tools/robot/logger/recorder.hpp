@@ -23,10 +23,8 @@ void makeRoomForLog(const std::string& file, int keep);
 struct RecorderSettings {
   std::string file;  ///< FILE.0 is the newest, FILE.1 the one before
   std::string lcm_url;
-  int keep = 20;                 ///< files
-  int64_t split = 200'000'000;   ///< [bytes] of a file
-  double retry = 1.0;            ///< [s] between attempts after the disk was full
-  int64_t reserve = 10'000'000;  ///< [bytes] that must be free to begin again
+  int keep = 20;                ///< files
+  int64_t split = 200'000'000;  ///< [bytes] of a file
 };
 
 /// Records every message of a bus as LCM event logs, rotated.
@@ -43,8 +41,6 @@ class Recorder {
 
   /// Until `stop`; then what has arrived is written, too.
   void run(const std::atomic<bool>& stop);
-  /// Messages that a full disk cost.
-  int64_t lost() const { return lost_; }
 
  private:
   void take(const std::string& channel, const uint8_t* bytes, size_t size);

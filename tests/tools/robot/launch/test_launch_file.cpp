@@ -36,27 +36,23 @@ TEST_CASE("a launch file becomes processes in its order, with placeholders and p
   const LaunchFile launch = read(R"(
 name: robot
 values: {robot: ../robots/teodor}
-environment: {MODE: "{robot}"}
 processes:
   - {name: logger, program: lcm-logger, foreign: true, stop_time: 9,
      arguments: ["--lcm-url={lcm_url}", "{run}/log/x"]}
-  - {name: planner, program: tread-planner, config: "{robot}/planner.yaml", restart: false,
+  - {name: planner, program: tread-planner, config: "{robot}/planner.yaml",
      stop_signal: TERM}
   - {name: own, program: ../tools/own}
 )");
   CHECK(launch.name == "robot");
   CHECK(launch.lcm_url == "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=2097152");
-  CHECK(launch.environment.at("MODE") == "../robots/teodor");
   REQUIRE(launch.processes.size() == 3);
   const LaunchProcess& logger = launch.processes[0];
   CHECK(logger.foreign);
-  CHECK(logger.restart);
   CHECK(logger.stop_signal == "INT");
   CHECK(logger.stop_time == 9);
   CHECK(logger.arguments == Words{"--lcm-url=" + launch.lcm_url, "/run/r/log/x"});
   const LaunchProcess& planner = launch.processes[1];
   CHECK(planner.config == "/etc/robots/robots/teodor/planner.yaml");
-  CHECK_FALSE(planner.restart);
   CHECK(planner.stop_signal == "TERM");
   CHECK(launch.processes[2].program == "/etc/robots/tools/own");
 }

@@ -23,7 +23,6 @@ SupervisedProcess process(const std::string& name) {
 
 TEST_CASE("the supervisor gets its own socket, pid and logs below the run folder") {
   SupervisedProcess second = process("second");
-  second.process.restart = false;
   second.process.stop_signal = "TERM";
   second.process.stop_time = 9;
   const std::string text =
@@ -46,8 +45,7 @@ TEST_CASE("the supervisor gets its own socket, pid and logs below the run folder
                             "stdout_logfile=/run/r/log/first.log\n"
                             "stdout_logfile_maxbytes=5MB\n"));
   CHECK_THAT(text, Contains("[program:second]\n") && Contains("priority=20\n") &&
-                       Contains("autorestart=false\n") && Contains("stopsignal=TERM\n") &&
-                       Contains("stopwaitsecs=9\n"));
+                       Contains("stopsignal=TERM\n") && Contains("stopwaitsecs=9\n"));
   CHECK_THAT(supervisorConfig("robot", {process("first")}, RunPaths("/run/r"), false),
              !Contains("user="));
 }

@@ -1,22 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <fcntl.h>
-#include <unistd.h>
+#include "common/store/store.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
 
-#include "common/store/entry_name.hpp"
-#include "common/store/store.hpp"
+#include <fcntl.h>
+#include <unistd.h>
 
 namespace tread {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Whether a name may stand for an entry: letters, digits, '.', '_', '-', no dot in front, at most
+/// 200 characters, so that it is a visible file of the folder itself on any file system.
+bool isEntryName(const std::string& name) {
+  constexpr size_t kLongest = 200;
+  return !name.empty() && name.size() <= kLongest && name.front() != '.' &&
+         std::all_of(name.begin(), name.end(), [](unsigned char c) {
+           return (c < 0x80 && std::isalnum(c) != 0) || c == '.' || c == '_' || c == '-';
+         });
+}
+
+/// The line that refuses such a name.
+std::string badEntryName() {
+  return "store: an entry's name has only letters, digits, '.', '_' and '-', at most 200, and does "
+         "not begin with a dot";
+}
 
 /// A file descriptor that is closed at the end of its scope.
 class Descriptor {
@@ -124,6 +140,29 @@ std::vector<std::string> FileStore::names() const {
     if (isEntryName(name) && file.is_regular_file(failure)) all.push_back(name);
   }
   std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::optional<std::string> MemoryStore::read(const std::string& name) const {
+  const auto found = entries_.find(name);
+  if (found == entries_.end()) return std::nullopt;
+  return found->second;
+}
+
+std::optional<std::string> MemoryStore::write(const std::string& name, const std::string& content) {
+  if (!isEntryName(name)) return badEntryName();
+  if (!problem_.empty()) return problem_;
+  entries_[name] = content;
+  return std::nullopt;
+}
+
+void MemoryStore::remove(const std::string& name) {
+  entries_.erase(name);
+}
+
+std::vector<std::string> MemoryStore::names() const {
+  std::vector<std::string> all;
+  for (const auto& entry : entries_) all.push_back(entry.first);
   return all;
 }
 
