@@ -5,19 +5,19 @@
 #include <string>
 
 #include "common/config/config_reader.hpp"
-#include "modules/ins_driver/core/ins_estimate.hpp"
+#include "modules/ins_driver/ins_sources.hpp"
 
 namespace tread::ins {
 
 /// Configuration of ins_driver, with its defaults.
 struct InsDriverConfig {
-  std::string source = "nmea";  ///< kind of the device, see makeInsSource()
   std::string address = "tty:/dev/ttyUSB0?baud=115200";  ///< of the device
   std::string store = "state/ins_driver";                ///< folder that keeps the map's origin
-  InsConfig ins;
-  double silence = 1.0;       ///< [s] without what is expected after which health says so
-  int64_t period_us = 5'000;  ///< [us] between looks at the link
-  std::string effective;      ///< the whole as YAML, for CONFIG
+  MakeInsSource make_source;        ///< of the kind that the configuration names
+  std::optional<GeoOrigin> origin;  ///< of the map; absent: stored, or the first good fix
+  double silence = 1.0;             ///< [s] without what is expected after which health says so
+  int64_t period_us = 5'000;        ///< [us] between looks at the link
+  std::string effective;            ///< the whole as YAML, for CONFIG
 };
 
 /// Reads the configuration; throws ConfigError with file:line.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 
 #include "common/messages/blank.hpp"
 
@@ -26,17 +25,18 @@ static_assert(same(kNoVelocity, ins_t::STATUS_NO_VELOCITY));
 constexpr size_t kMaxBytesPerStep = 65536;
 constexpr int64_t kCounterPeriodUs = 200'000;
 
-/// The configuration with the stored origin where none is configured.
-InsConfig withStoredOrigin(InsConfig ins, const Store& store, std::string& problem) {
-  if (ins.origin) return ins;
+/// The configured origin, else the stored one.
+std::optional<GeoOrigin> knownOrigin(const std::optional<GeoOrigin>& configured, const Store& store,
+                                     std::string& problem) {
+  if (configured) return configured;
   const std::optional<std::string> text = store.read(kOriginEntry);
-  if (!text) return ins;
+  if (!text) return std::nullopt;
   try {
-    ins.origin = originFrom(*text);
+    return originFrom(*text);
   } catch (const ConfigError& error) {
     problem = std::string(error.what()) + "; the map starts anew at the first fix";
+    return std::nullopt;
   }
-  return ins;
 }
 
 void copy(const Eigen::Vector3d& from, double* to) {
@@ -62,16 +62,6 @@ ins_t messageOf(const InsEstimate& estimate, int64_t seq) {
   return message;
 }
 
-/// "cut short 3, wrong checksum 12".
-std::string listed(const RefusalCounts& refused) {
-  std::ostringstream text;
-  for (size_t i = 0; i < kRefusalCount; ++i) {
-    if (refused.of[i] == 0) continue;
-    text << (text.tellp() > 0 ? ", " : "") << name(static_cast<Refusal>(i)) << " " << refused.of[i];
-  }
-  return text.str();
-}
-
 std::string inSeconds(int64_t us) {
   return std::to_string(us / 1'000'000) + "." + std::to_string(us / 100'000 % 10) + " s";
 }
@@ -83,9 +73,9 @@ InsDriverNode::InsDriverNode(const InsDriverConfig& config, Bus& bus, Link& link
       bus_(bus),
       link_(link),
       store_(store),
-      ins_(withStoredOrigin(config.ins, store, origin_problem_)),
+      source_(config.make_source(knownOrigin(config.origin, store, origin_problem_))),
       health_(bus, "ins_driver", config.effective),
-      origin_kept_(ins_.assembler().origin().has_value()),
+      origin_kept_(source_->origin().has_value()),
       silence_us_(std::llround(config.silence * 1e6)),
       start_(bus.now()),
       last_bytes_(bus.now()),
@@ -115,7 +105,7 @@ int64_t InsDriverNode::readLink(int64_t utime) {
     if (!size) loseLink();
     if (size.value_or(0) == 0) break;
     last_bytes_ = utime;
-    ins_.push({reinterpret_cast<const char*>(buffer.data()), *size}, utime);
+    source_->push({reinterpret_cast<const char*>(buffer.data()), *size}, utime);
     total += *size;
   }
   return utime;
@@ -124,14 +114,14 @@ int64_t InsDriverNode::readLink(int64_t utime) {
 void InsDriverNode::loseLink() {
   was_open_ = false;
   ++link_losses_;
-  ins_.interrupt();
+  source_->interrupt();
 }
 
 void InsDriverNode::publishFinished(int64_t utime) {
-  while (const std::optional<InsEstimate> estimate = ins_.next(utime)) {
+  while (const std::optional<InsEstimate> estimate = source_->next(utime)) {
     if (!(estimate->status & kNoPosition)) {
       last_position_ = utime;
-      too_far_before_ = epochs().too_far;
+      too_far_before_ = source_->tooFar().first;
     }
     if (!(estimate->status & kNoHeading)) last_heading_ = utime;
     bus_.publish(kIns, messageOf(*estimate, seq_++));
@@ -140,9 +130,10 @@ void InsDriverNode::publishFinished(int64_t utime) {
 }
 
 void InsDriverNode::keepOrigin() {
-  if (origin_kept_ || !origin()) return;
+  if (origin_kept_ || !source_->origin()) return;
   origin_kept_ = true;
-  const std::optional<std::string> problem = store_.write(kOriginEntry, originText(*origin()));
+  const std::optional<std::string> problem =
+      store_.write(kOriginEntry, originText(*source_->origin()));
   origin_problem_ =
       problem ? "the map's origin could not be stored, a restart will move the map: " + *problem
               : std::string{};
@@ -155,30 +146,29 @@ std::string InsDriverNode::lineProblem(int64_t utime) const {
     return problem.empty() ? address + "closed" : problem;
   }
   if (utime - last_bytes_ > silence_us_) {
-    return address + "no bytes for " + inSeconds(utime - last_bytes_) +
-           "; is the device powered and set to send NMEA?";
+    return address + "no bytes for " + inSeconds(utime - last_bytes_) + "; " +
+           source_->advice().silent;
   }
-  const int64_t without_sentence = utime - ins_.lastSentence().value_or(start_);
-  if (without_sentence <= silence_us_) return {};
-  const NmeaCounts counts = ins_.counts();
-  return address + "bytes, but no good sentence for " + inSeconds(without_sentence) +
-         " (stray bytes " + std::to_string(counts.stray_bytes) +
-         ", refused: " + listed(counts.refused) + "); check baud rate and output format";
+  const int64_t without_message = utime - source_->lastMessage().value_or(start_);
+  if (without_message <= silence_us_) return {};
+  return address + "bytes, but " + source_->advice().unreadable + " for " +
+         inSeconds(without_message) + " (" + source_->refusals() +
+         "); check baud rate and output format";
 }
 
 std::string InsDriverNode::measurementProblem(int64_t utime) const {
   if (utime - last_position_ > silence_us_) {
-    if (epochs().too_far > too_far_before_) {
-      return "the fix is " + std::to_string(std::llround(ins_.assembler().farDistance() / 1000.0)) +
+    if (source_->tooFar().first > too_far_before_) {
+      return "the fix is " + std::to_string(std::llround(source_->tooFar().second / 1000.0)) +
              " km from the map's origin; configure another origin or remove the stored " +
              kOriginEntry;
     }
-    return "no position for " + inSeconds(utime - last_position_) +
-           "; does the device have a fix, and does it send GGA?";
+    return "no position for " + inSeconds(utime - last_position_) + "; " +
+           source_->advice().no_position;
   }
   if (utime - last_heading_ > silence_us_) {
-    return "no heading for " + inSeconds(utime - last_heading_) +
-           "; does the device send HDT or PASHR?";
+    return "no heading for " + inSeconds(utime - last_heading_) + "; " +
+           source_->advice().no_heading;
   }
   return origin_problem_;
 }
@@ -200,28 +190,7 @@ void InsDriverNode::judge(int64_t utime) {
 void InsDriverNode::reportCounters(int64_t utime) {
   if (utime < next_counters_) return;
   next_counters_ = utime + kCounterPeriodUs;
-  const NmeaCounts line = counts();
-  health_.setCounter("bytes", line.bytes);
-  health_.setCounter("stray bytes", line.stray_bytes);
-  health_.setCounter("sentences", line.sentences);
-  health_.setCounter("decoded", line.decoded);
-  for (size_t i = 0; i < kSentenceTypes; ++i) {
-    if (line.of_type[i] > 0) health_.setCounter(kSentenceNames[i], line.of_type[i]);
-    const std::string empty = std::string(kSentenceNames[i]) + " without a value";
-    if (line.empty[i] > 0) health_.setCounter(empty, line.empty[i]);
-  }
-  for (size_t i = 0; i < kRefusalCount; ++i) {
-    const std::string refused = std::string("refused: ") + name(static_cast<Refusal>(i));
-    if (line.refused.of[i] > 0) health_.setCounter(refused, line.refused.of[i]);
-  }
-  const AssemblerCounts& epoch = epochs();
-  health_.setCounter("epochs", epoch.epochs);
-  health_.setCounter("published", epoch.published);
-  health_.setCounter("gaps", epoch.gaps);
-  health_.setCounter("jumps", epoch.jumps);
-  health_.setCounter("device clock set", epoch.clock_steps);
-  health_.setCounter("refused: time not after the last", epoch.not_newer);
-  health_.setCounter("refused: far from the origin", epoch.too_far);
+  for (const auto& [name, count] : source_->counters()) health_.setCounter(name, count);
   health_.setCounter("link losses", link_losses_);
 }
 

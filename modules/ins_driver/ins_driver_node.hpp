@@ -9,7 +9,6 @@
 #include "common/bus/health.hpp"
 #include "common/link/link.hpp"
 #include "common/store/store.hpp"
-#include "modules/ins_driver/core/nmea_ins.hpp"
 #include "modules/ins_driver/ins_driver_config.hpp"
 
 namespace tread::ins {
@@ -17,7 +16,7 @@ namespace tread::ins {
 /// Entry of the Store that keeps the map's place on Earth, so that a restart keeps the map frame.
 inline constexpr const char* kOriginEntry = "ins_origin";
 
-/// Publishes INS from an NMEA 0183 device, and HEALTH with every refusal and its reason.
+/// Publishes INS from a device, and HEALTH with every refusal and its reason.
 /** The map's origin is the configured one, else the stored one, else the first good fix, which is
  * then stored. */
 class InsDriverNode : public Node {
@@ -27,11 +26,7 @@ class InsDriverNode : public Node {
   int64_t period() const override { return config_.period_us; }
   void step(int64_t utime) override;
 
-  /// What came over the line so far.
-  NmeaCounts counts() const { return ins_.counts(); }
-  /// What became of it.
-  const AssemblerCounts& epochs() const { return ins_.assembler().counts(); }
-  std::optional<GeoOrigin> origin() const { return ins_.assembler().origin(); }
+  const InsSource& source() const { return *source_; }
 
  private:
   /// Returns the time at which it had read.
@@ -48,8 +43,8 @@ class InsDriverNode : public Node {
   Bus& bus_;
   Link& link_;
   Store& store_;
-  std::string origin_problem_;  ///< before ins_: filled while its configuration is made
-  NmeaIns ins_;
+  std::string origin_problem_;  ///< before source_: filled while that is made
+  std::unique_ptr<InsSource> source_;
   HealthReporter health_;
   bool origin_kept_;
   bool was_open_ = false;

@@ -24,6 +24,6 @@ ShellBody prepare(ConfigReader& reader) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runShell(argc, argv, "tread-ins-driver",
-                  "Publishes INS from a device that speaks NMEA 0183.", prepare);
+  return runShell(argc, argv, "tread-ins-driver", "Publishes INS from the INS on its line.",
+                  prepare);
 }

@@ -13,7 +13,7 @@ LidarDriverConfig readLidarDriverConfig(ConfigReader& reader) {
   LidarDriverConfig config;
   int64_t max_beams = config.limits.max_beams;
   int64_t stride = config.limits.beam_stride;
-  reader.choice("device", config.device, {"hokuyo"});
+  reader.choice("device", config.device, kScanDevices);
   reader.text("address", config.address);
   reader.number("latency", config.latency, {0.0, 0.5}, "s");
   reader.number("silence", config.silence, {0.1, 60.0}, "s");

@@ -7,13 +7,16 @@
 #include "common/bus/health.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/vehicle/robot_description.hpp"
-#include "modules/lidar_driver/scan_source.hpp"
+#include "modules/lidar_driver/core/scan_source.hpp"
 
 namespace tread::lidar {
 
+/// Range finders that there is a folder for.
+inline const std::vector<std::string> kScanDevices{"hokuyo"};
+
 /// Configuration of lidar_driver, with its defaults.
 struct LidarDriverConfig {
-  std::string device = "hokuyo";                   ///< kind of the device, see makeScanSource()
+  std::string device = "hokuyo";                   ///< one of kScanDevices
   std::string address = "tcp:192.168.0.10:10940";  ///< of the device
   Mounting mounting;                               ///< of the sensor in body
   double latency = 0.002;  ///< [s] from the last beam to the arrival of its bytes

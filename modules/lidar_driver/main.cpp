@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <cstdlib>
+#include <functional>
 #include <iostream>
+#include <memory>
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/shell.hpp"
-#include "modules/lidar_driver/hokuyo_source.hpp"
+#include "modules/lidar_driver/hokuyo/hokuyo_source.hpp"
 #include "modules/lidar_driver/lidar_driver_node.hpp"
 
 namespace {
@@ -13,36 +15,52 @@ namespace {
 using namespace tread;
 using namespace tread::lidar;
 
+struct Device {
+  std::function<void(const std::string&)> check_address;  ///< throws where it makes no sense
+  std::function<std::unique_ptr<ScanSource>(const LidarDriverConfig&)> make;
+};
+
+/// A new range finder is one line here, its name in kScanDevices, and a folder of its own.
+Device deviceNamed(const std::string& name) {
+  if (name == "hokuyo")
+    return {[](const std::string& address) { rangeFinderAddress(address); },
+            [](const LidarDriverConfig& config) {
+              return std::make_unique<HokuyoSource>(config.address, config.latency);
+            }};
+  throw std::logic_error(name);
+}
+
 /// Ends the process when the library hangs for good: only a new process helps then. Tells `stuck`
 /// whether it hangs at the end.
 class GuardedSource : public ScanSource {
  public:
-  GuardedSource(const LidarDriverConfig& config, bool& stuck)
-      : source_(config.address, config.latency), stuck_(stuck) {}
-  ~GuardedSource() override { stuck_ = !source_.end(); }
+  GuardedSource(std::unique_ptr<ScanSource> source, bool& stuck)
+      : source_(std::move(source)), stuck_(stuck) {}
+  ~GuardedSource() override { stuck_ = !source_->end(); }
   std::vector<RangeScan> take(int64_t utime) override {
-    if (source_.stuckFor() > 20.0) {
+    if (source_->stuckFor() > 20.0) {
       std::cerr
           << "tread-lidar-driver: the range finder's library has not come back for 20 s; ending, "
              "so that the supervisor starts a new process"
           << std::endl;
       std::_Exit(1);
     }
-    return source_.take(utime);
+    return source_->take(utime);
   }
-  std::string problem() const override { return source_.problem(); }
+  std::string problem() const override { return source_->problem(); }
 
  private:
-  HokuyoSource source_;
+  std::unique_ptr<ScanSource> source_;
   bool& stuck_;
 };
 
 ShellBody prepare(ConfigReader& reader, bool& stuck) {
   const LidarDriverConfig config = readLidarDriverConfig(reader);
-  rangeFinderAddress(config.address);  // throws where it makes no sense
-  return [config, &stuck](const std::string& lcm_url, const std::atomic<bool>& stop) {
+  const Device device = deviceNamed(config.device);
+  device.check_address(config.address);
+  return [config, device, &stuck](const std::string& lcm_url, const std::atomic<bool>& stop) {
     LcmBus bus(lcm_url, TimeSource::kHost);
-    GuardedSource source(config, stuck);
+    GuardedSource source(device.make(config), stuck);
     LidarDriverNode node(config, bus, source);
     bus.run(node, stop);
   };
@@ -52,8 +70,7 @@ ShellBody prepare(ConfigReader& reader, bool& stuck) {
 
 int main(int argc, char** argv) {
   bool stuck = false;
-  const int code = runShell(argc, argv, "tread-lidar-driver",
-                            "Publishes SCAN from a SCIP 2.0 range finder over TCP.",
+  const int code = runShell(argc, argv, "tread-lidar-driver", "Publishes SCAN from a range finder.",
                             [&stuck](ConfigReader& reader) { return prepare(reader, stuck); });
   if (stuck) std::_Exit(code);
   return code;

@@ -25,5 +25,5 @@ ShellBody prepare(ConfigReader& reader) {
 
 int main(int argc, char** argv) {
   return runShell(argc, argv, "tread-motor-bridge",
-                  "Plays PROGRAM on a Roboteq controller and stops by itself.", prepare);
+                  "Plays PROGRAM on the motor controller and stops by itself.", prepare);
 }

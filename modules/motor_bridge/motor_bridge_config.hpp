@@ -6,17 +6,16 @@
 
 #include "common/config/config_reader.hpp"
 #include "modules/motor_bridge/core/bridge.hpp"
-#include "modules/motor_bridge/core/roboteq_session.hpp"
+#include "modules/motor_bridge/motor_controllers.hpp"
 
 namespace tread::motor {
 
 /// Configuration of motor_bridge, with its defaults.
 struct MotorBridgeConfig {
-  std::string kind = "roboteq";  ///< of the controller, see makeMotorController()
   std::string address = "tty:/dev/ttyACM0?baud=115200";  ///< of the controller
   BridgeConfig bridge;
-  RoboteqConfig controller;
-  std::string effective;  ///< the whole as YAML, for CONFIG
+  MakeMotorController make_controller;  ///< of the kind that the configuration names
+  std::string effective;                ///< the whole as YAML, for CONFIG
 };
 
 /// Reads the configuration; throws ConfigError with file:line.

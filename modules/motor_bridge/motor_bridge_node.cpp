@@ -34,7 +34,7 @@ MotorBridgeNode::MotorBridgeNode(const MotorBridgeConfig& config, Bus& bus, Link
       bus_(bus),
       link_(link),
       bridge_(config.bridge),
-      connection_(config.controller),
+      controller_(config.make_controller()),
       health_(bus, "motor_bridge", config.effective) {
   listen();
 }
@@ -69,54 +69,41 @@ void MotorBridgeNode::step(int64_t utime) {
 
 void MotorBridgeNode::readLink(int64_t utime) {
   if (!link_.isOpen()) {
-    connection_.close(link_.problem());
-    if (!link_.reopen(utime)) {
-      return;
-    }
+    controller_->close(link_.problem());
+    if (!link_.reopen(utime)) return;
   }
-  if (!connection_.isOpen() && utime >= next_open_) {
-    connection_.open();
-  }
+  if (!controller_->isOpen() && utime >= next_open_) controller_->open();
   std::array<uint8_t, 1024> buffer;
   for (size_t total = 0; total < kMaxBytesPerStep;) {
     const std::optional<size_t> size = link_.read(buffer.data(), buffer.size());
     if (!size) {
-      connection_.close(link_.problem());
+      controller_->close(link_.problem());
       return;
     }
-    if (*size == 0) {
-      return;
-    }
-    connection_.receive({reinterpret_cast<const char*>(buffer.data()), *size}, utime);
+    if (*size == 0) return;
+    controller_->receive({reinterpret_cast<const char*>(buffer.data()), *size}, utime);
     total += *size;
   }
 }
 
 void MotorBridgeNode::drive(int64_t utime) {
-  output_ = bridge_.step(utime, connection_.report(utime));
-  connection_.holdStop(output_.hold_device_stop);
-  if (output_.release_device_stop) {
-    connection_.releaseStop(utime);
-  }
-  if (output_.send) {
-    connection_.command(output_.command, utime);
-  }
-  writeLink(connection_.poll(utime), utime);
+  output_ = bridge_.step(utime, controller_->report(utime));
+  controller_->holdStop(output_.hold_device_stop);
+  if (output_.release_device_stop) controller_->releaseStop(utime);
+  if (output_.send) controller_->command(output_.command, utime);
+  writeLink(controller_->poll(utime), utime);
 }
 
 void MotorBridgeNode::writeLink(const std::string& bytes, int64_t utime) {
-  if (bytes.empty() || link_.write(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size())) {
+  if (bytes.empty() || link_.write(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()))
     return;
-  }
-  connection_.close(link_.isOpen() ? "nobody reads the line" : link_.problem());
+  controller_->close(link_.isOpen() ? "nobody reads the line" : link_.problem());
   next_open_ = utime + kFullLinePause;
 }
 
 void MotorBridgeNode::publishMotor(int64_t utime) {
-  if (utime < next_motor_ && sameToReaders(output_, published_)) {
-    return;
-  }
-  motor_t message = toMessage(output_, connection_.telemetry());
+  if (utime < next_motor_ && sameToReaders(output_, published_)) return;
+  motor_t message = toMessage(output_, controller_->telemetry());
   message.utime = utime;
   message.seq = seq_motor_++;
   bus_.publish(kMotor, message);
@@ -126,15 +113,11 @@ void MotorBridgeNode::publishMotor(int64_t utime) {
 
 void MotorBridgeNode::publishExecutions(int64_t utime) {
   const ExecutionLog& log = bridge_.executions();
-  if (utime < next_execution_ && log.revision() == published_revision_) {
-    return;
-  }
+  if (utime < next_execution_ && log.revision() == published_revision_) return;
   auto message = blank<execution_t>();
   message.utime = utime;
   message.seq = seq_execution_++;
-  for (const ExecutionRecord& record : log.records()) {
-    message.records.push_back(toMessage(record));
-  }
+  for (const ExecutionRecord& record : log.records()) message.records.push_back(toMessage(record));
   message.num_records = static_cast<int32_t>(message.records.size());
   bus_.publish(kExecution, message);
   published_revision_ = log.revision();
@@ -143,7 +126,7 @@ void MotorBridgeNode::publishExecutions(int64_t utime) {
 
 void MotorBridgeNode::judge() {
   const FailsafeOutputs& failsafe = output_.failsafe;
-  if (!connection_.ready()) {
+  if (!controller_->ready()) {
     health_.setState(health_t::HEALTH_FAILED, link_.address() + ": " + failsafe.standing_fault);
   } else if (!failsafe.standing_fault.empty()) {
     health_.setState(health_t::HEALTH_DEGRADED, failsafe.standing_fault);
@@ -155,28 +138,18 @@ void MotorBridgeNode::judge() {
 }
 
 void MotorBridgeNode::reportCounters(int64_t utime) {
-  if (utime < next_counters_) {
-    return;
-  }
+  if (utime < next_counters_) return;
   next_counters_ = utime + kCounterPeriod;
-  for (const auto& [name, count] : bridge_.counters()) {
-    health_.setCounter(name, count);
-  }
-  for (const auto& [name, count] : connection_.counters()) {
-    health_.setCounter(name, count);
-  }
+  for (const auto& [name, count] : bridge_.counters()) health_.setCounter(name, count);
+  for (const auto& [name, count] : controller_->counters()) health_.setCounter(name, count);
 }
 
 void MotorBridgeNode::shutdown(int64_t utime) {
   bridge_.receive(ArmRequest{utime, false, kShutdown, ""}, utime);
   readLink(utime);
   drive(utime);
-  // Whatever the connection thinks of the controller: zero cannot hurt.
-  for (const std::string& line : commandLines({}, config_.controller.layout)) {
-    for (int i = 0; i < kShutdownZeros; ++i) {
-      writeLink(line + "\r", utime);
-    }
-  }
+  // Whatever is thought of the controller: zero cannot hurt.
+  writeLink(controller_->zeros(kShutdownZeros), utime);
   next_motor_ = next_execution_ = utime;
   publishMotor(utime);
   publishExecutions(utime);

@@ -8,7 +8,6 @@
 #include "common/bus/health.hpp"
 #include "common/link/link.hpp"
 #include "modules/motor_bridge/core/bridge.hpp"
-#include "modules/motor_bridge/core/roboteq_connection.hpp"
 #include "modules/motor_bridge/motor_bridge_config.hpp"
 
 namespace tread::motor {
@@ -28,7 +27,6 @@ class MotorBridgeNode : public Node {
   void shutdown(int64_t utime) override;
 
   const Bridge& bridge() const { return bridge_; }
-  const RoboteqConnection& connection() const { return connection_; }
 
  private:
   void listen();
@@ -44,7 +42,7 @@ class MotorBridgeNode : public Node {
   Bus& bus_;
   Link& link_;
   Bridge bridge_;
-  RoboteqConnection connection_;
+  std::unique_ptr<MotorController> controller_;
   HealthReporter health_;
   BridgeOutput output_;     ///< of this step
   BridgeOutput published_;  ///< of the last MOTOR

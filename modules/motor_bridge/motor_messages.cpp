@@ -21,9 +21,8 @@ Slot fromMessage(const program_slot_t& message) {
   slot.kind = static_cast<CommandKind>(message.command_kind);
   slot.period_us = message.period;
   slot.series.reserve(message.left.size());
-  for (size_t i = 0; i < message.left.size(); ++i) {
+  for (size_t i = 0; i < message.left.size(); ++i)
     slot.series.push_back({message.left[i], message.right[i]});
-  }
   return slot;
 }
 
@@ -87,7 +86,7 @@ execution_record_t toMessage(const ExecutionRecord& record) {
   return message;
 }
 
-motor_t toMessage(const BridgeOutput& output, const RoboteqTelemetry& telemetry) {
+motor_t toMessage(const BridgeOutput& output, const MotorTelemetry& telemetry) {
   auto message = blank<motor_t>();
   message.motor_run_id = output.run_id;
   message.execution_id = output.execution_id;
@@ -97,7 +96,7 @@ motor_t toMessage(const BridgeOutput& output, const RoboteqTelemetry& telemetry)
   message.motor_command_kind = static_cast<int16_t>(output.kind);
   message.command_left = static_cast<float>(output.command.left);
   message.command_right = static_cast<float>(output.command.right);
-  message.device_fault = (telemetry.fault_flags & 0xff) | (telemetry.status_flags & 0xff) << 8;
+  message.device_fault = telemetry.device_flags;
   message.battery_voltage = static_cast<float>(telemetry.battery_voltage);
   message.current_left = static_cast<float>(telemetry.current_left);
   message.current_right = static_cast<float>(telemetry.current_right);

@@ -8,7 +8,6 @@
 #include <tread/program_t.hpp>
 
 #include "modules/motor_bridge/core/bridge.hpp"
-#include "modules/motor_bridge/core/roboteq_telemetry.hpp"
 
 namespace tread::motor {
 
@@ -18,7 +17,7 @@ InsNotice fromMessage(const ins_t& message);
 
 /// One record of EXECUTION.
 execution_record_t toMessage(const ExecutionRecord& record);
-/// MOTOR, without utime and seq. device_fault holds ?FF in bits 0-7 and ?FS in bits 8-15.
-motor_t toMessage(const BridgeOutput& output, const RoboteqTelemetry& telemetry);
+/// MOTOR, without utime and seq.
+motor_t toMessage(const BridgeOutput& output, const MotorTelemetry& telemetry);
 
 }  // namespace tread::motor

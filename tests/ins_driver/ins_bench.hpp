@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "modules/ins_driver/core/nmea_ins.hpp"
+#include "modules/ins_driver/nmea/nmea_ins.hpp"
 #include "tests/ins_driver/nmea_lines.hpp"
 
 namespace tread::ins {

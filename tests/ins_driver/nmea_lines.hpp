@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string>
 
-#include "modules/ins_driver/core/nmea_framer.hpp"
+#include "modules/ins_driver/nmea/nmea_framer.hpp"
 
 namespace tread::ins {
 

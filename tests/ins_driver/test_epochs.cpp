@@ -5,7 +5,7 @@
 #include <random>
 
 #include "modules/ins_driver/core/arrival_filter.hpp"
-#include "modules/ins_driver/core/epoch_collector.hpp"
+#include "modules/ins_driver/nmea/epoch_collector.hpp"
 
 using namespace tread::ins;
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "modules/ins_driver/core/nmea_ins.hpp"
-#include "modules/simulator/emulators/nmea_ins_emulator.hpp"
+#include "modules/ins_driver/nmea/nmea_ins.hpp"
+#include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
 
 using namespace tread;
 using namespace tread::ins;
@@ -56,9 +56,8 @@ struct Worst {
 void compare(const InsEstimate& ins, Worst& worst) {
   const sim::InsSample truth = truthAt(ins.utime);
   ++worst.messages;
-  if (!(ins.status & kNoPosition)) {
+  if (!(ins.status & kNoPosition))
     worst.position = std::max(worst.position, (ins.p_map_body - truth.p_map).norm());
-  }
   if (!(ins.status & kNoHeading)) {
     const YawPitchRoll angles = yawPitchRoll(ins.R_map_body);
     worst.yaw = std::max(worst.yaw, std::abs(wrapAngle(angles.yaw - truth.yaw)));
@@ -67,9 +66,8 @@ void compare(const InsEstimate& ins, Worst& worst) {
           {worst.tilt, std::abs(angles.pitch - truth.pitch), std::abs(angles.roll - truth.roll)});
     }
   }
-  if (!(ins.status & kNoVelocity)) {
+  if (!(ins.status & kNoVelocity))
     worst.velocity = std::max(worst.velocity, (ins.v_body - truth.v_body).head<2>().norm());
-  }
 }
 
 Worst drive(double seconds, const sim::NmeaInsFaults& faults, NmeaIns& ins) {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "modules/ins_driver/core/nmea_log.hpp"
+#include "modules/ins_driver/nmea/nmea_log.hpp"
 #include "tests/ins_driver/nmea_lines.hpp"
 
 using namespace tread;
@@ -48,9 +48,8 @@ TEST_CASE("a log across midnight plays without a break") {
   for (int i = 0; i < 10; ++i) log += gga(86399.6 + i * 0.1) + pashr(86399.6 + i * 0.1, 90.0);
   const NmeaLogSummary summary = summarise(log, {});
   REQUIRE(summary.estimates.size() == 10);
-  for (size_t i = 1; i < 10; ++i) {
+  for (size_t i = 1; i < 10; ++i)
     CHECK(summary.estimates[i].utime - summary.estimates[i - 1].utime == 100'000);
-  }
   CHECK(summary.epochs.jumps == 0);
 }
 

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "common/geometry/se2.hpp"
-#include "modules/ins_driver/core/nmea_fields.hpp"
-#include "modules/ins_driver/core/nmea_parser.hpp"
+#include "modules/ins_driver/nmea/nmea_fields.hpp"
+#include "modules/ins_driver/nmea/nmea_parser.hpp"
 
 using namespace tread;
 using namespace tread::ins;
@@ -176,9 +176,8 @@ TEST_CASE("ZDA holds time and date, leap days and leap seconds exist where the c
 }
 
 TEST_CASE("any two-letter talker is heard, others are unknown") {
-  for (const char* talker : {"GP", "GN", "IN", "HE", "II", "ZZ"}) {
+  for (const char* talker : {"GP", "GN", "IN", "HE", "II", "ZZ"})
     CHECK(refusal(std::string(talker) + "HDT,1.0,T").empty());
-  }
   for (const char* address : {"PXHDT", "GHDT", "GPSHDT", "gpHDT", "G1HDT", "HDT", "GPHDX", "",
                               "GPGSV", "PASHS", "PGRMZ"}) {
     CAPTURE(address);

@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "modules/ins_driver/core/nmea_ins.hpp"
-#include "modules/ins_driver/core/nmea_parser.hpp"
+#include "modules/ins_driver/nmea/nmea_ins.hpp"
+#include "modules/ins_driver/nmea/nmea_parser.hpp"
 #include "tests/ins_driver/nmea_lines.hpp"
 
 using namespace tread::ins;
@@ -106,9 +106,8 @@ TEST_CASE("good lines after a megabyte of garbage are all decoded") {
   for (const bool printable : {false, true}) {
     std::mt19937_64 random(21);
     std::string garbage(1 << 20, '\0');
-    for (char& byte : garbage) {
+    for (char& byte : garbage)
       byte = static_cast<char>(printable ? 0x20 + random() % 0x5F : random() & 0xFF);
-    }
     InsConfig config;
     NmeaIns ins(config);
     ins.push(garbage, 1'000'000);

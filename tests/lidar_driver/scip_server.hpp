@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #include "common/bus/host_clock.hpp"
-#include "modules/simulator/emulators/scip_emulator.hpp"
+#include "modules/simulator/emulators/hokuyo/scip_emulator.hpp"
 
 namespace tread::testing {
 

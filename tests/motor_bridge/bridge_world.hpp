@@ -29,18 +29,13 @@ struct BridgeWorld {
 
   void step() {
     now += kStep;
-    if (ins_alive && now % 20'000 == 0) {
-      bridge.receive(InsNotice{now - 5'000, true}, now);
-    }
-    if (planner_alive && now % 50'000 == 0) {
+    if (ins_alive && now % 20'000 == 0) bridge.receive(InsNotice{now - 5'000, true}, now);
+    if (planner_alive && now % 50'000 == 0)
       bridge.receive(planner.plan(now - 1'000, newest(bridge.executions())), now);
-    }
     out = bridge.step(now, device);
   }
   void run(int64_t us) {
-    for (const int64_t end = now + us; now < end;) {
-      step();
-    }
+    for (const int64_t end = now + us; now < end;) step();
   }
   void arm() { bridge.receive(ArmRequest{now, true, "operator", "go"}, now); }
   /// Runs until the bridge drives.

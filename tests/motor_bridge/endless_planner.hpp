@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "modules/motor_bridge/core/execution_log.hpp"
+#include "modules/motor_bridge/core/series_player.hpp"
 #include "tests/motor_bridge/programs.hpp"
 
 namespace tread::motor {
@@ -22,9 +22,7 @@ class EndlessPlanner {
       running_ = fresh();
       next_ = fresh();
     }
-    if (last && last->run_id == run_id_) {
-      follow(*last);
-    }
+    if (last && last->run_id == run_id_) follow(*last);
     Program program = makeProgram(now, running_, endless ? next_ : Slot{});
     program.run_id = run_id_;
     return program;

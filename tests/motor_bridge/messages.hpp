@@ -8,8 +8,8 @@
 #include <tread/ins_t.hpp>
 #include <tread/program_t.hpp>
 
-#include "modules/motor_bridge/core/execution_log.hpp"
 #include "modules/motor_bridge/core/program.hpp"
+#include "modules/motor_bridge/core/series_player.hpp"
 
 namespace tread::motor {
 

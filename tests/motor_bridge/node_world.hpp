@@ -10,6 +10,7 @@
 
 #include "common/bus/virtual_bus.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
+#include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
 #include "tests/motor_bridge/endless_planner.hpp"
 #include "tests/motor_bridge/messages.hpp"
 #include "tests/motor_bridge/scripted_roboteq.hpp"
@@ -96,7 +97,9 @@ struct NodeWorld {
     bus.addNode(
         "motor_bridge",
         [this](Bus& end) {
-          return std::make_unique<MotorBridgeNode>(MotorBridgeConfig{}, end, *pipe.first);
+          MotorBridgeConfig usual;
+          usual.make_controller = [] { return std::make_unique<RoboteqConnection>(RoboteqConfig{}); };
+          return std::make_unique<MotorBridgeNode>(usual, end, *pipe.first);
         },
         timing);
     bus.addNode("planner", [](Bus& end) { return std::make_unique<PlannerNode>(end); },

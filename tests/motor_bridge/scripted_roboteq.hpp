@@ -32,12 +32,8 @@ class ScriptedRoboteq {
     now_ = now;
     expire();
     for (const char byte : bytes) {
-      if (deaf) {
-        continue;
-      }
-      if (echo_ && !mute) {
-        output_ += byte;
-      }
+      if (deaf) continue;
+      if (echo_ && !mute) output_ += byte;
       if (byte == '\r' || byte == '_') {
         serve(line_);
         line_.clear();
@@ -74,9 +70,7 @@ class ScriptedRoboteq {
   void expire() { expired_ = expired_ || (watchdog_ms_ > 0 && now_ - fed_ > watchdog_ms_ * 1000); }
 
   void reply(const std::string& text) {
-    if (mute || (mute_plus && text == "+")) {
-      return;
-    }
+    if (mute || (mute_plus && text == "+")) return;
     if (lose > 0) {
       --lose;
     } else if (cut > 0) {

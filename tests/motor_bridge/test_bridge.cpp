@@ -165,9 +165,8 @@ TEST_CASE("clearing an E-stop twice within a step releases the controller's own,
   world.bridge.receive(EstopRequest{world.now, true, "operator", "person"}, world.now);
   world.step();
   REQUIRE(world.state() == State::kEstopped);
-  for (int copy = 0; copy < 2; ++copy) {
+  for (int copy = 0; copy < 2; ++copy)
     world.bridge.receive(EstopRequest{world.now, false, "operator", "gone"}, world.now);
-  }
   world.step();
   CHECK(world.out.release_device_stop);
   CHECK_FALSE(world.out.hold_device_stop);

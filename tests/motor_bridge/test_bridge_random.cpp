@@ -73,18 +73,15 @@ class Chaos {
         ++i;
         continue;
       }
-      if (queue_[i].program.utime <= now_ + 50'000) {
+      if (queue_[i].program.utime <= now_ + 50'000)
         newest_program_ = std::max(newest_program_, queue_[i].program.utime);
-      }
       bridge_.receive(queue_[i].program, now_);
       queue_.erase(queue_.begin() + static_cast<ptrdiff_t>(i));
     }
   }
 
   void spoil(Program& program) {
-    if (!chance(0.002)) {
-      return;
-    }
+    if (!chance(0.002)) return;
     Slot& slot = chance(0.5) ? program.running : program.next;
     switch (random_() % 7) {
       case 0:
@@ -174,9 +171,7 @@ TEST_CASE(
     "ten hours among failing peers: it never moves without every condition, and moves again") {
   for (int seed = 1; seed <= testing::effort(10); ++seed) {
     Chaos chaos(static_cast<uint64_t>(seed));
-    for (int i = 0; i < 360'000; ++i) {
-      chaos.step();
-    }
+    for (int i = 0; i < 360'000; ++i) chaos.step();
     CHECK(chaos.driven() > 360'000'000);
     CHECK(chaos.stops() > 100);
   }

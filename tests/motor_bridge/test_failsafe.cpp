@@ -29,9 +29,7 @@ struct Rig {
     in.series_end.clear();
   }
   void run(int64_t us) {
-    for (const int64_t end = in.now + us; in.now < end;) {
-      step();
-    }
+    for (const int64_t end = in.now + us; in.now < end;) step();
   }
   void arm() {
     run(1'100'000);
@@ -129,9 +127,8 @@ TEST_CASE("the worst cause is the one that is named") {
   for (size_t worst = 0; worst < kCauses.size(); ++worst) {
     Rig rig;
     rig.drive();
-    for (size_t i = worst; i < kCauses.size(); ++i) {
+    for (size_t i = worst; i < kCauses.size(); ++i)
       rig.in.*kCauses[i].reason = "cause " + std::to_string(i);
-    }
     rig.step();
     CHECK(rig.out.reason == "cause " + std::to_string(worst));
     CHECK(rig.out.state == kCauses[worst].state);
@@ -199,9 +196,7 @@ TEST_CASE(
   rig.in.playing = false;
   rig.step();
   const int64_t stopped = rig.in.now;
-  while (rig.out.zero_fast) {
-    rig.step();
-  }
+  while (rig.out.zero_fast) rig.step();
   CHECK(rig.in.now - stopped == 1'000'000);
   CHECK(rig.out.state == State::kArmed);
   rig.run(5'000'000);
@@ -243,9 +238,7 @@ TEST_CASE("any sequence of inputs keeps the promises (ten hours of random scenar
     rig.in.start_wanted = chance(0.5);
     rig.in.playing = before == State::kDriving && chance(0.98);
     rig.step();
-    if (!good) {
-      good_since = rig.in.now + kStep;
-    }
+    if (!good) good_since = rig.in.now + kStep;
     const State after = rig.out.state;
     const bool enabled = !isArmed(before) && isArmed(after);
     REQUIRE(rig.out.may_drive == (after == State::kDriving));

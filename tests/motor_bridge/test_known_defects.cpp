@@ -96,9 +96,7 @@ TEST_CASE("only commands feed the watchdogs: queries and other traffic do not") 
   // mbot: the time-sync message resets the timer of the motors.
   ScriptedRoboteq device;
   device.write("^ECHOF 1\r^RWD 250\r!M 500 500\r", 0);
-  for (int64_t now = 0; now < 500'000; now += 10'000) {
-    device.write("?A\r?FF\r~RWD\r", now);
-  }
+  for (int64_t now = 0; now < 500'000; now += 10'000) device.write("?A\r?FF\r~RWD\r", now);
   CHECK(device.stands(500'000));
 }
 

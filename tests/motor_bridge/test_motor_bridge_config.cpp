@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/motor_bridge/motor_bridge_config.hpp"
+#include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
 
 using namespace tread;
 using namespace tread::motor;
@@ -35,10 +36,8 @@ TEST_CASE("without a word the bridge has its defaults, and says all of them") {
   CHECK(config.bridge.gate.lease_us == 200'000);
   CHECK(config.bridge.gate.slot.kind == CommandKind::kPower);
   CHECK(config.bridge.gate.slot.max_command == 1.0);
-  CHECK(config.controller.watchdog_ms == 250);
-  for (const char* key : {"address", "lease", "ins_period", "watchdog", "left_channel"}) {
+  for (const char* key : {"address", "lease", "ins_period", "watchdog", "left_channel"})
     CHECK(config.effective.find(key) != std::string::npos);
-  }
 }
 
 TEST_CASE("everything about the controller's wiring can be told") {
@@ -68,12 +67,30 @@ robot:
   CHECK(config.bridge.command_interval_us == 25'000);
   CHECK(config.bridge.gate.slot.kind == CommandKind::kTrackSpeed);
   CHECK(config.bridge.gate.slot.max_command == 2.0);
-  CHECK(config.controller.layout.full_scale == 2.5);
-  CHECK(config.controller.layout.left_channel == 2);
-  CHECK(config.controller.layout.invert_left);
-  CHECK_FALSE(config.controller.layout.both_in_one_line);
-  CHECK(config.controller.layout.rpm_per_mps == 400.0);
-  CHECK(config.controller.watchdog_ms == 200);
+  CHECK(config.make_controller());
+}
+
+TEST_CASE("a Roboteq controller is wired as its robot is") {
+  DriveDescription drive;
+  drive.kind = CommandKind::kTrackSpeed;
+  drive.full_speed = 2.5;
+  drive.left_channel = 2;
+  drive.invert_left = true;
+  ConfigReader reader = ConfigReader::fromText(
+      "{watchdog: 0.2, both_in_one_line: false, rpm_per_mps: 400}", "roboteq");
+  const RoboteqConfig config = readRoboteqConfig(reader, drive);
+  CHECK(config.layout.full_scale == 2.5);
+  CHECK(config.layout.left_channel == 2);
+  CHECK(config.layout.invert_left);
+  CHECK_FALSE(config.layout.invert_right);
+  CHECK_FALSE(config.layout.both_in_one_line);
+  CHECK(config.layout.rpm_per_mps == 400.0);
+  CHECK(config.watchdog_ms == 200);
+}
+
+TEST_CASE("an unknown controller is told with the known ones") {
+  CHECK(refusal("controller: robotec").find("is roboteq meant?; allowed roboteq") !=
+        std::string::npos);
 }
 
 TEST_CASE("no safeguard can be switched off, and every refusal is one line with its place") {

@@ -200,9 +200,7 @@ TEST_CASE("dropped, duplicated and reordered programs: it drives on or stops, ne
     world.bus.setTap([&](int64_t utime, const char* channel, const uint8_t*, size_t) {
       if (std::string("PROGRAM") == channel) newest_program = utime;
     });
-    for (int i = 0; i < 20; ++i) {
-      world.drive();
-    }
+    for (int i = 0; i < 20; ++i) world.drive();
     const int64_t driven = 1'000 * static_cast<int64_t>(world.moving.size());
     CHECK(driven > 10'000'000);
     world.bus.kill("planner");

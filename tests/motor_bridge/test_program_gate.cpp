@@ -4,9 +4,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "modules/motor_bridge/core/ins_watch.hpp"
-#include "modules/motor_bridge/core/operator_requests.hpp"
-#include "modules/motor_bridge/core/program_gate.hpp"
+#include "modules/motor_bridge/core/program.hpp"
+#include "modules/motor_bridge/core/safeguards.hpp"
 #include "tests/motor_bridge/programs.hpp"
 
 using namespace tread;
@@ -103,9 +102,7 @@ TEST_CASE("the INS limit is three periods, at least 100 ms") {
 TEST_CASE("an INS that repeats its last measurement is as good as silent") {
   InsWatch watch({});
   CHECK(watch.fault(kNow) == "no INS yet");
-  for (int64_t t = 0; t <= 200'000; t += 20'000) {
-    watch.receive({kNow, true}, kNow + t);
-  }
+  for (int64_t t = 0; t <= 200'000; t += 20'000) watch.receive({kNow, true}, kNow + t);
   CHECK(watch.fault(kNow + 100'000).empty());
   CHECK_FALSE(watch.fault(kNow + 100'001).empty());
   watch.receive({kNow + 200'000, true}, kNow + 210'000);

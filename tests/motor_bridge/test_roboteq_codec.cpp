@@ -4,8 +4,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "modules/motor_bridge/core/roboteq_codec.hpp"
-#include "modules/motor_bridge/core/roboteq_telemetry.hpp"
+#include "modules/motor_bridge/roboteq/roboteq_codec.hpp"
+#include "modules/motor_bridge/roboteq/roboteq_session.hpp"
 
 using namespace tread;
 using namespace tread::motor;
@@ -49,9 +49,7 @@ TEST_CASE("lines are cut at CR, however they arrive, and control bytes are dropp
 
 TEST_CASE("an endless line is discarded up to its end, and the next one is read") {
   RoboteqLines lines;
-  for (int i = 0; i < 100'000; ++i) {
-    REQUIRE(lines.push("x").empty());
-  }
+  for (int i = 0; i < 100'000; ++i) REQUIRE(lines.push("x").empty());
   CHECK(lines.push("\rV=1:2:3\r") == Lines{"V=1:2:3"});
   CHECK(lines.overlong() == 1);
 }
@@ -68,12 +66,10 @@ TEST_CASE("replies are recognised, and what is none is said to be other") {
   const RoboteqReply id = parseReply("FID=Roboteq v1.8d");
   CHECK(id.values.empty());
   CHECK(id.text == "Roboteq v1.8d");
-  for (const char* line : {"", "=5", "++", "A", "a=5", "TOOLONGKEY=5", "?A=1", "\x7f"}) {
+  for (const char* line : {"", "=5", "++", "A", "a=5", "TOOLONGKEY=5", "?A=1", "\x7f"})
     CHECK(parseReply(line).kind == Kind::kOther);
-  }
-  for (const char* line : {"A=", "A=1:", "A=:1", "A=1:x", "A=+"}) {
+  for (const char* line : {"A=", "A=1:", "A=:1", "A=1:x", "A=+"})
     CHECK(parseReply(line).values.empty());
-  }
   CHECK(isEcho("!M 0 0"));
   CHECK(isEcho("~RWD"));
   CHECK_FALSE(isEcho("+"));

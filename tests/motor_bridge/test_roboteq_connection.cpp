@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "modules/motor_bridge/core/roboteq_connection.hpp"
+#include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
 #include "tests/motor_bridge/scripted_roboteq.hpp"
 
 using namespace tread;
@@ -28,15 +28,11 @@ struct Wire {
   void step() {
     now += 10'000;
     connection.receive(device.read(), now);
-    if (commanding && now % 20'000 == 0) {
-      connection.command(wanted, now);
-    }
+    if (commanding && now % 20'000 == 0) connection.command(wanted, now);
     device.write(connection.poll(now), now);
   }
   void run(int64_t us) {
-    for (const int64_t end = now + us; now < end;) {
-      step();
-    }
+    for (const int64_t end = now + us; now < end;) step();
   }
   void open() {
     connection.open();
@@ -80,9 +76,7 @@ TEST_CASE("nothing but zero can leave before the controller is ready") {
   wire.connection.open();
   wire.run(5'000'000);
   CHECK(wire.device.stands(wire.now));
-  for (const std::string& line : wire.device.heard) {
-    CHECK((line == "^ECHOF 1" || line == "!M 0 0"));
-  }
+  for (const std::string& line : wire.device.heard) CHECK((line == "^ECHOF 1" || line == "!M 0 0"));
   CHECK(wire.linkFault() == "controller lost: no good answer to ^ECHOF 1");
 }
 
@@ -176,9 +170,7 @@ TEST_CASE("a mute controller is given zero at once, is started up anew, and zero
   wire.run(500'000);
   wire.device.mute = true;
   const int64_t cut = wire.now;
-  while (wire.connection.ready()) {
-    wire.step();
-  }
+  while (wire.connection.ready()) wire.step();
   CHECK(wire.now - cut <= 270'000);
   CHECK(wire.device.stands(wire.now));
   CHECK(wire.linkFault() == "controller lost: it does not acknowledge commands");
@@ -206,9 +198,7 @@ TEST_CASE("a deaf controller is stopped by its own watchdog, within 250 ms") {
   wire.run(500'000);
   wire.device.deaf = true;
   const int64_t cut = wire.now;
-  while (!wire.device.stands(wire.now)) {
-    wire.step();
-  }
+  while (!wire.device.stands(wire.now)) wire.step();
   CHECK(wire.now - cut <= 260'000);
   wire.run(2'000'000);
   wire.device.deaf = false;

@@ -8,8 +8,8 @@
 #include <catch2/catch.hpp>
 
 #include "modules/motor_bridge/core/bridge.hpp"
-#include "modules/motor_bridge/core/roboteq_connection.hpp"
-#include "modules/simulator/emulators/roboteq_emulator.hpp"
+#include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
+#include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
 #include "tests/motor_bridge/endless_planner.hpp"
 
 using namespace tread;
@@ -96,7 +96,7 @@ TEST_CASE("emulated controller: started up, it gets what is played, and every li
   REQUIRE(rig.state() == State::kDriving);
   CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command.left).margin(0.0006));
   CHECK(rig.device.output(rig.now)[1] == Approx(rig.out.command.right).margin(0.0006));
-  const RoboteqTelemetry telemetry = rig.connection.telemetry();
+  const MotorTelemetry telemetry = rig.connection.telemetry();
   CHECK(telemetry.battery_voltage == Approx(24.3));
   CHECK(telemetry.current_left == Approx(5.5));
   CHECK(telemetry.speed_left == Approx(0.8).margin(0.002));

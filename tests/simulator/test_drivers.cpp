@@ -8,8 +8,8 @@
 #include <catch2/catch.hpp>
 
 #include "common/geometry/se3.hpp"
-#include "modules/ins_driver/core/nmea_ins.hpp"
-#include "modules/motor_bridge/core/roboteq_connection.hpp"
+#include "modules/ins_driver/nmea/nmea_ins.hpp"
+#include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
 #include "modules/simulator/emulators/simulated_devices.hpp"
 #include "tests/simulator/shipped_robot.hpp"
 
@@ -115,7 +115,7 @@ TEST_CASE("motor_bridge starts the emulated controller up, drives it and reads i
   const auto telemetry = loop.motor.telemetry();
   CHECK(telemetry.battery_voltage ==
         Approx(loop.devices.robot().vehicle().battery().voltage).margin(0.1));
-  CHECK(telemetry.fault_flags == 0);
+  CHECK((telemetry.device_flags & 0xff) == 0);
 }
 
 TEST_CASE(

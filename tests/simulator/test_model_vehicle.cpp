@@ -14,7 +14,7 @@
 #include "common/geometry/se3.hpp"
 #include "common/vehicle/measurement.hpp"
 #include "common/vehicle/model_file.hpp"
-#include "modules/ins_driver/core/nmea_ins.hpp"
+#include "modules/ins_driver/nmea/nmea_ins.hpp"
 #include "modules/simulator/model_vehicle.hpp"
 #include "modules/simulator/simulator_node.hpp"
 #include "tests/simulator/shipped_robot.hpp"

@@ -8,7 +8,7 @@
 #include <GeographicLib/LocalCartesian.hpp>
 #include <catch2/catch.hpp>
 
-#include "modules/simulator/emulators/nmea_ins_emulator.hpp"
+#include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
 
 namespace tread::sim {
 namespace {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "modules/simulator/emulators/roboteq_emulator.hpp"
+#include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
 
 namespace tread::sim {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "modules/simulator/emulators/scip_emulator.hpp"
+#include "modules/simulator/emulators/hokuyo/scip_emulator.hpp"
 
 namespace tread::sim {
 namespace {

@@ -10,7 +10,7 @@
 #include "common/messages/ins_messages.hpp"
 #include "common/recordings/text_file.hpp"
 #include "common/report/plot.hpp"
-#include "modules/ins_driver/core/nmea_log.hpp"
+#include "modules/ins_driver/nmea/nmea_log.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"
 
 namespace tread {
@@ -103,9 +103,10 @@ InsReplay replayIns(const std::string& log, const ins::InsDriverConfig& config) 
   });
   play(log, bus, *device);
   const auto& node = dynamic_cast<ins::InsDriverNode&>(*bus.node("ins_driver"));
-  replay.counts = node.counts();
-  replay.epochs = node.epochs();
-  replay.origin = node.origin();
+  const auto& source = dynamic_cast<const ins::NmeaIns&>(node.source());
+  replay.counts = source.counts();
+  replay.epochs = source.assembler().counts();
+  replay.origin = source.origin();
   findPoses(replay);
   return replay;
 }

@@ -8,7 +8,7 @@
 
 #include <tread/ins_t.hpp>
 
-#include "modules/ins_driver/core/nmea_ins.hpp"
+#include "modules/ins_driver/nmea/nmea_ins.hpp"
 #include "modules/ins_driver/ins_driver_config.hpp"
 
 namespace tread {

@@ -18,7 +18,13 @@ class ArrivalFilter {
 
   /// Takes an arrival [us host] of a device time [us]. A device time before the last one means that
   /// the device's clock was set: what was known is forgotten.
-  void add(int64_t device_time, int64_t arrival);
+  void add(int64_t device_time, int64_t arrival) {
+    if (!samples_.empty() && device_time < samples_.back().device_time) samples_.clear();
+    const int64_t offset = arrival - device_time;
+    while (!samples_.empty() && samples_.back().offset >= offset) samples_.pop_back();
+    samples_.push_back({device_time, offset});
+    while (samples_.front().device_time < device_time - window_us_) samples_.pop_front();
+  }
   /// Host time of a device time; for one that was added at most its arrival.
   int64_t hostTime(int64_t device_time) const { return device_time + offset(); }
   /// Smallest offset in the window, 0 before the first arrival [us].

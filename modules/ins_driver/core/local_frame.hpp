@@ -5,9 +5,13 @@
 #include <Eigen/Core>
 #include <GeographicLib/LocalCartesian.hpp>
 
-#include "modules/ins_driver/core/nmea_sentence.hpp"
-
 namespace tread::ins {
+
+/// A point on the WGS84 ellipsoid [rad].
+struct GeoPoint {
+  double latitude = 0.0;   ///< north positive
+  double longitude = 0.0;  ///< east positive
+};
 
 /// Where the map frame lies on the Earth.
 struct GeoOrigin {

@@ -19,9 +19,7 @@ void Bridge::receive(const Program& program, int64_t now) {
     return;
   }
   if (verdict.refusal != Refusal::kNone) {
-    if (verdict.refusal == Refusal::kRunChanged) {
-      since_.program_fault = describe(verdict.refusal);
-    }
+    if (verdict.refusal == Refusal::kRunChanged) since_.program_fault = describe(verdict.refusal);
     count(std::string("PROGRAM refused: ") + describe(verdict.refusal));
     return;
   }
@@ -43,9 +41,7 @@ void Bridge::take(const Program& program, int64_t now) {
   }
   since_.planner_stop = offer == Offer::kStop && player_.playing();
   // Whoever moves must not live on the lease of a planner that believes in another motion.
-  if (agrees(offer) || !player_.playing()) {
-    gate_.renew(program, now);
-  }
+  if (agrees(offer) || !player_.playing()) gate_.renew(program, now);
 }
 
 void Bridge::receive(const ArmRequest& request, int64_t now) {
@@ -81,12 +77,8 @@ BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
   const FailsafeInputs in = look(now, device);
   BridgeOutput out;
   out.failsafe = failsafe_.update(in);
-  if (in.arm && out.failsafe.state == State::kArmed) {
-    requests_.consume(since_.request);
-  }
-  if (out.failsafe.arm_refused) {
-    count("ARM refused");
-  }
+  if (in.arm && out.failsafe.state == State::kArmed) requests_.consume(since_.request);
+  if (out.failsafe.arm_refused) count("ARM refused");
   out.hold_device_stop = requests_.estop();
   out.release_device_stop =
       !requests_.estop() && (since_.estop_cleared || (in.arm && device.stop_latched));
@@ -99,28 +91,20 @@ BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
 }
 
 std::string Bridge::stallFault(int64_t now) const {
-  if (!last_step_ || (now >= *last_step_ && now - *last_step_ <= config_.max_stall_us)) {
-    return "";
-  }
+  if (!last_step_ || (now >= *last_step_ && now - *last_step_ <= config_.max_stall_us)) return "";
   return "motor_bridge was held up for " + std::to_string((now - *last_step_) / 1000) + " ms";
 }
 
 std::string Bridge::leaseFault(int64_t now) const {
-  if (gate_.leaseValid(now)) {
-    return "";
-  }
+  if (gate_.leaseValid(now)) return "";
   return gate_.leaseAge(now) ? "no good PROGRAM within its lease" : "no PROGRAM yet";
 }
 
 std::string Bridge::moveSchedule(int64_t now, bool stalled) {
-  if (!player_.playing() || stalled) {
-    return "";
-  }
+  if (!player_.playing() || stalled) return "";
   const SeriesPlayer::Advance advance = player_.advance(now);
   counters_["commands skipped"] += advance.skipped;
-  if (advance.ended) {
-    return "series ended without a next";
-  }
+  if (advance.ended) return "series ended without a next";
   if (since_.planner_stop) {
     player_.abort(now, "stopped by the planner");
     return "stopped by the planner";
@@ -153,9 +137,7 @@ void Bridge::command(int64_t now, BridgeOutput& out) {
     player_.abort(now, out.failsafe.reason);
     return;
   }
-  if (!player_.playing()) {
-    player_.start(now);
-  }
+  if (!player_.playing()) player_.start(now);
   out.command = player_.give();
   out.kind = player_.current().kind;
   out.run_id = player_.runId().value_or(0);

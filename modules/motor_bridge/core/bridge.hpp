@@ -7,11 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "modules/motor_bridge/core/device_report.hpp"
 #include "modules/motor_bridge/core/failsafe.hpp"
-#include "modules/motor_bridge/core/ins_watch.hpp"
-#include "modules/motor_bridge/core/operator_requests.hpp"
-#include "modules/motor_bridge/core/program_gate.hpp"
+#include "modules/motor_bridge/core/motor_controller.hpp"
+#include "modules/motor_bridge/core/program.hpp"
+#include "modules/motor_bridge/core/safeguards.hpp"
 #include "modules/motor_bridge/core/series_player.hpp"
 
 namespace tread::motor {

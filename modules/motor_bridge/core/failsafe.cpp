@@ -12,16 +12,12 @@ struct Fault {
 
 /// Worst fault of the inputs, if any: the order of the lines is the ranking.
 std::optional<Fault> worstFault(const FailsafeInputs& in) {
-  if (in.estop) {
-    return Fault{State::kEstopped, "E-stop: " + in.estop_reason};
-  }
+  if (in.estop) return Fault{State::kEstopped, "E-stop: " + in.estop_reason};
   const Fault ranked[] = {{State::kFault, in.link_fault},     {State::kFault, in.device_fault},
                           {State::kFault, in.bridge_fault},   {State::kDisarmed, in.program_fault},
                           {State::kDisarmed, in.lease_fault}, {State::kDisarmed, in.ins_fault}};
   for (const Fault& fault : ranked) {
-    if (!fault.reason.empty()) {
-      return fault;
-    }
+    if (!fault.reason.empty()) return fault;
   }
   return std::nullopt;
 }
@@ -50,17 +46,13 @@ FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
   const State state_before = state_;
   const std::string reason_before = reason_;
   const std::string refusal_before = refusal_;
-  if (!zero_since_) {
-    zero_since_ = disarmed_at_ = in.now;
-  }
+  if (!zero_since_) zero_since_ = disarmed_at_ = in.now;
   watchHealth(in);
   // Cleared is not armed; but people must see that it is cleared.
   if (state_ == State::kEstopped && !in.estop) enter(State::kDisarmed, "E-stop cleared", in.now);
   // A fault or a request leaves nothing to decide: the next series waits for the next step, so that
   // at least one zero lies between.
-  if (!stopOnFault(in) && !serveRequest(in)) {
-    serveSeries(in);
-  }
+  if (!stopOnFault(in) && !serveRequest(in)) serveSeries(in);
   FailsafeOutputs out;
   out.state = state_;
   out.may_drive = state_ == State::kDriving;
@@ -68,20 +60,14 @@ FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
   out.arm_refused = in.arm && !refusal_.empty();
   out.reason =
       refusal_.empty() || isArmed(state_) ? reason_ : reason_ + "; ARM refused: " + refusal_;
-  if (const std::optional<Fault> fault = worstFault(in)) {
-    out.standing_fault = fault->reason;
-  }
+  if (const std::optional<Fault> fault = worstFault(in)) out.standing_fault = fault->reason;
   out.changed = state_ != state_before || reason_ != reason_before || refusal_ != refusal_before;
   return out;
 }
 
 void Failsafe::enter(State state, const std::string& reason, int64_t now) {
-  if (state_ == State::kDriving || !isArmed(state)) {
-    zero_since_ = now;
-  }
-  if (!isArmed(state)) {
-    disarmed_at_ = now;
-  }
+  if (state_ == State::kDriving || !isArmed(state)) zero_since_ = now;
+  if (!isArmed(state)) disarmed_at_ = now;
   state_ = state;
   reason_ = reason;
   refusal_.clear();
@@ -97,42 +83,28 @@ void Failsafe::watchHealth(const FailsafeInputs& in) {
 
 bool Failsafe::stopOnFault(const FailsafeInputs& in) {
   const std::optional<Fault> fault = worstFault(in);
-  if (!fault) {
-    return false;
-  }
+  if (!fault) return false;
   const bool worse = fault->state == State::kEstopped && state_ != State::kEstopped;
-  if (isArmed(state_) || worse) {
-    enter(fault->state, fault->reason, in.now);
-  }
-  if (in.arm) {
-    refusal_ = fault->reason;
-  }
+  if (isArmed(state_) || worse) enter(fault->state, fault->reason, in.now);
+  if (in.arm) refusal_ = fault->reason;
   return true;
 }
 
 std::string Failsafe::whyNotArm(const FailsafeInputs& in) const {
   const int64_t healthy = healthy_since_ ? in.now - *healthy_since_ : 0;
-  if (healthy >= times_.healthy_before_arm_us) {
-    return "";
-  }
+  if (healthy >= times_.healthy_before_arm_us) return "";
   return "inputs good for " + std::to_string(healthy / 1000) + " ms, " +
          std::to_string(times_.healthy_before_arm_us / 1000) + " are needed";
 }
 
 bool Failsafe::serveRequest(const FailsafeInputs& in) {
   if (in.disarm) {
-    if (isArmed(state_)) {
-      enter(State::kDisarmed, "disarmed by " + in.requested_by, in.now);
-    }
+    if (isArmed(state_)) enter(State::kDisarmed, "disarmed by " + in.requested_by, in.now);
     return true;
   }
-  if (!in.arm || isArmed(state_)) {
-    return false;
-  }
+  if (!in.arm || isArmed(state_)) return false;
   refusal_ = whyNotArm(in);
-  if (refusal_.empty()) {
-    enter(State::kArmed, "armed by " + in.requested_by, in.now);
-  }
+  if (refusal_.empty()) enter(State::kArmed, "armed by " + in.requested_by, in.now);
   return true;
 }
 

@@ -4,6 +4,31 @@
 
 namespace tread::motor {
 
+void ExecutionLog::begin(int64_t run_id, const Slot& slot, int64_t start_utime) {
+  ExecutionRecord record;
+  record.run_id = run_id;
+  record.execution_id = slot.execution_id;
+  record.pattern_id = slot.pattern_id;
+  record.set_version = slot.set_version;
+  record.start_utime = start_utime;
+  record.commands_total = static_cast<int32_t>(slot.series.size());
+  records_.push_back(record);
+  if (records_.size() > kCapacity) records_.pop_front();
+  ++revision_;
+}
+
+void ExecutionLog::countCommand() {
+  if (running()) ++records_.back().commands_played;
+}
+
+void ExecutionLog::close(Outcome outcome, int64_t end_utime, const std::string& reason) {
+  if (!running()) return;
+  records_.back().outcome = outcome;
+  records_.back().end_utime = end_utime;
+  records_.back().reason = reason;
+  ++revision_;
+}
+
 bool agrees(Offer offer) {
   return offer == Offer::kAccepted || offer == Offer::kStop || offer == Offer::kPlannerAhead ||
          offer == Offer::kPlannerBehind;
@@ -32,12 +57,8 @@ const char* describe(Offer offer) {
 }
 
 void SeriesPlayer::beginRun(int64_t run_id) {
-  if (run_id_) {
-    executed_by_run_[*run_id_] = last_executed_;
-  }
-  if (executed_by_run_.size() > kRunsRemembered) {
-    executed_by_run_.erase(executed_by_run_.begin());
-  }
+  if (run_id_) executed_by_run_[*run_id_] = last_executed_;
+  if (executed_by_run_.size() > kRunsRemembered) executed_by_run_.erase(executed_by_run_.begin());
   const auto known = executed_by_run_.find(run_id);
   last_executed_ = known == executed_by_run_.end() ? 0 : known->second;
   run_id_ = run_id;
@@ -47,19 +68,14 @@ void SeriesPlayer::beginRun(int64_t run_id) {
 
 Offer SeriesPlayer::offer(const Program& program, int64_t now) {
   candidate_ = Program{};
-  if (program.running.empty()) {
-    return Offer::kStop;
-  }
-  if (!program.next.empty() && program.next.execution_id <= program.running.execution_id) {
+  if (program.running.empty()) return Offer::kStop;
+  if (!program.next.empty() && program.next.execution_id <= program.running.execution_id)
     return Offer::kNextOutOfOrder;
-  }
   return playing() ? offerPlaying(program, now) : offerIdle(program);
 }
 
 Offer SeriesPlayer::offerIdle(const Program& program) {
-  if (program.running.execution_id <= last_executed_) {
-    return Offer::kAlreadyExecuted;
-  }
+  if (program.running.execution_id <= last_executed_) return Offer::kAlreadyExecuted;
   candidate_ = program;
   return Offer::kAccepted;
 }
@@ -67,20 +83,14 @@ Offer SeriesPlayer::offerIdle(const Program& program) {
 Offer SeriesPlayer::offerPlaying(const Program& program, int64_t now) {
   const int64_t running_id = program.running.execution_id;
   if (running_id == current_.execution_id) {
-    if (!sameOrder(program.running, current_)) {
-      return Offer::kRunningAltered;
-    }
+    if (!sameOrder(program.running, current_)) return Offer::kRunningAltered;
     pending_ = program.next;
     return Offer::kAccepted;
   }
   const bool names_pending = !pending_.empty() && sameOrder(program.running, pending_);
-  if (names_pending && endUtime() - now <= kSwitchTolerance) {
-    return Offer::kPlannerAhead;
-  }
+  if (names_pending && endUtime() - now <= kSwitchTolerance) return Offer::kPlannerAhead;
   const bool names_previous = previous_id_ != 0 && running_id == previous_id_;
-  if (names_previous && now - start_utime_ <= kSwitchTolerance) {
-    return Offer::kPlannerBehind;
-  }
+  if (names_previous && now - start_utime_ <= kSwitchTolerance) return Offer::kPlannerBehind;
   return Offer::kRunningUnknown;
 }
 

@@ -6,7 +6,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "modules/simulator/core/random.hpp"
-#include "modules/simulator/core/surface.hpp"
+#include "modules/simulator/core/terrain.hpp"
 
 namespace tread::sim {
 

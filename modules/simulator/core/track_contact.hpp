@@ -5,7 +5,7 @@
 #include <array>
 
 #include "common/geometry/se2.hpp"
-#include "modules/simulator/core/surface.hpp"
+#include "modules/simulator/core/terrain.hpp"
 
 namespace tread::sim {
 

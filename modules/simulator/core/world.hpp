@@ -7,10 +7,8 @@
 #include <vector>
 
 #include "common/geometry/se2.hpp"
-#include "modules/simulator/core/height_table.hpp"
 #include "modules/simulator/core/obstacle.hpp"
 #include "modules/simulator/core/obstacle_grid.hpp"
-#include "modules/simulator/core/surface.hpp"
 #include "modules/simulator/core/terrain.hpp"
 
 namespace tread::sim {

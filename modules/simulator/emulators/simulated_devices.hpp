@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "modules/simulator/core/robot.hpp"
-#include "modules/simulator/emulators/nmea_ins_emulator.hpp"
-#include "modules/simulator/emulators/roboteq_emulator.hpp"
-#include "modules/simulator/emulators/scip_emulator.hpp"
+#include "modules/simulator/emulators/hokuyo/scip_emulator.hpp"
+#include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
+#include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
 
 namespace tread::sim {
 

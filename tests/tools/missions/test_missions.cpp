@@ -124,7 +124,6 @@ TEST_CASE("a robot of another size drives by its configuration alone") {
   const RobotConfig small = readRobot(std::string(TREAD_SOURCE_DIR) + "/tests/data/robots/small");
   CHECK(small.planner.local_map.footprint.half_width == 0.31);
   CHECK(small.mapping.map.robot.rear == 0.3);
-  CHECK(small.motor_bridge.controller.layout.left_channel == 2);
   MissionOptions options;
   options.shortest_line = 8.0;
   const MissionRun run = runMission(small, 8, options);

@@ -11,7 +11,7 @@
 
 #include <unistd.h>
 
-#include "modules/simulator/core/surface.hpp"
+#include "modules/simulator/core/terrain.hpp"
 #include "tools/missions/comparison_report.hpp"
 #include "tools/missions/operator.hpp"
 #include "tools/missions/referee.hpp"

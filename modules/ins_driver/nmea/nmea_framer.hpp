@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "modules/ins_driver/nmea/nmea_sentence.hpp"
+
+namespace tread::ins {
+
+/// Cuts a byte stream into NMEA 0183 sentences and lets only those with a correct checksum through.
+/** A sentence is '$', printable characters, '*', two hexadecimal digits, CR or LF. Every '$' starts
+   afresh, so that no input, however long or strange, keeps the framer from hearing the next good
+   line. */
+class NmeaFramer {
+ public:
+  /// The standard allows 82 characters with '$' and line end; devices with many decimals need more.
+  static constexpr size_t kMaxLength = 128;
+
+  /// Takes one byte. When it ends a good sentence: what stands between '$' and '*', valid until the
+  /// next call.
+  std::optional<std::string_view> push(char byte);
+
+  /// True if the last byte was the '$' that starts a sentence.
+  bool justStarted() const { return inside_ && line_.empty(); }
+
+  /// Starts seen: good sentences + refused ones + at most one under way.
+  int64_t sentences() const { return sentences_; }
+  /// Bytes that belonged to no sentence, line ends not counted.
+  int64_t strayBytes() const { return stray_bytes_; }
+  const RefusalCounts& refusals() const { return refusals_; }
+
+  /// Forgets a sentence under way: the link was closed, or the log is at its end. It counts as cut
+  /// short.
+  void interrupt();
+
+ private:
+  void refuse(Refusal reason);
+  std::optional<std::string_view> endOfLine();
+
+  std::string line_;  ///< what came after '$'
+  bool inside_ = false;
+  int64_t sentences_ = 0;
+  int64_t stray_bytes_ = 0;
+  RefusalCounts refusals_;
+};
+
+/// Exclusive-or of all characters: the NMEA 0183 checksum of what stands between '$' and '*'.
+uint8_t nmeaChecksum(std::string_view body);
+
+}  // namespace tread::ins

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "common/config/config_reader.hpp"
+#include "common/vehicle/robot_description.hpp"
+#include "modules/ins_driver/core/ins_source.hpp"
+#include "modules/ins_driver/nmea/epoch_collector.hpp"
+#include "modules/ins_driver/nmea/ins_assembler.hpp"
+#include "modules/ins_driver/nmea/nmea_framer.hpp"
+
+namespace tread::ins {
+
+/// What came over the line. Sentences = decoded + refused.
+struct NmeaCounts {
+  int64_t bytes = 0;
+  int64_t stray_bytes = 0;  ///< in no sentence
+  int64_t sentences = 0;    ///< starts seen
+  int64_t decoded = 0;
+  std::array<int64_t, kSentenceTypes> of_type{};  ///< decoded, in the order of kSentenceNames
+  std::array<int64_t, kSentenceTypes>
+      empty{};  ///< of those: well-formed, but no measurement in them
+  RefusalCounts refused;
+};
+
+/// Reads what an NMEA device adds to the driver's configuration; its mounting is the robot's.
+InsConfig readNmeaConfig(ConfigReader& reader, const RobotDescription& robot);
+
+/// Makes sources of such a device; the origin that is given replaces that of the configuration.
+std::function<std::unique_ptr<InsSource>(const std::optional<GeoOrigin>&)> nmeaSource(
+    const InsConfig& config);
+
+/// From the bytes of an NMEA 0183 device to estimates: framer, parser, epochs, assembler.
+class NmeaIns : public InsSource {
+ public:
+  explicit NmeaIns(const InsConfig& config)
+      : collector_(config.quiet_us, config.last_type), assembler_(config) {}
+
+  void push(std::string_view bytes, int64_t arrival) override;
+  std::optional<InsEstimate> next(int64_t now) override;
+  void interrupt() override;
+  std::optional<GeoOrigin> origin() const override { return assembler_.origin(); }
+  std::optional<int64_t> lastMessage() const override { return last_sentence_; }
+  std::pair<int64_t, double> tooFar() const override {
+    return {assembler_.counts().too_far, assembler_.farDistance()};
+  }
+  std::string refusals() const override;
+  InsAdvice advice() const override;
+  std::vector<std::pair<std::string, int64_t>> counters() const override;
+
+  NmeaCounts counts() const;
+  const InsAssembler& assembler() const { return assembler_; }
+
+ private:
+  void take(std::string_view body);
+  void observePending();
+
+  NmeaFramer framer_;
+  EpochCollector collector_;
+  InsAssembler assembler_;
+  std::deque<Epoch> pending_;
+  size_t observed_ = 0;  ///< how many of them the assembler has observed
+  int64_t sentence_start_ = 0;
+  int64_t arrival_ = 0;
+  std::optional<int64_t> last_sentence_;
+  NmeaCounts counts_;
+};
+
+}  // namespace tread::ins

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/motor_bridge/roboteq/roboteq_session.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace tread::motor {
+namespace {
+
+/// The controller's emergency stop and its release are repeated this often, and released this long
+/// [us].
+constexpr int64_t kStopRepeat = 100'000;
+constexpr int64_t kReleaseSpan = 1'000'000;
+
+/// Values of channels 1 and 2 as left and right.
+std::pair<double, double> toSides(const std::vector<long>& values, const RoboteqLayout& layout) {
+  const auto one = static_cast<double>(values[0]);
+  const auto two = static_cast<double>(values[1]);
+  return layout.left_channel == 1 ? std::pair(one, two) : std::pair(two, one);
+}
+
+/// Flags are at most 16 bits: what is beyond them is a garbled line, and cut off could read as "no
+/// fault".
+bool areFlags(const std::vector<long>& values) {
+  return values.size() == 1 && values[0] >= 0 && values[0] <= 0xffff;
+}
+
+}  // namespace
+
+bool RoboteqTelemetry::take(const RoboteqReply& reply, const RoboteqLayout& layout, int64_t now) {
+  const std::vector<long>& values = reply.values;
+  if (reply.key == "A" && values.size() >= 2) {
+    const auto [left, right] = toSides(values, layout);
+    current_left = left / 10.0;
+    current_right = right / 10.0;
+  } else if (reply.key == "V" && values.size() >= 2) {
+    battery_voltage = static_cast<double>(values[1]) / 10.0;
+  } else if (reply.key == "S" && values.size() >= 2 && layout.rpm_per_mps > 0.0) {
+    const auto [left, right] = toSides(values, layout);
+    speed_left = (layout.invert_left ? -left : left) / layout.rpm_per_mps;
+    speed_right = (layout.invert_right ? -right : right) / layout.rpm_per_mps;
+  } else if (reply.key == "FF" && areFlags(values)) {
+    fault_flags = static_cast<int32_t>(values[0]);
+    faults_read_at = now;
+  } else if (reply.key == "FS" && areFlags(values)) {
+    status_flags = static_cast<int32_t>(values[0]);
+    status_read_at = now;
+  } else {
+    return false;
+  }
+  device_flags = (fault_flags & 0xff) | (status_flags & 0xff) << 8;
+  return true;
+}
+
+RoboteqSession::RoboteqSession(const RoboteqConfig& config)
+    : config_(config), queries_{"FF", "A", "FS", "V"} {
+  if (config_.layout.rpm_per_mps > 0.0) queries_.emplace_back("S");
+}
+
+void RoboteqSession::begin(int64_t now) {
+  output_.clear();
+  problem_.clear();
+  telemetry_ = RoboteqTelemetry{};
+  pending_.clear();
+  acked_at_ = now;
+  commanded_at_ = now;
+  queried_at_ = now;
+  checked_at_ = now;
+  watchdog_mismatches_ = 0;
+  given_ = TrackCommand{};
+  repeat_ = false;
+}
+
+void RoboteqSession::command(const TrackCommand& command, int64_t now) {
+  // A fifth before the watchdog expires, because the line takes time, too.
+  const bool silent = now - commanded_at_ > 800 * config_.watchdog_ms;
+  if (silent && !isZero(command)) ++counters_["zero before resuming"];
+  give(silent ? TrackCommand{} : command, now);
+}
+
+void RoboteqSession::give(const TrackCommand& command, int64_t now) {
+  given_ = command;
+  repeat_ = false;
+  commanded_at_ = now;
+  for (const std::string& line : commandLines(command, config_.layout)) sendCommand(line, now);
+}
+
+void RoboteqSession::sendCommand(const std::string& line, int64_t now) {
+  output_ += line + "\r";
+  pending_.push_back({"", now});
+  ++counters_["commands sent"];
+}
+
+void RoboteqSession::ask(const std::string& query, const std::string& key, int64_t now) {
+  output_ += query + "\r";
+  pending_.push_back({key, now});
+  queried_at_ = now;
+}
+
+void RoboteqSession::holdStop(bool hold) {
+  hold_stop_ = hold;
+  if (hold) {
+    release_now_ = false;
+    release_until_ = 0;
+  }
+}
+
+void RoboteqSession::releaseStop(int64_t now) {
+  hold_stop_ = false;
+  release_now_ = true;
+  release_until_ = now + kReleaseSpan;
+}
+
+std::string RoboteqSession::poll(int64_t now) {
+  while (!pending_.empty() && now - pending_.front().sent > config_.reply_timeout_us) {
+    pending_.pop_front();
+    ++counters_["replies missing"];
+  }
+  if (now - acked_at_ > config_.silence_limit_us) problem_ = "it does not acknowledge commands";
+  if (repeat_) give(given_, now);
+  pollStop(now);
+  pollQuery(now);
+  std::string output;
+  output.swap(output_);
+  return output;
+}
+
+void RoboteqSession::pollStop(int64_t now) {
+  if (!release_now_ && now - stop_sent_at_ < kStopRepeat) return;
+  if (hold_stop_ && !stopLatched()) {
+    sendCommand("!EX", now);
+    stop_sent_at_ = now;
+  } else if (!hold_stop_ && (release_now_ || (now < release_until_ && stopLatched()))) {
+    sendCommand("!MG", now);
+    give({}, now);
+    stop_sent_at_ = now;
+    release_now_ = false;
+  }
+}
+
+void RoboteqSession::pollQuery(int64_t now) {
+  const bool waiting = std::any_of(pending_.begin(), pending_.end(),
+                                   [](const Pending& asked) { return !asked.key.empty(); });
+  if (waiting || now - queried_at_ < config_.query_interval_us) return;
+  if (now - checked_at_ >= config_.check_interval_us || watchdog_mismatches_ > 0) {
+    checked_at_ = now;
+    ask("~RWD", "RWD", now);
+    return;
+  }
+  const std::string& key = queries_[next_query_];
+  next_query_ = (next_query_ + 1) % queries_.size();
+  ask("?" + key, key, now);
+}
+
+void RoboteqSession::take(const RoboteqReply& reply, int64_t now) {
+  switch (reply.kind) {
+    case RoboteqReply::Kind::kAck:
+      return takeAck(now);
+    case RoboteqReply::Kind::kRefused:
+      return takeRefusal(now);
+    case RoboteqReply::Kind::kValue:
+      return takeValue(reply, now);
+    case RoboteqReply::Kind::kOther:
+      return;
+  }
+}
+
+void RoboteqSession::takeAck(int64_t now) {
+  const auto command = std::find_if(pending_.begin(), pending_.end(),
+                                    [](const Pending& asked) { return asked.key.empty(); });
+  if (command == pending_.end()) {
+    ++counters_["unexpected replies"];
+    return;
+  }
+  counters_["replies missing"] += command - pending_.begin();
+  pending_.erase(pending_.begin(), command + 1);
+  acked_at_ = now;
+}
+
+void RoboteqSession::takeRefusal(int64_t now) {
+  if (pending_.empty()) {
+    ++counters_["unexpected replies"];
+    return;
+  }
+  const bool command = pending_.front().key.empty();
+  pending_.pop_front();
+  ++counters_[command ? "commands refused" : "queries refused"];
+  repeat_ = repeat_ || command;
+  // A controller in emergency stop may refuse to move: that is no fault of the link.
+  if (command && stopLatched()) acked_at_ = now;
+}
+
+void RoboteqSession::takeValue(const RoboteqReply& reply, int64_t now) {
+  const auto asked = std::find_if(pending_.begin(), pending_.end(),
+                                  [&reply](const Pending& p) { return p.key == reply.key; });
+  if (asked == pending_.end()) {
+    ++counters_["unexpected replies"];
+  } else {
+    counters_["replies missing"] += asked - pending_.begin();
+    pending_.erase(pending_.begin(), asked + 1);
+  }
+  if (reply.key == "RWD") {
+    checkWatchdog(reply);
+  } else if (!telemetry_.take(reply, config_.layout, now)) {
+    ++counters_["unreadable replies"];
+  }
+}
+
+void RoboteqSession::checkWatchdog(const RoboteqReply& reply) {
+  const bool good = reply.values == std::vector<long>{static_cast<long>(config_.watchdog_ms)};
+  // One broken line may lie; two in a row mean that the controller forgot its setting.
+  watchdog_mismatches_ = good ? 0 : watchdog_mismatches_ + 1;
+  if (watchdog_mismatches_ >= 2) problem_ = "its watchdog setting was lost";
+}
+
+}  // namespace tread::motor

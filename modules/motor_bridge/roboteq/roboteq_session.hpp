@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "modules/motor_bridge/core/motor_controller.hpp"
+#include "modules/motor_bridge/roboteq/roboteq_codec.hpp"
+
+namespace tread::motor {
+
+/// What the controller last told about itself; nothing = unknown.
+struct RoboteqTelemetry : MotorTelemetry {
+  int32_t fault_flags = 0;                ///< ?FF
+  int32_t status_flags = 0;               ///< ?FS
+  std::optional<int64_t> faults_read_at;  ///< [us]
+  std::optional<int64_t> status_read_at;  ///< [us]
+
+  /// Takes the reply to a query, received at now [us]. False if it is not one of these or
+  /// malformed.
+  bool take(const RoboteqReply& reply, const RoboteqLayout& layout, int64_t now);
+};
+
+/// How to talk to the controller.
+struct RoboteqConfig {
+  RoboteqLayout layout;
+  int64_t watchdog_ms = 250;              ///< of the controller, set and read back [ms]
+  int64_t reply_timeout_us = 100'000;     ///< a reply that takes longer is missing [us]
+  int64_t silence_limit_us = 250'000;     ///< longest time without an acknowledged command [us]
+  int64_t query_interval_us = 20'000;     ///< between two queries [us]
+  int64_t check_interval_us = 1'000'000;  ///< between two looks at the watchdog's setting [us]
+  int64_t stop_interval_us = 50'000;      ///< zero is repeated on a faulty link this often [us]
+  int64_t backoff_min_us = 100'000;       ///< before starting up again [us], doubling
+  int64_t backoff_max_us = 1'000'000;
+  int startup_tries = 3;  ///< of each request
+};
+
+/// The talk with a controller that was started up: commands as they come, one query at a time
+/// between them.
+/** Replies are matched in the order asked; a value reply shows which acknowledgements before it
+    were lost. After any silence zero goes first: a controller whose watchdog expired resumes its
+    old speed with the next command (Roboteq manual v1.8 p. 286). */
+class RoboteqSession {
+ public:
+  explicit RoboteqSession(const RoboteqConfig& config);
+
+  /// The controller has just acknowledged zero, at now [us].
+  void begin(int64_t now);
+  /// A reply received at now [us].
+  void take(const RoboteqReply& reply, int64_t now);
+  /// A command to be given now [us].
+  void command(const TrackCommand& command, int64_t now);
+  /// Holds the controller's own emergency stop (!EX) as long as true.
+  void holdStop(bool hold);
+  /// Releases the controller's emergency stop (!MG), repeated for a second while it is seen.
+  void releaseStop(int64_t now);
+  /// Timeouts and queries; returns all bytes to be written now [us].
+  std::string poll(int64_t now);
+
+  /// Why the controller must be started up anew; empty = all is well.
+  const std::string& problem() const { return problem_; }
+  bool stopLatched() const { return (telemetry_.fault_flags & kEmergencyStop) != 0; }
+  const RoboteqTelemetry& telemetry() const { return telemetry_; }
+  const std::map<std::string, int64_t>& counters() const { return counters_; }
+
+ private:
+  struct Pending {
+    std::string key;  ///< key of the value asked for; empty for a command
+    int64_t sent = 0;
+  };
+
+  void give(const TrackCommand& command, int64_t now);
+  void sendCommand(const std::string& line, int64_t now);
+  void ask(const std::string& query, const std::string& key, int64_t now);
+  void pollStop(int64_t now);
+  void pollQuery(int64_t now);
+  void takeAck(int64_t now);
+  void takeRefusal(int64_t now);
+  void takeValue(const RoboteqReply& reply, int64_t now);
+  void checkWatchdog(const RoboteqReply& reply);
+
+  RoboteqConfig config_;
+  std::vector<std::string> queries_;
+  std::string output_;
+  std::string problem_;
+  RoboteqTelemetry telemetry_;
+  std::map<std::string, int64_t> counters_;
+
+  std::deque<Pending> pending_;
+  size_t next_query_ = 0;
+  int64_t queried_at_ = 0;
+  int64_t checked_at_ = 0;
+  int watchdog_mismatches_ = 0;
+  int64_t acked_at_ = 0;
+  int64_t commanded_at_ = 0;
+  TrackCommand given_;
+  bool repeat_ = false;  ///< the last command was refused
+  bool hold_stop_ = false;
+  bool release_now_ = false;
+  int64_t release_until_ = 0;
+  int64_t stop_sent_at_ = 0;
+};
+
+}  // namespace tread::motor

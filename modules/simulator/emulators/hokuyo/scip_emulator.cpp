@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/simulator/emulators/hokuyo/scip_emulator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tread::sim {
+namespace {
+
+constexpr size_t kLineLength = 64;      // of measured values, without sum
+constexpr size_t kLongestCommand = 80;  // what is longer is forgotten
+constexpr uint32_t kNothingHit = 65533;
+constexpr uint32_t kNoMeasurement = 1;
+
+std::optional<int> digits(const std::string& text, size_t from, size_t count) {
+  if (text.size() < from + count) return std::nullopt;
+  int value = 0;
+  for (size_t i = from; i < from + count; ++i) {
+    if (text[i] < '0' || text[i] > '9') return std::nullopt;
+    value = 10 * value + (text[i] - '0');
+  }
+  return value;
+}
+
+std::string twoDigits(int value) {
+  return {static_cast<char>('0' + value / 10), static_cast<char>('0' + value % 10)};
+}
+
+/// Device time of a scan: milliseconds, 24 bits.
+uint32_t deviceTime(int64_t utime) {
+  return static_cast<uint32_t>(utime / 1000) & 0xFFFFFFu;
+}
+
+}  // namespace
+
+char scipSum(std::string_view bytes) {
+  unsigned sum = 0;
+  for (char byte : bytes) sum += static_cast<unsigned char>(byte);
+  return static_cast<char>((sum & 0x3F) + 0x30);
+}
+
+std::string scipEncode(uint32_t value, int characters) {
+  std::string text(static_cast<size_t>(characters), '0');
+  for (size_t i = text.size(); i-- > 0; value >>= 6) {
+    text[i] = static_cast<char>((value & 0x3F) + 0x30);
+  }
+  return text;
+}
+
+ScipSettings scipSettingsOf(const LaserParameters& laser) {
+  ScipSettings settings;
+  settings.range_min_mm = static_cast<int>(std::lround(1000.0 * laser.range_min));
+  settings.range_max_mm = static_cast<int>(std::lround(1000.0 * laser.range_max));
+  settings.last_step = laser.beams - 1;
+  settings.front_step = (laser.beams - 1) / 2;
+  const double step = laser.field_of_view / (laser.beams - 1);
+  settings.steps_per_turn = static_cast<int>(std::lround(2.0 * kPi / step));
+  settings.turns_per_minute = static_cast<int>(60'000'000 / laser.period_us);
+  return settings;
+}
+
+ScipEmulator::ScipEmulator(const ScipSettings& settings, uint64_t seed)
+    : settings_(settings), random_(seed) {}
+
+void ScipEmulator::receive(std::string_view bytes, int64_t utime) {
+  if (faults_.silent) return;
+  for (char byte : bytes) {
+    if (byte == '\n' || byte == '\r') {
+      if (!line_.empty() && line_.size() <= kLongestCommand) runLine(line_, utime);
+      line_.clear();
+    } else if (line_.size() <= kLongestCommand) {
+      line_ += byte;
+    }
+  }
+}
+
+std::string ScipEmulator::transmit(int64_t /*utime*/) {
+  return faults_.silent ? (out_.clear(), std::string()) : std::exchange(out_, {});
+}
+
+void ScipEmulator::reconnect() {
+  line_.clear();
+  out_.clear();
+  streaming_.reset();
+}
+
+void ScipEmulator::answer(const std::string& line, const std::string& status,
+                          const std::vector<std::string>& lines) {
+  out_ += line + "\n" + status + scipSum(status) + "\n";
+  for (const std::string& text : lines) out_ += text + ";" + scipSum(text) + "\n";
+  out_ += "\n";
+}
+
+void ScipEmulator::runLine(const std::string& line, int64_t utime) {
+  // A note after ';' belongs to the echo, not to the command.
+  const std::string command = line.substr(0, line.find(';'));
+  const std::string name = command.substr(0, 2);
+  if (name == "MD") return startMeasuring(line);
+  if (name == "GD") return measureOnce(line);
+  if (name == "PP") return answer(line, "00", parameterLines());
+  if (name == "VV") return answer(line, "00", versionLines());
+  if (name == "II") return answer(line, "00", stateLines(utime));
+  if (name == "BM") {
+    const bool was_on = std::exchange(laser_on_, true);
+    return answer(line, was_on ? "02" : "00");
+  }
+  if (name == "QT" || name == "RS") {
+    streaming_.reset();
+    laser_on_ = false;
+    return answer(line, "00");
+  }
+  const bool speed = name == "SS" && digits(command, 2, 6).has_value();
+  const bool sensitivity = command == "HS0" || command == "HS1";
+  if (command == "SCIP2.0" || speed || sensitivity) return answer(line, "00");
+  answer(line, "0E");
+}
+
+std::vector<std::string> ScipEmulator::versionLines() const {
+  return {"VEND:Tread simulator", "PROD:" + settings_.model, "FIRM:1.0", "PROT:SCIP 2.0",
+          "SERI:" + settings_.serial_number};
+}
+
+std::vector<std::string> ScipEmulator::parameterLines() const {
+  const auto line = [](const char* key, int value) { return key + std::to_string(value); };
+  return {"MODL:" + settings_.model,
+          line("DMIN:", settings_.range_min_mm),
+          line("DMAX:", settings_.range_max_mm),
+          line("ARES:", settings_.steps_per_turn),
+          line("AMIN:", settings_.first_step),
+          line("AMAX:", settings_.last_step),
+          line("AFRT:", settings_.front_step),
+          line("SCAN:", settings_.turns_per_minute)};
+}
+
+std::vector<std::string> ScipEmulator::stateLines(int64_t utime) const {
+  return {"MODL:" + settings_.model,
+          std::string("LASR:") + (laser_on_ ? "ON" : "OFF"),
+          "SCSP:" + std::to_string(settings_.turns_per_minute),
+          std::string("MESM:") + (streaming_ ? "Measuring" : "Idle"),
+          "SBPS:Ethernet",
+          "TIME:" + scipEncode(deviceTime(utime), 4),
+          "STAT:Sensor works well"};
+}
+
+std::string ScipEmulator::parseRequest(const std::string& line, Request& request) const {
+  const std::string command = line.substr(0, line.find(';'));
+  const bool repeated = command.substr(0, 2) == "MD";
+  if (command.size() != (repeated ? 15u : 12u)) return "0C";
+  const auto first = digits(command, 2, 4), last = digits(command, 6, 4);
+  const auto cluster = digits(command, 10, 2);
+  if (!first) return "01";
+  if (!last) return "02";
+  if (!cluster) return "03";
+  if (*last > settings_.last_step) return "04";
+  if (*last < *first) return "05";
+  request.first = *first;
+  request.last = *last;
+  request.cluster = std::max(1, *cluster);
+  request.note = line.substr(command.size());
+  request.command = command;
+  if (!repeated) return "00";
+  const auto interval = digits(command, 12, 1), count = digits(command, 13, 2);
+  if (!interval) return "06";
+  if (!count) return "07";
+  request.interval = *interval;
+  request.count = *count;
+  request.endless = *count == 0;
+  request.command = command.substr(0, 13);
+  return "00";
+}
+
+void ScipEmulator::startMeasuring(const std::string& line) {
+  Request request;
+  const std::string status = parseRequest(line, request);
+  answer(line, status);
+  if (status != "00") return;
+  laser_on_ = true;
+  streaming_ = request;
+  skipped_ = request.interval;
+}
+
+void ScipEmulator::measureOnce(const std::string& line) {
+  Request request;
+  std::string status = parseRequest(line, request);
+  if (status == "00" && (!laser_on_ || !newest_)) status = "10";
+  if (status != "00") return answer(line, status);
+  out_ += line + "\n" + status + scipSum(status) + "\n";
+  appendScan(out_, *newest_, request);
+}
+
+void ScipEmulator::add(const LaserScan& scan) {
+  newest_ = scan;
+  if (faults_.silent || !streaming_) return;
+  Request& request = *streaming_;
+  if (skipped_ < request.interval) {
+    ++skipped_;
+    return;
+  }
+  skipped_ = 0;
+  if (!request.endless) --request.count;
+  if (faults_.garbage) {
+    for (uint64_t i = random_() % 30; i > 0; --i) out_ += static_cast<char>(random_() % 256);
+  }
+  std::string out = request.command + twoDigits(request.count) + request.note + "\n99b\n";
+  const size_t values = out.size();
+  appendScan(out, scan, request);
+  if (faults_.bad_sums) out[values + random_() % (out.size() - values)] ^= 0x05;
+  out_ += out;
+  if (!request.endless && request.count == 0) streaming_.reset();
+}
+
+void ScipEmulator::appendScan(std::string& out, const LaserScan& scan,
+                              const Request& request) const {
+  const std::string time = scipEncode(deviceTime(scan.utime), 4);
+  out += time + scipSum(time) + "\n";
+  const std::string ranges = rangesOf(scan, request);
+  for (size_t at = 0; at < ranges.size(); at += kLineLength) {
+    const std::string_view line = std::string_view(ranges).substr(at, kLineLength);
+    out.append(line);
+    out += scipSum(line);
+    out += '\n';
+  }
+  out += '\n';
+}
+
+std::string ScipEmulator::rangesOf(const LaserScan& scan, const Request& request) const {
+  std::string text;
+  for (int step = request.first; step <= request.last; step += request.cluster) {
+    uint32_t nearest = kNothingHit;
+    const int end = std::min(request.last, step + request.cluster - 1);
+    for (int i = step; i <= end; ++i) {
+      const auto beam = static_cast<size_t>(i - settings_.first_step);
+      const float range = beam < scan.ranges.size() ? scan.ranges[beam] : NAN;
+      if (std::isnan(range)) {
+        nearest = std::min(nearest, kNoMeasurement);
+      } else if (std::isfinite(range)) {
+        nearest = std::min(nearest, static_cast<uint32_t>(std::lround(1000.0 * range)));
+      }
+    }
+    text += scipEncode(nearest, 3);
+  }
+  return text;
+}
+
+}  // namespace tread::sim

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "modules/simulator/emulators/roboteq/roboteq_firmware.hpp"
+#include "modules/simulator/emulators/roboteq/serial_line.hpp"
+
+namespace tread::sim {
+
+/// A Roboteq controller at the end of a serial line: paced bytes, echo, line ends, faults.
+/** Lines end with CR or '_'; other characters below space are ignored. Echo is on after power-up:
+   each character comes back before the reply. */
+class RoboteqEmulator {
+ public:
+  explicit RoboteqEmulator(const RoboteqSettings& settings = {});
+
+  /// Bytes from the robot. Times of all calls must not go back.
+  void receive(std::string_view bytes, int64_t utime);
+  /// Bytes to the robot since the last call.
+  std::string transmit(int64_t utime);
+  /// Power on the motors now, -1..1: left and right.
+  std::array<double, 2> output(int64_t utime);
+
+  void measure(const RoboteqMeasurements& measurements) { firmware_.measure(measurements); }
+
+  // Faults.
+  /// The next n replies (not echoes) never come.
+  void loseReplies(int n) { lost_replies_ = n; }
+  /// The next reply breaks off in the middle, without its CR.
+  void cutReply() { cut_reply_ = true; }
+  /// The controller's logic supply fails and returns: deaf for a while, then the power-up state.
+  void reboot(int64_t utime);
+  /// The motor supply drops below what the power stage needs, or recovers.
+  void setBrownOut(bool active) { firmware_.setBrownOut(active); }
+  /// Hears nothing and says nothing; the watchdog goes on.
+  void setSilent(bool silent) { silent_ = silent; }
+
+ private:
+  void advance(int64_t utime);
+  void tick(int64_t utime);
+  void hear(char byte, int64_t utime);
+  void endLine(int64_t utime);
+  void reply(const std::string& line, int64_t utime);
+
+  RoboteqSettings settings_;
+  RoboteqFirmware firmware_;
+  SerialLine from_robot_;
+  SerialLine to_robot_;
+  std::string line_;
+  int64_t deaf_until_ = INT64_MIN;
+  int lost_replies_ = 0;
+  bool cut_reply_ = false;
+  bool silent_ = false;
+};
+
+}  // namespace tread::sim

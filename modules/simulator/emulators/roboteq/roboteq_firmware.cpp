@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/simulator/emulators/roboteq/roboteq_firmware.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <utility>
+
+namespace tread::sim {
+namespace {
+
+constexpr int kFullCommand = 1000;       // per mille
+constexpr int kLongestWatchdog = 65000;  // [ms]
+constexpr int kResetKey = 321654987;     // guards %RESET
+constexpr int64_t kMicrosPerMilli = 1000;
+
+std::optional<int> integerOf(const std::string& word) {
+  int value = 0;
+  const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (result.ec != std::errc() || result.ptr != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+bool within(const std::optional<int>& value, int low, int high) {
+  return value && *value >= low && *value <= high;
+}
+
+std::string sign(bool good) {
+  return good ? "+" : "-";
+}
+
+}  // namespace
+
+RoboteqWords roboteqWords(const std::string& text) {
+  RoboteqWords words;
+  size_t i = 0;
+  while (i < text.size() && text[i] == ' ') ++i;
+  while (i < text.size() && std::isalpha(static_cast<unsigned char>(text[i]))) {
+    words.name += text[i++];
+  }
+  std::string word;
+  for (; i <= text.size(); ++i) {
+    if (i < text.size() && text[i] != ' ') {
+      word += text[i];
+    } else if (!word.empty()) {
+      words.numbers.push_back(integerOf(word));
+      word.clear();
+    }
+  }
+  return words;
+}
+
+std::optional<std::string> RoboteqFirmware::execute(const std::string& line, int64_t utime) {
+  if (line.empty()) return std::nullopt;
+  const std::string text = line.substr(1);
+  const RoboteqWords words = roboteqWords(text);
+  switch (line[0]) {
+    case '!':
+      return sign(runCommand(words, utime));
+    case '?':
+      return runQuery(text).value_or(sign(false));
+    case '^':
+      return sign(setConfiguration(words));
+    case '~':
+      return readConfiguration(words.name).value_or(sign(false));
+    case '%':
+      return sign(runMaintenance(words));
+    case '#':
+      runHistory(words, utime);
+      return std::nullopt;
+    default:
+      return sign(false);
+  }
+}
+
+void RoboteqFirmware::advance(int64_t utime) {
+  if (configuration_.watchdog_ms == 0 || !serial_active_) return;
+  if (utime - last_command_ >= configuration_.watchdog_ms * kMicrosPerMilli) serial_active_ = false;
+}
+
+void RoboteqFirmware::powerUp() {
+  configuration_ = saved_;
+  commanded_ = {0, 0};
+  serial_active_ = false;
+  emergency_stop_ = false;
+  reset_requested_ = false;
+  history_.clear();
+  repeat_us_ = 0;
+}
+
+bool RoboteqFirmware::takeResetRequest() {
+  return std::exchange(reset_requested_, false);
+}
+
+bool RoboteqFirmware::runCommand(const RoboteqWords& words, int64_t utime) {
+  bool good = false;
+  if (words.name == "M") good = setBoth(words.numbers);
+  if (words.name == "G") good = setOne(words.numbers);
+  if (words.name == "MS") good = stop(words.numbers);
+  if ((words.name == "EX" || words.name == "MG") && words.numbers.empty()) {
+    emergency_stop_ = words.name == "EX";
+    good = true;
+  }
+  if (!good) return false;
+  // Any good command makes the serial line the active source again: the kept speeds apply.
+  serial_active_ = true;
+  last_command_ = utime;
+  return true;
+}
+
+bool RoboteqFirmware::setBoth(const Numbers& numbers) {
+  if (numbers.empty() || numbers.size() > 2) return false;
+  for (const auto& value : numbers) {
+    if (!within(value, -kFullCommand, kFullCommand)) return false;
+  }
+  for (size_t i = 0; i < numbers.size(); ++i) commanded_[i] = *numbers[i];
+  return true;
+}
+
+bool RoboteqFirmware::setOne(const Numbers& numbers) {
+  if (numbers.empty() || numbers.size() > 2) return false;
+  const std::optional<int> channel = numbers.size() == 2 ? numbers[0] : std::optional<int>(1);
+  if (!within(channel, 1, 2) || !within(numbers.back(), -kFullCommand, kFullCommand)) return false;
+  commanded_[static_cast<size_t>(*channel - 1)] = *numbers.back();
+  return true;
+}
+
+bool RoboteqFirmware::stop(const Numbers& numbers) {
+  if (numbers.empty()) {
+    commanded_ = {0, 0};
+    return true;
+  }
+  if (numbers.size() > 1 || !within(numbers[0], 1, 2)) return false;
+  commanded_[static_cast<size_t>(*numbers[0] - 1)] = 0;
+  return true;
+}
+
+bool RoboteqFirmware::setConfiguration(const RoboteqWords& words) {
+  if (words.numbers.size() != 1) return false;
+  if (words.name == "RWD" && within(words.numbers[0], 0, kLongestWatchdog)) {
+    configuration_.watchdog_ms = *words.numbers[0];
+    return true;
+  }
+  if (words.name == "ECHOF" && within(words.numbers[0], 0, 1)) {
+    configuration_.echo_off = *words.numbers[0] == 1;
+    return true;
+  }
+  return false;
+}
+
+std::optional<std::string> RoboteqFirmware::readConfiguration(const std::string& name) const {
+  if (name == "RWD") return "RWD=" + std::to_string(configuration_.watchdog_ms);
+  if (name == "ECHOF") return std::string(configuration_.echo_off ? "ECHOF=1" : "ECHOF=0");
+  return std::nullopt;
+}
+
+bool RoboteqFirmware::runMaintenance(const RoboteqWords& words) {
+  if (words.name == "EESAV" && words.numbers.empty()) {
+    saved_ = configuration_;
+    return true;
+  }
+  const bool key = words.numbers.size() == 1 && words.numbers[0] == kResetKey;
+  if (words.name == "RESET" && key) reset_requested_ = true;
+  return reset_requested_;
+}
+
+bool RoboteqFirmware::supplyLow() const {
+  return brown_out_ || measurements_.battery_voltage < settings_.undervoltage;
+}
+
+std::array<int, 2> RoboteqFirmware::applied() const {
+  return serial_active_ && powerStageOn() ? commanded_ : std::array<int, 2>{0, 0};
+}
+
+}  // namespace tread::sim
