@@ -23,7 +23,7 @@ struct Receipt {
 struct BusStatistics {
   int64_t received = 0;      ///< messages that reached a handler
   Receipt newest;            ///< the newest of them, in the order of receipt
-  int64_t undecodable = 0;   ///< of a foreign or broken type
+  int64_t undecodable = 0;   ///< of another or broken type
   int64_t lost = 0;          ///< missing by seq
   int64_t late = 0;          ///< older than their channel's maximum age on receipt
   int64_t jumps = 0;         ///< their utime was too far ahead to be followed

@@ -9,38 +9,38 @@ namespace {
 
 /// No clock runs that long (126 years): sums of times cannot overflow.
 constexpr int64_t kLargestUtime = 4'000'000'000'000'000;
-constexpr int kWitnesses = 3;
+constexpr int kEnoughAgreeing = 3;
 constexpr int64_t kAgreementUs = 1'000'000;
 constexpr int64_t kUnopposedUs = 200'000;
 
 }  // namespace
 
-bool FollowedTime::hear(int64_t utime, int64_t host) {
+bool FollowedTime::observe(int64_t utime, int64_t host) {
   if (utime < 0 || utime > kLargestUtime) return false;
   const int64_t ahead = utime - now(host);
-  if (!started_ || ahead > max_jump_us_) return hearWitness(utime, host);
+  if (!started_ || ahead > max_jump_us_) return observeCandidate(utime, host);
   // An old message says nothing about the present, neither for nor against it.
-  if (ahead >= -kAgreementUs) witnesses_ = 0;
+  if (ahead >= -kAgreementUs) agreeing_ = 0;
   if (ahead > 0) set(utime, host);
   return true;
 }
 
-bool FollowedTime::hearWitness(int64_t utime, int64_t host) {
-  const int64_t claimed = claim_ + (host - claim_host_);
-  if (witnesses_ == 0 || std::abs(utime - claimed) > kAgreementUs) {
-    witnesses_ = 1;
-    first_witness_ = host;
-    claim_ = utime;
-    claim_host_ = host;
-  } else if (utime > claim_) {
-    // The same message once more, or one that was under way for longer, is no further witness.
-    ++witnesses_;
-    claim_ = utime;
-    claim_host_ = host;
+bool FollowedTime::observeCandidate(int64_t utime, int64_t host) {
+  const int64_t expected = candidate_ + (host - candidate_host_);
+  if (agreeing_ == 0 || std::abs(utime - expected) > kAgreementUs) {
+    agreeing_ = 1;
+    first_agreeing_ = host;
+    candidate_ = utime;
+    candidate_host_ = host;
+  } else if (utime > candidate_) {
+    // The same message once more, or one that was under way for longer, confirms nothing.
+    ++agreeing_;
+    candidate_ = utime;
+    candidate_host_ = host;
   }
-  const bool unopposed = !started_ || host - first_witness_ >= kUnopposedUs;
-  if (witnesses_ < kWitnesses || !unopposed) return !started_;
-  set(claim_, claim_host_);
+  const bool unopposed = !started_ || host - first_agreeing_ >= kUnopposedUs;
+  if (agreeing_ < kEnoughAgreeing || !unopposed) return !started_;
+  set(candidate_, candidate_host_);
   return true;
 }
 
@@ -48,7 +48,7 @@ void FollowedTime::set(int64_t utime, int64_t host) {
   utime_ = utime;
   host_ = host;
   started_ = true;
-  witnesses_ = 0;
+  agreeing_ = 0;
 }
 
 }  // namespace tread

@@ -60,7 +60,7 @@ void HealthReporter::publishHealth(int64_t utime) {
   health.undecodable = statistics.undecodable;
   health.lost = statistics.lost;
   health.late = statistics.late;
-  // A foreign message does not make a process ill, but its line must be seen somewhere.
+  // A message of another program is no fault of this process, but its line must be seen.
   if (health.health_reason.empty()) health.health_reason = statistics.last_refusal;
   const auto add = [&health](const std::string& name, int64_t value) {
     auto counter = blank<counter_t>();

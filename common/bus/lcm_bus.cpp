@@ -61,7 +61,7 @@ int64_t LcmBus::utc() const {
 }
 
 bool LcmBus::onReceipt(int64_t utime) {
-  return time_source_ == TimeSource::kHost || followed_.hear(utime, hostNow());
+  return time_source_ == TimeSource::kHost || followed_.observe(utime, hostNow());
 }
 
 bool LcmBus::send(const char* channel, const uint8_t* bytes, size_t size) {

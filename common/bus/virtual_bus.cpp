@@ -17,29 +17,30 @@ constexpr int64_t kTransportUs = 20;
 }  // namespace
 
 /// A message on its way; all receivers share its bytes.
-struct VirtualBus::Letter {
+struct VirtualBus::Packet {
   std::string channel;
   std::shared_ptr<const std::vector<uint8_t>> bytes;
 };
 
 /// A node's endpoint.
-class VirtualBus::End : public Bus {
+class VirtualBus::Endpoint : public Bus {
  public:
-  End(VirtualBus& bus, Station& station) : bus_(bus), station_(station), boot_id_(bus.now_) {}
+  Endpoint(VirtualBus& bus, Participant& participant)
+      : bus_(bus), participant_(participant), boot_id_(bus.now_) {}
   int64_t now() const override { return bus_.now_; }
   int64_t bootId() const override { return boot_id_; }
   bool hears(const std::string& channel) const { return handlers_.count(channel) > 0; }
-  void arrive(const Letter& letter) {
+  void arrive(const Packet& packet) {
     // Index loop and deque: a handler may subscribe, and must not be moved while it runs.
-    const auto found = handlers_.find(letter.channel);
+    const auto found = handlers_.find(packet.channel);
     if (found == handlers_.end()) return;
     for (size_t i = 0; i < found->second.size(); ++i)
-      deliver(found->second[i], letter.channel.c_str(), letter.bytes->data(), letter.bytes->size());
+      deliver(found->second[i], packet.channel.c_str(), packet.bytes->data(), packet.bytes->size());
   }
 
  protected:
   bool send(const char* channel, const uint8_t* bytes, size_t size) override {
-    bus_.publish(station_, channel, bytes, size);
+    bus_.publish(participant_, channel, bytes, size);
     return true;
   }
   void listen(const char* channel, RawHandler handler) override {
@@ -48,17 +49,17 @@ class VirtualBus::End : public Bus {
 
  private:
   VirtualBus& bus_;
-  Station& station_;
+  Participant& participant_;
   int64_t boot_id_;
   std::map<std::string, std::deque<RawHandler>> handlers_;
 };
 
 /// A node with its endpoint and its model of time.
-struct VirtualBus::Station {
+struct VirtualBus::Participant {
   std::string name;
   Factory factory;
   NodeTiming timing;
-  std::unique_ptr<End> end;  // outlives the node, which refers to it
+  std::unique_ptr<Endpoint> endpoint;  // outlives the node, which refers to it
   std::unique_ptr<Node> node;
   uint64_t life = 0;       ///< counts kills: events of a former life are void
   int64_t busy_until = 0;  ///< [us]
@@ -71,23 +72,23 @@ class VirtualBus::MessageFaults {
   struct Passage {
     int64_t delay = kTransportUs;  ///< [us]
     int copies = 1;
-    Letter letter;
+    Packet packet;
   };
 
   MessageFaults(uint64_t seed, std::vector<MessageFault> faults)
       : random_(seed), faults_(std::move(faults)) {}
 
-  Passage pass(const Letter& letter, const std::string& receiver, int64_t since_start) {
+  Passage pass(const Packet& packet, const std::string& receiver, int64_t since_start) {
     Passage passage;
-    passage.letter = letter;
+    passage.packet = packet;
     for (const MessageFault& fault : faults_) {
-      if (!applies(fault, letter.channel, receiver, since_start)) continue;
+      if (!applies(fault, packet.channel, receiver, since_start)) continue;
       passage.delay += fault.delay_us;
       if (draw(fault.drop)) passage.copies = 0;
       if (draw(fault.duplicate)) ++passage.copies;
       if (draw(fault.reorder))
         passage.delay += static_cast<int64_t>(random_() % uint64_t(fault.reorder_us + 1));
-      if (draw(fault.corrupt)) corrupt(passage.letter);
+      if (draw(fault.corrupt)) corrupt(passage.packet);
     }
     return passage;
   }
@@ -102,11 +103,11 @@ class VirtualBus::MessageFaults {
   bool draw(double probability) {
     return probability > 0.0 && static_cast<double>(random_() >> 11) * 0x1.0p-53 < probability;
   }
-  void corrupt(Letter& letter) {
-    auto changed = std::make_shared<std::vector<uint8_t>>(*letter.bytes);
+  void corrupt(Packet& packet) {
+    auto changed = std::make_shared<std::vector<uint8_t>>(*packet.bytes);
     if (!changed->empty())
       (*changed)[random_() % changed->size()] ^= static_cast<uint8_t>(1 + random_() % 255);
-    letter.bytes = changed;
+    packet.bytes = changed;
   }
 
   std::mt19937_64 random_;
@@ -117,9 +118,9 @@ VirtualBus::VirtualBus(uint64_t seed, FaultPlan faults, int64_t start_utime)
     : start_(start_utime),
       now_(start_utime),
       faults_(std::make_unique<MessageFaults>(seed, std::move(faults.messages))) {
-  stations_.push_back(std::make_unique<Station>());
-  stations_.front()->name = "outside";
-  stations_.front()->end = std::make_unique<End>(*this, *stations_.front());
+  participants_.push_back(std::make_unique<Participant>());
+  participants_.front()->name = "outside";
+  participants_.front()->endpoint = std::make_unique<Endpoint>(*this, *participants_.front());
   for (const NodeFault& fault : faults.nodes) {
     const std::string name = fault.node;
     schedule(start_ + fault.kill_at, [this, name] { kill(name); });
@@ -131,46 +132,46 @@ VirtualBus::VirtualBus(uint64_t seed, FaultPlan faults, int64_t start_utime)
 VirtualBus::~VirtualBus() = default;
 
 void VirtualBus::addNode(const std::string& name, Factory factory, NodeTiming timing) {
-  for (const auto& other : stations_)
+  for (const auto& other : participants_)
     if (other->name == name) throw std::invalid_argument("virtual bus: two nodes named " + name);
-  stations_.push_back(std::make_unique<Station>());
-  Station& added = *stations_.back();
+  participants_.push_back(std::make_unique<Participant>());
+  Participant& added = *participants_.back();
   added.name = name;
   added.factory = std::move(factory);
   added.timing = timing;
   start(added);
 }
 
-VirtualBus::Station& VirtualBus::station(const std::string& name) const {
-  for (const auto& station : stations_)
-    if (station->name == name) return *station;
+VirtualBus::Participant& VirtualBus::participant(const std::string& name) const {
+  for (const auto& participant : participants_)
+    if (participant->name == name) return *participant;
   throw std::invalid_argument("virtual bus: no node named " + name);
 }
 
 void VirtualBus::kill(const std::string& name) {
-  kill(station(name));
+  kill(participant(name));
 }
 
 void VirtualBus::restart(const std::string& name) {
-  kill(station(name));
-  start(station(name));
+  kill(participant(name));
+  start(participant(name));
 }
 
 Node* VirtualBus::node(const std::string& name) {
-  return station(name).node.get();
+  return participant(name).node.get();
 }
 
 const BusStatistics& VirtualBus::statistics(const std::string& name) const {
-  const Station& asked = station(name);
-  return asked.end ? asked.end->statistics() : asked.last_statistics;
+  const Participant& asked = participant(name);
+  return asked.endpoint ? asked.endpoint->statistics() : asked.last_statistics;
 }
 
 Bus& VirtualBus::outside() {
-  return *stations_.front()->end;
+  return *participants_.front()->endpoint;
 }
 
 void VirtualBus::inject(const char* channel, const uint8_t* bytes, size_t size) {
-  publish(*stations_.front(), channel, bytes, size);
+  publish(*participants_.front(), channel, bytes, size);
 }
 
 void VirtualBus::runUntil(int64_t utime) {
@@ -186,69 +187,72 @@ void VirtualBus::schedule(int64_t utime, std::function<void()> action) {
   events_.emplace(utime, std::move(action));
 }
 
-void VirtualBus::start(Station& station) {
-  station.end = std::make_unique<End>(*this, station);
-  station.node = station.factory(*station.end);
-  station.busy_until = now_;
-  const int64_t first = now_ + station.timing.phase_us;
-  schedule(first, [this, &station, life = station.life, first] { step(station, life, first); });
+void VirtualBus::start(Participant& participant) {
+  participant.endpoint = std::make_unique<Endpoint>(*this, participant);
+  participant.node = participant.factory(*participant.endpoint);
+  participant.busy_until = now_;
+  const int64_t first = now_ + participant.timing.phase_us;
+  schedule(first, [this, &participant, life = participant.life, first] {
+    step(participant, life, first);
+  });
 }
 
-void VirtualBus::kill(Station& station) {
-  ++station.life;
-  if (station.end) station.last_statistics = station.end->statistics();
-  station.node.reset();
-  station.end.reset();
+void VirtualBus::kill(Participant& participant) {
+  ++participant.life;
+  if (participant.endpoint) participant.last_statistics = participant.endpoint->statistics();
+  participant.node.reset();
+  participant.endpoint.reset();
 }
 
-void VirtualBus::step(Station& station, uint64_t life, int64_t planned) {
-  if (life != station.life) return;
-  int64_t next = station.busy_until;
-  if (station.busy_until <= now_) {
-    station.busy_until = now_ + station.timing.compute_us;
-    station.node->step(now_);
+void VirtualBus::step(Participant& participant, uint64_t life, int64_t planned) {
+  if (life != participant.life) return;
+  int64_t next = participant.busy_until;
+  if (participant.busy_until <= now_) {
+    participant.busy_until = now_ + participant.timing.compute_us;
+    participant.node->step(now_);
     // Steps stay on their grid; one that a busy node missed is not made up for.
-    const int64_t period = station.node->period();
-    const int64_t origin = planned - (planned - start_ - station.timing.phase_us) % period;
+    const int64_t period = participant.node->period();
+    const int64_t origin = planned - (planned - start_ - participant.timing.phase_us) % period;
     next = std::max(origin + period, now_ + 1);
   }
-  schedule(next, [this, &station, life, next] { step(station, life, next); });
+  schedule(next, [this, &participant, life, next] { step(participant, life, next); });
 }
 
-void VirtualBus::publish(Station& sender, const char* channel, const uint8_t* bytes, size_t size) {
-  Letter letter{channel, std::make_shared<const std::vector<uint8_t>>(bytes, bytes + size)};
+void VirtualBus::publish(Participant& sender, const char* channel, const uint8_t* bytes,
+                         size_t size) {
+  Packet packet{channel, std::make_shared<const std::vector<uint8_t>>(bytes, bytes + size)};
   schedule(now_ + sender.timing.compute_us,
-           [this, &sender, life = sender.life, letter = std::move(letter)] {
-             depart(sender, life, letter);
+           [this, &sender, life = sender.life, packet = std::move(packet)] {
+             depart(sender, life, packet);
            });
 }
 
-void VirtualBus::depart(const Station& sender, uint64_t life, const Letter& letter) {
+void VirtualBus::depart(const Participant& sender, uint64_t life, const Packet& packet) {
   if (life != sender.life) return;
-  if (tap_) tap_(now_, letter.channel.c_str(), letter.bytes->data(), letter.bytes->size());
-  for (size_t i = 0; i < stations_.size(); ++i) {
-    Station& receiver = *stations_[i];
-    if (!receiver.end || !receiver.end->hears(letter.channel)) continue;
+  if (tap_) tap_(now_, packet.channel.c_str(), packet.bytes->data(), packet.bytes->size());
+  for (size_t i = 0; i < participants_.size(); ++i) {
+    Participant& receiver = *participants_[i];
+    if (!receiver.endpoint || !receiver.endpoint->hears(packet.channel)) continue;
     if (i == 0)
-      receiver.end->arrive(letter);
+      receiver.endpoint->arrive(packet);
     else
-      route(letter, receiver);
+      route(packet, receiver);
   }
 }
 
-void VirtualBus::route(const Letter& letter, Station& receiver) {
-  const MessageFaults::Passage passage = faults_->pass(letter, receiver.name, now_ - start_);
+void VirtualBus::route(const Packet& packet, Participant& receiver) {
+  const MessageFaults::Passage passage = faults_->pass(packet, receiver.name, now_ - start_);
   for (int copy = 0; copy < passage.copies; ++copy)
-    schedule(now_ + passage.delay, [this, &receiver, life = receiver.life, sent = passage.letter] {
+    schedule(now_ + passage.delay, [this, &receiver, life = receiver.life, sent = passage.packet] {
       arrive(receiver, life, sent);
     });
 }
 
-void VirtualBus::arrive(Station& receiver, uint64_t life, const Letter& letter) {
+void VirtualBus::arrive(Participant& receiver, uint64_t life, const Packet& packet) {
   if (life != receiver.life) return;
-  if (receiver.busy_until <= now_) return receiver.end->arrive(letter);
+  if (receiver.busy_until <= now_) return receiver.endpoint->arrive(packet);
   schedule(receiver.busy_until,
-           [this, &receiver, life, letter] { arrive(receiver, life, letter); });
+           [this, &receiver, life, packet] { arrive(receiver, life, packet); });
 }
 
 }  // namespace tread

@@ -45,7 +45,7 @@ class VirtualBus {
   Bus& outside();
   void setTap(Tap tap) { tap_ = std::move(tap); }
 
-  /// Puts raw bytes on a channel, as a foreign process would.
+  /// Puts raw bytes on a channel, as another program would.
   void inject(const char* channel, const uint8_t* bytes, size_t size);
 
   /// Runs until virtual time reaches `utime`.
@@ -53,26 +53,26 @@ class VirtualBus {
   int64_t now() const { return now_; }
 
  private:
-  struct Letter;
-  class End;
-  struct Station;
+  struct Packet;
+  class Endpoint;
+  struct Participant;
   class MessageFaults;
 
-  Station& station(const std::string& name) const;
-  void start(Station& station);
-  static void kill(Station& station);
+  Participant& participant(const std::string& name) const;
+  void start(Participant& participant);
+  static void kill(Participant& participant);
   void schedule(int64_t utime, std::function<void()> action);
-  void publish(Station& sender, const char* channel, const uint8_t* bytes, size_t size);
-  void step(Station& station, uint64_t life, int64_t planned);
-  void depart(const Station& sender, uint64_t life, const Letter& letter);
-  void route(const Letter& letter, Station& receiver);
-  void arrive(Station& receiver, uint64_t life, const Letter& letter);
+  void publish(Participant& sender, const char* channel, const uint8_t* bytes, size_t size);
+  void step(Participant& participant, uint64_t life, int64_t planned);
+  void depart(const Participant& sender, uint64_t life, const Packet& packet);
+  void route(const Packet& packet, Participant& receiver);
+  void arrive(Participant& receiver, uint64_t life, const Packet& packet);
 
   int64_t start_;  ///< [us]
   int64_t now_;    ///< [us]
   Tap tap_;
   std::unique_ptr<MessageFaults> faults_;
-  std::vector<std::unique_ptr<Station>> stations_;  ///< the first is outside()
+  std::vector<std::unique_ptr<Participant>> participants_;  ///< the first is outside()
   /// What happens, by time; what is due at the same time in the order in which it was scheduled.
   std::multimap<int64_t, std::function<void()>> events_;
 };

@@ -98,7 +98,7 @@ void RobotRun::start(const std::string& name) {
 
 void RobotRun::startBehind(const std::vector<std::string>& wrapper, const std::string& name) {
   const std::string program = std::string(TREAD_BIN_DIR) + "/tread-" + name;
-  std::vector<std::string> words(wrapper.begin() + 1, wrapper.end());
+  std::vector<std::string> describe(wrapper.begin() + 1, wrapper.end());
   words.push_back(program);
   for (std::string& word : argumentsOf(name)) words.push_back(word);
   processes_[name] =
@@ -143,12 +143,12 @@ bool RobotRun::until(double seconds, const std::function<bool()>& condition) {
 }
 
 bool RobotRun::arm(double seconds) {
-  calls_.push_back(std::make_unique<operators::ArmCall>(bus_, operators::Asker{"test", "a test"},
-                                                        true, seconds));
-  operators::CallResult result = operators::CallResult::kGoesOn;
+  calls_.push_back(std::make_unique<operators::ArmCall>(
+      bus_, operators::Requester{"test", "a test"}, true, seconds));
+  operators::CallResult result = operators::CallResult::kPending;
   until(seconds + 1.0, [&] {
     result = calls_.back()->step(now());
-    return result != operators::CallResult::kGoesOn;
+    return result != operators::CallResult::kPending;
   });
   return result == operators::CallResult::kDone;
 }

@@ -52,7 +52,7 @@ class LogBus : public Bus {
   void listen(const char* channel, RawHandler handler) override {
     handlers_[channel].push_back(std::move(handler));
   }
-  bool onReceipt(int64_t utime) override { return knowsTime() || start_->hear(utime, now_); }
+  bool onReceipt(int64_t utime) override { return knowsTime() || start_->observe(utime, now_); }
 
  private:
   int64_t now_;

@@ -48,7 +48,7 @@ std::string megabytes(int64_t bytes) {
 
 std::string findingLine(const std::string& launch_name, const Finding& finding) {
   return launch_name + (finding.critical ? ": " : ": advice: ") + finding.problem +
-         "; mend: " + finding.remedy;
+         "; fix: " + finding.remedy;
 }
 
 bool anyCritical(const std::vector<Finding>& findings) {

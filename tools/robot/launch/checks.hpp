@@ -16,7 +16,7 @@ struct Finding {
   std::string remedy;
 };
 
-/// "NAME: PROBLEM; mend: REMEDY", and "advice" before what is not critical. One line.
+/// "NAME: PROBLEM; fix: REMEDY", and "advice" before what is not critical. One line.
 std::string findingLine(const std::string& launch_name, const Finding& finding);
 bool anyCritical(const std::vector<Finding>& findings);
 

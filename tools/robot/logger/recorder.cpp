@@ -14,8 +14,8 @@
 namespace tread::launch {
 namespace {
 
-constexpr int kQueue = 100'000;          // messages
-constexpr int64_t kCareEvery = 250'000;  // [us] between flushes
+constexpr int kQueue = 100'000;                  // messages
+constexpr int64_t kMaintenancePeriod = 250'000;  // [us] between flushes
 constexpr int kWaitMs = 100;
 constexpr int64_t kRetry = 1'000'000;     // [us] between attempts after the disk was full
 constexpr int64_t kReserve = 10'000'000;  // [bytes] that must be free to begin again
@@ -57,7 +57,7 @@ Recorder::Recorder(const RecorderSettings& settings)
   lcm::Subscription* all = lcm_->subscribeFunction(
       ".*",
       +[](const lcm::ReceiveBuffer* buffer, const std::string& channel, Recorder* self) {
-        self->take(channel, static_cast<const uint8_t*>(buffer->data), buffer->data_size);
+        self->record(channel, static_cast<const uint8_t*>(buffer->data), buffer->data_size);
       },
       this);
   if (all == nullptr) throw std::runtime_error("LCM does not let us subscribe");
@@ -78,7 +78,7 @@ void Recorder::giveUp(const std::string& why) {
   next_try_ = hostNow() + kRetry;
 }
 
-void Recorder::take(const std::string& channel, const uint8_t* bytes, size_t size) {
+void Recorder::record(const std::string& channel, const uint8_t* bytes, size_t size) {
   if (!writer_) {
     ++lost_;
     return;
@@ -92,8 +92,8 @@ void Recorder::take(const std::string& channel, const uint8_t* bytes, size_t siz
   }
 }
 
-void Recorder::care(int64_t now) {
-  next_care_ = now + kCareEvery;
+void Recorder::maintain(int64_t now) {
+  next_maintenance_ = now + kMaintenancePeriod;
   try {
     if (writer_) {
       writer_->flush();
@@ -125,11 +125,11 @@ void Recorder::run(const std::atomic<bool>& stop) {
     if (failures >= kMostFailures)
       throw std::runtime_error(
           "LCM fails again and again, so nothing more can be recorded; start again");
-    if (const int64_t now = hostNow(); now >= next_care_) care(now);
+    if (const int64_t now = hostNow(); now >= next_maintenance_) maintain(now);
   }
   for (int i = 0; i < kQueue && lcm_->handleTimeout(0) > 0; ++i) {
   }
-  care(hostNow());
+  maintain(hostNow());
 }
 
 }  // namespace tread::launch

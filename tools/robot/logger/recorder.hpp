@@ -43,16 +43,16 @@ class Recorder {
   void run(const std::atomic<bool>& stop);
 
  private:
-  void take(const std::string& channel, const uint8_t* bytes, size_t size);
+  void record(const std::string& channel, const uint8_t* bytes, size_t size);
   void begin();
-  void care(int64_t now);
+  void maintain(int64_t now);
   void giveUp(const std::string& why);
 
   RecorderSettings settings_;
   std::unique_ptr<lcm::LCM> lcm_;
   std::unique_ptr<LogWriter> writer_;  ///< null while the disk is full
   int64_t written_ = 0;                ///< [bytes] in this file
-  int64_t next_care_ = 0;              ///< [us]
+  int64_t next_maintenance_ = 0;       ///< [us]
   int64_t next_try_ = 0;               ///< [us]
   int64_t lost_ = 0;
 };

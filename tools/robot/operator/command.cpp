@@ -28,14 +28,14 @@ int run(const std::string& name, const CommandOptions& options, Bus& bus, Call& 
     const CallResult result = call.step(now);
     const bool late =
         options.timeout > 0.0 && static_cast<double>(now - begun) * 1e-6 > options.timeout;
-    if (result != CallResult::kGoesOn || late) {
+    if (result != CallResult::kPending || late) {
       if (result != CallResult::kDone) call.cancel(now);
       (result == CallResult::kDone ? std::cout : std::cerr)
-          << name << ": " << (late ? "out of time: " : "") << call.words(now) << std::endl;
+          << name << ": " << (late ? "out of time: " : "") << call.describe(now) << std::endl;
       return result == CallResult::kDone ? 0 : 1;
     }
     if (options.progress > 0.0 && now >= next_line) {
-      std::cout << call.words(now) << std::endl;
+      std::cout << call.describe(now) << std::endl;
       next_line = now + static_cast<int64_t>(options.progress * 1e6);
     }
     wait(kStepMs);

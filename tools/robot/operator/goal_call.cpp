@@ -42,20 +42,20 @@ void GoalCall::send(int64_t utime, int64_t goal_id) {
 }
 
 CallResult GoalCall::step(int64_t utime) {
-  if (!begun_) begun_ = utime;
+  if (!started_) started_ = utime;
   if (utime >= next_) {
     send(utime, goal_id_);
     next_ = utime + kRepeat;
   }
   if (lostPermission(utime)) return CallResult::kRefused;
-  if (!progress_.plan().any() || !isOurs(progress_.plan().message())) return CallResult::kGoesOn;
+  if (!progress_.plan().any() || !isOurs(progress_.plan().message())) return CallResult::kPending;
   const int16_t status = progress_.plan().message().plan_status;
   if (status == plan_t::PLAN_ARRIVED) return CallResult::kDone;
   if (!isStuck(status)) stuck_since_.reset();
   if (isStuck(status) && !stuck_since_) stuck_since_ = utime;
   const auto patience = static_cast<int64_t>(request_.patience * 1e6);
   return stuck_since_ && utime - *stuck_since_ > patience ? CallResult::kRefused
-                                                          : CallResult::kGoesOn;
+                                                          : CallResult::kPending;
 }
 
 /// Was armed, and is not any more for a while. Before the first arming the goal just waits.
@@ -68,10 +68,10 @@ bool GoalCall::lostPermission(int64_t utime) {
   return disarmed_since_ && utime - *disarmed_since_ > kDisarmedPatience;
 }
 
-std::string GoalCall::words(int64_t utime) const {
+std::string GoalCall::describe(int64_t utime) const {
   char time[32] = "";
-  if (begun_)
-    std::snprintf(time, sizeof time, "%5.0f s  ", static_cast<double>(utime - *begun_) * 1e-6);
+  if (started_)
+    std::snprintf(time, sizeof time, "%5.0f s  ", static_cast<double>(utime - *started_) * 1e-6);
   std::string words = time + progress_.line(utime);
   if (disarmed_since_)
     words += "; not armed any more (" + progress_.motor().message().state_reason +

@@ -26,7 +26,7 @@ class GoalCall : public Call {
   GoalCall(Bus& bus, const GoalRequest& request, int64_t goal_id, SurfaceNames surface_names);
 
   CallResult step(int64_t utime) override;
-  std::string words(int64_t utime) const override;
+  std::string describe(int64_t utime) const override;
   /// Sends goal 0: the planner stops.
   void cancel(int64_t utime) override;
 
@@ -39,8 +39,8 @@ class GoalCall : public Call {
   GoalRequest request_;
   int64_t goal_id_;
   DriveProgress progress_;
-  std::optional<int64_t> begun_;  ///< [us]
-  int64_t next_ = 0;              ///< [us]
+  std::optional<int64_t> started_;  ///< [us]
+  int64_t next_ = 0;                ///< [us]
   std::optional<int64_t> stuck_since_;
   bool was_armed_ = false;
   std::optional<int64_t> disarmed_since_;  ///< [us]; none while armed, and before the first arming

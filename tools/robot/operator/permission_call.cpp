@@ -33,18 +33,18 @@ bool PermissionCall::shown(int64_t utime) const {
 }
 
 CallResult PermissionCall::step(int64_t utime) {
-  if (!begun_) begun_ = utime;
-  if (utime - *begun_ > kSettle && shown(utime)) return CallResult::kDone;
-  if (utime - *begun_ > patience_) return CallResult::kRefused;
-  if (utime < next_) return CallResult::kGoesOn;
+  if (!started_) started_ = utime;
+  if (utime - *started_ > kSettle && shown(utime)) return CallResult::kDone;
+  if (utime - *started_ > patience_) return CallResult::kRefused;
+  if (utime < next_) return CallResult::kPending;
   next_ = utime + request_.repeat;
   request_.send(utime, seq_++);
-  return CallResult::kGoesOn;
+  return CallResult::kPending;
 }
 
-std::string PermissionCall::words(int64_t utime) const {
-  if (shown(utime)) return request_.words_if_served;
-  const std::string words = request_.words_if_not + "; ";
+std::string PermissionCall::describe(int64_t utime) const {
+  if (shown(utime)) return request_.text_if_served;
+  const std::string words = request_.text_if_not + "; ";
   if (!motor_.any())
     return words + "no MOTOR message came: is tread-motor-bridge running on this LCM URL?";
   if (motor_.age(utime) > kFreshAge)
@@ -53,30 +53,30 @@ std::string PermissionCall::words(int64_t utime) const {
   return words + "the motor bridge says: " + (reason.empty() ? "nothing" : reason);
 }
 
-ArmCall::ArmCall(Bus& bus, const Asker& asker, bool arm, double patience)
+ArmCall::ArmCall(Bus& bus, const Requester& requester, bool arm, double patience)
     : PermissionCall(bus, patience,
-                     {[&bus, asker, arm](int64_t utime, int64_t seq) {
+                     {[&bus, requester, arm](int64_t utime, int64_t seq) {
                         auto message = blank<arm_t>();
                         message.utime = utime;
                         message.seq = seq;
                         message.armed = arm;
-                        message.armed_by = asker.by;
-                        message.arm_reason = asker.why;
+                        message.armed_by = requester.by;
+                        message.arm_reason = requester.why;
                         bus.publish(kArm, message);
                       },
                       [arm](int16_t bridge_state) { return mayDrive(bridge_state) == arm; },
                       arm ? "armed" : "disarmed", arm ? "not armed" : "not disarmed", kArmRepeat}) {
 }
 
-StopCall::StopCall(Bus& bus, const Asker& asker, bool engage, double patience)
+StopCall::StopCall(Bus& bus, const Requester& requester, bool engage, double patience)
     : PermissionCall(bus, patience,
-                     {[&bus, asker, engage](int64_t utime, int64_t seq) {
+                     {[&bus, requester, engage](int64_t utime, int64_t seq) {
                         auto message = blank<estop_t>();
                         message.utime = utime;
                         message.seq = seq;
                         message.engaged = engage;
-                        message.estop_by = asker.by;
-                        message.estop_reason = asker.why;
+                        message.estop_by = requester.by;
+                        message.estop_reason = requester.why;
                         bus.publish(kEstop, message);
                       },
                       [engage](int16_t bridge_state) {

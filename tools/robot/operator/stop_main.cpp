@@ -10,16 +10,16 @@ int main(int argc, char** argv) {
   CLI::App app{"Emergency stop over LCM. It is no replacement for the button on the machine.",
                "tread-stop"};
   CommandOptions options;
-  Asker asker;
+  Requester requester;
   bool clear = false;
   double patience = 5.0;
-  app.add_option("--by", asker.by, "who stops");
-  app.add_option("--why", asker.why, "why, for the log");
+  app.add_option("--by", requester.by, "who stops");
+  app.add_option("--why", requester.why, "why, for the log");
   app.add_flag("--clear", clear, "clear the stop; arming is still needed");
   app.add_option("--timeout", patience, "how long to try [s]")->check(CLI::Range(0.5, 600.0));
   app.add_option("--lcm-url", options.lcm_url, "LCM provider");
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   return runCall("tread-stop", options, [&](tread::Bus& bus) {
-    return std::make_unique<StopCall>(bus, asker, !clear, patience);
+    return std::make_unique<StopCall>(bus, requester, !clear, patience);
   });
 }

@@ -69,11 +69,11 @@ TEST_CASE("a good host has nothing to mend") {
 
 TEST_CASE("multicast that is missing, elsewhere, off or filtered gives one line with its remedy") {
   const std::string remedy =
-      "; mend: ip link set lo up multicast on; ip route replace 224.0.0.0/4 dev lo  (as root)\n";
+      "; fix: ip link set lo up multicast on; ip route replace 224.0.0.0/4 dev lo  (as root)\n";
   NetworkFacts facts = goodNetwork();
   facts.delivered = false;
   CHECK_THAT(oneLine(checkNetwork({}, facts, false)),
-             Contains("did not come back; mend: look for a packet filter"));
+             Contains("did not come back; fix: look for a packet filter"));
   facts.route_device.clear();
   CHECK(oneLine(checkNetwork({}, facts, false)) ==
         "robot: there is no route for LCM's multicast group 239.255.76.67" + remedy);
@@ -92,7 +92,7 @@ TEST_CASE("multicast that is missing, elsewhere, off or filtered gives one line 
   facts.can_ask = false;
   CHECK(
       oneLine(checkNetwork({}, facts, false)) ==
-      "robot: there is no program ip; mend: tools/setup, or apt-get install iproute2  (as root)\n");
+      "robot: there is no program ip; fix: tools/setup, or apt-get install iproute2  (as root)\n");
   LcmAddress memory;
   memory.provider = "memq";
   CHECK_THAT(oneLine(checkNetwork(memory, facts, false)), Contains("memq does not connect"));
@@ -136,7 +136,7 @@ TEST_CASE("the route is read from what ip says") {
 TEST_CASE("a process's program, configuration and device are named when they are missing") {
   ProcessFacts facts{"planner", "tread-planner", false, "p.yaml", true, 0, "", "", true, true};
   CHECK(oneLine(checkProcess(facts)) ==
-        "robot: planner: there is no program tread-planner; mend: tools/build\n");
+        "robot: planner: there is no program tread-planner; fix: tools/build\n");
   facts.program_found = true;
   facts.config_readable = false;
   CHECK_THAT(oneLine(checkProcess(facts)), StartsWith("robot: planner: p.yaml cannot be read"));
@@ -144,7 +144,7 @@ TEST_CASE("a process's program, configuration and device are named when they are
   facts.check_code = 1;
   facts.check_line = "p.yaml:3: lease is 9 s; allowed 0.05..1 s";
   CHECK(oneLine(checkProcess(facts)) ==
-        "robot: planner: p.yaml:3: lease is 9 s; allowed 0.05..1 s; mend: edit p.yaml\n");
+        "robot: planner: p.yaml:3: lease is 9 s; allowed 0.05..1 s; fix: edit p.yaml\n");
   facts.check_code = 0;
   facts.device = "/dev/ttyUSB0";
   facts.device_present = false;
@@ -171,7 +171,7 @@ TEST_CASE("a run folder that cannot serve gives one line") {
   facts.free_bytes = 1'000'000;
   CHECK(anyCritical(checkFolder(facts)));
   facts.writable = false;
-  CHECK_THAT(oneLine(checkFolder(facts)), Contains("/run/r cannot be written; mend: mkdir -p"));
+  CHECK_THAT(oneLine(checkFolder(facts)), Contains("/run/r cannot be written; fix: mkdir -p"));
   facts.writable = true;
   facts.free_bytes = 1'000'000'000'000;
   facts.longest_socket = kMaxSocketPath + 3;

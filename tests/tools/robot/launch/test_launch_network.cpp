@@ -36,7 +36,7 @@ TEST_CASE("each mistake in the network is found, and its remedy mends it") {
   CHECK(deaf.code == 1);
   CHECK_THAT(deaf.output, Contains("trial: the loopback device lo has multicast off"));
   const std::string problem = withoutAdvice(bare.output).at(0);
-  const size_t mend = problem.find("mend: ") + 6;
+  const size_t mend = problem.find("fix: ") + 5;
   const std::string remedy = problem.substr(mend, problem.find("  (as root)", mend) - mend);
   const CommandOutcome mended = inOwnNetwork(remedy + "; " + check);
   CHECK(mended.code == 0);

@@ -108,7 +108,7 @@ TEST_CASE("start-up checks name what is wrong and nothing is started") {
   const CommandOutcome check = call(launched, {"--check"});
   CHECK(check.code == 1);
   CHECK_THAT(check.output, Contains("trial: p0: planner.yaml:3: lease is 9 s; allowed 0.05..1 s; "
-                                    "mend: edit " +
+                                    "fix: edit " +
                                     launched.folder.string() + "/p0.txt"));
   CHECK(call(launched, {}).code == 1);
   CHECK_FALSE(std::filesystem::exists(launched.run()));

@@ -71,10 +71,10 @@ struct Scene {
     for (int i = 0; i < static_cast<int>(seconds * 50.0); ++i) {
       act(bus.now());
       const CallResult result = call.step(bus.now());
-      if (result != CallResult::kGoesOn) return result;
+      if (result != CallResult::kPending) return result;
       bus.runUntil(bus.now() + 20'000);
     }
-    return CallResult::kGoesOn;
+    return CallResult::kPending;
   }
 };
 
@@ -91,7 +91,7 @@ TEST_CASE("arming is repeated until MOTOR shows it, and an answer from before do
   CHECK(scene.stand->arms >= 5);
   CHECK(scene.stand->last_arm.armed_by == "me");
   CHECK(scene.stand->last_arm.arm_reason == "a try");
-  CHECK(call.words(scene.bus.now()) == "armed");
+  CHECK(call.describe(scene.bus.now()) == "armed");
 }
 
 TEST_CASE("a bridge that does not arm is quoted") {
@@ -101,7 +101,7 @@ TEST_CASE("a bridge that does not arm is quoted") {
     scene.stand->motor(now, motor_t::STATE_FAULT, "controller lost");
   });
   CHECK(result == CallResult::kRefused);
-  CHECK(call.words(scene.bus.now()) == "not armed; the motor bridge says: controller lost");
+  CHECK(call.describe(scene.bus.now()) == "not armed; the motor bridge says: controller lost");
 }
 
 TEST_CASE("a stop is repeated fast, and a silent robot is told loudly") {
@@ -110,7 +110,7 @@ TEST_CASE("a stop is repeated fast, and a silent robot is told loudly") {
   CHECK(scene.run(call, 3.0, [](int64_t) {}) == CallResult::kRefused);
   CHECK(scene.stand->stops >= 16);
   CHECK(scene.stand->last_stop.engaged);
-  CHECK_THAT(call.words(scene.bus.now()), Catch::StartsWith("NOBODY CONFIRMS THE STOP"));
+  CHECK_THAT(call.describe(scene.bus.now()), Catch::StartsWith("NOBODY CONFIRMS THE STOP"));
 }
 
 TEST_CASE("a goal is repeated each second, ends with the arrival, and gives up where no way is") {
@@ -156,7 +156,7 @@ TEST_CASE("a permission that is lost on the way ends the call with the bridge's 
   });
   CHECK(result == CallResult::kRefused);
   CHECK(scene.bus.now() - begun > 5'900'000);
-  CHECK_THAT(call.words(scene.bus.now()), Catch::Contains("not armed any more (INS is stale)"));
+  CHECK_THAT(call.describe(scene.bus.now()), Catch::Contains("not armed any more (INS is stale)"));
 }
 
 }  // namespace tread::operators
