@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <set>
 
 #include <Eigen/Geometry>
+
+#include "common/messages/blank.hpp"
 
 namespace tread {
 namespace {
@@ -108,7 +109,7 @@ DriveLog readDriveLog(const std::vector<std::string>& paths) {
 }
 
 void DriveLogBuilder::addMark(int64_t utime, const std::string& kind, const std::string& value) {
-  mark_t mark{};
+  auto mark = blank<mark_t>();
   mark.utime = utime;
   mark.mark_kind = kind;
   mark.mark_value = value;
@@ -117,7 +118,7 @@ void DriveLogBuilder::addMark(int64_t utime, const std::string& kind, const std:
 
 void DriveLogBuilder::addConfig(int64_t utime, const std::string& process, int64_t boot_id,
                                 const std::string& text) {
-  config_t config{};
+  auto config = blank<config_t>();
   config.utime = utime;
   config.config_process = process;
   config.config_boot_id = boot_id;
@@ -125,13 +126,13 @@ void DriveLogBuilder::addConfig(int64_t utime, const std::string& process, int64
   add(kConfig, config);
 }
 
-void DriveLogBuilder::start(const execution_record_t& record) {
+execution_record_t& DriveLogBuilder::start(const execution_record_t& record) {
   if (records_.size() == kRepeated) records_.erase(records_.begin());
-  records_.push_back(record);
+  return records_.emplace_back(record);
 }
 
 void DriveLogBuilder::publishExecutions(int64_t utime) {
-  execution_t message{};
+  auto message = blank<execution_t>();
   message.utime = utime;
   message.records = records_;
   message.num_records = static_cast<int32_t>(records_.size());
@@ -144,17 +145,6 @@ std::vector<LogEvent> DriveLogBuilder::sorted() {
   return std::move(events_);
 }
 
-ins_t DriveLogBuilder::blankIns() {
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  ins_t ins{};
-  ins.device_utc = -1;
-  ins.satellites = -1;
-  ins.ins_status = ins_t::STATUS_NO_VELOCITY;
-  for (int i = 0; i < 3; ++i)
-    ins.velocity[i] = ins.rate[i] = ins.position_std[i] = ins.attitude_std[i] = kUnknown;
-  return ins;
-}
-
 void DriveLogBuilder::setAttitude(ins_t& ins, double yaw, double pitch, double roll) {
   using Eigen::AngleAxisd;
   using Eigen::Vector3d;
@@ -165,15 +155,6 @@ void DriveLogBuilder::setAttitude(ins_t& ins, double yaw, double pitch, double r
   ins.orientation[1] = q.x();
   ins.orientation[2] = q.y();
   ins.orientation[3] = q.z();
-}
-
-execution_record_t DriveLogBuilder::runningExecution(ExecutionKey key, int64_t started) {
-  execution_record_t record{};
-  record.record_run_id = key.first;
-  record.record_execution_id = key.second;
-  record.started = started;
-  record.ended = -1;
-  return record;
 }
 
 }  // namespace tread

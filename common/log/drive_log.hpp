@@ -82,23 +82,16 @@ class DriveLogBuilder {
   void addConfig(int64_t utime, const std::string& process, int64_t boot_id,
                  const std::string& text);
 
-  /// An execution starts; publishes nothing yet.
-  void start(const execution_record_t& record);
-  /// The execution that was started last; start() must have been called.
-  execution_record_t& current() { return records_.back(); }
-  bool anyStarted() const { return !records_.empty(); }
+  /// An execution starts; publishes nothing yet. Its record, valid until the next one starts.
+  execution_record_t& start(const execution_record_t& record);
   /// Publishes EXECUTION with the last executions.
   void publishExecutions(int64_t utime);
 
   /// The events in order of time; of one time in the order in which they were added.
   std::vector<LogEvent> sorted();
 
-  /// An INS message in which nothing is measured but position and heading, still to be set.
-  static ins_t blankIns();
   /// Orientation of an INS message [rad].
   static void setAttitude(ins_t& ins, double yaw, double pitch = 0.0, double roll = 0.0);
-  /// A record of an execution that is running, with nothing else set.
-  static execution_record_t runningExecution(ExecutionKey key, int64_t started);
 
  private:
   std::vector<LogEvent> events_;

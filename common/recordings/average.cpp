@@ -169,10 +169,7 @@ PatternSet averageSet(const PatternSet& patterns, const SurfaceRecordings& recor
                       const AverageLimits& limits, std::vector<AverageNote>& notes) {
   notes.clear();
   PatternSetContent content = patterns.content();
-  if (recordings.executions.size() != content.patterns.size())
-    throw RecordingError("surface '" + recordings.surface + "': recordings of " +
-                         std::to_string(recordings.executions.size()) + " patterns, the set has " +
-                         std::to_string(content.patterns.size()));
+  requireSamePatternCount(recordings, patterns);
   const double period = patterns.periodSeconds();
   const double max_speed =
       limits.max_speed > 0.0 ? limits.max_speed : usualMaxSpeed(patterns, recordings);

@@ -2,40 +2,49 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <map>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
-namespace tread::importer {
+namespace tread::recordings {
 
-/// A file cannot be imported: what() is one line "file:line: what is wrong; what to do".
-class ImportError : public std::runtime_error {
+/// Recordings cannot be read or used: what() is one line "file:line: what is wrong; what to do".
+class RecordingError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 /// A table of comma-separated values with a header line, read whole. Quoted fields may hold commas.
-/** Throws ImportError for a file that cannot be opened, has no rows, or has a row of another length
- * (truncated). */
+/// Empty lines and lines that begin with # are comments.
+/** Throws RecordingError for a file that cannot be opened, has no rows, or has a row of another
+ * length (truncated). Columns are named; one that is missing throws RecordingError. */
 class CsvTable {
  public:
   explicit CsvTable(const std::string& path);
+  /// The same of a text; `path` stands for it in messages.
+  CsvTable(const std::string& text, const std::string& path);
 
   size_t rows() const { return rows_.size(); }
-  /// Position of a column; throws ImportError if it is missing.
-  size_t column(const std::string& name) const;
-  const std::string& text(size_t row, size_t column) const { return rows_[row][column]; }
-  /// A finite number; throws ImportError otherwise.
-  double number(size_t row, size_t column) const;
+  /// Throws RecordingError that lists the columns needed if one is missing.
+  void require(const std::vector<std::string>& names) const;
+  const std::string& text(size_t row, std::string_view column) const;
+  /// A finite number; throws RecordingError otherwise.
+  double number(size_t row, std::string_view column) const;
+  double numberWithin(size_t row, std::string_view column, double min, double max) const;
   /// A whole number.
-  int integer(size_t row, size_t column) const;
-  /// "file:line: problem" for a row.
-  ImportError error(size_t row, const std::string& problem) const;
+  int integer(size_t row, std::string_view column) const;
+  /// "file:line: problem" for a row; behind the last one, for the last line.
+  RecordingError error(size_t row, const std::string& problem) const;
 
  private:
+  void read(std::istream& file);
+
   std::string path_;
-  std::vector<std::string> header_;
+  std::map<std::string, size_t, std::less<>> columns_;
   std::vector<std::vector<std::string>> rows_;
+  std::vector<size_t> lines_;  ///< of the rows, from 1
 };
 
-}  // namespace tread::importer
+}  // namespace tread::recordings

@@ -4,25 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <utility>
 
 #include "common/messages/blank.hpp"
-#include "common/recordings/drive_error.hpp"
 
-namespace tread::drive_patterns {
+namespace tread::recordings {
 namespace {
-
-using recordings::Execution;
-using recordings::SurfaceRecordings;
 
 constexpr int64_t kOriginUs = 10'000'000;
 constexpr int64_t kInsPeriodUs = 10'000;
 constexpr int64_t kMotorPeriodUs = 50'000;
 constexpr int64_t kRunId = 1;
-constexpr size_t kRepeated = 8;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 int64_t microseconds(double seconds) {
   return std::llround(seconds * 1e6);
@@ -88,7 +81,7 @@ class LogMaker {
       : shipped_(shipped), request_(request) {}
 
   void addSurface(const SurfaceRecordings& surface, std::mt19937_64& random) {
-    addMark(surface.surface);
+    log_.addMark(now_, "surface", surface.surface);
     const size_t count = shipped_.patterns().size();
     std::vector<std::vector<size_t>> order(count);
     std::vector<size_t> turns;
@@ -103,27 +96,9 @@ class LogMaker {
     }
   }
 
-  std::vector<LogEvent> sorted() {
-    std::stable_sort(events_.begin(), events_.end(),
-                     [](const LogEvent& a, const LogEvent& b) { return a.utime < b.utime; });
-    return std::move(events_);
-  }
+  std::vector<LogEvent> sorted() { return log_.sorted(); }
 
  private:
-  template <class Message>
-  void add(const Channel<Message>& channel, const Message& message) {
-    events_.push_back(eventOf(channel, message));
-  }
-
-  void addMark(const std::string& surface) {
-    auto mark = blank<mark_t>();
-    mark.utime = now_;
-    mark.seq = seq_mark_++;
-    mark.mark_kind = "surface";
-    mark.mark_value = surface;
-    add(kMark, mark);
-  }
-
   void addExecution(const MotionPattern& pattern, const Execution& poses) {
     const Motion motion(poses, shipped_.periodSeconds());
     const int64_t start = now_ + microseconds(request_.lead);
@@ -145,11 +120,11 @@ class LogMaker {
       const double time = static_cast<double>(utime - start) * 1e-6;
       auto ins = blank<ins_t>();
       ins.utime = utime;
-      ins.seq = seq_ins_++;
       fill(ins, T_map_start_ * motion.poseAt(time), motion.twistAt(time));
-      if (first && seq_ins_ > 1) ins.ins_status |= ins_t::STATUS_GAP | ins_t::STATUS_JUMP;
+      if (first && seen_) ins.ins_status |= ins_t::STATUS_GAP | ins_t::STATUS_JUMP;
       first = false;
-      add(kIns, ins);
+      seen_ = true;
+      log_.add(kIns, ins);
     }
   }
 
@@ -172,7 +147,6 @@ class LogMaker {
     for (int64_t utime = now_; utime <= last; utime += kMotorPeriodUs) {
       auto motor = blank<motor_t>();
       motor.utime = utime;
-      motor.seq = seq_motor_++;
       motor.bridge_state = motor_t::STATE_DRIVING;
       motor.motor_command_kind = static_cast<int16_t>(shipped_.content().kind);
       TrackCommand command = utime < start ? pattern.commands.front() : pattern.commands.back();
@@ -184,60 +158,46 @@ class LogMaker {
       }
       motor.command_left = static_cast<float>(command.left);
       motor.command_right = static_cast<float>(command.right);
-      add(kMotor, motor);
+      log_.add(kMotor, motor);
     }
   }
 
   void addRecords(const MotionPattern& pattern, int64_t start, int64_t end) {
-    auto record = blank<execution_record_t>();
+    execution_record_t& record = log_.start(blank<execution_record_t>());
     record.record_run_id = kRunId;
     record.record_execution_id = execution_;
+    record.started = start;
     record.record_pattern_id = pattern.id;
     record.record_set_version = shipped_.version();
-    record.started = start;
     record.commands_total = static_cast<int32_t>(pattern.commands.size());
-    records_.push_back(record);
-    if (records_.size() > kRepeated) records_.erase(records_.begin());
-    say(start);
-    records_.back().ended = end;
-    records_.back().outcome = execution_record_t::OUTCOME_COMPLETED;
-    records_.back().commands_played = record.commands_total;
-    say(end);
-  }
-
-  void say(int64_t utime) {
-    auto message = blank<execution_t>();
-    message.utime = utime;
-    message.seq = seq_execution_++;
-    message.records = records_;
-    message.num_records = static_cast<int32_t>(records_.size());
-    add(kExecution, message);
+    log_.publishExecutions(start);
+    record.ended = end;
+    record.outcome = execution_record_t::OUTCOME_COMPLETED;
+    record.commands_played = record.commands_total;
+    log_.publishExecutions(end);
   }
 
   const PatternSet& shipped_;
   const ExecutionLogRequest& request_;
-  std::vector<LogEvent> events_;
-  std::vector<execution_record_t> records_;
+  DriveLogBuilder log_;
   int64_t now_ = kOriginUs;  ///< [us] when the next execution's lead begins
   int64_t execution_ = 0;
-  int64_t seq_ins_ = 0, seq_motor_ = 0, seq_execution_ = 0, seq_mark_ = 0;
+  bool seen_ = false;  ///< by the INS: later tracks begin with a jump
   Pose2 T_map_start_;
 };
 
 void requireFit(const PatternSet& shipped, const SurfaceRecordings& surface) {
   const std::string place = "surface '" + surface.surface + "': ";
-  if (surface.executions.size() != shipped.patterns().size())
-    throw DriveError(place + "recordings of " + std::to_string(surface.executions.size()) +
-                     " patterns, the set has " + std::to_string(shipped.patterns().size()));
+  requireSamePatternCount(surface, shipped);
   for (size_t p = 0; p < surface.executions.size(); ++p) {
     const MotionPattern& pattern = shipped.patterns()[p];
     if (surface.executions[p].empty())
-      throw DriveError(place + "pattern '" + pattern.name + "' has no recording");
+      throw RecordingError(place + "pattern '" + pattern.name + "' has no recording");
     for (const Execution& poses : surface.executions[p])
       if (poses.size() != pattern.commands.size())
-        throw DriveError(place + "pattern '" + pattern.name + "' has a recording of " +
-                         std::to_string(poses.size()) + " poses and " +
-                         std::to_string(pattern.commands.size()) + " commands");
+        throw RecordingError(place + "pattern '" + pattern.name + "' has a recording of " +
+                             std::to_string(poses.size()) + " poses and " +
+                             std::to_string(pattern.commands.size()) + " commands");
   }
 }
 
@@ -255,4 +215,4 @@ std::vector<LogEvent> executionLog(const PatternSet& shipped, const SurfaceRecor
   return maker.sorted();
 }
 
-}  // namespace tread::drive_patterns
+}  // namespace tread::recordings

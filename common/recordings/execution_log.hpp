@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/log/event_log.hpp"
+#include "common/log/drive_log.hpp"
 #include "common/recordings/recordings.hpp"
 
 // Recordings as a robot would have sent them, so that the real learner process can hear them. First
@@ -19,7 +19,7 @@
 //   MOTOR      20 Hz, the steady command; execution and index while the pattern is played
 //   EXECUTION  on start and end, the last eight records; they name the version of the shipped set
 // Units: m, rad, s.
-namespace tread::drive_patterns {
+namespace tread::recordings {
 
 struct ExecutionLogRequest {
   int executions = 40;   ///< on each surface; patterns take turns in drawn order
@@ -30,10 +30,8 @@ struct ExecutionLogRequest {
 };
 
 /// The log; `shipped` is the set that the executions name, with the patterns of the recordings.
-/** Throws DriveError if they do not fit. Same arguments, same bytes. */
-std::vector<LogEvent> executionLog(const PatternSet& shipped,
-                                   const recordings::SurfaceRecordings& from,
-                                   const recordings::SurfaceRecordings& to,
-                                   const ExecutionLogRequest& request);
+/** Throws RecordingError if they do not fit. Same arguments, same bytes. */
+std::vector<LogEvent> executionLog(const PatternSet& shipped, const SurfaceRecordings& from,
+                                   const SurfaceRecordings& to, const ExecutionLogRequest& request);
 
-}  // namespace tread::drive_patterns
+}  // namespace tread::recordings

@@ -2,9 +2,11 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <string>
 #include <vector>
 
-#include "common/recordings/steady_window.hpp"
+#include "common/config/config_reader.hpp"
+#include "common/recordings/sessions.hpp"
 
 // What a command does on a surface, from windows of commands around it:
 //   1. distance of windows: d^2 = ((v_i - v) / v_max)^2 + ((w_i - w) / w_max)^2, with the largest
@@ -20,7 +22,37 @@
 //      nearest (twice as many as are used): speed that changes by metres per second under a
 //      constant command is a failure of the lidar's poses.
 // Source: learning.md of the project's reference, section 6.
-namespace tread::drive_patterns {
+namespace tread::recordings {
+
+/// One pattern to build: its command held for its whole length.
+struct PatternWish {
+  std::string name;
+  BodyCommand command;
+};
+
+/// Which patterns are built from drives, and how.
+struct PatternRecipe {
+  std::string name = "drive";
+  double period = 0.05;  ///< [s] of the recordings' commands
+  double length = 2.0;   ///< [s] of a pattern; that of a steady window
+  int neighbours = 30;   ///< windows nearest to a command that its mean comes from
+  int deviations =
+      15;  ///< steps whose deviation is used, with both signs: twice as many recordings
+  std::vector<PatternWish> patterns;
+
+  size_t samples() const;
+  /// Largest |v| and |w| among the commands; at least 0.01.
+  BodyCommand reach() const;
+};
+
+/// What is built without --recipe; config/patterns/recipes/drive.yaml says the same.
+PatternRecipe defaultRecipe();
+
+/// Reads a recipe; throws ConfigError at file:line.
+PatternRecipe readRecipe(ConfigReader reader);
+
+/// The same with all v and all w multiplied.
+PatternRecipe scaledRecipe(PatternRecipe recipe, double v_factor, double w_factor);
 
 /// Motion of one pattern on one surface.
 struct LocalMotion {
@@ -32,7 +64,7 @@ struct LocalMotion {
 };
 
 /// The motion for a command; `reach` holds the largest |v| and |w| of the patterns.
-/** Throws DriveError if there are fewer windows than neighbours wanted, fewer than `deviations`
+/** Throws RecordingError if there are fewer windows than neighbours wanted, fewer than `deviations`
  * steps of which both windows are there and agree, or none with as large a command. */
 LocalMotion localMotion(const std::vector<SteadyWindow>& windows, const BodyCommand& command,
                         const PatternRecipe& recipe);
@@ -40,4 +72,4 @@ LocalMotion localMotion(const std::vector<SteadyWindow>& windows, const BodyComm
 /// Profiles of all recordings of a motion: the mean plus and minus each deviation.
 std::vector<TwistProfile> recordedProfiles(const LocalMotion& motion);
 
-}  // namespace tread::drive_patterns
+}  // namespace tread::recordings

@@ -2,14 +2,14 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "common/pattern/pattern.hpp"
+#include "common/recordings/csv_table.hpp"
 
 // Recordings: what patterns really did, executed many times on one surface each (RP_S, section V.A
-// of the paper). A book of recordings is a folder:
+// of the paper). They lie in a folder:
 //   patterns.yaml    the pattern set that was executed (commands, classes; predictions do not
 //                    matter)
 //   SURFACE.csv      a surface: pattern,execution,sample,x_m,y_m,yaw_rad; sample counts from 1, the
@@ -18,12 +18,6 @@
 //                    with gaps where some were taken out by hand. Lines that begin with # are
 //                    comments. Every pattern has at least one execution on every surface.
 namespace tread::recordings {
-
-/// A book cannot be read or used: what() is one line "file:line: what is wrong; what to do".
-class RecordingError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// One execution: a pose after each command, as many as the pattern has.
 using Execution = std::vector<Pose2>;
@@ -34,17 +28,42 @@ struct SurfaceRecordings {
   std::vector<std::vector<Execution>> executions;  ///< by pattern, in the order of the set
 };
 
+/// Throws RecordingError unless there are recordings of as many patterns as the set has.
+void requireSamePatternCount(const SurfaceRecordings& surface, const PatternSet& set);
+
 /// Recordings of one pattern set on several surfaces.
-struct RecordingBook {
+struct PatternRecordings {
   PatternSet patterns;
   std::vector<SurfaceRecordings> surfaces;
 };
 
 /// Reads a folder, its surfaces sorted by name; throws RecordingError.
-RecordingBook readBook(const std::string& folder);
+PatternRecordings readRecordings(const std::string& folder);
 /// Writes a folder, which is made if needed; files of other surfaces there stay. Throws
 /// RecordingError.
-void writeBook(const std::string& folder, const RecordingBook& book);
+void writeRecordings(const std::string& folder, const PatternRecordings& recordings);
+
+/// Reads the text of a surface's file; `path` stands for it in messages.
+/** The rows of an execution stand together, samples counting from 1 to the pattern's number of
+ * commands; executions of a pattern have rising numbers, with gaps where some were taken out, and
+ * patterns may take turns. Throws RecordingError at file:line. */
+SurfaceRecordings parseSurface(const std::string& text, const std::string& path,
+                               const std::string& surface, const PatternSet& patterns);
+/// Text of a surface's file; parseSurface() of it gives the same numbers, bit for bit.
+std::string formatSurface(const SurfaceRecordings& recordings, const PatternSet& patterns);
+
+/// Refuses what could not be added later, before anything is driven for it: a bad name, a folder
+/// that cannot be made or written to, recordings of other patterns.
+/** Order, names, classes, commands, kind and period must be the same, since recordings count only
+ * for what was executed; a folder without recordings is fine. Throws RecordingError. */
+void requireAddable(const std::string& folder, const PatternSet& executed,
+                    const std::string& surface);
+
+/// Adds a surface to a folder of recordings, or replaces it.
+/** patterns.yaml that is there already stays as it is. Returns whether the surface was there
+ * before. Throws RecordingError as above and as writeRecordings() does. */
+bool addSurface(const std::string& folder, const PatternSet& executed,
+                const SurfaceRecordings& surface);
 
 /// What averaging left out of one pattern, and why.
 struct AverageNote {

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/recordings/session_choice.hpp"
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 
-#include "common/recordings/drive_error.hpp"
+#include "common/recordings/csv_table.hpp"
+#include "common/recordings/sessions.hpp"
 #include "common/report/text.hpp"
 
-namespace tread::drive_patterns {
+namespace tread::recordings {
 namespace {
+
+constexpr double kReachQuantile = 0.95;      // of |v| and |w| of a session
+constexpr double kGeometryTolerance = 0.02;  // of radius and baseline between sessions
 
 std::string lowered(std::string text) {
   for (char& letter : text)
@@ -30,27 +32,27 @@ double quantileOf(std::vector<double> values, double quantile) {
   return values[static_cast<size_t>(quantile * static_cast<double>(values.size() - 1))];
 }
 
-std::vector<std::string> robotsOf(const std::vector<DriveSession>& sessions) {
+std::vector<std::string> robotsOf(const std::vector<Session>& sessions) {
   std::vector<std::string> robots;
-  for (const DriveSession& session : sessions)
+  for (const Session& session : sessions)
     if (std::find(robots.begin(), robots.end(), session.robot) == robots.end())
       robots.push_back(session.robot);
   return robots;
 }
 
-bool sameGeometry(const DriveSession& a, const DriveSession& b, double tolerance) {
-  return std::abs(a.baseline - b.baseline) <= tolerance * b.baseline &&
-         std::abs(a.wheel_radius - b.wheel_radius) <= tolerance * b.wheel_radius;
+bool sameGeometry(const Session& a, const Session& b) {
+  return std::abs(a.baseline - b.baseline) <= kGeometryTolerance * b.baseline &&
+         std::abs(a.wheel_radius - b.wheel_radius) <= kGeometryTolerance * b.wheel_radius;
 }
 
 /// The session whose geometry is that of most ok steps.
-const DriveSession& ofUsualGeometry(const std::vector<DriveSession>& sessions, double tolerance) {
+const Session& ofUsualGeometry(const std::vector<Session>& sessions) {
   size_t best = 0;
   size_t most = 0;
   for (size_t i = 0; i < sessions.size(); ++i) {
     size_t steps = 0;
-    for (const DriveSession& other : sessions)
-      if (sameGeometry(other, sessions[i], tolerance)) steps += other.okSteps();
+    for (const Session& other : sessions)
+      if (sameGeometry(other, sessions[i])) steps += other.okSteps();
     if (steps <= most) continue;
     most = steps;
     best = i;
@@ -59,26 +61,25 @@ const DriveSession& ofUsualGeometry(const std::vector<DriveSession>& sessions, d
 }
 
 /// Why a session's commands are not enough, in words; empty if they are.
-std::string commandProblem(const DriveSession& session, const BodyCommand& needed,
-                           const ComparableLimits& limits) {
+std::string commandProblem(const Session& session, const BodyCommand& needed) {
   if (!session.problem.empty()) return session.problem;
-  if (session.okSteps() < limits.min_steps)
+  if (session.okSteps() < kLeastSteps)
     return "has " + std::to_string(session.okSteps()) + " ok steps, needed " +
-           std::to_string(limits.min_steps);
-  const BodyCommand reach = reachOf(session, limits.reach_quantile);
+           std::to_string(kLeastSteps);
+  const BodyCommand reach = reachOf(session);
   if (reach.v < needed.v || reach.w < needed.w)
     return "commands reach " + fixed(reach.v, 2) + " m/s and " + fixed(reach.w, 2) +
            " rad/s, the patterns need " + fixed(needed.v, 2) + " and " + fixed(needed.w, 2);
   return "";
 }
 
-std::string leftOut(const DriveSession& session, const std::string& why) {
+std::string leftOut(const Session& session, const std::string& why) {
   return session.name + " (" + session.surface + "): " + why;
 }
 
 }  // namespace
 
-std::string chooseRobot(const std::vector<DriveSession>& sessions, const std::string& wanted) {
+std::string chooseRobot(const std::vector<Session>& sessions, const std::string& wanted) {
   const std::vector<std::string> robots = robotsOf(sessions);
   const std::string key = lowered(wanted);
   std::vector<std::string> prefixed;
@@ -92,13 +93,14 @@ std::string chooseRobot(const std::vector<DriveSession>& sessions, const std::st
   const std::vector<std::string>& meant = prefixed.empty() ? containing : prefixed;
   if (meant.size() == 1) return meant.front();
   if (wanted.empty())
-    throw DriveError("sessions of several robots; choose one with --robot: " + listed(robots));
+    throw RecordingError("sessions of several robots; choose one with --robot: " + listed(robots));
   if (meant.empty())
-    throw DriveError("no robot is called '" + wanted + "'; there are " + listed(robots));
-  throw DriveError("'" + wanted + "' may be any of " + listed(meant) + "; say more of the name");
+    throw RecordingError("no robot is called '" + wanted + "'; there are " + listed(robots));
+  throw RecordingError("'" + wanted + "' may be any of " + listed(meant) +
+                       "; say more of the name");
 }
 
-BodyCommand reachOf(const DriveSession& session, double quantile) {
+BodyCommand reachOf(const Session& session) {
   std::vector<double> v;
   std::vector<double> w;
   for (const CommandStep& step : session.steps) {
@@ -107,27 +109,26 @@ BodyCommand reachOf(const DriveSession& session, double quantile) {
     v.push_back(std::abs(command.v));
     w.push_back(std::abs(command.w));
   }
-  return {quantileOf(v, quantile), quantileOf(w, quantile)};
+  return {quantileOf(v, kReachQuantile), quantileOf(w, kReachQuantile)};
 }
 
-SessionChoice comparableSessions(const std::vector<DriveSession>& sessions,
-                                 const std::string& robot, const BodyCommand& needed,
-                                 const ComparableLimits& limits) {
+SessionChoice comparableSessions(const std::vector<Session>& sessions, const std::string& robot,
+                                 const BodyCommand& needed) {
   SessionChoice choice;
-  std::vector<DriveSession> able;
-  for (const DriveSession& session : sessions) {
+  std::vector<Session> able;
+  for (const Session& session : sessions) {
     if (session.robot != robot) continue;
-    const std::string problem = commandProblem(session, needed, limits);
+    const std::string problem = commandProblem(session, needed);
     if (problem.empty())
       able.push_back(session);
     else
       choice.left_out.push_back(leftOut(session, problem));
   }
   if (able.empty()) return choice;
-  const DriveSession usual = ofUsualGeometry(able, limits.geometry_tolerance);
+  const Session usual = ofUsualGeometry(able);
   choice.baseline = usual.baseline;
-  for (const DriveSession& session : able) {
-    if (sameGeometry(session, usual, limits.geometry_tolerance)) {
+  for (const Session& session : able) {
+    if (sameGeometry(session, usual)) {
       choice.taken.push_back(session);
       continue;
     }
@@ -140,34 +141,35 @@ SessionChoice comparableSessions(const std::vector<DriveSession>& sessions,
   return choice;
 }
 
-SessionChoice namedSessions(const std::vector<DriveSession>& sessions, const std::string& robot,
+SessionChoice namedSessions(const std::vector<Session>& sessions, const std::string& robot,
                             const std::vector<std::string>& names) {
   std::vector<std::string> known;
-  for (const DriveSession& session : sessions)
+  for (const Session& session : sessions)
     if (session.robot == robot) known.push_back(session.name);
   for (const std::string& name : names)
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw DriveError("no session '" + name + "' of " + robot + "; there are " + listed(known));
+      throw RecordingError("no session '" + name + "' of " + robot + "; there are " +
+                           listed(known));
   SessionChoice choice;
-  for (const DriveSession& session : sessions) {
+  for (const Session& session : sessions) {
     if (session.robot != robot) continue;
     const bool named = std::find(names.begin(), names.end(), session.name) != names.end();
-    if (named && !session.problem.empty()) throw DriveError(session.problem);
+    if (named && !session.problem.empty()) throw RecordingError(session.problem);
     if (named)
       choice.taken.push_back(session);
     else
       choice.left_out.push_back(leftOut(session, "was not asked for"));
   }
-  if (!choice.taken.empty()) choice.baseline = ofUsualGeometry(choice.taken, 0.02).baseline;
+  if (!choice.taken.empty()) choice.baseline = ofUsualGeometry(choice.taken).baseline;
   return choice;
 }
 
-std::vector<std::string> surfacesOf(const std::vector<DriveSession>& sessions) {
+std::vector<std::string> surfacesOf(const std::vector<Session>& sessions) {
   std::vector<std::string> surfaces;
-  for (const DriveSession& session : sessions)
+  for (const Session& session : sessions)
     if (std::find(surfaces.begin(), surfaces.end(), session.surface) == surfaces.end())
       surfaces.push_back(session.surface);
   return surfaces;
 }
 
-}  // namespace tread::drive_patterns
+}  // namespace tread::recordings

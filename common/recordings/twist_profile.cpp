@@ -5,12 +5,37 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/recordings/robust_fit.hpp"
+#include <Eigen/QR>
 
-namespace tread::drive_patterns {
+namespace tread::recordings {
 namespace {
 
-constexpr double kFineStep = 0.01;  // [s] of the numerical integral
+constexpr int kIterations = 30;
+constexpr double kHuber = 1.345;        // 95 % efficient where the errors are normal
+constexpr double kMadToSigma = 1.4826;  // of a normal distribution
+
+/// Length of each observation's residual, per row.
+Eigen::VectorXd lengths(const Eigen::VectorXd& residuals, int group) {
+  const Eigen::Index count = residuals.size() / group;
+  Eigen::VectorXd result(count);
+  for (Eigen::Index i = 0; i < count; ++i)
+    result[i] = residuals.segment(i * group, group).norm() / std::sqrt(group);
+  return result;
+}
+
+double scaleOf(const Eigen::VectorXd& length, const Eigen::VectorXd& prior, double least) {
+  Eigen::VectorXd counted(length.size());
+  Eigen::Index n = 0;
+  for (Eigen::Index i = 0; i < length.size(); ++i)
+    if (prior[i] > 0.0) counted[n++] = length[i];
+  return std::max(least, kMadToSigma * medianOf(counted.head(n)));
+}
+
+constexpr double kMaxGap = 0.4;          // [s] between poses, and to either end of the window
+constexpr int kMinPoses = 5;             // in a window
+constexpr double kYawNoise = 0.005;      // [rad] residuals below it are never called large
+constexpr double kPositionNoise = 0.01;  // [m] the same
+constexpr double kFineStep = 0.01;       // [s] of the numerical integral
 
 /// Integrals from 0 to t of (cos yaw, sin yaw) and of (s - T/2) times them.
 struct HeadingIntegrals {
@@ -22,8 +47,7 @@ double yawAt(const Eigen::VectorXd& c, double centred) {
   return c[0] + centred * (c[1] + centred * c[2]);
 }
 
-Eigen::VectorXd fitYaw(const std::vector<WindowPose>& poses, double duration,
-                       const SmoothingLimits& limits) {
+Eigen::VectorXd fitYaw(const std::vector<WindowPose>& poses, double duration) {
   const auto n = static_cast<Eigen::Index>(poses.size());
   Eigen::MatrixXd A(n, 3);
   Eigen::VectorXd b(n);
@@ -33,7 +57,7 @@ Eigen::VectorXd fitYaw(const std::vector<WindowPose>& poses, double duration,
     A.row(i) << 1.0, centred, centred * centred;
     b[i] = pose.T_map_body.yaw;
   }
-  return huberFit(A, b, Eigen::VectorXd::Ones(n), {1, limits.yaw_noise});
+  return huberFit(A, b, Eigen::VectorXd::Ones(n), {1, kYawNoise});
 }
 
 /// Goes on with the integrals from one time to a later one, by the midpoint rule.
@@ -54,7 +78,7 @@ void advance(HeadingIntegrals& integrals, const Eigen::VectorXd& yaw, double fro
 
 /// p_0, v_x, v_x', v_y, v_y' as a vector of six.
 Eigen::VectorXd fitPosition(const std::vector<WindowPose>& poses, const Eigen::VectorXd& yaw,
-                            double duration, const SmoothingLimits& limits) {
+                            double duration) {
   const auto n = static_cast<Eigen::Index>(poses.size());
   Eigen::MatrixXd A(2 * n, 6);
   Eigen::VectorXd b(2 * n);
@@ -68,7 +92,7 @@ Eigen::VectorXd fitPosition(const std::vector<WindowPose>& poses, const Eigen::V
     A.row(2 * i + 1) << 0.0, 1.0, k.sine, k.timed_sine, k.cosine, k.timed_cosine;
     b.segment<2>(2 * i) = pose.T_map_body.position() - poses.front().T_map_body.position();
   }
-  return huberFit(A, b, Eigen::VectorXd::Ones(n), {2, limits.position_noise});
+  return huberFit(A, b, Eigen::VectorXd::Ones(n), {2, kPositionNoise});
 }
 
 std::string rounded(double value) {
@@ -77,6 +101,30 @@ std::string rounded(double value) {
 }
 
 }  // namespace
+
+double medianOf(Eigen::VectorXd values) {
+  if (values.size() == 0) return 0.0;
+  std::sort(values.data(), values.data() + values.size());
+  const Eigen::Index half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+Eigen::VectorXd huberFit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
+                         const Eigen::VectorXd& prior, const HuberLimits& limits) {
+  Eigen::VectorXd weight = prior;
+  Eigen::VectorXd x;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    Eigen::VectorXd root(A.rows());
+    for (Eigen::Index row = 0; row < A.rows(); ++row)
+      root[row] = std::sqrt(weight[row / limits.group]);
+    x = (root.asDiagonal() * A).colPivHouseholderQr().solve(root.cwiseProduct(b));
+    const Eigen::VectorXd length = lengths(A * x - b, limits.group);
+    const double bound = kHuber * scaleOf(length, prior, limits.least_scale);
+    for (Eigen::Index i = 0; i < weight.size(); ++i)
+      weight[i] = prior[i] * (length[i] > bound ? bound / length[i] : 1.0);
+  }
+  return x;
+}
 
 Eigen::Matrix<double, 6, 1> TwistProfile::vector() const {
   Eigen::Matrix<double, 6, 1> all;
@@ -98,8 +146,7 @@ TwistProfile TwistProfile::mirrored() const {
   return {{mean.v_x, -mean.v_y, -mean.omega}, {slope.v_x, -slope.v_y, -slope.omega}};
 }
 
-std::string windowProblem(const std::vector<WindowPose>& poses, double duration,
-                          const SmoothingLimits& limits) {
+std::string windowProblem(const std::vector<WindowPose>& poses, double duration) {
   double last = 0.0;
   double gap = 0.0;
   for (const WindowPose& pose : poses) {
@@ -107,17 +154,15 @@ std::string windowProblem(const std::vector<WindowPose>& poses, double duration,
     last = pose.time;
   }
   gap = std::max(gap, duration - last);
-  if (gap > limits.max_gap + 1e-9)
-    return "no new pose for more than " + rounded(limits.max_gap) + " s";
-  if (static_cast<int>(poses.size()) < limits.min_poses)
-    return "fewer than " + std::to_string(limits.min_poses) + " poses";
+  if (gap > kMaxGap + 1e-9) return "no new pose for more than " + rounded(kMaxGap) + " s";
+  if (static_cast<int>(poses.size()) < kMinPoses)
+    return "fewer than " + std::to_string(kMinPoses) + " poses";
   return "";
 }
 
-TwistProfile smoothed(const std::vector<WindowPose>& poses, double duration,
-                      const SmoothingLimits& limits) {
-  const Eigen::VectorXd yaw = fitYaw(poses, duration, limits);
-  const Eigen::VectorXd motion = fitPosition(poses, yaw, duration, limits);
+TwistProfile smoothed(const std::vector<WindowPose>& poses, double duration) {
+  const Eigen::VectorXd yaw = fitYaw(poses, duration);
+  const Eigen::VectorXd motion = fitPosition(poses, yaw, duration);
   return {{motion[2], motion[4], yaw[1]}, {motion[3], motion[5], 2.0 * yaw[2]}};
 }
 
@@ -134,4 +179,4 @@ std::vector<Pose2> integrated(const TwistProfile& profile, size_t samples, doubl
   return trajectory;
 }
 
-}  // namespace tread::drive_patterns
+}  // namespace tread::recordings

@@ -15,7 +15,23 @@
 //   p(t)   = p_0 + integral of R(yaw(s)) (v_x(s), v_y(s)) ds.
 // Given yaw(t) the second is linear in p_0, v_x, v_x', v_y, v_y': two robust linear least squares.
 // Units: m, rad, s. Source: learning.md of the project's reference, section 6.
-namespace tread::drive_patterns {
+namespace tread::recordings {
+
+/// How a robust fit weighs its rows.
+struct HuberLimits {
+  int group = 1;             ///< so many neighbouring rows belong to one observation
+  double least_scale = 0.0;  ///< [unit of b] smaller residuals are never called large
+};
+
+/// x that minimises the sum of rho(|A x - b| per observation), rho of Huber (k = 1.345 scales).
+/** Solved by iteratively reweighted least squares (QR); the scale is 1.4826 times the median of the
+ * residuals' lengths per row, at least `least_scale`. `prior` holds a weight for each observation;
+ * those of zero do not count. Deterministic. */
+Eigen::VectorXd huberFit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
+                         const Eigen::VectorXd& prior, const HuberLimits& limits);
+
+/// Median of the entries; 0 if there are none.
+double medianOf(Eigen::VectorXd values);
 
 /// A pose at a time within its window [s].
 struct WindowPose {
@@ -37,26 +53,18 @@ struct TwistProfile {
   TwistProfile mirrored() const;
 };
 
-/// When poses are no fair window, and what noise of a pose is small.
-struct SmoothingLimits {
-  /// [s] after a command its motion is steady: a delay of 0.4 s and four time constants of 0.35 s,
-  /// as skid-steer robots of 70 to 500 kg have them. What was measured earlier is not used.
-  double settle = 1.8;
-  double max_gap = 0.4;          ///< [s] between poses, and to either end of the window
-  int min_poses = 5;             ///< in a window
-  double yaw_noise = 0.005;      ///< [rad] residuals below it are never called large
-  double position_noise = 0.01;  ///< [m] the same
-};
+/// [s] after a command its motion is steady: a delay of 0.4 s and four time constants of 0.35 s, as
+/// skid-steer robots of 70 to 500 kg have them. What was measured earlier is not used.
+inline constexpr double kSettle = 1.8;
 
-/// Why a window cannot be smoothed, in words; empty if it can.
-std::string windowProblem(const std::vector<WindowPose>& poses, double duration,
-                          const SmoothingLimits& limits);
+/// Why a window cannot be smoothed, in words (a gap of more than 0.4 s, fewer than 5 poses); empty
+/// if it can.
+std::string windowProblem(const std::vector<WindowPose>& poses, double duration);
 
 /// The profile that fits the poses of a window best. windowProblem() must be empty.
-TwistProfile smoothed(const std::vector<WindowPose>& poses, double duration,
-                      const SmoothingLimits& limits);
+TwistProfile smoothed(const std::vector<WindowPose>& poses, double duration);
 
 /// Poses after each of `samples` periods, relative to the start: the profile integrated.
 std::vector<Pose2> integrated(const TwistProfile& profile, size_t samples, double period);
 
-}  // namespace tread::drive_patterns
+}  // namespace tread::recordings

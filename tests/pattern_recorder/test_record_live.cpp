@@ -70,7 +70,7 @@ TEST_CASE("tread-patterns record --live drives the robot once it is armed and st
   INFO(run.output());
   REQUIRE_FALSE(run.recorder().running());
   CHECK(run.recorder().exitCode() == 0);
-  const recordings::RecordingBook book = recordings::readBook(run.book());
+  const recordings::PatternRecordings book = recordings::readRecordings(run.book());
   CHECK(book.surfaces[0].surface == "grass");
   for (size_t p = 0; p < 3; ++p) {
     const double ahead = book.surfaces[0].executions[p][0].back().x;

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "common/config/scalars.hpp"
-#include "common/recordings/drive_book.hpp"
+#include "common/recordings/drive_recordings.hpp"
 #include "tools/experiment/seeds.hpp"
 #include "tools/experiment/transition_world.hpp"
 
@@ -16,7 +16,7 @@ namespace tread::experiment {
 namespace {
 
 namespace fs = std::filesystem;
-using recordings::RecordingBook;
+using recordings::PatternRecordings;
 
 std::vector<std::string> split(const std::string& words) {
   std::vector<std::string> parts(1);
@@ -41,17 +41,17 @@ void checkRules(const std::vector<std::string>& rules) {
   }
 }
 
-RecordingBook bookOfFolder(const Request& request, Campaign& campaign) {
+PatternRecordings bookOfFolder(const Request& request, Campaign& campaign) {
   const fs::path folder(request.recordings);
   if (fs::exists(folder / "sessions.csv")) {
-    drive_patterns::DriveRequest drives;
+    recordings::DriveRequest drives;
     drives.folder = request.recordings;
     drives.robot = request.robot;
     drives.sessions = request.sessions;
-    drive_patterns::DriveBook made = drive_patterns::makeDriveBook(drives);
+    recordings::DriveRecordings made = recordings::recordingsFromDrives(drives);
     campaign.notes = made.notes;
     campaign.source += ", " + made.robot;
-    return std::move(made.book);
+    return std::move(made.recordings);
   }
   if (!request.robot.empty() || !request.sessions.empty())
     throw std::invalid_argument(request.recordings +
@@ -61,7 +61,7 @@ RecordingBook bookOfFolder(const Request& request, Campaign& campaign) {
     throw std::invalid_argument(request.recordings +
                                 ": neither sessions.csv (drives) nor patterns.yaml (a book of "
                                 "recordings) is there");
-  return recordings::readBook(request.recordings);
+  return recordings::readRecordings(request.recordings);
 }
 
 /// Names of patterns as indices into the set.
@@ -111,7 +111,7 @@ class Runner {
       throw std::invalid_argument(
           "--books and --length need a --world, which can be recorded anew");
     campaign_.source = "recordings " + fs::path(request.recordings).filename().string();
-    const RecordingBook book = bookOfFolder(request, campaign_);
+    const PatternRecordings book = bookOfFolder(request, campaign_);
     chooseSequences(book.patterns, {{"left", "left", "right"}, {"right", "right", "left"}});
     runBook(book, 0);
   }
@@ -127,7 +127,7 @@ class Runner {
         world.paper_reference && request.length == 1 && !request.change_inside;
     for (int book = 0; book < request.books; ++book) {
       const auto number = static_cast<uint64_t>(book);
-      const RecordingBook recorded = record(world, request.seed + number, request.length);
+      const PatternRecordings recorded = record(world, request.seed + number, request.length);
       if (book == 0) chooseSequences(recorded.patterns, world.sequences);
       runBook(recorded, number);
     }
@@ -142,7 +142,7 @@ class Runner {
       campaign_.settings.sequences.push_back(sequenceOf(names, set));
   }
 
-  void runBook(const RecordingBook& book, uint64_t number) {
+  void runBook(const PatternRecordings& book, uint64_t number) {
     std::vector<std::string> notes;
     std::vector<Ground> grounds = groundsOf(book, notes);
     campaign_.notes.insert(campaign_.notes.end(), notes.begin(), notes.end());

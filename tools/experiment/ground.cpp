@@ -35,8 +35,8 @@ Executions::Executions(const std::vector<recordings::Execution>& executions, siz
 
 namespace {
 
-Ground groundOf(const recordings::RecordingBook& book, const recordings::SurfaceRecordings& surface,
-                std::vector<std::string>& notes) {
+Ground groundOf(const recordings::PatternRecordings& book,
+                const recordings::SurfaceRecordings& surface, std::vector<std::string>& notes) {
   std::vector<recordings::AverageNote> averaging;
   Ground ground{
       surface.surface, recordings::averageSet(book.patterns, surface, {}, averaging), {}, {}};
@@ -54,7 +54,7 @@ Ground groundOf(const recordings::RecordingBook& book, const recordings::Surface
 
 }  // namespace
 
-std::vector<Ground> groundsOf(const recordings::RecordingBook& book,
+std::vector<Ground> groundsOf(const recordings::PatternRecordings& book,
                               std::vector<std::string>& notes) {
   if (book.surfaces.size() < 2)
     throw recordings::RecordingError(

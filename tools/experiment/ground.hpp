@@ -53,7 +53,7 @@ Outcome outcomeOf(const learner::ConstTrajectory& trajectory);
 /** Throws recordings::RecordingError with one line if a pattern has too few executions or there is
  * one surface only. What is no fair execution is neither averaged nor driven; a line for each goes
  * to `notes`. */
-std::vector<Ground> groundsOf(const recordings::RecordingBook& book,
+std::vector<Ground> groundsOf(const recordings::PatternRecordings& book,
                               std::vector<std::string>& notes);
 
 }  // namespace tread::experiment

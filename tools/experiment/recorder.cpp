@@ -59,8 +59,8 @@ Execution execute(const TransitionWorld& world, const VehicleModel& model,
 
 }  // namespace
 
-recordings::RecordingBook record(const TransitionWorld& world, uint64_t seed, int length) {
-  recordings::RecordingBook book{setOf(world, length), {}};
+recordings::PatternRecordings record(const TransitionWorld& world, uint64_t seed, int length) {
+  recordings::PatternRecordings book{setOf(world, length), {}};
   for (size_t s = 0; s < world.surfaces.size(); ++s) {
     recordings::SurfaceRecordings surface{world.surfaces[s].name, {}};
     for (size_t p = 0; p < world.patterns.size(); ++p) {

@@ -45,6 +45,6 @@ TransitionWorld parseTransitionWorld(const std::string& text, const std::string&
 
 /// Executes each pattern on each surface and measures it. Each command is held `length` times as
 /// long. Same seed, same recordings.
-recordings::RecordingBook record(const TransitionWorld& world, uint64_t seed, int length = 1);
+recordings::PatternRecordings record(const TransitionWorld& world, uint64_t seed, int length = 1);
 
 }  // namespace tread::experiment

@@ -9,10 +9,10 @@
 
 #include "common/config/command_line.hpp"
 #include "common/recordings/csv_table.hpp"
-#include "common/recordings/drive_log.hpp"
+#include "common/recordings/imported_log.hpp"
 
 using namespace tread;
-using namespace tread::importer;
+using namespace tread::recordings;
 
 namespace {
 
@@ -29,7 +29,7 @@ struct Arguments {
   ExecutionLayout layout;
 };
 
-Recording read(const Arguments& arguments, const Session& session) {
+RecordedDrive read(const Arguments& arguments, const Session& session) {
   if (arguments.format == "steps") return readSteps(arguments.csv, session, arguments.gyro);
   if (arguments.format == "aligned") return readAligned(arguments.csv, session);
   return readContinuous(arguments.csv, session, arguments.gyro);
@@ -38,7 +38,7 @@ Recording read(const Arguments& arguments, const Session& session) {
 /// Aligned files hold neither the gyro nor the times at which poses were logged.
 void checkFormat(const Arguments& arguments) {
   if (arguments.format == "aligned" && (arguments.keep_lag || arguments.gyro == Gyro::kAll))
-    throw ImportError("--keep-lag and --gyro all: not in aligned files; take --format steps");
+    throw RecordingError("--keep-lag and --gyro all: not in aligned files; take --format steps");
 }
 
 Session sessionOf(const Arguments& arguments) {
@@ -55,15 +55,15 @@ Session sessionOf(const Arguments& arguments) {
 void checkLength(double length) {
   const double commands = length / kPeriod;
   if (std::abs(commands - std::round(commands)) > 1e-6)
-    throw ImportError("--length: " + std::to_string(length) +
-                      " s is no multiple of 0.05 s, the recordings' period");
+    throw RecordingError("--length: " + std::to_string(length) +
+                         " s is no multiple of 0.05 s, the recordings' period");
 }
 
 void run(const Arguments& arguments) {
   checkLength(arguments.layout.length);
   checkFormat(arguments);
   const Session session = sessionOf(arguments);
-  const Recording recording = read(arguments, session);
+  const RecordedDrive recording = read(arguments, session);
   LogCounts counts;
   const auto events = makeLog(recording, session, arguments.format, arguments.layout, counts);
   LogWriter writer(arguments.log);

@@ -18,7 +18,7 @@ namespace {
 
 using recordings::AverageLimits;
 using recordings::AverageNote;
-using recordings::RecordingBook;
+using recordings::PatternRecordings;
 using recordings::SurfaceRecordings;
 
 struct Options {
@@ -29,7 +29,7 @@ struct Options {
   AverageLimits limits;
 };
 
-const SurfaceRecordings& surfaceNamed(const RecordingBook& book, const Options& options) {
+const SurfaceRecordings& surfaceNamed(const PatternRecordings& book, const Options& options) {
   std::string names;
   for (const SurfaceRecordings& surface : book.surfaces) {
     if (surface.surface == options.surface) return surface;
@@ -57,7 +57,7 @@ PatternSet named(const PatternSet& set, const std::string& name) {
 }
 
 void average(const Options& options) {
-  const RecordingBook book = recordings::readBook(options.book);
+  const PatternRecordings book = recordings::readRecordings(options.book);
   const SurfaceRecordings& surface = surfaceNamed(book, options);
   std::vector<AverageNote> notes;
   const PatternSet averaged = recordings::averageSet(book.patterns, surface, options.limits, notes);

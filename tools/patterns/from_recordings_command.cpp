@@ -11,8 +11,8 @@
 
 #include "common/log/event_log.hpp"
 #include "common/pattern/pattern_file.hpp"
-#include "common/recordings/drive_book.hpp"
-#include "common/recordings/drive_error.hpp"
+#include "common/recordings/csv_table.hpp"
+#include "common/recordings/drive_recordings.hpp"
 #include "common/recordings/execution_log.hpp"
 #include "tools/patterns/output.hpp"
 
@@ -20,22 +20,22 @@ namespace tread::patterns {
 namespace {
 
 namespace fs = std::filesystem;
-using drive_patterns::DriveBook;
-using drive_patterns::DriveError;
+using recordings::DriveRecordings;
+using recordings::RecordingError;
 
 struct Options {
-  drive_patterns::DriveRequest request;
+  recordings::DriveRequest request;
   bool one_surface = false;
   std::string recipe;
   std::string book;
   std::string log;
   std::string from;
   std::string to;
-  drive_patterns::ExecutionLogRequest executions;
+  recordings::ExecutionLogRequest executions;
 };
 
 /// Surfaces of another book in the folder would be read as if they were of this one.
-void refuseForeignSurfaces(const std::string& folder, const DriveBook& drives) {
+void refuseForeignSurfaces(const std::string& folder, const DriveRecordings& drives) {
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none)) {
     if (entry.path().extension() != ".csv") continue;
@@ -43,13 +43,14 @@ void refuseForeignSurfaces(const std::string& folder, const DriveBook& drives) {
     const bool ours = std::any_of(drives.surfaces.begin(), drives.surfaces.end(),
                                   [&](const auto& surface) { return surface.surface == name; });
     if (!ours)
-      throw DriveError(entry.path().string() +
-                       ": a surface of another book; give an empty folder with -o");
+      throw RecordingError(entry.path().string() +
+                           ": a surface of another book; give an empty folder with -o");
   }
 }
 
 /// The surface that is called so, or so in part.
-size_t surfaceCalled(const DriveBook& drives, const std::string& name, const std::string& option) {
+size_t surfaceCalled(const DriveRecordings& drives, const std::string& name,
+                     const std::string& option) {
   std::string known;
   std::vector<size_t> meant;
   for (size_t i = 0; i < drives.surfaces.size(); ++i) {
@@ -59,7 +60,7 @@ size_t surfaceCalled(const DriveBook& drives, const std::string& name, const std
     known += (i == 0 ? "" : ", ") + surface;
   }
   if (!name.empty() && meant.size() == 1) return meant.front();
-  throw DriveError(option + " '" + name + "': name one of the surfaces " + known);
+  throw RecordingError(option + " '" + name + "': name one of the surfaces " + known);
 }
 
 /// The two surfaces of a log, as indices into the book.
@@ -68,11 +69,11 @@ struct Transition {
   size_t to = 0;
 };
 
-void writeLog(const Options& options, const DriveBook& drives, const Transition& transition) {
+void writeLog(const Options& options, const DriveRecordings& drives, const Transition& transition) {
   const auto& [from, to] = transition;
-  const auto events = drive_patterns::executionLog(drive_patterns::averagedSet(drives, from),
-                                                   drives.book.surfaces[from],
-                                                   drives.book.surfaces[to], options.executions);
+  const auto events = recordings::executionLog(recordings::averagedSet(drives, from),
+                                               drives.recordings.surfaces[from],
+                                               drives.recordings.surfaces[to], options.executions);
   LogWriter writer(options.log);
   for (const LogEvent& event : events)
     writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
@@ -87,28 +88,28 @@ void writeLog(const Options& options, const DriveBook& drives, const Transition&
       options.log.c_str(), shipped.c_str());
 }
 
-void writeBook(const Options& options, const DriveBook& drives) {
+void writeBook(const Options& options, const DriveRecordings& drives) {
   refuseForeignSurfaces(options.book, drives);
-  recordings::writeBook(options.book, drives.book);
+  recordings::writeRecordings(options.book, drives.recordings);
   for (size_t i = 0; i < drives.surfaces.size(); ++i)
     writeOutput((fs::path(options.book) / (drives.surfaces[i].surface + ".yaml")).string(),
-                formatPatterns(drive_patterns::averagedSet(drives, i)), {options.recipe});
+                formatPatterns(recordings::averagedSet(drives, i)), {options.recipe});
 }
 
 void fromRecordings(const Options& options) {
-  drive_patterns::DriveRequest request = options.request;
+  recordings::DriveRequest request = options.request;
   if (!options.recipe.empty()) {
-    request.recipe = drive_patterns::readRecipe(ConfigReader::fromFile(options.recipe));
+    request.recipe = recordings::readRecipe(ConfigReader::fromFile(options.recipe));
     request.fit_recipe = false;
   }
   if (options.one_surface) request.min_surfaces = 1;
-  const DriveBook drives = drive_patterns::makeDriveBook(request);
+  const DriveRecordings drives = recordings::recordingsFromDrives(request);
   Transition transition;
   if (!options.log.empty())
     transition = {surfaceCalled(drives, options.from, "--from"),
                   surfaceCalled(drives, options.to, "--to")};
   writeBook(options, drives);
-  std::fputs(drive_patterns::reportOf(drives).c_str(), stdout);
+  std::fputs(recordings::reportOf(drives).c_str(), stdout);
   std::printf("\n%s: patterns.yaml, recordings (SURFACE.csv) and averaged sets (SURFACE.yaml)\n",
               options.book.c_str());
   if (!options.log.empty()) writeLog(options, drives, transition);

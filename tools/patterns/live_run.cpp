@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "common/bus/lcm_bus.hpp"
-#include "common/recordings/surface_csv.hpp"
+#include "common/recordings/recordings.hpp"
 #include "common/recordings/text_file.hpp"
 
 namespace tread::patterns {

@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "common/pattern/pattern_file.hpp"
-#include "common/recordings/book_update.hpp"
+#include "common/recordings/recordings.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/patterns/commands.hpp"
 #include "tools/patterns/envelope.hpp"
@@ -55,7 +55,7 @@ void record(const Options& options) {
     warnOutside(model, options.model, set);
     surface = recordModel(set, model, options.surface, how);
   }
-  const bool replaced = recordings::addToBook(options.book, set, surface);
+  const bool replaced = recordings::addSurface(options.book, set, surface);
   std::error_code failure;
   if (options.live) std::filesystem::remove(part, failure);
   std::cout << options.book << "/" << options.surface << ".csv: " << options.executions

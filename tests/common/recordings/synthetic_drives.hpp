@@ -8,20 +8,20 @@
 #include <string>
 #include <vector>
 
-#include "common/recordings/drive_book.hpp"
+#include "common/recordings/drive_recordings.hpp"
 #include "tests/tools/import/drive_samples.hpp"
 
 // Drives on grounds that are known, as windows and as folders of files.
 namespace tread::samples {
 
 /// What a command does on a ground.
-using Ground = std::function<drive_patterns::TwistProfile(const drive_patterns::BodyCommand&)>;
+using Ground = std::function<recordings::TwistProfile(const recordings::BodyCommand&)>;
 
 /// Twists in proportion to the command; sideslip with the yaw rate.
 inline Ground linearGround(double forward, double yaw, double slip) {
-  return [=](const drive_patterns::BodyCommand& command) {
-    return drive_patterns::TwistProfile{{forward * command.v, slip * command.w, yaw * command.w},
-                                        {0.0, 0.0, 0.0}};
+  return [=](const recordings::BodyCommand& command) {
+    return recordings::TwistProfile{{forward * command.v, slip * command.w, yaw * command.w},
+                                    {0.0, 0.0, 0.0}};
   };
 }
 
@@ -37,17 +37,17 @@ class Draws {
 
 /// Both steady windows of steps with drawn commands; windows of one step differ by +-`noise` of
 /// each component.
-inline std::vector<drive_patterns::SteadyWindow> drawnWindows(const Ground& ground, int steps,
-                                                              double noise, uint64_t seed) {
+inline std::vector<recordings::SteadyWindow> drawnWindows(const Ground& ground, int steps,
+                                                          double noise, uint64_t seed) {
   Draws draws(seed);
-  std::vector<drive_patterns::SteadyWindow> windows;
+  std::vector<recordings::SteadyWindow> windows;
   for (int step = 1; step <= steps; ++step) {
-    const drive_patterns::BodyCommand command{4.0 * draws.next(), 4.0 * draws.next()};
+    const recordings::BodyCommand command{4.0 * draws.next(), 4.0 * draws.next()};
     const auto profile = ground(command).vector();
     Eigen::Matrix<double, 6, 1> off;
     for (int i = 0; i < 6; ++i) off[i] = noise * draws.next();
-    windows.push_back({"drawn", step, 1, command, drive_patterns::TwistProfile::of(profile + off)});
-    windows.push_back({"drawn", step, 2, command, drive_patterns::TwistProfile::of(profile - off)});
+    windows.push_back({"drawn", step, 1, command, recordings::TwistProfile::of(profile + off)});
+    windows.push_back({"drawn", step, 2, command, recordings::TwistProfile::of(profile - off)});
   }
   return windows;
 }
@@ -68,9 +68,9 @@ constexpr double kBaseline = 1.0;
 constexpr double kLag = 0.2;
 
 /// Rows of one step of 6 s: steady from the start, a pose every 0.2 s, late by the lag.
-inline std::string drivenRows(int step, const drive_patterns::BodyCommand& command,
+inline std::string drivenRows(int step, const recordings::BodyCommand& command,
                               const Ground& ground) {
-  const TrackCommand tracks = drive_patterns::trackCommand(command, kBaseline);
+  const TrackCommand tracks = recordings::trackCommand(command, kBaseline);
   const Twist2 twist = ground(command).mean;
   std::string rows;
   Pose2 held;
@@ -102,9 +102,9 @@ inline std::string writeDrives(const Folder& folder, const std::vector<DrivenSes
     table += line("%s,\"%s\",\"%s\",%.3f,%.3f,%.2f\n", session.name.c_str(), session.robot.c_str(),
                   session.surface.c_str(), kRadius, kBaseline, kLag);
     for (int step = 1; step <= session.steps; ++step) {
-      const drive_patterns::BodyCommand command{session.largest_v * draws.next(),
-                                                session.largest_w * draws.next()};
-      const TrackCommand tracks = drive_patterns::trackCommand(command, kBaseline);
+      const recordings::BodyCommand command{session.largest_v * draws.next(),
+                                            session.largest_w * draws.next()};
+      const TrackCommand tracks = recordings::trackCommand(command, kBaseline);
       quality += line("%s,%d,%.5f,%.5f,1\n", session.name.c_str(), step, tracks.left / kRadius,
                       tracks.right / kRadius);
       rows += drivenRows(step, command, session.ground);

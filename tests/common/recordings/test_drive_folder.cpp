@@ -2,11 +2,11 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "common/recordings/drive_error.hpp"
+#include "common/recordings/csv_table.hpp"
 #include "tests/common/recordings/synthetic_drives.hpp"
 
 using namespace tread;
-using namespace tread::drive_patterns;
+using namespace tread::recordings;
 using namespace tread::samples;
 
 namespace {
@@ -32,7 +32,7 @@ DriveRequest requestOf(const std::string& folder, const std::string& robot) {
 /// What making a book throws, without the folder's name.
 std::string complaint(const DriveRequest& request) {
   try {
-    makeDriveBook(request);
+    recordingsFromDrives(request);
   } catch (const std::exception& error) {
     const std::string text = error.what();
     CHECK(text.find('\n') == std::string::npos);
@@ -55,8 +55,9 @@ std::string complaintWith(const std::string& file, const std::string& content) {
 
 TEST_CASE("a folder of drives becomes recordings of what each surface does to the commands") {
   const Folder folder("drive_book");
-  const DriveBook drives = makeDriveBook(requestOf(writeDrives(folder, twoSurfaces()), "rover"));
-  REQUIRE(drives.book.surfaces.size() == 2);
+  const DriveRecordings drives =
+      recordingsFromDrives(requestOf(writeDrives(folder, twoSurfaces()), "rover"));
+  REQUIRE(drives.recordings.surfaces.size() == 2);
   CHECK(drives.surfaces[0].surface == "hard_dry");
   CHECK(drives.surfaces[1].windows == 48);
   const Ground grounds[] = {kHard, kSoft};
@@ -64,7 +65,7 @@ TEST_CASE("a folder of drives becomes recordings of what each surface does to th
     for (size_t p = 0; p < 8; ++p) {
       const PatternWish wish = defaultRecipe().patterns[p];
       CAPTURE(s, wish.name);
-      const auto& executions = drives.book.surfaces[s].executions[p];
+      const auto& executions = drives.recordings.surfaces[s].executions[p];
       REQUIRE(executions.size() == 30);
       REQUIRE(executions.front().size() == 40);
       const Pose2 expected = integrate(grounds[s](wish.command).mean, 2.0);
@@ -82,9 +83,9 @@ TEST_CASE("a folder of drives becomes recordings of what each surface does to th
 TEST_CASE("the same folder gives the same book, bit for bit") {
   const Folder folder("drive_twice");
   const DriveRequest request = requestOf(writeDrives(folder, twoSurfaces()), "rover");
-  const DriveBook first = makeDriveBook(request);
-  const DriveBook second = makeDriveBook(request);
-  CHECK(first.book.patterns.checksum() == second.book.patterns.checksum());
+  const DriveRecordings first = recordingsFromDrives(request);
+  const DriveRecordings second = recordingsFromDrives(request);
+  CHECK(first.recordings.patterns.checksum() == second.recordings.patterns.checksum());
   for (size_t s = 0; s < 2; ++s)
     CHECK(averagedSet(first, s).checksum() == averagedSet(second, s).checksum());
 }
@@ -101,12 +102,12 @@ TEST_CASE("sessions of another geometry are left out, but may be asked for") {
   std::filesystem::remove(folder.file("sessions.csv"));
   folder.file("sessions.csv", table);
   DriveRequest request = requestOf(path, "rover");
-  const DriveBook drives = makeDriveBook(request);
-  CHECK(drives.book.surfaces.size() == 2);
+  const DriveRecordings drives = recordingsFromDrives(request);
+  CHECK(drives.recordings.surfaces.size() == 2);
   CHECK(drives.notes.back().find("session left out: wide (third): wheel radius 0.300 m and "
                                  "baseline 1.300 m") == 0);
   request.sessions = {"wide", "one"};
-  CHECK(makeDriveBook(request).surfaces.back().surface == "third");
+  CHECK(recordingsFromDrives(request).surfaces.back().surface == "third");
 }
 
 TEST_CASE("a robot that was driven slowly gets smaller commands, and the report says so") {
@@ -114,13 +115,14 @@ TEST_CASE("a robot that was driven slowly gets smaller commands, and the report 
   const std::string path = writeDrives(folder, {{"one", "Snail", "hard", kHard, 24, 0.5, 1.0},
                                                 {"two", "Snail", "soft", kSoft, 24, 0.5, 1.0}});
   DriveRequest request = requestOf(path, "");
-  const DriveBook drives = makeDriveBook(request);
-  const TrackCommand straight = drives.book.patterns.findByName("straight")->commands.front();
+  const DriveRecordings drives = recordingsFromDrives(request);
+  const TrackCommand straight = drives.recordings.patterns.findByName("straight")->commands.front();
   CHECK(straight.left > 0.2);
   CHECK(straight.left < 0.3);
   CHECK(drives.notes.front().find("the robot was driven too slowly for the recipe") == 0);
   request.sessions = {"two", "one"};
-  CHECK(makeDriveBook(request).book.patterns.checksum() == drives.book.patterns.checksum());
+  CHECK(recordingsFromDrives(request).recordings.patterns.checksum() ==
+        drives.recordings.patterns.checksum());
   request.fit_recipe = false;
   CHECK(complaint(request).find("surface 'soft' left out: its commands reach 0.") !=
         std::string::npos);
@@ -164,9 +166,9 @@ TEST_CASE("what was measured before the motion has settled is not used") {
   }
   std::filesystem::remove(folder.file("steps/one.csv"));
   folder.file("steps/one.csv", rows);
-  DriveSession session = readSessions(path).front();
+  Session session = readSessions(path).front();
   session.pose_lag = 0.5;
-  const SessionWindows windows = readWindows(path, session, kBaseline, 2.0, {});
+  const SessionWindows windows = readWindows(path, session, kBaseline, 2.0);
   REQUIRE(windows.used.size() == 2);
   for (const SteadyWindow& window : windows.used) {
     CHECK(window.profile.mean.v_x == Approx(2.0).margin(1e-4));

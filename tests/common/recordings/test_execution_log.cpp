@@ -5,34 +5,34 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "common/recordings/drive_error.hpp"
+#include "common/recordings/csv_table.hpp"
 #include "common/recordings/execution_log.hpp"
 #include "tests/common/recordings/synthetic_drives.hpp"
 #include "tools/replay/learner_report.hpp"
 
 using namespace tread;
-using namespace tread::drive_patterns;
+using namespace tread::recordings;
 using namespace tread::samples;
 
 namespace {
 
-DriveBook syntheticBook() {
+DriveRecordings syntheticBook() {
   const auto hard = drawnWindows(linearGround(0.95, 0.5, -0.05), 60, 0.03, 3);
   const auto soft = drawnWindows(linearGround(0.85, 0.43, -0.10), 60, 0.03, 4);
-  return bookOf({{"hard", {}, hard, {}}, {"soft", {}, soft, {}}}, defaultRecipe(), 1.08, 2);
+  return recordingsOf({{"hard", {}, hard, {}}, {"soft", {}, soft, {}}}, defaultRecipe(), 1.08, 2);
 }
 
-std::vector<LogEvent> logOf(const DriveBook& drives, size_t from, size_t to, int executions,
+std::vector<LogEvent> logOf(const DriveRecordings& drives, size_t from, size_t to, int executions,
                             uint64_t seed) {
   ExecutionLogRequest request;
   request.executions = executions;
   request.seed = seed;
-  return executionLog(averagedSet(drives, from), drives.book.surfaces[from],
-                      drives.book.surfaces[to], request);
+  return executionLog(averagedSet(drives, from), drives.recordings.surfaces[from],
+                      drives.recordings.surfaces[to], request);
 }
 
 /// The log through the learner node on the virtual bus.
-replay::LearnerRun learned(const DriveBook& drives, size_t from, std::vector<LogEvent> events,
+replay::LearnerRun learned(const DriveRecordings& drives, size_t from, std::vector<LogEvent> events,
                            learner::Rule rule) {
   learner::LearnerNodeConfig config(averagedSet(drives, from));
   config.rule.rule = rule;
@@ -57,7 +57,7 @@ replay::ErrorSummary errors(const replay::LearnerRun& run, int64_t first, int64_
 }  // namespace
 
 TEST_CASE("executions are whole, each a track of its own with silence before it") {
-  const DriveBook drives = syntheticBook();
+  const DriveRecordings drives = syntheticBook();
   const auto events = logOf(drives, 0, 1, 8, 1);
   const auto ins = messagesOn(kIns, events);
   int tracks = 1;
@@ -82,12 +82,12 @@ TEST_CASE("executions are whole, each a track of its own with silence before it"
 }
 
 TEST_CASE("the learner measures in the log what the recordings hold") {
-  const DriveBook drives = syntheticBook();
+  const DriveRecordings drives = syntheticBook();
   const auto events = logOf(drives, 0, 1, 16, 2);
   const auto run = learned(drives, 0, events, learner::Rule::kOff);
   CHECK(accepted(run) == 32);
   for (const learning_t& learning : run.learned) {
-    const auto& executions = drives.book.surfaces[learning.learned_execution_id <= 16 ? 0 : 1]
+    const auto& executions = drives.recordings.surfaces[learning.learned_execution_id <= 16 ? 0 : 1]
                                  .executions[static_cast<size_t>(learning.learned_pattern_id - 1)];
     const bool found = std::any_of(executions.begin(), executions.end(), [&](const auto& poses) {
       return std::abs(poses.back().x - learning.measured_end[0]) < 1e-5 &&
@@ -99,7 +99,7 @@ TEST_CASE("the learner measures in the log what the recordings hold") {
 }
 
 TEST_CASE("a learner that knows one surface adapts to the other through the log") {
-  const DriveBook drives = syntheticBook();
+  const DriveRecordings drives = syntheticBook();
   const auto events = logOf(drives, 0, 1, 48, 1);
   const auto off = learned(drives, 0, events, learner::Rule::kOff);
   const auto single = learned(drives, 0, events, learner::Rule::kSingle);
@@ -112,7 +112,7 @@ TEST_CASE("a learner that knows one surface adapts to the other through the log"
 }
 
 TEST_CASE("the same seed gives the same log, another seed another one") {
-  const DriveBook drives = syntheticBook();
+  const DriveRecordings drives = syntheticBook();
   const auto same = [](const std::vector<LogEvent>& a, const std::vector<LogEvent>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                       [](const LogEvent& x, const LogEvent& y) {
@@ -124,13 +124,13 @@ TEST_CASE("the same seed gives the same log, another seed another one") {
 }
 
 TEST_CASE("recordings of another set are refused in one line") {
-  const DriveBook drives = syntheticBook();
-  auto broken = drives.book.surfaces[1];
+  const DriveRecordings drives = syntheticBook();
+  auto broken = drives.recordings.surfaces[1];
   broken.executions[2].front().pop_back();
-  CHECK_THROWS_WITH(executionLog(averagedSet(drives, 0), drives.book.surfaces[0], broken, {}),
+  CHECK_THROWS_WITH(executionLog(averagedSet(drives, 0), drives.recordings.surfaces[0], broken, {}),
                     "surface 'soft': pattern 'right' has a recording of 39 poses and 40 commands");
   broken.executions.pop_back();
-  CHECK_THROWS_WITH(executionLog(averagedSet(drives, 0), drives.book.surfaces[0], broken, {}),
+  CHECK_THROWS_WITH(executionLog(averagedSet(drives, 0), drives.recordings.surfaces[0], broken, {}),
                     "surface 'soft': recordings of 7 patterns, the set has 8");
 }
 
@@ -144,9 +144,9 @@ TEST_CASE("recorded drives: the learner hears a real change of surface") {
   DriveRequest request;
   request.folder = folder;
   request.robot = "warthog";
-  const DriveBook drives = makeDriveBook(request);
-  REQUIRE(drives.book.surfaces.size() >= 2);
-  for (const auto& surface : drives.book.surfaces)
+  const DriveRecordings drives = recordingsFromDrives(request);
+  REQUIRE(drives.recordings.surfaces.size() >= 2);
+  for (const auto& surface : drives.recordings.surfaces)
     for (const auto& executions : surface.executions) REQUIRE(executions.size() >= 20);
   for (const SurfaceSummary& surface : drives.surfaces) CHECK(surface.windows >= 100);
   const auto events = logOf(drives, 0, 1, 40, 1);

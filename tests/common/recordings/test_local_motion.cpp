@@ -2,11 +2,11 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "common/recordings/drive_error.hpp"
+#include "common/recordings/csv_table.hpp"
 #include "tests/common/recordings/synthetic_drives.hpp"
 
 using namespace tread;
-using namespace tread::drive_patterns;
+using namespace tread::recordings;
 using namespace tread::samples;
 
 namespace {
@@ -19,8 +19,8 @@ double distance(const TwistProfile& a, const TwistProfile& b) {
 
 std::string complaint(const std::vector<SurfaceWindows>& windows, const PatternRecipe& recipe) {
   try {
-    bookOf(windows, recipe, 1.0, 2);
-  } catch (const DriveError& error) {
+    recordingsOf(windows, recipe, 1.0, 2);
+  } catch (const RecordingError& error) {
     return error.what();
   }
   return "";
@@ -105,11 +105,11 @@ TEST_CASE("the order of the windows does not matter") {
 }
 
 TEST_CASE("each pattern begins and ends in its own steady motion, the mean of the surfaces") {
-  const DriveBook drives =
-      bookOf({{"soft", {"s"}, drawnWindows(linearGround(0.8, 0.4, 0.0), 60, 0.0, 3), {}},
-              {"hard", {"h"}, drawnWindows(linearGround(1.0, 0.6, 0.0), 60, 0.0, 3), {}}},
-             defaultRecipe(), 1.0, 2);
-  const PatternSet& set = drives.book.patterns;
+  const DriveRecordings drives =
+      recordingsOf({{"soft", {"s"}, drawnWindows(linearGround(0.8, 0.4, 0.0), 60, 0.0, 3), {}},
+                    {"hard", {"h"}, drawnWindows(linearGround(1.0, 0.6, 0.0), 60, 0.0, 3), {}}},
+                   defaultRecipe(), 1.0, 2);
+  const PatternSet& set = drives.recordings.patterns;
   REQUIRE(set.patterns().size() == 8);
   CHECK(set.content().kind == CommandKind::kTrackSpeed);
   CHECK(set.content().period_us == 50'000);
@@ -120,7 +120,8 @@ TEST_CASE("each pattern begins and ends in its own steady motion, the mean of th
   const MotionClass& steady = set.classNamed(left.entry_class);
   CHECK(steady.twist.v_x == Approx(0.9 * 2.5).margin(1e-6));
   CHECK(steady.twist.omega == Approx(0.5 * 1.5).margin(1e-6));
-  CHECK(drives.book.surfaces[0].executions[0][0].back().x == Approx(0.8 * 2.5 * 2.0).margin(1e-5));
+  CHECK(drives.recordings.surfaces[0].executions[0][0].back().x ==
+        Approx(0.8 * 2.5 * 2.0).margin(1e-5));
   // A robot that knows one surface ships with the steady motion of that surface.
   const PatternSet soft = averagedSet(drives, 0);
   CHECK(soft.classNamed("left").twist.omega == Approx(0.4 * 1.5).margin(1e-6));

@@ -2,11 +2,10 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "common/recordings/robust_fit.hpp"
 #include "common/recordings/twist_profile.hpp"
 
 using namespace tread;
-using namespace tread::drive_patterns;
+using namespace tread::recordings;
 
 namespace {
 
@@ -31,16 +30,16 @@ void requireNear(const TwistProfile& a, const TwistProfile& b, double tolerance)
 }  // namespace
 
 TEST_CASE("smoothing recovers a twist that changes linearly from poses of a window") {
-  requireNear(smoothed(drivenPoses(kTurn), 2.0, {}), kTurn, 1e-4);
+  requireNear(smoothed(drivenPoses(kTurn), 2.0), kTurn, 1e-4);
   const TwistProfile spin{{0.05, -0.1, -1.4}, {0.0, 0.0, 0.2}};
-  requireNear(smoothed(drivenPoses(spin), 2.0, {}), spin, 1e-4);
+  requireNear(smoothed(drivenPoses(spin), 2.0), spin, 1e-4);
 }
 
 TEST_CASE("a pose that jumped hardly moves the smoothed twist") {
   std::vector<WindowPose> poses = drivenPoses(kTurn);
   poses[4].T_map_body.x += 1.0;
   poses[6].T_map_body.yaw += 0.5;
-  const TwistProfile found = smoothed(poses, 2.0, {});
+  const TwistProfile found = smoothed(poses, 2.0);
   CHECK(std::abs(found.mean.v_x - kTurn.mean.v_x) < 0.02);
   CHECK(std::abs(found.mean.v_y - kTurn.mean.v_y) < 0.02);
   CHECK(std::abs(found.mean.omega - kTurn.mean.omega) < 0.02);
@@ -49,27 +48,24 @@ TEST_CASE("a pose that jumped hardly moves the smoothed twist") {
 TEST_CASE("mirrored poses smooth to the mirrored twist") {
   std::vector<WindowPose> poses = drivenPoses(kTurn);
   poses[3].T_map_body.y += 0.3;
-  const TwistProfile straight = smoothed(poses, 2.0, {});
+  const TwistProfile straight = smoothed(poses, 2.0);
   for (WindowPose& pose : poses) {
     pose.T_map_body.y = -pose.T_map_body.y;
     pose.T_map_body.yaw = -pose.T_map_body.yaw;
   }
-  requireNear(smoothed(poses, 2.0, {}), straight.mirrored(), 1e-9);
+  requireNear(smoothed(poses, 2.0), straight.mirrored(), 1e-9);
 }
 
 TEST_CASE("a window with a gap or with too few poses is refused in words") {
   std::vector<WindowPose> poses = drivenPoses(kTurn);
-  REQUIRE(windowProblem(poses, 2.0, {}).empty());
-  SmoothingLimits many;
-  many.min_poses = 40;
-  REQUIRE(windowProblem(poses, 2.0, many) == "fewer than 40 poses");
+  REQUIRE(windowProblem(poses, 2.0).empty());
   poses.erase(poses.begin() + 3, poses.begin() + 5);
-  REQUIRE(windowProblem(poses, 2.0, {}) == "no new pose for more than 0.40 s");
-  REQUIRE_FALSE(windowProblem({}, 2.0, {}).empty());
+  REQUIRE(windowProblem(poses, 2.0) == "no new pose for more than 0.40 s");
+  REQUIRE_FALSE(windowProblem({}, 2.0).empty());
   // The end of the window counts, too.
   poses = drivenPoses(kTurn);
   poses.resize(poses.size() - 2);
-  REQUIRE_FALSE(windowProblem(poses, 2.0, {}).empty());
+  REQUIRE_FALSE(windowProblem(poses, 2.0).empty());
 }
 
 TEST_CASE("a robust line through points of which a quarter is wrong is the line") {

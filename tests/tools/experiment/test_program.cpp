@@ -147,7 +147,8 @@ TEST_CASE("all rules with extras: the bank is shown, lines are short, variants a
 TEST_CASE("a folder of recordings gives the same tables as the world that they come from") {
   const Folder folder;
   write(folder / "small.yaml", kSmallWorld);
-  recordings::writeBook(folder / "book", record(readTransitionWorld(folder / "small.yaml"), 1));
+  recordings::writeRecordings(folder / "book",
+                              record(readTransitionWorld(folder / "small.yaml"), 1));
   REQUIRE(run("--world " + (folder / "small.yaml") + kFour + " --out " + (folder / "a")).first ==
           0);
   REQUIRE(run("--recordings " + (folder / "book") + kFour + " --out " + (folder / "b")).first == 0);
@@ -183,12 +184,12 @@ TEST_CASE("what cannot be done is one clear line") {
   refuses("--recordings " + (folder / "none"), "neither sessions.csv");
   refuses("--recordings " + folder.path.string() + " --books 2", "--world");
 
-  recordings::RecordingBook book = record(parseTransitionWorld(kSmallWorld, "small"), 1);
+  recordings::PatternRecordings book = record(parseTransitionWorld(kSmallWorld, "small"), 1);
   book.surfaces[1].executions[1].resize(2);
-  recordings::writeBook(folder / "few", book);
+  recordings::writeRecordings(folder / "few", book);
   refuses("--recordings " + (folder / "few") + kFour, "at least 3");
   book.surfaces.resize(1);
-  recordings::writeBook(folder / "one", book);
+  recordings::writeRecordings(folder / "one", book);
   refuses("--recordings " + (folder / "one") + kFour, "two surfaces");
   refuses("--recordings " + (folder / "one") + " --robot husky" + kFour, "sessions.csv");
 }

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/recordings/drive_log.hpp"
+#include "common/recordings/imported_log.hpp"
 #include "common/report/hash.hpp"
 #include "tests/tools/gap/small_log.hpp"
 #include "tests/tools/import/drive_samples.hpp"
@@ -25,19 +25,19 @@ size_t posesOf(const Stretch& stretch) {
   return count;
 }
 
-Drive importedSteps(int steps, bool keep_lag, importer::Gyro gyro) {
+Drive importedSteps(int steps, bool keep_lag, recordings::Gyro gyro) {
   const Folder folder("gap_steps");
   std::string rows = kStepsHeader;
   for (int step = 1; step <= steps; ++step) rows += stepRows(step);
   const std::string csv = folder.file("drive.csv", rows);
-  importer::Session session =
-      importer::readSession(folder.file("sessions.csv", sessions(121 * steps)), "drive");
+  recordings::Session session =
+      recordings::readSession(folder.file("sessions.csv", sessions(121 * steps)), "drive");
   session.lag_kept = keep_lag;
   if (keep_lag) session.pose_lag = 0.0;
-  importer::LogCounts counts;
-  return toDrive(toDriveLog(
-      "drive.lcmlog",
-      importer::makeLog(importer::readSteps(csv, session, gyro), session, "steps", {}, counts)));
+  recordings::LogCounts counts;
+  return toDrive(
+      toDriveLog("drive.lcmlog", recordings::makeLog(recordings::readSteps(csv, session, gyro),
+                                                     session, "steps", {}, counts)));
 }
 
 }  // namespace
@@ -199,11 +199,11 @@ TEST_CASE(
 
 TEST_CASE(
     "an imported recording: a stretch a step, with the gyro of all rows and the poses as logged") {
-  const Drive fixes = importedSteps(2, false, importer::Gyro::kAtFixes);
+  const Drive fixes = importedSteps(2, false, recordings::Gyro::kAtFixes);
   REQUIRE(fixes.stretches.size() == 2);
   // The first two of 61 fixes were measured before the first command.
   REQUIRE(posesOf(fixes.stretches[0]) == 59);
-  const Drive all = importedSteps(2, true, importer::Gyro::kAll);
+  const Drive all = importedSteps(2, true, recordings::Gyro::kAll);
   REQUIRE(all.stretches.size() == 2);
   const Stretch& step = all.stretches[1];
   REQUIRE(posesOf(step) == 61);
@@ -220,7 +220,7 @@ TEST_CASE(
 
 TEST_CASE(
     "an imported step begins with its encoders, after the step before it if it went on at once") {
-  const Drive all = importedSteps(2, true, importer::Gyro::kAll);
+  const Drive all = importedSteps(2, true, recordings::Gyro::kAll);
   // 1.9 and 3.9 rad/s at 0.5 m, commanded 2 and 4 rad/s.
   REQUIRE(all.stretches[0].entry_speeds->left == Approx(0.95));
   REQUIRE(all.stretches[0].command_before.left == Approx(0.95));
@@ -229,7 +229,7 @@ TEST_CASE(
 }
 
 TEST_CASE("all readings of the gyro: fixes stay what they were, and no reading is said twice") {
-  const Drive lag_removed = importedSteps(1, false, importer::Gyro::kAll);
+  const Drive lag_removed = importedSteps(1, false, recordings::Gyro::kAll);
   const auto& ins = lag_removed.stretches.at(0).ins;
   size_t rates = 0;
   for (const InsSample& sample : ins) rates += std::isfinite(sample.omega) ? 1 : 0;
@@ -263,12 +263,12 @@ TEST_CASE(
 }
 
 TEST_CASE("a drive says of which robot it was imported, and how") {
-  const Drive fixes = importedSteps(2, false, importer::Gyro::kAtFixes);
+  const Drive fixes = importedSteps(2, false, recordings::Gyro::kAtFixes);
   REQUIRE(fixes.imported);
   CHECK(fixes.imported->robot == "Some robot, 100 kg");
   CHECK(fixes.imported->baseline == 1.0);
   CHECK(fixes.imported->options == "--format steps, poses as measured, gyro at fixes");
-  const Drive all = importedSteps(2, true, importer::Gyro::kAll);
+  const Drive all = importedSteps(2, true, recordings::Gyro::kAll);
   CHECK(all.imported->options == "--format steps, poses as logged, gyro all");
   CHECK_NOTHROW(requireSameImport(fixes, fixes));
   CHECK_THROWS_WITH(requireSameImport(fixes, all),
@@ -316,13 +316,13 @@ TEST_CASE(
                                    {"warthog_sand_20240925a", 99, 5},
                                    {"husky_tile_2022", 199, 0}}) {
     const std::string name = expected.session;
-    importer::Session session = importer::readSession(folder + "sessions.csv", name);
+    recordings::Session session = recordings::readSession(folder + "sessions.csv", name);
     session.pose_lag = 0.0;
-    importer::LogCounts counts;
+    recordings::LogCounts counts;
     const auto recording =
-        importer::readSteps(folder + "steps/" + name + ".csv", session, importer::Gyro::kAll);
+        recordings::readSteps(folder + "steps/" + name + ".csv", session, recordings::Gyro::kAll);
     const Drive result =
-        toDrive(toDriveLog(name, importer::makeLog(recording, session, "steps", {}, counts)));
+        toDrive(toDriveLog(name, recordings::makeLog(recording, session, "steps", {}, counts)));
     INFO(name);
     for (const HygieneNote& note : result.notes) {
       INFO(note.what);

@@ -11,11 +11,11 @@
 #include <iterator>
 
 #include "common/recordings/csv_table.hpp"
-#include "common/recordings/drive_log.hpp"
+#include "common/recordings/imported_log.hpp"
 #include "tests/tools/import/drive_samples.hpp"
 
 using namespace tread;
-using namespace tread::importer;
+using namespace tread::recordings;
 using namespace tread::samples;
 
 namespace {
@@ -28,7 +28,8 @@ struct Imported {
   LogCounts counts;
 };
 
-Imported imported(const Recording& recording, const Session& session, const std::string& format) {
+Imported imported(const RecordedDrive& recording, const Session& session,
+                  const std::string& format) {
   Imported result;
   result.events = makeLog(recording, session, format, {}, result.counts);
   result.ins = messagesOn(kIns, result.events);
@@ -54,7 +55,7 @@ std::string complaint(const std::string& content, int rows = 242) {
   try {
     const Session session = readSession(folder.file("sessions.csv", sessions(rows)), "drive");
     readSteps(folder.file("drive.csv", content), session);
-  } catch (const ImportError& error) {
+  } catch (const RecordingError& error) {
     const std::string text = error.what();
     return text.substr(text.find("drive.csv"));
   }

@@ -56,7 +56,7 @@ TEST_CASE("from-recordings writes a book, averaged sets and a log that the learn
   INFO(made.said);
   REQUIRE(made.code == 0);
   CHECK(made.said.find("hard: 48 steady windows used") != std::string::npos);
-  const recordings::RecordingBook read = recordings::readBook(book);
+  const recordings::PatternRecordings read = recordings::readRecordings(book);
   REQUIRE(read.surfaces.size() == 2);
   CHECK(read.surfaces[1].surface == "soft");
   CHECK(read.patterns.patterns().size() == 8);

@@ -94,7 +94,7 @@ TEST_CASE("A book stays one of the patterns that it began with") {
   const Run refused = record(folder, "--surface lawn -n 2", folder.path("other.yaml"));
   CHECK(refused.status == 1);
   CHECK(
-      refused.says("book/patterns.yaml: this book is of another set ('straight' in the place of "
+      refused.says("book/patterns.yaml: these recordings are of another set ('straight' in the place of "
                    "'forwards'); record into another folder"));
   CHECK(folder.text("book/patterns.yaml") == patterns);
 }

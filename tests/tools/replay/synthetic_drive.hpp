@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/recordings/drive_log.hpp"
+#include "common/recordings/imported_log.hpp"
 #include "common/vehicle/kernel.hpp"
 #include "tools/replay/learner_log.hpp"
 
@@ -25,9 +25,9 @@ inline VehicleModel plainModel(double forward_gain, double yaw_gain) {
 
 /// Random turns of six seconds each, as a vehicle with these gains drives them, in the form of the
 /// recordings.
-inline importer::Recording syntheticRecording(const VehicleModel& truth, int steps,
-                                              uint64_t seed = 1) {
-  importer::Recording recording;
+inline recordings::RecordedDrive syntheticRecording(const VehicleModel& truth, int steps,
+                                                    uint64_t seed = 1) {
+  recordings::RecordedDrive recording;
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> speed(0.6, 1.2);
   std::uniform_real_distribution<double> turn(-0.5, 0.5);
@@ -39,12 +39,12 @@ inline importer::Recording syntheticRecording(const VehicleModel& truth, int ste
     VehicleKernel vehicle(truth, steadyEntry(truth, command));
     for (int i = 0; i <= 120; ++i) {
       const double time = begin + 0.05 * i;
-      importer::Fix fix;
+      recordings::Fix fix;
       fix.time = time;
       fix.T_map_body = vehicle.pose();
       fix.new_track = i == 0;
       recording.fixes.push_back(fix);
-      importer::DriveSample sample;
+      recordings::DriveSample sample;
       sample.time = time;
       sample.command = sample.speed = command;
       recording.drive.push_back(sample);
@@ -55,15 +55,15 @@ inline importer::Recording syntheticRecording(const VehicleModel& truth, int ste
   return recording;
 }
 
-inline DriveLog syntheticLog(const importer::Recording& recording) {
-  importer::Session session;
+inline DriveLog syntheticLog(const recordings::RecordedDrive& recording) {
+  recordings::Session session;
   session.name = "synthetic";
   session.robot = "a model";
   session.surface = "ice";
   session.pose_rate = 20.0;
-  importer::LogCounts counts;
+  recordings::LogCounts counts;
   return replay::toLearnerLog("synthetic",
-                              importer::makeLog(recording, session, "steps", {}, counts));
+                              recordings::makeLog(recording, session, "steps", {}, counts));
 }
 
 }  // namespace tread::samples

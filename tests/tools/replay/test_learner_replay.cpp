@@ -111,7 +111,7 @@ TEST_CASE("the same log gives the same run, to the bit") {
 }
 
 TEST_CASE("the report says what came in, what was refused and why, and the errors side by side") {
-  importer::Recording recording = syntheticRecording(kTruth, 6);
+  recordings::RecordedDrive recording = syntheticRecording(kTruth, 6);
   // The INS is silent for half a second in the first execution of step 2.
   recording.fixes.erase(
       std::remove_if(recording.fixes.begin(), recording.fixes.end(),
@@ -154,10 +154,10 @@ TEST_CASE("commands are told apart by what they ask for") {
 }
 
 TEST_CASE("foreign messages in a log are skipped and counted") {
-  importer::Session session;
+  recordings::Session session;
   session.pose_rate = 20.0;
-  importer::LogCounts counts;
-  auto events = importer::makeLog(syntheticRecording(kTruth, 2), session, "steps", {}, counts);
+  recordings::LogCounts counts;
+  auto events = recordings::makeLog(syntheticRecording(kTruth, 2), session, "steps", {}, counts);
   LogEvent foreign;
   foreign.utime = events[5].utime;
   foreign.channel = "INS";
@@ -186,11 +186,11 @@ TEST_CASE("real grass goes through the learner") {
     WARN("skipped: no recordings in " + drive);
     return;
   }
-  const auto session = importer::readSession(drive + "sessions.csv", "warthog_grass_20240729c");
-  importer::LogCounts counts;
+  const auto session = recordings::readSession(drive + "sessions.csv", "warthog_grass_20240729c");
+  recordings::LogCounts counts;
   const DriveLog log = toLearnerLog(
-      session.name,
-      importer::makeLog(importer::readSteps(drive + "steps/warthog_grass_20240729c.csv", session),
+      session.name, recordings::makeLog(
+                        recordings::readSteps(drive + "steps/warthog_grass_20240729c.csv", session),
                         session, "steps", {}, counts));
   const PatternSet set = predictedSet(
       log, readModelFile(std::string(TREAD_SOURCE_DIR) + "/config/models/warthog_asphalt.yaml"));

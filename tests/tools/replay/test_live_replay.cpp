@@ -139,10 +139,11 @@ std::vector<LogEvent> realDrive(const std::string& name, double seconds) {
   const char* recordings = std::getenv("TREAD_RECORDINGS");
   const std::string drive = std::string(recordings ? recordings : "") + "/drive/";
   if (!std::filesystem::exists(drive + "sessions.csv")) return {};
-  const auto session = importer::readSession(drive + "sessions.csv", name);
-  importer::LogCounts counts;
-  auto events = importer::makeLog(importer::readSteps(drive + "steps/" + name + ".csv", session),
-                                  session, "steps", {}, counts);
+  const auto session = recordings::readSession(drive + "sessions.csv", name);
+  recordings::LogCounts counts;
+  auto events =
+      recordings::makeLog(recordings::readSteps(drive + "steps/" + name + ".csv", session), session,
+                          "steps", {}, counts);
   const int64_t end = events.front().utime + std::llround(seconds * 1e6);
   while (events.back().utime > end) events.pop_back();
   return events;
@@ -159,13 +160,13 @@ void requireEqual(const LearnerCheck& check) {
 
 TEST_CASE("a played log gives the running learner the reports of the virtual replay, to the bit") {
   if (!possible()) return;
-  importer::Session session;
+  recordings::Session session;
   session.name = "synthetic";
   session.surface = "ice";
   session.pose_rate = 20.0;
-  importer::LogCounts counts;
-  auto events =
-      importer::makeLog(syntheticRecording(plainModel(0.9, 0.5), 4), session, "steps", {}, counts);
+  recordings::LogCounts counts;
+  auto events = recordings::makeLog(syntheticRecording(plainModel(0.9, 0.5), 4), session, "steps",
+                                    {}, counts);
   LiveLearner run("synthetic", std::move(events), plainModel(1.0, 1.0), "1");
   requireEqual(run.finish(60.0));
 }

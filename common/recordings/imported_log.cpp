@@ -1,23 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/recordings/drive_log.hpp"
+#include "common/recordings/imported_log.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <sstream>
 
-#include <Eigen/Geometry>
-
 #include "common/messages/blank.hpp"
 
-namespace tread::importer {
+namespace tread::recordings {
 namespace {
 
 constexpr int64_t kOriginUs = 1'000'000;
 constexpr int64_t kPeriodUs = 50'000;
 constexpr int64_t kRunId = 1;
-constexpr size_t kRepeated = 8;
 
 /// To whole milliseconds: the recordings know no more.
 int64_t utimeOf(double seconds) {
@@ -47,11 +44,12 @@ std::vector<Planned> plannedExecutions(const std::vector<CommandRun>& runs,
       planned.completed = full <= run_end + kPeriodUs / 2;
       planned.end = planned.completed ? full : run_end;
       planned.reason = planned.completed ? "" : run.end_reason;
+      planned.record = blank<execution_record_t>();
       planned.record.record_run_id = kRunId;
       planned.record.record_execution_id = 10 * number + n + 1;
+      planned.record.started = started;
       planned.record.record_pattern_id = run.step;
       planned.record.record_set_version = 1;
-      planned.record.started = started;
       planned.record.commands_total = static_cast<int32_t>(std::lround(layout.length / kPeriod));
       all.push_back(planned);
     }
@@ -73,18 +71,14 @@ class LogMaker {
          << "\nbaseline: " << session.baseline << "\npose_lag_removed: " << session.pose_lag
          << "\nposes: " << poses << "\ngyro: " << gyro << "\noffset: " << layout.offset
          << "\nlength: " << layout.length << "\nexecutions: " << layout.executions << "\n";
-    auto config = blank<config_t>();
-    config.utime = utimeOf(begin);
-    config.config_process = "tread-import";
-    config.config_boot_id = config.utime;
-    config.config_text = text.str();
-    add(kConfig, config);
-    addMark(config.utime, 0, "surface", session.surface);
+    const int64_t utime = utimeOf(begin);
+    log_.addConfig(utime, "tread-import", utime, text.str());
+    log_.addMark(utime, "surface", session.surface);
     std::ostringstream note;
     note << "recording " << session.name << " of a " << session.robot << ", tracks "
          << session.baseline << " m apart; --format " << format << ", poses " << poses << ", gyro "
          << gyro;
-    addMark(config.utime, 1, "note", note.str());
+    log_.addMark(utime, "note", note.str());
   }
 
   void addIns(const std::vector<Fix>& fixes, const std::vector<GyroReading>& gyro,
@@ -106,94 +100,57 @@ class LogMaker {
     for (const GyroReading& reading : gyro)
       messages.emplace(utimeOf(reading.time), blank<ins_t>()).first->second.rate[2] =
           reading.yaw_rate;
-    int64_t seq = 0;
     for (auto& [utime, ins] : messages) {
       ins.utime = utime;
-      ins.seq = seq++;
-      add(kIns, ins);
+      log_.add(kIns, ins);
       ++counts_.ins;
     }
   }
 
   void addMotor(const std::vector<DriveSample>& drive, const std::vector<Planned>& executions) {
-    int64_t seq = 0;
     size_t at = 0;
     for (const DriveSample& sample : drive) {
       auto motor = blank<motor_t>();
       motor.utime = utimeOf(sample.time);
-      motor.seq = seq++;
       fill(motor, sample);
       while (at < executions.size() && executions[at].end <= motor.utime + kPeriodUs / 2) ++at;
       if (at < executions.size()) place(motor, executions[at]);
-      add(kMotor, motor);
+      log_.add(kMotor, motor);
       ++counts_.motor;
     }
   }
 
   void addExecutions(const std::vector<Planned>& executions) {
     for (const Planned& planned : executions) {
-      records_.push_back(planned.record);
-      if (records_.size() > kRepeated) records_.erase(records_.begin());
-      say(planned.record.started);
-      execution_record_t& record = records_.back();
+      execution_record_t& record = log_.start(planned.record);
+      log_.publishExecutions(record.started);
       record.ended = planned.end;
       record.outcome = planned.completed ? execution_record_t::OUTCOME_COMPLETED
                                          : execution_record_t::OUTCOME_ABORTED;
       record.outcome_reason = planned.reason;
       record.commands_played =
           static_cast<int32_t>((planned.end - record.started + kPeriodUs - 1) / kPeriodUs);
-      say(planned.end);
+      log_.publishExecutions(planned.end);
       ++(planned.completed ? counts_.completed : counts_.aborted);
     }
   }
 
   std::vector<LogEvent> sorted() {
-    std::stable_sort(events_.begin(), events_.end(),
-                     [](const LogEvent& a, const LogEvent& b) { return a.utime < b.utime; });
-    if (!events_.empty())
-      counts_.duration = static_cast<double>(events_.back().utime - events_.front().utime) * 1e-6;
-    return std::move(events_);
+    std::vector<LogEvent> events = log_.sorted();
+    if (!events.empty())
+      counts_.duration = static_cast<double>(events.back().utime - events.front().utime) * 1e-6;
+    return events;
   }
 
  private:
-  template <class Message>
-  void add(const Channel<Message>& channel, const Message& message) {
-    events_.push_back(eventOf(channel, message));
-  }
-
-  void addMark(int64_t utime, int64_t seq, const std::string& kind, const std::string& value) {
-    auto mark = blank<mark_t>();
-    mark.utime = utime;
-    mark.seq = seq;
-    mark.mark_kind = kind;
-    mark.mark_value = value;
-    add(kMark, mark);
-  }
-
-  void say(int64_t utime) {
-    auto message = blank<execution_t>();
-    message.utime = utime;
-    message.seq = seq_execution_++;
-    message.records = records_;
-    message.num_records = static_cast<int32_t>(records_.size());
-    add(kExecution, message);
-  }
-
   static void fill(ins_t& ins, const Fix& fix) {
     ins.ins_status = ins_t::STATUS_NO_VELOCITY;
     ins.position[0] = fix.T_map_body.x;
     ins.position[1] = fix.T_map_body.y;
     ins.position[2] = fix.z;
     const bool attitude = std::isfinite(fix.roll) && std::isfinite(fix.pitch);
-    using Eigen::AngleAxisd;
-    using Eigen::Vector3d;
-    Eigen::Quaterniond q(AngleAxisd(fix.T_map_body.yaw, Vector3d::UnitZ()));
-    if (attitude)
-      q = q * AngleAxisd(fix.pitch, Vector3d::UnitY()) * AngleAxisd(fix.roll, Vector3d::UnitX());
-    ins.orientation[0] = q.w();
-    ins.orientation[1] = q.x();
-    ins.orientation[2] = q.y();
-    ins.orientation[3] = q.z();
+    DriveLogBuilder::setAttitude(ins, fix.T_map_body.yaw, attitude ? fix.pitch : 0.0,
+                                 attitude ? fix.roll : 0.0);
     ins.rate[2] = fix.yaw_rate;
     if (!attitude) ins.ins_status |= ins_t::STATUS_NO_ATTITUDE;
     if (fix.new_track) ins.ins_status |= ins_t::STATUS_JUMP;
@@ -223,14 +180,12 @@ class LogMaker {
   }
 
   LogCounts& counts_;
-  std::vector<LogEvent> events_;
-  std::vector<execution_record_t> records_;
-  int64_t seq_execution_ = 0;
+  DriveLogBuilder log_;
 };
 
 }  // namespace
 
-std::vector<LogEvent> makeLog(const Recording& recording, const Session& session,
+std::vector<LogEvent> makeLog(const RecordedDrive& recording, const Session& session,
                               const std::string& format, const ExecutionLayout& layout,
                               LogCounts& counts) {
   const auto executions = plannedExecutions(recording.runs, layout);
@@ -247,4 +202,4 @@ std::vector<LogEvent> makeLog(const Recording& recording, const Session& session
   return maker.sorted();
 }
 
-}  // namespace tread::importer
+}  // namespace tread::recordings

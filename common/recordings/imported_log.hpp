@@ -3,11 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
-#include "common/log/event_log.hpp"
-#include "common/recordings/recording.hpp"
+#include "common/log/drive_log.hpp"
+#include "common/recordings/recorded_drive.hpp"
 
 // Which executions a log gets. The recordings hold one command for six seconds and enter it at the
 // speed of the one before. From `offset` on (delay and three time constants of the wheels later)
@@ -17,7 +16,7 @@
 //     execution id = 10 k + n,   pattern id = the recording's step number,   set version 1,   run
 //     id 1.
 // A command that did not last until the end of an execution leaves it aborted, with the reason.
-namespace tread::importer {
+namespace tread::recordings {
 
 struct ExecutionLayout {
   double offset = 1.2;  ///< [s] from the first sample with a command to its first execution
@@ -36,8 +35,8 @@ struct LogCounts {
 
 /// The events of the log of a recording in order of time: MARK, CONFIG, INS, MOTOR, EXECUTION.
 /// utime 0 is one second before the recording's time 0.
-std::vector<LogEvent> makeLog(const Recording& recording, const Session& session,
+std::vector<LogEvent> makeLog(const RecordedDrive& recording, const Session& session,
                               const std::string& format, const ExecutionLayout& layout,
                               LogCounts& counts);
 
-}  // namespace tread::importer
+}  // namespace tread::recordings

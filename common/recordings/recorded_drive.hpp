@@ -8,12 +8,12 @@
 
 #include "common/geometry/se2.hpp"
 #include "common/pattern/pattern.hpp"
-#include "common/recordings/session.hpp"
+#include "common/recordings/sessions.hpp"
 
-// The three formats become one recording: times in seconds on one axis, steps of separate
+// The three formats become one recorded drive: times in seconds on one axis, steps of separate
 // recordings apart from each other by a silence in which the INS is gone, poses at the time at
 // which they were measured.
-namespace tread::importer {
+namespace tread::recordings {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -59,7 +59,7 @@ enum class Gyro {
   kAll       ///< all of them, beside the fixes
 };
 
-struct Recording {
+struct RecordedDrive {
   std::vector<Fix> fixes;          ///< in order of time
   std::vector<GyroReading> gyro;   ///< in order of time; only where all are kept
   std::vector<DriveSample> drive;  ///< in order of time
@@ -71,14 +71,15 @@ inline constexpr double kSilence = 2.0;
 /// Period of the recordings [s].
 inline constexpr double kPeriod = 0.05;
 
-/// steps/*.csv: poses held and late; a fix where pose_new says so. Throws ImportError.
+/// steps/*.csv: poses held and late; a fix where pose_new says so. Throws RecordingError.
 /** A session without pose lag leaves the poses at the time at which they were logged. */
-Recording readSteps(const std::string& path, const Session& session, Gyro gyro = Gyro::kAtFixes);
+RecordedDrive readSteps(const std::string& path, const Session& session,
+                        Gyro gyro = Gyro::kAtFixes);
 /// aligned/*.csv: lag already removed, poses interpolated to 20 Hz; none inside ICP gaps above 0.3
 /// s.
-Recording readAligned(const std::string& path, const Session& session);
+RecordedDrive readAligned(const std::string& path, const Session& session);
 /// continuous/*.csv: the whole drive in the map frame, with the operator's part and the battery.
-Recording readContinuous(const std::string& path, const Session& session,
-                         Gyro gyro = Gyro::kAtFixes);
+RecordedDrive readContinuous(const std::string& path, const Session& session,
+                             Gyro gyro = Gyro::kAtFixes);
 
-}  // namespace tread::importer
+}  // namespace tread::recordings

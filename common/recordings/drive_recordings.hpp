@@ -8,12 +8,11 @@
 
 #include "common/recordings/local_motion.hpp"
 #include "common/recordings/recordings.hpp"
-#include "common/recordings/session_choice.hpp"
 
 // Recordings of the same patterns on several surfaces, built from drives in which no command was
 // ever given twice: windows of each surface are moved to the patterns' commands (local_motion.hpp)
 // and integrated. Nothing about any robot, surface or session is known here. Units: m, rad, s.
-namespace tread::drive_patterns {
+namespace tread::recordings {
 
 /// What is made of a folder of drives.
 struct DriveRequest {
@@ -24,8 +23,6 @@ struct DriveRequest {
   /// The commands may be made smaller where too few surfaces were driven with as large ones.
   bool fit_recipe = true;
   size_t min_surfaces = 2;
-  SmoothingLimits smoothing;
-  ComparableLimits comparable;
 };
 
 /// Windows of a surface.
@@ -45,9 +42,9 @@ struct SurfaceSummary {
   std::vector<LocalMotion> motions;  ///< by pattern
 };
 
-/// A book and how it came about.
-struct DriveBook {
-  recordings::RecordingBook book;
+/// Recordings and how they came about.
+struct DriveRecordings {
+  PatternRecordings recordings;
   std::string robot;
   std::vector<std::string> notes;  ///< sessions and surfaces left out, commands made smaller
   std::vector<SurfaceSummary> surfaces;
@@ -56,20 +53,21 @@ struct DriveBook {
 /// A surface's name as a file may be called: letters, digits, '-' and '_'.
 std::string fileName(const std::string& surface);
 
-/// The book of windows that are already there; `notes` gets a line for each surface left out.
+/// The recordings of windows that are already there; `notes` gets a line for each surface left out.
 /** Track commands by `baseline` [m]. Entry and exit class of a pattern is its own steady motion,
- * the mean over the surfaces. Throws DriveError if fewer than `min_surfaces` are left. */
-DriveBook bookOf(const std::vector<SurfaceWindows>& windows, const PatternRecipe& recipe,
-                 double baseline, size_t min_surfaces);
+ * the mean over the surfaces. Throws RecordingError if fewer than `min_surfaces` are left. */
+DriveRecordings recordingsOf(const std::vector<SurfaceWindows>& windows,
+                             const PatternRecipe& recipe, double baseline, size_t min_surfaces);
 
-/// Reads the folder and makes the book; throws DriveError or importer::ImportError, one line each.
-DriveBook makeDriveBook(const DriveRequest& request);
+/// Reads the folder and makes recordings of it; throws RecordingError or RecordingError, one line
+/// each.
+DriveRecordings recordingsFromDrives(const DriveRequest& request);
 
-/// The averaged set of a surface (index into the book): what a robot that knows this surface ships
-/// with. Its classes are this surface's own steady motions.
-PatternSet averagedSet(const DriveBook& drives, size_t surface);
+/// The averaged set of a surface (index into the recordings): what a robot that knows this surface
+/// ships with. Its classes are this surface's own steady motions.
+PatternSet averagedSet(const DriveRecordings& drives, size_t surface);
 
 /// Lines for people: what was used and left out, and each pattern's mean twist and spread.
-std::string reportOf(const DriveBook& drives);
+std::string reportOf(const DriveRecordings& drives);
 
-}  // namespace tread::drive_patterns
+}  // namespace tread::recordings

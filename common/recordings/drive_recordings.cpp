@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/recordings/drive_book.hpp"
+#include "common/recordings/drive_recordings.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <optional>
 
-#include "common/recordings/drive_error.hpp"
+#include "common/recordings/csv_table.hpp"
+#include "common/report/text.hpp"
 
-namespace tread::drive_patterns {
+namespace tread::recordings {
 namespace {
 
 /// Rounded to micrometres, microradians: files are for people, too.
@@ -49,18 +49,17 @@ PatternSet patternSet(const std::vector<SurfaceSummary>& surfaces, const Pattern
   }
   std::string why;
   auto set = PatternSet::make(std::move(content), why);
-  if (!set) throw DriveError("the recipe's patterns make no set: " + why);
+  if (!set) throw RecordingError("the recipe's patterns make no set: " + why);
   return *set;
 }
 
-recordings::SurfaceRecordings recordingsOf(const SurfaceSummary& summary,
-                                           const PatternRecipe& recipe) {
-  recordings::SurfaceRecordings result;
+SurfaceRecordings recordingsOf(const SurfaceSummary& summary, const PatternRecipe& recipe) {
+  SurfaceRecordings result;
   result.surface = summary.surface;
   for (const LocalMotion& motion : summary.motions) {
-    std::vector<recordings::Execution> executions;
+    std::vector<Execution> executions;
     for (const TwistProfile& profile : recordedProfiles(motion)) {
-      recordings::Execution poses = integrated(profile, recipe.samples(), recipe.period);
+      Execution poses = integrated(profile, recipe.samples(), recipe.period);
       for (Pose2& pose : poses) pose = {rounded(pose.x), rounded(pose.y), rounded(pose.yaw)};
       executions.push_back(std::move(poses));
     }
@@ -69,7 +68,7 @@ recordings::SurfaceRecordings recordingsOf(const SurfaceSummary& summary,
   return result;
 }
 
-/// A surface's motions; throws DriveError if its windows are too few.
+/// A surface's motions; throws RecordingError if its windows are too few.
 SurfaceSummary summarised(const SurfaceWindows& windows, const PatternRecipe& recipe) {
   SurfaceSummary summary{
       fileName(windows.surface), windows.sessions, windows.used.size(), windows.left_out, {}};
@@ -85,12 +84,11 @@ std::string joined(const std::vector<std::string>& lines) {
 }
 
 /// The n-th largest of what the surfaces' sessions reach, per axis.
-BodyCommand commonReach(const std::vector<DriveSession>& sessions, const std::string& robot,
-                        size_t n, const ComparableLimits& limits) {
+BodyCommand commonReach(const std::vector<Session>& sessions, const std::string& robot, size_t n) {
   std::map<std::string, BodyCommand> best;
-  for (const DriveSession& session : sessions) {
-    if (session.robot != robot || session.okSteps() < limits.min_steps) continue;
-    const BodyCommand reach = reachOf(session, limits.reach_quantile);
+  for (const Session& session : sessions) {
+    if (session.robot != robot || session.okSteps() < kLeastSteps) continue;
+    const BodyCommand reach = reachOf(session);
     BodyCommand& surface = best[session.surface];
     if (reach.v * reach.w > surface.v * surface.w) surface = reach;
   }
@@ -123,40 +121,38 @@ bool fitRecipe(DriveRequest& request, const BodyCommand& driven, std::vector<std
 }
 
 /// The sessions that are compared, and a recipe that fits them.
-SessionChoice chosenSessions(const std::vector<DriveSession>& sessions, const std::string& robot,
+SessionChoice chosenSessions(const std::vector<Session>& sessions, const std::string& robot,
                              DriveRequest& request, std::vector<std::string>& notes) {
-  const ComparableLimits& limits = request.comparable;
   if (!request.sessions.empty()) {
     SessionChoice named = namedSessions(sessions, robot, request.sessions);
     const size_t surfaces = surfacesOf(named.taken).size();
-    fitRecipe(request, commonReach(named.taken, robot, surfaces, limits), notes);
+    fitRecipe(request, commonReach(named.taken, robot, surfaces), notes);
     return named;
   }
-  SessionChoice choice = comparableSessions(sessions, robot, request.recipe.reach(), limits);
+  SessionChoice choice = comparableSessions(sessions, robot, request.recipe.reach());
   if (surfacesOf(choice.taken).size() >= request.min_surfaces) return choice;
-  if (!fitRecipe(request, commonReach(sessions, robot, request.min_surfaces, limits), notes))
-    return choice;
-  return comparableSessions(sessions, robot, request.recipe.reach(), limits);
+  if (!fitRecipe(request, commonReach(sessions, robot, request.min_surfaces), notes)) return choice;
+  return comparableSessions(sessions, robot, request.recipe.reach());
 }
 
 /// One clear line if sessions of too few surfaces were chosen.
 void requireSurfaces(const DriveRequest& request, const std::string& robot,
-                     const std::vector<DriveSession>& sessions, const SessionChoice& choice,
+                     const std::vector<Session>& sessions, const SessionChoice& choice,
                      const std::vector<std::string>& notes) {
   const size_t needed = std::max<size_t>(1, request.min_surfaces);
   const std::vector<std::string> chosen = surfacesOf(choice.taken);
   if (chosen.size() >= needed) return;
-  std::vector<DriveSession> all;
-  for (const DriveSession& session : sessions)
+  std::vector<Session> all;
+  for (const Session& session : sessions)
     if (session.robot == robot) all.push_back(session);
   const std::vector<std::string> driven = surfacesOf(all);
   if (driven.size() == 1 && needed > 1)
-    throw DriveError(request.folder + ": " + robot + " was driven on one surface only ('" +
-                     driven.front() + "'); learning from one to another needs two");
-  throw DriveError(request.folder + ": " + std::to_string(chosen.size()) + " surface(s) of " +
-                   robot + " have comparable sessions" +
-                   (chosen.empty() ? "" : " (" + joined(chosen) + ")") + ", " +
-                   std::to_string(needed) + " are needed; " + joined(notes));
+    throw RecordingError(request.folder + ": " + robot + " was driven on one surface only ('" +
+                         driven.front() + "'); learning from one to another needs two");
+  throw RecordingError(request.folder + ": " + std::to_string(chosen.size()) + " surface(s) of " +
+                       robot + " have comparable sessions" +
+                       (chosen.empty() ? "" : " (" + joined(chosen) + ")") + ", " +
+                       std::to_string(needed) + " are needed; " + joined(notes));
 }
 
 std::vector<SurfaceWindows> readSurfaces(const DriveRequest& request, const SessionChoice& choice) {
@@ -164,10 +160,10 @@ std::vector<SurfaceWindows> readSurfaces(const DriveRequest& request, const Sess
   for (const std::string& name : surfacesOf(choice.taken)) {
     SurfaceWindows surface;
     surface.surface = name;
-    for (const DriveSession& session : choice.taken) {
+    for (const Session& session : choice.taken) {
       if (session.surface != name) continue;
-      SessionWindows read = readWindows(request.folder, session, choice.baseline,
-                                        request.recipe.length, request.smoothing);
+      SessionWindows read =
+          readWindows(request.folder, session, choice.baseline, request.recipe.length);
       surface.sessions.push_back(session.name);
       surface.used.insert(surface.used.end(), read.used.begin(), read.used.end());
       for (const auto& [reason, count] : read.left_out) surface.left_out[reason] += count;
@@ -175,6 +171,34 @@ std::vector<SurfaceWindows> readSurfaces(const DriveRequest& request, const Sess
     surfaces.push_back(std::move(surface));
   }
   return surfaces;
+}
+
+/// Root mean square of the mean twist's deviations, per component.
+Twist2 spreadOf(const LocalMotion& motion) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const TwistProfile& deviation : motion.deviations)
+    sum += deviation.vector().head<3>().cwiseAbs2();
+  sum = (sum / static_cast<double>(motion.deviations.size())).cwiseSqrt();
+  return {sum[0], sum[1], sum[2]};
+}
+
+std::string windowsLine(const SurfaceSummary& surface) {
+  std::string text =
+      formatted("%s: %zu steady windows used", surface.surface.c_str(), surface.windows);
+  for (const auto& [reason, count] : surface.left_out)
+    text += formatted(", %d left out: %s", count, reason.c_str());
+  text += "\n  from";
+  for (const std::string& session : surface.sessions) text += " " + session;
+  return text + "\n";
+}
+
+std::string motionLine(const std::string& name, const LocalMotion& motion) {
+  const Twist2& mean = motion.mean.mean;
+  const Twist2 spread = spreadOf(motion);
+  return formatted("  %-14s %7.3f %7.3f %7.3f   %6.3f %6.3f %6.3f   %7zu %6.2f %10zu %6zu\n",
+                   name.c_str(), mean.v_x, mean.v_y, mean.omega, spread.v_x, spread.v_y,
+                   spread.omega, motion.windows, motion.reach, 2 * motion.deviations.size(),
+                   motion.implausible);
 }
 
 }  // namespace
@@ -192,62 +216,78 @@ std::string fileName(const std::string& surface) {
   return name.empty() ? "surface" : name;
 }
 
-DriveBook bookOf(const std::vector<SurfaceWindows>& windows, const PatternRecipe& recipe,
-                 double baseline, size_t min_surfaces) {
+DriveRecordings recordingsOf(const std::vector<SurfaceWindows>& windows,
+                             const PatternRecipe& recipe, double baseline, size_t min_surfaces) {
   std::vector<std::string> notes;
   std::vector<SurfaceSummary> surfaces;
   for (const SurfaceWindows& surface : windows) {
     try {
       surfaces.push_back(summarised(surface, recipe));
-    } catch (const DriveError& error) {
+    } catch (const RecordingError& error) {
       notes.push_back("surface '" + surface.surface + "' left out: " + error.what());
     }
   }
   for (size_t i = 0; i < surfaces.size(); ++i)
     for (size_t j = 0; j < i; ++j)
       if (surfaces[i].surface == surfaces[j].surface)
-        throw DriveError("two surfaces would both be called '" + surfaces[i].surface +
-                         "'; rename one in sessions.csv");
+        throw RecordingError("two surfaces would both be called '" + surfaces[i].surface +
+                             "'; rename one in sessions.csv");
   if (surfaces.size() < std::max<size_t>(1, min_surfaces)) {
     std::string have;
     for (const SurfaceSummary& surface : surfaces) have += " '" + surface.surface + "'";
-    throw DriveError(std::to_string(surfaces.size()) + " comparable surface(s)" + have + ", " +
-                     std::to_string(std::max<size_t>(1, min_surfaces)) + " are needed" +
-                     (notes.empty() ? "" : " (" + joined(notes) + ")"));
+    throw RecordingError(std::to_string(surfaces.size()) + " comparable surface(s)" + have + ", " +
+                         std::to_string(std::max<size_t>(1, min_surfaces)) + " are needed" +
+                         (notes.empty() ? "" : " (" + joined(notes) + ")"));
   }
-  recordings::RecordingBook book{patternSet(surfaces, recipe, baseline), {}};
+  PatternRecordings recordings{patternSet(surfaces, recipe, baseline), {}};
   for (const SurfaceSummary& surface : surfaces)
-    book.surfaces.push_back(recordingsOf(surface, recipe));
-  return {std::move(book), "", std::move(notes), std::move(surfaces)};
+    recordings.surfaces.push_back(recordingsOf(surface, recipe));
+  return {std::move(recordings), "", std::move(notes), std::move(surfaces)};
 }
 
-DriveBook makeDriveBook(const DriveRequest& asked) {
+DriveRecordings recordingsFromDrives(const DriveRequest& asked) {
   DriveRequest request = asked;
-  const std::vector<DriveSession> sessions = readSessions(request.folder);
+  const std::vector<Session> sessions = readSessions(request.folder);
   const std::string robot = chooseRobot(sessions, request.robot);
   std::vector<std::string> notes;
   const SessionChoice choice = chosenSessions(sessions, robot, request, notes);
   for (const std::string& line : choice.left_out) notes.push_back("session left out: " + line);
   requireSurfaces(request, robot, sessions, choice, notes);
-  DriveBook drives =
-      bookOf(readSurfaces(request, choice), request.recipe, choice.baseline, request.min_surfaces);
+  DriveRecordings drives = recordingsOf(readSurfaces(request, choice), request.recipe,
+                                        choice.baseline, request.min_surfaces);
   drives.robot = robot;
   drives.notes.insert(drives.notes.begin(), notes.begin(), notes.end());
   return drives;
 }
 
-PatternSet averagedSet(const DriveBook& drives, size_t surface) {
-  std::vector<recordings::AverageNote> ignored;
-  const PatternSet average = recordings::averageSet(
-      drives.book.patterns, drives.book.surfaces.at(surface), recordings::AverageLimits{}, ignored);
+PatternSet averagedSet(const DriveRecordings& drives, size_t surface) {
+  std::vector<AverageNote> ignored;
+  const PatternSet average = averageSet(
+      drives.recordings.patterns, drives.recordings.surfaces.at(surface), AverageLimits{}, ignored);
   PatternSetContent content = average.content();
   content.name += " on " + drives.surfaces[surface].surface;
   for (size_t p = 0; p < content.classes.size(); ++p)
     content.classes[p].twist = rounded(drives.surfaces[surface].motions[p].mean.mean);
   std::string why;
   auto set = PatternSet::make(std::move(content), why);
-  if (!set) throw DriveError("the average of '" + drives.surfaces[surface].surface + "': " + why);
+  if (!set)
+    throw RecordingError("the average of '" + drives.surfaces[surface].surface + "': " + why);
   return *set;
 }
 
-}  // namespace tread::drive_patterns
+std::string reportOf(const DriveRecordings& drives) {
+  std::string text = "robot: " + drives.robot + "\n";
+  for (const std::string& note : drives.notes) text += note + "\n";
+  const std::vector<MotionPattern>& patterns = drives.recordings.patterns.patterns();
+  for (const SurfaceSummary& surface : drives.surfaces) {
+    text += "\n" + windowsLine(surface);
+    text +=
+        formatted("  %-14s %23s   %20s   %7s %6s %10s %6s\n", "pattern", "v_x m/s, v_y m/s, w r/s",
+                  "spread of executions", "windows", "reach", "recordings", "unfit");
+    for (size_t p = 0; p < patterns.size(); ++p)
+      text += motionLine(patterns[p].name, surface.motions[p]);
+  }
+  return text;
+}
+
+}  // namespace tread::recordings

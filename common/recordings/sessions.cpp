@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/recordings/sessions.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "common/recordings/csv_table.hpp"
+#include "common/report/text.hpp"
+
+namespace tread::recordings {
+namespace {
+
+/// What both the import and the comparison of surfaces need of a session.
+void readGeometry(const CsvTable& table, size_t row, Session& session) {
+  session.wheel_radius = table.numberWithin(row, "wheel_radius_m", 0.01, 2.0);
+  session.baseline = table.numberWithin(row, "baseline_m", 0.05, 5.0);
+  session.pose_lag = table.numberWithin(row, "pose_lag_s", 0.0, 2.0);
+}
+
+Session namedSession(const CsvTable& table, size_t row) {
+  Session session;
+  session.name = table.text(row, "session");
+  session.robot = table.text(row, "robot");
+  session.surface = table.text(row, "surface");
+  return session;
+}
+
+void readQuality(const std::string& path, std::vector<Session>& sessions) {
+  const CsvTable table(path);
+  table.require({"session", "step", "cmd_left_rad_s", "cmd_right_rad_s", "ok"});
+  for (size_t row = 0; row < table.rows(); ++row) {
+    const auto session = std::find_if(sessions.begin(), sessions.end(), [&](const Session& s) {
+      return s.name == table.text(row, "session");
+    });
+    if (session == sessions.end() || !session->problem.empty()) continue;
+    CommandStep step{table.integer(row, "step"), {}, table.text(row, "ok") == "1"};
+    // What is not fit for use may lack numbers, too.
+    if (step.ok)
+      step.tracks = {session->wheel_radius * table.number(row, "cmd_left_rad_s"),
+                     session->wheel_radius * table.number(row, "cmd_right_rad_s")};
+    session->steps.push_back(step);
+  }
+}
+
+/// Poses of a window, by their time in the part of it that is used.
+struct SettledPoses {
+  std::vector<WindowPose> poses;
+  double duration = 0.0;  ///< [s] of that part
+};
+
+/// New poses of the rows (first, last) that were measured after `settle`.
+SettledPoses posesOf(const CsvTable& table, size_t first, size_t last, double lag,
+                     double duration) {
+  const double logged = table.number(first, "t_s");
+  const double begin = std::max(logged - lag, kSettle);
+  SettledPoses settled;
+  settled.duration = logged + duration - lag - begin;
+  double before = logged;
+  for (size_t row = first + 1; row < last; ++row) {
+    const double time = table.number(row, "t_s");
+    if (time <= before)
+      throw table.error(row, "t_s does not grow within the window; are the rows in order?");
+    before = time;
+    const double measured = time - lag - begin;
+    if (table.integer(row, "pose_new") == 0 || measured < -1e-9) continue;
+    settled.poses.push_back(
+        {measured,
+         {table.number(row, "x_m"), table.number(row, "y_m"), table.number(row, "yaw_rad")}});
+  }
+  return settled;
+}
+
+/// Sorts windows into those used and those left out.
+class WindowReader {
+ public:
+  WindowReader(const Session& session, double baseline) : session_(session), baseline_(baseline) {}
+
+  void take(int step_number, int window, const SettledPoses& settled) {
+    const auto step = std::find_if(session_.steps.begin(), session_.steps.end(),
+                                   [&](const CommandStep& s) { return s.number == step_number; });
+    if (step == session_.steps.end()) return leaveOut("step is not in steps_quality.csv");
+    if (!step->ok) return leaveOut("step is not ok in steps_quality.csv");
+    const std::string problem = windowProblem(settled.poses, settled.duration);
+    if (!problem.empty()) return leaveOut(problem);
+    result.used.push_back({session_.name, step_number, window, bodyCommand(step->tracks, baseline_),
+                           smoothed(settled.poses, settled.duration)});
+  }
+
+  SessionWindows result;
+
+ private:
+  void leaveOut(const std::string& reason) { ++result.left_out[reason]; }
+
+  const Session& session_;
+  double baseline_;
+};
+
+}  // namespace
+
+size_t Session::okSteps() const {
+  return static_cast<size_t>(
+      std::count_if(steps.begin(), steps.end(), [](const CommandStep& step) { return step.ok; }));
+}
+
+BodyCommand bodyCommand(const TrackCommand& tracks, double baseline) {
+  return {(tracks.left + tracks.right) / 2.0, (tracks.right - tracks.left) / baseline};
+}
+
+TrackCommand trackCommand(const BodyCommand& command, double baseline) {
+  const double half = command.w * baseline / 2.0;
+  return {command.v - half, command.v + half};
+}
+
+std::vector<Session> readSessions(const std::string& folder) {
+  const CsvTable table(folder + "/sessions.csv");
+  table.require({"session", "robot", "surface", "wheel_radius_m", "baseline_m", "pose_lag_s"});
+  std::vector<Session> sessions;
+  for (size_t row = 0; row < table.rows(); ++row) {
+    sessions.push_back(namedSession(table, row));
+    // A session without its numbers is of no use, but the others are.
+    try {
+      readGeometry(table, row, sessions.back());
+    } catch (const RecordingError& error) {
+      sessions.back().problem = error.what();
+    }
+  }
+  readQuality(folder + "/steps_quality.csv", sessions);
+  return sessions;
+}
+
+SessionWindows readWindows(const std::string& folder, const Session& session, double baseline,
+                           double duration) {
+  const std::string path = folder + "/steps/" + session.name + ".csv";
+  const CsvTable table(path);
+  table.require({"step", "window", "t_s", "x_m", "y_m", "yaw_rad", "pose_new"});
+  WindowReader reader(session, baseline);
+  for (size_t row = 0; row < table.rows();) {
+    const int step = table.integer(row, "step");
+    const int window = table.integer(row, "window");
+    size_t last = row + 1;
+    while (last < table.rows() && table.integer(last, "step") == step &&
+           table.integer(last, "window") == window)
+      ++last;
+    if (window == 1 || window == 2)
+      reader.take(step, window, posesOf(table, row, last, session.pose_lag, duration));
+    row = last;
+  }
+  return std::move(reader.result);
+}
+
+Session readSession(const std::string& sessions_path, const std::string& name) {
+  const CsvTable table(sessions_path);
+  for (size_t row = 0; row < table.rows(); ++row) {
+    if (table.text(row, "session") != name) continue;
+    Session session = namedSession(table, row);
+    readGeometry(table, row, session);
+    session.pose_rate = table.numberWithin(row, "pose_rate_hz", 0.5, 200.0);
+    session.imu_sign = table.numberWithin(row, "imu_sign_applied", -1.0, 1.0);
+    session.absolute_attitude = table.text(row, "roll_pitch").rfind("absolute", 0) == 0;
+    session.rows = static_cast<size_t>(table.integer(row, "n_rows"));
+    return session;
+  }
+  throw RecordingError(sessions_path + ": no session " + name +
+                       "; its radius and pose lag are needed (--session NAME names another row)");
+}
+
+}  // namespace tread::recordings

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/pattern/pattern.hpp"
+#include "common/recordings/twist_profile.hpp"
+
+// A folder of recorded drives: sessions.csv (robot, surface, geometry, lag of the poses),
+// steps_quality.csv (each held command, and whether its step is fit for use), steps/SESSION.csv
+// (what was driven, at 20 Hz, by step and window). Further columns and files are not looked at.
+namespace tread::recordings {
+
+/// What the wheels are told, as body motion of an ideal differential drive.
+struct BodyCommand {
+  double v = 0.0;  ///< [m/s] + forward
+  double w = 0.0;  ///< [rad/s] + counter-clockwise
+};
+
+/// One held command of a session.
+struct CommandStep {
+  int number = 0;
+  TrackCommand tracks;  ///< [m/s] of the wheels' rims, as commanded
+  bool ok = false;
+};
+
+/// What the tables say about one recording.
+struct Session {
+  std::string name;
+  std::string robot;
+  std::string surface;
+  double wheel_radius = 0.0;  ///< [m]
+  double baseline = 0.0;      ///< [m] that turns (v, w) commands into wheel speeds
+  double pose_lag = 0.0;      ///< [s] poses are logged this much after they were measured
+  // Of sessions.csv, for the import; readSessions() leaves them.
+  bool lag_kept = false;           ///< poses stay where they were logged; pose_lag is 0 then
+  double pose_rate = 0.0;          ///< [Hz]
+  double imu_sign = 1.0;           ///< of the gyro in raw files, so that + is counter-clockwise
+  bool absolute_attitude = false;  ///< roll and pitch in the map, not changes in a step
+  size_t rows = 0;                 ///< of the steps file
+  // Of readSessions() alone.
+  std::string problem;             ///< why its row cannot be used, in words; empty if it can
+  std::vector<CommandStep> steps;  ///< as steps_quality.csv lists them
+
+  size_t okSteps() const;
+};
+
+/// A row of sessions.csv; throws RecordingError with one clear line.
+Session readSession(const std::string& sessions_path, const std::string& name);
+
+/// (v, w) of an ideal differential drive of this baseline.
+BodyCommand bodyCommand(const TrackCommand& tracks, double baseline);
+/// And back.
+TrackCommand trackCommand(const BodyCommand& command, double baseline);
+
+/// All sessions of a folder, in the order of sessions.csv.
+/** Throws RecordingError with one clear line for a file that is missing or damaged. */
+std::vector<Session> readSessions(const std::string& folder);
+
+/// A steady window of a command step, smoothed.
+struct SteadyWindow {
+  std::string session;
+  int step = 0;         ///< number of the command in its session
+  int window = 0;       ///< 1 or 2 within its step
+  BodyCommand command;  ///< by the reference baseline of the robot
+  TwistProfile profile;
+};
+
+/// The steady windows (1 and 2) of a session, those that were left out by reason.
+struct SessionWindows {
+  std::vector<SteadyWindow> used;
+  std::map<std::string, int> left_out;
+};
+
+/// Reads steps/SESSION.csv and smooths its steady windows; commands by the reference baseline.
+/** A window's poses are its own rows with a new pose; the first row is not used, because windows
+ * were joined there. They were measured one pose lag before they were logged, so that a window of
+ * [t, t + T] tells of [t - lag, t + T - lag]; what of it lies before the motion has settled is not
+ * used. The profile is centred on the rest. Throws RecordingError. */
+SessionWindows readWindows(const std::string& folder, const Session& session, double baseline,
+                           double duration);
+
+/// The robot that a part of its name means: the whole name, else its beginning, else any part.
+/** Case does not matter; empty means the only robot. Throws RecordingError that lists the robots if
+ * none or several are meant. */
+std::string chooseRobot(const std::vector<Session>& sessions, const std::string& wanted);
+
+/// Sessions that are compared with each other.
+struct SessionChoice {
+  std::vector<Session> taken;         ///< in the order of sessions.csv
+  std::vector<std::string> left_out;  ///< a line for each other session of the robot, with why
+  double baseline = 0.0;              ///< [m] by which (v, w) are turned into wheel speeds
+};
+
+/// A session with fewer ok steps is not compared with others.
+inline constexpr size_t kLeastSteps = 20;
+
+/// |v| and |w| that 95 % of a session's ok commands do not exceed.
+BodyCommand reachOf(const Session& session);
+
+/// All sessions of the robot whose commands reach those of the patterns, on wheels of the same
+/// geometry.
+SessionChoice comparableSessions(const std::vector<Session>& sessions, const std::string& robot,
+                                 const BodyCommand& needed);
+
+/// Exactly these. Throws RecordingError for a name that is not one of the robot's sessions.
+SessionChoice namedSessions(const std::vector<Session>& sessions, const std::string& robot,
+                            const std::vector<std::string>& names);
+
+/// Surfaces of sessions, each once, in their order.
+std::vector<std::string> surfacesOf(const std::vector<Session>& sessions);
+
+}  // namespace tread::recordings
