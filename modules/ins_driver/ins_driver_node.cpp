@@ -85,7 +85,7 @@ InsDriverNode::InsDriverNode(const InsDriverConfig& config, Bus& bus, Link& link
 void InsDriverNode::step(int64_t utime) {
   const int64_t now = readLink(utime);
   publishFinished(now);
-  judge(now);
+  reportHealth(now);
   reportCounters(now);
   health_.step(now);
 }
@@ -173,7 +173,7 @@ std::string InsDriverNode::measurementProblem(int64_t utime) const {
   return origin_problem_;
 }
 
-void InsDriverNode::judge(int64_t utime) {
+void InsDriverNode::reportHealth(int64_t utime) {
   const std::string line = lineProblem(utime);
   if (!line.empty()) {
     health_.setState(health_t::HEALTH_FAILED, line);

@@ -34,7 +34,7 @@ class InsDriverNode : public Node {
   void loseLink();
   void publishFinished(int64_t utime);
   void keepOrigin();
-  void judge(int64_t utime);
+  void reportHealth(int64_t utime);
   std::string lineProblem(int64_t utime) const;
   std::string measurementProblem(int64_t utime) const;
   void reportCounters(int64_t utime);

@@ -51,7 +51,7 @@ void LidarDriverNode::step(int64_t utime) {
       health_.addToCounter("refused: " + last_refusal_);
     }
   }
-  judgeDevice(utime);
+  reportHealth(utime);
   health_.step(utime);
 }
 
@@ -76,7 +76,7 @@ void LidarDriverNode::publish(const RangeScan& scan) {
   health_.addToCounter("scans");
 }
 
-void LidarDriverNode::judgeDevice(int64_t utime) {
+void LidarDriverNode::reportHealth(int64_t utime) {
   const double silent = static_cast<double>(utime - last_scan_) * 1e-6;
   if (silent < config_.silence) return health_.setState(health_t::HEALTH_OK, "");
   std::ostringstream line;

@@ -38,7 +38,7 @@ class LidarDriverNode : public Node {
 
  private:
   void publish(const RangeScan& scan);
-  void judgeDevice(int64_t utime);
+  void reportHealth(int64_t utime);
 
   LidarDriverConfig config_;
   Bus& bus_;

@@ -31,8 +31,8 @@ void readGrid(ConfigReader& reader, LocalMapConfig& map) {
 
 void takeRobot(const ConfigReader& reader, const RobotDescription& robot, LocalMapConfig& map) {
   map.robot = robot.outline;
-  map.judge.robot_height = robot.height;
-  if (robot.height <= map.judge.step)
+  map.obstacle.robot_height = robot.height;
+  if (robot.height <= map.obstacle.step)
     throw reader.error("step",
                        "must be below the robot's height of " + metres(robot.height) + " m");
   const double highest = kVoxelsAboveGround * map.voxels.cell_size;
@@ -48,7 +48,7 @@ void readMap(ConfigReader& reader, LocalMapConfig& map) {
   reader.number("marking_range", map.marking_range, {0.5, 100.0}, "m");
   reader.number("clearing_range", map.clearing_range, {0.5, 100.0}, "m");
   reader.number("start_free_radius", map.start_free_radius, {0.0, 5.0}, "m");
-  reader.number("step", map.judge.step, {0.02, 1.0}, "m");
+  reader.number("step", map.obstacle.step, {0.02, 1.0}, "m");
   ConfigReader evidence = reader.section("evidence");
   evidence.number("hit", map.voxels.hit, {0.51, 0.99}, "");
   evidence.number("miss", map.voxels.miss, {0.01, 0.49}, "");

@@ -82,8 +82,8 @@ void MappingNode::hear(const ins_t& message) {
     beginNewMap();
   }
   const auto verdict = track_.push(message.utime, *T_map_body);
-  if (verdict == SpatialTrack::Verdict::kDoubted) health_.addToCounter("INS doubted: far off");
-  if (verdict == SpatialTrack::Verdict::kJump) beginNewMap();
+  if (verdict == SpatialTrack::PoseCheck::kDoubted) health_.addToCounter("INS doubted: far off");
+  if (verdict == SpatialTrack::PoseCheck::kJump) beginNewMap();
 }
 
 void MappingNode::beginNewMap() {
@@ -113,7 +113,7 @@ void MappingNode::refuse(const std::string& reason) {
 void MappingNode::step(int64_t utime) {
   while (!waiting_.empty() && tryFirst(utime) == Fate::kDone) waiting_.pop_front();
   publishTiles(utime);
-  judgeHealth(utime);
+  reportHealth(utime);
   health_.step(utime);
 }
 
@@ -163,7 +163,7 @@ void MappingNode::send(CellIndex index) {
   bus_.publish(kMap, message);
 }
 
-void MappingNode::judgeHealth(int64_t now) {
+void MappingNode::reportHealth(int64_t now) {
   const int64_t silence = microseconds(config_.silence);
   if (now - last_taken_ < silence) return health_.setState(health_t::HEALTH_OK, "");
   std::ostringstream line;

@@ -7,7 +7,7 @@
 
 #include "common/bus/health.hpp"
 #include "modules/mapping/core/spatial_track.hpp"
-#include "modules/mapping/core/tile_turns.hpp"
+#include "modules/mapping/core/tile_schedule.hpp"
 #include "modules/mapping/mapping_config.hpp"
 #include "modules/mapping/scan_reader.hpp"
 
@@ -37,7 +37,7 @@ class MappingNode : public Node {
   void refuse(const std::string& reason);
   void publishTiles(int64_t utime);
   void send(CellIndex tile);
-  void judgeHealth(int64_t now);
+  void reportHealth(int64_t now);
 
   MappingConfig config_;
   Bus& bus_;
@@ -45,7 +45,7 @@ class MappingNode : public Node {
   std::unique_ptr<LocalMap> map_;
   SpatialTrack track_;
   std::deque<WaitingScan> waiting_;
-  TileTurns turns_;
+  TileSchedule turns_;
   int64_t next_cycle_ = 0;
   int64_t seq_ = 0;
   bool heard_ = false;  // anything yet: only then the robot's time is known

@@ -11,7 +11,7 @@ namespace tread::mapping {
 namespace {
 
 constexpr int kMostBeams = 15000;
-constexpr int kLongestSweep = 1'000'000;
+constexpr int kLongestScan = 1'000'000;
 constexpr double kFarthestMount = 20.0;
 constexpr double kFarthestRange = 1000.0;
 
@@ -36,9 +36,9 @@ std::optional<Eigen::Isometry3d> sensorPose(const scan_t& message) {
 const char* faultOf(const scan_t& message) {
   const auto beams = static_cast<size_t>(message.num_beams);
   const auto points = static_cast<size_t>(message.num_points);
-  // The end of the sweep must be a time, too.
-  if (message.utime <= 0 || message.utime > INT64_MAX - kLongestSweep) return "no time";
-  if (message.duration < 0 || message.duration > kLongestSweep) return "duration out of 0..1 s";
+  // The end of the scan must be a time, too.
+  if (message.utime <= 0 || message.utime > INT64_MAX - kLongestScan) return "no time";
+  if (message.duration < 0 || message.duration > kLongestScan) return "duration out of 0..1 s";
   if (message.num_beams < 0 || message.num_points < 0 ||
       message.num_beams + message.num_points == 0 || message.num_beams > kMostBeams ||
       message.num_points > kMostBeams)

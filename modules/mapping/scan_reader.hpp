@@ -7,7 +7,7 @@
 
 #include <tread/scan_t.hpp>
 
-#include "modules/mapping/core/sweep.hpp"
+#include "modules/mapping/core/local_map.hpp"
 
 namespace tread::mapping {
 

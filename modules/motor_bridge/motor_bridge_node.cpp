@@ -62,7 +62,7 @@ void MotorBridgeNode::step(int64_t utime) {
   drive(utime);
   publishMotor(utime);
   publishExecutions(utime);
-  judge();
+  reportHealth();
   reportCounters(utime);
   health_.step(utime);
 }
@@ -124,7 +124,7 @@ void MotorBridgeNode::publishExecutions(int64_t utime) {
   next_execution_ = utime + kExecutionPeriod;
 }
 
-void MotorBridgeNode::judge() {
+void MotorBridgeNode::reportHealth() {
   const FailsafeOutputs& failsafe = output_.failsafe;
   if (!controller_->ready()) {
     health_.setState(health_t::HEALTH_FAILED, link_.address() + ": " + failsafe.standing_fault);

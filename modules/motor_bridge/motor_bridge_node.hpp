@@ -35,7 +35,7 @@ class MotorBridgeNode : public Node {
   void drive(int64_t utime);
   void publishMotor(int64_t utime);
   void publishExecutions(int64_t utime);
-  void judge();
+  void reportHealth();
   void reportCounters(int64_t utime);
 
   MotorBridgeConfig config_;

@@ -13,8 +13,8 @@ namespace {
 /// Keeps MOTOR and EXECUTION below their size limits, whatever an operator wrote as his reason.
 constexpr size_t kMaxReason = 120;
 
-Slot fromMessage(const program_slot_t& message) {
-  Slot slot;
+ProgramSlot fromMessage(const program_slot_t& message) {
+  ProgramSlot slot;
   slot.execution_id = message.execution_id;
   slot.pattern_id = message.slot_pattern_id;
   slot.set_version = message.slot_set_version;

@@ -35,21 +35,21 @@ TEST_CASE("a sentence comes out whole, however its bytes arrive") {
 TEST_CASE("each malformed line is refused with its own reason") {
   struct Case {
     std::string bytes;
-    Refusal reason;
+    SentenceRefusal reason;
   };
   const std::vector<Case> cases = {
-      {"$GPHDT,274.07,T\r\n", Refusal::kNoChecksum},
-      {"$GPHDT,274.07,T*0\r\n", Refusal::kNoChecksum},
-      {"$GPHDT,274.07,T*0G\r\n", Refusal::kNoChecksum},
-      {"$GPHDT,274.07,T*03 \r\n", Refusal::kNoChecksum},
-      {"$GPHDT,274.07,T*03*03\r\n", Refusal::kNoChecksum},
-      {"$\r\n", Refusal::kNoChecksum},
-      {"$GPHDT,274.07,T*04\r\n", Refusal::kWrongChecksum},
-      {"$GPHDT,274.08,T*03\r\n", Refusal::kWrongChecksum},
-      {"$GPHDT,274\x80.07,T*03\r\n", Refusal::kNotPrintable},
-      {std::string("$GPHDT,274\0.07,T*03\r\n", 22), Refusal::kNotPrintable},
-      {"$GPHDT,274.$GPHDT,,T*1B\r\n", Refusal::kCut},
-      {"$" + std::string(200, 'A') + "\r\n", Refusal::kTooLong},
+      {"$GPHDT,274.07,T\r\n", SentenceRefusal::kNoChecksum},
+      {"$GPHDT,274.07,T*0\r\n", SentenceRefusal::kNoChecksum},
+      {"$GPHDT,274.07,T*0G\r\n", SentenceRefusal::kNoChecksum},
+      {"$GPHDT,274.07,T*03 \r\n", SentenceRefusal::kNoChecksum},
+      {"$GPHDT,274.07,T*03*03\r\n", SentenceRefusal::kNoChecksum},
+      {"$\r\n", SentenceRefusal::kNoChecksum},
+      {"$GPHDT,274.07,T*04\r\n", SentenceRefusal::kWrongChecksum},
+      {"$GPHDT,274.08,T*03\r\n", SentenceRefusal::kWrongChecksum},
+      {"$GPHDT,274\x80.07,T*03\r\n", SentenceRefusal::kNotPrintable},
+      {std::string("$GPHDT,274\0.07,T*03\r\n", 22), SentenceRefusal::kNotPrintable},
+      {"$GPHDT,274.$GPHDT,,T*1B\r\n", SentenceRefusal::kCut},
+      {"$" + std::string(200, 'A') + "\r\n", SentenceRefusal::kTooLong},
   };
   for (const Case& c : cases) {
     CAPTURE(c.bytes);
@@ -67,7 +67,7 @@ TEST_CASE("the length limit counts the whole line with its end") {
   NmeaFramer framer;
   CHECK(bodiesOf(framer, line(head + std::string(longest - head.size(), '1'))).size() == 1);
   CHECK(bodiesOf(framer, line(head + std::string(longest - head.size() + 1, '1'))).empty());
-  CHECK(framer.refusals()[Refusal::kTooLong] == 1);
+  CHECK(framer.refusals()[SentenceRefusal::kTooLong] == 1);
 }
 
 TEST_CASE("sentences in are sentences out plus refusals, and nothing makes the framer deaf") {
@@ -89,5 +89,5 @@ TEST_CASE(
   bodiesOf(framer, "$GP" + std::string(5000, 'x'));
   bodiesOf(framer, std::string("\xAA\x44\x12\x1C\xFF\xFF\xFF\xFF", 8));
   CHECK(bodiesOf(framer, "$GPHDT,274.04,T*00\r\n").size() == 1);
-  CHECK(framer.refusals()[Refusal::kTooLong] == 1);
+  CHECK(framer.refusals()[SentenceRefusal::kTooLong] == 1);
 }

@@ -140,7 +140,7 @@ TEST_CASE("bt451.log: indoors, then outdoors, no heading, so never a pose") {
   const NmeaLogSummary summary = summarise(*log, {});
   CHECK(summary.counts.sentences == 144);
   CHECK(summary.counts.decoded == 68);
-  CHECK(summary.counts.refused[Refusal::kUnknownSentence] == 76);
+  CHECK(summary.counts.refused[SentenceRefusal::kUnknownSentence] == 76);
   CHECK(summary.counts.refused.total() == 76);
   CHECK_FALSE(summary.first_pose);
   // Two recordings in one file: the second was made earlier that day.

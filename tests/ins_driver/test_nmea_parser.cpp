@@ -25,7 +25,7 @@ Sentence good(const std::string& body) {
 /// Reason as text, so that a failure is readable; "" if the sentence is accepted.
 std::string refusal(const std::string& body) {
   const ParseResult result = parseNmea(body);
-  const auto* reason = std::get_if<Refusal>(&result);
+  const auto* reason = std::get_if<SentenceRefusal>(&result);
   return reason ? name(*reason) : "";
 }
 

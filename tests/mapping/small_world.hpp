@@ -71,10 +71,10 @@ struct RangeFinder {
     return {direction * (hit ? range : range_max), static_cast<double>(i) / (beams - 1), hit};
   }
 
-  Sweep sweep(const SmallWorld& world, int64_t utime, const Eigen::Isometry3d& T_map_body) const {
-    Sweep sweep{utime, T_map_body, T_map_body, T_body_sensor, {}};
-    for (int i = 0; i < beams; ++i) sweep.beams.push_back(cast(world, T_map_body, i));
-    return sweep;
+  Scan scan(const SmallWorld& world, int64_t utime, const Eigen::Isometry3d& T_map_body) const {
+    Scan scan{utime, T_map_body, T_map_body, T_body_sensor, {}};
+    for (int i = 0; i < beams; ++i) scan.beams.push_back(cast(world, T_map_body, i));
+    return scan;
   }
 };
 
@@ -82,7 +82,7 @@ struct RangeFinder {
 inline LocalMapConfig usualMap() {
   LocalMapConfig config;
   config.robot = {0.65, 0.65, 0.34};
-  config.judge.robot_height = 1.2;
+  config.obstacle.robot_height = 1.2;
   return config;
 }
 
@@ -94,7 +94,7 @@ struct Mapper {
                          int scans = 1) {
     LocalMap::Refusal refusal = LocalMap::Refusal::kNone;
     for (int i = 0; i < scans; ++i)
-      refusal = map.insert(range_finder.sweep(world, utime += 100'000, T_map_body));
+      refusal = map.insert(range_finder.scan(world, utime += 100'000, T_map_body));
     return refusal;
   }
   /// Drives straight, a scan every 10 cm.

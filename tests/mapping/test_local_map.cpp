@@ -92,12 +92,12 @@ TEST_CASE(
 TEST_CASE("returns from the robot itself are left out") {
   SmallWorld world;
   Mapper mapper;
-  Sweep sweep = mapper.range_finder.sweep(world, 2'000'000, world.stand(0, 0, 0));
+  Scan scan = mapper.range_finder.scan(world, 2'000'000, world.stand(0, 0, 0));
   for (size_t i = 0; i < 60; ++i) {
-    sweep.beams[i].end *= 0.3 / sweep.beams[i].end.norm();
-    sweep.beams[i].hit = true;
+    scan.beams[i].end *= 0.3 / scan.beams[i].end.norm();
+    scan.beams[i].hit = true;
   }
-  mapper.map.insert(sweep);
+  mapper.map.insert(scan);
   mapper.look(world, world.stand(2.0, 0, 0));
   REQUIRE(count(mapper, kObstacle, -2.0, -2.0, 4.0, 2.0) == 0);
 }
@@ -109,15 +109,15 @@ TEST_CASE("an overhang above the robot is driven under, one that is too low is n
   world.boxes = {wall(5.0, -2.0, 5.3, 2.0, 1.3, 2.0)};  // is hit at 5.0 tan 10 degrees + 0.5
   mapper.look(world, world.stand(0, 0, 0));
   RangeFinder level;
-  Sweep sweep = level.sweep(world, mapper.utime += 100'000, world.stand(0, 0, 0));
-  mapper.map.insert(sweep);
+  Scan scan = level.scan(world, mapper.utime += 100'000, world.stand(0, 0, 0));
+  mapper.map.insert(scan);
   REQUIRE(mapper.at(5.05, 0.0) == kFree);
 
   Mapper low;
   low.range_finder.T_body_sensor = isometryFrom({0.25, 0.0, 0.5}, {0.0, -6.0 * kDegree, 0.0});
   world.boxes = {wall(5.0, -2.0, 5.3, 2.0, 0.8, 2.0)};
   low.look(world, world.stand(0, 0, 0));
-  low.map.insert(level.sweep(world, low.utime += 100'000, world.stand(0, 0, 0)));
+  low.map.insert(level.scan(world, low.utime += 100'000, world.stand(0, 0, 0)));
   REQUIRE(low.at(5.05, 0.0) == kObstacle);
 }
 
@@ -234,18 +234,18 @@ TEST_CASE("a long wall seen at a grazing angle stays whole") {
   REQUIRE(count(mapper, kFree, 1.0, 0.3, 10.0, 0.8) == 90 * 5);
 }
 
-TEST_CASE("the beams of one sweep are put where the robot was at each beam's time") {
+TEST_CASE("the beams of one scan are put where the robot was at each beam's time") {
   SmallWorld world;
   world.boxes = {wall(-6.0, 5.0, 6.0, 5.3), wall(-6.0, -5.3, 6.0, -5.0)};
   Mapper mapper;
   // Turning left at 90 degrees in 0.1 s while the beams go round.
-  Sweep sweep = mapper.range_finder.sweep(world, 2'000'000, world.stand(0, 0, 0));
-  sweep.T_map_body_last = world.stand(0, 0, kPi / 2);
-  for (size_t i = 0; i < sweep.beams.size(); ++i) {
-    const double yaw = kPi / 2 * sweep.beams[i].share;
-    sweep.beams[i] = mapper.range_finder.cast(world, world.stand(0, 0, yaw), static_cast<int>(i));
+  Scan scan = mapper.range_finder.scan(world, 2'000'000, world.stand(0, 0, 0));
+  scan.T_map_body_last = world.stand(0, 0, kPi / 2);
+  for (size_t i = 0; i < scan.beams.size(); ++i) {
+    const double yaw = kPi / 2 * scan.beams[i].share;
+    scan.beams[i] = mapper.range_finder.cast(world, world.stand(0, 0, yaw), static_cast<int>(i));
   }
-  mapper.map.insert(sweep);
+  mapper.map.insert(scan);
   REQUIRE(count(mapper, kObstacle, -8.0, -8.0, 8.0, 8.0) ==
           count(mapper, kObstacle, -8.0, 4.9, 8.0, 5.2) +
               count(mapper, kObstacle, -8.0, -5.2, 8.0, -4.9));
@@ -270,7 +270,7 @@ TEST_CASE("the window follows the robot and forgets what is far") {
   REQUIRE(leafs > 10000);
 }
 
-TEST_CASE("sweeps that are not newer, of a robot on its side or too far away are refused") {
+TEST_CASE("scans that are not newer, of a robot on its side or too far away are refused") {
   SmallWorld world;
   Mapper mapper;
   mapper.look(world, world.stand(0, 0, 0));
@@ -284,7 +284,7 @@ TEST_CASE("sweeps that are not newer, of a robot on its side or too far away are
   REQUIRE(mapper.look(world, far) == LocalMap::Refusal::kTooFar);
 }
 
-TEST_CASE("the same sweeps give the same map") {
+TEST_CASE("the same scans give the same map") {
   const auto cells = [] {
     SmallWorld world;
     world.ground = [](double x, double y) { return 0.1 * std::sin(0.4 * x + 0.2 * y); };

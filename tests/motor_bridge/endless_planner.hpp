@@ -23,7 +23,7 @@ class EndlessPlanner {
       next_ = fresh();
     }
     if (last && last->run_id == run_id_) follow(*last);
-    Program program = makeProgram(now, running_, endless ? next_ : Slot{});
+    Program program = makeProgram(now, running_, endless ? next_ : ProgramSlot{});
     program.run_id = run_id_;
     return program;
   }
@@ -32,14 +32,14 @@ class EndlessPlanner {
 
  private:
   void follow(const ExecutionRecord& last) {
-    if (last.outcome != Outcome::kRunning && last.execution_id >= running_.execution_id) {
+    if (last.outcome != ExecutionOutcome::kRunning && last.execution_id >= running_.execution_id) {
       running_ = fresh();
       next_ = fresh();
     } else if (last.execution_id == next_.execution_id) {
       running_ = std::exchange(next_, fresh());
     }
   }
-  Slot fresh() {
+  ProgramSlot fresh() {
     ++id_;
     const double power = 0.2 + 0.01 * static_cast<double>(id_ % 50);
     return makeSlot(id_, commands, power, -power);
@@ -47,8 +47,8 @@ class EndlessPlanner {
 
   int64_t run_id_;
   int64_t id_ = 0;
-  Slot running_;
-  Slot next_;
+  ProgramSlot running_;
+  ProgramSlot next_;
 };
 
 }  // namespace tread::motor

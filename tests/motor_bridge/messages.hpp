@@ -14,7 +14,7 @@
 namespace tread::motor {
 
 /// A slot as the planner sends it.
-inline program_slot_t toMessage(const Slot& slot) {
+inline program_slot_t toMessage(const ProgramSlot& slot) {
   program_slot_t message{};
   message.execution_id = slot.execution_id;
   message.slot_pattern_id = slot.pattern_id;
@@ -56,7 +56,7 @@ inline std::optional<ExecutionRecord> newest(const execution_t& message) {
   ExecutionRecord record;
   record.run_id = newest.record_run_id;
   record.execution_id = newest.record_execution_id;
-  record.outcome = static_cast<Outcome>(newest.outcome);
+  record.outcome = static_cast<ExecutionOutcome>(newest.outcome);
   return record;
 }
 

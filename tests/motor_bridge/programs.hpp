@@ -9,8 +9,9 @@
 namespace tread::motor {
 
 /// A slot of constant power; period 50 ms.
-inline Slot makeSlot(int64_t execution_id, int commands, double left = 0.5, double right = 0.5) {
-  Slot slot;
+inline ProgramSlot makeSlot(int64_t execution_id, int commands, double left = 0.5,
+                            double right = 0.5) {
+  ProgramSlot slot;
   slot.execution_id = execution_id;
   slot.pattern_id = static_cast<int32_t>(100 + execution_id);
   slot.set_version = 7;
@@ -21,7 +22,8 @@ inline Slot makeSlot(int64_t execution_id, int commands, double left = 0.5, doub
 }
 
 /// A program of run 1 sent at utime.
-inline Program makeProgram(int64_t utime, const Slot& running, const Slot& next = {}) {
+inline Program makeProgram(int64_t utime, const ProgramSlot& running,
+                           const ProgramSlot& next = {}) {
   Program program;
   program.utime = utime;
   program.seq = utime;

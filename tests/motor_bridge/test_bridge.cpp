@@ -69,7 +69,7 @@ TEST_CASE("a silent planner: zero one step after the lease, then ARM is needed")
   CHECK(world.now - lease_end <= BridgeWorld::kStep);
   CHECK(world.state() == State::kDisarmed);
   CHECK(world.reason() == "no good PROGRAM within its lease");
-  CHECK(world.last().outcome == Outcome::kAborted);
+  CHECK(world.last().outcome == ExecutionOutcome::kAborted);
   CHECK(world.last().reason == "no good PROGRAM within its lease");
   world.planner_alive = true;
   world.run(5'000'000);
@@ -86,16 +86,16 @@ TEST_CASE(
   world.drive();
   world.planner_alive = false;
   Program last = world.planner.plan(world.now, newest(world.bridge.executions()));
-  last.next = Slot{};
+  last.next = ProgramSlot{};
   world.bridge.receive(last, world.now);
-  while (world.last().outcome == Outcome::kRunning) {
+  while (world.last().outcome == ExecutionOutcome::kRunning) {
     world.step();
     last.utime = world.now;
     world.bridge.receive(last, world.now);
   }
   CHECK(isZero(world.out.command));
   CHECK(world.now == world.last().end_utime);
-  CHECK(world.last().outcome == Outcome::kCompleted);
+  CHECK(world.last().outcome == ExecutionOutcome::kCompleted);
   CHECK(world.state() == State::kStopping);
   world.planner_alive = true;
   world.run(100'000);
@@ -106,12 +106,12 @@ TEST_CASE("an empty running slot stops at once and stays armed") {
   BridgeWorld world;
   world.drive();
   world.planner_alive = false;
-  world.bridge.receive(makeProgram(world.now + 1, Slot{}), world.now + 1);
+  world.bridge.receive(makeProgram(world.now + 1, ProgramSlot{}), world.now + 1);
   CHECK(timeToZero(world) == BridgeWorld::kStep);
   CHECK(world.state() == State::kStopping);
   CHECK(world.reason() == "stopped by the planner");
   CHECK(world.last().reason == "stopped by the planner");
-  CHECK(world.last().outcome == Outcome::kAborted);
+  CHECK(world.last().outcome == ExecutionOutcome::kAborted);
 }
 
 TEST_CASE("a silent INS stops 100 ms later") {
@@ -178,7 +178,7 @@ TEST_CASE("one bad slot in one program stops, whichever slot it is") {
       BridgeWorld world;
       world.drive();
       Program program = world.planner.plan(world.now + 1, newest(world.bridge.executions()));
-      Slot& slot = in_next ? program.next : program.running;
+      ProgramSlot& slot = in_next ? program.next : program.running;
       if (fault == 0) slot.series[1].left = std::numeric_limits<double>::quiet_NaN();
       if (fault == 1) slot.series[1].left = 1.5;
       if (fault == 2) slot.kind = CommandKind::kTrackSpeed;

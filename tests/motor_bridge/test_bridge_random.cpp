@@ -82,7 +82,7 @@ class Chaos {
 
   void spoil(Program& program) {
     if (!chance(0.002)) return;
-    Slot& slot = chance(0.5) ? program.running : program.next;
+    ProgramSlot& slot = chance(0.5) ? program.running : program.next;
     switch (random_() % 7) {
       case 0:
         slot.series[0].left = std::numeric_limits<double>::quiet_NaN();
@@ -94,10 +94,10 @@ class Chaos {
         slot.kind = CommandKind::kTrackSpeed;
         break;
       case 3:
-        program.running = Slot{};
+        program.running = ProgramSlot{};
         break;
       case 4:
-        program.next = Slot{};
+        program.next = ProgramSlot{};
         break;
       case 5:
         program.utime += static_cast<int64_t>(random_() % 10'000'000) - 5'000'000;

@@ -12,17 +12,17 @@ using namespace tread::motor;
 
 TEST_CASE("a slot within its limits has no fault, and an empty slot neither") {
   CHECK(checkSlot(makeSlot(1, 20), {}) == SlotFault::kNone);
-  CHECK(checkSlot(Slot{}, {}) == SlotFault::kNone);
+  CHECK(checkSlot(ProgramSlot{}, {}) == SlotFault::kNone);
 }
 
 TEST_CASE("full power passes although 32-bit floats may round it up") {
-  Slot slot = makeSlot(1, 20, 1.0, -1.0);
+  ProgramSlot slot = makeSlot(1, 20, 1.0, -1.0);
   slot.series[3].left = std::nextafter(1.0F, 2.0F);
   CHECK(checkSlot(slot, {}) == SlotFault::kNone);
 }
 
 TEST_CASE("every fault of a slot is found and named") {
-  Slot slot = makeSlot(5, 20);
+  ProgramSlot slot = makeSlot(5, 20);
   SlotFault expected = SlotFault::kNone;
   SECTION("negative id") {
     slot.execution_id = -5;

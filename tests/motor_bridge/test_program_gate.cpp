@@ -15,7 +15,7 @@ namespace {
 
 constexpr int64_t kNow = 10'000'000;
 
-Refusal admit(ProgramGate& gate, const Program& program, int64_t now = kNow) {
+ProgramRefusal admit(ProgramGate& gate, const Program& program, int64_t now = kNow) {
   return gate.admit(program, now, true).refusal;
 }
 
@@ -23,27 +23,27 @@ Refusal admit(ProgramGate& gate, const Program& program, int64_t now = kNow) {
 
 TEST_CASE("programs from the future and older than the lease are refused") {
   ProgramGate gate({});
-  CHECK(admit(gate, makeProgram(kNow + 50'001, makeSlot(1, 4))) == Refusal::kFromFuture);
-  CHECK(admit(gate, makeProgram(kNow - 200'001, makeSlot(1, 4))) == Refusal::kTooOld);
-  CHECK(admit(gate, makeProgram(kNow - 200'000, makeSlot(1, 4))) == Refusal::kNone);
-  CHECK(admit(gate, makeProgram(kNow + 50'000, makeSlot(1, 4))) == Refusal::kNone);
+  CHECK(admit(gate, makeProgram(kNow + 50'001, makeSlot(1, 4))) == ProgramRefusal::kFromFuture);
+  CHECK(admit(gate, makeProgram(kNow - 200'001, makeSlot(1, 4))) == ProgramRefusal::kTooOld);
+  CHECK(admit(gate, makeProgram(kNow - 200'000, makeSlot(1, 4))) == ProgramRefusal::kNone);
+  CHECK(admit(gate, makeProgram(kNow + 50'000, makeSlot(1, 4))) == ProgramRefusal::kNone);
 }
 
 TEST_CASE("stamp zero is not now, and lease zero is not for ever") {
   ProgramGate gate({});
-  CHECK(admit(gate, makeProgram(0, makeSlot(1, 4))) == Refusal::kTooOld);
+  CHECK(admit(gate, makeProgram(0, makeSlot(1, 4))) == ProgramRefusal::kTooOld);
   Program program = makeProgram(kNow, makeSlot(1, 4));
   program.lease_us = 0;
-  CHECK(admit(gate, program) == Refusal::kBadLease);
+  CHECK(admit(gate, program) == ProgramRefusal::kBadLease);
   program.lease_us = -1;
-  CHECK(admit(gate, program) == Refusal::kBadLease);
+  CHECK(admit(gate, program) == ProgramRefusal::kBadLease);
 }
 
 TEST_CASE("duplicated and reordered programs are refused and do not renew anything") {
   ProgramGate gate({});
-  CHECK(admit(gate, makeProgram(kNow, makeSlot(1, 4))) == Refusal::kNone);
-  CHECK(admit(gate, makeProgram(kNow, makeSlot(1, 4))) == Refusal::kOutOfOrder);
-  CHECK(admit(gate, makeProgram(kNow - 50'000, makeSlot(1, 4))) == Refusal::kOutOfOrder);
+  CHECK(admit(gate, makeProgram(kNow, makeSlot(1, 4))) == ProgramRefusal::kNone);
+  CHECK(admit(gate, makeProgram(kNow, makeSlot(1, 4))) == ProgramRefusal::kOutOfOrder);
+  CHECK(admit(gate, makeProgram(kNow - 50'000, makeSlot(1, 4))) == ProgramRefusal::kOutOfOrder);
   CHECK_FALSE(gate.leaseValid(kNow));
 }
 
@@ -77,21 +77,21 @@ TEST_CASE(
   CHECK(gate.admit(makeProgram(kNow, makeSlot(1, 4)), kNow, false).new_run);
   Program other = makeProgram(kNow + 50'000, makeSlot(1, 4));
   other.run_id = 2;
-  CHECK(gate.admit(other, kNow + 50'000, false).refusal == Refusal::kRunChanged);
-  const ProgramGate::Verdict adopted = gate.admit(other, kNow + 50'000, true);
-  CHECK(adopted.refusal == Refusal::kNone);
+  CHECK(gate.admit(other, kNow + 50'000, false).refusal == ProgramRefusal::kRunChanged);
+  const ProgramGate::Admission adopted = gate.admit(other, kNow + 50'000, true);
+  CHECK(adopted.refusal == ProgramRefusal::kNone);
   CHECK(adopted.new_run);
   CHECK(admit(gate, makeProgram(kNow + 40'000, makeSlot(2, 4)), kNow + 60'000) ==
-        Refusal::kOutOfOrder);
+        ProgramRefusal::kOutOfOrder);
 }
 
 TEST_CASE("bad slots are refused in both places") {
   ProgramGate gate({});
-  Slot bad = makeSlot(2, 4);
+  ProgramSlot bad = makeSlot(2, 4);
   bad.series[0].left = 2.0;
   CHECK(gate.admit(makeProgram(kNow, bad), kNow, true).slot_fault == SlotFault::kOutOfRange);
   CHECK(gate.admit(makeProgram(kNow + 1, makeSlot(1, 4), bad), kNow + 1, true).refusal ==
-        Refusal::kBadSlot);
+        ProgramRefusal::kBadSlot);
 }
 
 TEST_CASE("the INS limit is three periods, at least 100 ms") {
@@ -123,15 +123,15 @@ TEST_CASE("INS from the future, out of the past or without position or heading d
 
 TEST_CASE("permission to drive must be fresh, newer than the last stop, and is used once") {
   OperatorRequests requests({});
-  using Verdict = OperatorRequests::Verdict;
+  using Effect = OperatorRequests::Effect;
   const ArmRequest arm{kNow, true, "operator", "go"};
-  CHECK(requests.judge(arm, kNow, kNow - 1) == Verdict::kArm);
-  CHECK(requests.judge(arm, kNow + 1'500'001, 0) == Verdict::kIgnored);
-  CHECK(requests.judge(arm, kNow - 50'001, 0) == Verdict::kIgnored);
-  CHECK(requests.judge(arm, kNow, kNow) == Verdict::kIgnored);
+  CHECK(requests.classify(arm, kNow, kNow - 1) == Effect::kArm);
+  CHECK(requests.classify(arm, kNow + 1'500'001, 0) == Effect::kIgnored);
+  CHECK(requests.classify(arm, kNow - 50'001, 0) == Effect::kIgnored);
+  CHECK(requests.classify(arm, kNow, kNow) == Effect::kIgnored);
   requests.consume(arm);
-  CHECK(requests.judge(arm, kNow, 0) == Verdict::kIgnored);
-  CHECK(requests.judge({0, false, "anyone", "stop"}, kNow, kNow) == Verdict::kDisarm);
+  CHECK(requests.classify(arm, kNow, 0) == Effect::kIgnored);
+  CHECK(requests.classify({0, false, "anyone", "stop"}, kNow, kNow) == Effect::kDisarm);
 }
 
 TEST_CASE("an E-stop always counts, its clearing must be fresh and newer") {
@@ -156,11 +156,11 @@ TEST_CASE("an E-stop stamped in the far future can still be cleared") {
 TEST_CASE("the smallest utime of all is old, not new: no difference overflows") {
   constexpr int64_t kBeginning = std::numeric_limits<int64_t>::min();
   ProgramGate gate({});
-  CHECK(admit(gate, makeProgram(kBeginning, makeSlot(1, 4))) == Refusal::kTooOld);
+  CHECK(admit(gate, makeProgram(kBeginning, makeSlot(1, 4))) == ProgramRefusal::kTooOld);
   InsWatch watch({});
   watch.receive({kBeginning, true}, kNow);
   CHECK(watch.fault(kNow) == "no INS yet");
   OperatorRequests requests({});
-  CHECK(requests.judge({kBeginning, true, "operator", "go"}, kNow, kBeginning) ==
-        OperatorRequests::Verdict::kIgnored);
+  CHECK(requests.classify({kBeginning, true, "operator", "go"}, kNow, kBeginning) ==
+        OperatorRequests::Effect::kIgnored);
 }

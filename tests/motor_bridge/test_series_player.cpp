@@ -13,7 +13,7 @@ namespace {
 constexpr int64_t kStart = 5'000'000;
 
 /// A player that started execution 1 (4 commands of 50 ms) at kStart, next as given.
-SeriesPlayer playing(const Slot& next = {}) {
+SeriesPlayer playing(const ProgramSlot& next = {}) {
   SeriesPlayer player;
   player.beginRun(1);
   REQUIRE(player.offer(makeProgram(kStart, makeSlot(1, 4), next), kStart) == Offer::kAccepted);
@@ -26,7 +26,7 @@ SeriesPlayer playing(const Slot& next = {}) {
 TEST_CASE("each command is held for one period, to the microsecond") {
   SeriesPlayer player;
   player.beginRun(1);
-  Slot slot = makeSlot(1, 4);
+  ProgramSlot slot = makeSlot(1, 4);
   for (size_t i = 0; i < 4; ++i) slot.series[i].left = 0.1 * static_cast<double>(i + 1);
   player.offer(makeProgram(kStart, slot), kStart);
   player.start(kStart);
@@ -77,12 +77,12 @@ TEST_CASE("the log keeps the last eight executions with their times and outcome"
   const auto& records = player.log().records();
   REQUIRE(records.size() == 8);
   CHECK(records.front().execution_id == 5);
-  CHECK(records.front().outcome == Outcome::kCompleted);
+  CHECK(records.front().outcome == ExecutionOutcome::kCompleted);
   CHECK(records.back().execution_id == 12);
   CHECK(records.back().pattern_id == 112);
   CHECK(records.back().set_version == 7);
   CHECK(records.back().run_id == 1);
-  CHECK(records.back().outcome == Outcome::kAborted);
+  CHECK(records.back().outcome == ExecutionOutcome::kAborted);
   CHECK(records.back().end_utime == kStart + 11 * 200'000 + 70'000);
   CHECK(records.back().commands_played == 1);
   CHECK(records.back().commands_total == 4);
@@ -156,7 +156,7 @@ TEST_CASE(
 
 TEST_CASE("an empty running slot is the planner's stop") {
   SeriesPlayer player = playing();
-  CHECK(player.offer(makeProgram(0, Slot{}), kStart) == Offer::kStop);
+  CHECK(player.offer(makeProgram(0, ProgramSlot{}), kStart) == Offer::kStop);
 }
 
 TEST_CASE("commands whose period passed between two steps are counted as skipped, not as played") {
@@ -167,6 +167,6 @@ TEST_CASE("commands whose period passed between two steps are counted as skipped
   CHECK(player.advance(kStart + 260'000).skipped == 2);
   player.give();
   CHECK(player.log().records()[0].commands_played == 2);
-  CHECK(player.log().records()[0].outcome == Outcome::kCompleted);
+  CHECK(player.log().records()[0].outcome == ExecutionOutcome::kCompleted);
   CHECK(player.log().records()[1].commands_played == 1);
 }

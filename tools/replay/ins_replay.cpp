@@ -10,8 +10,8 @@
 #include "common/messages/ins_messages.hpp"
 #include "common/recordings/text_file.hpp"
 #include "common/report/plot.hpp"
-#include "modules/ins_driver/nmea/nmea_log.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"
+#include "modules/ins_driver/nmea/nmea_log.hpp"
 
 namespace tread {
 namespace {
@@ -129,7 +129,7 @@ std::string reportOf(const InsReplay& replay) {
   out << "\nrefused: " << counts.refused.total();
   for (size_t i = 0; i < ins::kRefusalCount; ++i) {
     if (counts.refused.of[i] == 0) continue;
-    out << ", " << ins::name(static_cast<ins::Refusal>(i)) << " " << counts.refused.of[i];
+    out << ", " << ins::name(static_cast<ins::SentenceRefusal>(i)) << " " << counts.refused.of[i];
   }
   out << "\nINS messages: " << replay.track.size() << ", with position and heading " << replay.poses
       << ", gaps " << replay.epochs.gaps << ", jumps " << replay.epochs.jumps << "\n";

@@ -134,7 +134,7 @@ mapping::MappingConfig outdoorConfig() {
   config.map.marking_range = config.map.clearing_range = 20.0;
   config.map.window_tiles = 14;
   config.map.robot = {0.25, 0.25, 0.21};
-  config.map.judge.robot_height = 1.2;
+  config.map.obstacle.robot_height = 1.2;
   config.map.ground.slope_doubt = 0.0;  // the poses are level: nothing is known of slopes
   return config;
 }
@@ -231,7 +231,7 @@ mapping::MappingConfig indoorConfig() {
   config.map.marking_range = config.map.clearing_range = 5.0;
   config.map.robot = {0.1, 0.1, 0.1};
   config.map.start_free_radius = 0.2;
-  config.map.judge = {0.05, 0.3};
+  config.map.obstacle = {0.05, 0.3};
   config.map.ground.slope_doubt = 0.0;  // a level floor
   config.max_ins_gap = 0.3;             // the motion capture loses the robot now and then
   return config;

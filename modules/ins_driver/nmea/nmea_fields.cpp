@@ -67,7 +67,7 @@ NmeaFields::NmeaFields(std::string_view body) {
     fields_[index] = body.substr(0, comma);
     if (comma == std::string_view::npos) break;
     if (index == kMaxFields) {
-      refuse(Refusal::kFieldCount);
+      refuse(SentenceRefusal::kFieldCount);
       break;
     }
     ++index;
@@ -76,7 +76,7 @@ NmeaFields::NmeaFields(std::string_view body) {
   count_ = index;
 }
 
-void NmeaFields::refuse(Refusal reason) {
+void NmeaFields::refuse(SentenceRefusal reason) {
   if (!refusal_) refusal_ = reason;
 }
 
@@ -85,11 +85,11 @@ std::optional<double> NmeaFields::number(size_t index, double low, double high, 
   if (field.empty()) return std::nullopt;
   const std::optional<double> value = decimal(field);
   if (!value) {
-    refuse(Refusal::kBadField);
+    refuse(SentenceRefusal::kBadField);
     return std::nullopt;
   }
   if (*value < low || *value > high) {
-    refuse(Refusal::kOutOfRange);
+    refuse(SentenceRefusal::kOutOfRange);
     return std::nullopt;
   }
   return *value * scale;
@@ -99,12 +99,12 @@ std::optional<int> NmeaFields::integer(size_t index, int low, int high) {
   const std::string_view field = text(index);
   if (field.empty()) return std::nullopt;
   if (!allDigits(field) || field.size() > 9) {
-    refuse(Refusal::kBadField);
+    refuse(SentenceRefusal::kBadField);
     return std::nullopt;
   }
   const int value = digits(field);
   if (value < low || value > high) {
-    refuse(Refusal::kOutOfRange);
+    refuse(SentenceRefusal::kOutOfRange);
     return std::nullopt;
   }
   return value;
@@ -114,7 +114,7 @@ char NmeaFields::letter(size_t index, std::string_view allowed) {
   const std::string_view field = text(index);
   if (field.empty()) return '\0';
   if (field.size() == 1 && allowed.find(field[0]) != std::string_view::npos) return field[0];
-  refuse(Refusal::kBadField);
+  refuse(SentenceRefusal::kBadField);
   return '\0';
 }
 
@@ -125,7 +125,7 @@ std::optional<int64_t> NmeaFields::timeOfDay(size_t index) {
   const bool with_fraction =
       field.size() > 7 && field.size() <= 16 && field[6] == '.' && allDigits(field.substr(7));
   if (!allDigits(field.substr(0, 6)) || (!whole && !with_fraction)) {
-    refuse(Refusal::kBadField);
+    refuse(SentenceRefusal::kBadField);
     return std::nullopt;
   }
   const int hour = digits(field.substr(0, 2));
@@ -133,7 +133,7 @@ std::optional<int64_t> NmeaFields::timeOfDay(size_t index) {
   const int second = digits(field.substr(4, 2));
   const bool leap_second = hour == 23 && minute == 59 && second == 60;
   if (hour > 23 || minute > 59 || (second > 59 && !leap_second)) {
-    refuse(Refusal::kOutOfRange);
+    refuse(SentenceRefusal::kOutOfRange);
     return std::nullopt;
   }
   int64_t fraction = 0;
@@ -154,12 +154,12 @@ std::optional<double> NmeaFields::angle(size_t index, size_t degree_digits, doub
   const std::optional<double> minutes =
       of_its_form ? decimal(field.substr(degree_digits)) : std::nullopt;
   if (!minutes) {
-    refuse(Refusal::kBadField);
+    refuse(SentenceRefusal::kBadField);
     return std::nullopt;
   }
   const double degrees = digits(field.substr(0, degree_digits)) + *minutes / 60.0;
   if (*minutes >= 60.0 || degrees > limit) {
-    refuse(Refusal::kOutOfRange);
+    refuse(SentenceRefusal::kOutOfRange);
     return std::nullopt;
   }
   return (hemisphere == hemispheres[0] ? degrees : -degrees) * kRadPerDeg;
@@ -183,7 +183,7 @@ std::optional<CivilDate> NmeaFields::checked(const CivilDate& date) {
       date.day <= daysInMonth(date.year, date.month)) {
     return date;
   }
-  refuse(Refusal::kOutOfRange);
+  refuse(SentenceRefusal::kOutOfRange);
   return std::nullopt;
 }
 
@@ -191,7 +191,7 @@ std::optional<CivilDate> NmeaFields::shortDate(size_t index) {
   const std::string_view field = text(index);
   if (field.empty()) return std::nullopt;
   if (field.size() != 6 || !allDigits(field)) {
-    refuse(Refusal::kBadField);
+    refuse(SentenceRefusal::kBadField);
     return std::nullopt;
   }
   const int year = digits(field.substr(4, 2));

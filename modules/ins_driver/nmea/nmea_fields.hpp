@@ -27,7 +27,7 @@ class NmeaFields {
   std::string_view text(size_t index) const {
     return index <= count_ ? fields_[index] : std::string_view{};
   }
-  std::optional<Refusal> refusal() const { return refusal_; }
+  std::optional<SentenceRefusal> refusal() const { return refusal_; }
 
   /// Decimal number without exponent, times `scale`, its raw value within [low, high].
   std::optional<double> number(size_t index, double low, double high, double scale = 1.0);
@@ -47,14 +47,14 @@ class NmeaFields {
   std::optional<CivilDate> date(size_t index);
 
  private:
-  void refuse(Refusal reason);
+  void refuse(SentenceRefusal reason);
   std::optional<double> angle(size_t index, size_t degree_digits, double limit,
                               std::string_view hemispheres);
   std::optional<CivilDate> checked(const CivilDate& date);
 
   std::array<std::string_view, kMaxFields + 1> fields_{};
   size_t count_ = 0;
-  std::optional<Refusal> refusal_;
+  std::optional<SentenceRefusal> refusal_;
 };
 
 /// Days since 1970-01-01 of a Gregorian date.

@@ -43,9 +43,9 @@ std::optional<std::string_view> NmeaFramer::push(char byte) {
   }
   if (line_end) return endOfLine();
   if (!printable(byte)) {
-    refuse(Refusal::kNotPrintable);
+    refuse(SentenceRefusal::kNotPrintable);
   } else if (line_.size() + kFraming >= kMaxLength) {
-    refuse(Refusal::kTooLong);
+    refuse(SentenceRefusal::kTooLong);
   } else {
     line_.push_back(byte);
   }
@@ -53,10 +53,10 @@ std::optional<std::string_view> NmeaFramer::push(char byte) {
 }
 
 void NmeaFramer::interrupt() {
-  if (inside_) refuse(Refusal::kCut);
+  if (inside_) refuse(SentenceRefusal::kCut);
 }
 
-void NmeaFramer::refuse(Refusal reason) {
+void NmeaFramer::refuse(SentenceRefusal reason) {
   refusals_.add(reason);
   inside_ = false;
 }
@@ -68,12 +68,12 @@ std::optional<std::string_view> NmeaFramer::endOfLine() {
   const int high = at_its_place ? hexDigit(line[star + 1]) : -1;
   const int low = at_its_place ? hexDigit(line[star + 2]) : -1;
   if (high < 0 || low < 0) {
-    refuse(Refusal::kNoChecksum);
+    refuse(SentenceRefusal::kNoChecksum);
     return std::nullopt;
   }
   const std::string_view body = line.substr(0, star);
   if (nmeaChecksum(body) != high * 16 + low) {
-    refuse(Refusal::kWrongChecksum);
+    refuse(SentenceRefusal::kWrongChecksum);
     return std::nullopt;
   }
   inside_ = false;

@@ -30,21 +30,21 @@ class NmeaFramer {
   int64_t sentences() const { return sentences_; }
   /// Bytes that belonged to no sentence, line ends not counted.
   int64_t strayBytes() const { return stray_bytes_; }
-  const RefusalCounts& refusals() const { return refusals_; }
+  const SentenceRefusals& refusals() const { return refusals_; }
 
   /// Forgets a sentence under way: the link was closed, or the log is at its end. It counts as cut
   /// short.
   void interrupt();
 
  private:
-  void refuse(Refusal reason);
+  void refuse(SentenceRefusal reason);
   std::optional<std::string_view> endOfLine();
 
   std::string line_;  ///< what came after '$'
   bool inside_ = false;
   int64_t sentences_ = 0;
   int64_t stray_bytes_ = 0;
-  RefusalCounts refusals_;
+  SentenceRefusals refusals_;
 };
 
 /// Exclusive-or of all characters: the NMEA 0183 checksum of what stands between '$' and '*'.

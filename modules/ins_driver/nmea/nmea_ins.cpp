@@ -26,11 +26,12 @@ bool isEmpty(const NmeaSentence& sentence) {
 }
 
 /// "cut short 3, wrong checksum 12".
-std::string listed(const RefusalCounts& refused) {
+std::string listed(const SentenceRefusals& refused) {
   std::ostringstream text;
   for (size_t i = 0; i < kRefusalCount; ++i) {
     if (refused.of[i] == 0) continue;
-    text << (text.tellp() > 0 ? ", " : "") << name(static_cast<Refusal>(i)) << " " << refused.of[i];
+    text << (text.tellp() > 0 ? ", " : "") << name(static_cast<SentenceRefusal>(i)) << " "
+         << refused.of[i];
   }
   return text.str();
 }
@@ -95,7 +96,7 @@ void NmeaIns::push(std::string_view bytes, int64_t arrival) {
 
 void NmeaIns::take(std::string_view body) {
   const ParseResult result = parseNmea(body);
-  if (const auto* reason = std::get_if<Refusal>(&result)) {
+  if (const auto* reason = std::get_if<SentenceRefusal>(&result)) {
     counts_.refused.add(*reason);
     // Even a sentence that we do not know shows that the device is alive.
     last_sentence_ = arrival_;
@@ -104,7 +105,7 @@ void NmeaIns::take(std::string_view body) {
   const NmeaSentence& sentence = std::get<NmeaSentence>(result);
   last_sentence_ = arrival_;
   if (!collector_.push(sentence, sentence_start_)) {
-    counts_.refused.add(Refusal::kLate);
+    counts_.refused.add(SentenceRefusal::kLate);
     return;
   }
   ++counts_.decoded;
@@ -167,7 +168,7 @@ std::vector<std::pair<std::string, int64_t>> NmeaIns::counters() const {
     if (line.empty[i] > 0) all.emplace_back(empty, line.empty[i]);
   }
   for (size_t i = 0; i < kRefusalCount; ++i) {
-    const std::string refused = std::string("refused: ") + name(static_cast<Refusal>(i));
+    const std::string refused = std::string("refused: ") + name(static_cast<SentenceRefusal>(i));
     if (line.refused.of[i] > 0) all.emplace_back(refused, line.refused.of[i]);
   }
   const AssemblerCounts& epochs = assembler_.counts();

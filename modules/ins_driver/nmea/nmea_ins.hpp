@@ -28,7 +28,7 @@ struct NmeaCounts {
   std::array<int64_t, kSentenceTypes> of_type{};  ///< decoded, in the order of kSentenceNames
   std::array<int64_t, kSentenceTypes>
       empty{};  ///< of those: well-formed, but no measurement in them
-  RefusalCounts refused;
+  SentenceRefusals refused;
 };
 
 /// Reads what an NMEA device adds to the driver's configuration; its mounting is the robot's.

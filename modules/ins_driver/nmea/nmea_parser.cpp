@@ -158,9 +158,9 @@ std::optional<int64_t> timeOfDay(const NmeaSentence& sentence) {
 ParseResult parseNmea(std::string_view body) {
   NmeaFields fields(body);
   const Reader* reader = readerFor(fields);
-  if (!reader) return Refusal::kUnknownSentence;
+  if (!reader) return SentenceRefusal::kUnknownSentence;
   if (fields.count() < reader->min_fields || fields.count() > reader->max_fields)
-    return Refusal::kFieldCount;
+    return SentenceRefusal::kFieldCount;
   NmeaSentence sentence = reader->read(fields);
   if (fields.refusal()) return *fields.refusal();
   return sentence;

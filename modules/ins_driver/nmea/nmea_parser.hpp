@@ -10,7 +10,7 @@
 namespace tread::ins {
 
 /// A sentence in SI units and the house's frames, or why it is none.
-using ParseResult = std::variant<NmeaSentence, Refusal>;
+using ParseResult = std::variant<NmeaSentence, SentenceRefusal>;
 
 /// Reads what stands between '$' and '*' (checksum already verified).
 /** GGA, RMC, VTG, HDT, ROT and ZDA of any two-letter talker, and PASHR (field lists: NMEA 0183

@@ -107,7 +107,7 @@ inline constexpr const char* kSentenceNames[kSentenceTypes] = {"GGA",   "RMC", "
 std::optional<int64_t> timeOfDay(const NmeaSentence& sentence);
 
 /// Why a sentence was not used.
-enum class Refusal : uint8_t {
+enum class SentenceRefusal : uint8_t {
   kCut,              ///< a new '$' came before the end of the line
   kNotPrintable,     ///< a byte that NMEA 0183 does not allow in a sentence
   kTooLong,          ///< no line end within the length limit
@@ -121,22 +121,22 @@ enum class Refusal : uint8_t {
   kCount
 };
 
-inline constexpr size_t kRefusalCount = static_cast<size_t>(Refusal::kCount);
+inline constexpr size_t kRefusalCount = static_cast<size_t>(SentenceRefusal::kCount);
 
 /// The reason in words, as counters and reports print it.
-constexpr const char* name(Refusal reason) {
+constexpr const char* name(SentenceRefusal reason) {
   constexpr const char* kNames[kRefusalCount] = {
       "cut short",        "not printable", "too long",  "no checksum",  "wrong checksum",
       "unknown sentence", "field count",   "bad field", "out of range", "late"};
-  return reason < Refusal::kCount ? kNames[static_cast<size_t>(reason)] : "?";
+  return reason < SentenceRefusal::kCount ? kNames[static_cast<size_t>(reason)] : "?";
 }
 
 /// How often each reason applied.
-struct RefusalCounts {
+struct SentenceRefusals {
   std::array<int64_t, kRefusalCount> of{};
 
-  void add(Refusal reason) { ++of[static_cast<size_t>(reason)]; }
-  int64_t operator[](Refusal reason) const { return of[static_cast<size_t>(reason)]; }
+  void add(SentenceRefusal reason) { ++of[static_cast<size_t>(reason)]; }
+  int64_t operator[](SentenceRefusal reason) const { return of[static_cast<size_t>(reason)]; }
 
   int64_t total() const {
     int64_t sum = 0;

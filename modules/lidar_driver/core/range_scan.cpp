@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kTurn = 6.28318530717958647692;
 
-float judged(float range, double range_min, double range_max) {
+float classified(float range, double range_min, double range_max) {
   if (std::isnan(range) || range < static_cast<float>(range_min))
     return std::numeric_limits<float>::quiet_NaN();
   if (range > static_cast<float>(range_max)) return std::numeric_limits<float>::infinity();
@@ -68,7 +68,7 @@ std::optional<RangeScan> ScanCheck::accept(const RangeScan& raw) {
   scan.ranges.clear();
   const auto stride = static_cast<size_t>(limits_.beam_stride);
   for (size_t i = 0; i < raw.ranges.size(); i += stride)
-    scan.ranges.push_back(judged(raw.ranges[i], scan.range_min, scan.range_max));
+    scan.ranges.push_back(classified(raw.ranges[i], scan.range_min, scan.range_max));
   // The last kept beam may lie before the last measured one.
   if (raw.ranges.size() > 1)
     scan.duration_us = raw.duration_us * static_cast<int64_t>((scan.ranges.size() - 1) * stride) /

@@ -45,7 +45,7 @@ struct ScanLimits {
   int beam_stride = 1;  ///< every n-th beam is kept
 };
 
-/// Judges scans before they reach the bus. Time never goes back; a beam is a range, +inf (nothing
+/// Checks scans before they reach the bus. Time never goes back; a beam is a range, +inf (nothing
 /// hit) or NaN.
 class ScanCheck {
  public:

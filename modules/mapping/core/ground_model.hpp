@@ -16,7 +16,7 @@ struct GroundConfig {
   double height_noise = 0.03;  ///< [m] of the ground under the robot
   double slope_noise = 0.03;   ///< [1] of the robot's inclination against the ground's: bumps
   double curvature = 0.04;     ///< [1/m] by which the ground's slope changes along the way
-  double slope_doubt = 0.03;   ///< [1] error of the ground per metre of distance, as judged by
+  double slope_doubt = 0.03;   ///< [1] error of the ground per metre of distance, as seen by
 };
 
 /// The plane on which the robot stands.

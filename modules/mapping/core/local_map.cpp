@@ -54,7 +54,7 @@ LocalMap::LocalMap(const LocalMapConfig& config)
     : config_(config),
       voxels_(config.voxels, config.tile_cells * config.window_tiles),
       ground_(config.ground, config.voxels.cell_size, config.tile_cells * config.window_tiles),
-      judge_(config.judge, config.voxels.cell_size),
+      classifier_(config.obstacle, config.voxels.cell_size),
       footprint_(config.robot.front, config.robot.rear, config.robot.half_width, 0.0),
       trust_(config.tile_cells * config.window_tiles),
       tiles_(config.window_tiles),
@@ -70,19 +70,19 @@ LocalMap::LocalMap(const LocalMapConfig& config)
   }
 }
 
-LocalMap::Refusal LocalMap::insert(const Sweep& sweep) {
-  if (sweep.utime <= utime_) return Refusal::kNotNewer;
-  const auto plane = planeUnder(sweep.T_map_body_last);
+LocalMap::Refusal LocalMap::insert(const Scan& scan) {
+  if (scan.utime <= utime_) return Refusal::kNotNewer;
+  const auto plane = planeUnder(scan.T_map_body_last);
   if (!plane) return Refusal::kToppled;
   const double reach = kMostCells * config_.voxels.cell_size - config_.clearing_range;
   if (!(plane->p_map.cwiseAbs().maxCoeff() < reach)) return Refusal::kTooFar;
-  utime_ = sweep.utime;
-  const bool moved = place(sweep.T_map_body_last);
+  utime_ = scan.utime;
+  const bool moved = place(scan.T_map_body_last);
   learnGround(*plane, moved);
-  voxels_.insert(raysOf(sweep));
+  voxels_.insert(raysOf(scan));
   for (const size_t offset : voxels_.touched()) tileOf(offset).utime = utime_;
-  for (const size_t offset : voxels_.changed()) judge(offset);
-  standAt(planar(plane->p_map, Eigen::Quaterniond(sweep.T_map_body_last.linear())));
+  for (const size_t offset : voxels_.changed()) classify(offset);
+  standAt(planar(plane->p_map, Eigen::Quaterniond(scan.T_map_body_last.linear())));
   return Refusal::kNone;
 }
 
@@ -124,9 +124,9 @@ void LocalMap::learnGround(const GroundPlane& plane, bool window_moved) {
   last_stand_ = plane;
   const std::vector<CellIndex> changed = ground_.learn(plane);
   if (window_moved) {
-    for (size_t i = 0; i < trust_.size(); ++i) judge(i);
+    for (size_t i = 0; i < trust_.size(); ++i) classify(i);
   } else {
-    for (const CellIndex patch : changed) judgePatch(patch);
+    for (const CellIndex patch : changed) classifyPatch(patch);
   }
 }
 
@@ -151,39 +151,39 @@ void LocalMap::standAt(const Pose2& T_map_body) {
     under_robot_.push_back(offset);
     tileOf(offset).utime = utime_;
   }
-  for (const size_t offset : left) judge(offset);
-  for (const size_t offset : under_robot_) judge(offset);
+  for (const size_t offset : left) classify(offset);
+  for (const size_t offset : under_robot_) classify(offset);
 }
 
 bool LocalMap::isOwnBody(const Eigen::Vector3d& p_body) const {
   const FootprintSize& robot = config_.robot;
   return p_body.x() < robot.front + kOwnBodyMargin && p_body.x() > -robot.rear - kOwnBodyMargin &&
          std::abs(p_body.y()) < robot.half_width + kOwnBodyMargin &&
-         p_body.z() < config_.judge.robot_height;
+         p_body.z() < config_.obstacle.robot_height;
 }
 
-const std::vector<Ray>& LocalMap::raysOf(const Sweep& sweep) {
-  const Between body(sweep.T_map_body_first, sweep.T_map_body_last);
+const std::vector<Ray>& LocalMap::raysOf(const Scan& scan) {
+  const Between body(scan.T_map_body_first, scan.T_map_body_last);
   rays_.clear();
-  for (const Beam& beam : sweep.beams) {
-    if (beam.hit && isOwnBody(sweep.T_body_sensor * beam.end)) continue;
+  for (const Beam& beam : scan.beams) {
+    if (beam.hit && isOwnBody(scan.T_body_sensor * beam.end)) continue;
     const double range = beam.end.norm();
     const bool marks = beam.hit && range <= config_.marking_range;
     const double reach = marks ? range : std::min(range, config_.clearing_range);
     if (!(range > 0.0)) continue;
-    const Eigen::Isometry3d T_map_sensor = body.at(beam.share) * sweep.T_body_sensor;
+    const Eigen::Isometry3d T_map_sensor = body.at(beam.share) * scan.T_body_sensor;
     rays_.push_back({T_map_sensor.translation(),
                      T_map_sensor * Eigen::Vector3d(beam.end * (reach / range)), marks});
   }
   return rays_;
 }
 
-void LocalMap::judge(size_t offset) {
+void LocalMap::classify(size_t offset) {
   const Trust& trust = trust_[offset];
   Cell cell = kFree;
   if (!trust.under_robot) {
     const Column& column = voxels_.columns()[offset];
-    cell = judge_.judge(column, voxels_.lowerZ(), ground_.at(trust_.indexOf(offset)));
+    cell = classifier_.classify(column, voxels_.lowerZ(), ground_.at(trust_.indexOf(offset)));
     if (cell == kUnknown && trust.stood_on) cell = kFree;
   }
   if (grid_.cells()[offset] == cell) return;
@@ -193,10 +193,10 @@ void LocalMap::judge(size_t offset) {
   tile.utime = utime_;
 }
 
-void LocalMap::judgePatch(CellIndex lower) {
+void LocalMap::classifyPatch(CellIndex lower) {
   for (int y = 0; y < GroundModel::kPatchCells; ++y)
     for (int x = 0; x < GroundModel::kPatchCells; ++x)
-      judge(trust_.offset({lower.x + x, lower.y + y}));
+      classify(trust_.offset({lower.x + x, lower.y + y}));
 }
 
 LocalMap::TileState& LocalMap::tileOf(size_t offset) {

@@ -8,9 +8,8 @@
 
 #include "common/geometry/footprint_size.hpp"
 #include "common/grid/footprint.hpp"
-#include "modules/mapping/core/column_judge.hpp"
+#include "modules/mapping/core/column_classifier.hpp"
 #include "modules/mapping/core/ground_model.hpp"
-#include "modules/mapping/core/sweep.hpp"
 #include "modules/mapping/core/voxel_map.hpp"
 
 namespace tread::mapping {
@@ -20,11 +19,27 @@ inline constexpr int kMostOffHeight = kColumnHeight / 6;
 /// Voxels of a column that are above the robot's ground at any time; what is higher is not kept.
 inline constexpr int kVoxelsAboveGround = kColumnHeight / 2 - kMostOffHeight;
 
+/// One beam of a scan.
+struct Beam {
+  Eigen::Vector3d end = Eigen::Vector3d::Zero();  ///< p_sensor of its return, or of its reach [m]
+  double share = 0.0;  ///< 0 = at the time of the first beam, 1 = of the last
+  bool hit = false;    ///< something was there; otherwise nothing up to `end`
+};
+
+/// One scan of a range finder with the body's motion during it.
+struct Scan {
+  int64_t utime = 0;                   ///< [us] of the last beam
+  Eigen::Isometry3d T_map_body_first;  ///< at the time of the first beam
+  Eigen::Isometry3d T_map_body_last;   ///< and of the last
+  Eigen::Isometry3d T_body_sensor;
+  std::vector<Beam> beams;
+};
+
 /// Everything that shapes the local map.
 struct LocalMapConfig {
   VoxelConfig voxels;
   GroundConfig ground;
-  JudgeConfig judge;
+  ObstacleConfig obstacle;
   FootprintSize robot;             ///< its outline
   int tile_cells = 32;             ///< a multiple of GroundModel::kPatchCells
   int window_tiles = 8;            ///< tiles per side of the window
@@ -33,11 +48,11 @@ struct LocalMapConfig {
   double start_free_radius = 1.0;  ///< [m] around the body origin where a map begins
 };
 
-/// A rolling map of the robot's surroundings: free, obstacle or unknown, from sweeps and poses.
+/// A rolling map of the robot's surroundings: free, obstacle or unknown, from scans and poses.
 /** 1. Each beam becomes a ray in map with the body's pose at that beam's time; returns from the
  *     robot itself are left out.
  *  2. The rays go into the voxels (VoxelMap), the robot's stand into the ground (GroundModel).
- *  3. Columns are judged again (ColumnJudge) where their voxels or their ground changed.
+ *  3. Columns are classified again (ColumnClassifier) where their voxels or their ground changed.
  *  Free without having been seen are: the cells under the robot (even if something was marked
  *  there: the robot stands in it); the cells that it stood on before, and, where a map begins, all
  *  within start_free_radius, because a range finder that looks over its own robot sees neither
@@ -49,11 +64,11 @@ class LocalMap {
   /// positive.
   explicit LocalMap(const LocalMapConfig& config);
 
-  /// Why a sweep was not taken.
+  /// Why a scan was not taken.
   enum class Refusal { kNone, kNotNewer, kToppled, kTooFar };
-  /// Takes a sweep, or says why not: not newer than the one before; the robot lies on its side;
+  /// Takes a scan, or says why not: not newer than the one before; the robot lies on its side;
   /// farther from the origin of map than OctoMap can number (32000 cells).
-  Refusal insert(const Sweep& sweep);
+  Refusal insert(const Scan& scan);
 
   const Grid& grid() const { return grid_; }
   const LocalMapConfig& config() const { return config_; }
@@ -69,7 +84,7 @@ class LocalMap {
 
  private:
   struct TileState {
-    int64_t utime = 0;  // of the newest sweep that touched it
+    int64_t utime = 0;  // of the newest scan that touched it
     bool changed = false;
   };
   /// Cells that are free without having been seen.
@@ -83,23 +98,23 @@ class LocalMap {
   void learnGround(const GroundPlane& plane, bool window_moved);
   void vouchForStart(const Eigen::Vector2d& p_map);
   void standAt(const Pose2& T_map_body);
-  const std::vector<Ray>& raysOf(const Sweep& sweep);
+  const std::vector<Ray>& raysOf(const Scan& scan);
   bool isOwnBody(const Eigen::Vector3d& p_body) const;
-  void judge(size_t offset);
-  void judgePatch(CellIndex lower);
+  void classify(size_t offset);
+  void classifyPatch(CellIndex lower);
   TileState& tileOf(size_t offset);
 
   LocalMapConfig config_;
   VoxelMap voxels_;
   GroundModel ground_;
-  ColumnJudge judge_;
+  ColumnClassifier classifier_;
   Footprint footprint_;
   Grid grid_;
   Window<Trust> trust_;
   Window<TileState> tiles_;
   std::vector<uint32_t> tile_of_cell_;     // offset of the tile of each cell
   std::vector<size_t> under_robot_;        // offsets of these cells
-  std::optional<GroundPlane> last_stand_;  // set with the first sweep
+  std::optional<GroundPlane> last_stand_;  // set with the first scan
   std::vector<Ray> rays_;
   int64_t utime_ = 0;
 };

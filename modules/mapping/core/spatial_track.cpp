@@ -24,23 +24,23 @@ bool SpatialTrack::follows(const TimedPose& next, const TimedPose& before) const
   return dt > 0.0 && (next.p_map - before.p_map).norm() <= top_speed_ * dt + kStepMargin;
 }
 
-SpatialTrack::Verdict SpatialTrack::push(int64_t utime, const Eigen::Isometry3d& T_map_body) {
-  if (utime < 0 || (!poses_.empty() && utime <= newest())) return Verdict::kNotNewer;
+SpatialTrack::PoseCheck SpatialTrack::push(int64_t utime, const Eigen::Isometry3d& T_map_body) {
+  if (utime < 0 || (!poses_.empty() && utime <= newest())) return PoseCheck::kNotNewer;
   const TimedPose pose{utime, T_map_body.translation(), Eigen::Quaterniond(T_map_body.linear())};
   if (!poses_.empty() && !follows(pose, poses_.back())) return doubt(pose);
   doubted_.clear();
   append(pose);
-  return Verdict::kTaken;
+  return PoseCheck::kTaken;
 }
 
-SpatialTrack::Verdict SpatialTrack::doubt(const TimedPose& pose) {
+SpatialTrack::PoseCheck SpatialTrack::doubt(const TimedPose& pose) {
   if (!doubted_.empty() && !follows(pose, doubted_.back())) doubted_.clear();
   doubted_.push_back(pose);
-  if (doubted_.size() < kEnoughDoubted) return Verdict::kDoubted;
+  if (doubted_.size() < kEnoughDoubted) return PoseCheck::kDoubted;
   poses_.clear();
   for (const TimedPose& believed : doubted_) append(believed);
   doubted_.clear();
-  return Verdict::kJump;
+  return PoseCheck::kJump;
 }
 
 void SpatialTrack::append(const TimedPose& pose) {

@@ -13,7 +13,7 @@ namespace tread::mapping {
 /// The recent poses of the body in space, interpolated between, never extrapolated.
 class SpatialTrack {
  public:
-  enum class Verdict {
+  enum class PoseCheck {
     kTaken,
     kNotNewer,  ///< not newer than the last pose, or a negative time: refused
     kDoubted,   ///< farther from the last pose than the robot can move: kept aside for now
@@ -25,7 +25,7 @@ class SpatialTrack {
   /// jump, while a single one is forgotten as soon as the track goes on.
   SpatialTrack(int64_t span_us, double top_speed) : span_us_(span_us), top_speed_(top_speed) {}
 
-  Verdict push(int64_t utime, const Eigen::Isometry3d& T_map_body);
+  PoseCheck push(int64_t utime, const Eigen::Isometry3d& T_map_body);
   void clear();
 
   /// Pose at a time between two kept poses at most `max_gap_us` apart; else nothing.
@@ -43,7 +43,7 @@ class SpatialTrack {
   };
 
   bool follows(const TimedPose& next, const TimedPose& before) const;
-  Verdict doubt(const TimedPose& pose);
+  PoseCheck doubt(const TimedPose& pose);
   void append(const TimedPose& pose);
 
   int64_t span_us_;

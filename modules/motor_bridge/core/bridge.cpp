@@ -12,18 +12,19 @@ Bridge::Bridge(const BridgeConfig& config)
       failsafe_(config.times) {}
 
 void Bridge::receive(const Program& program, int64_t now) {
-  const ProgramGate::Verdict verdict = gate_.admit(program, now, !isArmed(failsafe_.state()));
-  if (verdict.refusal == Refusal::kBadSlot) {
-    since_.program_fault = std::string("PROGRAM with ") + describe(verdict.slot_fault);
-    count(std::string("PROGRAM refused: ") + describe(verdict.slot_fault));
+  const ProgramGate::Admission admission = gate_.admit(program, now, !isArmed(failsafe_.state()));
+  if (admission.refusal == ProgramRefusal::kBadSlot) {
+    since_.program_fault = std::string("PROGRAM with ") + describe(admission.slot_fault);
+    count(std::string("PROGRAM refused: ") + describe(admission.slot_fault));
     return;
   }
-  if (verdict.refusal != Refusal::kNone) {
-    if (verdict.refusal == Refusal::kRunChanged) since_.program_fault = describe(verdict.refusal);
-    count(std::string("PROGRAM refused: ") + describe(verdict.refusal));
+  if (admission.refusal != ProgramRefusal::kNone) {
+    if (admission.refusal == ProgramRefusal::kRunChanged)
+      since_.program_fault = describe(admission.refusal);
+    count(std::string("PROGRAM refused: ") + describe(admission.refusal));
     return;
   }
-  if (verdict.new_run) {
+  if (admission.new_run) {
     player_.beginRun(program.run_id);
     // Starts the second of good inputs anew: with two planners alive nobody can arm.
     since_.program_fault = "another run of the planner";
@@ -45,16 +46,16 @@ void Bridge::take(const Program& program, int64_t now) {
 }
 
 void Bridge::receive(const ArmRequest& request, int64_t now) {
-  switch (requests_.judge(request, now, failsafe_.disarmedAt())) {
-    case OperatorRequests::Verdict::kArm:
+  switch (requests_.classify(request, now, failsafe_.disarmedAt())) {
+    case OperatorRequests::Effect::kArm:
       since_.arm = true;
       since_.request = request;
       break;
-    case OperatorRequests::Verdict::kDisarm:
+    case OperatorRequests::Effect::kDisarm:
       since_.disarm = true;
       since_.request = request;
       break;
-    case OperatorRequests::Verdict::kIgnored:
+    case OperatorRequests::Effect::kIgnored:
       count("ARM ignored: too old, from the future, served or given before the stop");
       break;
   }

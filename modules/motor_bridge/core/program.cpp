@@ -24,13 +24,13 @@ SlotFault checkSeries(const std::vector<TrackCommand>& series, double max_comman
 
 }  // namespace
 
-bool sameOrder(const Slot& a, const Slot& b) {
+bool sameOrder(const ProgramSlot& a, const ProgramSlot& b) {
   return a.execution_id == b.execution_id && a.pattern_id == b.pattern_id &&
          a.set_version == b.set_version && a.kind == b.kind && a.period_us == b.period_us &&
          a.series == b.series;
 }
 
-SlotFault checkSlot(const Slot& slot, const SlotLimits& limits) {
+SlotFault checkSlot(const ProgramSlot& slot, const SlotLimits& limits) {
   if (slot.empty()) return SlotFault::kNone;
   if (slot.execution_id < 0) return SlotFault::kBadId;
   if (slot.kind == kNoCommand || slot.kind != limits.kind) return SlotFault::kUnknownKind;
@@ -65,32 +65,33 @@ const char* describe(SlotFault fault) {
   return "an unknown fault";
 }
 
-const char* describe(Refusal refusal) {
+const char* describe(ProgramRefusal refusal) {
   switch (refusal) {
-    case Refusal::kNone:
+    case ProgramRefusal::kNone:
       return "accepted";
-    case Refusal::kFromFuture:
+    case ProgramRefusal::kFromFuture:
       return "its utime lies in the future";
-    case Refusal::kTooOld:
+    case ProgramRefusal::kTooOld:
       return "older than the lease";
-    case Refusal::kOutOfOrder:
+    case ProgramRefusal::kOutOfOrder:
       return "not newer than the one before";
-    case Refusal::kBadLease:
+    case ProgramRefusal::kBadLease:
       return "its lease is not positive";
-    case Refusal::kRunChanged:
+    case ProgramRefusal::kRunChanged:
       return "the planner was restarted while armed";
-    case Refusal::kBadSlot:
+    case ProgramRefusal::kBadSlot:
       return "a slot breaks its limits";
   }
   return "unknown";
 }
 
-Refusal ProgramGate::checkTime(const Program& program, int64_t now) const {
-  if (program.lease_us <= 0) return Refusal::kBadLease;
-  if (program.utime > now + limits_.max_future_us) return Refusal::kFromFuture;
+ProgramRefusal ProgramGate::checkTime(const Program& program, int64_t now) const {
+  if (program.lease_us <= 0) return ProgramRefusal::kBadLease;
+  if (program.utime > now + limits_.max_future_us) return ProgramRefusal::kFromFuture;
   // The difference to any utime would overflow: compare with a time near now.
-  if (program.utime < now - std::min(program.lease_us, limits_.lease_us)) return Refusal::kTooOld;
-  return newer(program) ? Refusal::kNone : Refusal::kOutOfOrder;
+  if (program.utime < now - std::min(program.lease_us, limits_.lease_us))
+    return ProgramRefusal::kTooOld;
+  return newer(program) ? ProgramRefusal::kNone : ProgramRefusal::kOutOfOrder;
 }
 
 bool ProgramGate::newer(const Program& program) const {
@@ -99,23 +100,24 @@ bool ProgramGate::newer(const Program& program) const {
   return program.run_id != *run_id_ || program.seq > newest_seq_;
 }
 
-ProgramGate::Verdict ProgramGate::admit(const Program& program, int64_t now, bool may_adopt_run) {
-  Verdict verdict;
-  verdict.refusal = checkTime(program, now);
-  if (verdict.refusal == Refusal::kNone) {
-    verdict.new_run = !run_id_ || program.run_id != *run_id_;
-    verdict.refusal =
-        run_id_ && verdict.new_run && !may_adopt_run ? Refusal::kRunChanged : Refusal::kNone;
+ProgramGate::Admission ProgramGate::admit(const Program& program, int64_t now, bool may_adopt_run) {
+  Admission admission;
+  admission.refusal = checkTime(program, now);
+  if (admission.refusal == ProgramRefusal::kNone) {
+    admission.new_run = !run_id_ || program.run_id != *run_id_;
+    admission.refusal = run_id_ && admission.new_run && !may_adopt_run ? ProgramRefusal::kRunChanged
+                                                                       : ProgramRefusal::kNone;
   }
-  if (verdict.refusal != Refusal::kNone) return verdict;
+  if (admission.refusal != ProgramRefusal::kNone) return admission;
   run_id_ = program.run_id;
   newest_utime_ = program.utime;
   newest_seq_ = program.seq;
   const SlotFault running = checkSlot(program.running, limits_.slot);
-  verdict.slot_fault =
+  admission.slot_fault =
       running != SlotFault::kNone ? running : checkSlot(program.next, limits_.slot);
-  verdict.refusal = verdict.slot_fault == SlotFault::kNone ? Refusal::kNone : Refusal::kBadSlot;
-  return verdict;
+  admission.refusal =
+      admission.slot_fault == SlotFault::kNone ? ProgramRefusal::kNone : ProgramRefusal::kBadSlot;
+  return admission;
 }
 
 void ProgramGate::renew(const Program& program, int64_t now) {

@@ -19,7 +19,7 @@ inline bool isZero(const TrackCommand& command) {
 }
 
 /// One pattern execution as ordered: a command series played at a fixed period.
-struct Slot {
+struct ProgramSlot {
   int64_t execution_id = 0;  ///< counts up within a run; 0 = empty slot
   int32_t pattern_id = 0;
   int64_t set_version = 0;
@@ -32,7 +32,7 @@ struct Slot {
 };
 
 /// True if both order the same commands for the same execution.
-bool sameOrder(const Slot& a, const Slot& b);
+bool sameOrder(const ProgramSlot& a, const ProgramSlot& b);
 
 /// What the planner wants of the motors: complete state, sent at 20 Hz.
 struct Program {
@@ -40,8 +40,8 @@ struct Program {
   int64_t seq = 0;
   int64_t run_id = 0;    ///< one per start of the planner: its boot utime
   int64_t lease_us = 0;  ///< valid for this long [us]
-  Slot running;
-  Slot next;
+  ProgramSlot running;
+  ProgramSlot next;
 };
 
 /// What a slot must keep to.
@@ -66,13 +66,13 @@ enum class SlotFault {
 };
 
 /// First fault found in a slot; an empty slot has none.
-SlotFault checkSlot(const Slot& slot, const SlotLimits& limits);
+SlotFault checkSlot(const ProgramSlot& slot, const SlotLimits& limits);
 
 /// The fault in words, e.g. "a command is NaN or infinite".
 const char* describe(SlotFault fault);
 
 /// Why a program was not let in.
-enum class Refusal {
+enum class ProgramRefusal {
   kNone,
   kFromFuture,  ///< utime further ahead of the host clock than clocks may differ
   kTooOld,      ///< utime older than the lease
@@ -83,7 +83,7 @@ enum class Refusal {
 };
 
 /// The refusal in words, e.g. "older than the lease".
-const char* describe(Refusal refusal);
+const char* describe(ProgramRefusal refusal);
 
 /// Limits on programs as they arrive.
 struct GateLimits {
@@ -98,14 +98,14 @@ class ProgramGate {
   explicit ProgramGate(const GateLimits& limits) : limits_(limits) {}
 
   /// What the gate found.
-  struct Verdict {
-    Refusal refusal = Refusal::kNone;
+  struct Admission {
+    ProgramRefusal refusal = ProgramRefusal::kNone;
     SlotFault slot_fault = SlotFault::kNone;
     bool new_run = false;  ///< let in as the first of another run
   };
 
   /// Checks a program received at now [us]; a new run is let in only if it may be adopted.
-  Verdict admit(const Program& program, int64_t now, bool may_adopt_run);
+  Admission admit(const Program& program, int64_t now, bool may_adopt_run);
   /// An admitted program counts as a sign of life from now on.
   void renew(const Program& program, int64_t now);
   /// True while the last renewal is younger than the lease, by receipt and by utime.
@@ -115,7 +115,7 @@ class ProgramGate {
   std::optional<int64_t> leaseAge(int64_t now) const;
 
  private:
-  Refusal checkTime(const Program& program, int64_t now) const;
+  ProgramRefusal checkTime(const Program& program, int64_t now) const;
   bool newer(const Program& program) const;
 
   GateLimits limits_;

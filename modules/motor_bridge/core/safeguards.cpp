@@ -35,14 +35,14 @@ bool OperatorRequests::timely(int64_t utime, int64_t now) const {
   return utime <= now + limits_.max_future_us && utime >= now - limits_.max_age_us;
 }
 
-OperatorRequests::Verdict OperatorRequests::judge(const ArmRequest& request, int64_t now,
-                                                  int64_t disarmed_at) {
+OperatorRequests::Effect OperatorRequests::classify(const ArmRequest& request, int64_t now,
+                                                    int64_t disarmed_at) {
   if (!request.armed) {
-    return Verdict::kDisarm;
+    return Effect::kDisarm;
   }
   const bool served = request.utime <= served_utime_;
   const bool after_stop = request.utime > disarmed_at;
-  return timely(request.utime, now) && after_stop && !served ? Verdict::kArm : Verdict::kIgnored;
+  return timely(request.utime, now) && after_stop && !served ? Effect::kArm : Effect::kIgnored;
 }
 
 bool OperatorRequests::receive(const EstopRequest& request, int64_t now) {

@@ -71,10 +71,11 @@ class OperatorRequests {
  public:
   explicit OperatorRequests(const RequestLimits& limits) : limits_(limits) {}
 
-  /// What a request to arm or disarm is worth.
-  enum class Verdict { kIgnored, kArm, kDisarm };
-  /// Judges a request received at now [us]; one to arm must have been given after disarmed_at [us].
-  Verdict judge(const ArmRequest& request, int64_t now, int64_t disarmed_at);
+  /// What a request to arm or disarm leads to.
+  enum class Effect { kIgnored, kArm, kDisarm };
+  /// Classifies a request received at now [us]; one to arm must have been given after disarmed_at
+  /// [us].
+  Effect classify(const ArmRequest& request, int64_t now, int64_t disarmed_at);
   /// A request to arm was served: its repetitions are worth nothing any more.
   void consume(const ArmRequest& request) { served_utime_ = request.utime; }
 

@@ -4,7 +4,7 @@
 
 namespace tread::motor {
 
-void ExecutionLog::begin(int64_t run_id, const Slot& slot, int64_t start_utime) {
+void ExecutionLog::begin(int64_t run_id, const ProgramSlot& slot, int64_t start_utime) {
   ExecutionRecord record;
   record.run_id = run_id;
   record.execution_id = slot.execution_id;
@@ -21,7 +21,7 @@ void ExecutionLog::countCommand() {
   if (running()) ++records_.back().commands_played;
 }
 
-void ExecutionLog::close(Outcome outcome, int64_t end_utime, const std::string& reason) {
+void ExecutionLog::close(ExecutionOutcome outcome, int64_t end_utime, const std::string& reason) {
   if (!running()) return;
   records_.back().outcome = outcome;
   records_.back().end_utime = end_utime;
@@ -99,12 +99,12 @@ SeriesPlayer::Advance SeriesPlayer::advance(int64_t now) {
   while (playing() && now >= endUtime()) {
     advance.skipped += static_cast<int32_t>(current_.series.size()) - given_;
     const int64_t end = endUtime();
-    log_.close(Outcome::kCompleted, end, "");
+    log_.close(ExecutionOutcome::kCompleted, end, "");
     const int64_t ended_id = current_.execution_id;
-    current_ = Slot{};
+    current_ = ProgramSlot{};
     advance.ended = pending_.empty();
     if (!pending_.empty()) {
-      const Slot next = pending_;
+      const ProgramSlot next = pending_;
       begin(next, end);
       previous_id_ = ended_id;
       advance.switched = true;
@@ -125,9 +125,9 @@ void SeriesPlayer::start(int64_t now) {
   pending_ = program.next;
 }
 
-void SeriesPlayer::begin(const Slot& slot, int64_t start_utime) {
+void SeriesPlayer::begin(const ProgramSlot& slot, int64_t start_utime) {
   current_ = slot;
-  pending_ = Slot{};
+  pending_ = ProgramSlot{};
   previous_id_ = 0;
   start_utime_ = start_utime;
   index_ = 0;
@@ -137,9 +137,9 @@ void SeriesPlayer::begin(const Slot& slot, int64_t start_utime) {
 }
 
 void SeriesPlayer::abort(int64_t now, const std::string& reason) {
-  log_.close(Outcome::kAborted, now, reason);
-  current_ = Slot{};
-  pending_ = Slot{};
+  log_.close(ExecutionOutcome::kAborted, now, reason);
+  current_ = ProgramSlot{};
+  pending_ = ProgramSlot{};
   candidate_ = Program{};
 }
 

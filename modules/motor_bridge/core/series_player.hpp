@@ -13,7 +13,7 @@
 namespace tread::motor {
 
 /// How an execution went; the numbers are those of execution_record_t.
-enum class Outcome : int16_t { kRunning = 0, kCompleted = 1, kAborted = 2 };
+enum class ExecutionOutcome : int16_t { kRunning = 0, kCompleted = 1, kAborted = 2 };
 
 /// One execution as it really took place.
 struct ExecutionRecord {
@@ -25,7 +25,7 @@ struct ExecutionRecord {
   int64_t end_utime = -1;       ///< [us] end of the last period, or of the abort; -1 = running
   int32_t commands_played = 0;  ///< that were really given to the controller
   int32_t commands_total = 0;
-  Outcome outcome = Outcome::kRunning;
+  ExecutionOutcome outcome = ExecutionOutcome::kRunning;
   std::string reason;  ///< why aborted; empty else
 };
 
@@ -35,18 +35,20 @@ class ExecutionLog {
   static constexpr size_t kCapacity = 8;
 
   /// A new execution begins; the oldest record leaves if the log is full.
-  void begin(int64_t run_id, const Slot& slot, int64_t start_utime);
+  void begin(int64_t run_id, const ProgramSlot& slot, int64_t start_utime);
   /// One more command of the running execution was given to the controller.
   void countCommand();
   /// The running execution is over. Nothing happens if none is running.
-  void close(Outcome outcome, int64_t end_utime, const std::string& reason);
+  void close(ExecutionOutcome outcome, int64_t end_utime, const std::string& reason);
 
   const std::deque<ExecutionRecord>& records() const { return records_; }
   /// Counts up whenever an execution begins or ends.
   uint64_t revision() const { return revision_; }
 
  private:
-  bool running() const { return !records_.empty() && records_.back().outcome == Outcome::kRunning; }
+  bool running() const {
+    return !records_.empty() && records_.back().outcome == ExecutionOutcome::kRunning;
+  }
 
   std::deque<ExecutionRecord> records_;
   uint64_t revision_ = 0;
@@ -108,15 +110,15 @@ class SeriesPlayer {
   TrackCommand give();
 
   bool playing() const { return !current_.empty(); }
-  const Slot& current() const { return current_; }
-  const Slot& pending() const { return pending_; }
+  const ProgramSlot& current() const { return current_; }
+  const ProgramSlot& pending() const { return pending_; }
   int32_t index() const { return index_; }  ///< 0-based within the running series
   const ExecutionLog& log() const { return log_; }
 
  private:
   Offer offerIdle(const Program& program);
   Offer offerPlaying(const Program& program, int64_t now);
-  void begin(const Slot& slot, int64_t start_utime);
+  void begin(const ProgramSlot& slot, int64_t start_utime);
   int64_t endUtime() const { return start_utime_ + current_.durationUs(); }
 
   static constexpr size_t kRunsRemembered = 8;
@@ -125,8 +127,8 @@ class SeriesPlayer {
   std::map<int64_t, int64_t> executed_by_run_;  ///< highest execution id of former runs
   int64_t last_executed_ = 0;                   ///< highest execution id begun in this run
   int64_t previous_id_ = 0;  ///< execution that the current one was joined to; 0 = none
-  Slot current_;
-  Slot pending_;
+  ProgramSlot current_;
+  ProgramSlot pending_;
   Program candidate_;
   int64_t start_utime_ = 0;
   int32_t index_ = 0;

@@ -10,10 +10,10 @@
 namespace tread::mapping {
 
 /// Which tiles to send next: changed ones first, the rest in turn.
-class TileTurns {
+class TileSchedule {
  public:
   /// Sends `refresh` unchanged tiles a cycle, if there are so many, beside those that changed.
-  explicit TileTurns(size_t refresh) : refresh_(refresh) {}
+  explicit TileSchedule(size_t refresh) : refresh_(refresh) {}
 
   /// Begins a cycle. What an earlier cycle left over stays first if it is still in `seen`.
   /** `seen`: all tiles that may be sent; `changed`: those of them that changed, in the same order.

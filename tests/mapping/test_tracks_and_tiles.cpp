@@ -6,7 +6,7 @@
 
 #include "common/geometry/se3.hpp"
 #include "modules/mapping/core/spatial_track.hpp"
-#include "modules/mapping/core/tile_turns.hpp"
+#include "modules/mapping/core/tile_schedule.hpp"
 
 using namespace tread;
 using namespace tread::mapping;
@@ -24,9 +24,9 @@ std::vector<CellIndex> tiles(int count) {
 TEST_CASE("a pose in space is interpolated between its neighbours and never extrapolated") {
   SpatialTrack track(1'000'000, 10.0);
   REQUIRE(track.push(100'000, isometryFrom({0, 0, 0}, {0.0, 0.0, 0.0})) ==
-          SpatialTrack::Verdict::kTaken);
+          SpatialTrack::PoseCheck::kTaken);
   REQUIRE(track.push(120'000, isometryFrom({0.02, 0.01, 0.004}, {0.1, 0.05, 0.0})) ==
-          SpatialTrack::Verdict::kTaken);
+          SpatialTrack::PoseCheck::kTaken);
   const auto middle = track.at(110'000, 50'000);
   REQUIRE(middle);
   REQUIRE(middle->translation().isApprox(Eigen::Vector3d(0.01, 0.005, 0.002), 1e-9));
@@ -44,11 +44,11 @@ TEST_CASE("a track refuses what is not newer and forgets what is old") {
   SpatialTrack track(1'000'000, 10.0);
   const auto pose = isometryFrom({1, 2, 3}, {});
   track.push(100'000, pose);
-  REQUIRE(track.push(100'000, pose) == SpatialTrack::Verdict::kNotNewer);
+  REQUIRE(track.push(100'000, pose) == SpatialTrack::PoseCheck::kNotNewer);
   // A time before all clocks, of which no difference may be taken.
   SpatialTrack empty(1'000'000, 10.0);
   for (const int64_t utime : {INT64_MIN, int64_t{-1}})
-    REQUIRE(empty.push(utime, pose) == SpatialTrack::Verdict::kNotNewer);
+    REQUIRE(empty.push(utime, pose) == SpatialTrack::PoseCheck::kNotNewer);
   REQUIRE(empty.empty());
   for (int64_t utime = 200'000; utime < 1'400'000; utime += 100'000) track.push(utime, pose);
   REQUIRE_FALSE(track.at(250'000, 1'000'000));
@@ -58,23 +58,23 @@ TEST_CASE("a track refuses what is not newer and forgets what is old") {
 TEST_CASE("a single pose far off is forgotten, three that agree are a jump") {
   SpatialTrack track(1'000'000, 10.0);
   const auto at = [](double x) { return isometryFrom({x, 0, 0}, {}); };
-  using Verdict = SpatialTrack::Verdict;
+  using PoseCheck = SpatialTrack::PoseCheck;
   track.push(100'000, at(0.0));
-  REQUIRE(track.push(120'000, at(0.69)) == Verdict::kTaken);
-  REQUIRE(track.push(140'000, at(50.0)) == Verdict::kDoubted);
-  REQUIRE(track.push(160'000, at(0.7)) == Verdict::kTaken);
+  REQUIRE(track.push(120'000, at(0.69)) == PoseCheck::kTaken);
+  REQUIRE(track.push(140'000, at(50.0)) == PoseCheck::kDoubted);
+  REQUIRE(track.push(160'000, at(0.7)) == PoseCheck::kTaken);
   REQUIRE(track.at(140'000, 50'000)->translation().x() == Approx(0.695));
-  REQUIRE(track.push(180'000, at(50.0)) == Verdict::kDoubted);
-  REQUIRE(track.push(200'000, at(90.0)) == Verdict::kDoubted);
-  REQUIRE(track.push(220'000, at(90.1)) == Verdict::kDoubted);
+  REQUIRE(track.push(180'000, at(50.0)) == PoseCheck::kDoubted);
+  REQUIRE(track.push(200'000, at(90.0)) == PoseCheck::kDoubted);
+  REQUIRE(track.push(220'000, at(90.1)) == PoseCheck::kDoubted);
   REQUIRE(track.newest() == 160'000);
-  REQUIRE(track.push(240'000, at(90.2)) == Verdict::kJump);
+  REQUIRE(track.push(240'000, at(90.2)) == PoseCheck::kJump);
   REQUIRE(track.at(230'000, 50'000)->translation().x() == Approx(90.15));
   REQUIRE_FALSE(track.at(160'000, 50'000));
 }
 
 TEST_CASE("changed tiles are sent first, all others in turn") {
-  TileTurns turns(7);
+  TileSchedule turns(7);
   const auto seen = tiles(64);
   std::set<std::pair<int, int>> sent;
   for (int cycle = 0; cycle < 10; ++cycle) {
@@ -92,7 +92,7 @@ TEST_CASE("changed tiles are sent first, all others in turn") {
 }
 
 TEST_CASE("what a cycle could not send stays first, once, as long as it may be sent") {
-  TileTurns turns(0);
+  TileSchedule turns(0);
   const auto seen = tiles(16);
   turns.begin(seen, {{1, 0}, {2, 0}, {3, 0}});
   REQUIRE(turns.take() == CellIndex{1, 0});

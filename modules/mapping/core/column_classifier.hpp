@@ -8,7 +8,7 @@
 namespace tread::mapping {
 
 /// What counts as an obstacle for this robot.
-struct JudgeConfig {
+struct ObstacleConfig {
   double step = 0.15;         ///< [m] above the ground: lower things are driven over
   double robot_height = 0.0;  ///< [m] above the ground: higher things are driven under
 };
@@ -22,17 +22,17 @@ struct JudgeConfig {
  *  3. Free: something in the band, widened by u, was seen free. Otherwise unknown.
  *  The ground is no higher than the lowest voxel that was seen: that lowers g by up to u and a
  *  cell. */
-class ColumnJudge {
+class ColumnClassifier {
  public:
-  ColumnJudge(const JudgeConfig& config, double cell_size)
+  ColumnClassifier(const ObstacleConfig& config, double cell_size)
       : config_(config), cell_size_(cell_size) {}
 
-  Cell judge(const Column& column, int lower_z, const GroundHeight& ground) const;
+  Cell classify(const Column& column, int lower_z, const GroundHeight& ground) const;
 
  private:
   uint64_t band(double from, double to, int lower_z) const;
 
-  JudgeConfig config_;
+  ObstacleConfig config_;
   double cell_size_;
 };
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/mapping/core/column_judge.hpp"
+#include "modules/mapping/core/column_classifier.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "modules/mapping/core/bits.hpp"
+#include "modules/mapping/core/voxel_map.hpp"
 
 namespace tread::mapping {
 namespace {
@@ -26,13 +26,14 @@ uint64_t above(uint64_t bits) {
 }  // namespace
 
 /// Voxels whose centre lies above `from` and below `to` [m].
-uint64_t ColumnJudge::band(double from, double to, int lower_z) const {
+uint64_t ColumnClassifier::band(double from, double to, int lower_z) const {
   const double first = std::floor(from / cell_size_ - lower_z - 0.5) + 1.0;
   const double end = std::ceil(to / cell_size_ - lower_z - 0.5);
   return lowBits(end) & ~lowBits(first);
 }
 
-Cell ColumnJudge::judge(const Column& column, int lower_z, const GroundHeight& ground) const {
+Cell ColumnClassifier::classify(const Column& column, int lower_z,
+                                const GroundHeight& ground) const {
   if (column.known == 0) return kUnknown;
   const double lowest_seen = (lower_z + lowestBit(column.known) + 1) * cell_size_;
   const double z = std::max(std::min(ground.z, lowest_seen), ground.z - ground.doubt - cell_size_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/mapping/core/tile_turns.hpp"
+#include "modules/mapping/core/tile_schedule.hpp"
 
 #include <algorithm>
 #include <tuple>
@@ -14,11 +14,12 @@ bool comesAfter(CellIndex a, CellIndex b) {
 
 }  // namespace
 
-bool TileTurns::isQueued(CellIndex tile) const {
+bool TileSchedule::isQueued(CellIndex tile) const {
   return std::find(queue_.begin(), queue_.end(), tile) != queue_.end();
 }
 
-void TileTurns::begin(const std::vector<CellIndex>& seen, const std::vector<CellIndex>& changed) {
+void TileSchedule::begin(const std::vector<CellIndex>& seen,
+                         const std::vector<CellIndex>& changed) {
   std::deque<CellIndex> kept;
   for (const CellIndex tile : queue_)
     if (std::find(seen.begin(), seen.end(), tile) != seen.end()) kept.push_back(tile);
@@ -39,7 +40,7 @@ void TileTurns::begin(const std::vector<CellIndex>& seen, const std::vector<Cell
   }
 }
 
-CellIndex TileTurns::take() {
+CellIndex TileSchedule::take() {
   const CellIndex tile = queue_.front();
   queue_.pop_front();
   return tile;
