@@ -88,7 +88,8 @@ report::Panel::Axes axesAround(const std::vector<Pose2>& poses) {
 
 }  // namespace
 
-InsReplay replayIns(const std::string& log, const ins::InsDriverConfig& config) {
+InsReplay replayIns(const std::string& log, ins::InsDriverConfig config) {
+  if (!config.make_source) config.make_source = ins::nmeaSource({});
   InsReplay replay;
   VirtualBus bus(0);
   MemoryStore store;

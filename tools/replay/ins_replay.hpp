@@ -28,7 +28,7 @@ struct InsReplay {
 /// Plays the bytes of an NMEA 0183 log to the real ins_driver node on the virtual bus, in the log's
 /// own time.
 /** Messages start at utime 1 s. The same log gives the same messages. */
-InsReplay replayIns(const std::string& log, const ins::InsDriverConfig& config);
+InsReplay replayIns(const std::string& log, ins::InsDriverConfig config);
 
 /// The same from a file; throws std::runtime_error with one clear line if it cannot be read.
 InsReplay replayInsFile(const std::string& path, const ins::InsDriverConfig& config);

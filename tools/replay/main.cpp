@@ -46,7 +46,6 @@ struct Arguments {
 
 void replayInsLog(const Arguments& arguments) {
   ins::InsDriverConfig config;
-  config.make_source = ins::nmeaSource({});
   if (!arguments.config.empty()) {
     ConfigReader reader = ConfigReader::fromFile(arguments.config);
     config = ins::readInsDriverConfig(reader);
