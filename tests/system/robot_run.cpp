@@ -98,7 +98,7 @@ void RobotRun::start(const std::string& name) {
 
 void RobotRun::startBehind(const std::vector<std::string>& wrapper, const std::string& name) {
   const std::string program = std::string(TREAD_BIN_DIR) + "/tread-" + name;
-  std::vector<std::string> describe(wrapper.begin() + 1, wrapper.end());
+  std::vector<std::string> words(wrapper.begin() + 1, wrapper.end());
   words.push_back(program);
   for (std::string& word : argumentsOf(name)) words.push_back(word);
   processes_[name] =
