@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "modules/simulator/core/random.hpp"
-#include "tests/study/hide/dice.hpp"
 #include "tests/study/hide/event_edit.hpp"
+#include "tests/study/hide/rng.hpp"
 
 namespace tread::blind {
 namespace {
@@ -20,8 +20,8 @@ std::string at(const char* what, int64_t utime) {
 }
 
 /// The clock of the machine jumps: all stamps after it, either way.
-Defect jumpClock(Dice& dice, int64_t when, std::vector<LogEvent>& events) {
-  const int64_t jump = static_cast<int64_t>(dice.sign()) * 7'000'000;
+Defect jumpClock(Rng& rng, int64_t when, std::vector<LogEvent>& events) {
+  const int64_t jump = static_cast<int64_t>(rng.sign()) * 7'000'000;
   const auto shift = [&](auto& message) {
     if (message.utime >= when) message.utime += jump;
   };
@@ -90,16 +90,16 @@ const std::vector<std::string>& defectNames() {
 Defect spoil(const std::string& defect, uint64_t seed, const std::vector<LogEvent>& other,
              std::vector<LogEvent>& events) {
   if (events.empty()) return {};
-  Dice dice(sim::streamSeed(seed, kEffectStream));
+  Rng rng(sim::streamSeed(seed, kEffectStream));
   const auto span = static_cast<double>(events.back().utime - events.front().utime);
-  const int64_t when = events.front().utime + static_cast<int64_t>(dice.uniform(0.3, 0.5) * span);
-  if (defect == "clock_jump") return jumpClock(dice, when, events);
+  const int64_t when = events.front().utime + static_cast<int64_t>(rng.uniform(0.3, 0.5) * span);
+  if (defect == "clock_jump") return jumpClock(rng, when, events);
   if (defect == "frozen_ins") return freezeIns(when, events);
   if (defect == "flipped_gyro") {
     editEach(events, kIns, [](ins_t& ins) { ins.rate[2] = -ins.rate[2]; });
     return {1.0, "rate[2] of all INS messages has the wrong sign"};
   }
-  if (defect == "truncated") return {dice.uniform(0.1, 0.2), "the file ends inside an event"};
+  if (defect == "truncated") return {rng.uniform(0.1, 0.2), "the file ends inside an event"};
   if (defect == "no_motor") {
     const auto is_motor = [](const LogEvent& event) { return event.channel == kMotor.name; };
     events.erase(std::remove_if(events.begin(), events.end(), is_motor), events.end());

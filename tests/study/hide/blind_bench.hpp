@@ -17,7 +17,7 @@
 
 namespace tread::blind::bench {
 
-/// A folder of this test that is gone afterwards, sealed or not.
+/// A folder of this test that is gone afterwards.
 class Folder {
  public:
   Folder() {
@@ -28,7 +28,6 @@ class Folder {
   }
   ~Folder() {
     std::error_code ignored;
-    std::filesystem::permissions(path_ / "sealed", std::filesystem::perms::owner_all, ignored);
     std::filesystem::remove_all(path_, ignored);
   }
   Folder(const Folder&) = delete;

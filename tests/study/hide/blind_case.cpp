@@ -60,8 +60,8 @@ Driven driveCase(const CasePlan& plan, const NoiseLevel& noise) {
   Driven driven;
   driven.drive = drive(programme, hidden(), noise, plan.seed);
   const InstrumentFault fault = faultOf(hidden());
-  Dice dice(sim::streamSeed(plan.seed, kClockStream));
-  const int64_t phase = 1000 * dice.below(kInsPhases);
+  Rng rng(sim::streamSeed(plan.seed, kClockStream));
+  const int64_t phase = 1000 * rng.below(kInsPhases);
   driven.measured = measure(driven.drive.track, fault, noise, plan.seed, phase);
   CaseTruth& truth = driven.truth;
   truth.duration = duration;

@@ -17,7 +17,7 @@ struct Row {
   const char* name;
   EffectForm form;
   EffectShape shape;
-  Hider (*make)(double size, double duration, Dice& dice);
+  Hider (*make)(double size, double duration, Rng& rng);
   const char* how;
 };
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/study/hide/dice.hpp"
 #include "tests/study/hide/hider.hpp"
+#include "tests/study/hide/rng.hpp"
 
 namespace tread::blind {
 
@@ -31,7 +31,7 @@ struct EffectSpec {
   EffectShape shape;
   const char* how;  ///< which lever is turned, in words
   /// The hider for a size: 1 is about the smallest that can be found, 2 and 4 are usual.
-  Hider (*make)(double size, double duration, Dice& dice);
+  Hider (*make)(double size, double duration, Rng& rng);
   std::vector<std::string> group;  ///< each of these alone is the same for any drive
   /// These are the same where they are all there.
   std::vector<std::vector<std::string>> together;
@@ -45,53 +45,53 @@ const std::vector<EffectSpec>& effectList();
 const EffectSpec& effectNamed(const std::string& name);
 
 // The hiders by what they act on.
-Hider hideSlipRatio(double size, double duration, Dice& dice);
-Hider hideTrackAsymmetry(double size, double duration, Dice& dice);
-Hider hideMotorDeadband(double size, double duration, Dice& dice);
-Hider hideSpeedSaturation(double size, double duration, Dice& dice);
-Hider hideActuatorLag(double size, double duration, Dice& dice);
-Hider hideCommandDelay(double size, double duration, Dice& dice);
-Hider hideSlewLimit(double size, double duration, Dice& dice);
-Hider hideLagAsymmetry(double size, double duration, Dice& dice);
-Hider hideBatterySag(double size, double duration, Dice& dice);
-Hider hideThermalDerating(double size, double duration, Dice& dice);
-Hider hideTrackBacklash(double size, double duration, Dice& dice);
+Hider hideSlipRatio(double size, double duration, Rng& rng);
+Hider hideTrackAsymmetry(double size, double duration, Rng& rng);
+Hider hideMotorDeadband(double size, double duration, Rng& rng);
+Hider hideSpeedSaturation(double size, double duration, Rng& rng);
+Hider hideActuatorLag(double size, double duration, Rng& rng);
+Hider hideCommandDelay(double size, double duration, Rng& rng);
+Hider hideSlewLimit(double size, double duration, Rng& rng);
+Hider hideLagAsymmetry(double size, double duration, Rng& rng);
+Hider hideBatterySag(double size, double duration, Rng& rng);
+Hider hideThermalDerating(double size, double duration, Rng& rng);
+Hider hideTrackBacklash(double size, double duration, Rng& rng);
 
-Hider hideTrackWidth(double size, double duration, Dice& dice);
-Hider hideYawRateSkid(double size, double duration, Dice& dice);
-Hider hideTurnPowerLimit(double size, double duration, Dice& dice);
-Hider hideYawBreakaway(double size, double duration, Dice& dice);
-Hider hideSpeedUndersteer(double size, double duration, Dice& dice);
-Hider hideYawPull(double size, double duration, Dice& dice);
-Hider hideGripLimit(double size, double duration, Dice& dice);
-Hider hideReverseYawGain(double size, double duration, Dice& dice);
-Hider hideYawInertia(double size, double duration, Dice& dice);
+Hider hideTrackWidth(double size, double duration, Rng& rng);
+Hider hideYawRateSkid(double size, double duration, Rng& rng);
+Hider hideTurnPowerLimit(double size, double duration, Rng& rng);
+Hider hideYawBreakaway(double size, double duration, Rng& rng);
+Hider hideSpeedUndersteer(double size, double duration, Rng& rng);
+Hider hideYawPull(double size, double duration, Rng& rng);
+Hider hideGripLimit(double size, double duration, Rng& rng);
+Hider hideReverseYawGain(double size, double duration, Rng& rng);
+Hider hideYawInertia(double size, double duration, Rng& rng);
 
-Hider hidePayloadChange(double size, double duration, Dice& dice);
-Hider hideTerrainChange(double size, double duration, Dice& dice);
-Hider hideSlopePitch(double size, double duration, Dice& dice);
-Hider hideSlopeRoll(double size, double duration, Dice& dice);
-Hider hideCentrifugalDrift(double size, double duration, Dice& dice);
-Hider hideRollingResistance(double size, double duration, Dice& dice);
-Hider hideQuadraticDrag(double size, double duration, Dice& dice);
-Hider hideTurnSpeedLoss(double size, double duration, Dice& dice);
-Hider hideReverseSpeedGain(double size, double duration, Dice& dice);
-Hider hideIcrOffset(double size, double duration, Dice& dice);
-Hider hideBodyInertia(double size, double duration, Dice& dice);
-Hider hideCrab(double size, double duration, Dice& dice);
+Hider hidePayloadChange(double size, double duration, Rng& rng);
+Hider hideTerrainChange(double size, double duration, Rng& rng);
+Hider hideSlopePitch(double size, double duration, Rng& rng);
+Hider hideSlopeRoll(double size, double duration, Rng& rng);
+Hider hideCentrifugalDrift(double size, double duration, Rng& rng);
+Hider hideRollingResistance(double size, double duration, Rng& rng);
+Hider hideQuadraticDrag(double size, double duration, Rng& rng);
+Hider hideTurnSpeedLoss(double size, double duration, Rng& rng);
+Hider hideReverseSpeedGain(double size, double duration, Rng& rng);
+Hider hideIcrOffset(double size, double duration, Rng& rng);
+Hider hideBodyInertia(double size, double duration, Rng& rng);
+Hider hideCrab(double size, double duration, Rng& rng);
 
-Hider hideInsLatency(double size, double duration, Dice& dice);
-Hider hideInsLatencyAll(double size, double duration, Dice& dice);
-Hider hideHeadingLatency(double size, double duration, Dice& dice);
-Hider hideGyroBias(double size, double duration, Dice& dice);
-Hider hideHeadingMisalignment(double size, double duration, Dice& dice);
-Hider hideLeverArmX(double size, double duration, Dice& dice);
-Hider hideLeverArmY(double size, double duration, Dice& dice);
-Hider hidePositionScale(double size, double duration, Dice& dice);
+Hider hideInsLatency(double size, double duration, Rng& rng);
+Hider hideInsLatencyAll(double size, double duration, Rng& rng);
+Hider hideHeadingLatency(double size, double duration, Rng& rng);
+Hider hideGyroBias(double size, double duration, Rng& rng);
+Hider hideHeadingMisalignment(double size, double duration, Rng& rng);
+Hider hideLeverArmX(double size, double duration, Rng& rng);
+Hider hideLeverArmY(double size, double duration, Rng& rng);
+Hider hidePositionScale(double size, double duration, Rng& rng);
 
-Hider hideStribeckFriction(double size, double duration, Dice& dice);
-Hider hideLoadTransfer(double size, double duration, Dice& dice);
-Hider hideVoltageDeadTime(double size, double duration, Dice& dice);
-Hider hideSteeringHysteresis(double size, double duration, Dice& dice);
+Hider hideStribeckFriction(double size, double duration, Rng& rng);
+Hider hideLoadTransfer(double size, double duration, Rng& rng);
+Hider hideVoltageDeadTime(double size, double duration, Rng& rng);
+Hider hideSteeringHysteresis(double size, double duration, Rng& rng);
 
 }  // namespace tread::blind

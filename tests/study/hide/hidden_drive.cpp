@@ -141,8 +141,8 @@ std::vector<Hidden> makeHidden(const std::vector<std::string>& effects, double s
   std::vector<Hidden> hidden;
   for (const std::string& name : effects) {
     const EffectSpec& spec = effectNamed(name);
-    Dice dice(sim::streamSeed(seed, kEffectStream));
-    hidden.push_back({&spec, size, spec.make(size, duration, dice)});
+    Rng rng(sim::streamSeed(seed, kEffectStream));
+    hidden.push_back({&spec, size, spec.make(size, duration, rng)});
   }
   std::stable_sort(hidden.begin(), hidden.end(),
                    [](const Hidden& a, const Hidden& b) { return a.hider.stage < b.hider.stage; });

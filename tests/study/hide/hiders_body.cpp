@@ -35,15 +35,15 @@ double moving(const Moment& now) {
 
 }  // namespace
 
-Hider hidePayloadChange(double size, double duration, Dice& dice) {
-  const double change = duration * dice.uniform(0.35, 0.65);
+Hider hidePayloadChange(double size, double duration, Rng& rng) {
+  const double change = duration * rng.uniform(0.35, 0.65);
   // More weight makes the ground resist turning; it sits a little behind or ahead.
   const sim::VehicleParameters plain = plainVehicle();
   const double arm = plain.gauge / 2.0;
   const double scrub_share = 1.0 - forwardDamping() * arm * arm / yawDamping();
   const double gain = 1.0 / (1.0 - 0.1 * std::min(size, 4.0)) - 1.0;
   const double added = plain.mass * gain / scrub_share;
-  const double shift = 0.01 * size * dice.sign();
+  const double shift = 0.01 * size * rng.sign();
   Hider hider;
   hider.due = {change};
   hider.build = [=](double time, Build& build) {
@@ -67,10 +67,10 @@ Hider hidePayloadChange(double size, double duration, Dice& dice) {
   return hider;
 }
 
-Hider hideTerrainChange(double size, double duration, Dice& dice) {
-  const int changes = 1 + dice.below(2);
-  std::vector<double> at{duration * dice.uniform(0.3, 0.5)};
-  if (changes == 2) at.push_back(at.front() + duration * dice.uniform(0.2, 0.35));
+Hider hideTerrainChange(double size, double duration, Rng& rng) {
+  const int changes = 1 + rng.below(2);
+  std::vector<double> at{duration * rng.uniform(0.3, 0.5)};
+  if (changes == 2) at.push_back(at.front() + duration * rng.uniform(0.2, 0.35));
   Hider hider;
   hider.due = at;
   if (changes == 2) hider.unlike = {"payload_change"};
@@ -101,7 +101,7 @@ Hider hideTerrainChange(double size, double duration, Dice& dice) {
   return hider;
 }
 
-Hider hideSlopePitch(double size, double, Dice&) {
+Hider hideSlopePitch(double size, double, Rng&) {
   const double g_p = 0.02 * size;
   // As a share of the body's weight; above 1 there is a trailer behind it.
   const double share = g_p * forwardDamping() / plainVehicle().mass;
@@ -117,7 +117,7 @@ Hider hideSlopePitch(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideSlopeRoll(double size, double, Dice&) {
+Hider hideSlopeRoll(double size, double, Rng&) {
   const double share = 0.02 * size * sideDamping() / plainVehicle().mass;
   Hider hider;
   hider.push = [=](const Moment& now) {
@@ -131,7 +131,7 @@ Hider hideSlopeRoll(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideCentrifugalDrift(double size, double, Dice&) {
+Hider hideCentrifugalDrift(double size, double, Rng&) {
   const double k = 0.06 * size;
   Hider hider;
   // The ground yields the more, the harder it is pushed.
@@ -147,7 +147,7 @@ Hider hideCentrifugalDrift(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideRollingResistance(double size, double, Dice&) {
+Hider hideRollingResistance(double size, double, Rng&) {
   const double c = 0.04 * size;
   constexpr double kCreep = 0.01;  // [m/s]
   Hider hider;
@@ -166,7 +166,7 @@ Hider hideRollingResistance(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideQuadraticDrag(double size, double, Dice&) {
+Hider hideQuadraticDrag(double size, double, Rng&) {
   const double k = 0.06 * size;
   Hider hider;
   hider.push = [=](const Moment& now) {
@@ -180,7 +180,7 @@ Hider hideQuadraticDrag(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideTurnSpeedLoss(double size, double, Dice&) {
+Hider hideTurnSpeedLoss(double size, double, Rng&) {
   const double k = 0.06 * size;
   Hider hider;
   // Earth carried along sideways: with the square of small rates, straight for large ones.
@@ -196,8 +196,8 @@ Hider hideTurnSpeedLoss(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideReverseSpeedGain(double size, double, Dice& dice) {
-  const double k = 0.03 * size * dice.sign();
+Hider hideReverseSpeedGain(double size, double, Rng& rng) {
+  const double k = 0.03 * size * rng.sign();
   Hider hider;
   hider.push = [=](const Moment& now) {
     return OutsideForce{forwardDamping() * k * std::abs(now.v_body.v_x), 0.0, 0.0};
@@ -209,11 +209,11 @@ Hider hideReverseSpeedGain(double size, double, Dice& dice) {
   return hider;
 }
 
-Hider hideIcrOffset(double size, double, Dice& dice) {
+Hider hideIcrOffset(double size, double, Rng& rng) {
   const double wanted = 0.05 * size;
   // Weight moves the centre of pressure; what is beyond that, the tracks themselves.
   const double pressure = std::min(0.2 * wanted, 0.02);
-  const double sign = dice.sign();
+  const double sign = rng.sign();
   Hider hider;
   hider.build = [=](double, Build& build) {
     build.surface.pressure_offset += sign * pressure;
@@ -226,8 +226,8 @@ Hider hideIcrOffset(double size, double, Dice& dice) {
   return hider;
 }
 
-Hider hideCrab(double size, double, Dice& dice) {
-  const double angle = 0.025 * size * dice.sign();
+Hider hideCrab(double size, double, Rng& rng) {
+  const double angle = 0.025 * size * rng.sign();
   Hider hider;
   hider.slide = [=](const Moment&, Twist2 twist) {
     twist.v_y += twist.v_x * std::tan(angle);
@@ -238,7 +238,7 @@ Hider hideCrab(double size, double, Dice& dice) {
   return hider;
 }
 
-Hider hideBodyInertia(double size, double, Dice&) {
+Hider hideBodyInertia(double size, double, Rng&) {
   const double lag = 0.15 * size;
   Hider hider;
   // As much mass would slip on any ground: the motion itself is delayed.

@@ -39,7 +39,7 @@ double follow(double& state, double wanted, double lag, double dt) {
 
 }  // namespace
 
-Hider hideSlipRatio(double size, double, Dice&) {
+Hider hideSlipRatio(double size, double, Rng&) {
   const double slip = 0.05 * size;
   Hider hider;
   hider.build = [=](double, Build& build) { build.vehicle.drive.free_speed *= 1.0 - slip; };
@@ -50,8 +50,8 @@ Hider hideSlipRatio(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideTrackAsymmetry(double size, double, Dice& dice) {
-  const double e = 0.02 * size * dice.sign();
+Hider hideTrackAsymmetry(double size, double, Rng& rng) {
+  const double e = 0.02 * size * rng.sign();
   Hider hider;
   hider.drive = [=](const Moment&, MotorPower power) {
     return MotorPower{power.left * (1.0 + e), power.right * (1.0 - e)};
@@ -61,7 +61,7 @@ Hider hideTrackAsymmetry(double size, double, Dice& dice) {
   return hider;
 }
 
-Hider hideMotorDeadband(double size, double, Dice&) {
+Hider hideMotorDeadband(double size, double, Rng&) {
   const double dead = 0.05 * size / speedPerPower();
   Hider hider;
   hider.stage = Stage::kSignal;
@@ -74,7 +74,7 @@ Hider hideMotorDeadband(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideSpeedSaturation(double size, double, Dice&) {
+Hider hideSpeedSaturation(double size, double, Rng&) {
   const double limit = 1.0 / (1.0 + 0.215 * size);
   Hider hider;
   hider.drive = [=](const Moment&, MotorPower power) {
@@ -88,7 +88,7 @@ Hider hideSpeedSaturation(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideActuatorLag(double size, double, Dice&) {
+Hider hideActuatorLag(double size, double, Rng&) {
   const double more = 0.15 * size;
   Hider hider;
   hider.build = [=](double, Build& build) { build.vehicle.drive.power_lag += more; };
@@ -97,7 +97,7 @@ Hider hideActuatorLag(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideCommandDelay(double size, double, Dice&) {
+Hider hideCommandDelay(double size, double, Rng&) {
   const double delay = 0.075 * size;
   Hider hider;
   hider.stage = Stage::kWire;
@@ -113,7 +113,7 @@ Hider hideCommandDelay(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideSlewLimit(double size, double, Dice&) {
+Hider hideSlewLimit(double size, double, Rng&) {
   const double rate = 2.0 / size / speedPerPower();
   Hider hider;
   hider.stage = Stage::kRamp;
@@ -128,7 +128,7 @@ Hider hideSlewLimit(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideLagAsymmetry(double size, double, Dice&) {
+Hider hideLagAsymmetry(double size, double, Rng&) {
   const double more = 0.125 * size;
   const double lag = plainVehicle().drive.power_lag;
   Hider hider;
@@ -148,7 +148,7 @@ Hider hideLagAsymmetry(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideBatterySag(double size, double duration, Dice&) {
+Hider hideBatterySag(double size, double duration, Rng&) {
   const double sag = 0.075 * size;
   // Mean of |power| over both tracks in a random programme: makes the loss end near `sag`.
   constexpr double kMeanPower = 0.31;
@@ -174,7 +174,7 @@ Hider hideBatterySag(double size, double duration, Dice&) {
   return hider;
 }
 
-Hider hideThermalDerating(double size, double, Dice&) {
+Hider hideThermalDerating(double size, double, Rng&) {
   const double h = 0.15 * size;
   constexpr double kHeatingTime = 180.0;  // [s]
   constexpr double kFullCurrent = 40.0;   // of a motor in a tight turn [A]
@@ -215,7 +215,7 @@ struct Slack {
 
 }  // namespace
 
-Hider hideTrackBacklash(double size, double, Dice&) {
+Hider hideTrackBacklash(double size, double, Rng&) {
   const double width = 0.025 * size;
   const sim::DriveParameters drive = plainVehicle().drive;
   const double full_speed = drive.free_speed * drive.full_voltage / drive.nominal_voltage;

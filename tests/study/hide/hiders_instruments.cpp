@@ -17,27 +17,27 @@ Hider instrument(const char* lever, const char* symbol, double value, const char
 
 }  // namespace
 
-Hider hideInsLatency(double size, double, Dice&) {
+Hider hideInsLatency(double size, double, Rng&) {
   const double late = 0.075 * size;
   return instrument("pose_latency", "L", late, "s", 1.0,
                     [=](InstrumentFault& fault) { fault.pose_latency = late; });
 }
 
-Hider hideInsLatencyAll(double size, double, Dice&) {
+Hider hideInsLatencyAll(double size, double, Rng&) {
   const double late = 0.075 * size;
   return instrument("latency_of_all_channels", "L", late, "s", 1.0,
                     [=](InstrumentFault& fault) { fault.all_latency = late; });
 }
 
-Hider hideHeadingLatency(double size, double, Dice&) {
+Hider hideHeadingLatency(double size, double, Rng&) {
   // heading(t - T_h) beside position(t): v_y gains T_h v omega, a drift of -T_h.
   const double late = 0.06 * size;
   return instrument("heading_latency", "T_h", late, "s", 1.0,
                     [=](InstrumentFault& fault) { fault.heading_latency = late; });
 }
 
-Hider hideGyroBias(double size, double, Dice& dice) {
-  const double bias = 0.015 * size * dice.sign();
+Hider hideGyroBias(double size, double, Rng& rng) {
+  const double bias = 0.015 * size * rng.sign();
   Hider hider = instrument("bias", "b", bias, "rad/s", 1.0, [=](InstrumentFault& fault) {
     fault.gyro_bias = bias;
     fault.gyro_warm_up = 0.3 * bias;
@@ -46,29 +46,29 @@ Hider hideGyroBias(double size, double, Dice& dice) {
   return hider;
 }
 
-Hider hideHeadingMisalignment(double size, double, Dice& dice) {
-  const double psi = 0.025 * size * dice.sign();
+Hider hideHeadingMisalignment(double size, double, Rng& rng) {
+  const double psi = 0.025 * size * rng.sign();
   return instrument("misalignment", "psi_0", psi, "rad", 1.0,
                     [=](InstrumentFault& fault) { fault.misalignment = psi; });
 }
 
-Hider hideLeverArmX(double size, double, Dice& dice) {
+Hider hideLeverArmX(double size, double, Rng& rng) {
   // The field's sign, that of a centre of rotation as far ahead: v_y loses l_x omega, so the
   // antenna sits behind for l_x > 0.
-  const double arm = 0.05 * size * dice.sign();
+  const double arm = 0.05 * size * rng.sign();
   return instrument("antenna_ahead", "l_x", arm, "m", -1.0,
                     [=](InstrumentFault& fault) { fault.antenna_x = arm; });
 }
 
-Hider hideLeverArmY(double size, double, Dice& dice) {
+Hider hideLeverArmY(double size, double, Rng& rng) {
   // The catalogue's sign: v_x grows by l_y omega, so the antenna sits on the right for l_y > 0.
-  const double arm = 0.05 * size * dice.sign();
+  const double arm = 0.05 * size * rng.sign();
   return instrument("antenna_left", "l_y", arm, "m", -1.0,
                     [=](InstrumentFault& fault) { fault.antenna_y = arm; });
 }
 
-Hider hidePositionScale(double size, double, Dice& dice) {
-  const double scale = 0.025 * size * dice.sign();
+Hider hidePositionScale(double size, double, Rng& rng) {
+  const double scale = 0.025 * size * rng.sign();
   return instrument("scale", "k", scale, "1", 1.0,
                     [=](InstrumentFault& fault) { fault.position_scale = scale; });
 }

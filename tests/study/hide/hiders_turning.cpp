@@ -23,7 +23,7 @@ double lostYawRate(const SteadyPair& p) {
 
 }  // namespace
 
-Hider hideTrackWidth(double size, double, Dice&) {
+Hider hideTrackWidth(double size, double, Rng&) {
   // Tougher ground beside the tracks. Only the scrubbing part of the yaw damping grows.
   const double k = 0.125 * size;
   Hider hider;
@@ -39,7 +39,7 @@ Hider hideTrackWidth(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideYawRateSkid(double size, double, Dice&) {
+Hider hideYawRateSkid(double size, double, Rng&) {
   const double k = 0.125 * size;
   Hider hider;
   // Earth heaped up beside the tracks: resistance with the square of the rate.
@@ -54,7 +54,7 @@ Hider hideYawRateSkid(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideTurnPowerLimit(double size, double, Dice&) {
+Hider hideTurnPowerLimit(double size, double, Rng&) {
   const double limit = 1.6 / (1.0 + 0.25 * size);
   Hider hider;
   // Beyond the limit the drive has hardly any moment left: a steep wall, not a clip.
@@ -74,7 +74,7 @@ Hider hideTurnPowerLimit(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideYawBreakaway(double size, double, Dice&) {
+Hider hideYawBreakaway(double size, double, Rng&) {
   const double rate = 0.06 * size;
   constexpr double kCreep = 0.02;  // below it the ground gives like a spring [rad/s]
   Hider hider;
@@ -96,7 +96,7 @@ Hider hideYawBreakaway(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideSpeedUndersteer(double size, double, Dice&) {
+Hider hideSpeedUndersteer(double size, double, Rng&) {
   const double k = 0.125 * size;
   Hider hider;
   hider.push = [=](const Moment& now) {
@@ -112,8 +112,8 @@ Hider hideSpeedUndersteer(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideYawPull(double size, double, Dice& dice) {
-  const double k = 0.03 * size * dice.sign();
+Hider hideYawPull(double size, double, Rng& rng) {
+  const double k = 0.03 * size * rng.sign();
   const double moment = yawDamping() * k;
   Hider hider;
   // Something drags on one side of the vehicle: it turns and brakes.
@@ -128,7 +128,7 @@ Hider hideYawPull(double size, double, Dice& dice) {
   return hider;
 }
 
-Hider hideGripLimit(double size, double, Dice&) {
+Hider hideGripLimit(double size, double, Rng&) {
   const double limit = 0.8 / (1.0 + 0.5 * size);
   Hider hider;
   // Where the side force ends the vehicle pushes outwards over its front and turns less.
@@ -153,8 +153,8 @@ Hider hideGripLimit(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideReverseYawGain(double size, double, Dice& dice) {
-  const double k = 0.075 * size * dice.sign();
+Hider hideReverseYawGain(double size, double, Rng& rng) {
+  const double k = 0.075 * size * rng.sign();
   Hider hider;
   // Sagging chain: turning is easier one way than the other.
   hider.push = [=](const Moment& now) {
@@ -168,7 +168,7 @@ Hider hideReverseYawGain(double size, double, Dice& dice) {
   return hider;
 }
 
-Hider hideYawInertia(double size, double, Dice&) {
+Hider hideYawInertia(double size, double, Rng&) {
   const double lag = 0.125 * size;
   Hider hider;
   hider.build = [=](double, Build& build) { build.vehicle.yaw_inertia += lag * yawDamping(); };

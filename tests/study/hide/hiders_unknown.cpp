@@ -13,7 +13,7 @@ namespace tread::blind {
 using sim::MotorPower;
 using sim::OutsideForce;
 
-Hider hideStribeckFriction(double size, double, Dice&) {
+Hider hideStribeckFriction(double size, double, Rng&) {
   const double loss = 0.05 * size;  // of power in a slow gear [1]
   constexpr double kFadingSpeed = 0.25;
   Hider hider;
@@ -31,7 +31,7 @@ Hider hideStribeckFriction(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideLoadTransfer(double size, double, Dice&) {
+Hider hideLoadTransfer(double size, double, Rng&) {
   const double k = 0.25 * size;
   Hider hider;
   // Braking loads the front of the tracks and frees their rear: turning gets easier, and the tail
@@ -49,7 +49,7 @@ Hider hideLoadTransfer(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideVoltageDeadTime(double size, double, Dice&) {
+Hider hideVoltageDeadTime(double size, double, Rng&) {
   constexpr double kPerVolt = 0.2;         // [s/V]
   const double resistance = 0.014 * size;  // of old cables [ohm]
   Hider hider;
@@ -73,7 +73,7 @@ Hider hideVoltageDeadTime(double size, double, Dice&) {
   return hider;
 }
 
-Hider hideSteeringHysteresis(double size, double, Dice&) {
+Hider hideSteeringHysteresis(double size, double, Rng&) {
   const double k = 0.1 * size;
   constexpr double kSeating = 0.8;  // [rad]
   Hider hider;

@@ -10,8 +10,8 @@
 #include "common/config/command_line.hpp"
 #include "common/report/hash.hpp"
 #include "tests/study/hide/bad_log.hpp"
+#include "tests/study/hide/case_folder.hpp"
 #include "tests/study/hide/effect_list.hpp"
-#include "tests/study/hide/sealed_folder.hpp"
 #include "tests/study/hide/semi.hpp"
 #include "tests/study/hide/suite.hpp"
 
@@ -78,13 +78,10 @@ std::vector<CasePlan> plansOf(const Arguments& arguments) {
 
 void hide(const Arguments& arguments) {
   const Shard shard = shardOf(arguments.shard);
-  const std::string part =
-      shard.count == 1 ? "" : std::to_string(shard.index) + "of" + std::to_string(shard.count);
   const std::vector<CasePlan> plans = plansOf(arguments);
-  SealedFolder folder(arguments.out, part);
   size_t made = 0;
   for (size_t i = shard.index - 1; i < plans.size(); i += shard.count) {
-    folder.add(plans[i].name, makeCase(plans[i]));
+    writeCase(arguments.out, plans[i].name, makeCase(plans[i]));
     ++made;
   }
   std::printf("%s: %zu of %zu cases hidden\n", arguments.out.c_str(), made, plans.size());
@@ -119,8 +116,9 @@ void hideInRecording(const SemiArguments& arguments) {
   std::ifstream file(arguments.log, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   const SemiTruth truth = hideInLog(arguments.effect, arguments.size, arguments.seed, made.events);
-  made.truth = semiTruthText(arguments.name, truth, arguments.size, arguments.seed, tread::sha256(bytes));
-  SealedFolder(arguments.out).add(arguments.name, made);
+  made.truth =
+      semiTruthText(arguments.name, truth, arguments.size, arguments.seed, tread::sha256(bytes));
+  writeCase(arguments.out, arguments.name, made);
   std::printf("%s: %s hidden in %s\n", arguments.out.c_str(), arguments.name.c_str(),
               arguments.log.c_str());
 }
@@ -135,7 +133,7 @@ void addSemiOptions(CLI::App& semi, SemiArguments& arguments) {
   semi.add_option("--size", arguments.size, "1 or 2")->check(CLI::Range(1, 2));
   semi.add_option("--seed", arguments.seed, "of the sign and of the time of a change");
   semi.add_option("--name", arguments.name, "of the case")->capture_default_str();
-  semi.add_option("--out", arguments.out, "folder that gets blind/ and sealed/")->required();
+  semi.add_option("--out", arguments.out, "folder that gets blind/ and truth/")->required();
 }
 
 /// What may be known of a suite's cases before they are opened: NAME NOISE, a line each.
@@ -144,15 +142,8 @@ void listConditions(const std::string& suite, uint64_t seed) {
     std::printf("%s %s\n", plan.name.c_str(), plan.noise.c_str());
 }
 
-int checkSeals(const std::string& path) {
-  const std::vector<std::string> wrong = unseal(path);
-  for (const std::string& line : wrong) std::fprintf(stderr, "tread-hide: %s\n", line.c_str());
-  if (wrong.empty()) std::printf("%s: all files are as committed\n", path.c_str());
-  return wrong.empty() ? 0 : 1;
-}
-
 void addOptions(CLI::App& app, Arguments& arguments) {
-  app.add_option("--out", arguments.out, "folder that gets blind/ and sealed/");
+  app.add_option("--out", arguments.out, "folder that gets blind/ and truth/");
   app.add_option("--suite", arguments.suite, "all cases of a study")
       ->check(CLI::IsMember(suiteNames()));
   app.add_option("--shard", arguments.shard, "I/N: every N-th case of the suite from the I-th");
@@ -183,11 +174,6 @@ int parseAndRun(int argc, char** argv) {
   CLI::App app{"Hides effects in the simulator's ground truth: logs for blind tests"};
   addOptions(app, arguments);
   CLI::App* names = app.add_subcommand("list", "effects and bad logs that can be made");
-  std::string merged, opened;
-  CLI::App* merge = app.add_subcommand("merge", "joins the commitments of shards in one folder");
-  merge->add_option("--out", merged)->required();
-  CLI::App* open = app.add_subcommand("unseal", "opens sealed/ and checks all commitments");
-  open->add_option("--out", opened)->required();
   std::string suite = "small";
   uint64_t seed = 1;
   CLI::App* conditions =
@@ -202,8 +188,6 @@ int parseAndRun(int argc, char** argv) {
   if (*recording) return hideInRecording(semi), 0;
   if (*names) return list(), 0;
   if (*conditions) return listConditions(suite, seed), 0;
-  if (*merge) return mergeCommitments(merged), 0;
-  if (*open) return checkSeals(opened);
   if (arguments.out.empty()) throw std::invalid_argument("--out is missing");
   hide(arguments);
   return 0;

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "modules/simulator/core/random.hpp"
-#include "tests/study/hide/dice.hpp"
+#include "tests/study/hide/rng.hpp"
 
 namespace tread::blind {
 namespace {
@@ -31,39 +31,39 @@ MotorPower command(double mean, double half_difference) {
   return {rounded(mean - half_difference), rounded(mean + half_difference)};
 }
 
-double eitherWay(Dice& dice) {
-  return dice.uniform(0.0, 1.0) < 0.6 ? 1.0 : -1.0;
+double eitherWay(Rng& rng) {
+  return rng.uniform(0.0, 1.0) < 0.6 ? 1.0 : -1.0;
 }
 
 /// Any command: straight, in place, arcs, small differentials at speed, weak ones, stops.
-MotorPower anyCommand(Dice& dice, double vigour) {
-  const double kind = dice.uniform(0.0, 1.0);
-  if (kind < 0.22) return command(eitherWay(dice) * vigour * dice.uniform(0.15, 1.0), 0.0);
-  if (kind < 0.40) return command(0.0, dice.sign() * vigour * dice.uniform(0.1, kTurn));
+MotorPower anyCommand(Rng& rng, double vigour) {
+  const double kind = rng.uniform(0.0, 1.0);
+  if (kind < 0.22) return command(eitherWay(rng) * vigour * rng.uniform(0.15, 1.0), 0.0);
+  if (kind < 0.40) return command(0.0, rng.sign() * vigour * rng.uniform(0.1, kTurn));
   if (kind < 0.72) {
-    const double mean = eitherWay(dice) * vigour * dice.uniform(0.2, 0.9);
-    return command(mean, dice.sign() * vigour * dice.uniform(0.05, kTurn));
+    const double mean = eitherWay(rng) * vigour * rng.uniform(0.2, 0.9);
+    return command(mean, rng.sign() * vigour * rng.uniform(0.05, kTurn));
   }
   if (kind < 0.86) {
-    const double mean = eitherWay(dice) * vigour * dice.uniform(0.4, 1.0);
-    return command(mean, dice.sign() * dice.uniform(0.01, 0.12));
+    const double mean = eitherWay(rng) * vigour * rng.uniform(0.4, 1.0);
+    return command(mean, rng.sign() * rng.uniform(0.01, 0.12));
   }
   if (kind < 0.94)
-    return command(eitherWay(dice) * dice.uniform(0.02, 0.2), dice.sign() * dice.uniform(0.0, 0.1));
+    return command(eitherWay(rng) * rng.uniform(0.02, 0.2), rng.sign() * rng.uniform(0.0, 0.1));
   return {};
 }
 
-MotorPower oneSpeedCommand(Dice& dice) {
+MotorPower oneSpeedCommand(Rng& rng) {
   constexpr double kMean = 0.6;
   constexpr double kHalf = 0.25;
-  const int kind = dice.below(10);
+  const int kind = rng.below(10);
   if (kind == 0) return {};
   if (kind < 5) return command(kMean, 0.0);
-  return command(kMean, dice.sign() * kHalf);
+  return command(kMean, rng.sign() * kHalf);
 }
 
-MotorPower straightCommand(Dice& dice) {
-  return dice.below(4) == 0 ? MotorPower{} : command(0.6, 0.0);
+MotorPower straightCommand(Rng& rng) {
+  return rng.below(4) == 0 ? MotorPower{} : command(0.6, 0.0);
 }
 
 MotorPower forwardOnly(const MotorPower& power) {
@@ -98,7 +98,7 @@ class Composer {
 
  private:
   Choice choice_;
-  Dice dice_;
+  Rng dice_;
   double vigour_ = 1.0;
   std::array<MotorPower, 5> five_{command(0.8, 0.0), command(0.7, 0.15), command(0.7, -0.15),
                                   command(0.5, 0.45), command(0.5, -0.45)};

@@ -14,9 +14,9 @@
 
 #include "common/geometry/se2.hpp"
 #include "modules/simulator/core/random.hpp"
-#include "tests/study/hide/dice.hpp"
 #include "tests/study/hide/effect_list.hpp"
 #include "tests/study/hide/event_edit.hpp"
+#include "tests/study/hide/rng.hpp"
 
 namespace tread::blind {
 namespace {
@@ -207,12 +207,12 @@ SemiTruth hideInLog(const std::string& effect, int size, uint64_t seed, Events& 
                                  [&](const SemiEffect& one) { return one.name == effect; });
   if (spec == all.end())
     throw std::invalid_argument("effect '" + effect + "' cannot be hidden in a recording");
-  Dice dice(sim::streamSeed(seed, kEffectStream));
-  const double sign = spec->either_sign ? dice.sign() : 1.0;
+  Rng rng(sim::streamSeed(seed, kEffectStream));
+  const double sign = spec->either_sign ? rng.sign() : 1.0;
   const double value = sign * (size == 1 ? spec->small : spec->large);
   SemiTruth truth{effect, {{spec->parameter, value, spec->unit, false}}, drivenTime(events)};
   if (effect == "payload_change" || effect == "terrain_change") {
-    const double when = dice.uniform(0.4, 0.6);
+    const double when = rng.uniform(0.4, 0.6);
     changeYawGain(value, when, events);
     truth.parameters.push_back({"T_c_share", when, "1", false});
   } else if (actsOnCommands(effect)) {
@@ -258,7 +258,6 @@ std::string semiTruthText(const std::string& name, const SemiTruth& truth, int s
   json["log"] = "blind/" + name + ".lcm";
   json["kind"] = "semi";
   json["seed"] = seed;
-  json["salt"] = std::to_string(sim::streamSeed(seed, kSaltStream));
   json["source_sha256"] = source_hash;
   json["minutes"] = truth.duration / 60.0;
   json["duration_s"] = truth.duration;

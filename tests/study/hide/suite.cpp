@@ -8,8 +8,8 @@
 
 #include "modules/simulator/core/random.hpp"
 #include "tests/study/hide/bad_log.hpp"
-#include "tests/study/hide/dice.hpp"
 #include "tests/study/hide/effect_list.hpp"
+#include "tests/study/hide/rng.hpp"
 
 namespace tread::blind {
 namespace {
@@ -134,7 +134,7 @@ class SuiteMaker {
  private:
   double minutes_;
   uint64_t seed_;
-  Dice dice_;
+  Rng dice_;
   std::vector<CasePlan> plans_;
 };
 

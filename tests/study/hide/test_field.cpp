@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/study/hide/dice.hpp"
+#include "tests/study/hide/rng.hpp"
 
 namespace tread::blind {
 namespace {
@@ -59,17 +59,17 @@ sim::SurfaceParameters plainSurface() {
 sim::Terrain rollingTerrain(uint64_t seed) {
   constexpr int kWaves = 6;
   constexpr double kSlope = 0.087;  // rms along any direction [1]
-  Dice dice(seed);
+  Rng rng(seed);
   sim::Terrain terrain;
   for (int i = 0; i < kWaves; ++i) {
     // Directions are spread evenly, so that no heading is without slope.
-    const double direction = kPi * (i + dice.uniform(0.0, 1.0)) / kWaves;
-    const double wave_number = 2.0 * kPi / dice.uniform(3.0, 12.0);
+    const double direction = kPi * (i + rng.uniform(0.0, 1.0)) / kWaves;
+    const double wave_number = 2.0 * kPi / rng.uniform(3.0, 12.0);
     const double steepness = kSlope * 2.0 / std::sqrt(static_cast<double>(kWaves));
     terrain.waves.push_back(
         {steepness / wave_number,
          wave_number * Eigen::Vector2d(std::cos(direction), std::sin(direction)),
-         dice.uniform(0.0, 2.0 * kPi)});
+         rng.uniform(0.0, 2.0 * kPi)});
   }
   return terrain;
 }

@@ -4,8 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "modules/simulator/core/random.hpp"
-
 namespace tread::blind {
 namespace {
 
@@ -84,8 +82,6 @@ std::string truthText(const CasePlan& plan, const CaseTruth& truth) {
   json["log"] = "blind/" + plan.name + ".lcm";
   json["kind"] = kindName(plan.kind);
   json["seed"] = plan.seed;
-  // Nobody can guess the truth and compare its hash.
-  json["salt"] = std::to_string(sim::streamSeed(plan.seed, kSaltStream));
   json["minutes"] = plan.minutes;
   json["duration_s"] = truth.duration;
   json["programme"] = choiceName(plan.choice);

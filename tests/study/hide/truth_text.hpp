@@ -38,7 +38,7 @@ struct CaseTruth {
 };
 
 /// The truth as JSON, two spaces, keys in a fixed order, newline at the end:
-///   format "tread-hide truth 1", case, log, kind (kindName(), or "semi"), seed, salt, minutes,
+///   format "tread-hide truth 1", case, log, kind (kindName(), or "semi"), seed, minutes,
 ///   duration_s, programme, noise {...}, size
 ///   effects [{name, kind vehicle|measurement|out_of_catalogue,
 ///     form physical (changed in the 1 kHz dynamics)|kinematic (in the motion or what is said of

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -11,10 +12,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "common/report/hash.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tests/study/score/child.hpp"
-#include "tests/study/score/nominal_numbers.hpp"
-#include "tests/study/score/seal_watch.hpp"
 
 namespace fs = std::filesystem;
 
@@ -30,6 +29,29 @@ std::string foundFile(const HiddenCase& one, const std::string& name) {
   return "found/" + one.name + "/" + name;
 }
 
+Json sigmaOf(const ParameterCovariance& covariance, const std::string& path) {
+  for (size_t i = 0; i < covariance.parameters.size(); ++i)
+    if (covariance.parameters[i] == path) return std::sqrt(covariance.matrix[i][i]);
+  return nullptr;
+}
+
+/// The nominal model's own value of each parameter that a verdict speaks of, with its standard
+/// deviation where the model file knows it (else null): {path: {value, sigma}}.
+Json nominalNumbers(const std::string& model, const Json& verdict) {
+  Json numbers = Json::object();
+  if (verdict.is_null()) return numbers;
+  const ModelDocument document = readModelDocument(model);
+  const auto add = [&](const std::string& path) {
+    if (const double* value = findParameter(document, path))
+      numbers[path] = {{"value", *value}, {"sigma", sigmaOf(document.covariance, path)}};
+  };
+  for (const auto& [path, estimate] : verdict.at("calibrated").items()) add(path);
+  for (const Json& effect : verdict.at("effects"))
+    for (const auto& [name, estimate] : effect.at("parameters").items())
+      add(effect.at("name").get<std::string>() + "." + name);
+  return numbers;
+}
+
 /// Runs a batch step by step.
 class Runner {
  public:
@@ -40,8 +62,6 @@ class Runner {
     clear();
     hide();
     findAll();
-    hashVerdicts();
-    runOrThrow({{program("tread-hide"), "unseal", "--out", "."}, batch_.folder, "unseal.log", ""});
     writeRecords();
     if (!study_.keep) tidy();
   }
@@ -51,7 +71,6 @@ class Runner {
 
   /// What an interrupted run has left.
   void clear() const {
-    if (fs::exists(folder_ / "sealed")) fs::permissions(folder_ / "sealed", fs::perms::owner_all);
     fs::remove_all(folder_);
     fs::create_directories(folder_ / "found");
   }
@@ -66,29 +85,23 @@ class Runner {
                    std::to_string(study_.minutes), "--seed", std::to_string(study_.seed), "--shard",
                    shard, "--out", "."},
                   batch_.folder,
-                  log,
-                  ""});
+                  log});
     }
     for (const HiddenCase& one : batch_.cases) {
       if (of_suite(one)) continue;
       std::vector<std::string> command{program("tread-hide")};
       command.insert(command.end(), one.arguments.begin(), one.arguments.end());
       command.insert(command.end(), {"--out", "."});
-      runOrThrow({command, batch_.folder, log, ""});
+      runOrThrow({command, batch_.folder, log});
     }
   }
 
   void findAll() {
-    SealWatch watch((folder_ / "sealed").string());
     std::vector<std::thread> workers;
     for (size_t i = 0; i < std::min(study_.jobs, batch_.cases.size()); ++i)
       workers.emplace_back([this] { work(); });
     for (std::thread& worker : workers) worker.join();
     if (problem_) std::rethrow_exception(problem_);
-    const std::vector<std::string> touched = watch.touched();
-    if (!touched.empty())
-      throw std::runtime_error(batch_.folder + "/sealed: " + touched.front() +
-                               " was opened before its time; nothing of this batch counts");
   }
 
   void work() {
@@ -108,23 +121,9 @@ class Runner {
           "--train", "blind/" + one.name + ".lcm", "--out", "found/" + one.name},
          batch_.folder,
          foundFile(one, "log.txt"),
-         (folder_ / "sealed").string(),
          kFindLimit});
     const std::lock_guard<std::mutex> guard(mutex_);
     ended_[one.name] = ended;
-  }
-
-  void hashVerdicts() const {
-    std::ofstream list(folder_ / "verdicts.txt", std::ios::binary);
-    for (const HiddenCase& one : batch_.cases) list << verdictHash(one) << "\n";
-    list << std::flush;
-    if (!list) throw std::runtime_error(batch_.folder + "/verdicts.txt: cannot be written");
-  }
-
-  /// A line as `sha256sum -c` reads it.
-  std::string verdictHash(const HiddenCase& one) const {
-    const std::string file = foundFile(one, hasVerdict(one) ? "verdict.json" : "log.txt");
-    return sha256OfFile((folder_ / file).string()) + "  " + file;
   }
 
   bool hasVerdict(const HiddenCase& one) const {
@@ -138,8 +137,7 @@ class Runner {
 
   Json recordOf(const HiddenCase& one) const {
     Json record = {{"case", one.name}};
-    record["truth"] = readJson(folder_ / "sealed" / (one.name + ".json"));
-    record["truth"].erase("salt");
+    record["truth"] = readJson(folder_ / "truth" / (one.name + ".json"));
     Json answer = {{"exit", ended_.at(one.name).status}, {"message", ""}, {"verdict", nullptr}};
     if (hasVerdict(one))
       answer["verdict"] = readJson(folder_ / foundFile(one, "verdict.json"));
@@ -147,7 +145,6 @@ class Runner {
       answer["message"] = lastLine((folder_ / foundFile(one, "log.txt")).string());
     record["nominal"] = nominalNumbers(models_.at(one.nominal), answer["verdict"]);
     record["answer"] = std::move(answer);
-    record["verdict_sha256"] = verdictHash(one).substr(0, 64);
     return record;
   }
 

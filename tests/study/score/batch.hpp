@@ -21,9 +21,8 @@ struct Batch {
 /// Records of a batch; it is there when the batch is done.
 inline constexpr const char* kBatchRecords = "cases.jsonl";
 
-/// Hides the batch, runs tread-gap on each log, hashes the verdicts, unseals, writes the records.
-/** `models`: the nominal model of each noise level. Leaves verdicts.txt (hashes of all verdicts,
- * from before unsealing), commitments.txt and times.csv. */
+/// Hides the batch, runs tread-gap on each log, writes the records and times.csv.
+/** `models`: the nominal model of each noise level. */
 void runBatch(const Study& study, const Batch& batch,
               const std::map<std::string, std::string>& models);
 

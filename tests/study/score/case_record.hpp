@@ -44,7 +44,7 @@ struct HiddenEffect {
   std::vector<HiddenNumber> numbers;
 };
 
-/// What tread-hide sealed.
+/// What tread-hide wrote.
 struct Truth {
   std::string name;  ///< of the case
   std::string kind;  ///< null, single, pair, out_of_catalogue, degenerate, bad, semi
@@ -99,8 +99,8 @@ struct CaseRecord {
 };
 
 /// A record as it is written, one line of cases.jsonl:
-///   case, truth {as sealed, without salt}, answer {exit, message, verdict {as verdict.json}},
-///   nominal {path: {value, sigma}}, verdict_sha256
+///   case, truth {as written}, answer {exit, message, verdict {as verdict.json}},
+///   nominal {path: {value, sigma}}
 /** Throws std::runtime_error naming the case where something is missing. */
 CaseRecord recordOf(const nlohmann::ordered_json& line);
 

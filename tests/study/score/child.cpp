@@ -3,8 +3,6 @@
 #include "tests/study/score/child.hpp"
 
 #include <fcntl.h>
-#include <sched.h>
-#include <sys/mount.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -20,21 +18,10 @@ namespace {
 
 constexpr int kCannotStart = 127;
 
-/// Only system calls: between fork and exec of a program with threads nothing else is safe.
-bool ownMounts() {
-  if (unshare(CLONE_NEWNS) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0) return false;
-  return mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0;
-}
-
-bool cover(const char* folder) {
-  return ownMounts() &&
-         mount("none", folder, "tmpfs", MS_RDONLY | MS_NODEV | MS_NOSUID, "size=4k,mode=000") == 0;
-}
-
-/// In the child; does not come back.
+/// In the child; does not come back. Only system calls: between fork and exec of a program with
+/// threads nothing else is safe.
 [[noreturn]] void become(const Child& child, char* const* arguments) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (!child.hidden.empty()) cover(child.hidden.c_str());
   if (chdir(child.folder.c_str()) != 0) _exit(kCannotStart);
   if (child.cpu_limit > 0) {
     const auto seconds = static_cast<rlim_t>(child.cpu_limit);
@@ -53,13 +40,6 @@ double secondsOf(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-pid_t forkChecked() {
-  const pid_t pid = fork();
-  if (pid < 0)
-    throw std::runtime_error(std::string("no process can be started: ") + strerror(errno));
-  return pid;
-}
-
 }  // namespace
 
 Ended run(const Child& child) {
@@ -67,7 +47,9 @@ Ended run(const Child& child) {
   for (const std::string& word : child.command)
     arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
-  const pid_t pid = forkChecked();
+  const pid_t pid = fork();
+  if (pid < 0)
+    throw std::runtime_error(std::string("no process can be started: ") + strerror(errno));
   if (pid == 0) become(child, arguments.data());
   int status = 0;
   rusage used{};
@@ -79,15 +61,6 @@ Ended run(const Child& child) {
   if (ended.status == kCannotStart)
     throw std::runtime_error(child.command.front() + ": cannot be started");
   return ended;
-}
-
-bool canHide() {
-  const pid_t pid = forkChecked();
-  if (pid == 0) _exit(ownMounts() ? 0 : 1);
-  int status = 0;
-  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 void runOrThrow(const Child& child) {

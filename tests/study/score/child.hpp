@@ -10,10 +10,9 @@ namespace tread::blindtest {
 /// A command and where it runs.
 struct Child {
   std::vector<std::string> command;
-  std::string folder;       ///< it begins here
-  std::string log;          ///< what it prints, below `folder`
-  std::string hidden = {};  ///< a folder that does not exist for it; empty = none
-  int cpu_limit = 0;        ///< [s] of a run that does not end; 0 = none
+  std::string folder;  ///< it begins here
+  std::string log;     ///< what it prints, below `folder`
+  int cpu_limit = 0;   ///< [s] of a run that does not end; 0 = none
 };
 
 /// How it ended.
@@ -22,12 +21,8 @@ struct Ended {
   double cpu_seconds = 0.0;  ///< user and system
 };
 
-/// Runs a command to its end. Where a mount namespace is allowed, an empty, closed folder lies over
-/// the hidden one; elsewhere only its mode 000 keeps the command out.
+/// Runs a command to its end.
 Ended run(const Child& child);
-
-/// Whether a folder can be taken out of a child's sight here.
-bool canHide();
 
 /// The same, with the end of what it printed in a std::runtime_error unless it ends with 0.
 void runOrThrow(const Child& child);

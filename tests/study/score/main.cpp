@@ -9,7 +9,6 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
-#include "tests/study/score/child.hpp"
 #include "tests/study/score/score_files.hpp"
 #include "tests/study/score/study.hpp"
 
@@ -18,8 +17,8 @@ using namespace tread::blindtest;
 namespace {
 
 constexpr const char* kFooter =
-    "Into --out: nominal/ (models, made once), shard-IofN/ (cases.jsonl, verdicts.txt,\n"
-    "commitments), and of a whole study or a merged one scores.json, table.txt, cases.csv,\n"
+    "Into --out: nominal/ (models, made once), shard-IofN/ (cases.jsonl),\n"
+    "and of a whole study or a merged one scores.json, table.txt, cases.csv,\n"
     "confusion.png, scores.html. Started again it goes on where it was stopped.\n"
     "Exit status: 0, or 2 with one line of what is wrong.";
 
@@ -74,8 +73,7 @@ void score(const std::vector<std::string>& lines, const std::string& folder,
 
 int parseAndRun(int argc, char** argv) {
   Arguments arguments;
-  CLI::App app{"Blind test of tread-gap: hides effects, lets it find them, unseals, scores.",
-               "tread-blind"};
+  CLI::App app{"Blind test of tread-gap: hides effects, lets it find them, scores.", "tread-blind"};
   addOptions(app, arguments);
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   Study& study = arguments.study;
@@ -83,10 +81,6 @@ int parseAndRun(int argc, char** argv) {
     return score(merged(arguments.merge), study.out, arguments.merge), 0;
   readShard(arguments.shard, study);
   study.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path().string();
-  if (!canHide())
-    std::cout << "no mount namespace is allowed here: only the mode of sealed/ keeps tread-gap "
-                 "out, and the watch on it tells"
-              << std::endl;
   const std::vector<std::string> lines = runShard(study);
   score(lines, study.shards == 1 ? study.out : shardFolder(study), {shardFolder(study)});
   return 0;

@@ -12,8 +12,8 @@
 
 #include "common/report/hash.hpp"
 #include "tests/study/score/child.hpp"
-#include "tests/study/score/recordings.hpp"
 #include "tests/study/score/study.hpp"
+#include "tests/study/score/suites.hpp"
 
 namespace fs = std::filesystem;
 
@@ -61,7 +61,6 @@ Json readJson(const fs::path& path) {
 struct Plain {
   std::string log;
   std::string model;
-  std::string sealed;  ///< folder that calibration must not see; empty = none
 };
 
 /// One round of calibration; its verdict.
@@ -72,7 +71,6 @@ Json calibrate(const Study& study, const fs::path& folder, const Plain& plain,
                             "--threads", "1", "--model", model, "--train", plain.log, "--out", out},
                            folder.string(),
                            out + ".log",
-                           plain.sealed,
                            kLimit});
   if (ended.status != 0 && (ended.status < kFound || ended.status >= kCannotTell))
     throw std::runtime_error("calibration ended with " + std::to_string(ended.status) + ": " +
@@ -88,9 +86,8 @@ Plain hideHour(const Study& study, const fs::path& folder, const std::string& no
                "--noise", noise, "--seed", std::to_string(hourSeed(study, noise, round)), "--name",
                "hour", "--out", "hour"},
               folder.string(),
-              "hide.log",
-              ""});
-  return {"hour/blind/hour.lcm", "base.yaml", (folder / "hour/sealed").string()};
+              "hide.log"});
+  return {"hour/blind/hour.lcm", "base.yaml"};
 }
 
 void make(const Study& study, const fs::path& folder, const std::string& name) {
@@ -101,8 +98,8 @@ void make(const Study& study, const fs::path& folder, const std::string& name) {
   bool may_change = true;
   do {
     ++round;
-    const Plain plain = recording ? Plain{recording->log, recording->model, ""}
-                                  : hideHour(study, folder, name, round);
+    const Plain plain =
+        recording ? Plain{recording->log, recording->model} : hideHour(study, folder, name, round);
     verdict = calibrate(study, folder, plain, model.empty() ? plain.model : model, round);
     model = "round" + std::to_string(round) + "/model.yaml";
     // The same log says the same of a model that stays as it is; another hour may not.

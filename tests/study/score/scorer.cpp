@@ -4,9 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tread::blindtest {
 namespace {
+
+/// Chance of at most `count` hits in n trials of probability p.
+double binomialUpTo(size_t count, size_t n, double p) {
+  double sum = 0.0;
+  for (size_t k = 0; k <= count; ++k)
+    sum += std::exp(
+        std::lgamma(static_cast<double>(n) + 1.0) - std::lgamma(static_cast<double>(k) + 1.0) -
+        std::lgamma(static_cast<double>(n - k) + 1.0) + static_cast<double>(k) * std::log(p) +
+        static_cast<double>(n - k) * std::log1p(-p));
+  return sum;
+}
 
 /// Whether something holds of the first hidden effect.
 Test ofFirst(std::function<bool(const HiddenEffect&)> test) {
@@ -17,6 +29,71 @@ Test ofFirst(std::function<bool(const HiddenEffect&)> test) {
 }
 
 }  // namespace
+
+bool ScoreLine::valueIsGood() const {
+  if (!must || cases == 0) return false;
+  const bool good = must->least ? value >= must->at : value <= must->at;
+  return good && (!must->below || value <= *must->below);
+}
+
+std::optional<Met> ScoreLine::met() const {
+  if (!must || cases == 0) return std::nullopt;
+  // No number of cases shows that something never happens.
+  const bool absolute = must->least ? must->at >= 1.0 && is_share : must->at <= 0.0;
+  if (absolute || !(low <= high)) return valueIsGood() ? Met::kYes : Met::kNo;
+  if (must->upper_end) {
+    if (value <= must->at && high <= *must->upper_end && cases >= must->cases) return Met::kYes;
+    return low > must->at ? Met::kNo : Met::kOpen;
+  }
+  const double best = must->least ? low : high;
+  const double worst = must->least ? high : low;
+  const auto good = [&](double share) {
+    return must->least ? share >= must->at : share <= must->at;
+  };
+  if (must->below && low > *must->below) return Met::kNo;
+  if (!good(worst)) return Met::kNo;
+  return good(best) && (!must->below || high <= *must->below) ? Met::kYes : Met::kOpen;
+}
+
+void setShare(ScoreLine& line) {
+  if (line.cases == 0) return;
+  constexpr double z = 1.959963985;
+  const auto n = static_cast<double>(line.cases);
+  const double p = static_cast<double>(line.hits) / n;
+  const double centre = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
+  const double half = z * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n)) / (1.0 + z * z / n);
+  line.value = p;
+  line.low = std::max(0.0, centre - half);
+  line.high = std::min(1.0, centre + half);
+}
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) return kUnknown;
+  std::sort(values.begin(), values.end());
+  const double at = q * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<size_t>(at);
+  const size_t above = std::min(below + 1, values.size() - 1);
+  return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
+void setQuantile(ScoreLine& line, std::vector<double> values, double q) {
+  line.is_share = false;
+  line.cases = values.size();
+  line.value = quantile(values, q);
+  if (values.empty()) return;
+  constexpr double kTail = 0.025;
+  std::sort(values.begin(), values.end());
+  // The quantile lies below the k-th smallest value with the chance of fewer than k values below
+  // it.
+  const size_t n = values.size();
+  size_t low = 0;
+  while (low < n && binomialUpTo(low, n, q) <= kTail) ++low;
+  size_t high = 0;
+  while (high < n && binomialUpTo(high, n, q) < 1.0 - kTail) ++high;
+  // Too few values leave an end open.
+  line.low = low > 0 ? values[low - 1] : -std::numeric_limits<double>::infinity();
+  line.high = high < n ? values[high] : std::numeric_limits<double>::infinity();
+}
 
 Test isKind(const std::string& kind) {
   return [kind](const JudgedCase& one) { return one.record.truth.kind == kind; };

@@ -2,12 +2,118 @@
 // Copyright (c) 2026 The Tread authors
 #include "tests/study/score/scores.hpp"
 
+#include <cmath>
 #include <set>
 
 #include "tests/study/score/scorer.hpp"
 
 namespace tread::blindtest {
 namespace {
+
+void addNullMusts(Scorer& scorer) {
+  const Test null = isKind("null");
+  scorer.share("false positives: an effect named in a null log", null, flag(&Judgement::alarm),
+               Must{0.05, false, {}, 0.08, 400});
+  scorer.share("  any verdict but NO_DISCREPANCY in a null log", null,
+               [](const JudgedCase& one) { return one.record.answer.verdict != "NO_DISCREPANCY"; });
+}
+
+void addNameMusts(Scorer& scorer) {
+  const Test excited = both(isKind("single"), isExcited);
+  const auto of = [&](bool long_log, const char* noise) {
+    return both(excited, both(isLong(long_log), noiseIs(noise)));
+  };
+  scorer.share("truth named, single, 10 min, mid noise, excited", of(true, "mid"), allFound,
+               Must{0.95});
+  scorer.share("truth named, single, 10 min, high noise, excited", of(true, "high"), allFound,
+               Must{0.90});
+  scorer.share("truth named, single, 200 s, mid noise, excited", of(false, "mid"), allFound,
+               Must{0.88});
+  scorer.share("truth named, single, 200 s, high noise, excited", of(false, "high"), allFound,
+               Must{0.70});
+  scorer.share("exactly the truth, single, 10 min, mid noise, excited", of(true, "mid"),
+               flag(&Judgement::exact), Must{0.90});
+  scorer.share("only wrong names, single", isKind("single"), flag(&Judgement::only_wrong),
+               Must{0.03, false});
+  scorer.share("both of two named, 10 min, mid noise", both(isKind("pair"), noiseIs("mid")),
+               allFound, Must{0.80});
+}
+
+void addNumberMusts(Scorer& scorer) {
+  const Test named = [](const JudgedCase& one) {
+    return one.record.truth.kind == "single" || one.record.truth.kind == "pair";
+  };
+  scorer.figure("gap closed against the oracle when named, median", named, closedOf, 0.5,
+                Must{0.97});
+  scorer.figure("gap closed against the oracle when named, 10th percentile", named, closedOf, 0.1,
+                Must{0.90});
+  scorer.figure("parameter error, median", named, parameterErrorsOf, 0.5, Must{0.05, false});
+  scorer.figure("parameter error, 90th percentile", named, parameterErrorsOf, 0.9,
+                Must{0.20, false});
+  scorer.coverage("95 % intervals that hold the truth", named, Must{0.90, true, 0.98});
+}
+
+std::vector<double> secondsOf(const JudgedCase& one) {
+  if (!std::isfinite(one.seconds)) return {};
+  return {one.seconds};
+}
+
+/// Some of the single cases, with words for them.
+struct Slice {
+  std::string what;
+  Test among;
+};
+
+/// Every figure of single effects of 4.7 and 3.5.
+void addFigures(Scorer& scorer, const Slice& slice) {
+  scorer.in("single: " + slice.what);
+  const Test excited = both(slice.among, isExcited);
+  for (const bool long_log : {true, false})
+    for (const char* noise : {"low", "mid", "high"})
+      scorer.share(
+          std::string("named, ") + (long_log ? "10 min, " : "200 s, ") + noise + " noise, excited",
+          both(excited, both(isLong(long_log), noiseIs(noise))), allFound);
+  scorer.share("exactly the truth, 10 min, mid noise, excited",
+               both(excited, both(isLong(true), noiseIs("mid"))), flag(&Judgement::exact));
+  scorer.share("named, excited", excited, allFound);
+  scorer.share("  of these on in the nominal model, and moved", excited, flag(&Judgement::moved));
+  scorer.share("first name right, excited", excited, flag(&Judgement::first_right));
+  scorer.share("named or beside a name, excited", excited, flag(&Judgement::listed));
+  scorer.share("exactly right, excited", excited, flag(&Judgement::exact));
+  scorer.share("nothing named, excited", excited, flag(&Judgement::nothing));
+  scorer.share("only wrong names", slice.among, flag(&Judgement::only_wrong));
+  scorer.figure("gap closed, median", slice.among, closedOf, 0.5);
+  scorer.figure("gap closed, 10th percentile", slice.among, closedOf, 0.1);
+  scorer.figure("gap closed by medians of the end errors instead of rms, median", slice.among,
+                closedMediansOf, 0.5);
+  scorer.figure("parameter error, median", slice.among, parameterErrorsOf, 0.5);
+  scorer.figure("parameter error, 90th percentile", slice.among, parameterErrorsOf, 0.9);
+  scorer.coverage("95 % intervals that hold the truth", slice.among);
+}
+
+Test isSingle(const std::string& name) {
+  return [name](const JudgedCase& one) {
+    return one.record.truth.kind == "single" && one.record.truth.effects.front().name == name;
+  };
+}
+
+bool isHardlyThere(const JudgedCase& one) {
+  return !one.judgement.excited;
+}
+
+void addByEffect(Scorer& scorer) {
+  std::set<std::string> names, not_excited;
+  for (const JudgedCase& one : scorer.cases()) {
+    if (one.record.truth.kind != "single") continue;
+    const std::string& name = one.record.truth.effects.front().name;
+    names.insert(name);
+    if (isHardlyThere(one)) not_excited.insert(name);
+  }
+  scorer.in("single by effect");
+  for (const std::string& name : names) scorer.share(name, isSingle(name), allFound);
+  scorer.in("not excited: changes the motion by less than 5 % of the noise");
+  for (const std::string& name : not_excited) scorer.share(name, isSingle(name), isHardlyThere);
+}
 
 void addNulls(Scorer& scorer) {
   scorer.in("null");
@@ -94,6 +200,45 @@ void addVerdicts(Scorer& scorer) {
 }
 
 }  // namespace
+
+void addMusts(Scorer& scorer) {
+  scorer.in("must");
+  addNullMusts(scorer);
+  addNameMusts(scorer);
+  addNumberMusts(scorer);
+  scorer.share("out of catalogue: PARTIAL or NOT_IN_CATALOGUE with the right variable",
+               isKind("out_of_catalogue"), flag(&Judgement::right_variable), Must{0.80});
+  scorer.share("exact degenerate groups named as such", both(isKind("degenerate"), fullProgramme),
+               flag(&Judgement::grouped), Must{1.0});
+  scorer.share("in recordings: first name right", isKind("semi"), flag(&Judgement::first_right),
+               Must{0.85});
+  scorer.figure("CPU time of the answer to a 10 min log, with report, median", isLong(true),
+                secondsOf, 0.5, Must{30.0, false}, "s");
+  scorer.share("bad logs refused with a reason", isKind("bad"), flag(&Judgement::refused),
+               Must{1.0});
+}
+
+void addSingles(Scorer& scorer) {
+  const Test single = isKind("single");
+  const std::vector<Slice> slices{
+      {"all", single},
+      {"vehicle", both(single, effectKindIs("vehicle"))},
+      {"measurement", both(single, effectKindIs("measurement"))},
+      {"form as in the catalogue", both(single, shapeIs("same"))},
+      {"form only like the catalogue's", both(single, shapeIs("other"))},
+      {"changed in the 1 kHz dynamics", both(single, formIs("physical"))},
+      {"changed in the motion or what is said of it", both(single, formIs("kinematic"))}};
+  for (const Slice& slice : slices) addFigures(scorer, slice);
+  scorer.in("single by size and noise, 10 min");
+  for (const double size : {1.0, 2.0, 4.0})
+    for (const char* noise : {"low", "mid", "high"})
+      scorer.share(
+          "named, size " + std::to_string(static_cast<int>(size)) + ", " + noise +
+              " noise, excited",
+          both(both(both(single, isExcited), isLong(true)), both(sizeIs(size), noiseIs(noise))),
+          allFound);
+  addByEffect(scorer);
+}
 
 std::vector<ScoreLine> scoresOf(const std::vector<JudgedCase>& cases) {
   Scorer scorer(cases);

@@ -13,7 +13,7 @@
 #include "common/report/hash.hpp"
 #include "tests/study/score/batch.hpp"
 #include "tests/study/score/child.hpp"
-#include "tests/study/score/recordings.hpp"
+#include "tests/study/score/suites.hpp"
 
 namespace fs = std::filesystem;
 
@@ -45,8 +45,7 @@ std::vector<HiddenCase> hiddenSuite(const Study& study) {
   runOrThrow({{study.programs + "/tread-hide", "conditions", "--suite", study.suite, "--seed",
                std::to_string(study.seed)},
               folder.string(),
-              "conditions.txt",
-              ""});
+              "conditions.txt"});
   std::vector<HiddenCase> cases;
   std::ifstream lines(folder / "conditions.txt");
   for (HiddenCase one; lines >> one.name >> one.nominal;) cases.push_back(one);

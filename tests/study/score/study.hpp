@@ -8,9 +8,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/study/score/suites.hpp"
-
 namespace tread::blindtest {
+
+/// What may be known of a case before it is opened, and how it is hidden.
+struct HiddenCase {
+  std::string name;
+  std::string nominal;  ///< which nominal model is the robot's: low, mid, high, recording-NAME
+  std::vector<std::string> arguments;  ///< of tread-hide, for a case of its own; empty: of a suite
+};
 
 /// What a run of the blind test is asked.
 struct Study {
@@ -18,7 +23,7 @@ struct Study {
   std::string out;
   std::string programs;         ///< folder of tread-hide and tread-gap
   std::string nominal;          ///< model file to be used instead of calibrating; empty = calibrate
-  std::string recordings = {};  ///< folder of logs to hide effects in; see recordings.hpp
+  std::string recordings = {};  ///< folder of logs to hide effects in; see suites.hpp
   double minutes = 10.0;
   double hour = 60.0;  ///< minutes of the log that the nominal model is fitted to
   uint64_t seed = 1;
@@ -43,9 +48,8 @@ std::string nominalModel(const Study& study, const std::string& name);
 /// How each nominal model was made: {noise: {model sha256, rounds, verdict, effects}}.
 nlohmann::ordered_json nominalStory(const Study& study, const std::vector<HiddenCase>& cases);
 
-/// Hides, runs, hashes the verdicts, unseals: batch after batch, so that only one lies on the disk.
-/** Returns the lines of cases.jsonl: what the study is, then a record each. Throws
- * std::runtime_error if a sealed file is opened before its time or is not as committed. */
+/// Hides and runs batch after batch, so that only one lies on the disk. Returns the lines of
+/// cases.jsonl: what the study is, then a record each.
 std::vector<std::string> runShard(const Study& study);
 
 }  // namespace tread::blindtest

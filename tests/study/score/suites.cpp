@@ -2,9 +2,47 @@
 // Copyright (c) 2026 The Tread authors
 #include "tests/study/score/suites.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+
+namespace fs = std::filesystem;
 
 namespace tread::blindtest {
+namespace {
+
+constexpr const char* kPrefix = "recording-";
+
+/// What can be hidden by an exact transformation of poses or commands.
+const char* const kEffects[] = {"heading_misalignment", "ins_latency",   "position_scale",
+                                "command_delay",        "battery_sag",   "track_asymmetry",
+                                "motor_deadband",       "gyro_bias",     "lever_arm_x",
+                                "lever_arm_y",          "payload_change"};
+
+HiddenCase hiddenIn(const Recording& recording, const std::string& effect, int size, size_t number,
+                    uint64_t seed) {
+  char name[24];
+  std::snprintf(name, sizeof name, "r%04zu", number);
+  return {name,
+          recording.nominal,
+          {"semi", "--log", recording.log, "--effect", effect, "--size", std::to_string(size),
+           "--seed", std::to_string(seed * 1000 + number), "--name", name}};
+}
+
+/// Whether its nominal model can be had; says why not.
+bool isUsable(const Study& study, const Recording& recording) {
+  try {
+    nominalModel(study, recording.nominal);
+    return true;
+  } catch (const std::exception& problem) {
+    std::cout << recording.log << " is left out: " << problem.what() << std::endl;
+    return false;
+  }
+}
+
+}  // namespace
 
 const char* const kBaseModel =
     R"(# The generator's vehicle as its data sheet has it; calibration makes the nominal model out of it.
@@ -43,6 +81,53 @@ std::vector<HiddenCase> quickSuite(double minutes, uint64_t seed) {
                                     std::string("--seed"), std::to_string(seed * 1000 + i + 1)})
       one.arguments.push_back(word);
     cases.push_back(one);
+  }
+  return cases;
+}
+
+std::vector<Recording> recordingsIn(const std::string& folder) {
+  std::vector<Recording> recordings;
+  if (!fs::is_directory(folder)) return recordings;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const fs::path log = fs::absolute(entry.path());
+    const fs::path model = fs::path(log).replace_extension(".yaml");
+    if (log.extension() == ".lcmlog" && fs::exists(model))
+      recordings.push_back({kPrefix + log.stem().string(), log.string(), model.string()});
+  }
+  std::sort(recordings.begin(), recordings.end(),
+            [](const Recording& a, const Recording& b) { return a.nominal < b.nominal; });
+  return recordings;
+}
+
+std::optional<Recording> recordingNamed(const Study& study, const std::string& nominal) {
+  for (const Recording& one : recordingsIn(study.recordings))
+    if (one.nominal == nominal) return one;
+  return std::nullopt;
+}
+
+std::vector<HiddenCase> recordingSuite(const Study& study) {
+  std::vector<HiddenCase> cases;
+  if (study.suite != "medium" && study.suite != "full") return cases;
+  const std::vector<Recording> recordings = recordingsIn(study.recordings);
+  if (recordings.empty())
+    std::cout << "no cases in recordings: "
+              << (study.recordings.empty()
+                      ? "no --recordings"
+                      : study.recordings + " has no NAME.lcmlog with NAME.yaml")
+              << std::endl;
+  size_t number = 0;
+  for (const Recording& recording : recordings) {
+    if (!isUsable(study, recording)) continue;
+    for (const char* effect : kEffects) {
+      ++number;
+      if (study.suite == "medium") {
+        cases.push_back(
+            hiddenIn(recording, effect, 1 + static_cast<int>(number % 2), number, study.seed));
+        continue;
+      }
+      for (const int size : {1, 2})
+        cases.push_back(hiddenIn(recording, effect, size, 2 * number + size - 2, study.seed));
+    }
   }
   return cases;
 }

@@ -17,13 +17,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder that is gone afterwards, seals and all.
+/// A folder that is gone afterwards.
 class Folder {
  public:
-  ~Folder() {
-    const std::string command = "chmod -R u+rwX '" + path + "'; rm -rf '" + path + "'";
-    CHECK(std::system(command.c_str()) == 0);
-  }
+  ~Folder() { fs::remove_all(path); }
   const std::string path =
       (fs::temp_directory_path() / ("tread-quick-" + std::to_string(getpid()))).string();
 };
@@ -44,10 +41,8 @@ std::string namesOf(const JudgedCase& one) {
 
 }  // namespace
 
-TEST_CASE(
-    "a blind test of twelve logs: what is easy is named, what is bad refused, nothing unsealed") {
+TEST_CASE("a blind test of twelve logs: what is easy is named, what is bad refused") {
   const Folder folder;
-  // It ends with an error if a sealed file is opened or a commitment does not hold.
   REQUIRE(runQuick(folder.path) == 0);
   const ScoredStudy study = scored(merged({folder.path}));
   REQUIRE(study.cases.size() == 12);
@@ -61,9 +56,7 @@ TEST_CASE(
     if (kind == "out_of_catalogue") CHECK(one.record.answer.verdict != "NO_DISCREPANCY");
     if (kind == "bad") CHECK(one.judgement.refused);
   }
-  for (const char* file :
-       {"scores.json", "table.txt", "cases.csv", "confusion.png", "scores.html",
-        "shard-1of1/batch-1/verdicts.txt", "shard-1of1/batch-1/blind/commitments.txt"})
+  for (const char* file : {"scores.json", "table.txt", "cases.csv", "confusion.png", "scores.html"})
     CHECK(fs::file_size(fs::path(folder.path) / file) > 0);
   // A shard of it gives the same bytes elsewhere, whatever the number of jobs.
   const std::string elsewhere = folder.path + "/elsewhere";

@@ -7,7 +7,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/study/score/recordings.hpp"
+#include "tests/study/score/suites.hpp"
 
 using namespace tread::blindtest;
 namespace fs = std::filesystem;

@@ -13,7 +13,6 @@
 #include "tests/study/hide/instruments.hpp"
 #include "tests/study/hide/semi.hpp"
 #include "tests/study/score/judgement.hpp"
-#include "tests/study/score/same_quantity.hpp"
 
 using namespace tread;
 using blind::EffectSpec;

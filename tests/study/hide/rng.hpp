@@ -8,9 +8,9 @@
 namespace tread::blind {
 
 /// Uniform numbers that are the same with every standard library.
-class Dice {
+class Rng {
  public:
-  explicit Dice(uint64_t seed) : generator_(seed) {}
+  explicit Rng(uint64_t seed) : generator_(seed) {}
 
   /// Uniform in [low, high).
   double uniform(double low, double high) {
@@ -33,8 +33,7 @@ enum Stream : uint64_t {
   kInsStream,
   kClockStream,
   kEffectStream,
-  kSaltStream,
-  kSuiteStream,
+  kSuiteStream = 107,
   kSecondRobotStream,
   kBatteryStream,
 };

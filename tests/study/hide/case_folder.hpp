@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+
+#include "tests/study/hide/blind_case.hpp"
+
+namespace tread::blind {
+
+/// Writes blind/NAME.lcm, which tread-gap reads, and truth/NAME.json, which only the scores read.
+/** The truth is written first. Throws std::runtime_error with one clear line where a file cannot be
+ * written or exists already. */
+void writeCase(const std::string& folder, const std::string& name, const MadeCase& made);
+
+}  // namespace tread::blind
