@@ -3,9 +3,9 @@
 #include "tools/overlay/overlay_picture.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "common/report/plot.hpp"
+#include "common/report/text.hpp"
 
 namespace tread::overlay {
 namespace {
@@ -41,9 +41,7 @@ void drawPiece(Picture& page, Box box, const Piece& piece, const std::vector<std
   for (const auto& poses : piece.predicted)
     for (const Pose2& pose : poses) all.push_back(pose.position());
   Panel::Axes axes;
-  char title[64];
-  std::snprintf(title, sizeof title, "%.0f s after the beginning", piece.begin);
-  axes.title = title;
+  axes.title = formatted("%.0f s after the beginning", piece.begin);
   axes.x_label = "ahead [m]";
   axes.equal = true;
   axes.x_min = axes.x_max = axes.y_min = axes.y_max = 0.0;

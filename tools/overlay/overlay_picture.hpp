@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/overlay/replayed.hpp"
+#include "tools/overlay/drive_pieces.hpp"
 
 namespace tread::overlay {
 

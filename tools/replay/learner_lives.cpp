@@ -21,34 +21,24 @@ struct Snapshot {
   std::string text;
 };
 
-/// Puts states together from their parts.
-class Snapshots {
- public:
-  void take(size_t index, const learner_state_t& part) {
-    if (part.state_part == 0) {
-      current_ = {index, part.seq, {}};
-      next_ = 0;
-    }
-    if (part.state_part != next_) return;
-    current_.text.append(part.state_bytes.begin(), part.state_bytes.end());
-    current_.event = index;
-    if (++next_ == part.state_part_count) whole_.push_back(current_);
-  }
-  const std::vector<Snapshot>& whole() const { return whole_; }
-
- private:
-  Snapshot current_;
-  int32_t next_ = -1;
-  std::vector<Snapshot> whole_;
-};
-
+/// The states whose parts are all in the log.
 std::vector<Snapshot> snapshotsOf(const RobotLog& log) {
-  Snapshots snapshots;
+  std::vector<Snapshot> whole;
+  Snapshot current;
+  int32_t next = -1;
   for (size_t i = 0; i < log.events.size(); ++i) {
     learner_state_t part;
-    if (decode(log.events[i].event, kLearnerState, part)) snapshots.take(i, part);
+    if (!decode(log.events[i].event, kLearnerState, part)) continue;
+    if (part.state_part == 0) {
+      current = {i, part.seq, {}};
+      next = 0;
+    }
+    if (part.state_part != next) continue;
+    current.text.append(part.state_bytes.begin(), part.state_bytes.end());
+    current.event = i;
+    if (++next == part.state_part_count) whole.push_back(current);
   }
-  return snapshots.whole();
+  return whole;
 }
 
 /// The first state of each life: seq begins anew with each start.
@@ -62,18 +52,17 @@ std::vector<Snapshot> beginningsOf(const std::vector<Snapshot>& snapshots) {
   return beginnings;
 }
 
-/// Boot id of the learner that was alive at an event: the one that its next HEALTH names.
-int64_t bootIdAfter(const RobotLog& log, size_t event) {
-  for (size_t i = event; i < log.events.size(); ++i) {
-    health_t health;
-    if (decode(log.events[i].event, kHealth, health) && health.process == "learner")
-      return health.boot_id;
-  }
-  for (size_t i = event; i-- > 0;) {
-    health_t health;
-    if (decode(log.events[i].event, kHealth, health) && health.process == "learner")
-      return health.boot_id;
-  }
+/// Boot id of the learner that was alive at an event: the one that its next HEALTH names, else the
+/// last one before.
+int64_t bootIdAt(const RobotLog& log, size_t event) {
+  health_t health;
+  const auto isLearners = [&](size_t i) {
+    return decode(log.events[i].event, kHealth, health) && health.process == "learner";
+  };
+  for (size_t i = event; i < log.events.size(); ++i)
+    if (isLearners(i)) return health.boot_id;
+  for (size_t i = event; i-- > 0;)
+    if (isLearners(i)) return health.boot_id;
   return log.events[event].heard;
 }
 
@@ -113,7 +102,7 @@ LearnerLife lifeOf(const RobotLog& log, const Snapshot& snapshot, const PatternS
   std::string why;
   auto state = learner::parseState(snapshot.text, shipped, why);
   if (!state) throw std::runtime_error(log.name + ": LEARNER_STATE " + why);
-  const int64_t boot_id = bootIdAfter(log, snapshot.event);
+  const int64_t boot_id = bootIdAt(log, snapshot.event);
   const bool from_start = snapshot.seq == 0;
   const int64_t version = state->set.version();
   LearnerLife life{0, log.events.size(), boot_id, from_start, std::move(*state), {}};
@@ -143,8 +132,8 @@ bool namesKnownSets(const RobotLog& log, const LearnerLife& life) {
 
 /// The first state of a log that begins in the middle from which all can be replayed; the first of
 /// all if there is none.
-std::vector<Snapshot> withoutLame(const RobotLog& log, std::vector<Snapshot> snapshots,
-                                  const PatternSet& shipped) {
+std::vector<Snapshot> fromReplayable(const RobotLog& log, std::vector<Snapshot> snapshots,
+                                     const PatternSet& shipped) {
   for (size_t i = 0; i < snapshots.size() && snapshots[i].seq > 0; ++i) {
     if (i > 0 && snapshots[i].seq <= snapshots[i - 1].seq) break;
     if (!namesKnownSets(log, lifeOf(log, snapshots[i], shipped))) continue;
@@ -158,7 +147,7 @@ std::vector<Snapshot> withoutLame(const RobotLog& log, std::vector<Snapshot> sna
 
 std::vector<LearnerLife> learnerLives(const RobotLog& log, const PatternSet& shipped) {
   std::vector<LearnerLife> lives;
-  for (const Snapshot& snapshot : beginningsOf(withoutLame(log, snapshotsOf(log), shipped))) {
+  for (const Snapshot& snapshot : beginningsOf(fromReplayable(log, snapshotsOf(log), shipped))) {
     LearnerLife life = lifeOf(log, snapshot, shipped);
     if (!lives.empty()) lives.back().end_event = life.first_event;
     lives.push_back(std::move(life));

@@ -3,11 +3,74 @@
 #include "tools/replay/learner_replay.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <set>
+#include <stdexcept>
 
 #include "common/bus/virtual_bus.hpp"
+#include "common/vehicle/prediction.hpp"
 
 namespace tread::replay {
 namespace {
+
+/// The commands of an execution by index, as applied.
+using AppliedCommands = std::map<int32_t, TrackCommand>;
+
+std::map<ExecutionKey, AppliedCommands> appliedCommands(const DriveLog& log) {
+  std::map<ExecutionKey, AppliedCommands> commands;
+  for (const motor_t& motor : log.motor)
+    if (motor.execution_id != 0 && motor.command_index >= 0)
+      commands[{motor.motor_run_id, motor.execution_id}].emplace(
+          motor.command_index, TrackCommand{static_cast<double>(motor.command_left),
+                                            static_cast<double>(motor.command_right)});
+  return commands;
+}
+
+/// The kind of the last command that belongs to an execution.
+CommandKind kindOf(const DriveLog& log) {
+  for (auto motor = log.motor.rbegin(); motor != log.motor.rend(); ++motor)
+    if (motor->execution_id != 0 && motor->command_index >= 0)
+      return static_cast<CommandKind>(motor->motor_command_kind);
+  return CommandKind::kTrackSpeed;
+}
+
+/// The series that was applied in an execution; a sample that the log misses holds the one before.
+std::vector<TrackCommand> seriesOf(const AppliedCommands& applied, int32_t count) {
+  std::vector<TrackCommand> series;
+  TrackCommand held = applied.begin()->second;
+  for (int32_t index = 0; index < count; ++index) {
+    const auto found = applied.find(index);
+    if (found != applied.end()) held = found->second;
+    series.push_back(held);
+  }
+  return series;
+}
+
+bool same(const TrackCommand& a, const TrackCommand& b) {
+  return a.left == b.left && a.right == b.right;
+}
+
+/// A class for each pattern: what it does depends on the steady motion in which it begins.
+void addPattern(PatternSetContent& content, const VehicleModel& model, int id,
+                std::vector<TrackCommand> commands) {
+  MotionPattern pattern;
+  pattern.id = id;
+  pattern.name = "step " + std::to_string(id);
+  pattern.commands = std::move(commands);
+  const std::string steady = "steady " + std::to_string(id);
+  const MotionClass entry = classOf(model, steady, pattern.commands.front());
+  content.classes.push_back(entry);
+  pattern.entry_class = pattern.exit_class = steady;
+  if (!same(pattern.commands.front(), pattern.commands.back())) {
+    pattern.exit_class = "after " + std::to_string(id);
+    content.classes.push_back(classOf(model, pattern.exit_class, pattern.commands.back()));
+  }
+  predict(model, static_cast<double>(content.period_us) * 1e-6, entry, pattern);
+  const ExecutionSpread& spread = model.spread;
+  if (spread.forward == 0.0 && spread.yaw == 0.0 && spread.crab == 0.0)
+    pattern.end_covariance = kUnknownCovariance;
+  content.patterns.push_back(std::move(pattern));
+}
 
 constexpr int64_t kSecond = 1'000'000;
 constexpr const char* kNode = "learner";
@@ -45,6 +108,62 @@ class Player {
 };
 
 }  // namespace
+
+DriveLog toLearnerLog(const std::string& name, std::vector<LogEvent> events) {
+  std::stable_sort(events.begin(), events.end(),
+                   [](const LogEvent& a, const LogEvent& b) { return a.utime < b.utime; });
+  DriveLog log = toDriveLog(name, std::move(events));
+  const auto ignore = [](const auto&) {};
+  log.events.erase(std::remove_if(log.events.begin(), log.events.end(),
+                                  [&](const LogEvent& event) {
+                                    return !dispatch(event, ignore, kIns, kExecution, kMotor);
+                                  }),
+                   log.events.end());
+  std::stable_sort(log.executions.begin(), log.executions.end(),
+                   [](const auto& a, const auto& b) { return a.ended < b.ended; });
+  return log;
+}
+
+DriveLog readLearnerLog(const std::string& path) {
+  std::string problem;
+  std::vector<LogEvent> events = readEvents({path}, problem);
+  DriveLog log = toLearnerLog(std::filesystem::path(path).stem().string(), std::move(events));
+  log.problem = problem;
+  if (log.executions.empty())
+    throw std::runtime_error(path +
+                             ": no execution that has ended; a log with INS, MOTOR and EXECUTION "
+                             "is needed (tread-import makes one)");
+  return log;
+}
+
+PatternSet predictedSet(const DriveLog& log, const VehicleModel& model) {
+  if (kindOf(log) != model.kind)
+    throw std::runtime_error(log.name + ": its commands are not of the kind of model '" +
+                             model.name + "' (power or track speed); give another --model");
+  PatternSetContent content;
+  content.name = log.name;
+  content.kind = model.kind;
+  const std::map<ExecutionKey, AppliedCommands> commands = appliedCommands(log);
+  std::set<int> known;
+  for (const execution_record_t& record : log.executions) {
+    const auto applied = commands.find(keyOf(record));
+    if (record.outcome != execution_record_t::OUTCOME_COMPLETED || record.commands_total < 1 ||
+        applied == commands.end() || !known.insert(record.record_pattern_id).second)
+      continue;
+    const int64_t period = (record.ended - record.started) / record.commands_total;
+    if (!content.patterns.empty() && period != content.period_us)
+      throw std::runtime_error(log.name + ": its executions have commands of different periods (" +
+                               std::to_string(content.period_us) + " and " +
+                               std::to_string(period) + " us); a pattern set has one");
+    content.period_us = period;
+    addPattern(content, model, record.record_pattern_id,
+               seriesOf(applied->second, record.commands_total));
+  }
+  std::string why = "no completed execution has commands in MOTOR";
+  auto set = content.patterns.empty() ? std::nullopt : PatternSet::make(std::move(content), why);
+  if (!set) throw std::runtime_error(log.name + ": no pattern set can be made: " + why);
+  return *set;
+}
 
 LearnerRun runLearner(const DriveLog& log, const learner::LearnerNodeConfig& config,
                       Commitment commitment, const std::string& title) {

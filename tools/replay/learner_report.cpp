@@ -8,10 +8,14 @@
 #include <set>
 #include <sstream>
 
+#include "common/report/plot.hpp"
 #include "common/report/text.hpp"
 
 namespace tread::replay {
 namespace {
+
+/// Executions in the running mean of the curves.
+constexpr size_t kRunning = 15;
 
 constexpr double kDegrees = 180.0 / kPi;
 
@@ -28,12 +32,26 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2.0;
 }
 
+using report::Panel;
+using report::Picture;
 using Belongs = std::function<bool(const learning_t&)>;
 
 std::vector<learning_t> filtered(const std::vector<learning_t>& learned, const Belongs& belongs) {
   std::vector<learning_t> result;
   std::copy_if(learned.begin(), learned.end(), std::back_inserter(result), belongs);
   return result;
+}
+
+/// Measured, and scored against the set that its record names.
+bool isScored(const learning_t& learned) {
+  return learned.accepted && std::isfinite(learned.error_position);
+}
+
+Belongs isOfClass(const PatternSet& set, const std::string& name) {
+  return [&set, name](const learning_t& learned) {
+    const MotionPattern* pattern = set.find(learned.learned_pattern_id);
+    return pattern != nullptr && commandClass(*pattern) == name;
+  };
 }
 
 /// One group of executions: a line per run.
@@ -122,13 +140,101 @@ void writeComparison(std::ostream& out, const std::vector<LearnerRun>& runs) {
   }
 }
 
+/// What a part of the picture shows: position [m] or yaw [deg].
+struct ErrorKind {
+  std::string label;
+  double (*of)(const learning_t&);
+  double (*mean)(const ErrorSummary&);
+};
+
+const ErrorKind kPosition{"position error [m]",
+                          [](const learning_t& one) { return one.error_position; },
+                          [](const ErrorSummary& errors) { return errors.position_mean; }};
+const ErrorKind kYaw{"yaw error [deg]",
+                     [](const learning_t& one) { return std::abs(one.error_yaw) * kDegrees; },
+                     [](const ErrorSummary& errors) { return errors.yaw_mean * kDegrees; }};
+
+std::vector<Eigen::Vector2d> runningMean(const std::vector<learning_t>& learned,
+                                         const ErrorKind& error) {
+  std::vector<Eigen::Vector2d> points;
+  std::vector<double> values;
+  for (const learning_t& one : learned) {
+    if (!isScored(one)) continue;
+    values.push_back(error.of(one));
+    const size_t from = values.size() > kRunning ? values.size() - kRunning : 0;
+    double sum = 0.0;
+    for (size_t i = from; i < values.size(); ++i) sum += values[i];
+    points.emplace_back(static_cast<double>(values.size()),
+                        sum / static_cast<double>(values.size() - from));
+  }
+  return points;
+}
+
+void drawCurves(Picture& canvas, const report::Box& box, const std::vector<LearnerRun>& runs,
+                const ErrorKind& error) {
+  double highest = 0.0;
+  double longest = 2.0;
+  for (const LearnerRun& run : runs)
+    for (const auto& point : runningMean(run.learned, error)) {
+      highest = std::max(highest, point.y());
+      longest = std::max(longest, point.x());
+    }
+  Panel::Axes axes;
+  axes.title = "running mean of " + std::to_string(kRunning) + " executions";
+  axes.x_label = "execution";
+  axes.y_label = error.label;
+  axes.x_min = 1.0;
+  axes.x_max = longest;
+  axes.y_max = highest > 0.0 ? 1.1 * highest : 1.0;
+  Panel panel(canvas, box, axes);
+  for (size_t r = 0; r < runs.size(); ++r) {
+    report::Style style;
+    style.colour = r == 0 ? report::kGrey : report::seriesColour(r - 1);
+    style.width = 2.0;
+    style.label = runs[r].title;
+    panel.line(runningMean(runs[r].learned, error), style);
+  }
+  panel.finish();
+}
+
+void drawBars(Picture& canvas, const report::Box& box, const PatternSet& set,
+              const std::vector<LearnerRun>& runs, const ErrorKind& error) {
+  std::set<std::string> known;
+  for (const learning_t& one : runs.front().learned)
+    if (const MotionPattern* pattern = set.find(one.learned_pattern_id))
+      if (one.accepted) known.insert(commandClass(*pattern));
+  const std::vector<std::string> names(known.begin(), known.end());
+  const auto meanOf = [&](const LearnerRun& run, const std::string& name) {
+    return error.mean(summarise(filtered(run.learned, isOfClass(set, name))));
+  };
+  double highest = 0.0;
+  for (const std::string& name : names)
+    for (const LearnerRun& run : runs) highest = std::max(highest, meanOf(run, name));
+  Panel::Axes axes;
+  axes.title = "mean by command";
+  axes.y_label = error.label;
+  axes.x_min = -0.6;
+  axes.x_max = std::max(1.0, static_cast<double>(names.size())) - 0.4;
+  axes.y_max = highest > 0.0 ? 1.1 * highest : 1.0;
+  Panel panel(canvas, box, axes);
+  panel.xNames(names);
+  const double width = 0.8 / static_cast<double>(runs.size());
+  for (size_t n = 0; n < names.size(); ++n)
+    for (size_t r = 0; r < runs.size(); ++r) {
+      const double at = static_cast<double>(n) - 0.4 + (static_cast<double>(r) + 0.5) * width;
+      panel.bar(at, meanOf(runs[r], names[n]), 0.9 * width,
+                r == 0 ? report::kGrey : report::seriesColour(r - 1));
+    }
+  panel.finish();
+}
+
 }  // namespace
 
 ErrorSummary summarise(const std::vector<learning_t>& learned) {
   std::vector<double> position;
   std::vector<double> yaw;
   for (const learning_t& one : learned) {
-    if (!one.accepted || !std::isfinite(one.error_position)) continue;
+    if (!isScored(one)) continue;
     position.push_back(one.error_position);
     yaw.push_back(std::abs(one.error_yaw));
   }
@@ -163,15 +269,22 @@ std::string reportOf(const DriveLog& log, const PatternSet& set,
   writeHead(out, "command");
   for (const std::string name :
        {"forward", "forward turn", "counter-rotating", "reverse turn", "reverse", "standing"})
-    writeGroup(out, name, runs, [&](const learning_t& l) {
-      const MotionPattern* pattern = set.find(l.learned_pattern_id);
-      return pattern != nullptr && commandClass(*pattern) == name;
-    });
+    writeGroup(out, name, runs, isOfClass(set, name));
   out << "\n";
   writeComparison(out, runs);
   if (runs.size() > 1) writeGuards(out, runs.back());
   out << "\n" << resultLine(log, runs);
   return out.str();
+}
+
+void drawReport(const DriveLog& log, const PatternSet& set, const std::vector<LearnerRun>& runs,
+                const std::string& path) {
+  Picture canvas(1200, 800, log.name + ": error of predicted ends of executions");
+  drawCurves(canvas, {70, 60, 500, 310}, runs, kPosition);
+  drawCurves(canvas, {660, 60, 500, 310}, runs, kYaw);
+  drawBars(canvas, {70, 440, 500, 300}, set, runs, kPosition);
+  drawBars(canvas, {660, 440, 500, 300}, set, runs, kYaw);
+  canvas.save(path);
 }
 
 }  // namespace tread::replay

@@ -65,7 +65,7 @@ class ShadowLearners::Shadow {
     if (predicted == newer->ends.end()) return std::nullopt;
     const Pose2& expected = predicted->second;
     return EndPoseError{std::hypot(end.x - expected.x, end.y - expected.y),
-                    wrapAngle(end.yaw - expected.yaw)};
+                        wrapAngle(end.yaw - expected.yaw)};
   }
 
  private:

@@ -4,15 +4,109 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
+#include "common/log/drive_log.hpp"
+#include "common/messages/ins_messages.hpp"
 #include "common/report/text.hpp"
 
 namespace tread::report {
 namespace {
 
-double mean(const DriveRecord& drive, double report::PatternError::*error) {
+/// The last plans before the goal are short; the richest one made farther away [m] is drawn.
+constexpr double kNear = 8.0;
+constexpr double kTrackStep = 0.05;  // [m]
+
+bool mayDrive(int16_t state) {
+  return state == motor_t::STATE_ARMED || state == motor_t::STATE_DRIVING ||
+         state == motor_t::STATE_STOPPING;
+}
+
+/// Takes in a log event by event.
+class Reader {
+ public:
+  explicit Reader(DriveRecord& drive) : drive_(drive) {}
+
+  void take(const LogEvent& event) {
+    ++drive_.events;
+    drive_.latencies.add(event);
+    dispatch(
+        event, [&](const auto& message) { hear(message); }, kIns, kGoal, kPlan, kPlanTree, kMap,
+        kLearning, kExecution, kMotor);
+  }
+
+ private:
+  double sinceBegin(int64_t utime) const {
+    return static_cast<double>(utime - drive_.begun) * 1e-6;
+  }
+  double toGo() const {
+    if (drive_.track.empty()) return 0.0;
+    return (drive_.track.back().T_map_body.position() - drive_.T_map_goal.position()).norm();
+  }
+
+  void hear(const ins_t& ins) {
+    const auto pose = planarPose(ins);
+    if (!pose || !drive_.has_goal || drive_.arrived) return;
+    drive_.ended = ins.utime;
+    if (drive_.track.empty() ||
+        (drive_.track.back().T_map_body.position() - pose->position()).norm() > kTrackStep)
+      drive_.track.push_back({sinceBegin(ins.utime), *pose});
+  }
+  void hear(const goal_t& goal) {
+    if (goal.goal_id == 0 || drive_.arrived) return;
+    if (!drive_.has_goal) drive_.begun = drive_.ended = goal.utime;
+    drive_.has_goal = true;
+    drive_.T_map_goal = {goal.goal_pose[0], goal.goal_pose[1], goal.goal_pose[2]};
+  }
+  void hear(const plan_t& plan) {
+    if (!drive_.has_goal || drive_.arrived || plan.goal_id == 0) return;
+    drive_.last_status = plan.reason;
+    if (plan.plan_status != plan_t::PLAN_ARRIVED) return;
+    drive_.arrived = true;
+    drive_.ended = plan.utime;
+  }
+  void hear(const plan_tree_t& tree) {
+    std::vector<TreeEdge> edges = edgesOf(tree);
+    if (toGo() > kNear && edges.size() >= drive_.tree.size()) drive_.tree = std::move(edges);
+  }
+  void hear(const map_tile_t& message) {
+    if (!drive_.map) drive_.map = std::make_unique<TileMap>(message.cell_size, message.tile_cells);
+    if (message.tile_cells != drive_.map->tileCells()) return;
+    Tile tile;
+    tile.tile_x = message.tile_x;
+    tile.tile_y = message.tile_y;
+    tile.utime = message.utime;
+    tile.cells = message.cells;
+    drive_.map->put(std::move(tile));
+  }
+  void hear(const learning_t& message) {
+    if (!message.accepted) ++drive_.refused;
+    if (message.accepted && std::isfinite(message.error_position))
+      drive_.errors.push_back(
+          {sinceBegin(message.utime), message.error_position, message.error_yaw});
+  }
+  void hear(const execution_t& message) {
+    for (const execution_record_t& record : message.records) {
+      if (record.outcome == execution_record_t::OUTCOME_RUNNING) continue;
+      if (!ended_.insert(keyOf(record)).second) continue;
+      ++(record.outcome == execution_record_t::OUTCOME_COMPLETED ? drive_.completed
+                                                                 : drive_.aborted);
+    }
+  }
+  void hear(const motor_t& motor) {
+    const bool may = mayDrive(motor.bridge_state);
+    if (may_drive_ && !may && !drive_.arrived) ++drive_.disarmed;
+    may_drive_ = may;
+  }
+
+  DriveRecord& drive_;
+  std::set<ExecutionKey> ended_;
+  bool may_drive_ = false;
+};
+
+double mean(const DriveRecord& drive, double PatternError::*error) {
   double sum = 0.0;
-  for (const report::PatternError& at : drive.errors) sum += std::abs(at.*error);
+  for (const PatternError& at : drive.errors) sum += std::abs(at.*error);
   return sum / static_cast<double>(std::max<size_t>(1, drive.errors.size()));
 }
 
@@ -23,10 +117,9 @@ std::string latencyLine(const char* name, const Durations& durations) {
 }
 
 /// Borders that the robot crossed, from the true surface along the way; short visits left out.
-std::vector<report::BorderCrossing> crossingsOf(const DriveRecord& drive,
-                                                const SimulationTruth& truth) {
+std::vector<BorderCrossing> crossingsOf(const DriveRecord& drive, const SimulationTruth& truth) {
   constexpr double kVisit = 0.5;  // [s]
-  std::vector<report::BorderCrossing> crossings;
+  std::vector<BorderCrossing> crossings;
   std::string present;
   std::string perhaps;
   double since = 0.0;
@@ -43,10 +136,10 @@ std::vector<report::BorderCrossing> crossingsOf(const DriveRecord& drive,
   return crossings;
 }
 
-std::vector<report::RuleSeries> seriesOf(const RuleErrors& by_rule, int64_t begun) {
-  std::vector<report::RuleSeries> series;
+std::vector<RuleSeries> seriesOf(const RuleErrors& by_rule, int64_t begun) {
+  std::vector<RuleSeries> series;
   for (size_t rule = 0; rule < by_rule.rules.size(); ++rule) {
-    report::RuleSeries one;
+    RuleSeries one;
     one.rule = learner::ruleName(by_rule.rules[rule]);
     for (const shadow::ShadowedExecution& execution : by_rule.executions)
       if (execution.measured)
@@ -58,6 +151,30 @@ std::vector<report::RuleSeries> seriesOf(const RuleErrors& by_rule, int64_t begu
 }
 
 }  // namespace
+
+double DriveRecord::distance() const {
+  double sum = 0.0;
+  for (size_t i = 1; i < track.size(); ++i)
+    sum += (track[i].T_map_body.position() - track[i - 1].T_map_body.position()).norm();
+  return sum;
+}
+
+double DriveRecord::straightLine() const {
+  if (track.empty()) return 0.0;
+  return (track.front().T_map_body.position() - T_map_goal.position()).norm();
+}
+
+DriveRecord readDrive(const std::vector<std::string>& logs) {
+  DriveRecord drive;
+  Reader reader(drive);
+  LogEvent event;
+  for (const std::string& path : logs) {
+    LogReader log(path);
+    while (log.next(event)) reader.take(event);
+    if (drive.problem.empty()) drive.problem = log.problem();
+  }
+  return drive;
+}
 
 std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth) {
   if (!drive.has_goal) return "no goal in this log";
@@ -77,11 +194,11 @@ std::string wordsOf(const DriveRecord& drive, const SimulationTruth& truth,
                     const RuleErrors& by_rule) {
   std::string words = resultLine(drive, truth) + "\n";
   words += formatted("prediction error at a pattern's end: mean %.3f m, %.2f deg over %zu measured",
-                     mean(drive, &report::PatternError::position),
-                     mean(drive, &report::PatternError::yaw) * 180.0 / kPi, drive.errors.size());
+                     mean(drive, &PatternError::position),
+                     mean(drive, &PatternError::yaw) * 180.0 / kPi, drive.errors.size());
   words += formatted(" (%d refused)\n", drive.refused);
   std::vector<int64_t> changes;
-  for (const report::BorderCrossing& crossing : crossingsOf(drive, truth))
+  for (const BorderCrossing& crossing : crossingsOf(drive, truth))
     changes.push_back(drive.begun + std::llround(crossing.time * 1e6));
   if (!by_rule.rules.empty()) words += wordsOf(by_rule, changes);
   words += "latency, as the logger received:\n";
@@ -92,9 +209,9 @@ std::string wordsOf(const DriveRecord& drive, const SimulationTruth& truth,
   return words;
 }
 
-report::DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth,
-                           const RuleErrors& by_rule) {
-  report::DriveScene scene;
+DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth,
+                   const RuleErrors& by_rule) {
+  DriveScene scene;
   scene.title = resultLine(drive, truth);
   if (truth.world) {
     scene.base_surface = truth.world->base_surface;

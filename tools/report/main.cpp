@@ -33,7 +33,7 @@ int run(const Arguments& arguments) {
   if (!rules.empty()) by_rule = errorsByRule(arguments.logs, TREAD_CONFIG_DIR "/patterns", rules);
   std::cout << wordsOf(drive, truth, by_rule);
   if (!arguments.picture.empty()) {
-    report::drawDrive(arguments.picture, sceneOf(drive, truth, by_rule));
+    drawDrive(arguments.picture, sceneOf(drive, truth, by_rule));
     std::cout << "picture: " << arguments.picture << std::endl;
   }
   const bool touched = !truth.rows.empty() && truth.rows.back().contacts > 0;
@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->check(CLI::IsMember(names));
   app.add_option("--picture", arguments.picture, "file of the picture (PNG)");
-  if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
+  if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   try {
     return run(arguments);
   } catch (const std::exception& error) {

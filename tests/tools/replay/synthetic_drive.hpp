@@ -8,7 +8,7 @@
 
 #include "common/recordings/imported_log.hpp"
 #include "common/vehicle/kernel.hpp"
-#include "tools/replay/learner_log.hpp"
+#include "tools/replay/learner_replay.hpp"
 
 namespace tread::samples {
 
