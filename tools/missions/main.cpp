@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -22,7 +21,6 @@ struct Arguments {
   uint64_t seed = 1;
   std::string rule;                ///< empty = as the robot's configuration says
   std::vector<std::string> rules;  ///< to compare; empty = one rule
-  bool only_first_drives = false;
   double length = kShortestLine;
   std::string fault_file;
   int threads = 1;
@@ -32,9 +30,7 @@ struct Arguments {
   std::string log;
   std::string robot = TREAD_CONFIG_DIR "/robots/teodor";
   std::vector<std::string> overrides;
-  bool omniscient = false;
   bool compare_omniscient = false;
-  bool live = false;
 };
 
 void define(CLI::App& app, Arguments& arguments) {
@@ -50,14 +46,9 @@ void define(CLI::App& app, Arguments& arguments) {
           ->delimiter(',')
           ->check(CLI::IsMember(learner::ruleNames()))
           ->excludes(one);
-  app.add_flag("--first-drives", arguments.only_first_drives,
-               "with --rules: only the first rule drives, the others judge its executions");
-  app.add_flag("--omniscient", arguments.omniscient,
-               "no learning: the planner is given the true patterns of the ground below it")
-      ->excludes(one)
-      ->excludes(several);
   app.add_flag("--compare-omniscient", arguments.compare_omniscient,
-               "drive all missions, and once more with true patterns; ratio of times to the goal")
+               "drive all missions, and once more without learning: the planner is given the true "
+               "patterns of the ground below it; ratio of times to the goal")
       ->excludes(several);
   app.add_option(
          "--length", arguments.length,
@@ -78,18 +69,6 @@ void define(CLI::App& app, Arguments& arguments) {
                  "planner.margins.growth=0 drives without inflation by uncertainty")
       ->expected(1)
       ->take_all();
-  app.add_flag("--live", arguments.live, "tell each second of virtual time");
-}
-
-void printProgress(const Progress& progress) {
-  char line[300];
-  std::snprintf(line, sizeof line, "%6.0f s  %5.1f m to go  %-7s %-14s %s", progress.time,
-                progress.to_go, progress.surface.c_str(),
-                progress.pattern.empty() ? "-" : progress.pattern.c_str(), progress.plan.c_str());
-  std::cout << line;
-  if (std::isfinite(progress.last_error))
-    std::cout << "  last error " << std::llround(100.0 * progress.last_error) << " cm";
-  std::cout << std::endl;
 }
 
 bool showsOneOfThem(const Arguments& arguments) {
@@ -108,7 +87,6 @@ BatchOrder orderOf(const Arguments& arguments, const std::string& name, bool fir
   order.overrides = arguments.overrides;
   order.options.shortest_line = arguments.length;
   if (!arguments.fault_file.empty()) order.options.faults = readFaultFile(arguments.fault_file);
-  if (arguments.live) order.options.progress = printProgress;
   if (!first) return order;
   order.show = arguments.show;
   order.picture = arguments.picture;
@@ -124,20 +102,16 @@ Batch driveLearning(const Arguments& arguments, const RobotConfig& robot) {
   return runBatch(robot, order);
 }
 
-Batch driveOmniscient(const Arguments& arguments, const RobotConfig& robot, bool first) {
-  const TruePatterns true_patterns(robot.learner.shipped, robot.simulated.vehicle);
-  BatchOrder order = orderOf(arguments, "omniscient", first);
-  order.options.true_patterns = &true_patterns;
-  return runBatch(robot, order);
-}
-
 void compareOmniscient(const Arguments& arguments, const RobotConfig& robot) {
   OmniscientComparison comparison;
   std::cout << "learning" << std::endl;
   comparison.learning = driveLearning(arguments, robot);
   printSummary(std::cout, comparison.learning);
   std::cout << "omniscient" << std::endl;
-  comparison.omniscient = driveOmniscient(arguments, robot, false);
+  const TruePatterns true_patterns(robot.learner.shipped, robot.simulated.vehicle);
+  BatchOrder order = orderOf(arguments, "omniscient", false);
+  order.options.true_patterns = &true_patterns;
+  comparison.omniscient = runBatch(robot, order);
   printSummary(std::cout, comparison.omniscient);
   printOmniscient(std::cout, comparison);
   if (!arguments.json.empty()) writeOmniscient(arguments.json, comparison);
@@ -149,7 +123,6 @@ void compareRules(const Arguments& arguments, const RobotConfig& robot) {
   RuleComparison comparison;
   for (size_t i = 0; i < rules.size(); ++i) {
     const std::string& rule = arguments.rules[i];
-    if (i > 0 && arguments.only_first_drives) break;
     std::cout << "rule " << rule << std::endl;
     BatchOrder order = orderOf(arguments, rule, i == 0);
     order.options.rule = rule;
@@ -177,8 +150,7 @@ void drive(const Arguments& arguments) {
   const RobotConfig robot = readRobot(arguments.robot, arguments.overrides);
   if (!arguments.rules.empty()) return compareRules(arguments, robot);
   if (arguments.compare_omniscient) return compareOmniscient(arguments, robot);
-  const Batch batch = arguments.omniscient ? driveOmniscient(arguments, robot, true)
-                                           : driveLearning(arguments, robot);
+  const Batch batch = driveLearning(arguments, robot);
   printSummary(std::cout, batch);
   if (!arguments.json.empty()) writeJson(arguments.json, batch);
 }

@@ -64,12 +64,11 @@ struct Contact {
   double penetration = 0.0;  ///< [m] deepest attempt
 };
 
-/// What happened in one mission.
+/// What happened in one mission: one entry of the report, hence so many fields.
 struct MissionResult {
   uint64_t seed = 0;
   MissionOutcome outcome = MissionOutcome::kStopped;
   std::string reason;          ///< in words; empty when arrived
-  int collisions = 0;          ///< contacts of the true footprint with true obstacles
   double time = 0.0;           ///< [s] from the goal to the end
   double begun = 0.0;          ///< [s] of that until it first moved
   double driven = 0.0;         ///< [s] of that in motion
@@ -89,6 +88,7 @@ struct MissionResult {
   std::vector<Stop> stops;        ///< between start and arrival
   std::vector<Flip> flips;
 
+  int collisions() const { return static_cast<int>(contacts.size()); }
   double detour() const { return straight_line > 0.0 ? distance / straight_line : 0.0; }
 };
 

@@ -26,10 +26,6 @@ double threadSeconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-void tell(const MissionOptions& options, const Referee& watch, int64_t tick) {
-  if (options.progress && tick % 20 == 0) options.progress(watch.progress());
-}
-
 /// What the rules beside the drive made of its executions.
 void addShadows(shadow::ShadowLearners& shadows, MissionResult& result) {
   shadows.finish();
@@ -45,7 +41,7 @@ std::string titleOf(const MissionResult& result) {
       "Mission %llu: %s after %.0f s and %.1f m (straight line %.1f m), %d patterns, %d "
       "collisions%s%s",
       static_cast<unsigned long long>(result.seed), nameOf(result.outcome), result.time,
-      result.distance, result.straight_line, result.completed, result.collisions,
+      result.distance, result.straight_line, result.completed, result.collisions(),
       result.reason.empty() ? "" : ": ", result.reason.c_str());
 }
 
@@ -124,19 +120,18 @@ MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOpti
       if (shadows.hears(channel)) shadows.hear(utime, {utime, channel, {bytes, bytes + size}});
     });
   Operator person(system.bus().outside(), run.scene.world.T_map_goal);
-  Referee watch(system, run.scene.world);
+  Referee referee(system, run.scene.world);
   const int64_t start = system.bus().now();
-  for (int64_t tick = 1; !watch.ended(); ++tick) {
+  for (int64_t tick = 1; !referee.ended(); ++tick) {
     system.bus().runUntil(start + tick * kTick);
     person.step(system.bus().now());
-    watch.step();
-    tell(options, watch, tick);
+    referee.step();
   }
-  run.result = watch.result();
+  run.result = referee.result();
   addShadows(shadows, run.result);
   run.result.seed = seed;
   run.result.rearmed = person.rearmed();
-  watch.fillScene(run.scene);
+  referee.fillScene(run.scene);
   run.virtual_time = static_cast<double>(system.bus().now() - start) * 1e-6;
   run.cpu_time = threadSeconds() - cpu_start;
   return run;

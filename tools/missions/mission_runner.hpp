@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,25 +14,14 @@
 
 namespace tread::missions {
 
-/// What is told while a mission runs, once per second of virtual time.
-struct Progress {
-  double time = 0.0;        ///< [s] since the start
-  double to_go = 0.0;       ///< [m] straight to the goal
-  std::string surface;      ///< true one
-  std::string plan;         ///< status of the planner in words
-  std::string pattern;      ///< being executed; empty = none
-  double last_error = 0.0;  ///< [m] position error of the last measured execution; NaN none
-};
-
 /// How missions are run.
 struct MissionOptions {
   std::string rule;                      ///< of learning; empty = as the robot's configuration says
   std::vector<learner::Rule> shadows;    ///< judge the same executions beside the drive
   double shortest_line = kShortestLine;  ///< [m] see makeMissionWorld()
   FaultPlan faults;
-  const TruePatterns* true_patterns = nullptr;    ///< if given: an omniscient robot drives
-  LogWriter* log = nullptr;                       ///< every message, if given
-  std::function<void(const Progress&)> progress;  ///< may be empty
+  const TruePatterns* true_patterns = nullptr;  ///< if given: an omniscient robot drives
+  LogWriter* log = nullptr;                     ///< every message, if given
 };
 
 /// What a picture of a mission shows beside its result.

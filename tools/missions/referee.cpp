@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/grid/footprint.hpp"
 #include "tools/robot/operator/drive_progress.hpp"
@@ -173,7 +172,6 @@ void Referee::noteContacts() {
   }
   for (size_t i = 0; i < result_.contacts.size(); ++i)
     result_.contacts[i].penetration = truth.collisions[i].penetration;
-  result_.collisions = static_cast<int>(truth.collisions.size());
 }
 
 std::string Referee::presentPattern() const {
@@ -242,23 +240,6 @@ void Referee::end(MissionOutcome outcome, const std::string& reason) {
   result_.outcome = outcome;
   result_.reason = reason;
   ended_ = true;
-}
-
-Progress Referee::progress() const {
-  Progress progress;
-  progress.time = result_.time;
-  progress.to_go = toGo();
-  progress.surface = surfaces_.surface();
-  progress.plan = operators::statusWord(plan_.plan_status) +
-                  (plan_.reason.empty() ? "" : " (" + plan_.reason + ")");
-  progress.pattern = presentPattern();
-  progress.last_error = std::numeric_limits<double>::quiet_NaN();
-  for (auto it = result_.executions.rbegin(); it != result_.executions.rend(); ++it)
-    if (it->measured) {
-      progress.last_error = it->error_position;
-      break;
-    }
-  return progress;
 }
 
 }  // namespace tread::missions

@@ -29,7 +29,7 @@ class SurfaceTracker {
   int64_t next_since_ = 0;
 };
 
-/// The referee: looks at the true world and at the bus, and says when and how a mission has ended.
+/// Decides from the true world and the bus when and how a mission has ended, and records it.
 class Referee {
  public:
   Referee(RobotSystem& system, const MissionWorld& world);
@@ -38,7 +38,6 @@ class Referee {
   void step();
   bool ended() const { return ended_; }
   MissionResult result() const;
-  Progress progress() const;
   void fillScene(MissionScene& scene) const {
     scene.map = map_;
     scene.tree = tree_;

@@ -146,7 +146,7 @@ Json runJson(const MissionResult& result) {
   return {{"seed", result.seed},
           {"result", nameOf(result.outcome)},
           {"reason", result.reason},
-          {"collisions", result.collisions},
+          {"collisions", result.collisions()},
           {"time_s", result.time},
           {"begun_s", result.begun},
           {"driven_s", result.driven},
@@ -204,7 +204,7 @@ int countOf(const Batch& batch, MissionOutcome outcome) {
 
 int collisionsOf(const Batch& batch) {
   int collisions = 0;
-  for (const MissionResult& result : batch.results) collisions += result.collisions;
+  for (const MissionResult& result : batch.results) collisions += result.collisions();
   return collisions;
 }
 
@@ -214,7 +214,7 @@ std::string lineOf(const MissionResult& result) {
       "collisions %d  stops %zu  flips %zu%s%s",
       static_cast<unsigned long long>(result.seed), nameOf(result.outcome), result.time,
       result.distance, result.detour(), result.completed, result.crossings.size(),
-      result.surface_changes, result.collisions, result.stops.size(), result.flips.size(),
+      result.surface_changes, result.collisions(), result.stops.size(), result.flips.size(),
       result.reason.empty() ? "" : "  ", result.reason.c_str());
 }
 

@@ -53,8 +53,8 @@ FaultPlan readFaultFile(const std::string& path);
 /// The whole robot and its world on a virtual bus: real nodes, real device bytes, real messages.
 /** Device lines are in-memory pipes between drivers and emulators; the laser's scans enter behind
  * the range finder's library (lidar::ScanSource). Links, stores and the simulated robot outlive a
- * node that is killed. Faults of messages to every receiver are those to every process of the
- * robot: whoever watches from outside hears all as it was said. */
+ * node that is killed. A fault of messages to every receiver affects only the robot's processes;
+ * observers outside receive every message unharmed. */
 class RobotSystem {
  public:
   /// `rule`: of learning; empty = as the configuration says. `true_patterns`: if given, they are

@@ -11,10 +11,10 @@
 
 namespace tread::missions {
 
-/// The set that nobody has: for each surface, patterns that were recorded on it.
-/** Its prediction of an execution is the mean measured end of all executions of that pattern wholly
- * on that surface in the drives of all other worlds (at least kFewest, else it has none). What its
- * error leaves is what differs from one execution to the next, which no rule can know. */
+/// An oracle: for each surface, the mean of the patterns that were executed on it.
+/** It predicts the mean measured end of all executions of the pattern that lie wholly on the
+ * surface in all other worlds (at least kFewest, else nothing). Its error is the scatter from
+ * execution to execution, which no rule can predict. */
 class Omniscient {
  public:
   static constexpr int kFewest = 8;
@@ -45,12 +45,12 @@ enum class Met {
   kBefore  ///< to one on which it had ended at least ten measured executions
 };
 
-/// After how many executions a rule predicts a new surface.
+/// How many executions a rule needs on a new surface.
 /** The measure: n is the smallest number of measured executions on the new surface after which the
  * mean error of the next five is at most 1.2 times the omniscient one's of the same five; 0 = at
- * once. Position and yaw each, and both in the same five. A stretch that ends before (the next
- * change, the goal) counts as "not yet" up to there: medians are those of Kaplan and Meier. Changes
- * with fewer than five executions after them are left out. */
+ * once. For position, yaw, and both in the same five. A stretch that ends earlier (next change,
+ * goal) is censored there: medians are those of Kaplan and Meier. Changes with fewer than five
+ * executions after them are left out. */
 struct Settling {
   static constexpr double kWithin = 1.2;
   static constexpr size_t kWindow = 5;
@@ -70,8 +70,8 @@ struct Settling {
 Settling settlingOf(const std::vector<MissionResult>& results, const ErrorOf& error,
                     const Omniscient& omniscient, Met met = Met::kAny);
 
-/// Median of times to an event, some of which were only seen not to come up to a time (reached =
-/// false); infinite if fewer than half come. For tests.
+/// Kaplan-Meier median of times to an event, some of them censored (reached = false); infinite if
+/// fewer than half reach it. For tests.
 double medianTime(std::vector<std::pair<int, bool>> times);
 
 }  // namespace tread::missions

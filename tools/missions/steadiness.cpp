@@ -48,12 +48,13 @@ std::optional<Flip> FlipDetector::hear(const plan_t& plan) {
   return Flip{0.0, from->name, to->name};
 }
 
-void StopDetector::step(int64_t utime, const Twist2& v_body, const SaidReason& said) {
+void StopDetector::step(int64_t utime, const Twist2& v_body, const StopReasons& reasons) {
   const bool slow = std::hypot(v_body.v_x, v_body.v_y) < kSlow && std::abs(v_body.omega) < kSlow;
   if (!slow && begun_ == 0) begun_ = utime;
   if (!slow && last_step_ != 0) driven_ += utime - last_step_;
   last_step_ = utime;
-  if (slow && !slow_) slowed_ = {utime, utime, said.planner.empty() ? said.bridge : said.planner};
+  if (slow && !slow_)
+    slowed_ = {utime, utime, reasons.planner.empty() ? reasons.bridge : reasons.planner};
   slow_ = slow;
   if (!slow) resting_ = false;
   if (!slow || begun_ == 0) return;

@@ -14,7 +14,7 @@
 
 namespace tread::missions {
 
-/// The planner changed its mind from one side to the other.
+/// The planner changed from one side to the other.
 struct Flip {
   double time = 0.0;  ///< [s] since the start of the mission
   std::string from;   ///< pattern that turned to the old side
@@ -69,20 +69,20 @@ struct Stop {
   std::string reason;     ///< as it was published; empty = nobody had said why
 };
 
-/// What was published when the robot slowed down.
-struct SaidReason {
+/// The reasons published when the robot slowed down.
+struct StopReasons {
   std::string planner;  ///< PLAN: its reason
   std::string bridge;   ///< EXECUTION: why the last one was aborted, if it was
 };
 
-/// Notes each time the true robot comes to rest after it has moved.
-/** To rest is: slower than 5 cm/s and 0.05 rad/s for 0.2 s, so that joins through rest (a turn on
- * the spot, backing up) count, too. The reason is the planner's at the moment when it had become so
- * slow; where the planner says nothing, the bridge's. Before the first motion nothing is a stop. */
+/// Detects each time the true robot comes to rest after it has moved.
+/** At rest: slower than 5 cm/s and 0.05 rad/s for 0.2 s, so that joins through rest (a turn on the
+ * spot, backing up) count, too. The reason is the planner's when the robot became so slow, or the
+ * bridge's if the planner published none. Standing before the first motion is no stop. */
 class StopDetector {
  public:
   /// Call every 50 ms of virtual time [us] with the true velocity.
-  void step(int64_t utime, const Twist2& v_body, const SaidReason& said);
+  void step(int64_t utime, const Twist2& v_body, const StopReasons& reasons);
 
   /// All stops, times in [us] turned into [s] since `start`; the one that lasts is left out if
   /// `arrived`.

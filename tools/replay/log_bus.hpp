@@ -12,8 +12,9 @@
 
 namespace tread::replay {
 
-/// The bus of one node that hears a log: time is what the replay says, and nothing is lost.
-/** What the node publishes is kept and reaches nobody, so it never hears its own past. */
+/// The bus of one node that receives a log: the replay sets the time, and nothing is lost.
+/** The node's own messages are kept and delivered to nobody, so that it never receives its own
+ * past. */
 class LogBus : public Bus {
  public:
   explicit LogBus(int64_t boot_id) : now_(boot_id), boot_id_(boot_id) {}
@@ -21,8 +22,8 @@ class LogBus : public Bus {
   int64_t now() const override { return knowsTime() ? now_ : start_->now(now_); }
   int64_t bootId() const override { return boot_id_; }
   void setNow(int64_t utime) { now_ = utime; }
-  /// From here as a process on a real host that has just started: it does not know the time before
-  /// it has heard enough to believe it.
+  /// Behaves like a process that has just started on a real host: the time is unknown until enough
+  /// messages agree on it.
   void forgetTime() { start_.emplace(now_, LcmBus::kMaxJump); }
   bool knowsTime() const { return !start_ || start_->started(); }
 
@@ -41,7 +42,7 @@ class LogBus : public Bus {
     return channels;
   }
 
-  /// What the node has published since the last call; the time is that of publishing.
+  /// Messages published since the last call, at the time of publishing.
   std::vector<LogEvent> takePublished() { return std::move(published_); }
 
  protected:

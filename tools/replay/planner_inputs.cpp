@@ -17,39 +17,33 @@ namespace {
 /// A pair in the other order shows in one step, or in a few that follow each other.
 constexpr size_t kNearSteps = 10;
 
-using Key = std::tuple<std::string, int64_t, int64_t>;
-
-class Finder {
+/// Finds inputs by what they say they are.
+class InputIndex {
  public:
-  Finder(const RobotLog& log, const std::vector<PlannerInput>& inputs) : log_(log) {
+  InputIndex(const RobotLog& log, const std::vector<PlannerInput>& inputs)
+      : log_(log), inputs_(inputs) {
     for (size_t i = 0; i < inputs.size(); ++i) {
       const Receipt& receipt = inputs[i].receipt;
-      places_[{receipt.channel, receipt.utime, receipt.seq}].push_back(
-          {i, log.events[inputs[i].event].heard});
+      places_[{receipt.channel, receipt.utime, receipt.seq}].push_back(i);
     }
   }
 
-  /// The place of the newest message that a program names; of several the nearest in time.
+  /// The newest input that a program names; of several the nearest in time.
   std::optional<size_t> find(const program_t& program) const {
     const auto found =
         places_.find({program.newest_input, program.newest_input_utime, program.newest_input_seq});
     if (found == places_.end()) return std::nullopt;
-    const auto distance = [&program](const Place& place) {
-      return std::abs(place.heard - program.utime);
+    const auto distance = [&](size_t i) {
+      return std::abs(log_.events[inputs_[i].event].heard - program.utime);
     };
-    const auto nearest =
-        std::min_element(found->second.begin(), found->second.end(),
-                         [&](const Place& a, const Place& b) { return distance(a) < distance(b); });
-    return nearest->index;
+    return *std::min_element(found->second.begin(), found->second.end(),
+                             [&](size_t a, size_t b) { return distance(a) < distance(b); });
   }
 
  private:
-  struct Place {
-    size_t index;
-    int64_t heard;
-  };
   const RobotLog& log_;
-  std::map<Key, std::vector<Place>> places_;
+  const std::vector<PlannerInput>& inputs_;
+  std::map<std::tuple<std::string, int64_t, int64_t>, std::vector<size_t>> places_;
 };
 
 /// A step of which both are known: how many messages it had heard, and where they end in the log.
@@ -86,7 +80,7 @@ void reorder(Hearing& hearing, const std::vector<Known>& known) {
   }
 }
 
-void countLosses(Hearing& hearing, const std::vector<ToldStep>& steps,
+void countLosses(Hearing& hearing, const std::vector<LoggedStep>& steps,
                  const std::vector<Known>& known) {
   for (size_t i = 0; i < known.size(); ++i) {
     const size_t step = known[i].step;
@@ -102,7 +96,7 @@ void countLosses(Hearing& hearing, const std::vector<ToldStep>& steps,
 }
 
 /// Where nothing names the newest message the time tells, between what the neighbours had heard.
-void fillByTime(const RobotLog& log, Hearing& hearing, const std::vector<ToldStep>& steps,
+void fillByTime(const RobotLog& log, Hearing& hearing, const std::vector<LoggedStep>& steps,
                 const std::vector<bool>& found) {
   size_t limit = hearing.inputs.size();
   std::vector<size_t> limits(steps.size());
@@ -138,18 +132,18 @@ std::vector<PlannerInput> plannerInputs(const RobotLog& log, const planner::Plan
 }
 
 Hearing hearingOf(const RobotLog& log, std::vector<PlannerInput> inputs,
-                  const std::vector<ToldStep>& steps) {
+                  const std::vector<LoggedStep>& steps) {
   Hearing hearing;
   hearing.inputs = std::move(inputs);
   hearing.until.resize(steps.size());
-  const Finder finder(log, hearing.inputs);
+  const InputIndex index(log, hearing.inputs);
   std::vector<bool> found(steps.size());
   std::vector<Known> known;
   for (size_t i = 0; i < steps.size(); ++i) {
     const program_t& program = steps[i].program;
     if (steps[i].lost) continue;
     found[i] = program.inputs_heard == 0;
-    const auto place = found[i] ? std::nullopt : finder.find(program);
+    const auto place = found[i] ? std::nullopt : index.find(program);
     if (place) {
       found[i] = true;
       hearing.until[i] = *place + 1;

@@ -11,7 +11,7 @@
 
 namespace tread::replay {
 
-/// An event together with the time at which a process of the robot heard it.
+/// An event and the time at which a process of the robot received it.
 struct TimedEvent {
   LogEvent event;
   int64_t heard = 0;  ///< [us] of the robot's clock, as utime; never decreases
@@ -31,16 +31,16 @@ struct RobotLog {
   std::map<std::string, int64_t> missing;
 };
 
-/// What a process counted itself (HEALTH), against what the log holds between its first and its
-/// last HEALTH there, over all its starts.
+/// Messages that a process counted (HEALTH) and those in the log, between its first and its last
+/// HEALTH, summed over its starts.
 struct Intake {
-  int64_t heard = 0;  ///< messages by its own count
+  int64_t heard = 0;  ///< messages that it received
   int64_t lost = 0;   ///< that it knows of, by seq
   int64_t in_log = 0;
 };
 Intake intakeOf(const RobotLog& log, const std::string& process,
                 const std::vector<std::string>& channels);
-/// The same in a line.
+/// The counts in one line.
 std::string intakeLine(const RobotLog& log, const std::string& process,
                        const std::vector<std::string>& channels);
 

@@ -19,7 +19,7 @@ namespace {
 constexpr int64_t kMostLost = 100;
 
 /// One step of a planner: what it said in it.
-struct Step : ToldStep {
+struct Step : LoggedStep {
   std::optional<plan_t> plan;
 };
 

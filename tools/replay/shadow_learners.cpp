@@ -47,13 +47,13 @@ class ShadowLearners::Shadow {
     for (; next_step_ <= utime; next_step_ += node_.period()) {
       bus_.setNow(next_step_);
       node_.step(next_step_);
-      takeWhatItSaid();
+      takeMessages();
     }
   }
 
   const std::map<ExecutionKey, learning_t>& judged() const { return judged_; }
 
-  /// Against what was predicted at that time.
+  /// Error of a measured end against the prediction at the time of the decision.
   std::optional<EndPoseError> errorOf(const learning_t& said, int64_t decided) const {
     const Pose2 end{said.measured_end[0], said.measured_end[1], said.measured_end[2]};
     if (!said.accepted || !std::isfinite(end.x)) return std::nullopt;
@@ -69,7 +69,7 @@ class ShadowLearners::Shadow {
   }
 
  private:
-  void takeWhatItSaid() {
+  void takeMessages() {
     for (const LogEvent& event : bus_.takePublished()) {
       learning_t said;
       if (decode(event, kLearning, said))
@@ -145,9 +145,9 @@ void ShadowLearners::hear(int64_t utime, const LogEvent& event) {
 }
 
 void ShadowLearners::finish() {
-  // Longer than a learner waits for an INS that does not come.
-  constexpr int64_t kLastWords = 5'000'000;
-  for (const auto& shadow : shadows_) shadow->stepUntil(newest_ + kLastWords);
+  // Longer than a learner waits for missing INS.
+  constexpr int64_t kAfterwards = 5'000'000;
+  for (const auto& shadow : shadows_) shadow->stepUntil(newest_ + kAfterwards);
 }
 
 std::vector<ShadowedExecution> ShadowLearners::executions() const {

@@ -18,7 +18,7 @@ namespace tread::shadow {
 /// An execution by run id and execution id.
 using ExecutionKey = std::pair<int64_t, int64_t>;
 
-/// How far an execution ended from what a rule had predicted.
+/// Distance of an execution's measured end from the predicted one.
 struct EndPoseError {
   double position = 0.0;  ///< [m]
   double yaw = 0.0;       ///< [rad] measured - predicted, wrapped
@@ -33,32 +33,31 @@ struct ShadowedExecution {
   std::vector<EndPoseError> by_rule;  ///< in the order of the rules; empty where not measured
 };
 
-/// The learner process once for each rule, beside a drive that goes on without them.
-/** They hear INS, EXECUTION and MOTOR of the drive, gate and learn as the robot's learner does, and
- * what they say reaches nobody: the same executions meet every rule. Each begins with the shipped
- * set and without a memory. An execution is scored, for every rule alike, with the newest set that
- * the rule had published when the planner decided on it (PROGRAM; without that, when it began). */
+/// One learner process per rule, all listening to the same drive.
+/** Each receives INS, EXECUTION and MOTOR, gates and learns as the robot's learner does; its
+ * messages are discarded, so every rule sees the same executions. Each begins with the shipped set
+ * and no memory. Every rule's score of an execution uses the newest set that the rule had published
+ * when the planner decided on the execution (PROGRAM; without that, when it began). */
 class ShadowLearners {
  public:
   ShadowLearners(const learner::LearnerNodeConfig& config, std::vector<learner::Rule> rules,
                  int64_t boot_id);
   ~ShadowLearners();
 
-  /// A message of the drive, also of channels that do not matter here, at a time of the robot [us],
-  /// which must not decrease.
+  /// Takes any message of the drive at the robot's time [us], which must not decrease.
   void hear(int64_t utime, const LogEvent& event);
-  /// Whether they listen to this channel at all.
+  /// Whether messages of this channel are used.
   bool hears(const std::string& channel) const;
-  /// After the last message: gives them the time to take in what is under way.
+  /// Call after the last message: lets pending executions finish.
   void finish();
 
   const std::vector<learner::Rule>& rules() const { return rules_; }
-  /// All that every rule has judged so far, in the order in which they ended.
+  /// All executions scored so far, in the order of their end.
   std::vector<ShadowedExecution> executions() const;
 
  private:
   class Shadow;
-  /// What the planner wanted with an execution, and since when.
+  /// The pattern that the planner chose for an execution, and since when.
   struct Decision {
     int32_t pattern_id = 0;
     int64_t set_version = 0;

@@ -48,13 +48,13 @@ void Latencies::add(const LogEvent& event) {
     // Versions that another has overtaken were never planned with.
     unplanned_.erase(unplanned_.begin(), std::next(found));
   } else if (decode(event, kLearning, learning)) {
-    hear(learning, event.utime);
+    hear(learning);
   } else if (decode(event, kPatternSet, part)) {
     hear(part, event.utime);
   }
 }
 
-void Latencies::hear(const learning_t& message, int64_t /*received*/) {
+void Latencies::hear(const learning_t& message) {
   if (!message.changed) return;
   const auto passed = std::find_if(ins_.begin(), ins_.end(),
                                    [&](const Received& at) { return at.utime >= message.utime; });

@@ -41,7 +41,7 @@ class Latencies {
     int64_t utime;     ///< [us] of the message
     int64_t received;  ///< [us] by the logger
   };
-  void hear(const learning_t& message, int64_t received);
+  void hear(const learning_t& message);
   void hear(const pattern_set_part_t& message, int64_t received);
 
   std::deque<Received> ins_;                 ///< of the last seconds

@@ -129,7 +129,7 @@ TEST_CASE("a robot of another size drives by its configuration alone") {
   const MissionRun run = runMission(small, 8, options);
   CAPTURE(run.result.reason);
   CHECK(run.result.outcome == Outcome::kArrived);
-  CHECK(run.result.collisions == 0);
+  CHECK(run.result.collisions() == 0);
 }
 
 TEST_CASE("a mission drives from start to goal over changing ground without touching anything") {
@@ -138,7 +138,7 @@ TEST_CASE("a mission drives from start to goal over changing ground without touc
     const MissionRun run = runMission(teodor(), seed, {});
     CHECK(run.result.outcome == MissionOutcome::kArrived);
     CHECK(run.result.reason.empty());
-    CHECK(run.result.collisions == 0);
+    CHECK(run.result.collisions() == 0);
     CHECK(run.result.distance > run.result.straight_line - 1.5);
     CHECK(run.result.crossings.size() >= 1);
     CHECK(run.result.set_versions > 10);
@@ -168,7 +168,7 @@ TEST_CASE(
   bench.runToEnd();
   CAPTURE(bench.watch.result().reason);
   CHECK(bench.watch.result().outcome == MissionOutcome::kArrived);
-  CHECK(bench.watch.result().collisions == 0);
+  CHECK(bench.watch.result().collisions() == 0);
   CHECK_FALSE(bench.version_went_back);
 }
 
@@ -196,7 +196,7 @@ TEST_CASE(
     bench.runToEnd();
     CAPTURE(bench.watch.result().reason);
     CHECK(bench.watch.result().outcome == MissionOutcome::kArrived);
-    CHECK(bench.watch.result().collisions == 0);
+    CHECK(bench.watch.result().collisions() == 0);
     CHECK_FALSE(bench.version_went_back);
   }
 }

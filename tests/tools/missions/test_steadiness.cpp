@@ -127,7 +127,7 @@ TEST_CASE("beginning another pattern than was planned is compared from its start
 TEST_CASE("a stop is a rest of 0.2 s after a motion, with the planner's reason or the bridge's") {
   StopDetector watch;
   int64_t now = 1'000'000;
-  const auto drive = [&](double seconds, double speed, const SaidReason& said) {
+  const auto drive = [&](double seconds, double speed, const StopReasons& said) {
     for (const int64_t end = now + std::llround(seconds * 1e6); now < end; now += 50'000)
       watch.step(now, {speed, 0.0, 0.0}, said);
   };
