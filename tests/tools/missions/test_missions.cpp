@@ -128,7 +128,7 @@ TEST_CASE("a robot of another size drives by its configuration alone") {
   options.shortest_line = 8.0;
   const MissionRun run = runMission(small, 8, options);
   CAPTURE(run.result.reason);
-  CHECK(run.result.outcome == Outcome::kArrived);
+  CHECK(run.result.outcome == MissionOutcome::kArrived);
   CHECK(run.result.collisions() == 0);
 }
 
