@@ -4,13 +4,13 @@
 
 #include <deque>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/geometry/se2.hpp"
 #include "common/pattern/pattern.hpp"
-#include "common/vehicle/drive_train.hpp"
-#include "common/vehicle/ground_motion.hpp"
 #include "common/vehicle/model.hpp"
+#include "common/vehicle/motion_steps.hpp"
 
 namespace tread {
 
@@ -115,5 +115,19 @@ class VehicleKernel {
 std::vector<Pose2> simulate(const VehicleModel& model, const std::vector<TrackCommand>& commands,
                             double period, const EntryState& entry,
                             const ExecutionNoise& noise = {});
+
+/// Covariance of the last pose of a series of commands from the model's execution spread.
+/** First order: J diag(spread^2) J^T with J by central differences over one standard deviation.
+ * Ground that is not the model's is not in it. */
+PoseCovariance endCovariance(const VehicleModel& model, const std::vector<TrackCommand>& commands,
+                             double period, const EntryState& entry);
+
+/// The motion class that a steady command keeps up, with the model's twist.
+MotionClass classOf(const VehicleModel& model, const std::string& name, const TrackCommand& steady);
+
+/// Fills trajectory and end covariance of a pattern that was never driven, entered in a steady
+/// motion.
+void predict(const VehicleModel& model, double period, const MotionClass& entry,
+             MotionPattern& pattern);
 
 }  // namespace tread

@@ -140,10 +140,7 @@ TEST_CASE(
       CHECK_FALSE(startsWith(include.target, "lcm/"));
       CHECK_FALSE(startsWith(include.target, "tread/"));
       CHECK_FALSE(startsWith(include.target, "yaml-cpp"));
-      // Identification still formats its progress and starts its own threads.
-      const bool allowed = core == "modules/identification/core" &&
-                           (include.target == "cstdio" || include.target == "thread");
-      CHECK((allowed || forbidden.count(include.target) == 0));
+      CHECK(forbidden.count(include.target) == 0);
       if (startsWith(include.target, "common/"))
         CHECK(concepts.count(head(include.target, 2)) == 1);
       if (startsWith(include.target, "modules/"))

@@ -26,15 +26,15 @@ inline ModelDocument vehicleWith(const Values& changed) {
 struct Rig {
   Rig(const Values& hidden, double seconds, uint64_t seed, const SyntheticNoise& noise = {})
       : drives{syntheticDrive(vehicleWith(hidden), seconds, seed, noise)},
-        rows(drives, {}),
-        fitter(rows, 1),
-        all(rows.rows().size(), 1) {}
+        data(drives, {}),
+        fitter(data),
+        all(data.all().size(), 1) {}
 
   /// A state of the nominal vehicle whose residuals are these; no parameter is free.
   FitState stateOf(const Eigen::VectorXd& residuals, double scale) const {
     FitState state;
     state.model = syntheticVehicle();
-    state.predicted = rows.residuals(residuals);  // measured less residuals
+    state.predicted = data.residuals(residuals);  // measured less residuals
     state.scales = Eigen::VectorXd::Constant(residuals.size(), scale);
     state.jacobian.resize(residuals.size(), 0);
     return state;
@@ -53,23 +53,23 @@ struct Rig {
     return state;
   }
 
-  Eigen::Index size() const { return static_cast<Eigen::Index>(rows.rows().size()); }
+  Eigen::Index size() const { return static_cast<Eigen::Index>(data.all().size()); }
 
   std::vector<Drive> drives;
-  Rows rows;
+  Observations data;
   Fitter fitter;
   std::vector<char> all;
 };
 
 /// Noise of size 1 of whose variance a share is common to all rows of a channel and block.
-inline Eigen::VectorXd blockNoise(const Rows& rows, uint64_t seed, double share = 0.5) {
+inline Eigen::VectorXd blockNoise(const Observations& data, uint64_t seed, double share = 0.5) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> gauss(0.0, 1.0);
-  Eigen::MatrixXd common(rows.blocks(), static_cast<Eigen::Index>(kChannels));
+  Eigen::MatrixXd common(data.blocks(), static_cast<Eigen::Index>(kChannels));
   for (Eigen::Index i = 0; i < common.size(); ++i) common(i) = gauss(random);
-  Eigen::VectorXd noise(static_cast<Eigen::Index>(rows.rows().size()));
+  Eigen::VectorXd noise(static_cast<Eigen::Index>(data.all().size()));
   for (Eigen::Index i = 0; i < noise.size(); ++i) {
-    const Row& row = rows.rows()[static_cast<size_t>(i)];
+    const Observation& row = data.all()[static_cast<size_t>(i)];
     noise[i] = std::sqrt(1.0 - share) * gauss(random) +
                std::sqrt(share) * common(row.block, static_cast<Eigen::Index>(row.channel));
   }
@@ -77,11 +77,11 @@ inline Eigen::VectorXd blockNoise(const Rows& rows, uint64_t seed, double share 
 }
 
 /// Directions, each a wave of its own period in the rows of one channel.
-inline Eigen::MatrixXd waves(const Rows& rows, int count) {
-  Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.rows().size()),
+inline Eigen::MatrixXd waves(const Observations& data, int count) {
+  Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(data.all().size()),
                                                      static_cast<Eigen::Index>(count));
   for (Eigen::Index i = 0; i < directions.rows(); ++i) {
-    const Row& row = rows.rows()[static_cast<size_t>(i)];
+    const Observation& row = data.all()[static_cast<size_t>(i)];
     for (int c = static_cast<int>(row.channel); c < count; c += static_cast<int>(kChannels))
       directions(i, c) = std::cos(row.begin / (3.0 + 2.0 * c) + c);
   }

@@ -34,7 +34,7 @@ inline Drive syntheticDrive(const ModelDocument& truth, double seconds, uint64_t
   const double roughness = noise.ground * std::sqrt(0.5);
   Drive drive;
   drive.name = "synthetic";
-  Stretch stretch;
+  Segment segment;
   VehicleKernel kernel(truth.vehicle, EntryState{});
   std::vector<MotionSample> motion{{0.0, Pose2{}, 0.0}};
   double time = 0.0;
@@ -55,7 +55,7 @@ inline Drive syntheticDrive(const ModelDocument& truth, double seconds, uint64_t
     kernel.setNoise(ground);
     drive.executions.push_back({0, time, time + kCommands * kPeriod});
     for (int i = 0; i < kCommands; ++i) {
-      stretch.commands.push_back({time, command});
+      segment.commands.push_back({time, command});
       context.session_time = time;
       kernel.step(command, kPeriod, context);
       contexts.push_back(context);
@@ -63,7 +63,7 @@ inline Drive syntheticDrive(const ModelDocument& truth, double seconds, uint64_t
       motion.push_back({time, kernel.pose(), kernel.twist().omega});
     }
   }
-  stretch.end = time;
+  segment.end = time;
   const double gyro = noise.gyro * std::sqrt(0.25 / kInsPeriod);
   for (double t = 0.0; t < time; t += kInsPeriod) {
     InsSample sample;
@@ -76,9 +76,9 @@ inline Drive syntheticDrive(const ModelDocument& truth, double seconds, uint64_t
     const auto at = std::min(contexts.size() - 1, static_cast<size_t>(t / kPeriod));
     sample.roll = contexts[at].roll;
     sample.pitch = contexts[at].pitch;
-    stretch.ins.push_back(sample);
+    segment.ins.push_back(sample);
   }
-  drive.stretches.push_back(std::move(stretch));
+  drive.segments.push_back(std::move(segment));
   return drive;
 }
 

@@ -19,8 +19,8 @@ Drive makeDrive(double noise) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   std::normal_distribution<double> normal;
   Drive drive;
-  Stretch stretch;
-  stretch.end = 120.0;
+  Segment segment;
+  segment.end = 120.0;
   Pose2 T_map_body;
   std::vector<Pose2> past;
   double v = 0.0, omega = 0.0, v_wanted = 0.0, omega_wanted = 0.0;
@@ -29,7 +29,7 @@ Drive makeDrive(double noise) {
     if (i % 100 == 0) {
       v_wanted = uniform(random);
       omega_wanted = uniform(random);
-      stretch.commands.push_back({time, {v_wanted, v_wanted + omega_wanted}});
+      segment.commands.push_back({time, {v_wanted, v_wanted + omega_wanted}});
     }
     v += 0.05 * (v_wanted - v);
     omega += 0.05 * (omega_wanted - omega);
@@ -42,12 +42,12 @@ Drive makeDrive(double noise) {
       sample.T_map_body = past[past.size() > 15 ? past.size() - 16 : 0];
       sample.T_map_body.x += noise * normal(random);
     }
-    stretch.ins.push_back(sample);
+    segment.ins.push_back(sample);
     if (i % 3 == 0)
       drive.encoders.push_back({time, {v / 0.9 - 0.1 * omega, v / 0.9 + 0.1 * omega}});
     T_map_body = T_map_body * integrate({v, -0.2 * v * omega, omega}, 0.02);
   }
-  drive.stretches.push_back(std::move(stretch));
+  drive.segments.push_back(std::move(segment));
   for (int n = 1; n < 58; ++n) drive.executions.push_back({0, 2.0 * n, 2.0 * n + 2.0});
   return drive;
 }
@@ -83,9 +83,9 @@ TEST_CASE("there is no floor without encoders, without a gyro or without poses")
   no_encoders.encoders.clear();
   REQUIRE_FALSE(deadReckoningFloor({no_encoders}));
   Drive no_gyro = makeDrive(0.0);
-  for (InsSample& sample : no_gyro.stretches[0].ins) sample.omega = kNotMeasured;
+  for (InsSample& sample : no_gyro.segments[0].ins) sample.omega = kNotMeasured;
   REQUIRE_FALSE(deadReckoningFloor({no_gyro}));
   Drive no_poses = makeDrive(0.0);
-  for (InsSample& sample : no_poses.stretches[0].ins) sample.T_map_body.x = kNotMeasured;
+  for (InsSample& sample : no_poses.segments[0].ins) sample.T_map_body.x = kNotMeasured;
   REQUIRE_FALSE(deadReckoningFloor({no_poses}));
 }

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "core_rig.hpp"
-#include "modules/identification/core/acceptance.hpp"
 #include "modules/identification/core/discovery.hpp"
+#include "modules/identification/core/search_steps.hpp"
 
 using namespace tread;
 using namespace tread::gap;
@@ -21,13 +21,12 @@ Finding findWith(const Values& hidden, const std::vector<Decision>& decisions) {
   task.model = syntheticVehicle();
   task.train.push_back(syntheticDrive(vehicleWith(hidden), 300.0, 6));
   task.decisions = decisions;
-  task.threads = 2;
   return findGap(task, [](const std::string&) {});
 }
 
 Names namesIn(const Finding& finding) {
   Names names;
-  for (const FoundEffect& effect : finding.effects) names.push_back(effect.name);
+  for (const FoundEffect& effect : finding.identified.effects) names.push_back(effect.name);
   return names;
 }
 
@@ -36,13 +35,14 @@ Names namesIn(const Finding& finding) {
 TEST_CASE("an accepted effect stays in the model though the drive does not show it, and says so") {
   const Finding finding = findWith({}, {{"yaw_pull", true, "Anna"}});
   REQUIRE(namesIn(finding) == Names{"yaw_pull"});
-  CHECK(finding.effects[0].accepted);
-  CHECK_FALSE(isShown(finding.effects[0]));
-  CHECK(finding.after.vehicle.effects.yaw_pull == finding.effects[0].parameters.at(0).value);
-  CHECK(finding.after.vehicle.effects.yaw_pull != 0.0);
-  CHECK(finding.verdict == Verdict::kNoDiscrepancy);
-  REQUIRE(finding.decisions.size() == 1);
-  CHECK(finding.decisions[0].by == "Anna");
+  CHECK(finding.identified.effects[0].accepted);
+  CHECK_FALSE(isShown(finding.identified.effects[0]));
+  CHECK(finding.identified.model.vehicle.effects.yaw_pull ==
+        finding.identified.effects[0].parameters.at(0).value);
+  CHECK(finding.identified.model.vehicle.effects.yaw_pull != 0.0);
+  CHECK(finding.verdict == GapVerdict::kNoDiscrepancy);
+  REQUIRE(finding.source.decisions.size() == 1);
+  CHECK(finding.source.decisions[0].by == "Anna");
 }
 
 TEST_CASE("an accepted effect that is there is sized, shown, and others are found beside it") {
@@ -53,8 +53,8 @@ TEST_CASE("an accepted effect that is there is sized, shown, and others are foun
   REQUIRE(names.size() >= 2);
   CHECK(names[0] == "track_asymmetry");
   CHECK(std::count(names.begin(), names.end(), "centrifugal_drift") == 1);
-  CHECK(isShown(finding.effects[0]));
-  CHECK(finding.effects[0].parameters.at(0).value == Approx(0.05).margin(0.01));
+  CHECK(isShown(finding.identified.effects[0]));
+  CHECK(finding.identified.effects[0].parameters.at(0).value == Approx(0.05).margin(0.01));
 }
 
 TEST_CASE("a rejected effect is not considered: neither found nor among the candidates") {
@@ -62,25 +62,26 @@ TEST_CASE("a rejected effect is not considered: neither found nor among the cand
       findWith({{"motor_deadband.speed", 0.1}}, {{"motor_deadband", false, ""}});
   const Names names = namesIn(finding);
   CHECK(std::count(names.begin(), names.end(), "motor_deadband") == 0);
-  for (const CandidateTest& test : finding.candidates) CHECK(test.effect != "motor_deadband");
-  CHECK(finding.after.vehicle.effects.motor_deadband == 0.0);
+  for (const CandidateTest& test : finding.search.candidates)
+    CHECK(test.effect != "motor_deadband");
+  CHECK(finding.identified.model.vehicle.effects.motor_deadband == 0.0);
 }
 
-TEST_CASE("a rejected plain cause is no cover either") {
+TEST_CASE("a rejected plain cause is no nuisance term either") {
   const Finding finding = findWith({{"slip_ratio.slip", 0.1}}, {{"slip_ratio", false, ""}});
   const Names names = namesIn(finding);
   CHECK(std::count(names.begin(), names.end(), "slip_ratio") == 0);
-  CHECK(finding.after.vehicle.effects.slip_ratio == 0.0);
+  CHECK(finding.identified.model.vehicle.effects.slip_ratio == 0.0);
 }
 
 TEST_CASE("of two effects that no drive tells apart a decision names the one") {
   const Values hidden{{"icr_offset.offset", 0.1}};
   const Finding rejected = findWith(hidden, {{"lever_arm_x", false, ""}});
-  CHECK(rejected.verdict == Verdict::kFound);
+  CHECK(rejected.verdict == GapVerdict::kFound);
   REQUIRE(namesIn(rejected) == Names{"icr_offset"});
-  CHECK(rejected.effects[0].group.empty());
+  CHECK(rejected.identified.effects[0].group.empty());
   const Finding accepted = findWith(hidden, {{"lever_arm_x", true, ""}});
-  CHECK(accepted.verdict == Verdict::kMeasurement);
+  CHECK(accepted.verdict == GapVerdict::kMeasurement);
   CHECK(namesIn(accepted) == Names{"lever_arm_x"});
 }
 
@@ -103,7 +104,7 @@ TEST_CASE("what the drive cannot size cannot be accepted, and one line says why"
             .find("lever_arm_x: accepted, but") == 0);
 }
 
-TEST_CASE("an effect is taken in with its size, from the most promising of its moments") {
+TEST_CASE("an effect is taken in with its size, from the most promising of its change points") {
   const Rig rig({{"terrain_change.width_1", 0.3}, {"terrain_change.time_1", 133.0}}, 240.0, 1);
   FitState state = rig.fitted({});
   CHECK(takeIn(rig.fitter, state, "terrain_change", rig.all).empty());
@@ -113,10 +114,10 @@ TEST_CASE("an effect is taken in with its size, from the most promising of its m
 
 TEST_CASE("an effect that nothing excites leaves the state as it was") {
   Rig rig({}, 200.0, 1);
-  for (InsSample& sample : rig.drives[0].stretches[0].ins) sample.pitch = 0.0;
-  const Rows level(rig.drives, {});
-  const Fitter fitter(level, 1);
-  const std::vector<char> all(level.rows().size(), 1);
+  for (InsSample& sample : rig.drives[0].segments[0].ins) sample.pitch = 0.0;
+  const Observations level(rig.drives, {});
+  const Fitter fitter(level);
+  const std::vector<char> all(level.all().size(), 1);
   FitState state = fitter.start(syntheticVehicle(), {}, all);
   const double loss = state.loss;
   CHECK_FALSE(takeIn(fitter, state, "slope_pitch", all).empty());

@@ -16,19 +16,20 @@ using Values = std::vector<std::pair<std::string, double>>;
 
 /// What is found with a model on a drive of the synthetic vehicle in which numbers were changed.
 Finding findOn(const Values& hidden, const ModelDocument& model, double seconds, uint64_t seed,
-               int threads = 2) {
+               const ParallelFor& parallel = serialFor) {
   ModelDocument truth = syntheticVehicle();
   for (const auto& [path, value] : hidden) *findParameter(truth, path) = value;
   GapTask task;
   task.model = model;
   task.seed = seed;
-  task.threads = threads;
+  task.parallel = parallel;
   task.train.push_back(syntheticDrive(truth, seconds, seed));
   return findGap(task, kSilent);
 }
 
-Finding findAfter(const Values& hidden, double seconds, uint64_t seed, int threads = 2) {
-  return findOn(hidden, syntheticVehicle(), seconds, seed, threads);
+Finding findAfter(const Values& hidden, double seconds, uint64_t seed,
+                  const ParallelFor& parallel = serialFor) {
+  return findOn(hidden, syntheticVehicle(), seconds, seed, parallel);
 }
 
 /// The synthetic vehicle with terms of which its file says how sure they are.
@@ -45,7 +46,7 @@ ModelDocument sureOf(const Values& known, double deviation) {
 
 std::vector<std::string> namesIn(const Finding& finding) {
   std::vector<std::string> names;
-  for (const FoundEffect& effect : finding.effects) names.push_back(effect.name);
+  for (const FoundEffect& effect : finding.identified.effects) names.push_back(effect.name);
   return names;
 }
 
@@ -55,22 +56,22 @@ using Names = std::vector<std::string>;
 
 TEST_CASE("a drive of the model itself shows no discrepancy, and says what it would have seen") {
   const Finding finding = findAfter({}, 400.0, 3);
-  CHECK(finding.verdict == Verdict::kNoDiscrepancy);
-  CHECK(finding.effects.empty());
-  REQUIRE(!finding.candidates.empty());
+  CHECK(finding.verdict == GapVerdict::kNoDiscrepancy);
+  CHECK(finding.identified.effects.empty());
+  REQUIRE(!finding.search.candidates.empty());
   REQUIRE(finding.gap);
   CHECK(finding.gap->after.position.median == Approx(finding.gap->before.position.median));
 }
 
 TEST_CASE("a hidden effect of the drive is named, sized within its interval, and closes the gap") {
   const Finding finding = findAfter({{"motor_deadband.speed", 0.1}}, 400.0, 2);
-  CHECK(finding.verdict == Verdict::kFound);
+  CHECK(finding.verdict == GapVerdict::kFound);
   REQUIRE(namesIn(finding) == Names{"motor_deadband"});
-  const Estimate& speed = finding.effects[0].parameters.at(0);
+  const Estimate& speed = finding.identified.effects[0].parameters.at(0);
   CHECK(speed.value == Approx(0.1).margin(0.01));
   CHECK(speed.low < speed.value);
   CHECK(speed.value < speed.high);
-  CHECK(finding.after.vehicle.effects.motor_deadband == speed.value);
+  CHECK(finding.identified.model.vehicle.effects.motor_deadband == speed.value);
   REQUIRE(finding.gap);
   CHECK(finding.gap->after.position.median < 0.5 * finding.gap->before.position.median);
 }
@@ -81,24 +82,24 @@ TEST_CASE("an effect of the calibrated set that the model lacks is found, not sw
 
 TEST_CASE("what the INS does is named as the INS's") {
   const Finding finding = findAfter({{"lever_arm_y.offset", 0.1}}, 400.0, 5);
-  CHECK(finding.verdict == Verdict::kMeasurement);
+  CHECK(finding.verdict == GapVerdict::kMeasurement);
   CHECK(namesIn(finding) == Names{"lever_arm_y"});
-  CHECK(finding.after.vehicle.effects.icr_offset == 0.0);
+  CHECK(finding.identified.model.vehicle.effects.icr_offset == 0.0);
 }
 
 TEST_CASE("what no drive can tell apart is ambiguous, with both names") {
   const Finding finding = findAfter({{"icr_offset.offset", 0.1}}, 400.0, 6);
-  CHECK(finding.verdict == Verdict::kAmbiguous);
-  REQUIRE(finding.effects.size() == 1);
-  Names both = finding.effects[0].group;
-  both.push_back(finding.effects[0].name);
+  CHECK(finding.verdict == GapVerdict::kAmbiguous);
+  REQUIRE(finding.identified.effects.size() == 1);
+  Names both = finding.identified.effects[0].group;
+  both.push_back(finding.identified.effects[0].name);
   std::sort(both.begin(), both.end());
   CHECK(both == Names{"icr_offset", "lever_arm_x"});
 }
 
 TEST_CASE("a bias of the gyro is found though it moves no pose") {
   const Finding finding = findAfter({{"gyro_bias.rate", 0.03}}, 400.0, 10);
-  CHECK(finding.verdict == Verdict::kMeasurement);
+  CHECK(finding.verdict == GapVerdict::kMeasurement);
   CHECK(namesIn(finding) == Names{"gyro_bias"});
 }
 
@@ -109,10 +110,10 @@ TEST_CASE("a large effect is found in the shortest drive that counts") {
 TEST_CASE("a term that the model was sure of and that is another now has moved") {
   const Finding finding = findOn({{"track_width.widening", 0.4}},
                                  sureOf({{"track_width.widening", 0.2}}, 0.004), 400.0, 12);
-  CHECK(finding.verdict == Verdict::kFound);
+  CHECK(finding.verdict == GapVerdict::kFound);
   CHECK(namesIn(finding).empty());
-  REQUIRE(!finding.calibrated.empty());
-  const Estimate& width = finding.calibrated.front();
+  REQUIRE(!finding.identified.calibrated.empty());
+  const Estimate& width = finding.identified.calibrated.front();
   CHECK(width.parameter == "track_width.widening");
   CHECK(width.moved);
   CHECK(width.value == Approx(0.4).margin(0.03));
@@ -125,7 +126,7 @@ TEST_CASE("terms that the model is sure of do not give way to what is new") {
   hidden.emplace_back("actuator_lag.lag", 0.15);
   const Finding finding = findOn(hidden, sureOf(known, 0.002), 400.0, 13);
   CHECK(namesIn(finding) == Names{"actuator_lag"});
-  for (const Estimate& estimate : finding.calibrated) CHECK(!estimate.moved);
+  for (const Estimate& estimate : finding.identified.calibrated) CHECK(!estimate.moved);
 }
 
 TEST_CASE("95 % intervals hold the truth about as often as they say") {
@@ -136,7 +137,7 @@ TEST_CASE("95 % intervals hold the truth about as often as they say") {
   int named = 0;
   for (uint64_t seed = 100; seed < 136; ++seed) {
     const auto& [path, value] = hidden[seed % hidden.size()];
-    for (const FoundEffect& effect : findAfter({{path, value}}, 300.0, seed).effects)
+    for (const FoundEffect& effect : findAfter({{path, value}}, 300.0, seed).identified.effects)
       for (const Estimate& estimate : effect.parameters) {
         if (estimate.parameter != path) continue;
         ++named;
@@ -162,7 +163,7 @@ TEST_CASE("effects that are both found do not stand in each other's place") {
                                     500.0, 7);
   const Names names = namesIn(finding);
   REQUIRE(names.size() > 1);
-  for (const FoundEffect& effect : finding.effects)
+  for (const FoundEffect& effect : finding.identified.effects)
     for (const RunnerUp& other : effect.runner_ups) {
       INFO(effect.name << " or " << other.effect);
       CHECK(std::find(names.begin(), names.end(), other.effect) == names.end());
@@ -171,18 +172,24 @@ TEST_CASE("effects that are both found do not stand in each other's place") {
 
 TEST_CASE("a drive of two minutes is too short to tell chance from cause") {
   const Finding finding = findAfter({{"motor_deadband.speed", 0.1}}, 120.0, 8);
-  CHECK(finding.verdict == Verdict::kCannotTell);
+  CHECK(finding.verdict == GapVerdict::kCannotTell);
   CHECK(finding.reason.find("drive at least 200 s") != std::string::npos);
 }
 
-TEST_CASE("the number of threads does not change a bit of what is found") {
-  const Finding one = findAfter({{"yaw_pull.pull", 0.06}}, 300.0, 9, 1);
-  const Finding three = findAfter({{"yaw_pull.pull", 0.06}}, 300.0, 9, 3);
-  REQUIRE(namesIn(one) == namesIn(three));
-  REQUIRE(!one.effects.empty());
-  for (size_t i = 0; i < one.effects[0].parameters.size(); ++i) {
-    CHECK(one.effects[0].parameters[i].value == three.effects[0].parameters[i].value);
-    CHECK(one.effects[0].parameters[i].low == three.effects[0].parameters[i].low);
+TEST_CASE(
+    "the order of work that may run at the same time does not change a bit of what is found") {
+  const Finding one = findAfter({{"yaw_pull.pull", 0.06}}, 300.0, 9);
+  const auto backwards = [](size_t count, const std::function<void(size_t)>& body) {
+    while (count > 0) body(--count);
+  };
+  const Finding other = findAfter({{"yaw_pull.pull", 0.06}}, 300.0, 9, backwards);
+  REQUIRE(namesIn(one) == namesIn(other));
+  REQUIRE(!one.identified.effects.empty());
+  for (size_t i = 0; i < one.identified.effects[0].parameters.size(); ++i) {
+    CHECK(one.identified.effects[0].parameters[i].value ==
+          other.identified.effects[0].parameters[i].value);
+    CHECK(one.identified.effects[0].parameters[i].low ==
+          other.identified.effects[0].parameters[i].low);
   }
-  CHECK(one.gap->after.yaw.rms == three.gap->after.yaw.rms);
+  CHECK(one.gap->after.yaw.rms == other.gap->after.yaw.rms);
 }

@@ -5,7 +5,7 @@
 #include "core_rig.hpp"
 #include "modules/identification/core/adequacy.hpp"
 #include "modules/identification/core/candidates.hpp"
-#include "modules/identification/core/moments.hpp"
+#include "modules/identification/core/change_points.hpp"
 
 // The rest of the stages: moments of change, and whether anything is left.
 
@@ -24,12 +24,12 @@ TEST_CASE("the moment of a change is found from seconds away, and its interval h
   rig.fitter.add(state, freeParameter(model, "terrain_change.width_1"), 0.2, rig.all);
   CHECK(changePointsOn(state.model) == std::vector<std::string>{path});
   rig.fitter.fitRoughly(state, rig.all);
-  refineMoment(rig.fitter, state, path, rig.all);
+  refineChangePoint(rig.fitter, state, path, rig.all);
   rig.fitter.fit(state, rig.all);
   CHECK(*findParameter(state.model, path) == Approx(133.0).margin(2.0));
   CHECK(*findParameter(state.model, "terrain_change.width_1") == Approx(0.3).margin(0.03));
   CHECK(state.loss < before);
-  const auto [low, high] = momentInterval(rig.fitter, state, path, rig.all, 10.0);
+  const auto [low, high] = changePointInterval(rig.fitter, state, path, rig.all, 10.0);
   CHECK(low < 133.0);
   CHECK(133.0 < high);
   CHECK(high - low < 20.0);
@@ -52,7 +52,7 @@ TEST_CASE(
   constexpr double kAlpha = 0.05;
   int false_alarms = 0;
   for (uint64_t seed = 1; seed <= 60; ++seed) {
-    const FitState state = rig.stateOf(blockNoise(rig.rows, seed), 1.0);
+    const FitState state = rig.stateOf(blockNoise(rig.data, seed), 1.0);
     const Adequacy adequacy = testAdequacy(rig.fitter, state, rig.all, kAlpha, seed);
     CHECK((adequacy.p_value <= kAlpha) == !adequacy.unexplained.empty());
     false_alarms += adequacy.p_value <= kAlpha;
@@ -63,13 +63,13 @@ TEST_CASE(
 TEST_CASE("what no effect explains is named by its channel and by what it depends on") {
   const Rig rig({}, 300.0, 2);
   const ModelDocument model = syntheticVehicle();
-  const std::vector<Variable> variables = variablesOf(rig.rows, model);
+  const std::vector<Variable> variables = variablesOf(rig.data, model);
   const auto squared = std::find_if(variables.begin(), variables.end(),
                                     [](const Variable& v) { return v.name == "v x yaw rate"; });
   REQUIRE(squared != variables.end());
-  Eigen::VectorXd residuals = blockNoise(rig.rows, 2);
-  for (size_t i = 0; i < rig.rows.rows().size(); ++i)
-    if (rig.rows.rows()[i].channel == Channel::kAcross)
+  Eigen::VectorXd residuals = blockNoise(rig.data, 2);
+  for (size_t i = 0; i < rig.data.all().size(); ++i)
+    if (rig.data.all()[i].channel == Channel::kAcross)
       residuals[static_cast<Eigen::Index>(i)] +=
           4.0 * squared->values[static_cast<Eigen::Index>(i)];
   const Adequacy adequacy = testAdequacy(rig.fitter, rig.stateOf(residuals, 1.0), rig.all, 0.01, 2);

@@ -26,20 +26,20 @@ double largestScore(const ScoreTest& test) {
 }
 
 /// A direction that acts in five blocks of twenty.
-Eigen::VectorXd rareDirection(const Rows& rows) {
-  Eigen::VectorXd direction = waves(rows, 1).col(0);
+Eigen::VectorXd rareDirection(const Observations& data) {
+  Eigen::VectorXd direction = waves(data, 1).col(0);
   for (Eigen::Index i = 0; i < direction.size(); ++i)
-    if (rows.rows()[static_cast<size_t>(i)].block % 4 != 1) direction[i] = 0.0;
+    if (data.all()[static_cast<size_t>(i)].block % 4 != 1) direction[i] = 0.0;
   return direction;
 }
 
 /// The rare direction's evidence among the waves, when it is there with a size.
 double rareEvidence(const Rig& rig, double size, uint64_t seed, bool first = false) {
   Eigen::MatrixXd directions(rig.size(), kCandidates + 1);
-  directions << waves(rig.rows, kCandidates), rareDirection(rig.rows);
+  directions << waves(rig.data, kCandidates), rareDirection(rig.data);
   const Eigen::VectorXd residuals =
-      blockNoise(rig.rows, seed, 0.1) + size * directions.col(kCandidates);
-  const ScoreTest test(rig.rows, rig.stateOf(residuals, 1.0), directions, rig.all);
+      blockNoise(rig.data, seed, 0.1) + size * directions.col(kCandidates);
+  const ScoreTest test(rig.data, rig.stateOf(residuals, 1.0), directions, rig.all);
   CHECK(test.activeBlocks(kCandidates) < 6.0);
   const Needed needed{criticalScore(test.largestByChance(kDraws, seed), kAlpha),
                       test.usualOverdispersion(), first};
@@ -51,10 +51,10 @@ double rareEvidence(const Rig& rig, double size, uint64_t seed, bool first = fal
 TEST_CASE(
     "correlated noise is called an effect about as often as alpha says, over all candidates") {
   const Rig rig({}, 400.0, 1);
-  const Eigen::MatrixXd directions = waves(rig.rows, kCandidates);
+  const Eigen::MatrixXd directions = waves(rig.data, kCandidates);
   int false_alarms = 0;
   for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const ScoreTest test(rig.rows, rig.stateOf(blockNoise(rig.rows, seed), 1.0), directions,
+    const ScoreTest test(rig.data, rig.stateOf(blockNoise(rig.data, seed), 1.0), directions,
                          rig.all);
     if (familyWise(test.largestByChance(kDraws, seed), largestScore(test)) <= kAlpha)
       ++false_alarms;
@@ -66,14 +66,14 @@ TEST_CASE(
 
 TEST_CASE("a direction that is in the residuals is found among the others, with its size") {
   const Rig rig({}, 400.0, 1);
-  const Eigen::MatrixXd directions = waves(rig.rows, kCandidates);
+  const Eigen::MatrixXd directions = waves(rig.data, kCandidates);
   constexpr Eigen::Index kHidden = 1;
   constexpr double kSize = 1.0;
   int found = 0;
   double mean = 0.0;
   for (uint64_t seed = 1; seed <= 20; ++seed) {
-    const Eigen::VectorXd residuals = blockNoise(rig.rows, seed) + kSize * directions.col(kHidden);
-    const ScoreTest test(rig.rows, rig.stateOf(residuals, 1.0), directions, rig.all);
+    const Eigen::VectorXd residuals = blockNoise(rig.data, seed) + kSize * directions.col(kHidden);
+    const ScoreTest test(rig.data, rig.stateOf(residuals, 1.0), directions, rig.all);
     if (familyWise(test.largestByChance(kDraws, seed), test.score(kHidden)) <= kAlpha) ++found;
     mean += test.size(kHidden) / 20.0;
     CHECK(test.promise(kHidden) > 0.0);
@@ -84,14 +84,14 @@ TEST_CASE("a direction that is in the residuals is found among the others, with 
 
 TEST_CASE("what the free parameters explain is no candidate's merit") {
   const Rig rig({}, 300.0, 1);
-  const Eigen::MatrixXd directions = waves(rig.rows, 2);
-  FitState state = rig.stateOf(blockNoise(rig.rows, 1) + 2.0 * directions.col(0), 1.0);
-  const ScoreTest before(rig.rows, state, directions, rig.all);
+  const Eigen::MatrixXd directions = waves(rig.data, 2);
+  FitState state = rig.stateOf(blockNoise(rig.data, 1) + 2.0 * directions.col(0), 1.0);
+  const ScoreTest before(rig.data, state, directions, rig.all);
   CHECK(before.uniqueness(0) == Approx(1.0));
   CHECK(std::abs(before.score(0)) > 3.0);
   state.free.push_back(freeParameter(state.model, "yaw_pull.pull"));
   state.jacobian = directions.col(0);
-  const ScoreTest after(rig.rows, state, directions, rig.all);
+  const ScoreTest after(rig.data, state, directions, rig.all);
   CHECK(after.score(0) == 0.0);
   CHECK(after.uniqueness(0) == 0.0);
   CHECK(after.uniqueness(1) == Approx(1.0));  // of another channel

@@ -3,8 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core_rig.hpp"
-#include "modules/identification/core/pruning.hpp"
-#include "modules/identification/core/replacement.hpp"
+#include "modules/identification/core/search_steps.hpp"
 
 using namespace tread;
 using namespace tread::gap;
@@ -25,19 +24,19 @@ SearchResult resultOf(const Rig& rig, const Values& begin) {
   for (const auto& [path, value] : begin) {
     const std::string effect = path.substr(0, path.find('.'));
     result.effects.push_back(effect);
-    result.p_values[effect] = 0.001;
+    result.evidence[effect].p_value = 0.001;
   }
   return result;
 }
 
-SearchResult pruned(const Rig& rig, SearchResult result) {
-  pruneEffects(rig.fitter, rig.all, kNeeded, 0.01, result, kSilent);
+SearchResult pruned(const Rig& rig, SearchResult result, const SearchSettings& settings = {}) {
+  pruneEffects(rig.fitter, rig.all, settings, kNeeded, result, kSilent);
   return result;
 }
 
 }  // namespace
 
-TEST_CASE("a superfluous effect goes, with a word on the ladder, and a real one stays") {
+TEST_CASE("a superfluous effect goes, with a step that says why, and a real one stays") {
   const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
   const SearchResult result =
       pruned(rig, resultOf(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}}));
@@ -45,32 +44,33 @@ TEST_CASE("a superfluous effect goes, with a word on the ladder, and a real one 
   CHECK(result.state.free.size() == 1);
   CHECK(*findParameter(result.state.model, "yaw_pull.pull") == 0.0);
   CHECK(*findParameter(result.state.model, "motor_deadband.speed") == Approx(0.1).margin(0.01));
-  CHECK(result.scores.at("motor_deadband") > kNeeded.score);
-  CHECK(result.gains.at("motor_deadband").value > 0.0);
-  REQUIRE(result.ladder.size() == 1);
-  CHECK(result.ladder[0].effect == "yaw_pull");
-  CHECK(result.ladder[0].removed);
-  CHECK(result.ladder[0].remark == "chance explains it beside the others");
-  CHECK(result.negligible.empty());
+  CHECK(result.evidence.at("motor_deadband").score > kNeeded.score);
+  CHECK(result.evidence.at("motor_deadband").gain.value > 0.0);
+  REQUIRE(result.record.steps.size() == 1);
+  CHECK(result.record.steps[0].effect == "yaw_pull");
+  CHECK(result.record.steps[0].removed);
+  CHECK(result.record.steps[0].remark == "chance explains it beside the others");
+  CHECK(result.record.negligible.empty());
 }
 
 TEST_CASE("an accepted effect stays though it is superfluous, and its numbers are told") {
   const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
   SearchResult begin = resultOf(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}});
-  begin.accepted = {"yaw_pull"};
-  const SearchResult result = pruned(rig, begin);
+  SearchSettings settings;
+  settings.accepted = {"yaw_pull"};
+  const SearchResult result = pruned(rig, begin, settings);
   CHECK(result.effects == Names{"motor_deadband", "yaw_pull"});
-  CHECK(result.ladder.empty());
-  CHECK(std::abs(result.scores.at("yaw_pull")) < kNeeded.score);
+  CHECK(result.record.steps.empty());
+  CHECK(std::abs(result.evidence.at("yaw_pull").score) < kNeeded.score);
 }
 
-TEST_CASE("a plain cause that was only a cover goes without a word") {
+TEST_CASE("a plain cause that was only a nuisance term goes without a word") {
   const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
   SearchResult covered = resultOf(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}});
-  covered.p_values.erase("yaw_pull");
+  covered.evidence["yaw_pull"].p_value.reset();
   const SearchResult result = pruned(rig, covered);
   CHECK(result.effects == Names{"motor_deadband"});
-  CHECK(result.ladder.empty());
+  CHECK(result.record.steps.empty());
 }
 
 TEST_CASE("an effect that is real but does not change where drives end is negligible") {
@@ -80,9 +80,11 @@ TEST_CASE("an effect that is real but does not change where drives end is neglig
   const SearchResult begin = resultOf(rig, {{"gyro_bias.rate", 0.001}});
   const SearchResult result = pruned(rig, begin);
   CHECK(result.effects.empty());
-  CHECK(result.negligible == Names{"gyro_bias"});
+  CHECK(result.record.negligible == Names{"gyro_bias"});
   SearchResult kept = begin;
-  pruneEffects(rig.fitter, rig.all, kNeeded, 0.0, kept, kSilent);  // small ones are wanted, too
+  SearchSettings small;
+  small.least_gain = 0.0;
+  pruneEffects(rig.fitter, rig.all, small, kNeeded, kept, kSilent);
   CHECK(kept.effects == Names{"gyro_bias"});
 }
 
@@ -95,13 +97,14 @@ TEST_CASE("an effect that runs to the end of its plausible range goes, for that 
   rig.fitter.add(begin.state, freeParameter(model, "motor_deadband.speed"), 0.02, rig.all);
   rig.fitter.fit(begin.state, rig.all);
   begin.effects = {"motor_deadband"};
-  begin.p_values["motor_deadband"] = 0.001;
+  begin.evidence["motor_deadband"].p_value = 0.001;
   const SearchResult result = pruned(rig, begin);
   CHECK(result.effects.empty());
-  REQUIRE(result.ladder.size() == 1);
-  CHECK(result.ladder[0].remark == "runs to the end of its plausible range");
-  begin.accepted = {"motor_deadband"};
-  CHECK(pruned(rig, begin).effects == Names{"motor_deadband"});
+  REQUIRE(result.record.steps.size() == 1);
+  CHECK(result.record.steps[0].remark == "runs to the end of its plausible range");
+  SearchSettings settings;
+  settings.accepted = {"motor_deadband"};
+  CHECK(pruned(rig, begin, settings).effects == Names{"motor_deadband"});
 }
 
 TEST_CASE("without an effect the others are fitted anew, and the loss tells what it was worth") {
@@ -120,13 +123,13 @@ TEST_CASE("without an effect the others are fitted anew, and the loss tells what
 TEST_CASE("two effects that imitate one become that one") {
   const Rig rig({{"position_scale.scale", -0.06}}, 300.0, 5);
   SearchResult result = resultOf(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.01}});
-  replacePairs(rig.fitter, rig.all, result, kSilent);
+  replacePairs(rig.fitter, rig.all, {}, result, kSilent);
   CHECK(result.effects == Names{"position_scale"});
-  CHECK(result.replaced["position_scale"] == Names{"slip_ratio", "track_width"});
+  CHECK(result.evidence["position_scale"].replaced == Names{"slip_ratio", "track_width"});
   CHECK(*findParameter(result.state.model, "position_scale.scale") == Approx(-0.06).margin(0.01));
   CHECK(*findParameter(result.state.model, "slip_ratio.slip") == 0.0);
-  REQUIRE(result.ladder.size() == 1);
-  CHECK(result.ladder[0].remark.find("in the place of") == 0);
+  REQUIRE(result.record.steps.size() == 1);
+  CHECK(result.record.steps[0].remark.find("in the place of") == 0);
 }
 
 TEST_CASE("neither does an accepted effect go into another one, nor does a rejected one come") {
@@ -135,11 +138,12 @@ TEST_CASE("neither does an accepted effect go into another one, nor does a rejec
       resultOf(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.01}});
   for (const bool accepted : {false, true}) {
     SearchResult result = begin;
+    SearchSettings settings;
     if (accepted)
-      result.accepted = {"track_width"};
+      settings.accepted = {"track_width"};
     else
-      result.rejected = {"position_scale"};
-    replacePairs(rig.fitter, rig.all, result, kSilent);
+      settings.rejected = {"position_scale"};
+    replacePairs(rig.fitter, rig.all, settings, result, kSilent);
     CHECK(result.effects == Names{"slip_ratio", "track_width"});
   }
 }
@@ -148,8 +152,8 @@ TEST_CASE("two effects that no single one fits as well stay two") {
   const Rig rig({{"slip_ratio.slip", 0.1}, {"track_width.widening", 0.25}}, 300.0, 6);
   SearchResult result = resultOf(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.1}});
   const double loss = result.state.loss;
-  replacePairs(rig.fitter, rig.all, result, kSilent);
+  replacePairs(rig.fitter, rig.all, {}, result, kSilent);
   CHECK(result.effects == Names{"slip_ratio", "track_width"});
-  CHECK(result.ladder.empty());
+  CHECK(result.record.steps.empty());
   CHECK(result.state.loss == loss);
 }

@@ -4,7 +4,7 @@
 
 #include "core_rig.hpp"
 #include "modules/identification/core/discovery.hpp"
-#include "modules/identification/core/unseen.hpp"
+#include "modules/identification/core/end_errors.hpp"
 
 using namespace tread;
 using namespace tread::gap;
@@ -19,9 +19,9 @@ double apart(const Overlay& overlay, size_t point) {
 
 ShownExecutions shownOf(const Rig& rig, size_t least_executions, const ModelDocument& model) {
   const FitState state = rig.fitter.start(model, {}, rig.all);
-  const Noise noise = estimateNoise(rig.rows.rows(), rig.rows.residuals(state.predicted),
-                                    activityOf(rig.rows.rows(), state.predicted), rig.all);
-  Unseen unseen{&rig.rows, model, endErrors(rig.rows, model), 2};
+  const Noise noise = estimateNoise(rig.data.all(), rig.data.residuals(state.predicted),
+                                    activityOf(rig.data.all(), state.predicted), rig.all);
+  Unseen unseen{&rig.data, model, endErrors(rig.data, model), 2};
   if (unseen.errors.size() > least_executions) unseen.errors.resize(least_executions);
   return shownExecutions({unseen}, syntheticVehicle(), noise);
 }
@@ -33,7 +33,7 @@ TEST_CASE("six typical executions and the three worst have a band that grows alo
   const ModelDocument truth = samples::vehicleWith({{"motor_deadband.speed", 0.1}});
   const ShownExecutions shown = shownOf(rig, 1000, truth);
   REQUIRE(shown.overlays.size() == 9);
-  CHECK(shown.places.size() == endErrors(rig.rows, truth).size());
+  CHECK(shown.places.size() == endErrors(rig.data, truth).size());
   int within = 0;
   for (size_t i = 0; i < 9; ++i) {
     const Overlay& overlay = shown.overlays[i];
@@ -62,10 +62,10 @@ TEST_CASE("executions that are shown are those of the headline's errors, by mode
   task.train.push_back(syntheticDrive(syntheticVehicle(), 240.0, 3));
   const Progress silent = [](const std::string&) {};
   const Finding nested = findGap(task, silent);
-  CHECK(nested.overlays.size() == 9);
-  CHECK(nested.places.size() == nested.gap->after.executions);
+  CHECK(nested.shown.overlays.size() == 9);
+  CHECK(nested.shown.places.size() == nested.gap->after.executions);
   task.test.push_back(syntheticDrive(syntheticVehicle(), 60.0, 4));
   const Finding tested = findGap(task, silent);
-  CHECK(tested.places.size() == tested.gap->after.executions);
-  for (const PlaceError& place : tested.places) CHECK(place.drive == 1);
+  CHECK(tested.shown.places.size() == tested.gap->after.executions);
+  for (const PlaceError& place : tested.shown.places) CHECK(place.drive == 1);
 }

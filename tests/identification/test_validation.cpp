@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core_rig.hpp"
-#include "modules/identification/core/student.hpp"
+#include "modules/identification/core/likelihood.hpp"
 #include "modules/identification/core/validation.hpp"
 
 using namespace tread;
@@ -18,11 +18,11 @@ namespace {
 Gain gainOfThree(const Rig& rig, const Eigen::VectorXd& residuals) {
   const FitState none = rig.stateOf(residuals, 1.0);
   FitState three = none;
-  three.jacobian = waves(rig.rows, 3);
+  three.jacobian = waves(rig.data, 3);
   for (const char* path : {"yaw_pull.pull", "slip_ratio.slip", "track_asymmetry.share"})
     three.free.push_back(freeParameter(three.model, path));
-  return gap::gainOf(heldOutLoss(rig.rows, none, rig.all), heldOutLoss(rig.rows, three, rig.all),
-                     blocksThatCount(rig.rows, rig.all));
+  return gap::gainOf(heldOutLoss(rig.data, none, rig.all), heldOutLoss(rig.data, three, rig.all),
+                     blocksThatCount(rig.data, rig.all));
 }
 
 /// A vehicle that stands: its gyro says a bias with noise that each block has in common.
@@ -31,9 +31,9 @@ Drive standingDrive(double bias, double seconds, uint64_t seed) {
   std::normal_distribution<double> gauss(0.0, 1.0);
   Drive drive;
   drive.name = "standing";
-  Stretch stretch;
-  stretch.commands.push_back({0.0, {}});
-  stretch.end = seconds;
+  Segment segment;
+  segment.commands.push_back({0.0, {}});
+  segment.end = seconds;
   constexpr double kBlock = 20.0;
   double common = 0.0;
   double until = 0.0;
@@ -46,9 +46,9 @@ Drive standingDrive(double bias, double seconds, uint64_t seed) {
     sample.time = time;
     sample.T_map_body = {kNotMeasured, kNotMeasured, kNotMeasured};
     sample.omega = bias + common + 0.02 * gauss(random);
-    stretch.ins.push_back(sample);
+    segment.ins.push_back(sample);
   }
-  drive.stretches.push_back(std::move(stretch));
+  drive.segments.push_back(std::move(segment));
   return drive;
 }
 
@@ -59,16 +59,16 @@ TEST_CASE("parameters that only follow noise do not gain on blocks left out") {
   double sum = 0.0;
   constexpr int kSeeds = 60;
   for (uint64_t seed = 1; seed <= kSeeds; ++seed)
-    sum += gainOfThree(rig, blockNoise(rig.rows, seed)).value;
+    sum += gainOfThree(rig, blockNoise(rig.data, seed)).value;
   CHECK(sum / kSeeds < 0.0);
 }
 
 TEST_CASE("a parameter that is in the residuals gains on blocks left out, beyond its error") {
   const Rig rig({}, 300.0, 1);
-  const Eigen::VectorXd hidden = 1.0 * waves(rig.rows, 3).col(1);
+  const Eigen::VectorXd hidden = 1.0 * waves(rig.data, 3).col(1);
   int sure = 0;
   for (uint64_t seed = 1; seed <= 20; ++seed) {
-    const Gain gain = gainOfThree(rig, blockNoise(rig.rows, seed) + hidden);
+    const Gain gain = gainOfThree(rig, blockNoise(rig.data, seed) + hidden);
     sure += gain.value > 2.0 * gain.error;
   }
   CHECK(sure >= 18);
@@ -89,19 +89,19 @@ TEST_CASE("the 95 percent interval from the blocks' scatter covers the truth 95 
   int covered = 0;
   for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const std::vector<Drive> drives{standingDrive(kBias, 400.0, seed)};
-    RowSettings settings;
+    ObservationSettings settings;
     settings.gyro_bin = 1.0;
     settings.piece = 1.0;
-    const Rows rows(drives, settings);
-    const Fitter fitter(rows, 1);
-    const std::vector<char> all(rows.rows().size(), 1);
+    const Observations data(drives, settings);
+    const Fitter fitter(data);
+    const std::vector<char> all(data.all().size(), 1);
     const ModelDocument model = syntheticVehicle();
     FitState state = fitter.start(model, {freeParameter(model, "gyro_bias.rate")}, all);
     fitter.fitRoughly(state, all);
     fitter.renewNoise(state, all);  // of a worse fit it is too large
     fitter.fit(state, all);
     const double half =
-        studentQuantile(rows.blocks() - 1) * std::sqrt(parameterCovariance(rows, state, all)(0, 0));
+        studentQuantile(data.blocks() - 1) * std::sqrt(parameterCovariance(data, state, all)(0, 0));
     covered += std::abs(*findParameter(state.model, "gyro_bias.rate") - kBias) < half;
   }
   // 190 are expected; a thousandth of all honest intervals lies outside of these.
@@ -111,12 +111,12 @@ TEST_CASE("the 95 percent interval from the blocks' scatter covers the truth 95 
 
 TEST_CASE("a parameter that the drive does not show is as good as unknown") {
   const Rig rig({}, 240.0, 1);
-  FitState state = rig.stateOf(blockNoise(rig.rows, 1), 1.0);
-  state.jacobian = waves(rig.rows, 2);
+  FitState state = rig.stateOf(blockNoise(rig.data, 1), 1.0);
+  state.jacobian = waves(rig.data, 2);
   state.jacobian.col(1) = 2.0 * state.jacobian.col(0);
   for (const char* path : {"yaw_pull.pull", "track_asymmetry.share"})
     state.free.push_back(freeParameter(state.model, path));
-  const Eigen::MatrixXd covariance = parameterCovariance(rig.rows, state, rig.all);
+  const Eigen::MatrixXd covariance = parameterCovariance(rig.data, state, rig.all);
   for (Eigen::Index i : {0, 1}) {
     const FreeParameter& parameter = state.free[static_cast<size_t>(i)];
     CHECK(std::sqrt(covariance(i, i)) > parameter.max - parameter.min);

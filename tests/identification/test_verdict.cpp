@@ -19,11 +19,11 @@ Finding findingWith(const std::vector<Estimate>& calibrated, double error_after)
   finding.before = syntheticVehicle();
   for (const Estimate& estimate : calibrated)
     *findParameter(finding.before, estimate.parameter) = estimate.before;
-  finding.after = finding.before;
+  finding.identified.model = finding.before;
   for (const Estimate& estimate : calibrated)
-    *findParameter(finding.after, estimate.parameter) = estimate.value;
-  finding.calibrated = calibrated;
-  finding.adequacy_p = 0.5;
+    *findParameter(finding.identified.model, estimate.parameter) = estimate.value;
+  finding.identified.calibrated = calibrated;
+  finding.adequacy.p_value = 0.5;
   Gap gap;
   gap.before.position.median = gap.before.yaw.median = 1.0;
   gap.after.position.median = gap.after.yaw.median = error_after;
@@ -40,7 +40,7 @@ Estimate moved(const std::string& parameter, double before, double now) {
   return estimate;
 }
 
-Verdict judged(Finding finding) {
+GapVerdict judged(Finding finding) {
   judge(finding, kAlpha, kLeastGain);
   return finding.verdict;
 }
@@ -49,25 +49,25 @@ Verdict judged(Finding finding) {
 
 TEST_CASE("a term of the vehicle that moved is a finding if the end error falls with it") {
   const Estimate width = moved("track_width.widening", 0.2, 0.4);
-  CHECK(judged(findingWith({width}, 0.8)) == Verdict::kFound);
-  CHECK(judged(findingWith({width}, 1.0)) == Verdict::kNoDiscrepancy);
+  CHECK(judged(findingWith({width}, 0.8)) == GapVerdict::kFound);
+  CHECK(judged(findingWith({width}, 1.0)) == GapVerdict::kNoDiscrepancy);
 }
 
 TEST_CASE("a number of the nominal model that moved is a finding of the vehicle, too") {
-  CHECK(judged(findingWith({moved("delay", 0.1, 0.3)}, 0.8)) == Verdict::kFound);
+  CHECK(judged(findingWith({moved("delay", 0.1, 0.3)}, 0.8)) == GapVerdict::kFound);
 }
 
 TEST_CASE("a term of the INS that moved counts even where executions end the same") {
   CHECK(judged(findingWith({moved("ins_latency.latency", 0.3, 0.6)}, 1.0)) ==
-        Verdict::kMeasurement);
+        GapVerdict::kMeasurement);
   CHECK(judged(findingWith({moved("ins_latency.latency", 0.3, 0.301)}, 1.0)) ==
-        Verdict::kNoDiscrepancy);
+        GapVerdict::kNoDiscrepancy);
 }
 
 TEST_CASE("what was seen but has no plausible size is not nothing") {
   Finding finding = findingWith({}, 1.0);
-  finding.at_bound = {"battery_sag"};
+  finding.search.at_bound = {"battery_sag"};
   judge(finding, kAlpha, kLeastGain);
-  CHECK(finding.verdict == Verdict::kCannotTell);
+  CHECK(finding.verdict == GapVerdict::kCannotTell);
   CHECK(finding.reason == "battery_sag runs to the end of its plausible range");
 }

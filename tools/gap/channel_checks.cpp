@@ -42,7 +42,7 @@ double drivenBetween(const CommandSpan& span, double begin, double end, double l
   return sum;
 }
 
-void checkHeld(const std::vector<HeardSpan>& spans, NoteBook& notes) {
+void checkHeld(const std::vector<HeardSpan>& spans, Diagnostics& notes) {
   const double least = kClearCommand * largestCommand(spans);
   size_t poses = 0;
   size_t repeated = 0;
@@ -67,7 +67,7 @@ void checkHeld(const std::vector<HeardSpan>& spans, NoteBook& notes) {
                " % of its messages while it drives; only new poses count");
 }
 
-void checkKinds(const SortedLog& log, NoteBook& notes) {
+void checkKinds(const SortedLog& log, Diagnostics& notes) {
   size_t power = 0;
   size_t speed = 0;
   size_t invalid = 0;
@@ -86,7 +86,7 @@ void checkKinds(const SortedLog& log, NoteBook& notes) {
 }
 
 /// INS poses that stay away in the middle of a span.
-void checkSilences(const std::vector<HeardSpan>& spans, NoteBook& notes) {
+void checkSilences(const std::vector<HeardSpan>& spans, Diagnostics& notes) {
   size_t silences = 0;
   size_t jumps = 0;
   double first_silence = 0.0;
@@ -107,10 +107,10 @@ void checkSilences(const std::vector<HeardSpan>& spans, NoteBook& notes) {
                " times, first at " + digits(first_silence) + " s; driving there is not used");
   if (jumps > 0)
     notes.note("the INS announces " + std::to_string(jumps) + " jumps, first at " +
-               digits(first_jump) + " s; each begins a new stretch");
+               digits(first_jump) + " s; each begins a new segment");
 }
 
-void checkCommandGaps(const std::vector<HeardSpan>& spans, NoteBook& notes) {
+void checkCommandGaps(const std::vector<HeardSpan>& spans, Diagnostics& notes) {
   size_t gaps = 0;
   double first = 0.0;
   double longest = 0.0;
@@ -122,7 +122,7 @@ void checkCommandGaps(const std::vector<HeardSpan>& spans, NoteBook& notes) {
   if (gaps > 0)
     notes.note("MOTOR is silent for more than 0.3 s " + std::to_string(gaps) + " times (first at " +
                digits(first) + " s, longest " + digits(longest) +
-               " s); each silence ends a stretch");
+               " s); each silence ends a segment");
 }
 
 constexpr size_t kFewClashes = 5;
@@ -184,7 +184,7 @@ std::optional<Stamp> clockWentBack(std::vector<Stamp> stamps) {
 }
 
 void checkRepeated(const std::string& channel, const std::vector<Stamp>& stamps,
-                   const SortedLog& log, NoteBook& notes) {
+                   const SortedLog& log, Diagnostics& notes) {
   size_t run = 1;
   for (size_t i = 1; i < stamps.size(); ++i) {
     run = sameMessage(stamps[i], stamps[i - 1]) ? run + 1 : 1;
@@ -195,7 +195,7 @@ void checkRepeated(const std::string& channel, const std::vector<Stamp>& stamps,
 }
 
 void checkChannel(const std::string& channel, const std::vector<Stamp>& stamps, size_t clashes,
-                  const SortedLog& log, NoteBook& notes) {
+                  const SortedLog& log, Diagnostics& notes) {
   checkRepeated(channel, stamps, log, notes);
   const size_t falls = seqFallsBack(stamps);
   if (std::max(falls, clashes) < std::max(kFewClashes, stamps.size() / 100)) {
@@ -215,7 +215,7 @@ void checkChannel(const std::string& channel, const std::vector<Stamp>& stamps, 
 
 }  // namespace
 
-void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, NoteBook& notes) {
+void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes) {
   const std::string of = " among " + std::to_string(log.drive.events.size()) + " events";
   if (log.motor.empty())
     notes.fatal("no MOTOR message" + of + ": the commands are unknown; record channel MOTOR");
@@ -233,7 +233,7 @@ void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, No
   checkCommandGaps(spans, notes);
 }
 
-void checkPublishers(const SortedLog& log, NoteBook& notes) {
+void checkPublishers(const SortedLog& log, Diagnostics& notes) {
   checkChannel("MOTOR", log.drive.motor_stamps, clashes(log.drive.motor), log, notes);
   checkChannel("INS", log.drive.ins_stamps, clashes(log.drive.ins), log, notes);
   std::map<std::string, std::vector<int64_t>> boots;  // by process, as they follow each other

@@ -54,7 +54,7 @@ bool samePace(const std::vector<Stamp>& stamps) {
 
 /// Time going back, and the robot's clock against the recorder's.
 void checkStamps(const std::string& channel, const std::vector<Stamp>& stamps, const SortedLog& log,
-                 NoteBook& notes) {
+                 Diagnostics& notes) {
   size_t overtaken = 0;
   bool recorder_told = false;
   const bool same_pace = samePace(stamps);
@@ -184,7 +184,7 @@ std::string lineOf(const Pause& pause, const std::string& place, bool with_motor
 
 /// A pause after which the robot is where it was one message later, although it moves: time went
 /// on, the robot did not.
-void checkPauses(const SortedLog& log, NoteBook& notes) {
+void checkPauses(const SortedLog& log, Diagnostics& notes) {
   const std::vector<ins_t>& ins = log.ins;
   for (size_t i = 1; i < ins.size(); ++i) {
     const int64_t step = ins[i].utime - ins[i - 1].utime;
@@ -211,7 +211,7 @@ void checkPauses(const SortedLog& log, NoteBook& notes) {
 
 }  // namespace
 
-void checkClocks(const SortedLog& log, NoteBook& notes) {
+void checkClocks(const SortedLog& log, Diagnostics& notes) {
   checkStamps("MOTOR", log.drive.motor_stamps, log, notes);
   checkStamps("INS", log.drive.ins_stamps, log, notes);
   checkPauses(log, notes);

@@ -6,6 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "modules/identification/core/fit.hpp"
+
 // The subcommands of tread-gap. Each adds itself to the program and does its work in its callback,
 // once the whole command line is read; it sets the program's exit status, and what it throws ends
 // the program with its one line and 2.
@@ -19,6 +21,9 @@ CLI::App* addExplain(CLI::App& app);
 CLI::App* addWhatIf(CLI::App& app);
 CLI::App* addPlan(CLI::App& app, int& status);
 CLI::App* addCompare(CLI::App& app, int& status);
+
+/// Runs on so many threads.
+ParallelFor onThreads(int threads);
 
 /// Adds --seed, and --threads with as many as the machine has, to a subcommand; both variables must
 /// outlive it.

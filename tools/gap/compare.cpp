@@ -8,18 +8,18 @@
 #include <stdexcept>
 
 #include "modules/identification/core/end_errors.hpp"
-#include "modules/identification/core/enough_driving.hpp"
+#include "modules/identification/core/likelihood.hpp"
 #include "modules/identification/core/search.hpp"
-#include "modules/identification/core/student.hpp"
-#include "tools/gap/report/words.hpp"
+#include "modules/identification/core/verdict.hpp"
+#include "tools/gap/report/effect_words.hpp"
 
 namespace tread::gap {
 namespace {
 
 /// Rows, and whether there are enough of them.
-void requireEnough(const Rows& rows) {
-  const std::string problem = tooLittleDriving(rows);
-  if (!problem.empty()) throw std::runtime_error(rows.drives().front().name + ": " + problem);
+void requireEnough(const Observations& data) {
+  const std::string problem = tooLittleDriving(data);
+  if (!problem.empty()) throw std::runtime_error(data.drives().front().name + ": " + problem);
 }
 
 /// What a model has on, without what is known beforehand: that would pull all logs to one value.
@@ -32,20 +32,20 @@ std::vector<FreeParameter> comparedParameters(const ModelDocument& model) {
 }
 
 std::string unitOf(const std::string& path) {
-  const EffectParameter* parameter = parameterOfPath(path).parameter;
+  const EffectParameter* parameter = findEffectParameter(path);
   if (parameter != nullptr) return parameter->unit;
   if (path == "lag" || path == "delay") return "s";
   if (path == "full_speed") return "m/s";
   return path == "gauge" ? "m" : "1";
 }
 
-EndErrors endErrorsOf(const Rows& rows, const ModelDocument& model) {
-  return summaryOf(endErrors(rows, model), [](const EndError&) { return true; });
+EndErrors endErrorsOf(const Observations& data, const ModelDocument& model) {
+  return summaryOf(endErrors(data, model), [](const ExecutionError&) { return true; });
 }
 
 /// Limits as their reciprocals are said: errors of first order.
 std::string saidWithError(const Movement& movement, double value, double error) {
-  const EffectParameter* parameter = parameterOfPath(movement.parameter).parameter;
+  const EffectParameter* parameter = findEffectParameter(movement.parameter);
   if (parameter == nullptr || !parameter->reciprocal() || value <= 0.0)
     return said(value, movement.unit) + " \u00b1 " + said(error, movement.unit);
   const std::string unit = naturalUnit(*parameter);
@@ -53,10 +53,9 @@ std::string saidWithError(const Movement& movement, double value, double error) 
 }
 
 std::string nameOf(const Movement& movement) {
-  const ParameterOfPath path = parameterOfPath(movement.parameter);
-  if (path.effect == nullptr) return movement.parameter;
-  return path.effect->name + "." +
-         (path.parameter->reciprocal() ? path.parameter->natural_name : path.parameter->name);
+  const EffectParameter* parameter = findEffectParameter(movement.parameter);
+  if (parameter == nullptr || !parameter->reciprocal()) return movement.parameter;
+  return effectOf(movement.parameter) + "." + parameter->natural_name;
 }
 
 /// From where on a difference is none of chance, and why just there.
@@ -100,19 +99,19 @@ double neededSigmas(int fewest_blocks, size_t parameters) {
   return studentQuantile(fewest_blocks - 1.0, normalQuantileOf(chance));
 }
 
-LogFit fitLog(const ModelDocument& model, const Drive& drive, int threads) {
+LogFit fitLog(const ModelDocument& model, const Drive& drive, const ParallelFor& parallel) {
   const std::vector<Drive> drives{drive};
-  const Rows rows(drives, RowSettings{});
-  requireEnough(rows);
-  const Fitter fitter(rows, threads);
-  const std::vector<char> mask(rows.rows().size(), 1);
+  const Observations data(drives, ObservationSettings{});
+  requireEnough(data);
+  const Fitter fitter(data, parallel);
+  const std::vector<char> mask(data.all().size(), 1);
   FitState state = fitter.start(model, comparedParameters(model), mask);
   fitter.fit(state, mask);
   fitter.renewNoise(state, mask);
   fitter.fit(state, mask);
   fitter.renewJacobian(state);
-  const Eigen::MatrixXd covariance = parameterCovariance(rows, state, mask);
-  LogFit fit{state.model, {}, {}, {}, measuredBlocks(rows)};
+  const Eigen::MatrixXd covariance = parameterCovariance(data, state, mask);
+  LogFit fit{state.model, {}, {}, {}, measuredBlocks(data)};
   for (size_t i = 0; i < state.free.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     fit.parameters.push_back(state.free[i].path);
@@ -134,14 +133,14 @@ LogChange changeBetween(const LogFit& first, const LogFit& second) {
 }
 
 LogChange compareLogs(const ModelDocument& model, const Drive& first, const Drive& second,
-                      int threads) {
-  const LogFit one = fitLog(model, first, threads);
-  const LogFit two = fitLog(model, second, threads);
+                      const ParallelFor& parallel) {
+  const LogFit one = fitLog(model, first, parallel);
+  const LogFit two = fitLog(model, second, parallel);
   LogChange change = changeBetween(one, two);
   const std::vector<Drive> later{second};
-  const Rows rows(later, RowSettings{});
-  change.with_first = endErrorsOf(rows, one.model);
-  change.with_second = endErrorsOf(rows, two.model);
+  const Observations data(later, ObservationSettings{});
+  change.with_first = endErrorsOf(data, one.model);
+  change.with_second = endErrorsOf(data, two.model);
   return change;
 }
 

@@ -7,6 +7,7 @@
 
 #include "modules/identification/core/drive.hpp"
 #include "modules/identification/core/finding.hpp"
+#include "modules/identification/core/fit.hpp"
 
 namespace tread::gap {
 
@@ -53,7 +54,8 @@ inline constexpr double kSigmaLevel = 3.0;
 /// Fits the terms that a model has on, and the numbers that it is unsure of, on a log.
 /** Of a model without either, lag, delay and gains are fitted. Throws std::runtime_error with one
  * line if the log has too little driving. */
-LogFit fitLog(const ModelDocument& model, const Drive& drive, int threads);
+LogFit fitLog(const ModelDocument& model, const Drive& drive,
+              const ParallelFor& parallel = serialFor);
 
 /// Standard errors that a difference needs: errors of few blocks are themselves uncertain
 /// (Student), and of many parameters one is soon far off (Bonferroni).
@@ -64,7 +66,7 @@ LogChange changeBetween(const LogFit& first, const LogFit& second);
 
 /// Both fits, what moved, and what the second log says of the first one's parameters.
 LogChange compareLogs(const ModelDocument& model, const Drive& first, const Drive& second,
-                      int threads);
+                      const ParallelFor& parallel = serialFor);
 
 /// The answer in words and as a table.
 std::string textOf(const LogChange& change);

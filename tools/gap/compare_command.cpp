@@ -32,7 +32,7 @@ int compare(const Options& options) {
     throw std::runtime_error(options.second + ": the same file as the first; give two logs");
   requireSameRobot(first, second);
   requireSameImport(first, second);
-  const LogChange change = compareLogs(model, first, second, options.threads);
+  const LogChange change = compareLogs(model, first, second, onThreads(options.threads));
   for (const Drive* drive : {&first, &second})
     if (!drive->lost.empty()) std::cout << drive->lost << '\n';
   std::cout << textOf(change) << std::flush;

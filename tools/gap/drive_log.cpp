@@ -12,14 +12,14 @@
 #include "common/config/scalars.hpp"
 #include "common/log/drive_log.hpp"
 #include "common/report/hash.hpp"
-#include "modules/identification/core/hygiene.hpp"
+#include "modules/identification/core/log_validation.hpp"
 #include "tools/gap/log_checks.hpp"
-#include "tools/gap/stretches.hpp"
+#include "tools/gap/segments.hpp"
 
 namespace tread::gap {
 namespace {
 
-constexpr double kManyBroken = 0.2;  // of the stretches
+constexpr double kManyBroken = 0.2;  // of the segments
 
 /// The kind of most commands while it drove.
 CommandKind kindOf(const SortedLog& log) {
@@ -56,19 +56,18 @@ std::vector<Execution> recordsOf(const SortedLog& log) {
 }
 
 /// Steps of a recording whose poses lie in a wrong frame say nothing.
-void takeOutBroken(Drive& drive, NoteBook& notes) {
-  const std::vector<size_t> broken = brokenStretches(drive);
+void takeOutBroken(Drive& drive, Diagnostics& notes) {
+  const std::vector<size_t> broken = brokenSegments(drive);
   if (broken.empty()) return;
   const std::string of =
-      std::to_string(broken.size()) + " of " + std::to_string(drive.stretches.size()) +
-      " stretches have poses in a wrong frame (heading against gyro, or way against heading), "
+      std::to_string(broken.size()) + " of " + std::to_string(drive.segments.size()) +
+      " segments have poses in a wrong frame (heading against gyro, or way against heading), "
       "first at " +
-      digits(drive.stretches[broken.front()].begin()) + " s";
-  if (static_cast<double>(broken.size()) >
-      kManyBroken * static_cast<double>(drive.stretches.size()))
+      digits(drive.segments[broken.front()].begin()) + " s";
+  if (static_cast<double>(broken.size()) > kManyBroken * static_cast<double>(drive.segments.size()))
     return notes.note(of + "; too many to be exceptions, so they stay");
   notes.note(of + "; left out");
-  removeStretches(broken, drive);
+  removeSegments(broken, drive);
 }
 
 constexpr double kSameGauge = 0.02;  // relative: tape measures and data sheets agree that well
@@ -124,15 +123,15 @@ Drive toDrive(const DriveLog& messages) {
     if (auto note = importNoteOf(config)) drive.imported = std::move(note);
   drive.voltage = voltageSamples(log);
   drive.encoders = encoderSamples(log);
-  drive.stretches = stretchesOf(spans, drive.encoders);
-  drive.executions = executionsOf(drive.stretches, recordsOf(log));
-  NoteBook notes(drive.name);
+  drive.segments = segmentsOf(spans, drive.encoders);
+  drive.executions = executionsOf(drive.segments, recordsOf(log));
+  Diagnostics notes(drive.name);
   checkPublishers(log, notes);
   checkClocks(log, notes);
   checkChannels(log, spans, notes);
   takeOutBroken(drive, notes);
   drive.notes = notes.notes();
-  const std::vector<HygieneNote> rest = checkHygiene(drive);
+  const std::vector<LogNote> rest = validateLog(drive);
   drive.notes.insert(drive.notes.end(), rest.begin(), rest.end());
   return drive;
 }
@@ -151,7 +150,7 @@ Drive readDrive(const std::string& path) {
   const double span = 1e-6 * static_cast<double>(events.back().utime - events.front().utime);
   drive.lost = log.problem + "; its " + std::to_string(events.size()) + " whole events, " +
                digits(span, 0) + " s, are used; copy the log again if the robot still has it";
-  drive.notes.insert(drive.notes.begin(), HygieneNote{drive.name, drive.lost, false});
+  drive.notes.insert(drive.notes.begin(), LogNote{drive.name, drive.lost, false});
   return drive;
 }
 
@@ -181,7 +180,7 @@ void requireSameRobot(const Drive& first, const Drive& second) {
 Drive readDriveFor(const ModelDocument& model, const std::string& path) {
   Drive drive = readDrive(path);
   requireSameGauge(drive, model.vehicle.gauge);
-  if (drive.stretches.empty() || drive.kind == model.vehicle.kind) return drive;
+  if (drive.segments.empty() || drive.kind == model.vehicle.kind) return drive;
   const bool power = drive.kind == CommandKind::kPower;
   throw std::runtime_error(path + ": its commands are " + (power ? "powers" : "track speeds") +
                            ", those of the model " + (power ? "track speeds" : "powers") +
@@ -190,7 +189,7 @@ Drive readDriveFor(const ModelDocument& model, const std::string& path) {
 
 Drive readSoundDriveFor(const ModelDocument& model, const std::string& path) {
   Drive drive = readDriveFor(model, path);
-  for (const HygieneNote& note : drive.notes)
+  for (const LogNote& note : drive.notes)
     if (note.fatal) throw std::runtime_error(path + ": " + note.what);
   if (drive.executions.empty())
     throw std::runtime_error(path + ": nothing was driven for two seconds; give a log of a drive");

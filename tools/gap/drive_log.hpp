@@ -12,15 +12,15 @@
 // How a log becomes a drive.
 //   Commands   from MOTOR. Known while the bridge drives, stands armed, stops, or is disarmed by
 //              itself; unknown in faults, emergency stops and where an operator drives. Where they
-//              are unknown, or MOTOR is silent for more than 0.3 s, a stretch ends.
+//              are unknown, or MOTOR is silent for more than 0.3 s, a segment ends.
 //   INS        a pose that repeats the one before while the vehicle is told to move is held, not
 //              measured: only its gyro counts. A jump, or more than 1.5 s without a new pose, is a
-//              new stretch (its commands begin up to 3 s before).
+//              new segment (its commands begin up to 3 s before).
 //   Entry      with encoders at the speeds that they say, and after the command of the step before
 //              where an imported recording went on at once; else at rest. Where a log without
 //              encoders lost MOTOR in the middle of driving, the poses of the next 3 s are dropped.
-//   Executions the completed ones of 2 s; longer ones in pieces of 2 s; where a stretch has few or
-//              only shorter ones, the stretch in pieces of 2 s in which something was commanded.
+//   Executions the completed ones of 2 s; longer ones in pieces of 2 s; where a segment has few or
+//              only shorter ones, the segment in pieces of 2 s in which something was commanded.
 namespace tread::gap {
 
 /// Reads a log; what is wrong with it stands in the drive's notes.

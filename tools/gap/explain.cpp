@@ -6,7 +6,8 @@
 #include <stdexcept>
 
 #include "common/config/scalars.hpp"
-#include "tools/gap/report/words.hpp"
+#include "tools/gap/report/effect_words.hpp"
+#include "tools/gap/report/guidance.hpp"
 
 namespace tread::gap {
 namespace {
@@ -52,6 +53,29 @@ std::string groupWords(const Effect& effect, const ConfoundedGroup& group) {
   std::string text = joined(others, "or");
   if (!group.when.empty()) text += ", " + group.when;
   return text + ": " + group.because + ". " + group.separates;
+}
+
+constexpr size_t kTopicWidth = 96;
+constexpr size_t kTopicIndent = 20;
+
+std::string topicEntry(const std::string& heading, const std::string& text) {
+  const std::string gap(heading.size() < kTopicIndent ? kTopicIndent - heading.size() : 1, ' ');
+  return wrapped(heading + gap + text, kTopicWidth, kTopicIndent) + "\n";
+}
+
+std::string entries(const std::vector<Word>& words) {
+  std::string text;
+  for (const Word& word : words) text += topicEntry(word.word, word.meaning);
+  return text;
+}
+
+std::string verdicts() {
+  std::string text;
+  for (const Advice& advice : advices())
+    text += topicEntry(
+        std::to_string(static_cast<int>(advice.verdict)) + " " + verdictName(advice.verdict),
+        advice.meaning + ". " + advice.next);
+  return text + topicEntry("2", "bad input, in one line");
 }
 
 }  // namespace
@@ -121,6 +145,20 @@ std::string listOfEffects() {
       if (effect.kind == kind) text += "  " + padded(effect.name, 22) + effect.sentence + "\n";
   }
   return text;
+}
+
+std::optional<std::string> topic(const std::string& name) {
+  if (name == "start") return entries(firstSteps());
+  if (name == "verdicts") return verdicts();
+  if (name == "words") return entries(glossary());
+  return std::nullopt;
+}
+
+std::string listOfTopics() {
+  return "\nBeside effects:\n"
+         "  start                 from a log of your own to a first run\n"
+         "  verdicts              what each verdict means and what to do then\n"
+         "  words                 what block, nats, adequacy, held-out .. mean\n";
 }
 
 }  // namespace tread::gap

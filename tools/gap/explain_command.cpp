@@ -6,7 +6,6 @@
 
 #include "tools/gap/commands.hpp"
 #include "tools/gap/explain.hpp"
-#include "tools/gap/topics.hpp"
 
 namespace tread::gap {
 

@@ -12,11 +12,10 @@
 #include "common/vehicle/model_file.hpp"
 #include "modules/identification/core/discovery.hpp"
 #include "tools/gap/commands.hpp"
-#include "tools/gap/decisions.hpp"
 #include "tools/gap/drive_log.hpp"
 #include "tools/gap/find_output.hpp"
+#include "tools/gap/report/effect_words.hpp"
 #include "tools/gap/report/headline.hpp"
-#include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {
@@ -55,7 +54,7 @@ void say(const std::string& line) {
 void tell(const Drive& drive) {
   say("0 " + drive.name + ": " + threeDigits(drive.driven()) + " s of driving, " +
       std::to_string(drive.executions.size()) + " executions");
-  for (const HygieneNote& note : drive.notes) say((note.fatal ? "  ! " : "  ") + note.what);
+  for (const LogNote& note : drive.notes) say((note.fatal ? "  ! " : "  ") + note.what);
 }
 
 /// Reads logs of one role; the same log twice would count its noise twice.
@@ -102,10 +101,10 @@ int find(const Options& options) {
         requireSameRobot(other, drive);
         requireSameImport(other, drive);
       }
-      task.hygiene.insert(task.hygiene.end(), drive.notes.begin(), drive.notes.end());
+      task.log_notes.insert(task.log_notes.end(), drive.notes.begin(), drive.notes.end());
     }
   task.seed = static_cast<uint64_t>(options.seed);
-  task.threads = options.threads;
+  task.parallel = onThreads(options.threads);
   task.calibrate = options.calibrate;
   task.keep_small = options.keep_small;
   makeFolder(options.out);

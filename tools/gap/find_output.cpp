@@ -3,9 +3,9 @@
 #include "tools/gap/find_output.hpp"
 
 #include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -14,12 +14,108 @@
 
 #include "common/recordings/text_file.hpp"
 #include "common/vehicle/model_file.hpp"
+#include "tools/gap/explain.hpp"
+#include "tools/gap/report/effect_words.hpp"
 #include "tools/gap/report/sections.hpp"
 
 namespace fs = std::filesystem;
 
 namespace tread::gap {
 namespace {
+
+void add(std::vector<Decision>& decisions, const std::string& name, bool accepted,
+         const std::string& by) {
+  const Effect& effect = effectOrGuess(name);
+  for (const Decision& other : decisions)
+    if (other.effect == effect.name)
+      throw std::runtime_error(effect.name + (other.accepted == accepted
+                                                  ? " is named twice; once is enough"
+                                                  : " is accepted and rejected; decide on one"));
+  decisions.push_back({effect.name, accepted, by});
+}
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json estimateJson(const Estimate& estimate) {
+  return {{"value", number(estimate.value)},
+          {"unit", estimate.unit},
+          {"low", number(estimate.low)},
+          {"high", number(estimate.high)}};
+}
+
+/// Adds an estimate under its name and, where people say its reciprocal, under that name, too.
+void add(Json& parameters, const std::string& before_name, const Estimate& estimate) {
+  parameters[before_name + lastPart(estimate.parameter)] = estimateJson(estimate);
+  const Estimate natural = naturalEstimate(estimate);
+  if (natural.parameter != estimate.parameter)
+    parameters[before_name + natural.parameter] = estimateJson(natural);
+}
+
+Json effectJson(const FoundEffect& effect) {
+  Json parameters = Json::object();
+  for (const Estimate& estimate : effect.parameters) add(parameters, "", estimate);
+  Json runner_ups = Json::array();
+  for (const RunnerUp& runner_up : effect.runner_ups) runner_ups.push_back(runner_up.effect);
+  return {{"name", effect.name},
+          {"kind", effect.kind == EffectKind::kVehicle ? "vehicle" : "measurement"},
+          {"parameters", parameters},
+          {"group", effect.group},
+          {"runner_up", runner_ups},
+          {"accepted", effect.accepted}};
+}
+
+Json calibratedJson(const std::vector<Estimate>& calibrated) {
+  Json all = Json::object();
+  for (const Estimate& estimate : calibrated) {
+    const size_t point = estimate.parameter.find('.');
+    add(all, point == std::string::npos ? "" : estimate.parameter.substr(0, point + 1), estimate);
+    all[estimate.parameter]["before"] = number(estimate.before);
+    all[estimate.parameter]["moved"] = estimate.moved;
+  }
+  return all;
+}
+
+Json figureJson(const ErrorFigure& figure) {
+  return {{"median", number(figure.median)}, {"rms", number(figure.rms)}};
+}
+
+Json errorsJson(const EndErrors& errors) {
+  return {{"position_m", figureJson(errors.position)}, {"yaw_rad", figureJson(errors.yaw)}};
+}
+
+Json gapJson(const std::optional<Gap>& gap) {
+  if (!gap)
+    return {{"horizon_s", 2.0}, {"before", nullptr}, {"after", nullptr}, {"floor", nullptr}};
+  return {{"horizon_s", number(gap->horizon)},
+          {"before", errorsJson(gap->before)},
+          {"after", errorsJson(gap->after)},
+          {"floor", gap->floor ? errorsJson(*gap->floor) : Json(nullptr)}};
+}
+
+Json decisionsJson(const std::vector<Decision>& decisions) {
+  Json all = Json::array();
+  for (const Decision& decision : decisions)
+    all.push_back({{"effect", decision.effect},
+                   {"decision", decision.accepted ? "accepted" : "rejected"},
+                   {"by", decision.by}});
+  return all;
+}
+
+Json inputsJson(const std::vector<InputFile>& inputs) {
+  Json all = {{"model", nullptr}, {"train", Json::array()}, {"test", Json::array()}};
+  for (const InputFile& input : inputs) {
+    const Json file = {{"name", input.name}, {"sha256", input.sha256}};
+    if (input.role == InputFile::Role::kModel)
+      all["model"] = file;
+    else
+      all[input.role == InputFile::Role::kTrain ? "train" : "test"].push_back(file);
+  }
+  return all;
+}
 
 /// Both halves of a covariance equal to the bit: rounding has made them differ, a file must not.
 void makeSymmetric(std::vector<std::vector<double>>& matrix) {
@@ -35,13 +131,46 @@ void makeSymmetric(std::vector<std::vector<double>>& matrix) {
 
 }  // namespace
 
+std::vector<Decision> decisionsOf(const DecisionWords& words, const ModelDocument& model) {
+  std::vector<Decision> decisions;
+  for (const std::string& name : words.accepted) add(decisions, name, true, words.by);
+  for (const std::string& name : words.rejected) {
+    add(decisions, name, false, words.by);
+    if (isOn(effectNamed(name), model.vehicle.effects, model.measurement))
+      throw std::runtime_error("--reject " + name +
+                               ": the model has this effect; take it out of the model file first");
+  }
+  if (decisions.empty() && !words.by.empty())
+    throw std::runtime_error("--by " + words.by + ": nothing is decided; --accept or --reject");
+  return decisions;
+}
+
+nlohmann::ordered_json verdictJson(const Finding& finding, const std::vector<InputFile>& inputs) {
+  Json effects = Json::array();
+  for (const FoundEffect& effect : finding.identified.effects)
+    effects.push_back(effectJson(effect));
+  Json unexplained = Json::array();
+  for (const Unexplained& rest : finding.adequacy.unexplained)
+    unexplained.push_back(Json{{"channel", rest.channel}, {"variable", rest.variable}});
+  return {{"verdict", verdictName(finding.verdict)},
+          {"reason", finding.reason},
+          {"effects", effects},
+          {"calibrated", calibratedJson(finding.identified.calibrated)},
+          {"gap", gapJson(finding.gap)},
+          {"unexplained", unexplained},
+          {"not_excited", finding.identified.not_excited},
+          {"decisions", decisionsJson(finding.source.decisions)},
+          {"seed", finding.source.seed},
+          {"inputs", inputsJson(inputs)}};
+}
+
 ModelDocument newModel(const Finding& finding, const std::vector<InputFile>& inputs) {
-  ModelDocument model = finding.after;
+  ModelDocument model = finding.identified.model;
   makeSymmetric(model.covariance.matrix);
   const Provenance& old = finding.before.provenance;
   Provenance provenance;
   provenance.tool = toolVersion();
-  provenance.seed = static_cast<int64_t>(finding.seed);
+  provenance.seed = static_cast<int64_t>(finding.source.seed);
   provenance.runs = 1;
   for (const InputFile& input : inputs) {
     if (input.role != InputFile::Role::kTrain) continue;
@@ -50,9 +179,9 @@ ModelDocument newModel(const Finding& finding, const std::vector<InputFile>& inp
                     [&](const SourceLog& log) { return log.sha256 == input.sha256; }))
       provenance.runs = old.runs + 1;
   }
-  provenance.decisions = finding.decisions;
+  provenance.decisions = finding.source.decisions;
   for (const Decision& earlier : old.decisions)
-    if (std::none_of(finding.decisions.begin(), finding.decisions.end(),
+    if (std::none_of(finding.source.decisions.begin(), finding.source.decisions.end(),
                      [&](const Decision& now) { return now.effect == earlier.effect; }))
       provenance.decisions.push_back(earlier);
   model.provenance = provenance;
@@ -60,7 +189,7 @@ ModelDocument newModel(const Finding& finding, const std::vector<InputFile>& inp
 }
 
 bool hasNewModel(const Finding& finding) {
-  return finding.verdict != Verdict::kCannotTell;
+  return finding.verdict != GapVerdict::kCannotTell;
 }
 
 void tryFolder(const std::string& folder) {

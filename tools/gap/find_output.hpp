@@ -5,10 +5,32 @@
 #include <string>
 #include <vector>
 
-#include "modules/identification/core/finding.hpp"
-#include "tools/gap/verdict_json.hpp"
+#include <nlohmann/json.hpp>
+
+#include "tools/gap/report/sections.hpp"
 
 namespace tread::gap {
+
+/// What a person says of effects before a search.
+struct DecisionWords {
+  std::vector<std::string> accepted;
+  std::vector<std::string> rejected;
+  std::string by;
+};
+
+/// Decisions on effects of the catalogue, accepted ones first.
+/** Throws std::runtime_error with one clear line for a name that the catalogue does not know, for
+ * an effect that is accepted and rejected or named twice, for a rejected one that the model has,
+ * and for a person who decides nothing. */
+std::vector<Decision> decisionsOf(const DecisionWords& words, const ModelDocument& model);
+
+/// What verdict.json holds; numbers that are not finite are null.
+/** Keys: verdict, reason, effects [{name, kind, parameters {name: {value, unit, low, high}}, group,
+ * runner_up}], calibrated, gap {horizon_s, before, after, floor: {position_m, yaw_rad: {median,
+ * rms}}}, unexplained [{channel, variable}], not_excited, seed, inputs {model, train, test}. A
+ * limit that the model holds as its reciprocal stands there as inverse_limit and under its natural
+ * name, too. */
+nlohmann::ordered_json verdictJson(const Finding& finding, const std::vector<InputFile>& inputs);
 
 /// The new model with where it comes from: tool, seed, logs, and how often it was worked on them.
 /** A run counts on from the model's own count if it names one of the same logs. Only training logs

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "modules/identification/core/note_book.hpp"
+#include "modules/identification/core/diagnostics.hpp"
 #include "tools/gap/spans.hpp"
 
 namespace tread::gap {
@@ -13,12 +13,12 @@ inline constexpr int64_t kOvertaking = 200'000;  ///< [us] by which messages may
 
 /// Missing channels, messages of another type, commands of two kinds, silences, jumps and frozen
 /// poses.
-void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, NoteBook& notes);
+void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes);
 
 /// Clocks that jump or go back, pauses over which the robot did not move among them.
-void checkClocks(const SortedLog& log, NoteBook& notes);
+void checkClocks(const SortedLog& log, Diagnostics& notes);
 
 /// Two robots (or two publishers of a channel) in one log.
-void checkPublishers(const SortedLog& log, NoteBook& notes);
+void checkPublishers(const SortedLog& log, Diagnostics& notes);
 
 }  // namespace tread::gap

@@ -7,7 +7,7 @@
 
 #include "common/config/scalars.hpp"
 #include "tools/gap/explain.hpp"
-#include "tools/gap/report/words.hpp"
+#include "tools/gap/report/effect_words.hpp"
 
 namespace tread::gap {
 namespace {

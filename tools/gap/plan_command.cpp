@@ -17,7 +17,7 @@
 #include "tools/gap/model_change.hpp"
 #include "tools/gap/plan_design.hpp"
 #include "tools/gap/plan_patterns.hpp"
-#include "tools/gap/report/words.hpp"
+#include "tools/gap/report/effect_words.hpp"
 #include "tools/patterns/envelope.hpp"
 
 namespace tread::gap {

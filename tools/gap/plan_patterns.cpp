@@ -9,7 +9,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "common/vehicle/prediction.hpp"
+#include "common/vehicle/kernel.hpp"
 
 namespace tread::gap {
 namespace {

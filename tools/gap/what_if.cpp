@@ -7,9 +7,9 @@
 
 #include "common/report/chart.hpp"
 #include "modules/identification/core/end_errors.hpp"
-#include "modules/identification/core/rows.hpp"
+#include "modules/identification/core/observations.hpp"
+#include "tools/gap/report/effect_words.hpp"
 #include "tools/gap/report/pictures.hpp"
-#include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 
@@ -39,7 +39,7 @@ std::string shownAngle(double angle) {
   return formatted("%.1f deg", tenths == 0.0 ? 0.0 : 0.1 * tenths);
 }
 
-std::string picture(const Comparison& comparison) {
+std::string picture(const ManoeuvreComparison& comparison) {
   Chart chart(comparison.name, "to the right [m]", "ahead [m]",
               rangeOf({&comparison.first, &comparison.second}));
   drawPath(chart, comparison.first, kBeforeColour, true);
@@ -51,10 +51,10 @@ std::string picture(const Comparison& comparison) {
   return chart.svg();
 }
 
-std::vector<std::string> picturesOf(const std::vector<Comparison>& comparisons) {
+std::vector<std::string> picturesOf(const std::vector<ManoeuvreComparison>& comparisons) {
   std::vector<std::string> pictures;
   pictures.reserve(comparisons.size());
-  for (const Comparison& comparison : comparisons) pictures.push_back(picture(comparison));
+  for (const ManoeuvreComparison& comparison : comparisons) pictures.push_back(picture(comparison));
   return pictures;
 }
 
@@ -113,11 +113,12 @@ std::string settingOf(const ModelDocument& first, const ModelDocument& second,
          " Before: the model as it is; after: what if. Headings: after less before, left positive.";
 }
 
-std::vector<Comparison> compareModels(const ModelDocument& first, const ModelDocument& second,
-                                      const Circumstances& circumstances) {
-  std::vector<Comparison> comparisons;
+std::vector<ManoeuvreComparison> compareModels(const ModelDocument& first,
+                                               const ModelDocument& second,
+                                               const Circumstances& circumstances) {
+  std::vector<ManoeuvreComparison> comparisons;
   for (const Manoeuvre& manoeuvre : standardManoeuvres(fullCommand(first, second))) {
-    Comparison comparison;
+    ManoeuvreComparison comparison;
     comparison.name = manoeuvre.name;
     comparison.first = posesOf(drivenByModel(first, manoeuvre, circumstances));
     comparison.second = posesOf(drivenByModel(second, manoeuvre, circumstances));
@@ -132,22 +133,22 @@ std::vector<Comparison> compareModels(const ModelDocument& first, const ModelDoc
 LogComparison compareOnLog(const Drive& drive, const ModelDocument& first,
                            const ModelDocument& second) {
   const std::vector<Drive> drives{drive};
-  const Rows rows(drives, RowSettings{});
-  const auto all = [](const EndError&) { return true; };
-  const std::vector<EndError> errors = endErrors(rows, first);
-  LogComparison comparison{summaryOf(errors, all), summaryOf(endErrors(rows, second), all), {}};
-  const OverlayMaker maker(rows, first, second);
-  for (const EndError& error : errors) comparison.overlays.push_back(maker.of(error));
+  const Observations data(drives, ObservationSettings{});
+  const auto all = [](const ExecutionError&) { return true; };
+  const std::vector<ExecutionError> errors = endErrors(data, first);
+  LogComparison comparison{summaryOf(errors, all), summaryOf(endErrors(data, second), all), {}};
+  const OverlayMaker maker(data, first, second);
+  for (const ExecutionError& error : errors) comparison.overlays.push_back(maker.of(error));
   std::stable_sort(comparison.overlays.begin(), comparison.overlays.end(),
                    [](const Overlay& a, const Overlay& b) { return apart(a) > apart(b); });
   if (comparison.overlays.size() > kShownExecutions) comparison.overlays.resize(kShownExecutions);
   return comparison;
 }
 
-std::string textOf(const std::vector<Comparison>& comparisons) {
+std::string textOf(const std::vector<ManoeuvreComparison>& comparisons) {
   std::string text = row("manoeuvre of 2 s", "ends apart", "heading");
   bool any = false;
-  for (const Comparison& comparison : comparisons) {
+  for (const ManoeuvreComparison& comparison : comparisons) {
     text += row(comparison.name, shownDistance(comparison.position), shownAngle(comparison.yaw));
     any = any || comparison.position > kRounding || std::abs(comparison.yaw) > kRounding;
   }
@@ -172,13 +173,14 @@ std::string textOf(const LogComparison& comparison) {
 }
 
 Page pageOf(const std::string& question, const std::string& setting,
-            const std::vector<Comparison>& comparisons, const std::vector<LogComparison>& on_log) {
+            const std::vector<ManoeuvreComparison>& comparisons,
+            const std::vector<LogComparison>& on_log) {
   Page page;
   page.title = question + " - tread-gap what-if";
   page.verdict = question;
   page.mood = "change";
   Table table{{"manoeuvre", "ends apart", "heading"}, {}, 1};
-  for (const Comparison& comparison : comparisons)
+  for (const ManoeuvreComparison& comparison : comparisons)
     table.rows.push_back(
         {comparison.name, shownDistance(comparison.position), shownAngle(comparison.yaw)});
   page.first = {
@@ -197,7 +199,7 @@ Page pageOf(const std::string& question, const std::string& setting,
   return page;
 }
 
-std::string svgOf(const std::vector<Comparison>& comparisons,
+std::string svgOf(const std::vector<ManoeuvreComparison>& comparisons,
                   const std::vector<LogComparison>& on_log) {
   std::vector<std::string> pictures = picturesOf(comparisons);
   for (const LogComparison& comparison : on_log)

@@ -13,7 +13,7 @@
 namespace tread::gap {
 
 /// One manoeuvre driven by two models, as the INS would say it.
-struct Comparison {
+struct ManoeuvreComparison {
   std::string name;
   std::vector<Pose2> first;  ///< relative to the begin
   std::vector<Pose2> second;
@@ -29,8 +29,9 @@ std::string settingOf(const ModelDocument& first, const ModelDocument& second,
                       const std::string& model_file, const std::string& log_file);
 
 /// All standard manoeuvres with both models.
-std::vector<Comparison> compareModels(const ModelDocument& first, const ModelDocument& second,
-                                      const Circumstances& circumstances);
+std::vector<ManoeuvreComparison> compareModels(const ModelDocument& first,
+                                               const ModelDocument& second,
+                                               const Circumstances& circumstances);
 
 /// What two models err on the executions of a log.
 struct LogComparison {
@@ -44,12 +45,12 @@ LogComparison compareOnLog(const Drive& drive, const ModelDocument& first,
                            const ModelDocument& second);
 
 /// The answer as a table in text, as a page, and its pictures in one SVG.
-std::string textOf(const std::vector<Comparison>& comparisons);
+std::string textOf(const std::vector<ManoeuvreComparison>& comparisons);
 std::string textOf(const LogComparison& comparison);
 report::Page pageOf(const std::string& question, const std::string& setting,
-                    const std::vector<Comparison>& comparisons,
+                    const std::vector<ManoeuvreComparison>& comparisons,
                     const std::vector<LogComparison>& on_log);
-std::string svgOf(const std::vector<Comparison>& comparisons,
+std::string svgOf(const std::vector<ManoeuvreComparison>& comparisons,
                   const std::vector<LogComparison>& on_log);
 
 }  // namespace tread::gap

@@ -11,7 +11,7 @@
 #include "tools/gap/commands.hpp"
 #include "tools/gap/drive_log.hpp"
 #include "tools/gap/model_change.hpp"
-#include "tools/gap/report/words.hpp"
+#include "tools/gap/report/effect_words.hpp"
 #include "tools/gap/what_if.hpp"
 
 namespace tread::gap {
@@ -62,7 +62,8 @@ void whatIf(const Options& options) {
     throw std::runtime_error(options.out + ": what kind of file? end it with .html or .svg");
   const ModelDocument model = readModelDocument(options.model);
   const ModelDocument other = changed(model, options.change);
-  const std::vector<Comparison> comparisons = compareModels(model, other, circumstancesOf(options));
+  const std::vector<ManoeuvreComparison> comparisons =
+      compareModels(model, other, circumstancesOf(options));
   std::vector<LogComparison> on_log;
   std::string lost;
   if (!options.log.empty()) {

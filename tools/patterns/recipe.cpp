@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/pattern/pattern_check.hpp"
-#include "common/vehicle/prediction.hpp"
+#include "common/vehicle/kernel.hpp"
 
 namespace tread::patterns {
 namespace {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "common/bus/virtual_bus.hpp"
-#include "common/vehicle/prediction.hpp"
+#include "common/vehicle/kernel.hpp"
 
 namespace tread::replay {
 namespace {

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/identification/core/acceptance.hpp"
-
 #include <cmath>
 
-#include "modules/identification/core/candidates.hpp"
-#include "modules/identification/core/moments.hpp"
-#include "modules/identification/core/score_test.hpp"
-#include "modules/identification/core/validation.hpp"
+#include "modules/identification/core/change_points.hpp"
+#include "modules/identification/core/search_steps.hpp"
 
 namespace tread::gap {
 namespace {
@@ -31,7 +27,7 @@ size_t mostPromising(const ScoreTest& test) {
 std::string reasonAgainst(const Fitter& fitter, const FitState& state, const Candidate& candidate,
                           const std::vector<char>& mask) {
   const std::string strength = candidate.effect + "." + candidate.parameter;
-  const Eigen::MatrixXd covariance = parameterCovariance(fitter.rows(), state, mask);
+  const Eigen::MatrixXd covariance = parameterCovariance(fitter.data(), state, mask);
   const double typical = parameterNamed(effectNamed(candidate.effect), candidate.parameter).typical;
   for (size_t i = 0; i < state.free.size(); ++i) {
     if (state.free[i].path != strength) continue;
@@ -50,9 +46,9 @@ std::string reasonAgainst(const Fitter& fitter, const FitState& state, const Can
 
 std::string takeIn(const Fitter& fitter, FitState& state, const std::string& effect,
                    const std::vector<char>& mask) {
-  const auto candidates = candidatesOf(effect, state, excitationOf(fitter.rows(), state.model));
+  const auto candidates = candidatesOf(effect, state, excitationOf(fitter.data(), state.model));
   if (candidates.empty()) return "it is a number of the nominal model, which is free";
-  const ScoreTest test(fitter.rows(), state, directionsOf(fitter, state, candidates), mask);
+  const ScoreTest test(fitter.data(), state, directionsOf(fitter, state, candidates), mask);
   const size_t best = mostPromising(test);
   if (best == candidates.size())
     return "it changes nothing that this drive shows, or nothing that the model's other free "
@@ -60,7 +56,8 @@ std::string takeIn(const Fitter& fitter, FitState& state, const std::string& eff
   FitState tried = state;
   addCandidate(fitter, tried, candidates[best], test.size(static_cast<Eigen::Index>(best)), mask);
   fitter.fitRoughly(tried, mask);
-  if (!candidates[best].moment.empty()) refineMoment(fitter, tried, candidates[best].moment, mask);
+  if (!candidates[best].change_point.empty())
+    refineChangePoint(fitter, tried, candidates[best].change_point, mask);
   fitter.renewNoise(tried, mask);
   fitter.fit(tried, mask);
   const std::string why = reasonAgainst(fitter, tried, candidates[best], mask);

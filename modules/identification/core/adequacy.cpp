@@ -12,10 +12,10 @@ namespace tread::gap {
 namespace {
 
 constexpr int kDraws = 1999;
-constexpr double kBack = 0.5;  // [s] before a row, for what came before it
+constexpr double kBack = 0.5;  // [s] before an observation, for the motion just before it
 
-/// What goes on in one row.
-struct Moment {
+/// How the vehicle moves during one observation.
+struct Conditions {
   double v = 0.0;         // [m/s]
   double omega = 0.0;     // [rad/s]
   double v_change = 0.0;  // [m/s2] against just before
@@ -29,37 +29,38 @@ Twist2 meanTwist(const std::vector<MotionSample>& motion, double from, double to
   return twistTo(between(poseAt(motion, from), poseAt(motion, to)), to - from);
 }
 
-Moment momentOf(const Rows& rows, const Row& row, const std::vector<MotionSample>& motion) {
-  const Drive& drive = rows.drives()[row.drive];
-  const Stretch& stretch = drive.stretches[row.stretch];
-  Moment moment;
+Conditions conditionsOf(const Observations& data, const Observation& row,
+                        const std::vector<MotionSample>& motion) {
+  const Drive& drive = data.drives()[row.drive];
+  const Segment& segment = drive.segments[row.segment];
+  Conditions conditions;
   const Twist2 now = meanTwist(motion, row.begin, row.end);
-  moment.v = now.v_x;
-  moment.omega = now.omega;
-  const double back = std::max(stretch.begin(), row.begin - kBack);
+  conditions.v = now.v_x;
+  conditions.omega = now.omega;
+  const double back = std::max(segment.begin(), row.begin - kBack);
   if (row.begin - back > 0.1) {
     const Twist2 before = meanTwist(motion, back, row.begin);
-    moment.v_change = (now.v_x - before.v_x) / kBack;
-    moment.omega_change = (now.omega - before.omega) / kBack;
+    conditions.v_change = (now.v_x - before.v_x) / kBack;
+    conditions.omega_change = (now.omega - before.omega) / kBack;
   }
-  const double begin = drive.stretches.front().begin();
-  const double end = drive.stretches.back().end;
-  moment.elapsed = 2.0 * ((row.begin - begin) / std::max(1.0, end - begin)) - 1.0;
+  const double begin = drive.segments.front().begin();
+  const double end = drive.segments.back().end;
+  conditions.elapsed = 2.0 * ((row.begin - begin) / std::max(1.0, end - begin)) - 1.0;
   auto ins =
-      std::upper_bound(stretch.ins.begin(), stretch.ins.end(), (row.begin + row.end) / 2.0,
+      std::upper_bound(segment.ins.begin(), segment.ins.end(), (row.begin + row.end) / 2.0,
                        [](double time, const InsSample& sample) { return time < sample.time; });
-  while (ins != stretch.ins.begin() && !std::isfinite(std::prev(ins)->roll)) --ins;
-  if (ins != stretch.ins.begin()) {
-    moment.roll = std::prev(ins)->roll;
-    moment.pitch = std::prev(ins)->pitch;
+  while (ins != segment.ins.begin() && !std::isfinite(std::prev(ins)->roll)) --ins;
+  if (ins != segment.ins.begin()) {
+    conditions.roll = std::prev(ins)->roll;
+    conditions.pitch = std::prev(ins)->pitch;
   }
-  return moment;
+  return conditions;
 }
 
 struct Basis {
   const char* name;
   const char* unit;
-  double (*value)(const Moment&);
+  double (*value)(const Conditions&);
 };
 
 double signOf(double value) {
@@ -68,53 +69,55 @@ double signOf(double value) {
 
 const std::vector<Basis>& bases() {
   static const std::vector<Basis> all{
-      {"constant", "1", [](const Moment&) { return 1.0; }},
-      {"v", "m/s", [](const Moment& m) { return m.v; }},
-      {"yaw rate", "rad/s", [](const Moment& m) { return m.omega; }},
-      {"v^2", "m2/s2", [](const Moment& m) { return m.v * m.v; }},
-      {"v |v|", "m2/s2", [](const Moment& m) { return m.v * std::abs(m.v); }},
+      {"constant", "1", [](const Conditions&) { return 1.0; }},
+      {"v", "m/s", [](const Conditions& m) { return m.v; }},
+      {"yaw rate", "rad/s", [](const Conditions& m) { return m.omega; }},
+      {"v^2", "m2/s2", [](const Conditions& m) { return m.v * m.v; }},
+      {"v |v|", "m2/s2", [](const Conditions& m) { return m.v * std::abs(m.v); }},
       {"yaw rate |yaw rate|", "rad2/s2",
-       [](const Moment& m) { return m.omega * std::abs(m.omega); }},
-      {"yaw rate^2", "rad2/s2", [](const Moment& m) { return m.omega * m.omega; }},
-      {"v x yaw rate", "m/s2", [](const Moment& m) { return m.v * m.omega; }},
-      {"|v|", "m/s", [](const Moment& m) { return std::abs(m.v); }},
-      {"|yaw rate|", "rad/s", [](const Moment& m) { return std::abs(m.omega); }},
-      {"|v| x yaw rate", "m/s2", [](const Moment& m) { return std::abs(m.v) * m.omega; }},
-      {"v |yaw rate|", "m/s2", [](const Moment& m) { return m.v * std::abs(m.omega); }},
-      {"v^2 x yaw rate", "m2/s3", [](const Moment& m) { return m.v * m.v * m.omega; }},
-      {"sign of v", "1", [](const Moment& m) { return signOf(m.v); }},
-      {"sign of yaw rate", "1", [](const Moment& m) { return signOf(m.omega); }},
-      {"v x elapsed time", "m/s", [](const Moment& m) { return m.v * m.elapsed; }},
-      {"yaw rate x elapsed time", "rad/s", [](const Moment& m) { return m.omega * m.elapsed; }},
-      {"change of v", "m/s2", [](const Moment& m) { return m.v_change; }},
-      {"change of yaw rate", "rad/s2", [](const Moment& m) { return m.omega_change; }},
-      {"|change of v|", "m/s2", [](const Moment& m) { return std::abs(m.v_change); }},
-      {"|change of yaw rate|", "rad/s2", [](const Moment& m) { return std::abs(m.omega_change); }},
-      {"yaw rate x change of v", "m/s3", [](const Moment& m) { return m.omega * m.v_change; }},
-      {"v x change of yaw rate", "m/s3", [](const Moment& m) { return m.v * m.omega_change; }},
-      {"pitch", "rad", [](const Moment& m) { return std::sin(m.pitch); }},
-      {"roll", "rad", [](const Moment& m) { return std::sin(m.roll); }}};
+       [](const Conditions& m) { return m.omega * std::abs(m.omega); }},
+      {"yaw rate^2", "rad2/s2", [](const Conditions& m) { return m.omega * m.omega; }},
+      {"v x yaw rate", "m/s2", [](const Conditions& m) { return m.v * m.omega; }},
+      {"|v|", "m/s", [](const Conditions& m) { return std::abs(m.v); }},
+      {"|yaw rate|", "rad/s", [](const Conditions& m) { return std::abs(m.omega); }},
+      {"|v| x yaw rate", "m/s2", [](const Conditions& m) { return std::abs(m.v) * m.omega; }},
+      {"v |yaw rate|", "m/s2", [](const Conditions& m) { return m.v * std::abs(m.omega); }},
+      {"v^2 x yaw rate", "m2/s3", [](const Conditions& m) { return m.v * m.v * m.omega; }},
+      {"sign of v", "1", [](const Conditions& m) { return signOf(m.v); }},
+      {"sign of yaw rate", "1", [](const Conditions& m) { return signOf(m.omega); }},
+      {"v x elapsed time", "m/s", [](const Conditions& m) { return m.v * m.elapsed; }},
+      {"yaw rate x elapsed time", "rad/s", [](const Conditions& m) { return m.omega * m.elapsed; }},
+      {"change of v", "m/s2", [](const Conditions& m) { return m.v_change; }},
+      {"change of yaw rate", "rad/s2", [](const Conditions& m) { return m.omega_change; }},
+      {"|change of v|", "m/s2", [](const Conditions& m) { return std::abs(m.v_change); }},
+      {"|change of yaw rate|", "rad/s2",
+       [](const Conditions& m) { return std::abs(m.omega_change); }},
+      {"yaw rate x change of v", "m/s3", [](const Conditions& m) { return m.omega * m.v_change; }},
+      {"v x change of yaw rate", "m/s3", [](const Conditions& m) { return m.v * m.omega_change; }},
+      {"pitch", "rad", [](const Conditions& m) { return std::sin(m.pitch); }},
+      {"roll", "rad", [](const Conditions& m) { return std::sin(m.roll); }}};
   return all;
 }
 
-std::vector<Moment> momentsOf(const Rows& rows, const ModelDocument& model) {
-  const auto motions = rows.simulate(model.vehicle);
-  std::vector<Moment> moments;
-  moments.reserve(rows.rows().size());
-  for (const Row& row : rows.rows())
-    moments.push_back(momentOf(rows, row, motions[rows.stretchIndex(row.drive, row.stretch)]));
-  return moments;
+std::vector<Conditions> allConditions(const Observations& data, const ModelDocument& model) {
+  const auto motions = data.simulate(model.vehicle);
+  std::vector<Conditions> conditions;
+  conditions.reserve(data.all().size());
+  for (const Observation& row : data.all())
+    conditions.push_back(
+        conditionsOf(data, row, motions[data.segmentIndex(row.drive, row.segment)]));
+  return conditions;
 }
 
 /// Each variable in the rows of one channel only, for every channel.
-Eigen::MatrixXd perChannel(const Rows& rows, const std::vector<Variable>& variables) {
+Eigen::MatrixXd perChannel(const Observations& data, const std::vector<Variable>& variables) {
   const auto count = static_cast<Eigen::Index>(variables.size());
-  Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.rows().size()),
+  Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(data.all().size()),
                                                      count * static_cast<Eigen::Index>(kChannels));
-  for (size_t i = 0; i < rows.rows().size(); ++i)
+  for (size_t i = 0; i < data.all().size(); ++i)
     for (Eigen::Index v = 0; v < count; ++v) {
       const auto row = static_cast<Eigen::Index>(i);
-      const auto channel = static_cast<Eigen::Index>(rows.rows()[i].channel);
+      const auto channel = static_cast<Eigen::Index>(data.all()[i].channel);
       directions(row, channel * count + v) = variables[static_cast<size_t>(v)].values[row];
     }
   return directions;
@@ -122,13 +125,13 @@ Eigen::MatrixXd perChannel(const Rows& rows, const std::vector<Variable>& variab
 
 }  // namespace
 
-std::vector<Variable> variablesOf(const Rows& rows, const ModelDocument& model) {
-  const std::vector<Moment> moments = momentsOf(rows, model);
+std::vector<Variable> variablesOf(const Observations& data, const ModelDocument& model) {
+  const std::vector<Conditions> conditions = allConditions(data, model);
   std::vector<Variable> variables;
   for (const Basis& basis : bases()) {
-    Variable variable{basis.name, basis.unit, Eigen::VectorXd(moments.size())};
-    for (size_t i = 0; i < moments.size(); ++i)
-      variable.values[static_cast<Eigen::Index>(i)] = basis.value(moments[i]);
+    Variable variable{basis.name, basis.unit, Eigen::VectorXd(conditions.size())};
+    for (size_t i = 0; i < conditions.size(); ++i)
+      variable.values[static_cast<Eigen::Index>(i)] = basis.value(conditions[i]);
     variables.push_back(std::move(variable));
   }
   return variables;
@@ -136,8 +139,8 @@ std::vector<Variable> variablesOf(const Rows& rows, const ModelDocument& model) 
 
 Adequacy testAdequacy(const Fitter& fitter, const FitState& state, const std::vector<char>& mask,
                       double alpha, uint64_t seed) {
-  const std::vector<Variable> variables = variablesOf(fitter.rows(), state.model);
-  const ScoreTest test(fitter.rows(), state, perChannel(fitter.rows(), variables), mask);
+  const std::vector<Variable> variables = variablesOf(fitter.data(), state.model);
+  const ScoreTest test(fitter.data(), state, perChannel(fitter.data(), variables), mask);
   const std::vector<double> chance = test.largestByChance(kDraws, seed);
   Adequacy adequacy;
   for (size_t channel = 0; channel < kChannels; ++channel)

@@ -11,21 +11,15 @@
 
 namespace tread::gap {
 
-/// A quantity on which residuals may depend, in every row.
+/// A quantity on which residuals may depend, at each observation.
 struct Variable {
   std::string name;  ///< "v", "yaw rate", "v x yaw rate", ...
   std::string unit;
   Eigen::VectorXd values;  ///< rows x 1
 };
 
-/// What goes on in each row, from the simulated motion, the INS's roll and pitch and the time.
-std::vector<Variable> variablesOf(const Rows& rows, const ModelDocument& model);
-
-/// What is left that depends on something.
-struct Adequacy {
-  double p_value = 1.0;                  ///< of the largest dependence over all
-  std::vector<Unexplained> unexplained;  ///< those below alpha, strongest of each channel first
-};
+/// All such quantities, from the simulated motion, the roll and pitch of the INS and the time.
+std::vector<Variable> variablesOf(const Observations& data, const ModelDocument& model);
 
 /// Tests every channel of the residuals for every variable, with the state's free parameters.
 Adequacy testAdequacy(const Fitter& fitter, const FitState& state, const std::vector<char>& mask,

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "modules/identification/core/adequacy.hpp"
-#include "modules/identification/core/student.hpp"
+#include "modules/identification/core/likelihood.hpp"
 
 namespace tread::gap {
 namespace {
@@ -29,13 +29,13 @@ std::vector<double> edgesOf(std::vector<double> values) {
   return edges;
 }
 
-AtlasCell cellOf(const Rows& rows, const std::vector<size_t>& members,
+AtlasCell cellOf(const Observations& data, const std::vector<size_t>& members,
                  const Eigen::VectorXd& residuals) {
   AtlasCell cell;
   cell.rows = members.size();
   std::map<int, std::pair<double, double>> blocks;  // sum, number
   for (size_t i : members) {
-    auto& block = blocks[rows.rows()[i].block];
+    auto& block = blocks[data.all()[i].block];
     block.first += residuals[static_cast<Eigen::Index>(i)];
     block.second += 1.0;
     cell.mean += residuals[static_cast<Eigen::Index>(i)];
@@ -60,7 +60,7 @@ AtlasCell cellOf(const Rows& rows, const std::vector<size_t>& members,
   return cell;
 }
 
-std::vector<AtlasCell> cellsOf(const Rows& rows, const std::vector<size_t>& members,
+std::vector<AtlasCell> cellsOf(const Observations& data, const std::vector<size_t>& members,
                                const Eigen::VectorXd& variable, const std::vector<double>& edges,
                                const Eigen::VectorXd& residuals) {
   std::vector<std::vector<size_t>> in_cell(edges.size() - 1);
@@ -71,7 +71,7 @@ std::vector<AtlasCell> cellsOf(const Rows& rows, const std::vector<size_t>& memb
   }
   std::vector<AtlasCell> cells;
   for (size_t c = 0; c < in_cell.size(); ++c) {
-    cells.push_back(cellOf(rows, in_cell[c], residuals));
+    cells.push_back(cellOf(data, in_cell[c], residuals));
     cells.back().from = edges[c];
     cells.back().to = edges[c + 1];
   }
@@ -86,43 +86,117 @@ bool isShown(const std::string& variable) {
   return kShown.count(variable) != 0;
 }
 
-Variable elapsedTime(const Rows& rows) {
-  Variable time{"elapsed time", "s", Eigen::VectorXd(rows.rows().size())};
-  for (size_t i = 0; i < rows.rows().size(); ++i)
-    time.values[static_cast<Eigen::Index>(i)] = rows.rows()[i].begin;
+Variable elapsedTime(const Observations& data) {
+  Variable time{"elapsed time", "s", Eigen::VectorXd(data.all().size())};
+  for (size_t i = 0; i < data.all().size(); ++i)
+    time.values[static_cast<Eigen::Index>(i)] = data.all()[i].begin;
   return time;
+}
+
+constexpr size_t kFields = 10;       // along each axis
+constexpr size_t kLeastInField = 4;  // a mean of fewer is not shown
+
+/// Equal fields over what is common: one reading in a hundred at either end is left out.
+std::vector<double> fieldEdges(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const size_t margin = values.size() / 100;
+  const double low = values[margin];
+  const double high = values[values.size() - 1 - margin];
+  if (!(high - low > 1e-9)) return {};
+  std::vector<double> edges(kFields + 1);
+  for (size_t i = 0; i <= kFields; ++i)
+    edges[i] = low + (high - low) * static_cast<double>(i) / static_cast<double>(kFields);
+  return edges;
+}
+
+/// The field in which a value lies; nothing outside.
+std::optional<size_t> fieldOf(const std::vector<double>& edges, double value) {
+  if (value < edges.front() || value > edges.back()) return std::nullopt;
+  const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, value);
+  return static_cast<size_t>(std::distance(edges.begin() + 1, above));
+}
+
+std::vector<double> meansOf(const AtlasMap& map, const std::vector<size_t>& members,
+                            const Eigen::VectorXd& v, const Eigen::VectorXd& omega,
+                            const Eigen::VectorXd& residuals) {
+  std::vector<double> sums(kFields * kFields, 0.0);
+  std::vector<size_t> numbers(kFields * kFields, 0);
+  for (const size_t i : members) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const auto column = fieldOf(map.v_edges, v[at]);
+    const auto row = fieldOf(map.omega_edges, omega[at]);
+    if (!column || !row) continue;
+    sums[*row * kFields + *column] += residuals[at];
+    ++numbers[*row * kFields + *column];
+  }
+  for (size_t i = 0; i < sums.size(); ++i)
+    sums[i] = numbers[i] < kLeastInField ? kNotMeasured : sums[i] / static_cast<double>(numbers[i]);
+  return sums;
+}
+
+std::vector<double> pick(const Eigen::VectorXd& values, const std::vector<size_t>& members) {
+  std::vector<double> picked;
+  picked.reserve(members.size());
+  for (const size_t i : members) picked.push_back(values[static_cast<Eigen::Index>(i)]);
+  return picked;
+}
+
+const Variable& named(const std::vector<Variable>& variables, const std::string& name) {
+  return *std::find_if(variables.begin(), variables.end(),
+                       [&name](const Variable& variable) { return variable.name == name; });
+}
+
+/// Variables and the residuals of both models in every row.
+struct AtlasRows {
+  std::vector<Variable> variables;
+  Eigen::VectorXd before;
+  Eigen::VectorXd after;
+};
+
+void addCurves(const Observations& data, const AtlasRows& of, Channel channel,
+               const std::vector<size_t>& members, std::vector<AtlasCurve>& curves) {
+  for (const Variable& variable : of.variables) {
+    if (!isShown(variable.name)) continue;
+    const std::vector<double> edges = edgesOf(pick(variable.values, members));
+    if (edges.size() < 3) continue;
+    curves.push_back({channelName(channel), channelUnit(channel), variable.name, variable.unit,
+                      cellsOf(data, members, variable.values, edges, of.before),
+                      cellsOf(data, members, variable.values, edges, of.after)});
+  }
+}
+
+void addMap(const AtlasRows& of, Channel channel, const std::vector<size_t>& members,
+            std::vector<AtlasMap>& maps) {
+  const Eigen::VectorXd& v = named(of.variables, "v").values;
+  const Eigen::VectorXd& omega = named(of.variables, "yaw rate").values;
+  AtlasMap map{channelName(channel),
+               channelUnit(channel),
+               fieldEdges(pick(v, members)),
+               fieldEdges(pick(omega, members)),
+               {},
+               {}};
+  if (map.v_edges.empty() || map.omega_edges.empty()) return;
+  map.before = meansOf(map, members, v, omega, of.before);
+  map.after = meansOf(map, members, v, omega, of.after);
+  maps.push_back(std::move(map));
 }
 
 }  // namespace
 
-std::vector<AtlasCurve> residualAtlas(const Rows& rows, const ModelDocument& before,
-                                      const ModelDocument& after) {
-  std::vector<Variable> variables = variablesOf(rows, before);
-  variables.push_back(elapsedTime(rows));
-  const Eigen::VectorXd old_residuals = rows.residuals(rows.predict(before));
-  const Eigen::VectorXd new_residuals = rows.residuals(rows.predict(after));
-  std::vector<AtlasCurve> atlas;
+ResidualAtlas residualAtlas(const Observations& data, const ModelDocument& before,
+                            const ModelDocument& after) {
+  AtlasRows of{variablesOf(data, before), data.residuals(data.predict(before)),
+               data.residuals(data.predict(after))};
+  of.variables.push_back(elapsedTime(data));
+  ResidualAtlas atlas;
   for (size_t c = 0; c < kChannels; ++c) {
     const auto channel = static_cast<Channel>(c);
     std::vector<size_t> members;
-    for (size_t i = 0; i < rows.rows().size(); ++i)
-      if (rows.rows()[i].channel == channel) members.push_back(i);
+    for (size_t i = 0; i < data.all().size(); ++i)
+      if (data.all()[i].channel == channel) members.push_back(i);
     if (members.empty()) continue;
-    for (const Variable& variable : variables) {
-      if (!isShown(variable.name)) continue;
-      std::vector<double> values;
-      for (size_t i : members) values.push_back(variable.values[static_cast<Eigen::Index>(i)]);
-      const std::vector<double> edges = edgesOf(std::move(values));
-      if (edges.size() < 3) continue;
-      AtlasCurve curve;
-      curve.channel = channelName(channel);
-      curve.unit = channelUnit(channel);
-      curve.variable = variable.name;
-      curve.variable_unit = variable.unit;
-      curve.before = cellsOf(rows, members, variable.values, edges, old_residuals);
-      curve.after = cellsOf(rows, members, variable.values, edges, new_residuals);
-      atlas.push_back(std::move(curve));
-    }
+    addCurves(data, of, channel, members, atlas.curves);
+    addMap(of, channel, members, atlas.maps);
   }
   return atlas;
 }

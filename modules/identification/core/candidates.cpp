@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "modules/identification/core/change_points.hpp"
+
 namespace tread::gap {
 namespace {
 
@@ -62,14 +64,6 @@ const ChangePoint* changePointOf(const Effect& effect, const std::string& streng
   for (const ChangePoint& change : effect.search.change_points)
     if (contains(change.strengths, strength)) return &change;
   return nullptr;
-}
-
-/// Whether a strength of a change point is not 0.
-bool isOn(const Effect& effect, const ChangePoint& change, const ModelDocument& model) {
-  return std::any_of(change.strengths.begin(), change.strengths.end(),
-                     [&](const std::string& strength) {
-                       return *findParameter(model, effect.name + "." + strength) != 0.0;
-                     });
 }
 
 /// The change point before another one of the same effect; none before the first.
@@ -137,7 +131,8 @@ bool isOpen(const Effect& effect, const EffectParameter& parameter, const ModelD
   const auto tested = change->strengths.begin() + static_cast<std::ptrdiff_t>(change->fitted);
   if (std::find(change->strengths.begin(), tested, parameter.name) == tested) return false;
   const ChangePoint* previous = previousTo(effect, *change);
-  return !isOn(effect, *change, model) && (previous == nullptr || isOn(effect, *previous, model));
+  return !hasChanged(effect, *change, model) &&
+         (previous == nullptr || hasChanged(effect, *previous, model));
 }
 
 /// All directions of an effect that can be switched on.
@@ -163,8 +158,8 @@ bool isNominalFree(const FitState& state) {
   });
 }
 
-/// Terms that are on, held by what is known of them, may be others now.
-void addReleases(const FitState& state, std::vector<Candidate>& candidates) {
+/// Terms that are on, held by what is known of them, may have changed.
+void addHeldTerms(const FitState& state, std::vector<Candidate>& candidates) {
   for (const FreeParameter& held : state.free) {
     const size_t dot = held.path.find('.');
     if (dot == std::string::npos || !std::isfinite(held.deviation)) continue;
@@ -189,22 +184,22 @@ void forgetNominal(std::vector<Candidate>& candidates) {
 
 }  // namespace
 
-Excitation excitationOf(const Rows& rows, const ModelDocument& model) {
+Excitation excitationOf(const Observations& data, const ModelDocument& model) {
   Excitation most;
   most.begin = std::numeric_limits<double>::infinity();
-  for (const Drive& drive : rows.drives()) {
+  for (const Drive& drive : data.drives()) {
     most.voltage = most.voltage || !drive.voltage.empty();
-    for (const Stretch& stretch : drive.stretches) {
-      most.begin = std::min(most.begin, stretch.begin());
-      most.end = std::max(most.end, stretch.end);
-      for (const CommandSample& sample : stretch.commands) {
+    for (const Segment& segment : drive.segments) {
+      most.begin = std::min(most.begin, segment.begin());
+      most.end = std::max(most.end, segment.end);
+      for (const CommandSample& sample : segment.commands) {
         const TrackCommand asked = model.vehicle.trackSpeeds(sample.command);
         most.track_speed =
             std::max({most.track_speed, std::abs(asked.left), std::abs(asked.right)});
       }
     }
   }
-  for (const std::vector<MotionSample>& motion : rows.simulate(model.vehicle)) {
+  for (const std::vector<MotionSample>& motion : data.simulate(model.vehicle)) {
     for (size_t i = 1; i < motion.size(); ++i) {
       const double dt = motion[i].time - motion[i - 1].time;
       if (dt <= 0.0) continue;
@@ -225,7 +220,7 @@ std::vector<Candidate> candidatesFor(const ModelDocument& model, const Excitatio
 
 std::vector<Candidate> candidatesFor(const FitState& state, const Excitation& most) {
   std::vector<Candidate> candidates = candidatesFor(state.model, most);
-  addReleases(state, candidates);
+  addHeldTerms(state, candidates);
   if (isNominalFree(state)) forgetNominal(candidates);
   return candidates;
 }
@@ -257,7 +252,7 @@ ModelDocument tried(const ModelDocument& model, const Candidate& candidate) {
 Eigen::MatrixXd directionsOf(const Fitter& fitter, const FitState& state,
                              const std::vector<Candidate>& candidates) {
   Eigen::MatrixXd directions(state.predicted.size(), static_cast<Eigen::Index>(candidates.size()));
-  // A change later on has the direction of the earliest one, from its own moment on.
+  // A later change has the direction of the earliest one, from its own time on.
   std::map<std::pair<std::string, double>, size_t> earliest;
   std::vector<size_t> simulated;
   std::vector<size_t> source(candidates.size());
@@ -270,18 +265,18 @@ Eigen::MatrixXd directionsOf(const Fitter& fitter, const FitState& state,
               .first->second;
     if (source[i] == i) simulated.push_back(i);
   }
-  inParallel(simulated.size(), fitter.threads(), [&](size_t n) {
+  fitter.parallel()(simulated.size(), [&](size_t n) {
     const size_t i = simulated[n];
     directions.col(static_cast<Eigen::Index>(i)) =
         fitter.secant(state, tried(state.model, candidates[i]), candidates[i].change);
   });
-  const std::vector<Row>& rows = fitter.rows().rows();
+  const std::vector<Observation>& data = fitter.data().all();
   for (size_t i = 0; i < candidates.size(); ++i) {
     if (source[i] == i) continue;
     const auto column = static_cast<Eigen::Index>(i);
     directions.col(column) = directions.col(static_cast<Eigen::Index>(source[i]));
-    for (size_t row = 0; row < rows.size(); ++row)
-      if (rows[row].end <= candidates[i].since)
+    for (size_t row = 0; row < data.size(); ++row)
+      if (data[row].end <= candidates[i].since)
         directions(static_cast<Eigen::Index>(row), column) = 0.0;
   }
   return directions;
@@ -314,14 +309,6 @@ void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candid
 bool isVanishing(const std::string& effect, const std::string& parameter, double size) {
   return std::abs(size) <
          kVanished * std::abs(parameterNamed(effectNamed(effect), parameter).typical);
-}
-
-std::vector<std::string> changePointsOn(const ModelDocument& model) {
-  std::vector<std::string> paths;
-  for (const Effect& effect : effectCatalogue())
-    for (const ChangePoint& change : effect.search.change_points)
-      if (isOn(effect, change, model)) paths.push_back(effect.name + "." + change.time);
-  return paths;
 }
 
 }  // namespace tread::gap

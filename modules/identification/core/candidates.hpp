@@ -11,18 +11,18 @@
 namespace tread::gap {
 
 /// One direction in which an effect that is off could act, and where a fit of it begins; or one in
-/// which a term that the model is sure of could be another now (`release`).
+/// which a held term of the model may have changed (`release`).
 struct Candidate {
   std::string effect;
   std::string parameter;  ///< of the effect: the strength that is switched on
   double value = 0.0;     ///< at which it is tried
   double change = 0.0;    ///< that this is from where it does nothing; the direction is the secant
-  double since = kNotMeasured;  ///< [s] moment of a change from which on it acts; NaN = always
-  /// Values that go with it: shapes such as the moment of a change.
+  double since = kNotMeasured;  ///< [s] time of a change from which on it acts; NaN = always
+  /// Values that go with it: shapes such as the time of a change.
   std::vector<std::pair<std::string, double>> shapes;
   std::vector<std::string> free;  ///< paths that a fit of this candidate frees
-  std::string moment;             ///< path of the moment of a change; empty = none
-  bool release = false;           ///< what was known of it beforehand no longer counts
+  std::string change_point;       ///< path of the time of a change; empty = none
+  bool release = false;           ///< frees a held term: what was known of it no longer counts
 };
 
 /// The most that a drive demands, in first approximation; limits are probed below it.
@@ -34,19 +34,19 @@ struct Excitation {
   double end = 0.0;          ///< [s] last command
   bool voltage = false;      ///< the battery was measured
 };
-Excitation excitationOf(const Rows& rows, const ModelDocument& model);
+Excitation excitationOf(const Observations& data, const ModelDocument& model);
 
 /// All directions of all effects of the catalogue that are off in a model.
-/** Thresholds and moments of change get several (their gradient at 0 says nothing). Effects that
- * are another one under a second name (crab, yaw_rate_offset) are left to their groups. */
+/** Thresholds and change points get several (their gradient at 0 says nothing). Effects that
+ * are another one under a second name are left to their groups. */
 std::vector<Candidate> candidatesFor(const ModelDocument& model, const Excitation& excitation);
 
-/// Those of a state: also releases of effects that are on and held by what is known of them; where
+/// Those of a state: also effects that are on and held by what is known of them, to be freed; where
 /// numbers of the nominal model are free without limits, effects that are the same under another
 /// name are left out.
 std::vector<Candidate> candidatesFor(const FitState& state, const Excitation& excitation);
 
-/// Those of one effect, and of one that is another under a second name, too.
+/// Those of one effect, even if it is another one under a second name.
 std::vector<Candidate> candidatesOf(const std::string& effect, const FitState& state,
                                     const Excitation& excitation);
 
@@ -66,8 +66,5 @@ void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candid
 
 /// Whether a size is nothing beside what is typical.
 bool isVanishing(const std::string& effect, const std::string& parameter, double size);
-
-/// Paths of the change points at which effects of a model that are on begin to act.
-std::vector<std::string> changePointsOn(const ModelDocument& model);
 
 }  // namespace tread::gap

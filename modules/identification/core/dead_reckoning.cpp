@@ -16,15 +16,15 @@ constexpr double kStep = 0.05;       // [s] of integration
 constexpr double kEncoderGap = 0.5;  // [s] over which encoders are held
 constexpr double kCertain = 0.5;     // |correlation| that a scale needs
 
-/// Mean of the encoders' track speeds, by stretch.
+/// Mean of the encoders' track speeds, by segment.
 RunningSums encoderSums(const Drive& drive) {
   RunningSums sums;
-  for (const Stretch& stretch : drive.stretches) {
+  for (const Segment& segment : drive.segments) {
     RunningSum sum;
     auto sample = std::lower_bound(
-        drive.encoders.begin(), drive.encoders.end(), stretch.begin() - kEncoderGap,
+        drive.encoders.begin(), drive.encoders.end(), segment.begin() - kEncoderGap,
         [](const EncoderSample& encoder, double time) { return encoder.time < time; });
-    for (; sample != drive.encoders.end() && sample->time < stretch.end; ++sample) {
+    for (; sample != drive.encoders.end() && sample->time < segment.end; ++sample) {
       const auto next = std::next(sample);
       const bool held = next != drive.encoders.end() && next->time - sample->time <= kEncoderGap;
       if (held) sum.add(sample->time, next->time, 0.5 * (sample->speed.left + sample->speed.right));
@@ -82,15 +82,15 @@ std::vector<Rates> pairs(const std::vector<PoseIncrement>& increments,
   std::vector<Rates> all;
   for (size_t i = 0; i < increments.size(); ++i) {
     const auto leading =
-        sums[increments[i].stretch].mean(increments[i].begin - lag, increments[i].end - lag);
+        sums[increments[i].segment].mean(increments[i].begin - lag, increments[i].end - lag);
     if (leading) all.push_back({*leading, following[i]});
   }
   return all;
 }
 
-const InsSample* fixNear(const Stretch& stretch, double time) {
+const InsSample* fixNear(const Segment& segment, double time) {
   const InsSample* nearest = nullptr;
-  for (const InsSample& sample : stretch.ins) {
+  for (const InsSample& sample : segment.ins) {
     if (std::abs(sample.time - time) > kNearest || !std::isfinite(sample.T_map_body.x)) continue;
     if (nearest == nullptr || std::abs(sample.time - time) < std::abs(nearest->time - time))
       nearest = &sample;
@@ -104,32 +104,32 @@ class Reckoner {
   Reckoner(const Drive& drive, const Reckoning& fit)
       : drive_(drive), fit_(fit), speed_(encoderSums(drive)), gyro_(gyroSums(drive)) {}
 
-  std::optional<EndError> errorOf(const Execution& execution) const {
-    const Stretch& stretch = drive_.stretches[execution.stretch];
-    const InsSample* from = fixNear(stretch, execution.begin);
-    const InsSample* to = fixNear(stretch, execution.end);
+  std::optional<ExecutionError> errorOf(const Execution& execution) const {
+    const Segment& segment = drive_.segments[execution.segment];
+    const InsSample* from = fixNear(segment, execution.begin);
+    const InsSample* to = fixNear(segment, execution.end);
     if (from == nullptr || to == nullptr) return std::nullopt;
     const double length = to->time - from->time;
     if (length < 0.75 * kHorizon || length > 1.25 * kHorizon) return std::nullopt;
-    const auto reckoned = motion(execution.stretch, from->time, to->time);
+    const auto reckoned = motion(execution.segment, from->time, to->time);
     if (!reckoned) return std::nullopt;
     const Pose2 measured = between(from->T_map_body, to->T_map_body);
-    EndError error;
+    ExecutionError error;
     error.position = kHorizon / length * (reckoned->position() - measured.position()).norm();
     error.yaw = kHorizon / length * std::abs(reckoned->yaw - measured.yaw);
     return error;
   }
 
  private:
-  std::optional<Pose2> motion(size_t stretch, double from, double to) const {
+  std::optional<Pose2> motion(size_t segment, double from, double to) const {
     const auto steps = static_cast<int>(std::ceil((to - from) / kStep));
     const double dt = (to - from) / steps;
     Pose2 T_from_body;
     for (int i = 0; i < steps; ++i) {
       const double begin = from + dt * i;
-      const auto speed = speed_[stretch].mean(begin - fit_.speed_lag, begin + dt - fit_.speed_lag);
+      const auto speed = speed_[segment].mean(begin - fit_.speed_lag, begin + dt - fit_.speed_lag);
       const auto omega =
-          gyro_[stretch].mean(begin - fit_.turning_lag, begin + dt - fit_.turning_lag);
+          gyro_[segment].mean(begin - fit_.turning_lag, begin + dt - fit_.turning_lag);
       if (!speed || !omega) return std::nullopt;
       const double v = fit_.speed * *speed;
       const double turn = fit_.turning * *omega + fit_.drift;
@@ -176,7 +176,7 @@ std::optional<Reckoning> fitReckoning(const Drive& drive) {
 }
 
 std::optional<EndErrors> deadReckoningFloor(const std::vector<Drive>& drives) {
-  std::vector<EndError> errors;
+  std::vector<ExecutionError> errors;
   for (const Drive& drive : drives) {
     const auto fit = fitReckoning(drive);
     if (!fit) continue;
@@ -185,7 +185,7 @@ std::optional<EndErrors> deadReckoningFloor(const std::vector<Drive>& drives) {
       if (const auto error = reckoner.errorOf(execution)) errors.push_back(*error);
   }
   if (errors.empty()) return std::nullopt;
-  return summaryOf(errors, [](const EndError&) { return true; });
+  return summaryOf(errors, [](const ExecutionError&) { return true; });
 }
 
 }  // namespace tread::gap

@@ -13,8 +13,8 @@ namespace tread::gap {
 struct GapTask {
   ModelDocument model;
   std::vector<Drive> train;
-  std::vector<Drive> test;           ///< never used for structure or parameters; may be empty
-  std::vector<HygieneNote> hygiene;  ///< what is known of the logs (stage 0)
+  std::vector<Drive> test;         ///< never used for structure or parameters; may be empty
+  std::vector<LogNote> log_notes;  ///< what is known of the logs
   /// Lag, delay and gains of the nominal model are fitted, too: makes a model of a new vehicle.
   bool calibrate = false;
   /// What is real stays in, however little it changes the end error.
@@ -22,14 +22,15 @@ struct GapTask {
   /// Accepted effects are in the model from the start and stay; rejected ones are never considered.
   std::vector<Decision> decisions;
   uint64_t seed = 1;
-  int threads = 1;  ///< does not change a bit of the result
+  ParallelFor parallel = serialFor;  ///< does not change a bit of the result
 };
 
 /// Where simulation and measurement disagree, what it is most likely called, how sure that is.
-/** Stages 1 to 7 of gap.md 4.2; the error figures come from driving that was used neither for the
- * choice of effects nor for their size: the test drives, or else alternate blocks of the training
- * drives, each half judged by what the other half found. Deterministic for a seed. Throws
- * std::invalid_argument for an accepted effect that the drives cannot size. */
+/** Calibrates, tests and selects effects, tests what is left, and measures the error on driving
+ * that was used neither for the choice of effects nor for their size: the test drives, or else
+ * alternate blocks of the training drives, each half predicted with what the other half found.
+ * Deterministic for a seed. Throws std::invalid_argument for an accepted effect that the drives
+ * cannot size. */
 Finding findGap(const GapTask& task, const Progress& say);
 
 }  // namespace tread::gap

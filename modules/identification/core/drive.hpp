@@ -15,25 +15,26 @@ namespace tread::gap {
 
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// A command on the motors from a moment until the next one.
+/// A command that acts on the motors until the next one.
 struct CommandSample {
   double time = 0.0;  ///< [s] since the log's first message
   TrackCommand command{};
 };
 
-/// What the INS said at a moment.
+/// One reading of the INS.
 struct InsSample {
   double time = 0.0;   ///< [s] of the measurement, since the log's first message
-  Pose2 T_map_body{};  ///< yaw unwrapped within a stretch; all NaN where only the gyro spoke
+  Pose2 T_map_body{};  ///< yaw unwrapped within a segment; all NaN where only the gyro spoke
   double omega = kNotMeasured;  ///< [rad/s] of the gyro
   double roll = kNotMeasured;   ///< [rad] left side up positive
   double pitch = kNotMeasured;  ///< [rad] nose down positive
 };
 
-/// Driving without a gap: commands known throughout, one track of the INS.
+/// Driving without a gap: all commands are known, and the INS gives one track.
 /** Where the INS jumped or was silent in the middle of driving, the commands begin up to 3 s before
- * the poses do (as in the stretch before): whatever state is assumed there is forgotten by then. */
-struct Stretch {
+ * the poses do (they are in the segment before, too), so that the state assumed at the beginning no
+ * longer matters when the poses begin. */
+struct Segment {
   std::vector<CommandSample> commands;  ///< in order of time, not empty
   double end = 0.0;                     ///< [s] until when the last command acts
   std::vector<InsSample> ins;           ///< in order of time, within the commands' time
@@ -47,12 +48,12 @@ struct Stretch {
 
 /// One execution of a pattern (or a piece of driving of the same length).
 struct Execution {
-  size_t stretch = 0;  ///< index of the stretch in which it lies
+  size_t segment = 0;  ///< index of the segment in which it lies
   double begin = 0.0;  ///< [s]
   double end = 0.0;    ///< [s]
 };
 
-/// Voltage of the battery at a moment.
+/// One reading of the battery voltage.
 struct VoltageSample {
   double time = 0.0;     ///< [s]
   double voltage = 0.0;  ///< [V]
@@ -64,8 +65,8 @@ struct EncoderSample {
   TrackCommand speed{};
 };
 
-/// A line about the state of a log.
-struct HygieneNote {
+/// One line about the state of a log.
+struct LogNote {
   std::string log;
   std::string what;    ///< one clear line
   bool fatal = false;  ///< nothing can be concluded from this log
@@ -83,18 +84,18 @@ struct Drive {
   std::string name;    ///< file name of the log
   std::string sha256;  ///< of the file
   CommandKind kind = CommandKind::kPower;
-  std::vector<Stretch> stretches;       ///< in order of time
+  std::vector<Segment> segments;        ///< in order of time
   std::vector<Execution> executions;    ///< in order of time; 2 s pieces where the log names none
   std::vector<VoltageSample> voltage;   ///< empty = not measured
   std::vector<EncoderSample> encoders;  ///< empty = there are none
   std::optional<ImportNote> imported;   ///< nothing where the robot itself wrote the log
   std::string lost;                     ///< what of a damaged file could not be read; empty = whole
-  std::vector<HygieneNote> notes;       ///< what the reader noticed, and checkHygiene()
+  std::vector<LogNote> notes;           ///< what the reader noticed, and validateLog()
 
   /// Seconds of driving.
   double driven() const {
     double sum = 0.0;
-    for (const Stretch& stretch : stretches) sum += stretch.end - stretch.begin();
+    for (const Segment& segment : segments) sum += segment.end - segment.begin();
     return sum;
   }
 };

@@ -14,12 +14,12 @@ constexpr int kOverlayPoints = 21;
 
 using Motions = std::vector<std::vector<MotionSample>>;
 
-const InsSample* nearestFix(const Stretch& stretch, double time) {
+const InsSample* nearestFix(const Segment& segment, double time) {
   const InsSample* nearest = nullptr;
   const auto after =
-      std::lower_bound(stretch.ins.begin(), stretch.ins.end(), time - kNearest,
-                       [](const InsSample& sample, double moment) { return sample.time < moment; });
-  for (auto sample = after; sample != stretch.ins.end() && sample->time <= time + kNearest;
+      std::lower_bound(segment.ins.begin(), segment.ins.end(), time - kNearest,
+                       [](const InsSample& sample, double from) { return sample.time < from; });
+  for (auto sample = after; sample != segment.ins.end() && sample->time <= time + kNearest;
        ++sample) {
     if (!std::isfinite(sample->T_map_body.x)) continue;
     if (nearest == nullptr || std::abs(sample->time - time) < std::abs(nearest->time - time))
@@ -33,22 +33,23 @@ Pose2 predictedBetween(const std::vector<MotionSample>& motion, const Measuremen
   return between(measuredAt(motion, ins, from).T_map_body, measuredAt(motion, ins, to).T_map_body);
 }
 
-std::optional<EndError> errorOf(const Rows& rows, size_t drive, const Execution& execution,
-                                const Motions& motions, const MeasurementModel& ins) {
-  const Stretch& stretch = rows.drives()[drive].stretches[execution.stretch];
-  const InsSample* from = nearestFix(stretch, execution.begin);
-  const InsSample* to = nearestFix(stretch, execution.end);
+std::optional<ExecutionError> errorOf(const Observations& data, size_t drive,
+                                      const Execution& execution, const Motions& motions,
+                                      const MeasurementModel& ins) {
+  const Segment& segment = data.drives()[drive].segments[execution.segment];
+  const InsSample* from = nearestFix(segment, execution.begin);
+  const InsSample* to = nearestFix(segment, execution.end);
   if (from == nullptr || to == nullptr) return std::nullopt;
   const double length = to->time - from->time;
   if (length < 0.75 * kHorizon || length > 1.25 * kHorizon) return std::nullopt;
-  const auto& motion = motions[rows.stretchIndex(drive, execution.stretch)];
+  const auto& motion = motions[data.segmentIndex(drive, execution.segment)];
   const Pose2 predicted = predictedBetween(motion, ins, from->time, to->time);
   const Pose2 measured = between(from->T_map_body, to->T_map_body);
   const double scale = kHorizon / length;
-  EndError error;
+  ExecutionError error;
   error.drive = drive;
   error.execution = execution;
-  error.block = rows.blockAt(drive, execution.stretch, (from->time + to->time) / 2.0);
+  error.block = data.blockAt(drive, execution.segment, (from->time + to->time) / 2.0);
   error.position = scale * (predicted.position() - measured.position()).norm();
   error.yaw = scale * std::abs(predicted.yaw - measured.yaw);
   return error;
@@ -66,27 +67,101 @@ ErrorFigure figureOf(std::vector<double> errors) {
   return figure;
 }
 
-}  // namespace
+constexpr size_t kTypical = 6;
+constexpr size_t kWorst = 3;
+constexpr size_t kLeastForBand = 20;
+constexpr double kShare = 0.9;  // of the executions that the band holds
 
-std::vector<EndError> endErrors(const Rows& rows, const ModelDocument& model) {
-  return endErrors(rows, rows.simulate(model.vehicle), model.measurement);
+/// An execution with how uncertain the position is along its path, up to a factor.
+struct Shown {
+  Overlay overlay;
+  std::vector<double> spread;  ///< [m] at each point
+  double error = 0.0;          ///< [m] at the end, scaled to the horizon
+};
+
+double scaleOf(const ChannelNoise& noise, double activity) {
+  return std::hypot(noise.still, noise.share * activity);
 }
 
-std::vector<EndError> endErrors(const Rows& rows, const Motions& motions,
-                                const MeasurementModel& measurement) {
-  std::vector<EndError> errors;
-  for (size_t drive = 0; drive < rows.drives().size(); ++drive)
-    for (const Execution& execution : rows.drives()[drive].executions)
-      if (const auto error = errorOf(rows, drive, execution, motions, measurement))
+std::vector<double> spreadOf(const Overlay& overlay, const Noise& noise) {
+  const double dt = overlay.duration / static_cast<double>(overlay.after.size() - 1);
+  const auto of = [&noise](Channel channel) { return noise[static_cast<size_t>(channel)]; };
+  double heading = 0.0;
+  double along = 0.0;
+  double across = 0.0;
+  std::vector<double> spread{0.0};
+  for (size_t i = 1; i < overlay.after.size(); ++i) {
+    const Pose2 moved = between(overlay.after[i - 1], overlay.after[i]);
+    const double way = moved.position().norm();
+    along += dt * scaleOf(of(Channel::kAlong), way / dt);
+    across += dt * scaleOf(of(Channel::kAcross), way / dt) + heading * way;
+    heading += dt * scaleOf(of(Channel::kHeading), std::abs(moved.yaw) / dt);
+    spread.push_back(std::hypot(along, across));
+  }
+  return spread;
+}
+
+std::vector<Shown> shownOf(const std::vector<Unseen>& unseen, const ModelDocument& before,
+                           const Noise& noise, std::vector<PlaceError>& places) {
+  std::vector<Shown> all;
+  for (const Unseen& part : unseen) {
+    const OverlayMaker maker(*part.data, before, part.model);
+    for (const ExecutionError& error : part.errors) {
+      Shown shown;
+      shown.overlay = maker.of(error);
+      shown.overlay.drive += part.first_drive;
+      shown.spread = spreadOf(shown.overlay, noise);
+      shown.error = error.position;
+      const Eigen::Vector2d place = maker.middleOf(error);
+      places.push_back({shown.overlay.drive, place.x(), place.y(), shown.overlay.error_before,
+                        shown.overlay.error_after});
+      all.push_back(std::move(shown));
+    }
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Shown& a, const Shown& b) { return a.error < b.error; });
+  return all;
+}
+
+/// With what factor spreads hold the share of all executions, at each point.
+std::vector<double> factorsOf(const std::vector<Shown>& all) {
+  std::vector<double> factors;
+  for (size_t point = 0; point < all.front().spread.size(); ++point) {
+    std::vector<double> ratios;
+    for (const Shown& shown : all) {
+      const double apart =
+          (shown.overlay.measured[point].position() - shown.overlay.after[point].position()).norm();
+      ratios.push_back(shown.spread[point] > 0.0 ? apart / shown.spread[point] : 0.0);
+    }
+    const auto at = ratios.begin() +
+                    static_cast<std::ptrdiff_t>(kShare * static_cast<double>(ratios.size() - 1));
+    std::nth_element(ratios.begin(), at, ratios.end());
+    factors.push_back(*at);
+  }
+  return factors;
+}
+
+}  // namespace
+
+std::vector<ExecutionError> endErrors(const Observations& data, const ModelDocument& model) {
+  return endErrors(data, data.simulate(model.vehicle), model.measurement);
+}
+
+std::vector<ExecutionError> endErrors(const Observations& data, const Motions& motions,
+                                      const MeasurementModel& measurement) {
+  std::vector<ExecutionError> errors;
+  for (size_t drive = 0; drive < data.drives().size(); ++drive)
+    for (const Execution& execution : data.drives()[drive].executions)
+      if (const auto error = errorOf(data, drive, execution, motions, measurement))
         errors.push_back(*error);
   return errors;
 }
 
-EndErrors summaryOf(const std::vector<EndError>& errors,
-                    const std::function<bool(const EndError&)>& counts) {
+EndErrors summaryOf(const std::vector<ExecutionError>& errors,
+                    const std::function<bool(const ExecutionError&)>& counts) {
   std::vector<double> position;
   std::vector<double> yaw;
-  for (const EndError& error : errors) {
+  for (const ExecutionError& error : errors) {
     if (!counts(error)) continue;
     position.push_back(error.position);
     yaw.push_back(error.yaw);
@@ -98,22 +173,22 @@ EndErrors summaryOf(const std::vector<EndError>& errors,
   return summary;
 }
 
-OverlayMaker::OverlayMaker(const Rows& rows, const ModelDocument& before,
+OverlayMaker::OverlayMaker(const Observations& data, const ModelDocument& before,
                            const ModelDocument& after)
-    : rows_(rows), before_(before.measurement), after_(after.measurement) {
-  old_motions_ = rows.simulate(before.vehicle);
-  new_motions_ = rows.simulate(after.vehicle);
-  for (const Drive& drive : rows.drives())
-    for (const Stretch& stretch : drive.stretches) {
+    : data_(data), before_(before.measurement), after_(after.measurement) {
+  old_motions_ = data.simulate(before.vehicle);
+  new_motions_ = data.simulate(after.vehicle);
+  for (const Drive& drive : data.drives())
+    for (const Segment& segment : drive.segments) {
       measured_.emplace_back();
-      for (const InsSample& sample : stretch.ins)
+      for (const InsSample& sample : segment.ins)
         if (std::isfinite(sample.T_map_body.x))
           measured_.back().push_back({sample.time, sample.T_map_body});
     }
 }
 
-Overlay OverlayMaker::of(const EndError& error) const {
-  const size_t index = rows_.stretchIndex(error.drive, error.execution.stretch);
+Overlay OverlayMaker::of(const ExecutionError& error) const {
+  const size_t index = data_.segmentIndex(error.drive, error.execution.segment);
   const double begin = error.execution.begin;
   Overlay overlay;
   overlay.drive = error.drive;
@@ -132,9 +207,28 @@ Overlay OverlayMaker::of(const EndError& error) const {
   return overlay;
 }
 
-Eigen::Vector2d OverlayMaker::middleOf(const EndError& error) const {
-  const size_t index = rows_.stretchIndex(error.drive, error.execution.stretch);
+Eigen::Vector2d OverlayMaker::middleOf(const ExecutionError& error) const {
+  const size_t index = data_.segmentIndex(error.drive, error.execution.segment);
   return poseAt(measured_[index], 0.5 * (error.execution.begin + error.execution.end)).position();
+}
+
+ShownExecutions shownExecutions(const std::vector<Unseen>& unseen, const ModelDocument& before,
+                                const Noise& noise) {
+  ShownExecutions result;
+  std::vector<Shown> all = shownOf(unseen, before, noise, result.places);
+  if (all.empty()) return result;
+  if (all.size() >= kLeastForBand) {
+    const std::vector<double> factors = factorsOf(all);
+    for (Shown& shown : all)
+      for (size_t point = 0; point < factors.size(); ++point)
+        shown.overlay.band.push_back(factors[point] * shown.spread[point]);
+  }
+  const size_t typical = std::min(kTypical, all.size());
+  for (size_t i = 0; i < typical; ++i)
+    result.overlays.push_back(all[all.size() * (i + 1) / (kTypical + 2)].overlay);
+  for (size_t i = 0; i < std::min(kWorst, all.size()); ++i)
+    result.overlays.push_back(all[all.size() - 1 - i].overlay);
+  return result;
 }
 
 }  // namespace tread::gap

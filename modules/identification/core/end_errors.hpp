@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "modules/identification/core/finding.hpp"
-#include "modules/identification/core/rows.hpp"
+#include "modules/identification/core/likelihood.hpp"
+#include "modules/identification/core/observations.hpp"
 
 namespace tread::gap {
 
 /// Prediction less measurement at the end of one execution, in the frame of its beginning.
-struct EndError {
+struct ExecutionError {
   size_t drive = 0;
   Execution execution;
   int block = 0;
@@ -23,36 +24,53 @@ struct EndError {
 inline constexpr double kHorizon = 2.0;
 
 /// Errors of a model on all executions that have fixes near their beginning and end.
-/** The simulation runs open loop through the whole stretch, so that an execution begins in the
+/** The simulation runs open loop through the whole segment, so that an execution begins in the
  * state that the commands before it led to. Lengths between .75 and 1.25 of the horizon count. */
-std::vector<EndError> endErrors(const Rows& rows, const ModelDocument& model);
-/// The same of motions that were simulated otherwise; one for each stretch, as Rows::simulate().
-std::vector<EndError> endErrors(const Rows& rows,
-                                const std::vector<std::vector<MotionSample>>& motions,
-                                const MeasurementModel& measurement);
+std::vector<ExecutionError> endErrors(const Observations& data, const ModelDocument& model);
+/// The same of motions that were simulated otherwise; one for each segment, as
+/// Observations::simulate().
+std::vector<ExecutionError> endErrors(const Observations& data,
+                                      const std::vector<std::vector<MotionSample>>& motions,
+                                      const MeasurementModel& measurement);
 
 /// Median and root mean square of those that `counts`.
-EndErrors summaryOf(const std::vector<EndError>& errors,
-                    const std::function<bool(const EndError&)>& counts);
+EndErrors summaryOf(const std::vector<ExecutionError>& errors,
+                    const std::function<bool(const ExecutionError&)>& counts);
 
 /// Executions as measured and as two models predict them.
 class OverlayMaker {
  public:
   /// Simulates all drives of the rows once with either model; the rows must outlive it.
-  OverlayMaker(const Rows& rows, const ModelDocument& before, const ModelDocument& after);
+  OverlayMaker(const Observations& data, const ModelDocument& before, const ModelDocument& after);
 
-  Overlay of(const EndError& error) const;
+  Overlay of(const ExecutionError& error) const;
   /// Where the vehicle was halfway [m], in the frame of the log.
-  Eigen::Vector2d middleOf(const EndError& error) const;
+  Eigen::Vector2d middleOf(const ExecutionError& error) const;
 
  private:
-  const Rows& rows_;
+  const Observations& data_;
   MeasurementModel before_;
   MeasurementModel after_;
-  /// Of each stretch.
+  /// Of each segment.
   std::vector<std::vector<MotionSample>> old_motions_;
   std::vector<std::vector<MotionSample>> new_motions_;
   std::vector<std::vector<MotionSample>> measured_;
 };
+
+/// A model and executions that it was not fitted to.
+struct Unseen {
+  const Observations* data = nullptr;
+  ModelDocument model;
+  std::vector<ExecutionError> errors;  ///< of the model on these executions
+  size_t first_drive = 0;              ///< number of the rows' first drive among all logs
+};
+
+/// Typical and worst unseen executions with a band that holds nine of ten, and where all errors
+/// are.
+/** The band is the residual noise of the fitted model carried along the predicted path (scales of
+ * the channels added up over time, the heading's also as a lever), times the factor with which it
+ * holds 90 % of the unseen executions at each time. No band where there are fewer than 20. */
+ShownExecutions shownExecutions(const std::vector<Unseen>& unseen, const ModelDocument& before,
+                                const Noise& noise);
 
 }  // namespace tread::gap

@@ -14,7 +14,7 @@
 namespace tread::gap {
 
 /// The headline; the number is the exit status of `tread-gap find`.
-enum class Verdict {
+enum class GapVerdict {
   kNoDiscrepancy = 0,
   kFound = 10,
   kAmbiguous = 11,
@@ -24,8 +24,26 @@ enum class Verdict {
   kCannotTell = 15
 };
 
-/// Name as in verdict.json: NO_DISCREPANCY, FOUND, ...
-const char* verdictName(Verdict verdict);
+/// Name as in verdict.json.
+inline const char* verdictName(GapVerdict verdict) {
+  switch (verdict) {
+    case GapVerdict::kNoDiscrepancy:
+      return "NO_DISCREPANCY";
+    case GapVerdict::kFound:
+      return "FOUND";
+    case GapVerdict::kAmbiguous:
+      return "AMBIGUOUS";
+    case GapVerdict::kPartial:
+      return "PARTIAL";
+    case GapVerdict::kNotInCatalogue:
+      return "NOT_IN_CATALOGUE";
+    case GapVerdict::kMeasurement:
+      return "MEASUREMENT";
+    case GapVerdict::kCannotTell:
+      return "CANNOT_TELL";
+  }
+  return "";
+}
 
 /// A parameter as it was estimated.
 struct Estimate {
@@ -35,7 +53,7 @@ struct Estimate {
   double low = 0.0;   ///< of the 95 % interval
   double high = 0.0;  ///< infinite bounds where the drive does not say
   double before = 0.0;
-  /// Of a term that the model has: it is another one now, beyond chance and what the model's own
+  /// Of a term that the model has: its value has changed, beyond chance and what the model's own
   /// covariance allows.
   bool moved = false;
 };
@@ -154,18 +172,6 @@ struct Unexplained {
   double p_value = 1.0;
 };
 
-/// One step of the ladder: what was added and what it brought.
-struct LadderStep {
-  std::string effect;  ///< added, or removed
-  bool removed = false;
-  double score = 0.0;
-  double p_value = 1.0;
-  double gain = 0.0;  ///< [nats] cross-validated
-  double gain_error = 0.0;
-  std::vector<RunnerUp> runner_ups;
-  std::string remark;  ///< why it was removed or refused; empty else
-};
-
 /// One candidate of the first test.
 struct CandidateTest {
   std::string effect;
@@ -178,32 +184,73 @@ struct CandidateTest {
   double detectable = 0.0;
 };
 
-/// Everything that `tread-gap find` says.
-struct Finding {
-  Verdict verdict = Verdict::kCannotTell;
-  std::string reason;  ///< of CANNOT_TELL; empty else
-  ModelDocument before;
-  ModelDocument after;
-  std::vector<FoundEffect> effects;
-  std::vector<Estimate> calibrated;  ///< of terms that were already on
-  std::optional<Gap> gap;
-  std::vector<Unexplained> unexplained;
-  std::vector<std::string> not_excited;  ///< effects that this drive could not have shown
-  std::vector<AtlasCurve> atlas;
+/// One step of the search: an effect that was added or removed, and what that brought.
+struct SearchStep {
+  std::string effect;  ///< added, or removed
+  bool removed = false;
+  double score = 0.0;
+  double p_value = 1.0;
+  double gain = 0.0;  ///< [nats] cross-validated
+  double gain_error = 0.0;
+  std::vector<RunnerUp> runner_ups;
+  std::string remark;  ///< why it was removed or refused; empty else
+};
+
+/// What happened in a search, beside the effects that are in the model now.
+struct SearchRecord {
+  std::vector<SearchStep> steps;
+  std::vector<CandidateTest> candidates;  ///< of the calibrated model, each effect's best direction
+  std::vector<std::string> negligible;    ///< real but below 1 % of the end error: not added
+  std::vector<std::string> at_bound;      ///< seen, but their sizes ran to the ends of their ranges
+};
+
+/// What the residuals of a model still depend on.
+struct Adequacy {
+  double p_value = 1.0;                  ///< of the largest dependence over all
+  std::vector<Unexplained> unexplained;  ///< those below the level asked for, strongest first
+};
+
+/// Where the residuals of the old and the new model are.
+struct ResidualAtlas {
+  std::vector<AtlasCurve> curves;
   std::vector<AtlasMap> maps;  ///< may be empty
-  /// Six typical, then the three worst, of driving that was not used for the fit.
-  std::vector<Overlay> overlays;
-  std::vector<PlaceError> places;  ///< of all such executions
-  std::vector<LadderStep> ladder;
-  std::vector<CandidateTest> candidates;
-  std::vector<HygieneNote> hygiene;
-  std::vector<std::string> negligible;  ///< real but below 1 % of the end error: not added
-  std::vector<std::string> at_bound;    ///< seen, but their sizes ran to the ends of their ranges
-  size_t blocks = 0;
-  double block_length = 0.0;  ///< [s]
-  double adequacy_p = 1.0;
+};
+
+/// Executions for pictures, of driving that was not used for the fit.
+struct ShownExecutions {
+  std::vector<Overlay> overlays;   ///< six typical, then the three worst
+  std::vector<PlaceError> places;  ///< of all
+};
+
+/// What a finding was made from.
+struct FindingSource {
   uint64_t seed = 0;
+  std::vector<LogNote> log_notes;
   std::vector<Decision> decisions;  ///< of people, in the order given
+  size_t blocks = 0;                ///< of measured driving
+  double block_length = 0.0;        ///< [s]
+};
+
+/// What the model is now: each number with its interval.
+struct IdentifiedModel {
+  ModelDocument model;
+  std::vector<FoundEffect> effects;
+  std::vector<Estimate> calibrated;      ///< of terms that were already on
+  std::vector<std::string> not_excited;  ///< effects that this drive could not have shown
+};
+
+/// Everything that `tread-gap find` says: what each stage returned, and the verdict.
+struct Finding {
+  GapVerdict verdict = GapVerdict::kCannotTell;
+  std::string reason;  ///< of CANNOT_TELL; empty else
+  FindingSource source;
+  ModelDocument before;
+  IdentifiedModel identified;
+  SearchRecord search;
+  Adequacy adequacy;
+  std::optional<Gap> gap;
+  ResidualAtlas atlas;
+  ShownExecutions shown;
 };
 
 }  // namespace tread::gap

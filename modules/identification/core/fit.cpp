@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <thread>
 
 #include <Eigen/Cholesky>
 
@@ -110,20 +109,6 @@ FreeParameter freeParameter(const ModelDocument& model, const std::string& path)
   return free;
 }
 
-void inParallel(size_t count, int threads, const std::function<void(size_t)>& body) {
-  const size_t workers = std::min(count, static_cast<size_t>(std::max(1, threads)));
-  if (workers <= 1) {
-    for (size_t i = 0; i < count; ++i) body(i);
-    return;
-  }
-  std::vector<std::thread> pool;
-  for (size_t w = 0; w < workers; ++w)
-    pool.emplace_back([&, w] {
-      for (size_t i = w; i < count; i += workers) body(i);
-    });
-  for (std::thread& worker : pool) worker.join();
-}
-
 Eigen::VectorXd priorPrecision(const std::vector<FreeParameter>& free) {
   Eigen::VectorXd precision(static_cast<Eigen::Index>(free.size()));
   for (size_t i = 0; i < free.size(); ++i)
@@ -141,8 +126,8 @@ bool runsToBound(const ModelDocument& model, const FreeParameter& parameter) {
   const double value = valueOf(model, parameter.path);
   const EffectParameter* known = findEffectParameter(parameter.path);
   const bool to_nothing = value < 0.0 && known != nullptr && known->adds_to != nullptr;
-  return value != 0.0 && !to_nothing && parameter.path.find(".time") == std::string::npos &&
-         onBound(model, parameter);
+  const bool shape = known != nullptr && known->role == ParameterRole::kShape;
+  return value != 0.0 && !to_nothing && !shape && onBound(model, parameter);
 }
 
 FitState Fitter::start(const ModelDocument& model, std::vector<FreeParameter> free,
@@ -150,15 +135,15 @@ FitState Fitter::start(const ModelDocument& model, std::vector<FreeParameter> fr
   FitState state;
   state.model = model;
   state.free = std::move(free);
-  state.predicted = rows_.predict(model);
+  state.predicted = data_.predict(model);
   renewNoise(state, mask);
   return state;
 }
 
 void Fitter::renewNoise(FitState& state, const std::vector<char>& mask) const {
-  const Eigen::VectorXd activity = activityOf(rows_.rows(), state.predicted);
-  const Noise noise = estimateNoise(rows_.rows(), rows_.residuals(state.predicted), activity, mask);
-  state.scales = scalesOf(rows_.rows(), noise, activity);
+  const Eigen::VectorXd activity = activityOf(data_.all(), state.predicted);
+  const Noise noise = estimateNoise(data_.all(), data_.residuals(state.predicted), activity, mask);
+  state.scales = scalesOf(data_.all(), noise, activity);
   state.loss = lossOf(state, mask);
 }
 
@@ -167,7 +152,7 @@ void Fitter::add(FitState& state, const FreeParameter& parameter, double value,
   if (state.jacobian.cols() != static_cast<Eigen::Index>(state.free.size())) renewJacobian(state);
   state.free.push_back(parameter);
   valueOf(state.model, parameter.path) = value;
-  state.predicted = rows_.predict(state.model);
+  state.predicted = data_.predict(state.model);
   state.loss = lossOf(state, mask);
   state.jacobian.conservativeResize(state.predicted.size(), state.jacobian.cols() + 1);
   state.jacobian.rightCols(1) = column(state, state.free.size() - 1);
@@ -183,12 +168,12 @@ void Fitter::release(FitState& state, size_t index) const {
 }
 
 double Fitter::lossOf(const FitState& state, const std::vector<char>& mask) const {
-  return totalLoss(rows_.residuals(state.predicted), state.scales, mask) + priorLoss(state);
+  return totalLoss(data_.residuals(state.predicted), state.scales, mask) + priorLoss(state);
 }
 
 Eigen::VectorXd Fitter::secant(const FitState& state, const ModelDocument& changed,
                                double change) const {
-  return (rows_.predict(changed) - state.predicted) / change;
+  return (data_.predict(changed) - state.predicted) / change;
 }
 
 Eigen::VectorXd Fitter::column(const FitState& state, size_t index) const {
@@ -203,14 +188,13 @@ Eigen::VectorXd Fitter::column(const FitState& state, size_t index) const {
 
 void Fitter::renewJacobian(FitState& state) const {
   state.jacobian.resize(state.predicted.size(), static_cast<Eigen::Index>(state.free.size()));
-  inParallel(state.free.size(), threads_, [&](size_t i) {
-    state.jacobian.col(static_cast<Eigen::Index>(i)) = column(state, i);
-  });
+  parallel_(state.free.size(),
+            [&](size_t i) { state.jacobian.col(static_cast<Eigen::Index>(i)) = column(state, i); });
 }
 
 bool Fitter::stepOnce(FitState& state, const std::vector<char>& mask, double& damping,
                       double& gained) const {
-  const Normal normal = normalOf(state, rows_.residuals(state.predicted), mask);
+  const Normal normal = normalOf(state, data_.residuals(state.predicted), mask);
   while (damping < kMostDamping) {
     FitState tried = state;
     const Eigen::VectorXd step = dampedStep(state, normal, damping);
@@ -222,7 +206,7 @@ bool Fitter::stepOnce(FitState& state, const std::vector<char>& mask, double& da
       value = std::clamp(old + step[i], parameter.min, parameter.max);
       taken[i] = value - old;
     }
-    tried.predicted = rows_.predict(tried.model);
+    tried.predicted = data_.predict(tried.model);
     tried.loss = lossOf(tried, mask);
     gained = state.loss - tried.loss;
     if (std::isfinite(tried.loss) && gained > 0.0) {

@@ -2,14 +2,16 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "modules/identification/core/likelihood.hpp"
-#include "modules/identification/core/rows.hpp"
+#include "modules/identification/core/observations.hpp"
 
 namespace tread::gap {
 
@@ -23,6 +25,11 @@ struct FreeParameter {
   double expected = 0.0;
   double deviation = std::numeric_limits<double>::infinity();
 };
+
+/// The part of a path before the dot: the effect, or a number of the nominal model.
+inline std::string effectOf(const std::string& path) {
+  return path.substr(0, path.find('.'));
+}
 
 /// A parameter of the catalogue or of the nominal model, free within its plausible bounds.
 /** Throws std::out_of_range for a path that names nothing. */
@@ -38,13 +45,20 @@ struct FitState {
   double loss = 0.0;          ///< of the rows of the mask, with what is known beforehand [nats]
 };
 
-/// Runs body(0) .. body(count - 1) on so many threads; results must not depend on the order.
-void inParallel(size_t count, int threads, const std::function<void(size_t)>& body);
+/// Runs body(0) .. body(count - 1), possibly at the same time; results must not depend on the
+/// order.
+using ParallelFor = std::function<void(size_t count, const std::function<void(size_t)>& body)>;
+
+/// One after the other.
+inline void serialFor(size_t count, const std::function<void(size_t)>& body) {
+  for (size_t i = 0; i < count; ++i) body(i);
+}
 
 /// Fits models to rows by iterated, damped least squares within bounds.
 class Fitter {
  public:
-  Fitter(const Rows& rows, int threads) : rows_(rows), threads_(threads) {}
+  explicit Fitter(const Observations& data, ParallelFor parallel = serialFor)
+      : data_(data), parallel_(std::move(parallel)) {}
 
   /// A state of a model with its prediction and own noise; nothing is fitted.
   FitState start(const ModelDocument& model, std::vector<FreeParameter> free,
@@ -54,19 +68,19 @@ class Fitter {
   /// Takes a parameter into the state, with a value to begin at.
   void add(FitState& state, const FreeParameter& parameter, double value,
            const std::vector<char>& mask) const;
-  /// Takes one out; it keeps its value.
+  /// Holds one of them at its value.
   void release(FitState& state, size_t index) const;
   /// Minimises the loss; columns that are missing in the Jacobian are made first.
   void fit(FitState& state, const std::vector<char>& mask) const;
-  /// The same to within half a nat, with the Jacobian as the steps taught it: for comparisons.
+  /// The same to within half a nat, with a Jacobian updated from the steps (Broyden): to compare.
   void fitRoughly(FitState& state, const std::vector<char>& mask) const;
   /// The Jacobian at the state's values.
   void renewJacobian(FitState& state) const;
   /// Change of the prediction per change of a parameter to `value` (rows x 1); 0 where it is equal.
   Eigen::VectorXd secant(const FitState& state, const ModelDocument& changed, double change) const;
 
-  const Rows& rows() const { return rows_; }
-  int threads() const { return threads_; }
+  const Observations& data() const { return data_; }
+  const ParallelFor& parallel() const { return parallel_; }
 
  private:
   double lossOf(const FitState& state, const std::vector<char>& mask) const;
@@ -74,8 +88,8 @@ class Fitter {
   bool stepOnce(FitState& state, const std::vector<char>& mask, double& damping,
                 double& gained) const;
 
-  const Rows& rows_;
-  int threads_;
+  const Observations& data_;
+  ParallelFor parallel_;
 };
 
 /// Prior precision of the free parameters (diagonal).
@@ -85,8 +99,8 @@ Eigen::VectorXd priorPrecision(const std::vector<FreeParameter>& free);
 bool onBound(const ModelDocument& model, const FreeParameter& parameter);
 
 /// Whether a size ran to the end of its plausible range, which makes it none.
-/** Off is no size and a moment has no range; of the lag or delay that a model has nothing may be
- * left. */
+/** An effect that is off has no size, a change point no range; the lag or delay of a model may be
+ * taken away altogether. */
 bool runsToBound(const ModelDocument& model, const FreeParameter& parameter);
 
 }  // namespace tread::gap

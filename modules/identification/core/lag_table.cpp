@@ -21,12 +21,12 @@ bool hasPose(const InsSample& sample) {
 template <class Rate>
 RunningSums commandSums(const Drive& drive, Rate rate) {
   RunningSums sums;
-  for (const Stretch& stretch : drive.stretches) {
+  for (const Segment& segment : drive.segments) {
     RunningSum sum;
-    for (size_t i = 0; i < stretch.commands.size(); ++i) {
-      const bool last = i + 1 == stretch.commands.size();
-      sum.add(stretch.commands[i].time, last ? stretch.end : stretch.commands[i + 1].time,
-              rate(stretch.commands[i].command));
+    for (size_t i = 0; i < segment.commands.size(); ++i) {
+      const bool last = i + 1 == segment.commands.size();
+      sum.add(segment.commands[i].time, last ? segment.end : segment.commands[i + 1].time,
+              rate(segment.commands[i].command));
     }
     sums.push_back(std::move(sum));
   }
@@ -37,9 +37,9 @@ RunningSums commandSums(const Drive& drive, Rate rate) {
 
 std::vector<PoseIncrement> poseIncrements(const Drive& drive) {
   std::vector<PoseIncrement> increments;
-  for (size_t s = 0; s < drive.stretches.size(); ++s) {
+  for (size_t s = 0; s < drive.segments.size(); ++s) {
     const InsSample* from = nullptr;
-    for (const InsSample& sample : drive.stretches[s].ins) {
+    for (const InsSample& sample : drive.segments[s].ins) {
       if (!hasPose(sample)) continue;
       const double duration = from == nullptr ? 0.0 : sample.time - from->time;
       if (from != nullptr && duration < kShortest) continue;
@@ -83,10 +83,10 @@ std::optional<double> RunningSum::mean(double begin, double end) const {
 
 RunningSums gyroSums(const Drive& drive) {
   RunningSums sums;
-  for (const Stretch& stretch : drive.stretches) {
+  for (const Segment& segment : drive.segments) {
     RunningSum sum;
     const InsSample* last = nullptr;
-    for (const InsSample& sample : stretch.ins) {
+    for (const InsSample& sample : segment.ins) {
       if (!std::isfinite(sample.omega) || !std::isfinite(sample.time)) continue;
       if (last != nullptr && sample.time - last->time <= kGyroGap)
         sum.add(last->time, sample.time, 0.5 * (last->omega + sample.omega));
@@ -111,12 +111,12 @@ LagTable::LagTable(const std::vector<PoseIncrement>& increments, const std::vect
   for (const double lag : lags_) {
     std::vector<double> column;
     for (const PoseIncrement& increment : increments)
-      column.push_back(sums[increment.stretch]
+      column.push_back(sums[increment.segment]
                            .mean(increment.begin - lag, increment.end - lag)
                            .value_or(kNotMeasured));
     leading_.push_back(std::move(column));
   }
-  // Lags are compared over the same increments: those late in a stretch are steadier than others.
+  // Lags are compared over the same increments: those late in a segment are steadier than others.
   for (size_t i = 0; i < rates_.size(); ++i)
     for (const std::vector<double>& column : leading_)
       if (!std::isfinite(column[i])) rates_[i] = kNotMeasured;

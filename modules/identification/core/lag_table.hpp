@@ -10,9 +10,9 @@
 
 namespace tread::gap {
 
-/// The motion between two new poses of one stretch.
+/// The motion between two new poses of one segment.
 struct PoseIncrement {
-  size_t stretch = 0;
+  size_t segment = 0;
   double begin = 0.0;   ///< [s]
   double end = 0.0;     ///< [s]
   Pose2 T_begin_end{};  ///< in the body frame of the begin
@@ -25,7 +25,7 @@ struct PoseIncrement {
 /// Increments over 0.4 to 1.2 s, one after the other, in order of time.
 std::vector<PoseIncrement> poseIncrements(const Drive& drive);
 
-/// A running sum over time, within one stretch, linear between its points.
+/// A running sum over time, within one segment, linear between its points.
 class RunningSum {
  public:
   /// Appends a rate that holds from `begin` to `end` [s]; a pause before it ends what is known.
@@ -43,7 +43,7 @@ class RunningSum {
   std::vector<Point> points_;
 };
 
-/// Running sums of a drive, by stretch.
+/// Running sums of a drive, by segment.
 using RunningSums = std::vector<RunningSum>;
 /// Of the gyro [rad].
 RunningSums gyroSums(const Drive& drive);

@@ -57,6 +57,30 @@ ChannelNoise estimated(const ChannelResiduals& of) {
 
 }  // namespace
 
+double studentQuantile(double freedom, double normal_quantile) {
+  const double z = normal_quantile;
+  const double n = std::max(3.0, freedom);
+  const double z3 = z * z * z;
+  const double z5 = z3 * z * z;
+  const double z7 = z5 * z * z;
+  return z + (z3 + z) / (4.0 * n) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n) +
+         (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n * n * n);
+}
+
+double chanceBeyond(double normal_quantile) {
+  return std::erfc(normal_quantile / std::sqrt(2.0));
+}
+
+double normalQuantileOf(double chance) {
+  double low = 0.0;
+  double high = 38.0;  // beyond it no chance is left in a double
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (chanceBeyond(middle) > chance ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
 double lossOf(double residual, double scale) {
   const double z = residual / scale;
   return (kFreedom + 1.0) / 2.0 * std::log1p(z * z / kFreedom);
@@ -70,14 +94,14 @@ double weightOf(double residual, double scale) {
   return (kFreedom + 1.0) / (kFreedom * scale * scale + residual * residual);
 }
 
-Eigen::VectorXd activityOf(const std::vector<Row>& rows, const Eigen::VectorXd& predicted) {
+Eigen::VectorXd activityOf(const std::vector<Observation>& data, const Eigen::VectorXd& predicted) {
   Eigen::VectorXd activity(predicted.size());
-  for (size_t i = 0; i < rows.size(); ++i) {
+  for (size_t i = 0; i < data.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    // Rows along and across follow one another, see Rows.
-    if (rows[i].channel == Channel::kAlong)
+    // Rows along and across follow one another, see Observations.
+    if (data[i].channel == Channel::kAlong)
       activity[at] = std::hypot(predicted[at], predicted[at + 1]);
-    else if (rows[i].channel == Channel::kAcross)
+    else if (data[i].channel == Channel::kAcross)
       activity[at] = std::hypot(predicted[at - 1], predicted[at]);
     else
       activity[at] = std::abs(predicted[at]);
@@ -85,12 +109,12 @@ Eigen::VectorXd activityOf(const std::vector<Row>& rows, const Eigen::VectorXd& 
   return activity;
 }
 
-Noise estimateNoise(const std::vector<Row>& rows, const Eigen::VectorXd& residuals,
+Noise estimateNoise(const std::vector<Observation>& data, const Eigen::VectorXd& residuals,
                     const Eigen::VectorXd& activity, const std::vector<char>& mask) {
   std::array<ChannelResiduals, kChannels> channels;
-  for (size_t i = 0; i < rows.size(); ++i) {
+  for (size_t i = 0; i < data.size(); ++i) {
     if (!mask[i]) continue;
-    ChannelResiduals& channel = channels[static_cast<size_t>(rows[i].channel)];
+    ChannelResiduals& channel = channels[static_cast<size_t>(data[i].channel)];
     channel.residual.push_back(residuals[static_cast<Eigen::Index>(i)]);
     channel.activity.push_back(activity[static_cast<Eigen::Index>(i)]);
   }
@@ -100,11 +124,11 @@ Noise estimateNoise(const std::vector<Row>& rows, const Eigen::VectorXd& residua
   return noise;
 }
 
-Eigen::VectorXd scalesOf(const std::vector<Row>& rows, const Noise& noise,
+Eigen::VectorXd scalesOf(const std::vector<Observation>& data, const Noise& noise,
                          const Eigen::VectorXd& activity) {
   Eigen::VectorXd scales(activity.size());
-  for (size_t i = 0; i < rows.size(); ++i) {
-    const ChannelNoise& of = noise[static_cast<size_t>(rows[i].channel)];
+  for (size_t i = 0; i < data.size(); ++i) {
+    const ChannelNoise& of = noise[static_cast<size_t>(data[i].channel)];
     const auto at = static_cast<Eigen::Index>(i);
     scales[at] = std::hypot(of.still, of.share * activity[at]);
   }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/identification/core/pruning.hpp"
+#include "modules/identification/core/search_steps.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "modules/identification/core/end_errors.hpp"
 
@@ -47,12 +46,12 @@ Removal judged(const Fitter& fitter, const Eigen::VectorXd& loss_with, FitState 
                const Eigen::VectorXd& direction, const std::vector<char>& mask,
                const Needed& needed) {
   Removal removed;
-  const ScoreTest test(fitter.rows(), reduced, direction, mask);
+  const ScoreTest test(fitter.data(), reduced, direction, mask);
   removed.score = test.score(0);
   removed.evidence = evidence(test, 0, needed);
   removed.few = isSparse(test, 0, needed.score);
-  removed.gain = gainOf(heldOutLoss(fitter.rows(), reduced, mask), loss_with,
-                        blocksThatCount(fitter.rows(), mask));
+  removed.gain = gainOf(heldOutLoss(fitter.data(), reduced, mask), loss_with,
+                        blocksThatCount(fitter.data(), mask));
   removed.state = std::move(reduced);
   return removed;
 }
@@ -83,16 +82,16 @@ struct Missed {
 };
 
 Missed missedBy(const Fitter& fitter, const FitState& state, const std::vector<char>& mask) {
-  const std::vector<char> blocks = blocksThatCount(fitter.rows(), mask);
+  const std::vector<char> blocks = blocksThatCount(fitter.data(), mask);
   Missed missed;
-  for (const EndError& error : endErrors(fitter.rows(), state.model)) {
+  for (const ExecutionError& error : endErrors(fitter.data(), state.model)) {
     if (blocks[static_cast<size_t>(error.block)] == 0) continue;
     missed.position += error.position;
     missed.yaw += error.yaw;
   }
-  const Eigen::VectorXd residuals = fitter.rows().residuals(state.predicted);
+  const Eigen::VectorXd residuals = fitter.data().residuals(state.predicted);
   for (size_t i = 0; i < mask.size(); ++i)
-    if (mask[i] && fitter.rows().rows()[i].channel == Channel::kYawRate)
+    if (mask[i] && fitter.data().all()[i].channel == Channel::kYawRate)
       missed.yaw_rate += std::abs(residuals[static_cast<Eigen::Index>(i)]);
   return missed;
 }
@@ -114,7 +113,7 @@ double improvement(const Fitter& fitter, const FitState& old_state, const FitSta
 /// Effects by how sure their strongest parameter is, least sure first.
 std::vector<std::string> leastSureFirst(const Fitter& fitter, const SearchResult& result,
                                         const std::vector<char>& mask) {
-  const Eigen::MatrixXd covariance = parameterCovariance(fitter.rows(), result.state, mask);
+  const Eigen::MatrixXd covariance = parameterCovariance(fitter.data(), result.state, mask);
   std::map<std::string, double> sure;
   for (size_t i = 0; i < result.state.free.size(); ++i)
     for (const std::string& effect : result.effects) {
@@ -122,8 +121,8 @@ std::vector<std::string> leastSureFirst(const Fitter& fitter, const SearchResult
       if (!belongsTo(parameter, effect)) continue;
       const auto at = static_cast<Eigen::Index>(i);
       const double value = *findParameter(result.state.model, parameter.path);
-      const bool time = parameter.path.find(".time") != std::string::npos;
-      if (!time)
+      const EffectParameter& known = *findEffectParameter(parameter.path);
+      if (known.role == ParameterRole::kStrength)
         sure[effect] = std::max(sure[effect], std::abs(value) / std::sqrt(covariance(at, at)));
     }
   std::vector<std::string> order = result.effects;
@@ -151,12 +150,12 @@ bool isStraight(const FitState& state, const std::string& effect) {
 
 class Pruning {
  public:
-  Pruning(const Fitter& fitter, const std::vector<char>& mask, const Needed& needed,
-          double least_gain, SearchResult& result, const Progress& say)
+  Pruning(const Fitter& fitter, const std::vector<char>& mask, const SearchSettings& settings,
+          const Needed& needed, SearchResult& result, const Progress& say)
       : fitter_(fitter),
         mask_(mask),
+        settings_(settings),
         needed_(needed),
-        least_gain_(least_gain),
         result_(result),
         say_(say) {}
 
@@ -167,7 +166,7 @@ class Pruning {
  private:
   /// Looks at all, least sure first; true if one went.
   bool removeOne() {
-    const Eigen::VectorXd loss = heldOutLoss(fitter_.rows(), result_.state, mask_);
+    const Eigen::VectorXd loss = heldOutLoss(fitter_.data(), result_.state, mask_);
     for (const std::string& effect : leastSureFirst(fitter_, result_, mask_)) {
       // What is beyond doubt in first order needs no simulation without it.
       Needed needed = needed_;
@@ -177,12 +176,13 @@ class Pruning {
       if (straight) removed = linearRemoval(fitter_, result_.state, loss, effect, mask_, needed);
       const bool sure = straight && removed.evidence >= 1.0 && isBeyondDoubt(removed);
       if (!sure) removed = removal(fitter_, result_.state, loss, effect, mask_, needed);
-      const bool stays = sure || contains(result_.accepted, effect);
+      const bool stays = sure || contains(settings_.accepted, effect);
       const std::string why = stays ? "" : reasonAgainst(effect, removed);
       if (why.empty()) {
-        result_.scores[effect] = removed.score;
-        result_.evidence[effect] = removed.evidence;
-        result_.gains[effect] = removed.gain;
+        EffectEvidence& known = result_.evidence[effect];
+        known.score = removed.score;
+        known.evidence = removed.evidence;
+        known.gain = removed.gain;
         continue;
       }
       remove(effect, removed, why);
@@ -191,12 +191,12 @@ class Pruning {
     return removeAtBound(loss);
   }
 
-  /// Last: a superfluous one may have pushed another there.
+  /// Comes last: a superfluous effect may have pushed another one to its bound.
   bool removeAtBound(const Eigen::VectorXd& loss) {
     for (const std::string& effect : result_.effects) {
-      if (contains(result_.accepted, effect) || !isAtBound(effect)) continue;
+      if (contains(settings_.accepted, effect) || !isAtBound(effect)) continue;
       Removal removed = removal(fitter_, result_.state, loss, effect, mask_, needed_);
-      result_.at_bound.push_back(effect);
+      result_.record.at_bound.push_back(effect);
       remove(effect, removed, "runs to the end of its plausible range");
       return true;
     }
@@ -210,9 +210,15 @@ class Pruning {
         });
   }
 
-  /// What has passed the test once does not go for a hair's breadth.
+  /// Whether a test has named it: it is no mere nuisance term.
+  bool wasNamed(const std::string& effect) const {
+    const auto known = result_.evidence.find(effect);
+    return known != result_.evidence.end() && known->second.p_value;
+  }
+
+  /// What has passed the test once stays with a little less evidence.
   bool isNearly(const std::string& effect, const Removal& removed) const {
-    return result_.p_values.count(effect) != 0 && removed.evidence >= kNearly &&
+    return wasNamed(effect) && removed.evidence >= kNearly &&
            removed.gain.value > kNearlySure * removed.gain.error &&
            removed.gain.value > kNearlyNats;
   }
@@ -223,25 +229,25 @@ class Pruning {
     if (removed.evidence < 1.0 && !isBeyondDoubt(removed) && !isNearly(effect, removed))
       return "chance explains it beside the others";
     if (removed.gain.value <= 0.0) return "does not help on blocks left out";
-    if (least_gain_ > 0.0 &&
-        improvement(fitter_, removed.state, result_.state, effect, mask_) < least_gain_)
+    if (settings_.least_gain > 0.0 &&
+        improvement(fitter_, removed.state, result_.state, effect, mask_) < settings_.least_gain)
       return "real, but negligible: changes the end error by less than 1 %";
     return "";
   }
 
   void remove(const std::string effect, Removal& removed, const std::string& why) {
-    // Plain causes that were only taken in as a cover go without a word.
-    const bool was_added = result_.p_values.count(effect) != 0;
-    if (why.compare(0, 4, "real") == 0) result_.negligible.push_back(effect);
+    // Mere nuisance terms go without a word.
+    const bool was_added = wasNamed(effect);
+    if (why.compare(0, 4, "real") == 0) result_.record.negligible.push_back(effect);
     if (was_added) {
-      LadderStep step;
+      SearchStep step;
       step.effect = effect;
       step.removed = true;
       step.score = removed.score;
       step.gain = removed.gain.value;
       step.gain_error = removed.gain.error;
       step.remark = why;
-      result_.ladder.push_back(step);
+      result_.record.steps.push_back(step);
       say_("  - " + effect + ": " + why);
     }
     result_.state = std::move(removed.state);
@@ -250,8 +256,8 @@ class Pruning {
 
   const Fitter& fitter_;
   const std::vector<char>& mask_;
+  const SearchSettings& settings_;
   const Needed needed_;
-  double least_gain_;
   SearchResult& result_;
   const Progress& say_;
 };
@@ -268,7 +274,7 @@ FitState switchedOff(const Fitter& fitter, const FitState& state,
       if (parameter.role == ParameterRole::kStrength)
         *findParameter(reduced.model, effect + "." + parameter.name) = 0.0;
   }
-  reduced.predicted = fitter.rows().predict(reduced.model);
+  reduced.predicted = fitter.data().predict(reduced.model);
   return reduced;
 }
 
@@ -290,9 +296,10 @@ FitState withoutLinearly(const Fitter& fitter, const FitState& state, const std:
   return reduced;
 }
 
-void pruneEffects(const Fitter& fitter, const std::vector<char>& mask, const Needed& needed,
-                  double least_gain, SearchResult& result, const Progress& say) {
-  Pruning(fitter, mask, needed, least_gain, result, say).run();
+void pruneEffects(const Fitter& fitter, const std::vector<char>& mask,
+                  const SearchSettings& settings, const Needed& needed, SearchResult& result,
+                  const Progress& say) {
+  Pruning(fitter, mask, settings, needed, result, say).run();
 }
 
 }  // namespace tread::gap

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/identification/core/replacement.hpp"
+#include "modules/identification/core/search_steps.hpp"
 
 #include <algorithm>
 #include <optional>
 #include <set>
-
-#include "modules/identification/core/pruning.hpp"
 
 namespace tread::gap {
 namespace {
@@ -25,17 +23,17 @@ struct Single {
 /// One of each such effect.
 std::vector<Single> imitated(const Fitter& fitter, const std::vector<char>& mask,
                              const FitState& state, const std::vector<std::string>& rejected) {
-  auto candidates = candidatesFor(state, excitationOf(fitter.rows(), state.model));
+  auto candidates = candidatesFor(state, excitationOf(fitter.data(), state.model));
   leaveOut(candidates, rejected);
   const Eigen::MatrixXd directions = directionsOf(fitter, state, candidates);
-  const ScoreTest test(fitter.rows(), state, directions, mask);
+  const ScoreTest test(fitter.data(), state, directions, mask);
   std::vector<Single> chosen;
   std::set<std::string> names;
   for (size_t i = 0; i < candidates.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const Effect& effect = effectNamed(candidates[i].effect);
     // A change early in the drive has more numbers than the two, and is no simpler.
-    if (!candidates[i].moment.empty()) continue;
+    if (!candidates[i].change_point.empty()) continue;
     if (isOn(effect, state.model.vehicle.effects, state.model.measurement)) continue;
     if (test.uniqueness(at) < kImitated && names.insert(effect.name).second)
       chosen.push_back({candidates[i], directions.col(at)});
@@ -58,16 +56,16 @@ FitState linearlyReplaced(const Fitter& fitter, const std::vector<char>& mask,
 
 class Replacement {
  public:
-  Replacement(const Fitter& fitter, const std::vector<char>& mask, SearchResult& result,
-              const Progress& say)
-      : fitter_(fitter), mask_(mask), result_(result), say_(say) {}
+  Replacement(const Fitter& fitter, const std::vector<char>& mask, const SearchSettings& settings,
+              SearchResult& result, const Progress& say)
+      : fitter_(fitter), mask_(mask), settings_(settings), result_(result), say_(say) {}
 
   /// True if a pair went: that whose single effect fits best.
   bool replaceOne() {
     if (result_.effects.size() < 2) return false;
-    const std::vector<Single> singles = imitated(fitter_, mask_, result_.state, result_.rejected);
+    const std::vector<Single> singles = imitated(fitter_, mask_, result_.state, settings_.rejected);
     if (singles.empty()) return false;
-    const Eigen::VectorXd loss = heldOutLoss(fitter_.rows(), result_.state, mask_);
+    const Eigen::VectorXd loss = heldOutLoss(fitter_.data(), result_.state, mask_);
     for (const Single& single : singles)
       for (size_t a = 0; a < result_.effects.size(); ++a)
         for (size_t b = a + 1; b < result_.effects.size(); ++b)
@@ -91,14 +89,14 @@ class Replacement {
   /// Keeps the exchange if it is bearable and the best so far.
   void tryOne(const Single& imitated_one, const std::string& a, const std::string& b,
               const Eigen::VectorXd& loss) {
-    if (contains(result_.accepted, a) || contains(result_.accepted, b)) return;
-    const std::vector<char> counts = blocksThatCount(fitter_.rows(), mask_);
+    if (contains(settings_.accepted, a) || contains(settings_.accepted, b)) return;
+    const std::vector<char> counts = blocksThatCount(fitter_.data(), mask_);
     const FitState nearly = linearlyReplaced(fitter_, mask_, result_.state, imitated_one, a, b);
-    const Gain first_order = gainOf(heldOutLoss(fitter_.rows(), nearly, mask_), loss, counts);
+    const Gain first_order = gainOf(heldOutLoss(fitter_.data(), nearly, mask_), loss, counts);
     if (first_order.value > kHopeless * first_order.error + kHopelessNats) return;
     const Candidate& single = imitated_one.candidate;
     const FitState reduced = switchedOff(fitter_, result_.state, {a, b});
-    const ScoreTest test(fitter_.rows(), reduced, directionsOf(fitter_, reduced, {single}), mask_);
+    const ScoreTest test(fitter_.data(), reduced, directionsOf(fitter_, reduced, {single}), mask_);
     FitState tried = reduced;
     addCandidate(fitter_, tried, single, test.size(0), mask_);
     fitter_.fitRoughly(tried, mask_);
@@ -109,30 +107,31 @@ class Replacement {
     // What does not fit as well needs no validation; that is in first order and may be mistaken.
     if (tried.loss - result_.state.loss > 2.0 * kBearableNats) return;
     if (best_ && tried.loss >= best_->state.loss) return;
-    const Gain pair_gain = gainOf(heldOutLoss(fitter_.rows(), tried, mask_), loss,
-                                  blocksThatCount(fitter_.rows(), mask_));
+    const Gain pair_gain = gainOf(heldOutLoss(fitter_.data(), tried, mask_), loss,
+                                  blocksThatCount(fitter_.data(), mask_));
     if (pair_gain.value > std::min(pair_gain.error, kBearableNats)) return;
     best_ = Exchange{single.effect, a, b, std::move(tried), pair_gain};
   }
 
   void replace(const Exchange& exchange) {
-    LadderStep step;
+    SearchStep step;
     step.effect = exchange.single;
     step.gain = -exchange.pair_gain.value;
     step.gain_error = exchange.pair_gain.error;
     step.remark = "in the place of " + exchange.a + " and " + exchange.b;
-    result_.ladder.push_back(step);
+    result_.record.steps.push_back(step);
     say_("  = " + exchange.single + " " + step.remark);
     auto& effects = result_.effects;
     effects.erase(std::remove(effects.begin(), effects.end(), exchange.a), effects.end());
     effects.erase(std::remove(effects.begin(), effects.end(), exchange.b), effects.end());
     effects.push_back(exchange.single);
-    result_.replaced[exchange.single] = {exchange.a, exchange.b};
+    result_.evidence[exchange.single].replaced = {exchange.a, exchange.b};
     result_.state = exchange.state;
   }
 
   const Fitter& fitter_;
   const std::vector<char>& mask_;
+  const SearchSettings& settings_;
   SearchResult& result_;
   const Progress& say_;
   std::optional<Exchange> best_;
@@ -140,9 +139,9 @@ class Replacement {
 
 }  // namespace
 
-void replacePairs(const Fitter& fitter, const std::vector<char>& mask, SearchResult& result,
-                  const Progress& say) {
-  Replacement replacement(fitter, mask, result, say);
+void replacePairs(const Fitter& fitter, const std::vector<char>& mask,
+                  const SearchSettings& settings, SearchResult& result, const Progress& say) {
+  Replacement replacement(fitter, mask, settings, result, say);
   while (replacement.replaceOne()) continue;
 }
 

@@ -8,7 +8,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "modules/identification/core/student.hpp"
+#include "modules/identification/core/likelihood.hpp"
 
 namespace tread::gap {
 namespace {
@@ -38,9 +38,9 @@ Eigen::MatrixXd orthogonal(const FitState& state, const Eigen::MatrixXd& directi
 
 }  // namespace
 
-ScoreTest::ScoreTest(const Rows& rows, const FitState& state, const Eigen::MatrixXd& directions,
-                     const std::vector<char>& mask) {
-  const Eigen::VectorXd residuals = rows.residuals(state.predicted);
+ScoreTest::ScoreTest(const Observations& data, const FitState& state,
+                     const Eigen::MatrixXd& directions, const std::vector<char>& mask) {
+  const Eigen::VectorXd residuals = data.residuals(state.predicted);
   Eigen::VectorXd metric(residuals.size());
   Eigen::VectorXd pull(residuals.size());
   for (Eigen::Index i = 0; i < residuals.size(); ++i) {
@@ -50,11 +50,11 @@ ScoreTest::ScoreTest(const Rows& rows, const FitState& state, const Eigen::Matri
   }
   own_ = orthogonal(state, directions, metric);
   const Eigen::Index count = directions.cols();
-  pulls_ = Eigen::MatrixXd::Zero(std::max(1, rows.blocks()), count);
+  pulls_ = Eigen::MatrixXd::Zero(std::max(1, data.blocks()), count);
   block_information_ = pulls_;
   for (Eigen::Index i = 0; i < residuals.size(); ++i)
     if (metric[i] > 0.0) {
-      const int block = rows.rows()[static_cast<size_t>(i)].block;
+      const int block = data.all()[static_cast<size_t>(i)].block;
       pulls_.row(block) += pull[i] * own_.row(i);
       block_information_.row(block) += kInformation * metric[i] * own_.row(i).cwiseAbs2();
     }

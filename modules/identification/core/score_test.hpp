@@ -16,11 +16,11 @@ namespace tread::gap {
  * scales: Neyman), its pull is summed block by block, and T = sum / root of the sum of squares. The
  * distribution of the largest |T| over all columns under "nothing is there" comes from giving each
  * block's pull a random sign (wild bootstrap), the same for all columns, so that correlated columns
- * do not count twice. Blocks, not samples: the ground's noise is correlated (gap.md 4.5). */
+ * do not count twice. Blocks, not samples: the ground's noise is correlated. */
 class ScoreTest {
  public:
   /// `directions` rows x candidates.
-  ScoreTest(const Rows& rows, const FitState& state, const Eigen::MatrixXd& directions,
+  ScoreTest(const Observations& data, const FitState& state, const Eigen::MatrixXd& directions,
             const std::vector<char>& mask);
 
   Eigen::Index candidates() const { return pulls_.cols(); }
@@ -50,7 +50,7 @@ class ScoreTest {
   /// The candidate freed of what the free parameters explain (rows x 1).
   Eigen::VectorXd own(Eigen::Index candidate) const { return own_.col(candidate); }
 
-  /// Largest |T| over all candidates in each of `draws` worlds in which nothing is there, sorted.
+  /// Largest |T| over all candidates in each of `draws` draws with nothing there, sorted.
   std::vector<double> largestByChance(int draws, uint64_t seed) const;
 
  private:

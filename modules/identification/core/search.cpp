@@ -4,22 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
-#include "modules/identification/core/acceptance.hpp"
-#include "modules/identification/core/moments.hpp"
-#include "modules/identification/core/pruning.hpp"
-#include "modules/identification/core/replacement.hpp"
-#include "modules/identification/core/round.hpp"
+#include "modules/identification/core/change_points.hpp"
+#include "modules/identification/core/diagnostics.hpp"
+#include "modules/identification/core/search_steps.hpp"
 
 namespace tread::gap {
 namespace {
 
-constexpr size_t kRenewed = 10;  // directions that are simulated again in a round
-
-std::string effectOf(const std::string& path) {
-  return path.substr(0, path.find('.'));
-}
+constexpr size_t kRenewed = 10;  // directions that are simulated again in a screening
 
 bool hasVanished(const ModelDocument& model, const Candidate& candidate) {
   const double size = *findParameter(model, candidate.effect + "." + candidate.parameter) -
@@ -27,31 +20,31 @@ bool hasVanished(const ModelDocument& model, const Candidate& candidate) {
   return isVanishing(candidate.effect, candidate.parameter, size);
 }
 
-class Search {
+class EffectSelection {
  public:
-  Search(const Fitter& fitter, const std::vector<char>& mask, const SearchSettings& settings,
-         SearchMemory& memory, const Progress& say)
+  EffectSelection(const Fitter& fitter, const std::vector<char>& mask,
+                  const SearchSettings& settings, SearchMemory& memory, const Progress& say)
       : fitter_(fitter), mask_(mask), settings_(settings), memory_(memory), say_(say) {}
 
   SearchResult run(const ModelDocument& model) {
     calibrate(model);
     takeInAccepted();
     if (settings_.all_sized && !result_.unsized.empty()) return std::move(result_);
-    Round round = test(memory_.calibrated);
-    result_.tests = round.tests;
-    const Round first = round;
-    if (!significant(round).empty()) {
-      cover();
-      round = test(memory_.covered);
-      while (result_.effects.size() < settings_.most + covered_ && addBest(round)) {
-        renewLikeliest(round);
-        round = test(memory_.covered);
+    Screening screening = test(memory_.calibrated);
+    result_.record.candidates = screening.tests;
+    const Screening first = screening;
+    if (!significant(screening).empty()) {
+      freeNuisanceTerms();
+      screening = test(memory_.with_nuisance);
+      while (result_.effects.size() < settings_.most + nuisance_terms_ && addBest(screening)) {
+        renewLikeliest(screening);
+        screening = test(memory_.with_nuisance);
       }
-      prune(round);
-      noteDetectable(test(memory_.covered));
-      if (foundNothing()) searchUncovered(first);
+      prune(screening);
+      noteDetectable(test(memory_.with_nuisance));
+      if (foundNothing()) searchWithoutNuisance(first);
     } else if (!result_.effects.empty()) {
-      prune(round);
+      prune(screening);
     }
     return std::move(result_);
   }
@@ -60,24 +53,24 @@ class Search {
   FitState& state() { return result_.state; }
   const FitState& state() const { return result_.state; }
 
-  /// Neither an effect nor a term that is another now nor something too small to matter.
+  /// Neither an effect nor a term that was re-estimated nor something too small to matter.
   bool foundNothing() const {
     const bool only_accepted = std::all_of(
         result_.effects.begin(), result_.effects.end(),
         [this](const std::string& effect) { return contains(settings_.accepted, effect); });
-    return only_accepted && result_.negligible.empty() && result_.released.empty();
+    return only_accepted && result_.record.negligible.empty() && result_.released.empty();
   }
 
-  /// The cover can imitate an effect and then go part by part, each as superfluous: once more with
-  /// nothing but what the first test shows.
-  void searchUncovered(Round round) {
+  /// Nuisance terms can imitate an effect and then go one by one, each as superfluous: searches
+  /// once more with nothing but what the first test shows.
+  void searchWithoutNuisance(Screening screening) {
     state() = result_.calibrated;
-    DirectionBook book = memory_.calibrated;
-    while (result_.effects.size() < settings_.most && addBest(round)) {
-      book.renew(fitter_, state(), likeliestOf(round));
-      round = test(book);
+    SensitivityCache cache = memory_.calibrated;
+    while (result_.effects.size() < settings_.most && addBest(screening)) {
+      cache.renew(fitter_, state(), likeliestOf(screening));
+      screening = test(cache);
     }
-    if (!result_.effects.empty()) prune(round);
+    if (!result_.effects.empty()) prune(screening);
   }
 
   void calibrate(const ModelDocument& model) {
@@ -86,10 +79,8 @@ class Search {
     result_.calibrated = state();
   }
 
-  /// What a person has accepted is there before anything is tested.
+  /// Takes in what a person has accepted, before anything is tested.
   void takeInAccepted() {
-    result_.accepted = settings_.accepted;
-    result_.rejected = settings_.rejected;
     for (const std::string& effect : settings_.accepted) {
       if (isOn(effectNamed(effect), state().model.vehicle.effects, state().model.measurement))
         continue;
@@ -102,7 +93,7 @@ class Search {
     result_.calibrated = state();
   }
 
-  /// Fit and noise in turn: the noise of a worse fit is too large.
+  /// Fits, re-estimates the noise and fits again: the noise of a worse fit is too large.
   void settle(FitState& fitted) const {
     fitter_.fitRoughly(fitted, mask_);
     fitter_.renewNoise(fitted, mask_);
@@ -110,35 +101,35 @@ class Search {
     if (fitted.jacobian.rows() == 0) fitter_.renewJacobian(fitted);
   }
 
-  Round test(DirectionBook& book) const {
-    return testedRound(fitter_, state(), mask_, settings_, !has_cover_, book);
+  Screening test(SensitivityCache& cache) const {
+    return screen(fitter_, state(), mask_, settings_, !has_nuisance_, cache);
   }
 
   /// What could have been seen beside what was found: before, its size hid the rest.
-  void noteDetectable(const Round& last) {
-    for (CandidateTest& first : result_.tests)
+  void noteDetectable(const Screening& last) {
+    for (CandidateTest& first : result_.record.candidates)
       for (const CandidateTest& now : last.tests)
         if (now.effect == first.effect) first.detectable = now.detectable;
   }
 
-  /// The likeliest candidates of the last round get directions of the model as it is now.
-  void renewLikeliest(const Round& round) {
-    memory_.covered.renew(fitter_, state(), likeliestOf(round));
+  /// The likeliest candidates of the last screening get directions of the model as it is now.
+  void renewLikeliest(const Screening& screening) {
+    memory_.with_nuisance.renew(fitter_, state(), likeliestOf(screening));
   }
 
-  std::vector<Candidate> likeliestOf(const Round& round) const {
+  std::vector<Candidate> likeliestOf(const Screening& screening) const {
     std::vector<Candidate> likeliest;
-    for (size_t i : round.best)
+    for (size_t i : screening.best)
       if (likeliest.size() < kRenewed &&
-          !isOn(effectNamed(round.candidates[i].effect), state().model.vehicle.effects,
+          !isOn(effectNamed(screening.candidates[i].effect), state().model.vehicle.effects,
                 state().model.measurement))
-        likeliest.push_back(round.candidates[i]);
+        likeliest.push_back(screening.candidates[i]);
     return likeliest;
   }
 
-  void cover() {
+  void freeNuisanceTerms() {
     for (const Effect* effect : nuisanceEffects()) {
-      // Numbers of the nominal model that are free cover the same.
+      // Numbers of the nominal model that are free do the same.
       if (settings_.calibrate && !effect->search.nominal.empty()) continue;
       if (contains(settings_.rejected, effect->name)) continue;
       if (isOn(*effect, state().model.vehicle.effects, state().model.measurement)) continue;
@@ -147,10 +138,10 @@ class Search {
       parameter.expected = 0.0;
       fitter_.add(state(), parameter, 0.0, mask_);
       result_.effects.push_back(effect->name);
-      ++covered_;
+      ++nuisance_terms_;
     }
     settle(state());
-    has_cover_ = true;
+    has_nuisance_ = true;
   }
 
   /// A candidate that was refitted, and what that brings on blocks left out.
@@ -162,25 +153,25 @@ class Search {
     std::string refused;
   };
 
-  Trial tryOut(const Round& round, size_t index, const Eigen::VectorXd& loss_now) const {
+  Trial tryOut(const Screening& screening, size_t index, const Eigen::VectorXd& loss_now) const {
     Trial trial;
     trial.candidate = index;
     trial.state = state();
-    addCandidate(fitter_, trial.state, round.candidates[index], round.sizes[index], mask_);
+    addCandidate(fitter_, trial.state, screening.candidates[index], screening.sizes[index], mask_);
     fitter_.fitRoughly(trial.state, mask_);
-    if (!round.candidates[index].moment.empty()) {
-      refineMoment(fitter_, trial.state, round.candidates[index].moment, mask_);
+    if (!screening.candidates[index].change_point.empty()) {
+      refineChangePoint(fitter_, trial.state, screening.candidates[index].change_point, mask_);
       fitter_.fitRoughly(trial.state, mask_);
     }
-    if (hasVanished(trial.state.model, round.candidates[index]))
+    if (hasVanished(trial.state.model, screening.candidates[index]))
       trial.refused = "its size vanishes in the fit";
     for (const FreeParameter& parameter : trial.state.free)
-      if (effectOf(parameter.path) == round.candidates[index].effect &&
+      if (effectOf(parameter.path) == screening.candidates[index].effect &&
           *findParameter(trial.state.model, parameter.path) != 0.0 &&
           onBound(trial.state.model, parameter))
         trial.refused = parameter.path + " runs to the end of its plausible range";
-    trial.loss = heldOutLoss(fitter_.rows(), trial.state, mask_);
-    trial.gain = gainOf(loss_now, trial.loss, blocksThatCount(fitter_.rows(), mask_));
+    trial.loss = heldOutLoss(fitter_.data(), trial.state, mask_);
+    trial.gain = gainOf(loss_now, trial.loss, blocksThatCount(fitter_.data(), mask_));
     // First order may promise more than the refit keeps.
     trial.gain.value = std::min(trial.gain.value, state().loss - trial.state.loss);
     return trial;
@@ -188,23 +179,23 @@ class Search {
 
   /// Refits the most promising effects and adds the one that helps most on blocks left out; the
   /// next ones if none of them is possible.
-  bool addBest(const Round& round) {
-    const std::vector<size_t> found = significant(round);
+  bool addBest(const Screening& screening) {
+    const std::vector<size_t> found = significant(screening);
     if (found.empty()) return false;
-    const Eigen::VectorXd now = heldOutLoss(fitter_.rows(), state(), mask_);
+    const Eigen::VectorXd now = heldOutLoss(fitter_.data(), state(), mask_);
     std::vector<Trial> trials;
     const Trial* best = nullptr;
     for (size_t begin = 0; begin < found.size() && best == nullptr; begin += settings_.tried) {
       const size_t end = std::min(found.size(), begin + settings_.tried);
-      for (size_t i = begin; i < end; ++i) trials.push_back(tryOut(round, found[i], now));
+      for (size_t i = begin; i < end; ++i) trials.push_back(tryOut(screening, found[i], now));
       for (const Trial& trial : trials)
         if (trial.refused.empty() && trial.gain.value > 0.0 &&
             (best == nullptr || trial.gain.value > best->gain.value))
           best = &trial;
     }
-    noteTrials(round, trials, best);
+    noteTrials(screening, trials, best);
     if (best == nullptr) return false;
-    const Candidate& added = round.candidates[best->candidate];
+    const Candidate& added = screening.candidates[best->candidate];
     state() = best->state;
     settle(state());
     if (added.release) result_.released.push_back(added.effect);
@@ -213,55 +204,55 @@ class Search {
     return true;
   }
 
-  void noteTrials(const Round& round, const std::vector<Trial>& trials, const Trial* best) {
-    LadderStep step;
+  void noteTrials(const Screening& screening, const std::vector<Trial>& trials, const Trial* best) {
+    SearchStep step;
     for (const Trial& trial : trials) {
-      const std::string& effect = round.candidates[trial.candidate].effect;
+      const std::string& effect = screening.candidates[trial.candidate].effect;
       if (&trial == best) {
         step.effect = effect;
-        step.score = round.scores[trial.candidate];
-        step.p_value = pValueOf(round, step.score, round.evidence[trial.candidate]);
+        step.score = screening.scores[trial.candidate];
+        step.p_value = pValueOf(screening, step.score, screening.evidence[trial.candidate]);
         step.gain = trial.gain.value;
         step.gain_error = trial.gain.error;
-        if (round.candidates[trial.candidate].release) step.remark = "is not what the model says";
-      } else if (!trial.refused.empty() && round.candidates[trial.candidate].release) {
+        if (screening.candidates[trial.candidate].release)
+          step.remark = "is not what the model says";
+      } else if (!trial.refused.empty() && screening.candidates[trial.candidate].release) {
         continue;  // the term stays what the model says
       } else if (!trial.refused.empty()) {
-        LadderStep refused;
+        SearchStep refused;
         refused.effect = effect;
-        refused.score = round.scores[trial.candidate];
-        refused.p_value = pValueOf(round, refused.score, round.evidence[trial.candidate]);
+        refused.score = screening.scores[trial.candidate];
+        refused.p_value = pValueOf(screening, refused.score, screening.evidence[trial.candidate]);
         refused.removed = true;
         refused.remark = trial.refused;
-        result_.ladder.push_back(refused);
+        result_.record.steps.push_back(refused);
       } else if (best != nullptr) {
-        const Gain behind = gainOf(trial.loss, best->loss, blocksThatCount(fitter_.rows(), mask_));
+        const Gain behind = gainOf(trial.loss, best->loss, blocksThatCount(fitter_.data(), mask_));
         step.runner_ups.push_back({effect, behind.value, behind.error});
       }
     }
     if (best == nullptr) return;
-    result_.runner_ups[step.effect] = step.runner_ups;
-    result_.p_values[step.effect] = step.p_value;
-    result_.ladder.push_back(step);
-    char line[160];
-    std::snprintf(line, sizeof line, "  + %s: score %.1f, held-out gain %.1f +- %.1f",
-                  step.effect.c_str(), step.score, step.gain, step.gain_error);
-    say_(line);
+    result_.evidence[step.effect].runner_ups = step.runner_ups;
+    result_.evidence[step.effect].p_value = step.p_value;
+    result_.record.steps.push_back(step);
+    say_("  + " + step.effect + ": score " + fixed(step.score, 1) + ", held-out gain " +
+         fixed(step.gain, 1) + " +- " + fixed(step.gain_error, 1));
   }
 
-  void prune(const Round& last) {
+  void prune(const Screening& last) {
     const Needed needed{criticalScore(last.chance, settings_.alpha_more), last.overdispersion,
                         false, true};
-    pruneEffects(fitter_, mask_, needed, settings_.least_gain, result_, say_);
-    const size_t before = result_.ladder.size();
-    replacePairs(fitter_, mask_, result_, say_);
-    if (result_.ladder.size() > before)
-      pruneEffects(fitter_, mask_, needed, settings_.least_gain, result_, say_);
+    pruneEffects(fitter_, mask_, settings_, needed, result_, say_);
+    const size_t before = result_.record.steps.size();
+    replacePairs(fitter_, mask_, settings_, result_, say_);
+    if (result_.record.steps.size() > before)
+      pruneEffects(fitter_, mask_, settings_, needed, result_, say_);
     for (const std::string& effect : result_.effects) {
-      double& p = result_.p_values.emplace(effect, 1.0).first->second;
-      const double last_p = pValueOf(last, result_.scores[effect], result_.evidence[effect]);
+      EffectEvidence& of = result_.evidence[effect];
+      const double known = of.p_value.value_or(1.0);
+      const double last_p = pValueOf(last, of.score, of.evidence);
       // What stays for its gain, and not for its score, keeps the p of its acceptance.
-      if (result_.evidence[effect] >= 1.0 || last_p < p) p = last_p;
+      of.p_value = of.evidence >= 1.0 || last_p < known ? last_p : known;
     }
     settle(state());
   }
@@ -272,8 +263,8 @@ class Search {
   SearchMemory& memory_;
   const Progress& say_;
   SearchResult result_;
-  size_t covered_ = 0;
-  bool has_cover_ = false;
+  size_t nuisance_terms_ = 0;
+  bool has_nuisance_ = false;
 };
 
 /// A parameter held by what the model's covariance says of it, if it does.
@@ -311,7 +302,7 @@ std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool cali
 
 SearchResult search(const Fitter& fitter, const ModelDocument& model, const std::vector<char>& mask,
                     const SearchSettings& settings, SearchMemory& memory, const Progress& say) {
-  return Search(fitter, mask, settings, memory, say).run(model);
+  return EffectSelection(fitter, mask, settings, memory, say).run(model);
 }
 
 FitState refitted(const Fitter& fitter, const SearchResult& result, const std::vector<char>& mask) {

@@ -16,14 +16,15 @@ constexpr double kLeastEigenvalue = 1e-7;  // of the normal matrix in units of i
 constexpr double kUnknown = 1e12;
 
 /// Fold of each row: whole blocks, counted among those that count.
-std::vector<int> foldsOf(const Rows& rows, const std::vector<char>& counts) {
+std::vector<int> foldsOf(const Observations& data, const std::vector<char>& counts) {
   std::vector<int> fold_of_block(counts.size(), 0);
   int next = 0;
   for (size_t b = 0; b < counts.size(); ++b)
     if (counts[b]) fold_of_block[b] = next++ % kFolds;
   std::vector<int> folds;
-  folds.reserve(rows.rows().size());
-  for (const Row& row : rows.rows()) folds.push_back(fold_of_block[static_cast<size_t>(row.block)]);
+  folds.reserve(data.all().size());
+  for (const Observation& row : data.all())
+    folds.push_back(fold_of_block[static_cast<size_t>(row.block)]);
   return folds;
 }
 
@@ -62,18 +63,18 @@ Eigen::VectorXd refitted(const FitState& state, const Eigen::VectorXd& residuals
 
 }  // namespace
 
-std::vector<char> blocksThatCount(const Rows& rows, const std::vector<char>& mask) {
-  std::vector<char> counts(static_cast<size_t>(rows.blocks()), 0);
+std::vector<char> blocksThatCount(const Observations& data, const std::vector<char>& mask) {
+  std::vector<char> counts(static_cast<size_t>(data.blocks()), 0);
   for (size_t i = 0; i < mask.size(); ++i)
-    if (mask[i]) counts[static_cast<size_t>(rows.rows()[i].block)] = 1;
+    if (mask[i]) counts[static_cast<size_t>(data.all()[i].block)] = 1;
   return counts;
 }
 
-Eigen::VectorXd heldOutLoss(const Rows& rows, const FitState& state,
+Eigen::VectorXd heldOutLoss(const Observations& data, const FitState& state,
                             const std::vector<char>& mask) {
-  const Eigen::VectorXd residuals = rows.residuals(state.predicted);
-  const std::vector<int> folds = foldsOf(rows, blocksThatCount(rows, mask));
-  Eigen::VectorXd loss = Eigen::VectorXd::Zero(rows.blocks());
+  const Eigen::VectorXd residuals = data.residuals(state.predicted);
+  const std::vector<int> folds = foldsOf(data, blocksThatCount(data, mask));
+  Eigen::VectorXd loss = Eigen::VectorXd::Zero(data.blocks());
   for (int fold = 0; fold < kFolds; ++fold) {
     std::vector<char> train(mask.size());
     for (size_t i = 0; i < mask.size(); ++i) train[i] = mask[i] && folds[i] != fold;
@@ -82,7 +83,7 @@ Eigen::VectorXd heldOutLoss(const Rows& rows, const FitState& state,
     for (size_t i = 0; i < mask.size(); ++i)
       if (mask[i] && folds[i] == fold) {
         const auto at = static_cast<Eigen::Index>(i);
-        loss[rows.rows()[i].block] += lossOf(outside[at], state.scales[at]);
+        loss[data.all()[i].block] += lossOf(outside[at], state.scales[at]);
       }
   }
   return loss;
@@ -90,7 +91,7 @@ Eigen::VectorXd heldOutLoss(const Rows& rows, const FitState& state,
 
 void followLinearly(const Fitter& fitter, FitState& state, const std::vector<char>& mask) {
   if (state.free.empty()) return;
-  const Eigen::VectorXd residuals = fitter.rows().residuals(state.predicted);
+  const Eigen::VectorXd residuals = fitter.data().residuals(state.predicted);
   state.predicted += state.jacobian * refitted(state, residuals, mask);
 }
 
@@ -110,26 +111,26 @@ Gain gainOf(const Eigen::VectorXd& first, const Eigen::VectorXd& second,
   return gain;
 }
 
-Eigen::MatrixXd parameterCovariance(const Rows& rows, const FitState& state,
+Eigen::MatrixXd parameterCovariance(const Observations& data, const FitState& state,
                                     const std::vector<char>& mask) {
   const auto count = static_cast<Eigen::Index>(state.free.size());
   if (count == 0) return {};
-  const Eigen::VectorXd residuals = rows.residuals(state.predicted);
-  Eigen::MatrixXd pulls = Eigen::MatrixXd::Zero(rows.blocks(), count);
+  const Eigen::VectorXd residuals = data.residuals(state.predicted);
+  Eigen::MatrixXd pulls = Eigen::MatrixXd::Zero(data.blocks(), count);
   Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(count, count);
   constexpr double kInformation = (kFreedom + 1.0) / (kFreedom + 3.0);
   Eigen::VectorXd metric = Eigen::VectorXd::Zero(residuals.size());
   for (Eigen::Index i = 0; i < residuals.size(); ++i) {
     if (!mask[static_cast<size_t>(i)]) continue;
     metric[i] = kInformation / (state.scales[i] * state.scales[i]);
-    pulls.row(rows.rows()[static_cast<size_t>(i)].block) +=
+    pulls.row(data.all()[static_cast<size_t>(i)].block) +=
         pullOf(residuals[i], state.scales[i]) * state.jacobian.row(i);
   }
   curvature = state.jacobian.transpose() * metric.asDiagonal() * state.jacobian;
   curvature.diagonal() += priorPrecision(state.free);
   Eigen::MatrixXd scatter = pulls.transpose() * pulls;
   scatter.diagonal() += priorPrecision(state.free);
-  const auto counts = blocksThatCount(rows, mask);
+  const auto counts = blocksThatCount(data, mask);
   const auto blocks = static_cast<double>(std::count(counts.begin(), counts.end(), char{1}));
   if (blocks > 1.0) scatter *= blocks / (blocks - 1.0);
   // In units of each diagonal, so that metres and seconds compare.

@@ -13,7 +13,8 @@ namespace tread::gap {
 /// Loss of every block when the parameters come from the other blocks (blocks x 1) [nats].
 /** Folds of whole blocks; a fold's parameters are those of a linearised refit from the state's
  * optimum without it, so that no simulation is needed. The state's Jacobian must be current. */
-Eigen::VectorXd heldOutLoss(const Rows& rows, const FitState& state, const std::vector<char>& mask);
+Eigen::VectorXd heldOutLoss(const Observations& data, const FitState& state,
+                            const std::vector<char>& mask);
 
 /// Lets the free parameters of a state follow its residuals in first order: the prediction changes,
 /// the model does not.
@@ -30,12 +31,12 @@ Gain gainOf(const Eigen::VectorXd& first, const Eigen::VectorXd& second,
             const std::vector<char>& block_counts);
 
 /// Which blocks have rows that count.
-std::vector<char> blocksThatCount(const Rows& rows, const std::vector<char>& mask);
+std::vector<char> blocksThatCount(const Observations& data, const std::vector<char>& mask);
 
 /// Covariance of the free parameters from the scatter of the blocks' pulls (free x free).
 /** Sandwich over blocks with its small-sample factor; a direction of no information is infinite
  * (a diagonal of 1e12 times the square of its step). */
-Eigen::MatrixXd parameterCovariance(const Rows& rows, const FitState& state,
+Eigen::MatrixXd parameterCovariance(const Observations& data, const FitState& state,
                                     const std::vector<char>& mask);
 
 }  // namespace tread::gap

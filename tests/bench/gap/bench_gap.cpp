@@ -41,17 +41,16 @@ GapTask taskOf(const Hidden& hidden) {
   GapTask task;
   task.model = syntheticVehicle();
   task.seed = kSeed;
-  task.threads = 1;
   task.train.push_back(syntheticDrive(truth, kSeconds, kSeed));
   return task;
 }
 
 /// Seconds that one simulation and prediction of the drive by the nominal model takes.
 double predictionTime(const GapTask& task) {
-  const Rows rows(task.train, {});
-  benchmark::DoNotOptimize(rows.predict(task.model).data());
+  const Observations data(task.train, {});
+  benchmark::DoNotOptimize(data.predict(task.model).data());
   const double begun = now();
-  for (int i = 0; i < kReference; ++i) benchmark::DoNotOptimize(rows.predict(task.model).data());
+  for (int i = 0; i < kReference; ++i) benchmark::DoNotOptimize(data.predict(task.model).data());
   return (now() - begun) / kReference;
 }
 
@@ -66,7 +65,7 @@ void find(benchmark::State& state, const Hidden& hidden) {
     const Finding finding = findGap(task, silent);
     spent += now() - begun;
     names = verdictName(finding.verdict);
-    for (const FoundEffect& effect : finding.effects) names += " " + effect.name;
+    for (const FoundEffect& effect : finding.identified.effects) names += " " + effect.name;
   }
   const double each = spent / static_cast<double>(state.iterations());
   state.counters["cpu_s"] = each;

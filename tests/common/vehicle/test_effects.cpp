@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/vehicle/effects.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "tests/common/vehicle/rich_drive.hpp"
 
 using namespace tread;
@@ -91,6 +92,26 @@ TEST_CASE("Every entry of the catalogue is complete") {
       CHECK((parameter.reciprocal() == (parameter.name == "inverse_limit")));
     }
   }
+}
+
+TEST_CASE("What an entry says of its search names numbers and parameters that exist") {
+  const ModelDocument model;
+  std::set<int> ranks;
+  for (const Effect& effect : effectCatalogue()) {
+    INFO(effect.name);
+    for (const std::string& number : effect.search.nominal) {
+      CHECK(findParameter(model, number) != nullptr);
+      CHECK(effectOfPath(number) == effect.name);
+    }
+    if (effect.search.nuisance_rank > 0) CHECK(ranks.insert(effect.search.nuisance_rank).second);
+    for (const ChangePoint& change : effect.search.change_points) {
+      CHECK(parameterNamed(effect, change.time).role == ParameterRole::kShape);
+      CHECK(change.fitted <= change.strengths.size());
+      for (const std::string& strength : change.strengths)
+        CHECK(parameterNamed(effect, strength).role == ParameterRole::kStrength);
+    }
+  }
+  CHECK(nuisanceEffects().size() == ranks.size());
 }
 
 TEST_CASE("No two parameters share their place") {

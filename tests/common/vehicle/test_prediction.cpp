@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include "common/vehicle/model_file.hpp"
-#include "common/vehicle/prediction.hpp"
+#include "common/vehicle/kernel.hpp"
 
 using namespace tread;
 

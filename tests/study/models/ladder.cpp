@@ -4,8 +4,9 @@
 
 #include <functional>
 
+#include "modules/identification/core/confirmation.hpp"
 #include "modules/identification/core/dead_reckoning.hpp"
-#include "modules/identification/core/enough_driving.hpp"
+#include "modules/identification/core/verdict.hpp"
 
 namespace tread::gap {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 constexpr int kLeastForNestedEffects = 2 * kLeastBlocks;  // as find
 constexpr auto kFound = static_cast<size_t>(Rung::kDiscovered);
 
-using RungErrors = std::array<std::optional<std::vector<EndError>>, kRungs>;
+using RungErrors = std::array<std::optional<std::vector<ExecutionError>>, kRungs>;
 
 std::string joinedNames(const std::vector<std::string>& names) {
   std::string all;
@@ -26,12 +27,12 @@ void sayFound(const RungModel& rung, const Progress& say) {
 }
 
 /// Adds the errors of a fold's models on executions that count.
-void addErrors(const Rows& rows, const RungModels& models,
-               const std::function<bool(const EndError&)>& counts, RungErrors& all) {
+void addErrors(const Observations& data, const RungModels& models,
+               const std::function<bool(const ExecutionError&)>& counts, RungErrors& all) {
   for (size_t r = 0; r < kRungs; ++r) {
     if (!models[r]) continue;
     if (!all[r]) all[r].emplace();
-    for (const EndError& error : endErrors(rows, *models[r]))
+    for (const ExecutionError& error : endErrors(data, *models[r]))
       if (counts(error)) all[r]->push_back(error);
   }
 }
@@ -39,33 +40,26 @@ void addErrors(const Rows& rows, const RungModels& models,
 void summarise(const RungErrors& errors, LadderRow& row) {
   for (size_t r = 0; r < kRungs; ++r) {
     if (!errors[r]) continue;
-    row.errors[r] = summaryOf(*errors[r], [](const EndError&) { return true; });
+    row.errors[r] = summaryOf(*errors[r], [](const ExecutionError&) { return true; });
     if (r != kFound && errors[kFound]) row.behind[r] = differenceOf(*errors[r], *errors[kFound]);
   }
 }
 
 /// Why nothing can be concluded from a log; empty if it is sound.
 std::string fatalNote(const Drive& drive) {
-  for (const HygieneNote& note : drive.notes)
+  for (const LogNote& note : drive.notes)
     if (note.fatal) return note.what;
   return "";
 }
 
-LadderRow rowOf(const Drive& drive, const Rows& rows) {
+LadderRow rowOf(const Drive& drive, const Observations& data) {
   LadderRow row;
   row.log = drive.name;
-  row.blocks = measuredBlocks(rows);
+  row.blocks = measuredBlocks(data);
   row.driven = drive.driven();
-  row.floor = deadReckoningFloor(rows.drives());
+  row.floor = deadReckoningFloor(data.drives());
   row.remark = fatalNote(drive);
   return row;
-}
-
-std::vector<char> halfMask(const Rows& rows, int half) {
-  std::vector<char> mask;
-  mask.reserve(rows.rows().size());
-  for (const Row& row : rows.rows()) mask.push_back(row.block % 2 == half);
-  return mask;
 }
 
 /// What the search of a log is to the rung of one of its halves.
@@ -75,7 +69,7 @@ class Discoverer {
              const Progress& say)
       : fitter_(fitter), ideal_(ideal), seed_(seed), say_(say) {
     if (nested) return;
-    const std::vector<char> all(fitter.rows().rows().size(), 1);
+    const std::vector<char> all(fitter.data().all().size(), 1);
     say_("  effects on the whole log");
     whole_ = searchOn(all);
   }
@@ -109,27 +103,27 @@ class Discoverer {
 
 LadderRow nestedRow(const LadderLog& log, const LadderTask& task, const Progress& say) {
   const std::vector<Drive> drives{log.drive};
-  const Rows rows(drives, {});
-  LadderRow row = rowOf(log.drive, rows);
+  const Observations data(drives, {});
+  LadderRow row = rowOf(log.drive, data);
   say(row.log + ": " + std::to_string(row.blocks) + " blocks");
-  if (row.remark.empty()) row.remark = tooLittleDriving(rows);
+  if (row.remark.empty()) row.remark = tooLittleDriving(data);
   if (!row.remark.empty()) {
     say("  left out: " + row.remark);
     return row;
   }
-  const Fitter fitter(rows, task.threads);
+  const Fitter fitter(data, task.parallel);
   row.structure_nested = row.blocks >= kLeastForNestedEffects;
   const Discoverer discoverer(fitter, log.ideal, task.seed, row.structure_nested, say);
   RungErrors errors;
   for (int half : {0, 1}) {
     say("  from half " + std::to_string(half + 1));
-    const std::vector<char> mask = halfMask(rows, half);
+    const std::vector<char> mask = halfMask(data, half);
     LadderFold fold;
     fold.trained_on = "half " + std::to_string(half + 1);
     fold.models = fitRungs(fitter, log.ideal, log.ideal_known, mask, say);
     fold.models[kFound] = discoverer.on(mask);
     addErrors(
-        rows, fold.models, [half](const EndError& error) { return error.block % 2 != half; },
+        data, fold.models, [half](const ExecutionError& error) { return error.block % 2 != half; },
         errors);
     row.folds.push_back(std::move(fold));
   }
@@ -145,25 +139,25 @@ LadderRow pooledRow(const LadderTask& task, size_t left_out, const Progress& say
     if (i != left_out && sound) train.push_back(task.logs[i].drive);
   }
   const std::vector<Drive> test{log.drive};
-  const Rows test_rows(test, {});
-  LadderRow row = rowOf(log.drive, test_rows);
-  const Rows rows(train, {});
-  say(row.log + " left out, from " + std::to_string(rows.blocks()) + " blocks of the others");
-  if (row.remark.empty() && !tooLittleDriving(rows).empty())
-    row.remark = "of the others " + tooLittleDriving(rows);
+  const Observations test_data(test, {});
+  LadderRow row = rowOf(log.drive, test_data);
+  const Observations data(train, {});
+  say(row.log + " left out, from " + std::to_string(data.blocks()) + " blocks of the others");
+  if (row.remark.empty() && !tooLittleDriving(data).empty())
+    row.remark = "of the others " + tooLittleDriving(data);
   if (!row.remark.empty()) {
     say("  left out: " + row.remark);
     return row;
   }
-  const Fitter fitter(rows, task.threads);
-  const std::vector<char> all(rows.rows().size(), 1);
+  const Fitter fitter(data, task.parallel);
+  const std::vector<char> all(data.all().size(), 1);
   LadderFold fold;
   fold.trained_on = "all but " + row.log;
   fold.models = fitRungs(fitter, log.ideal, log.ideal_known, all, say);
   fold.models[kFound] = Discoverer(fitter, log.ideal, task.seed, true, say).on(all);
   RungErrors errors;
   addErrors(
-      test_rows, fold.models, [](const EndError&) { return true; }, errors);
+      test_data, fold.models, [](const ExecutionError&) { return true; }, errors);
   row.folds.push_back(std::move(fold));
   summarise(errors, row);
   return row;
@@ -175,7 +169,7 @@ std::string unusable(const Drive& drive) {
   const std::string fatal = fatalNote(drive);
   if (!fatal.empty()) return fatal;
   const std::vector<Drive> drives{drive};
-  return tooLittleDriving(Rows(drives, {}));
+  return tooLittleDriving(Observations(drives, {}));
 }
 
 Ladder climbLadder(const LadderTask& task, const Progress& say) {

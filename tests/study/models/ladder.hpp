@@ -17,7 +17,7 @@ struct LadderTask {
   std::vector<LadderLog> logs;
   bool pool = false;  ///< also learn from all logs but one, for each
   uint64_t seed = 1;
-  int threads = 1;  ///< does not change a bit of the result
+  ParallelFor parallel = serialFor;  ///< does not change a bit of the result
 };
 
 /// A mean difference of end errors over executions; standard error over blocks of driving.
@@ -69,7 +69,7 @@ std::string unusable(const Drive& drive);
 
 /// Mean of second less first over executions, its standard error clustered by blocks.
 /** Both of the same executions in the same order. */
-RungDifference differenceOf(const std::vector<EndError>& first,
-                            const std::vector<EndError>& second);
+RungDifference differenceOf(const std::vector<ExecutionError>& first,
+                            const std::vector<ExecutionError>& second);
 
 }  // namespace tread::gap

@@ -8,7 +8,7 @@
 namespace tread::gap {
 namespace {
 
-MeanDifference meanOf(const std::vector<double>& values, const std::vector<EndError>& where) {
+MeanDifference meanOf(const std::vector<double>& values, const std::vector<ExecutionError>& where) {
   MeanDifference difference;
   if (values.empty()) return difference;
   const auto count = static_cast<double>(values.size());
@@ -26,8 +26,8 @@ MeanDifference meanOf(const std::vector<double>& values, const std::vector<EndEr
 
 }  // namespace
 
-RungDifference differenceOf(const std::vector<EndError>& first,
-                            const std::vector<EndError>& second) {
+RungDifference differenceOf(const std::vector<ExecutionError>& first,
+                            const std::vector<ExecutionError>& second) {
   std::vector<double> yaw;
   std::vector<double> position;
   for (size_t i = 0; i < first.size(); ++i) {

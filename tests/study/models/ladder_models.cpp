@@ -54,7 +54,7 @@ class Climb {
 
   /// A limit has no slope where it does not bite: several are tried.
   FitState limit(const FitState& state) const {
-    const double most = excitationOf(fitter_.rows(), state.model).track_speed;
+    const double most = excitationOf(fitter_.data(), state.model).track_speed;
     FitState best = state;
     for (double share : {0.92, 0.8, 0.65, 0.45}) {
       FitState tried = state;
@@ -178,8 +178,8 @@ RungModel discoveredRung(const SearchResult& found, const FitState& state) {
   return rung;
 }
 
-std::vector<EndError> endErrors(const Rows& rows, const RungModel& rung) {
-  return endErrors(rows, simulateCorrected(rows, rung.model.vehicle, rung.correction),
+std::vector<ExecutionError> endErrors(const Observations& data, const RungModel& rung) {
+  return endErrors(data, simulateCorrected(data, rung.model.vehicle, rung.correction),
                    rung.model.measurement);
 }
 

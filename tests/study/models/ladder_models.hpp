@@ -66,6 +66,6 @@ SearchResult discover(const Fitter& fitter, const ModelDocument& begin,
 RungModel discoveredRung(const SearchResult& found, const FitState& state);
 
 /// End errors of a rung on executions of any rows.
-std::vector<EndError> endErrors(const Rows& rows, const RungModel& rung);
+std::vector<ExecutionError> endErrors(const Observations& data, const RungModel& rung);
 
 }  // namespace tread::gap

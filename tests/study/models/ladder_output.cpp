@@ -6,7 +6,7 @@
 
 #include "common/recordings/text_file.hpp"
 #include "tools/gap/find_output.hpp"
-#include "tools/gap/report/words.hpp"
+#include "tools/gap/report/effect_words.hpp"
 
 namespace tread::gap {
 

@@ -112,7 +112,7 @@ void ladder(const Options& options) {
   task.logs = readLogs(options);
   task.pool = options.pool;
   task.seed = static_cast<uint64_t>(options.seed);
-  task.threads = options.threads;
+  task.parallel = onThreads(options.threads);
   requireRows(task);
   makeFolder(options.out);
   tellLosses(task);

@@ -38,7 +38,6 @@ LadderLog logOf(const ModelDocument& truth, double seconds, uint64_t seed) {
 
 LadderRow rowOf(const ModelDocument& truth, double seconds, uint64_t seed) {
   LadderTask task;
-  task.threads = 2;
   task.logs.push_back(logOf(truth, seconds, seed));
   return climbLadder(task, kSilent).nested.at(0);
 }
@@ -52,12 +51,12 @@ const EndErrors& errorsOf(const LadderRow& row, Rung rung) {
 /// What the true model errs: noise alone.
 EndErrors leastOf(const ModelDocument& truth, double seconds, uint64_t seed) {
   const std::vector<Drive> drives{syntheticDrive(truth, seconds, seed)};
-  const Rows rows(drives, {});
-  return summaryOf(endErrors(rows, truth), [](const EndError&) { return true; });
+  const Observations data(drives, {});
+  return summaryOf(endErrors(data, truth), [](const ExecutionError&) { return true; });
 }
 
-EndError errorAt(int block, double yaw) {
-  EndError error;
+ExecutionError errorAt(int block, double yaw) {
+  ExecutionError error;
   error.block = block;
   error.yaw = yaw;
   return error;
@@ -67,14 +66,14 @@ EndError errorAt(int block, double yaw) {
 
 TEST_CASE("a regression that corrects nothing leaves the kernel's simulation as it is") {
   const std::vector<Drive> drives{syntheticDrive(syntheticVehicle(), 60.0, 1)};
-  const Rows rows(drives, {});
+  const Observations data(drives, {});
   TwistRegression regression;
   regression.terms = blackBoxTerms();
   regression.coefficients =
       Eigen::VectorXd::Zero(static_cast<Eigen::Index>(regression.terms.size()));
   const VehicleModel vehicle = syntheticVehicle().vehicle;
-  const auto plain = rows.simulate(vehicle);
-  const auto same = simulateCorrected(rows, vehicle, regression);
+  const auto plain = data.simulate(vehicle);
+  const auto same = simulateCorrected(data, vehicle, regression);
   REQUIRE(same.size() == plain.size());
   REQUIRE(same[0].size() == plain[0].size());
   for (size_t i = 0; i < plain[0].size(); ++i) {
@@ -88,9 +87,9 @@ TEST_CASE("a slip regression finds drift and pull, with their sizes") {
   const ModelDocument truth =
       with(syntheticVehicle(), {{"centrifugal_drift.time", 0.2}, {"yaw_pull.pull", 0.06}});
   const std::vector<Drive> drives{syntheticDrive(truth, 400.0, 2)};
-  const Rows rows(drives, {});
-  const Fitter fitter(rows, 2);
-  const std::vector<char> all(rows.rows().size(), 1);
+  const Observations data(drives, {});
+  const Fitter fitter(data);
+  const std::vector<char> all(data.all().size(), 1);
   const TwistRegression found = fitRegression(fitter, syntheticVehicle(), slipTerms(), {}, all);
   REQUIRE(found.terms[1].name == "v omega");
   CHECK(found.coefficients[1] == Approx(-0.2).margin(0.02));
@@ -100,8 +99,8 @@ TEST_CASE("a slip regression finds drift and pull, with their sizes") {
 }
 
 TEST_CASE("the standard error of a difference counts blocks, not executions") {
-  std::vector<EndError> first;
-  std::vector<EndError> second;
+  std::vector<ExecutionError> first;
+  std::vector<ExecutionError> second;
   for (int block : {0, 1, 2, 3})
     for (int i = 0; i < 5; ++i) {
       first.push_back(errorAt(block, 1.0));
@@ -177,13 +176,17 @@ TEST_CASE("a black box expresses what neither slip nor powertrain do") {
   CHECK_FALSE(row.structure_nested);
 }
 
-TEST_CASE("pooled logs name the same effect in all folds, and the bytes do not know the threads") {
+TEST_CASE(
+    "pooled logs name the same effect in all folds, and the bytes do not know the order of the "
+    "work") {
   const ModelDocument truth = with(syntheticVehicle(), {{"yaw_pull.pull", 0.08}});
   LadderTask task;
   task.pool = true;
   for (uint64_t seed : {7, 8}) task.logs.push_back(logOf(truth, 220.0, seed));
   LadderReport one{climbLadder(task, kSilent), "", {"a", "b"}};
-  task.threads = 2;
+  task.parallel = [](size_t count, const std::function<void(size_t)>& body) {
+    while (count > 0) body(--count);
+  };
   LadderReport two{climbLadder(task, kSilent), "", {"a", "b"}};
   CHECK(ladderJson(one).dump() == ladderJson(two).dump());
   CHECK(ladderText(one) == ladderText(two));

@@ -7,17 +7,17 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kLongAgo = 30.0;  // [s] since a change that was before the stretch
+constexpr double kLongAgo = 30.0;  // [s] since a change that was before the segment
 
 /// Which command acts as time goes on, and which one did before.
 class ActingCommand {
  public:
-  ActingCommand(const Stretch& stretch, const VehicleModel& vehicle)
-      : commands_(stretch.commands),
+  ActingCommand(const Segment& segment, const VehicleModel& vehicle)
+      : commands_(segment.commands),
         vehicle_(vehicle),
-        asked_(stretch.command_before),
-        before_(stretch.command_before),
-        began_(stretch.begin() - kLongAgo) {}
+        asked_(segment.command_before),
+        before_(segment.command_before),
+        began_(segment.begin() - kLongAgo) {}
 
   DrivenPiece at(double time) {
     for (; next_ < commands_.size() && commands_[next_].time + vehicle_.commandDelay() <= time;
@@ -63,12 +63,12 @@ double twiceRootMean(double squares, double count) {
 
 }  // namespace
 
-TwistPieces::TwistPieces(const Rows& rows, const VehicleModel& vehicle) {
-  const Motions motions = rows.simulate(vehicle);
-  for (size_t drive = 0; drive < rows.drives().size(); ++drive)
-    for (size_t s = 0; s < rows.drives()[drive].stretches.size(); ++s) {
-      const std::vector<MotionSample>& motion = motions[rows.stretchIndex(drive, s)];
-      ActingCommand acting(rows.drives()[drive].stretches[s], vehicle);
+TwistPieces::TwistPieces(const Observations& data, const VehicleModel& vehicle) {
+  const Motions motions = data.simulate(vehicle);
+  for (size_t drive = 0; drive < data.drives().size(); ++drive)
+    for (size_t s = 0; s < data.drives()[drive].segments.size(); ++s) {
+      const std::vector<MotionSample>& motion = motions[data.segmentIndex(drive, s)];
+      ActingCommand acting(data.drives()[drive].segments[s], vehicle);
       counts_.push_back(motion.size() - 1);
       begins_.push_back(motion.front());
       for (size_t i = 1; i < motion.size(); ++i) {
@@ -80,7 +80,7 @@ TwistPieces::TwistPieces(const Rows& rows, const VehicleModel& vehicle) {
         piece.driven = acting.at(middle);
         piece.driven.v = piece.v_body.v_x;
         piece.driven.omega = piece.v_body.omega;
-        piece.block = rows.blockAt(drive, s, middle);
+        piece.block = data.blockAt(drive, s, middle);
         pieces_.push_back(piece);
       }
     }

@@ -10,7 +10,7 @@ namespace tread::gap {
 
 using Motions = std::vector<std::vector<MotionSample>>;
 
-/// A piece of a simulated stretch with its twist.
+/// A piece of a simulated segment with its twist.
 struct SimulatedPiece {
   double duration = 0.0;  ///< [s]
   Twist2 v_body;
@@ -18,11 +18,11 @@ struct SimulatedPiece {
   int block = 0;
 };
 
-/// The pieces of all stretches of a model's simulation, in SI units.
+/// The pieces of all segments of a model's simulation, in SI units.
 /** Integrating their twists again gives the simulation back, up to rounding. */
 class TwistPieces {
  public:
-  TwistPieces(const Rows& rows, const VehicleModel& vehicle);
+  TwistPieces(const Observations& data, const VehicleModel& vehicle);
 
   const std::vector<SimulatedPiece>& pieces() const { return pieces_; }
   /// Poses with corrections of the twist (pieces x 3: forward, sideways, turning).
@@ -34,8 +34,8 @@ class TwistPieces {
 
  private:
   std::vector<SimulatedPiece> pieces_;
-  std::vector<size_t> counts_;        ///< pieces of each stretch
-  std::vector<MotionSample> begins_;  ///< of each stretch
+  std::vector<size_t> counts_;        ///< pieces of each segment
+  std::vector<MotionSample> begins_;  ///< of each segment
 };
 
 }  // namespace tread::gap

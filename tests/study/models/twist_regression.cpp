@@ -36,11 +36,11 @@ class RegressionFit {
   RegressionFit(const Fitter& fitter, const ModelDocument& model, std::vector<TwistTerm> terms,
                 const RegressionSettings& settings, const std::vector<char>& mask)
       : fitter_(fitter),
-        rows_(fitter.rows()),
+        data_(fitter.data()),
         ins_(model.measurement),
         mask_(mask),
-        counts_(blocksThatCount(rows_, mask)),
-        pieces_(rows_, model.vehicle) {
+        counts_(blocksThatCount(data_, mask)),
+        pieces_(data_, model.vehicle) {
     result_.terms = std::move(terms);
     if (settings.scaled) result_.scale = pieces_.scaleOf(counts_);
     values_ = pieces_.valuesOf(result_.terms, result_.scale);
@@ -82,18 +82,18 @@ class RegressionFit {
 
   Eigen::VectorXd predict(const Eigen::VectorXd& coefficients) const {
     const auto correction = correctionOf(result_.terms, values_, coefficients);
-    return rows_.predict(pieces_.motions(correction), ins_);
+    return data_.predict(pieces_.motions(correction), ins_);
   }
 
   void renewNoise() {
-    const Eigen::VectorXd activity = activityOf(rows_.rows(), predicted_);
-    const Noise noise = estimateNoise(rows_.rows(), rows_.residuals(predicted_), activity, mask_);
-    scales_ = scalesOf(rows_.rows(), noise, activity);
+    const Eigen::VectorXd activity = activityOf(data_.all(), predicted_);
+    const Noise noise = estimateNoise(data_.all(), data_.residuals(predicted_), activity, mask_);
+    scales_ = scalesOf(data_.all(), noise, activity);
   }
 
   void renewJacobian() {
     jacobian_.resize(predicted_.size(), coefficients_.size());
-    inParallel(static_cast<size_t>(coefficients_.size()), fitter_.threads(), [this](size_t t) {
+    fitter_.parallel()(static_cast<size_t>(coefficients_.size()), [this](size_t t) {
       const auto at = static_cast<Eigen::Index>(t);
       Eigen::VectorXd changed = coefficients_;
       changed[at] += kStep;
@@ -103,7 +103,7 @@ class RegressionFit {
 
   double lossOf(const Eigen::VectorXd& predicted, const Eigen::VectorXd& coefficients) const {
     const double prior = 0.5 * coefficients.squaredNorm() / std::pow(result_.deviation, 2);
-    return totalLoss(rows_.residuals(predicted), scales_, mask_) + prior;
+    return totalLoss(data_.residuals(predicted), scales_, mask_) + prior;
   }
 
   Eigen::VectorXd weightsAt(const Eigen::VectorXd& residuals) const {
@@ -114,7 +114,7 @@ class RegressionFit {
   }
 
   /// Residuals of a linear model without any correction: what the coefficients must explain.
-  Eigen::VectorXd aim() const { return rows_.residuals(predicted_) + jacobian_ * coefficients_; }
+  Eigen::VectorXd aim() const { return data_.residuals(predicted_) + jacobian_ * coefficients_; }
 
   Eigen::VectorXd solveLinearly(double deviation) const {
     const Eigen::VectorXd target = aim();
@@ -154,7 +154,7 @@ class RegressionFit {
     std::vector<int> folds;
     folds.reserve(mask_.size());
     for (size_t i = 0; i < mask_.size(); ++i)
-      folds.push_back(mask_[i] ? of_block[static_cast<size_t>(rows_.rows()[i].block)] : -1);
+      folds.push_back(mask_[i] ? of_block[static_cast<size_t>(data_.all()[i].block)] : -1);
     return folds;
   }
 
@@ -191,7 +191,7 @@ class RegressionFit {
   }
 
   const Fitter& fitter_;
-  const Rows& rows_;
+  const Observations& data_;
   const MeasurementModel ins_;
   const std::vector<char>& mask_;
   const std::vector<char> counts_;  ///< blocks with training rows
@@ -213,11 +213,11 @@ TwistRegression fitRegression(const Fitter& fitter, const ModelDocument& model,
   return RegressionFit(fitter, model, std::move(terms), settings, mask).run(settings.deviations);
 }
 
-std::vector<std::vector<MotionSample>> simulateCorrected(const Rows& rows,
+std::vector<std::vector<MotionSample>> simulateCorrected(const Observations& data,
                                                          const VehicleModel& vehicle,
                                                          const TwistRegression& regression) {
-  if (regression.terms.empty()) return rows.simulate(vehicle);
-  const TwistPieces pieces(rows, vehicle);
+  if (regression.terms.empty()) return data.simulate(vehicle);
+  const TwistPieces pieces(data, vehicle);
   const Eigen::MatrixXd values = pieces.valuesOf(regression.terms, regression.scale);
   return pieces.motions(correctionOf(regression.terms, values, regression.coefficients));
 }

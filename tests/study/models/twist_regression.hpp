@@ -65,8 +65,8 @@ TwistRegression fitRegression(const Fitter& fitter, const ModelDocument& model,
                               std::vector<TwistTerm> terms, const RegressionSettings& settings,
                               const std::vector<char>& mask);
 
-/// Motions of all stretches as a vehicle with the correction drives them.
-std::vector<std::vector<MotionSample>> simulateCorrected(const Rows& rows,
+/// Motions of all segments as a vehicle with the correction drives them.
+std::vector<std::vector<MotionSample>> simulateCorrected(const Observations& data,
                                                          const VehicleModel& vehicle,
                                                          const TwistRegression& regression);
 

@@ -9,7 +9,7 @@
 
 #include "common/vehicle/kernel.hpp"
 #include "modules/identification/core/finding.hpp"
-#include "tools/gap/verdict_json.hpp"
+#include "tools/gap/find_output.hpp"
 
 /// Findings made by hand, to look at what is written of them.
 namespace tread::gap::samples {
@@ -115,11 +115,11 @@ inline Overlay overlay(double turn, double begin) {
 }
 
 inline void addEvidence(Finding& finding) {
-  finding.atlas = {curve("yaw rate", "yaw rate"), curve("along", "speed x yaw rate")};
-  finding.maps = {map()};
-  for (int i = 0; i < 9; ++i) finding.overlays.push_back(overlay(0.2 * i, 12.5 * i));
+  finding.atlas.curves = {curve("yaw rate", "yaw rate"), curve("along", "speed x yaw rate")};
+  finding.atlas.maps = {map()};
+  for (int i = 0; i < 9; ++i) finding.shown.overlays.push_back(overlay(0.2 * i, 12.5 * i));
   for (int i = 0; i < 60; ++i)
-    finding.places.push_back({0, 0.1 * i, std::sin(0.2 * i), 0.1 + 0.01 * (i % 9), 0.03});
+    finding.shown.places.push_back({0, 0.1 * i, std::sin(0.2 * i), 0.1 + 0.01 * (i % 9), 0.03});
   finding.gap = Gap{2.0,
                     {{0.642, 0.91}, {0.357, 0.61}, 60},
                     {{0.451, 0.7}, {0.187, 0.31}, 60},
@@ -128,47 +128,47 @@ inline void addEvidence(Finding& finding) {
 }
 
 inline void addDetails(Finding& finding) {
-  finding.calibrated = {{"lag", "s", 0.17, 0.16, 0.18, 0.15},
-                        {"icr_offset.offset", "m", 0.02, 0.01, 0.03, 0.0}};
-  finding.not_excited = {"grip_limit", "slope_pitch"};
-  finding.negligible = {"gyro_bias"};
-  finding.candidates = {
+  finding.identified.calibrated = {{"lag", "s", 0.17, 0.16, 0.18, 0.15},
+                                   {"icr_offset.offset", "m", 0.02, 0.01, 0.03, 0.0}};
+  finding.identified.not_excited = {"grip_limit", "slope_pitch"};
+  finding.search.negligible = {"gyro_bias"};
+  finding.search.candidates = {
       {"turn_power_limit", "inverse_limit", 41.0, 0.0, 0.8, 0.4},
       {"grip_limit", "inverse_limit", 0.1, 1.0, 0.9, std::numeric_limits<double>::infinity()},
       {"slip_ratio", "slip", 2.1, 0.4, 0.3, 0.021}};
-  finding.hygiene = {{"a.lcmlog", "52 % of the poses repeat the one before", false}};
-  finding.blocks = 30;
-  finding.block_length = 20.0;
-  finding.adequacy_p = 0.41;
+  finding.source.log_notes = {{"a.lcmlog", "52 % of the poses repeat the one before", false}};
+  finding.source.blocks = 30;
+  finding.source.block_length = 20.0;
+  finding.adequacy.p_value = 0.41;
 }
 
 /// A finding of any verdict with everything that a report can show.
-inline Finding finding(Verdict verdict) {
+inline Finding finding(GapVerdict verdict) {
   Finding finding;
   finding.verdict = verdict;
-  finding.seed = 7;
+  finding.source.seed = 7;
   finding.before = model();
-  finding.after = model();
-  finding.after.vehicle.lag = 0.17;
-  finding.after.covariance = {{"lag", "delay"}, {{1e-4, 0.95e-4}, {0.95e-4, 1e-4}}};
-  finding.after.envelope = Envelope{1.1, 2.4, 1.3};
+  finding.identified.model = model();
+  finding.identified.model.vehicle.lag = 0.17;
+  finding.identified.model.covariance = {{"lag", "delay"}, {{1e-4, 0.95e-4}, {0.95e-4, 1e-4}}};
+  finding.identified.model.envelope = Envelope{1.1, 2.4, 1.3};
   addDetails(finding);
-  if (verdict == Verdict::kCannotTell) {
+  if (verdict == GapVerdict::kCannotTell) {
     finding.reason = "6 independent blocks of 20 s; 10 are needed: drive 2 minutes more";
     return finding;
   }
   addEvidence(finding);
-  if (verdict == Verdict::kFound || verdict == Verdict::kPartial)
-    finding.effects = {turnLimit(), asymmetry()};
-  if (verdict == Verdict::kAmbiguous) finding.effects = {icrOffset()};
-  if (verdict == Verdict::kMeasurement) finding.effects = {misalignment()};
-  if (verdict == Verdict::kPartial || verdict == Verdict::kNotInCatalogue)
-    finding.unexplained = {{"yaw rate", "speed x yaw rate", 9.1, 0.004}};
-  for (const FoundEffect& effect : finding.effects) {
-    finding.ladder.push_back({effect.name, false, effect.score, effect.p_value, effect.gain,
-                              effect.gain_error, effect.runner_ups, ""});
+  if (verdict == GapVerdict::kFound || verdict == GapVerdict::kPartial)
+    finding.identified.effects = {turnLimit(), asymmetry()};
+  if (verdict == GapVerdict::kAmbiguous) finding.identified.effects = {icrOffset()};
+  if (verdict == GapVerdict::kMeasurement) finding.identified.effects = {misalignment()};
+  if (verdict == GapVerdict::kPartial || verdict == GapVerdict::kNotInCatalogue)
+    finding.adequacy.unexplained = {{"yaw rate", "speed x yaw rate", 9.1, 0.004}};
+  for (const FoundEffect& effect : finding.identified.effects) {
+    finding.search.steps.push_back({effect.name, false, effect.score, effect.p_value, effect.gain,
+                                    effect.gain_error, effect.runner_ups, ""});
     for (const Estimate& estimate : effect.parameters)
-      *findParameter(finding.after, estimate.parameter) = estimate.value;
+      *findParameter(finding.identified.model, estimate.parameter) = estimate.value;
   }
   return finding;
 }

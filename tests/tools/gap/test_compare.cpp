@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "modules/identification/core/student.hpp"
+#include "modules/identification/core/likelihood.hpp"
 #include "tests/identification/core_rig.hpp"
 #include "tools/gap/compare.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 double falseAlarms(const ModelDocument& vehicle, double seconds, uint64_t drives) {
   std::vector<LogFit> fits;
   for (uint64_t seed = 1; seed <= drives; ++seed)
-    fits.push_back(fitLog(vehicle, syntheticDrive(vehicle, seconds, seed), 2));
+    fits.push_back(fitLog(vehicle, syntheticDrive(vehicle, seconds, seed)));
   size_t alarms = 0;
   for (size_t i = 0; i < fits.size(); ++i)
     for (size_t j = 0; j < i; ++j) alarms += changeBetween(fits[j], fits[i]).anyMoved() ? 1 : 0;
@@ -35,9 +35,9 @@ TEST_CASE("of a hundred pairs of equal logs at most one is said to have changed"
 }
 
 TEST_CASE("a change of the ground is said to be one") {
-  const LogFit before = fitLog(syntheticVehicle(), syntheticDrive(syntheticVehicle(), 400.0, 1), 2);
+  const LogFit before = fitLog(syntheticVehicle(), syntheticDrive(syntheticVehicle(), 400.0, 1));
   const ModelDocument sand = vehicleWith({{"yaw_gain", 0.6}});
-  const LogFit after = fitLog(syntheticVehicle(), syntheticDrive(sand, 400.0, 2), 2);
+  const LogFit after = fitLog(syntheticVehicle(), syntheticDrive(sand, 400.0, 2));
   const LogChange change = changeBetween(before, after);
   for (const Movement& movement : change.movements)
     CHECK(change.moved(movement) == (movement.parameter == "yaw_gain"));
@@ -54,7 +54,7 @@ TEST_CASE("fewer blocks and more parameters want larger differences") {
 
 TEST_CASE("a log below ten blocks is refused in the words of find") {
   const Drive drive = syntheticDrive(syntheticVehicle(), 120.0, 1);
-  CHECK_THROWS_WITH(fitLog(syntheticVehicle(), drive, 1),
+  CHECK_THROWS_WITH(fitLog(syntheticVehicle(), drive),
                     "synthetic: only 120 s of measured driving, too little to tell chance from "
                     "cause: drive at least 200 s");
 }

@@ -19,9 +19,9 @@ using namespace tread::samples;
 
 namespace {
 
-size_t posesOf(const Stretch& stretch) {
+size_t posesOf(const Segment& segment) {
   size_t count = 0;
-  for (const InsSample& sample : stretch.ins) count += std::isfinite(sample.T_map_body.x) ? 1 : 0;
+  for (const InsSample& sample : segment.ins) count += std::isfinite(sample.T_map_body.x) ? 1 : 0;
   return count;
 }
 
@@ -43,7 +43,7 @@ Drive importedSteps(int steps, bool keep_lag, recordings::Gyro gyro) {
 }  // namespace
 
 TEST_CASE(
-    "a drive without a gap is one stretch at rest, its commands merged, its poses unwrapped") {
+    "a drive without a gap is one segment at rest, its commands merged, its poses unwrapped") {
   SmallLog log;
   for (int i = 0; i < 20; ++i) {
     log.motor(0.05 * i, {}, motor_t::STATE_ARMED);
@@ -51,33 +51,33 @@ TEST_CASE(
   }
   drive(log, 1.0, 21.0, {1.0, 0.0, 0.8}, {});
   const Drive result = toDrive(toDriveLog("a.lcmlog", log.sorted()));
-  REQUIRE(result.stretches.size() == 1);
-  const Stretch& stretch = result.stretches[0];
+  REQUIRE(result.segments.size() == 1);
+  const Segment& segment = result.segments[0];
   REQUIRE(result.kind == CommandKind::kTrackSpeed);
-  REQUIRE(stretch.begin() == 0.0);
-  REQUIRE(stretch.end == Approx(21.0));
-  REQUIRE(stretch.commands.size() == 2);
-  REQUIRE(stretch.commands[1].time == Approx(1.0));
-  REQUIRE(stretch.commands[1].command.right == Approx(1.4));
-  REQUIRE_FALSE(stretch.entry_speeds);
-  REQUIRE(stretch.command_before == TrackCommand{});
-  REQUIRE(stretch.ins.back().T_map_body.yaw == Approx(0.8 * 19.9));
-  REQUIRE(std::isnan(stretch.ins.back().roll));
+  REQUIRE(segment.begin() == 0.0);
+  REQUIRE(segment.end == Approx(21.0));
+  REQUIRE(segment.commands.size() == 2);
+  REQUIRE(segment.commands[1].time == Approx(1.0));
+  REQUIRE(segment.commands[1].command.right == Approx(1.4));
+  REQUIRE_FALSE(segment.entry_speeds);
+  REQUIRE(segment.command_before == TrackCommand{});
+  REQUIRE(segment.ins.back().T_map_body.yaw == Approx(0.8 * 19.9));
+  REQUIRE(std::isnan(segment.ins.back().roll));
   REQUIRE(result.driven() == Approx(21.0));
   REQUIRE(result.encoders.empty());
   REQUIRE(result.voltage.empty());
 }
 
-TEST_CASE("missing commands end a stretch, and where the robot still moves after them poses wait") {
+TEST_CASE("missing commands end a segment, and where the robot still moves after them poses wait") {
   SmallLog log;
   const Pose2 T_map_body = drive(log, 0.0, 10.0, {1.0, 0.0, 0.0}, {});
   drive(log, 10.5, 20.5, {1.0, 0.0, 0.0}, T_map_body);
   const Drive result = toDrive(toDriveLog("a", log.sorted()));
-  REQUIRE(result.stretches.size() == 2);
-  REQUIRE(result.stretches[0].end == Approx(10.0));
-  REQUIRE(result.stretches[1].begin() == Approx(10.5));
+  REQUIRE(result.segments.size() == 2);
+  REQUIRE(result.segments[0].end == Approx(10.0));
+  REQUIRE(result.segments[1].begin() == Approx(10.5));
   // Nobody knows how fast it is then; after three seconds that no longer matters.
-  REQUIRE(result.stretches[1].ins.front().time == Approx(13.5));
+  REQUIRE(result.segments[1].ins.front().time == Approx(13.5));
 }
 
 TEST_CASE(
@@ -96,15 +96,15 @@ TEST_CASE(
       log.motor(time, {}, motor_t::STATE_ESTOP);
   }
   const Drive result = toDrive(toDriveLog("a", log.sorted()));
-  REQUIRE(result.stretches.size() == 2);
-  REQUIRE(result.stretches[0].commands.size() == 1);
-  REQUIRE(result.stretches[0].commands[0].command == TrackCommand{});
-  REQUIRE(result.stretches[0].end == Approx(5.0));
-  REQUIRE(result.stretches[1].begin() == Approx(10.0));
-  REQUIRE(result.stretches[1].end == Approx(15.0));
+  REQUIRE(result.segments.size() == 2);
+  REQUIRE(result.segments[0].commands.size() == 1);
+  REQUIRE(result.segments[0].commands[0].command == TrackCommand{});
+  REQUIRE(result.segments[0].end == Approx(5.0));
+  REQUIRE(result.segments[1].begin() == Approx(10.0));
+  REQUIRE(result.segments[1].end == Approx(15.0));
 }
 
-TEST_CASE("a jump or a silence of the INS begins a stretch whose commands begin before its poses") {
+TEST_CASE("a jump or a silence of the INS begins a segment whose commands begin before its poses") {
   SmallLog log;
   for (int i = 0; i < 600; ++i) {
     const double time = 0.05 * i;
@@ -114,17 +114,17 @@ TEST_CASE("a jump or a silence of the INS begins a stretch whose commands begin 
     if (!silent) log.ins(time, pose, 0.0, i == 200 ? ins_t::STATUS_JUMP : 0);
   }
   const Drive result = toDrive(toDriveLog("a", log.sorted()));
-  REQUIRE(result.stretches.size() == 3);
-  REQUIRE(result.stretches[0].ins.back().time == Approx(9.95));
-  REQUIRE(result.stretches[1].begin() == Approx(7.0));
-  REQUIRE(result.stretches[1].ins.front().time == Approx(10.0));
-  REQUIRE(result.stretches[1].command_before.left == 1.0);
-  REQUIRE(result.stretches[2].begin() == Approx(17.0));
-  REQUIRE(result.stretches[2].ins.front().time == Approx(20.0));
+  REQUIRE(result.segments.size() == 3);
+  REQUIRE(result.segments[0].ins.back().time == Approx(9.95));
+  REQUIRE(result.segments[1].begin() == Approx(7.0));
+  REQUIRE(result.segments[1].ins.front().time == Approx(10.0));
+  REQUIRE(result.segments[1].command_before.left == 1.0);
+  REQUIRE(result.segments[2].begin() == Approx(17.0));
+  REQUIRE(result.segments[2].ins.front().time == Approx(20.0));
   for (const Execution& execution : result.executions) {
-    const Stretch& stretch = result.stretches[execution.stretch];
-    REQUIRE(execution.begin >= stretch.ins.front().time - 0.05);
-    REQUIRE(execution.end <= stretch.end + 0.05);
+    const Segment& segment = result.segments[execution.segment];
+    REQUIRE(execution.begin >= segment.ins.front().time - 0.05);
+    REQUIRE(execution.end <= segment.end + 0.05);
   }
 }
 
@@ -138,8 +138,8 @@ TEST_CASE(
     log.ins(time, {drives ? 0.05 * (i / 4) : 0.0, 0.0, 0.0}, 0.1);
   }
   const Drive result = toDrive(toDriveLog("a", log.sorted()));
-  REQUIRE(result.stretches.size() == 1);
-  const auto& ins = result.stretches[0].ins;
+  REQUIRE(result.segments.size() == 1);
+  const auto& ins = result.segments[0].ins;
   REQUIRE(ins.size() == 200);
   size_t standing = 0;
   size_t driving = 0;
@@ -166,8 +166,8 @@ TEST_CASE("whole turns between two late poses are those of the gyro") {
     yaw += 0.05 * omega;
   }
   const Drive result = toDrive(toDriveLog("a", log.sorted()));
-  REQUIRE(result.stretches.size() == 1);
-  const auto& last = result.stretches[0].ins[384];
+  REQUIRE(result.segments.size() == 1);
+  const auto& last = result.segments[0].ins[384];
   REQUIRE(last.T_map_body.yaw == Approx(4.0 * 0.05 * 384));
 }
 
@@ -198,14 +198,14 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "an imported recording: a stretch a step, with the gyro of all rows and the poses as logged") {
+    "an imported recording: a segment a step, with the gyro of all rows and the poses as logged") {
   const Drive fixes = importedSteps(2, false, recordings::Gyro::kAtFixes);
-  REQUIRE(fixes.stretches.size() == 2);
+  REQUIRE(fixes.segments.size() == 2);
   // The first two of 61 fixes were measured before the first command.
-  REQUIRE(posesOf(fixes.stretches[0]) == 59);
+  REQUIRE(posesOf(fixes.segments[0]) == 59);
   const Drive all = importedSteps(2, true, recordings::Gyro::kAll);
-  REQUIRE(all.stretches.size() == 2);
-  const Stretch& step = all.stretches[1];
+  REQUIRE(all.segments.size() == 2);
+  const Segment& step = all.segments[1];
   REQUIRE(posesOf(step) == 61);
   REQUIRE(step.ins.size() == 121);
   REQUIRE(step.end - step.begin() == Approx(6.05));
@@ -215,26 +215,26 @@ TEST_CASE(
     if (i % 2 == 0) REQUIRE(step.ins[i].T_map_body.x == Approx(0.05 * static_cast<double>(i)));
   }
   REQUIRE(all.executions.size() == 4);
-  REQUIRE(all.executions[0].begin - all.stretches[0].begin() == Approx(1.2));
+  REQUIRE(all.executions[0].begin - all.segments[0].begin() == Approx(1.2));
 }
 
 TEST_CASE(
     "an imported step begins with its encoders, after the step before it if it went on at once") {
   const Drive all = importedSteps(2, true, recordings::Gyro::kAll);
   // 1.9 and 3.9 rad/s at 0.5 m, commanded 2 and 4 rad/s.
-  REQUIRE(all.stretches[0].entry_speeds->left == Approx(0.95));
-  REQUIRE(all.stretches[0].command_before.left == Approx(0.95));
-  REQUIRE(all.stretches[1].entry_speeds->right == Approx(1.95));
-  REQUIRE(all.stretches[1].command_before.right == Approx(2.0));
+  REQUIRE(all.segments[0].entry_speeds->left == Approx(0.95));
+  REQUIRE(all.segments[0].command_before.left == Approx(0.95));
+  REQUIRE(all.segments[1].entry_speeds->right == Approx(1.95));
+  REQUIRE(all.segments[1].command_before.right == Approx(2.0));
 }
 
 TEST_CASE("all readings of the gyro: fixes stay what they were, and no reading is said twice") {
   const Drive lag_removed = importedSteps(1, false, recordings::Gyro::kAll);
-  const auto& ins = lag_removed.stretches.at(0).ins;
+  const auto& ins = lag_removed.segments.at(0).ins;
   size_t rates = 0;
   for (const InsSample& sample : ins) rates += std::isfinite(sample.omega) ? 1 : 0;
   REQUIRE(rates == 121);
-  REQUIRE(posesOf(lag_removed.stretches[0]) == 59);
+  REQUIRE(posesOf(lag_removed.segments[0]) == 59);
 }
 
 TEST_CASE(
@@ -251,15 +251,15 @@ TEST_CASE(
     for (const LogEvent& event : log.sorted())
       writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
   }
-  for (const HygieneNote& note : readDrive(path).notes) REQUIRE_FALSE(note.fatal);
+  for (const LogNote& note : readDrive(path).notes) REQUIRE_FALSE(note.fatal);
   REQUIRE(readDrive(path).name == "cut.lcmlog");
   std::filesystem::resize_file(path, std::filesystem::file_size(path) - 30);
   const Drive cut = readDrive(path);
-  for (const HygieneNote& note : cut.notes) REQUIRE_FALSE(note.fatal);
+  for (const LogNote& note : cut.notes) REQUIRE_FALSE(note.fatal);
   REQUIRE_THAT(cut.notes.at(0).what, Catch::Contains("ends in the middle of an event; its 299 "
                                                      "whole events, 10 s, are used"));
   REQUIRE(cut.lost == cut.notes[0].what);
-  REQUIRE(cut.stretches.size() == 1);
+  REQUIRE(cut.segments.size() == 1);
 }
 
 TEST_CASE("a drive says of which robot it was imported, and how") {
@@ -299,7 +299,7 @@ TEST_CASE("the hash of a log is its SHA-256") {
 }
 
 TEST_CASE(
-    "real recordings become drives with a stretch for every step, and nothing in them is fatal") {
+    "real recordings become drives with a segment for every step, and nothing in them is fatal") {
   const char* recordings = std::getenv("TREAD_RECORDINGS");
   const std::string folder = std::string(recordings ? recordings : "") + "/drive/";
   if (!std::filesystem::exists(folder + "sessions.csv")) {
@@ -308,7 +308,7 @@ TEST_CASE(
   }
   struct Expected {
     const char* session;
-    size_t stretches;    // steps of the recording
+    size_t segments;     // steps of the recording
     size_t most_broken;  // of them in a wrong frame
   };
   for (const Expected& expected : {Expected{"warthog_unlabelled_2023", 119, 0},
@@ -324,20 +324,20 @@ TEST_CASE(
     const Drive result =
         toDrive(toDriveLog(name, recordings::makeLog(recording, session, "steps", {}, counts)));
     INFO(name);
-    for (const HygieneNote& note : result.notes) {
+    for (const LogNote& note : result.notes) {
       INFO(note.what);
       REQUIRE_FALSE(note.fatal);
     }
-    REQUIRE(result.stretches.size() <= expected.stretches);
-    REQUIRE(result.stretches.size() + expected.most_broken >= expected.stretches);
-    REQUIRE(result.executions.size() == 2 * result.stretches.size());
+    REQUIRE(result.segments.size() <= expected.segments);
+    REQUIRE(result.segments.size() + expected.most_broken >= expected.segments);
+    REQUIRE(result.executions.size() == 2 * result.segments.size());
     REQUIRE(result.encoders.size() == recording.drive.size());
-    for (const Stretch& stretch : result.stretches) {
-      REQUIRE(stretch.entry_speeds);
-      REQUIRE(stretch.end - stretch.begin() > 5.0);
+    for (const Segment& segment : result.segments) {
+      REQUIRE(segment.entry_speeds);
+      REQUIRE(segment.end - segment.begin() > 5.0);
       // The gyro speaks at every row; new poses are a fifth to a half of them as a rule.
-      REQUIRE(stretch.ins.size() > 100);
-      REQUIRE(posesOf(stretch) * 20 > stretch.ins.size());
+      REQUIRE(segment.ins.size() > 100);
+      REQUIRE(posesOf(segment) * 20 > segment.ins.size());
     }
   }
 }

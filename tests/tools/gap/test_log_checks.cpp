@@ -21,7 +21,7 @@ SmallLog goodLog(double length = 30.0) {
 
 /// The first fatal line; empty if nothing is fatal.
 std::string fatal(const std::vector<LogEvent>& events) {
-  for (const HygieneNote& note : toDrive(toDriveLog("a.lcmlog", events)).notes)
+  for (const LogNote& note : toDrive(toDriveLog("a.lcmlog", events)).notes)
     if (note.fatal) return note.what;
   return "";
 }
@@ -40,7 +40,7 @@ void shift(std::vector<LogEvent>& events, const Channel<Message>& channel, doubl
 }
 
 bool noted(const std::vector<LogEvent>& events, const std::string& part) {
-  for (const HygieneNote& note : toDrive(toDriveLog("a.lcmlog", events)).notes)
+  for (const LogNote& note : toDrive(toDriveLog("a.lcmlog", events)).notes)
     if (note.what.find(part) != std::string::npos) return true;
   return false;
 }
@@ -49,7 +49,7 @@ bool noted(const std::vector<LogEvent>& events, const std::string& part) {
 
 TEST_CASE("a good log is not complained of") {
   const auto notes = toDrive(toDriveLog("a.lcmlog", goodLog().sorted())).notes;
-  for (const HygieneNote& note : notes) REQUIRE_FALSE(note.fatal);
+  for (const LogNote& note : notes) REQUIRE_FALSE(note.fatal);
   REQUIRE(notes.size() == 4);  // gyro, poses, standstill, driving
   REQUIRE(notes[0].log == "a.lcmlog");
 }
@@ -219,8 +219,8 @@ TEST_CASE("what hung while it drove is no measurement at the standstill after it
   }
   const Drive result = toDrive(toDriveLog("a", log.sorted()));
   REQUIRE(fatal(log.sorted()).find("the INS is frozen: one pose from 10.0 to 29.9") == 0);
-  for (const Stretch& stretch : result.stretches)
-    for (const InsSample& sample : stretch.ins)
+  for (const Segment& segment : result.segments)
+    for (const InsSample& sample : segment.ins)
       REQUIRE(std::isfinite(sample.T_map_body.x) == (sample.time < 10.01));
 }
 

@@ -47,7 +47,7 @@ TEST_CASE("explain says how to begin, what to do after each verdict, and what wo
   for (const char* verdict : {"0 NO_DISCREPANCY", "10 FOUND", "11 AMBIGUOUS", "12 PARTIAL",
                               "13 NOT_IN_CATALOGUE", "14 MEASUREMENT", "15 CANNOT_TELL"})
     CHECK(verdicts.says(verdict));
-  for (const char* word : {"block ", "nats ", "adequacy ", "held-out ", "floor ", "twin group "})
+  for (const char* word : {"block ", "nats ", "adequacy ", "held-out ", "floor ", "group "})
     CHECK(run("explain words").says(word));
 }
 

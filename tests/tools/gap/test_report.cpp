@@ -14,20 +14,20 @@
 #include "tools/gap/report/gap_words.hpp"
 #include "tools/gap/report/headline.hpp"
 #include "tools/gap/report/sections.hpp"
-#include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {
 
-const Verdict kVerdicts[] = {
-    Verdict::kNoDiscrepancy,  Verdict::kFound,       Verdict::kAmbiguous, Verdict::kPartial,
-    Verdict::kNotInCatalogue, Verdict::kMeasurement, Verdict::kCannotTell};
+const GapVerdict kVerdicts[] = {GapVerdict::kNoDiscrepancy,  GapVerdict::kFound,
+                                GapVerdict::kAmbiguous,      GapVerdict::kPartial,
+                                GapVerdict::kNotInCatalogue, GapVerdict::kMeasurement,
+                                GapVerdict::kCannotTell};
 
-std::string html(Verdict verdict) {
+std::string html(GapVerdict verdict) {
   return htmlOf(reportPage(samples::finding(verdict), samples::inputs()));
 }
 
-std::string markdown(Verdict verdict) {
+std::string markdown(GapVerdict verdict) {
   return markdownOf(reportPage(samples::finding(verdict), samples::inputs()));
 }
 
@@ -61,7 +61,7 @@ std::string unbalanced(const std::string& text) {
 }  // namespace
 
 TEST_CASE("a report is well-formed HTML without scripts or anything from elsewhere") {
-  for (const Verdict verdict : kVerdicts) {
+  for (const GapVerdict verdict : kVerdicts) {
     const std::string text = html(verdict);
     INFO(verdictName(verdict));
     CHECK(unbalanced(text) == "");
@@ -75,21 +75,21 @@ TEST_CASE("a report is well-formed HTML without scripts or anything from elsewhe
 }
 
 TEST_CASE("the same finding gives the same bytes") {
-  for (const Verdict verdict : kVerdicts) {
+  for (const GapVerdict verdict : kVerdicts) {
     CHECK(html(verdict) == html(verdict));
     CHECK(markdown(verdict) == markdown(verdict));
   }
 }
 
 TEST_CASE("the headline says the verdict in words, and the first screen the gain") {
-  CHECK(headlineOf(samples::finding(Verdict::kFound)) ==
+  CHECK(headlineOf(samples::finding(GapVerdict::kFound)) ==
         "Found: Limit of turning power and Left-right asymmetry");
-  CHECK(headlineOf(samples::finding(Verdict::kAmbiguous)) ==
+  CHECK(headlineOf(samples::finding(GapVerdict::kAmbiguous)) ==
         "Centre of rotation ahead of or behind the middle or lever arm along the vehicle: this "
         "drive cannot tell them apart");
-  CHECK(headlineOf(samples::finding(Verdict::kMeasurement)) ==
+  CHECK(headlineOf(samples::finding(GapVerdict::kMeasurement)) ==
         "The INS, not the vehicle: INS mounted askew");
-  const std::string text = markdown(Verdict::kFound);
+  const std::string text = markdown(GapVerdict::kFound);
   CHECK(has(text,
             "2 s end-pose error on driving it has not seen: 0.642 -> 0.451 m, heading 20.5 -> 10.7 "
             "deg (median of 60 executions"));
@@ -122,7 +122,7 @@ TEST_CASE("what remains is told channel by channel") {
 }
 
 TEST_CASE("a report shows where, how, the ladder, the parameters and what else it could be") {
-  const std::string text = markdown(Verdict::kFound);
+  const std::string text = markdown(GapVerdict::kFound);
   for (const char* words : {"Where simulation and measurement disagree",
                             "Executions, as measured and as predicted",
                             "holds 9 of 10 of all 60 such executions",
@@ -146,36 +146,36 @@ TEST_CASE("a report shows where, how, the ladder, the parameters and what else i
     INFO(words);
     CHECK(has(text, words));
   }
-  const std::string page = html(Verdict::kFound);
+  const std::string page = html(GapVerdict::kFound);
   CHECK(has(page, "yaw rate over yaw rate"));
   CHECK(has(page, "worst, 100 s of a<"));
   CHECK(has(page, "full colour = 0.600 rad/s"));
   CHECK(has(page, "<g opacity=\"0.16\">"));
   CHECK(has(page, "full colour: 0.170 m and more"));
-  Finding blind = samples::finding(Verdict::kFound);
-  blind.places.clear();
+  Finding blind = samples::finding(GapVerdict::kFound);
+  blind.shown.places.clear();
   CHECK(has(markdownOf(reportPage(blind, samples::inputs())), "the logs have no absolute poses"));
 }
 
 TEST_CASE("effects that cannot be told apart come with the measurement that tells") {
-  const std::string text = markdown(Verdict::kAmbiguous);
+  const std::string text = markdown(GapVerdict::kAmbiguous);
   CHECK(has(text, "To tell: Measure the lever arm with a tape."));
 }
 
 TEST_CASE("what remains without a name is told by channel and variable") {
-  CHECK(has(markdown(Verdict::kPartial),
+  CHECK(has(markdown(GapVerdict::kPartial),
             "Unexplained: the yaw rate residual depends on speed x yaw rate."));
-  CHECK(has(markdown(Verdict::kNotInCatalogue), "no effect of the catalogue explains it"));
+  CHECK(has(markdown(GapVerdict::kNotInCatalogue), "no effect of the catalogue explains it"));
 }
 
 TEST_CASE("a drive that cannot tell says why and shows no numbers that were not measured") {
-  const std::string text = markdown(Verdict::kCannotTell);
+  const std::string text = markdown(GapVerdict::kCannotTell);
   CHECK(has(text, "6 independent blocks of 20 s; 10 are needed"));
   CHECK_FALSE(has(text, "end-pose error"));
 }
 
 TEST_CASE("the new model is read back with its provenance and envelope") {
-  const Finding finding = samples::finding(Verdict::kFound);
+  const Finding finding = samples::finding(GapVerdict::kFound);
   const ModelDocument model = newModel(finding, samples::inputs());
   const ModelDocument read = parseModelDocument(formatModelDocument(model), "model.yaml");
   CHECK(read.vehicle.effects.turn_power_limit == 0.8);
@@ -188,14 +188,15 @@ TEST_CASE("the new model is read back with its provenance and envelope") {
 }
 
 TEST_CASE("a covariance that rounding made unequal in its halves can be read back") {
-  Finding finding = samples::finding(Verdict::kFound);
-  finding.after.covariance.matrix[0][1] += 1e-19;
-  REQUIRE(finding.after.covariance.matrix[0][1] != finding.after.covariance.matrix[1][0]);
+  Finding finding = samples::finding(GapVerdict::kFound);
+  finding.identified.model.covariance.matrix[0][1] += 1e-19;
+  REQUIRE(finding.identified.model.covariance.matrix[0][1] !=
+          finding.identified.model.covariance.matrix[1][0]);
   CHECK_NOTHROW(parseModelDocument(formatModelDocument(newModel(finding, samples::inputs())), "m"));
 }
 
 TEST_CASE("working on the same log again counts the runs") {
-  Finding finding = samples::finding(Verdict::kFound);
+  Finding finding = samples::finding(GapVerdict::kFound);
   finding.before = newModel(finding, samples::inputs());
   CHECK(newModel(finding, samples::inputs()).provenance.runs == 2);
 }

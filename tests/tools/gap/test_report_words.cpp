@@ -12,7 +12,6 @@
 #include "tools/gap/report/gap_words.hpp"
 #include "tools/gap/report/headline.hpp"
 #include "tools/gap/report/pictures.hpp"
-#include "tools/gap/report/rivals.hpp"
 #include "tools/gap/report/sections.hpp"
 
 namespace tread::gap {
@@ -27,13 +26,13 @@ FoundEffect effect(const std::string& name, const std::vector<std::string>& as_g
   return found;
 }
 
-Finding withEffects(Verdict verdict, const std::vector<FoundEffect>& effects) {
+Finding withEffects(GapVerdict verdict, const std::vector<FoundEffect>& effects) {
   Finding finding = samples::finding(verdict);
-  finding.effects = effects;
+  finding.identified.effects = effects;
   return finding;
 }
 
-std::string headline(Verdict verdict, const std::vector<FoundEffect>& effects) {
+std::string headline(GapVerdict verdict, const std::vector<FoundEffect>& effects) {
   return headlineOf(withEffects(verdict, effects));
 }
 
@@ -60,34 +59,36 @@ FoundEffect sized(const std::string& path, const std::string& unit, double value
 
 /// A finding whose new model has this parameter.
 Finding withSize(const FoundEffect& found) {
-  Finding finding = withEffects(Verdict::kFound, {found});
+  Finding finding = withEffects(GapVerdict::kFound, {found});
   const Estimate& estimate = found.parameters.front();
-  *findParameter(finding.after, estimate.parameter) = estimate.value;
+  *findParameter(finding.identified.model, estimate.parameter) = estimate.value;
   return finding;
 }
 
 }  // namespace
 
 TEST_CASE("a headline that leaves names open is one line, with what is sure before it") {
-  CHECK(headline(Verdict::kAmbiguous, {effect("yaw_pull", {"track_asymmetry"})}) ==
+  CHECK(headline(GapVerdict::kAmbiguous, {effect("yaw_pull", {"track_asymmetry"})}) ==
         "Yaw pull or left-right asymmetry: this drive cannot tell them apart");
-  CHECK(headline(Verdict::kAmbiguous,
+  CHECK(headline(GapVerdict::kAmbiguous,
                  {effect("slip_ratio"), effect("yaw_pull", {"track_asymmetry"})}) ==
         "Found: Longitudinal slip; and Yaw pull or left-right asymmetry: this drive cannot tell "
         "them apart");
-  CHECK(headline(Verdict::kAmbiguous, {effect("yaw_pull", {"crab", "gyro_bias", "grip_limit"})}) ==
-        "Yaw pull or one of 3 others: this drive cannot tell them apart");
-  CHECK(headline(Verdict::kAmbiguous, {effect("slip_ratio"), effect("crab", {"yaw_pull"}),
-                                       effect("yaw_pull", {"track_asymmetry"})}) ==
+  CHECK(
+      headline(GapVerdict::kAmbiguous, {effect("yaw_pull", {"crab", "gyro_bias", "grip_limit"})}) ==
+      "Yaw pull or one of 3 others: this drive cannot tell them apart");
+  CHECK(headline(GapVerdict::kAmbiguous, {effect("slip_ratio"), effect("crab", {"yaw_pull"}),
+                                          effect("yaw_pull", {"track_asymmetry"})}) ==
         "Found: Longitudinal slip; not sure by name: Crabbing and Yaw pull");
-  CHECK(headline(Verdict::kFound, {effect("slip_ratio", {}, 1.0), effect("crab", {}, 9.0),
-                                   effect("grip_limit", {}, 5.0), effect("yaw_pull", {}, 2.0)}) ==
-        "Found: Crabbing, Grip limit and 2 more");
+  CHECK(
+      headline(GapVerdict::kFound, {effect("slip_ratio", {}, 1.0), effect("crab", {}, 9.0),
+                                    effect("grip_limit", {}, 5.0), effect("yaw_pull", {}, 2.0)}) ==
+      "Found: Crabbing, Grip limit and 2 more");
 }
 
 TEST_CASE("a name that is open is marked under PARTIAL, too, and what it could be is listed") {
   const Finding finding =
-      withEffects(Verdict::kPartial, {effect("slip_ratio"), samples::icrOffset()});
+      withEffects(GapVerdict::kPartial, {effect("slip_ratio"), samples::icrOffset()});
   CHECK(headlineOf(finding) ==
         "Found: Longitudinal slip; and Centre of rotation ahead of or behind the middle or lever "
         "arm along the vehicle: this drive cannot tell them apart; and something more without a "
@@ -100,14 +101,14 @@ TEST_CASE("a name that is open is marked under PARTIAL, too, and what it could b
 TEST_CASE("the latency that a delay may be is not the one that the model may have beside it") {
   FoundEffect delay = effect("command_delay");
   delay.group = {"ins_latency"};
-  CHECK(headline(Verdict::kAmbiguous, {delay, effect("ins_latency")}) ==
+  CHECK(headline(GapVerdict::kAmbiguous, {delay, effect("ins_latency")}) ==
         "Found: INS latency; and Command delay or INS latency of poses and gyro alike: this drive "
         "cannot tell them apart");
 }
 
 TEST_CASE("two effects that may be taken for each other are one pair, whichever was found first") {
   const Finding finding = withEffects(
-      Verdict::kPartial,
+      GapVerdict::kPartial,
       {effect("yaw_pull", {"track_asymmetry"}), effect("track_asymmetry", {"yaw_pull", "crab"})});
   const std::vector<RivalPair> pairs = rivalPairs(finding);
   REQUIRE(pairs.size() == 2);
@@ -117,7 +118,7 @@ TEST_CASE("two effects that may be taken for each other are one pair, whichever 
 }
 
 TEST_CASE("no drive is planned for twins that want another measurement") {
-  const std::string text = report(samples::finding(Verdict::kAmbiguous));
+  const std::string text = report(samples::finding(GapVerdict::kAmbiguous));
   CHECK(has(text,
             "this drive cannot tell them apart. v_y = -offset omega in both. To tell: "
             "Measure the lever arm with a tape."));
@@ -125,7 +126,7 @@ TEST_CASE("no drive is planned for twins that want another measurement") {
 }
 
 TEST_CASE("dead reckoning is the best possible only where the model does not beat it") {
-  Gap gap = *samples::finding(Verdict::kFound).gap;
+  Gap gap = *samples::finding(GapVerdict::kFound).gap;
   CHECK(has(gainOf(gap), "about the best that is possible"));
   gap.after.position.median = 0.2;
   CHECK_FALSE(has(gainOf(gap), "best"));
@@ -135,7 +136,7 @@ TEST_CASE("dead reckoning is the best possible only where the model does not bea
 }
 
 TEST_CASE("where fitting the model's numbers is what makes it agree, the headline says so") {
-  Finding finding = samples::finding(Verdict::kNoDiscrepancy);
+  Finding finding = samples::finding(GapVerdict::kNoDiscrepancy);
   CHECK(has(headlineOf(finding), "agree, once the model's own numbers are fitted"));
   CHECK(has(report(finding), "That done: What the model predicts"));
   finding.gap->after = finding.gap->before;
@@ -143,7 +144,7 @@ TEST_CASE("where fitting the model's numbers is what makes it agree, the headlin
 }
 
 TEST_CASE("what got worse on unseen driving is named") {
-  Gap gap = *samples::finding(Verdict::kFound).gap;
+  Gap gap = *samples::finding(GapVerdict::kFound).gap;
   CHECK(worseOf(gap) == "");
   gap.after.position.median = 0.7;
   CHECK(worseOf(gap) ==
@@ -151,7 +152,7 @@ TEST_CASE("what got worse on unseen driving is named") {
         "m now); only heading got better.");
   gap.after.yaw.median = 0.5;
   CHECK(has(worseOf(gap), "0.700 m now) and heading (median 20.5 deg before, 28.6 deg now)."));
-  Finding finding = samples::finding(Verdict::kFound);
+  Finding finding = samples::finding(GapVerdict::kFound);
   finding.gap = gap;
   const std::vector<std::string> lines = closingLines(finding);
   CHECK(std::count(lines.begin(), lines.end(), "  " + worseOf(gap)) == 1);
@@ -159,11 +160,11 @@ TEST_CASE("what got worse on unseen driving is named") {
 }
 
 TEST_CASE("what find prints at its end begins with the verdict and tells what remains") {
-  const std::vector<std::string> lines = closingLines(samples::finding(Verdict::kPartial));
+  const std::vector<std::string> lines = closingLines(samples::finding(GapVerdict::kPartial));
   CHECK(lines.front().find("PARTIAL: Found: ") == 0);
-  CHECK(closingLines(samples::finding(Verdict::kFound)).front() ==
+  CHECK(closingLines(samples::finding(GapVerdict::kFound)).front() ==
         "FOUND: Limit of turning power and Left-right asymmetry");
-  CHECK(has(closingLines(samples::finding(Verdict::kAmbiguous)).back(),
+  CHECK(has(closingLines(samples::finding(GapVerdict::kAmbiguous)).back(),
             "To tell: Measure the lever arm with a tape."));
   CHECK(std::count(lines.begin(), lines.end(),
                    "  Unexplained: the yaw rate residual depends on speed x yaw rate.") == 1);
@@ -171,17 +172,18 @@ TEST_CASE("what find prints at its end begins with the verdict and tells what re
 
 TEST_CASE("a term on top of what the model had shows their total beside") {
   const Finding finding = withSize(sized("actuator_lag.lag", "s", 0.2));
-  CHECK(has(sentenceOf(finding.effects[0], finding.after), "; lag in all 0.370 s."));
+  CHECK(has(sentenceOf(finding.identified.effects[0], finding.identified.model),
+            "; lag in all 0.370 s."));
   CHECK(has(report(finding),
             "| lag | off | 0.200 s | 0.190 to 0.210 s | -0.170 to 5 s | lag in "
             "all 0.370 s |"));
-  CHECK_FALSE(has(report(samples::finding(Verdict::kMeasurement)), "| in all |"));
+  CHECK_FALSE(has(report(samples::finding(GapVerdict::kMeasurement)), "| in all |"));
 }
 
 TEST_CASE("a parameter at the end of what is plausible is marked, with what to do") {
   Finding finding = withSize(sized("lag_asymmetry.slowing", "s", -2.0));
   CHECK(has(report(finding), "| -2 s (at its limit) |"));
-  finding.verdict = Verdict::kCannotTell;
+  finding.verdict = GapVerdict::kCannotTell;
   CHECK(has(report(finding), "or leave it out: --reject lag_asymmetry."));
   CHECK(has(report(finding), "No model was written."));
   CHECK_FALSE(has(report(finding), "new model holds"));
@@ -191,7 +193,7 @@ TEST_CASE("a parameter at the end of what is plausible is marked, with what to d
 
 TEST_CASE(
     "each effect is told by its name and in a sentence, in the report and at the end of find") {
-  const Finding finding = samples::finding(Verdict::kFound);
+  const Finding finding = samples::finding(GapVerdict::kFound);
   const std::string sentence =
       "Limit of turning power: the drive cannot turn the vehicle faster than a certain yaw rate on "
       "this ground: limit 1.25 rad/s (1.22 to 1.28 rad/s).";
@@ -208,31 +210,32 @@ TEST_CASE("a negative slip sends people to the wheel radius") {
 }
 
 TEST_CASE("a limit is visible from the gentlest one on, and what was found is said to be") {
-  const std::string text = report(samples::finding(Verdict::kNoDiscrepancy));
+  const std::string text = report(samples::finding(GapVerdict::kNoDiscrepancy));
   CHECK(has(text, "| limit of 2.50 rad/s or below |"));
   CHECK(has(text, "| no limit that was tried |"));
-  CHECK(has(report(samples::finding(Verdict::kFound)), "| 80 % | found |"));
+  CHECK(has(report(samples::finding(GapVerdict::kFound)), "| 80 % | found |"));
 }
 
 TEST_CASE("a report says what to do after its verdict, and what its words mean") {
-  const Finding finding = samples::finding(Verdict::kMeasurement);
+  const Finding finding = samples::finding(GapVerdict::kMeasurement);
   CHECK(has(report(finding), "What to do: Mend the INS: lever arm, mounting, time stamps."));
   CHECK(has(report(finding), "| nats | unit of evidence"));
 }
 
-TEST_CASE("a number of the model that is another one now is named, with the effect like it") {
+TEST_CASE("a number of the model that has changed is named, with the effect like it") {
   Finding finding;
-  finding.calibrated = {{"forward_gain", "1", 1.08, 1.07, 1.09, 1.11, true}};
+  finding.identified.calibrated = {{"forward_gain", "1", 1.08, 1.07, 1.09, 1.11, true}};
   CHECK(movedSentences(finding).front() ==
-        "A number of the model is another one now: forward_gain 108 % (107 to 109 %) instead of "
+        "A number of the model has changed: forward_gain 108 % (107 to 109 %) instead of "
         "111 %; longitudinal slip would do the same.");
 }
 
-TEST_CASE("a term of the model that is another one now is said in its natural numbers") {
-  Finding finding = samples::finding(Verdict::kNoDiscrepancy);
-  finding.calibrated = {{"turn_power_limit.inverse_limit", "s/rad", 0.8, 0.78, 0.82, 0.5, true}};
+TEST_CASE("a term of the model that has changed is said in its natural numbers") {
+  Finding finding = samples::finding(GapVerdict::kNoDiscrepancy);
+  finding.identified.calibrated = {
+      {"turn_power_limit.inverse_limit", "s/rad", 0.8, 0.78, 0.82, 0.5, true}};
   CHECK(movedSentences(finding).front() ==
-        "Limit of turning power, which the model has, is another one now: limit 1.25 rad/s (1.22 "
+        "Limit of turning power, which the model has, has changed: limit 1.25 rad/s (1.22 "
         "to 1.28 rad/s) instead of 2 rad/s.");
 }
 

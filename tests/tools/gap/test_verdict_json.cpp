@@ -3,17 +3,18 @@
 #include <catch2/catch.hpp>
 
 #include "tests/tools/gap/sample_findings.hpp"
-#include "tools/gap/verdict_json.hpp"
+#include "tools/gap/find_output.hpp"
 
 namespace tread::gap {
 
 using Json = nlohmann::ordered_json;
 
 TEST_CASE("verdict.json names the verdict, and the verdict is the exit status") {
-  const std::pair<Verdict, int> kExpected[] = {
-      {Verdict::kNoDiscrepancy, 0}, {Verdict::kFound, 10},          {Verdict::kAmbiguous, 11},
-      {Verdict::kPartial, 12},      {Verdict::kNotInCatalogue, 13}, {Verdict::kMeasurement, 14},
-      {Verdict::kCannotTell, 15}};
+  const std::pair<GapVerdict, int> kExpected[] = {
+      {GapVerdict::kNoDiscrepancy, 0},   {GapVerdict::kFound, 10},
+      {GapVerdict::kAmbiguous, 11},      {GapVerdict::kPartial, 12},
+      {GapVerdict::kNotInCatalogue, 13}, {GapVerdict::kMeasurement, 14},
+      {GapVerdict::kCannotTell, 15}};
   const char* const kNames[] = {"NO_DISCREPANCY",   "FOUND",       "AMBIGUOUS",  "PARTIAL",
                                 "NOT_IN_CATALOGUE", "MEASUREMENT", "CANNOT_TELL"};
   for (size_t i = 0; i < 7; ++i) {
@@ -27,20 +28,20 @@ TEST_CASE("verdict.json names the verdict, and the verdict is the exit status") 
 }
 
 TEST_CASE("an effect in verdict.json has kind, parameters, group and runner-ups") {
-  const Json json = verdictJson(samples::finding(Verdict::kFound), samples::inputs());
+  const Json json = verdictJson(samples::finding(GapVerdict::kFound), samples::inputs());
   const Json& effect = json["effects"][0];
   CHECK(effect["name"] == "turn_power_limit");
   CHECK(effect["kind"] == "vehicle");
   CHECK(effect["group"].empty());
   CHECK(effect["runner_up"] == Json::array({"yaw_rate_skid"}));
-  CHECK(verdictJson(samples::finding(Verdict::kMeasurement), {})["effects"][0]["kind"] ==
+  CHECK(verdictJson(samples::finding(GapVerdict::kMeasurement), {})["effects"][0]["kind"] ==
         "measurement");
-  CHECK(verdictJson(samples::finding(Verdict::kAmbiguous), {})["effects"][0]["group"] ==
+  CHECK(verdictJson(samples::finding(GapVerdict::kAmbiguous), {})["effects"][0]["group"] ==
         Json::array({"lever_arm_x"}));
 }
 
 TEST_CASE("a limit stands in verdict.json as its reciprocal and as itself") {
-  const Json json = verdictJson(samples::finding(Verdict::kFound), samples::inputs());
+  const Json json = verdictJson(samples::finding(GapVerdict::kFound), samples::inputs());
   const Json& parameters = json["effects"][0]["parameters"];
   CHECK(parameters["inverse_limit"]["value"] == 0.8);
   CHECK(parameters["inverse_limit"]["unit"] == "s/rad");
@@ -51,9 +52,9 @@ TEST_CASE("a limit stands in verdict.json as its reciprocal and as itself") {
 }
 
 TEST_CASE("numbers in verdict.json that are not finite are null") {
-  Finding finding = samples::finding(Verdict::kFound);
-  finding.effects[0].parameters[0].low = 0.0;  // perhaps no limit at all
-  finding.effects[1].parameters[0].high = std::numeric_limits<double>::infinity();
+  Finding finding = samples::finding(GapVerdict::kFound);
+  finding.identified.effects[0].parameters[0].low = 0.0;  // perhaps no limit at all
+  finding.identified.effects[1].parameters[0].high = std::numeric_limits<double>::infinity();
   const Json json = verdictJson(finding, samples::inputs());
   CHECK(json["effects"][0]["parameters"]["limit"]["high"].is_null());
   CHECK(json["effects"][1]["parameters"]["share"]["high"].is_null());
@@ -61,21 +62,21 @@ TEST_CASE("numbers in verdict.json that are not finite are null") {
 }
 
 TEST_CASE("verdict.json holds the gap before, after and at the floor, or null") {
-  Json gap = verdictJson(samples::finding(Verdict::kFound), {})["gap"];
+  Json gap = verdictJson(samples::finding(GapVerdict::kFound), {})["gap"];
   CHECK(gap["horizon_s"] == 2.0);
   CHECK(gap["before"]["position_m"]["median"] == 0.642);
   CHECK(gap["after"]["yaw_rad"]["rms"] == 0.31);
   CHECK(gap["floor"]["position_m"]["median"] == 0.29);
-  Finding without_floor = samples::finding(Verdict::kFound);
+  Finding without_floor = samples::finding(GapVerdict::kFound);
   without_floor.gap->floor.reset();
   CHECK(verdictJson(without_floor, {})["gap"]["floor"].is_null());
-  gap = verdictJson(samples::finding(Verdict::kCannotTell), {})["gap"];
+  gap = verdictJson(samples::finding(GapVerdict::kCannotTell), {})["gap"];
   CHECK(gap["before"].is_null());
 }
 
 TEST_CASE(
     "verdict.json names calibrated terms, what remains, what was not excited, and its files") {
-  const Json json = verdictJson(samples::finding(Verdict::kPartial), samples::inputs());
+  const Json json = verdictJson(samples::finding(GapVerdict::kPartial), samples::inputs());
   CHECK(json["calibrated"]["lag"]["value"] == 0.17);
   CHECK(json["calibrated"]["icr_offset.offset"]["unit"] == "m");
   CHECK(json["unexplained"][0] ==

@@ -8,7 +8,7 @@
 
 #include "common/pattern/pattern_file.hpp"
 #include "common/vehicle/model_file.hpp"
-#include "common/vehicle/prediction.hpp"
+#include "common/vehicle/kernel.hpp"
 #include "tools/patterns/model_recording.hpp"
 
 using namespace tread;

@@ -3,9 +3,10 @@
 #include "tools/gap/report/effect_words.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
 #include <string>
-
-#include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {
@@ -29,11 +30,11 @@ std::string directionOf(const Estimate& estimate) {
 std::string movedSentence(const Estimate& estimate) {
   const Estimate natural = naturalEstimate(estimate);
   if (estimate.parameter.find('.') == std::string::npos)
-    return "A number of the model is another one now: " + saidEstimate(estimate) + " instead of " +
+    return "A number of the model has changed: " + saidEstimate(estimate) + " instead of " +
            said(natural.before, saidUnit(natural)) + "; " +
            inSentence(shortTitleOf(effectOfPath(estimate.parameter))) + " would do the same.";
   return shortTitleOf(effectOfPath(estimate.parameter)) +
-         ", which the model has, is another one now: " + saidEstimate(estimate) + " instead of " +
+         ", which the model has, has changed: " + saidEstimate(estimate) + " instead of " +
          said(natural.before, saidUnit(natural)) + ".";
 }
 
@@ -55,7 +56,73 @@ std::string withNumbers(const FoundEffect& effect, const std::vector<std::string
   return text + ".";
 }
 
+bool isKnown(const std::vector<RivalPair>& pairs, const std::string& one,
+             const std::string& other) {
+  return std::any_of(pairs.begin(), pairs.end(), [&](const RivalPair& pair) {
+    return (pair.found == one && pair.other == other) || (pair.found == other && pair.other == one);
+  });
+}
+
 }  // namespace
+
+std::string lastPart(const std::string& path) {
+  const size_t point = path.find('.');
+  return point == std::string::npos ? path : path.substr(point + 1);
+}
+
+std::string naturalUnit(const EffectParameter& parameter) {
+  return parameter.natural_unit == "1" ? "" : parameter.natural_unit;
+}
+
+Estimate naturalEstimate(const Estimate& estimate) {
+  const EffectParameter* parameter = findEffectParameter(estimate.parameter);
+  if (parameter == nullptr || !parameter->reciprocal()) return estimate;
+  Estimate natural = estimate;
+  natural.parameter = parameter->natural_name;
+  natural.unit = parameter->natural_unit;
+  natural.value = naturalValue(*parameter, estimate.value);
+  natural.before = naturalValue(*parameter, estimate.before);
+  // A reciprocal that may be 0 or less is no limit at all.
+  natural.low = naturalValue(*parameter, std::max(0.0, estimate.high));
+  natural.high = naturalValue(*parameter, std::max(0.0, estimate.low));
+  return natural;
+}
+
+std::string saidUnit(const Estimate& natural) {
+  return natural.parameter == "friction" ? "" : natural.unit;
+}
+
+std::string saidEstimate(const Estimate& estimate) {
+  const Estimate natural = naturalEstimate(estimate);
+  const std::string unit = saidUnit(natural);
+  return lastPart(natural.parameter) + " " + said(natural.value, unit) + " (" +
+         saidInterval(natural.low, natural.high, unit) + ")";
+}
+
+std::string titleOf(const std::string& effect) {
+  for (const Effect& known : effectCatalogue())
+    if (known.name == effect) return known.title;
+  return effect;
+}
+
+std::string titlesOf(const std::vector<std::string>& effects, const std::string& last_joint) {
+  std::vector<std::string> titles;
+  titles.reserve(effects.size());
+  for (const std::string& effect : effects) titles.push_back(titleOf(effect));
+  return joined(titles, last_joint);
+}
+
+std::string shortTitleOf(const std::string& effect) {
+  const std::string title = titleOf(effect);
+  return title.substr(0, title.find(','));
+}
+
+std::string shortTitlesOf(const std::vector<std::string>& effects, const std::string& last_joint) {
+  std::vector<std::string> titles;
+  titles.reserve(effects.size());
+  for (const std::string& effect : effects) titles.push_back(shortTitleOf(effect));
+  return joined(titles, last_joint);
+}
 
 std::string sentenceOf(const FoundEffect& effect) {
   return withNumbers(effect, {});
@@ -89,9 +156,72 @@ std::string checkOf(const FoundEffect& effect) {
 
 std::vector<std::string> movedSentences(const Finding& finding) {
   std::vector<std::string> sentences;
-  for (const Estimate& estimate : finding.calibrated)
+  for (const Estimate& estimate : finding.identified.calibrated)
     if (estimate.moved) sentences.push_back(movedSentence(estimate));
   return sentences;
+}
+
+PlausibleRange plausibleRange(const Finding& finding, const std::string& path) {
+  const auto bounds = plausibleBounds(finding.identified.model, path);
+  return bounds ? PlausibleRange{bounds->min, bounds->max} : PlausibleRange{};
+}
+
+bool isAtLimit(const Finding& finding, const Estimate& estimate) {
+  const PlausibleRange range = plausibleRange(finding, estimate.parameter);
+  const double near = 1e-6 * (range.max - range.min);
+  return near > 0.0 && estimate.value != 0.0 &&
+         (estimate.value <= range.min + near || estimate.value >= range.max - near);
+}
+
+std::vector<std::string> rivalsOf(const FoundEffect& effect) {
+  std::vector<std::string> names;
+  for (const std::string& member : effect.group)
+    if (!contains(names, member)) names.push_back(member);
+  for (const RunnerUp& runner_up : effect.runner_ups)
+    if (isAsGood(runner_up) && !contains(names, runner_up.effect))
+      names.push_back(runner_up.effect);
+  return names;
+}
+
+std::string rivalTitle(const std::string& found, const std::string& other) {
+  const std::string title = inSentence(shortTitleOf(other));
+  // A model may have a latency of the poses alone, which is another one.
+  if (effectNamed(other).kind == EffectKind::kMeasurement)
+    for (const ConfoundedGroup* group : confoundedGroupsOf(found))
+      if (group->share != nullptr && contains(group->members, other))
+        return title + group->share_words;
+  return title;
+}
+
+std::vector<std::string> waysToTell(const FoundEffect& effect) {
+  const std::vector<std::string> rivals = rivalsOf(effect);
+  std::vector<std::string> ways;
+  for (const ConfoundedGroup* group : confoundedGroupsOf(effect.name))
+    if (std::any_of(group->members.begin(), group->members.end(),
+                    [&](const std::string& member) { return contains(rivals, member); }))
+      ways.push_back(group->separates);
+  if (ways.empty()) ways.push_back(effectNamed(effect.name).separates);
+  return ways;
+}
+
+bool driveMayTell(const RivalPair& pair) {
+  const std::vector<const ConfoundedGroup*> groups = confoundedGroupsOf(pair.found);
+  return !pair.grouped ||
+         std::none_of(groups.begin(), groups.end(), [&pair](const ConfoundedGroup* group) {
+           return contains(group->members, pair.other);
+         });
+}
+
+std::vector<RivalPair> rivalPairs(const Finding& finding) {
+  std::vector<RivalPair> pairs;
+  for (const FoundEffect& effect : finding.identified.effects) {
+    for (const std::string& member : effect.group)
+      if (!isKnown(pairs, effect.name, member)) pairs.push_back({effect.name, member, true});
+    for (const RunnerUp& runner_up : effect.runner_ups)
+      if (!isKnown(pairs, effect.name, runner_up.effect))
+        pairs.push_back({effect.name, runner_up.effect, false, runner_up.behind, runner_up.error});
+  }
+  return pairs;
 }
 
 }  // namespace tread::gap

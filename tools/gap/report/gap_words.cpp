@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "tools/gap/report/words.hpp"
+#include "tools/gap/report/effect_words.hpp"
 
 namespace tread::gap {
 namespace {

@@ -21,7 +21,8 @@ const std::vector<Word>& glossary() {
       {"score, p",
        "how clearly the residuals have an effect's signature, and the chance of so clear a one "
        "anywhere in the catalogue if nothing were there"},
-      {"twin group", "effects that look the same to the INS; a tape or another sensor tells them"},
+      {"group",
+       "confounded effects: the same to the INS; a tape or another sensor tells them apart"},
       {"runner-up",
        "an effect that explains the drive, too; one within its standard error is as good"},
       {"adequacy",
@@ -36,37 +37,37 @@ const std::vector<Word>& glossary() {
 
 const std::vector<Advice>& advices() {
   static const std::vector<Advice> all{
-      {Verdict::kNoDiscrepancy,
+      {GapVerdict::kNoDiscrepancy,
        "nothing beyond chance; the report says from which size on each effect would have been seen",
        "Keep the model (after --calibrate: take model.yaml). To look deeper, drive longer or what "
        "this drive did not show."},
-      {Verdict::kFound, "effects by name, with sizes and intervals; the model has them in",
+      {GapVerdict::kFound, "effects by name, with sizes and intervals; the model has them in",
        "Check each in two minutes, as the report says; run find with --test and a log of another "
        "day; then take model.yaml."},
-      {Verdict::kAmbiguous,
+      {GapVerdict::kAmbiguous,
        "it is one of several that this drive cannot tell apart; what tells is said",
        "The new model drives like the log whichever it is. To know which, measure or drive what "
        "the report says, and give find both logs."},
-      {Verdict::kPartial, "effects were found, and the residuals still depend on something",
+      {GapVerdict::kPartial, "effects were found, and the residuals still depend on something",
        "Use model.yaml if its error is small enough for you. Else look at the curve of what is "
        "unexplained, drive more of that, and give find both logs."},
-      {Verdict::kNotInCatalogue,
+      {GapVerdict::kNotInCatalogue,
        "there is a disagreement and no effect of the catalogue explains it; on what it depends is "
        "said",
        "Do not trust the model where the residuals depend on something. Look at the vehicle: loose "
        "tracks, load, tyres, other software; drive more of what is named."},
-      {Verdict::kMeasurement,
+      {GapVerdict::kMeasurement,
        "the INS, not the vehicle; only the measurement part of the model changes",
        "Mend the INS: lever arm, mounting, time stamps. Or keep the measurement part of "
        "model.yaml."},
-      {Verdict::kCannotTell,
+      {GapVerdict::kCannotTell,
        "too little driving, a log that is not sound, or a size that is no measurement; no model is "
        "written",
        "Mend the log, or drive what is missing; the reason says which."}};
   return all;
 }
 
-const Advice& adviceFor(Verdict verdict) {
+const Advice& adviceFor(GapVerdict verdict) {
   return *std::find_if(advices().begin(), advices().end(),
                        [verdict](const Advice& advice) { return advice.verdict == verdict; });
 }

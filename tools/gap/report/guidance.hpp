@@ -21,14 +21,14 @@ const std::vector<Word>& glossary();
 
 /// A verdict, what it means and what to do then.
 struct Advice {
-  Verdict verdict;
+  GapVerdict verdict;
   std::string meaning;
   std::string next;
 };
 
 /// One for each verdict, in the order of their exit statuses.
 const std::vector<Advice>& advices();
-const Advice& adviceFor(Verdict verdict);
+const Advice& adviceFor(GapVerdict verdict);
 
 /// How one comes from a log of one's own to a first run, step by step.
 const std::vector<Word>& firstSteps();

@@ -7,10 +7,7 @@
 #include "tools/gap/report/effect_words.hpp"
 #include "tools/gap/report/gap_words.hpp"
 #include "tools/gap/report/guidance.hpp"
-#include "tools/gap/report/limits.hpp"
 #include "tools/gap/report/pictures.hpp"
-#include "tools/gap/report/rivals.hpp"
-#include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {
@@ -27,7 +24,7 @@ constexpr const char* kFittedNumbers =
 /// Effects of the model that are other ones now.
 std::vector<std::string> movedIn(const Finding& finding) {
   std::vector<std::string> names;
-  for (const Estimate& estimate : finding.calibrated) {
+  for (const Estimate& estimate : finding.identified.calibrated) {
     const std::string effect = effectOfPath(estimate.parameter);
     if (estimate.moved && std::find(names.begin(), names.end(), effect) == names.end())
       names.push_back(effect);
@@ -38,8 +35,8 @@ std::vector<std::string> movedIn(const Finding& finding) {
 /// Found effects; where there are none, those that have changed.
 std::vector<std::string> namesOf(const Finding& finding) {
   std::vector<std::string> names;
-  names.reserve(finding.effects.size());
-  for (const FoundEffect& effect : finding.effects)
+  names.reserve(finding.identified.effects.size());
+  for (const FoundEffect& effect : finding.identified.effects)
     if (isShown(effect)) names.push_back(effect.name);
   return names.empty() ? movedIn(finding) : names;
 }
@@ -47,7 +44,7 @@ std::vector<std::string> namesOf(const Finding& finding) {
 /// Found effects of which this drive knows, or does not know, which one they are.
 std::vector<const FoundEffect*> found(const Finding& finding, bool sure) {
   std::vector<const FoundEffect*> effects;
-  for (const FoundEffect& effect : finding.effects)
+  for (const FoundEffect& effect : finding.identified.effects)
     if (isShown(effect) && rivalsOf(effect).empty() == sure) effects.push_back(&effect);
   return effects;
 }
@@ -106,7 +103,7 @@ void addRivals(const Finding& finding, Points& points) {
 /// How to check the effects that bring most; those of the others stand further down.
 void addChecks(const Finding& finding, Points& points) {
   std::vector<const FoundEffect*> effects;
-  for (const FoundEffect& effect : finding.effects) effects.push_back(&effect);
+  for (const FoundEffect& effect : finding.identified.effects) effects.push_back(&effect);
   byGain(effects);
   if (effects.size() > kNamed) effects.resize(kNamed);
   for (const FoundEffect* effect : effects)
@@ -116,7 +113,7 @@ void addChecks(const Finding& finding, Points& points) {
 
 /// What to do about effects whose size is no measurement.
 void addUnsized(const Finding& finding, Points& points) {
-  for (const FoundEffect& effect : finding.effects)
+  for (const FoundEffect& effect : finding.identified.effects)
     if (std::any_of(effect.parameters.begin(), effect.parameters.end(),
                     [&finding](const Estimate& estimate) { return isAtLimit(finding, estimate); }))
       points.items.push_back(shortTitleOf(effect.name) +
@@ -127,18 +124,18 @@ void addUnsized(const Finding& finding, Points& points) {
 
 void addNext(const Finding& finding, std::vector<Block>& blocks) {
   Points points;
-  if (finding.verdict == Verdict::kCannotTell) {
+  if (finding.verdict == GapVerdict::kCannotTell) {
     addUnsized(finding, points);
-    const size_t unseen = finding.not_excited.size();
+    const size_t unseen = finding.identified.not_excited.size();
     if (unseen > 0)
       points.items.push_back("This drive would not have shown " +
                              (unseen <= kNamed
-                                  ? inSentence(shortTitlesOf(finding.not_excited)) + "."
+                                  ? inSentence(shortTitlesOf(finding.identified.not_excited)) + "."
                                   : std::to_string(unseen) +
                                         " effects; they stand below, with what would show them."));
   } else {
     addRivals(finding, points);
-    if (finding.verdict != Verdict::kAmbiguous) addChecks(finding, points);
+    if (finding.verdict != GapVerdict::kAmbiguous) addChecks(finding, points);
   }
   if (!points.items.empty()) blocks.push_back(points);
 }
@@ -146,7 +143,7 @@ void addNext(const Finding& finding, std::vector<Block>& blocks) {
 /// Whether model and log agree only because numbers that the model has were fitted to the log.
 bool isMadeByFit(const Finding& finding) {
   constexpr double kMuch = 0.75;
-  if (!finding.gap || finding.calibrated.empty()) return false;
+  if (!finding.gap || finding.identified.calibrated.empty()) return false;
   const Gap& gap = *finding.gap;
   return gap.after.position.median < kMuch * gap.before.position.median ||
          gap.after.yaw.median < kMuch * gap.before.yaw.median;
@@ -154,22 +151,22 @@ bool isMadeByFit(const Finding& finding) {
 
 std::string opening(const Finding& finding) {
   switch (finding.verdict) {
-    case Verdict::kNoDiscrepancy:
+    case GapVerdict::kNoDiscrepancy:
       return std::string(isMadeByFit(finding) ? kFittedNumbers : "") +
              std::string(
                  "What the model predicts and what the INS measured differ by no more than chance, "
                  "over the whole catalogue and on all variables. Which effects would have been "
                  "seen, "
                  "from which size on, stands below.") +
-             (finding.negligible.empty()
+             (finding.search.negligible.empty()
                   ? std::string()
-                  : " Real, but too small to matter: " + titlesOf(finding.negligible) + ".");
-    case Verdict::kNotInCatalogue:
+                  : " Real, but too small to matter: " + titlesOf(finding.search.negligible) + ".");
+    case GapVerdict::kNotInCatalogue:
       return "There is a disagreement, and no effect of the catalogue explains it. A term by "
              "another name would be a guess; the model stays as it was but for its calibration.";
-    case Verdict::kCannotTell:
+    case GapVerdict::kCannotTell:
       return finding.reason + (finding.reason.empty() || finding.reason.back() == '.' ? "" : ".");
-    case Verdict::kMeasurement:
+    case GapVerdict::kMeasurement:
       return "The vehicle drives as the model says; what differs is how the INS reports it. Only "
              "the measurement part of the model has changed.";
     default:
@@ -181,19 +178,19 @@ std::string opening(const Finding& finding) {
 
 std::string headlineOf(const Finding& finding) {
   switch (finding.verdict) {
-    case Verdict::kNoDiscrepancy:
+    case GapVerdict::kNoDiscrepancy:
       return std::string("Simulation and measurement agree") +
              (isMadeByFit(finding) ? ", once the model's own numbers are fitted" : "");
-    case Verdict::kFound:
-    case Verdict::kAmbiguous:
+    case GapVerdict::kFound:
+    case GapVerdict::kAmbiguous:
       return foundWords(finding);
-    case Verdict::kPartial:
+    case GapVerdict::kPartial:
       return foundWords(finding) + "; and something more without a name";
-    case Verdict::kNotInCatalogue:
+    case GapVerdict::kNotInCatalogue:
       return "Something that is not in the catalogue";
-    case Verdict::kMeasurement:
+    case GapVerdict::kMeasurement:
       return "The INS, not the vehicle: " + shortTitlesOf(namesOf(finding));
-    case Verdict::kCannotTell:
+    case GapVerdict::kCannotTell:
       return "This drive cannot tell";
   }
   return "";
@@ -205,7 +202,7 @@ namespace {
 std::string verdictLine(const Finding& finding) {
   const std::string found = "Found: ";
   std::string headline = headlineOf(finding);
-  if (finding.verdict == Verdict::kFound && headline.find(found) == 0)
+  if (finding.verdict == GapVerdict::kFound && headline.find(found) == 0)
     headline.erase(0, found.size());
   return std::string(verdictName(finding.verdict)) + ": " + headline;
 }
@@ -214,21 +211,21 @@ std::string verdictLine(const Finding& finding) {
 
 std::vector<std::string> closingLines(const Finding& finding) {
   std::vector<std::string> lines{verdictLine(finding)};
-  if (finding.verdict == Verdict::kCannotTell) {
+  if (finding.verdict == GapVerdict::kCannotTell) {
     lines.push_back("  " + finding.reason);
-    if (!finding.effects.empty()) lines.push_back(std::string("  ") + kNoResult);
+    if (!finding.identified.effects.empty()) lines.push_back(std::string("  ") + kNoResult);
   }
-  for (const FoundEffect& effect : finding.effects)
-    lines.push_back("  " + titledSentenceOf(effect, finding.after));
+  for (const FoundEffect& effect : finding.identified.effects)
+    lines.push_back("  " + titledSentenceOf(effect, finding.identified.model));
   for (const std::string& sentence : movedSentences(finding)) lines.push_back("  " + sentence);
-  if (!finding.unexplained.empty())
-    lines.push_back("  Unexplained: " + remainsOf(finding.unexplained) + ".");
+  if (!finding.adequacy.unexplained.empty())
+    lines.push_back("  Unexplained: " + remainsOf(finding.adequacy.unexplained) + ".");
   if (!finding.gap) return lines;
   lines.push_back("  " + gainOf(*finding.gap));
   const std::string worse = worseOf(*finding.gap);
   if (!worse.empty()) lines.push_back("  " + worse);
   Points rivals;
-  if (finding.verdict == Verdict::kAmbiguous) addRivals(finding, rivals);
+  if (finding.verdict == GapVerdict::kAmbiguous) addRivals(finding, rivals);
   for (const std::string& rival : rivals.items) lines.push_back("  " + rival);
   return lines;
 }
@@ -237,15 +234,15 @@ std::vector<Block> firstBlocks(const Finding& finding) {
   std::vector<Block> blocks;
   const std::string words = opening(finding);
   if (!words.empty()) blocks.push_back(Paragraph{words});
-  if (finding.verdict == Verdict::kCannotTell && !finding.effects.empty())
+  if (finding.verdict == GapVerdict::kCannotTell && !finding.identified.effects.empty())
     blocks.push_back(Paragraph{kNoResult});
   Points sentences;
-  for (const FoundEffect& effect : finding.effects)
-    sentences.items.push_back(titledSentenceOf(effect, finding.after));
+  for (const FoundEffect& effect : finding.identified.effects)
+    sentences.items.push_back(titledSentenceOf(effect, finding.identified.model));
   for (const std::string& sentence : movedSentences(finding)) sentences.items.push_back(sentence);
   if (!sentences.items.empty()) blocks.push_back(sentences);
-  if (!finding.unexplained.empty()) {
-    blocks.push_back(Paragraph{"Unexplained: " + remainsOf(finding.unexplained) + "."});
+  if (!finding.adequacy.unexplained.empty()) {
+    blocks.push_back(Paragraph{"Unexplained: " + remainsOf(finding.adequacy.unexplained) + "."});
   }
   if (finding.gap) {
     blocks.push_back(Paragraph{gainOf(*finding.gap)});
@@ -259,9 +256,9 @@ std::vector<Block> firstBlocks(const Finding& finding) {
   return blocks;
 }
 
-std::string moodOf(Verdict verdict) {
-  if (verdict == Verdict::kNoDiscrepancy) return "good";
-  if (verdict == Verdict::kFound || verdict == Verdict::kMeasurement) return "change";
+std::string moodOf(GapVerdict verdict) {
+  if (verdict == GapVerdict::kNoDiscrepancy) return "good";
+  if (verdict == GapVerdict::kFound || verdict == GapVerdict::kMeasurement) return "change";
   return "doubt";
 }
 

@@ -23,6 +23,6 @@ std::vector<std::string> closingLines(const Finding& finding);
 std::vector<Block> firstBlocks(const Finding& finding);
 
 /// good, change or doubt.
-std::string moodOf(Verdict verdict);
+std::string moodOf(GapVerdict verdict);
 
 }  // namespace tread::gap

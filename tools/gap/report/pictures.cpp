@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/gap/report/words.hpp"
+#include "tools/gap/report/effect_words.hpp"
 
 namespace tread::gap {
 
@@ -177,18 +177,18 @@ std::string placePicture(const std::vector<PlaceError>& places, bool after, doub
   return chart.svg();
 }
 
-std::string ladderPicture(const std::vector<LadderStep>& ladder) {
+std::string stepsPicture(const std::vector<SearchStep>& steps) {
   ChartRange range = ChartRange::empty();
   range.include({0.5, 0.0});
-  range.include({0.5 + static_cast<double>(ladder.size()), 0.0});
-  for (size_t i = 0; i < ladder.size(); ++i)
+  range.include({0.5 + static_cast<double>(steps.size()), 0.0});
+  for (size_t i = 0; i < steps.size(); ++i)
     for (const double side : {-1.0, 1.0})
-      range.include({static_cast<double>(i) + 1.0, ladder[i].gain + side * ladder[i].gain_error});
+      range.include({static_cast<double>(i) + 1.0, steps[i].gain + side * steps[i].gain_error});
   Chart chart("gain of each step on blocks that were not fitted", "", "gain [nats]",
               range.widened(1.0));
   chart.level(0.0);
-  for (size_t i = 0; i < ladder.size(); ++i) {
-    const LadderStep& step = ladder[i];
+  for (size_t i = 0; i < steps.size(); ++i) {
+    const SearchStep& step = steps[i];
     const double x = static_cast<double>(i) + 1.0;
     chart.field({x - 0.3, 0.0}, {x + 0.3, step.gain}, step.removed ? kGreyInk : kAfterColour);
     chart.bar(x, step.gain - step.gain_error, step.gain + step.gain_error, kInk);

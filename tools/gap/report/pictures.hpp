@@ -37,8 +37,8 @@ double fullColourOf(const std::vector<PlaceError>& places);
 std::string placePicture(const std::vector<PlaceError>& places, bool after, double full_colour,
                          const std::string& log);
 
-/// What each step of the ladder brought on blocks that were not fitted, with its standard error.
-std::string ladderPicture(const std::vector<LadderStep>& ladder);
+/// What each step of the search brought on blocks that were not fitted, with its standard error.
+std::string stepsPicture(const std::vector<SearchStep>& ladder);
 
 /// Median end errors before, after and the floor.
 std::string gapPicture(const Gap& gap, bool yaw);

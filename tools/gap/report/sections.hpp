@@ -2,14 +2,22 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "common/report/page.hpp"
 #include "modules/identification/core/finding.hpp"
-#include "tools/gap/verdict_json.hpp"
 
 /// The sections of a report behind its first screen; a section without blocks is left out.
 namespace tread::gap {
+
+/// A file that `tread-gap find` has read.
+struct InputFile {
+  enum class Role { kModel, kTrain, kTest };
+  Role role = Role::kTrain;
+  std::string name;    ///< without its folder
+  std::string sha256;  ///< 64 hexadecimal digits
+};
 
 using report::Block, report::Commands, report::Page, report::Paragraph, report::Pictures;
 using report::Points, report::Section, report::Table;
@@ -18,7 +26,7 @@ Section effectsSection(const Finding& finding);
 Section atlasSection(const Finding& finding);
 Section executionsSection(const Finding& finding, const std::vector<InputFile>& inputs);
 Section placesSection(const Finding& finding, const std::vector<InputFile>& inputs);
-Section ladderSection(const Finding& finding);
+Section stepsSection(const Finding& finding);
 Section parametersSection(const Finding& finding);
 Section alternativesSection(const Finding& finding);
 Section notShownSection(const Finding& finding);

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/gap/report/effect_words.hpp"
 #include "tools/gap/report/guidance.hpp"
 #include "tools/gap/report/headline.hpp"
-#include "tools/gap/report/rivals.hpp"
 #include "tools/gap/report/sections.hpp"
-#include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {
@@ -30,7 +29,7 @@ std::string groupWords(const std::string& effect, const std::string& other) {
   return "";
 }
 
-std::string twinWords(const RivalPair& pair) {
+std::string groupedWords(const RivalPair& pair) {
   return shortTitleOf(pair.found) + " or " + rivalTitle(pair.found, pair.other) +
          ": this drive cannot tell them apart." + groupWords(pair.found, pair.other);
 }
@@ -41,13 +40,13 @@ std::string runnerUpWords(const RivalPair& pair) {
          threeDigits(pair.behind) + " \u00b1 " + threeDigits(pair.error) + " nats behind)";
 }
 
-/// What an effect may be taken for: its twins first, then all others in one point.
+/// What an effect may be taken for: its group first, then all others in one point.
 void addOthers(const std::string& found, const std::vector<RivalPair>& pairs, Points& points) {
   std::vector<std::string> others;
   for (const RivalPair& pair : pairs) {
     if (pair.found != found) continue;
-    if (pair.twin)
-      points.items.push_back(twinWords(pair));
+    if (pair.grouped)
+      points.items.push_back(groupedWords(pair));
     else
       others.push_back(runnerUpWords(pair));
   }
@@ -59,7 +58,7 @@ void addOthers(const std::string& found, const std::vector<RivalPair>& pairs, Po
 /// The smallest size that would have been found, as people say it; of a limit, which bites or does
 /// not, the gentlest one.
 std::string saidDetectable(const CandidateTest& test) {
-  const EffectParameter* parameter = parameterOfPath(test.effect + "." + test.parameter).parameter;
+  const EffectParameter* parameter = findEffectParameter(test.effect + "." + test.parameter);
   const bool limit = parameter != nullptr && parameter->reciprocal();
   if (!std::isfinite(test.detectable)) return limit ? "no limit that was tried" : "not at all";
   if (parameter == nullptr) return threeDigits(test.detectable);
@@ -70,7 +69,7 @@ std::string saidDetectable(const CandidateTest& test) {
 }
 
 bool isFound(const Finding& finding, const std::string& name) {
-  return std::any_of(finding.effects.begin(), finding.effects.end(),
+  return std::any_of(finding.identified.effects.begin(), finding.identified.effects.end(),
                      [&](const FoundEffect& effect) { return effect.name == name; });
 }
 
@@ -80,12 +79,13 @@ Section alternativesSection(const Finding& finding) {
   Section section{"What else it could be, and the drive that tells", {}};
   const std::vector<RivalPair> pairs = rivalPairs(finding);
   Points points;
-  for (const FoundEffect& effect : finding.effects) addOthers(effect.name, pairs, points);
+  for (const FoundEffect& effect : finding.identified.effects)
+    addOthers(effect.name, pairs, points);
   if (points.items.empty()) return section;
   section.blocks.push_back(points);
   Commands plans;
   for (const RivalPair& pair : pairs)
-    if (finding.verdict != Verdict::kCannotTell && isEffect(pair.other) && driveMayTell(pair))
+    if (finding.verdict != GapVerdict::kCannotTell && isEffect(pair.other) && driveMayTell(pair))
       plans.lines.push_back("tread-gap plan " + pair.found + " " + pair.other +
                             " --model model.yaml");
   if (!plans.lines.empty()) {
@@ -98,24 +98,24 @@ Section alternativesSection(const Finding& finding) {
 Section notShownSection(const Finding& finding) {
   Section section{"What this drive could not show", {}};
   Table table{{"effect", "what would show it"}, {}, 2};
-  for (const std::string& name : finding.not_excited)
+  for (const std::string& name : finding.identified.not_excited)
     table.rows.push_back({titleOf(name), isEffect(name) ? effectNamed(name).separates : ""});
   if (!table.rows.empty()) {
     section.blocks.push_back(Paragraph{
         "These effects may be there: nothing in this drive would have made them visible."});
     section.blocks.push_back(table);
   }
-  if (!finding.negligible.empty())
+  if (!finding.search.negligible.empty())
     section.blocks.push_back(
         Paragraph{"Real but too small to matter (below 1 % of the end error), not added: " +
-                  titlesOf(finding.negligible) + "."});
+                  titlesOf(finding.search.negligible) + "."});
   return section;
 }
 
 Section decisionsSection(const Finding& finding) {
   Section section{"What people decided", {}};
   Points points;
-  for (const Decision& decision : finding.decisions)
+  for (const Decision& decision : finding.source.decisions)
     points.items.push_back(titleOf(decision.effect) +
                            (decision.accepted
                                 ? ": accepted; in the model from the start, whatever the tests say"
@@ -127,14 +127,14 @@ Section decisionsSection(const Finding& finding) {
 
 Section candidatesSection(const Finding& finding) {
   Section section{"All candidates", {}};
-  if (finding.candidates.empty()) return section;
+  if (finding.search.candidates.empty()) return section;
   section.blocks.push_back(Paragraph{
       "The first test of each effect against the calibrated model. p is over the whole catalogue; "
       "own share is the part of its signature that no term of the model has; the last column is "
       "the smallest size that four of five drives like this one would have shown, of a limit the "
       "gentlest one."});
   Table table{{"effect", "parameter", "score", "p", "own share", "visible from"}, {}, 2};
-  std::vector<CandidateTest> tests = finding.candidates;
+  std::vector<CandidateTest> tests = finding.search.candidates;
   std::stable_sort(tests.begin(), tests.end(), [](const CandidateTest& a, const CandidateTest& b) {
     return std::abs(a.score) > std::abs(b.score);
   });
@@ -163,14 +163,14 @@ Page reportPage(const Finding& finding, const std::vector<InputFile>& inputs) {
   page.first.push_back(Paragraph{std::string("Verdict ") + verdictName(finding.verdict) +
                                      ", exit status " +
                                      std::to_string(static_cast<int>(finding.verdict)) +
-                                     (finding.verdict == Verdict::kCannotTell
+                                     (finding.verdict == GapVerdict::kCannotTell
                                           ? ". No model was written."
                                           : ". Nothing is applied by itself: the new model is "
                                             "model.yaml."),
                                  true});
   for (Section& section : std::vector<Section>{
            effectsSection(finding), atlasSection(finding), executionsSection(finding, inputs),
-           placesSection(finding, inputs), ladderSection(finding), parametersSection(finding),
+           placesSection(finding, inputs), stepsSection(finding), parametersSection(finding),
            alternativesSection(finding), notShownSection(finding), decisionsSection(finding),
            envelopeSection(finding), logsSection(finding), candidatesSection(finding),
            wordsSection(), filesSection(finding, inputs)})

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <map>
 
+#include "tools/gap/report/effect_words.hpp"
 #include "tools/gap/report/headline.hpp"
 #include "tools/gap/report/pictures.hpp"
 #include "tools/gap/report/sections.hpp"
-#include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {
@@ -19,7 +19,7 @@ size_t marked(const std::vector<AtlasCell>& cells) {
 
 std::vector<std::string> mapPictures(const Finding& finding) {
   std::vector<std::string> pictures;
-  for (const AtlasMap& map : finding.maps) {
+  for (const AtlasMap& map : finding.atlas.maps) {
     if (map.v_edges.size() < 2 || map.omega_edges.size() < 2) continue;
     const double full_colour = largestResidual(map);
     pictures.push_back(mapPicture(map, false, full_colour));
@@ -44,7 +44,7 @@ std::string logName(const std::vector<InputFile>& inputs, size_t drive) {
 std::vector<std::string> placePictures(const Finding& finding,
                                        const std::vector<InputFile>& inputs) {
   std::map<size_t, std::vector<PlaceError>> logs;
-  for (const PlaceError& place : finding.places) logs[place.drive].push_back(place);
+  for (const PlaceError& place : finding.shown.places) logs[place.drive].push_back(place);
   std::vector<std::string> pictures;
   for (const auto& [drive, places] : logs) {
     const double full_colour = fullColourOf(places);
@@ -65,7 +65,7 @@ std::string predictedBy(const Finding& finding, const std::vector<InputFile>& in
          "were chosen with all of it.";
 }
 
-std::string remarkOf(const LadderStep& step) {
+std::string remarkOf(const SearchStep& step) {
   std::vector<std::string> close;
   for (const RunnerUp& runner_up : step.runner_ups)
     if (runner_up.behind <= runner_up.error) close.push_back(shortTitleOf(runner_up.effect));
@@ -78,10 +78,10 @@ std::string remarkOf(const LadderStep& step) {
 
 Section atlasSection(const Finding& finding) {
   Section section{"Where simulation and measurement disagree", {}};
-  if (finding.atlas.empty()) return section;
+  if (finding.atlas.curves.empty()) return section;
   size_t before = 0;
   size_t after = 0;
-  for (const AtlasCurve& curve : finding.atlas) {
+  for (const AtlasCurve& curve : finding.atlas.curves) {
     before += marked(curve.before);
     after += marked(curve.after);
   }
@@ -95,21 +95,21 @@ Section atlasSection(const Finding& finding) {
                                       "Mean residual over speed and yaw rate; white is right, "
                                       "empty was not driven."});
   Pictures curves{{}, "Orange, dashed: the old model. Blue: the new one."};
-  for (const AtlasCurve& curve : finding.atlas) curves.svg.push_back(atlasPicture(curve));
+  for (const AtlasCurve& curve : finding.atlas.curves) curves.svg.push_back(atlasPicture(curve));
   section.blocks.push_back(curves);
   return section;
 }
 
 Section executionsSection(const Finding& finding, const std::vector<InputFile>& inputs) {
   Section section{"Executions, as measured and as predicted", {}};
-  if (finding.overlays.empty()) return section;
+  if (finding.shown.overlays.empty()) return section;
   constexpr size_t kTypical = 6;
   Pictures pictures{
       {},
       "Each from where it begins; ahead is up. Dots are where it ends, with the heading there. "
       "Blue shade: 9 of 10 are within."};
-  for (size_t i = 0; i < finding.overlays.size(); ++i) {
-    const Overlay& overlay = finding.overlays[i];
+  for (size_t i = 0; i < finding.shown.overlays.size(); ++i) {
+    const Overlay& overlay = finding.shown.overlays[i];
     const std::string rank = i < kTypical ? "typical" : "worst";
     pictures.svg.push_back(overlayPicture(overlay, rank + ", " + threeDigits(overlay.begin) +
                                                        " s of " + logName(inputs, overlay.drive)));
@@ -117,12 +117,12 @@ Section executionsSection(const Finding& finding, const std::vector<InputFile>& 
   section.blocks.push_back(
       Paragraph{"Six typical executions, then the three worst, none of them used for the fit: " +
                 predictedBy(finding, inputs)});
-  if (!finding.overlays.front().band.empty())
+  if (!finding.shown.overlays.front().band.empty())
     section.blocks.push_back(Paragraph{
         "The shade is a 90 % band: the residual noise of the fitted model (for each channel a part "
         "that is always there and one in proportion to the motion), carried along the predicted "
         "path, times the factor with which it holds 9 of 10 of all " +
-        std::to_string(finding.places.size()) + " such executions at each moment."});
+        std::to_string(finding.shown.places.size()) + " such executions at each time."});
   section.blocks.push_back(pictures);
   return section;
 }
@@ -130,7 +130,7 @@ Section executionsSection(const Finding& finding, const std::vector<InputFile>& 
 Section placesSection(const Finding& finding, const std::vector<InputFile>& inputs) {
   Section section{"Where on the ground", {}};
   if (!finding.gap) return section;
-  if (finding.places.empty()) {
+  if (finding.shown.places.empty()) {
     section.blocks.push_back(
         Paragraph{"No map: the logs have no absolute poses at the executions' ends."});
     return section;
@@ -142,9 +142,9 @@ Section placesSection(const Finding& finding, const std::vector<InputFile>& inpu
   return section;
 }
 
-Section ladderSection(const Finding& finding) {
+Section stepsSection(const Finding& finding) {
   Section section{"Step by step", {}};
-  if (finding.ladder.empty()) return section;
+  if (finding.search.steps.empty()) return section;
   section.blocks.push_back(Paragraph{
       "Each step adds the effect that helps most on blocks of driving that were not fitted, or "
       "takes one away again that the others make superfluous. Gains in log likelihood (nats) with "
@@ -152,31 +152,32 @@ Section ladderSection(const Finding& finding) {
       "is the chance of so large a score anywhere in the catalogue if nothing were there."});
   Table table{{"step", "effect", "remark", "score", "p", "gain"}, {}, 3};
   size_t number = 0;
-  for (const LadderStep& step : finding.ladder) {
+  for (const SearchStep& step : finding.search.steps) {
     const std::string sign = step.removed ? "- " : "+ ";
     table.rows.push_back({std::to_string(++number), sign + titleOf(step.effect), remarkOf(step),
                           threeDigits(step.score), saidChance(step.p_value),
                           threeDigits(step.gain) + " \u00b1 " + threeDigits(step.gain_error)});
   }
   section.blocks.push_back(table);
-  section.blocks.push_back(Pictures{{ladderPicture(finding.ladder)}, "Gain of each step."});
+  section.blocks.push_back(Pictures{{stepsPicture(finding.search.steps)}, "Gain of each step."});
   return section;
 }
 
 Section logsSection(const Finding& finding) {
   Section section{"State of the logs", {}};
   Points points;
-  for (const HygieneNote& note : finding.hygiene)
+  for (const LogNote& note : finding.source.log_notes)
     points.items.push_back((note.log.empty() ? "" : note.log + ": ") + note.what +
                            (note.fatal ? " (nothing can be concluded from this log)" : ""));
-  if (finding.hygiene.empty()) points.items.push_back("Nothing to remark.");
+  if (finding.source.log_notes.empty()) points.items.push_back("Nothing to remark.");
   section.blocks.push_back(points);
-  if (finding.blocks > 0)
-    section.blocks.push_back(Paragraph{std::to_string(finding.blocks) + " independent blocks of " +
-                                       threeDigits(finding.block_length) +
+  if (finding.source.blocks > 0)
+    section.blocks.push_back(Paragraph{std::to_string(finding.source.blocks) +
+                                       " independent blocks of " +
+                                       threeDigits(finding.source.block_length) +
                                        " s; whatever is said about chance counts blocks, not "
                                        "samples. Test for what remains: p " +
-                                       saidChance(finding.adequacy_p) + "."});
+                                       saidChance(finding.adequacy.p_value) + "."});
   return section;
 }
 

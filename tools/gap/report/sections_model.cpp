@@ -4,16 +4,14 @@
 #include <cmath>
 
 #include "tools/gap/report/effect_words.hpp"
-#include "tools/gap/report/limits.hpp"
 #include "tools/gap/report/sections.hpp"
-#include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {
 
 std::string saidRange(const PlausibleRange& range, const Estimate& estimate) {
   if (range.min == range.max) return "";
-  const EffectParameter* parameter = parameterOfPath(estimate.parameter).parameter;
+  const EffectParameter* parameter = findEffectParameter(estimate.parameter);
   if (parameter != nullptr && parameter->reciprocal())
     return "above " + said(1.0 / range.max, naturalUnit(*parameter));
   return saidInterval(range.min, range.max, estimate.unit);
@@ -21,13 +19,13 @@ std::string saidRange(const PlausibleRange& range, const Estimate& estimate) {
 
 /// Before its effect was added a parameter was off.
 std::string saidBefore(const Estimate& estimate, const Estimate& natural) {
-  if (parameterOfPath(estimate.parameter).effect != nullptr && estimate.before == 0.0) return "off";
+  if (findEffectParameter(estimate.parameter) != nullptr && estimate.before == 0.0) return "off";
   return said(natural.before, saidUnit(natural));
 }
 
 /// What a parameter makes together with what it acts on top of.
 std::string saidTotal(const Finding& finding, const Estimate& estimate) {
-  const auto total = totalOf(estimate.parameter, finding.after);
+  const auto total = totalOf(estimate.parameter, finding.identified.model);
   return total ? total->name + " " + said(total->value, total->unit) : "";
 }
 
@@ -70,9 +68,9 @@ Points highCorrelations(const ParameterCovariance& covariance) {
 
 Section effectsSection(const Finding& finding) {
   Section section{
-      finding.verdict == Verdict::kCannotTell ? "Effects where the fit ended" : "What was found",
+      finding.verdict == GapVerdict::kCannotTell ? "Effects where the fit ended" : "What was found",
       {}};
-  for (const FoundEffect& found : finding.effects) {
+  for (const FoundEffect& found : finding.identified.effects) {
     const Effect& effect = effectNamed(found.name);
     section.blocks.push_back(Paragraph{
         effect.title + " (" + effect.name + ", " +
@@ -88,30 +86,32 @@ Section effectsSection(const Finding& finding) {
 }
 
 Section parametersSection(const Finding& finding) {
-  Section section{finding.verdict == Verdict::kCannotTell ? "Parameters where the fit ended"
-                                                          : "Parameters of the new model",
+  Section section{finding.verdict == GapVerdict::kCannotTell ? "Parameters where the fit ended"
+                                                             : "Parameters of the new model",
                   {}};
   Table table{
       {"term", "parameter", "before", "now", "95 % interval", "plausible", "in all"}, {}, 2};
-  for (const FoundEffect& effect : finding.effects)
+  for (const FoundEffect& effect : finding.identified.effects)
     for (const Estimate& estimate : effect.parameters)
       addRow(finding, estimate, titleOf(effect.name), table);
-  for (const Estimate& estimate : finding.calibrated) {
-    const Effect* effect = parameterOfPath(estimate.parameter).effect;
-    addRow(finding, estimate, effect == nullptr ? "nominal model" : effect->title, table);
+  for (const Estimate& estimate : finding.identified.calibrated) {
+    const bool term = findEffectParameter(estimate.parameter) != nullptr;
+    addRow(finding, estimate,
+           term ? titleOf(effectOfPath(estimate.parameter)) : std::string("nominal model"), table);
   }
   if (table.rows.empty()) return section;
   forgetEmptyTotals(table);
   section.blocks.push_back(table);
-  const Points pairs = highCorrelations(finding.after.covariance);
+  const Points pairs = highCorrelations(finding.identified.model.covariance);
   if (!pairs.items.empty()) section.blocks.push_back(pairs);
   return section;
 }
 
 Section envelopeSection(const Finding& finding) {
   Section section{"Where the new model holds", {}};
-  if (!finding.after.envelope || finding.verdict == Verdict::kCannotTell) return section;
-  const Envelope& envelope = *finding.after.envelope;
+  if (!finding.identified.model.envelope || finding.verdict == GapVerdict::kCannotTell)
+    return section;
+  const Envelope& envelope = *finding.identified.model.envelope;
   section.blocks.push_back(Paragraph{
       "It was made from motions up to " + said(envelope.v, "m/s") + ", " +
       said(envelope.omega, "rad/s") + " and " + said(envelope.v_omega, "m/s2") +
@@ -131,7 +131,7 @@ Section filesSection(const Finding& finding, const std::vector<InputFile>& input
   }
   section.blocks.push_back(table);
   section.blocks.push_back(Paragraph{std::string(toolVersion()) + ", seed " +
-                                     std::to_string(finding.seed) +
+                                     std::to_string(finding.source.seed) +
                                      ". The same files and the same seed give the same report."});
   return section;
 }

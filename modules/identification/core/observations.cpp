@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/identification/core/observations.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace tread::gap {
+namespace {
+
+constexpr double kTransient = 0.8;  // [s] after a change of command; then all changes slowly
+constexpr double kSlowly = 2.0;     // factor on the length of pieces then
+constexpr double kShortest = 1e-3;  // [s] cuts closer than that are one
+
+/// Roll and pitch at a time; where the INS does not say, the last ones known, level at first.
+void levelAt(const std::vector<InsSample>& ins, double time, size_t& next, DriveContext& context) {
+  for (; next < ins.size() && ins[next].time <= time; ++next) {
+    if (std::isfinite(ins[next].roll)) context.roll = ins[next].roll;
+    if (std::isfinite(ins[next].pitch)) context.pitch = ins[next].pitch;
+  }
+}
+
+/// Relative fall of the battery's voltage since the first sample.
+double dropAt(const std::vector<VoltageSample>& voltage, double time, size_t& at) {
+  if (voltage.empty() || voltage.front().voltage <= 0.0) return 0.0;
+  while (at + 1 < voltage.size() && voltage[at + 1].time <= time) ++at;
+  return 1.0 - voltage[at].voltage / voltage.front().voltage;
+}
+
+/// Fixes around one, averaged where there are many; the pose at their mean time.
+struct Endpoint {
+  double time = 0.0;
+  Pose2 T_map_body{};
+  size_t next = 0;  ///< first fix after those that were used
+};
+
+bool hasPose(const InsSample& sample) {
+  return std::isfinite(sample.T_map_body.x) && std::isfinite(sample.T_map_body.y) &&
+         std::isfinite(sample.T_map_body.yaw);
+}
+
+std::vector<InsSample> fixesOf(const Segment& segment) {
+  std::vector<InsSample> fixes;
+  for (const InsSample& sample : segment.ins)
+    if (hasPose(sample)) fixes.push_back(sample);
+  return fixes;
+}
+
+Endpoint endpointFrom(const std::vector<InsSample>& fixes, size_t first, double width) {
+  Endpoint mean;
+  size_t count = 0;
+  for (size_t i = first; i < fixes.size() && fixes[i].time <= fixes[first].time + width; ++i) {
+    mean.time += fixes[i].time;
+    mean.T_map_body.x += fixes[i].T_map_body.x;
+    mean.T_map_body.y += fixes[i].T_map_body.y;
+    mean.T_map_body.yaw += fixes[i].T_map_body.yaw;
+    ++count;
+  }
+  const auto n = static_cast<double>(count);
+  mean.time /= n;
+  mean.T_map_body = {mean.T_map_body.x / n, mean.T_map_body.y / n, mean.T_map_body.yaw / n};
+  mean.next = first + count;
+  return mean;
+}
+
+/// First fix at or after a time.
+size_t fixAfter(const std::vector<InsSample>& fixes, size_t from, double time) {
+  while (from < fixes.size() && fixes[from].time < time) ++from;
+  return from;
+}
+
+/// Yaw of poseAt(), at a tenth of its cost: along an arc it is linear in time. Looks from piece
+/// `i` on, and leaves there where it was found.
+double yawAt(const std::vector<MotionSample>& motion, double time, size_t& i) {
+  if (motion.size() < 2) return motion.front().T_map_body.yaw;
+  if (i + 1 >= motion.size()) i = 0;
+  while (i > 0 && motion[i].time > time) --i;
+  while (i + 2 < motion.size() && motion[i + 1].time <= time) ++i;
+  const MotionSample& from = motion[i];
+  const MotionSample& to = motion[i + 1];
+  return from.T_map_body.yaw +
+         (to.T_map_body.yaw - from.T_map_body.yaw) * (time - from.time) / (to.time - from.time);
+}
+
+}  // namespace
+
+std::vector<double> SegmentPlan::endsBetween(double from, double to, double longest,
+                                             const std::vector<double>& cuts) {
+  std::vector<double> fixed;
+  for (auto cut = std::upper_bound(cuts.begin(), cuts.end(), from + kShortest);
+       cut != cuts.end() && *cut < to - kShortest; ++cut)
+    if (fixed.empty() || *cut > fixed.back() + kShortest) fixed.push_back(*cut);
+  fixed.push_back(to);
+  std::vector<double> ends;
+  for (double end : fixed) {
+    const int count = std::max(1, static_cast<int>(std::ceil((end - from) / longest - 1e-6)));
+    for (int n = 1; n < count; ++n) ends.push_back(from + n * (end - from) / count);
+    ends.push_back(end);
+    from = end;
+  }
+  return ends;
+}
+
+SegmentPlan::SegmentPlan(const Drive& drive, const Segment& segment, double piece,
+                         const std::vector<double>& cuts)
+    : begin_(segment.begin()),
+      entry_speeds_(segment.entry_speeds),
+      command_before_(segment.command_before) {
+  DriveContext context;
+  size_t ins_next = 0;
+  size_t voltage_at = 0;
+  for (size_t i = 0; i < segment.commands.size(); ++i) {
+    const double from = segment.commands[i].time;
+    const double to = i + 1 < segment.commands.size() ? segment.commands[i + 1].time : segment.end;
+    const double settled = to - from > 1.5 * kTransient ? from + kTransient : to;
+    for (const auto& [begin, end, longest] :
+         {std::tuple{from, settled, piece}, std::tuple{settled, to, kSlowly * piece}}) {
+      double time = begin;
+      for (double next : endsBetween(begin, end, longest, cuts)) {
+        const double duration = next - time;
+        if (duration <= 0.0) continue;
+        context.session_time = time;
+        levelAt(segment.ins, time + duration / 2.0, ins_next, context);
+        context.battery_drop = dropAt(drive.voltage, time, voltage_at);
+        pieces_.push_back({duration, segment.commands[i].command, context});
+        longest_ = std::max(longest_, duration);
+        time = next;
+      }
+    }
+  }
+}
+
+EntryState SegmentPlan::entryFor(const VehicleModel& vehicle) const {
+  EntryState entry = steadyEntry(vehicle, command_before_, pieces_.front().context);
+  if (entry_speeds_) entry.track_speeds = *entry_speeds_;
+  return entry;
+}
+
+std::vector<MotionSample> SegmentPlan::simulate(const VehicleModel& vehicle) const {
+  VehicleModel model = vehicle;
+  model.step = longest_;  // lags and ramps are exact within one
+  VehicleKernel kernel(model, entryFor(model));
+  std::vector<MotionSample> motion;
+  motion.reserve(pieces_.size() + 1);
+  double time = begin_;
+  motion.push_back({time, kernel.pose()});
+  for (const Piece& piece : pieces_) {
+    kernel.step(piece.command, piece.duration, piece.context);
+    time += piece.duration;
+    motion.push_back({time, kernel.pose()});
+  }
+  return motion;
+}
+
+const char* channelName(Channel channel) {
+  static constexpr const char* kNames[kChannels] = {"yaw rate", "heading rate", "along", "lateral"};
+  return kNames[static_cast<size_t>(channel)];
+}
+
+const char* channelUnit(Channel channel) {
+  return channel == Channel::kYawRate || channel == Channel::kHeading ? "rad/s" : "m/s";
+}
+
+Observations::Observations(const std::vector<Drive>& drives, const ObservationSettings& settings)
+    : drives_(drives), settings_(settings) {
+  size_t all = 0;
+  for (const Drive& drive : drives) {
+    first_segment_.push_back(all);
+    all += drive.segments.size();
+  }
+  for (size_t i = 0; i < drives.size(); ++i) addDrive(i, settings.block);
+  // Poses are simulated where rows begin and end: only latencies have them interpolated.
+  std::vector<std::vector<double>> cuts(all);
+  for (const Observation& row : all_)
+    for (double time : {row.begin, row.end})
+      cuts[segmentIndex(row.drive, row.segment)].push_back(time);
+  for (size_t i = 0; i < drives.size(); ++i)
+    for (size_t s = 0; s < drives[i].segments.size(); ++s) {
+      std::vector<double>& times = cuts[segmentIndex(i, s)];
+      std::sort(times.begin(), times.end());
+      plans_.emplace_back(drives[i], drives[i].segments[s], settings.piece, times);
+    }
+  measured_.resize(static_cast<Eigen::Index>(all_.size()));
+  for (size_t i = 0; i < all_.size(); ++i)
+    measured_[static_cast<Eigen::Index>(i)] = all_[i].measured;
+}
+
+void Observations::addDrive(size_t index, double block) {
+  const Drive& drive = drives_[index];
+  const double driven = drive.driven();
+  const int count = driven <= 0.0 ? 0 : std::max(1, static_cast<int>(driven / block + 1e-6));
+  drive_blocks_.emplace_back(blocks_, count);
+  drive_lengths_.push_back(count > 0 ? driven / count : block);
+  double before = 0.0;
+  for (size_t s = 0; s < drive.segments.size(); ++s) {
+    const Segment& segment = drive.segments[s];
+    driven_.emplace_back(before, segment.end - segment.begin());
+    before += segment.end - segment.begin();
+    Observation like;
+    like.drive = index;
+    like.segment = s;
+    const size_t first = all_.size();
+    addGyro(segment, like);
+    addPoses(segment, like);
+    for (size_t i = first; i < all_.size(); ++i)
+      all_[i].block = blockAt(index, s, (all_[i].begin + all_[i].end) / 2.0);
+  }
+  block_length_ = std::max(block_length_, count > 0 ? drive_lengths_.back() : 0.0);
+  blocks_ += count;
+}
+
+int Observations::blockAt(size_t drive, size_t segment, double time) const {
+  const auto& [before, duration] = driven_[segmentIndex(drive, segment)];
+  const double length = drive_lengths_[drive];
+  // A short run is never split: its rows share what chance did to it.
+  const double at =
+      duration < length ? duration / 2.0 : time - drives_[drive].segments[segment].begin();
+  const auto& [first, count] = drive_blocks_[drive];
+  return first + std::clamp(static_cast<int>((before + at) / length), 0, std::max(0, count - 1));
+}
+
+void Observations::addGyro(const Segment& segment, const Observation& like) {
+  std::vector<const InsSample*> gyro;
+  for (const InsSample& sample : segment.ins)
+    if (std::isfinite(sample.omega)) gyro.push_back(&sample);
+  size_t at = 0;
+  while (at < gyro.size()) {
+    const double from = gyro[at]->time;
+    double sum = 0.0;
+    size_t count = 0;
+    for (; at + count < gyro.size() && gyro[at + count]->time < from + settings_.gyro_bin - 1e-6;
+         ++count)
+      sum += gyro[at + count]->omega;
+    const double last = gyro[at + count - 1]->time;
+    at += count;
+    if (count < 3 || last - from < 0.5 * settings_.gyro_bin) continue;
+    // Samples stand for the time around them.
+    const double half = (last - from) / (2.0 * static_cast<double>(count - 1));
+    Observation row = like;
+    row.channel = Channel::kYawRate;
+    row.begin = from - half;
+    row.end = last + half;
+    row.measured = sum / static_cast<double>(count);
+    all_.push_back(row);
+  }
+}
+
+void Observations::addPoses(const Segment& segment, const Observation& like) {
+  const std::vector<InsSample> fixes = fixesOf(segment);
+  if (fixes.empty()) return;
+  const double width = 2.0 * settings_.smoothing;
+  Endpoint from = endpointFrom(fixes, 0, width);
+  while (true) {
+    const size_t next =
+        fixAfter(fixes, from.next, from.time + settings_.pose_interval - settings_.smoothing);
+    if (next >= fixes.size()) return;
+    const Endpoint to = endpointFrom(fixes, next, width);
+    const double duration = to.time - from.time;
+    if (duration <= settings_.longest) {
+      const Pose2 moved = between(from.T_map_body, to.T_map_body);
+      Observation row = like;
+      row.begin = from.time;
+      row.end = to.time;
+      for (const auto& [channel, value] :
+           {std::pair{Channel::kHeading, moved.yaw}, std::pair{Channel::kAlong, moved.x},
+            std::pair{Channel::kAcross, moved.y}}) {
+        row.channel = channel;
+        row.measured = value / duration;
+        all_.push_back(row);
+      }
+    }
+    from = to;
+  }
+}
+
+std::vector<std::vector<MotionSample>> Observations::simulate(const VehicleModel& vehicle) const {
+  std::vector<std::vector<MotionSample>> motions;
+  motions.reserve(plans_.size());
+  for (const SegmentPlan& plan : plans_) motions.push_back(plan.simulate(vehicle));
+  return motions;
+}
+
+Eigen::VectorXd Observations::predict(const ModelDocument& model) const {
+  return predict(simulate(model.vehicle), model.measurement);
+}
+
+Eigen::VectorXd Observations::predict(const std::vector<std::vector<MotionSample>>& motions,
+                                      const MeasurementModel& ins) const {
+  Eigen::VectorXd predicted(static_cast<Eigen::Index>(all_.size()));
+  const double gyro_latency = ins.ins_latency_gyro * ins.ins_latency;
+  Pose2 moved;
+  Pose2 from;
+  double from_time = kNotMeasured;
+  const std::vector<MotionSample>* of = nullptr;
+  size_t piece = 0;
+  for (size_t i = 0; i < all_.size(); ++i) {
+    const Observation& row = all_[i];
+    const std::vector<MotionSample>& motion = motions[segmentIndex(row.drive, row.segment)];
+    const double duration = row.end - row.begin;
+    double value = 0.0;
+    if (row.channel == Channel::kYawRate) {
+      const double before = yawAt(motion, row.begin - gyro_latency, piece);
+      value = (yawAt(motion, row.end - gyro_latency, piece) - before) / duration + ins.gyro_bias;
+    } else {
+      // The three rows of an interval follow one another, and intervals share their ends.
+      if (row.channel == Channel::kHeading) {
+        const Pose2 start = of == &motion && from_time == row.begin
+                                ? from
+                                : measuredAt(motion, ins, row.begin).T_map_body;
+        from = measuredAt(motion, ins, row.end).T_map_body;
+        from_time = row.end;
+        of = &motion;
+        moved = between(start, from);
+      }
+      value = (row.channel == Channel::kHeading ? moved.yaw
+               : row.channel == Channel::kAlong ? moved.x
+                                                : moved.y) /
+              duration;
+    }
+    predicted[static_cast<Eigen::Index>(i)] = value;
+  }
+  return predicted;
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/vehicle/kernel.hpp"
+#include "common/vehicle/measurement.hpp"
+#include "common/vehicle/model_document.hpp"
+#include "modules/identification/core/drive.hpp"
+
+namespace tread::gap {
+
+/// The commands of a segment cut into short pieces, each with the drive context at its time.
+/** Made once a drive; simulating again with other parameters is then one pass over it. */
+class SegmentPlan {
+ public:
+  /// Pieces of at most `piece` seconds, of twice that where a command has held for a while; cut
+  /// also at these times [s], in order, at which poses will be asked for: within a piece they are
+  /// interpolated. The segment may go away afterwards.
+  SegmentPlan(const Drive& drive, const Segment& segment, double piece,
+              const std::vector<double>& cuts = {});
+
+  /// True poses of a model through the segment, relative to its beginning; one entry a piece.
+  /// Yaw rates are left at 0: rows take theirs from the yaws.
+  std::vector<MotionSample> simulate(const VehicleModel& vehicle) const;
+
+ private:
+  struct Piece {
+    double duration;  ///< [s]
+    TrackCommand command;
+    DriveContext context;
+  };
+
+  /// Where pieces end between two times, the last one included.
+  static std::vector<double> endsBetween(double from, double to, double longest,
+                                         const std::vector<double>& cuts);
+
+  EntryState entryFor(const VehicleModel& vehicle) const;
+
+  double begin_ = 0.0;
+  double longest_ = 1e-3;  ///< piece [s]
+  std::vector<Piece> pieces_;
+  std::optional<TrackCommand> entry_speeds_;
+  TrackCommand command_before_;
+};
+
+/// What an observation is: mean rates over an interval, in the body frame of its beginning.
+enum class Channel { kYawRate, kHeading, kAlong, kAcross };
+inline constexpr size_t kChannels = 4;
+
+/// Name of a channel in reports: "yaw rate", "heading rate", "along", "lateral".
+const char* channelName(Channel channel);
+/// Its unit: rad/s or m/s.
+const char* channelUnit(Channel channel);
+
+/// One comparison of measurement and simulation.
+struct Observation {
+  Channel channel = Channel::kYawRate;
+  size_t drive = 0;
+  size_t segment = 0;     ///< of the drive
+  double begin = 0.0;     ///< [s] since the drive's first message
+  double end = 0.0;       ///< [s]
+  double measured = 0.0;  ///< [rad/s] or [m/s], mean over the interval
+  int block = 0;          ///< index of the block of driving in which it lies
+};
+
+/// How drives are cut.
+struct ObservationSettings {
+  double gyro_bin = 0.25;      ///< [s] over which the gyro is averaged
+  double pose_interval = 0.4;  ///< [s] at least, between fixes
+  double longest = 1.2;        ///< [s] at most, between fixes
+  double smoothing = 0.05;     ///< [s] to either side over which frequent fixes are averaged
+  double block = 20.0;         ///< [s] of driving, at least
+  double piece = 0.05;         ///< [s] of simulation
+};
+
+/// Rows of drives, and what a model predicts for them.
+/** Increments instead of poses: the integral form, which needs no differentiation and lets the
+ * simulation run open loop over any time. The measurement part of a model acts on the
+ * simulated motion, so that data compare what the INS says with what it would say. */
+class Observations {
+ public:
+  /// The drives must outlive the rows.
+  Observations(const std::vector<Drive>& drives, const ObservationSettings& settings);
+
+  const std::vector<Observation>& all() const { return all_; }
+  const std::vector<Drive>& drives() const { return drives_; }
+  int blocks() const { return blocks_; }
+  double blockLength() const { return block_length_; }  ///< [s] of driving
+
+  /// True motions of all segments, drive after drive.
+  std::vector<std::vector<MotionSample>> simulate(const VehicleModel& vehicle) const;
+  /// One of them.
+  std::vector<MotionSample> simulateSegment(size_t index, const VehicleModel& vehicle) const {
+    return plans_[index].simulate(vehicle);
+  }
+  /// What the rows would be if the vehicle and the INS were the model's (rows x 1).
+  Eigen::VectorXd predict(const ModelDocument& model) const;
+  /// The same from simulated motions.
+  Eigen::VectorXd predict(const std::vector<std::vector<MotionSample>>& motions,
+                          const MeasurementModel& measurement) const;
+  /// Measured less predicted (rows x 1).
+  Eigen::VectorXd residuals(const Eigen::VectorXd& predicted) const {
+    return measured_ - predicted;
+  }
+  /// Block in which a time of a segment lies.
+  int blockAt(size_t drive, size_t segment, double time) const;
+  /// Index of a segment among all, as in simulate().
+  size_t segmentIndex(size_t drive, size_t segment) const {
+    return first_segment_[drive] + segment;
+  }
+
+ private:
+  void addDrive(size_t drive, double block);
+  void addGyro(const Segment& segment, const Observation& like);
+  void addPoses(const Segment& segment, const Observation& like);
+
+  const std::vector<Drive>& drives_;
+  ObservationSettings settings_;
+  std::vector<SegmentPlan> plans_;
+  std::vector<size_t> first_segment_;  ///< of each drive among all
+  /// Of each segment: driving before it in its drive, and its own [s].
+  std::vector<std::pair<double, double>> driven_;
+  std::vector<std::pair<int, int>> drive_blocks_;  ///< of each drive: first block and their number
+  std::vector<double> drive_lengths_;              ///< of each drive: length of its blocks [s]
+  std::vector<Observation> all_;
+  Eigen::VectorXd measured_;
+  int blocks_ = 0;
+  double block_length_ = 0.0;
+};
+
+}  // namespace tread::gap

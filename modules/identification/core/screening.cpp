@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/identification/core/screening.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+namespace tread::gap {
+namespace {
+
+bool isSame(double a, double b) {
+  return a == b || (a != a && b != b);
+}
+
+bool isSame(const Candidate& a, const Candidate& b) {
+  return a.effect == b.effect && a.parameter == b.parameter && a.change == b.change &&
+         isSame(a.since, b.since) && a.shapes == b.shapes;
+}
+
+/// Of a term that is fitted: its column of the Jacobian.
+Eigen::VectorXd releaseDirection(const FitState& state, const Candidate& candidate) {
+  const std::string path = candidate.effect + "." + candidate.parameter;
+  for (size_t i = 0; i < state.free.size(); ++i)
+    if (state.free[i].path == path) return state.jacobian.col(static_cast<Eigen::Index>(i));
+  throw std::logic_error("" + path + " is not free, and cannot be released");
+}
+
+constexpr double kChangeAlpha = 0.01;    // of what may begin at any time
+constexpr double kPowerQuantile = 0.84;  // normal: 80 % power
+
+std::vector<size_t> bestOfEffects(const Screening& screening) {
+  std::map<std::string, size_t> best;
+  for (size_t i = 0; i < screening.candidates.size(); ++i) {
+    const auto known = best.emplace(screening.candidates[i].effect, i).first;
+    if (std::abs(screening.scores[i]) > std::abs(screening.scores[known->second]))
+      known->second = i;
+  }
+  std::vector<size_t> order;
+  for (const auto& [effect, index] : best) order.push_back(index);
+  std::stable_sort(order.begin(), order.end(), [&screening](size_t a, size_t b) {
+    return std::abs(screening.scores[a]) > std::abs(screening.scores[b]);
+  });
+  return order;
+}
+
+/// Evidence for a candidate over what is needed; less than 1 if chance explains it.
+double evidenceOf(const ScoreTest& test, Eigen::Index candidate, const Screening& screening,
+                  bool first) {
+  // A change finds a few blocks of chance wherever they are: it has to show in many.
+  const bool change = !effectNamed(screening.candidates[static_cast<size_t>(candidate)].effect)
+                           .search.change_points.empty();
+  const double level = change ? std::min(screening.alpha, kChangeAlpha) : screening.alpha;
+  const Needed needed{criticalScore(screening.chance, level), screening.overdispersion, first,
+                      !change};
+  const double found = evidence(test, candidate, needed);
+  return familyWise(screening.chance, test.score(candidate)) <= level ? std::max(1.0, found)
+                                                                      : found;
+}
+
+}  // namespace
+
+const Excitation& SensitivityCache::excitation(const Fitter& fitter, const FitState& state) {
+  if (!measured_) excitation_ = excitationOf(fitter.data(), state.model);
+  measured_ = true;
+  return excitation_;
+}
+
+SensitivityCache::Entry* SensitivityCache::find(const Candidate& candidate) {
+  for (Entry& entry : entries_)
+    if (isSame(entry.candidate, candidate)) return &entry;
+  return nullptr;
+}
+
+Eigen::MatrixXd SensitivityCache::directions(const Fitter& fitter, const FitState& state,
+                                             const std::vector<Candidate>& candidates) {
+  std::vector<Candidate> missing;
+  for (const Candidate& candidate : candidates)
+    if (!candidate.release && find(candidate) == nullptr) missing.push_back(candidate);
+  renew(fitter, state, missing);
+  Eigen::MatrixXd all(state.predicted.size(), static_cast<Eigen::Index>(candidates.size()));
+  for (size_t i = 0; i < candidates.size(); ++i)
+    all.col(static_cast<Eigen::Index>(i)) = candidates[i].release
+                                                ? releaseDirection(state, candidates[i])
+                                                : find(candidates[i])->direction;
+  return all;
+}
+
+void SensitivityCache::renew(const Fitter& fitter, const FitState& state,
+                             const std::vector<Candidate>& candidates) {
+  if (candidates.empty()) return;
+  const Eigen::MatrixXd directions = directionsOf(fitter, state, candidates);
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    const Eigen::VectorXd direction = directions.col(static_cast<Eigen::Index>(i));
+    if (Entry* known = find(candidates[i]))
+      known->direction = direction;
+    else
+      entries_.push_back({candidates[i], direction});
+  }
+}
+
+double detectableSize(const std::vector<Candidate>& candidates, const ScoreTest& test, size_t index,
+                      double needed) {
+  const auto sizeOf = [&](size_t i) {
+    return needed * test.sizeError(static_cast<Eigen::Index>(i));
+  };
+  const Candidate& best = candidates[index];
+  if (!parameterNamed(effectNamed(best.effect), best.parameter).reciprocal()) return sizeOf(index);
+  double gentlest = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& tried = candidates[i];
+    // The direction goes to the limit itself: all of it must be seen.
+    if (tried.effect == best.effect && tried.parameter == best.parameter &&
+        sizeOf(i) <= tried.change)
+      gentlest = std::min(gentlest, tried.value);
+  }
+  return gentlest;
+}
+
+Screening screen(const Fitter& fitter, const FitState& state, const std::vector<char>& mask,
+                 const SearchSettings& settings, bool first, SensitivityCache& cache) {
+  Screening screening;
+  screening.first = first;
+  screening.alpha = first ? settings.alpha : settings.alpha_more;
+  screening.candidates = candidatesFor(state, cache.excitation(fitter, state));
+  leaveOut(screening.candidates, settings.rejected);
+  const ScoreTest test(fitter.data(), state, cache.directions(fitter, state, screening.candidates),
+                       mask);
+  screening.chance = test.largestByChance(settings.draws, settings.seed);
+  screening.overdispersion = test.usualOverdispersion();
+  for (size_t i = 0; i < screening.candidates.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    screening.scores.push_back(test.score(at));
+    screening.sizes.push_back(test.size(at));
+    screening.evidence.push_back(evidenceOf(test, at, screening, first));
+    screening.promise.push_back(test.promise(at));
+  }
+  screening.best = bestOfEffects(screening);
+  const double needed = criticalScore(screening.chance, settings.alpha) + kPowerQuantile;
+  for (size_t i : screening.best) {
+    if (screening.candidates[i].release) continue;  // on, and fitted
+    const auto at = static_cast<Eigen::Index>(i);
+    screening.tests.push_back(
+        {screening.candidates[i].effect, screening.candidates[i].parameter, screening.scores[i],
+         familyWise(screening.chance, screening.scores[i]), test.uniqueness(at),
+         detectableSize(screening.candidates, test, i, needed)});
+  }
+  return screening;
+}
+
+std::vector<size_t> significant(const Screening& screening) {
+  std::map<std::string, size_t> clearest;
+  for (size_t i = 0; i < screening.candidates.size(); ++i) {
+    if (screening.evidence[i] < 1.0) continue;
+    const auto known = clearest.emplace(screening.candidates[i].effect, i).first;
+    if (screening.promise[i] > screening.promise[known->second]) known->second = i;
+  }
+  std::vector<size_t> found;
+  for (const auto& [effect, index] : clearest) found.push_back(index);
+  std::stable_sort(found.begin(), found.end(), [&screening](size_t a, size_t b) {
+    return screening.promise[a] > screening.promise[b];
+  });
+  return found;
+}
+
+double pValueOf(const Screening& screening, double score, double evidence) {
+  const double by_blocks = familyWise(screening.chance, score);
+  return by_blocks <= screening.alpha
+             ? by_blocks
+             : std::min(by_blocks,
+                        chanceOfSize(evidence, screening.candidates.size(), screening.first));
+}
+
+}  // namespace tread::gap

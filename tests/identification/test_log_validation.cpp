@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "modules/identification/core/log_validation.hpp"
+
+using namespace tread;
+using namespace tread::gap;
+
+namespace {
+
+struct Made {
+  double length = 200.0;    ///< [s]
+  double gyro_scale = 1.0;  ///< what the gyro says over what is true
+  double gyro_bias = 0.0;   ///< [rad/s]
+  double pose_lag = 0.0;    ///< [s]
+  double gyro_lag = 0.0;    ///< [s]
+  double turn_sign = 1.0;   ///< of the motion against the command
+  double forward_sign = 1.0;
+  double turning = 1.0;      ///< [rad/s] at most
+  double mirror = 1.0;       ///< of the map's y
+  double jump_time = 1e9;    ///< [s] from when INS times are late
+  double jump = 0.0;         ///< [s] by that much
+  double noise = 0.01;       ///< [m] and half of it [rad]
+  bool stands_first = true;  ///< for 5 s
+  bool alternates = false;   ///< the same turn and speed to and fro
+};
+
+/// A command that changes every second and a half; a first-order vehicle that follows it.
+Drive makeDrive(const Made& made) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::normal_distribution<double> normal;
+  Drive drive;
+  drive.name = "made";
+  Segment segment;
+  Pose2 T_map_body;
+  double v = 0.0, omega = 0.0, v_wanted = 0.0, omega_wanted = 0.0;
+  std::vector<std::pair<double, Pose2>> past;
+  std::vector<double> turned;
+  const auto ticks = static_cast<int>(made.length / 0.02);
+  for (int i = 0; i < ticks; ++i) {
+    const double time = 0.02 * i;
+    if (i % 75 == 0 && !(made.stands_first && time < 5.0)) {
+      v_wanted = uniform(random);
+      omega_wanted = made.turning * uniform(random);
+    }
+    if (made.alternates) {
+      v_wanted = i / 75 % 2 == 0 ? 0.5 : -0.5;
+      omega_wanted = -v_wanted;
+    }
+    if (i % 75 == 0)
+      segment.commands.push_back(
+          {time, {v_wanted - 0.5 * omega_wanted, v_wanted + 0.5 * omega_wanted}});
+    v += 0.1 * (made.forward_sign * v_wanted - v);
+    omega += 0.1 * (made.turn_sign * omega_wanted - omega);
+    T_map_body = T_map_body * integrate({v, 0.0, omega}, 0.02);
+    past.push_back({time, T_map_body});
+    turned.push_back(omega);
+    if (i % 5 != 0) continue;
+    const auto late = static_cast<size_t>(std::lround(made.pose_lag / 0.02));
+    Pose2 seen = past[past.size() > late ? past.size() - 1 - late : 0].second;
+    seen.x += made.noise * normal(random);
+    seen.y = made.mirror * seen.y + made.noise * normal(random);
+    seen.yaw += 0.5 * made.noise * normal(random);
+    const auto old = static_cast<size_t>(std::lround(made.gyro_lag / 0.02));
+    InsSample sample;
+    sample.time = time + (time > made.jump_time ? made.jump : 0.0);
+    sample.T_map_body = seen;
+    sample.omega = made.gyro_scale * turned[turned.size() > old ? turned.size() - 1 - old : 0] +
+                   made.gyro_bias;
+    segment.ins.push_back(sample);
+  }
+  segment.end = made.length + std::max(0.0, made.jump);
+  drive.segments.push_back(segment);
+  return drive;
+}
+
+std::string fatal(const Drive& drive) {
+  for (const LogNote& note : validateLog(drive))
+    if (note.fatal) return note.what;
+  return "";
+}
+
+std::string lineWith(const Drive& drive, const std::string& part) {
+  for (const LogNote& note : validateLog(drive))
+    if (note.what.find(part) != std::string::npos) return note.what;
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("a sound drive is described and nothing in it is fatal") {
+  const Drive drive = makeDrive({});
+  REQUIRE(fatal(drive) == "");
+  REQUIRE(lineWith(drive, "gyro and heading agree").find("turns 1.0") != std::string::npos);
+  REQUIRE(lineWith(drive, "of standstill").find("3 s of standstill: gyro 0.0000") == 0);
+  REQUIRE(lineWith(drive, "driven 200 s in 1 segments").find("reversals") != std::string::npos);
+  REQUIRE(lineWith(drive, "new poses every 0.10 s") != "");
+}
+
+TEST_CASE("a gyro with a flipped sign is fatal, one with a bias or another scale is not") {
+  Made flipped;
+  flipped.gyro_scale = -1.0;
+  REQUIRE(fatal(makeDrive(flipped)).find("flipped sign: the gyro turns against the heading") == 0);
+  Made scaled;
+  scaled.gyro_scale = 0.8;
+  scaled.gyro_bias = 0.06;
+  const Drive drive = makeDrive(scaled);
+  REQUIRE(fatal(drive) == "");
+  REQUIRE(lineWith(drive, "gyro and heading agree").find("turns 1.2") != std::string::npos);
+  REQUIRE(lineWith(drive, "of standstill").find("gyro 0.06") != std::string::npos);
+}
+
+TEST_CASE("the heading's lag behind the gyro is found, and told by the fit alone") {
+  Made made;
+  made.pose_lag = 0.4;
+  const auto match = headingBesideGyro(makeDrive(made));
+  REQUIRE(match);
+  REQUIRE(match->lag == Approx(0.4).margin(0.03));
+  REQUIRE(match->slope == Approx(1.0).margin(0.02));
+  REQUIRE(lineWith(makeDrive(made), "the fit says (INS latency)") != "");
+  REQUIRE(lineWith(makeDrive(made), "0.4") == "");
+  made.pose_lag = 0.0;
+  made.gyro_lag = 0.16;
+  REQUIRE(lineWith(makeDrive(made), "the heading is ahead of the gyro") != "");
+}
+
+TEST_CASE("motion against the commands is a flipped sign") {
+  Made turned;
+  turned.turn_sign = -1.0;
+  REQUIRE(fatal(makeDrive(turned)).find("flipped sign: the heading turns against the commands") ==
+          0);
+  Made backwards;
+  backwards.forward_sign = -1.0;
+  REQUIRE(fatal(makeDrive(backwards)).find("flipped sign: the robot goes backwards") == 0);
+}
+
+TEST_CASE("commands that alternate evenly are not taken for a flipped sign") {
+  Made made;
+  made.alternates = true;
+  REQUIRE(fatal(makeDrive(made)) == "");
+}
+
+TEST_CASE("a mirrored map does not fit its headings") {
+  Made mirrored;
+  mirrored.mirror = -1.0;
+  REQUIRE(fatal(makeDrive(mirrored)).find("of the way is along the heading") != std::string::npos);
+}
+
+TEST_CASE("a clock of the INS that leaves that of MOTOR is found, and from when to when") {
+  Made jumped;
+  jumped.jump_time = 100.0;
+  jumped.jump = 4.0;
+  REQUIRE(fatal(makeDrive(jumped)).find("clock jump between INS and MOTOR: from") == 0);
+  Made early;
+  early.jump_time = 0.0;
+  early.jump = -2.0;
+  Drive drive = makeDrive(early);
+  REQUIRE(fatal(drive).find("the motion precedes its commands by 1.9") == 0);
+  Made late;
+  late.pose_lag = 0.6;
+  REQUIRE(fatal(makeDrive(late)) == "");
+}
+
+TEST_CASE("few pose jumps are noted, many are fatal") {
+  Drive drive = makeDrive({});
+  auto& ins = drive.segments[0].ins;
+  for (size_t i = 100; i < ins.size(); i += 500) ins[i].T_map_body.x += 3.0;
+  REQUIRE(fatal(drive) == "");
+  REQUIRE(lineWith(drive, "pose jumps faster than 8 m/s").find("8 pose jumps") == 0);
+  for (size_t i = 101; i < ins.size(); i += 10) ins[i].T_map_body.x += 3.0;
+  REQUIRE(fatal(drive).find("too many for one robot's INS") != std::string::npos);
+}
+
+TEST_CASE("a gyro that hangs while the heading turns is fatal, one at standstill is not") {
+  Drive drive = makeDrive({});
+  auto& ins = drive.segments[0].ins;
+  for (InsSample& sample : ins)
+    if (sample.time < 5.0) sample.omega = 0.0;
+  REQUIRE(fatal(drive) == "");
+  for (InsSample& sample : ins)
+    if (sample.time > 80.0 && sample.time < 120.0) sample.omega = 0.01;
+  REQUIRE(fatal(drive).find("the gyro is frozen") == 0);
+}
+
+TEST_CASE("nothing, nonsense and missing numbers never break the checks") {
+  REQUIRE(fatal(Drive{}).find("no motion with known commands") == 0);
+  Drive drive = makeDrive({});
+  drive.segments.push_back(Segment{{{300.0, {}}}, 301.0, {}, std::nullopt, {}});
+  const double odd[] = {kNotMeasured, std::numeric_limits<double>::infinity(), 1e300, -1e300};
+  auto& ins = drive.segments[0].ins;
+  for (size_t i = 0; i < ins.size(); i += 7) {
+    ins[i].T_map_body.x = odd[i % 4];
+    ins[i].omega = odd[(i + 1) % 4];
+    ins[i].pitch = odd[(i + 2) % 4];
+  }
+  for (const LogNote& note : validateLog(drive)) REQUIRE(note.what.size() < 2000);
+  for (InsSample& sample : ins) sample.T_map_body.yaw = sample.omega = kNotMeasured;
+  REQUIRE(fatal(drive).find("no motion with known commands") == 0);
+  Drive still = makeDrive({});
+  for (CommandSample& sample : still.segments[0].commands) sample.command = {};
+  for (InsSample& sample : still.segments[0].ins) {
+    sample.T_map_body = {};
+    sample.omega = 0.0;
+  }
+  REQUIRE(fatal(still) == "");
+}
+
+TEST_CASE("a step of a recording in a wrong frame is found among the others and taken out") {
+  Made gentle;
+  gentle.turning = 0.4;
+  const Drive whole = makeDrive(gentle);
+  Drive steps;
+  const Segment& all = whole.segments[0];
+  for (int n = 1; n < 30; ++n) {
+    Segment step;
+    step.end = 6.0 * n + 6.0;
+    for (const CommandSample& sample : all.commands)
+      if (sample.time >= 6.0 * n && sample.time < step.end) step.commands.push_back(sample);
+    for (const InsSample& sample : all.ins)
+      if (sample.time >= 6.0 * n && sample.time < step.end) step.ins.push_back(sample);
+    steps.segments.push_back(step);
+    steps.executions.push_back({static_cast<size_t>(n - 1), 6.0 * n + 1.0, 6.0 * n + 3.0});
+  }
+  REQUIRE(brokenSegments(steps).empty());
+  for (InsSample& sample : steps.segments[4].ins) {
+    const Pose2 pose = sample.T_map_body;
+    sample.T_map_body = Pose2{0.0, 0.0, 1.2} * pose;
+    sample.T_map_body.yaw = pose.yaw;
+  }
+  for (InsSample& sample : steps.segments[9].ins)
+    if (sample.time > 63.0) sample.T_map_body.yaw += 1.5;
+  REQUIRE(brokenSegments(steps) == std::vector<size_t>{4, 9});
+  removeSegments({4, 9}, steps);
+  REQUIRE(steps.segments.size() == 27);
+  REQUIRE(steps.executions.size() == 27);
+  for (const Execution& execution : steps.executions) {
+    REQUIRE(execution.begin >= steps.segments[execution.segment].begin());
+    REQUIRE(execution.end <= steps.segments[execution.segment].end);
+  }
+}
