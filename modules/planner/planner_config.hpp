@@ -10,4 +10,8 @@ namespace tread::planner {
 /// Reads the configuration; throws ConfigError with file:line.
 PlannerConfig readPlannerConfig(ConfigReader& reader);
 
+/// The same from a CONFIG message in a log. Keys of older versions that are constants today are
+/// ignored.
+PlannerConfig readLoggedPlannerConfig(ConfigReader& reader);
+
 }  // namespace tread::planner

@@ -19,14 +19,14 @@ const std::string kHere = TREAD_SOURCE_DIR "/config/robots/teodor/planner.yaml";
 
 TEST_CASE("A configuration is read with its ranges, and mistakes are named at file and line") {
   ConfigReader good = ConfigReader::fromText(
-      "search: {horizon: 6}\npolicy: {plan_period: 0.25}\ncommitment: {gain: 2.5}\n", kHere);
+      "search: {horizon: 6}\npolicy: {patience: 12}\ncommitment: {gain: 2.5}\n", kHere);
   const PlannerConfig config = readPlannerConfig(good);
   CHECK(config.local_map.footprint.half_width == 0.415);
   CHECK(config.local_map.field.inflation == 0.415);
   CHECK(config.search.horizon == 6.0);
-  CHECK(config.policy.plan_period == 250'000);
+  CHECK(config.policy.patience == 12'000'000);
   CHECK(config.side_hysteresis.gain == 2.5);
-  CHECK(config.effective.find("switch_penalty") != std::string::npos);
+  CHECK(config.effective.find("near_penalty") != std::string::npos);
   const auto refusal = [](const std::string& text) {
     ConfigReader reader = ConfigReader::fromText(text, kHere);
     try {
@@ -43,15 +43,19 @@ TEST_CASE("A configuration is read with its ranges, and mistakes are named at fi
 }
 
 TEST_CASE("A short vehicle's patterns are checked at poses as close as it is short") {
-  ConfigReader reader = ConfigReader::fromText(
-      "footprint: {front: 0.05, rear: 0.05, half_width: 0.05}\n"
-      "sweep: {distance: 0.5}\n",
-      kHere);
+  ConfigReader reader =
+      ConfigReader::fromText("footprint: {front: 0.05, rear: 0.05, half_width: 0.05}\n", kHere);
   const PlannerConfig config = readPlannerConfig(reader);
   CHECK(config.sweep.distance < 0.05);
   CHECK(config.sweep.covered < 0.05);
   const Margins& margins = config.local_map.margins;
   CHECK(config.sweep.outline.front == Approx(0.05 + std::max(margins.plan, margins.largest)));
-  ConfigReader usual = ConfigReader::fromText("sweep: {distance: 0.08}\n", kHere);
-  CHECK(readPlannerConfig(usual).sweep.distance == 0.08);
+}
+
+TEST_CASE("In a log's CONFIG keys of older versions are ignored, in a file they are mistakes") {
+  const std::string old = "search: {horizon: 6, cell: 0.2}\npolicy: {freeze: 0.2}\n";
+  ConfigReader log = ConfigReader::fromText(old, kHere);
+  CHECK(readLoggedPlannerConfig(log).search.horizon == 6.0);
+  ConfigReader file = ConfigReader::fromText(old, kHere);
+  CHECK_THROWS_AS(readPlannerConfig(file), ConfigError);
 }

@@ -12,6 +12,57 @@ namespace {
 using namespace tread;
 using namespace tread::plan;
 
+void describeQuery(CLI::App& app, PlanOptions& options) {
+  app.add_option("--start", options.start,
+                 "x,y,yaw [m, m, rad] in the map's frame; else the .cfg's own");
+  app.add_option("--goal", options.goal, "x,y,yaw, as the start");
+  app.add_option("--tolerance", options.tolerance,
+                 "METRES,RADIANS from the goal within which a plan may end")
+      ->capture_default_str();
+  app.add_flag("--come-close", options.come_close,
+               "plan to where the vehicle can come nearest if the goal cannot be reached");
+  app.add_option("--queries", options.queries,
+                 "file of many queries, x y yaw x y yaw (start, goal) a line");
+  app.add_option("--random", options.random, "so many random queries whose start and goal are free")
+      ->check(CLI::Range(int64_t{1}, int64_t{1'000'000}));
+  app.add_option("--seed", options.seed, "of the random queries")->capture_default_str();
+  app.add_option("--apart", options.apart, "m that their start and goal are apart at least")
+      ->check(CLI::Range(0.0, 1e5))
+      ->capture_default_str();
+  app.add_option("--write-queries", options.write_queries, "file to write the random queries to");
+}
+
+void describeRobot(CLI::App& app, PlanOptions& options) {
+  app.add_option("--footprint", options.footprint,
+                 "LENGTH,WIDTH of the robot [m], its origin in the middle");
+  app.add_option("--radius", options.radius, "m of a round robot; 0 = a point")
+      ->check(CLI::Range(0.0, 100.0));
+  app.add_option("--speed", options.speed, "m/s of .mprim patterns; else the .cfg's own, else 1")
+      ->check(CLI::Range(1e-3, 100.0));
+  app.add_option("--turn-time", options.turn_time,
+                 "s that .mprim patterns turn by 45 degrees in; else the .cfg's own, else 2")
+      ->check(CLI::Range(1e-3, 1e4));
+}
+
+/// Adds all options to a program.
+void describe(CLI::App& app, PlanOptions& options) {
+  app.add_option("--map", options.map,
+                 "nav2 or ROS map (.yaml with .pgm) or SBPL environment (.cfg)")
+      ->required();
+  app.add_option("--patterns", options.patterns,
+                 "our pattern file (.yaml), or SBPL primitives (.mprim): those of start angle 0")
+      ->required();
+  app.add_flag("--mprim-exact", options.exact,
+               "all of the .mprim, each from its own start angle, and SBPL's whole costs");
+  describeRobot(app, options);
+  describeQuery(app, options);
+  app.add_option("--deadline-ms", options.deadline_ms,
+                 "ms after which the best so far is the answer; else 1000, --mprim-exact none")
+      ->check(CLI::Range(1.0, 1e9));
+  app.add_option("--json", options.json, "file to write the answer to");
+  app.add_option("--picture", options.picture, "PNG of map, search tree and plan");
+}
+
 /// What all queries share counts for the only one.
 int planOne(const PlanTask& task, const PlanOptions& options) {
   TaskPlanner planner(task);

@@ -7,8 +7,7 @@
 #include <filesystem>
 
 #include "common/config/config_reader.hpp"
-#include "tools/plan/pgm_file.hpp"
-#include "tools/plan/words.hpp"
+#include "tools/plan/tokenizer.hpp"
 
 namespace tread::plan {
 namespace {
@@ -92,6 +91,46 @@ Grid gridFrom(const MapFile& map, int least_obstacle) {
   return grid;
 }
 
+size_t pixelCount(const GreyImage& image) {
+  return static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
+}
+
+GreyImage readHeader(Tokenizer& tokens) {
+  GreyImage image;
+  image.width = static_cast<int>(tokens.integer("the width", 1, kLongestSide));
+  image.height = static_cast<int>(tokens.integer("the height", 1, kLongestSide));
+  if (static_cast<int64_t>(image.width) * image.height > kMostCells)
+    throw tokens.error("more than " + std::to_string(kMostCells) + " pixels");
+  image.white = static_cast<int>(tokens.integer("the greatest grey value", 1, 65'535));
+  if (image.white > 255) throw tokens.error("two bytes a pixel; convert the picture to 8 bits");
+  return image;
+}
+
+[[noreturn]] void throwTruncated(const Tokenizer& tokens, size_t there, size_t needed) {
+  throw tokens.error("the file holds " + std::to_string(there) + " of " + std::to_string(needed) +
+                     " pixels; it is truncated");
+}
+
+/// P5: one blank behind the header, then a byte a pixel.
+void readBytes(Tokenizer& tokens, GreyImage& image) {
+  const size_t count = pixelCount(image);
+  const std::string_view rest = tokens.rest();
+  const size_t there = rest.empty() ? 0 : rest.size() - 1;
+  if (there < count) throwTruncated(tokens, there, count);
+  image.pixels.resize(count);
+  std::transform(rest.begin() + 1, rest.begin() + 1 + static_cast<std::ptrdiff_t>(count),
+                 image.pixels.begin(), [](char c) { return static_cast<uint8_t>(c); });
+}
+
+void readNumbers(Tokenizer& tokens, GreyImage& image) {
+  const size_t count = pixelCount(image);
+  // A pixel is a digit and a blank at least: nothing is reserved for what cannot be there.
+  if (tokens.left() + 1 < 2 * count) throwTruncated(tokens, tokens.left() / 2, count);
+  image.pixels.reserve(count);
+  while (image.pixels.size() < count)
+    image.pixels.push_back(static_cast<uint8_t>(tokens.integer("a pixel", 0, image.white)));
+}
+
 }  // namespace
 
 MapFile readMap(const std::string& path) {
@@ -122,6 +161,29 @@ Grid grownBy(const Grid& grid, double radius) {
         grown.set({x, y}, kObstacle);
     }
   return grown;
+}
+
+GreyImage parsePgm(std::string bytes, const std::string& name) {
+  Tokenizer tokens(std::move(bytes), name, '#');
+  const std::string kind(tokens.peek().substr(0, 8));
+  if (kind != "P2" && kind != "P5")
+    throw tokens.error("is no PGM picture, which begins with P5 or P2; convert it to PGM");
+  tokens.expect(kind);
+  GreyImage image = readHeader(tokens);
+  if (kind == "P5") {
+    readBytes(tokens, image);
+  } else {
+    readNumbers(tokens, image);
+  }
+  const auto brightest = std::max_element(image.pixels.begin(), image.pixels.end());
+  if (*brightest > image.white)
+    throw tokens.error("a pixel is " + std::to_string(*brightest) + ", more than the header's " +
+                       std::to_string(image.white));
+  return image;
+}
+
+GreyImage readPgm(const std::string& path) {
+  return parsePgm(readWhole(path), path);
 }
 
 }  // namespace tread::plan

@@ -98,9 +98,9 @@ void drawPose(Panel& panel, const Pose2& T_map_body, double length, Colour colou
 void drawLegend(report::Picture& sheet, const PlanScene& scene, const Box& box) {
   double x = box.x;
   const double y = box.y + box.height + 50.0;
-  const auto entry = [&](Colour colour, const std::string& words, double width) {
+  const auto entry = [&](Colour colour, const std::string& tokens, double width) {
     sheet.fill({x, y - 8.0, 14.0, 8.0}, colour);
-    sheet.text(x + 19.0, y, words, 11.0);
+    sheet.text(x + 19.0, y, tokens, 11.0);
     x += width;
   };
   entry(report::kGreen, "start", 65.0);

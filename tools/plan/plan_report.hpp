@@ -2,15 +2,54 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include "tools/plan/plan_answer.hpp"
+#include "common/geometry/se2.hpp"
 #include "tools/plan/query_file.hpp"
 
 namespace tread::plan {
+
+/// How a query ended.
+enum class PlanStatus {
+  kSolved,       ///< the plan ends within the goal's tolerance
+  kUnreachable,  ///< there is no way, known for sure
+  kNoneInTime    ///< none was found before the deadline
+};
+
+/// "solved", "unreachable" or "none_in_time".
+const char* nameOf(PlanStatus status);
+
+/// How near to the goal something could come.
+struct ClosestApproach {
+  Eigen::Vector2d p_map{0.0, 0.0};
+  double distance = 0.0;  ///< [m] to the goal
+};
+
+/// All that is told about the answer to one query. Poses are in the map's own frame.
+struct PlanAnswer {
+  PlanStatus status = PlanStatus::kNoneInTime;
+  bool all_seen = false;              ///< no more time would help: there is nothing better
+  std::string reason;                 ///< in words; empty if it is solved
+  double cost = 0.0;                  ///< of the plan, as the planner counts it
+  double time = 0.0;                  ///< [s] to drive it
+  double length = 0.0;                ///< [m]
+  std::vector<std::string> patterns;  ///< names, or ids where they have none
+  std::vector<Pose2> poses;           ///< T_map_body all along, start first, yaw -pi..pi; the best
+                                      ///< so far if it is not solved
+  std::vector<size_t> ends;           ///< for each pattern, which of the poses is its end
+  std::optional<ClosestApproach> closest;
+  int64_t expansions = 0;
+  std::optional<double> first_solution_ms;  ///< from the query to the first plan to the goal
+  double total_ms = 0.0;                    ///< from the query to the end, all work for it included
+  double clearance_ms = 0.0;                ///< of that for what all queries on a map share
+  double heuristic_ms = 0.0;                ///< of that for the way to go
+  double memory_mb = 0.0;                   ///< the most that the program has needed so far
+};
 
 /// Counts what all queries on a map share for this one.
 void addPreparation(PlanAnswer& answer, double preparation_ms);

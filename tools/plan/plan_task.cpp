@@ -11,7 +11,7 @@
 #include "common/grid/footprint.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "tools/patterns/output.hpp"
-#include "tools/plan/random_queries.hpp"
+#include "tools/plan/query_file.hpp"
 
 namespace tread::plan {
 namespace {

@@ -80,13 +80,13 @@ Pose2 endOf(const LatticeAction& action, size_t start_bin, const PrimitiveFile& 
   return end;
 }
 
-std::vector<planner::Primitive> latticePrimitives(const PlanTask& task,
-                                                  std::vector<std::string>& names) {
-  std::vector<planner::Primitive> primitives;
+std::vector<LatticePrimitive> latticePrimitives(const PlanTask& task,
+                                                std::vector<std::string>& names) {
+  std::vector<LatticePrimitive> primitives;
   const auto actions = latticeActions(*task.primitives, task.pace);
   for (size_t bin = 0; bin < actions.size(); ++bin) {
     for (const LatticeAction& action : actions[bin]) {
-      planner::Primitive primitive;
+      LatticePrimitive primitive;
       primitive.id = static_cast<int>(primitives.size());
       primitive.poses = {endOf(action, bin, *task.primitives)};
       primitive.cost = static_cast<double>(action.cost);
@@ -108,7 +108,7 @@ planner::FootprintSize footprintOf(const RobotShape& shape) {
 }
 
 /// How finely sweeps are checked: a point must not jump over a cell.
-planner::SweepResolution sweepStep(const PlanTask& task) {
+planner::SweepResolution sweepResolution(const PlanTask& task) {
   planner::SweepResolution step;
   if (task.shape.isRectangle()) return planner::resolutionFor(footprintOf(task.shape), 0.0, step);
   step.distance = step.covered = std::min(step.distance, task.grid.cellSize() / 2);
@@ -125,33 +125,31 @@ PlanStatus statusOf(planner::PathEnd end) {
 
 TaskPlanner::TaskPlanner(const PlanTask& task) : task_(task) {
   const Watch watch;
-  preparePatterns();
-  preparePlanner();
+  if (task.exact)
+    prepareLattice();
+  else
+    preparePlanner();
   preparation_ms_ = watch.now();
 }
 
-void TaskPlanner::preparePatterns() {
-  if (task_.patterns) {
-    patterns_ = std::make_unique<planner::PatternTable>(*task_.patterns, sweepStep(task_),
-                                                        planner::DefaultSigma{});
-    if (const std::string defect = patterns_->defect(); !defect.empty())
-      throw std::runtime_error("--patterns: " + defect);
-    return;
-  }
-  const auto primitives =
-      task_.exact ? latticePrimitives(task_, names_) : freePrimitives(task_, names_);
-  patterns_ = std::make_unique<planner::PatternTable>(primitives, sweepStep(task_));
+void TaskPlanner::prepareLattice() {
+  const CostThresholds& thresholds = task_.map.thresholds;
+  const CellCosts costs(task_.grid.width(), task_.grid.height(), task_.map.costs,
+                        std::min(thresholds.obstacle, thresholds.inscribed));
+  lattice_ = std::make_unique<LatticePlanner>(costs, task_.grid.cellSize(),
+                                              static_cast<int>(task_.primitives->headings.size()),
+                                              latticePrimitives(task_, names_));
 }
 
 void TaskPlanner::preparePlanner() {
-  if (task_.exact) {
-    const CostThresholds& thresholds = task_.map.thresholds;
-    costs_.emplace(task_.grid.width(), task_.grid.height(), task_.map.costs,
-                   std::min(thresholds.obstacle, thresholds.inscribed));
-    planner_ = std::make_unique<planner::PathPlanner>(
-        *costs_, task_.grid.cellSize(), static_cast<int>(task_.primitives->headings.size()),
-        *patterns_);
-    return;
+  if (task_.patterns) {
+    patterns_ = std::make_unique<planner::PatternTable>(*task_.patterns, sweepResolution(task_),
+                                                        planner::DefaultSigma{});
+    if (const std::string defect = patterns_->defect(); !defect.empty())
+      throw std::runtime_error("--patterns: " + defect);
+  } else {
+    patterns_ = std::make_unique<planner::PatternTable>(freePrimitives(task_, names_),
+                                                        sweepResolution(task_));
   }
   planner::PathConfig config;
   config.footprint = footprintOf(task_.shape);
@@ -169,8 +167,9 @@ PlanAnswer TaskPlanner::answer(const PlanQuery& query, double spent_ms) {
   wanted.come_close = task_.come_close;
   const planner::PathEvents events{[&watch] { watch.noteSearch(); },
                                    [&watch](double, int) { watch.noteSolution(); }};
-  const planner::PathAnswer found = planner_->answer(
-      wanted, [&watch](int) { return watch.isLate(); }, events);
+  const auto stop = [&watch](int) { return watch.isLate(); };
+  const planner::PathAnswer found =
+      task_.exact ? lattice_->answer(wanted, stop, events) : planner_->answer(wanted, stop, events);
   PlanAnswer answer;
   answer.total_ms = watch.now();
   answer.first_solution_ms = watch.first();
@@ -203,7 +202,7 @@ void TaskPlanner::tellPlan(const Pose2& T_grid_start, const planner::SearchResul
   Pose2 T_grid_begin = T_grid_start;
   tell(T_grid_begin);
   for (const planner::PlanStep& step : result.steps) {
-    const planner::TablePattern& pattern = *patterns_->find(step.pattern_id);
+    const planner::TablePattern& pattern = *patterns().find(step.pattern_id);
     for (const planner::SweptPose& at : pattern.swept_poses) tell(T_grid_begin * at.pose);
     T_grid_begin = step.T_map_end;
     answer.ends.push_back(answer.poses.size() - 1);
@@ -230,13 +229,13 @@ PlanScene TaskPlanner::scene(const PlanQuery& query, const PlanAnswer& answer) c
   PlanScene scene;
   scene.grid = task_.shape.isPoint() ? task_.grid : gridForFootprint(task_.map);
   scene.T_map_grid = task_.map.T_map_grid;
-  const std::vector<planner::TreeNode> tree = planner_->search().tree(kDrawnNodes);
+  const std::vector<planner::TreeNode> tree = search().tree(kDrawnNodes);
   for (const planner::TreeNode& node : tree) {
     if (node.parent < 0) continue;
     const Pose2 T_map_begin =
         task_.map.T_map_grid * tree[static_cast<size_t>(node.parent)].T_map_body;
     scene.tree.push_back({T_map_begin.position()});
-    for (const planner::SweptPose& at : patterns_->find(node.pattern_id)->swept_poses)
+    for (const planner::SweptPose& at : patterns().find(node.pattern_id)->swept_poses)
       scene.tree.back().push_back(T_map_begin * at.pose.position());
   }
   for (const Pose2& pose : answer.poses) scene.path.push_back(pose.position());

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "modules/planner/core/search/path_planner.hpp"
-#include "tools/plan/plan_answer.hpp"
+#include "tools/plan/lattice_planner.hpp"
 #include "tools/plan/plan_picture.hpp"
+#include "tools/plan/plan_report.hpp"
 #include "tools/plan/plan_task.hpp"
 
 namespace tread::plan {
@@ -29,8 +29,14 @@ class TaskPlanner {
   PlanScene scene(const PlanQuery& query, const PlanAnswer& answer) const;
 
  private:
-  void preparePatterns();
+  void prepareLattice();
   void preparePlanner();
+  const planner::PatternSearch& search() const {
+    return lattice_ ? lattice_->search() : planner_->search();
+  }
+  const planner::PatternTable& patterns() const {
+    return lattice_ ? lattice_->patterns() : *patterns_;
+  }
   std::string nameOf(int number) const;
   void tellPlan(const Pose2& T_grid_start, const planner::SearchResult& result,
                 PlanAnswer& answer) const;
@@ -40,8 +46,8 @@ class TaskPlanner {
   const PlanTask& task_;
   std::vector<std::string> names_;  // of primitives, which are numbered
   std::unique_ptr<planner::PatternTable> patterns_;
-  std::optional<planner::CellCosts> costs_;
   std::unique_ptr<planner::PathPlanner> planner_;
+  std::unique_ptr<LatticePlanner> lattice_;  // in its place if the primitives are used exactly
   double preparation_ms_ = 0.0;
 };
 

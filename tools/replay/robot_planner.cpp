@@ -188,7 +188,7 @@ planner::PlannerConfig plannerConfigOf(const RobotLog& log) {
     throw std::runtime_error(log.name +
                              ": no CONFIG of the planner; give its configuration with --config");
   ConfigReader reader = ConfigReader::fromText(text->second, log.name + ", CONFIG of the planner");
-  return planner::readPlannerConfig(reader);
+  return planner::readLoggedPlannerConfig(reader);
 }
 
 PlannerCheck checkPlanner(const RobotLog& log, const planner::PlannerConfig& config) {

@@ -7,7 +7,6 @@
 #include "common/config/config_reader.hpp"
 #include "tests/tools/plan/plan_samples.hpp"
 #include "tools/plan/map_file.hpp"
-#include "tools/plan/pgm_file.hpp"
 
 using namespace tread;
 using namespace tread::plan;

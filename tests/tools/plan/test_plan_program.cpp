@@ -43,11 +43,11 @@ Run run(const std::string& arguments) {
 }
 
 /// Bad input: one line on stderr, 2.
-void checkRefused(const std::string& arguments, const std::string& words) {
+void checkRefused(const std::string& arguments, const std::string& tokens) {
   CAPTURE(arguments);
   const Run result = run(arguments);
   CHECK(result.status == 2);
-  CHECK_THAT(result.printed, Contains(words));
+  CHECK_THAT(result.printed, Contains(tokens));
   CHECK_THAT(result.printed, Catch::StartsWith("tread-plan: "));
   CHECK(std::count(result.printed.begin(), result.printed.end(), '\n') == 1);
 }

@@ -6,7 +6,6 @@
 #include "common/grid/footprint.hpp"
 #include "tests/tools/plan/plan_samples.hpp"
 #include "tools/plan/query_file.hpp"
-#include "tools/plan/random_queries.hpp"
 
 using namespace tread;
 using namespace tread::plan;

@@ -3,6 +3,7 @@
 #include "modules/planner/core/map/local_map.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "modules/planner/core/map/local_map.hpp"
 
@@ -13,6 +14,11 @@ namespace {
 constexpr double kWindowSlack = 2.0;
 /// The distance field must reach this far around the vehicle [m].
 constexpr double kFieldSlack = 5.0;
+/// How far down the way to the goal the narrowest place is looked for [m].
+constexpr double kDetourLook = 3.0;
+constexpr double kDetourStep = 0.2;
+/// Nearer than this to the vehicle nothing is made a detour [m].
+constexpr double kDetourNear = 0.8;
 
 }  // namespace
 
@@ -102,6 +108,20 @@ void LocalMap::substituteGoal(const Eigen::Vector2d& p_vehicle,
 void LocalMap::addDetour(const Eigen::Vector2d& p_map) {
   detours_.push_back({p_map, 0.7});
   detours_changed_ = true;
+}
+
+void LocalMap::addDetourAhead(const Eigen::Vector2d& p_vehicle, int most) {
+  if (static_cast<int>(detours_.size()) >= most) return forgetDetours();
+  std::optional<Eigen::Vector2d> narrowest;
+  double least = std::numeric_limits<double>::infinity();
+  const int points = static_cast<int>(kDetourLook / kDetourStep);
+  for (const Eigen::Vector2d& at : distance_to_goal_.descend(p_vehicle, kDetourStep, points)) {
+    const double clearance = checker_->clearance(at);
+    if ((at - p_vehicle).norm() < kDetourNear || clearance >= least) continue;
+    least = clearance;
+    narrowest = at;
+  }
+  if (narrowest) addDetour(*narrowest);
 }
 
 void LocalMap::forgetDetours() {

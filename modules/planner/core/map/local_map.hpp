@@ -51,6 +51,8 @@ class LocalMap {
   void updateDistance(const Pose2& T_map_body, const Goal& goal, int64_t now);
   /// Makes a place more expensive until the goal changes.
   void addDetour(const Eigen::Vector2d& p_map);
+  /// The narrowest place a little way ahead becomes a detour; after `most` all are forgotten.
+  void addDetourAhead(const Eigen::Vector2d& p_vehicle, int most);
   size_t detours() const { return detours_.size(); }
   void forgetDetours();
 

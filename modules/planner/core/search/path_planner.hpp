@@ -15,7 +15,7 @@ namespace tread::planner {
 struct PathConfig {
   FootprintSize footprint;
   SearchConfig search = pathSearch();
-  double guide_beyond = 0.15;  ///< [1] of the cost at the start that it is filled in beyond it
+  double heuristic_beyond = 0.15;  ///< [1] of the cost at the start that it is filled in beyond it
   DistanceFieldConfig field = pathDistanceField();
   bool unknown_blocks = true;
   double grown = 0.0;  ///< [m] by which obstacles were grown already: for a round robot, a point
@@ -30,9 +30,9 @@ struct PathQuery {
   Pose2 T_map_goal;
   double position_tolerance = 0.25;  ///< [m] > 0
   double yaw_tolerance = 0.26;       ///< [rad] > 0; pi or more = any heading
-  /// A goal to which there is no way is replaced by the place nearest to it at which the disc
-  /// inside the footprint has room, with any heading; where the vehicle does not get there, by what
-  /// is within its outermost corner of that (the paper's "come as close as possible").
+  /// An unreachable goal is replaced by the place nearest to it where the disc inside the footprint
+  /// fits, with any heading; if the vehicle does not get there, by the circle around it that its
+  /// outermost corner describes (the paper's "come as close as possible").
   bool come_close = false;
 
   Goal goal() const { return {1, T_map_goal, position_tolerance, yaw_tolerance}; }
@@ -47,7 +47,7 @@ enum class PathEnd {
 
 /// Called while a query is answered, for those who measure.
 struct PathEvents {
-  std::function<void()> search_begins;  ///< the way to go is worked out
+  std::function<void()> search_begins;  ///< the heuristics are computed
   /// A plan, or a better one; one that comes closer to a goal that cannot be reached may cost more.
   std::function<void(double cost, int expansions)> better_plan;
 };
@@ -60,18 +60,21 @@ struct PathAnswer {
   std::optional<Eigen::Vector2d> closest;
 };
 
+inline constexpr const char* kNoneBeginsReason =
+    "the start has no legal successor: each pattern would leave the map or hit something";
+inline constexpr const char* kStoppedReason = "none was found before the search was stopped";
+/// Why a search that saw all states found no plan.
+std::string exhaustedReason(const SearchResult& result);
+
 /// Plans on a map that does not change, for one vehicle and one set of patterns.
-/** What all queries share is worked out once: clearance, passages, connected areas. Unreachable is
- * only what is certain: the goal lies outside the map or where not even the disc inside the
- * footprint has room, that disc cannot be moved from start to goal, or no pattern can begin at the
- * start; on a lattice also that all states were seen. A start on blocked ground is connected to
- * all that the patterns may reach that may lead off it (SearchConfig::escape_patterns). */
+/** Clearance, free configurations and connected areas are computed once for all queries.
+ * Unreachable is only what is certain: the goal lies outside the map or where not even the disc
+ * inside the footprint fits, that disc cannot be moved from start to goal, or no pattern can begin
+ * at the start. A start on blocked ground counts as connected to every area that
+ * SearchConfig::escape_patterns patterns may reach. */
 class PathPlanner {
  public:
   PathPlanner(const Grid& grid, const PatternTable& patterns, const PathConfig& config);
-  /// For a point that drives over cells with costs: SBPL's own problem (see CellCosts). `bins`:
-  /// headings of the lattice; the goal is one cell and one heading.
-  PathPlanner(const CellCosts& costs, double cell_size, int bins, const PatternTable& patterns);
 
   /// `stop` is asked with 0 expansions while the way is worked out, too.
   PathAnswer answer(const PathQuery& query, const StopPredicate& stop,
@@ -87,32 +90,27 @@ class PathPlanner {
 
  private:
   std::optional<PathAnswer> refusalOfAreas(const PathQuery& query) const;
-  PathAnswer withoutWay(const PathQuery& query, const DistanceToGoal& way,
-                        const StopPredicate& stop, const PathEvents& events);
+  PathAnswer answerWithoutWay(const PathQuery& query, const DistanceToGoal& distance,
+                              const StopPredicate& stop, const PathEvents& events);
   PathAnswer comeClose(const PathQuery& query, const PathAnswer& refusal, const StopPredicate& stop,
                        const PathEvents& events);
-  void placeOnLattice(SearchProblem& problem) const;
   SearchProblem problemOf(const PathQuery& query) const;
   std::vector<int> areasFrom(const Pose2& T_map_start) const;
   std::vector<int> areasAround(const Eigen::Vector2d& p_goal, double tolerance) const;
   bool anyBegins(const Pose2& T_map_start) const;
-  void classify(PathAnswer& answer) const;
-  DistanceToGoal wayTo(const SearchProblem& problem, const Interruption& interruption) const;
+  static void classify(PathAnswer& answer);
+  DistanceToGoal distanceTo(const SearchProblem& problem, const Interruption& interruption) const;
 
-  static constexpr const char* kNoneBeginsReason =
-      "the start has no legal successor: each pattern would leave the map or hit something";
   /// A cell's corner may have so much more room than its centre, in cells.
   static constexpr double kMostSlack = 0.71;
 
   const PatternTable& patterns_;
   PathConfig config_;
   PatternSearch search_;
-  double inscribed_ = 0.0;
-  std::optional<CollisionChecker> checker_;
-  std::optional<FreeConfigurations> configurations_;
-  std::optional<CoarseClearance> clearances_;
-  const CellCosts* costs_ = nullptr;
-  double cell_size_ = 0.0;
+  double inscribed_;
+  CollisionChecker checker_;
+  FreeConfigurations configurations_;
+  CoarseClearance coarse_clearance_;
 };
 
 }  // namespace tread::planner

@@ -52,8 +52,6 @@ TablePattern prepare(const Primitive& primitive, const SweepResolution& step) {
   const double period = primitive.duration / static_cast<double>(primitive.poses.size());
   entry.swept_poses = sampleSweep(primitive.poses, period, step);
   entry.swept_footprint = sweptFootprintOf(entry.swept_poses, primitive.poses, period, step);
-  entry.start_bin = primitive.start_bin;
-  entry.cells = primitive.cells;
   addDisc(entry);
   return entry;
 }

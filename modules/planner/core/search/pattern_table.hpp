@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "common/grid/grid.hpp"
 #include "common/pattern/pattern.hpp"
 #include "modules/planner/core/map/swept_footprint.hpp"
 #include "modules/planner/core/search/uncertainty.hpp"
@@ -17,11 +16,9 @@ namespace tread::planner {
 /// A motion of another planner, from rest to rest, that is searched with like a pattern.
 struct Primitive {
   int id = 0;
-  std::vector<Pose2> poses;      ///< T_start_pose, without the start, the end last
-  double duration = 0.0;         ///< [s] > 0
-  double cost = 0.0;             ///< [s, or whatever unit the plan's cost is to have] > 0
-  int start_bin = -1;            ///< the only heading bin in which it may begin; -1 = any
-  std::vector<CellIndex> cells;  ///< that it passes, relative to the cell of its start (CellCosts)
+  std::vector<Pose2> poses;  ///< T_start_pose, without the start, the end last
+  double duration = 0.0;     ///< [s] > 0
+  double cost = 0.0;         ///< [s, or whatever unit the plan's cost is to have] > 0
 };
 
 /// A pattern as the search wants it.
@@ -39,8 +36,6 @@ struct TablePattern {
   Eigen::Vector2d centre{0.0, 0.0};  ///< of a disc that holds all positions, relative to the start
   double radius = 0.0;               ///< [m] of that disc
   Uncertainty uncertainty;           ///< of its end, in the axes of its start
-  int start_bin = -1;                ///< see Primitive
-  std::vector<CellIndex> cells;      ///< see Primitive
 
   int id() const { return number; }
   const SweptPose& end() const { return swept_poses.back(); }

@@ -9,11 +9,14 @@
 #include <random>
 #include <tuple>
 
-#include "modules/planner/core/search/path_planner.hpp"
 #include "tests/effort.hpp"
+#include "tools/plan/lattice_planner.hpp"
 
 using namespace tread;
-using namespace tread::planner;
+using namespace tread::plan;
+using planner::PathAnswer;
+using planner::PathEnd;
+using planner::PathQuery;
 
 namespace {
 
@@ -30,12 +33,12 @@ std::vector<uint8_t> randomCosts(std::mt19937_64& random, int count, int blocked
 }
 
 /// A lattice of quarter turns: one and three cells ahead, and turns to both sides.
-std::vector<Primitive> quarterLattice() {
-  std::vector<Primitive> primitives;
+std::vector<LatticePrimitive> quarterLattice() {
+  std::vector<LatticePrimitive> primitives;
   for (int bin = 0; bin < kBins; ++bin) {
     const CellIndex ahead{bin == 0 ? 1 : bin == 2 ? -1 : 0, bin == 1 ? 1 : bin == 3 ? -1 : 0};
     for (const int cells : {1, 3}) {
-      Primitive primitive;
+      LatticePrimitive primitive;
       primitive.id = static_cast<int>(primitives.size());
       for (int k = 1; k <= cells; ++k) {
         primitive.poses.push_back({k * kCell, 0.0, 0.0});
@@ -47,7 +50,7 @@ std::vector<Primitive> quarterLattice() {
       primitives.push_back(primitive);
     }
     for (const double turn : {kPi / 2.0, -kPi / 2.0}) {
-      Primitive primitive;
+      LatticePrimitive primitive;
       primitive.id = static_cast<int>(primitives.size());
       primitive.poses = {{0.0, 0.0, turn}};
       primitive.duration = primitive.cost = 1.5;
@@ -59,8 +62,8 @@ std::vector<Primitive> quarterLattice() {
 }
 
 /// Cheapest plan between two cells and headings; infinite if there is none.
-double bruteForce(const CellCosts& costs, const std::vector<Primitive>& primitives, CellIndex from,
-                  int from_bin, CellIndex to, int to_bin) {
+double bruteForce(const CellCosts& costs, const std::vector<LatticePrimitive>& primitives,
+                  CellIndex from, int from_bin, CellIndex to, int to_bin) {
   using State = std::tuple<int, int, int>;
   using Entry = std::pair<double, State>;
   std::map<State, double> settled;
@@ -72,7 +75,7 @@ double bruteForce(const CellCosts& costs, const std::vector<Primitive>& primitiv
     if (!settled.emplace(state, cost).second) continue;
     const auto [x, y, bin] = state;
     if (x == to.x && y == to.y && bin == to_bin) return cost;
-    for (const Primitive& primitive : primitives) {
+    for (const LatticePrimitive& primitive : primitives) {
       if (primitive.start_bin != bin) continue;
       int worst = costs.at({x, y});
       bool blocked = false;
@@ -118,8 +121,7 @@ TEST_CASE("the worst of some cells is the dearest of them and of where they begi
 
 TEST_CASE("on a lattice with costs the plan is as cheap as brute force finds it") {
   std::mt19937_64 random(7);
-  const std::vector<Primitive> primitives = quarterLattice();
-  const PatternTable table(primitives, SweepResolution{});
+  const std::vector<LatticePrimitive> primitives = quarterLattice();
   int solved = 0;
   int unreachable = 0;
   for (int i = 0; i < testing::effort(400); ++i) {
@@ -136,8 +138,8 @@ TEST_CASE("on a lattice with costs the plan is as cheap as brute force finds it"
     // Anywhere in the cell: the planner moves both to the middle.
     const PathQuery query{{(from.x + 0.3) * kCell, (from.y + 0.8) * kCell, from_bin * kPi / 2.0},
                           {(to.x + 0.6) * kCell, (to.y + 0.1) * kCell, to_bin * kPi / 2.0}};
-    PathPlanner planner(costs, kCell, kBins, table);
-    const PathAnswer answer = planner.answer(query, [](int) { return false; });
+    LatticePlanner lattice(costs, kCell, kBins, primitives);
+    const PathAnswer answer = lattice.answer(query, [](int) { return false; });
     INFO("map " << i << ": " << answer.reason);
     if (costs.at(from) < 0 || costs.at(to) < 0) {
       CHECK(answer.end == PathEnd::kUnreachable);

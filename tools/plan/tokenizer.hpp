@@ -12,11 +12,11 @@ namespace tread::plan {
 
 /// The words of a text one after the other, for the formats of others that are no YAML.
 /** What is missing, no number or out of its range throws ConfigError with "name:line: what". */
-class Words {
+class Tokenizer {
  public:
   /// `name` stands for the file in messages; from `comment` on to the end of its line nothing
   /// counts.
-  Words(std::string text, std::string name, char comment = '\0');
+  Tokenizer(std::string text, std::string name, char comment = '\0');
 
   /// Whether nothing but blanks and comments is left.
   bool atEnd();

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What a node of the search costs, and what is left from it on.
+#include "modules/planner/core/search/cost_model.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include "modules/planner/core/search/pattern_search.hpp"
 
 namespace tread::planner {
 namespace {
@@ -24,35 +23,43 @@ float arcCosine(float x) {
 
 }  // namespace
 
-float PatternSearch::edgeCost(const Node& parent, const TablePattern& pattern,
-                              const Node& end) const {
-  if (problem_->cell_costs != nullptr) {
-    const CellIndex from{static_cast<int>(std::floor(parent.x * per_cell_)),
-                         static_cast<int>(std::floor(parent.y * per_cell_))};
-    const int worst = problem_->cell_costs->worst(from, pattern.cells);
-    return worst < 0 ? kNever : static_cast<float>(pattern.cost * (worst + 1));
+CostModel::CostModel(const SearchConfig& config, const SearchProblem& problem)
+    : config_(config), problem_(&problem) {
+  const PatternTable& patterns = *problem.patterns;
+  speed_ = patterns.bestSpeed();
+  goal_yaw_ = static_cast<float>(wrapAngle(problem.goal.T_map_goal.yaw));
+  yaw_tolerance_ = static_cast<float>(problem.goal.yaw_tolerance);
+  for (size_t i = 0; i < 2; ++i) {
+    metre_cost_[i] = static_cast<float>(patterns.leastCosts()[i].per_metre);
+    radian_cost_[i] = static_cast<float>(patterns.leastCosts()[i].per_radian);
   }
+  distance_share_ = static_cast<float>(config.distance_share);
+  if (problem.distance_to_goal == nullptr) return;
+  slack_ = static_cast<float>(problem.distance_to_goal->cellSlack());
+  admissible_share_ = static_cast<float>(DistanceToGoal::kAdmissibleShare);
+}
+
+float CostModel::edgeCost(const SearchNode& parent, const TablePattern& pattern,
+                          const SearchNode& end) const {
+  if (problem_->rules != nullptr) return problem_->rules->cost(parent.x, parent.y, pattern);
   double weight = 1.0;
   const CollisionChecker& around = *problem_->collision_checker;
   if (config_.near_penalty > 0.0)
     weight += config_.near_penalty * around.nearness(end.x, end.y, config_.near_distance);
-  if (config_.unknown_penalty > 0.0 && around.isUnknown({end.x, end.y}))
-    weight += config_.unknown_penalty;
   if (pattern.reverses) weight += config_.reverse_penalty;
   double cost = pattern.cost * weight;
   const int rest = problem_->patterns->restClass();
   if (pattern.exit == rest && pattern.entry != rest) cost += config_.stop_penalty;
-  if (config_.turn_penalty > 0.0) cost += config_.turn_penalty * std::abs(pattern.end().pose.yaw);
   return static_cast<float>(cost);
 }
 
-bool PatternSearch::staysOnPlan(const Node& parent, const TablePattern& pattern) const {
+bool CostModel::staysOnPlan(const SearchNode& parent, const TablePattern& pattern) const {
   const auto depth = static_cast<size_t>(parent.depth);
   return parent.on_plan == parent.depth && depth < problem_->committed.size() &&
          problem_->committed[depth] == pattern.id();
 }
 
-float PatternSearch::switchPenalty(const Node& parent, const TablePattern& pattern) const {
+float CostModel::switchPenalty(const SearchNode& parent, const TablePattern& pattern) const {
   const auto depth = static_cast<size_t>(parent.depth);
   if (parent.on_plan != parent.depth || depth >= problem_->committed.size()) return 0.0F;
   if (problem_->committed[depth] == pattern.id()) return 0.0F;
@@ -60,7 +67,7 @@ float PatternSearch::switchPenalty(const Node& parent, const TablePattern& patte
 }
 
 /// There is no way over blocked ground; who leaves it may go straight.
-PatternSearch::Heuristic PatternSearch::heuristic(const Node& node, bool on_blocked_ground) const {
+CostModel::Heuristic CostModel::heuristic(const SearchNode& node, bool on_blocked_ground) const {
   const Goal& goal = problem_->goal;
   DistanceToGoal::Sample at;
   if (problem_->distance_to_goal != nullptr) {
@@ -76,7 +83,7 @@ PatternSearch::Heuristic PatternSearch::heuristic(const Node& node, bool on_bloc
   float off_goal = 0.0F;
   if (goal.yaw_tolerance < kPi)
     off_goal = std::max(0.0F, std::abs(wrapped(node.yaw - goal_yaw_)) - yaw_tolerance_);
-  const float way = std::max(0.0F, way_share_ * at.length - slack_);
+  const float way = std::max(0.0F, admissible_share_ * at.length - slack_);
   const float bound = std::max(metre_cost_[0] * way + radian_cost_[0] * off_goal,
                                metre_cost_[1] * way + radian_cost_[1] * off_goal);
   if (problem_->heading_heuristic != nullptr) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/plan/words.hpp"
+#include "tools/plan/tokenizer.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -25,10 +25,10 @@ std::string quoted(std::string_view word) {
 
 }  // namespace
 
-Words::Words(std::string text, std::string name, char comment)
+Tokenizer::Tokenizer(std::string text, std::string name, char comment)
     : text_(std::move(text)), name_(std::move(name)), comment_(comment) {}
 
-void Words::skipBlanks() {
+void Tokenizer::skipBlanks() {
   while (at_ < text_.size()) {
     if (comment_ != '\0' && text_[at_] == comment_) {
       at_ = std::min(text_.find('\n', at_), text_.size());
@@ -40,12 +40,12 @@ void Words::skipBlanks() {
   }
 }
 
-bool Words::atEnd() {
+bool Tokenizer::atEnd() {
   skipBlanks();
   return at_ == text_.size();
 }
 
-std::string_view Words::peek() {
+std::string_view Tokenizer::peek() {
   skipBlanks();
   size_t end = at_;
   while (end < text_.size() && !isBlank(text_[end]) && (comment_ == '\0' || text_[end] != comment_))
@@ -53,7 +53,7 @@ std::string_view Words::peek() {
   return std::string_view(text_).substr(at_, end - at_);
 }
 
-std::string_view Words::next(const std::string& what) {
+std::string_view Tokenizer::next(const std::string& what) {
   const std::string_view word = peek();
   if (word.empty()) throw error("the file ends where " + what + " should be");
   word_line_ = line_;
@@ -61,12 +61,12 @@ std::string_view Words::next(const std::string& what) {
   return word;
 }
 
-void Words::expect(const std::string& word) {
+void Tokenizer::expect(const std::string& word) {
   const std::string_view found = next(word);
   if (found != word) throw error(quoted(found) + " stands where " + word + " should be");
 }
 
-int64_t Words::integer(const std::string& what, int64_t min, int64_t max) {
+int64_t Tokenizer::integer(const std::string& what, int64_t min, int64_t max) {
   const std::string_view word = next(what);
   const auto value = parseInteger(std::string(word));
   if (!value || *value < min || *value > max)
@@ -75,7 +75,7 @@ int64_t Words::integer(const std::string& what, int64_t min, int64_t max) {
   return *value;
 }
 
-double Words::number(const std::string& what, Range range, const std::string& unit) {
+double Tokenizer::number(const std::string& what, Range range, const std::string& unit) {
   const std::string_view word = next(what);
   const auto value = parseNumber(std::string(word));
   if (!value || !(*value >= range.min && *value <= range.max))
@@ -84,13 +84,13 @@ double Words::number(const std::string& what, Range range, const std::string& un
   return *value;
 }
 
-std::string_view Words::rest() {
+std::string_view Tokenizer::rest() {
   const std::string_view all = std::string_view(text_).substr(at_);
   at_ = text_.size();
   return all;
 }
 
-ConfigError Words::error(const std::string& problem) const {
+ConfigError Tokenizer::error(const std::string& problem) const {
   return ConfigError(name_ + ":" + std::to_string(word_line_) + ": " +
                      (part_.empty() ? "" : part_ + ": ") + problem);
 }

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/planner/core/execution/moving_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tread::planner {
+namespace {
+
+constexpr double kMicro = 1e-6;
+/// Poses this far apart are still interpolated [us].
+constexpr int64_t kTrackGap = 150'000;
+/// Steps in which coasting on is checked [s].
+constexpr double kCoastStep = 0.1;
+
+}  // namespace
+
+void MovingControl::drive(const PlannerInputs& s, const Preconditions& ready) {
+  if (state_.runningPattern() == nullptr)
+    return state_.halt(s.now, "the running pattern is gone from the set");
+  state_.prediction = predictRunning(s);
+  // The rest was planned from another place than the vehicle will come to: plan again now.
+  if (state_.plan.based_on && leftCorridor(*state_.plan.based_on, *state_.prediction)) {
+    state_.plan.expire();
+    ++state_.counters["left the predicted corridor"];
+  }
+  planNext(s, ready, *state_.prediction);
+  keepClear(s, *state_.prediction);
+}
+
+Prediction MovingControl::predictRunning(const PlannerInputs& s) const {
+  const TablePattern& pattern = *state_.runningPattern();
+  const Pose2& here = s.pose->T_map_body;
+  if (!state_.tracker.confirmed()) return predict(here, 0.0, pattern, state_.table());
+  const double time = static_cast<double>(s.pose->utime - state_.tracker.started()) * kMicro;
+  const std::optional<Pose2> start = state_.track.at(state_.tracker.started(), kTrackGap);
+  const std::optional<Pose2> now = state_.track.at(s.pose->utime, kTrackGap);
+  MotionRatio so_far;
+  if (start && now && time > 0.0)
+    so_far =
+        motionRatio(between(*start, *now), time, pattern, state_.table().set().periodSeconds());
+  return predict(here, time, pattern, state_.table(), so_far);
+}
+
+bool MovingControl::frozen(const PlannerInputs& s) const {
+  return state_.tracker.confirmed() && state_.tracker.ends() - s.now < state_.config.policy.freeze;
+}
+
+std::optional<double> MovingControl::conflict(const Pose2& here,
+                                              const std::vector<ExpectedPose>& poses) const {
+  const CollisionChecker& around = state_.local_map.collisionChecker();
+  const int level = around.freeLevel(here, CollisionChecker::kCheck);
+  if (level >= 0) return firstConflict(around, poses, level);
+  // On blocked ground already: it must not become worse.
+  const Overlap now = around.overlap(here);
+  for (const ExpectedPose& at : poses)
+    if (!around.overlap(at.T_map_body).within(now)) return at.time;
+  return std::nullopt;
+}
+
+std::vector<ExpectedPose> MovingControl::posesAfter(const Prediction& running) const {
+  std::vector<ExpectedPose> poses;
+  const TablePattern* next = state_.tracker.next().empty()
+                                 ? nullptr
+                                 : state_.table().find(state_.tracker.next().pattern_id);
+  if (next != nullptr) {
+    for (const SweptPose& at : next->swept_poses)
+      poses.push_back({running.T_map_end * at.pose, running.time_left + at.time});
+    return poses;
+  }
+  // Nothing follows: the series ends, and the vehicle coasts.
+  const Twist2& twist = state_.table().motionClass(state_.runningPattern()->exit).twist;
+  for (double t = kCoastStep; t <= state_.config.policy.coast_time + 1e-9; t += kCoastStep)
+    poses.push_back({running.T_map_end * integrate(twist, t), running.time_left + t});
+  return poses;
+}
+
+bool MovingControl::nextCollides(const Prediction& running) const {
+  if (state_.tracker.next().empty()) return false;
+  return conflict(running.T_map_end, posesAfter(running)).has_value();
+}
+
+void MovingControl::planNext(const PlannerInputs& s, const Preconditions& ready,
+                             const Prediction& running) {
+  if (frozen(s)) return;
+  const bool waits = !state_.tracker.confirmed() && !state_.tracker.next().empty();
+  const bool due = state_.plan.due(s.now, state_.config.policy.plan_period) && !waits;
+  if (!due && !nextCollides(running)) return;
+  if (ready.level == Preconditions::Level::kGo) return searchNext(s, running);
+  state_.plan.made = s.now;
+  state_.status.changed = true;
+  stopNext(running);
+  state_.status.say(ready.status, ready.reason);
+}
+
+/// Where the running pattern is expected to end, as the start of what follows.
+PlanStep MovingControl::endOf(const Prediction& running) const {
+  return {state_.runningPattern()->id(), running.T_map_end, state_.runningPattern()->exit, 0.0,
+          running.uncertainty};
+}
+
+void MovingControl::searchNext(const PlannerInputs& s, const Prediction& running) {
+  state_.plan.based_on = running;
+  if (state_.sayUnreachable()) {
+    state_.plan.made = s.now;
+    stopNext(running);
+    return;
+  }
+  const SearchResult result =
+      state_.search(s.now, endOf(running), state_.config.policy.driving_expansions);
+  if (result.end == SearchEnd::kNothing) {
+    const bool stops = stopNext(running);
+    ++state_.counters["no plan while driving"];
+    return state_.status.say(PlanStatus::kBlocked,
+                             stops ? "stopping: " + result.reason : result.reason);
+  }
+  state_.plan.steps = result.steps;
+  state_.planner.side().take(result.steps, state_.table());
+  if (result.steps.empty())
+    state_.tracker.clearNext();
+  else
+    state_.tracker.setNext(state_.table().set(), state_.plan.steps.front().pattern_id);
+  state_.sayDriving(s.now);
+}
+
+bool MovingControl::stopNext(const Prediction& running) {
+  const CollisionChecker& around = state_.local_map.collisionChecker();
+  const int motion_class = state_.runningPattern()->exit;
+  const TablePattern* best = nullptr;
+  const int level = around.freeLevel(running.T_map_end, CollisionChecker::kCheck);
+  if (motion_class != state_.table().restClass()) {
+    for (const TablePattern* stop : state_.table().stopsFrom(motion_class)) {
+      if (best != nullptr && best->duration <= stop->duration) continue;
+      const bool free =
+          level >= 0 ? around.sweepFree(running.T_map_end, *stop, level)
+                     : around.escape(running.T_map_end, around.overlap(running.T_map_end), *stop)
+                           .has_value();
+      if (free) best = stop;
+    }
+  }
+  state_.plan.steps.clear();
+  if (best == nullptr) {
+    state_.tracker.clearNext();
+    return motion_class == state_.table().restClass();
+  }
+  state_.tracker.setNext(state_.table().set(), best->id());
+  state_.plan.steps.push_back(stepAfter(endOf(running), *best));
+  return true;
+}
+
+/// Whether a stop now keeps more margin than going on. What is nearer than the stopping distance
+/// may be reached either way; then the better way is the one that keeps clear, and at equal margin
+/// to stand is better.
+bool MovingControl::stoppingIsBetter(const PlannerInputs& s,
+                                     const std::vector<ExpectedPose>& poses) const {
+  if (!s.pose->twist) return true;
+  const CollisionChecker& around = state_.local_map.collisionChecker();
+  const auto worst = [&](const std::vector<ExpectedPose>& way) {
+    int level = CollisionChecker::kCheck;
+    for (const ExpectedPose& at : way)
+      level = std::min(level, around.freeLevel(at.T_map_body, level));
+    return level;
+  };
+  std::vector<ExpectedPose> coast;
+  for (double t = kCoastStep; t <= state_.config.policy.coast_time + 1e-9; t += kCoastStep)
+    coast.push_back({s.pose->T_map_body * integrate(*s.pose->twist, t), t});
+  return worst(coast) >= worst(poses);
+}
+
+void MovingControl::keepClear(const PlannerInputs& s, const Prediction& running) {
+  const double age = static_cast<double>(s.now - s.pose->utime) * kMicro;
+  const double lead = static_cast<double>(state_.config.policy.stop_lead) * kMicro;
+  std::vector<ExpectedPose> poses = running.ahead;
+  const std::vector<ExpectedPose> after = posesAfter(running);
+  poses.insert(poses.end(), after.begin(), after.end());
+  const std::optional<double> found = conflict(s.pose->T_map_body, poses);
+  if (!found || *found - age > lead) return;
+  if (!stoppingIsBetter(s, poses)) {
+    ++state_.counters["went on: a stop would have kept less clear"];
+    return;
+  }
+  state_.halt(s.now,
+              "something is in the way in " + withTenths(std::max(0.0, *found - age)) + " s");
+}
+
+}  // namespace tread::planner

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "modules/planner/core/map/collision_checker.hpp"
+#include "modules/planner/core/map/distance_to_goal.hpp"
+#include "modules/planner/core/map/heading_aware_heuristic.hpp"
+#include "modules/planner/core/search/pattern_table.hpp"
+
+namespace tread::planner {
+
+/// Resolution, weights and penalties of the search, and when a plan is long enough.
+struct SearchConfig {
+  double cell = 0.12;             ///< [m] side of a cell of the search space
+  int heading_bins = 60;          ///< of a full turn
+  double distance_share = 1.0;    ///< [1] of the distance to the goal that the heuristic counts
+  double heuristic_weight = 1.3;  ///< [1] 1 = shortest time, more = found sooner
+  double turn_weight = 0.8;       ///< [1] of the time to turn towards the way to the goal
+  double reverse_penalty = 0.5;   ///< [1] of the time spent reversing
+  double stop_penalty = 0.5;      ///< [s] for coming to rest on the way
+  double near_penalty = 0.5;      ///< [1] of the time spent as near to something as possible
+  double near_distance = 0.9;     ///< [m] of clearance from which on nothing is near
+  double switch_penalty = 0.6;    ///< [s] for leaving the plan that was made before
+  double horizon = 9.0;           ///< [s] farther ahead nothing needs to be planned
+  double least_rate = 0.3;  ///< [1] of the best speed that a plan to the horizon must gain on the
+                            ///< way to go; below that it is looked ahead twice as far
+  double frontier = 2.5;    ///< [m] before the unknown a plan may end
+  double least_progress = 0.3;  ///< [s] of time to go that a plan must gain
+  int escape_patterns = 3;      ///< so many patterns may be needed to leave blocked ground
+  double goal_share = 0.7;      ///< [1] of the goal's tolerance that is aimed for
+  int improvements = 0;         ///< more searches after the first plan, each for a better one; the
+                                ///< last has weight 1 and ends when there is none
+  size_t most_nodes = 6'000'000;  ///< [1] of 112 bytes each; a search that needs more is cut off
+};
+
+/// Rules of another planner that replace footprint, margins and penalties (see tools/plan).
+class EdgeRules {
+ public:
+  virtual ~EdgeRules() = default;
+  /// Whether a pattern may begin in a heading bin.
+  virtual bool mayBegin(const TablePattern& pattern, int heading_bin) const = 0;
+  /// Cost of a pattern begun at a point [m]; infinite where it is blocked.
+  virtual float cost(double x, double y, const TablePattern& pattern) const = 0;
+};
+
+/// What to search for.
+struct SearchProblem {
+  Pose2 T_map_start;
+  int start_class = 0;
+  Uncertainty start_uncertainty;  ///< where the start is predicted; in map axes
+  const PatternTable* patterns = nullptr;
+  const CollisionChecker* collision_checker = nullptr;
+  const DistanceToGoal* distance_to_goal = nullptr;  ///< nullptr = straight to the goal
+  /// If given, it replaces distance_share and turn_weight.
+  const HeadingAwareHeuristic* heading_heuristic = nullptr;
+  const EdgeRules* rules = nullptr;  ///< if given, in the place of the collision checker
+  Goal goal;
+  double cell = 0.0;           ///< [m] in the place of SearchConfig::cell; 0 = as configured
+  std::vector<int> committed;  ///< ids of the patterns that the plan before wanted from here on
+  /// Ids of the patterns that the plan has to begin with; the margin for checking is enough for
+  /// them.
+  std::vector<int> branch;
+  /// Told whenever a plan, or a cheaper one, was found, with its cost.
+  std::function<void(double cost, int expansions)> on_better;
+};
+
+/// Says whether the search must end now, from the number of expansions: a deadline or a count.
+using StopPredicate = std::function<bool(int expansions)>;
+
+/// How a search ended.
+enum class SearchEnd {
+  kGoal,      ///< the plan ends at rest in the goal
+  kHorizon,   ///< it ends as far ahead as needed, or where the unknown begins
+  kProgress,  ///< stopped or all seen: the best that was found, nearer to the goal than the start
+  kNothing    ///< no pattern is free, or none brings the goal nearer
+};
+
+/// A pattern of a plan and where it is expected to end.
+struct PlanStep {
+  int pattern_id = 0;
+  Pose2 T_map_end;
+  int exit_class = 0;
+  double time = 0.0;        ///< [s] since the start of the plan
+  Uncertainty uncertainty;  ///< of the end, in map axes
+};
+
+/// The step that a pattern makes, begun where another one ended.
+PlanStep stepAfter(const PlanStep& before, const TablePattern& pattern);
+
+struct SearchResult {
+  SearchEnd end = SearchEnd::kNothing;
+  std::vector<PlanStep> steps;
+  double cost = 0.0;        ///< [s] of the steps, with penalties
+  double expected = 0.0;    ///< [s] inflated heuristic from there on
+  double time_to_go = 0.0;  ///< [s] of the steps, and the distance from there on at the best speed
+  double way_to_go = 0.0;   ///< [m] from the end of the plan
+  int expansions = 0;
+  bool exhausted = false;  ///< the whole space was searched: no better plan at this resolution
+  std::string reason;      ///< why there is nothing, in words
+};
+
+/// A node of the search tree, for drawing.
+struct TreeNode {
+  int parent = -1;
+  int pattern_id = -1;
+  Pose2 T_map_body;
+  double time = 0.0;
+};
+
+/// A state that the search has reached.
+struct SearchNode {
+  double x, y;
+  float yaw;  // within -pi..pi
+  float cos_yaw, sin_yaw;
+  float cost;        // g [s]
+  float time;        // without penalties [s]
+  float admissible;  // heuristic: least cost from here to the goal [s]
+  float inflated;    // heuristic that orders the open list [s]
+  int parent;
+  int number;  // of its expansion; -1 before
+  const TablePattern* by;
+  int16_t depth;
+  int16_t on_plan;  // patterns in common with the committed plan; -1 = left it
+  int8_t motion_class;
+  int8_t repeats;           // of the pattern that led here
+  int8_t level;             // margin with which its end is free; -1 while on blocked ground
+  Overlap overlap;          // on blocked ground
+  Uncertainty uncertainty;  // in map axes
+
+  TurnedPose pose() const {
+    return {x, y, static_cast<double>(cos_yaw), static_cast<double>(sin_yaw)};
+  }
+  bool expanded() const { return number >= 0; }
+  Pose2 plainPose() const { return {x, y, static_cast<double>(yaw)}; }
+};
+
+}  // namespace tread::planner
