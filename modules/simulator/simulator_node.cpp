@@ -85,9 +85,8 @@ std::string SimulatorNode::hear(Link& line, int64_t utime) {
 
 void SimulatorNode::transmit(Link& line, const std::string& bytes) {
   if (bytes.empty()) return;
-  if (!line.write(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size())) {
+  if (!line.write(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()))
     health_.addToCounter("bytes lost: line full or down", static_cast<int64_t>(bytes.size()));
-  }
 }
 
 }  // namespace tread::sim

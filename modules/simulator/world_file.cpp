@@ -58,9 +58,8 @@ SurfaceRegion readRegion(ConfigReader& reader) {
   double width = 2.0;
   reader.number("width", width, kSize, "m");
   region.corners = readCorners(reader);
-  if (strip.empty() == region.corners.empty()) {
+  if (strip.empty() == region.corners.empty())
     throw reader.error("surface", "give either corners or a strip from x, y to x, y");
-  }
   if (strip.empty()) return region;
   const Eigen::Vector2d from(strip[0], strip[1]), to(strip[2], strip[3]);
   if ((to - from).norm() < 0.001) throw reader.error("strip", "its two ends must differ");
@@ -122,9 +121,8 @@ WorldDescription readWorld(ConfigReader reader) {
     world.surfaces.push_back(readSurface(item));
   for (ConfigReader& item : reader.sections("regions")) world.regions.push_back(readRegion(item));
   world.terrain = readTerrain(reader.section("terrain"));
-  for (ConfigReader& item : reader.sections("obstacles")) {
+  for (ConfigReader& item : reader.sections("obstacles"))
     world.obstacles.push_back(readObstacle(item));
-  }
   reader.finish();
   if (const auto fault = worldFault(world)) throw reader.error("base_surface", *fault);
   return world;
@@ -146,9 +144,8 @@ std::string point(const Eigen::Vector2d& p) {
 
 std::string points(const std::vector<Eigen::Vector2d>& corners) {
   std::string text = "[";
-  for (const Eigen::Vector2d& corner : corners) {
+  for (const Eigen::Vector2d& corner : corners)
     text += (text.size() > 1 ? ", " : "") + point(corner);
-  }
   return text + "]";
 }
 

@@ -123,9 +123,8 @@ TEST_CASE("the five patterns end within 3 percent of the calibration on each sur
       const double end = distance(driven.back(), wanted.back()) / length;
       const double yaw = (driven.back().yaw - net_yaw) / yaw_scale;
       double largest = 0.0;
-      for (size_t i = 0; i < wanted.size(); ++i) {
+      for (size_t i = 0; i < wanted.size(); ++i)
         largest = std::max(largest, distance(driven[i], wanted[i]) / length);
-      }
       std::printf(
           "%-7s %-10s end %5.2f %% of path, path length %+5.2f %%, yaw %+5.2f %%, "
           "largest on the way %5.2f %%\n",

@@ -210,9 +210,8 @@ TEST_CASE("footprint and obstacle touch exactly when some point belongs to both"
     }
     CHECK(found.has_value() == wanted);
     touches += found.has_value() ? 1 : 0;
-    if (found) {
+    if (found)
       CHECK(found->penetration == penetrationOf(obstacles[found->obstacle], footprint, pose));
-    }
   }
   CHECK(touches > testing::effort(100));
   CHECK(near < 700);
@@ -253,9 +252,8 @@ TEST_CASE("a description that makes no world is refused with place and reason") 
   CHECK(worldFault(clockwise)->find("obstacle 2") != std::string::npos);
   WorldDescription star;
   Obstacle pentagram;
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < 5; ++i)
     pentagram.corners.emplace_back(std::cos(i * 0.8 * kPi), std::sin(i * 0.8 * kPi));
-  }
   star.obstacles = {pentagram};
   CHECK(worldFault(star)->find("crosses itself") != std::string::npos);
   CHECK_THROWS_WITH(World(star), Catch::Contains("obstacle 1"));

@@ -43,9 +43,8 @@ void Laser::advanceTo(int64_t utime, const World& world, const BodyPose& body) {
   const Eigen::Vector3d p_map = body.p_map + body.R_map_body * parameters_.p_body;
   const Eigen::Matrix3d R_map_sensor = body.R_map_body * R_body_sensor_;
   int beam = static_cast<int>(current_.ranges.size());
-  while (beam < parameters_.beams && beamTime(beam) <= utime) {
+  while (beam < parameters_.beams && beamTime(beam) <= utime)
     current_.ranges.push_back(measure(world, p_map, R_map_sensor, beam++));
-  }
   if (beam < parameters_.beams) return;
   finished_.push_back(current_);
   startSweep(current_.utime + parameters_.period_us);

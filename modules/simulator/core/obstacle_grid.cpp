@@ -29,9 +29,8 @@ ObstacleGrid::ObstacleGrid(const std::vector<Obstacle>& obstacles, double cell_e
   std::vector<std::vector<uint32_t>> cells(cell(0, rows_));
   for (uint32_t i = 0; i < extents.size(); ++i) {
     for (int y = row(extents[i].low.y()); y <= row(extents[i].high.y()); ++y) {
-      for (int x = column(extents[i].low.x()); x <= column(extents[i].high.x()); ++x) {
+      for (int x = column(extents[i].low.x()); x <= column(extents[i].high.x()); ++x)
         cells[cell(x, y)].push_back(i);
-      }
     }
   }
   for (const auto& list : cells) {

@@ -83,9 +83,8 @@ void ObstacleGrid::visitAlong(const Eigen::Vector2d& start, const Eigen::Vector2
   for (double distance = inside.enter; distance <= inside.leave;) {
     const int axis = next[0] < next[1] ? 0 : 1;
     bool found = false;
-    for (uint32_t i = begin(at[0], at[1]); i < begin(at[0] + 1, at[1]); ++i) {
+    for (uint32_t i = begin(at[0], at[1]); i < begin(at[0] + 1, at[1]); ++i)
       found |= visit(indices_[i], next[axis]);
-    }
     if (found) return;
     distance = next[axis];
     at[axis] += step[axis];

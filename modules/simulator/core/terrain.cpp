@@ -14,9 +14,8 @@ constexpr double kMostSamples = 4e6;
 
 double Terrain::height(const Eigen::Vector2d& p_map) const {
   double z = 0.0;
-  for (const TerrainWave& wave : waves) {
+  for (const TerrainWave& wave : waves)
     z += wave.amplitude * std::sin(wave.k.dot(p_map) + wave.phase);
-  }
   for (const TerrainBump& bump : bumps) {
     const double ratio = (p_map - bump.centre).squaredNorm() / (bump.radius * bump.radius);
     z += bump.height * std::exp(-0.5 * ratio);
@@ -26,9 +25,8 @@ double Terrain::height(const Eigen::Vector2d& p_map) const {
 
 Eigen::Vector2d Terrain::gradient(const Eigen::Vector2d& p_map) const {
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();
-  for (const TerrainWave& wave : waves) {
+  for (const TerrainWave& wave : waves)
     slope += wave.amplitude * std::cos(wave.k.dot(p_map) + wave.phase) * wave.k;
-  }
   for (const TerrainBump& bump : bumps) {
     const Eigen::Vector2d from_centre = p_map - bump.centre;
     const double square = bump.radius * bump.radius;
@@ -42,9 +40,8 @@ double Terrain::steepestSlope() const {
   double steepest = 0.0;
   for (const TerrainWave& wave : waves) steepest += std::abs(wave.amplitude) * wave.k.norm();
   // A bump is steepest at r = radius.
-  for (const TerrainBump& bump : bumps) {
+  for (const TerrainBump& bump : bumps)
     steepest += std::abs(bump.height) / bump.radius * std::exp(-0.5);
-  }
   return steepest;
 }
 

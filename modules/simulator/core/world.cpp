@@ -67,19 +67,16 @@ SurfaceRegion stripRegion(const std::string& surface, const Eigen::Vector2d& fro
 }
 
 std::optional<std::string> worldFault(const WorldDescription& description) {
-  if (!(description.bounds.low.array() < description.bounds.high.array()).all()) {
+  if (!(description.bounds.low.array() < description.bounds.high.array()).all())
     return "bounds: the low corner must lie below the high one";
-  }
   const std::vector<SurfaceParameters> surfaces = surfacesOf(description);
-  if (!named(surfaces, description.base_surface)) {
+  if (!named(surfaces, description.base_surface))
     return "base surface: no surface is called '" + description.base_surface + "'";
-  }
   for (size_t i = 0; i < description.regions.size(); ++i) {
     const SurfaceRegion& region = description.regions[i];
     const std::string where = "region " + std::to_string(i + 1) + ": ";
-    if (!named(surfaces, region.surface)) {
+    if (!named(surfaces, region.surface))
       return where + "no surface is called '" + region.surface + "'";
-    }
     if (region.corners.size() < 3) return where + "needs at least three corners";
   }
   for (size_t i = 0; i < description.obstacles.size(); ++i) {
@@ -91,13 +88,11 @@ std::optional<std::string> worldFault(const WorldDescription& description) {
 
 World::World(WorldDescription description)
     : description_(std::move(description)), surfaces_(surfacesOf(description_)) {
-  if (const auto fault = worldFault(description_)) {
+  if (const auto fault = worldFault(description_))
     throw std::invalid_argument("world '" + description_.name + "': " + *fault);
-  }
   base_surface_ = surfaceIndex(description_.base_surface);
-  for (const SurfaceRegion& region : description_.regions) {
+  for (const SurfaceRegion& region : description_.regions)
     patches_.push_back({surfaceIndex(region.surface), extentOf(region.corners)});
-  }
   for (const Obstacle& obstacle : description_.obstacles) {
     const Extent extent = sim::extentOf(obstacle);
     tops_.push_back(height((extent.low + extent.high) / 2.0) + obstacle.height);

@@ -43,9 +43,8 @@ char scipSum(std::string_view bytes) {
 
 std::string scipEncode(uint32_t value, int characters) {
   std::string text(static_cast<size_t>(characters), '0');
-  for (size_t i = text.size(); i-- > 0; value >>= 6) {
+  for (size_t i = text.size(); i-- > 0; value >>= 6)
     text[i] = static_cast<char>((value & 0x3F) + 0x30);
-  }
   return text;
 }
 

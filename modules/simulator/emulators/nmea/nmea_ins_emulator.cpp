@@ -118,9 +118,8 @@ void NmeaInsEmulator::sayPlace(int64_t n, const Fix& fix) {
   const bool valid = !faults_.no_fix;
   const char* time = fix.time.c_str();
   const std::string place = fix.latitude + "," + fix.longitude;
-  if (due(n, settings_.rates.zda)) {
+  if (due(n, settings_.rates.zda))
     say(print("GPZDA,%s,%02d,%02d,%04d,00,00", time, fix.date.day, fix.date.month, fix.date.year));
-  }
   if (due(n, settings_.rates.rmc)) {
     const std::string date =
         print("%02d%02d%02d", fix.date.day, fix.date.month, fix.date.year % 100);
@@ -142,16 +141,14 @@ void NmeaInsEmulator::sayMotion(int64_t n, const Fix& fix, const InsSample& samp
                       fix.speed * 3.6)
               : std::string("GPVTG,,T,,M,,N,,K,N"));
   }
-  if (due(n, settings_.rates.hdt)) {
+  if (due(n, settings_.rates.hdt))
     say(faults_.no_heading ? std::string("GPHDT,,T") : print("GPHDT,%.3f,T", fix.heading));
-  }
   if (due(n, settings_.rates.pashr) && !faults_.no_heading) {
     say(print("PASHR,%s,%07.3f,T,%+07.3f,%+07.3f,%+06.2f,0.060,0.060,0.060,%d,0", fix.time.c_str(),
               fix.heading, sample.roll / kDegree, -sample.pitch / kDegree, 0.0, valid ? 1 : 0));
   }
-  if (due(n, settings_.rates.rot)) {
+  if (due(n, settings_.rates.rot))
     say(print("GPROT,%.3f,A", -sample.rate_body.z() / kDegree * 60.0));
-  }
 }
 
 void NmeaInsEmulator::say(const std::string& body) {

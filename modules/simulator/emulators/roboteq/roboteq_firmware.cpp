@@ -36,9 +36,8 @@ RoboteqWords roboteqWords(const std::string& text) {
   RoboteqWords words;
   size_t i = 0;
   while (i < text.size() && text[i] == ' ') ++i;
-  while (i < text.size() && std::isalpha(static_cast<unsigned char>(text[i]))) {
+  while (i < text.size() && std::isalpha(static_cast<unsigned char>(text[i])))
     words.name += text[i++];
-  }
   std::string word;
   for (; i <= text.size(); ++i) {
     if (i < text.size() && text[i] != ' ') {
