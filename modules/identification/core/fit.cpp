@@ -126,8 +126,7 @@ bool runsToBound(const ModelDocument& model, const FreeParameter& parameter) {
   const double value = valueOf(model, parameter.path);
   const EffectParameter* known = findEffectParameter(parameter.path);
   const bool to_nothing = value < 0.0 && known != nullptr && known->adds_to != nullptr;
-  const bool shape = known != nullptr && known->role == ParameterRole::kShape;
-  return value != 0.0 && !to_nothing && !shape && onBound(model, parameter);
+  return value != 0.0 && !to_nothing && !isTime(parameter) && onBound(model, parameter);
 }
 
 FitState Fitter::start(const ModelDocument& model, std::vector<FreeParameter> free,

@@ -98,6 +98,12 @@ Eigen::VectorXd priorPrecision(const std::vector<FreeParameter>& free);
 /// Whether a parameter stands on one of its bounds.
 bool onBound(const ModelDocument& model, const FreeParameter& parameter);
 
+/// Whether a parameter is a time by its name: a change point, a time constant, the time of a drift.
+/** Its size over its error says nothing, and it has no range to run to the end of. */
+inline bool isTime(const FreeParameter& parameter) {
+  return parameter.path.find(".time") != std::string::npos;
+}
+
 /// Whether a size ran to the end of its plausible range, which makes it none.
 /** An effect that is off has no size, a change point no range; the lag or delay of a model may be
  * taken away altogether. */

@@ -121,8 +121,7 @@ std::vector<std::string> leastSureFirst(const Fitter& fitter, const SearchResult
       if (!belongsTo(parameter, effect)) continue;
       const auto at = static_cast<Eigen::Index>(i);
       const double value = *findParameter(result.state.model, parameter.path);
-      const EffectParameter& known = *findEffectParameter(parameter.path);
-      if (known.role == ParameterRole::kStrength)
+      if (!isTime(parameter))
         sure[effect] = std::max(sure[effect], std::abs(value) / std::sqrt(covariance(at, at)));
     }
   std::vector<std::string> order = result.effects;
