@@ -51,21 +51,12 @@ std::vector<Row> rowsOfWorlds(const RuleComparison& comparison, const Omniscient
   return rows;
 }
 
-/// Errors of the set that nobody has; its settling is left empty.
+/// Errors of the oracle; its settling is left empty.
 Row omniscientRow(const std::vector<MissionResult>& results, const Omniscient& omniscient) {
   Row row;
   row.rule = "omniscient";
-  // An execution does not know its world's seed, so the missions are taken one by one.
-  std::map<const ScoredExecution*, shadow::EndPoseError> errors;
-  for (const MissionResult& result : results)
-    for (const ScoredExecution& execution : result.executions)
-      if (const auto error = omniscient.errorOf(execution, result.seed))
-        errors.emplace(&execution, *error);
-  const ErrorOf known =
-      [&](const ScoredExecution& execution) -> std::optional<shadow::EndPoseError> {
-    const auto found = errors.find(&execution);
-    if (!execution.measured || found == errors.end()) return std::nullopt;
-    return found->second;
+  const ErrorOf known = [&](const ScoredExecution& execution, uint64_t seed) {
+    return omniscient.errorOf(execution, seed);
   };
   row.errors = errorsAroundChanges(results, known);
   row.all = meanErrorOf(results, known);
@@ -112,7 +103,7 @@ std::string firstWithin(const std::vector<double>& ratios) {
   return "never";
 }
 
-/// Pooled ratios after some numbers of executions, a dash where too few changes have so many.
+/// Pooled ratios after 0, 5, 10 and 20 executions; a dash where too few changes have that many.
 std::string ratiosText(const std::vector<double>& ratios) {
   std::string text;
   for (const size_t n : kShownAfter)

@@ -10,7 +10,7 @@
 
 namespace tread::missions {
 
-/// The same worlds once for each rule, and the executions of the first rule's drives judged by all.
+/// Every rule drives the same worlds; every rule also predicts the first rule's executions.
 /** Batches have the same seeds; the missions of the first one carry shadow rules. Two comparisons
  * come of it. In the same worlds: each rule plans its own way, as it would on the robot. The same
  * executions: every rule predicts what the first one drove, so that luck with the way counts for

@@ -133,7 +133,7 @@ void compareRules(const Arguments& arguments, const RobotConfig& robot) {
   if (!arguments.json.empty()) writeComparison(arguments.json, comparison);
 }
 
-/// Batches take long: what they are written to is looked at before.
+/// Batches take long: checks that the outputs can be written before driving.
 void protectInputs(const Arguments& arguments) {
   std::vector<std::string> inputs{arguments.fault_file};
   std::error_code failure;

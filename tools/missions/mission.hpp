@@ -15,7 +15,7 @@ namespace tread::missions {
 /// How a mission ended. Every mission ends in exactly one of these.
 enum class MissionOutcome {
   kArrived,  ///< the robot stands within the goal's tolerances (checked against the true pose)
-  kRefused,  ///< the planner said that the goal is unreachable or that it is blocked for good
+  kRefused,  ///< the planner reported the goal unreachable, or itself blocked, for 15 s
   kIdle,     ///< nothing moved for too long
   kStopped   ///< a failsafe kept it from going on, or the time ran out while driving
 };
@@ -39,8 +39,8 @@ struct ScoredExecution {
   double turned = 0.0;          ///< [rad] |net yaw| measured
   double slope = 0.0;           ///< [rad] mean inclination; NaN = not known
   Pose2 measured_end;           ///< in the frame of its start
-  /// What each of MissionResult::shadow_rules made of it; empty where not measured.
-  std::vector<shadow::EndPoseError> by_rule;
+  /// Prediction error of each of MissionResult::shadow_rules; empty where not measured.
+  std::vector<shadow::PredictionError> by_rule;
 };
 
 /// A change of the true surface under the robot. Who turns round on a border crosses it again.
@@ -82,7 +82,7 @@ struct MissionResult {
   int surface_changes = 0;   ///< that the world has between start and goal, driven or not
   std::vector<Crossing> crossings;
   std::vector<ScoredExecution> executions;
-  std::vector<learner::Rule> shadow_rules;  ///< that judged the same executions beside the drive
+  std::vector<learner::Rule> shadow_rules;  ///< that predicted the same executions
   std::vector<TrackPoint> track;
   std::vector<Contact> contacts;  ///< one per collision
   std::vector<Stop> stops;        ///< between start and arrival

@@ -26,11 +26,11 @@ double threadSeconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// What the rules beside the drive made of its executions.
+/// Adds the prediction errors of the shadow rules.
 void addShadows(shadow::ShadowLearners& shadows, MissionResult& result) {
   shadows.finish();
   result.shadow_rules = shadows.rules();
-  std::map<shadow::ExecutionKey, std::vector<shadow::EndPoseError>> errors;
+  std::map<shadow::ExecutionKey, std::vector<shadow::PredictionError>> errors;
   for (shadow::ShadowedExecution& execution : shadows.executions())
     errors[execution.key] = std::move(execution.by_rule);
   for (ScoredExecution& execution : result.executions) execution.by_rule = errors[execution.key];

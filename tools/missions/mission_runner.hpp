@@ -16,15 +16,15 @@ namespace tread::missions {
 
 /// How missions are run.
 struct MissionOptions {
-  std::string rule;                      ///< of learning; empty = as the robot's configuration says
-  std::vector<learner::Rule> shadows;    ///< judge the same executions beside the drive
+  std::string rule;                      ///< of learning; empty = the robot's configuration
+  std::vector<learner::Rule> shadows;    ///< predict the same executions
   double shortest_line = kShortestLine;  ///< [m] see makeMissionWorld()
   FaultPlan faults;
   const TruePatterns* true_patterns = nullptr;  ///< if given: an omniscient robot drives
   LogWriter* log = nullptr;                     ///< every message, if given
 };
 
-/// What a picture of a mission shows beside its result.
+/// World, map and search tree for a picture of a mission.
 struct MissionScene {
   MissionWorld world;
   TileMap map{0.1, 32};                ///< what mapping published

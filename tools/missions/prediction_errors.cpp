@@ -18,8 +18,8 @@ struct ErrorSums {
   double metres = 0.0;
   double radians = 0.0;
 
-  void add(const ScoredExecution& execution, const ErrorOf& errorOf) {
-    const auto at_end = errorOf(execution);
+  void add(const ScoredExecution& execution, uint64_t seed, const ErrorOf& errorOf) {
+    const auto at_end = errorOf(execution, seed);
     if (!at_end) return;
     ++error.count;
     error.position += at_end->position;
@@ -29,9 +29,10 @@ struct ErrorSums {
   }
 
   /// Executions with index first..last (1-based), clipped to what there is.
-  void add(const Executions& executions, size_t first, size_t last, const ErrorOf& errorOf) {
+  void add(const Executions& executions, uint64_t seed, size_t first, size_t last,
+           const ErrorOf& errorOf) {
     for (size_t i = first; i <= std::min(last, executions.size()); ++i)
-      add(*executions[i - 1], errorOf);
+      add(*executions[i - 1], seed, errorOf);
   }
 
   MeanError mean() const {
@@ -50,9 +51,10 @@ struct SumsAround {
   void add(const MissionResult& result, size_t change, const ErrorOf& error) {
     const Executions on_old = stretchOf(result, change);
     const Executions on_new = stretchOf(result, change + 1);
-    before.add(on_old, on_old.size() > 5 ? on_old.size() - 4 : 1, on_old.size(), error);
-    after.add(on_new, 1, 3, error);
-    settled.add(on_new, 5, 15, error);
+    before.add(on_old, result.seed, on_old.size() > 5 ? on_old.size() - 4 : 1, on_old.size(),
+               error);
+    after.add(on_new, result.seed, 1, 3, error);
+    settled.add(on_new, result.seed, 5, 15, error);
   }
   ErrorsAroundChanges means() const { return {before.mean(), after.mean(), settled.mean()}; }
 };
@@ -75,7 +77,7 @@ void addAfterChanges(const MissionResult& result, int first, int last,
     if (execution.surface != pair.second) continue;
     ++index;
     if (index < first || index > last) continue;
-    sums[pair].add(execution, errorAsDriven());
+    sums[pair].add(execution, result.seed, errorAsDriven());
   }
 }
 
@@ -95,17 +97,18 @@ std::vector<const ScoredExecution*> stretchOf(const MissionResult& result, size_
 }
 
 ErrorOf errorAsDriven() {
-  return [](const ScoredExecution& execution) -> std::optional<shadow::EndPoseError> {
+  return [](const ScoredExecution& execution, uint64_t) -> std::optional<shadow::PredictionError> {
     if (!execution.measured) return std::nullopt;
-    return shadow::EndPoseError{execution.error_position, execution.error_yaw};
+    return shadow::PredictionError{execution.error_position, execution.error_yaw};
   };
 }
 
 ErrorOf errorByRule(size_t rule) {
-  return [rule](const ScoredExecution& execution) -> std::optional<shadow::EndPoseError> {
-    if (rule >= execution.by_rule.size()) return std::nullopt;
-    return execution.by_rule[rule];
-  };
+  return
+      [rule](const ScoredExecution& execution, uint64_t) -> std::optional<shadow::PredictionError> {
+        if (rule >= execution.by_rule.size()) return std::nullopt;
+        return execution.by_rule[rule];
+      };
 }
 
 ErrorsAroundChanges errorsAroundChange(const MissionResult& result, size_t change) {
@@ -128,7 +131,7 @@ MeanError meanErrorOf(const std::vector<MissionResult>& results, const ErrorOf& 
   for (const MissionResult& result : results)
     for (size_t index = 0; index <= result.crossings.size(); ++index) {
       const Executions executions = stretchOf(result, index);
-      all.add(executions, 1, executions.size(), error);
+      all.add(executions, result.seed, 1, executions.size(), error);
     }
   return all.mean();
 }

@@ -11,8 +11,9 @@
 
 namespace tread::missions {
 
-/// Prediction error of a measured execution; nothing where there is none to speak of.
-using ErrorOf = std::function<std::optional<shadow::EndPoseError>(const ScoredExecution&)>;
+/// Prediction error of a measured execution in the world with a seed; nothing if there is none.
+using ErrorOf =
+    std::function<std::optional<shadow::PredictionError>(const ScoredExecution&, uint64_t seed)>;
 
 /// Against the set that the planner had used.
 ErrorOf errorAsDriven();

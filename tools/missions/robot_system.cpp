@@ -40,7 +40,7 @@ FaultPlan onTheRobot(const FaultPlan& faults) {
   return spelled;
 }
 
-/// The files of a robot's folder, with what was said to replace in them.
+/// The files of a robot's folder, with overrides of their keys.
 class RobotFiles {
  public:
   RobotFiles(std::string folder, const std::vector<std::string>& overrides)

@@ -57,8 +57,8 @@ FaultPlan readFaultFile(const std::string& path);
  * observers outside receive every message unharmed. */
 class RobotSystem {
  public:
-  /// `rule`: of learning; empty = as the configuration says. `true_patterns`: if given, they are
-  /// told by their node in the learner's place; they must outlive the system.
+  /// `rule`: of learning; empty = the configuration's. `true_patterns`: if given, TruePatternsNode
+  /// publishes them in the learner's place; they must outlive the system.
   RobotSystem(const RobotConfig& config, const sim::WorldDescription& world,
               const Pose2& T_map_start, uint64_t seed, const std::string& rule,
               const FaultPlan& faults, const TruePatterns* true_patterns = nullptr);

@@ -68,7 +68,7 @@ Stretch stretchAfter(const MissionResult& result, size_t change, const ErrorOf& 
   Stretch stretch;
   for (const ScoredExecution* execution : stretchOf(result, change + 1)) {
     if (execution->surface != result.crossings[change].to) continue;
-    const auto error = errorOf(*execution);
+    const auto error = errorOf(*execution, result.seed);
     const auto best = omniscient.errorOf(*execution, result.seed);
     if (error && best)
       stretch.push_back(
@@ -117,8 +117,8 @@ void Omniscient::add(const MissionResult& result) {
   }
 }
 
-std::optional<shadow::EndPoseError> Omniscient::errorOf(const ScoredExecution& execution,
-                                                        uint64_t seed) const {
+std::optional<shadow::PredictionError> Omniscient::errorOf(const ScoredExecution& execution,
+                                                           uint64_t seed) const {
   const Key key{execution.surface, execution.pattern};
   const auto known = all_.find(key);
   if (known == all_.end()) return std::nullopt;
@@ -127,8 +127,9 @@ std::optional<shadow::EndPoseError> Omniscient::errorOf(const ScoredExecution& e
   if (own != by_seed_.end() && own->second.count(key) > 0) ends.remove(own->second.at(key));
   if (ends.count < kFewest) return std::nullopt;
   const Pose2& end = execution.measured_end;
-  return shadow::EndPoseError{std::hypot(end.x - ends.x / ends.count, end.y - ends.y / ends.count),
-                              wrapAngle(end.yaw - ends.yaw / ends.count)};
+  return shadow::PredictionError{
+      std::hypot(end.x - ends.x / ends.count, end.y - ends.y / ends.count),
+      wrapAngle(end.yaw - ends.yaw / ends.count)};
 }
 
 double medianTime(std::vector<std::pair<int, bool>> times) {

@@ -22,8 +22,8 @@ class Omniscient {
   /// Takes in the executions of a mission.
   void add(const MissionResult& result);
   /// Error of an execution in the world with this seed.
-  std::optional<shadow::EndPoseError> errorOf(const ScoredExecution& execution,
-                                              uint64_t seed) const;
+  std::optional<shadow::PredictionError> errorOf(const ScoredExecution& execution,
+                                                 uint64_t seed) const;
 
  private:
   struct Ends {
@@ -62,7 +62,7 @@ struct Settling {
   double yaw = 0.0;
   double both = 0.0;
   /// Sum of errors over the sum of the omniscient one's, over all changes, in the five executions
-  /// after n = 0, 1, 2, ...; as far as ten changes have so many.
+  /// after n = 0, 1, 2, ...; as far as ten changes have that many executions.
   std::vector<double> position_ratio;
   std::vector<double> yaw_ratio;
 };

@@ -42,7 +42,7 @@ class FlipDetector {
 
   explicit FlipDetector(IsFree is_free) : is_free_(std::move(is_free)) {}
 
-  /// The newest pattern set; plans are not judged without one.
+  /// Sets the newest pattern set; without one no flip is detected.
   void take(const PatternSet& set) { set_ = set; }
   /// Takes the next plan; returns a flip (without its time) if it is one.
   std::optional<Flip> hear(const plan_t& plan);
@@ -66,7 +66,7 @@ class FlipDetector {
 struct Stop {
   double time = 0.0;      ///< [s] since the start of the mission
   double duration = 0.0;  ///< [s] that it stood
-  std::string reason;     ///< as it was published; empty = nobody had said why
+  std::string reason;     ///< as published; empty = none
 };
 
 /// The reasons published when the robot slowed down.

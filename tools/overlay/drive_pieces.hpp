@@ -17,7 +17,7 @@ struct GivenCommand {
   double battery_drop = 0.0;  ///< [1] relative fall of the voltage since then; 0 = not measured
 };
 
-/// What the INS said at a moment.
+/// An INS measurement.
 struct MeasuredPose {
   double time = 0.0;   ///< [s] since the first MOTOR message
   Pose2 T_map_body;    ///< yaw unwrapped

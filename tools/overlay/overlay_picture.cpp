@@ -29,7 +29,7 @@ Points pointsOf(const std::vector<Pose2>& poses) {
 }
 
 Style styleOf(const std::vector<std::string>& names, size_t model) {
-  // The last model is the one that matters: what the others are is told by their colour.
+  // The last model is the one to judge; the others are red and dashed.
   const bool last = model + 1 == names.size();
   return {last ? report::kBlue : report::kRed, last ? 2.0 : 1.8, !last, names[model]};
 }

@@ -17,7 +17,7 @@ namespace tread {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / kPi;
-/// After the last bytes, so that the last epoch ends and HEALTH tells the final counts.
+/// After the last bytes, so that the last epoch ends and HEALTH holds the final counts.
 constexpr int64_t kAfterwardsUs = 200'000;
 /// A burst larger than this is played in pieces, as a line would deliver it.
 constexpr size_t kPieceBytes = 4096;

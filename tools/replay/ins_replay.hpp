@@ -13,7 +13,7 @@
 
 namespace tread {
 
-/// What ins_driver made of a recorded device log.
+/// The output of ins_driver for a recorded device log.
 struct InsReplay {
   ins::NmeaCounts counts;
   ins::AssemblerCounts epochs;

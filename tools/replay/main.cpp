@@ -20,7 +20,7 @@ using namespace tread;
 
 namespace {
 
-/// Where results go beside the terminal.
+/// Files for the results, besides the terminal.
 struct Output {
   std::string report;
   std::string picture;
@@ -36,7 +36,7 @@ void say(const std::string& report, const Output& output) {
   if (!output.report.empty()) recordings::writeText(output.report, report);
 }
 
-/// Of every command; a comparison says whether it found a difference.
+/// Options of every command, and whether a comparison found a difference.
 struct Arguments {
   std::string log;
   std::string config;

@@ -24,8 +24,8 @@ constexpr int64_t kStartUs = 2'000'000;
 constexpr int64_t kInsPeriodUs = 20'000;
 constexpr double kSpeed = 1.0;              // [m/s]
 constexpr double kTurnRate = 0.5;           // [rad/s]
-constexpr double kCarmenLaserHeight = 0.3;  // [m] the logs do not tell
-/// Ranges from here on are the device's way to say that nothing came back [m].
+constexpr double kCarmenLaserHeight = 0.3;  // [m] not in the logs
+/// Ranges from here on [m] mean that no echo came back.
 constexpr double kNoReturn = 80.0;
 
 // The MBot's logs.
@@ -203,7 +203,7 @@ std::optional<ins_t> poseOf(const LogEvent& event, int64_t utime) {
   return insAt(utime, pose);
 }
 
-/// Beams that are no return stay in the slice as NaN: a point's place in it tells its time.
+/// Beams without an echo stay in the slice as NaN: a point's index gives its time.
 std::vector<float> pointOf(float range, float clockwise) {
   if (!(range > kNearest) || !(range < kFarthest)) return std::vector<float>(3, std::nanf(""));
   return {range * std::cos(clockwise), -range * std::sin(clockwise), 0.0f};

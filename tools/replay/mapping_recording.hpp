@@ -12,7 +12,7 @@
 
 namespace tread {
 
-/// A recording of range scans with poses, as the messages of this house.
+/// A recording of range scans with poses, as Tread's messages.
 struct MappingRecording {
   std::string name;
   std::vector<ins_t> poses;       ///< in order of time

@@ -12,7 +12,7 @@
 
 namespace tread {
 
-/// What mapping made of a recording.
+/// The output of mapping for a recording.
 struct MappingReplay {
   std::string name;
   TileMap map{0.1, 32};          ///< all that was ever known, also after the window had moved on

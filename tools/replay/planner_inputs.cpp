@@ -17,7 +17,7 @@ namespace {
 /// A pair in the other order shows in one step, or in a few that follow each other.
 constexpr size_t kNearSteps = 10;
 
-/// Finds inputs by what they say they are.
+/// Finds inputs by channel, utime and seq.
 class InputIndex {
  public:
   InputIndex(const RobotLog& log, const std::vector<PlannerInput>& inputs)
@@ -95,7 +95,7 @@ void countLosses(Hearing& hearing, const std::vector<LoggedStep>& steps,
   }
 }
 
-/// Where nothing names the newest message the time tells, between what the neighbours had heard.
+/// Assigns inputs by time to steps whose newest message is unknown, between the known neighbours.
 void fillByTime(const RobotLog& log, Hearing& hearing, const std::vector<LoggedStep>& steps,
                 const std::vector<bool>& found) {
   size_t limit = hearing.inputs.size();

@@ -10,12 +10,12 @@ namespace tread::replay {
 namespace {
 
 constexpr int64_t kTransportUs = 20;  ///< of a message on the virtual bus
-/// A broken message may claim any time: nobody is this far from what the log says [us], unless
-/// so many say it in a row.
+/// A broken message may hold any time: a stamp this far [us] ahead of the log's clock is believed
+/// only after so many in a row.
 constexpr int64_t kLargestLead = 5'000'000;
 constexpr int kBelievedAfter = 5;
-/// A running robot says something this often [us]: a longer silence is a recorder's clock being
-/// set.
+/// A running robot publishes at least this often [us]: a longer silence means that the recorder's
+/// clock was set.
 constexpr int64_t kLongestSilence = 1'000'000;
 
 /// Time and number of an event on a channel that one process publishes with the time of sending or
@@ -100,7 +100,7 @@ RobotLog toRobotLog(const std::string& name, std::vector<LogEvent> events) {
     const int64_t heard = log.virtual_time ? event.utime + kTransportUs : clock.heard(event, stamp);
     log.events.push_back({std::move(event), heard});
   }
-  // What was said before the first stamp was heard at its time.
+  // Events before the first stamp get the time of the first stamp.
   const auto first = std::find_if(log.events.begin(), log.events.end(),
                                   [](const TimedEvent& event) { return event.heard != 0; });
   for (auto early = log.events.begin(); first != log.events.end() && early != first; ++early)

@@ -27,7 +27,7 @@ struct RobotLog {
   std::map<std::string, std::string> configs;  ///< by process: the first CONFIG
   bool virtual_time = false;
   std::string problem;  ///< one clear line if the log is damaged; what is whole was read
-  /// Messages that the log misses, by channel, where seq tells.
+  /// Messages that the log misses by seq, per channel.
   std::map<std::string, int64_t> missing;
 };
 
@@ -35,7 +35,7 @@ struct RobotLog {
 /// HEALTH, summed over its starts.
 struct Intake {
   int64_t heard = 0;  ///< messages that it received
-  int64_t lost = 0;   ///< that it knows of, by seq
+  int64_t lost = 0;   ///< gaps in seq
   int64_t in_log = 0;
 };
 Intake intakeOf(const RobotLog& log, const std::string& process,

@@ -18,7 +18,7 @@ namespace {
 /// Steps in a row [1]: more than this is not a loss but a broken number.
 constexpr int64_t kMostLost = 100;
 
-/// One step of a planner: what it said in it.
+/// One step of a planner with its messages.
 struct Step : LoggedStep {
   std::optional<plan_t> plan;
 };
@@ -45,8 +45,8 @@ void addLost(std::vector<Step>& steps, const program_t& next) {
   }
 }
 
-/// A planner that is told to stop empties the program, which is no step. What looks like it is not
-/// compared.
+/// A planner that is shut down publishes an empty PROGRAM, which is no step. A last step that looks
+/// like it is not compared.
 void dropFarewell(std::vector<Step>& steps) {
   const Step& last = steps.back();
   if (steps.size() > 1 && last.program.running.num_commands == 0 && !last.plan) steps.pop_back();
@@ -95,8 +95,8 @@ int32_t cutOf(const Step& step, int64_t deadline) {
   return step.plan && step.plan->search_time > deadline ? step.plan->expansions : 0;
 }
 
-/// What the node said in a step, and all of it to `all`.
-Step said(LogBus& bus, std::vector<LogEvent>& all) {
+/// The node's messages of a step; appends them to `all`.
+Step messagesOf(LogBus& bus, std::vector<LogEvent>& all) {
   Step step{};
   for (LogEvent& event : bus.takePublished()) {
     plan_t plan;
@@ -131,7 +131,7 @@ std::vector<Step> replayed(const RobotLog& log, const Life& life,
     if (bus.knowsTime()) bus.setNow(utime);
     node.step(utime);
     last = utime;
-    steps.push_back(said(bus, all));
+    steps.push_back(messagesOf(bus, all));
   }
   return steps;
 }

@@ -22,7 +22,7 @@ struct PlannerCheck : ReplayCheck {
   int64_t lacking = 0;     ///< messages that the planners had received and the log lacks
 
   /// Whether both replays published what the log holds. Of the PLANs that only the replay has the
-  /// recorder lost as many as seq tells; nothing compared is not equal.
+  /// recorder lost as many as seq shows; nothing compared is not equal.
   bool equal() const {
     return same_twice && programs.equal > 0 && programs.different == 0 && plans.different == 0 &&
            plans.only_in_log == 0 && plans.only_in_replay <= plans_lost;

@@ -54,7 +54,7 @@ class ShadowLearners::Shadow {
   const std::map<ExecutionKey, learning_t>& judged() const { return judged_; }
 
   /// Error of a measured end against the prediction at the time of the decision.
-  std::optional<EndPoseError> errorOf(const learning_t& said, int64_t decided) const {
+  std::optional<PredictionError> errorOf(const learning_t& said, int64_t decided) const {
     const Pose2 end{said.measured_end[0], said.measured_end[1], said.measured_end[2]};
     if (!said.accepted || !std::isfinite(end.x)) return std::nullopt;
     auto newer = std::upper_bound(
@@ -64,8 +64,8 @@ class ShadowLearners::Shadow {
     const auto predicted = newer->ends.find(said.learned_pattern_id);
     if (predicted == newer->ends.end()) return std::nullopt;
     const Pose2& expected = predicted->second;
-    return EndPoseError{std::hypot(end.x - expected.x, end.y - expected.y),
-                        wrapAngle(end.yaw - expected.yaw)};
+    return PredictionError{std::hypot(end.x - expected.x, end.y - expected.y),
+                           wrapAngle(end.yaw - expected.yaw)};
   }
 
  private:

@@ -19,7 +19,7 @@ namespace tread::shadow {
 using ExecutionKey = std::pair<int64_t, int64_t>;
 
 /// Distance of an execution's measured end from the predicted one.
-struct EndPoseError {
+struct PredictionError {
   double position = 0.0;  ///< [m]
   double yaw = 0.0;       ///< [rad] measured - predicted, wrapped
 };
@@ -30,7 +30,7 @@ struct ShadowedExecution {
   int64_t began = 0;  ///< [us]; 0 = not known
   int64_t ended = 0;  ///< [us]
   bool measured = false;
-  std::vector<EndPoseError> by_rule;  ///< in the order of the rules; empty where not measured
+  std::vector<PredictionError> by_rule;  ///< in the order of the rules; empty where not measured
 };
 
 /// One learner process per rule, all listening to the same drive.

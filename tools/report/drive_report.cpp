@@ -190,8 +190,8 @@ std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth) {
   return line;
 }
 
-std::string wordsOf(const DriveRecord& drive, const SimulationTruth& truth,
-                    const RuleErrors& by_rule) {
+std::string reportOf(const DriveRecord& drive, const SimulationTruth& truth,
+                     const RuleErrors& by_rule) {
   std::string words = resultLine(drive, truth) + "\n";
   words += formatted("prediction error at a pattern's end: mean %.3f m, %.2f deg over %zu measured",
                      mean(drive, &PatternError::position),
@@ -200,7 +200,7 @@ std::string wordsOf(const DriveRecord& drive, const SimulationTruth& truth,
   std::vector<int64_t> changes;
   for (const BorderCrossing& crossing : crossingsOf(drive, truth))
     changes.push_back(drive.begun + std::llround(crossing.time * 1e6));
-  if (!by_rule.rules.empty()) words += wordsOf(by_rule, changes);
+  if (!by_rule.rules.empty()) words += reportOf(by_rule, changes);
   words += "latency, as the logger received:\n";
   words += latencyLine("INS to learner's set", drive.latencies.insToSet());
   words += latencyLine("set to plan", drive.latencies.setToPlan());

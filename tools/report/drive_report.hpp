@@ -16,7 +16,7 @@
 
 namespace tread::report {
 
-/// What a log tells of one drive: from the first goal to the arrival, or to the log's end.
+/// One drive in a log: from the first goal to the arrival, or to the log's end.
 struct DriveRecord {
   std::string problem;  ///< of the log, one line; empty = whole
   int64_t events = 0;
@@ -25,7 +25,7 @@ struct DriveRecord {
   int64_t begun = 0;  ///< [us] of the first goal
   int64_t ended = 0;  ///< [us] of the arrival, else of the last INS
   bool arrived = false;
-  std::string last_status;  ///< the planner's last word and reason
+  std::string last_status;  ///< the planner's last reason
   int completed = 0;        ///< executions
   int aborted = 0;
   int refused = 0;                   ///< executions that were no fair measurement
@@ -45,15 +45,15 @@ struct DriveRecord {
 /// Reads logs (parts of one recording, in order) from front to back; throws std::runtime_error.
 DriveRecord readDrive(const std::vector<std::string>& logs);
 
-/// What only a simulation knows of a drive.
+/// Ground truth, known in a simulation only.
 struct SimulationTruth {
   std::optional<sim::WorldDescription> world;
   std::vector<sim::TruthRow> rows;  ///< empty = no record
 };
 
-/// The drive in words: one line of result first, then errors, as driven and by rule, and latencies.
-std::string wordsOf(const DriveRecord& drive, const SimulationTruth& truth,
-                    const RuleErrors& by_rule);
+/// The report as text: the result in one line, errors as driven and by rule, latencies.
+std::string reportOf(const DriveRecord& drive, const SimulationTruth& truth,
+                     const RuleErrors& by_rule);
 /// The one line of result alone.
 std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth);
 /// The drive to be drawn.

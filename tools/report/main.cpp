@@ -31,7 +31,7 @@ int run(const Arguments& arguments) {
   for (const std::string& name : arguments.rules)
     if (name != "none") rules.push_back(*learner::ruleNamed(name));
   if (!rules.empty()) by_rule = errorsByRule(arguments.logs, TREAD_CONFIG_DIR "/patterns", rules);
-  std::cout << wordsOf(drive, truth, by_rule);
+  std::cout << reportOf(drive, truth, by_rule);
   if (!arguments.picture.empty()) {
     drawDrive(arguments.picture, sceneOf(drive, truth, by_rule));
     std::cout << "picture: " << arguments.picture << std::endl;

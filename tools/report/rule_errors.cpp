@@ -16,7 +16,7 @@ namespace {
 
 using Executions = std::vector<const shadow::ShadowedExecution*>;
 
-/// What a learner needs, and what tells the robot's time.
+/// All channels but the large ones that neither the learner nor the robot's time needs.
 replay::RobotLog relevantLog(const std::vector<std::string>& paths) {
   constexpr std::array<const char*, 4> kTooMuch{kScan.name, kPlanTree.name, kMap.name,
                                                 kLearnerState.name};
@@ -98,7 +98,7 @@ RuleErrors errorsByRule(const std::vector<std::string>& logs, const std::string&
   return errors;
 }
 
-std::string wordsOf(const RuleErrors& errors, const std::vector<int64_t>& changes) {
+std::string reportOf(const RuleErrors& errors, const std::vector<int64_t>& changes) {
   if (!errors.problem.empty()) return "prediction error by rule: none, " + errors.problem + "\n";
   const std::vector<Numbered> all = numbered(errors, changes);
   Executions whole;

@@ -26,6 +26,6 @@ RuleErrors errorsByRule(const std::vector<std::string>& logs, const std::string&
 
 /// Means side by side, some lines. `changes`: when the ground became another [us], ascending;
 /// empty = not known.
-std::string wordsOf(const RuleErrors& errors, const std::vector<int64_t>& changes);
+std::string reportOf(const RuleErrors& errors, const std::vector<int64_t>& changes);
 
 }  // namespace tread::report

@@ -47,7 +47,7 @@ const std::vector<learner::Rule> kRules{learner::Rule::kCollective, learner::Rul
 
 void fillByRule(shadow::ShadowLearners& shadows, MissionResult& result) {
   shadows.finish();
-  std::map<shadow::ExecutionKey, std::vector<shadow::EndPoseError>> errors;
+  std::map<shadow::ExecutionKey, std::vector<shadow::PredictionError>> errors;
   for (auto& execution : shadows.executions()) errors[execution.key] = execution.by_rule;
   for (ScoredExecution& execution : result.executions) execution.by_rule = errors[execution.key];
 }

@@ -37,13 +37,13 @@ TEST_CASE("a log tells what each rule would have predicted, as shadows of the dr
   std::remove(path.c_str());
   REQUIRE(errors.problem.empty());
   CHECK(errors.driven == "collective");
-  std::map<shadow::ExecutionKey, std::vector<shadow::EndPoseError>> in_log;
+  std::map<shadow::ExecutionKey, std::vector<shadow::PredictionError>> in_log;
   for (const shadow::ShadowedExecution& execution : errors.executions)
     in_log[execution.key] = execution.by_rule;
   int compared = 0, equal = 0;
   for (const missions::ScoredExecution& execution : run.result.executions) {
     if (!execution.measured) continue;
-    const std::vector<shadow::EndPoseError>& replayed = in_log[execution.key];
+    const std::vector<shadow::PredictionError>& replayed = in_log[execution.key];
     REQUIRE(replayed.size() == rules.size());
     for (size_t rule = 0; rule < rules.size(); ++rule, ++compared)
       equal += std::abs(replayed[rule].position - execution.by_rule[rule].position) < 1e-6 ? 1 : 0;
@@ -51,10 +51,10 @@ TEST_CASE("a log tells what each rule would have predicted, as shadows of the dr
   CHECK(compared > 45);
   CHECK(equal >= compared - 6);  // a log's clock may give a set a step earlier or later
 
-  const std::string words = report::wordsOf(errors, {errors.executions[10].ended});
+  const std::string words = report::reportOf(errors, {errors.executions[10].ended});
   for (const char* word : {"off ", "collective ", "bank ", "1..3 after it", "driven: collective"})
     CHECK(words.find(word) != std::string::npos);
-  CHECK(report::wordsOf(errors, {}).find("1..3 after it") == std::string::npos);
+  CHECK(report::reportOf(errors, {}).find("1..3 after it") == std::string::npos);
 }
 
 TEST_CASE("a log without a learner gives no comparison, and the reason") {
@@ -69,5 +69,5 @@ TEST_CASE("a log without a learner gives no comparison, and the reason") {
       report::errorsByRule({path}, kConfigFolder + "/patterns", {learner::Rule::kOff});
   std::remove(path.c_str());
   CHECK(errors.problem.find("no CONFIG of the learner") != std::string::npos);
-  CHECK(report::wordsOf(errors, {}).find("no CONFIG of the learner") != std::string::npos);
+  CHECK(report::reportOf(errors, {}).find("no CONFIG of the learner") != std::string::npos);
 }
