@@ -51,17 +51,17 @@ class ShadowLearners::Shadow {
     }
   }
 
-  const std::map<ExecutionKey, learning_t>& judged() const { return judged_; }
+  const std::map<ExecutionKey, learning_t>& reports() const { return reports_; }
 
   /// Error of a measured end against the prediction at the time of the decision.
-  std::optional<PredictionError> errorOf(const learning_t& said, int64_t decided) const {
-    const Pose2 end{said.measured_end[0], said.measured_end[1], said.measured_end[2]};
-    if (!said.accepted || !std::isfinite(end.x)) return std::nullopt;
+  std::optional<PredictionError> errorOf(const learning_t& report, int64_t decided) const {
+    const Pose2 end{report.measured_end[0], report.measured_end[1], report.measured_end[2]};
+    if (!report.accepted || !std::isfinite(end.x)) return std::nullopt;
     auto newer = std::upper_bound(
         predictions_.begin(), predictions_.end(), decided,
         [](int64_t time, const Predictions& predicted) { return time < predicted.since; });
     if (newer != predictions_.begin()) --newer;
-    const auto predicted = newer->ends.find(said.learned_pattern_id);
+    const auto predicted = newer->ends.find(report.learned_pattern_id);
     if (predicted == newer->ends.end()) return std::nullopt;
     const Pose2& expected = predicted->second;
     return PredictionError{std::hypot(end.x - expected.x, end.y - expected.y),
@@ -71,9 +71,9 @@ class ShadowLearners::Shadow {
  private:
   void takeMessages() {
     for (const LogEvent& event : bus_.takePublished()) {
-      learning_t said;
-      if (decode(event, kLearning, said))
-        judged_.insert({{said.learned_run_id, said.learned_execution_id}, said});
+      learning_t report;
+      if (decode(event, kLearning, report))
+        reports_.insert({{report.learned_run_id, report.learned_execution_id}, report});
       // A planner has a set when the last part of it has come.
       pattern_set_part_t part;
       if (node_.set().version() != version_ && decode(event, kPatternSet, part) &&
@@ -97,7 +97,7 @@ class ShadowLearners::Shadow {
   int64_t next_step_ = -1;
   int64_t version_ = 0;
   std::vector<Predictions> predictions_;  ///< oldest first
-  std::map<ExecutionKey, learning_t> judged_;
+  std::map<ExecutionKey, learning_t> reports_;
 };
 
 ShadowLearners::ShadowLearners(const learner::LearnerNodeConfig& config,
@@ -153,7 +153,7 @@ void ShadowLearners::finish() {
 std::vector<ShadowedExecution> ShadowLearners::executions() const {
   std::vector<ShadowedExecution> executions;
   if (shadows_.empty()) return executions;
-  for (const auto& [key, first] : shadows_.front()->judged()) {
+  for (const auto& [key, first] : shadows_.front()->reports()) {
     ShadowedExecution execution;
     execution.key = key;
     execution.ended = first.utime;
@@ -161,10 +161,10 @@ std::vector<ShadowedExecution> ShadowLearners::executions() const {
     if (began != began_.end()) execution.began = began->second;
     const int64_t decided = decisionTime(key);
     for (const auto& shadow : shadows_) {
-      const auto judged = shadow->judged().find(key);
-      const auto error = judged == shadow->judged().end()
+      const auto report = shadow->reports().find(key);
+      const auto error = report == shadow->reports().end()
                              ? std::nullopt
-                             : shadow->errorOf(judged->second, decided);
+                             : shadow->errorOf(report->second, decided);
       if (error) execution.by_rule.push_back(*error);
     }
     // The gates are the same, so all have measured it or none.
