@@ -5,7 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/experiment/seeds.hpp"
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "tools/experiment/rng.hpp"
 
 namespace tread::experiment {
 namespace {
@@ -45,12 +50,12 @@ std::pair<Histogram, Histogram> binsFor(const Ground& from, const Ground& to,
     for (const size_t pattern : sequence) {
       const Executions& executions = to.executions[pattern];
       for (size_t i = 0; i < executions.size(); ++i) {
-        const Outcome& outcome = executions.outcome(i);
+        const ExecutionEnd& end = executions.endOf(i);
         const Pose2& predicted = from.averaged_ends[pattern];
-        position += (predicted.position() - outcome.end.position()).norm();
-        orientation += std::abs(wrapAngle(predicted.yaw - outcome.end.yaw));
-        metres += outcome.metres;
-        radians += outcome.radians;
+        position += (predicted.position() - end.pose.position()).norm();
+        orientation += std::abs(wrapAngle(predicted.yaw - end.pose.yaw));
+        metres += end.metres;
+        radians += end.radians;
       }
     }
   const auto bins = [](double error, double covered) {
@@ -69,8 +74,9 @@ class Schedule {
     for (size_t from = 0; from < grounds.size(); ++from)
       for (size_t to = 0; to < grounds.size(); ++to)
         if (from != to) parts_.push_back({from, to, {}, {}, {}});
-    long_parts_.resize(grounds.size());
-    sequence_parts_.resize(grounds.size());
+    const std::vector<Errors> surfaces(grounds.size());
+    long_parts_.assign(kSideParts, surfaces);
+    sequence_parts_.assign(kSideParts, surfaces);
     drift_parts_.resize(grounds.size());
     for (TransitionParts& parts : parts_) addTransition(parts);
     for (size_t s = 0; s < grounds.size(); ++s) {
@@ -90,9 +96,9 @@ class Schedule {
     std::vector<std::vector<Errors>> development;
   };
 
-  Lineup lineup(size_t from, size_t to, size_t part) const {
-    return Lineup(settings_.rules, settings_.config, grounds_, from, to, settings_.tour,
-                  seedOf({settings_.seed, 1, from, to, part}));
+  Methods methods(size_t from, size_t to, size_t part) const {
+    return Methods(settings_.rules, settings_.config, grounds_, from, to, settings_.excitation,
+                   seedOf({settings_.seed, 1, from, to, part}));
   }
   TrialSite site(size_t from, size_t to, Trial trial, size_t part, int64_t repetitions) const {
     return {grounds_[from], grounds_[to], settings_.change_inside && from != to, repetitions,
@@ -106,9 +112,9 @@ class Schedule {
   const std::vector<Ground>& grounds_;
   const ExperimentSettings& settings_;
   std::vector<TransitionParts> parts_;
-  std::vector<std::vector<Errors>> long_parts_;
-  std::vector<std::vector<Errors>> sequence_parts_;
-  std::vector<std::vector<std::vector<double>>> drift_parts_;
+  std::vector<std::vector<Errors>> long_parts_;                ///< [part][surface]
+  std::vector<std::vector<Errors>> sequence_parts_;            ///< [part][surface]
+  std::vector<std::vector<std::vector<double>>> drift_parts_;  ///< [surface][method][execution]
   std::vector<std::function<void()>> tasks_;
 };
 
@@ -118,7 +124,7 @@ void Schedule::addTransition(TransitionParts& parts) {
   parts.development.resize(kSideParts);
   for (size_t part = 0; part < kSequenceParts; ++part)
     tasks_.push_back([this, &parts, part] {
-      Lineup rules = lineup(parts.from, parts.to, part);
+      Methods rules = methods(parts.from, parts.to, part);
       const auto bins = binsFor(grounds_[parts.from], grounds_[parts.to], settings_.sequences);
       parts.sequences[part] =
           driveSequences(rules,
@@ -131,7 +137,7 @@ void Schedule::addTransition(TransitionParts& parts) {
 
 void Schedule::addSide(TransitionParts& parts, size_t part) {
   tasks_.push_back([this, &parts, part] {
-    Lineup rules = lineup(parts.from, parts.to, part);
+    Methods rules = methods(parts.from, parts.to, part);
     const int64_t repetitions = share(sideRepetitions(settings_), part, kSideParts);
     parts.all_patterns[part] =
         driveAllPatterns(rules, site(parts.from, parts.to, Trial::kAllPatterns, part, repetitions),
@@ -143,16 +149,14 @@ void Schedule::addSide(TransitionParts& parts, size_t part) {
 }
 
 void Schedule::addLong(size_t surface) {
-  long_parts_[surface].resize(kSideParts);
-  sequence_parts_[surface].resize(kSideParts);
   for (size_t part = 0; part < kSideParts; ++part)
     tasks_.push_back([this, surface, part] {
-      Lineup rules = lineup(surface, surface, part);
+      Methods rules = methods(surface, surface, part);
       const int64_t drives = std::max<int64_t>(8, sideRepetitions(settings_) / 30);
       const int64_t of_part = share(drives, part, kSideParts);
-      long_parts_[surface][part] =
+      long_parts_[part][surface] =
           driveLong(rules, site(surface, surface, Trial::kLong, part, of_part), {});
-      sequence_parts_[surface][part] = driveLong(
+      sequence_parts_[part][surface] = driveLong(
           rules, site(surface, surface, Trial::kLongSequences, part, of_part), settings_.sequences);
     });
 }
@@ -161,32 +165,18 @@ void Schedule::addDrift(size_t surface) {
   tasks_.push_back([this, surface] {
     const std::optional<size_t> watched = neverExecuted(grounds_[surface], settings_.sequences);
     if (!watched) return;
-    Lineup rules = lineup(surface, surface, 0);
+    Methods rules = methods(surface, surface, 0);
     drift_parts_[surface] =
         driveDrift(rules, site(surface, surface, Trial::kDrift, 0, kDriftDrives),
                    settings_.sequences, *watched, settings_.drift);
   });
 }
 
-void addHistograms(std::vector<Histogram>& sums, const std::vector<Histogram>& more) {
-  for (size_t i = 0; i < sums.size(); ++i)
-    for (size_t bin = 0; bin < sums[i].counts.size(); ++bin)
-      sums[i].counts[bin] += more[i].counts[bin];
-}
-
+/// Sums over the parts, number by number.
 std::vector<Errors> sum(const std::vector<std::vector<Errors>>& parts) {
   std::vector<Errors> sums = parts.front();
   for (size_t part = 1; part < parts.size(); ++part)
     for (size_t i = 0; i < sums.size(); ++i) sums[i].add(parts[part][i]);
-  return sums;
-}
-
-std::vector<Errors> sumsOf(const std::vector<std::vector<Errors>>& surfaces) {
-  std::vector<Errors> sums;
-  for (const std::vector<Errors>& parts : surfaces) {
-    sums.push_back(parts.front());
-    for (size_t part = 1; part < parts.size(); ++part) sums.back().add(parts[part]);
-  }
   return sums;
 }
 
@@ -209,16 +199,12 @@ ExperimentErrors Schedule::errors() const {
   ExperimentErrors all;
   for (const TransitionParts& parts : parts_) {
     SequenceErrors sums = *parts.sequences.front();
-    for (size_t part = 1; part < parts.sequences.size(); ++part) {
-      sums.errors.add(parts.sequences[part]->errors);
-      addHistograms(sums.position, parts.sequences[part]->position);
-      addHistograms(sums.orientation, parts.sequences[part]->orientation);
-    }
+    for (size_t part = 1; part < parts.sequences.size(); ++part) sums.add(*parts.sequences[part]);
     all.transitions.push_back(
         {parts.from, parts.to, std::move(sums), sum(parts.all_patterns), sum(parts.development)});
   }
-  all.unchanged = sumsOf(long_parts_);
-  all.unchanged_sequences = sumsOf(sequence_parts_);
+  all.unchanged = sum(long_parts_);
+  all.unchanged_sequences = sum(sequence_parts_);
   all.drift = meanDrift(drift_parts_);
   return all;
 }
@@ -243,6 +229,37 @@ std::optional<size_t> neverExecuted(const Ground& ground, const std::vector<Sequ
     if (!executed) widest = p;
   }
   return widest;
+}
+
+void runTasks(const std::vector<std::function<void()>>& tasks, int threads,
+              const Progress& progress) {
+  std::atomic<size_t> next{0};
+  std::mutex mutex;  // guards what follows
+  size_t done = 0;
+  std::exception_ptr error;
+  const auto work = [&] {
+    for (size_t i = next++; i < tasks.size(); i = next++) {
+      std::exception_ptr failure;
+      try {
+        tasks[i]();
+      } catch (...) {
+        failure = std::current_exception();
+      }
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (failure) {
+        if (!error) error = failure;
+        next = tasks.size();
+        return;
+      }
+      ++done;
+      if (progress) progress(done, tasks.size());
+    }
+  };
+  std::vector<std::thread> helpers;
+  for (int i = 1; i < threads; ++i) helpers.emplace_back(work);
+  work();
+  for (std::thread& helper : helpers) helper.join();
+  if (error) std::rethrow_exception(error);
 }
 
 ExperimentErrors runExperiment(const std::vector<Ground>& grounds,

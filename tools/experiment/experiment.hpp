@@ -17,7 +17,7 @@ struct ExperimentSettings {
   learner::RuleConfig config;      ///< of all rules
   std::vector<Sequence> sequences;
   int64_t repetitions = 30'000;  ///< each drives all sequences once
-  int64_t tour = 200;            ///< executions on each surface that a bank meets before
+  int64_t excitation = 200;      ///< executions on each surface that a bank meets before
   uint64_t seed = 1;
   int threads = 1;  ///< no influence on any number
   bool change_inside = false;

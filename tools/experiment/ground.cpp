@@ -7,16 +7,16 @@
 
 namespace tread::experiment {
 
-Outcome outcomeOf(const learner::ConstTrajectory& trajectory) {
+ExecutionEnd executionEnd(const learner::ConstTrajectory& trajectory) {
   const Eigen::Index last = trajectory.rows() - 1;
-  Outcome outcome;
-  outcome.end = {trajectory(last, 0), trajectory(last, 1), trajectory(last, 2)};
-  outcome.radians = std::abs(outcome.end.yaw);
-  outcome.metres = std::hypot(trajectory(0, 0), trajectory(0, 1));
+  ExecutionEnd end;
+  end.pose = {trajectory(last, 0), trajectory(last, 1), trajectory(last, 2)};
+  end.radians = std::abs(end.pose.yaw);
+  end.metres = std::hypot(trajectory(0, 0), trajectory(0, 1));
   for (Eigen::Index i = 1; i <= last; ++i)
-    outcome.metres += std::hypot(trajectory(i, 0) - trajectory(i - 1, 0),
-                                 trajectory(i, 1) - trajectory(i - 1, 1));
-  return outcome;
+    end.metres += std::hypot(trajectory(i, 0) - trajectory(i - 1, 0),
+                             trajectory(i, 1) - trajectory(i - 1, 1));
+  return end;
 }
 
 Executions::Executions(const std::vector<recordings::Execution>& executions, size_t samples,
@@ -29,8 +29,7 @@ Executions::Executions(const std::vector<recordings::Execution>& executions, siz
     for (const Pose2& pose : executions[i]) numbers_.push_back(pose.y);
     for (const Pose2& pose : executions[i]) numbers_.push_back(pose.yaw);
   }
-  for (size_t i = 0; i < numbers_.size() / (3 * samples); ++i)
-    outcomes_.push_back(outcomeOf(of(i)));
+  for (size_t i = 0; i < numbers_.size() / (3 * samples); ++i) ends_.push_back(executionEnd(of(i)));
 }
 
 namespace {

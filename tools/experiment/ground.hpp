@@ -11,9 +11,9 @@
 
 namespace tread::experiment {
 
-/// What one execution came to.
-struct Outcome {
-  Pose2 end;             ///< last pose relative to the start, yaw unwrapped
+/// Where one execution ended, and what it covered on the way.
+struct ExecutionEnd {
+  Pose2 pose;            ///< last pose relative to the start, yaw unwrapped
   double metres = 0.0;   ///< length of the path from the start through all poses
   double radians = 0.0;  ///< |net yaw|
 };
@@ -25,17 +25,17 @@ class Executions {
   Executions(const std::vector<recordings::Execution>& executions, size_t samples,
              const std::vector<size_t>& left_out);
 
-  size_t size() const { return outcomes_.size(); }
+  size_t size() const { return ends_.size(); }
   size_t samples() const { return samples_; }
   learner::ConstTrajectory of(size_t i) const {
     return {numbers_.data() + 3 * samples_ * i, static_cast<Eigen::Index>(samples_), 3};
   }
-  const Outcome& outcome(size_t i) const { return outcomes_[i]; }
+  const ExecutionEnd& endOf(size_t i) const { return ends_[i]; }
 
  private:
   size_t samples_;
   std::vector<double> numbers_;
-  std::vector<Outcome> outcomes_;
+  std::vector<ExecutionEnd> ends_;
 };
 
 /// One surface of an experiment.
@@ -46,8 +46,7 @@ struct Ground {
   std::vector<Executions> executions;
 };
 
-/// The last pose of a trajectory and what was covered on the way.
-Outcome outcomeOf(const learner::ConstTrajectory& trajectory);
+ExecutionEnd executionEnd(const learner::ConstTrajectory& trajectory);
 
 /// Averages a book surface by surface and lays its recordings out for the experiment.
 /** Throws recordings::RecordingError with one line if a pattern has too few executions or there is

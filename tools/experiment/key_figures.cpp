@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "common/report/text.hpp"
 #include "tools/experiment/text_tables.hpp"
 
 namespace tread::experiment {
@@ -88,11 +88,8 @@ const Figure kFigures[] = {
      }},
 };
 
-std::string formatted(const char* format, double value) {
-  if (!std::isfinite(value)) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
+std::string shown(const char* format, double value) {
+  return std::isfinite(value) ? formatted(format, value) : "-";
 }
 
 /// Mean over the books, and the deviation between them.
@@ -104,10 +101,10 @@ std::string cellOf(const Figure& figure, const std::vector<Tables>& books,
   for (const Tables& book : books) values.push_back(figure.value(book, quantity, rule));
   for (const double value : values) mean += value / n;
   for (const double value : values) squares += (value - mean) * (value - mean);
-  const std::string text = formatted(figure.format, mean);
+  const std::string text = shown(figure.format, mean);
   if (books.size() < 2 || !std::isfinite(mean)) return text;
   const bool ratio = std::string(figure.format) == "%.3f";
-  return text + " +-" + formatted(ratio ? "%.3f" : "%.1f", std::sqrt(squares / (n - 1.0)));
+  return text + " +-" + shown(ratio ? "%.3f" : "%.1f", std::sqrt(squares / (n - 1.0)));
 }
 
 std::string padded(const std::string& text, size_t width) {
@@ -129,7 +126,7 @@ std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
     text += " Means and deviations over " + std::to_string(books.size()) +
             " books; of means: the worst of the\nmeans over the books.";
   text += "\n";
-  for (const char* quantity : {kPosition, kOrientation}) {
+  for (const char* quantity : kQuantities) {
     text += "\n" + std::string(quantity) +
             std::string(kName - std::min(kName, std::string(quantity).size()), ' ');
     for (const Figure& figure : kFigures)
@@ -141,7 +138,7 @@ std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
         if (!figure.of_means)
           text += padded(cellOf(figure, books, quantity, rule), kWidth);
         else if (books.size() > 1)
-          text += padded(formatted(figure.format, figure.value(tables, quantity, rule)), kWidth);
+          text += padded(shown(figure.format, figure.value(tables, quantity, rule)), kWidth);
       text += "\n";
     }
   }

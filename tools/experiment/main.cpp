@@ -13,11 +13,11 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
-#include "tools/experiment/campaign.hpp"
+#include "tools/experiment/batch.hpp"
 
 namespace {
 
-using tread::experiment::Campaign;
+using tread::experiment::Batch;
 using tread::experiment::Request;
 
 struct Arguments {
@@ -55,7 +55,7 @@ void define(CLI::App& command, Arguments& arguments) {
       ->check(CLI::Range(2, 100'000'000))
       ->capture_default_str();
   command
-      .add_option("--tour", request.tour,
+      .add_option("--tour", request.excitation,
                   "executions on each surface that the bank drives before a transition")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
@@ -90,18 +90,18 @@ void makeFolder(const std::string& folder) {
 
 void run(const Arguments& arguments) {
   makeFolder(arguments.out);
-  const Campaign campaign = tread::experiment::runCampaign(arguments.request, showProgress);
-  for (const std::string& note : campaign.notes) std::cerr << note << '\n';
-  if (!arguments.out.empty()) tread::experiment::writeCampaign(arguments.out, campaign);
-  std::cout << textOfErrors(campaign.tables, campaign.setting) << '\n'
-            << textOfReductions(campaign.tables, campaign.setting) << '\n'
-            << textOfAgreement(campaign.tables, campaign.setting, campaign.books) << '\n'
-            << textOfBank(campaign) << '\n'
-            << textOfDrift(campaign) << '\n'
-            << textOfVariants(campaign)
-            << textOfKeyFigures(campaign.tables, campaign.setting, campaign.books) << std::flush;
+  const Batch batch = tread::experiment::runBatch(arguments.request, showProgress);
+  for (const std::string& note : batch.notes) std::cerr << note << '\n';
+  if (!arguments.out.empty()) tread::experiment::writeBatch(arguments.out, batch);
+  std::cout << textOfErrors(batch.tables, batch.setting) << '\n'
+            << textOfReductions(batch.tables, batch.setting) << '\n'
+            << textOfAgreement(batch.tables, batch.setting, batch.books) << '\n'
+            << textOfBank(batch) << '\n'
+            << textOfDrift(batch) << '\n'
+            << textOfVariants(batch) << textOfKeyFigures(batch.tables, batch.setting, batch.books)
+            << std::flush;
   std::fprintf(stderr, "%s: %zu transitions, %.2f s of trials on %d threads\n",
-               campaign.source.c_str(), campaign.first.transitions.size(), campaign.seconds,
+               batch.source.c_str(), batch.first.transitions.size(), batch.seconds,
                arguments.request.threads);
 }
 
@@ -111,8 +111,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Experiments with rules of learning.", "tread-experiment"};
   app.require_subcommand(1);
   Arguments arguments;
-  arguments.request.rules = {"off",  "single",      "collective", "telescoping", "local_filter",
-                             "bank", "bank_unseen", "bank_empty", "omniscient"};
+  arguments.request.rules = tread::experiment::methodNames();
   arguments.request.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   CLI::App* transitions = app.add_subcommand(
       "transitions", "section V of the paper: what rules err after a change of surface");

@@ -56,6 +56,10 @@ struct Histogram {
     const double bin = value / width;
     if (bin < static_cast<double>(counts.size())) counts[static_cast<size_t>(bin)] += 1.0;
   }
+  /// Of equal bins.
+  void add(const Histogram& other) {
+    for (size_t bin = 0; bin < counts.size(); ++bin) counts[bin] += other.counts[bin];
+  }
 };
 
 /// Standard normal and Student's 99.5 % quantile; the second for means of `samples` values.

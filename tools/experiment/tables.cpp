@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "common/report/text.hpp"
+
 namespace tread::experiment {
 namespace {
 
@@ -86,6 +88,36 @@ std::vector<Row> combinedRows(const std::vector<Tables>& books, std::vector<Row>
   return rows;
 }
 
+std::string number(double value) {
+  return fixed(value, 6);
+}
+
+std::string interval(const Estimate& estimate) {
+  return number(estimate.value) + "," + number(estimate.low) + "," + number(estimate.high);
+}
+
+std::string what(const Row& row) {
+  return row.from + "," + row.to + "," + row.quantity + "," + row.rule;
+}
+
+std::string ratioLine(const Row& row) {
+  return row.from + "," + row.quantity + "," + row.rule + "," + number(row.estimate.value);
+}
+
+const std::array<TableFile, 5> kTableFiles{{
+    {"table1", &Tables::errors, "from,to,quantity,rule,error,low,high",
+     [](const Row& row) { return what(row) + "," + interval(row.estimate); }},
+    {"table2", &Tables::reductions, "from,to,quantity,rule,against,reduction_percent,low,high",
+     [](const Row& row) { return what(row) + "," + row.against + "," + interval(row.estimate); }},
+    {"all_patterns", &Tables::all_patterns, "from,to,quantity,rule,k,error",
+     [](const Row& row) {
+       return what(row) + "," + std::to_string(row.k) + "," + number(row.estimate.value);
+     }},
+    {"unchanged", &Tables::unchanged, "surface,quantity,rule,ratio", &ratioLine},
+    {"unchanged_sequences", &Tables::unchanged_sequences, "surface,quantity,rule,ratio",
+     &ratioLine},
+}};
+
 }  // namespace
 
 std::vector<std::string> learningRules(const std::vector<std::string>& rules) {
@@ -119,9 +151,9 @@ Tables tablesOf(const ExperimentErrors& errors, const ExperimentSettings& settin
 }
 
 Tables combined(const std::vector<Tables>& books) {
-  return {combinedRows(books, &Tables::errors), combinedRows(books, &Tables::reductions),
-          combinedRows(books, &Tables::all_patterns), combinedRows(books, &Tables::unchanged),
-          combinedRows(books, &Tables::unchanged_sequences)};
+  Tables all;
+  for (const TableFile& file : kTableFiles) all.*file.rows = combinedRows(books, file.rows);
+  return all;
 }
 
 const Row* find(const std::vector<Row>& rows, const std::string& from, const std::string& to,
@@ -132,6 +164,35 @@ const Row* find(const std::vector<Row>& rows, const std::string& from, const std
         row.against == against && row.k == k)
       return &row;
   return nullptr;
+}
+
+const std::array<TableFile, 5>& tableFiles() {
+  return kTableFiles;
+}
+
+std::string csvOf(const Tables& tables, const TableFile& file) {
+  std::string text = std::string(file.header) + "\n";
+  for (const Row& row : tables.*file.rows) text += file.line(row) + "\n";
+  return text;
+}
+
+std::string csvOfDrift(const ExperimentErrors& errors, const ExperimentSettings& settings) {
+  std::string text = "rule,executions,width\n";
+  for (size_t i = 0; i < errors.drift.size(); ++i)
+    for (size_t j = 0; j < errors.drift[i].size(); ++j)
+      text += settings.rules[i] + "," + std::to_string(j) + "," + number(errors.drift[i][j]) + "\n";
+  return text;
+}
+
+std::string csvOfBooks(const std::vector<Tables>& books, uint64_t first_seed) {
+  std::string text = "table,seed,from,to,quantity,rule,against,k,value\n";
+  for (size_t book = 0; book < books.size(); ++book)
+    for (const TableFile& file : kTableFiles)
+      for (const Row& row : books[book].*file.rows)
+        text += std::string(file.name) + "," + std::to_string(first_seed + book) + "," + what(row) +
+                "," + row.against + "," + std::to_string(row.k) + "," + number(row.estimate.value) +
+                "\n";
+  return text;
 }
 
 }  // namespace tread::experiment

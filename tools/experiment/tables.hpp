@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@ namespace tread::experiment {
 
 inline constexpr const char* kPosition = "position";
 inline constexpr const char* kOrientation = "orientation";
+inline constexpr const char* kQuantities[] = {kPosition, kOrientation};
 
 /// One number of a table.
 struct Row {
@@ -48,12 +50,17 @@ const Row* find(const std::vector<Row>& rows, const std::string& from, const std
 /// Rules for which a reduction is told: all that learn.
 std::vector<std::string> learningRules(const std::vector<std::string>& rules);
 
-// Text of the CSV files.
-std::string csvOfErrors(const Tables& tables);              ///< table1.csv
-std::string csvOfReductions(const Tables& tables);          ///< table2.csv
-std::string csvOfAllPatterns(const Tables& tables);         ///< all_patterns.csv
-std::string csvOfUnchanged(const Tables& tables);           ///< unchanged.csv
-std::string csvOfUnchangedSequences(const Tables& tables);  ///< unchanged_sequences.csv
+/// How one table is written to NAME.csv.
+struct TableFile {
+  const char* name;
+  std::vector<Row> Tables::*rows;
+  const char* header;
+  std::string (*line)(const Row& row);
+};
+/// All tables, in the order of books.csv.
+const std::array<TableFile, 5>& tableFiles();
+std::string csvOf(const Tables& tables, const TableFile& file);
+
 /// drift.csv: rule,executions,width of the watched pattern over its shipped one [1].
 std::string csvOfDrift(const ExperimentErrors& errors, const ExperimentSettings& settings);
 /// books.csv: table,seed,from,to,quantity,rule,against,k,value of each book.

@@ -4,20 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "common/report/text.hpp"
 #include "tools/experiment/paper_numbers.hpp"
 
 namespace tread::experiment {
 namespace {
-
-const char* const kQuantities[] = {kPosition, kOrientation};
-
-std::string formatted(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 std::string padded(const std::string& text, size_t width) {
   return text.size() < width ? text + std::string(width - text.size(), ' ') : text;

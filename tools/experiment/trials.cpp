@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/experiment/draw.hpp"
+#include "tools/experiment/rng.hpp"
 
 namespace tread::experiment {
 namespace {
@@ -37,12 +37,12 @@ Sequence joined(const std::vector<Sequence>& sequences) {
 /// Executions by chance, and what all rules made of them since the last clear().
 class Drive {
  public:
-  Drive(Lineup& lineup, const TrialSite& site)
-      : lineup_(lineup),
+  Drive(Methods& methods, const TrialSite& site)
+      : methods_(methods),
         site_(site),
         random_(site.seed),
-        position_(lineup.size()),
-        orientation_(lineup.size()) {
+        position_(methods.size()),
+        orientation_(methods.size()) {
     for (const Executions& executions : site.to.executions)
       joined_.resize(std::max(joined_.size(), 3 * executions.samples()));
   }
@@ -57,15 +57,15 @@ class Drive {
     errors.orientation.add(radians_, orientation_.data());
   }
 
-  /// One execution on the new surface; each(rule, position error, orientation error, outcome).
+  /// One execution on the new surface; each(rule, position error, orientation error, end).
   template <class Each>
   void execute(size_t pattern, bool learn, const Each& each) {
     const Executions& executions = site_.to.executions[pattern];
     const size_t index = drawIndex(random_, executions.size());
-    judge(pattern, executions.of(index), executions.outcome(index), learn, each);
+    score(pattern, executions.of(index), executions.endOf(index), learn, each);
   }
   void execute(size_t pattern, bool learn) {
-    execute(pattern, learn, [](size_t, double, double, const Outcome&) {});
+    execute(pattern, learn, [](size_t, double, double, const ExecutionEnd&) {});
   }
 
   /// Any pattern, by chance.
@@ -76,26 +76,26 @@ class Drive {
   void executeFirst(size_t pattern, bool learn, const Each& each) {
     if (!site_.change_inside) return execute(pattern, learn, each);
     const ConstTrajectory measured = joinedAt(pattern);
-    judge(pattern, measured, outcomeOf(measured), learn, each);
+    score(pattern, measured, executionEnd(measured), learn, each);
   }
   void executeFirst(size_t pattern, bool learn) {
-    executeFirst(pattern, learn, [](size_t, double, double, const Outcome&) {});
+    executeFirst(pattern, learn, [](size_t, double, double, const ExecutionEnd&) {});
   }
 
  private:
   template <class Each>
-  void judge(size_t pattern, const ConstTrajectory& measured, const Outcome& outcome, bool learn,
+  void score(size_t pattern, const ConstTrajectory& measured, const ExecutionEnd& end, bool learn,
              const Each& each) {
-    metres_ += outcome.metres;
-    radians_ += outcome.radians;
-    for (size_t i = 0; i < lineup_.size(); ++i) {
-      const Pose2 predicted = lineup_.predictEnd(i, pattern);
-      const double position = positionError(predicted, outcome.end);
-      const double orientation = orientationError(predicted, outcome.end);
+    metres_ += end.metres;
+    radians_ += end.radians;
+    for (size_t i = 0; i < methods_.size(); ++i) {
+      const Pose2 predicted = methods_.predictEnd(i, pattern);
+      const double position = positionError(predicted, end.pose);
+      const double orientation = orientationError(predicted, end.pose);
       position_[i] += position;
       orientation_[i] += orientation;
-      each(i, position, orientation, outcome);
-      if (learn) lineup_.learn(i, pattern, measured);
+      each(i, position, orientation, end);
+      if (learn) methods_.learn(i, pattern, measured);
     }
   }
 
@@ -120,7 +120,7 @@ class Drive {
     return {joined_.data(), samples, 3};
   }
 
-  Lineup& lineup_;
+  Methods& methods_;
   const TrialSite& site_;
   std::mt19937_64 random_;
   double metres_ = 0.0;
@@ -132,20 +132,21 @@ class Drive {
 
 }  // namespace
 
-SequenceErrors driveSequences(Lineup& lineup, const TrialSite& site,
+SequenceErrors driveSequences(Methods& methods, const TrialSite& site,
                               const std::vector<Sequence>& sequences, Histogram position_bins,
                               Histogram orientation_bins) {
-  SequenceErrors result{Errors(lineup.size()), std::vector<Histogram>(lineup.size(), position_bins),
-                        std::vector<Histogram>(lineup.size(), orientation_bins)};
-  const auto count = [&](size_t i, double position, double orientation, const Outcome& outcome) {
-    result.position[i].add(position / outcome.metres);
-    result.orientation[i].add(orientation / outcome.radians);
+  SequenceErrors result{Errors(methods.size()),
+                        std::vector<Histogram>(methods.size(), position_bins),
+                        std::vector<Histogram>(methods.size(), orientation_bins)};
+  const auto count = [&](size_t i, double position, double orientation, const ExecutionEnd& end) {
+    result.position[i].add(position / end.metres);
+    result.orientation[i].add(orientation / end.radians);
   };
-  Drive drive(lineup, site);
+  Drive drive(methods, site);
   for (int64_t repetition = 0; repetition < site.repetitions; ++repetition) {
     drive.clear();
     for (const Sequence& sequence : sequences) {
-      lineup.reset();
+      methods.reset();
       // What the last one teaches is not asked for any more.
       drive.executeFirst(sequence[0], sequence.size() > 1, count);
       for (size_t j = 1; j < sequence.size(); ++j)
@@ -156,14 +157,14 @@ SequenceErrors driveSequences(Lineup& lineup, const TrialSite& site,
   return result;
 }
 
-std::vector<Errors> driveAllPatterns(Lineup& lineup, const TrialSite& site,
+std::vector<Errors> driveAllPatterns(Methods& methods, const TrialSite& site,
                                      const std::vector<Sequence>& sequences,
                                      const std::vector<int>& executions) {
-  std::vector<Errors> result(executions.size(), Errors(lineup.size()));
-  Drive drive(lineup, site);
+  std::vector<Errors> result(executions.size(), Errors(methods.size()));
+  Drive drive(methods, site);
   for (int64_t repetition = 0; repetition < site.repetitions; ++repetition) {
     for (const Sequence& sequence : sequences) {
-      lineup.reset();
+      methods.reset();
       int driven = 0;
       for (size_t k = 0; k < executions.size(); ++k) {
         for (; driven < executions[k]; ++driven) {
@@ -182,13 +183,13 @@ std::vector<Errors> driveAllPatterns(Lineup& lineup, const TrialSite& site,
   return result;
 }
 
-std::vector<Errors> driveDevelopment(Lineup& lineup, const TrialSite& site,
+std::vector<Errors> driveDevelopment(Methods& methods, const TrialSite& site,
                                      const std::vector<Sequence>& sequences, size_t executions) {
-  std::vector<Errors> result(executions, Errors(lineup.size()));
+  std::vector<Errors> result(executions, Errors(methods.size()));
   const Sequence& sequence = sequences.front();
-  Drive drive(lineup, site);
+  Drive drive(methods, site);
   for (int64_t repetition = 0; repetition < site.repetitions; ++repetition) {
-    lineup.reset();
+    methods.reset();
     for (size_t j = 0; j < executions; ++j) {
       drive.clear();
       const size_t pattern = sequence[j % sequence.size()];
@@ -202,12 +203,12 @@ std::vector<Errors> driveDevelopment(Lineup& lineup, const TrialSite& site,
   return result;
 }
 
-Errors driveLong(Lineup& lineup, const TrialSite& site, const std::vector<Sequence>& sequences) {
-  Errors result(lineup.size());
+Errors driveLong(Methods& methods, const TrialSite& site, const std::vector<Sequence>& sequences) {
+  Errors result(methods.size());
   const Sequence order = joined(sequences);
-  Drive drive(lineup, site);
+  Drive drive(methods, site);
   for (int64_t repetition = 0; repetition < site.repetitions; ++repetition) {
-    lineup.reset();
+    methods.reset();
     for (size_t j = 0; j < kSettling + kLongRun; ++j) {
       if (j == kSettling) drive.clear();
       drive.execute(order.empty() ? drive.any() : order[j % order.size()], true);
@@ -217,18 +218,18 @@ Errors driveLong(Lineup& lineup, const TrialSite& site, const std::vector<Sequen
   return result;
 }
 
-std::vector<std::vector<double>> driveDrift(Lineup& lineup, const TrialSite& site,
+std::vector<std::vector<double>> driveDrift(Methods& methods, const TrialSite& site,
                                             const std::vector<Sequence>& sequences, size_t watched,
                                             size_t executions) {
-  std::vector<std::vector<double>> sums(lineup.size(), std::vector<double>(executions + 1, 0.0));
+  std::vector<std::vector<double>> sums(methods.size(), std::vector<double>(executions + 1, 0.0));
   const Sequence order = joined(sequences);
-  Drive drive(lineup, site);
+  Drive drive(methods, site);
   const auto note = [&](size_t j) {
-    for (size_t i = 0; i < lineup.size(); ++i)
-      sums[i][j] += std::abs(lineup.predictEnd(i, watched).y);
+    for (size_t i = 0; i < methods.size(); ++i)
+      sums[i][j] += std::abs(methods.predictEnd(i, watched).y);
   };
   for (int64_t repetition = 0; repetition < site.repetitions; ++repetition) {
-    lineup.reset();
+    methods.reset();
     note(0);
     for (size_t j = 0; j < executions; ++j) {
       drive.execute(order[j % order.size()], true);

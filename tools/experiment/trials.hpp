@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tools/experiment/lineup.hpp"
+#include "tools/experiment/methods.hpp"
 #include "tools/experiment/moments.hpp"
 
 namespace tread::experiment {
@@ -38,32 +38,40 @@ struct SequenceErrors {
   Errors errors;
   std::vector<Histogram> position;     ///< of single executions, per metre of each
   std::vector<Histogram> orientation;  ///< per radian
+
+  void add(const SequenceErrors& other) {
+    errors.add(other.errors);
+    for (size_t i = 0; i < position.size(); ++i) {
+      position[i].add(other.position[i]);
+      orientation[i].add(other.orientation[i]);
+    }
+  }
 };
 
 /// Section V: every sequence from the same beginning, prediction before learning. Each repetition
 /// drives all sequences once; all rules see the same recordings.
-SequenceErrors driveSequences(Lineup& lineup, const TrialSite& site,
+SequenceErrors driveSequences(Methods& methods, const TrialSite& site,
                               const std::vector<Sequence>& sequences, Histogram position_bins,
                               Histogram orientation_bins);
 
 /// Errors over ALL patterns on fresh recordings, after each of some numbers of executions of a
 /// sequence continued (ascending).
-std::vector<Errors> driveAllPatterns(Lineup& lineup, const TrialSite& site,
+std::vector<Errors> driveAllPatterns(Methods& methods, const TrialSite& site,
                                      const std::vector<Sequence>& sequences,
                                      const std::vector<int>& executions);
 
 /// Errors of each of the first executions of the first sequence continued, without a reset.
-std::vector<Errors> driveDevelopment(Lineup& lineup, const TrialSite& site,
+std::vector<Errors> driveDevelopment(Methods& methods, const TrialSite& site,
                                      const std::vector<Sequence>& sequences, size_t executions);
 
 /// Errors in the long run: the test sequences again and again, random patterns if there are none,
 /// without a reset; the first executions do not count. A repetition is one such drive.
-Errors driveLong(Lineup& lineup, const TrialSite& site, const std::vector<Sequence>& sequences);
+Errors driveLong(Methods& methods, const TrialSite& site, const std::vector<Sequence>& sequences);
 
 /// How wide a pattern that is never executed is predicted, over its shipped width (sideways reach
 /// of its end), before and after each execution of the test sequences on unchanged ground; by rule,
 /// means over repetitions.
-std::vector<std::vector<double>> driveDrift(Lineup& lineup, const TrialSite& site,
+std::vector<std::vector<double>> driveDrift(Methods& methods, const TrialSite& site,
                                             const std::vector<Sequence>& sequences, size_t watched,
                                             size_t executions);
 

@@ -68,10 +68,10 @@ double copyTime() {
 void transition(benchmark::State& state, const std::string& rule) {
   static const double copy = copyTime();
   const std::vector<Sequence> sequences{{1, 1, 2}, {2, 2, 1}};
-  Lineup lineup({rule}, {}, grounds(), 0, 1, 200, 1);
+  Methods methods({rule}, {}, grounds(), 0, 1, 200, 1);
   const TrialSite site{grounds()[0], grounds()[1], false, kRepetitions, 1};
   const auto begun = std::chrono::steady_clock::now();
-  for (auto _ : state) benchmark::DoNotOptimize(driveSequences(lineup, site, sequences, {}, {}));
+  for (auto _ : state) benchmark::DoNotOptimize(driveSequences(methods, site, sequences, {}, {}));
   const std::chrono::duration<double, std::nano> passed = std::chrono::steady_clock::now() - begun;
   const double each =
       passed.count() / static_cast<double>(state.iterations()) / (6.0 * kRepetitions);
@@ -82,7 +82,7 @@ void transition(benchmark::State& state, const std::string& rule) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  for (const std::string& rule : contestantNames())
+  for (const std::string& rule : methodNames())
     benchmark::RegisterBenchmark(("transition/" + rule).c_str(), transition, rule)
         ->Unit(benchmark::kMicrosecond);
   benchmark::Initialize(&argc, argv);

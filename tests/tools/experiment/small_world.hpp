@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "tools/experiment/campaign.hpp"
+#include "tools/experiment/batch.hpp"
 #include "tools/experiment/transition_world.hpp"
 
 namespace tread::experiment::testing {

@@ -13,21 +13,21 @@ namespace {
 
 using namespace testing;
 
-Campaign paperCampaign(const std::string& world) {
+Batch paperBatch(const std::string& world) {
   Request request;
   request.world = kWorlds + world;
   request.rules = {"off", "single", "collective", kOmniscient};
   request.repetitions = 2000;
   request.books = 3;
   request.threads = 2;
-  return runCampaign(request, {});
+  return runBatch(request, {});
 }
 
 }  // namespace
 
 TEST_CASE("the symmetric calibration gives the paper's Table I, and the signs of Table II") {
-  const Campaign campaign = paperCampaign("transitions_symmetric.yaml");
-  const std::optional<Agreement> agreement = agreementWithPaper(campaign.tables);
+  const Batch batch = paperBatch("transitions_symmetric.yaml");
+  const std::optional<Agreement> agreement = agreementWithPaper(batch.tables);
   REQUIRE(agreement);
   const double position[] = {0.004, 0.004, 0.005, 0.002};
   const double orientation[] = {0.006, 0.008, 0.013, 0.003};
@@ -42,8 +42,8 @@ TEST_CASE("the symmetric calibration gives the paper's Table I, and the signs of
 }
 
 TEST_CASE("the asymmetric calibration gives the signs of Table II") {
-  const Campaign campaign = paperCampaign("transitions_asymmetric.yaml");
-  const std::optional<Agreement> agreement = agreementWithPaper(campaign.tables);
+  const Batch batch = paperBatch("transitions_asymmetric.yaml");
+  const std::optional<Agreement> agreement = agreementWithPaper(batch.tables);
   REQUIRE(agreement);
   CHECK(agreement->orientation_signs >= 10);
   CHECK(agreement->position_signs >= 10);

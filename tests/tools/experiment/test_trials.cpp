@@ -15,8 +15,9 @@ using tread::testing::effort;
 /// Everything that an experiment puts into files.
 std::string filesOf(const std::vector<Ground>& grounds, const ExperimentSettings& settings) {
   const Tables tables = tablesOf(runExperiment(grounds, settings, {}), settings, grounds);
-  return csvOfErrors(tables) + csvOfReductions(tables) + csvOfAllPatterns(tables) +
-         csvOfUnchanged(tables);
+  std::string text;
+  for (const TableFile& file : tableFiles()) text += csvOf(tables, file);
+  return text;
 }
 
 /// What learning off errs in truth: every recording is as likely as any other.
@@ -26,9 +27,9 @@ double expectedError(const Ground& from, const Ground& to, const std::vector<Seq
     for (const size_t pattern : sequence) {
       const Executions& executions = to.executions[pattern];
       for (size_t i = 0; i < executions.size(); ++i) {
-        const Outcome& outcome = executions.outcome(i);
-        error += (from.averaged_ends[pattern].position() - outcome.end.position()).norm();
-        metres += outcome.metres;
+        const ExecutionEnd& end = executions.endOf(i);
+        error += (from.averaged_ends[pattern].position() - end.pose.position()).norm();
+        metres += end.metres;
       }
     }
   return error / metres;
@@ -50,8 +51,8 @@ TEST_CASE("every rule of the learner takes part, and others do not disturb it") 
   const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
   ExperimentSettings settings = smallSettings();
   settings.repetitions = effort(100);
-  settings.tour = 40;
-  settings.rules = contestantNames();
+  settings.excitation = 40;
+  settings.rules = methodNames();
   const Tables all = tablesOf(runExperiment(grounds, settings, {}), settings, grounds);
   settings.rules = {"collective", "single"};
   const Tables two = tablesOf(runExperiment(grounds, settings, {}), settings, grounds);
@@ -74,10 +75,10 @@ TEST_CASE("the interval of a table covers the error that all recordings together
   const int experiments = effort(300);
   int covered = 0;
   for (int i = 0; i < experiments; ++i) {
-    Lineup lineup(settings.rules, settings.config, grounds, 0, 1, settings.tour, 0);
+    Methods methods(settings.rules, settings.config, grounds, 0, 1, settings.excitation, 0);
     const TrialSite site{grounds[0], grounds[1], false, 200, static_cast<uint64_t>(i)};
     const Estimate estimate =
-        driveSequences(lineup, site, settings.sequences, {}, {}).errors.position.error(0);
+        driveSequences(methods, site, settings.sequences, {}, {}).errors.position.error(0);
     if (estimate.low <= truth && truth <= estimate.high) ++covered;
   }
   CHECK(covered >= 0.97 * experiments);
@@ -86,15 +87,15 @@ TEST_CASE("the interval of a table covers the error that all recordings together
 TEST_CASE("repetitions allocate nothing") {
   const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
   const ExperimentSettings settings = smallSettings();
-  for (const std::string& rule : contestantNames()) {
+  for (const std::string& rule : methodNames()) {
     // They may close a block of executions; see below.
     if (rule == "bank" || rule == kBankUnseen) continue;
     for (const bool change_inside : {false, true}) {
       const auto allocationsOf = [&](int64_t repetitions) {
-        Lineup lineup({rule}, settings.config, grounds, 0, 1, settings.tour, 0);
+        Methods methods({rule}, settings.config, grounds, 0, 1, settings.excitation, 0);
         const TrialSite site{grounds[0], grounds[1], change_inside, repetitions, 1};
         const std::size_t before = allocations();
-        driveSequences(lineup, site, settings.sequences, {}, {});
+        driveSequences(methods, site, settings.sequences, {}, {});
         return allocations() - before;
       };
       INFO(rule);
@@ -108,7 +109,7 @@ TEST_CASE("the bank allocates nothing but when it judges a block of executions")
   learner::RuleConfig config;
   config.rule = learner::Rule::kBank;
   const auto rule = learner::makeRule(config, grounds[0].averaged);
-  driveTour(*rule, grounds, {0, grounds.size(), 50}, 1);
+  driveExcitation(*rule, grounds, {0, grounds.size(), 50}, 1);
   const int executions = 400;
   int64_t judged = 0, since = config.bank.settled_after;
   for (int i = 0; i < executions; ++i) {

@@ -12,30 +12,31 @@ using namespace testing;
 
 }  // namespace
 
-TEST_CASE("a tour leaves out what is unseen and comes home last, and tells what the bank holds") {
+TEST_CASE(
+    "an excitation run leaves out what is unseen, ends at home and lists what the bank holds") {
   const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
   const size_t none = grounds.size();
-  const Tour tour = tourOfBank({}, grounds, {0, none, 60}, 1);
-  REQUIRE(tour.legs.size() == 2);
-  CHECK(tour.legs[0].surface == "road");
-  CHECK(tour.legs[1].surface == "ice");
-  CHECK(tour.legs[1].executions == 60);
-  REQUIRE(tour.stored.size() == 2);
+  const ExcitationRun run = excitationOfBank({}, grounds, {0, none, 60}, 1);
+  REQUIRE(run.segments.size() == 2);
+  CHECK(run.segments[0].surface == "road");
+  CHECK(run.segments[1].surface == "ice");
+  CHECK(run.segments[1].executions == 60);
+  REQUIRE(run.stored.size() == 2);
   // The set is that of ice; on road the vehicle turns more.
-  const size_t road = tour.explains[0] == std::vector<std::string>{"road"} ? 0 : 1;
-  CHECK(tour.explains[1 - road] == std::vector<std::string>{"ice"});
-  const auto& x = tour.stored[road].x;
+  const size_t road = run.explains[0] == std::vector<std::string>{"road"} ? 0 : 1;
+  CHECK(run.explains[1 - road] == std::vector<std::string>{"ice"});
+  const auto& x = run.stored[road].x;
   CHECK(x[learner::TwistCorrection::kYaw] > 0.1);
-  CHECK(textOfTours({tour}, grounds[0].averaged).find("stored after") != std::string::npos);
-  CHECK(tourOfBank({}, grounds, {0, 1, 60}, 1).legs.size() == 1);
-  CHECK(tourOfBank({}, grounds, {0, 0, 60}, 1).legs.front().surface == "road");
+  CHECK(textOfExcitation({run}, grounds[0].averaged).find("stored after") != std::string::npos);
+  CHECK(excitationOfBank({}, grounds, {0, 1, 60}, 1).segments.size() == 1);
+  CHECK(excitationOfBank({}, grounds, {0, 0, 60}, 1).segments.front().surface == "road");
 }
 
 TEST_CASE("a bank that knows both surfaces errs less after a change than one that is empty") {
   const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
   ExperimentSettings settings = smallSettings();
   settings.rules = {"bank", kBankEmpty};
-  settings.tour = 60;
+  settings.excitation = 60;
   for (const TransitionErrors& transition : runExperiment(grounds, settings, {}).transitions) {
     const RatioMoments& yaw = transition.sequences.errors.orientation;
     CHECK(yaw.error(0).value < yaw.error(1).value);
@@ -66,7 +67,7 @@ TEST_CASE("collective scaling widens what is never executed, the default rule do
 TEST_CASE("tables of many rules stay narrow enough to read") {
   Setting setting;
   setting.surfaces = {"cinder", "tarmac", "grass", "gravel"};
-  setting.rules = contestantNames();
+  setting.rules = methodNames();
   const auto groups = columnGroups(setting);
   CHECK(groups[0] == std::vector<std::string>{"off", "single", "collective", kOmniscient});
   size_t columns = 0;

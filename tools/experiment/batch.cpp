@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/experiment/campaign.hpp"
+#include "tools/experiment/batch.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -9,7 +9,7 @@
 
 #include "common/config/scalars.hpp"
 #include "common/recordings/drive_recordings.hpp"
-#include "tools/experiment/seeds.hpp"
+#include "tools/experiment/rng.hpp"
 #include "tools/experiment/transition_world.hpp"
 
 namespace tread::experiment {
@@ -30,7 +30,7 @@ std::vector<std::string> split(const std::string& words) {
 }
 
 void checkRules(const std::vector<std::string>& rules) {
-  const std::vector<std::string> known = contestantNames();
+  const std::vector<std::string> known = methodNames();
   if (rules.empty()) throw std::invalid_argument("--rules: none; known are " + joinWords(known));
   for (const std::string& rule : rules) {
     if (std::find(known.begin(), known.end(), rule) == known.end())
@@ -41,7 +41,7 @@ void checkRules(const std::vector<std::string>& rules) {
   }
 }
 
-PatternRecordings bookOfFolder(const Request& request, Campaign& campaign) {
+PatternRecordings bookOfFolder(const Request& request, Batch& batch) {
   const fs::path folder(request.recordings);
   if (fs::exists(folder / "sessions.csv")) {
     recordings::DriveRequest drives;
@@ -49,8 +49,8 @@ PatternRecordings bookOfFolder(const Request& request, Campaign& campaign) {
     drives.robot = request.robot;
     drives.sessions = request.sessions;
     recordings::DriveRecordings made = recordings::recordingsFromDrives(drives);
-    campaign.notes = made.notes;
-    campaign.source += ", " + made.robot;
+    batch.notes = made.notes;
+    batch.source += ", " + made.robot;
     return std::move(made.recordings);
   }
   if (!request.robot.empty() || !request.sessions.empty())
@@ -84,46 +84,46 @@ class Runner {
  public:
   Runner(const Request& request, const std::function<void(double)>& progress)
       : progress_(progress) {
-    campaign_.request = request;
+    batch_.request = request;
     checkRules(request.rules);
-    campaign_.settings.rules = campaign_.setting.rules = request.rules;
-    campaign_.settings.config.memory = request.memory;
-    campaign_.settings.repetitions = request.repetitions;
-    campaign_.settings.tour = request.tour;
-    campaign_.settings.threads = request.threads;
-    campaign_.settings.change_inside = request.change_inside;
-    campaign_.setting.books = static_cast<size_t>(request.books);
+    batch_.settings.rules = batch_.setting.rules = request.rules;
+    batch_.settings.config.memory = request.memory;
+    batch_.settings.repetitions = request.repetitions;
+    batch_.settings.excitation = request.excitation;
+    batch_.settings.threads = request.threads;
+    batch_.settings.change_inside = request.change_inside;
+    batch_.setting.books = static_cast<size_t>(request.books);
   }
 
-  Campaign run() {
-    if (campaign_.request.world.empty())
+  Batch run() {
+    if (batch_.request.world.empty())
       runFolder();
     else
       runWorld();
-    campaign_.tables = combined(campaign_.books);
-    return std::move(campaign_);
+    batch_.tables = combined(batch_.books);
+    return std::move(batch_);
   }
 
  private:
   void runFolder() {
-    const Request& request = campaign_.request;
+    const Request& request = batch_.request;
     if (request.books != 1 || request.length != 1)
       throw std::invalid_argument(
           "--books and --length need a --world, which can be recorded anew");
-    campaign_.source = "recordings " + fs::path(request.recordings).filename().string();
-    const PatternRecordings book = bookOfFolder(request, campaign_);
+    batch_.source = "recordings " + fs::path(request.recordings).filename().string();
+    const PatternRecordings book = bookOfFolder(request, batch_);
     chooseSequences(book.patterns, {{"left", "left", "right"}, {"right", "right", "left"}});
     runBook(book, 0);
   }
 
   void runWorld() {
-    const Request& request = campaign_.request;
+    const Request& request = batch_.request;
     if (!request.robot.empty() || !request.sessions.empty())
       throw std::invalid_argument("--robot and --sessions choose among --recordings");
     const TransitionWorld world = readTransitionWorld(request.world);
-    campaign_.source = "world " + world.name;
+    batch_.source = "world " + world.name;
     // The paper's numbers are for patterns of one second and changes between patterns.
-    campaign_.setting.paper_reference =
+    batch_.setting.paper_reference =
         world.paper_reference && request.length == 1 && !request.change_inside;
     for (int book = 0; book < request.books; ++book) {
       const auto number = static_cast<uint64_t>(book);
@@ -134,42 +134,41 @@ class Runner {
   }
 
   void chooseSequences(const PatternSet& set, std::vector<std::vector<std::string>> usual) {
-    if (!campaign_.request.sequences.empty()) {
+    if (!batch_.request.sequences.empty()) {
       usual.clear();
-      for (const std::string& words : campaign_.request.sequences) usual.push_back(split(words));
+      for (const std::string& words : batch_.request.sequences) usual.push_back(split(words));
     }
     for (const std::vector<std::string>& names : usual)
-      campaign_.settings.sequences.push_back(sequenceOf(names, set));
+      batch_.settings.sequences.push_back(sequenceOf(names, set));
   }
 
   void runBook(const PatternRecordings& book, uint64_t number) {
     std::vector<std::string> notes;
     std::vector<Ground> grounds = groundsOf(book, notes);
-    campaign_.notes.insert(campaign_.notes.end(), notes.begin(), notes.end());
-    campaign_.settings.seed = campaign_.request.seed + number;
+    batch_.notes.insert(batch_.notes.end(), notes.begin(), notes.end());
+    batch_.settings.seed = batch_.request.seed + number;
     const auto begun = std::chrono::steady_clock::now();
-    const auto books = static_cast<double>(campaign_.request.books);
-    ExperimentErrors errors =
-        runExperiment(grounds, campaign_.settings, [&](size_t done, size_t all) {
-          const double part = static_cast<double>(done) / static_cast<double>(all);
-          if (progress_) progress_((static_cast<double>(number) + part) / books);
-        });
+    const auto books = static_cast<double>(batch_.request.books);
+    ExperimentErrors errors = runExperiment(grounds, batch_.settings, [&](size_t done, size_t all) {
+      const double part = static_cast<double>(done) / static_cast<double>(all);
+      if (progress_) progress_((static_cast<double>(number) + part) / books);
+    });
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begun;
-    campaign_.seconds += passed.count();
-    campaign_.books.push_back(tablesOf(errors, campaign_.settings, grounds));
+    batch_.seconds += passed.count();
+    batch_.books.push_back(tablesOf(errors, batch_.settings, grounds));
     if (number > 0) return;
-    for (const Ground& ground : grounds) campaign_.setting.surfaces.push_back(ground.surface);
-    const auto& rules = campaign_.settings.rules;
+    for (const Ground& ground : grounds) batch_.setting.surfaces.push_back(ground.surface);
+    const auto& rules = batch_.settings.rules;
     if (std::find(rules.begin(), rules.end(), "bank") != rules.end())
       for (size_t home = 0; home < grounds.size(); ++home)
-        campaign_.tours.push_back(tourOfBank(campaign_.settings.config, grounds,
-                                             {home, grounds.size(), campaign_.request.tour},
-                                             seedOf({campaign_.settings.seed, home})));
-    campaign_.grounds = std::move(grounds);
-    campaign_.first = std::move(errors);
+        batch_.excitation.push_back(excitationOfBank(
+            batch_.settings.config, grounds, {home, grounds.size(), batch_.request.excitation},
+            seedOf({batch_.settings.seed, home})));
+    batch_.grounds = std::move(grounds);
+    batch_.first = std::move(errors);
   }
 
-  Campaign campaign_;
+  Batch batch_;
   std::function<void(double)> progress_;
 };
 
@@ -196,7 +195,7 @@ std::vector<std::pair<std::string, Request>> variantsOf(const Request& request) 
 
 }  // namespace
 
-Campaign runCampaign(const Request& request, const std::function<void(double)>& progress) {
+Batch runBatch(const Request& request, const std::function<void(double)>& progress) {
   if (!request.extras) return Runner(request, progress).run();
   const std::vector<std::pair<std::string, Request>> variants = variantsOf(request);
   // A variant takes about as long as its share of the repetitions.
@@ -205,15 +204,15 @@ Campaign runCampaign(const Request& request, const std::function<void(double)>& 
   const auto shared = [&](double share) {
     if (progress) progress(done + share * part);
   };
-  Campaign campaign = Runner(request, shared).run();
+  Batch batch = Runner(request, shared).run();
   part = (1.0 - main_share) / static_cast<double>(variants.size());
   done = main_share;
   for (const auto& [words, of_variant] : variants) {
-    Campaign other = Runner(of_variant, shared).run();
-    campaign.variants.push_back({words, std::move(other.tables), std::move(other.books)});
+    Batch other = Runner(of_variant, shared).run();
+    batch.variants.push_back({words, std::move(other.tables), std::move(other.books)});
     done += part;
   }
-  return campaign;
+  return batch;
 }
 
 }  // namespace tread::experiment

@@ -18,8 +18,8 @@ struct Request {
   std::vector<std::string> sequences;  ///< "left,left,right"; empty = those of the world
   std::vector<std::string> rules;
   int64_t repetitions = 30'000;
-  int64_t tour = 200;   ///< executions on each surface that a bank meets before
-  double memory = 0.5;  ///< [1] w of equation (2)
+  int64_t excitation = 200;  ///< executions on each surface that a bank meets before
+  double memory = 0.5;       ///< [1] w of equation (2)
   uint64_t seed = 1;
   int threads = 1;
   int books = 1;   ///< of a world: sets of recordings, from seeds that count up
@@ -35,42 +35,42 @@ struct Variant {
   std::vector<Tables> books;
 };
 
-/// All that came of a request.
-struct Campaign {
+/// A request and its results.
+struct Batch {
   Request request;
   Setting setting;
   ExperimentSettings settings;
   std::string source;              ///< the world or folder, in words
   std::vector<std::string> notes;  ///< about the recordings
   std::vector<Tables> books;
-  Tables tables;                  ///< of all books together
-  std::vector<Ground> grounds;    ///< of the first book
-  ExperimentErrors first;         ///< of it, for the pictures
-  std::vector<Tour> tours;        ///< of the rule bank, by surface it comes home to
-  std::vector<Variant> variants;  ///< if the request wants extras
-  double seconds = 0.0;           ///< of the trials, without recording
+  Tables tables;                          ///< of all books together
+  std::vector<Ground> grounds;            ///< of the first book
+  ExperimentErrors first;                 ///< of it, for the pictures
+  std::vector<ExcitationRun> excitation;  ///< of the rule bank, by surface it comes home to
+  std::vector<Variant> variants;          ///< if the request wants extras
+  double seconds = 0.0;                   ///< of the trials, without recording
 };
 
 /// Runs everything; throws an exception with one line for what cannot be done. progress(share of
 /// the work that is done, 0..1).
-Campaign runCampaign(const Request& request, const std::function<void(double)>& progress);
+Batch runBatch(const Request& request, const std::function<void(double)>& progress);
 
 /// What the bank met before the transitions and holds; empty without that rule.
-std::string textOfBank(const Campaign& campaign);
+std::string textOfBank(const Batch& batch);
 
 /// Key figures of the variants.
-std::string textOfVariants(const Campaign& campaign);
+std::string textOfVariants(const Batch& batch);
 
 /// Width of the never executed pattern after 100, 200, 300 executions on unchanged ground.
-std::string textOfDrift(const Campaign& campaign);
+std::string textOfDrift(const Batch& batch);
 
 /// Name of the pattern that is watched for drift; empty if there is none.
-std::string watchedPattern(const Campaign& campaign);
+std::string watchedPattern(const Batch& batch);
 
 /// Writes all files into a folder, which is made if needed.
-void writeCampaign(const std::string& folder, const Campaign& campaign);
+void writeBatch(const std::string& folder, const Batch& batch);
 
-/// The pictures of a campaign, PNG bytes.
+/// The pictures of a batch, PNG bytes.
 struct Pictures {
   std::string figure4;
   std::string figure5;
@@ -78,6 +78,6 @@ struct Pictures {
 };
 
 /// Text of report.html.
-std::string htmlOf(const Campaign& campaign, const Pictures& pictures);
+std::string htmlOf(const Batch& batch, const Pictures& pictures);
 
 }  // namespace tread::experiment
