@@ -69,7 +69,7 @@ class Cutter {
 
   void checkRecord() {
     if (!cut_.completed) close(Gate::kAborted, "aborted: " + cut_.outcome_reason);
-    if (!cut_.foreign_command.empty()) close(Gate::kCommands, cut_.foreign_command);
+    if (!cut_.unexpected_command.empty()) close(Gate::kCommands, cut_.unexpected_command);
     const int64_t took = cut_.ended - cut_.started;
     const double longest = seconds(duration()) / limits_.min_covered;
     if (took <= 0 || seconds(took) > longest)
@@ -207,7 +207,7 @@ const char* gateName(Gate gate) {
     case Gate::kUnknownPattern:
       return "unknown pattern";
     case Gate::kRecord:
-      return "senseless record";
+      return "invalid record";
     case Gate::kCommands:
       return "other commands";
     case Gate::kNoTrack:

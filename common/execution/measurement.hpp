@@ -60,7 +60,7 @@ struct ExecutionCut {
   bool completed = false;
   std::string outcome_reason;  ///< why it was aborted
   /// A command that differed from the pattern's, in words; empty = none seen.
-  std::string foreign_command;
+  std::string unexpected_command;
 };
 
 /// M and what was measured beside it. Numbers that were not measured are NaN.

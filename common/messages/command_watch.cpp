@@ -25,8 +25,8 @@ void CommandWatch::add(const motor_t& motor) {
   if (given_.size() > kRemembered) given_.pop_front();
 }
 
-std::string CommandWatch::foreignCommand(const ExecutionKey& execution,
-                                         const MotionPattern& pattern, CommandKind kind) const {
+std::string CommandWatch::unexpectedCommand(const ExecutionKey& execution,
+                                            const MotionPattern& pattern, CommandKind kind) const {
   for (const Given& given : given_) {
     if (given.execution != execution) continue;
     if (given.kind != static_cast<int16_t>(kind))

@@ -20,8 +20,8 @@ class CommandWatch {
 
   /// The first command of an execution that differs from the pattern's, in words; empty if none was
   /// seen.
-  std::string foreignCommand(const ExecutionKey& execution, const MotionPattern& pattern,
-                             CommandKind kind) const;
+  std::string unexpectedCommand(const ExecutionKey& execution, const MotionPattern& pattern,
+                                CommandKind kind) const;
 
  private:
   struct Given {

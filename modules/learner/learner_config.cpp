@@ -77,16 +77,16 @@ LearnerNodeConfig readLearnerConfig(ConfigReader& reader) {
 
 void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config) {
   reader.text("store", config.store);
-  std::string rule = ruleName(config.rule.rule);
+  std::string rule = config.rule.rule;
   reader.choice("rule", rule, ruleNames());
-  config.rule.rule = *ruleNamed(rule);
+  config.rule.rule = rule;
   // w = 1 would never learn and never say why: `off` is the word for that.
   reader.number("memory", config.rule.memory, {0.0, 0.999}, "1");
   readScaling(reader, config.rule);
   readFilter(reader, config.rule.filter);
   readBank(reader, config.rule.bank);
   readGates(reader, config.limits);
-  // Not shorter: the outbox sends a portion a step, and LCM loses more than 100 kB in 20 ms.
+  // Not shorter: the publisher sends a portion a step, and LCM loses more than 100 kB in 20 ms.
   reader.seconds("period", config.period_us, {0.02, 0.1});
   reader.seconds("settle", config.settle_us, {0.0, 2.0});
   reader.seconds("give_up", config.give_up_us, {0.1, 30.0});

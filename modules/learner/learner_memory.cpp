@@ -36,8 +36,8 @@ std::optional<int64_t> LearnerMemory::storedReserve(std::string& problem) const 
   return std::nullopt;
 }
 
-Recollection LearnerMemory::recall(const PatternSet& shipped, int64_t utime) {
-  Recollection found;
+StoredLearning LearnerMemory::recall(const PatternSet& shipped, int64_t utime) {
+  StoredLearning found;
   for (int slot = 0; slot < 2; ++slot) {
     const auto content = store_.read(kSlots[slot]);
     if (!content) continue;

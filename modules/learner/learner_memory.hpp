@@ -6,13 +6,12 @@
 #include <string>
 
 #include "common/store/store.hpp"
-#include "modules/learner/core/bank_text.hpp"
 #include "modules/learner/core/state_text.hpp"
 
 namespace tread::learner {
 
 /// What the learner finds when it starts.
-struct Recollection {
+struct StoredLearning {
   std::optional<LearnerState> state;  ///< newest valid one of this shipped set
   int64_t first_version = 1;          ///< to publish now; above everything ever published
   std::string problem;                ///< one clear line if something was damaged; else empty
@@ -30,7 +29,7 @@ class LearnerMemory {
  public:
   explicit LearnerMemory(Store& store) : store_(store) {}
 
-  Recollection recall(const PatternSet& shipped, int64_t utime);
+  StoredLearning recall(const PatternSet& shipped, int64_t utime);
 
   /// Makes sure that `version` may be published. One clear line if that could not be written.
   std::optional<std::string> reserve(int64_t version);

@@ -17,7 +17,7 @@ constexpr int kBelievedAfter = 3;
 /// Nobody counts further than this [versions]: more than the robot's life in milliseconds.
 constexpr int64_t kHighestVersion = 1'000'000'000'000;
 /// How far above a higher version of a former life we go on.
-constexpr int64_t kAboveForeign = 100;
+constexpr int64_t kAboveUnknown = 100;
 
 void fill(double (&target)[3], const Pose2& pose) {
   target[0] = pose.x;
@@ -35,7 +35,7 @@ learning_t reportOf(const execution_record_t& record, Rule rule) {
   message.learned_run_id = record.record_run_id;
   message.learned_execution_id = record.record_execution_id;
   message.learned_pattern_id = record.record_pattern_id;
-  message.learning_rule = ruleName(rule);
+  message.learning_rule = rule;
   message.scored_version = record.record_set_version;
   return message;
 }
@@ -54,7 +54,7 @@ LearnerNode::LearnerNode(LearnerNodeConfig config, Bus& bus, Store& store)
       learner_(config_.rule, config_.shipped),
       memory_(store),
       ins_(config_.track_span_us),
-      outbox_(bus),
+      publisher_(bus),
       health_(bus, "learner", config_.effective()) {
   bus.subscribe<ins_t>(kIns, [this](const ins_t& ins) { ins_.add(ins, bus_.now()); });
   bus.subscribe<execution_t>(kExecution, [this](const execution_t& message) { hear(message); });
@@ -64,7 +64,7 @@ LearnerNode::LearnerNode(LearnerNodeConfig config, Bus& bus, Store& store)
 }
 
 void LearnerNode::start(int64_t boot_time) {
-  Recollection found = memory_.recall(config_.shipped, boot_time);
+  StoredLearning found = memory_.recall(config_.shipped, boot_time);
   start_problem_ = found.problem;
   versions_.emplace(config_.shipped.version(), config_.shipped);
   if (found.state) {
@@ -113,11 +113,11 @@ void LearnerNode::step(int64_t utime) {
       handle(record);
     }
   }
-  if (utime >= next_repeat_ && outbox_.emptyOfSets()) {
-    outbox_.putSet(learner_.set());
+  if (utime >= next_repeat_ && publisher_.setsSent()) {
+    publisher_.putSet(learner_.set());
     next_repeat_ = utime + config_.repeat_us;
   }
-  outbox_.step(utime);
+  publisher_.step(utime);
   reportHealth(utime);
 }
 
@@ -127,15 +127,15 @@ void LearnerNode::hear(const execution_t& message) {
   for (const execution_record_t& record : message.records)
     highest = std::max(highest, record.record_set_version);
   if (highest <= learner_.set().version() || highest > kHighestVersion) return;
-  if (++foreign_versions_[highest] >= kBelievedAfter) goAbove(highest);
+  if (++unknown_versions_[highest] >= kBelievedAfter) goAbove(highest);
   // Broken messages may name any number; what was named once long ago is of no interest.
-  if (foreign_versions_.size() > 16) foreign_versions_.clear();
+  if (unknown_versions_.size() > 16) unknown_versions_.clear();
 }
 
 void LearnerNode::goAbove(int64_t version) {
-  foreign_versions_.clear();
+  unknown_versions_.clear();
   health_.addToCounter("versions lost and gone above");
-  learner_.renumber(version + kAboveForeign, learner_.set().version());
+  learner_.renumber(version + kAboveUnknown, learner_.set().version());
   adoptVersion();
 }
 
@@ -188,7 +188,7 @@ Measurement LearnerNode::measureRecord(const execution_record_t& record,
   cut.completed = record.outcome == execution_record_t::OUTCOME_COMPLETED;
   cut.outcome_reason = record.outcome_reason;
   const PatternSet& set = learner_.set();
-  cut.foreign_command = commands_.foreignCommand(keyOf(record), pattern, set.content().kind);
+  cut.unexpected_command = commands_.unexpectedCommand(keyOf(record), pattern, set.content().kind);
   return measure(ins_.history(), cut, pattern, set.classNamed(pattern.entry_class),
                  set.content().period_us, config_.limits);
 }
@@ -253,8 +253,8 @@ void LearnerNode::adoptVersion() {
     if (!problem) problem = unsaved_bank;
   }
   noteWrite(problem);
-  outbox_.putSet(learner_.set());
-  outbox_.putState(learner_.set(), ruleName(config_.rule.rule), text);
+  publisher_.putSet(learner_.set());
+  publisher_.putState(learner_.set(), config_.rule.rule, text);
 }
 
 void LearnerNode::noteWrite(const std::optional<std::string>& problem) {
@@ -269,9 +269,9 @@ void LearnerNode::reportHealth(int64_t utime) {
   if (const SurfaceBank* bank = learner_.rule().bank())
     health_.setCounter("surfaces remembered", static_cast<int64_t>(bank->size()));
   health_.setCounter("INS too late", ins_.tooLate());
-  health_.setCounter("INS at senseless times", ins_.invalid());
+  health_.setCounter("INS with invalid time", ins_.invalid());
   health_.setCounter("INS without pose", ins_.withoutPose());
-  health_.setCounter("senseless execution records", executions_.invalid());
+  health_.setCounter("invalid execution records", executions_.invalid());
   health_.step(utime);
 }
 

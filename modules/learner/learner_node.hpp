@@ -16,7 +16,7 @@
 #include "modules/learner/core/learner.hpp"
 #include "modules/learner/learner_config.hpp"
 #include "modules/learner/learner_memory.hpp"
-#include "modules/learner/outbox.hpp"
+#include "modules/learner/set_publisher.hpp"
 
 namespace tread::learner {
 
@@ -70,11 +70,11 @@ class LearnerNode : public Node {
   InsQueue ins_;
   ExecutionQueue executions_;
   CommandWatch commands_;
-  Outbox outbox_;
+  SetPublisher publisher_;
   HealthReporter health_;
   std::map<int64_t, PatternSet> versions_;  ///< the last sets by version
   std::map<int64_t, int>
-      foreign_versions_;  ///< versions above ours that records named, and how often
+      unknown_versions_;  ///< versions above ours that records named, and how often
   std::string start_problem_;
   std::string write_problem_;
   int64_t next_repeat_ = 0;

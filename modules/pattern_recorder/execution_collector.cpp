@@ -66,7 +66,7 @@ Measurement ExecutionCollector::measure(const execution_record_t& record,
   cut.ended = record.ended;
   cut.completed = record.outcome == execution_record_t::OUTCOME_COMPLETED;
   cut.outcome_reason = record.outcome_reason;
-  cut.foreign_command = commands_.foreignCommand({record.record_run_id, record.record_execution_id},
+  cut.unexpected_command = commands_.unexpectedCommand({record.record_run_id, record.record_execution_id},
                                                  pattern, set_.content().kind);
   return tread::measure(ins_.history(), cut, pattern, set_.classNamed(pattern.entry_class),
                         set_.content().period_us, limits_);

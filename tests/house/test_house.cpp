@@ -221,7 +221,7 @@ TEST_CASE("only the catalogue names effects") {
   // inertia.
   const std::set<std::pair<std::string, std::string>> others{
       {"common/vehicle/model_file.cpp", "crab"},
-      {"modules/learner/core/bank_text.cpp", "crab"},
+      {"modules/learner/core/state_text.cpp", "crab"},
       {"modules/simulator/vehicle_config.cpp", "yaw_inertia"},
       {"tools/experiment/transition_world.cpp", "crab"}};
   const std::regex literal("\"(" + effects + ")[\".]");

@@ -17,7 +17,7 @@ namespace tread::learner::samples {
 
 /// A learner and a fake robot on a virtual bus, with ears for all that the learner says.
 struct Bench {
-  explicit Bench(Driving driving = {}, Rule rule = Rule::kCollective, FaultPlan faults = {},
+  explicit Bench(Driving driving = {}, Rule rule = "collective", FaultPlan faults = {},
                  uint64_t seed = 1)
       : bus(seed, std::move(faults)), config(smallSet()) {
     config.rule.rule = rule;

@@ -44,7 +44,7 @@ Measurement scaledLeft(double x, double y, double yaw) {
 }  // namespace
 
 TEST_CASE("off never changes the set, whatever is measured") {
-  Learner learner(config(Rule::kOff), smallSet());
+  Learner learner(config("off"), smallSet());
   const int64_t before = learner.set().checksum();
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> any(-1.5, 1.5);
@@ -58,7 +58,7 @@ TEST_CASE("off never changes the set, whatever is measured") {
 }
 
 TEST_CASE("single smooths the executed pattern and leaves the others") {
-  Learner learner(config(Rule::kSingle), smallSet());
+  Learner learner(config("single"), smallSet());
   const PatternSet before = learner.set();
   const auto measured = arc({0.8, 0.0, 0.6});
   REQUIRE(learner.learn(kLeft, fair(measured), {}, 77).changed);
@@ -73,7 +73,7 @@ TEST_CASE("single smooths the executed pattern and leaves the others") {
 }
 
 TEST_CASE("collective scales all others by V and smooths them: Algorithm 1 with memory 0.3") {
-  Learner learner(config(Rule::kCollective), smallSet());
+  Learner learner(config("collective"), smallSet());
   const PatternSet before = learner.set();
   const Correction correction = learner.learn(kLeft, scaledLeft(0.9, 1.2, 1.4), {}, 77);
   REQUIRE(correction.note.scaling[0] == Approx(0.9));
@@ -96,7 +96,7 @@ TEST_CASE("collective scales all others by V and smooths them: Algorithm 1 with 
 
 TEST_CASE("a one-dimensional pattern updates only itself") {
   for (const int id : {kStraight, kSpin, kReverse}) {
-    Learner learner(config(Rule::kCollective), smallSet());
+    Learner learner(config("collective"), smallSet());
     const PatternSet before = learner.set();
     auto trajectory = before.find(id)->trajectory;
     for (Pose2& pose : trajectory) pose = {0.8 * pose.x, pose.y + 0.01, 0.8 * pose.yaw};
@@ -110,7 +110,7 @@ TEST_CASE("a one-dimensional pattern updates only itself") {
 }
 
 TEST_CASE("a turn to the other side beyond the noise updates only itself and is flagged") {
-  Learner learner(config(Rule::kCollective), smallSet());
+  Learner learner(config("collective"), smallSet());
   const PatternSet before = learner.set();
   const Correction correction = learner.learn(kLeft, fair(arc({0.9, 0.0, -0.4})), {}, 1);
   REQUIRE(correction.changed);
@@ -121,7 +121,7 @@ TEST_CASE("a turn to the other side beyond the noise updates only itself and is 
 }
 
 TEST_CASE("motion backwards instead of forwards gives no V") {
-  Learner learner(config(Rule::kCollective), smallSet());
+  Learner learner(config("collective"), smallSet());
   const Correction correction = learner.learn(kLeft, fair(arc({-0.5, 0.0, 0.5})), {}, 1);
   REQUIRE(correction.guards.find("moved the other way") != std::string::npos);
   REQUIRE(std::isnan(correction.note.scaling[0]));
@@ -131,7 +131,7 @@ TEST_CASE("an opposite sign within the noise still gives V") {
   PatternSetContent content = smallContent();
   // A weak left turn of 0.06 rad; three sigma of what is assumed without recordings are 0.074 rad.
   content.patterns[1].trajectory = arc({0.9, 0.05, 0.06});
-  Learner learner(config(Rule::kCollective), checked(content));
+  Learner learner(config("collective"), checked(content));
   REQUIRE(
       std::isfinite(learner.learn(kLeft, fair(arc({0.9, 0.05, -0.01})), {}, 1).note.scaling[0]));
   REQUIRE(std::isnan(learner.learn(kLeft, fair(arc({0.9, 0.05, -0.5})), {}, 2).note.scaling[0]));
@@ -140,7 +140,7 @@ TEST_CASE("an opposite sign within the noise still gives V") {
 TEST_CASE("patterns without a usable axis stay as they are") {
   PatternSetContent content = smallContent();
   content.patterns.push_back(pattern(6, "creep", {0.1, 0.1}, arc({0.03, 0.0, 0.01})));
-  Learner learner(config(Rule::kCollective), checked(content));
+  Learner learner(config("collective"), checked(content));
   const PatternSet before = learner.set();
   REQUIRE(learner.learn(kLeft, scaledLeft(0.8, 0.8, 0.8), {}, 1).changed);
   REQUIRE(sameTrajectory(learner.set(), before, 6));
@@ -150,7 +150,7 @@ TEST_CASE("what is usable is decided once: a scaled set does not fall below the 
   PatternSetContent content = smallContent();
   // 0.12 rad at first: after a few halvings its yaw interval is below both yaw limits.
   content.patterns[2].trajectory = arc({0.9, -0.1, -0.12});
-  Learner learner(config(Rule::kCollective, 0.0), checked(content));
+  Learner learner(config("collective", 0.0), checked(content));
   for (int i = 0; i < 4; ++i) {
     const double yaw_before = learner.set().find(kRight)->end().yaw;
     auto measured = learner.set().find(kLeft)->trajectory;
@@ -162,7 +162,7 @@ TEST_CASE("what is usable is decided once: a scaled set does not fall below the 
 }
 
 TEST_CASE("each accepted change is a new version with its parent and the time of the measurement") {
-  Learner learner(config(Rule::kSingle), smallSet());
+  Learner learner(config("single"), smallSet());
   for (int64_t i = 1; i <= 5; ++i) {
     learner.learn(kLeft, fair(arc({0.8, 0.0, 0.6})), {}, 100 * i);
     REQUIRE(learner.set().version() == 1 + i);
@@ -174,7 +174,7 @@ TEST_CASE("each accepted change is a new version with its parent and the time of
 TEST_CASE("structure of the paper's column b: left, left, right errs by (2 a + b2) / 3") {
   const auto truth_left = arc({0.8, 0.0, 0.7});
   const auto truth_right = arc({0.8, 0.0, -0.7});
-  Learner learner(config(Rule::kSingle), smallSet());
+  Learner learner(config("single"), smallSet());
   const auto error = [&](int id, const std::vector<Pose2>& truth) {
     return endDistance(truth.back(), learner.set().find(id)->end());
   };
@@ -190,17 +190,17 @@ TEST_CASE("structure of the paper's column b: left, left, right errs by (2 a + b
 }
 
 TEST_CASE("with a memory of zero the measurement replaces the prediction") {
-  Learner learner(config(Rule::kSingle, 0.0), smallSet());
+  Learner learner(config("single", 0.0), smallSet());
   learner.learn(kLeft, fair(arc({0.8, 0.0, 0.7})), {}, 1);
   REQUIRE(learner.set().find(kLeft)->end().yaw == Approx(0.7));
 }
 
 TEST_CASE("a memory of one or more is refused at the start") {
-  REQUIRE_THROWS_WITH(Learner(config(Rule::kSingle, 1.0), smallSet()), Catch::Contains("memory"));
+  REQUIRE_THROWS_WITH(Learner(config("single", 1.0), smallSet()), Catch::Contains("memory"));
 }
 
 TEST_CASE("a correction that would make a wrong set is not taken") {
-  Learner learner(config(Rule::kSingle, 0.0), smallSet());
+  Learner learner(config("single", 0.0), smallSet());
   auto jumping = arc({0.9, 0.0, 0.5});
   jumping[10].x += 5.0;  // 100 m/s for one period
   const Correction correction = learner.learn(kLeft, fair(jumping), {}, 1);
@@ -210,7 +210,7 @@ TEST_CASE("a correction that would make a wrong set is not taken") {
 }
 
 TEST_CASE("the end covariance is unknown until three errors are known, then their mean square") {
-  Learner learner(config(Rule::kSingle), smallSet());
+  Learner learner(config("single"), smallSet());
   const auto measurement = fair(arc({0.9, 0.0, 0.5}));
   for (const double x : {0.1, -0.2, 0.3}) {
     REQUIRE(std::isnan(learner.set().find(kLeft)->end_covariance[0]));
@@ -237,7 +237,7 @@ TEST_CASE("a shipped covariance is where the observed one starts, and old errors
 }
 
 TEST_CASE("an end that was not measured adds nothing to the covariance") {
-  Learner learner(config(Rule::kSingle), smallSet());
+  Learner learner(config("single"), smallSet());
   for (int i = 0; i < 10; ++i) learner.learn(kLeft, fair(arc({0.8, 0.0, 0.5})), {}, 1);
   REQUIRE(std::isnan(learner.set().find(kLeft)->end_covariance[0]));
 }

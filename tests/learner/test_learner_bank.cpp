@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "modules/learner/core/bank_text.hpp"
+#include "modules/learner/core/state_text.hpp"
 #include "tests/learner/bench.hpp"
 
 using namespace tread;
@@ -19,7 +19,7 @@ constexpr const char* kBankFile = "surface_bank";
 
 /// A learner with the rule bank that has driven long enough to remember its ground.
 struct SettledBench : Bench {
-  SettledBench() : Bench({}, Rule::kBank) { run(16.0); }
+  SettledBench() : Bench({}, "bank") { run(16.0); }
 
   size_t surfaces() { return node().rememberedSurfaces(); }
   void forgetStates() {
@@ -38,7 +38,7 @@ std::vector<std::string> entriesLike(const Store& store, const std::string& begi
 }  // namespace
 
 TEST_CASE("the bank begins empty, and LEARNING says when a surface is remembered and known again") {
-  Bench bench({}, Rule::kBank);
+  Bench bench({}, "bank");
   bench.run(6.0);
   REQUIRE(bench.node().rememberedSurfaces() == 0);
   REQUIRE(bench.learned.front().surface == 0);

@@ -22,7 +22,7 @@ LearnerNodeConfig read(const std::string& text) {
 TEST_CASE("a learner configuration needs only its patterns, the rest has defaults") {
   const LearnerNodeConfig config = read("");
   REQUIRE(config.shipped.content().name == "teodor");
-  REQUIRE(config.rule.rule == Rule::kBank);
+  REQUIRE(config.rule.rule == "bank");
   REQUIRE(config.rule.memory == 0.5);
   REQUIRE(config.limits.max_gap_us == 300'000);
 }
@@ -32,7 +32,7 @@ TEST_CASE("every key of a learner configuration is read") {
       "rule: single\nmemory: 0.3\nsettle: 0.1\n"
       "scaling: {min_box: [0.1, 0.04, 0.06], max_factor: 1.5}\n"
       "gates: {max_gap: 0.5, max_speed: 2.0, entry_yaw_rate: 0.7}\n");
-  REQUIRE(config.rule.rule == Rule::kSingle);
+  REQUIRE(config.rule.rule == "single");
   REQUIRE(config.rule.memory == 0.3);
   REQUIRE(config.settle_us == 100'000);
   REQUIRE(config.rule.scaling.min_box[1] == 0.04);

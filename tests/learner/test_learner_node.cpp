@@ -30,7 +30,7 @@ TEST_CASE("a learner on the bus learns what the ground does and publishes it") {
 }
 
 TEST_CASE("off scores every execution and never changes the set") {
-  Bench bench({}, Rule::kOff);
+  Bench bench({}, "off");
   bench.run(20.0);
   REQUIRE(bench.learned.size() >= 18);
   for (const learning_t& learned : bench.learned) {
@@ -62,7 +62,7 @@ TEST_CASE("dropped, repeated and reordered messages change nothing of what is le
   driving.set_version = 1;
   driving.executions = 30;
   Bench clean(driving);
-  Bench faulty(driving, Rule::kCollective, faults, 9);
+  Bench faulty(driving, "collective", faults, 9);
   clean.run(35.0);
   faulty.run(35.0);
   REQUIRE(clean.learned.size() == 30);
@@ -79,7 +79,7 @@ TEST_CASE("the same seed gives the same bytes") {
     faults.messages.push_back({});
     faults.messages.back().drop = 0.1;
     faults.messages.back().reorder = 0.1;
-    Bench bench({}, Rule::kCollective, faults, 4);
+    Bench bench({}, "collective", faults, 4);
     bench.bus.setTap([&said](int64_t, const char*, const uint8_t* bytes, size_t size) {
       said.insert(said.end(), bytes, bytes + size);
     });
@@ -153,7 +153,7 @@ TEST_CASE("a command on the motors that is no number is another command, whichev
     motor.command_right = static_cast<float>(on_left ? left.commands[0].right : nan);
     CommandWatch watch;
     watch.add(motor);
-    REQUIRE_FALSE(watch.foreignCommand({5, 1}, left, CommandKind::kPower).empty());
+    REQUIRE_FALSE(watch.unexpectedCommand({5, 1}, left, CommandKind::kPower).empty());
   }
 }
 
@@ -199,7 +199,7 @@ TEST_CASE("while the INS is silent executions are refused, and learning goes on 
   faults.messages = {silence};
   Driving driving;
   driving.executions = 20;
-  Bench bench(driving, Rule::kCollective, faults);
+  Bench bench(driving, "collective", faults);
   bench.run(25.0);
   REQUIRE(bench.learned.size() == 20);
   REQUIRE(bench.counter("refused: no INS at its start") + bench.counter("refused: INS gap") +

@@ -64,7 +64,7 @@ TEST_CASE("an execution is reported once, also across a restart") {
 
 TEST_CASE("versions never go back, however often and whenever the learner is killed") {
   for (uint64_t seed = 1; seed <= 5; ++seed) {
-    Bench bench({}, Rule::kCollective, {}, seed);
+    Bench bench({}, "collective", {}, seed);
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> wait(0.01, 5.0);
     for (int kill = 0; kill < 25; ++kill) {
@@ -80,7 +80,7 @@ TEST_CASE("versions never go back, however often and whenever the learner is kil
 }
 
 TEST_CASE("off stays off across restarts") {
-  Bench bench({}, Rule::kOff);
+  Bench bench({}, "off");
   for (int i = 0; i < 4; ++i) {
     bench.run(3.0);
     bench.bus.restart("learner");
@@ -209,7 +209,7 @@ TEST_CASE("broken messages on all channels do not stop the learner or turn its v
   broken.receiver = "learner";
   broken.corrupt = 0.2;
   faults.messages = {broken};
-  Bench bench({}, Rule::kCollective, faults, 11);
+  Bench bench({}, "collective", faults, 11);
   bench.run(60.0);
   REQUIRE(bench.versionsNeverWentBack());
   REQUIRE(bench.learned.size() >= 50);

@@ -101,7 +101,7 @@ TEST_CASE("an execution that was aborted is refused with its reason") {
 
 TEST_CASE("an execution whose motors got other commands is refused") {
   ExecutionCut cut = completed();
-  cut.foreign_command = "command 3 was another";
+  cut.unexpected_command = "command 3 was another";
   REQUIRE(measured({}, cut).gate == Gate::kCommands);
 }
 

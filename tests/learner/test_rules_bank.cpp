@@ -36,7 +36,7 @@ size_t surfaces(Pupil& pupil) {
 }
 
 Pupil bank(int64_t capacity = 16) {
-  RuleConfig config = ruleConfig(Rule::kBank);
+  RuleConfig config = ruleConfig("bank");
   config.bank.capacity = capacity;
   return {config, richSet()};
 }
@@ -137,7 +137,7 @@ TEST_CASE("a surface that comes back is recognised faster than the filter learns
   int recognised = 0;
   for (uint64_t seed = 1; seed <= 20; ++seed) {
     Pupil remembering = bank();
-    Pupil filter(ruleConfig(Rule::kLocalFilter), richSet());
+    Pupil filter(ruleConfig("local_filter"), richSet());
     for (Pupil* pupil : {&remembering, &filter}) {
       std::mt19937_64 random(seed);
       driveOn(*pupil, kMud, 30, random);
@@ -179,16 +179,16 @@ TEST_CASE("a bank for one surface only follows the newest") {
 }
 
 TEST_CASE("a bank for no surface, or with blocks of none, is refused at the start") {
-  RuleConfig config = ruleConfig(Rule::kBank);
+  RuleConfig config = ruleConfig("bank");
   config.bank.capacity = 0;
   REQUIRE_THROWS_WITH(makeRule(config, richSet()), Catch::Contains("capacity"));
-  config = ruleConfig(Rule::kBank);
+  config = ruleConfig("bank");
   config.bank.settled_after = 0;
   REQUIRE_THROWS_WITH(makeRule(config, richSet()), Catch::Contains("settled_after"));
 }
 
 TEST_CASE("a bank for which every change leads to unknown ground never divides by nothing") {
-  RuleConfig config = ruleConfig(Rule::kBank);
+  RuleConfig config = ruleConfig("bank");
   config.bank.unknown_prior = 1.0;
   Pupil pupil(config, richSet());
   std::mt19937_64 random(5);
@@ -218,8 +218,8 @@ TEST_CASE("the covariance of a remembered rough surface has its own noise") {
 }
 
 TEST_CASE("a restored rule goes on to the bit") {
-  for (const Rule rule : allRules()) {
-    INFO(ruleName(rule));
+  for (const Rule& rule : ruleNames()) {
+    INFO(rule);
     for (const int learned : {0, 4, 10, 75}) {
       Pupil first(ruleConfig(rule), richSet());
       std::mt19937_64 random(7);
@@ -301,9 +301,9 @@ TEST_CASE("surfaces without a single execution are no surfaces") {
 }
 
 TEST_CASE("the memory of another rule or of another set is refused") {
-  Pupil filter(ruleConfig(Rule::kLocalFilter), richSet());
+  Pupil filter(ruleConfig("local_filter"), richSet());
   Pupil remembering = bank();
-  Pupil small(ruleConfig(Rule::kBank), smallSet());
+  Pupil small(ruleConfig("bank"), smallSet());
   const TrajectoryTable rich(richSet().patterns());
   REQUIRE_FALSE(filter.rule().restore(rich, remembering.rule().memory()));
   REQUIRE_FALSE(filter.rule().restore(rich, {}));
@@ -311,12 +311,12 @@ TEST_CASE("the memory of another rule or of another set is refused") {
   REQUIRE_FALSE(remembering.rule().restore(rich, small.rule().memory()));
   REQUIRE_FALSE(remembering.rule().restore(rich, {}));
   // Rules that know predictions alone go on from any; but they must be of the same shape.
-  Pupil single(ruleConfig(Rule::kSingle), richSet());
+  Pupil single(ruleConfig("single"), richSet());
   REQUIRE_FALSE(single.rule().restore(TrajectoryTable(smallSet().patterns()), {}));
 }
 
 TEST_CASE("a filter takes back no memory that is damaged") {
-  Pupil pupil(ruleConfig(Rule::kLocalFilter), richSet());
+  Pupil pupil(ruleConfig("local_filter"), richSet());
   std::mt19937_64 random(8);
   driveOn(pupil, kMud, 20, random);
   const std::vector<double> memory = pupil.rule().memory();

@@ -152,7 +152,7 @@ TEST_CASE("a mixture of surfaces is as uncertain as they differ") {
     SurfaceBank stored(model);
     stored.store(surface(*model, -gain, 20.0, 1), 16);
     stored.store(surface(*model, gain, 20.0, 1), 16);
-    RuleConfig config = ruleConfig(Rule::kBank);
+    RuleConfig config = ruleConfig("bank");
     config.bank.unknown_prior = 0.001;
     Pupil pupil(config, richSet());
     pupil.rule().adoptBank(stored);
@@ -171,7 +171,7 @@ TEST_CASE("the bank makes one of two stored surfaces as soon as it finds them al
   stored.store(surface(*model, 0.5, 20.0, 1), 16);
   stored.store(surface(*model, 0.0, 2.0, 2), 16);
   stored.store(surface(*model, 0.01, 2.0, 3), 16);
-  Pupil pupil(ruleConfig(Rule::kBank), richSet());
+  Pupil pupil(ruleConfig("bank"), richSet());
   pupil.rule().adoptBank(stored);
   RuleNote note;
   for (size_t i = 0; i < 10; ++i) {
@@ -192,7 +192,7 @@ TEST_CASE("who leaves a known surface for an unknown one leaves from there") {
   const auto model = richModel();
   SurfaceBank stored(model);
   stored.store(surface(*model, 0.5, 20.0, 1), 16);
-  Pupil pupil(ruleConfig(Rule::kBank), richSet());
+  Pupil pupil(ruleConfig("bank"), richSet());
   pupil.rule().adoptBank(stored);
   const GroundEffect known{1.5, 1.0, 0.0, 0.0};
   for (int i = 0; i < 5; ++i) pupil.learn(kAhead, under(known, pupil.shipped(kAhead)));

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <random>
-#include <stdexcept>
 
 #include "common/config/scalars.hpp"
 #include "common/report/text.hpp"
@@ -15,7 +14,6 @@ namespace {
 
 using learner::LearningRule;
 using learner::RememberedSurface;
-using learner::Rule;
 using learner::SurfaceBank;
 
 ExcitationSegment driveSegment(LearningRule& rule, const Ground& ground, int64_t count,
@@ -85,10 +83,7 @@ const char* const kHead =
 
 std::unique_ptr<LearningRule> made(const std::string& name, learner::RuleConfig config,
                                    const PatternSet& shipped) {
-  const bool banks = name == kBankUnseen || name == kBankEmpty;
-  const auto rule = banks ? Rule::kBank : learner::ruleNamed(name);
-  if (!rule) throw std::invalid_argument("no rule is called '" + name + "'");
-  config.rule = *rule;
+  config.rule = name == kBankUnseen || name == kBankEmpty ? "bank" : name;
   return learner::makeRule(config, shipped);
 }
 
@@ -114,7 +109,7 @@ ExcitationRun excitationOfBank(const learner::RuleConfig& config,
                                const std::vector<Ground>& grounds, const ExcitationPlan& plan,
                                uint64_t seed) {
   learner::RuleConfig of_bank = config;
-  of_bank.rule = learner::Rule::kBank;
+  of_bank.rule = "bank";
   const auto rule = learner::makeRule(of_bank, grounds[plan.home].averaged);
   ExcitationRun run;
   run.segments = driveExcitation(*rule, grounds, plan, seed);
@@ -158,19 +153,18 @@ std::vector<std::string> methodNames() {
 Methods::Methods(const std::vector<std::string>& names, const learner::RuleConfig& config,
                  const std::vector<Ground>& grounds, size_t from, size_t to,
                  int64_t excitation_executions, uint64_t excitation_seed) {
-  const std::string bank = learner::ruleName(Rule::kBank);
   for (const std::string& name : names) {
     Method one;
-    if (name == learner::ruleName(Rule::kOff)) {
+    if (name == "off") {
       one.fixed = &grounds[from].averaged_ends;
     } else if (name == kOmniscient) {
       one.fixed = &grounds[to].averaged_ends;
     } else {
       one.start = made(name, config, grounds[from].averaged);
       const size_t none = grounds.size();
-      if (name == bank || name == kBankUnseen)
+      if (name == "bank" || name == kBankUnseen)
         driveExcitation(*one.start, grounds,
-                        {from, name == bank ? none : to, excitation_executions}, excitation_seed);
+                        {from, name == "bank" ? none : to, excitation_executions}, excitation_seed);
       one.state = one.start->clone();
     }
     all_.push_back(std::move(one));

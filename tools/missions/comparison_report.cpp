@@ -70,7 +70,7 @@ std::vector<Row> rowsOfExecutions(const RuleComparison& comparison, const Omnisc
   if (results.empty()) return rows;
   const std::vector<learner::Rule>& rules = results.front().shadow_rules;
   for (size_t i = 0; i < rules.size(); ++i)
-    rows.push_back(rowOf(learner::ruleName(rules[i]), results, errorByRule(i), omniscient));
+    rows.push_back(rowOf(rules[i], results, errorByRule(i), omniscient));
   return rows;
 }
 

@@ -95,8 +95,7 @@ BatchOrder orderOf(const Arguments& arguments, const std::string& name, bool fir
 }
 
 Batch driveLearning(const Arguments& arguments, const RobotConfig& robot) {
-  const std::string rule =
-      arguments.rule.empty() ? learner::ruleName(robot.learner.rule.rule) : arguments.rule;
+  const std::string rule = arguments.rule.empty() ? robot.learner.rule.rule : arguments.rule;
   BatchOrder order = orderOf(arguments, rule);
   order.options.rule = rule;
   return runBatch(robot, order);
@@ -118,8 +117,7 @@ void compareOmniscient(const Arguments& arguments, const RobotConfig& robot) {
 }
 
 void compareRules(const Arguments& arguments, const RobotConfig& robot) {
-  std::vector<learner::Rule> rules;
-  for (const std::string& name : arguments.rules) rules.push_back(*learner::ruleNamed(name));
+  const std::vector<learner::Rule>& rules = arguments.rules;
   RuleComparison comparison;
   for (size_t i = 0; i < rules.size(); ++i) {
     const std::string& rule = arguments.rules[i];

@@ -170,7 +170,7 @@ RobotSystem::RobotSystem(const RobotConfig& config, const sim::WorldDescription&
     : config_(config),
       true_patterns_(true_patterns),
       bus_(std::make_unique<VirtualBus>(seed, onTheRobot(faults))) {
-  if (!rule.empty()) config_.learner.rule.rule = *learner::ruleNamed(rule);
+  if (!rule.empty()) config_.learner.rule.rule = rule;
   std::tie(ins_line_, ins_device_) = makePipe();
   std::tie(motor_line_, motor_device_) = makePipe();
   sim::SimulatorSettings settings;

@@ -121,11 +121,11 @@ void TruePatternsNode::step(int64_t utime) {
   const bool changed = present != surface_;
   if (changed) ++version_;
   surface_ = present;
-  if (changed || (utime >= next_repeat_ && outbox_.emptyOfSets())) {
-    outbox_.putSet(patterns_.on(surface_, version_));
+  if (changed || (utime >= next_repeat_ && publisher_.setsSent())) {
+    publisher_.putSet(patterns_.on(surface_, version_));
     next_repeat_ = utime + kRepeat;
   }
-  outbox_.step(utime);
+  publisher_.step(utime);
 }
 
 }  // namespace tread::missions

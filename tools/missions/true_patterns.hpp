@@ -7,7 +7,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/pattern/pattern.hpp"
-#include "modules/learner/outbox.hpp"
+#include "modules/learner/set_publisher.hpp"
 #include "modules/simulator/core/robot.hpp"
 
 namespace tread::missions {
@@ -35,7 +35,7 @@ class TruePatterns {
 class TruePatternsNode : public Node {
  public:
   TruePatternsNode(const TruePatterns& patterns, const sim::SimulatedRobot& robot, Bus& bus)
-      : patterns_(patterns), robot_(robot), outbox_(bus), version_(bus.now() / 1'000'000) {}
+      : patterns_(patterns), robot_(robot), publisher_(bus), version_(bus.now() / 1'000'000) {}
 
   int64_t period() const override { return 20'000; }
   void step(int64_t utime) override;
@@ -45,7 +45,7 @@ class TruePatternsNode : public Node {
 
   const TruePatterns& patterns_;
   const sim::SimulatedRobot& robot_;
-  learner::Outbox outbox_;
+  learner::SetPublisher publisher_;
   std::string surface_;
   int64_t version_;  ///< begins with the seconds, so that a restarted node counts on
   int64_t next_repeat_ = 0;

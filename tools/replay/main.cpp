@@ -139,10 +139,10 @@ void replayLearner(LearnerArguments& arguments) {
     notes += "The gate on the entry twist was off.\n";
   }
   std::vector<replay::LearnerRun> runs;
-  config.rule.rule = learner::Rule::kOff;
+  config.rule.rule = "off";
   runs.push_back(replay::runLearner(log, config, replay::Commitment::kAhead, "off"));
-  config.rule.rule = *learner::ruleNamed(arguments.rule);
-  if (config.rule.rule != learner::Rule::kOff) {
+  config.rule.rule = arguments.rule;
+  if (config.rule.rule != "off") {
     runs.push_back(replay::runLearner(log, config, replay::Commitment::kAhead, arguments.rule));
     runs.push_back(
         replay::runLearner(log, config, replay::Commitment::kPrompt, arguments.rule + ", prompt"));

@@ -103,7 +103,7 @@ class ShadowLearners::Shadow {
 ShadowLearners::ShadowLearners(const learner::LearnerNodeConfig& config,
                                std::vector<learner::Rule> rules, int64_t boot_id)
     : rules_(std::move(rules)), newest_(boot_id) {
-  for (const learner::Rule rule : rules_)
+  for (const learner::Rule& rule : rules_)
     shadows_.push_back(std::make_unique<Shadow>(config, rule, boot_id));
 }
 

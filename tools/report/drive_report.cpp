@@ -140,7 +140,7 @@ std::vector<RuleSeries> seriesOf(const RuleErrors& by_rule, int64_t begun) {
   std::vector<RuleSeries> series;
   for (size_t rule = 0; rule < by_rule.rules.size(); ++rule) {
     RuleSeries one;
-    one.rule = learner::ruleName(by_rule.rules[rule]);
+    one.rule = by_rule.rules[rule];
     for (const shadow::ShadowedExecution& execution : by_rule.executions)
       if (execution.measured)
         one.errors.push_back({static_cast<double>(execution.ended - begun) * 1e-6,

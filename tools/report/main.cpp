@@ -29,7 +29,7 @@ int run(const Arguments& arguments) {
   RuleErrors by_rule;
   std::vector<learner::Rule> rules;
   for (const std::string& name : arguments.rules)
-    if (name != "none") rules.push_back(*learner::ruleNamed(name));
+    if (name != "none") rules.push_back(name);
   if (!rules.empty()) by_rule = errorsByRule(arguments.logs, TREAD_CONFIG_DIR "/patterns", rules);
   std::cout << reportOf(drive, truth, by_rule);
   if (!arguments.picture.empty()) {

@@ -86,7 +86,7 @@ RuleErrors errorsByRule(const std::vector<std::string>& logs, const std::string&
   try {
     const replay::RobotLog log = relevantLog(logs);
     const learner::LearnerNodeConfig config = replay::learnerConfigOf(log, patterns_folder);
-    errors.driven = learner::ruleName(config.rule.rule);
+    errors.driven = config.rule.rule;
     if (log.events.empty()) throw std::runtime_error("the log is empty");
     shadow::ShadowLearners shadows(config, rules, log.events.front().heard);
     for (const replay::TimedEvent& timed : log.events) shadows.hear(timed.heard, timed.event);
@@ -113,7 +113,7 @@ std::string reportOf(const RuleErrors& errors, const std::vector<int64_t>& chang
   }
   words += "\n";
   for (size_t rule = 0; rule < errors.rules.size(); ++rule) {
-    words += formatted("  %-12s", learner::ruleName(errors.rules[rule]));
+    words += formatted("  %-12s", errors.rules[rule].c_str());
     words += "  " + meanText(whole, rule);
     if (!changes.empty())
       words += "  " + meanText(beforeChanges(all, changes.size()), rule) + "  " +

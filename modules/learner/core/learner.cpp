@@ -28,35 +28,6 @@ std::string guardsOf(const RuleNote& note) {
   return guards;
 }
 
-std::string percent(double probability) {
-  return std::to_string(std::lround(100.0 * probability)) + " %";
-}
-
-/// What a rule took an execution for.
-std::string reasonOf(Rule rule, const RuleNote& note) {
-  switch (rule) {
-    case Rule::kOff:
-      return "";
-    case Rule::kSingle:
-      return "own prediction moved";
-    case Rule::kCollective:
-    case Rule::kTelescoping:
-      return std::isfinite(note.scaling[0]) ? "own prediction moved, the others scaled"
-                                            : "own prediction moved";
-    case Rule::kLocalFilter:
-      return note.change_probability > 0.5
-                 ? "the ground changed (" + percent(note.change_probability) + ")"
-                 : "the same ground (" + percent(1.0 - note.change_probability) + ")";
-    case Rule::kBank:
-      break;
-  }
-  const std::string sure = " (" + percent(note.surface_probability) + ")";
-  if (note.surface_stored)
-    return "remembered as surface " + std::to_string(note.surface) + " from now on";
-  return note.surface > 0 ? "as surface " + std::to_string(note.surface) + sure
-                          : "unknown ground" + sure;
-}
-
 void write(const ConstTrajectory& from, std::vector<Pose2>& to) {
   for (size_t t = 0; t < to.size(); ++t) {
     const auto row = static_cast<Eigen::Index>(t);
@@ -125,7 +96,7 @@ Correction Learner::learn(int pattern_id, const Measurement& measurement,
                           const std::optional<Pose2>& end_error, int64_t utime) {
   Correction correction;
   const MotionPattern* pattern = set_.find(pattern_id);
-  if (config_.rule == Rule::kOff || pattern == nullptr || !measurement.fair()) return correction;
+  if (!rule_->learns() || pattern == nullptr || !measurement.fair()) return correction;
   if (measurement.trajectory.size() != pattern->trajectory.size()) return correction;
   const size_t executed = index_.at(pattern_id);
   before_->assign(*rule_);
@@ -154,7 +125,7 @@ Correction Learner::learn(int pattern_id, const Measurement& measurement,
   set_ = *next;
   residuals_[pattern_id] = residuals;
   correction.changed = true;
-  correction.reason = reasonOf(config_.rule, correction.note);
+  correction.reason = rule_->reason(correction.note);
   return correction;
 }
 

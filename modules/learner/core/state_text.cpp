@@ -3,14 +3,100 @@
 #include "modules/learner/core/state_text.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
 #include <sstream>
-
-#include "modules/learner/core/sealed_text.hpp"
+#include <system_error>
 
 namespace tread::learner {
 namespace {
 
-constexpr const char* kHeader = "tread-learner-state 2";
+/// FNV-1a, 64 bits: tells a damaged text from a whole one.
+uint64_t fingerprint(const std::string& text) {
+  uint64_t hash = 14695981039346656037ULL;
+  for (const char letter : text) {
+    hash ^= static_cast<unsigned char>(letter);
+    hash *= 1099511628211ULL;
+  }
+  return hash;
+}
+
+std::string hexadecimal(uint64_t value) {
+  std::array<char, 20> text;
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value, 16);
+  return {text.data(), result.ptr};
+}
+
+std::string lastLine(const std::string& content) {
+  return "end " + hexadecimal(fingerprint(content)) + "\n";
+}
+
+/// The shortest text that reads back as the same number, whatever the locale.
+
+std::string number(double value) {
+  std::array<char, 40> text;
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), result.ptr};
+}
+
+/// The text with its last line, "end" and a fingerprint of what stands before.
+std::string sealed(const std::string& content) {
+  return content + lastLine(content);
+}
+
+/// The text without that line; nothing if it is not that of the text.
+std::optional<std::string> unsealed(const std::string& text) {
+  const size_t end = text.rfind("end ");
+  if (end == std::string::npos || end == 0 || text[end - 1] != '\n') return std::nullopt;
+  std::string content = text.substr(0, end);
+  if (text.substr(end) != lastLine(content)) return std::nullopt;
+  return content;
+}
+
+/// Reads words and numbers; once something is missing everything after fails, too.
+class Words {
+ public:
+  explicit Words(const std::string& text) : in_(text) {}
+
+  bool good() const { return good_; }
+  void require(bool condition) { good_ = good_ && condition; }
+  void expect(const char* word);
+  std::string word();
+  int64_t integer();
+  double real();
+
+ private:
+  std::istringstream in_;
+  bool good_ = true;
+};
+
+void Words::expect(const char* word) {
+  std::string found;
+  good_ = good_ && (in_ >> found) && found == word;
+}
+
+std::string Words::word() {
+  std::string found;
+  good_ = good_ && (in_ >> found);
+  return found;
+}
+
+int64_t Words::integer() {
+  int64_t value = 0;
+  good_ = good_ && (in_ >> value);
+  return good_ ? value : 0;
+}
+
+double Words::real() {
+  const std::string text = word();
+  double value = 0.0;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  good_ = good_ && result.ec == std::errc() && result.ptr == text.data() + text.size();
+  return value;
+}
+
+constexpr const char* kStateHeader = "tread-learner-state 2";
 /// No state of a thousand patterns has more executions in its list than this.
 constexpr int64_t kMaxHandled = 10'000;
 /// No rule remembers more numbers than this.
@@ -36,9 +122,9 @@ void writePattern(std::ostringstream& out, const MotionPattern& pattern,
 std::string body(const LearnerState& state, const PatternSet& shipped, const RuleConfig& config) {
   std::ostringstream out;
   const PatternSetContent& content = state.set.content();
-  out << kHeader << '\n';
+  out << kStateHeader << '\n';
   out << "shipped " << shipped.checksum() << '\n';
-  out << "rule " << ruleName(config.rule) << " memory " << number(config.memory) << '\n';
+  out << "rule " << config.rule << " memory " << number(config.memory) << '\n';
   out << "version " << content.version << " parent " << content.parent_version << " utime "
       << content.utime << '\n';
   out << "handled " << state.handled.size() << '\n';
@@ -74,6 +160,54 @@ void readPattern(Words& words, MotionPattern& pattern, ResidualTable& residuals)
   for (Pose2& pose : pattern.trajectory) pose = {words.real(), words.real(), words.real()};
 }
 
+constexpr const char* kBankHeader = "tread-surface-bank 1";
+/// Names of the common corrections, in the order of TwistCorrection.
+constexpr const char* kCommonNames[TwistCorrection::kCommon] = {
+    "forward_gain", "yaw_gain", "sideslip", "turn_loss", "yaw_by_speed", "yaw_bias", "crab"};
+
+void writeSurface(std::ostringstream& out, size_t place, const RememberedSurface& surface,
+                  const PatternSet& shipped) {
+  out << "surface " << place << " last_met " << surface.last_met << " noise";
+  for (Eigen::Index axis = 0; axis < 3; ++axis) out << ' ' << number(surface.noise[axis]);
+  out << '\n';
+  for (int i = 0; i < TwistCorrection::kCommon; ++i)
+    out << kCommonNames[i] << ' ' << number(surface.x[i]) << '\n';
+  for (size_t p = 0; p < shipped.patterns().size(); ++p) {
+    out << "pattern " << shipped.patterns()[p].id << " driven " << number(surface.driven[p])
+        << " own";
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      out << ' ' << number(surface.x[GroundModel::ownAt(p) + axis]);
+    out << '\n';
+  }
+}
+
+/// One surface as the numbers that SurfaceBank::restore() takes.
+void readSurface(Words& words, size_t place, const PatternSet& shipped,
+                 std::vector<double>& memory) {
+  words.expect("surface");
+  words.require(words.integer() == static_cast<int64_t>(place));
+  words.expect("last_met");
+  memory.push_back(static_cast<double>(words.integer()));
+  words.expect("noise");
+  std::vector<double> noise;
+  for (int axis = 0; axis < 3; ++axis) noise.push_back(words.real());
+  for (const char* name : kCommonNames) {
+    words.expect(name);
+    memory.push_back(words.real());
+  }
+  std::vector<double> driven;
+  for (const MotionPattern& pattern : shipped.patterns()) {
+    words.expect("pattern");
+    words.require(words.integer() == pattern.id);
+    words.expect("driven");
+    driven.push_back(words.real());
+    words.expect("own");
+    for (int axis = 0; axis < 3; ++axis) memory.push_back(words.real());
+  }
+  memory.insert(memory.end(), driven.begin(), driven.end());
+  memory.insert(memory.end(), noise.begin(), noise.end());
+}
+
 }  // namespace
 
 std::string formatState(const LearnerState& state, const PatternSet& shipped,
@@ -85,11 +219,11 @@ std::string formatState(const LearnerState& state, const PatternSet& shipped,
 std::optional<LearnerState> parseState(const std::string& text, const PatternSet& shipped,
                                        std::string& why) {
   const auto checked = unsealed(text);
-  if (!checked || checked->compare(0, std::string(kHeader).size(), kHeader) != 0) {
+  if (!checked || checked->compare(0, std::string(kStateHeader).size(), kStateHeader) != 0) {
     why = "is damaged";
     return std::nullopt;
   }
-  Words words(checked->substr(std::string(kHeader).size()));
+  Words words(checked->substr(std::string(kStateHeader).size()));
   words.expect("shipped");
   if (words.integer() != shipped.checksum()) {
     why = "belongs to another shipped pattern set";
@@ -97,8 +231,9 @@ std::optional<LearnerState> parseState(const std::string& text, const PatternSet
   }
   PatternSetContent content = shipped.content();
   words.expect("rule");
-  const auto rule = ruleNamed(words.word());
-  words.require(rule.has_value());
+  const Rule rule = words.word();
+  const std::vector<std::string> known = ruleNames();
+  words.require(std::find(known.begin(), known.end(), rule) != known.end());
   words.expect("memory");
   words.real();
   words.expect("version");
@@ -132,8 +267,33 @@ std::optional<LearnerState> parseState(const std::string& text, const PatternSet
     why = "holds a wrong set: " + why;
     return std::nullopt;
   }
-  return LearnerState{std::move(*set), std::move(residuals), std::move(memory), *rule,
+  return LearnerState{std::move(*set), std::move(residuals), std::move(memory), rule,
                       std::move(handled)};
+}
+
+std::string formatBank(const SurfaceBank& bank, const PatternSet& shipped) {
+  std::ostringstream out;
+  out << kBankHeader << "\nshipped " << shipped.checksum() << "\nsurfaces " << bank.size() << '\n';
+  for (size_t k = 0; k < bank.size(); ++k) writeSurface(out, k + 1, bank[k].stored(), shipped);
+  return sealed(out.str());
+}
+
+std::optional<std::string> parseBank(const std::string& text, const PatternSet& shipped,
+                                     SurfaceBank& bank) {
+  const auto content = unsealed(text);
+  const std::string header = kBankHeader;
+  if (!content || content->compare(0, header.size(), header) != 0) return "is damaged";
+  Words words(content->substr(header.size()));
+  words.expect("shipped");
+  if (words.integer() != shipped.checksum()) return "belongs to another shipped pattern set";
+  words.expect("surfaces");
+  const int64_t count = words.integer();
+  std::vector<double> memory{static_cast<double>(count)};
+  for (int64_t k = 1; k <= count && words.good(); ++k)
+    readSurface(words, static_cast<size_t>(k), shipped, memory);
+  size_t at = 0;
+  if (!words.good() || !bank.restore(memory, at)) return "is damaged";
+  return std::nullopt;
 }
 
 }  // namespace tread::learner

@@ -8,7 +8,10 @@
 
 #include "common/execution/readings.hpp"
 #include "modules/learner/core/learner.hpp"
+#include "modules/learner/core/rules/surface_bank.hpp"
 
+// The text files of the learner: words and numbers that read back to the bit, and a last line that
+// tells a damaged text from a whole one.
 namespace tread::learner {
 
 /// Everything that the learner needs to go on after a restart, apart from the shipped set.
@@ -16,7 +19,7 @@ struct LearnerState {
   PatternSet set;                     ///< newest version
   ResidualTable residuals;            ///< by pattern id
   std::vector<double> memory;         ///< of the rule, beside the set
-  Rule rule = Rule::kOff;             ///< whose memory it is
+  Rule rule = "off";                  ///< whose memory it is
   std::vector<ExecutionKey> handled;  ///< the executions handled last, oldest first
 };
 
@@ -30,5 +33,14 @@ std::string formatState(const LearnerState& state, const PatternSet& shipped,
 /// shipped set.
 std::optional<LearnerState> parseState(const std::string& text, const PatternSet& shipped,
                                        std::string& why);
+
+/// The remembered surfaces of a shipped set as text that people can read; restores bit for bit.
+/** Names the shipped set by its checksum: corrections are relative to its predictions. */
+std::string formatBank(const SurfaceBank& bank, const PatternSet& shipped);
+
+/// Puts the surfaces of a text into `bank`; one clear line if the text is damaged or of another
+/// set, and then the bank is as before.
+std::optional<std::string> parseBank(const std::string& text, const PatternSet& shipped,
+                                     SurfaceBank& bank);
 
 }  // namespace tread::learner

@@ -188,16 +188,16 @@ void correct(benchmark::State& state, Rule name, size_t patterns, size_t samples
 void registerAll() {
   for (const auto& [patterns, samples] : {std::pair<size_t, size_t>{5, 20}, {15, 100}}) {
     const std::string shape = "/" + std::to_string(patterns) + "x" + std::to_string(samples);
-    for (const Rule rule : allRules())
+    for (const Rule& rule : ruleNames())
       benchmark::RegisterBenchmark(
-          (std::string("update/") + ruleName(rule) + shape).c_str(),
+          ("update/" + rule + shape).c_str(),
           [rule, patterns = patterns, samples = samples](benchmark::State& state) {
             update(state, rule, patterns, samples);
           })
           ->Unit(benchmark::kMicrosecond);
   }
-  for (const Rule rule : allRules())
-    benchmark::RegisterBenchmark((std::string("correct/") + ruleName(rule) + "/15x100").c_str(),
+  for (const Rule& rule : ruleNames())
+    benchmark::RegisterBenchmark(("correct/" + rule + "/15x100").c_str(),
                                  [rule](benchmark::State& state) { correct(state, rule, 15, 100); })
         ->Unit(benchmark::kMicrosecond);
 }

@@ -84,7 +84,7 @@ TEST_CASE("executions are whole, each a track of its own with silence before it"
 TEST_CASE("the learner measures in the log what the recordings hold") {
   const DriveRecordings drives = syntheticBook();
   const auto events = logOf(drives, 0, 1, 16, 2);
-  const auto run = learned(drives, 0, events, learner::Rule::kOff);
+  const auto run = learned(drives, 0, events, "off");
   CHECK(accepted(run) == 32);
   for (const learning_t& learning : run.learned) {
     const auto& executions = drives.recordings.surfaces[learning.learned_execution_id <= 16 ? 0 : 1]
@@ -101,8 +101,8 @@ TEST_CASE("the learner measures in the log what the recordings hold") {
 TEST_CASE("a learner that knows one surface adapts to the other through the log") {
   const DriveRecordings drives = syntheticBook();
   const auto events = logOf(drives, 0, 1, 48, 1);
-  const auto off = learned(drives, 0, events, learner::Rule::kOff);
-  const auto single = learned(drives, 0, events, learner::Rule::kSingle);
+  const auto off = learned(drives, 0, events, "off");
+  const auto single = learned(drives, 0, events, "single");
   const auto known = errors(off, 1, 48);
   const auto strange = errors(off, 49, 96);
   const auto adapted = errors(single, 65, 96);  // each pattern was met twice, then four times
@@ -150,8 +150,8 @@ TEST_CASE("recorded drives: the learner hears a real change of surface") {
     for (const auto& executions : surface.executions) REQUIRE(executions.size() >= 20);
   for (const SurfaceSummary& surface : drives.surfaces) CHECK(surface.windows >= 100);
   const auto events = logOf(drives, 0, 1, 40, 1);
-  const auto off = learned(drives, 0, events, learner::Rule::kOff);
-  const auto collective = learned(drives, 0, events, learner::Rule::kCollective);
+  const auto off = learned(drives, 0, events, "off");
+  const auto collective = learned(drives, 0, events, "collective");
   CHECK(off.learned.size() == 80);
   CHECK(accepted(off) >= 72);
   CHECK(accepted(collective) == accepted(off));

@@ -107,7 +107,7 @@ TEST_CASE("repetitions allocate nothing") {
 TEST_CASE("the bank allocates nothing but when it judges a block of executions") {
   const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
   learner::RuleConfig config;
-  config.rule = learner::Rule::kBank;
+  config.rule = "bank";
   const auto rule = learner::makeRule(config, grounds[0].averaged);
   driveExcitation(*rule, grounds, {0, grounds.size(), 50}, 1);
   const int executions = 400;

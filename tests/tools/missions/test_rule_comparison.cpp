@@ -73,7 +73,7 @@ std::string bytesOf(const std::string& path) {
 TEST_CASE("a shadow of the driving rule predicts what the drive predicted, others differ") {
   MissionOptions options;
   options.rule = "collective";
-  options.shadows = {learner::Rule::kOff, learner::Rule::kCollective, learner::Rule::kBank};
+  options.shadows = {"off", "collective", "bank"};
   const MissionRun run = runMission(teodor(), 22, options);
   REQUIRE(run.result.shadow_rules == options.shadows);
   int measured = 0, as_driven = 0, off_differs = 0, bank_differs = 0;
@@ -170,7 +170,7 @@ TEST_CASE("a comparison says in text and in JSON what each rule did") {
     comparison.batches.push_back(batch);
   }
   for (MissionResult& result : comparison.batches.front().results) {
-    result.shadow_rules = {learner::Rule::kCollective, learner::Rule::kOff};
+    result.shadow_rules = {"collective", "off"};
     for (ScoredExecution& execution : result.executions)
       execution.by_rule = {{execution.error_position, execution.error_yaw}, {0.2, 0.3}};
   }

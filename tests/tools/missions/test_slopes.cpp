@@ -43,7 +43,7 @@ struct HillsideDrive {
   MissionResult without_gate;  ///< by_rule of the same executions, learned without the gate
 };
 
-const std::vector<learner::Rule> kRules{learner::Rule::kCollective, learner::Rule::kBank};
+const std::vector<learner::Rule> kRules{"collective", "bank"};
 
 void fillByRule(shadow::ShadowLearners& shadows, MissionResult& result) {
   shadows.finish();
@@ -125,8 +125,8 @@ TEST_CASE("what a slope did is not learned with the gate, and spoils level groun
   }
   CHECK(refused >= 40);
   for (size_t rule = 0; rule < kRules.size(); ++rule) {
-    CAPTURE(learner::ruleName(kRules[rule]), with[rule].position, without[rule].position,
-            with[rule].yaw, without[rule].yaw);
+    CAPTURE(kRules[rule], with[rule].position, without[rule].position, with[rule].yaw,
+            without[rule].yaw);
     REQUIRE(with[rule].count == 10);
     REQUIRE(without[rule].count == 10);
     CHECK(without[rule].position > 1.2 * with[rule].position);

@@ -179,7 +179,7 @@ TEST_CASE("what is set on the command line stands in the place of the robot's fi
       readRobot(folder, {"planner.margins.growth=0", "learner.rule=collective"});
   CHECK(teodor().planner.local_map.margins.growth > 0.0);
   CHECK(robot.planner.local_map.margins.growth == 0.0);
-  CHECK(robot.learner.rule.rule == learner::Rule::kCollective);
+  CHECK(robot.learner.rule.rule == "collective");
   CHECK_THROWS_WITH(readRobot(folder, {"planer.margins.growth=0"}),
                     Catch::Contains("--set planer.margins.growth=0") && Catch::Contains("planner"));
   CHECK_THROWS_WITH(readRobot(folder, {"planner"}), Catch::Contains("PROCESS.KEY=VALUE"));

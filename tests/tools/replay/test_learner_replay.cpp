@@ -33,8 +33,7 @@ learner::LearnerNodeConfig configFor(const PatternSet& set, learner::Rule rule) 
 
 LearnerRun runOf(const DriveLog& log, learner::Rule rule,
                  Commitment commitment = Commitment::kAhead) {
-  return runLearner(log, configFor(predictedSet(log, kModel), rule), commitment,
-                    learner::ruleName(rule));
+  return runLearner(log, configFor(predictedSet(log, kModel), rule), commitment, rule);
 }
 
 /// Mean of the last part of a run.
@@ -69,7 +68,7 @@ TEST_CASE("a model of the other kind of command is refused with one line") {
 
 TEST_CASE("off scores the model itself on every execution") {
   const DriveLog log = syntheticLog(syntheticRecording(kTruth, 8));
-  const LearnerRun run = runOf(log, learner::Rule::kOff);
+  const LearnerRun run = runOf(log, "off");
   REQUIRE(run.learned.size() == 16);
   const PatternSet set = predictedSet(log, kModel);
   for (const learning_t& learned : run.learned) {
@@ -81,8 +80,8 @@ TEST_CASE("off scores the model itself on every execution") {
 
 TEST_CASE("collective carries what one command taught to commands that were never executed") {
   const DriveLog log = syntheticLog(syntheticRecording(kTruth, 40));
-  const ErrorSummary off = lateErrors(runOf(log, learner::Rule::kOff));
-  const ErrorSummary collective = lateErrors(runOf(log, learner::Rule::kCollective));
+  const ErrorSummary off = lateErrors(runOf(log, "off"));
+  const ErrorSummary collective = lateErrors(runOf(log, "collective"));
   REQUIRE(off.count == 40);
   REQUIRE(collective.yaw_mean < 0.3 * off.yaw_mean);
   REQUIRE(collective.position_mean < off.position_mean);
@@ -90,10 +89,9 @@ TEST_CASE("collective carries what one command taught to commands that were neve
 
 TEST_CASE("single helps a command that comes twice only if the first was learned in time") {
   const DriveLog log = syntheticLog(syntheticRecording(kTruth, 10));
-  const ErrorSummary off = summarise(runOf(log, learner::Rule::kOff).learned);
-  const ErrorSummary ahead = summarise(runOf(log, learner::Rule::kSingle).learned);
-  const ErrorSummary prompt =
-      summarise(runOf(log, learner::Rule::kSingle, Commitment::kPrompt).learned);
+  const ErrorSummary off = summarise(runOf(log, "off").learned);
+  const ErrorSummary ahead = summarise(runOf(log, "single").learned);
+  const ErrorSummary prompt = summarise(runOf(log, "single", Commitment::kPrompt).learned);
   // The second execution of a command begins when the first ends: its set was chosen before.
   REQUIRE(ahead.yaw_mean == Approx(off.yaw_mean));
   REQUIRE(prompt.yaw_mean == Approx(0.75 * off.yaw_mean).epsilon(0.01));
@@ -101,8 +99,8 @@ TEST_CASE("single helps a command that comes twice only if the first was learned
 
 TEST_CASE("the same log gives the same run, to the bit") {
   const DriveLog log = syntheticLog(syntheticRecording(kTruth, 10));
-  const LearnerRun first = runOf(log, learner::Rule::kCollective);
-  const LearnerRun second = runOf(log, learner::Rule::kCollective);
+  const LearnerRun first = runOf(log, "collective");
+  const LearnerRun second = runOf(log, "collective");
   REQUIRE(first.learned.size() == second.learned.size());
   for (size_t i = 0; i < first.learned.size(); ++i) {
     REQUIRE(first.learned[i].error_position == second.learned[i].error_position);
@@ -119,8 +117,7 @@ TEST_CASE("the report says what came in, what was refused and why, and the error
       recording.fixes.end());
   const DriveLog log = syntheticLog(recording);
   const PatternSet set = predictedSet(log, kModel);
-  const std::string report =
-      reportOf(log, set, {runOf(log, learner::Rule::kOff), runOf(log, learner::Rule::kCollective)});
+  const std::string report = reportOf(log, set, {runOf(log, "off"), runOf(log, "collective")});
   INFO(report);
   REQUIRE(report.find("synthetic: 12 executions in, 11 measured, 1 refused\n") == 0);
   REQUIRE(report.find("1 refused: INS gap") != std::string::npos);
@@ -133,8 +130,7 @@ TEST_CASE("the report is also a picture") {
   const DriveLog log = syntheticLog(syntheticRecording(kTruth, 6));
   const std::string path =
       (std::filesystem::temp_directory_path() / "tread_learner_replay.png").string();
-  drawReport(log, predictedSet(log, kModel),
-             {runOf(log, learner::Rule::kOff), runOf(log, learner::Rule::kCollective)}, path);
+  drawReport(log, predictedSet(log, kModel), {runOf(log, "off"), runOf(log, "collective")}, path);
   REQUIRE(std::filesystem::file_size(path) > 5000);
   std::filesystem::remove(path);
 }
@@ -194,10 +190,9 @@ TEST_CASE("real grass goes through the learner") {
                         session, "steps", {}, counts));
   const PatternSet set = predictedSet(
       log, readModelFile(std::string(TREAD_SOURCE_DIR) + "/config/models/warthog_asphalt.yaml"));
-  const LearnerRun off =
-      runLearner(log, configFor(set, learner::Rule::kOff), Commitment::kAhead, "off");
+  const LearnerRun off = runLearner(log, configFor(set, "off"), Commitment::kAhead, "off");
   const LearnerRun collective =
-      runLearner(log, configFor(set, learner::Rule::kCollective), Commitment::kAhead, "collective");
+      runLearner(log, configFor(set, "collective"), Commitment::kAhead, "collective");
   REQUIRE(off.learned.size() == 40);
   REQUIRE(summarise(off.learned).count >= 35);
   REQUIRE(summarise(collective.learned).count == summarise(off.learned).count);

@@ -20,8 +20,7 @@ const std::string kConfigFolder = TREAD_SOURCE_DIR "/config";
 }  // namespace
 
 TEST_CASE("a log tells what each rule would have predicted, as shadows of the drive do") {
-  const std::vector<learner::Rule> rules{learner::Rule::kOff, learner::Rule::kCollective,
-                                         learner::Rule::kBank};
+  const std::vector<learner::Rule> rules{"off", "collective", "bank"};
   const std::string path = "test_rule_errors_" + std::to_string(getpid()) + ".lcmlog";
   missions::MissionRun run;
   {
@@ -66,7 +65,7 @@ TEST_CASE("a log without a learner gives no comparison, and the reason") {
     log.write(kGoal, goal);
   }
   const report::RuleErrors errors =
-      report::errorsByRule({path}, kConfigFolder + "/patterns", {learner::Rule::kOff});
+      report::errorsByRule({path}, kConfigFolder + "/patterns", {"off"});
   std::remove(path.c_str());
   CHECK(errors.problem.find("no CONFIG of the learner") != std::string::npos);
   CHECK(report::reportOf(errors, {}).find("no CONFIG of the learner") != std::string::npos);

@@ -16,6 +16,16 @@ constexpr double kSure = 0.9;
 /// Among stored surfaces a block expects a change this seldom [1].
 constexpr double kSlowHazard = 0.05;
 
+/// Whether they are, and of all there is: the sum is one but for rounding.
+bool areProbabilities(const std::vector<double>& weights) {
+  double total = 0.0;
+  for (const double weight : weights) {
+    if (!(weight >= 0.0)) return false;
+    total += weight;
+  }
+  return std::abs(total - 1.0) < 1e-6;
+}
+
 /// The filter of one block: nothing changes in it.
 FilterConfig blockConfig(FilterConfig config) {
   config.hazard = 0.0;
@@ -89,9 +99,9 @@ void Bank::clearBlock() {
   block_log_known_ = 0.0;
 }
 
-double Bank::judgeAsNew() {
+double Bank::logDensityAsNew() {
   // Twice: the noise that the block shows itself decides how exactly it fits.
-  judgeAsNew(Eigen::Vector3d::Ones());
+  logDensityAsNew(Eigen::Vector3d::Ones());
   Eigen::Vector3d seen = Eigen::Vector3d::Constant(SurfaceBank::kNoisePrior);
   for (const Entry& entry : block_) {
     const size_t p = entry.sample.pattern;
@@ -101,10 +111,11 @@ double Bank::judgeAsNew() {
   }
   const Eigen::Vector3d noise =
       seen / (SurfaceBank::kNoisePrior + static_cast<double>(block_.size()));
-  return judgeAsNew(noise.cwiseMax(SurfaceBank::kLeastNoise).cwiseMin(SurfaceBank::kMostNoise));
+  return logDensityAsNew(
+      noise.cwiseMax(SurfaceBank::kLeastNoise).cwiseMin(SurfaceBank::kMostNoise));
 }
 
-double Bank::judgeAsNew(const Eigen::Vector3d& noise) {
+double Bank::logDensityAsNew(const Eigen::Vector3d& noise) {
   block_filter_.restartAt(Eigen::VectorXd::Zero(model_->dimension()), 1.0);
   block_filter_.setNoise(noise);
   double log_density = 0.0;
@@ -143,7 +154,7 @@ void Bank::refineKnown() {
 }
 
 void Bank::closeBlock(RuleNote& note) {
-  const double log_new = judgeAsNew();
+  const double log_new = logDensityAsNew();
   if (known_.empty() || log_new > block_log_known_ + config_.new_margin) {
     storeBlock(note);
   } else {
@@ -200,6 +211,14 @@ void Bank::learn(size_t executed, const ConstTrajectory& measured, RuleNote& not
   note.surface_probability = *likeliest;
 }
 
+std::string Bank::reason(const RuleNote& note) const {
+  const std::string sure = " (" + percent(note.surface_probability) + ")";
+  if (note.surface_stored)
+    return "remembered as surface " + std::to_string(note.surface) + " from now on";
+  return note.surface > 0 ? "as surface " + std::to_string(note.surface) + sure
+                          : "unknown ground" + sure;
+}
+
 void Bank::predict(size_t pattern, Trajectory prediction) const {
   model_->profile(pattern).integrate(model_->correctionOf(mean_, pattern), prediction);
 }
@@ -254,6 +273,62 @@ void Bank::adoptBank(const SurfaceBank& bank) {
     clock_ = std::max(clock_, surfaces_[k].stored().last_met);
   clearBlock();
   mix();
+}
+
+// What the bank writes into the state file, and what it takes back from there.
+
+std::vector<double> Bank::memory() const {
+  std::vector<double> memory;
+  filter_.save(memory);
+  surfaces_.save(memory);
+  memory.insert(memory.end(), weights_.begin(), weights_.end());
+  memory.insert(memory.end(), known_.begin(), known_.end());
+  memory.insert(memory.end(), {block_log_known_, static_cast<double>(clock_),
+                               static_cast<double>(block_.size())});
+  for (const Entry& entry : block_)
+    memory.insert(memory.end(), {static_cast<double>(entry.sample.pattern),
+                                 entry.sample.mean_twist[0], entry.sample.mean_twist[1],
+                                 entry.sample.mean_twist[2], static_cast<double>(entry.surface)});
+  return memory;
+}
+
+bool Bank::restore(const TrajectoryTable&, const std::vector<double>& memory) {
+  for (const double number : memory)
+    if (!std::isfinite(number)) return false;
+  Bank bank = *this;
+  size_t at = 0;
+  if (!bank.filter_.restore(memory, at) || !bank.surfaces_.restore(memory, at)) return false;
+  const size_t known = bank.surfaces_.size();
+  if (memory.size() < at + 2 * known + 4) return false;
+  bank.weights_.assign(known + 1, 0.0);
+  for (double& weight : bank.weights_) weight = memory[at++];
+  bank.known_.assign(known, 0.0);
+  for (double& weight : bank.known_) weight = memory[at++];
+  if (!areProbabilities(bank.weights_) || (known > 0 && !areProbabilities(bank.known_)))
+    return false;
+  bank.block_log_known_ = memory[at++];
+  if (!isCount(memory[at], kMostExecutions)) return false;
+  bank.clock_ = static_cast<int64_t>(memory[at++]);
+  if (bank.surfaces_.newest() > bank.clock_ || !bank.restoreBlock(memory, at)) return false;
+  assign(bank);
+  mix();
+  return true;
+}
+
+bool Bank::restoreBlock(const std::vector<double>& memory, size_t at) {
+  constexpr size_t kEach = 5;
+  const size_t numbers = memory.size() - at - 1;
+  if (memory[at++] * kEach != static_cast<double>(numbers) || numbers % kEach != 0) return false;
+  const double patterns = static_cast<double>(model_->patterns()) - 1.0;
+  block_.clear();
+  for (; at < memory.size(); at += kEach) {
+    if (!isCount(memory[at], patterns)) return false;
+    if (!isCount(memory[at + 4], static_cast<double>(known_.size()))) return false;
+    block_.push_back(
+        {{static_cast<size_t>(memory[at]), {memory[at + 1], memory[at + 2], memory[at + 3]}},
+         static_cast<size_t>(memory[at + 4])});
+  }
+  return true;
 }
 
 }  // namespace tread::learner

@@ -25,6 +25,7 @@ class Bank : public LearningRule {
   Bank(const RuleConfig& config, const PatternSet& shipped);
 
   void learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) override;
+  std::string reason(const RuleNote& note) const override;
   void predict(size_t pattern, Trajectory prediction) const override;
   Pose2 predictEnd(size_t pattern) const override;
   std::optional<PoseCovariance> endCovariance(size_t pattern) const override;
@@ -49,8 +50,8 @@ class Bank : public LearningRule {
   void closeBlock(RuleNote& note);
   void storeBlock(RuleNote& note);
   /// Log density of the block if it is a new surface; the block filter learns it.
-  double judgeAsNew();
-  double judgeAsNew(const Eigen::Vector3d& noise);
+  double logDensityAsNew();
+  double logDensityAsNew(const Eigen::Vector3d& noise);
   /// Makes one of stored surfaces that are the same; whether there were any.
   bool mergeAlike();
   void clearBlock();

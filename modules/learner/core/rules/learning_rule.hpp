@@ -35,7 +35,7 @@ struct RuleNote {
 
 /// A rule of learning: predictions of all patterns of a set, corrected by measurements.
 /** Patterns are named by their index in the shipped set. Same input, same bits; learn() and the
- * predictions allocate nothing, but for the bank, which does when it judges a block of executions.
+ * predictions allocate nothing, except that the bank does when it classifies a block of executions.
  * Trajectories hold T x 3 numbers: x, y [m], yaw [rad, unwrapped] in the start frame, one row a
  * sample. */
 class LearningRule {
@@ -44,6 +44,10 @@ class LearningRule {
 
   /// Learns from a measured trajectory M of pattern `executed` (as many rows as its prediction).
   virtual void learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) = 0;
+  /// Whether the set may ever change.
+  virtual bool learns() const { return true; }
+  /// What the rule took an execution for, in words for LEARNING.
+  virtual std::string reason(const RuleNote&) const { return "own prediction moved"; }
   /// Writes R of a pattern.
   virtual void predict(size_t pattern, Trajectory prediction) const = 0;
   /// The last pose of R, which is all that a score needs.
@@ -68,6 +72,9 @@ class LearningRule {
   /** Returns false and changes nothing if they are not this rule's. */
   virtual bool restore(const TrajectoryTable& predictions, const std::vector<double>& memory) = 0;
 };
+
+/// Names of all rules, in the order in which reports list them.
+std::vector<std::string> ruleNames();
 
 /// The rule that a configuration names, knowing nothing but the shipped set.
 std::unique_ptr<LearningRule> makeRule(const RuleConfig& config, const PatternSet& shipped);

@@ -2,21 +2,34 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/learner/core/rules/local_filter.hpp"
 
+#include <cmath>
+
 namespace tread::learner {
+
+std::string percent(double probability) {
+  return std::to_string(std::lround(100.0 * probability)) + " %";
+}
 
 PoseCovariance upperTriangle(const Eigen::Matrix3d& covariance) {
   return {covariance(0, 0), covariance(0, 1), covariance(0, 2),
           covariance(1, 1), covariance(1, 2), covariance(2, 2)};
 }
 
-LocalFilter::LocalFilter(const FilterConfig& config, const PatternSet& shipped)
-    : model_(std::make_shared<GroundModel>(config, shipped)), filter_(model_, config) {}
+LocalFilter::LocalFilter(const RuleConfig& config, const PatternSet& shipped)
+    : model_(std::make_shared<GroundModel>(config.filter, shipped)),
+      filter_(model_, config.filter) {}
 
 void LocalFilter::learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) {
   const Eigen::Vector3d mean_twist = meanTwist(measured, model_->period());
   if (!mean_twist.allFinite()) return;  // beyond all numbers
   filter_.update(executed, mean_twist);
   note.change_probability = filter_.changeProbability();
+}
+
+std::string LocalFilter::reason(const RuleNote& note) const {
+  return note.change_probability > 0.5
+             ? "the ground changed (" + percent(note.change_probability) + ")"
+             : "the same ground (" + percent(1.0 - note.change_probability) + ")";
 }
 
 void LocalFilter::predict(size_t pattern, Trajectory prediction) const {

@@ -17,9 +17,10 @@ namespace tread::learner {
  * the end pose. It knows no driven trajectory by heart: shapes stay the shipped ones. */
 class LocalFilter : public LearningRule {
  public:
-  LocalFilter(const FilterConfig& config, const PatternSet& shipped);
+  LocalFilter(const RuleConfig& config, const PatternSet& shipped);
 
   void learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) override;
+  std::string reason(const RuleNote& note) const override;
   void predict(size_t pattern, Trajectory prediction) const override;
   Pose2 predictEnd(size_t pattern) const override;
   std::optional<PoseCovariance> endCovariance(size_t pattern) const override;
@@ -34,6 +35,9 @@ class LocalFilter : public LearningRule {
   std::shared_ptr<const GroundModel> model_;
   GroundFilter filter_;
 };
+
+/// A probability in words: "97 %".
+std::string percent(double probability);
 
 /// The upper triangle of a symmetric matrix.
 PoseCovariance upperTriangle(const Eigen::Matrix3d& covariance);

@@ -3,13 +3,39 @@
 #include <stdexcept>
 
 #include "modules/learner/core/rules/bank.hpp"
-#include "modules/learner/core/rules/collective.hpp"
 #include "modules/learner/core/rules/local_filter.hpp"
-#include "modules/learner/core/rules/off.hpp"
-#include "modules/learner/core/rules/single.hpp"
-#include "modules/learner/core/rules/telescoping.hpp"
+#include "modules/learner/core/rules/scaling_rules.hpp"
 
 namespace tread::learner {
+namespace {
+
+template <class Made>
+std::unique_ptr<LearningRule> make(const RuleConfig& config, const PatternSet& shipped) {
+  return std::make_unique<Made>(config, shipped);
+}
+
+struct NamedRule {
+  const char* name;
+  std::unique_ptr<LearningRule> (*make)(const RuleConfig& config, const PatternSet& shipped);
+};
+
+/// All rules, in the order in which reports list them. A new rule is one line here.
+const NamedRule kRules[] = {
+    {"off", &make<Off>},
+    {"single", &make<Single>},
+    {"collective", &make<Collective>},
+    {"telescoping", &make<Telescoping>},
+    {"local_filter", &make<LocalFilter>},
+    {"bank", &make<Bank>},
+};
+
+}  // namespace
+
+std::vector<std::string> ruleNames() {
+  std::vector<std::string> names;
+  for (const NamedRule& rule : kRules) names.emplace_back(rule.name);
+  return names;
+}
 
 std::unique_ptr<LearningRule> makeRule(const RuleConfig& config, const PatternSet& shipped) {
   if (!(config.memory >= 0.0 && config.memory < 1.0))
@@ -17,21 +43,9 @@ std::unique_ptr<LearningRule> makeRule(const RuleConfig& config, const PatternSe
   if (config.bank.settled_after < 1 || config.bank.capacity < 1)
     throw std::invalid_argument(
         "learner: settled_after and capacity of the bank must be 1 or more");
-  switch (config.rule) {
-    case Rule::kOff:
-      return std::make_unique<Off>(shipped);
-    case Rule::kSingle:
-      return std::make_unique<Single>(shipped, config.memory);
-    case Rule::kCollective:
-      return std::make_unique<Collective>(config, shipped);
-    case Rule::kTelescoping:
-      return std::make_unique<Telescoping>(config, shipped);
-    case Rule::kLocalFilter:
-      return std::make_unique<LocalFilter>(config.filter, shipped);
-    case Rule::kBank:
-      return std::make_unique<Bank>(config, shipped);
-  }
-  throw std::invalid_argument("learner: unknown rule");
+  for (const NamedRule& rule : kRules)
+    if (config.rule == rule.name) return rule.make(config, shipped);
+  throw std::invalid_argument("learner: unknown rule '" + config.rule + "'");
 }
 
 }  // namespace tread::learner

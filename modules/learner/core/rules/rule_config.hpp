@@ -2,33 +2,14 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <optional>
+#include <array>
+#include <cstdint>
 #include <string>
-#include <vector>
 
 #include "modules/learner/core/end_residuals.hpp"
 #include "modules/learner/core/scaling.hpp"
 
 namespace tread::learner {
-
-/// What is made of a measurement.
-enum class Rule {
-  kOff,          ///< nothing: the set never changes
-  kSingle,       ///< the executed pattern is smoothed towards M (the paper's predecessor)
-  kCollective,   ///< and all others by V: equations (1) and (2), Algorithm 1
-  kTelescoping,  ///< all others by the change of the executed pattern's own box: no drift
-  kLocalFilter,  ///< a Kalman filter of what the ground does to body twists
-  kBank,         ///< remembered surfaces over that filter
-};
-
-/// All of them, in the order in which reports list them.
-const std::vector<Rule>& allRules();
-/// off, single, collective, telescoping, local_filter, bank.
-const char* ruleName(Rule rule);
-/// The rule of that name, or nothing.
-std::optional<Rule> ruleNamed(const std::string& name);
-/// All names, for messages and command lines.
-std::vector<std::string> ruleNames();
 
 /// Noise of one execution on unchanged ground: standard deviations of its mean body twist.
 struct TwistNoise {
@@ -67,9 +48,12 @@ struct BankConfig {
   int64_t capacity = 16;        ///< surfaces; the one that was met longest ago makes room
 };
 
+/// Name of a rule of learning: one of ruleNames().
+using Rule = std::string;
+
 /// The rule of learning and its guards.
 struct RuleConfig {
-  Rule rule = Rule::kBank;
+  Rule rule = "bank";
   double memory = 0.5;  ///< w of equation (2): weight of the OLD prediction, 0 <= w < 1
   ScalingLimits scaling;
   ResidualLimits residuals;

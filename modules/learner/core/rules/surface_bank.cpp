@@ -11,7 +11,6 @@
 #include <Eigen/LU>
 
 #include "modules/learner/core/rules/ground_filter.hpp"
-#include "modules/learner/core/rules/stored_number.hpp"
 
 namespace tread::learner {
 namespace {
@@ -32,8 +31,8 @@ double logNormalOf(const Eigen::VectorXd& y, const Eigen::MatrixXd& covariance) 
 }
 
 /// P - PH S^-1 PH'.
-void takeOff(Eigen::MatrixXd& P, const Eigen::Matrix<double, Eigen::Dynamic, 3>& PH,
-             const Eigen::Matrix3d& S) {
+void downdate(Eigen::MatrixXd& P, const Eigen::Matrix<double, Eigen::Dynamic, 3>& PH,
+              const Eigen::Matrix3d& S) {
   const Eigen::Matrix3d inverse_root =
       S.llt().matrixL().solve(Eigen::Matrix3d::Identity()).transpose();
   const Eigen::Matrix<double, Eigen::Dynamic, 3> root = PH.lazyProduct(inverse_root);
@@ -58,7 +57,8 @@ KnownSurface::KnownSurface(const GroundModel& model, RememberedSurface stored)
   for (size_t p = 0; p < model.patterns(); ++p) {
     if (stored_.driven[p] <= 0.0) continue;
     model.timesResponse(P_, p, PH);
-    takeOff(P_, PH, model.response(PH, p) + executionNoise(model, p) / (share * stored_.driven[p]));
+    downdate(P_, PH,
+             model.response(PH, p) + executionNoise(model, p) / (share * stored_.driven[p]));
   }
   for (size_t p = 0; p < model.patterns(); ++p) {
     model.timesResponse(P_, p, PH);
@@ -85,7 +85,7 @@ std::shared_ptr<const KnownSurface> KnownSurface::after(const GroundModel& model
     const Eigen::Matrix3d S = model.response(PH, p) + scaledNoise(model.noise(p), next.noise);
     const Eigen::Matrix<double, Eigen::Dynamic, 3> gain = PH * S.inverse();
     next.x += gain * y;
-    takeOff(P, PH, S);
+    downdate(P, PH, S);
     const Eigen::Vector3d seen = y.cwiseAbs2().cwiseQuotient(S.diagonal()).cwiseProduct(next.noise);
     const double share =
         1.0 / (SurfaceBank::kNoisePrior + std::min(next.executions(), kLongestMean));

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -9,6 +10,14 @@
 #include "modules/learner/core/rules/ground_model.hpp"
 
 namespace tread::learner {
+
+/// No count of executions is beyond this; a double holds all whole numbers up to it.
+inline constexpr double kMostExecutions = 9e15;
+
+/// Whether a number from a file is a whole one in [0, most]: only then it may become an integer.
+inline bool isCount(double number, double most) {
+  return number >= 0.0 && number <= most && number == std::floor(number);
+}
 
 /// The mean twist of one execution.
 struct TwistSample {

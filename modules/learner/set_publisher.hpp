@@ -12,9 +12,9 @@ namespace tread::learner {
 
 /// Sends sets and states in portions: LCM loses what one publisher sends too fast (design, section
 /// 4).
-class Outbox {
+class SetPublisher {
  public:
-  explicit Outbox(Bus& bus) : bus_(bus) {}
+  explicit SetPublisher(Bus& bus) : bus_(bus) {}
 
   /// The parts of a set; those of an older one that are still here are not sent any more.
   void putSet(const PatternSet& set);
@@ -22,7 +22,7 @@ class Outbox {
   /// older.
   void putState(const PatternSet& set, const std::string& rule, const std::string& text);
 
-  bool emptyOfSets() const { return sets_.empty(); }
+  bool setsSent() const { return sets_.empty(); }
   /// Sends one portion.
   void step(int64_t utime);
 

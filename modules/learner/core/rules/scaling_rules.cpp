@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/learner/core/rules/scaling_rule.hpp"
+#include "modules/learner/core/rules/scaling_rules.hpp"
 
 #include <cmath>
 
 namespace tread::learner {
 
-ScalingGuards::ScalingGuards(const RuleConfig& config, const PatternSet& shipped)
-    : relative_noise_(config.relative_noise),
+namespace {
+
+/// A box that no vehicle can drive [m, m, rad] must not become a prediction.
+constexpr double kLargestBox = 1e6;
+
+}  // namespace
+
+ScalingRule::ScalingRule(const RuleConfig& config, const PatternSet& shipped)
+    : StoredPredictions(config, shipped),
+      limits_(config.scaling),
+      relative_noise_(config.relative_noise),
       absolute_noise_(config.absolute_noise),
       sign_sigmas_(config.sign_sigmas) {
   for (const MotionPattern& pattern : shipped.patterns()) {
@@ -17,7 +26,7 @@ ScalingGuards::ScalingGuards(const RuleConfig& config, const PatternSet& shipped
   }
 }
 
-bool ScalingGuards::opposite(size_t executed, int axis, double measured, double predicted) const {
+bool ScalingRule::opposite(size_t executed, int axis, double measured, double predicted) const {
   if (!roles_[executed].scalable[static_cast<size_t>(axis)] || measured * predicted >= 0.0)
     return false;
   const double variance = variances_[executed][axis];
@@ -26,8 +35,8 @@ bool ScalingGuards::opposite(size_t executed, int axis, double measured, double 
   return std::abs(measured - predicted) > sign_sigmas_ * sigma;
 }
 
-bool ScalingGuards::allow(size_t executed, const ConstTrajectory& measured,
-                          const Pose2& predicted_end, RuleNote& note) const {
+bool ScalingRule::allow(size_t executed, const ConstTrajectory& measured,
+                        const Pose2& predicted_end, RuleNote& note) const {
   const PatternRole& role = roles_[executed];
   const Eigen::Index last = measured.rows() - 1;
   note.one_dimensional = !role.gives_scaling;
@@ -39,18 +48,23 @@ bool ScalingGuards::allow(size_t executed, const ConstTrajectory& measured,
   return true;
 }
 
+std::string ScalingRule::reason(const RuleNote& note) const {
+  return std::isfinite(note.scaling[0]) ? "own prediction moved, the others scaled"
+                                        : "own prediction moved";
+}
+
 void ScalingRule::learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) {
   Boxes boxes;
   boxes.measured = boundingBox(measured);
-  if (!ScalingGuards::possible(boxes.measured)) return;
-  const bool gives = guards_.allow(executed, measured, table_.end(executed), note);
+  if (!(boxes.measured < kLargestBox).all()) return;
+  const bool gives = allow(executed, measured, table_.end(executed), note);
   boxes.before = boundingBox(table_.of(executed));
   smooth(measured, memory_, table_.change(executed));  // equation (2)
   if (!gives) return;
   boxes.after = boundingBox(table_.of(executed));
-  const Axes scaling = factors(boxes, guards_.role(executed), note);
+  const Axes scaling = factors(boxes, roles_[executed], note);
   for (size_t p = 0; p < table_.patterns(); ++p)
-    if (p != executed) scale(scaling, guards_.role(p), table_.change(p));
+    if (p != executed) scale(scaling, roles_[p], table_.change(p));
 }
 
 }  // namespace tread::learner

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/learner/outbox.hpp"
+#include "modules/learner/set_publisher.hpp"
 
 #include <algorithm>
 
@@ -17,12 +17,13 @@ constexpr size_t kWaitingStates = 2;
 
 }  // namespace
 
-void Outbox::putSet(const PatternSet& set) {
+void SetPublisher::putSet(const PatternSet& set) {
   const auto parts = toMessages(set);
   sets_.assign(parts.begin(), parts.end());
 }
 
-void Outbox::putState(const PatternSet& set, const std::string& rule, const std::string& text) {
+void SetPublisher::putState(const PatternSet& set, const std::string& rule,
+                            const std::string& text) {
   const auto last_parts = std::count_if(states_.begin(), states_.end(), [](const auto& part) {
     return part.state_part + 1 == part.state_part_count;
   });
@@ -41,7 +42,7 @@ void Outbox::putState(const PatternSet& set, const std::string& rule, const std:
   }
 }
 
-void Outbox::step(int64_t utime) {
+void SetPublisher::step(int64_t utime) {
   int left = kPortion;
   while (!sets_.empty()) {
     const int size = sets_.front().getEncodedSize();

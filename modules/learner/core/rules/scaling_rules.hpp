@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include "modules/learner/core/rules/stored_predictions.hpp"
+
+namespace tread::learner {
+
+/// What collective and telescoping scaling have in common: the executed pattern is smoothed by
+/// equation (2), all others are scaled by one factor an axis.
+class ScalingRule : public StoredPredictions {
+ public:
+  ScalingRule(const RuleConfig& config, const PatternSet& shipped);
+
+  void learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) final;
+  std::string reason(const RuleNote& note) const override;
+
+ protected:
+  /// Boxes of M, and of the executed pattern's prediction before and after the update.
+  struct Boxes {
+    Axes measured, before, after;
+  };
+  /// What the others are scaled by; fills `note.scaling`.
+  virtual Axes factors(const Boxes& boxes, const PatternRole& role, RuleNote& note) const = 0;
+
+  ScalingLimits limits_;
+
+ private:
+  /// Fills the guards of `note`; true if a V may be computed from this measurement.
+  bool allow(size_t executed, const ConstTrajectory& measured, const Pose2& predicted_end,
+             RuleNote& note) const;
+  bool opposite(size_t executed, int axis, double measured, double predicted) const;
+
+  std::vector<PatternRole> roles_;
+  std::vector<Axes> variances_;  ///< of the shipped ends; NaN = unknown
+  Axes relative_noise_;
+  Axes absolute_noise_;
+  double sign_sigmas_;
+};
+
+/// Collective Motion Pattern Scaling, the paper's algorithm (section IV, Algorithm 1; Table I
+/// column c).
+/** From the measured trajectory M of the executed pattern MP* and its prediction R* before the
+ * update, boxes with the start pose in them, x and y [m], yaw interval [rad]:
+ *    V = (x_s, y_s, phi_s) = box(M) / box(R*)                                     equation (1)
+ *    R* <- (1 - w) M + w R*                                                       equation (2)
+ *    R_p <- (1 - w) V R_p + w R_p   for every other pattern p                     equation (2)
+ * with w the weight of the old prediction (equation (2); line 13 of Algorithm 1 swaps the roles).
+ * Guards, see scaling.hpp: an axis whose shipped box is noise keeps the factor 1 for good; a
+ * pattern of one dimension gives no V; nor does a measurement that went the other way; V is kept
+ * within limits. Known faults: on unchanged ground the patterns that are never driven drift,
+ * because the mean of a quotient of noisy boxes is not 1 (Telescoping does not have it); and as
+ * every pattern gets the same factor, the ratios between patterns stay those of the shipped set for
+ * ever, also where all are measured exactly (telescoping has that, too). */
+class Collective : public ScalingRule {
+ public:
+  using ScalingRule::ScalingRule;
+
+  std::unique_ptr<LearningRule> clone() const override {
+    return std::make_unique<Collective>(*this);
+  }
+
+ protected:
+  Axes factors(const Boxes& boxes, const PatternRole& role, RuleNote& note) const override {
+    note.scaling = scalingVector(boxes.measured, boxes.before, role, limits_);  // equation (1)
+    return (1.0 - memory_) * note.scaling + memory_;  // equation (2) with M = V R
+  }
+};
+
+/// Collective scaling without its drift: the others follow the change of the executed pattern.
+/** Own work after the paper's idea. With the guards of Collective:
+ *    R*_new = (1 - w) M + w R*_old                                                equation (2)
+ *    R_p <- R_p box(R*_new) / box(R*_old)   for every other pattern p, axis by axis
+ * Over many executions the quotients telescope to box(R*_now) / box(R*_first): what the others got
+ * is never more than what the executed pattern itself learned. */
+class Telescoping : public ScalingRule {
+ public:
+  using ScalingRule::ScalingRule;
+
+  std::unique_ptr<LearningRule> clone() const override {
+    return std::make_unique<Telescoping>(*this);
+  }
+
+ protected:
+  Axes factors(const Boxes& boxes, const PatternRole& role, RuleNote& note) const override {
+    note.scaling = scalingVector(boxes.after, boxes.before, role, limits_);
+    return note.scaling;
+  }
+};
+
+}  // namespace tread::learner
