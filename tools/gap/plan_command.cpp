@@ -18,7 +18,7 @@
 #include "tools/gap/plan_design.hpp"
 #include "tools/gap/plan_patterns.hpp"
 #include "tools/gap/report/effect_words.hpp"
-#include "tools/patterns/envelope.hpp"
+#include "tools/patterns/model_recording.hpp"
 
 namespace tread::gap {
 namespace {

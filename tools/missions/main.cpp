@@ -9,7 +9,7 @@
 #include "common/config/command_line.hpp"
 #include "tools/missions/comparison_report.hpp"
 #include "tools/missions/mission_runner.hpp"
-#include "tools/patterns/output.hpp"
+#include "common/recordings/text_file.hpp"
 
 namespace {
 
@@ -137,7 +137,7 @@ void protectInputs(const Arguments& arguments) {
   std::error_code failure;
   for (const auto& file : std::filesystem::directory_iterator(arguments.robot, failure))
     inputs.push_back(file.path().string());
-  patterns::checkOutputs({arguments.json, arguments.show ? arguments.picture : "", arguments.log},
+  recordings::checkOutputs({arguments.json, arguments.show ? arguments.picture : "", arguments.log},
                          inputs);
 }
 

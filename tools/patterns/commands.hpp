@@ -12,6 +12,7 @@ namespace tread::patterns {
 CLI::App* addMake(CLI::App& app);
 CLI::App* addRecord(CLI::App& app);
 CLI::App* addAverage(CLI::App& app);
+CLI::App* addFromRecordings(CLI::App& app);
 CLI::App* addShow(CLI::App& app);
 CLI::App* addCheck(CLI::App& app);
 CLI::App* addMirror(CLI::App& app);

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/patterns/from_recordings_command.hpp"
-
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -14,7 +12,8 @@
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/drive_recordings.hpp"
 #include "common/recordings/execution_log.hpp"
-#include "tools/patterns/output.hpp"
+#include "common/recordings/text_file.hpp"
+#include "tools/patterns/commands.hpp"
 
 namespace tread::patterns {
 namespace {
@@ -35,7 +34,7 @@ struct Options {
 };
 
 /// Surfaces of another book in the folder would be read as if they were of this one.
-void refuseForeignSurfaces(const std::string& folder, const DriveRecordings& drives) {
+void refuseOtherSurfaces(const std::string& folder, const DriveRecordings& drives) {
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none)) {
     if (entry.path().extension() != ".csv") continue;
@@ -89,11 +88,12 @@ void writeLog(const Options& options, const DriveRecordings& drives, const Trans
 }
 
 void writeBook(const Options& options, const DriveRecordings& drives) {
-  refuseForeignSurfaces(options.book, drives);
+  refuseOtherSurfaces(options.book, drives);
   recordings::writeRecordings(options.book, drives.recordings);
   for (size_t i = 0; i < drives.surfaces.size(); ++i)
-    writeOutput((fs::path(options.book) / (drives.surfaces[i].surface + ".yaml")).string(),
-                formatPatterns(recordings::averagedSet(drives, i)), {options.recipe});
+    recordings::writeOutput(
+        (fs::path(options.book) / (drives.surfaces[i].surface + ".yaml")).string(),
+        formatPatterns(recordings::averagedSet(drives, i)), {options.recipe});
 }
 
 void fromRecordings(const Options& options) {

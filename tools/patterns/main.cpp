@@ -5,7 +5,6 @@
 
 #include "common/config/command_line.hpp"
 #include "tools/patterns/commands.hpp"
-#include "tools/patterns/from_recordings_command.hpp"
 
 int main(int argc, char** argv) {
   try {

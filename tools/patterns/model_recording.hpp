@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "common/recordings/recordings.hpp"
 #include "common/vehicle/model_document.hpp"
@@ -28,5 +29,15 @@ void requireSameKind(const PatternSet& set, const VehicleModel& model);
  * nothing. Throws std::runtime_error if the set commands another kind than the model's. */
 recordings::SurfaceRecordings recordModel(const PatternSet& set, const ModelDocument& model,
                                           const std::string& surface, const ModelRecording& how);
+
+/// Largest motions of a model that drives each pattern of a set, entered in its class's steady
+/// motion.
+Envelope envelopeOf(const VehicleModel& model, const PatternSet& set);
+
+/// Warns on stderr, a line each, of what a set asks of a model that it was not made from; silent
+/// where the model's file has no envelope.
+/** Throws std::runtime_error if the set commands another kind than the model's. */
+void warnOutside(const ModelDocument& document, const std::string& model_file,
+                 const PatternSet& set);
 
 }  // namespace tread::patterns

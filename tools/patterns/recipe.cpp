@@ -3,12 +3,11 @@
 #include "tools/patterns/recipe.hpp"
 
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <utility>
 #include <vector>
 
 #include "common/pattern/pattern_check.hpp"
+#include "common/report/text.hpp"
 #include "common/vehicle/kernel.hpp"
 
 namespace tread::patterns {
@@ -17,9 +16,7 @@ namespace {
 constexpr double kLagsToHold = 3.0;  // 95 % of a change of speed is over by then
 
 std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
+  return formatted("%.4g", value);
 }
 
 double roundedTo(double value, double unit) {
@@ -28,9 +25,7 @@ double roundedTo(double value, double unit) {
 }
 
 double sixDigits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.5e", value);
-  return std::strtod(text, nullptr) + 0.0;  // -0 becomes 0
+  return std::stod(formatted("%.5e", value)) + 0.0;  // -0 becomes 0
 }
 
 MotionClass readClass(ConfigReader& reader, const VehicleModel& model) {

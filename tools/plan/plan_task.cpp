@@ -10,7 +10,7 @@
 #include "common/config/scalars.hpp"
 #include "common/grid/footprint.hpp"
 #include "common/pattern/pattern_file.hpp"
-#include "tools/patterns/output.hpp"
+#include "common/recordings/text_file.hpp"
 #include "tools/plan/query_file.hpp"
 
 namespace tread::plan {
@@ -126,7 +126,7 @@ void readWanted(const PlanOptions& options, PlanTask& task) {
 
 /// Nothing that is read may be written over.
 void protectInputs(const PlanOptions& options, const MapFile& map) {
-  patterns::checkOutputs({options.json, options.picture, options.write_queries},
+  recordings::checkOutputs({options.json, options.picture, options.write_queries},
                          {options.map, map.image, options.patterns, options.queries});
 }
 
@@ -153,7 +153,7 @@ PlanTask loadTask(const PlanOptions& options) {
   if (!task.deadline_ms && !task.exact) task.deadline_ms = kDeadline;
   readWanted(options, task);
   if (!options.write_queries.empty())
-    patterns::writeOutput(options.write_queries, formatQueries(task.queries), {});
+    recordings::writeOutput(options.write_queries, formatQueries(task.queries), {});
   return task;
 }
 

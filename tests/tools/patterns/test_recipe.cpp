@@ -8,7 +8,7 @@
 #include "common/config/config_reader.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/patterns/recipe.hpp"
-#include "tools/patterns/table.hpp"
+#include "tools/patterns/set_text.hpp"
 
 using namespace tread;
 

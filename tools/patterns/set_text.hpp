@@ -3,10 +3,15 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/pattern/pattern.hpp"
 
 namespace tread::patterns {
+
+/// A set as a table for people: one line a pattern with classes, duration, length, end pose and its
+/// spread.
+std::string table(const PatternSet& set);
 
 /// What two sets predict of the patterns that both have, matched by name: a line a pattern with
 /// both ends and their difference, and in words which differs most.
@@ -14,5 +19,10 @@ namespace tread::patterns {
  * differ are named, not compared. */
 std::string comparison(const PatternSet& a, const std::string& name_a, const PatternSet& b,
                        const std::string& name_b);
+
+/// What a valid set may still make trouble with, a line each: a turn without its mirror image, a
+/// class that cannot be reached from standing or left for it, a trajectory that does not end in its
+/// exit class's twist, end covariances that nobody knows.
+std::vector<std::string> adviceFor(const PatternSet& set);
 
 }  // namespace tread::patterns

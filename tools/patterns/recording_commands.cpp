@@ -1,23 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+// record and average: what is done with recordings.
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <system_error>
+#include <vector>
 
+#include "common/pattern/pattern_check.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/recordings/recordings.hpp"
+#include "common/recordings/text_file.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/patterns/commands.hpp"
-#include "tools/patterns/envelope.hpp"
 #include "tools/patterns/live_run.hpp"
 #include "tools/patterns/model_recording.hpp"
+#include "tools/patterns/set_text.hpp"
 
 namespace tread::patterns {
 namespace {
 
-struct Options {
+struct RecordOptions {
   std::string patterns;
   std::string book;
   std::string surface;
@@ -39,7 +44,7 @@ constexpr const char* kFooter =
     "no fair measurements are refused with the reason and driven again. Ctrl-C stops the robot;\n"
     "what was recorded until then is kept beside the surfaces as SURFACE.csv.part.";
 
-void record(const Options& options) {
+void record(const RecordOptions& options) {
   const PatternSet set = readPatternFile(options.patterns);
   recordings::requireAddable(options.book, set, options.surface);
   recordings::SurfaceRecordings surface{options.surface, {}};
@@ -89,10 +94,66 @@ void addLiveOptions(CLI::App& command, pattern_recorder::RecordingConfig& how,
   command.add_option("--lcm-url", lcm_url, "with --live: LCM provider");
 }
 
+using recordings::AverageLimits;
+using recordings::AverageNote;
+using recordings::PatternRecordings;
+using recordings::SurfaceRecordings;
+
+struct AverageOptions {
+  std::string book;
+  std::string surface;
+  std::string output;
+  std::string name;
+  AverageLimits limits;
+};
+
+const SurfaceRecordings& surfaceNamed(const PatternRecordings& book,
+                                      const AverageOptions& options) {
+  std::string names;
+  for (const SurfaceRecordings& surface : book.surfaces) {
+    if (surface.surface == options.surface) return surface;
+    names += (names.empty() ? "" : ", ") + surface.surface;
+  }
+  throw recordings::RecordingError(options.book + ": no surface '" + options.surface +
+                                   "'; recorded are " + names);
+}
+
+std::string noteLine(const AverageNote& note) {
+  std::string line = note.pattern + ": " + std::to_string(note.used) + " executions averaged by " +
+                     (note.by_twist ? "twist (a strong turn)" : "pose");
+  if (!note.rejected.empty()) line += ", " + std::to_string(note.rejected.size()) + " rejected:";
+  for (const std::string& why : note.rejected) line += "\n  " + why;
+  return line + "\n";
+}
+
+PatternSet named(const PatternSet& set, const std::string& name) {
+  PatternSetContent content = set.content();
+  content.name = name.substr(0, PatternLimits::kMaxNameLength);
+  std::string why;
+  auto result = PatternSet::make(std::move(content), why);
+  if (!result) throw recordings::RecordingError("--name: " + why);
+  return *result;
+}
+
+void average(const AverageOptions& options) {
+  const PatternRecordings book = recordings::readRecordings(options.book);
+  const SurfaceRecordings& surface = surfaceNamed(book, options);
+  std::vector<AverageNote> notes;
+  const PatternSet averaged = recordings::averageSet(book.patterns, surface, options.limits, notes);
+  const std::string name =
+      options.name.empty() ? book.patterns.content().name + "_" + options.surface : options.name;
+  const PatternSet set = named(averaged, name);
+  recordings::writeOutput(
+      options.output, formatPatterns(set),
+      {options.book + "/patterns.yaml", options.book + "/" + options.surface + ".csv"});
+  for (const AverageNote& note : notes) std::cout << noteLine(note);
+  std::cout << table(set);
+}
+
 }  // namespace
 
 CLI::App* addRecord(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RecordOptions>();
   CLI::App* command = app.add_subcommand(
       "record", "execute each pattern many times and store what it did as a surface of a book");
   command->footer(kFooter);
@@ -110,6 +171,33 @@ CLI::App* addRecord(CLI::App& app) {
   addModelOptions(*command, options->how);
   addLiveOptions(*command, options->live_how, options->lcm_url);
   command->callback([options] { record(*options); });
+  return command;
+}
+
+CLI::App* addAverage(CLI::App& app) {
+  const auto options = std::make_shared<AverageOptions>();
+  CLI::App* command = app.add_subcommand(
+      "average", "average the recordings of one surface: the set that is right there");
+  command->add_option("BOOK", options->book, "folder of recordings")->required();
+  command->add_option("SURFACE", options->surface, "surface, a SURFACE.csv of the book")
+      ->required();
+  command->add_option("-o,--output", options->output, "pattern file to write")->required();
+  command->add_option("--name", options->name, "name of the set (default: SET_SURFACE)");
+  AverageLimits& limits = options->limits;
+  command
+      ->add_option("--strong-turn", limits.strong_turn,
+                   "rad of yaw from which twists are averaged, not poses")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 100.0));
+  command
+      ->add_option("--max-speed", limits.max_speed,
+                   "m/s that are possible; 0 = 1.5 times what the median execution reaches")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 30.0));
+  command->add_option("--min-executions", limits.min_executions, "fewer fair ones are refused")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1'000'000));
+  command->callback([options] { average(*options); });
   return command;
 }
 
