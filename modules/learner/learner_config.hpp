@@ -17,8 +17,9 @@ struct LearnerNodeConfig {
   int64_t period_us = 20'000;  ///< [us] between steps
   int64_t settle_us =
       200'000;  ///< [us] what is this old has arrived: INS latency and disorder of the bus
-  int64_t give_up_us = 2'000'000;  ///< [us] after its end an execution is judged without more INS
-  int64_t repeat_us = 2'000'000;   ///< [us] between repetitions of the set
+  int64_t give_up_us =
+      2'000'000;  ///< [us] after its end: an execution is then measured with the INS there is
+  int64_t repeat_us = 2'000'000;       ///< [us] between repetitions of the set
   int64_t track_span_us = 60'000'000;  ///< [us] of INS that is kept
   int64_t remembered_versions = 50;    ///< sets kept to score executions with the version they name
 

@@ -10,8 +10,8 @@
 
 namespace tread::learner {
 
-/// Sends sets and states in portions: LCM loses what one publisher sends too fast (design, section
-/// 4).
+/// Sends sets and states in portions: LCM silently loses messages where one
+/// publisher sends more than 100 kB in 20 ms.
 class SetPublisher {
  public:
   explicit SetPublisher(Bus& bus) : bus_(bus) {}

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What the paper's own definitions force upon Table I, whatever the surfaces (learning.md, section
-// 1).
+// What the paper's own definitions force upon Table I, whatever the surfaces.
 #include <cmath>
 
 #include <catch2/catch.hpp>

@@ -8,8 +8,8 @@
 
 namespace tread::learner {
 
-/// Remembered surfaces over the local filter: a hidden Markov model (own work after learning.md
-/// section 5). The default rule.
+/// Remembered surfaces over the local filter: a hidden Markov model (own
+/// work). The default rule.
 /** Hidden state: on which of the K stored surfaces the vehicle is, or on an unknown one (0), which
  * the local filter follows. With hazard h and prior pi_0 = unknown_prior, pi_k = (1 - pi_0) / K:
  *    w_k^- = (1 - h) w_k + h pi_k
@@ -61,8 +61,9 @@ class Bank : public LearningRule {
 
   BankConfig config_;
   std::shared_ptr<const GroundModel> model_;
-  GroundFilter filter_;        ///< of the unknown surface
-  GroundFilter block_filter_;  ///< to judge a block: from N(0, Q), without changes
+  GroundFilter filter_;  ///< of the unknown surface
+  GroundFilter
+      block_filter_;  ///< density of a block as a new surface: from N(0, Q), without changes
   SurfaceBank surfaces_;
   std::vector<double> weights_;  ///< w: [0] unknown, [k] of surface k - 1; sum 1
   std::vector<double>

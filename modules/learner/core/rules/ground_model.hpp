@@ -19,7 +19,7 @@ namespace tread::learner {
  * e(i, j) + 0.2 [i = j],   k = exp(-d(i, j)^2 / 2), d the distance of the patterns' mean (v, w)
  * over 0.6 of the largest |v|, |w| in the set; e the same kernel made even (r_x, r_w) or odd (r_y)
  * under mirroring w -> -w and brought to a unit diagonal: mirrored patterns are correlated by 0.7,
- * neighbours by 0.8 (learning.md's figures). */
+ * neighbours by 0.8. */
 class GroundModel {
  public:
   GroundModel(const FilterConfig& config, const PatternSet& shipped);

@@ -7,7 +7,7 @@
 
 namespace tread::learner {
 
-/// A hierarchical Kalman filter in body-twist space (own work; learning.md section 5).
+/// A hierarchical Kalman filter in body-twist space (own work).
 /** What the ground does to the executed pattern's mean body twist is split into corrections that
  * all patterns share (gains, sideslip, turn loss, ...: twist_profile.hpp) and the pattern's own
  * residual, in proportion to their covariances (ground_model.hpp), by a filter that expects jumps

@@ -94,7 +94,7 @@ std::shared_ptr<const KnownSurface> KnownSurface::after(const GroundModel& model
     next.driven[p] += 1.0;
   }
   next.last_met = now;
-  // The covariance follows from the counts, so that a restored bank goes on to the bit.
+  // The covariance follows from the counts, so that a restored bank continues with the same bits.
   return std::make_shared<const KnownSurface>(model, std::move(next));
 }
 
