@@ -13,7 +13,7 @@
 
 #include "common/config/command_line.hpp"
 #include "common/vehicle/model_file.hpp"
-#include "tests/study/models/ladder_output.hpp"
+#include "tests/study/models/comparison_output.hpp"
 #include "tools/gap/commands.hpp"
 #include "tools/gap/drive_log.hpp"
 #include "tools/gap/find_output.hpp"
@@ -35,7 +35,8 @@ constexpr const char* kFooter =
     "literature's slip regression; a black box; what find discovers. Each is judged on driving\n"
     "that it was not fitted to: alternate blocks of the log; with --pool also the log that all\n"
     "others did not see. Without --model the ideal one is a differential drive with the track\n"
-    "that an imported recording names. Into --out: ladder.json and ladder.md. Exit status 0,\n"
+    "that an imported recording names. Into --out: comparison.json and comparison.md. Exit status "
+    "0,\n"
     "or 2 for bad input. The same files and the same seed give the same bytes, with any number\n"
     "of threads.";
 
@@ -45,13 +46,13 @@ ModelDocument readIdeal(const std::string& path) {
   for (const Effect& effect : effectCatalogue())
     if (isOn(effect, model.vehicle.effects, model.measurement))
       throw std::runtime_error(path + ": the effect " + effect.name +
-                               " is on; a ladder begins with a model without effects");
+                               " is on; a comparison begins with a model without effects");
   return model;
 }
 
 /// A differential drive that does what its track speeds say.
-LadderLog recordedIdeal(const std::string& path) {
-  LadderLog log;
+ComparisonLog recordedIdeal(const std::string& path) {
+  ComparisonLog log;
   log.drive = readDrive(path);
   if (log.drive.kind != CommandKind::kTrackSpeed)
     throw std::runtime_error(path +
@@ -65,17 +66,18 @@ LadderLog recordedIdeal(const std::string& path) {
   return log;
 }
 
-std::vector<LadderLog> readLogs(const Options& options) {
+std::vector<ComparisonLog> readLogs(const Options& options) {
   std::optional<ModelDocument> ideal;
   if (!options.model.empty()) ideal = readIdeal(options.model);
-  std::vector<LadderLog> logs;
+  std::vector<ComparisonLog> logs;
   for (const std::string& path : options.logs) {
-    LadderLog log = ideal ? LadderLog{readDriveFor(*ideal, path), *ideal} : recordedIdeal(path);
-    for (const LadderLog& other : logs)
+    ComparisonLog log =
+        ideal ? ComparisonLog{readDriveFor(*ideal, path), *ideal} : recordedIdeal(path);
+    for (const ComparisonLog& other : logs)
       if (other.drive.sha256 == log.drive.sha256)
         throw std::runtime_error(path + ": the same file as " + other.drive.name +
                                  "; give each log once");
-    for (const LadderLog& other : logs) {
+    for (const ComparisonLog& other : logs) {
       requireSameImport(other.drive, log.drive);
       if (options.pool) requireSameRobot(other.drive, log.drive);
     }
@@ -85,30 +87,30 @@ std::vector<LadderLog> readLogs(const Options& options) {
 }
 
 /// A table without a row would look like a result. Pooled, short logs may be enough together.
-void requireRows(const LadderTask& task) {
-  for (const LadderLog& log : task.logs)
+void requireRows(const ComparisonTask& task) {
+  for (const ComparisonLog& log : task.logs)
     if (task.pool || unusable(log.drive).empty()) return;
   const Drive& first = task.logs.front().drive;
   throw std::runtime_error(first.name + ": " + unusable(first));
 }
 
-void requireRows(const Ladder& ladder) {
-  for (const auto* rows : {&ladder.nested, &ladder.pooled})
-    for (const LadderRow& row : *rows)
+void requireRows(const ModelComparison& comparison) {
+  for (const auto* rows : {&comparison.nested, &comparison.pooled})
+    for (const ComparisonRow& row : *rows)
       if (row.remark.empty()) return;
-  throw std::runtime_error(ladder.nested.front().log + ": " + ladder.nested.front().remark);
+  throw std::runtime_error(comparison.nested.front().log + ": " + comparison.nested.front().remark);
 }
 
 /// Lines about how much of a log was lost.
-void tellLosses(const LadderTask& task) {
-  for (const LadderLog& log : task.logs)
+void tellLosses(const ComparisonTask& task) {
+  for (const ComparisonLog& log : task.logs)
     if (!log.drive.lost.empty()) std::cout << log.drive.lost << std::endl;
 }
 
-void ladder(const Options& options) {
+void compare(const Options& options) {
   if (options.pool && options.logs.size() < 2)
     throw std::runtime_error("--pool: learning from all logs but one wants at least two --log");
-  LadderTask task;
+  ComparisonTask task;
   task.logs = readLogs(options);
   task.pool = options.pool;
   task.seed = static_cast<uint64_t>(options.seed);
@@ -116,14 +118,14 @@ void ladder(const Options& options) {
   requireRows(task);
   makeFolder(options.out);
   tellLosses(task);
-  LadderReport report;
+  ComparisonReport report;
   report.model = std::filesystem::path(options.model).filename().string();
-  for (const LadderLog& log : task.logs) report.sha256.push_back(log.drive.sha256);
-  report.ladder =
-      climbLadder(task, [](const std::string& line) { std::cout << line << std::endl; });
-  requireRows(report.ladder);
-  writeLadder(options.out, report);
-  std::cout << ladderText(report) << options.out << "/ladder.md" << std::endl;
+  for (const ComparisonLog& log : task.logs) report.sha256.push_back(log.drive.sha256);
+  report.comparison =
+      compareOnLogs(task, [](const std::string& line) { std::cout << line << std::endl; });
+  requireRows(report.comparison);
+  writeComparison(options.out, report);
+  std::cout << comparisonText(report) << options.out << "/comparison.md" << std::endl;
 }
 
 }  // namespace
@@ -138,12 +140,13 @@ int main(int argc, char** argv) {
     app.footer(tread::gap::kFooter);
     app.add_option("--log", options.logs, "logs of drives")->required()->expected(-1);
     app.add_option("--model", options.model, "the ideal model (YAML), without effects");
-    app.add_option("--out", options.out, "folder for ladder.json and ladder.md; made if needed")
+    app.add_option("--out", options.out,
+                   "folder for comparison.json and comparison.md; made if needed")
         ->required();
     app.add_flag("--pool", options.pool, "also judge each log by what all others teach");
     tread::gap::addSeedAndThreads(app, options.seed, options.threads);
     if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
-    tread::gap::ladder(options);
+    tread::gap::compare(options);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "tread-compare-models: %s\n", error.what());
     return tread::gap::kBadInput;

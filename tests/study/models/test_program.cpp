@@ -73,19 +73,19 @@ TEST_CASE(
   const Folder folder;
   writeDrive(folder.path("drive.lcmlog"), 220.0);
   writeDrive(folder.path("short.lcmlog"), 30.0);
-  const std::string ladder = "--model " + kModels + "warthog_nominal.yaml --log " +
-                             folder.path("drive.lcmlog") + " " + folder.path("short.lcmlog");
-  const Run one = run(ladder + " --threads 1 --out " + folder.path("a"));
+  const std::string comparison = "--model " + kModels + "warthog_nominal.yaml --log " +
+                                 folder.path("drive.lcmlog") + " " + folder.path("short.lcmlog");
+  const Run one = run(comparison + " --threads 1 --out " + folder.path("a"));
   INFO(one.printed);
   CHECK(one.status == 0);
   CHECK(one.says("Yaw error after 2 s"));
   CHECK(one.says("short.lcmlog: only 30 s of measured driving, too little to tell chance"));
-  const auto json = nlohmann::json::parse(folder.text("a/ladder.json"));
+  const auto json = nlohmann::json::parse(folder.text("a/comparison.json"));
   const auto& rungs = json["nested"][0]["rungs"];
   CHECK(rungs["gain_track"]["yaw_rad"]["median"] < rungs["ideal"]["yaw_rad"]["median"]);
   CHECK(rungs.contains("discovered"));
-  CHECK(run(ladder + " --threads 2 --out " + folder.path("b")).status == 0);
-  for (const char* file : {"ladder.json", "ladder.md"})
+  CHECK(run(comparison + " --threads 2 --out " + folder.path("b")).status == 0);
+  for (const char* file : {"comparison.json", "comparison.md"})
     CHECK(folder.text(std::string("a/") + file) == folder.text(std::string("b/") + file));
 }
 
@@ -98,7 +98,7 @@ TEST_CASE(
                        folder.path("nameless.lcmlog") + " --out " + folder.path("out"));
   INFO(both.printed);
   CHECK(both.status == 0);
-  const auto json = nlohmann::json::parse(folder.text("out/ladder.json"));
+  const auto json = nlohmann::json::parse(folder.text("out/comparison.json"));
   const auto& named = json["nested"][0]["rungs"];
   const auto& nameless = json["nested"][1]["rungs"];
   CHECK(named.contains("ideal"));

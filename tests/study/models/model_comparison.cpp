@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tests/study/models/ladder.hpp"
+#include "tests/study/models/model_comparison.hpp"
 
+#include <cmath>
 #include <functional>
+#include <map>
 
 #include "modules/identification/core/confirmation.hpp"
 #include "modules/identification/core/dead_reckoning.hpp"
@@ -10,6 +12,22 @@
 
 namespace tread::gap {
 namespace {
+
+MeanDifference meanOf(const std::vector<double>& values, const std::vector<ExecutionError>& where) {
+  MeanDifference difference;
+  if (values.empty()) return difference;
+  const auto count = static_cast<double>(values.size());
+  for (double value : values) difference.mean += value / count;
+  std::map<int, double> of_block;
+  for (size_t i = 0; i < values.size(); ++i)
+    of_block[where[i].block] += values[i] - difference.mean;
+  const auto blocks = static_cast<double>(of_block.size());
+  if (blocks < 2.0) return {difference.mean, kNotMeasured};
+  double squares = 0.0;
+  for (const auto& [block, sum] : of_block) squares += sum * sum;
+  difference.error = std::sqrt(squares * blocks / (blocks - 1.0)) / count;
+  return difference;
+}
 
 constexpr int kLeastForNestedEffects = 2 * kLeastBlocks;  // as find
 constexpr auto kFound = static_cast<size_t>(Rung::kDiscovered);
@@ -37,7 +55,7 @@ void addErrors(const Observations& data, const RungModels& models,
   }
 }
 
-void summarise(const RungErrors& errors, LadderRow& row) {
+void summarise(const RungErrors& errors, ComparisonRow& row) {
   for (size_t r = 0; r < kRungs; ++r) {
     if (!errors[r]) continue;
     row.errors[r] = summaryOf(*errors[r], [](const ExecutionError&) { return true; });
@@ -52,8 +70,8 @@ std::string fatalNote(const Drive& drive) {
   return "";
 }
 
-LadderRow rowOf(const Drive& drive, const Observations& data) {
-  LadderRow row;
+ComparisonRow rowOf(const Drive& drive, const Observations& data) {
+  ComparisonRow row;
   row.log = drive.name;
   row.blocks = measuredBlocks(data);
   row.driven = drive.driven();
@@ -101,10 +119,10 @@ class Discoverer {
   std::optional<SearchResult> whole_;
 };
 
-LadderRow nestedRow(const LadderLog& log, const LadderTask& task, const Progress& say) {
+ComparisonRow nestedRow(const ComparisonLog& log, const ComparisonTask& task, const Progress& say) {
   const std::vector<Drive> drives{log.drive};
   const Observations data(drives, {});
-  LadderRow row = rowOf(log.drive, data);
+  ComparisonRow row = rowOf(log.drive, data);
   say(row.log + ": " + std::to_string(row.blocks) + " blocks");
   if (row.remark.empty()) row.remark = tooLittleDriving(data);
   if (!row.remark.empty()) {
@@ -118,7 +136,7 @@ LadderRow nestedRow(const LadderLog& log, const LadderTask& task, const Progress
   for (int half : {0, 1}) {
     say("  from half " + std::to_string(half + 1));
     const std::vector<char> mask = halfMask(data, half);
-    LadderFold fold;
+    ComparisonFold fold;
     fold.trained_on = "half " + std::to_string(half + 1);
     fold.models = fitRungs(fitter, log.ideal, log.ideal_known, mask, say);
     fold.models[kFound] = discoverer.on(mask);
@@ -131,8 +149,8 @@ LadderRow nestedRow(const LadderLog& log, const LadderTask& task, const Progress
   return row;
 }
 
-LadderRow pooledRow(const LadderTask& task, size_t left_out, const Progress& say) {
-  const LadderLog& log = task.logs[left_out];
+ComparisonRow pooledRow(const ComparisonTask& task, size_t left_out, const Progress& say) {
+  const ComparisonLog& log = task.logs[left_out];
   std::vector<Drive> train;
   for (size_t i = 0; i < task.logs.size(); ++i) {
     const bool sound = fatalNote(task.logs[i].drive).empty();
@@ -140,7 +158,7 @@ LadderRow pooledRow(const LadderTask& task, size_t left_out, const Progress& say
   }
   const std::vector<Drive> test{log.drive};
   const Observations test_data(test, {});
-  LadderRow row = rowOf(log.drive, test_data);
+  ComparisonRow row = rowOf(log.drive, test_data);
   const Observations data(train, {});
   say(row.log + " left out, from " + std::to_string(data.blocks()) + " blocks of the others");
   if (row.remark.empty() && !tooLittleDriving(data).empty())
@@ -151,7 +169,7 @@ LadderRow pooledRow(const LadderTask& task, size_t left_out, const Progress& say
   }
   const Fitter fitter(data, task.parallel);
   const std::vector<char> all(data.all().size(), 1);
-  LadderFold fold;
+  ComparisonFold fold;
   fold.trained_on = "all but " + row.log;
   fold.models = fitRungs(fitter, log.ideal, log.ideal_known, all, say);
   fold.models[kFound] = Discoverer(fitter, log.ideal, task.seed, true, say).on(all);
@@ -165,6 +183,17 @@ LadderRow pooledRow(const LadderTask& task, size_t left_out, const Progress& say
 
 }  // namespace
 
+RungDifference differenceOf(const std::vector<ExecutionError>& first,
+                            const std::vector<ExecutionError>& second) {
+  std::vector<double> yaw;
+  std::vector<double> position;
+  for (size_t i = 0; i < first.size(); ++i) {
+    yaw.push_back(second[i].yaw - first[i].yaw);
+    position.push_back(second[i].position - first[i].position);
+  }
+  return {meanOf(yaw, first), meanOf(position, first)};
+}
+
 std::string unusable(const Drive& drive) {
   const std::string fatal = fatalNote(drive);
   if (!fatal.empty()) return fatal;
@@ -172,13 +201,13 @@ std::string unusable(const Drive& drive) {
   return tooLittleDriving(Observations(drives, {}));
 }
 
-Ladder climbLadder(const LadderTask& task, const Progress& say) {
-  Ladder ladder;
-  ladder.seed = task.seed;
-  for (const LadderLog& log : task.logs) ladder.nested.push_back(nestedRow(log, task, say));
+ModelComparison compareOnLogs(const ComparisonTask& task, const Progress& say) {
+  ModelComparison comparison;
+  comparison.seed = task.seed;
+  for (const ComparisonLog& log : task.logs) comparison.nested.push_back(nestedRow(log, task, say));
   for (size_t i = 0; task.pool && i < task.logs.size(); ++i)
-    ladder.pooled.push_back(pooledRow(task, i, say));
-  return ladder;
+    comparison.pooled.push_back(pooledRow(task, i, say));
+  return comparison;
 }
 
 }  // namespace tread::gap

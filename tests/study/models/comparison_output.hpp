@@ -8,33 +8,33 @@
 #include <nlohmann/json.hpp>
 
 #include "common/report/page.hpp"
-#include "tests/study/models/ladder.hpp"
+#include "tests/study/models/model_comparison.hpp"
 
 namespace tread::gap {
 
 using report::Page;
 
-/// A ladder and the files that it was made from.
-struct LadderReport {
-  Ladder ladder;
+/// A comparison and the files that it was made from.
+struct ComparisonReport {
+  ModelComparison comparison;
   std::string model;                ///< file name of the ideal model; empty = of each recording
   std::vector<std::string> sha256;  ///< of the logs
 };
 
 /// Tables of errors and of the effects that were named.
-Page ladderPage(const LadderReport& report);
+Page comparisonPage(const ComparisonReport& report);
 
 /// The same tables with columns of spaces, for a terminal.
-std::string ladderText(const LadderReport& report);
+std::string comparisonText(const ComparisonReport& report);
 
-/// What ladder.json holds; numbers that are not finite are null.
+/// What comparison.json holds; numbers that are not finite are null.
 /** Keys: tool, seed, model, nested and pooled [{log, sha256, blocks, driven_s, remark,
  * structure_nested, rungs {name: {executions, yaw_rad, position_m: {median, rms}}}, floor,
  * discovered_less {rung: {yaw_rad, position_m: {mean, error}}}, folds [{trained_on, effects,
  * fitted {rung: {path: value}}}]}]. */
-nlohmann::ordered_json ladderJson(const LadderReport& report);
+nlohmann::ordered_json comparisonJson(const ComparisonReport& report);
 
-/// Writes ladder.md and, last, ladder.json; throws std::runtime_error with one line.
-void writeLadder(const std::string& folder, const LadderReport& report);
+/// Writes comparison.md and, last, comparison.json; throws std::runtime_error with one line.
+void writeComparison(const std::string& folder, const ComparisonReport& report);
 
 }  // namespace tread::gap

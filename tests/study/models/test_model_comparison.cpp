@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "tests/identification/synthetic_drive.hpp"
-#include "tests/study/models/ladder.hpp"
-#include "tests/study/models/ladder_output.hpp"
+#include "tests/study/models/comparison_output.hpp"
+#include "tests/study/models/model_comparison.hpp"
 #include "tests/study/models/twist_dictionary.hpp"
 
 using namespace tread;
@@ -30,19 +30,19 @@ ModelDocument with(ModelDocument model, const Hidden& hidden) {
   return model;
 }
 
-LadderLog logOf(const ModelDocument& truth, double seconds, uint64_t seed) {
-  LadderLog log{syntheticDrive(truth, seconds, seed), idealVehicle()};
+ComparisonLog logOf(const ModelDocument& truth, double seconds, uint64_t seed) {
+  ComparisonLog log{syntheticDrive(truth, seconds, seed), idealVehicle()};
   log.drive.name = "drive " + std::to_string(seed);
   return log;
 }
 
-LadderRow rowOf(const ModelDocument& truth, double seconds, uint64_t seed) {
-  LadderTask task;
+ComparisonRow rowOf(const ModelDocument& truth, double seconds, uint64_t seed) {
+  ComparisonTask task;
   task.logs.push_back(logOf(truth, seconds, seed));
-  return climbLadder(task, kSilent).nested.at(0);
+  return compareOnLogs(task, kSilent).nested.at(0);
 }
 
-const EndErrors& errorsOf(const LadderRow& row, Rung rung) {
+const EndErrors& errorsOf(const ComparisonRow& row, Rung rung) {
   const auto& errors = row.errors[static_cast<size_t>(rung)];
   REQUIRE(errors);
   return *errors;
@@ -116,7 +116,7 @@ TEST_CASE("gain and track are all that a vehicle without lag needs") {
   const ModelDocument truth =
       with(idealVehicle(),
            {{"slip_ratio.slip", 0.1}, {"track_width.widening", 0.4}, {"ins_latency.latency", 0.2}});
-  const LadderRow row = rowOf(truth, 240.0, 3);
+  const ComparisonRow row = rowOf(truth, 240.0, 3);
   const EndErrors least = leastOf(truth, 240.0, 3);
   CHECK(errorsOf(row, Rung::kIdeal).yaw.median > 2.0 * least.yaw.median);
   for (Rung rung : {Rung::kGains, Rung::kPowertrain, Rung::kSlipRegression}) {
@@ -135,7 +135,7 @@ TEST_CASE("a powertrain is reached by the rung that has one, and not by the one 
                                                         {"speed_saturation.inverse_limit", 1.5},
                                                         {"track_asymmetry.share", 0.05},
                                                         {"icr_offset.offset", 0.1}});
-  const LadderRow row = rowOf(truth, 320.0, 4);
+  const ComparisonRow row = rowOf(truth, 320.0, 4);
   const EndErrors least = leastOf(truth, 320.0, 4);
   CHECK(errorsOf(row, Rung::kGains).yaw.rms > 1.5 * least.yaw.rms);
   CHECK(errorsOf(row, Rung::kPowertrain).yaw.rms < 1.1 * least.yaw.rms);
@@ -146,7 +146,7 @@ TEST_CASE("a powertrain is reached by the rung that has one, and not by the one 
 TEST_CASE("a drift is reached by slip regression and discovery, which is never behind") {
   const ModelDocument truth =
       with(syntheticVehicle(), {{"centrifugal_drift.time", 0.25}, {"yaw_breakaway.rate", 0.1}});
-  const LadderRow row = rowOf(truth, 440.0, 5);
+  const ComparisonRow row = rowOf(truth, 440.0, 5);
   const EndErrors least = leastOf(truth, 440.0, 5);
   CHECK(row.structure_nested);
   CHECK(errorsOf(row, Rung::kPowertrain).position.rms > 1.2 * least.position.rms);
@@ -161,7 +161,7 @@ TEST_CASE("a drift is reached by slip regression and discovery, which is never b
     CHECK(behind->yaw.mean < 2.0 * behind->yaw.error);
     CHECK(behind->position.mean < 2.0 * behind->position.error);
   }
-  for (const LadderFold& fold : row.folds) {
+  for (const ComparisonFold& fold : row.folds) {
     const auto& names = fold.models[static_cast<size_t>(Rung::kDiscovered)]->effects;
     CHECK(std::count(names.begin(), names.end(), "centrifugal_drift") == 1);
   }
@@ -170,7 +170,7 @@ TEST_CASE("a drift is reached by slip regression and discovery, which is never b
 TEST_CASE("a black box expresses what neither slip nor powertrain do") {
   const ModelDocument truth = with(
       syntheticVehicle(), {{"turn_power_limit.inverse_limit", 2.0}, {"turn_speed_loss.loss", 0.3}});
-  const LadderRow row = rowOf(truth, 380.0, 6);
+  const ComparisonRow row = rowOf(truth, 380.0, 6);
   CHECK(errorsOf(row, Rung::kBlackBox).yaw.rms <
         0.8 * errorsOf(row, Rung::kSlipRegression).yaw.rms);
   CHECK_FALSE(row.structure_nested);
@@ -180,27 +180,27 @@ TEST_CASE(
     "pooled logs name the same effect in all folds, and the bytes do not know the order of the "
     "work") {
   const ModelDocument truth = with(syntheticVehicle(), {{"yaw_pull.pull", 0.08}});
-  LadderTask task;
+  ComparisonTask task;
   task.pool = true;
   for (uint64_t seed : {7, 8}) task.logs.push_back(logOf(truth, 220.0, seed));
-  LadderReport one{climbLadder(task, kSilent), "", {"a", "b"}};
+  ComparisonReport one{compareOnLogs(task, kSilent), "", {"a", "b"}};
   task.parallel = [](size_t count, const std::function<void(size_t)>& body) {
     while (count > 0) body(--count);
   };
-  LadderReport two{climbLadder(task, kSilent), "", {"a", "b"}};
-  CHECK(ladderJson(one).dump() == ladderJson(two).dump());
-  CHECK(ladderText(one) == ladderText(two));
-  REQUIRE(one.ladder.pooled.size() == 2);
-  for (const LadderRow& row : one.ladder.pooled) {
+  ComparisonReport two{compareOnLogs(task, kSilent), "", {"a", "b"}};
+  CHECK(comparisonJson(one).dump() == comparisonJson(two).dump());
+  CHECK(comparisonText(one) == comparisonText(two));
+  REQUIRE(one.comparison.pooled.size() == 2);
+  for (const ComparisonRow& row : one.comparison.pooled) {
     REQUIRE(row.folds.size() == 1);
     const auto& names = row.folds[0].models[static_cast<size_t>(Rung::kDiscovered)]->effects;
     CHECK(std::count(names.begin(), names.end(), "yaw_pull") == 1);
   }
-  CHECK(ladderText(one).find("Named in all 2 folds: yaw_pull") != std::string::npos);
+  CHECK(comparisonText(one).find("Named in all 2 folds: yaw_pull") != std::string::npos);
 }
 
 TEST_CASE("a log that is too short has no rungs, and the reason stands there") {
-  const LadderRow row = rowOf(syntheticVehicle(), 40.0, 9);
+  const ComparisonRow row = rowOf(syntheticVehicle(), 40.0, 9);
   CHECK(row.remark ==
         "only 40 s of measured driving, too little to tell chance from cause: drive at least "
         "200 s");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tests/study/models/ladder_models.hpp"
+#include "tests/study/models/compared_models.hpp"
 
 #include <algorithm>
 #include <iterator>

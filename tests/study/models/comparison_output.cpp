@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tests/study/models/ladder_output.hpp"
+#include "tests/study/models/comparison_output.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/recordings/text_file.hpp"
 #include "tools/gap/find_output.hpp"
 #include "tools/gap/report/effect_words.hpp"
+#include "tools/gap/report/sections.hpp"
 
 namespace tread::gap {
 
@@ -45,23 +47,23 @@ std::string cell(const std::optional<RungDifference>& behind, const Quantity& qu
                    quantity.digits, difference.error / quantity.unit);
 }
 
-size_t executionsOf(const LadderRow& row) {
+size_t executionsOf(const ComparisonRow& row) {
   for (const auto& errors : row.errors)
     if (errors) return errors->executions;
   return 0;
 }
 
-std::string nameOf(const LadderRow& row) {
+std::string nameOf(const ComparisonRow& row) {
   return row.log + (row.structure_nested || !row.errors[kFound] ? "" : " *");
 }
 
-Table errorTable(const std::vector<LadderRow>& rows, const Quantity& quantity) {
+Table errorTable(const std::vector<ComparisonRow>& rows, const Quantity& quantity) {
   Table table;
   table.header = {"log", "n"};
   for (size_t r = 0; r < kRungs; ++r) table.header.push_back(rungName(static_cast<Rung>(r)));
   for (Rung rung : kRivals) table.header.push_back(std::string("D - ") + rungName(rung));
   table.header.emplace_back("encoders + gyro");
-  for (const LadderRow& row : rows) {
+  for (const ComparisonRow& row : rows) {
     if (executionsOf(row) == 0) continue;  // a remark says why
     std::vector<std::string> cells{nameOf(row), std::to_string(executionsOf(row))};
     for (const auto& errors : row.errors) cells.push_back(cell(errors, quantity));
@@ -73,7 +75,7 @@ Table errorTable(const std::vector<LadderRow>& rows, const Quantity& quantity) {
   return table;
 }
 
-std::string namesOf(const LadderFold& fold) {
+std::string namesOf(const ComparisonFold& fold) {
   if (!fold.models[kFound]) return "-";
   std::string names;
   for (const std::string& name : fold.models[kFound]->effects)
@@ -81,20 +83,20 @@ std::string namesOf(const LadderFold& fold) {
   return names.empty() ? "nothing" : names;
 }
 
-Table nameTable(const std::vector<LadderRow>& rows) {
+Table nameTable(const std::vector<ComparisonRow>& rows) {
   Table table{{"log", "learned from", "effects named"}, {}, 3};
-  for (const LadderRow& row : rows)
-    for (const LadderFold& fold : row.folds)
+  for (const ComparisonRow& row : rows)
+    for (const ComparisonFold& fold : row.folds)
       table.rows.push_back({row.log, fold.trained_on, namesOf(fold)});
   return table;
 }
 
 /// Effects that all folds name, and those that only some do.
-std::string agreement(const std::vector<LadderRow>& rows) {
+std::string agreement(const std::vector<ComparisonRow>& rows) {
   std::map<std::string, size_t> counts;
   size_t folds = 0;
-  for (const LadderRow& row : rows)
-    for (const LadderFold& fold : row.folds) {
+  for (const ComparisonRow& row : rows)
+    for (const ComparisonFold& fold : row.folds) {
       if (!fold.models[kFound]) continue;
       ++folds;
       for (const std::string& name : fold.models[kFound]->effects) ++counts[name];
@@ -110,10 +112,10 @@ std::string agreement(const std::vector<LadderRow>& rows) {
          "; in some: " + (sometimes.empty() ? "none" : sometimes) + ".";
 }
 
-std::vector<std::string> remarksOf(const std::vector<LadderRow>& rows) {
+std::vector<std::string> remarksOf(const std::vector<ComparisonRow>& rows) {
   std::vector<std::string> remarks;
   bool whole = false;
-  for (const LadderRow& row : rows) {
+  for (const ComparisonRow& row : rows) {
     if (!row.remark.empty()) remarks.push_back(row.log + ": " + row.remark);
     whole = whole || (!row.structure_nested && row.errors[kFound]);
   }
@@ -124,7 +126,7 @@ std::vector<std::string> remarksOf(const std::vector<LadderRow>& rows) {
   return remarks;
 }
 
-Section sectionOf(const std::string& title, const std::vector<LadderRow>& rows) {
+Section sectionOf(const std::string& title, const std::vector<ComparisonRow>& rows) {
   Section section{title, {}};
   for (const Quantity* quantity : {&kYaw, &kPosition}) {
     section.blocks.emplace_back(
@@ -140,9 +142,93 @@ Section sectionOf(const std::string& title, const std::vector<LadderRow>& rows) 
   return section;
 }
 
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json errorsJson(const EndErrors& errors) {
+  const auto figure = [](const ErrorFigure& of) {
+    return Json{{"median", number(of.median)}, {"rms", number(of.rms)}};
+  };
+  return {{"executions", errors.executions},
+          {"yaw_rad", figure(errors.yaw)},
+          {"position_m", figure(errors.position)}};
+}
+
+Json differenceJson(const RungDifference& behind) {
+  const auto difference = [](const MeanDifference& of) {
+    return Json{{"mean", number(of.mean)}, {"error", number(of.error)}};
+  };
+  return {{"yaw_rad", difference(behind.yaw)}, {"position_m", difference(behind.position)}};
+}
+
+Json foldJson(const ComparisonFold& fold) {
+  Json fitted = Json::object();
+  for (size_t r = 0; r < kRungs; ++r) {
+    if (!fold.models[r]) continue;
+    Json numbers = Json::object();
+    for (const auto& [path, value] : fold.models[r]->numbers) numbers[path] = number(value);
+    fitted[rungKey(static_cast<Rung>(r))] = numbers;
+  }
+  Json effects = nullptr;
+  if (fold.models[kFound]) effects = fold.models[kFound]->effects;
+  return {{"trained_on", fold.trained_on}, {"effects", effects}, {"fitted", fitted}};
+}
+
+Json rowJson(const ComparisonRow& row, const std::string& sha256) {
+  Json rungs = Json::object();
+  Json less = Json::object();
+  for (size_t r = 0; r < kRungs; ++r) {
+    const char* key = rungKey(static_cast<Rung>(r));
+    if (row.errors[r]) rungs[key] = errorsJson(*row.errors[r]);
+    if (row.behind[r]) less[key] = differenceJson(*row.behind[r]);
+  }
+  Json folds = Json::array();
+  for (const ComparisonFold& fold : row.folds) folds.push_back(foldJson(fold));
+  return {{"log", row.log},          {"sha256", sha256},
+          {"blocks", row.blocks},    {"driven_s", number(row.driven)},
+          {"remark", row.remark},    {"structure_nested", row.structure_nested},
+          {"rungs", rungs},          {"floor", row.floor ? errorsJson(*row.floor) : Json(nullptr)},
+          {"discovered_less", less}, {"folds", folds}};
+}
+
+/// Columns of spaces; the last one is not filled up.
+std::string plain(const Table& table) {
+  std::vector<std::vector<std::string>> lines{table.header};
+  lines.insert(lines.end(), table.rows.begin(), table.rows.end());
+  std::vector<size_t> widths(table.header.size(), 0);
+  for (const auto& line : lines)
+    for (size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  std::string text;
+  for (const auto& line : lines) {
+    for (size_t i = 0; i < line.size(); ++i) {
+      const std::string fill(widths[i] - line[i].size(), ' ');
+      const bool left = i < table.left;
+      text += (i > 0 ? "  " : "") + (left ? line[i] : fill + line[i]);
+      if (left && i + 1 < line.size()) text += fill;
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+struct TextWriter {
+  std::string text;
+
+  void operator()(const Paragraph& paragraph) { text += paragraph.text + "\n"; }
+  void operator()(const Table& table) { text += plain(table) + "\n"; }
+  void operator()(const Points& points) {
+    for (const std::string& item : points.items) text += item + "\n";
+  }
+  void operator()(const Commands&) {}
+  void operator()(const Pictures&) {}
+};
+
 }  // namespace
 
-Page ladderPage(const LadderReport& report) {
+Page comparisonPage(const ComparisonReport& report) {
   Page page;
   page.title = "tread-compare-models";
   page.verdict = "Errors of models that did not see the driving that judges them";
@@ -160,18 +246,40 @@ Page ladderPage(const LadderReport& report) {
        "encoders + gyro: dead reckoning that has seen the motion"}}};
   page.sections.push_back(
       sectionOf("Each log: one half of its blocks judged by what the other half taught",
-                report.ladder.nested));
-  if (report.ladder.pooled.empty()) return page;
+                report.comparison.nested));
+  if (report.comparison.pooled.empty()) return page;
   page.sections.push_back(
-      sectionOf("Each log judged by what all others taught", report.ladder.pooled));
-  page.sections.back().blocks.emplace_back(Paragraph{agreement(report.ladder.pooled)});
+      sectionOf("Each log judged by what all others taught", report.comparison.pooled));
+  page.sections.back().blocks.emplace_back(Paragraph{agreement(report.comparison.pooled)});
   return page;
 }
 
-void writeLadder(const std::string& folder, const LadderReport& report) {
+void writeComparison(const std::string& folder, const ComparisonReport& report) {
   makeFolder(folder);
-  recordings::writeText(folder + "/ladder.md", markdownOf(ladderPage(report)));
-  recordings::writeText(folder + "/ladder.json", ladderJson(report).dump(2) + "\n");
+  recordings::writeText(folder + "/comparison.md", markdownOf(comparisonPage(report)));
+  recordings::writeText(folder + "/comparison.json", comparisonJson(report).dump(2) + "\n");
+}
+
+nlohmann::ordered_json comparisonJson(const ComparisonReport& report) {
+  const auto rows = [&report](const std::vector<ComparisonRow>& of) {
+    Json all = Json::array();
+    for (size_t i = 0; i < of.size(); ++i) all.push_back(rowJson(of[i], report.sha256[i]));
+    return all;
+  };
+  return {{"tool", toolVersion()},
+          {"seed", report.comparison.seed},
+          {"model", report.model},
+          {"nested", rows(report.comparison.nested)},
+          {"pooled", rows(report.comparison.pooled)}};
+}
+
+std::string comparisonText(const ComparisonReport& report) {
+  TextWriter writer;
+  for (const Section& section : comparisonPage(report).sections) {
+    writer.text += "\n" + section.title + "\n\n";
+    for (const Block& block : section.blocks) std::visit(writer, block);
+  }
+  return writer.text;
 }
 
 }  // namespace tread::gap

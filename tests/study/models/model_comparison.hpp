@@ -2,19 +2,19 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include "tests/study/models/ladder_models.hpp"
+#include "tests/study/models/compared_models.hpp"
 
 namespace tread::gap {
 
 /// A log and the ideal model of the vehicle that drove it.
-struct LadderLog {
+struct ComparisonLog {
   Drive drive;
   ModelDocument ideal;
   bool ideal_known = true;  ///< else the track of `ideal` is a guess, and there is no first rung
 };
 
-struct LadderTask {
-  std::vector<LadderLog> logs;
+struct ComparisonTask {
+  std::vector<ComparisonLog> logs;
   bool pool = false;  ///< also learn from all logs but one, for each
   uint64_t seed = 1;
   ParallelFor parallel = serialFor;  ///< does not change a bit of the result
@@ -33,13 +33,13 @@ struct RungDifference {
 };
 
 /// Models that were fitted to the same driving.
-struct LadderFold {
+struct ComparisonFold {
   std::string trained_on;
   RungModels models;
 };
 
 /// How far each rung is from one log, on driving that it was not fitted to.
-struct LadderRow {
+struct ComparisonRow {
   std::string log;
   std::string remark;  ///< why there is nothing; empty else
   int blocks = 0;
@@ -48,13 +48,14 @@ struct LadderRow {
   std::array<std::optional<EndErrors>, kRungs> errors;
   std::array<std::optional<RungDifference>, kRungs> behind;  ///< of discovered less this rung
   std::optional<EndErrors> floor;  ///< encoders and gyro, see deadReckoningFloor()
-  std::vector<LadderFold> folds;
+  std::vector<ComparisonFold> folds;
 };
 
-struct Ladder {
+struct ModelComparison {
   uint64_t seed = 0;
-  std::vector<LadderRow> nested;  ///< each log: one half of its blocks judges the other half's fits
-  std::vector<LadderRow> pooled;  ///< each log judges what all others teach; empty = not asked
+  std::vector<ComparisonRow>
+      nested;  ///< each log: one half of its blocks judges the other half's fits
+  std::vector<ComparisonRow> pooled;  ///< each log judges what all others teach; empty = not asked
 };
 
 /// The table of gap.md 3.3 (and 3.4) on any drives: errors 2 s after the beginning of an execution,
@@ -62,7 +63,7 @@ struct Ladder {
 /** Nested: alternate blocks of a log, structure and parameters of each half from the other. As
  * find does, effects are chosen on the whole log where it has less than 20 blocks; below 10 there
  * is nothing. Pooled: structure and parameters from all other logs. Deterministic for a seed. */
-Ladder climbLadder(const LadderTask& task, const Progress& say);
+ModelComparison compareOnLogs(const ComparisonTask& task, const Progress& say);
 
 /// Why a log by itself gives no row, in one line; empty if it gives one.
 std::string unusable(const Drive& drive);
