@@ -19,6 +19,8 @@ using namespace tread::testing;
 namespace {
 
 constexpr const char* kMapping = "tread-mapping";
+/// A process needs to know its robot.
+const std::string kRobot = TREAD_SOURCE_DIR "/config/robots/teodor/";
 
 /// What a short run printed and how it ended.
 struct Ending {
@@ -72,9 +74,10 @@ class Family {
       return;
     }
     const std::string path = std::string(TREAD_BIN_DIR) + "/" + kMapping;
+    const std::string config = kRobot + "mapping.yaml";
     const pid_t child = fork();
     if (child == 0) {
-      execl(path.c_str(), path.c_str(), "--lcm-url", url.c_str(),
+      execl(path.c_str(), path.c_str(), "--config", config.c_str(), "--lcm-url", url.c_str(),
             with_parent ? "--with-parent" : nullptr, nullptr);
       _exit(127);
     }
@@ -115,7 +118,7 @@ TEST_CASE("SIGINT, SIGTERM and a closed terminal end a process in order, with co
     const std::string url = ownLcmUrl();
     const auto bus = listenTo(url);
     if (!bus) return;
-    Process process(kMapping, {"--lcm-url", url});
+    Process process(kMapping, {"--config", kRobot + "mapping.yaml", "--lcm-url", url});
     REQUIRE(heardOf(*bus));
     process.signal(signal);
     CAPTURE(signal);
@@ -129,7 +132,7 @@ TEST_CASE("what nohup started outlives its terminal") {
   const auto bus = listenTo(url);
   if (!bus) return;
   const auto before = std::signal(SIGHUP, SIG_IGN);  // the program inherits it
-  Process process(kMapping, {"--lcm-url", url});
+  Process process(kMapping, {"--config", kRobot + "mapping.yaml", "--lcm-url", url});
   std::signal(SIGHUP, before);
   REQUIRE(heardOf(*bus));
   process.signal(SIGHUP);
@@ -154,11 +157,11 @@ TEST_CASE("with --with-parent a process ends when its parent is killed, and only
 TEST_CASE(
     "checking (--check) reads the configuration and nothing more: code 0, or 1 with one line") {
   const std::string file = "shell_" + std::to_string(getpid()) + ".yaml";
-  std::ofstream(file) << "silence: 2\n";
+  std::ofstream(file) << "silence: 2\nrobot: " << kRobot << "robot.yaml\n";
   const Ending good = run({"--config", file, "--check"});
   CHECK(good.code == 0);
   CHECK(good.output.empty());
-  std::ofstream(file) << "silenc: 2\n";
+  std::ofstream(file) << "silenc: 2\nrobot: " << kRobot << "robot.yaml\n";
   const Ending mistyped = run({"--config", file, "--check"});
   std::remove(file.c_str());
   CHECK(mistyped.code == 1);
@@ -173,14 +176,16 @@ TEST_CASE(
 TEST_CASE("a mistake in --set is one line that names it") {
   for (const char* words : {"silence=loud", "silence=-1", "silenc=2", "silence", "=2",
                             "silence=", "a.b.c=1", "silence=[1", "silence=1\nsilence: 2"}) {
-    const Ending ending = run({"--check", "--set", words});
+    const Ending ending = run({"--config", kRobot + "mapping.yaml", "--check", "--set", words});
     CAPTURE(words, ending.output);
     CHECK(ending.code == 1);
     CHECK(ending.lines() == 1);
     CHECK(ending.output.find("tread-mapping: ") == 0);
     CHECK(ending.output.find("--set") != std::string::npos);
   }
-  CHECK(run({"--check", "--set", "silence=2", "--set", "max_wait=1"}).code == 0);
+  CHECK(run({"--config", kRobot + "mapping.yaml", "--check", "--set", "silence=2", "--set",
+             "max_wait=1"})
+            .code == 0);
 }
 
 TEST_CASE("a wrong command line ends with code 2") {

@@ -132,7 +132,7 @@ TEST_CASE("lcm-spy shows INS decoded, with its rate, from the class path of trea
   const Publisher publisher(url);
   Process spy(TREAD_JAVA,
               {"-Djava.net.preferIPv4Stack=true", "-cp", classPath(folder),
-               TREAD_SOURCE_DIR "/tests/tools/spy/SpySees.java", url, "INS", "ins_t", "40"},
+               TREAD_SOURCE_DIR "/tests/tools/robot/spy/SpySees.java", url, "INS", "ins_t", "40"},
               folder.file("spy"));
   REQUIRE(spy.waitFor(60));
   INFO(contentOf(folder.file("spy")));
@@ -177,7 +177,7 @@ TEST_CASE("tread-spy without a display says so in one line") {
 TEST_CASE("tread-spy whose types are not built says so in one line and starts no spy") {
   const Folder folder;
   std::filesystem::create_directories(folder.file("bin"));
-  std::filesystem::copy(TREAD_SOURCE_DIR "/tools/tread-spy", folder.file("bin"));
+  std::filesystem::copy(TREAD_SOURCE_DIR "/tools/robot/tread-spy", folder.file("bin"));
   setenv("DISPLAY", ":0", 1);
   Process spy(folder.file("bin/tread-spy"), {}, folder.file("spy"));
   unsetenv("DISPLAY");
