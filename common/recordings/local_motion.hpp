@@ -21,7 +21,6 @@
 //      is beyond 3.5 robust standard deviations (1.4826 median), both of all steps and of the
 //      nearest (twice as many as are used): speed that changes by metres per second under a
 //      constant command is a failure of the lidar's poses.
-// Source: learning.md of the project's reference, section 6.
 namespace tread::recordings {
 
 /// One pattern to build: its command held for its whole length.

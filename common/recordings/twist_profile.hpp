@@ -14,7 +14,7 @@
 //   yaw(t) = yaw_0 + integral of omega (quadratic in t), and
 //   p(t)   = p_0 + integral of R(yaw(s)) (v_x(s), v_y(s)) ds.
 // Given yaw(t) the second is linear in p_0, v_x, v_x', v_y, v_y': two robust linear least squares.
-// Units: m, rad, s. Source: learning.md of the project's reference, section 6.
+// Units: m, rad, s.
 namespace tread::recordings {
 
 /// How a robust fit weighs its rows.

@@ -5,7 +5,7 @@
 
 namespace tread {
 
-std::vector<Effect> bodyEffects() {
+std::vector<Effect> inertiaEffects() {
   using V = EffectValues;
   return {
       {"yaw_inertia",
@@ -59,6 +59,12 @@ std::vector<Effect> bodyEffects() {
                   "it drifts to the right")},
        "",
        secondName()},
+  };
+}
+
+std::vector<Effect> sideEffects() {
+  using V = EffectValues;
+  return {
       {"centrifugal_drift",
        "Centrifugal drift",
        EffectKind::kVehicle,
@@ -99,7 +105,7 @@ std::vector<Effect> bodyEffects() {
   };
 }
 
-std::vector<Effect> measurementEffects() {
+std::vector<Effect> timingEffects() {
   using M = MeasurementModel;
   constexpr EffectKind kMeasured = EffectKind::kMeasurement;
   return {
@@ -140,6 +146,13 @@ std::vector<Effect> measurementEffects() {
        "Drive between two surveyed marks and compare.",
        {withSigns(strength("scale", "1", -0.2, 0.2, 0.02, &M::position_scale), "too long",
                   "too short")}},
+  };
+}
+
+std::vector<Effect> mountingEffects() {
+  using M = MeasurementModel;
+  constexpr EffectKind kMeasured = EffectKind::kMeasurement;
+  return {
       {"lever_arm_x",
        "Lever arm along the vehicle",
        kMeasured,

@@ -22,7 +22,7 @@ std::optional<double> lagWhileSlowing(const VehicleModel& model) {
 
 }  // namespace
 
-std::vector<Effect> driveEffects() {
+std::vector<Effect> commandEffects() {
   using V = EffectValues;
   return {
       {"command_delay",
@@ -66,6 +66,12 @@ std::vector<Effect> driveEffects() {
        "Drive straight at 70, 85 and 100 % of the command and compare the three speeds.",
        {inverseLimit("s/m", 10.0, 0.8, &V::speed_saturation, {0.25, 0.4, 0.6, 0.9, 1.2}, "limit",
                      "m/s", LimitedQuantity::kTrackSpeed)}},
+  };
+}
+
+std::vector<Effect> powerEffects() {
+  using V = EffectValues;
+  return {
       {"battery_sag",
        "Battery sag",
        EffectKind::kVehicle,
@@ -107,6 +113,12 @@ std::vector<Effect> driveEffects() {
        "Drive 20 m along a line with equal commands, then back in reverse; measure both misses.",
        {withSigns(strength("share", "1", -0.3, 0.3, 0.03, &V::track_asymmetry),
                   "the left track is the faster one", "the right track is the faster one")}},
+  };
+}
+
+std::vector<Effect> lagEffects() {
+  using V = EffectValues;
+  return {
       {"actuator_lag",
        "First-order lag of the drive",
        EffectKind::kVehicle,

@@ -17,7 +17,7 @@ std::optional<double> speedOverTracks(const VehicleModel& model) {
 
 }  // namespace
 
-std::vector<Effect> groundEffects() {
+std::vector<Effect> slipEffects() {
   using V = EffectValues;
   return {
       {"slip_ratio",
@@ -62,6 +62,12 @@ std::vector<Effect> groundEffects() {
         0,
         {{"time_1", {"width_1", "slip_1", "breakaway_1"}, 2},
          {"time_2", {"width_2", "slip_2", "breakaway_2"}, 2}}}},
+  };
+}
+
+std::vector<Effect> turningEffects() {
+  using V = EffectValues;
+  return {
       {"track_width",
        "Effective track width, steering efficiency",
        EffectKind::kVehicle,
@@ -112,6 +118,12 @@ std::vector<Effect> groundEffects() {
        "Turn on the spot at 60, 80 and 100 % and compare the yaw rates.",
        {inverseLimit("s/rad", 10.0, 0.7, &V::turn_power_limit, {0.25, 0.4, 0.6, 0.9, 1.4}, "limit",
                      "rad/s", LimitedQuantity::kYawRate)}},
+  };
+}
+
+std::vector<Effect> turningChangeEffects() {
+  using V = EffectValues;
+  return {
       {"speed_understeer",
        "Understeer with speed",
        EffectKind::kVehicle,
@@ -155,6 +167,12 @@ std::vector<Effect> groundEffects() {
         shape(strength("time", "s", 0.0, 1e6, 300.0, &V::payload_time))},
        "",
        {{}, 0, {{"time", {"yaw", "speed", "icr"}, 2}}}},
+  };
+}
+
+std::vector<Effect> gripEffects() {
+  using V = EffectValues;
+  return {
       {"grip_limit",
        "Grip limit, shear failure",
        EffectKind::kVehicle,
@@ -193,6 +211,12 @@ std::vector<Effect> groundEffects() {
                   "it turns to the left", "it turns to the right")},
        "",
        secondName()},
+  };
+}
+
+std::vector<Effect> speedLossEffects() {
+  using V = EffectValues;
+  return {
       {"turn_speed_loss",
        "Loss of speed in turns",
        EffectKind::kVehicle,

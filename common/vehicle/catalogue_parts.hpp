@@ -12,10 +12,18 @@
 /// The catalogue by chapters; use effectCatalogue() and confoundedGroups().
 namespace tread {
 
-std::vector<Effect> driveEffects();                 ///< from the command to the speed of a track
-std::vector<Effect> groundEffects();                ///< slip, turning and losses of forward speed
-std::vector<Effect> bodyEffects();                  ///< inertia, motion to the side, slopes
-std::vector<Effect> measurementEffects();           ///< what the INS makes of the true motion
+std::vector<Effect> commandEffects();               ///< of a command on its way to the motor
+std::vector<Effect> powerEffects();                 ///< power that fades or differs by side
+std::vector<Effect> lagEffects();                   ///< lags and play of the drive
+std::vector<Effect> slipEffects();                  ///< slip and changes of the ground
+std::vector<Effect> turningEffects();               ///< resistance to turning
+std::vector<Effect> turningChangeEffects();         ///< turning with speed, direction and payload
+std::vector<Effect> gripEffects();                  ///< limits and offsets of the yaw rate
+std::vector<Effect> speedLossEffects();             ///< losses of forward speed
+std::vector<Effect> inertiaEffects();               ///< inertia, centre of rotation, crab
+std::vector<Effect> sideEffects();                  ///< drift and slopes
+std::vector<Effect> timingEffects();                ///< of the INS: latencies and scale
+std::vector<Effect> mountingEffects();              ///< of the INS: lever arm, alignment, bias
 std::vector<ConfoundedGroup> groupsOfEveryDrive();  ///< that no drive tells apart
 std::vector<ConfoundedGroup> groupsOfPoorDrives();  ///< that a better drive tells apart
 

@@ -13,7 +13,9 @@ namespace {
 
 std::vector<Effect> allEffects() {
   std::vector<Effect> all;
-  for (auto part : {driveEffects, groundEffects, bodyEffects, measurementEffects})
+  for (auto part :
+       {commandEffects, powerEffects, lagEffects, slipEffects, turningEffects, turningChangeEffects,
+        gripEffects, speedLossEffects, inertiaEffects, sideEffects, timingEffects, mountingEffects})
     for (Effect& effect : part()) all.push_back(std::move(effect));
   return all;
 }

@@ -12,7 +12,7 @@
 
 namespace tread::gap {
 
-/// How noisy a synthetic drive is (gap.md 3.5).
+/// How noisy a synthetic drive is.
 struct SyntheticNoise {
   double gyro = 0.015;     ///< [rad/s] per quarter of a second
   double fix = 0.01;       ///< [m]
@@ -82,7 +82,7 @@ inline Drive syntheticDrive(const ModelDocument& truth, double seconds, uint64_t
   return drive;
 }
 
-/// A vehicle of 1 m/s, .8 m between its tracks, as in gap.md 3.5.
+/// A vehicle of 1 m/s, .8 m between its tracks.
 inline ModelDocument syntheticVehicle() {
   ModelDocument model;
   model.vehicle.name = "synthetic";

@@ -37,7 +37,7 @@ TEST_CASE("angles of a SCIP device come from its own parameters and honour the f
   REQUIRE(urg.angleFirst() == Approx((44 - 384) * 2 * M_PI / 1024));
 }
 
-TEST_CASE("a device with senseless parameters is refused in one line") {
+TEST_CASE("a device with invalid parameters is refused in one line") {
   REQUIRE(ScipGeometry{0, 1080, 540, 0}.problem());
   REQUIRE(ScipGeometry{10, 10, 0, 1440}.problem());
   REQUIRE(ScipGeometry{0, 1440, 540, 1440}.problem());

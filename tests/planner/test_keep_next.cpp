@@ -62,7 +62,7 @@ Approach approach(double ahead) {
 
 }  // namespace
 
-TEST_CASE("Where only the margin for a new plan is missing the next pattern is gone on with") {
+TEST_CASE("Where only the margin for a new plan is missing the queued pattern continues") {
   int kept = 0;
   for (int k = 8; k < 40; ++k) {
     const Approach seen = approach(0.1 * k);

@@ -126,8 +126,7 @@ std::string textOfExcitation(const std::vector<ExcitationRun>& excitation, const
   if (excitation.empty()) return "";
   std::string text =
       "THE BANK before a transition: it begins empty, drives the other surfaces in random order, "
-      "random patterns,\nthen the surface that the transition starts from. One of the excitation "
-      "of "
+      "random patterns,\nthen the surface that the transition starts from. One excitation run of "
       "each, and what the bank holds after it:\ncorrections to the set of the surface that the "
       "transition starts from (forward gain [1], yaw gain [1], sideslip [s],\nturn loss [s], yaw "
       "by speed [s/m], yaw bias [rad/m], crab [1]; noise: variance over the expected one), then "

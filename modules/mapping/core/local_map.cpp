@@ -100,7 +100,7 @@ bool LocalMap::place(const Eigen::Isometry3d& T_map_body) {
   const CellIndex lower{static_cast<int>(std::lround(at.x() - half)),
                         static_cast<int>(std::lround(at.y() - half))};
   moveWindow(lower, static_cast<int>(std::floor(z)) - kColumnHeight / 2);
-  if (fresh) vouchForStart(p_map.head<2>());
+  if (fresh) assumeStartFree(p_map.head<2>());
   return true;
 }
 
@@ -130,7 +130,7 @@ void LocalMap::learnGround(const GroundPlane& plane, bool window_moved) {
   }
 }
 
-void LocalMap::vouchForStart(const Eigen::Vector2d& p_map) {
+void LocalMap::assumeStartFree(const Eigen::Vector2d& p_map) {
   for (size_t i = 0; i < trust_.size(); ++i)
     trust_[i].stood_on =
         (grid_.centre(trust_.indexOf(i)) - p_map).norm() < config_.start_free_radius;

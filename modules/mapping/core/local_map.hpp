@@ -57,7 +57,8 @@ struct LocalMapConfig {
  *  there: the robot stands in it); the cells that it stood on before, and, where a map begins, all
  *  within start_free_radius, because a range finder that looks over its own robot sees neither
  *  what is beside nor behind it and the robot could not turn on the spot. In these an obstacle
- *  that is seen wins. Whoever starts the robot, or mapping anew, vouches for that radius. */
+ *  that is seen wins. Whoever starts the robot, or mapping anew, asserts that this radius is free.
+ */
 class LocalMap {
  public:
   /// Throws std::invalid_argument if tile_cells is no multiple of the patches or sizes are not
@@ -89,14 +90,14 @@ class LocalMap {
   };
   /// Cells that are free without having been seen.
   struct Trust {
-    bool stood_on = false;  // or vouched for
+    bool stood_on = false;  // or assumed free at the start
     bool under_robot = false;
   };
 
   bool place(const Eigen::Isometry3d& T_map_body);
   void moveWindow(CellIndex lower, int lower_z);
   void learnGround(const GroundPlane& plane, bool window_moved);
-  void vouchForStart(const Eigen::Vector2d& p_map);
+  void assumeStartFree(const Eigen::Vector2d& p_map);
   void standAt(const Pose2& T_map_body);
   const std::vector<Ray>& raysOf(const Scan& scan);
   bool isOwnBody(const Eigen::Vector3d& p_body) const;

@@ -17,7 +17,7 @@ namespace tread::blind {
 /// One effect that can be hidden in a recording.
 struct SemiEffect {
   const char* name;       ///< as in effectList()
-  const char* parameter;  ///< as in gap.md
+  const char* parameter;  ///< symbol, as in the truth file
   const char* unit;
   double small;  ///< value at size 1
   double large;  ///< value at size 2

@@ -17,7 +17,7 @@ struct DegenerateGroup {
   Choice choice = Choice::kFull;    ///< drives in which they are alike
 };
 
-/// Groups after gap.md Part 2: exact ones, then those of poor drives.
+/// Groups of effects that no drive tells apart: exact ones, then those of poor drives.
 const std::vector<DegenerateGroup>& degenerateGroups();
 
 /// small, medium, full.

@@ -14,7 +14,7 @@
 // a balanced body, a battery that does not fade.
 namespace tread::blind {
 
-/// How much is uncertain in a log, one sigma (gap.md 3.5, which has no heading noise).
+/// How much is uncertain in a log, one sigma.
 struct NoiseLevel {
   std::string name;
   double gyro_bin = 0.0;  ///< yaw rate averaged over 0.25 s [rad/s]

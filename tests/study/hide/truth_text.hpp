@@ -44,7 +44,7 @@ struct CaseTruth {
 ///     form physical (changed in the 1 kHz dynamics)|kinematic (in the motion or what is said of
 ///     it), shape same|other (as the catalogue's equation in steady motion), how, size, levers
 ///     [{name, value, unit, measured}]      what was turned in the generator equivalent [{name,
-///     value, unit, measured}]  in gap.md's terms, as a change against the
+///     value, unit, measured}]  in the catalogue's terms, as a change against the
 ///       plain vehicle; measured: least squares over the patterns' steady halves
 ///     group [...]      each of these alone is the same for any drive
 ///     together [[...]] these are the same where they are all there

@@ -14,7 +14,7 @@
 
 namespace tread::gap {
 
-/// What people use in turn, each more than the one before (gap.md 3.3).
+/// Models that people use, each richer than the one before.
 /** kIdeal          the given model, nothing fitted.
  *  kGains          slip_ratio, track_width: command gain and track fitted; and ins_latency, of the
  *                  pose alone, as in all rungs below.

@@ -58,8 +58,8 @@ struct ModelComparison {
   std::vector<ComparisonRow> pooled;  ///< each log judges what all others teach; empty = not asked
 };
 
-/// The table of gap.md 3.3 (and 3.4) on any drives: errors 2 s after the beginning of an execution,
-/// simulated open loop, of models that did not see that driving.
+/// Errors 2 s after the start of an execution, simulated open loop, of models that did not see that
+/// driving.
 /** Nested: alternate blocks of a log, structure and parameters of each half from the other. As
  * find does, effects are chosen on the whole log where it has less than 20 blocks; below 10 there
  * is nothing. Pooled: structure and parameters from all other logs. Deterministic for a seed. */

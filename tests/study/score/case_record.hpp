@@ -28,7 +28,7 @@ struct EndErrors : EndError {
 
 /// A number of the truth, in the catalogue's terms.
 struct HiddenNumber {
-  std::string name;  ///< the symbol of gap.md: s, k_t, T_d, ...
+  std::string name;  ///< the symbol in the truth file: s, k_t, T_d, ...
   double value = 0.0;
 };
 

@@ -60,7 +60,7 @@ struct SameQuantity {
   bool limit = false;   ///< the value itself; else a change against the nominal model
 };
 
-/// The model's parameter for a symbol of gap.md; nothing where there is no equivalent.
+/// The model's parameter for a symbol of the truth file; nothing where there is no equivalent.
 /** `duration` [s] of the log: the truth tells a battery's loss by its end. */
 std::optional<SameQuantity> sameQuantity(const std::string& effect, const std::string& symbol,
                                          double duration);

@@ -70,7 +70,7 @@ class Scorer {
   std::vector<ScoreLine> lines_;
 };
 
-/// The rows of gap.md 4.7 in their order.
+/// The figures that have a target.
 void addMusts(Scorer& scorer);
 /// All figures of single effects, for both kinds and by how the forms fit the catalogue's.
 void addSingles(Scorer& scorer);

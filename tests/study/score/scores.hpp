@@ -59,7 +59,7 @@ double quantile(std::vector<double> values, double q);
 /// Sets value, low and high of a quantile of values; the interval is distribution-free.
 void setQuantile(ScoreLine& line, std::vector<double> values, double q);
 
-/// All figures: first those of gap.md 4.7, section "must", in its order, then what is behind them.
+/// All figures: first those that have a target, then what is behind them.
 std::vector<ScoreLine> scoresOf(const std::vector<JudgedCase>& cases);
 
 /// Which names were given to what was hidden: of single cases and null logs.

@@ -29,7 +29,7 @@ std::vector<Recording> recordingsIn(const std::string& folder);
 /// The recording whose nominal model has this name; nothing for that of a noise level.
 std::optional<Recording> recordingNamed(const Study& study, const std::string& nominal);
 
-/// Effects hidden in the study's recordings by exact transformations (gap.md 3.6).
+/// Effects hidden in the study's recordings by exact transformations.
 /** Small: none; medium: each effect once in each recording; full: in two sizes. Where there is no
  * recording, or one of which nothing can be said, a line tells that it is left out. */
 std::vector<HiddenCase> recordingSuite(const Study& study);
