@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -88,4 +89,64 @@ TEST_CASE("there is no floor without encoders, without a gyro or without poses")
   Drive no_poses = makeDrive(0.0);
   for (InsSample& sample : no_poses.segments[0].ins) sample.T_map_body.x = kNotMeasured;
   REQUIRE_FALSE(deadReckoningFloor({no_poses}));
+}
+
+TEST_CASE("the floor does not depend on where in the world a drive was driven, nor on when") {
+  const Drive drive = makeDrive(0.05);
+  Drive moved = drive;
+  const Pose2 T_world_map{250.0, -70.0, 2.1};
+  for (InsSample& sample : moved.segments[0].ins) {
+    sample.T_map_body = T_world_map * sample.T_map_body;
+    sample.time += 1000.0;
+  }
+  for (CommandSample& sample : moved.segments[0].commands) sample.time += 1000.0;
+  for (EncoderSample& sample : moved.encoders) sample.time += 1000.0;
+  for (Execution& execution : moved.executions) {
+    execution.begin += 1000.0;
+    execution.end += 1000.0;
+  }
+  moved.segments[0].end += 1000.0;
+  const auto here = deadReckoningFloor({drive});
+  const auto there = deadReckoningFloor({moved});
+  REQUIRE(here);
+  REQUIRE(there);
+  CHECK(there->executions == here->executions);
+  CHECK(there->position.rms == Approx(here->position.rms).epsilon(0.05));
+  CHECK(there->yaw.median == Approx(here->yaw.median).margin(0.001));
+}
+
+TEST_CASE("an execution where encoders, gyro or poses are missing has no error") {
+  const Drive whole = makeDrive(0.0);
+  Drive gyro = whole;
+  for (InsSample& sample : gyro.segments[0].ins)
+    if (sample.time > 60.0 && sample.time < 66.0) sample.omega = kNotMeasured;
+  Drive poses = whole;
+  for (InsSample& sample : poses.segments[0].ins)
+    if (sample.time > 60.0 && sample.time < 66.0) sample.T_map_body.x = kNotMeasured;
+  Drive encoders = whole;
+  auto& speeds = encoders.encoders;
+  speeds.erase(
+      std::remove_if(speeds.begin(), speeds.end(),
+                     [](const EncoderSample& e) { return e.time > 60.0 && e.time < 66.0; }),
+      speeds.end());
+  for (const Drive& drive : {gyro, poses, encoders}) {
+    const auto floor = deadReckoningFloor({drive});
+    REQUIRE(floor);
+    CHECK(floor->executions <= 57 - 2);
+    CHECK(floor->executions >= 57 - 5);
+    CHECK(floor->position.rms < 0.03);
+  }
+}
+
+TEST_CASE("scales are those of most of the drive: a few wild fixes do not move them") {
+  const auto clean = fitReckoning(makeDrive(0.0));
+  Drive wild = makeDrive(0.0);
+  auto& ins = wild.segments[0].ins;
+  for (size_t i = 500; i < ins.size(); i += 1000) ins[i].T_map_body.x += 0.5;
+  const auto fit = fitReckoning(wild);
+  REQUIRE(clean);
+  REQUIRE(fit);
+  CHECK(fit->speed == Approx(clean->speed).epsilon(0.02));
+  CHECK(fit->turning == Approx(clean->turning).epsilon(0.02));
+  CHECK(fit->sideways == Approx(clean->sideways).margin(0.03));
 }

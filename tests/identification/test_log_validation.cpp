@@ -244,3 +244,111 @@ TEST_CASE("a step of a recording in a wrong frame is found among the others and 
     REQUIRE(execution.end <= steps.segments[execution.segment].end);
   }
 }
+
+TEST_CASE("every contradiction is one fatal line that names the log and ends in no line break") {
+  std::vector<Made> damaged(6);
+  damaged[0].gyro_scale = -1.0;
+  damaged[1].turn_sign = -1.0;
+  damaged[2].forward_sign = -1.0;
+  damaged[3].mirror = -1.0;
+  damaged[4].jump_time = 100.0;
+  damaged[4].jump = 4.0;
+  damaged[5].jump_time = 0.0;
+  damaged[5].jump = -2.0;
+  for (size_t i = 0; i < damaged.size(); ++i) {
+    INFO("damage " << i);
+    Drive drive = makeDrive(damaged[i]);
+    drive.name = "field_7.lcm";
+    size_t fatal_lines = 0;
+    for (const LogNote& note : validateLog(drive)) {
+      CHECK(note.log == "field_7.lcm");
+      CHECK_FALSE(note.what.empty());
+      CHECK(note.what.find('\n') == std::string::npos);
+      CHECK(note.what.find("nan") == std::string::npos);
+      fatal_lines += note.fatal;
+    }
+    CHECK(fatal_lines >= 1);
+    CHECK(fatal_lines <= 2);
+  }
+}
+
+TEST_CASE("what effects of the catalogue do to a drive is never fatal") {
+  std::vector<Made> sound(6);
+  sound[0].gyro_scale = 1.2;
+  sound[1].gyro_bias = -0.1;
+  sound[2].pose_lag = 0.5;
+  sound[3].noise = 0.05;
+  sound[4].turning = 0.2;
+  sound[5].stands_first = false;
+  for (const Made& made : sound) CHECK(fatal(makeDrive(made)) == "");
+}
+
+TEST_CASE("checks look at motion and not at the place, the direction or the time of a drive") {
+  const Drive drive = makeDrive({});
+  Drive moved = drive;
+  for (InsSample& sample : moved.segments[0].ins) {
+    sample.T_map_body = Pose2{1000.0, -500.0, 1.3} * sample.T_map_body;
+    sample.time += 64.0;
+  }
+  for (CommandSample& sample : moved.segments[0].commands) sample.time += 64.0;
+  moved.segments[0].end += 64.0;
+  const auto here = validateLog(drive);
+  const auto there = validateLog(moved);
+  REQUIRE(here.size() == there.size());
+  for (size_t i = 0; i < here.size(); ++i) {
+    CHECK(here[i].fatal == there[i].fatal);
+    CHECK(here[i].what.substr(0, 12) == there[i].what.substr(0, 12));
+  }
+}
+
+TEST_CASE("there is no heading beside a gyro that is missing, or where nothing was driven") {
+  Drive silent = makeDrive({});
+  for (InsSample& sample : silent.segments[0].ins) sample.omega = kNotMeasured;
+  CHECK_FALSE(headingBesideGyro(silent));
+  CHECK_FALSE(headingBesideGyro(Drive{}));
+  CHECK(lineWith(silent, "no gyro beside the heading") != "");
+  CHECK(fatal(silent) == "");
+}
+
+TEST_CASE("few segments do not tell which of them is broken") {
+  Made gentle;
+  gentle.turning = 0.4;
+  const Drive whole = makeDrive(gentle);
+  Drive steps;
+  for (int n = 1; n < 9; ++n) {
+    Segment step;
+    step.end = 6.0 * n + 6.0;
+    step.commands.push_back({6.0 * n, {}});
+    for (const InsSample& sample : whole.segments[0].ins)
+      if (sample.time >= 6.0 * n && sample.time < step.end) step.ins.push_back(sample);
+    steps.segments.push_back(step);
+  }
+  for (InsSample& sample : steps.segments[3].ins) sample.T_map_body.yaw *= -3.0;
+  CHECK(brokenSegments(steps).empty());
+  CHECK(brokenSegments(Drive{}).empty());
+}
+
+TEST_CASE("segments that are taken out take their executions along and no others") {
+  Drive drive;
+  for (size_t i = 0; i < 5; ++i) {
+    Segment segment;
+    segment.commands.push_back({10.0 * static_cast<double>(i), {}});
+    segment.end = segment.begin() + 10.0;
+    drive.segments.push_back(segment);
+    drive.executions.push_back({i, segment.begin() + 1.0, segment.begin() + 3.0});
+    drive.executions.push_back({i, segment.begin() + 3.0, segment.begin() + 5.0});
+  }
+  Drive same = drive;
+  removeSegments({}, same);
+  CHECK(same.segments.size() == 5);
+  CHECK(same.executions.size() == 10);
+  removeSegments({0, 3}, drive);
+  REQUIRE(drive.segments.size() == 3);
+  REQUIRE(drive.executions.size() == 6);
+  CHECK(drive.segments[2].begin() == 40.0);
+  for (const Execution& execution : drive.executions)
+    CHECK(std::floor(execution.begin / 10.0) * 10.0 == drive.segments[execution.segment].begin());
+  removeSegments({0, 1, 2}, drive);
+  CHECK(drive.segments.empty());
+  CHECK(drive.executions.empty());
+}

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core_rig.hpp"
+#include "modules/identification/core/likelihood.hpp"
 #include "modules/identification/core/score_test.hpp"
 
 using namespace tread;
@@ -130,4 +131,224 @@ TEST_CASE("p values count the observed drive in, and the critical score is its q
   CHECK(std::isinf(criticalScore({}, 0.05)));
   CHECK(chanceOfSize(2.0, 1) < 1e-10);
   CHECK(chanceOfSize(0.1, 1000) == 1.0);
+}
+
+TEST_CASE("a score is the sum of the blocks' pulls over the root of their squares") {
+  const Rig rig({}, 200.0, 1);
+  const Eigen::MatrixXd directions = waves(rig.data, 3);
+  const Eigen::VectorXd residuals = blockNoise(rig.data, 7);
+  constexpr double kScale = 0.8;
+  const ScoreTest test(rig.data, rig.stateOf(residuals, kScale), directions, rig.all);
+  REQUIRE(test.candidates() == 3);
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    std::vector<double> pulls(static_cast<size_t>(rig.data.blocks()), 0.0);
+    double information = 0.0;
+    for (Eigen::Index i = 0; i < residuals.size(); ++i) {
+      pulls[static_cast<size_t>(rig.data.all()[static_cast<size_t>(i)].block)] +=
+          pullOf(residuals[i], kScale) * directions(i, c);
+      information += 5.0 / 7.0 * std::pow(directions(i, c) / kScale, 2);
+    }
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const double pull : pulls) {
+      sum += pull;
+      squares += pull * pull;
+    }
+    CHECK(test.score(c) == Approx(sum / std::sqrt(squares)));
+    CHECK(test.size(c) == Approx(sum / information));
+    CHECK(test.sizeError(c) == Approx(std::sqrt(squares) / information));
+    CHECK(test.promise(c) == Approx(0.5 * sum * sum / information));
+    CHECK(test.uniqueness(c) == Approx(1.0));
+  }
+}
+
+TEST_CASE("the unit of a candidate changes its size and nothing else") {
+  const Rig rig({}, 200.0, 1);
+  Eigen::MatrixXd directions(rig.size(), 2);
+  directions << waves(rig.data, 1).col(0), -40.0 * waves(rig.data, 1).col(0);
+  const ScoreTest test(rig.data, rig.stateOf(blockNoise(rig.data, 3), 1.0), directions, rig.all);
+  CHECK(test.score(1) == Approx(-test.score(0)));
+  CHECK(test.size(1) == Approx(-test.size(0) / 40.0));
+  CHECK(test.sizeError(1) == Approx(test.sizeError(0) / 40.0));
+  CHECK(test.promise(1) == Approx(test.promise(0)));
+  CHECK(test.activeBlocks(1) == Approx(test.activeBlocks(0)));
+  CHECK(test.overdispersion(1) == Approx(test.overdispersion(0)));
+}
+
+TEST_CASE("no score exceeds the root of the number of blocks in which its direction acts") {
+  const Rig rig({}, 200.0, 1);
+  Eigen::MatrixXd directions = waves(rig.data, 1);
+  for (Eigen::Index i = 0; i < directions.rows(); ++i)
+    if (rig.data.all()[static_cast<size_t>(i)].block >= 3) directions(i, 0) = 0.0;
+  for (const double size : {0.0, 1.0, 1e3}) {
+    const ScoreTest test(rig.data,
+                         rig.stateOf(blockNoise(rig.data, 4) + size * directions.col(0), 1.0),
+                         directions, rig.all);
+    CHECK(std::abs(test.score(0)) <= std::sqrt(3.0) + 1e-12);
+    CHECK(test.activeBlocks(0) <= 3.0 + 1e-12);
+    CHECK(test.activeBlocks(0) > 2.5);
+  }
+}
+
+TEST_CASE("rows that do not count change no bit of a score test") {
+  const Rig rig({}, 200.0, 1);
+  const Eigen::MatrixXd directions = waves(rig.data, 4);
+  std::vector<char> mask = rig.all;
+  Eigen::VectorXd residuals = blockNoise(rig.data, 5);
+  Eigen::VectorXd spoilt = residuals;
+  for (size_t i = 0; i < mask.size(); i += 3) {
+    mask[i] = 0;
+    spoilt[static_cast<Eigen::Index>(i)] = 1e6;
+  }
+  const ScoreTest test(rig.data, rig.stateOf(residuals, 1.0), directions, mask);
+  const ScoreTest same(rig.data, rig.stateOf(spoilt, 1.0), directions, mask);
+  for (Eigen::Index c = 0; c < 4; ++c) {
+    CHECK(same.score(c) == test.score(c));
+    CHECK(same.size(c) == test.size(c));
+  }
+  CHECK(same.largestByChance(50, 1) == test.largestByChance(50, 1));
+}
+
+TEST_CASE("a direction that changes nothing is no candidate's, and has no size") {
+  const Rig rig({}, 200.0, 1);
+  const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(rig.size(), 1);
+  const FitState state = rig.stateOf(blockNoise(rig.data, 2), 1.0);
+  const ScoreTest test(rig.data, state, nothing, rig.all);
+  CHECK(test.score(0) == 0.0);
+  CHECK(test.size(0) == 0.0);
+  CHECK(test.promise(0) == 0.0);
+  CHECK(test.uniqueness(0) == 0.0);
+  CHECK(test.activeBlocks(0) == 0.0);
+  CHECK(test.sparseScore(0, 1.0) == 0.0);
+  CHECK(std::isinf(test.sizeError(0)));
+  CHECK(test.usualOverdispersion() == 1.0);
+  for (const double largest : test.largestByChance(20, 1)) CHECK(largest == 0.0);
+  const ScoreTest none(rig.data, state, Eigen::MatrixXd(rig.size(), 0), rig.all);
+  CHECK(none.candidates() == 0);
+  CHECK(none.usualOverdispersion() == 1.0);
+  CHECK(none.largestByChance(3, 1) == std::vector<double>(3, 0.0));
+}
+
+TEST_CASE("uniqueness is the sine of the angle to what the free parameters can do") {
+  const Rig rig({}, 200.0, 1);
+  Eigen::MatrixXd axes = waves(rig.data, 2);  // of two channels: at a right angle
+  axes.colwise().normalize();
+  FitState state = rig.stateOf(blockNoise(rig.data, 1), 0.5);
+  state.free.push_back(freeParameter(state.model, "yaw_pull.pull"));
+  state.jacobian = 30.0 * axes.col(0);
+  const double angles[] = {0.1, 0.5, 1.0, 1.5};
+  Eigen::MatrixXd directions(rig.size(), 4);
+  for (Eigen::Index c = 0; c < 4; ++c)
+    directions.col(c) = std::cos(angles[c]) * axes.col(0) + std::sin(angles[c]) * axes.col(1);
+  const ScoreTest test(rig.data, state, directions, rig.all);
+  for (Eigen::Index c = 0; c < 4; ++c) {
+    CHECK(test.uniqueness(c) == Approx(std::sin(angles[c])).epsilon(1e-4));
+    CHECK(test.own(c).dot(axes.col(0)) == Approx(0.0).margin(1e-6));
+  }
+  CHECK(test.score(1) == Approx(test.score(3)));  // what is left of them is the same
+}
+
+TEST_CASE("chance gives every pattern of signs of the blocks equally often") {
+  const Rig rig({}, 100.0, 1);
+  const int blocks = rig.data.blocks();
+  REQUIRE(blocks == 5);
+  const Eigen::MatrixXd direction = waves(rig.data, 1);
+  const Eigen::VectorXd residuals = blockNoise(rig.data, 6);
+  const ScoreTest test(rig.data, rig.stateOf(residuals, 1.0), direction, rig.all);
+  std::vector<double> pulls(5, 0.0);
+  for (Eigen::Index i = 0; i < residuals.size(); ++i)
+    pulls[static_cast<size_t>(rig.data.all()[static_cast<size_t>(i)].block)] +=
+        pullOf(residuals[i], 1.0) * direction(i, 0);
+  std::vector<double> exact;
+  for (unsigned signs = 0; signs < 32; ++signs) {
+    double sum = 0.0;
+    double squares = 0.0;
+    for (size_t b = 0; b < 5; ++b) {
+      sum += (signs >> b & 1U) != 0U ? pulls[b] : -pulls[b];
+      squares += pulls[b] * pulls[b];
+    }
+    exact.push_back(std::abs(sum) / std::sqrt(squares));
+  }
+  constexpr int kMany = 8000;
+  const std::vector<double> drawn = test.largestByChance(kMany, 3);
+  REQUIRE(drawn.size() == kMany);
+  CHECK(std::is_sorted(drawn.begin(), drawn.end()));
+  for (const double level : exact) {
+    const auto above = [level](const std::vector<double>& all) {
+      return static_cast<double>(std::count_if(
+                 all.begin(), all.end(), [level](double value) { return value > level + 1e-9; })) /
+             static_cast<double>(all.size());
+    };
+    CHECK(above(drawn) == Approx(above(exact)).margin(4.0 * std::sqrt(0.25 / kMany)));
+  }
+}
+
+TEST_CASE("candidates that are the same one do not count twice, different ones do") {
+  const Rig rig({}, 400.0, 1);
+  const FitState state = rig.stateOf(blockNoise(rig.data, 8), 1.0);
+  const Eigen::MatrixXd many = waves(rig.data, kCandidates);
+  const Eigen::MatrixXd one = many.col(0);
+  const Eigen::MatrixXd copies = one.replicate(1, kCandidates);
+  const std::vector<double> alone =
+      ScoreTest(rig.data, state, one, rig.all).largestByChance(kDraws, 5);
+  const std::vector<double> copied =
+      ScoreTest(rig.data, state, copies, rig.all).largestByChance(kDraws, 5);
+  const std::vector<double> different =
+      ScoreTest(rig.data, state, many, rig.all).largestByChance(kDraws, 5);
+  for (size_t i = 0; i < alone.size(); ++i) {
+    CHECK(copied[i] == Approx(alone[i]).margin(1e-12));
+    CHECK(different[i] >= alone[i] - 1e-12);
+  }
+  CHECK(criticalScore(different, kAlpha) > criticalScore(alone, kAlpha) + 0.3);
+}
+
+TEST_CASE("the same seed draws the same chance, another one another") {
+  const Rig rig({}, 200.0, 1);
+  const ScoreTest test(rig.data, rig.stateOf(blockNoise(rig.data, 8), 1.0), waves(rig.data, 3),
+                       rig.all);
+  CHECK(test.largestByChance(99, 4) == test.largestByChance(99, 4));
+  CHECK(test.largestByChance(99, 4) != test.largestByChance(99, 5));
+  CHECK(test.largestByChance(0, 4).empty());
+}
+
+TEST_CASE("blocks that share their noise scatter more than the scales say, others hardly do") {
+  const Rig rig({}, 400.0, 1);
+  Eigen::MatrixXd steady = Eigen::MatrixXd::Zero(rig.size(), 4);
+  for (Eigen::Index i = 0; i < steady.rows(); ++i)
+    steady(i, static_cast<Eigen::Index>(rig.data.all()[static_cast<size_t>(i)].channel)) = 1.0;
+  const auto usual = [&](double share) {
+    return ScoreTest(rig.data, rig.stateOf(blockNoise(rig.data, 9, share), 1.0), steady, rig.all)
+        .usualOverdispersion();
+  };
+  CHECK(usual(0.0) < 2.0);
+  CHECK(usual(0.5) > 5.0);
+  const ScoreTest test(rig.data, rig.stateOf(blockNoise(rig.data, 9), 1.0), steady, rig.all);
+  for (Eigen::Index c = 0; c < 4; ++c) {
+    CHECK(test.overdispersion(c) >= 1.0);
+    CHECK(std::abs(test.sparseScore(c, 1e3)) < std::abs(test.sparseScore(c, 1.0)) + 1e-12);
+    CHECK(test.ownScore(c) == test.sparseScore(c, 1.0));
+  }
+}
+
+TEST_CASE("a p value falls with the score, and what chance reaches with alpha is critical") {
+  std::vector<double> chance;
+  for (int i = 1; i <= 999; ++i) chance.push_back(0.01 * i);
+  double last = 1.0;
+  for (double score = 0.0; score < 11.0; score += 0.05) {
+    const double p = familyWise(chance, score);
+    CHECK(p <= last);
+    CHECK(p >= 1.0 / 1000.0);
+    CHECK(familyWise(chance, -score) == p);
+    last = p;
+  }
+  for (const double alpha : {0.01, 0.02, 0.05, 0.2})
+    CHECK(familyWise(chance, criticalScore(chance, alpha)) <= alpha + 1e-9);
+  CHECK(familyWise({}, 3.0) == 1.0);
+}
+
+TEST_CASE("the chance of a size is a normal tail times the number of candidates") {
+  CHECK(chanceOfSize(1.0, 1) == Approx(chanceBeyond(3.9)));
+  CHECK(chanceOfSize(1.0, 70) == Approx(70.0 * chanceBeyond(3.9)));
+  CHECK(chanceOfSize(1.2, 70, true) == Approx(70.0 * chanceBeyond(1.2 * 3.3)));
+  CHECK(chanceOfSize(0.0, 1) == 1.0);
 }

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include <Eigen/LU>
+
 #include "core_rig.hpp"
 #include "modules/identification/core/likelihood.hpp"
 #include "modules/identification/core/validation.hpp"
@@ -121,4 +123,170 @@ TEST_CASE("a parameter that the drive does not show is as good as unknown") {
     const FreeParameter& parameter = state.free[static_cast<size_t>(i)];
     CHECK(std::sqrt(covariance(i, i)) > parameter.max - parameter.min);
   }
+}
+
+TEST_CASE("what a block says is in no parameter that its own loss is told with") {
+  const Rig rig({}, 300.0, 1);
+  FitState state = rig.stateOf(blockNoise(rig.data, 1), 1.0);
+  state.jacobian = waves(rig.data, 3);
+  for (const char* path : {"yaw_pull.pull", "slip_ratio.slip", "track_asymmetry.share"})
+    state.free.push_back(freeParameter(state.model, path));
+  const Eigen::VectorXd loss = heldOutLoss(rig.data, state, rig.all);
+  constexpr int kChanged = 4;
+  for (Eigen::Index i = 0; i < rig.size(); ++i)
+    if (rig.data.all()[static_cast<size_t>(i)].block == kChanged) state.predicted[i] -= 3.0;
+  const Eigen::VectorXd other = heldOutLoss(rig.data, state, rig.all);
+  CHECK(other[kChanged] > loss[kChanged] + 100.0);
+  int unmoved = 0;
+  for (Eigen::Index b = 0; b < loss.size(); ++b) unmoved += other[b] == loss[b];
+  // Those held out together with it: their parameters never saw it.
+  CHECK(unmoved == (rig.data.blocks() - 1) / 5);
+}
+
+TEST_CASE("without free parameters the held out loss is that of each block's rows") {
+  const Rig rig({}, 200.0, 1);
+  const Eigen::VectorXd residuals = blockNoise(rig.data, 1);
+  const FitState state = rig.stateOf(residuals, 0.7);
+  Eigen::VectorXd expected = Eigen::VectorXd::Zero(rig.data.blocks());
+  for (Eigen::Index i = 0; i < rig.size(); ++i)
+    expected[rig.data.all()[static_cast<size_t>(i)].block] += lossOf(residuals[i], 0.7);
+  const Eigen::VectorXd loss = heldOutLoss(rig.data, state, rig.all);
+  CHECK((loss - expected).cwiseAbs().maxCoeff() < 1e-9);
+  CHECK(loss.sum() == Approx(totalLoss(residuals, state.scales, rig.all)));
+}
+
+TEST_CASE("the held out loss of small residuals is that of least squares on the other blocks") {
+  const Rig rig({}, 300.0, 1);
+  constexpr double kScale = 1e3;  // so large that the loss is a parabola
+  const Eigen::VectorXd residuals = blockNoise(rig.data, 2);
+  FitState state = rig.stateOf(residuals, kScale);
+  state.jacobian = waves(rig.data, 3);
+  state.jacobian.col(2) += 0.5 * state.jacobian.col(0);
+  for (const char* path : {"yaw_pull.pull", "slip_ratio.slip", "track_asymmetry.share"})
+    state.free.push_back(freeParameter(state.model, path));
+  const Eigen::VectorXd loss = heldOutLoss(rig.data, state, rig.all);
+  Eigen::VectorXd expected = Eigen::VectorXd::Zero(rig.data.blocks());
+  for (int fold = 0; fold < 5; ++fold) {
+    Eigen::MatrixXd train = state.jacobian;
+    Eigen::VectorXd right = residuals;
+    for (Eigen::Index i = 0; i < rig.size(); ++i)
+      if (rig.data.all()[static_cast<size_t>(i)].block % 5 == fold) {
+        train.row(i).setZero();
+        right[i] = 0.0;
+      }
+    const Eigen::VectorXd fitted =
+        (train.transpose() * train).inverse() * Eigen::VectorXd(train.transpose() * right);
+    const Eigen::VectorXd outside = residuals - state.jacobian * fitted;
+    for (Eigen::Index i = 0; i < rig.size(); ++i) {
+      const int block = rig.data.all()[static_cast<size_t>(i)].block;
+      if (block % 5 == fold) expected[block] += lossOf(outside[i], kScale);
+    }
+  }
+  for (Eigen::Index b = 0; b < loss.size(); ++b)
+    CHECK(loss[b] == Approx(expected[b]).epsilon(1e-4));
+}
+
+TEST_CASE("a parameter that is known for certain follows nothing") {
+  const Rig rig({}, 200.0, 1);
+  const FitState none = rig.stateOf(blockNoise(rig.data, 1) + waves(rig.data, 1).col(0), 1.0);
+  FitState held = none;
+  held.free.push_back(freeParameter(held.model, "yaw_pull.pull"));
+  held.free[0].expected = 0.0;
+  held.free[0].deviation = 1e-9;
+  held.jacobian = waves(rig.data, 1);
+  const Eigen::VectorXd without = heldOutLoss(rig.data, none, rig.all);
+  CHECK((heldOutLoss(rig.data, held, rig.all) - without).cwiseAbs().maxCoeff() < 1e-6);
+  held.free[0].deviation = std::numeric_limits<double>::infinity();
+  CHECK(heldOutLoss(rig.data, held, rig.all).sum() < without.sum() - 10.0);
+}
+
+TEST_CASE("rows that do not count have no held out loss and change no other") {
+  const Rig rig({}, 300.0, 1);
+  std::vector<char> mask;
+  for (const Observation& row : rig.data.all()) mask.push_back(row.block % 3 != 1);
+  FitState state = rig.stateOf(blockNoise(rig.data, 1), 1.0);
+  state.jacobian = waves(rig.data, 1);
+  state.free.push_back(freeParameter(state.model, "yaw_pull.pull"));
+  const std::vector<char> counts = blocksThatCount(rig.data, mask);
+  const Eigen::VectorXd loss = heldOutLoss(rig.data, state, mask);
+  for (Eigen::Index i = 0; i < rig.size(); ++i)
+    if (!mask[static_cast<size_t>(i)]) state.predicted[i] = 1e6;
+  const Eigen::VectorXd same = heldOutLoss(rig.data, state, mask);
+  for (Eigen::Index b = 0; b < loss.size(); ++b) {
+    CHECK((counts[static_cast<size_t>(b)] != 0) == (b % 3 != 1));
+    CHECK((loss[b] == 0.0) == (b % 3 == 1));
+    CHECK(same[b] == loss[b]);
+  }
+}
+
+TEST_CASE("parameters that follow the residuals in first order leave the model as it was") {
+  const Rig rig({}, 200.0, 1);
+  const Eigen::MatrixXd directions = waves(rig.data, 2);
+  FitState state = rig.stateOf(blockNoise(rig.data, 1) + 0.7 * directions.col(0), 1e3);
+  state.free.push_back(freeParameter(state.model, "yaw_pull.pull"));
+  state.jacobian = directions.col(0);
+  const Eigen::VectorXd before = state.predicted;
+  followLinearly(rig.fitter, state, rig.all);
+  CHECK(*findParameter(state.model, "yaw_pull.pull") == 0.0);
+  // Along the direction and nowhere else, until nothing of it is left in the residuals.
+  const Eigen::VectorXd moved = state.predicted - before;
+  const double size = moved.dot(directions.col(0)) / directions.col(0).squaredNorm();
+  CHECK(size == Approx(0.7).margin(0.2));
+  CHECK((moved - size * directions.col(0)).norm() < 1e-9);
+  CHECK(rig.data.residuals(state.predicted).dot(directions.col(0)) ==
+        Approx(0.0).margin(1e-3 * directions.col(0).squaredNorm()));
+}
+
+TEST_CASE("the covariance is the scatter of the blocks' pulls over the information squared") {
+  const Rig rig({}, 200.0, 1);
+  const Eigen::VectorXd residuals = blockNoise(rig.data, 3);
+  FitState state = rig.stateOf(residuals, 0.9);
+  state.jacobian = waves(rig.data, 1);
+  state.free.push_back(freeParameter(state.model, "yaw_pull.pull"));
+  Eigen::VectorXd pulls = Eigen::VectorXd::Zero(rig.data.blocks());
+  for (Eigen::Index i = 0; i < rig.size(); ++i)
+    pulls[rig.data.all()[static_cast<size_t>(i)].block] +=
+        pullOf(residuals[i], 0.9) * state.jacobian(i, 0);
+  const double information = 5.0 / 7.0 * state.jacobian.squaredNorm() / (0.9 * 0.9);
+  const auto blocks = static_cast<double>(rig.data.blocks());
+  const Eigen::MatrixXd covariance = parameterCovariance(rig.data, state, rig.all);
+  REQUIRE(covariance.size() == 1);
+  CHECK(covariance(0, 0) ==
+        Approx(pulls.squaredNorm() * blocks / (blocks - 1.0) / (information * information)));
+  state.free[0].deviation = 1e-4;  // far better known than the drive says
+  CHECK(parameterCovariance(rig.data, state, rig.all)(0, 0) ==
+        Approx(1e-8 * blocks / (blocks - 1.0)).epsilon(0.01));
+  state.free.clear();
+  CHECK(parameterCovariance(rig.data, state, rig.all).size() == 0);
+}
+
+TEST_CASE("a covariance is symmetric, has no negative variance and changes with the units") {
+  const Rig rig({}, 300.0, 1);
+  FitState state = rig.stateOf(blockNoise(rig.data, 4), 1.0);
+  state.jacobian = waves(rig.data, 3);
+  state.jacobian.col(2) += 0.8 * state.jacobian.col(1);
+  for (const char* path : {"yaw_pull.pull", "slip_ratio.slip", "track_asymmetry.share"})
+    state.free.push_back(freeParameter(state.model, path));
+  const Eigen::MatrixXd covariance = parameterCovariance(rig.data, state, rig.all);
+  CHECK((covariance - covariance.transpose()).norm() < 1e-12 * covariance.norm());
+  CHECK(covariance.determinant() > 0.0);
+  state.jacobian.col(1) *= 1000.0;  // the parameter in thousandths
+  const Eigen::MatrixXd other = parameterCovariance(rig.data, state, rig.all);
+  CHECK(other(1, 1) == Approx(1e-6 * covariance(1, 1)));
+  CHECK(other(1, 2) == Approx(1e-3 * covariance(1, 2)));
+  CHECK(other(2, 2) == Approx(covariance(2, 2)));
+}
+
+TEST_CASE("a gain of one block has no error, and the other way round it is a loss") {
+  Eigen::VectorXd first(2), second(2);
+  first << 5.0, 9.0;
+  second << 2.0, 1.0;
+  const Gain one = gap::gainOf(first, second, {1, 0});
+  CHECK(one.value == 3.0);
+  CHECK(one.error == 0.0);
+  const Gain both = gap::gainOf(first, second, {1, 1});
+  const Gain back = gap::gainOf(second, first, {1, 1});
+  CHECK(back.value == -both.value);
+  CHECK(back.error == both.error);
+  CHECK(gap::gainOf(first, second, {0, 0}).value == 0.0);
 }

@@ -2,6 +2,9 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include <set>
+
+#include "modules/identification/core/fit.hpp"
 #include "modules/identification/core/verdict.hpp"
 #include "synthetic_drive.hpp"
 
@@ -70,4 +73,105 @@ TEST_CASE("what was seen but has no plausible size is not nothing") {
   judge(finding, kAlpha, kLeastGain);
   CHECK(finding.verdict == GapVerdict::kCannotTell);
   CHECK(finding.reason == "battery_sag runs to the end of its plausible range");
+}
+
+namespace {
+
+FoundEffect foundEffect(const std::string& name) {
+  FoundEffect effect;
+  effect.name = name;
+  effect.kind = effectNamed(name).kind;
+  effect.p_value = 0.001;
+  return effect;
+}
+
+/// A finding with these effects, adequate or not.
+Finding findingOf(const std::vector<FoundEffect>& effects, double adequacy = 0.5) {
+  Finding finding = findingWith({}, 0.5);
+  finding.identified.effects = effects;
+  finding.adequacy.p_value = adequacy;
+  return finding;
+}
+
+}  // namespace
+
+TEST_CASE("nothing found is no discrepancy only if nothing is left over") {
+  CHECK(judged(findingOf({})) == GapVerdict::kNoDiscrepancy);
+  CHECK(judged(findingOf({}, 0.001)) == GapVerdict::kNotInCatalogue);
+  CHECK(judged(findingOf({}, kAlpha)) == GapVerdict::kNotInCatalogue);
+}
+
+TEST_CASE("effects that leave something over are part of the answer") {
+  CHECK(judged(findingOf({foundEffect("slip_ratio")}, 0.001)) == GapVerdict::kPartial);
+  CHECK(judged(findingOf({foundEffect("slip_ratio")})) == GapVerdict::kFound);
+  Finding width = findingWith({moved("track_width.widening", 0.2, 0.4)}, 0.8);
+  width.adequacy.p_value = 0.001;
+  CHECK(judged(width) == GapVerdict::kPartial);
+}
+
+TEST_CASE(
+    "effects of the INS alone are a matter of measurement, one of the vehicle beside is not") {
+  CHECK(judged(findingOf({foundEffect("gyro_bias")})) == GapVerdict::kMeasurement);
+  CHECK(judged(findingOf({foundEffect("gyro_bias"), foundEffect("lever_arm_y")})) ==
+        GapVerdict::kMeasurement);
+  CHECK(judged(findingOf({foundEffect("gyro_bias"), foundEffect("slip_ratio")})) ==
+        GapVerdict::kFound);
+  Finding with_width = findingWith({moved("track_width.widening", 0.2, 0.4)}, 0.8);
+  with_width.identified.effects = {foundEffect("gyro_bias")};
+  CHECK(judged(with_width) == GapVerdict::kFound);
+}
+
+TEST_CASE("an effect that has its like is ambiguous: of its group, or within the error behind it") {
+  FoundEffect group = foundEffect("icr_offset");
+  group.group = {"lever_arm_x"};
+  CHECK(judged(findingOf({group})) == GapVerdict::kAmbiguous);
+  CHECK(judged(findingOf({foundEffect("slip_ratio"), group})) == GapVerdict::kAmbiguous);
+  FoundEffect close = foundEffect("slip_ratio");
+  close.runner_ups = {{"track_width", 20.0, 5.0}, {"quadratic_drag", 4.0, 5.0}};
+  CHECK(judged(findingOf({close})) == GapVerdict::kAmbiguous);
+  close.runner_ups.pop_back();
+  CHECK(judged(findingOf({close})) == GapVerdict::kFound);
+  CHECK(judged(findingOf({group}, 0.001)) == GapVerdict::kPartial);
+}
+
+TEST_CASE("what a person accepted and no test shows makes no verdict") {
+  FoundEffect accepted = foundEffect("yaw_pull");
+  accepted.accepted = true;
+  CHECK(isShown(accepted));
+  accepted.p_value = 0.5;
+  CHECK_FALSE(isShown(accepted));
+  CHECK(judged(findingOf({accepted})) == GapVerdict::kNoDiscrepancy);
+  CHECK(judged(findingOf({accepted, foundEffect("slip_ratio")})) == GapVerdict::kFound);
+  accepted.accepted = false;
+  CHECK(isShown(accepted));
+}
+
+TEST_CASE("a size at the end of its range tells nothing, and says of which parameter") {
+  Finding finding = findingOf({foundEffect("slip_ratio")});
+  const double most = freeParameter(finding.before, "slip_ratio.slip").max;
+  Estimate slip;
+  slip.parameter = "slip_ratio.slip";
+  slip.value = most;
+  finding.identified.effects[0].parameters = {slip};
+  finding.identified.model.vehicle.effects.slip_ratio = most;
+  judge(finding, kAlpha, kLeastGain);
+  CHECK(finding.verdict == GapVerdict::kCannotTell);
+  CHECK(finding.reason == "slip_ratio.slip runs to the end of its plausible range");
+  finding.identified.model.vehicle.effects.slip_ratio = 0.5 * most;
+  finding.reason.clear();
+  judge(finding, kAlpha, kLeastGain);
+  CHECK(finding.verdict == GapVerdict::kFound);
+  CHECK(finding.reason.empty());
+}
+
+TEST_CASE("every verdict has a name of its own and an exit status of its own") {
+  std::set<std::string> names;
+  for (const GapVerdict verdict :
+       {GapVerdict::kNoDiscrepancy, GapVerdict::kFound, GapVerdict::kAmbiguous,
+        GapVerdict::kPartial, GapVerdict::kNotInCatalogue, GapVerdict::kMeasurement,
+        GapVerdict::kCannotTell}) {
+    CHECK(names.insert(verdictName(verdict)).second);
+    const int status = static_cast<int>(verdict);
+    CHECK((status == 0 || (status >= 10 && status <= 15)));
+  }
 }
