@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 
 #include <unistd.h>
 
@@ -14,6 +16,7 @@
 #include "common/log/event_log.hpp"
 #include "common/vehicle/measurement.hpp"
 #include "common/vehicle/model_file.hpp"
+#include "tests/tools/called_program.hpp"
 #include "tools/overlay/overlay_picture.hpp"
 
 namespace tread::overlay {
@@ -27,15 +30,20 @@ ModelDocument modelWith(const std::string& rest) {
 /// A log of a drive that a model did: MOTOR at 20 Hz, INS at 50 Hz; gone with the test.
 class Log {
  public:
-  explicit Log(const ModelDocument& model, bool with_ins = true)
-      : path_((std::filesystem::temp_directory_path() /
-               ("tread-overlay-" + std::to_string(getpid()) + ".lcmlog"))
-                  .string()) {
+  /// `silent` [s]: INS messages of a time since the first one that are left out.
+  explicit Log(
+      const ModelDocument& model, bool with_ins = true,
+      const std::function<bool(double)>& silent = [](double) { return false; })
+      : path_(
+            (std::filesystem::temp_directory_path() / ("tread-overlay-" + std::to_string(getpid()) +
+                                                       "-" + std::to_string(++count_) + ".lcmlog"))
+                .string()) {
     const std::vector<MotionSample> said = drive(model);
     LogWriter writer(path_);
     for (int i = 0; i < 40 * 20; ++i) writer.write(kMotor, motor(i));
     for (size_t i = 0; with_ins && i < said.size(); ++i)
-      writer.write(kIns, ins(said[i], static_cast<int64_t>(i)));
+      if (!silent(0.02 * static_cast<double>(i)))
+        writer.write(kIns, ins(said[i], static_cast<int64_t>(i)));
   }
   ~Log() { std::filesystem::remove(path_); }
   const std::string& path() const { return path_; }
@@ -78,6 +86,7 @@ class Log {
     return message;
   }
 
+  inline static int count_ = 0;  ///< several may stand side by side
   std::string path_;
 };
 
@@ -120,6 +129,130 @@ TEST_CASE("a log without INS, and a model of another kind of command, are refuse
   CHECK_THROWS_WITH(replay(readLoggedDrive({log.path()}), {wheels}, 4.0),
                     Catch::Contains("another kind of command"));
   CHECK_THROWS(readLoggedDrive({"/no/such.lcmlog"}));
+}
+
+TEST_CASE("a model's error is zero on its own track, and does not grow with the way") {
+  const ModelDocument exact = modelWith("");
+  const Log log(exact);
+  const std::vector<Piece> pieces = replay(readLoggedDrive({log.path()}), {exact}, 8.0);
+  REQUIRE(pieces.size() == 4);
+  for (size_t sample = 0; sample <= 80; sample += 20) {
+    // What is left is of the kernel's steps, of 10 ms in the drive and of 20 ms here.
+    CHECK(medianErrors(pieces, 0, sample).position < 0.01);
+    CHECK(medianErrors(pieces, 0, sample).yaw < 0.01);
+  }
+  for (const Piece& piece : pieces) {
+    CHECK(piece.positionError(0, 0) < 1e-12);
+    CHECK(piece.yawError(0, 0) < 1e-12);
+  }
+}
+
+TEST_CASE("the median of pieces is the middle one, and of no piece zero") {
+  std::vector<Piece> pieces;
+  for (const double off : {0.1, 5.0, 0.3}) {
+    Piece piece;
+    piece.measured = {{0.0, 0.0, 0.0}};
+    piece.predicted = {{{3.0 * off, 4.0 * off, -off}}};
+    pieces.push_back(piece);
+  }
+  CHECK(medianErrors(pieces, 0, 0).position == Approx(1.5));
+  CHECK(medianErrors(pieces, 0, 0).yaw == Approx(0.3));
+  CHECK(medianErrors({}, 0, 0).position == 0.0);
+}
+
+TEST_CASE("pieces in which the INS was silent are left out, the others stay") {
+  const ModelDocument plain = modelWith("");
+  const Log whole(plain);
+  const std::vector<Piece> all = replay(readLoggedDrive({whole.path()}), {plain}, 4.0);
+  const Log gap(plain, true, [](double time) { return time > 17.0 && time < 17.5; });
+  const std::vector<Piece> some = replay(readLoggedDrive({gap.path()}), {plain}, 4.0);
+  // Pieces begin at 3, 7, 11, 15, 19 s; each needs the 3 s before, too.
+  REQUIRE(all.size() == 9);
+  REQUIRE(some.size() == 7);
+  for (const Piece& piece : some) {
+    CHECK(piece.begin != 15.0);
+    CHECK(piece.begin != 19.0);
+  }
+  const Log short_gap(plain, true, [](double time) { return time > 17.0 && time < 17.2; });
+  CHECK(replay(readLoggedDrive({short_gap.path()}), {plain}, 4.0).size() == 9);
+}
+
+TEST_CASE("a picture of one piece and of many is drawn, with one model and with two") {
+  const samples::OwnFolder folder;
+  const ModelDocument plain = modelWith("");
+  const ModelDocument askew = modelWith("effects:\n  track_asymmetry: {share: 0.04}\n");
+  const Log log(plain);
+  const std::vector<Piece> pieces = replay(readLoggedDrive({log.path()}), {askew, plain}, 4.0);
+  drawOverlay(folder.path("many.png"), "many", pieces, {"askew.yaml", "plain.yaml"});
+  CHECK(samples::isPng(folder.bytes("many.png")));
+  Piece alone = pieces.front();
+  alone.predicted.resize(1);
+  drawOverlay(folder.path("one.png"), "one", {alone}, {"askew.yaml"});
+  CHECK(samples::isPng(folder.bytes("one.png")));
+  CHECK_THROWS_WITH(drawOverlay("/nowhere/a.png", "none", pieces, {"askew.yaml", "plain.yaml"}),
+                    Catch::Contains("/nowhere/a.png"));
+}
+
+TEST_CASE("tread-overlay prints each model's errors at two seconds and at the length, and draws") {
+  const samples::OwnFolder folder;
+  const std::string text =
+      "name: m\nkind: power\nfull_speed: 1.1\ngauge: 0.6\nlag: 0.15\ndelay: 0.03\n";
+  const std::string exact = folder.write("exact.yaml", text);
+  const std::string askew =
+      folder.write("askew.yaml", text + "effects:\n  track_asymmetry: {share: 0.04}\n");
+  const Log log(modelWith(""));
+  const std::string models = " --model " + askew + " --model " + exact;
+  const samples::CalledProgram run =
+      samples::called("tread-overlay " + log.path() + models + " --length 4 --picture " +
+                      folder.path("overlay.png"));
+  INFO(run.printed);
+  CHECK(run.status == 0);
+  CHECK(run.says("median errors of 9 pieces of the drive"));
+  CHECK(run.says(askew + ": after 2 s "));
+  CHECK(run.says(askew + ": after 4 s "));
+  CHECK(run.says(exact + ": after 4 s 0.00"));
+  CHECK(samples::isPng(folder.bytes("overlay.png")));
+  // With a length of 2 s both horizons are one line; a shorter one has its own alone.
+  const samples::CalledProgram two =
+      samples::called("tread-overlay " + log.path() + " --model " + exact + " --length 2");
+  CHECK(std::count(two.printed.begin(), two.printed.end(), '\n') == 2);
+  const samples::CalledProgram one =
+      samples::called("tread-overlay " + log.path() + " --model " + exact + " --length 1");
+  CHECK(one.says("after 1 s "));
+  CHECK_FALSE(one.says("after 2 s "));
+}
+
+TEST_CASE("tread-overlay says in one line what it cannot read, and what to do") {
+  const samples::OwnFolder folder;
+  const std::string model = folder.write(
+      "m.yaml", "name: m\nkind: power\nfull_speed: 1.1\ngauge: 0.6\nlag: 0.15\ndelay: 0.03\n");
+  const std::string wheels =
+      folder.write("wheels.yaml", "name: wheels\nkind: track_speed\ngauge: 0.6\n");
+  const std::string broken = folder.write("broken.yaml", "name: m\nkind: power\ngaug: 0.6\n");
+  const Log log(modelWith(""));
+  const std::vector<std::pair<std::string, std::string>> refused{
+      {"/no/such.lcmlog --model " + model, "/no/such.lcmlog"},
+      {log.path() + " --model /no/model.yaml", "/no/model.yaml"},
+      {log.path() + " --model " + broken, broken + ":"},
+      {log.path() + " --model " + wheels, "give a model of the same vehicle"},
+      {log.path() + " --length 60 --model " + model, "try a smaller --length"},
+      {log.path() + " --length nan --model " + model, "--length"}};
+  for (const auto& [arguments, words] : refused) {
+    const samples::CalledProgram run = samples::called("tread-overlay " + arguments);
+    INFO(run.printed);
+    CHECK(run.status != 0);
+    CHECK(run.isOneLine());
+    CHECK(run.printed.find("tread-overlay: ") == 0);
+    CHECK(run.says(words));
+  }
+  for (const std::string& arguments :
+       {std::string(), log.path(), log.path() + " --model", log.path() + " --model a --length 0.5",
+        log.path() + " --model a --lenght 4"}) {
+    const samples::CalledProgram run = samples::called("tread-overlay " + arguments);
+    INFO(arguments << ": " << run.printed);
+    CHECK(run.status == 2);
+    CHECK(run.isOneLine());
+  }
 }
 
 }  // namespace tread::overlay

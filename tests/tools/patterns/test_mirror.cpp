@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -99,4 +100,37 @@ TEST_CASE("Between classes that turn, the mirror image is between their mirror i
   REQUIRE(image != nullptr);
   CHECK(image->entry_class == "left");
   CHECK(image->exit_class == "right");
+}
+
+TEST_CASE("The mirror image of a mirror image is the pattern itself, with its own name") {
+  const PatternSet shipped =
+      readPatternFile(std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor.yaml");
+  for (const MotionPattern& pattern : shipped.patterns()) {
+    if (!turns(pattern)) continue;
+    INFO(pattern.name);
+    const MotionPattern twice = mirrored(mirrored(pattern));
+    CHECK(twice.name == pattern.name);
+    CHECK(twice.commands == pattern.commands);
+    CHECK(twice.end_covariance == pattern.end_covariance);
+    REQUIRE(twice.trajectory.size() == pattern.trajectory.size());
+    for (size_t t = 0; t < twice.trajectory.size(); ++t) {
+      CHECK(twice.trajectory[t].x == pattern.trajectory[t].x);
+      CHECK(twice.trajectory[t].y == pattern.trajectory[t].y);
+      CHECK(twice.trajectory[t].yaw == pattern.trajectory[t].yaw);
+    }
+  }
+}
+
+TEST_CASE("A mirror image was never learned, and keeps the length of its path") {
+  MotionPattern left = *samples::withoutRight().findByName("left");
+  left.times_learned = 7;
+  const MotionPattern right = mirrored(left);
+  CHECK(right.times_learned == 0);
+  CHECK(right.pathLength() == left.pathLength());
+  // A straight sample has no negative zero, which a file would show as -0.
+  MotionPattern straight = *samples::withoutRight().findByName("straight");
+  for (const Pose2& pose : mirrored(straight).trajectory) {
+    CHECK_FALSE(std::signbit(pose.y));
+    CHECK_FALSE(std::signbit(pose.yaw));
+  }
 }

@@ -1,8 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <utility>
+
 #include "tests/tools/patterns/patterns_program.hpp"
 
 using namespace tread::patterns::samples;
+
+namespace {
+
+/// A small set that is good.
+const std::string kGood = R"(name: tiny
+kind: power
+period_us: 100000
+classes:
+  - {name: rest, twist: [0, 0, 0], steady: [0, 0]}
+patterns:
+  - id: 1
+    name: nod
+    entry: rest
+    exit: rest
+    commands:
+      - [0.5, 0.5, 2]
+    trajectory:
+      - [0.01, 0, 0]
+      - [0.02, 0, 0]
+)";
+
+}  // namespace
 
 TEST_CASE("tread-patterns makes a file that it can show") {
   const Folder folder;
@@ -107,4 +132,83 @@ TEST_CASE("A set is mirrored into another file, never over itself") {
       run("mirror " + kSet + " -o " + folder.path("x.yaml") + " --pattern straight");
   CHECK(straight.status == 1);
   CHECK(straight.says("its own mirror image"));
+}
+
+TEST_CASE("check finds each fault of a pattern file and names its line and what is allowed") {
+  const Folder folder;
+  const std::string file = folder.path("tiny.yaml");
+  const auto checked = [&](const std::string& from, const std::string& to) {
+    std::string text = kGood;
+    const size_t at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    std::ofstream(file) << text.replace(at, from.size(), to);
+    return run("check " + file);
+  };
+  REQUIRE(checked("nod", "nod").status == 0);
+  const struct {
+    const char* from;
+    const char* to;
+    const char* line;
+    const char* words;
+  } faults[] = {{"name: nod", "nane: nod", "7", "is nane meant"},
+                {"[0.5, 0.5, 2]", "[0.5, 1.5, 2]", "11", "1.5"},
+                {"[0.5, 0.5, 2]", "[0.5, 0.5, 3]", "", "3 commands but 2 poses"},
+                {"[0.5, 0.5, 2]", "[0.5, .nan, 2]", "1", "nan"},
+                {"[0.5, 0.5, 2]", "[0.5, fast, 2]", "12", "fast"},
+                {"[0.01, 0, 0]", "[9, 0, 0]", "", "jumps"},
+                {"exit: rest", "exit: cruise", "10", "'cruise' is not in the set"},
+                {"period_us: 100000", "period_us: 1", "3", "5000 to 1000000"},
+                {"kind: power", "kind: wind", "2", "track_speed"},
+                {"id: 1", "id: one", "7", "one"}};
+  for (const auto& fault : faults) {
+    const Run found = checked(fault.from, fault.to);
+    INFO(fault.to << ": " << found.printed);
+    CHECK(found.status != 0);
+    CHECK(found.printed.find("tread-patterns: " + file + ":" + fault.line) == 0);
+    CHECK(found.says(fault.words));
+    CHECK(found.printed.find('\n') == found.printed.size() - 1);
+  }
+}
+
+TEST_CASE("check of two patterns with one id or one name names the second") {
+  const Folder folder;
+  const std::string second = kGood.substr(kGood.find("  - id: 1"));
+  std::ofstream(folder.path("twice.yaml")) << kGood << second;
+  const Run twice = run("check " + folder.path("twice.yaml"));
+  INFO(twice.printed);
+  CHECK(twice.status != 0);
+  CHECK(twice.printed.find('\n') == twice.printed.size() - 1);
+  CHECK(twice.says("twice.yaml:1"));
+}
+
+TEST_CASE("make, mirror and record give the same bytes again, record for the same seed only") {
+  const Folder folder;
+  for (const char* name : {"a.yaml", "b.yaml"})
+    REQUIRE(run("make " + kConfig + "patterns/recipes/teodor.yaml --model " + kGrass + " -o " +
+                folder.path(name))
+                .status == 0);
+  CHECK(folder.text("a.yaml") == folder.text("b.yaml"));
+  REQUIRE(run("mirror " + folder.path("a.yaml") + " -o " + folder.path("c.yaml")).status == 0);
+  CHECK(folder.text("c.yaml") == folder.text("a.yaml"));
+  for (const auto& [book, seed] :
+       {std::pair{"one", "4"}, std::pair{"two", "4"}, std::pair{"six", "6"}})
+    REQUIRE(run("record " + kSet + " --book " + folder.path(book) + " --model " + kGrass +
+                " --surface grass -n 2 --seed " + seed)
+                .status == 0);
+  CHECK(folder.text("one/grass.csv").size() > 1000);
+  CHECK(folder.text("one/grass.csv") == folder.text("two/grass.csv"));
+  CHECK(folder.text("one/grass.csv") != folder.text("six/grass.csv"));
+}
+
+TEST_CASE("show prints one row a pattern, and draws a single set") {
+  const Folder folder;
+  const Run shown = run("show " + kSet + " --picture " + folder.path("one.png"));
+  INFO(shown.printed);
+  CHECK(shown.status == 0);
+  // A line of the set, its three classes, a head and 23 patterns.
+  CHECK(std::count(shown.printed.begin(), shown.printed.end(), '\n') == 1 + 3 + 1 + 23);
+  CHECK(folder.text("one.png").substr(1, 3) == "PNG");
+  const Run nowhere = run("show " + kSet + " --picture /nowhere/one.png");
+  CHECK(nowhere.status != 0);
+  CHECK(nowhere.says("/nowhere/one.png"));
 }

@@ -2,7 +2,14 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -31,6 +38,33 @@ inline std::vector<LogEvent> drivenLog(double seconds, const FaultPlan& faults =
     person.step(system.bus().now());
   }
   return events;
+}
+
+/// The same, driven once for all processes of a test program: ctest starts each test case anew.
+/** Kept beside the program, until the program or the robot's configuration becomes newer. */
+inline std::vector<LogEvent> keptDrivenLog(double seconds) {
+  namespace fs = std::filesystem;
+  const fs::path program = fs::read_symlink("/proc/self/exe");
+  fs::file_time_type newest = fs::last_write_time(program);
+  for (const char* folder : {"robots/teodor", "patterns"})
+    for (const auto& file : fs::directory_iterator(fs::path(TREAD_SOURCE_DIR) / "config" / folder))
+      newest = std::max(newest, file.last_write_time());
+  const std::string kept = program.string() + ".lcmlog";
+  const int lock = open((kept + ".lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+  if (lock < 0 || flock(lock, LOCK_EX) != 0)
+    throw std::runtime_error(kept + ".lock: cannot be locked");
+  if (!fs::exists(kept) || fs::last_write_time(kept) <= newest) {
+    {
+      LogWriter log(kept + ".part");
+      for (const LogEvent& event : drivenLog(seconds))
+        log.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
+      log.flush();
+    }
+    fs::rename(kept + ".part", kept);
+  }
+  close(lock);
+  std::string problem;
+  return readEvents({kept}, problem);
 }
 
 /// Changes the messages of a channel for which `change` returns true.

@@ -24,7 +24,7 @@ namespace {
 const std::string kPatterns = TREAD_SOURCE_DIR "/config/patterns";
 
 const std::vector<LogEvent>& plainDrive() {
-  static const std::vector<LogEvent> kEvents = drivenLog(30.0);
+  static const std::vector<LogEvent> kEvents = keptDrivenLog(30.0);
   return kEvents;
 }
 

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+namespace tread::samples {
+
+/// Exit status and what a program printed, errors included.
+struct CalledProgram {
+  int status = -1;
+  std::string printed;
+
+  bool says(const std::string& words) const { return printed.find(words) != std::string::npos; }
+  bool isOneLine() const { return !printed.empty() && printed.find('\n') == printed.size() - 1; }
+};
+
+/// A program of the build, called as people call it: "tread-report drive.lcmlog".
+inline CalledProgram called(const std::string& command_line) {
+  const std::string command = std::string(TREAD_BIN_DIR) + "/" + command_line + " 2>&1";
+  FILE* pipe = popen(command.c_str(), "r");
+  REQUIRE(pipe != nullptr);
+  CalledProgram result;
+  std::array<char, 512> buffer{};
+  while (fgets(buffer.data(), static_cast<int>(buffer.size()), pipe) != nullptr)
+    result.printed += buffer.data();
+  result.status = WEXITSTATUS(pclose(pipe));
+  return result;
+}
+
+/// A folder of this test that is gone afterwards.
+class OwnFolder {
+ public:
+  OwnFolder() {
+    static int count = 0;
+    path_ = std::filesystem::temp_directory_path() /
+            ("tread-tools-" + std::to_string(getpid()) + "-" + std::to_string(++count));
+    std::filesystem::create_directories(path_);
+  }
+  ~OwnFolder() { std::filesystem::remove_all(path_); }
+  OwnFolder(const OwnFolder&) = delete;
+  OwnFolder& operator=(const OwnFolder&) = delete;
+
+  std::string path(const std::string& name) const { return (path_ / name).string(); }
+  std::string bytes(const std::string& name) const {
+    std::ifstream file(path_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path(name);
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline bool isPng(const std::string& bytes) {
+  return bytes.size() > 1000 && bytes.compare(0, 8, "\x89PNG\r\n\x1a\n") == 0;
+}
+
+}  // namespace tread::samples
