@@ -75,6 +75,33 @@ TEST_CASE("an effect that only bends the model away from the drive goes, and is 
   CHECK(kept.effects == Names{"yaw_pull"});
 }
 
+TEST_CASE("an effect that each half of the driving sizes the other way is not confirmed") {
+  std::vector<Drive> drives(1);
+  for (size_t block = 0; block < 10; ++block) {
+    const double pull = block % 2 == 0 ? 0.1 : -0.1;
+    Drive part = syntheticDrive(samples::vehicleWith({{"yaw_pull.pull", pull}}), 20.0, block + 1);
+    drives[0].segments.push_back(part.segments[0]);
+    for (Execution execution : part.executions)
+      drives[0].executions.push_back({block, execution.begin, execution.end});
+  }
+  const Observations data(drives, {});
+  REQUIRE(data.blocks() == 10);
+  const Fitter fitter(data);
+  const std::vector<char> all(data.all().size(), 1);
+  SearchResult result;
+  result.calibrated = fitter.start(syntheticVehicle(), {}, all);
+  result.state = result.calibrated;
+  fitter.add(result.state, freeParameter(result.state.model, "yaw_pull.pull"), 0.01, all);
+  result.effects = {"yaw_pull"};
+  for (int half : {0, 1}) {
+    const FitState own = refitted(fitter, result, halfMask(data, half));
+    CHECK(*findParameter(own.model, "yaw_pull.pull") ==
+          Approx(half == 0 ? 0.1 : -0.1).margin(0.03));
+  }
+  dropUnconfirmed(fitter, all, {}, result, kSilent);
+  CHECK(result.effects.empty());
+}
+
 TEST_CASE("a bias of the gyro moves no pose, and is confirmed by the yaw rate") {
   const Rig rig({{"gyro_bias.rate", 0.03}}, 200.0, 3);
   SearchResult result = resultOf(rig, {{"gyro_bias.rate", 0.01}});
