@@ -52,10 +52,11 @@ class OwnFolder {
   OwnFolder& operator=(const OwnFolder&) = delete;
 
   std::string path(const std::string& name) const { return (path_ / name).string(); }
-  std::string bytes(const std::string& name) const {
+  std::string text(const std::string& name) const {
     std::ifstream file(path_ / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
   }
+  /// Writes a file and returns its path.
   std::string write(const std::string& name, const std::string& text) const {
     std::ofstream(path_ / name, std::ios::binary) << text;
     return path(name);

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include <catch2/catch.hpp>
 
+#include "tests/tools/called_program.hpp"
 #include "tests/tools/experiment/small_world.hpp"
 
 namespace tread::experiment {
@@ -30,16 +28,8 @@ struct Folder {
 };
 
 std::pair<int, std::string> run(const std::string& arguments) {
-  const std::string command =
-      std::string(TREAD_BIN_DIR) + "/tread-experiment transitions " + arguments + " 2>&1";
-  FILE* pipe = popen(command.c_str(), "r");
-  REQUIRE(pipe != nullptr);
-  std::string printed;
-  std::array<char, 512> buffer{};
-  while (fgets(buffer.data(), static_cast<int>(buffer.size()), pipe) != nullptr)
-    printed += buffer.data();
-  const int status = pclose(pipe);
-  return {WEXITSTATUS(status), printed};
+  const auto called = tread::samples::called("tread-experiment transitions " + arguments);
+  return {called.status, called.printed};
 }
 
 std::vector<std::string> linesOf(const std::string& path) {

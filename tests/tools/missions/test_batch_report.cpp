@@ -259,7 +259,7 @@ TEST_CASE("a comparison of rules counts each rule's missions and those of all to
                  "  off                 5        3        2     0        0         2     180"));
   const OwnFolder folder;
   writeComparison(folder.path("rules.json"), comparison);
-  const Json json = Json::parse(folder.bytes("rules.json"));
+  const Json json = Json::parse(folder.text("rules.json"));
   REQUIRE(json["campaigns"].size() == 2);
   CHECK(json["campaigns"][1]["rule"] == "off");
   CHECK(json["campaigns"][1]["missions"] == 5);
@@ -281,7 +281,7 @@ TEST_CASE("missions that only one of the two solves have no ratio of times") {
   CHECK_FALSE(contains(text.str(), "nan"));
   const OwnFolder folder;
   writeOmniscient(folder.path("o.json"), comparison);
-  const Json json = Json::parse(folder.bytes("o.json"));
+  const Json json = Json::parse(folder.text("o.json"));
   CHECK(json["both_arrived"] == 0);
   CHECK(json["time_ratio"]["median"].is_null());
   CHECK(json["missions"].empty());

@@ -184,11 +184,11 @@ TEST_CASE("a picture of one piece and of many is drawn, with one model and with 
   const Log log(plain);
   const std::vector<Piece> pieces = replay(readLoggedDrive({log.path()}), {askew, plain}, 4.0);
   drawOverlay(folder.path("many.png"), "many", pieces, {"askew.yaml", "plain.yaml"});
-  CHECK(samples::isPng(folder.bytes("many.png")));
+  CHECK(samples::isPng(folder.text("many.png")));
   Piece alone = pieces.front();
   alone.predicted.resize(1);
   drawOverlay(folder.path("one.png"), "one", {alone}, {"askew.yaml"});
-  CHECK(samples::isPng(folder.bytes("one.png")));
+  CHECK(samples::isPng(folder.text("one.png")));
   CHECK_THROWS_WITH(drawOverlay("/nowhere/a.png", "none", pieces, {"askew.yaml", "plain.yaml"}),
                     Catch::Contains("/nowhere/a.png"));
 }
@@ -211,7 +211,7 @@ TEST_CASE("tread-overlay prints each model's errors at two seconds and at the le
   CHECK(run.says(askew + ": after 2 s "));
   CHECK(run.says(askew + ": after 4 s "));
   CHECK(run.says(exact + ": after 4 s 0.00"));
-  CHECK(samples::isPng(folder.bytes("overlay.png")));
+  CHECK(samples::isPng(folder.text("overlay.png")));
   // With a length of 2 s both horizons are one line; a shorter one has its own alone.
   const samples::CalledProgram two =
       samples::called("tread-overlay " + log.path() + " --model " + exact + " --length 2");

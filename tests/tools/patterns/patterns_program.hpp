@@ -2,63 +2,19 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <array>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 
-#include <catch2/catch.hpp>
+#include "tests/tools/called_program.hpp"
 
 namespace tread::patterns::samples {
 
-/// Exit status and what a command line printed, errors included.
-struct Run {
-  int status = -1;
-  std::string printed;
-
-  bool says(const std::string& words) const { return printed.find(words) != std::string::npos; }
-};
+using Run = tread::samples::CalledProgram;
+using Folder = tread::samples::OwnFolder;
 
 /// tread-patterns, called as people call it.
 inline Run run(const std::string& arguments) {
-  const std::string command = std::string(TREAD_BIN_DIR) + "/tread-patterns " + arguments + " 2>&1";
-  FILE* pipe = popen(command.c_str(), "r");
-  REQUIRE(pipe != nullptr);
-  Run result;
-  std::array<char, 512> buffer{};
-  while (fgets(buffer.data(), static_cast<int>(buffer.size()), pipe) != nullptr)
-    result.printed += buffer.data();
-  result.status = WEXITSTATUS(pclose(pipe));
-  return result;
+  return tread::samples::called("tread-patterns " + arguments);
 }
-
-/// A folder of this test that is gone afterwards.
-class Folder {
- public:
-  Folder() {
-    static int count = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("tread-patterns-" + std::to_string(getpid()) + "-" + std::to_string(++count));
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::string path(const std::string& name) const { return (path_ / name).string(); }
-  std::string text(const std::string& name) const {
-    std::ifstream file(path_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 inline const std::string kConfig = std::string(TREAD_SOURCE_DIR) + "/config/";
 inline const std::string kSet = kConfig + "patterns/teodor.yaml";

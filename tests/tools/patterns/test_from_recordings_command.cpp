@@ -2,35 +2,16 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include <sys/wait.h>
-
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <iterator>
 
 #include "tests/common/recordings/synthetic_drives.hpp"
+#include "tests/tools/called_program.hpp"
 
 using namespace tread;
 using namespace tread::samples;
 
 namespace {
-
-struct Outcome {
-  int code = -1;
-  std::string said;  ///< on both outputs
-};
-
-Outcome call(const std::string& arguments) {
-  Outcome outcome;
-  FILE* pipe = popen((std::string(TREAD_BIN_DIR) + "/" + arguments + " 2>&1").c_str(), "r");
-  REQUIRE(pipe != nullptr);
-  std::array<char, 512> piece;
-  while (std::fgets(piece.data(), piece.size(), pipe)) outcome.said += piece.data();
-  const int status = pclose(pipe);
-  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return outcome;
-}
 
 std::string textOf(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -52,21 +33,21 @@ TEST_CASE("from-recordings writes a book, averaged sets and a log that the learn
   const std::string arguments = "tread-patterns from-recordings " + drives + " --robot rov -o " +
                                 book + " --log " + log +
                                 " --from hard --to soft --executions 16 --seed 3";
-  const Outcome made = call(arguments);
-  INFO(made.said);
-  REQUIRE(made.code == 0);
-  CHECK(made.said.find("hard: 48 steady windows used") != std::string::npos);
+  const CalledProgram made = called(arguments);
+  INFO(made.printed);
+  REQUIRE(made.status == 0);
+  CHECK(made.printed.find("hard: 48 steady windows used") != std::string::npos);
   const recordings::PatternRecordings read = recordings::readRecordings(book);
   REQUIRE(read.surfaces.size() == 2);
   CHECK(read.surfaces[1].surface == "soft");
   CHECK(read.patterns.patterns().size() == 8);
-  const Outcome replay =
-      call("tread-replay learner " + log + " --patterns " + book + "/hard.yaml --rule single");
-  INFO(replay.said);
-  CHECK(replay.code == 0);
-  CHECK(replay.said.find("soft: 32 executions in, 32 measured, 0 refused") != std::string::npos);
+  const CalledProgram replay =
+      called("tread-replay learner " + log + " --patterns " + book + "/hard.yaml --rule single");
+  INFO(replay.printed);
+  CHECK(replay.status == 0);
+  CHECK(replay.printed.find("soft: 32 executions in, 32 measured, 0 refused") != std::string::npos);
   const std::string before = textOf(log) + textOf(book + "/soft.csv");
-  REQUIRE(call(arguments).code == 0);
+  REQUIRE(called(arguments).status == 0);
   CHECK(before == textOf(log) + textOf(book + "/soft.csv"));
 }
 
@@ -76,11 +57,11 @@ TEST_CASE("from-recordings says in one line what is wrong") {
   const std::string make =
       "tread-patterns from-recordings " + drives + " -o " + folder.file("book");
   const auto complaint = [](const std::string& arguments) {
-    const Outcome outcome = call(arguments);
-    INFO(outcome.said);
-    CHECK(outcome.code == 1);
-    CHECK(std::count(outcome.said.begin(), outcome.said.end(), '\n') == 1);
-    return outcome.said;
+    const CalledProgram outcome = called(arguments);
+    INFO(outcome.printed);
+    CHECK(outcome.status == 1);
+    CHECK(std::count(outcome.printed.begin(), outcome.printed.end(), '\n') == 1);
+    return outcome.printed;
   };
   CHECK(complaint(make + " --robot horse") ==
         "tread-patterns: no robot is called 'horse'; there are 'Rover'\n");
@@ -91,7 +72,7 @@ TEST_CASE("from-recordings says in one line what is wrong") {
   CHECK(complaint("tread-patterns from-recordings /no/such/drives -o " + folder.file("book"))
             .find("/no/such/drives/sessions.csv: cannot be read") != std::string::npos);
   // A usage error has code 2.
-  CHECK(call(make + " --log " + folder.file("a.log")).code == 2);
+  CHECK(called(make + " --log " + folder.file("a.log")).status == 2);
 }
 
 TEST_CASE("from-recordings does not mix its surfaces with those of another book") {
@@ -99,8 +80,8 @@ TEST_CASE("from-recordings does not mix its surfaces with those of another book"
   const std::string drives = drivesIn(folder);
   std::filesystem::create_directories(folder.file("book"));
   folder.file("book/ice.csv", "pattern,execution,sample,x_m,y_m,yaw_rad\n");
-  const Outcome outcome =
-      call("tread-patterns from-recordings " + drives + " -o " + folder.file("book"));
-  CHECK(outcome.code == 1);
-  CHECK(outcome.said.find("ice.csv: a surface of another book") != std::string::npos);
+  const CalledProgram outcome =
+      called("tread-patterns from-recordings " + drives + " -o " + folder.file("book"));
+  CHECK(outcome.status == 1);
+  CHECK(outcome.printed.find("ice.csv: a surface of another book") != std::string::npos);
 }

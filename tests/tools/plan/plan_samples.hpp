@@ -2,8 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <unistd.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -11,37 +9,12 @@
 #include <random>
 #include <string>
 
+#include "tests/tools/called_program.hpp"
 #include "tools/plan/map_file.hpp"
 
 namespace tread::plan::samples {
 
-/// A folder of this test that is gone afterwards.
-class Folder {
- public:
-  Folder() {
-    static int count = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("tread-plan-" + std::to_string(getpid()) + "-" + std::to_string(++count));
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::string path(const std::string& name) const { return (path_ / name).string(); }
-  std::string text(const std::string& name) const {
-    std::ifstream file(path_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-  /// Writes a file and returns its path.
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return path(name);
-  }
-
- private:
-  std::filesystem::path path_;
-};
+using Folder = tread::samples::OwnFolder;
 
 /// A file of the planning scenarios of others; empty where they are not.
 inline std::string recorded(const std::string& name) {

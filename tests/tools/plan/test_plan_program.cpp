@@ -2,11 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
-
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/plan/plan_samples.hpp"
@@ -23,23 +18,11 @@ const std::string kSet = "--patterns " + kSource + "/config/patterns/teodor.yaml
 const std::string kRobot = "--footprint 1.3,0.68 ";
 const std::string kTask = "--start -13.5,0.1,0 --goal 13.5,0.1,0 ";
 
-/// Exit status and what was printed, errors included.
-struct Run {
-  int status = -1;
-  std::string printed;
-};
+using Run = tread::samples::CalledProgram;
 
 /// tread-plan, called as people call it.
 Run run(const std::string& arguments) {
-  const std::string command = std::string(TREAD_BIN_DIR) + "/tread-plan " + arguments + " 2>&1";
-  FILE* pipe = popen(command.c_str(), "r");
-  REQUIRE(pipe != nullptr);
-  Run result;
-  std::array<char, 512> buffer{};
-  while (fgets(buffer.data(), static_cast<int>(buffer.size()), pipe) != nullptr)
-    result.printed += buffer.data();
-  result.status = WEXITSTATUS(pclose(pipe));
-  return result;
+  return tread::samples::called("tread-plan " + arguments);
 }
 
 /// Bad input: one line on stderr, 2.

@@ -266,7 +266,7 @@ TEST_CASE("tread-report tells and draws a drive, and ends with 0 only if it arri
   CHECK(arrived.status == 0);
   CHECK(arrived.printed.find("arrived after 10.2 s") == 0);
   CHECK(arrived.says("picture: " + folder.path("drive.png")));
-  CHECK(isPng(folder.bytes("drive.png")));
+  CHECK(isPng(folder.text("drive.png")));
   CHECK(called("tread-report " + bad + " --rules none").status == 1);
   CHECK(called("tread-report " + good).says("prediction error by rule: none, "));
   const std::string header =
