@@ -10,7 +10,6 @@ std::vector<Effect> inertiaEffects() {
   return {
       {"yaw_inertia",
        "Yaw inertia, yaw lag",
-       EffectKind::kVehicle,
        "w",
        "The body goes on turning as it did before and takes up a new yaw rate gradually.",
        "omega' = (omega_steady - omega) / lag",
@@ -21,7 +20,6 @@ std::vector<Effect> inertiaEffects() {
        {strength("lag", "s", 0.0, 3.0, 0.3, &V::yaw_inertia)}},
       {"body_inertia",
        "Body inertia, momentum",
-       EffectKind::kVehicle,
        "x",
        "The body slides on as it drove before and takes up a new speed gradually.",
        "v' = (v_steady - v) / lag",
@@ -33,7 +31,6 @@ std::vector<Effect> inertiaEffects() {
        {strength("lag", "s", 0.0, 3.0, 0.2, &V::body_inertia)}},
       {"icr_offset",
        "Centre of rotation ahead of or behind the middle",
-       EffectKind::kVehicle,
        "y",
        "The vehicle turns about a point ahead of (positive) or behind its middle, so that turning "
        "moves its middle sideways.",
@@ -46,7 +43,6 @@ std::vector<Effect> inertiaEffects() {
                   "behind the middle")}},
       {"crab",
        "Crabbing",
-       EffectKind::kVehicle,
        "y",
        "The vehicle drifts to one side of its heading as it drives (toe of the tracks).",
        "v_y -> v_y + v tan(angle)",
@@ -67,7 +63,6 @@ std::vector<Effect> sideEffects() {
   return {
       {"centrifugal_drift",
        "Centrifugal drift",
-       EffectKind::kVehicle,
        "y",
        "In curves it is carried outwards, more the faster and tighter.",
        "v_y -> v_y - time v omega",
@@ -80,7 +75,6 @@ std::vector<Effect> sideEffects() {
        "In curves it is carried inwards, more the faster and tighter"},
       {"slope_pitch",
        "Slope along the track",
-       EffectKind::kVehicle,
        "x",
        "It is slower uphill and faster downhill.",
        "v -> v - compliance 9.81 m/s2 sin(climb), climb = -pitch; fades out below 0.05 m/s of the "
@@ -92,7 +86,6 @@ std::vector<Effect> sideEffects() {
        "It is faster uphill and slower downhill"},
       {"slope_roll",
        "Slope across the track",
-       EffectKind::kVehicle,
        "y",
        "Driving across a slope it slides downhill.",
        "v_y -> v_y - compliance 9.81 m/s2 sin(roll); fades out below 0.05 m/s of the tracks",
@@ -107,11 +100,9 @@ std::vector<Effect> sideEffects() {
 
 std::vector<Effect> timingEffects() {
   using M = MeasurementModel;
-  constexpr EffectKind kMeasured = EffectKind::kMeasurement;
   return {
       {"ins_latency",
        "INS latency, clock offset",
-       kMeasured,
        "xyw",
        "The INS says where the vehicle was a while ago.",
        "pose(t) -> pose(t - latency), yaw rate(t) -> yaw rate(t - gyro_share latency)",
@@ -125,7 +116,6 @@ std::vector<Effect> timingEffects() {
        {{}, 5}},
       {"heading_latency",
        "Heading late against position",
-       kMeasured,
        "yw",
        "The heading of a pose is older than its position.",
        "heading(t) -> heading(t - latency), position as it is",
@@ -137,7 +127,6 @@ std::vector<Effect> timingEffects() {
        "The position of a pose is older than its heading"},
       {"position_scale",
        "Scale of positions",
-       kMeasured,
        "xy",
        "Distances of the INS are too long or too short by a share (wrong datum, odometer scale).",
        "p -> (1 + scale) p",
@@ -151,11 +140,9 @@ std::vector<Effect> timingEffects() {
 
 std::vector<Effect> mountingEffects() {
   using M = MeasurementModel;
-  constexpr EffectKind kMeasured = EffectKind::kMeasurement;
   return {
       {"lever_arm_x",
        "Lever arm along the vehicle",
-       kMeasured,
        "y",
        "The INS reports a point that is so far behind the vehicle's middle (configured lever arm "
        "less the true one).",
@@ -167,7 +154,6 @@ std::vector<Effect> mountingEffects() {
        "The INS reports a point that is so far ahead of the vehicle's middle"},
       {"lever_arm_y",
        "Lever arm across the vehicle",
-       kMeasured,
        "x",
        "The INS reports a point that is so far to the right of the vehicle's middle (configured "
        "lever arm less the true one).",
@@ -180,7 +166,6 @@ std::vector<Effect> mountingEffects() {
        "The INS reports a point that is so far to the left of the vehicle's middle"},
       {"heading_misalignment",
        "INS mounted askew",
-       kMeasured,
        "y",
        "The INS's heading is turned against the vehicle's by a constant.",
        "heading -> heading - angle: v_y -> v_y + angle v",
@@ -192,7 +177,6 @@ std::vector<Effect> mountingEffects() {
                   "its heading points too far to the left")}},
       {"gyro_bias",
        "Gyro bias, heading drift",
-       kMeasured,
        "w",
        "The gyro reports a turn that is not there.",
        "omega -> omega + rate; heading -> heading + heading_share rate T",

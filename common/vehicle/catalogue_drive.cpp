@@ -27,7 +27,6 @@ std::vector<Effect> commandEffects() {
   return {
       {"command_delay",
        "Command delay",
-       EffectKind::kVehicle,
        "xw",
        "A command takes a fixed time before anything of it reaches the motors.",
        "u(t) -> u(t - delay); adds to the model's delay",
@@ -43,7 +42,6 @@ std::vector<Effect> commandEffects() {
        {{"delay"}, 4}},
       {"motor_deadband",
        "Motor deadband, stiction",
-       EffectKind::kVehicle,
        "xw",
        "Small commands do not move a track, and larger ones lose the same amount.",
        "u -> sign(u) max(0, |u| - speed), each track",
@@ -56,7 +54,6 @@ std::vector<Effect> commandEffects() {
        {strength("speed", "m/s", 0.0, 0.5, 0.08, &V::motor_deadband, {0.03, 0.08, 0.15})}},
       {"speed_saturation",
        "Speed saturation",
-       EffectKind::kVehicle,
        "xw",
        "A track does not run faster than a certain speed, whatever is asked of it.",
        "u -> clip(u, +-limit), each track; inverse_limit = 1 / limit",
@@ -74,7 +71,6 @@ std::vector<Effect> powerEffects() {
   return {
       {"battery_sag",
        "Battery sag",
-       EffectKind::kVehicle,
        "xw",
        "The tracks slow down as the battery empties.",
        "u -> u (1 - per_hour T / 3600 s - per_drop drop), T since the start of the session, drop: "
@@ -88,7 +84,6 @@ std::vector<Effect> powerEffects() {
        "The tracks get faster with time"},
       {"thermal_derating",
        "Thermal derating",
-       EffectKind::kVehicle,
        "xw",
        "Motors or their controller give less after hard work and recover in a rest.",
        "u -> u (1 - loss E), E' = ((u / full_speed)^2 - E) / time_constant, each track; full_speed "
@@ -102,7 +97,6 @@ std::vector<Effect> powerEffects() {
                               {60.0, 240.0, 900.0})))}},
       {"track_asymmetry",
        "Left-right asymmetry",
-       EffectKind::kVehicle,
        "xw",
        "One track runs a little faster than the other at the same command.",
        "u_left -> u_left (1 + share), u_right -> u_right (1 - share)",
@@ -121,7 +115,6 @@ std::vector<Effect> lagEffects() {
   return {
       {"actuator_lag",
        "First-order lag of the drive",
-       EffectKind::kVehicle,
        "xw",
        "The tracks approach a new speed gradually, fast at first.",
        "w' = (u - w) / lag, each track; adds to the model's lag",
@@ -136,7 +129,6 @@ std::vector<Effect> lagEffects() {
        {{"lag"}, 3}},
       {"lag_asymmetry",
        "Slowing unlike speeding up",
-       EffectKind::kVehicle,
        "xw",
        "Braking takes longer or shorter than speeding up.",
        "w' = (u - w) / (lag + slowing) while a track slows down or reverses",
@@ -150,7 +142,6 @@ std::vector<Effect> lagEffects() {
                      "braking takes longer", "braking is quicker"))}},
       {"slew_limit",
        "Acceleration limit",
-       EffectKind::kVehicle,
        "xw",
        "A track's speed changes no faster than a certain rate.",
        "|w'| <= limit, each track; inverse_limit = 1 / limit",
@@ -160,7 +151,6 @@ std::vector<Effect> lagEffects() {
        {inverseLimit("s2/m", 20.0, 0.5, &V::slew_limit, {0.2, 0.4, 0.8, 1.6}, "limit", "m/s2")}},
       {"track_backlash",
        "Track slack, backlash",
-       EffectKind::kVehicle,
        "xw",
        "After a reversal a track does not pull until its slack is taken up.",
        "no motion of a track until its drive has gone slack metres after a change of direction; a "

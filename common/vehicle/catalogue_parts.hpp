@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/vehicle/effects.hpp"
+#include "common/vehicle/measurement.hpp"
 #include "common/vehicle/model.hpp"
 
 /// The catalogue by chapters; use effectCatalogue() and confoundedGroups().

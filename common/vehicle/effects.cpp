@@ -27,15 +27,15 @@ const std::vector<Effect>& effectCatalogue() {
   return catalogue;
 }
 
-size_t effectIndex(const std::string& name) {
-  const std::vector<Effect>& catalogue = effectCatalogue();
-  for (size_t i = 0; i < catalogue.size(); ++i)
-    if (catalogue[i].name == name) return i;
-  throw std::out_of_range("no effect '" + name + "' in the catalogue of the vehicle model");
+const Effect* findEffect(const std::string& name) {
+  for (const Effect& effect : effectCatalogue())
+    if (effect.name == name) return &effect;
+  return nullptr;
 }
 
 const Effect& effectNamed(const std::string& name) {
-  return effectCatalogue()[effectIndex(name)];
+  if (const Effect* effect = findEffect(name)) return *effect;
+  throw std::out_of_range("no effect '" + name + "' in the catalogue of the vehicle model");
 }
 
 const EffectParameter& parameterNamed(const Effect& effect, const std::string& parameter) {
@@ -79,14 +79,6 @@ bool isOn(const Effect& effect, const EffectValues& vehicle, const MeasurementMo
   return false;
 }
 
-std::vector<std::string> effectsOn(const EffectValues& vehicle) {
-  std::vector<std::string> names;
-  for (const Effect& effect : effectCatalogue())
-    if (effect.kind == EffectKind::kVehicle && isOn(effect, vehicle, {}))
-      names.push_back(effect.name);
-  return names;
-}
-
 double naturalValue(const EffectParameter& parameter, double value) {
   if (!parameter.reciprocal()) return value;
   return value == 0.0 ? std::numeric_limits<double>::infinity() : 1.0 / value;
@@ -110,19 +102,14 @@ std::vector<const ConfoundedGroup*> confoundedGroupsOf(const std::string& effect
 
 std::vector<std::string> confoundedEffects(const std::string& effect,
                                            const MeasurementModel& measurement) {
-  const auto isEffect = [](const std::string& name) {
-    const std::vector<Effect>& all = effectCatalogue();
-    return std::any_of(all.begin(), all.end(),
-                       [&name](const Effect& known) { return known.name == name; });
-  };
   std::vector<std::string> others;
   for (const ConfoundedGroup* group : confoundedGroupsOf(effect)) {
     const bool lacks_share = group->share != nullptr &&
-                             effectNamed(effect).kind == EffectKind::kMeasurement &&
+                             effectNamed(effect).kind() == EffectKind::kMeasurement &&
                              !(measurement.*group->share > 0.5);
     if (!group->named_beside || lacks_share) continue;
     for (const std::string& member : group->members)
-      if (member != effect && isEffect(member)) others.push_back(member);
+      if (member != effect && findEffect(member) != nullptr) others.push_back(member);
   }
   return others;
 }

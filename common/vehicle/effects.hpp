@@ -9,75 +9,9 @@
 
 namespace tread {
 
-struct VehicleModel;
-
-/// Values of the parameters of all vehicle effects, in the order in which they act; 0 = off.
-/** What each one means, its unit and its bounds stand in the catalogue (effects.hpp). Limits are
- * held as their reciprocals, so that no limit is 0 and small values are weak effects. */
-struct EffectValues {
-  // What the drive makes of a command, per track.
-  double command_delay = 0.0;         ///< [s], added to the model's delay
-  double motor_deadband = 0.0;        ///< [m/s]
-  double speed_saturation = 0.0;      ///< [s/m], 1 / top speed
-  double battery_sag_per_hour = 0.0;  ///< [1/h]
-  double battery_sag_per_drop = 0.0;  ///< [1]
-  double thermal_derating = 0.0;      ///< [1]
-  double thermal_time = 240.0;        ///< [s], shape
-  double track_asymmetry = 0.0;       ///< [1]
-  double actuator_lag = 0.0;          ///< [s], added to the model's lag
-  double lag_asymmetry = 0.0;         ///< [s]
-  double slew_limit = 0.0;            ///< [s2/m], 1 / greatest acceleration
-  double track_backlash = 0.0;        ///< [m]
-  // What the ground makes of the tracks.
-  double slip_ratio = 0.0;           ///< [1]
-  double terrain_time_1 = 0.0;       ///< [s], shape
-  double terrain_time_2 = 0.0;       ///< [s], shape
-  double terrain_slip_1 = 0.0;       ///< [1]
-  double terrain_width_1 = 0.0;      ///< [1]
-  double terrain_breakaway_1 = 0.0;  ///< [rad/s]
-  double terrain_slip_2 = 0.0;       ///< [1]
-  double terrain_width_2 = 0.0;      ///< [1]
-  double terrain_breakaway_2 = 0.0;  ///< [rad/s]
-  double track_width = 0.0;          ///< [1]
-  double yaw_rate_skid = 0.0;        ///< [s]
-  double yaw_breakaway = 0.0;        ///< [rad/s]
-  double turn_power_limit = 0.0;     ///< [s/rad], 1 / greatest yaw rate
-  double speed_understeer = 0.0;     ///< [s2/m2]
-  double reverse_yaw_gain = 0.0;     ///< [s/m]
-  double payload_yaw = 0.0;          ///< [1]
-  double payload_speed = 0.0;        ///< [1]
-  double payload_icr = 0.0;          ///< [m]
-  double payload_time = 0.0;         ///< [s], shape
-  double grip_limit = 0.0;           ///< [1], 1 / friction
-  double yaw_pull = 0.0;             ///< [rad/m]
-  double yaw_rate_offset = 0.0;      ///< [rad/s]
-  double turn_speed_loss = 0.0;      ///< [s]
-  double reverse_speed_gain = 0.0;   ///< [1]
-  double quadratic_drag = 0.0;       ///< [s/m]
-  double rolling_resistance = 0.0;   ///< [m/s]
-  // The body.
-  double yaw_inertia = 0.0;        ///< [s]
-  double body_inertia = 0.0;       ///< [s]
-  double icr_offset = 0.0;         ///< [m]
-  double crab = 0.0;               ///< [rad]
-  double centrifugal_drift = 0.0;  ///< [s]
-  double slope_pitch = 0.0;        ///< [s]
-  double slope_roll = 0.0;         ///< [s]
-};
-
-/// Values of the parameters of all measurement effects: what the INS makes of the true motion.
-/** See measurement.hpp for what they do, effects.hpp for units and bounds; 0 = off. */
-struct MeasurementModel {
-  double ins_latency = 0.0;           ///< [s]
-  double ins_latency_gyro = 0.0;      ///< [1], shape: share of it that the yaw rate has, too
-  double heading_latency = 0.0;       ///< [s], of the heading behind the position
-  double position_scale = 0.0;        ///< [1]
-  double lever_arm_x = 0.0;           ///< [m]
-  double lever_arm_y = 0.0;           ///< [m]
-  double heading_misalignment = 0.0;  ///< [rad]
-  double gyro_bias = 0.0;             ///< [rad/s]
-  double gyro_bias_heading = 0.0;     ///< [1], shape: share of it that the heading integrates
-};
+struct EffectValues;      // model.hpp
+struct VehicleModel;      // model.hpp
+struct MeasurementModel;  // measurement.hpp
 
 /// Whether an effect changes the motion or only what the INS says of it.
 enum class EffectKind { kVehicle, kMeasurement };
@@ -151,12 +85,11 @@ struct EffectSearch {
 };
 
 /// A named departure from the nominal two-track model.
-/** A new effect is one more entry of the catalogue and one more line of the kernel (or of the
- * measurement); files, search, tests and reports learn of it from the catalogue. */
+/** A new effect is one more entry of the catalogue and its value and line in model.hpp (or
+ * measurement.hpp); files, search, tests and reports learn of it from the catalogue. */
 struct Effect {
-  std::string name;   ///< identifier in files and reports
-  std::string title;  ///< what the field calls it
-  EffectKind kind = EffectKind::kVehicle;
+  std::string name;      ///< identifier in files and reports
+  std::string title;     ///< what the field calls it
   std::string channels;  ///< of the residual: x along the track, y across, w yaw rate
   std::string sentence;  ///< what it is, for an engineer in the field
   std::string equation;
@@ -169,13 +102,18 @@ struct Effect {
   EffectSearch search{};
   /// What to check first where its first parameter is negative; the size follows. May be empty.
   std::string negative_check{};
+
+  /// What its parameters belong to.
+  EffectKind kind() const {
+    return parameters.front().vehicle != nullptr ? EffectKind::kVehicle : EffectKind::kMeasurement;
+  }
 };
 
 /// All effects: vehicle effects in the order in which they act, then measurement effects.
 const std::vector<Effect>& effectCatalogue();
 
-/// Position of an effect in the catalogue; throws std::out_of_range for an unknown name.
-size_t effectIndex(const std::string& name);
+/// An effect by name; none for an unknown one.
+const Effect* findEffect(const std::string& name);
 
 /// An effect by name; throws std::out_of_range for an unknown name.
 const Effect& effectNamed(const std::string& name);
@@ -196,9 +134,6 @@ std::vector<const Effect*> nuisanceEffects();
 
 /// Whether a strength of the effect is not 0.
 bool isOn(const Effect& effect, const EffectValues& vehicle, const MeasurementModel& measurement);
-
-/// The catalogue's vehicle effects that are on.
-std::vector<std::string> effectsOn(const EffectValues& vehicle);
 
 /// The value as people say it: the limit itself where the reciprocal is held (infinite for 0).
 double naturalValue(const EffectParameter& parameter, double value);

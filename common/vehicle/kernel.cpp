@@ -9,6 +9,9 @@
 #include <Eigen/Core>
 
 namespace tread {
+
+using namespace steps;
+
 namespace {
 
 constexpr double kShortestStep = 1e-12;  // [s], below it is rounding of time

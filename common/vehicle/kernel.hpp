@@ -10,7 +10,6 @@
 #include "common/geometry/se2.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/vehicle/model.hpp"
-#include "common/vehicle/motion_steps.hpp"
 
 namespace tread {
 
@@ -34,25 +33,7 @@ Twist2 steadyTwist(const VehicleModel& model, const TrackCommand& command,
                    const DriveContext& context = {});
 
 /// Drives a model through commands; deterministic, without a clock.
-/** What happens to a command, in this order; each effect stands where it acts:
- *
- *     command
- *       -> waits: delay + command_delay
- *       -> each track: full_speed, motor_deadband, speed_saturation, battery_sag,
- *          thermal_derating, track_asymmetry
- *       -> the drive follows: lag + actuator_lag (lag_asymmetry when slowing), slew_limit;
- *          track_backlash
- *     track speeds on the ground
- *       -> slip_ratio, terrain_change (slip), gains and gauge of the nominal model
- *       -> yaw rate: track_width and terrain_change (width), yaw_rate_skid, yaw_breakaway and
- *          terrain_change (break-away), turn_power_limit, speed_understeer, reverse_yaw_gain,
- *          payload_change, grip_limit, yaw_pull, yaw_rate_offset
- *       -> forward speed: turn_speed_loss, reverse_speed_gain, payload_change, quadratic_drag,
- *          rolling_resistance
- *       -> the body follows: yaw_inertia, body_inertia
- *       -> to the side: icr_offset and payload_change, crab, centrifugal_drift
- *       -> slope_pitch, slope_roll
- *     body twist -> pose
+/** In which order effects act on a command: EffectValues.
  *
  * The body follows before its motion to the side is known, so that the centre of rotation belongs
  * to the true yaw rate (and icr_offset remains exactly a lever arm).

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/vehicle/effects.hpp"
+#include "common/vehicle/model.hpp"
 
 namespace tread {
 namespace {
@@ -17,28 +18,6 @@ size_t intervalAt(const std::vector<MotionSample>& motion, double time) {
                        [](double moment, const MotionSample& pose) { return moment < pose.time; });
   const auto index = static_cast<size_t>(std::distance(motion.begin(), later));
   return std::min(std::max<size_t>(index, 1) - 1, motion.size() - 2);
-}
-
-MotionSample measured(const std::vector<MotionSample>& motion, const MeasurementModel& ins,
-                      const MotionSample& now) {
-  MotionSample said = now;
-  Pose2& pose = said.T_map_body;
-  if (ins.ins_latency != 0.0) pose = poseAt(motion, now.time - ins.ins_latency);
-  if (ins.lever_arm_x != 0.0 || ins.lever_arm_y != 0.0) {
-    const Eigen::Vector2d p = pose * Eigen::Vector2d(-ins.lever_arm_x, -ins.lever_arm_y);
-    pose.x = p.x();
-    pose.y = p.y();
-  }
-  pose.x *= 1.0 + ins.position_scale;
-  pose.y *= 1.0 + ins.position_scale;
-  if (ins.heading_latency != 0.0)
-    pose.yaw = poseAt(motion, now.time - ins.ins_latency - ins.heading_latency).yaw;
-  pose.yaw -= ins.heading_misalignment;
-  pose.yaw += ins.gyro_bias_heading * ins.gyro_bias * now.time;
-  const double gyro_latency = ins.ins_latency_gyro * ins.ins_latency;
-  if (gyro_latency != 0.0) said.omega = yawRateAt(motion, now.time - gyro_latency);
-  said.omega += ins.gyro_bias;
-  return said;
 }
 
 }  // namespace
@@ -67,7 +46,7 @@ double yawRateAt(const std::vector<MotionSample>& motion, double time) {
 bool isPerfect(const MeasurementModel& measurement) {
   const std::vector<Effect>& effects = effectCatalogue();
   return std::none_of(effects.begin(), effects.end(), [&](const Effect& effect) {
-    return effect.kind == EffectKind::kMeasurement && isOn(effect, {}, measurement);
+    return effect.kind() == EffectKind::kMeasurement && isOn(effect, {}, measurement);
   });
 }
 

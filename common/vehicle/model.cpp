@@ -11,13 +11,6 @@
 namespace tread {
 namespace {
 
-double EffectValues::*placeOf(const std::string& effect_name, const std::string& parameter) {
-  const EffectParameter& found = parameterNamed(effectNamed(effect_name), parameter);
-  if (found.vehicle == nullptr)
-    throw std::out_of_range("'" + effect_name + "' is of the measurement, not of the vehicle");
-  return found.vehicle;
-}
-
 void warn(const char* what, const char* unit, double known, double asked,
           std::vector<std::string>& warnings) {
   if (asked <= known) return;
@@ -31,12 +24,39 @@ void warn(const char* what, const char* unit, double known, double asked,
 
 }  // namespace
 
-double& VehicleModel::effect(const std::string& effect_name, const std::string& parameter) {
-  return effects.*placeOf(effect_name, parameter);
+Followed follow(double value, double target, double lag, double dt) {
+  if (lag <= 0.0) return {target, target};
+  const double decay = std::exp(-dt / lag);
+  const double distance = value - target;
+  return {target + distance * (1.0 - decay) * lag / dt, target + distance * decay};
 }
 
-double VehicleModel::effect(const std::string& effect_name, const std::string& parameter) const {
-  return effects.*placeOf(effect_name, parameter);
+Followed follow(double value, double target, double lag, double inverse_limit, double dt) {
+  if (inverse_limit == 0.0) return follow(value, target, lag, dt);
+  const double rate = 1.0 / inverse_limit;
+  const double sign = target < value ? -1.0 : 1.0;
+  const double knee = rate * lag;  // from this distance on the lag is the slower one
+  const double ramp = (std::abs(target - value) - knee) / rate;
+  if (ramp <= 0.0) return follow(value, target, lag, dt);
+  if (ramp >= dt) return {value + sign * rate * dt / 2.0, value + sign * rate * dt};
+  const double turn = target - sign * knee;
+  const Followed rest = follow(turn, target, lag, dt - ramp);
+  return {((value + turn) / 2.0 * ramp + rest.mean * (dt - ramp)) / dt, rest.end};
+}
+
+Followed follow(double value, const MovingTarget& target, double lag, double dt) {
+  if (lag <= 0.0) return {target.mean, target.to};
+  // With s = t / dt the target is from + slope s + bend s^2; what follows it for good is
+  // target - lag target' + lag^2 target''.
+  const double bend = 3.0 * (target.from + target.to) - 6.0 * target.mean;
+  const double slope = target.to - target.from - bend;
+  const double share = lag / dt;
+  if (share > 1e4) return follow(value, target.mean, lag, dt);  // rounding
+  const double bent = 2.0 * share * share * bend;
+  const double behind_from = target.from - share * slope + bent;
+  const double behind_to = target.to - share * (slope + 2.0 * bend) + bent;
+  const double end = behind_to + (value - behind_from) * std::exp(-dt / lag);
+  return {target.mean - share * (end - value), end};
 }
 
 ExecutionNoise drawNoise(const ExecutionSpread& spread, std::mt19937_64& random) {
@@ -74,6 +94,15 @@ Envelope envelopeOf(const VehicleModel& model, const std::vector<TrackCommand>& 
   return envelope;
 }
 
+double& valueOf(ModelDocument& document, const EffectParameter& parameter) {
+  return parameter.vehicle != nullptr ? document.vehicle.effects.*parameter.vehicle
+                                      : document.measurement.*parameter.measured;
+}
+
+double valueOf(const ModelDocument& document, const EffectParameter& parameter) {
+  return valueOf(const_cast<ModelDocument&>(document), parameter);
+}
+
 double* findParameter(ModelDocument& document, const std::string& path) {
   static const std::map<std::string, double VehicleModel::*> nominal{
       {"lag", &VehicleModel::lag},
@@ -85,9 +114,7 @@ double* findParameter(ModelDocument& document, const std::string& path) {
   const auto number = nominal.find(path);
   if (number != nominal.end()) return &(document.vehicle.*number->second);
   const EffectParameter* parameter = findEffectParameter(path);
-  if (parameter == nullptr) return nullptr;
-  if (parameter->vehicle != nullptr) return &(document.vehicle.effects.*parameter->vehicle);
-  return &(document.measurement.*parameter->measured);
+  return parameter != nullptr ? &valueOf(document, *parameter) : nullptr;
 }
 
 const double* findParameter(const ModelDocument& document, const std::string& path) {

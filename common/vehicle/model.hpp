@@ -3,14 +3,89 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <string>
 
 #include "common/geometry/se2.hpp"
 #include "common/pattern/pattern.hpp"
-#include "common/vehicle/effects.hpp"
 
+// A vehicle on one ground: its numbers, the values of its effects, and what they do to a motion. A
+// new vehicle effect is a value and a line in this file, and its entry in the catalogue.
 namespace tread {
+
+/// Values of the parameters of all vehicle effects, in the order in which they act; 0 = off.
+/** What each one means, its unit and its bounds stand in the catalogue (effects.hpp). Limits are
+ * held as their reciprocals, so that no limit is 0 and small values are weak effects. What happens
+ * to a command, each effect where it acts:
+ *
+ *     command
+ *       -> waits: delay + command_delay
+ *       -> each track: full_speed, motor_deadband, speed_saturation, battery_sag,
+ *          thermal_derating, track_asymmetry
+ *       -> the drive follows: lag + actuator_lag (lag_asymmetry when slowing), slew_limit;
+ *          track_backlash
+ *     track speeds on the ground
+ *       -> slip_ratio, terrain_change (slip), gains and gauge of the nominal model
+ *       -> yaw rate: track_width and terrain_change (width), yaw_rate_skid, yaw_breakaway and
+ *          terrain_change (break-away), turn_power_limit, speed_understeer, reverse_yaw_gain,
+ *          payload_change, grip_limit, yaw_pull, yaw_rate_offset
+ *       -> forward speed: turn_speed_loss, reverse_speed_gain, payload_change, quadratic_drag,
+ *          rolling_resistance
+ *       -> the body follows: yaw_inertia, body_inertia
+ *       -> to the side: icr_offset and payload_change, crab, centrifugal_drift
+ *       -> slope_pitch, slope_roll
+ *     body twist -> pose */
+struct EffectValues {
+  // What the drive makes of a command, per track.
+  double command_delay = 0.0;         ///< [s], added to the model's delay
+  double motor_deadband = 0.0;        ///< [m/s]
+  double speed_saturation = 0.0;      ///< [s/m], 1 / top speed
+  double battery_sag_per_hour = 0.0;  ///< [1/h]
+  double battery_sag_per_drop = 0.0;  ///< [1]
+  double thermal_derating = 0.0;      ///< [1]
+  double thermal_time = 240.0;        ///< [s], shape
+  double track_asymmetry = 0.0;       ///< [1]
+  double actuator_lag = 0.0;          ///< [s], added to the model's lag
+  double lag_asymmetry = 0.0;         ///< [s]
+  double slew_limit = 0.0;            ///< [s2/m], 1 / greatest acceleration
+  double track_backlash = 0.0;        ///< [m]
+  // What the ground makes of the tracks.
+  double slip_ratio = 0.0;           ///< [1]
+  double terrain_time_1 = 0.0;       ///< [s], shape
+  double terrain_time_2 = 0.0;       ///< [s], shape
+  double terrain_slip_1 = 0.0;       ///< [1]
+  double terrain_width_1 = 0.0;      ///< [1]
+  double terrain_breakaway_1 = 0.0;  ///< [rad/s]
+  double terrain_slip_2 = 0.0;       ///< [1]
+  double terrain_width_2 = 0.0;      ///< [1]
+  double terrain_breakaway_2 = 0.0;  ///< [rad/s]
+  double track_width = 0.0;          ///< [1]
+  double yaw_rate_skid = 0.0;        ///< [s]
+  double yaw_breakaway = 0.0;        ///< [rad/s]
+  double turn_power_limit = 0.0;     ///< [s/rad], 1 / greatest yaw rate
+  double speed_understeer = 0.0;     ///< [s2/m2]
+  double reverse_yaw_gain = 0.0;     ///< [s/m]
+  double payload_yaw = 0.0;          ///< [1]
+  double payload_speed = 0.0;        ///< [1]
+  double payload_icr = 0.0;          ///< [m]
+  double payload_time = 0.0;         ///< [s], shape
+  double grip_limit = 0.0;           ///< [1], 1 / friction
+  double yaw_pull = 0.0;             ///< [rad/m]
+  double yaw_rate_offset = 0.0;      ///< [rad/s]
+  double turn_speed_loss = 0.0;      ///< [s]
+  double reverse_speed_gain = 0.0;   ///< [1]
+  double quadratic_drag = 0.0;       ///< [s/m]
+  double rolling_resistance = 0.0;   ///< [m/s]
+  // The body.
+  double yaw_inertia = 0.0;        ///< [s]
+  double body_inertia = 0.0;       ///< [s]
+  double icr_offset = 0.0;         ///< [m]
+  double crab = 0.0;               ///< [rad]
+  double centrifugal_drift = 0.0;  ///< [s]
+  double slope_pitch = 0.0;        ///< [s]
+  double slope_roll = 0.0;         ///< [s]
+};
 
 /// How much one execution differs from the next on the same ground: standard deviations.
 struct ExecutionSpread {
@@ -38,8 +113,7 @@ struct DriveContext {
 
 /// A vehicle on one ground: nominal two-track model and the effects that are on.
 /** v_x = forward_gain (vl + vr) / 2, omega = yaw_gain (vr - vl) / gauge, v_y = 0; track speeds
- * follow the commands after a delay with a first-order lag. In which order effects act on that:
- * kernel.hpp. */
+ * follow the commands after a delay with a first-order lag; then the effects act. */
 struct VehicleModel {
   std::string name;
   CommandKind kind = CommandKind::kPower;
@@ -52,10 +126,6 @@ struct VehicleModel {
   double step = 0.005;        ///< [s] longest step of integration
   EffectValues effects;
   ExecutionSpread spread;
-
-  /// A parameter of a vehicle effect by name; throws std::out_of_range if there is none.
-  double& effect(const std::string& effect_name, const std::string& parameter);
-  double effect(const std::string& effect_name, const std::string& parameter) const;
 
   /// Track speeds that a command asks for, left and right [m/s].
   TrackCommand trackSpeeds(const TrackCommand& command) const {
@@ -76,4 +146,220 @@ struct VehicleModel {
 /// One draw of the noise of an execution: factors N(1, spread), crab angle N(0, spread).
 ExecutionNoise drawNoise(const ExecutionSpread& spread, std::mt19937_64& random);
 
+/// A quantity that follows its target for a while: its mean meanwhile and its value at the end.
+struct Followed {
+  double mean;
+  double end;
+};
+
+/// First-order lag [s] towards a constant target over dt; exact. Without lag it is there at once.
+Followed follow(double value, double target, double lag, double dt);
+/// The same with a rate of at most 1 / inverse_limit (0 = no limit): a ramp, then the lag; exact.
+Followed follow(double value, double target, double lag, double inverse_limit, double dt);
+
+/// A target that runs from one value to another over a step, with that mean: a parabola.
+struct MovingTarget {
+  double from;
+  double mean;
+  double to;
+};
+
+/// First-order lag [s] behind a moving target over dt; exact.
+Followed follow(double value, const MovingTarget& target, double lag, double dt);
+
+/// What one track and its motor remember.
+struct TrackState {
+  double speed = 0.0;  ///< [m/s] of the drive, after its lag
+  double taken = 0.0;  ///< [m] slack: 0 = taken up forwards, slack = taken up backwards
+  double heat = 0.0;   ///< [1] low-pass of the duty, see thermal_derating
+};
+
+/// How much of a change is in force, 0..1 each: averages over a short step of time.
+struct ChangesInForce {
+  double payload = 0.0;
+  double terrain_1 = 0.0;
+  double terrain_2 = 0.0;
+};
+
+/// Forward speed and yaw rate to which steady tracks lead, before the body's inertia.
+struct PlaneMotion {
+  double v = 0.0;
+  double omega = 0.0;
+};
+
+// What the effects do, in their order.
+namespace steps {
+
+constexpr double kGravity = 9.81;         // [m/s2]
+constexpr double kHour = 3600.0;          // [s]
+constexpr double kLeastDivisor = 0.1;     // [1], where a negative loss would divide by nothing
+constexpr double kSlopeFullSpeed = 0.05;  // [m/s], slower tracks hold on a slope
+
+/// A value without its first `width`: 0 up to there, the rest beyond, sign kept.
+inline double deadZone(double value, double width) {
+  const double rest = std::abs(value) - width;
+  return rest <= 0.0 ? 0.0 : std::copysign(rest, value);
+}
+
+/// `value` over 1 + loss.
+inline double lessened(double value, double loss) {
+  return value / std::max(kLeastDivisor, 1.0 + loss);
+}
+
+/// Share of [from, from + dt] that is after `change`.
+inline double shareAfter(double change, double from, double dt) {
+  if (from >= change) return 1.0;
+  return dt <= 0.0 ? 0.0 : std::clamp((from + dt - change) / dt, 0.0, 1.0);
+}
+
+/// What both changes of ground add.
+inline double on(double first, double second, const ChangesInForce& changes) {
+  return first * changes.terrain_1 + second * changes.terrain_2;
+}
+
+/// What has changed from `session_time` on for dt seconds (0 = at that moment).
+inline ChangesInForce changesAt(const EffectValues& effects, double session_time, double dt) {
+  ChangesInForce changes;
+  if (effects.payload_yaw != 0.0 || effects.payload_speed != 0.0 || effects.payload_icr != 0.0)
+    changes.payload = shareAfter(effects.payload_time, session_time, dt);
+  const bool first = effects.terrain_slip_1 != 0.0 || effects.terrain_width_1 != 0.0 ||
+                     effects.terrain_breakaway_1 != 0.0;
+  const bool second = effects.terrain_slip_2 != 0.0 || effects.terrain_width_2 != 0.0 ||
+                      effects.terrain_breakaway_2 != 0.0;
+  if (!first && !second) return changes;
+  const double begun = shareAfter(effects.terrain_time_1, session_time, dt);
+  if (effects.terrain_time_2 > effects.terrain_time_1)
+    changes.terrain_2 = shareAfter(effects.terrain_time_2, session_time, dt);
+  changes.terrain_1 = begun - changes.terrain_2;
+  return changes;
+}
+
+/// Speed that a track is asked for before it loses power to heat: deadband, saturation, battery.
+/** `session_time` since the start of the session [s]; `drop` of the battery's voltage [1]. */
+inline double suppliedSpeed(const EffectValues& effects, double asked, double session_time,
+                            double drop) {
+  double speed = asked;
+  if (effects.motor_deadband != 0.0) speed = deadZone(speed, effects.motor_deadband);
+  if (std::abs(speed) * effects.speed_saturation > 1.0)
+    speed = std::copysign(1.0 / effects.speed_saturation, speed);
+  if (effects.battery_sag_per_hour != 0.0)
+    speed *= std::max(0.0, 1.0 - effects.battery_sag_per_hour * session_time / kHour);
+  if (effects.battery_sag_per_drop != 0.0)
+    speed *= std::max(0.0, 1.0 - effects.battery_sag_per_drop * drop);
+  return speed;
+}
+
+/// Target that `supplied` is for the drive, after derating and asymmetry; `side` is +1 for the left
+/// and -1 for the right track.
+inline double driveTarget(const EffectValues& effects, double supplied, double side, double heat) {
+  double target = supplied;
+  if (effects.thermal_derating != 0.0)
+    target *= std::max(0.0, 1.0 - effects.thermal_derating * heat);
+  if (effects.track_asymmetry != 0.0) target *= 1.0 + side * effects.track_asymmetry;
+  return target;
+}
+
+/// Mean speed behind the slack, of which the drive takes up or gives back what it moves.
+inline double behindSlack(double slack, double mean, double dt, TrackState& track) {
+  const double moved = mean * dt;
+  const double taken = std::clamp(track.taken - moved, 0.0, slack);
+  const double passed = moved + (taken - track.taken);
+  track.taken = taken;
+  return passed / dt;
+}
+
+/// Moves one track on by dt towards `supplied`; returns the mean speed of the track on the ground
+/// side of its slack.
+inline double driveTrack(const VehicleModel& model, double supplied, double side, double dt,
+                         TrackState& track) {
+  const EffectValues& effects = model.effects;
+  const double target = driveTarget(effects, supplied, side, track.heat);
+  double lag = model.driveLag();
+  if (effects.lag_asymmetry != 0.0 &&
+      (std::abs(target) < std::abs(track.speed) || target * track.speed < 0.0))
+    lag = std::max(0.0, lag + effects.lag_asymmetry);
+  const Followed speed = follow(track.speed, target, lag, effects.slew_limit, dt);
+  track.speed = speed.end;
+  if (effects.thermal_derating != 0.0) {
+    const double duty = supplied / model.full_speed;
+    track.heat = follow(track.heat, duty * duty, effects.thermal_time, dt).end;
+  }
+  if (effects.track_backlash == 0.0) return speed.mean;
+  return behindSlack(effects.track_backlash, speed.mean, dt, track);
+}
+
+/// Slip ratio, on the speed of either track.
+inline TrackCommand slipped(const EffectValues& effects, const ChangesInForce& changes,
+                            const TrackCommand& tracks) {
+  const double slip =
+      effects.slip_ratio + on(effects.terrain_slip_1, effects.terrain_slip_2, changes);
+  if (slip == 0.0) return tracks;
+  return {tracks.left * (1.0 - slip), tracks.right * (1.0 - slip)};
+}
+
+/// Resistance to turning and the limits of turning.
+inline double turned(const EffectValues& effects, const ChangesInForce& changes, double v,
+                     double omega) {
+  const double width =
+      effects.track_width + on(effects.terrain_width_1, effects.terrain_width_2, changes);
+  if (width != 0.0) omega = lessened(omega, width);
+  if (effects.yaw_rate_skid != 0.0)
+    omega = lessened(omega, effects.yaw_rate_skid * std::abs(omega));
+  const double breakaway =
+      effects.yaw_breakaway + on(effects.terrain_breakaway_1, effects.terrain_breakaway_2, changes);
+  if (breakaway > 0.0) omega = deadZone(omega, breakaway);
+  if (std::abs(omega) * effects.turn_power_limit > 1.0)
+    omega = std::copysign(1.0 / effects.turn_power_limit, omega);
+  if (effects.speed_understeer != 0.0) omega = lessened(omega, effects.speed_understeer * v * v);
+  if (effects.reverse_yaw_gain != 0.0) omega *= 1.0 + effects.reverse_yaw_gain * v;
+  if (changes.payload != 0.0) omega *= 1.0 + effects.payload_yaw * changes.payload;
+  if (std::abs(v * omega) * effects.grip_limit > kGravity)
+    omega = std::copysign(kGravity / (effects.grip_limit * std::abs(v)), omega);
+  return omega;
+}
+
+/// Losses of forward speed in a turn of `omega`.
+inline double slowed(const EffectValues& effects, const ChangesInForce& changes, double v,
+                     double omega) {
+  if (effects.turn_speed_loss != 0.0) v = lessened(v, effects.turn_speed_loss * std::abs(omega));
+  if (effects.reverse_speed_gain != 0.0) v += effects.reverse_speed_gain * std::abs(v);
+  if (changes.payload != 0.0) v *= 1.0 + effects.payload_speed * changes.payload;
+  if (effects.quadratic_drag != 0.0) v -= effects.quadratic_drag * v * std::abs(v);
+  if (effects.rolling_resistance != 0.0) v = deadZone(v, effects.rolling_resistance);
+  return v;
+}
+
+/// Slip, turning, limits and resistance: from track speeds to steady forward speed and yaw rate.
+inline PlaneMotion groundMotion(const VehicleModel& model, const ExecutionNoise& noise,
+                                const ChangesInForce& changes, const TrackCommand& track_speeds) {
+  const EffectValues& effects = model.effects;
+  const TrackCommand tracks = slipped(effects, changes, track_speeds);
+  const double v = model.forward_gain * noise.forward * (tracks.left + tracks.right) / 2.0;
+  double omega = model.yaw_gain * noise.yaw * (tracks.right - tracks.left) / model.gauge;
+  omega = turned(effects, changes, v, omega);
+  if (effects.yaw_pull != 0.0) omega += effects.yaw_pull * v;
+  if (effects.yaw_rate_offset != 0.0) omega += effects.yaw_rate_offset;
+  return {slowed(effects, changes, v, omega), omega};
+}
+
+/// The body twist that forward speed and yaw rate go with: motion to the side and slopes.
+/** `tan_crab` of the whole crab angle. `track_speeds` only to fade slopes out at standstill. */
+inline Twist2 bodyTwist(const EffectValues& effects, double tan_crab, const ChangesInForce& changes,
+                        const DriveContext& context, const TrackCommand& track_speeds,
+                        const PlaneMotion& motion) {
+  Twist2 v_body{motion.v, 0.0, motion.omega};
+  const double icr = effects.icr_offset + effects.payload_icr * changes.payload;
+  if (icr != 0.0) v_body.v_y -= icr * motion.omega;
+  v_body.v_y += motion.v * tan_crab;
+  if (effects.centrifugal_drift != 0.0)
+    v_body.v_y -= effects.centrifugal_drift * motion.v * motion.omega;
+  if (effects.slope_pitch == 0.0 && effects.slope_roll == 0.0) return v_body;
+  const double fastest = std::max(std::abs(track_speeds.left), std::abs(track_speeds.right));
+  const double pull = kGravity * std::min(1.0, fastest / kSlopeFullSpeed);
+  v_body.v_x += effects.slope_pitch * pull * std::sin(context.pitch);  // nose-down is positive
+  v_body.v_y -= effects.slope_roll * pull * std::sin(context.roll);
+  return v_body;
+}
+
+}  // namespace steps
 }  // namespace tread

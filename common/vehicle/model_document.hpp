@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "common/vehicle/effects.hpp"
 #include "common/vehicle/kernel.hpp"
+#include "common/vehicle/measurement.hpp"
 
 namespace tread {
 
@@ -71,6 +73,15 @@ struct ModelDocument {
 /// Largest motions of a model that drives these commands, for warningsOutside().
 Envelope envelopeOf(const VehicleModel& model, const std::vector<TrackCommand>& commands,
                     double period, const EntryState& entry);
+
+/// The value of a parameter of an effect.
+double& valueOf(ModelDocument& document, const EffectParameter& parameter);
+double valueOf(const ModelDocument& document, const EffectParameter& parameter);
+
+/// Whether a strength of the effect is not 0 in a model.
+inline bool isOn(const Effect& effect, const ModelDocument& document) {
+  return isOn(effect, document.vehicle.effects, document.measurement);
+}
 
 /// The number of a document that a path names: lag, delay, forward_gain, yaw_gain, full_speed,
 /// gauge, or effect.parameter (icr_offset.offset); nullptr for anything else.

@@ -21,12 +21,13 @@ ModelDocument parseModelDocument(const std::string& text, const std::string& nam
 
 /// Only the vehicle of a model file.
 VehicleModel readModelFile(const std::string& path);
-VehicleModel parseModel(const std::string& text, const std::string& name);
 
 /// Text of a model file; parsing it gives the same document, bit for bit. Effects that are off are
 /// left out.
 std::string formatModelDocument(const ModelDocument& document);
-std::string formatModel(const VehicleModel& model);
+
+/// An effect by name; throws std::runtime_error with one line that guesses what was meant.
+const Effect& effectOrGuess(const std::string& name);
 
 /// Reads the vehicle effects of a section whose keys are their names (not finished here).
 void readEffects(ConfigReader& effects, EffectValues& values);

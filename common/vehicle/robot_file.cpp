@@ -62,11 +62,4 @@ RobotDescription readRobot(ConfigReader& reader) {
   return readDescription(robot);
 }
 
-RobotDescription readRobotFile(const std::string& path) {
-  ConfigReader reader = ConfigReader::fromFile(path);
-  RobotDescription robot = readDescription(reader);
-  reader.finish();
-  return robot;
-}
-
 }  // namespace tread

@@ -13,9 +13,6 @@ namespace tread {
  * so that a logged CONFIG can be read without the file. */
 RobotDescription readRobot(ConfigReader& reader);
 
-/// A robot's own file (config/robots/NAME/robot.yaml).
-RobotDescription readRobotFile(const std::string& path);
-
 /// Three keys that are all required: front, rear and half_width [m].
 FootprintSize readFootprint(ConfigReader reader);
 

@@ -80,7 +80,6 @@ namespace {
 FoundEffect foundEffect(const std::string& name) {
   FoundEffect effect;
   effect.name = name;
-  effect.kind = effectNamed(name).kind;
   effect.p_value = 0.001;
   return effect;
 }

@@ -29,7 +29,7 @@ VehicleModel teodor(double forward_gain, double yaw_gain, double lever, Executio
   model.lag = 0.15;
   model.forward_gain = forward_gain;
   model.yaw_gain = yaw_gain;
-  model.effect("icr_offset", "offset") = -lever;
+  model.effects.icr_offset = -lever;
   model.spread = spread;
   return model;
 }

@@ -101,22 +101,10 @@ std::string wrapped(const std::string& text, size_t width, size_t indent) {
   return lines + line;
 }
 
-const Effect& effectOrGuess(const std::string& name) {
-  std::vector<std::string> names;
-  for (const Effect& effect : effectCatalogue()) {
-    if (effect.name == name) return effect;
-    names.push_back(effect.name);
-  }
-  const auto meant = nearestSpelling(name, names);
-  throw std::runtime_error(
-      "'" + name + "' is no effect of the catalogue; " +
-      (meant ? "did you mean " + *meant + "?" : "tread-gap explain lists them"));
-}
-
 std::string explanation(const Effect& effect) {
   std::string text =
       effect.title + " - " + effect.name + ", " +
-      (effect.kind == EffectKind::kVehicle ? "of the vehicle" : "of the measurement") + "\n\n";
+      (effect.kind() == EffectKind::kVehicle ? "of the vehicle" : "of the measurement") + "\n\n";
   text += entry("what it is", effect.sentence);
   text += entry("equation", effect.equation);
   std::string heading = "parameters";
@@ -142,7 +130,7 @@ std::string listOfEffects() {
     text += kind == EffectKind::kVehicle ? "Effects of the vehicle:\n"
                                          : "\nEffects of the measurement:\n";
     for (const Effect& effect : effectCatalogue())
-      if (effect.kind == kind) text += "  " + padded(effect.name, 22) + effect.sentence + "\n";
+      if (effect.kind() == kind) text += "  " + padded(effect.name, 22) + effect.sentence + "\n";
   }
   return text;
 }

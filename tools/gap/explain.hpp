@@ -9,9 +9,6 @@
 
 namespace tread::gap {
 
-/// An effect by name; throws std::runtime_error with one line that guesses what was meant.
-const Effect& effectOrGuess(const std::string& name);
-
 /// What an effect is, its equation and parameters, what it looks like, what it is confused with
 /// and how to check it in two minutes.
 std::string explanation(const Effect& effect);

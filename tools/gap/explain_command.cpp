@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "common/vehicle/model_file.hpp"
 #include "tools/gap/commands.hpp"
 #include "tools/gap/explain.hpp"
 

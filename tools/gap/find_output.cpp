@@ -60,12 +60,13 @@ Json effectJson(const FoundEffect& effect) {
   for (const Estimate& estimate : effect.parameters) add(parameters, "", estimate);
   Json runner_ups = Json::array();
   for (const RunnerUp& runner_up : effect.runner_ups) runner_ups.push_back(runner_up.effect);
-  return {{"name", effect.name},
-          {"kind", effect.kind == EffectKind::kVehicle ? "vehicle" : "measurement"},
-          {"parameters", parameters},
-          {"group", effect.group},
-          {"runner_up", runner_ups},
-          {"accepted", effect.accepted}};
+  return {
+      {"name", effect.name},
+      {"kind", effectNamed(effect.name).kind() == EffectKind::kVehicle ? "vehicle" : "measurement"},
+      {"parameters", parameters},
+      {"group", effect.group},
+      {"runner_up", runner_ups},
+      {"accepted", effect.accepted}};
 }
 
 Json calibratedJson(const std::vector<Estimate>& calibrated) {
@@ -136,7 +137,7 @@ std::vector<Decision> decisionsOf(const DecisionWords& words, const ModelDocumen
   for (const std::string& name : words.accepted) add(decisions, name, true, words.by);
   for (const std::string& name : words.rejected) {
     add(decisions, name, false, words.by);
-    if (isOn(effectNamed(name), model.vehicle.effects, model.measurement))
+    if (isOn(effectNamed(name), model))
       throw std::runtime_error("--reject " + name +
                                ": the model has this effect; take it out of the model file first");
   }

@@ -6,16 +6,11 @@
 #include <stdexcept>
 
 #include "common/config/scalars.hpp"
-#include "tools/gap/explain.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tools/gap/report/effect_words.hpp"
 
 namespace tread::gap {
 namespace {
-
-double& valueOf(ModelDocument& model, const EffectParameter& parameter) {
-  return parameter.vehicle != nullptr ? model.vehicle.effects.*parameter.vehicle
-                                      : model.measurement.*parameter.measured;
-}
 
 /// Whether two names share a word of three letters or more: slip and slip_ratio.
 bool resemble(const std::string& name, const Effect& effect) {
@@ -107,9 +102,7 @@ void set(ModelDocument& model, const std::string& assignment, const Effect* last
 void turnOff(ModelDocument& model, const Effect& effect) {
   const ModelDocument nominal{};
   for (const EffectParameter& parameter : effect.parameters)
-    valueOf(model, parameter) = parameter.vehicle != nullptr
-                                    ? nominal.vehicle.effects.*parameter.vehicle
-                                    : nominal.measurement.*parameter.measured;
+    valueOf(model, parameter) = valueOf(nominal, parameter);
 }
 
 void turnOn(ModelDocument& model, const Effect& effect) {
@@ -119,22 +112,18 @@ void turnOn(ModelDocument& model, const Effect& effect) {
     if (parameter.role == ParameterRole::kShape) valueOf(model, parameter) = parameter.typical;
 }
 
-bool isOn(const ModelDocument& model, const Effect& effect) {
-  return isOn(effect, model.vehicle.effects, model.measurement);
-}
-
 ModelDocument changed(const ModelDocument& model, const ModelChange& change) {
   ModelDocument other = model;
   for (const std::string& name : change.remove) {
     const Effect& effect = effectOrNear(name);
-    if (!isOn(model, effect))
+    if (!isOn(effect, model))
       throw std::runtime_error("--remove " + name + ": it is off in this model");
     turnOff(other, effect);
   }
   const Effect* last_added = nullptr;
   for (const std::string& name : change.add) {
     last_added = &effectOrNear(name);
-    if (isOn(other, *last_added))
+    if (isOn(*last_added, other))
       throw std::runtime_error(
           "--add " + name + ": it is already on in this model; another size: " + "--set " + name +
           "." + firstStrength(*last_added) + "=NUMBER, without it: --remove " + name);

@@ -24,9 +24,6 @@ void turnOff(ModelDocument& model, const Effect& effect);
 /// Gives an effect's first strength its typical value, and its shapes theirs.
 void turnOn(ModelDocument& model, const Effect& effect);
 
-/// Whether one of its strengths is not 0.
-bool isOn(const ModelDocument& model, const Effect& effect);
-
 /// The model after the change; throws std::runtime_error with one line for what is not possible:
 /// unknown names, values beyond what is plausible, removing what is off, adding what is on.
 ModelDocument changed(const ModelDocument& model, const ModelChange& change);

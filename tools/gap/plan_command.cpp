@@ -174,7 +174,7 @@ int plan(const Options& options) {
     throw std::runtime_error("--speed is for models that take track speeds; this one takes powers");
   if (!options.set.empty()) {
     ModelChange change{{}, {}, options.set};
-    if (!isOn(task.model, effectNamed(options.truth))) change.add = {options.truth};
+    if (!isOn(effectNamed(options.truth), task.model)) change.add = {options.truth};
     task.model = changed(task.model, change);
   }
   std::optional<PatternSet> from;

@@ -23,7 +23,7 @@ ModelDocument modelWith(const ModelDocument& model, const std::string& there,
                         const std::string& gone) {
   ModelDocument with = model;
   const Effect& effect = effectNamed(there);
-  if (!isOn(with, effect)) turnOn(with, effect);
+  if (!isOn(effect, with)) turnOn(with, effect);
   turnOff(with, effectNamed(gone));
   beginAtOnce(with, effect);
   return with;

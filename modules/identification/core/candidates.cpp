@@ -126,7 +126,7 @@ bool isOpen(const Effect& effect, const EffectParameter& parameter, const ModelD
   if (parameter.role == ParameterRole::kShape) return false;
   if (parameter.needs_voltage && !most.voltage) return false;
   const ChangePoint* change = changePointOf(effect, parameter.name);
-  if (change == nullptr) return !isOn(effect, model.vehicle.effects, model.measurement);
+  if (change == nullptr) return !isOn(effect, model);
   // The others, a load that only moves its centre for one, look like a constant from early on.
   const auto tested = change->strengths.begin() + static_cast<std::ptrdiff_t>(change->fitted);
   if (std::find(change->strengths.begin(), tested, parameter.name) == tested) return false;

@@ -46,7 +46,7 @@ bool isConfirmed(const Fitter& fitter, const SearchResult& result, const FitStat
   }
   const bool measurement =
       std::all_of(result.effects.begin(), result.effects.end(), [](const std::string& effect) {
-        return effectNamed(effect).kind == EffectKind::kMeasurement;
+        return effectNamed(effect).kind() == EffectKind::kMeasurement;
       });
   const std::vector<char> every(static_cast<size_t>(data.blocks()), 1);
   for (Eigen::Index i = 0; i < (measurement ? 3 : 2); ++i) {

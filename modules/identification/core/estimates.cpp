@@ -47,7 +47,6 @@ FoundEffect foundEffect(const std::string& name, const SearchResult& result,
   const EffectEvidence evidence = known == result.evidence.end() ? EffectEvidence{} : known->second;
   FoundEffect effect;
   effect.name = name;
-  effect.kind = effectNamed(name).kind;
   effect.parameters = std::move(parameters);
   effect.score = evidence.score;
   effect.p_value = evidence.p_value.value_or(0.0);
@@ -134,7 +133,7 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
     identified.effects.push_back(foundEffect(name, result, settings, of_effect[name]));
   for (const CandidateTest& test : result.record.candidates)
     if (!contains(result.effects, test.effect) && !isExcited(test) &&
-        !isOn(effectNamed(test.effect), before.vehicle.effects, before.measurement))
+        !isOn(effectNamed(test.effect), before))
       identified.not_excited.push_back(test.effect);
   identified.model = state.model;
   identified.model.covariance = knownCovariance(state, covariance);

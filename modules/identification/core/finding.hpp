@@ -68,7 +68,6 @@ struct RunnerUp {
 /// An effect that was found.
 struct FoundEffect {
   std::string name;
-  EffectKind kind = EffectKind::kVehicle;
   std::vector<Estimate> parameters;
   std::vector<std::string> group;  ///< members it cannot be told from (without itself)
   std::vector<RunnerUp> runner_ups;

@@ -105,7 +105,7 @@ double improvement(const Fitter& fitter, const FitState& old_state, const FitSta
   double largest = 0.0;
   if (before.position > 0.0) largest = std::max(largest, 1.0 - after.position / before.position);
   if (before.yaw > 0.0) largest = std::max(largest, 1.0 - after.yaw / before.yaw);
-  if (effectNamed(effect).kind == EffectKind::kMeasurement && before.yaw_rate > 0.0)
+  if (effectNamed(effect).kind() == EffectKind::kMeasurement && before.yaw_rate > 0.0)
     largest = std::max(largest, 1.0 - after.yaw_rate / before.yaw_rate);
   return largest;
 }

@@ -34,7 +34,7 @@ std::vector<Single> imitated(const Fitter& fitter, const std::vector<char>& mask
     const Effect& effect = effectNamed(candidates[i].effect);
     // A change early in the drive has more numbers than the two, and is no simpler.
     if (!candidates[i].change_point.empty()) continue;
-    if (isOn(effect, state.model.vehicle.effects, state.model.measurement)) continue;
+    if (isOn(effect, state.model)) continue;
     if (test.uniqueness(at) < kImitated && names.insert(effect.name).second)
       chosen.push_back({candidates[i], directions.col(at)});
   }

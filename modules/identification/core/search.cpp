@@ -82,8 +82,7 @@ class EffectSelection {
   /// Takes in what a person has accepted, before anything is tested.
   void takeInAccepted() {
     for (const std::string& effect : settings_.accepted) {
-      if (isOn(effectNamed(effect), state().model.vehicle.effects, state().model.measurement))
-        continue;
+      if (isOn(effectNamed(effect), state().model)) continue;
       const std::string why = takeIn(fitter_, state(), effect, mask_);
       if (why.empty())
         result_.effects.push_back(effect);
@@ -121,8 +120,7 @@ class EffectSelection {
     std::vector<Candidate> likeliest;
     for (size_t i : screening.best)
       if (likeliest.size() < kRenewed &&
-          !isOn(effectNamed(screening.candidates[i].effect), state().model.vehicle.effects,
-                state().model.measurement))
+          !isOn(effectNamed(screening.candidates[i].effect), state().model))
         likeliest.push_back(screening.candidates[i]);
     return likeliest;
   }
@@ -132,7 +130,7 @@ class EffectSelection {
       // Numbers of the nominal model that are free do the same.
       if (settings_.calibrate && !effect->search.nominal.empty()) continue;
       if (contains(settings_.rejected, effect->name)) continue;
-      if (isOn(*effect, state().model.vehicle.effects, state().model.measurement)) continue;
+      if (isOn(*effect, state().model)) continue;
       FreeParameter parameter =
           freeParameter(state().model, effect->name + "." + effect->parameters.front().name);
       parameter.expected = 0.0;

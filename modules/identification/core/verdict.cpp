@@ -21,7 +21,7 @@ bool isAmbiguous(const FoundEffect& effect) {
 }
 
 EffectKind kindOf(const Estimate& estimate) {
-  return effectNamed(effectOfPath(estimate.parameter)).kind;
+  return effectNamed(effectOfPath(estimate.parameter)).kind();
 }
 
 /// Whether a term of the INS has changed by a share of its typical size: the ends of executions do
@@ -62,7 +62,7 @@ GapVerdict verdictOf(const Finding& finding, const std::vector<FoundEffect>& sho
   if (!adequate) return GapVerdict::kPartial;
   if (std::any_of(shown.begin(), shown.end(), isAmbiguous)) return GapVerdict::kAmbiguous;
   const bool measurement = std::all_of(shown.begin(), shown.end(), [](const FoundEffect& effect) {
-    return effect.kind == EffectKind::kMeasurement;
+    return effectNamed(effect.name).kind() == EffectKind::kMeasurement;
   });
   // A term of the vehicle that has changed is a finding, too.
   const bool moved =

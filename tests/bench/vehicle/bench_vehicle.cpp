@@ -29,7 +29,7 @@ void turnOn(const Effect& effect, VehicleModel& model) {
 VehicleModel everything(double step) {
   VehicleModel model = plain(step);
   for (const Effect& effect : effectCatalogue())
-    if (effect.kind == EffectKind::kVehicle) turnOn(effect, model);
+    if (effect.kind() == EffectKind::kVehicle) turnOn(effect, model);
   return model;
 }
 
@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
     benchmark::RegisterBenchmark(("all on" + name).c_str(), drive, everything(step));
   }
   for (const Effect& effect : effectCatalogue()) {
-    if (effect.kind != EffectKind::kVehicle) continue;
+    if (effect.kind() != EffectKind::kVehicle) continue;
     VehicleModel model = plain(0.005);
     turnOn(effect, model);
     benchmark::RegisterBenchmark(effect.name.c_str(), drive, model);

@@ -35,7 +35,7 @@ TEST_CASE("A steady command from its steady motion drives the circle of the clos
   VehicleModel model = plainModel();
   model.forward_gain = 0.95;
   model.yaw_gain = 1.2;
-  model.effect("icr_offset", "offset") = 0.1;
+  model.effects.icr_offset = 0.1;
   const TrackCommand command{0.4, 0.9};
   const double v = 0.95 * 1.1 * 0.65;
   const double omega = 1.2 * 1.1 * 0.5 / 0.6;
@@ -50,8 +50,8 @@ TEST_CASE("A steady command from its steady motion drives the circle of the clos
 
 TEST_CASE("A body behind lagging tracks moves the same in long steps and in short ones") {
   VehicleModel model = plainModel();
-  model.effect("yaw_inertia", "lag") = 0.03;
-  model.effect("body_inertia", "lag") = 0.08;
+  model.effects.yaw_inertia = 0.03;
+  model.effects.body_inertia = 0.08;
   const auto drivenWith = [&model](double step) {
     model.step = step;
     VehicleKernel kernel(model, {});
@@ -120,7 +120,7 @@ TEST_CASE("Track speed commands are metres per second") {
 TEST_CASE("Mirrored commands give exactly mirrored poses") {
   VehicleModel model = plainModel();
   model.yaw_gain = 1.0596;
-  model.effect("icr_offset", "offset") = 0.1057;
+  model.effects.icr_offset = 0.1057;
   std::vector<TrackCommand> commands{{0.1, 1.0}, {-0.4, 0.4}, {0.55, 1.0}, {1.0, 0.8}, {0.3, 0.7}};
   const auto poses = simulate(model, commands, 0.15, steadyEntry(model, {1.0, 1.0}));
   for (TrackCommand& command : commands) command = {command.right, command.left};
@@ -134,7 +134,7 @@ TEST_CASE("Mirrored commands give exactly mirrored poses") {
 
 TEST_CASE("A vehicle that turns by itself breaks the symmetry") {
   VehicleModel model = plainModel();
-  model.effect("yaw_rate_offset", "rate") = 0.03;
+  model.effects.yaw_rate_offset = 0.03;
   const auto poses = simulate(model, held({1.0, 1.0}, 20), 0.05, steadyEntry(model, {1.0, 1.0}));
   CHECK(poses.back().yaw == Approx(0.03));
   CHECK(poses.back().y > 0.0);

@@ -10,22 +10,15 @@
 
 using namespace tread;
 
-TEST_CASE("Unknown effects and parameters of a vehicle are refused") {
-  VehicleModel model;
-  CHECK_THROWS_AS(model.effect("antigravity", "rate"), std::out_of_range);
-  CHECK_THROWS_AS(model.effect("crab", "rate"), std::out_of_range);
-  CHECK_THROWS_AS(model.effect("gyro_bias", "rate"), std::out_of_range);
-}
-
 TEST_CASE("The motion follows the equations of the calibration") {
   VehicleModel model;
   model.kind = CommandKind::kTrackSpeed;
   model.gauge = 0.6;
   model.forward_gain = 0.9541;
   model.yaw_gain = 0.8885;
-  model.effect("icr_offset", "offset") = -0.0465;
-  model.effect("yaw_rate_offset", "rate") = 0.0102;
-  model.effect("crab", "angle") = 0.0442;
+  model.effects.icr_offset = -0.0465;
+  model.effects.yaw_rate_offset = 0.0102;
+  model.effects.crab = 0.0442;
   const ExecutionNoise noise{1.01, 0.97, -0.02};
   const double v = 0.9541 * 1.01 * (0.6 + 1.1) / 2.0;
   const double omega = 0.8885 * 0.97 * (1.1 - 0.6) / 0.6 + 0.0102;

@@ -79,7 +79,9 @@ TEST_CASE("The vehicle part and the measurement part of a file stand apart") {
   REQUIRE(measurement != std::string::npos);
   CHECK(text.find("icr_offset:") < measurement);
   CHECK(text.find("ins_latency:") > measurement);
-  CHECK(formatModel(document.vehicle).find("ins_latency") == std::string::npos);
+  ModelDocument vehicle_alone;
+  vehicle_alone.vehicle = document.vehicle;
+  CHECK(formatModelDocument(vehicle_alone).find("ins_latency") == std::string::npos);
 }
 
 TEST_CASE("Bad bounds, covariances, origins and envelopes are refused in one clear line") {
@@ -118,7 +120,7 @@ TEST_CASE("Outside of its envelope a model warns, once for each quantity, within
 }
 
 TEST_CASE("The envelope of a drive holds its largest motions") {
-  VehicleModel model = parseModel(kHead, "m.yaml");
+  VehicleModel model = parseModelDocument(kHead, "m.yaml").vehicle;
   const Envelope envelope = envelopeOf(model, {{1.0, 1.0}, {-0.5, 0.5}, {-1.0, -1.0}}, 0.1, {});
   CHECK(envelope.v == Approx(1.1));
   CHECK(envelope.omega == Approx(1.1 / 0.6));

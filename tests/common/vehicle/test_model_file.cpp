@@ -18,7 +18,7 @@ const std::string kHead = "name: m\nkind: power\nfull_speed: 1.1\ngauge: 0.6\n";
 void expectError(const std::string& text, const std::string& place, const std::string& part) {
   std::string message = "no error";
   try {
-    parseModel(text, "m.yaml");
+    parseModelDocument(text, "m.yaml").vehicle;
   } catch (const ConfigError& error) {
     message = error.what();
   }
@@ -31,16 +31,17 @@ void expectError(const std::string& text, const std::string& place, const std::s
 }  // namespace
 
 TEST_CASE("What a model file does not name is nominal") {
-  const VehicleModel model = parseModel(kHead, "m.yaml");
+  const VehicleModel model = parseModelDocument(kHead, "m.yaml").vehicle;
   CHECK(model.forward_gain == 1.0);
   CHECK(model.yaw_gain == 1.0);
   CHECK(model.lag == 0.0);
-  CHECK(model.effect("icr_offset", "offset") == 0.0);
+  CHECK(model.effects.icr_offset == 0.0);
   CHECK(model.spread.yaw == 0.0);
 }
 
 TEST_CASE("A model file comes back bit for bit") {
-  VehicleModel model = parseModel(kHead, "m.yaml");
+  ModelDocument document = parseModelDocument(kHead, "m.yaml");
+  VehicleModel& model = document.vehicle;
   model.name = "a: b";
   model.lag = 0.1 + 0.05;
   model.delay = 1.0 / 3.0;
@@ -53,7 +54,8 @@ TEST_CASE("A model file comes back bit for bit") {
         model.effects.*parameter.vehicle =
             parameter.typical * (1.0 + 1e-15) / 3.0 +
             10.0 / 3.0 * (parameter.name == "time_constant" ? 1.0 : 0.0);
-  const VehicleModel again = parseModel(formatModel(model), "again.yaml");
+  const std::string text = formatModelDocument(document);
+  const VehicleModel again = parseModelDocument(text, "again.yaml").vehicle;
   CHECK(again.name == model.name);
   CHECK(again.lag == model.lag);
   CHECK(again.delay == model.delay);
@@ -66,22 +68,23 @@ TEST_CASE("A model file comes back bit for bit") {
       if (parameter.vehicle != nullptr)
         CHECK(again.effects.*parameter.vehicle == model.effects.*parameter.vehicle);
     }
-  CHECK(formatModel(again) == formatModel(model));
+  CHECK(formatModelDocument(parseModelDocument(text, "again.yaml")) == text);
 }
 
 TEST_CASE("Effects that are off are left out of a model file, also those with a default shape") {
-  const std::string text = formatModel(parseModel(kHead, "m.yaml"));
+  const std::string text = formatModelDocument(parseModelDocument(kHead, "m.yaml"));
   CHECK(text.find("effects") == std::string::npos);
   CHECK(text.find("measurement") == std::string::npos);
 }
 
 TEST_CASE("A limit may stand in a file as itself or as its reciprocal, not as both") {
   const std::string effect = kHead + "effects:\n  turn_power_limit:\n    ";
-  const VehicleModel itself = parseModel(effect + "limit: 2\n", "m.yaml");
-  const VehicleModel reciprocal = parseModel(effect + "inverse_limit: 0.5\n", "m.yaml");
-  CHECK(itself.effects.turn_power_limit == 0.5);
+  const ModelDocument itself = parseModelDocument(effect + "limit: 2\n", "m.yaml");
+  const VehicleModel reciprocal =
+      parseModelDocument(effect + "inverse_limit: 0.5\n", "m.yaml").vehicle;
+  CHECK(itself.vehicle.effects.turn_power_limit == 0.5);
   CHECK(reciprocal.effects.turn_power_limit == 0.5);
-  CHECK(formatModel(itself).find("inverse_limit: 0.5  # s/rad: limit 2 rad/s") !=
+  CHECK(formatModelDocument(itself).find("inverse_limit: 0.5  # s/rad: limit 2 rad/s") !=
         std::string::npos);
   expectError(effect + "limit: 2\n    inverse_limit: 0.5\n", "7", "one of them");
   expectError(effect + "limit: 0\n", "7", "0.1..1e+09 rad/s");

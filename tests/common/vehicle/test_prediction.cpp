@@ -9,8 +9,8 @@
 
 #include <Eigen/Core>
 
-#include "common/vehicle/model_file.hpp"
 #include "common/vehicle/kernel.hpp"
+#include "common/vehicle/model_file.hpp"
 
 using namespace tread;
 

@@ -57,7 +57,7 @@ TEST_CASE("a process finds its robot beside its own file, by name, or in its own
   CHECK(within.ins.p_body.z() == 0.6);
   CHECK(within.ins.angles.yaw == 0.02);
   CHECK(within.drive.left_channel == 2);
-  CHECK(readRobotFile(kSmall + "robot.yaml").drive.invert_left);
+  CHECK(robotOf("{}", kSmall + "x.yaml").drive.invert_left);
 }
 
 TEST_CASE("what a process says of its configuration holds the robot, and can be read again") {

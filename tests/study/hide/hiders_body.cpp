@@ -33,8 +33,6 @@ double moving(const Moment& now) {
   return belt / (belt + 0.03);
 }
 
-}  // namespace
-
 Hider hidePayloadChange(double size, double duration, Rng& rng) {
   const double change = duration * rng.uniform(0.35, 0.65);
   // More weight makes the ground resist turning; it sits a little behind or ahead.
@@ -250,6 +248,64 @@ Hider hideBodyInertia(double size, double, Rng&) {
   hider.levers = {built("lag", lag, "s")};
   hider.equivalent = {built("tau_v", lag, "s")};
   return hider;
+}
+
+}  // namespace
+
+std::vector<EffectSpec> bodyEffects() {
+  using K = EffectKind;
+  using F = EffectForm;
+  using S = EffectShape;
+  return {
+      {"payload_change",
+       K::kVehicle,
+       F::kPhysical,
+       S::kOther,
+       hidePayloadChange,
+       "mass, inertia, centre of pressure at a time",
+       {"terrain_change"}},
+      {"terrain_change",
+       K::kVehicle,
+       F::kPhysical,
+       S::kOther,
+       hideTerrainChange,
+       "surface parameters at one or two times",
+       {"payload_change"}},
+      {"slope_pitch", K::kVehicle, F::kPhysical, S::kSame, hideSlopePitch, "downhill force along"},
+      {"slope_roll", K::kVehicle, F::kPhysical, S::kOther, hideSlopeRoll,
+       "downhill force across while moving"},
+      {"centrifugal_drift",
+       K::kVehicle,
+       F::kPhysical,
+       S::kOther,
+       hideCentrifugalDrift,
+       "side force, progressive",
+       {"heading_latency"}},
+      {"rolling_resistance", K::kVehicle, F::kPhysical, S::kSame, hideRollingResistance,
+       "dry drag on the body"},
+      {"quadratic_drag", K::kVehicle, F::kPhysical, S::kOther, hideQuadraticDrag,
+       "drag with the square of the true speed"},
+      {"turn_speed_loss", K::kVehicle, F::kPhysical, S::kOther, hideTurnSpeedLoss,
+       "drag with the rate, first squared"},
+      {"reverse_speed_gain", K::kVehicle, F::kPhysical, S::kOther, hideReverseSpeedGain,
+       "push ahead with speed either way"},
+      {"icr_offset",
+       K::kVehicle,
+       F::kPhysical,
+       S::kSame,
+       hideIcrOffset,
+       "centre of pressure and of the tracks",
+       {"lever_arm_x"}},
+      {"body_inertia", K::kVehicle, F::kKinematic, S::kSame, hideBodyInertia,
+       "first-order lag of the body's speed"},
+      {"crab",
+       K::kVehicleVariant,
+       F::kKinematic,
+       S::kSame,
+       hideCrab,
+       "motion at an angle to the hull",
+       {"heading_misalignment"}},
+  };
 }
 
 }  // namespace tread::blind

@@ -37,8 +37,6 @@ double follow(double& state, double wanted, double lag, double dt) {
   return state;
 }
 
-}  // namespace
-
 Hider hideSlipRatio(double size, double, Rng&) {
   const double slip = 0.05 * size;
   Hider hider;
@@ -197,8 +195,6 @@ Hider hideThermalDerating(double size, double, Rng&) {
   return hider;
 }
 
-namespace {
-
 /// Gear with slack: the motor turns freely until the slack is taken up.
 struct Slack {
   double width = 0.0;  // [m]
@@ -212,8 +208,6 @@ struct Slack {
     return engaged ? power : belt / full_speed;
   }
 };
-
-}  // namespace
 
 Hider hideTrackBacklash(double size, double, Rng&) {
   const double width = 0.025 * size;
@@ -232,6 +226,49 @@ Hider hideTrackBacklash(double size, double, Rng&) {
   hider.levers = {built("slack", width, "m")};
   hider.equivalent = {built("beta", width, "m")};
   return hider;
+}
+
+}  // namespace
+
+std::vector<EffectSpec> driveEffects() {
+  using K = EffectKind;
+  using F = EffectForm;
+  using S = EffectShape;
+  return {
+      {"slip_ratio",
+       K::kVehicle,
+       F::kPhysical,
+       S::kSame,
+       hideSlipRatio,
+       "belt speed per motor speed",
+       {"forward_gain", "full_speed"},
+       {{"position_scale", "track_width"}}},
+      {"track_asymmetry", K::kVehicle, F::kPhysical, S::kSame, hideTrackAsymmetry,
+       "power of the left and right stage"},
+      {"motor_deadband", K::kVehicle, F::kPhysical, S::kSame, hideMotorDeadband,
+       "dead power of each stage"},
+      {"speed_saturation", K::kVehicle, F::kPhysical, S::kOther, hideSpeedSaturation,
+       "soft limit of power"},
+      {"actuator_lag", K::kVehicle, F::kPhysical, S::kSame, hideActuatorLag,
+       "lag of the power stage"},
+      {"command_delay",
+       K::kVehicle,
+       F::kPhysical,
+       S::kSame,
+       hideCommandDelay,
+       "queue before the power stage",
+       {"ins_latency"}},
+      {"slew_limit", K::kVehicle, F::kPhysical, S::kOther, hideSlewLimit,
+       "ramp of power before the lag"},
+      {"lag_asymmetry", K::kVehicle, F::kPhysical, S::kSame, hideLagAsymmetry,
+       "lag of falling power"},
+      {"battery_sag", K::kVehicle, F::kPhysical, S::kOther, hideBatterySag,
+       "voltage that falls with what is drawn"},
+      {"thermal_derating", K::kVehicle, F::kPhysical, S::kOther, hideThermalDerating,
+       "motors heated by orders and current"},
+      {"track_backlash", K::kVehicle, F::kPhysical, S::kOther, hideTrackBacklash,
+       "slack between motor and belt"},
+  };
 }
 
 }  // namespace tread::blind

@@ -15,8 +15,6 @@ Hider instrument(const char* lever, const char* symbol, double value, const char
   return hider;
 }
 
-}  // namespace
-
 Hider hideInsLatency(double size, double, Rng&) {
   const double late = 0.075 * size;
   return instrument("pose_latency", "L", late, "s", 1.0,
@@ -71,6 +69,58 @@ Hider hidePositionScale(double size, double, Rng& rng) {
   const double scale = 0.025 * size * rng.sign();
   return instrument("scale", "k", scale, "1", 1.0,
                     [=](InstrumentFault& fault) { fault.position_scale = scale; });
+}
+
+}  // namespace
+
+std::vector<EffectSpec> instrumentEffects() {
+  using K = EffectKind;
+  using F = EffectForm;
+  using S = EffectShape;
+  return {
+      {"ins_latency", K::kMeasurement, F::kKinematic, S::kSame, hideInsLatency,
+       "position and heading late, gyro in time"},
+      {"heading_latency",
+       K::kMeasurement,
+       F::kKinematic,
+       S::kSame,
+       hideHeadingLatency,
+       "heading late",
+       {"centrifugal_drift"}},
+      {"gyro_bias", K::kMeasurement, F::kKinematic, S::kOther, hideGyroBias,
+       "bias of the rate, larger when cold"},
+      {"heading_misalignment",
+       K::kMeasurement,
+       F::kKinematic,
+       S::kSame,
+       hideHeadingMisalignment,
+       "heading turned by an angle",
+       {"crab"}},
+      {"lever_arm_x",
+       K::kMeasurement,
+       F::kKinematic,
+       S::kSame,
+       hideLeverArmX,
+       "antenna ahead of the origin",
+       {"icr_offset"}},
+      {"lever_arm_y", K::kMeasurement, F::kKinematic, S::kSame, hideLeverArmY,
+       "antenna beside the origin"},
+      {"position_scale",
+       K::kMeasurement,
+       F::kKinematic,
+       S::kSame,
+       hidePositionScale,
+       "all positions scaled",
+       {},
+       {{"slip_ratio", "track_width"}}},
+      {"ins_latency_all",
+       K::kMeasurementVariant,
+       F::kKinematic,
+       S::kSame,
+       hideInsLatencyAll,
+       "all that the INS says is late",
+       {"ins_latency", "command_delay"}},
+  };
 }
 
 }  // namespace tread::blind

@@ -21,8 +21,6 @@ double lostYawRate(const SteadyPair& p) {
   return p.without.omega - p.with.omega;
 }
 
-}  // namespace
-
 Hider hideTrackWidth(double size, double, Rng&) {
   // Tougher ground beside the tracks. Only the scrubbing part of the yaw damping grows.
   const double k = 0.125 * size;
@@ -175,6 +173,39 @@ Hider hideYawInertia(double size, double, Rng&) {
   hider.levers = {built("yaw_inertia_added", lag * yawDamping(), "kg m^2")};
   hider.equivalent = {built("tau_w", lag, "s")};
   return hider;
+}
+
+}  // namespace
+
+std::vector<EffectSpec> turningEffects() {
+  using K = EffectKind;
+  using F = EffectForm;
+  using S = EffectShape;
+  return {
+      {"track_width",
+       K::kVehicle,
+       F::kPhysical,
+       S::kSame,
+       hideTrackWidth,
+       "scrub resistance of the ground",
+       {},
+       {{"position_scale", "slip_ratio"}}},
+      {"yaw_rate_skid", K::kVehicle, F::kPhysical, S::kOther, hideYawRateSkid,
+       "moment with the square of the rate"},
+      {"turn_power_limit", K::kVehicle, F::kPhysical, S::kOther, hideTurnPowerLimit,
+       "steep moment beyond a rate"},
+      {"yaw_breakaway", K::kVehicle, F::kPhysical, S::kOther, hideYawBreakaway,
+       "dry moment that creeps"},
+      {"speed_understeer", K::kVehicle, F::kPhysical, S::kOther, hideSpeedUndersteer,
+       "yaw damping with speed to the 2.5"},
+      {"yaw_pull", K::kVehicle, F::kPhysical, S::kOther, hideYawPull,
+       "one-sided drag: it turns and brakes"},
+      {"grip_limit", K::kVehicle, F::kPhysical, S::kOther, hideGripLimit,
+       "moment beyond a side acceleration"},
+      {"reverse_yaw_gain", K::kVehicle, F::kPhysical, S::kOther, hideReverseYawGain,
+       "yaw damping with signed speed"},
+      {"yaw_inertia", K::kVehicle, F::kPhysical, S::kSame, hideYawInertia, "yaw inertia"},
+  };
 }
 
 }  // namespace tread::blind

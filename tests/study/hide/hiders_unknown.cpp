@@ -9,6 +9,7 @@
 #include "tests/study/hide/test_field.hpp"
 
 namespace tread::blind {
+namespace {
 
 using sim::MotorPower;
 using sim::OutsideForce;
@@ -86,6 +87,52 @@ Hider hideSteeringHysteresis(double size, double, Rng&) {
   };
   hider.levers = {{"yaw_gain_either_way", k, "1", false}, {"seating", kSeating, "rad", false}};
   return hider;
+}
+
+}  // namespace
+
+std::vector<EffectSpec> unknownEffects() {
+  using K = EffectKind;
+  using F = EffectForm;
+  using S = EffectShape;
+  return {
+      {"stribeck_friction",
+       K::kOutOfCatalogue,
+       F::kPhysical,
+       S::kOther,
+       hideStribeckFriction,
+       "gear friction that fades with speed",
+       {},
+       {},
+       {"speed", "command"}},
+      {"load_transfer",
+       K::kOutOfCatalogue,
+       F::kPhysical,
+       S::kOther,
+       hideLoadTransfer,
+       "yaw damping and side force with braking",
+       {},
+       {},
+       {"acceleration", "time_since_command", "previous_command"}},
+      {"voltage_dead_time",
+       K::kOutOfCatalogue,
+       F::kPhysical,
+       S::kOther,
+       hideVoltageDeadTime,
+       "queue that grows with missing voltage",
+       {},
+       {},
+       {"voltage", "time_since_command"}},
+      {"steering_hysteresis",
+       K::kOutOfCatalogue,
+       F::kPhysical,
+       S::kOther,
+       hideSteeringHysteresis,
+       "yaw damping by the turns before",
+       {},
+       {},
+       {"previous_turn", "previous_command"}},
+  };
 }
 
 }  // namespace tread::blind

@@ -44,7 +44,7 @@ constexpr const char* kFooter =
 ModelDocument readIdeal(const std::string& path) {
   ModelDocument model = readModelDocument(path);
   for (const Effect& effect : effectCatalogue())
-    if (isOn(effect, model.vehicle.effects, model.measurement))
+    if (isOn(effect, model))
       throw std::runtime_error(path + ": the effect " + effect.name +
                                " is on; a comparison begins with a model without effects");
   return model;

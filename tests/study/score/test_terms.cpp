@@ -56,7 +56,7 @@ TEST_CASE("what is hidden is in the catalogue, and its numbers have parameters t
     CAPTURE(spec->name);
     const Effect& effect = effectNamed(spec->name);
     const bool measurement = spec->kind == blind::EffectKind::kMeasurement;
-    CHECK((effect.kind == EffectKind::kMeasurement) == measurement);
+    CHECK((effect.kind() == EffectKind::kMeasurement) == measurement);
     for (const blind::Hidden& one : blind::makeHidden({spec->name}, 2.0, 600.0, 1))
       for (const blind::Quantity& number : one.hider.equivalent)
         if (const auto same = blindtest::sameQuantity(spec->name, number.name, 600.0))

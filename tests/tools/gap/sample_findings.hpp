@@ -61,7 +61,6 @@ inline FoundEffect icrOffset() {
 inline FoundEffect misalignment() {
   FoundEffect effect;
   effect.name = "heading_misalignment";
-  effect.kind = EffectKind::kMeasurement;
   effect.parameters = {{"heading_misalignment.angle", "rad", 0.05, 0.045, 0.055, 0.0}};
   effect.gain = 30.0;
   effect.gain_error = 4.0;

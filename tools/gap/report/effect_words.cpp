@@ -186,7 +186,7 @@ std::vector<std::string> rivalsOf(const FoundEffect& effect) {
 std::string rivalTitle(const std::string& found, const std::string& other) {
   const std::string title = inSentence(shortTitleOf(other));
   // A model may have a latency of the poses alone, which is another one.
-  if (effectNamed(other).kind == EffectKind::kMeasurement)
+  if (effectNamed(other).kind() == EffectKind::kMeasurement)
     for (const ConfoundedGroup* group : confoundedGroupsOf(found))
       if (group->share != nullptr && contains(group->members, other))
         return title + group->share_words;

@@ -74,7 +74,7 @@ Section effectsSection(const Finding& finding) {
     const Effect& effect = effectNamed(found.name);
     section.blocks.push_back(Paragraph{
         effect.title + " (" + effect.name + ", " +
-        (effect.kind == EffectKind::kVehicle ? "of the vehicle" : "of the measurement") + ")"});
+        (effect.kind() == EffectKind::kVehicle ? "of the vehicle" : "of the measurement") + ")"});
     section.blocks.push_back(
         Points{{"Equation: " + effect.equation, "In the residuals: " + effect.looks_like,
                 "In two minutes: " + checkOf(found),
