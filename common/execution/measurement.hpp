@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/execution/track_history.hpp"
+#include "common/geometry/track.hpp"
 #include "common/pattern/pattern.hpp"
 
 // How an execution becomes a measured trajectory M:

@@ -3,6 +3,8 @@
 #include "common/geometry/track.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace tread {
 namespace {
@@ -58,6 +60,41 @@ std::optional<Twist2> PoseTrack::twistBefore(int64_t utime, int64_t window_us,
   const auto last = at(utime, max_gap_us);
   if (!first || !last) return std::nullopt;
   return twistTo(between(*first, *last), static_cast<double>(window_us) * 1e-6);
+}
+
+bool TrackHistory::push(int64_t utime, const Pose2& T_map_body, double inclination,
+                        bool new_track) {
+  if (utime <= newest_) return false;
+  PoseTrack fresh(span_us_);
+  if (!tracks_.empty() && !new_track) {
+    if (!tracks_.back().push(utime, T_map_body)) return false;
+  } else {
+    if (!fresh.push(utime, T_map_body)) return false;
+    tracks_.push_back(std::move(fresh));
+  }
+  newest_ = utime;
+  if (std::isfinite(inclination)) inclinations_.push_back({utime, inclination});
+  while (tracks_.front().poses().back().utime < utime - span_us_) tracks_.pop_front();
+  while (!inclinations_.empty() && inclinations_.front().utime < utime - span_us_)
+    inclinations_.pop_front();
+  return true;
+}
+
+const PoseTrack* TrackHistory::covering(int64_t utime) const {
+  for (const PoseTrack& track : tracks_)
+    if (track.poses().front().utime <= utime && utime <= track.poses().back().utime) return &track;
+  return nullptr;
+}
+
+double TrackHistory::meanInclination(int64_t from, int64_t to) const {
+  double sum = 0.0;
+  int count = 0;
+  for (const Inclination& sample : inclinations_) {
+    if (sample.utime < from || sample.utime > to) continue;
+    sum += sample.angle;
+    ++count;
+  }
+  return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace tread

@@ -116,10 +116,9 @@ float roundedDown(double length) {
 
 /// Calls visit(cell) for the cells that the footprint overlaps, row by row.
 template <class Visit>
-void visitCells(const Footprint& footprint, const Pose2& T_map_body, double cell_size,
+void visitCells(const FootprintSize& size, const Pose2& T_map_body, double cell_size,
                 const Visit& visit) {
-  const RowSpans rows({-footprint.rear(), footprint.front(), footprint.halfWidth()},
-                      turned(T_map_body), cell_size);
+  const RowSpans rows({-size.rear, size.front, size.half_width}, turned(T_map_body), cell_size);
   for (int y = rows.firstRow(); y <= rows.lastRow(); ++y) {
     const RowSpans::Span span = rows.span(y);
     for (int x = span.first; x <= span.last; ++x) visit(CellIndex{x, y});
@@ -128,21 +127,21 @@ void visitCells(const Footprint& footprint, const Pose2& T_map_body, double cell
 
 }  // namespace
 
-Footprint::Footprint(double front, double rear, double half_width, double margin)
-    : front_(front + margin), rear_(rear + margin), half_width_(half_width + margin) {
-  const double length = front_ + rear_;
-  if (!(length > 0.0) || !(half_width_ > 0.0) || !std::isfinite(length + half_width_))
+Footprint::Footprint(const FootprintSize& size, double margin) : size_(size.widened(margin)) {
+  const auto& [front, rear, half_width] = size_;
+  const double length = size_.length();
+  if (!(length > 0.0) || !(half_width > 0.0) || !std::isfinite(length + half_width))
     throw std::invalid_argument("footprint: length and width must be positive and finite");
-  circumscribed_ = std::hypot(std::max(std::abs(front_), std::abs(rear_)), half_width_);
+  circumscribed_ = std::hypot(std::max(std::abs(front), std::abs(rear)), half_width);
   // With one disc per half width the discs reach out by 12 % of it; more would hardly help.
-  const double count = std::min(8.0, std::max(1.0, std::ceil(length / half_width_)));
+  const double count = std::min(8.0, std::max(1.0, std::ceil(length / half_width)));
   const double step = length / count;
-  for (double i = 0.5; i < count; ++i) disc_x_.push_back(-rear_ + i * step);
+  for (double i = 0.5; i < count; ++i) disc_x_.push_back(-rear + i * step);
   half_step_ = 0.5 * step;
   circumscribed_up_ = roundedUp(circumscribed_);
-  disc_radius_ = roundedUp(std::hypot(0.5 * step, half_width_));
-  inscribed_ = roundedDown(std::max(0.0, std::min({front_, rear_, half_width_})));
-  inscribed_radius_ = roundedDown(std::min(0.5 * step, half_width_));
+  disc_radius_ = roundedUp(std::hypot(0.5 * step, half_width));
+  inscribed_ = roundedDown(std::max(0.0, std::min({front, rear, half_width})));
+  inscribed_radius_ = roundedDown(std::min(0.5 * step, half_width));
 }
 
 Footprint::Unsure Footprint::judgeByDiscs(const ClearanceField& clearance,
@@ -168,7 +167,8 @@ bool Footprint::isFree(const ClearanceField& clearance, const TurnedPose& T_map_
   if (whole != Verdict::kUnsure) return whole == Verdict::kAtLeast;
   const Unsure unsure = judgeByDiscs(clearance, T_map_body);
   if (unsure.blocked || unsure.front < unsure.rear) return !unsure.blocked;
-  const RowSpans rows({unsure.rear, unsure.front, half_width_}, T_map_body, clearance.cellSize());
+  const RowSpans rows({unsure.rear, unsure.front, size_.half_width}, T_map_body,
+                      clearance.cellSize());
   for (int y = rows.firstRow(); y <= rows.lastRow(); ++y) {
     const RowSpans::Span span = rows.span(y);
     if (clearance.anyBlocked(y, span.first, span.last)) return false;
@@ -187,14 +187,14 @@ bool Footprint::isFree(const Grid& grid, const ClearanceField& clearance, const 
 std::vector<CellIndex> Footprint::cells(const Grid& grid, const Pose2& T_map_body) const {
   std::vector<CellIndex> covered;
   if (!isUsable(turned(T_map_body), grid.cellSize())) return covered;
-  visitCells(*this, T_map_body, grid.cellSize(), [&](CellIndex cell) { covered.push_back(cell); });
+  visitCells(size_, T_map_body, grid.cellSize(), [&](CellIndex cell) { covered.push_back(cell); });
   return covered;
 }
 
 int Footprint::blockedCells(const Grid& grid, const Pose2& T_map_body, bool unknown_blocks) const {
   int count = 0;
   if (!isUsable(turned(T_map_body), grid.cellSize())) return count;
-  visitCells(*this, T_map_body, grid.cellSize(),
+  visitCells(size_, T_map_body, grid.cellSize(),
              [&](CellIndex cell) { count += isBlocked(grid.at(cell), unknown_blocks) ? 1 : 0; });
   return count;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "common/geometry/footprint_size.hpp"
 #include "common/grid/grid.hpp"
 
 namespace tread {
@@ -24,14 +25,12 @@ inline TurnedPose turned(const Pose2& pose) {
 /// Oriented rectangular footprint in the body frame [m], with the discs that cover it.
 class Footprint {
  public:
-  /// Reaches from -rear to +front along x and half_width to both sides; `margin` is added on all
-  /// sides. Throws std::invalid_argument unless it has a positive length and width.
-  Footprint(double front, double rear, double half_width, double margin);
+  /// `margin` [m] is added on all sides. Throws std::invalid_argument unless it has a positive
+  /// length and width.
+  Footprint(const FootprintSize& size, double margin);
 
-  /// Extents with the margin [m].
-  double front() const { return front_; }
-  double rear() const { return rear_; }
-  double halfWidth() const { return half_width_; }
+  /// With the margin.
+  const FootprintSize& size() const { return size_; }
   /// Radius of the smallest disc around the body origin that contains it [m].
   double circumscribed() const { return circumscribed_; }
 
@@ -64,9 +63,7 @@ class Footprint {
 
   Unsure judgeByDiscs(const ClearanceField& clearance, const TurnedPose& T_map_body) const;
 
-  double front_;
-  double rear_;
-  double half_width_;
+  FootprintSize size_;
   double circumscribed_;
   std::vector<double> disc_x_;  // centres of the covering discs along the body's x axis
   double half_step_;            // [m] half the distance between them

@@ -23,6 +23,11 @@ inline bool isFree(Cell cell) {
   return cell <= kCostMax;
 }
 
+/// The whole part of a / b, rounded down; b > 0.
+inline int floorDivide(int a, int b) {
+  return a >= 0 ? a / b : -((b - 1 - a) / b);
+}
+
 /// Index of a cell in map: the cell (0, 0) has its lower left corner in the origin of map.
 struct CellIndex {
   int x = 0;
@@ -223,8 +228,6 @@ class TileMap {
   void forgetBeyond(const Eigen::Vector2d& p_map, double radius);
   /// A window of the map; what no tile covers is unknown.
   Grid window(CellIndex lower, int width, int height) const;
-  /// utime of the tile under a point [us], or 0 if there is none.
-  int64_t utimeAt(const Eigen::Vector2d& p_map) const;
   double cellSize() const { return cell_size_; }
   int tileCells() const { return tile_cells_; }
   const std::map<std::pair<int, int>, Tile>& tiles() const { return tiles_; }

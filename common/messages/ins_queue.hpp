@@ -8,7 +8,7 @@
 
 #include <tread/ins_t.hpp>
 
-#include "common/execution/track_history.hpp"
+#include "common/geometry/track.hpp"
 
 namespace tread {
 

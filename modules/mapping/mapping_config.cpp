@@ -15,7 +15,7 @@ std::string metres(double length) {
   return text;
 }
 
-void readGrid(ConfigReader& reader, LocalMapConfig& map) {
+void readGrid(ConfigReader& reader, OccupancyMapConfig& map) {
   int64_t tile_cells = map.tile_cells;
   int64_t window_tiles = map.window_tiles;
   reader.number("cell_size", map.voxels.cell_size, {0.02, 0.5}, "m");
@@ -29,7 +29,7 @@ void readGrid(ConfigReader& reader, LocalMapConfig& map) {
   map.window_tiles = static_cast<int>(window_tiles);
 }
 
-void takeRobot(const ConfigReader& reader, const RobotDescription& robot, LocalMapConfig& map) {
+void takeRobot(const ConfigReader& reader, const RobotDescription& robot, OccupancyMapConfig& map) {
   map.robot = robot.outline;
   map.obstacle.robot_height = robot.height;
   if (robot.height <= map.obstacle.step)
@@ -44,7 +44,7 @@ void takeRobot(const ConfigReader& reader, const RobotDescription& robot, LocalM
                                         " m");
 }
 
-void readMap(ConfigReader& reader, LocalMapConfig& map) {
+void readMap(ConfigReader& reader, OccupancyMapConfig& map) {
   reader.number("marking_range", map.marking_range, {0.5, 100.0}, "m");
   reader.number("clearing_range", map.clearing_range, {0.5, 100.0}, "m");
   reader.number("start_free_radius", map.start_free_radius, {0.0, 5.0}, "m");

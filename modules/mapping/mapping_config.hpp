@@ -5,13 +5,13 @@
 #include <string>
 
 #include "common/config/config_reader.hpp"
-#include "modules/mapping/core/local_map.hpp"
+#include "modules/mapping/core/occupancy_map.hpp"
 
 namespace tread::mapping {
 
 /// Configuration of mapping, with its defaults.
 struct MappingConfig {
-  LocalMapConfig map;
+  OccupancyMapConfig map;
   double publish_period = 0.2;  ///< [s] between cycles of MAP; changed tiles wait no longer
   double refresh_period = 2.0;  ///< [s] in which every tile is sent at least once
   double max_ins_gap = 0.1;     ///< [s] between two poses that a beam's pose may lie between

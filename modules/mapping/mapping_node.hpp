@@ -4,14 +4,31 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
+#include <string>
+
+#include <tread/scan_t.hpp>
 
 #include "common/bus/health.hpp"
+#include "modules/mapping/core/occupancy_map.hpp"
 #include "modules/mapping/core/spatial_track.hpp"
 #include "modules/mapping/core/tile_schedule.hpp"
 #include "modules/mapping/mapping_config.hpp"
-#include "modules/mapping/scan_reader.hpp"
 
 namespace tread::mapping {
+
+/// A good scan that waits for the poses of its beams.
+struct WaitingScan {
+  int64_t first = 0;  ///< [us] time of the first beam
+  int64_t last = 0;   ///< [us] time of the last
+  Eigen::Isometry3d T_body_sensor;
+  std::vector<Beam> beams;
+};
+
+/// Checks a SCAN message field by field and takes its beams; else nothing and the reason.
+/** NaN and ranges below range_min are no measurement; +inf and ranges above range_max saw nothing
+ *  up to range_max. */
+std::optional<WaitingScan> readScan(const scan_t& message, std::string& refusal);
 
 /// Makes MAP from SCAN and INS, and says in HEALTH what it refused and why.
 class MappingNode : public Node {
@@ -22,7 +39,7 @@ class MappingNode : public Node {
   void step(int64_t utime) override;
 
   /// The present map, for tests and replay.
-  const LocalMap& map() const { return *map_; }
+  const OccupancyMap& map() const { return *map_; }
 
  private:
   /// What becomes of the first scan in the queue.
@@ -42,7 +59,7 @@ class MappingNode : public Node {
   MappingConfig config_;
   Bus& bus_;
   HealthReporter health_;
-  std::unique_ptr<LocalMap> map_;
+  std::unique_ptr<OccupancyMap> map_;
   SpatialTrack track_;
   std::deque<WaitingScan> waiting_;
   TileSchedule turns_;

@@ -12,10 +12,8 @@ namespace {
 /// What plans keep free is the robot's; logs from before robots were described in a file of their
 /// own have it here.
 FootprintSize footprintOf(ConfigReader& reader) {
-  const tread::FootprintSize size = reader.has("footprint")
-                                        ? readFootprint(reader.section("footprint"))
-                                        : readRobot(reader).footprint;
-  return {size.front, size.rear, size.half_width};
+  return reader.has("footprint") ? readFootprint(reader.section("footprint"))
+                                 : readRobot(reader).footprint;
 }
 
 void readMargins(ConfigReader reader, Margins& margins) {
@@ -28,9 +26,9 @@ void readMargins(ConfigReader reader, Margins& margins) {
   if (margins.largest < margins.plan) throw reader.error("largest", "must not be less than plan");
 }
 
-void readMap(ConfigReader reader, LocalMapConfig& local_map) {
-  reader.number("keep_radius", local_map.clearance.keep_radius, {10.0, 500.0}, "m");
-  reader.flag("unknown_blocks", local_map.unknown_blocks);
+void readMap(ConfigReader reader, PlanningMapConfig& map) {
+  reader.number("keep_radius", map.clearance.keep_radius, {10.0, 500.0}, "m");
+  reader.flag("unknown_blocks", map.unknown_blocks);
 }
 
 void readField(ConfigReader reader, DistanceFieldConfig& field) {
@@ -57,22 +55,24 @@ void readAges(ConfigReader reader, AgeLimits& ages) {
 
 PlannerConfig readLoggedPlannerConfig(ConfigReader& reader) {
   PlannerConfig config;
-  LocalMapConfig& local_map = config.local_map;
-  local_map.footprint = footprintOf(reader);
-  local_map.field.inflation = local_map.footprint.half_width;
-  readMargins(reader.section("margins"), local_map.margins);
-  readMap(reader.section("map"), local_map);
-  readField(reader.section("field"), local_map.field);
+  PlanningMapConfig& map = config.map;
+  map.footprint = footprintOf(reader);
+  map.field.inflation = map.footprint.half_width;
+  map.clearance.clearance_cap =
+      std::max(map.clearance.clearance_cap, 1.5 * map.footprint.half_width);
+  readMargins(reader.section("margins"), map.margins);
+  readMap(reader.section("map"), map);
+  readField(reader.section("field"), map.field);
   readSearch(reader.section("search"), config.search);
   ConfigReader policy = reader.section("policy");
   policy.seconds("patience", config.policy.patience, {2.0, 600.0});
-  reader.flag("come_close", local_map.come_close);
+  reader.flag("come_close", map.come_close);
   ConfigReader commitment = reader.section("commitment");
   commitment.number("gain", config.side_hysteresis.gain, {0.0, 60.0}, "s");
   readAges(reader.section("ages"), config.ages);
   reader.seconds("deadline", config.deadline, {0.005, 0.045});
-  const Margins& margins = local_map.margins;
-  config.sweep = resolutionFor(local_map.footprint, std::max(margins.plan, margins.largest), {});
+  const Margins& margins = map.margins;
+  config.sweep = resolutionFor(map.footprint, std::max(margins.plan, margins.largest), {});
   config.effective = reader.effective();
   return config;
 }

@@ -3,15 +3,81 @@
 #include "modules/planner/planner_node.hpp"
 
 #include <algorithm>
+#include <cmath>
 
-#include "modules/planner/planner_messages.hpp"
+#include "common/messages/blank.hpp"
 
 namespace tread::planner {
 namespace {
 
+constexpr double kFarthest = 1e6;  // [m] a goal can be from the origin of map
+constexpr int kMaxTileCells = 512;
+
 constexpr int64_t kPlanRepeat = 200'000;    // [us]
 constexpr int64_t kTreeRepeat = 1'000'000;  // [us]
 constexpr size_t kTreeNodes = 600;          // drawn at most: 15 kB
+
+/// Nothing for an invalid message, as the next.
+std::optional<Goal> goalFrom(const goal_t& message) {
+  const double* pose = message.goal_pose;
+  const bool finite =
+      std::abs(pose[0]) < kFarthest && std::abs(pose[1]) < kFarthest && std::isfinite(pose[2]);
+  const bool tolerant = message.position_tolerance > 0.0 && message.yaw_tolerance > 0.0 &&
+                        message.position_tolerance < kFarthest;
+  if (!finite || !tolerant || message.goal_id == 0) return std::nullopt;
+  return Goal{message.goal_id,
+              {pose[0], pose[1], pose[2]},
+              message.position_tolerance,
+              message.yaw_tolerance};
+}
+
+std::optional<Tile> tileFrom(const map_tile_t& message) {
+  const int side = message.tile_cells;
+  if (side < 1 || side > kMaxTileCells || message.num_cells != side * side) return std::nullopt;
+  if (!(message.cell_size > 0.001 && message.cell_size < 10.0)) return std::nullopt;
+  if (std::abs(static_cast<int64_t>(message.tile_x)) * side > 1'000'000 ||
+      std::abs(static_cast<int64_t>(message.tile_y)) * side > 1'000'000)
+    return std::nullopt;
+  return Tile{message.tile_x, message.tile_y, message.utime, message.cells};
+}
+
+/// Without seq and search_time.
+plan_t toMessage(const PlanReport& report) {
+  auto message = blank<plan_t>();
+  message.utime = report.utime;
+  message.goal_id = report.goal_id;
+  message.set_version = report.set_version;
+  message.plan_status = static_cast<int16_t>(report.status);
+  message.reason = report.reason;
+  message.time_to_go = report.time_to_go;
+  message.expansions = report.expansions;
+  message.num_patterns = static_cast<int32_t>(report.steps.size());
+  message.execution_id = report.execution_ids;
+  for (const PlanStep& step : report.steps) {
+    message.pattern_id.push_back(step.pattern_id);
+    message.pose.push_back({step.T_map_end.x, step.T_map_end.y, step.T_map_end.yaw});
+    const Uncertainty& u = step.uncertainty;
+    message.covariance.push_back({u.xx, u.xy, u.xyaw, u.yy, u.yyaw, u.yawyaw});
+  }
+  return message;
+}
+
+/// Without utime and seq.
+plan_tree_t toMessage(const std::vector<TreeNode>& tree, const std::vector<int>& branch) {
+  auto message = blank<plan_tree_t>();
+  message.num_nodes = static_cast<int32_t>(tree.size());
+  for (const TreeNode& node : tree) {
+    message.parent.push_back(node.parent);
+    message.by_pattern.push_back(node.pattern_id);
+    message.node_pose.push_back({static_cast<float>(node.T_map_body.x),
+                                 static_cast<float>(node.T_map_body.y),
+                                 static_cast<float>(node.T_map_body.yaw)});
+    message.time_at.push_back(static_cast<float>(node.time));
+  }
+  message.num_best = static_cast<int32_t>(branch.size());
+  message.best.assign(branch.begin(), branch.end());
+  return message;
+}
 
 }  // namespace
 
@@ -34,7 +100,7 @@ void PlannerNode::subscribe() {
 void PlannerNode::take(const map_tile_t& message) {
   if (robot_.invalidTime(message.utime, "MAP")) return;
   std::optional<Tile> tile = tileFrom(message);
-  if (!tile || !supervisor_.localMap().put(std::move(*tile), message.cell_size, message.tile_cells))
+  if (!tile || !supervisor_.map().put(std::move(*tile), message.cell_size, message.tile_cells))
     health_.addToCounter("MAP refused: invalid sizes");
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/geometry/se3.hpp"
-#include "modules/mapping/core/local_map.hpp"
+#include "modules/mapping/core/occupancy_map.hpp"
 
 namespace tread::mapping {
 
@@ -79,8 +79,8 @@ struct RangeFinder {
 };
 
 /// The usual map of a robot of the usual size.
-inline LocalMapConfig usualMap() {
-  LocalMapConfig config;
+inline OccupancyMapConfig usualMap() {
+  OccupancyMapConfig config;
   config.robot = {0.65, 0.65, 0.34};
   config.obstacle.robot_height = 1.2;
   return config;
@@ -88,11 +88,11 @@ inline LocalMapConfig usualMap() {
 
 /// A map with its range finder and clock.
 struct Mapper {
-  explicit Mapper(const LocalMapConfig& config = usualMap()) : map(config) {}
+  explicit Mapper(const OccupancyMapConfig& config = usualMap()) : map(config) {}
 
-  LocalMap::Refusal look(const SmallWorld& world, const Eigen::Isometry3d& T_map_body,
-                         int scans = 1) {
-    LocalMap::Refusal refusal = LocalMap::Refusal::kNone;
+  OccupancyMap::Refusal look(const SmallWorld& world, const Eigen::Isometry3d& T_map_body,
+                             int scans = 1) {
+    OccupancyMap::Refusal refusal = OccupancyMap::Refusal::kNone;
     for (int i = 0; i < scans; ++i)
       refusal = map.insert(range_finder.scan(world, utime += 100'000, T_map_body));
     return refusal;
@@ -108,7 +108,7 @@ struct Mapper {
   }
   Cell at(double x, double y) const { return map.grid().at(map.grid().indexOf({x, y})); }
 
-  LocalMap map;
+  OccupancyMap map;
   RangeFinder range_finder;
   int64_t utime = 1'000'000;
 };

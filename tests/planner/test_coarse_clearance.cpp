@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "modules/planner/core/map/coarse_clearance.hpp"
+#include "modules/planner/core/map/clearance_map.hpp"
 #include "tests/effort.hpp"
 #include "tests/planner/kit/random_ground.hpp"
 

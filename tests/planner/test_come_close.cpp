@@ -5,6 +5,7 @@
 
 #include "modules/planner/core/search/path_planner.hpp"
 #include "tests/planner/kit/policy_rig.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 using namespace tread;
 using namespace tread::planner;
@@ -13,8 +14,8 @@ using namespace tread::planner::testkit;
 namespace {
 
 PlannerConfig closeConfig() {
-  PlannerConfig config;
-  config.local_map.come_close = true;
+  PlannerConfig config = usualPlanner();
+  config.map.come_close = true;
   return config;
 }
 
@@ -47,7 +48,7 @@ TEST_CASE("The nearest place within reach has a way to it, and no nearer one has
       map.put(std::move(tile));
     map.refresh();
     const Goal goal{1, {5.0, 0.0, 0.0}, 0.3, 4.0};
-    DistanceFieldConfig config;
+    DistanceFieldConfig config = usualField();
     const Eigen::Vector2d p_vehicle(-5.0, draw(random));
     const DistanceToGoal way(map, goal, p_vehicle, {}, config);
     REQUIRE(way.unreachable());
@@ -77,8 +78,7 @@ TEST_CASE("Of two places that are as near the one that was chosen before is kept
   for (Tile& tile : tilesOf(walledGoal(true).paint(0.1, {-3.2, -9.6}, {16.0, 9.6}), 32, 1))
     map.put(std::move(tile));
   map.refresh();
-  const DistanceToGoal way(map, {1, {12.0, 0.0, 0.0}, 0.3, 4.0}, {0.0, 0.0}, {},
-                           DistanceFieldConfig{});
+  const DistanceToGoal way(map, {1, {12.0, 0.0, 0.0}, 0.3, 4.0}, {0.0, 0.0}, {}, usualField());
   REQUIRE(way.unreachable());
   const Eigen::Vector2d p_goal(12.0, 0.0);
   const auto nearest = way.nearestWithinReach({0.0, 0.0}, p_goal);
@@ -118,8 +118,8 @@ TEST_CASE("Not told so, the vehicle stands and says that the goal cannot be reac
 
 TEST_CASE("A path query that is to come close ends at the nearest place, and says why there") {
   const Grid grid = walledGoal(true).paint(0.1, {-3.0, -6.0}, {16.0, 6.0});
-  const PatternTable table(samplePatterns(), SweepResolution{}, {});
-  PathPlanner planner(grid, table, PathConfig{});
+  const PatternTable table(samplePatterns(), usualSweep(), {});
+  PathPlanner planner(grid, table, usualPaths());
   PathQuery query{{0.0, 0.0, 0.0}, {12.0, 0.0, 0.0}, 0.25, 4.0};
   const StopPredicate stop = [](int count) { return count > 20'000; };
   const PathAnswer refused = planner.answer(query, stop);

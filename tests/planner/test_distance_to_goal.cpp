@@ -9,6 +9,7 @@
 #include "modules/planner/core/map/clearance_map.hpp"
 #include "modules/planner/core/map/distance_to_goal.hpp"
 #include "tests/planner/kit/playground.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 using namespace tread;
 using namespace tread::planner;
@@ -20,7 +21,7 @@ constexpr double kCell = 0.1;
 constexpr int kTileCells = 32;
 
 DistanceFieldConfig plain() {
-  DistanceFieldConfig config;
+  DistanceFieldConfig config = usualField();
   config.tight_weight = 0.0;
   config.reach = 100.0;
   return config;
@@ -69,7 +70,8 @@ std::vector<double> waysTo(const Grid& grid, const ClearanceField& room, double 
 
 }  // namespace
 
-TEST_CASE("The way to go is a lower bound of the true shortest way, and not a loose one") {
+TEST_CASE(
+    "The distance to the goal is a lower bound of the true shortest way, and not a loose one") {
   for (const uint64_t seed : {3U, 11U, 27U}) {
     const Mission mission = randomMission(seed);
     const Grid grid = mission.ground.paint(kCell, {-6.4, -12.8}, {38.4, 12.8});

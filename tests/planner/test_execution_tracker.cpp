@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/execution/execution_tracker.hpp"
-#include "modules/planner/core/execution/motion_monitors.hpp"
+#include "modules/planner/core/execution/standing_control.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
 
 using namespace tread;

@@ -8,6 +8,7 @@
 #include "modules/planner/core/map/heading_aware_heuristic.hpp"
 #include "tests/effort.hpp"
 #include "tests/planner/kit/random_ground.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 using namespace tread;
 using namespace tread::planner;
@@ -15,7 +16,7 @@ using namespace tread::planner::testkit;
 
 namespace {
 
-const FootprintSize kSize;
+const FootprintSize kSize = kVehicle;
 constexpr double kBin = 2.0 * kPi / FreeConfigurations::kHeadings;
 
 /// A ground and what is free on it, with and without the short cuts.
@@ -34,7 +35,7 @@ struct Bench {
     return ground;
   }
   bool isFree(const Pose2& pose) const {
-    const Footprint exact(kSize.front, kSize.rear, kSize.half_width, 0.0);
+    const Footprint exact(kSize, 0.0);
     return exact.blockedCells(around.grid(), pose, unknown) == 0;
   }
   /// How many centres of cells in a square have room for the footprint, and how many there are.

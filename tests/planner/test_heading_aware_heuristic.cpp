@@ -12,6 +12,7 @@
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/random_ground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 using namespace tread;
 using namespace tread::planner;
@@ -19,7 +20,7 @@ using namespace tread::planner::testkit;
 
 namespace {
 
-const FootprintSize kSize;
+const FootprintSize kSize = kVehicle;
 constexpr double kBin = 2.0 * kPi / HeadingAwareHeuristic::kHeadings;
 constexpr double kEverything = 1e6;
 
@@ -106,8 +107,8 @@ Compared motionRatio(const Bench& bench, const HeadingAwareHeuristic& guide,
 template <class Visit>
 void onRandomGrounds(uint64_t seed, int count, const Visit& visit) {
   std::mt19937_64 random(seed);
-  const PatternTable sample(samplePatterns(), SweepResolution{}, {});
-  const PatternTable forward(plainMoves(false), SweepResolution{});
+  const PatternTable sample(samplePatterns(), usualSweep(), {});
+  const PatternTable forward(plainMoves(false), usualSweep());
   for (int i = 0; i < count; ++i) {
     RandomGround ground;
     ground.lower = {drawn(random, -70, 0), drawn(random, -70, 0)};
@@ -182,7 +183,7 @@ TEST_CASE("filled in as far as the start, the guide is nowhere more than what br
 }
 
 TEST_CASE("on empty ground a way ahead and a turn cost what the patterns charge for them") {
-  const PatternTable table(plainMoves(true), SweepResolution{});
+  const PatternTable table(plainMoves(true), usualSweep());
   Bench bench(openGround(6.0), false, table);
   const Eigen::Vector2d middle = bench.configurations.centre(20, 20);
   const Goal goal{1, {middle.x(), middle.y(), 0.0}, 0.01, 0.01};
@@ -201,7 +202,7 @@ TEST_CASE("on empty ground a way ahead and a turn cost what the patterns charge 
 }
 
 TEST_CASE("with the patterns of the tests a way ahead costs its time at the best speed") {
-  const PatternTable table(samplePatterns(), SweepResolution{}, {});
+  const PatternTable table(samplePatterns(), usualSweep(), {});
   Bench bench(openGround(6.0), false, table);
   const Eigen::Vector2d middle = bench.configurations.centre(20, 20);
   const HeadingAwareHeuristic guide =
@@ -212,7 +213,7 @@ TEST_CASE("with the patterns of the tests a way ahead costs its time at the best
 }
 
 TEST_CASE("a set that cannot reverse is never guided backwards") {
-  const PatternTable table(plainMoves(false), SweepResolution{});
+  const PatternTable table(plainMoves(false), usualSweep());
   Bench bench(openGround(6.0), false, table);
   const Eigen::Vector2d middle = bench.configurations.centre(20, 20);
   const HeadingAwareHeuristic guide =
@@ -227,7 +228,7 @@ TEST_CASE("a set that cannot reverse is never guided backwards") {
 }
 
 TEST_CASE("a wall is gone around, and what is shut in has no way") {
-  const PatternTable table(plainMoves(true), SweepResolution{});
+  const PatternTable table(plainMoves(true), usualSweep());
   Grid grid = openGround(6.0);
   for (int y = -40; y < 40; ++y) grid.set({0, y}, kObstacle);
   Bench bench(grid, false, table);
@@ -245,7 +246,7 @@ TEST_CASE("a wall is gone around, and what is shut in has no way") {
 }
 
 TEST_CASE("a start on blocked ground is reached, a goal outside the map is not") {
-  const PatternTable table(plainMoves(true), SweepResolution{});
+  const PatternTable table(plainMoves(true), usualSweep());
   Grid grid = openGround(3.9);
   for (int y = -5; y < 5; ++y) grid.set({4, y}, kObstacle);
   Bench bench(grid, false, table);
@@ -264,7 +265,7 @@ TEST_CASE("a start on blocked ground is reached, a goal outside the map is not")
 }
 
 TEST_CASE("outside the map, and on a map smaller than a square, the guide still answers") {
-  const PatternTable table(plainMoves(true), SweepResolution{});
+  const PatternTable table(plainMoves(true), usualSweep());
   Bench bench(openGround(4.0), true, table);
   const Goal goal{1, {2.0, 0.0, 0.0}, 0.2, 4.0};
   const HeadingAwareHeuristic guide = bench.guide({-2.0, 0.0, 0.0}, goal, 0.15);
@@ -288,7 +289,7 @@ TEST_CASE("outside the map, and on a map smaller than a square, the guide still 
 }
 
 TEST_CASE("a set that goes nowhere makes no guide") {
-  const PatternTable table({move({0.0, 0.0, 0.0}, 1.0)}, SweepResolution{});
+  const PatternTable table({move({0.0, 0.0, 0.0}, 1.0)}, usualSweep());
   Bench bench(openGround(3.0), true, table);
   CHECK(bench.guide({}, {1, {1.0, 0.0, 0.0}, 0.2, 4.0}).empty());
 }

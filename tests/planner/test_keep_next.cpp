@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "tests/planner/kit/policy_rig.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 using namespace tread;
 using namespace tread::planner;
@@ -45,13 +46,13 @@ Approach approach(double ahead) {
   Rig rig;
   rig.inputs().goal->T_map_goal.x = 14.0;
   rig.run(3.5);
-  const Playground ground = doorAt(rig.pose().x + FootprintSize{}.front + ahead);
+  const Playground ground = doorAt(rig.pose().x + kVehicle.front + ahead);
   rig.paint(ground);
   for (int i = 0; i < 50; ++i) {
     const int wanted = nextOf(rig);
     const int64_t count = keptBy(rig);
     rig.run(0.05);
-    seen.closest = std::min(seen.closest, ground.clearance(FootprintSize{}, rig.pose()));
+    seen.closest = std::min(seen.closest, ground.clearance(kVehicle, rig.pose()));
     if (keptBy(rig) == count) continue;
     ++seen.kept;
     const bool begun = !rig.supervisor().program().running().empty() && rig.running().id == wanted;

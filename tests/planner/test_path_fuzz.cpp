@@ -9,6 +9,7 @@
 
 #include "tests/effort.hpp"
 #include "tests/planner/kit/path_bench.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 using namespace tread;
 using namespace tread::planner;
@@ -82,7 +83,7 @@ TEST_CASE("whatever map, set, footprint and query, an answer is whole and comes 
                                             : FootprintSize{0.3, 0.2, 0.2};
     const int count = i % 10 == 3 ? 200 : drawn(random, 1, 12);
     const PatternTable table(strangePatterns(random, count), resolutionFor(size, 0.0, {}));
-    PathConfig config;
+    PathConfig config = usualPaths();
     config.footprint = size;
     config.unknown_blocks = i % 2 == 0;
     PathPlanner planner(strangeGrid(random), table, config);

@@ -6,6 +6,7 @@
 
 #include "tests/effort.hpp"
 #include "tests/planner/kit/path_bench.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 using namespace tread;
 using namespace tread::planner;
@@ -31,15 +32,15 @@ void onQueries(uint64_t seed, int grounds, SweepResolution step, const Visit& vi
 
 std::vector<SweptPose> finePoses(const PathBench& bench, const TablePattern& pattern) {
   return sampleSweep(pattern.pattern->trajectory, bench.table->set().periodSeconds(),
-                     SweepResolution{0.01, 0.01});
+                     SweepResolution{0.01, 0.01, 0.3, kVehicle.widened(0.09)});
 }
 
 /// Whether the footprint, made smaller by so much [m] on all sides, still meets something; on all
 /// ways or on straight ones only.
 bool cutsBy(double smaller, const PathBench& bench, const PathQuery& query,
             const PathAnswer& answer, bool straight_only) {
-  const FootprintSize size;
-  const Footprint footprint(size.front, size.rear, size.half_width, -smaller);
+  const FootprintSize size = kVehicle;
+  const Footprint footprint(size, -smaller);
   Pose2 from = query.T_map_start;
   for (const PlanStep& step : answer.search.steps) {
     const TablePattern& pattern = *bench.table->find(step.pattern_id);
@@ -57,7 +58,7 @@ bool cutsBy(double smaller, const PathBench& bench, const PathQuery& query,
 
 TEST_CASE("no solved plan meets anything in its straight parts, and in turns by less than 5 mm") {
   int plans = 0;
-  onQueries(1, testing::effort(50), SweepResolution{},
+  onQueries(1, testing::effort(50), usualSweep(),
             [&](const PathBench& bench, const PathQuery& query, const PathAnswer& answer) {
               if (answer.end != PathEnd::kSolved) return;
               ++plans;
@@ -69,7 +70,7 @@ TEST_CASE("no solved plan meets anything in its straight parts, and in turns by 
 
 TEST_CASE("the poses of a solved plan join, and it ends at rest in the goal") {
   int plans = 0;
-  onQueries(2000, testing::effort(50), SweepResolution{},
+  onQueries(2000, testing::effort(50), usualSweep(),
             [&](const PathBench& bench, const PathQuery& query, const PathAnswer& answer) {
               CHECK(answer.reason.empty() == (answer.end == PathEnd::kSolved));
               if (answer.end != PathEnd::kSolved) return;

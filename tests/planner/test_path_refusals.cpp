@@ -7,6 +7,7 @@
 
 #include "tests/effort.hpp"
 #include "tests/planner/kit/path_bench.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 using namespace tread;
 using namespace tread::planner;
@@ -35,8 +36,8 @@ bool connected(const Grid& grid, const ClearanceField& field, const PathQuery& q
 
 /// Whether any pattern that begins at rest is free from the start, pose by pose.
 bool anyBegins(const PathBench& bench, const Pose2& start) {
-  const FootprintSize size;
-  const Footprint exact(size.front, size.rear, size.half_width, 0.0);
+  const FootprintSize size = kVehicle;
+  const Footprint exact(size, 0.0);
   for (const TablePattern* pattern : bench.table->from(bench.table->restClass())) {
     bool hit = false;
     for (const SweptPose& at : pattern->swept_poses)
@@ -61,8 +62,8 @@ struct Room {
   }
 
   Grid grid{0.1, {-40, -30}, 80, 60};
-  PatternTable table{samplePatterns(), SweepResolution{}, {}};
-  PathConfig config;
+  PatternTable table{samplePatterns(), usualSweep(), {}};
+  PathConfig config = usualPaths();
 };
 
 }  // namespace
@@ -128,8 +129,8 @@ TEST_CASE("a start on obstacles is left if so many patterns as may overlap them 
     const PathAnswer answer = room.answer(start, {2.0, 0.0, 0.0});
     INFO("from x = " << x << ": " << answer.reason);
     REQUIRE(answer.end == PathEnd::kSolved);
-    const FootprintSize size;
-    const Footprint footprint(size.front, size.rear, size.half_width, 0.0);
+    const FootprintSize size = kVehicle;
+    const Footprint footprint(size, 0.0);
     const auto blocked = [&](const Pose2& pose) {
       return footprint.blockedCells(room.grid, pose, true);
     };
@@ -177,7 +178,7 @@ TEST_CASE("a start that no pattern may leave is told so") {
     if (content.patterns[i].name == "back")
       content.patterns.erase(content.patterns.begin() + long(i));
   std::string why;
-  const PatternTable forward(*PatternSet::make(std::move(content), why), SweepResolution{}, {});
+  const PatternTable forward(*PatternSet::make(std::move(content), why), usualSweep(), {});
   room.block({-40, 4}, {7, 29});
   room.block({-40, -30}, {7, -5});
   room.block({7, -4}, {7, 3});
@@ -232,11 +233,11 @@ TEST_CASE("goals that are no numbers are refused") {
 }
 
 TEST_CASE("a map without cells, and one of a single cell, refuse in words") {
-  const PatternTable table(samplePatterns(), SweepResolution{}, {});
+  const PatternTable table(samplePatterns(), usualSweep(), {});
   for (const int size : {0, 1}) {
     Grid grid(0.1, {0, 0}, size, size);
     for (Cell& cell : grid.cells()) cell = kFree;
-    PathPlanner planner(grid, table, PathConfig{});
+    PathPlanner planner(grid, table, usualPaths());
     const PathAnswer answer = planner.answer({{0.05, 0.05, 0.0}, {0.05, 0.05, 0.0}}, after(100));
     CHECK(answer.end == PathEnd::kUnreachable);
     CHECK_FALSE(answer.reason.empty());
@@ -247,8 +248,8 @@ TEST_CASE("a goal in a thin wall is refused, and come close to as near as the ve
   Grid grid(0.05, {0, 0}, 160, 120);
   for (Cell& cell : grid.cells()) cell = kFree;
   for (int x = 0; x < 120; ++x) grid.set({x, 60}, kObstacle);
-  const PatternTable table(samplePatterns(), SweepResolution{}, {});
-  PathPlanner planner(grid, table, PathConfig{});
+  const PatternTable table(samplePatterns(), usualSweep(), {});
+  PathPlanner planner(grid, table, usualPaths());
   for (double x = 1.5; x < 5.0; x += 0.5) {
     PathQuery query{{2.0, 1.5, 0.0}, {x, 3.02, 0.0}};
     CAPTURE(x);
@@ -278,11 +279,12 @@ TEST_CASE("a round robot comes as near to a wall as the tolerance says, and clos
       for (int y = 0; y < 120; ++y)
         for (int x = 0; x < 160; ++x)
           if (field.at(grid.centre({x, y})) < radius) grown.set({x, y}, kObstacle);
-      PathConfig config;
+      PathConfig config = usualPaths();
       config.footprint = {5e-4, 5e-4, 5e-4};
       config.grown = radius;
       config.unknown_blocks = false;
-      const PatternTable table(samplePatterns(), SweepResolution{0.05, 0.105, 0.05}, {});
+      const PatternTable table(samplePatterns(),
+                               SweepResolution{0.05, 0.105, 0.05, config.footprint}, {});
       PathPlanner planner(grown, table, config);
       const double wall = 0.05 * column;
       CAPTURE(radius, wall);
@@ -312,9 +314,10 @@ TEST_CASE("where obstacles were grown coarse cells find the same ways") {
         const CellIndex cell{grown.lower().x + x, grown.lower().y + y};
         if (field.at(grown.centre(cell)) < 0.35) grown.set(cell, kObstacle);
       }
-    PathConfig config;
+    PathConfig config = usualPaths();
     config.footprint = {5e-4, 5e-4, 5e-4};
-    const PatternTable table(samplePatterns(), SweepResolution{0.05, 0.105, 0.05}, {});
+    const PatternTable table(samplePatterns(), SweepResolution{0.05, 0.105, 0.05, config.footprint},
+                             {});
     PathPlanner fine(grown, table, config);
     config.grown = 0.35;
     PathPlanner coarse(grown, table, config);

@@ -11,6 +11,7 @@
 #include "tests/effort.hpp"
 #include "tests/planner/kit/random_ground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 using namespace tread;
 using namespace tread::planner;
@@ -72,15 +73,15 @@ void checkBounds(const PatternTable& table) {
 TEST_CASE("no pattern of any set costs less than its way and its turn at the least costs") {
   std::mt19937_64 random(1);
   for (int i = 0; i < testing::effort(2000); ++i)
-    checkBounds(PatternTable(randomPrimitives(random), SweepResolution{}));
-  checkBounds(PatternTable(samplePatterns(), SweepResolution{}, {}));
-  checkBounds(PatternTable(latticePatterns(), SweepResolution{}, {}));
+    checkBounds(PatternTable(randomPrimitives(random), usualSweep()));
+  checkBounds(PatternTable(samplePatterns(), usualSweep(), {}));
+  checkBounds(PatternTable(latticePatterns(), usualSweep(), {}));
 }
 
 TEST_CASE("a chain of patterns costs no less than both bounds of its whole way and net turn") {
   std::mt19937_64 random(2);
   for (int i = 0; i < testing::effort(300); ++i) {
-    const PatternTable table(randomPrimitives(random), SweepResolution{});
+    const PatternTable table(randomPrimitives(random), usualSweep());
     Pose2 end;
     double cost = 0.0;
     for (int k = 0; k < 8; ++k) {
@@ -99,7 +100,7 @@ TEST_CASE("each pattern costs at least what its direction is said to cost at lea
   std::mt19937_64 random(3);
   constexpr double kBin = 2.0 * kPi / HeadingAwareHeuristic::kHeadings;
   for (int i = 0; i < testing::effort(1000); ++i) {
-    const PatternTable table(randomPrimitives(random), SweepResolution{});
+    const PatternTable table(randomPrimitives(random), usualSweep());
     const MotionRates rates = motionRates(table);
     for (const TablePattern& pattern : table.patterns()) {
       const Pose2& end = pattern.end().pose;
@@ -127,14 +128,14 @@ TEST_CASE("each pattern costs at least what its direction is said to cost at lea
 }
 
 TEST_CASE("a set that only turns, only drives or does neither leaves no bound of what it lacks") {
-  const PatternTable turns({arc(0, {0.0, 0.0, 0.5}, 1.0, 2.0)}, SweepResolution{});
+  const PatternTable turns({arc(0, {0.0, 0.0, 0.5}, 1.0, 2.0)}, usualSweep());
   CHECK(turns.leastCosts()[0].per_metre == 0.0);
   CHECK(turns.leastCosts()[1].per_radian == Approx(4.0));
-  const PatternTable drives({arc(0, {0.5, 0.0, 0.0}, 1.0, 2.0)}, SweepResolution{});
+  const PatternTable drives({arc(0, {0.5, 0.0, 0.0}, 1.0, 2.0)}, usualSweep());
   CHECK(drives.leastCosts()[0].per_metre == Approx(4.0));
   CHECK(drives.leastCosts()[1].per_radian == 0.0);
   CHECK_FALSE(motionRates(drives).turn.any);
-  const PatternTable stands({arc(0, {}, 1.0, 2.0)}, SweepResolution{});
+  const PatternTable stands({arc(0, {}, 1.0, 2.0)}, usualSweep());
   for (const LeastCost& least : stands.leastCosts()) {
     CHECK(least.per_metre == 0.0);
     CHECK(least.per_radian == 0.0);
@@ -145,7 +146,7 @@ TEST_CASE("a table of primitives begins and stops at rest with each, ending wher
   std::mt19937_64 random(4);
   for (int i = 0; i < testing::effort(50); ++i) {
     std::vector<Primitive> primitives = randomPrimitives(random);
-    const PatternTable table(primitives, SweepResolution{});
+    const PatternTable table(primitives, usualSweep());
     REQUIRE(table.patterns().size() == primitives.size());
     CHECK(table.classCount() == 1);
     CHECK(table.from(table.restClass()).size() == primitives.size());

@@ -9,6 +9,7 @@
 
 #include "common/pattern/pattern_file.hpp"
 #include "tests/planner/kit/search_bench.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 using namespace tread;
 using namespace tread::planner;
@@ -29,7 +30,7 @@ SearchConfig exact() {
 }
 
 DistanceFieldConfig plainField() {
-  DistanceFieldConfig config;
+  DistanceFieldConfig config = usualField();
   config.tight_weight = 0.0;
   config.reach = 100.0;
   return config;
@@ -37,8 +38,8 @@ DistanceFieldConfig plainField() {
 
 /// Exact test of a pose: every cell under the footprint, without fields and short cuts.
 bool collides(const Grid& grid, const Pose2& pose, double margin) {
-  const FootprintSize size;
-  const Footprint footprint(size.front, size.rear, size.half_width, margin);
+  const FootprintSize size = kVehicle;
+  const Footprint footprint(size, margin);
   for (const CellIndex cell : footprint.cells(grid, pose))
     if (!isFree(grid.at(cell))) return true;
   return false;

@@ -9,6 +9,7 @@
 #include "modules/planner/core/search/prediction.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 using namespace tread;
 using namespace tread::planner;
@@ -28,7 +29,7 @@ std::optional<PatternSet> without(const PatternSet& set, const std::string& name
 }  // namespace
 
 TEST_CASE("Poses to check are nowhere farther apart than the step and end at the pattern's end") {
-  const SweepResolution step{0.07, 0.05};
+  const SweepResolution step{0.07, 0.05, 0.3, kVehicle.widened(0.09)};
   const PatternTable table(samplePatterns(), step, {});
   for (const TablePattern& pattern : table.patterns()) {
     Pose2 last;
@@ -45,7 +46,7 @@ TEST_CASE("Poses to check are nowhere farther apart than the step and end at the
 }
 
 TEST_CASE("The table knows the class of standing, what begins where, and what stops") {
-  const PatternTable table(samplePatterns(), SweepResolution{}, {});
+  const PatternTable table(samplePatterns(), usualSweep(), {});
   REQUIRE(table.restClass() >= 0);
   CHECK(table.motionClass(table.restClass()).name == "rest");
   for (int i = 0; i < table.classCount(); ++i)
@@ -60,12 +61,12 @@ TEST_CASE("The table knows the class of standing, what begins where, and what st
 TEST_CASE("A set without a way to stop is refused in words") {
   const std::optional<PatternSet> set = without(samplePatterns(), "stop");
   REQUIRE(set);
-  const PatternTable table(*set, SweepResolution{}, {});
+  const PatternTable table(*set, usualSweep(), {});
   CHECK(table.defect() == "the pattern set has no pattern that stops from class cruise");
 }
 
 TEST_CASE("What is left of a pattern is laid on the measured pose") {
-  const PatternTable table(samplePatterns(), SweepResolution{}, {});
+  const PatternTable table(samplePatterns(), usualSweep(), {});
   const TablePattern& left = *table.find(3);
   REQUIRE(left.pattern->name == "left");
   const Pose2 start{3.0, -2.0, 1.0};
@@ -82,7 +83,7 @@ TEST_CASE("What is left of a pattern is laid on the measured pose") {
 }
 
 TEST_CASE("Before a pattern begins the vehicle keeps the twist of its entry class") {
-  const PatternTable table(samplePatterns(), SweepResolution{}, {});
+  const PatternTable table(samplePatterns(), usualSweep(), {});
   const TablePattern& straight = *table.find(1);
   const Prediction prediction = predict(Pose2{}, -0.1, straight, table);
   CHECK(prediction.T_map_end.x == Approx(straight.pattern->end().x + 0.11).margin(1e-6));
@@ -90,7 +91,7 @@ TEST_CASE("Before a pattern begins the vehicle keeps the twist of its entry clas
 }
 
 TEST_CASE("What is left of a running pattern is scaled by how much of it has come true") {
-  const PatternTable table(samplePatterns(), SweepResolution{}, {});
+  const PatternTable table(samplePatterns(), usualSweep(), {});
   const double period = table.set().periodSeconds();
   for (const TablePattern& pattern : table.patterns()) {
     const double half = pattern.duration / 2.0;
@@ -114,7 +115,7 @@ TEST_CASE("What is left of a running pattern is scaled by how much of it has com
 
 TEST_CASE("A start without margin may go on only where room is gained") {
   // A wall along the vehicle's left side, a centimetre from its outline.
-  const FootprintSize body;
+  const FootprintSize body = kVehicle;
   Playground ground;
   ground.addWall({-3.0, body.half_width + 0.12}, {5.0, body.half_width + 0.12}, 0.2);
   const CollisionChecker around(ground.paint(0.01, {-3.0, -3.0}, {5.0, 3.0}), body, Margins{});
@@ -122,7 +123,7 @@ TEST_CASE("A start without margin may go on only where room is gained") {
   const int level = around.freeLevel(start, CollisionChecker::kPlan);
   REQUIRE(level >= CollisionChecker::kBare);
   REQUIRE(level < CollisionChecker::kCheck);
-  const PatternTable table(samplePatterns(), SweepResolution{}, {});
+  const PatternTable table(samplePatterns(), usualSweep(), {});
   int along = 0;
   int away = 0;
   for (const TablePattern& pattern : table.patterns()) {

@@ -21,8 +21,8 @@ TEST_CASE("A configuration is read with its ranges, and mistakes are named at fi
   ConfigReader good = ConfigReader::fromText(
       "search: {horizon: 6}\npolicy: {patience: 12}\ncommitment: {gain: 2.5}\n", kHere);
   const PlannerConfig config = readPlannerConfig(good);
-  CHECK(config.local_map.footprint.half_width == 0.415);
-  CHECK(config.local_map.field.inflation == 0.415);
+  CHECK(config.map.footprint.half_width == 0.415);
+  CHECK(config.map.field.inflation == 0.415);
   CHECK(config.search.horizon == 6.0);
   CHECK(config.policy.patience == 12'000'000);
   CHECK(config.side_hysteresis.gain == 2.5);
@@ -48,7 +48,7 @@ TEST_CASE("A short vehicle's patterns are checked at poses as close as it is sho
   const PlannerConfig config = readPlannerConfig(reader);
   CHECK(config.sweep.distance < 0.05);
   CHECK(config.sweep.covered < 0.05);
-  const Margins& margins = config.local_map.margins;
+  const Margins& margins = config.map.margins;
   CHECK(config.sweep.outline.front == Approx(0.05 + std::max(margins.plan, margins.largest)));
 }
 

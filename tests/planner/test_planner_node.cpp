@@ -7,6 +7,7 @@
 
 #include "common/bus/virtual_bus.hpp"
 #include "modules/planner/planner_node.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 #include "tests/planner/kit/yard.hpp"
 
 using namespace tread;
@@ -94,7 +95,7 @@ TEST_CASE("When the time jumps, as at the start of a real process, an earlier pe
 TEST_CASE("PROGRAM says what the planner had heard, a broken message does not count") {
   VirtualBus bus(1);
   bus.addNode("planner",
-              [](Bus& end) { return std::make_unique<PlannerNode>(PlannerConfig{}, end); });
+              [](Bus& end) { return std::make_unique<PlannerNode>(usualPlanner(), end); });
   const Latest<program_t> program(bus.outside(), kProgram);
   const auto run = [&bus] { bus.runUntil(bus.now() + 100'000); };
   run();
@@ -208,7 +209,7 @@ TEST_CASE("Messages that make no sense are counted and change nothing") {
 TEST_CASE("A time before all clocks is refused: no age overflows, and nothing is allowed by it") {
   VirtualBus bus(7);
   bus.addNode("planner",
-              [](Bus& end) { return std::make_unique<PlannerNode>(PlannerConfig{}, end); });
+              [](Bus& end) { return std::make_unique<PlannerNode>(usualPlanner(), end); });
   plan_t plan{};
   std::map<std::string, int64_t> counters;
   bus.outside().subscribe<plan_t>(kPlan, [&](const plan_t& message) { plan = message; });

@@ -37,7 +37,7 @@ TEST_CASE(
   CHECK(result.end == SearchEnd::kProgress);
   CHECK(result.expansions <= 64);
   REQUIRE(!result.steps.empty());
-  CHECK(result.way_to_go < bench.distance_to_goal.length(mission.T_map_start.position()));
+  CHECK(result.distance_to_go < bench.distance_to_goal.length(mission.T_map_start.position()));
 }
 
 TEST_CASE("At the border of the known the plan ends in front of it, free and able to stop") {
@@ -59,7 +59,7 @@ TEST_CASE("Boxed in, nothing is found and it says so") {
   ground.addWall({-0.9, -0.6}, {-0.9, 0.6}, 0.1);
   ground.addWall({0.9, -0.6}, {0.9, 0.6}, 0.1);
   const Grid grid = ground.paint(0.1, {-6.4, -6.4}, {12.8, 6.4});
-  // Seen from the way to go there must be one: the goal is taken near.
+  // Seen from the distance to the goal there must be one: the goal is taken near.
   SearchBench bench(grid, samplePatterns(), {1, {0.8, 0.0, 0.0}, 0.3, 4.0});
   PatternSearch search(SearchConfig{});
   const SearchResult result = search.run(bench.problem({}), after(20'000));

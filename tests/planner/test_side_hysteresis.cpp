@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/planner/core/execution/side_hysteresis.hpp"
+#include "modules/planner/core/execution/motion_planner.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -9,6 +9,7 @@
 
 #include "tests/planner/kit/closed_loop.hpp"
 #include "tests/planner/kit/search_bench.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 using namespace tread;
 using namespace tread::planner;
@@ -36,7 +37,7 @@ class Names {
   }
 
   PatternSet set = samplePatterns();
-  PatternTable table{set, SweepResolution{}, {}};
+  PatternTable table{set, usualSweep(), {}};
 };
 
 /// Committed to a plan from the start.
@@ -158,7 +159,7 @@ TEST_CASE("A pattern that the newest set does not know commits to nothing") {
                      [&](const MotionPattern& pattern) { return pattern.id == left; }),
       content.patterns.end());
   std::string why;
-  const PatternTable table(*PatternSet::make(content, why), SweepResolution{}, {});
+  const PatternTable table(*PatternSet::make(content, why), usualSweep(), {});
   CHECK(committed.side_hysteresis.opposedBy(committed.plan({"right"}), table).empty());
 }
 
@@ -214,7 +215,7 @@ TEST_CASE("Along a branch that is not free, or cannot be joined, there is no pla
 TEST_CASE("For what was planned before the margin for checking is enough") {
   Playground ground;
   // Beside the vehicle 4 cm are left: less than a new plan needs.
-  const FootprintSize size;
+  const FootprintSize size = kVehicle;
   ground.addWall({-3.0, size.half_width + 0.14}, {2.2, size.half_width + 0.14}, 0.2);
   Margins margins;
   margins.check = 0.01;

@@ -10,6 +10,7 @@
 #include "tests/effort.hpp"
 #include "tests/planner/kit/random_ground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 using namespace tread;
 using namespace tread::planner;
@@ -19,7 +20,7 @@ namespace {
 
 /// Poses of a pattern, 1 cm and 0.005 rad apart at most.
 std::vector<SweptPose> finePoses(const std::vector<Pose2>& trajectory, double period) {
-  return sampleSweep(trajectory, period, SweepResolution{0.01, 0.005});
+  return sampleSweep(trajectory, period, SweepResolution{0.01, 0.005, 0.3, kVehicle});
 }
 
 std::vector<Pose2> randomArc(std::mt19937_64& random, double most_turn) {
@@ -44,7 +45,7 @@ struct Count {
 /// although a footprint that is `smaller` [m] on all sides meets something on the way.
 template <class DrawPoses>
 Count judge(uint64_t seed, const SweepResolution& step, double smaller, const DrawPoses& draw,
-            const FootprintSize& size = {}, const Margins& margins = withoutMargin()) {
+            const FootprintSize& size = kVehicle, const Margins& margins = withoutMargin()) {
   std::mt19937_64 random(seed);
   Count count;
   RandomGround ground;
@@ -56,7 +57,7 @@ Count judge(uint64_t seed, const SweepResolution& step, double smaller, const Dr
     const CollisionChecker around(grid, size, margins);
     const int level =
         margins.largest > 0.0 ? i % CollisionChecker::kLevels : CollisionChecker::kBare;
-    const Footprint exact(size.front, size.rear, size.half_width, around.marginOf(level) - smaller);
+    const Footprint exact(size, around.marginOf(level) - smaller);
     for (int k = 0; k < 4; ++k) {
       Primitive primitive;
       primitive.poses = draw(random);
@@ -88,14 +89,14 @@ std::vector<Pose2> randomSpotTurn(std::mt19937_64& random) {
 
 TEST_CASE("a straight sweep that is accepted touches nothing between the poses that are checked") {
   const auto straight = [](std::mt19937_64& random) { return randomArc(random, 0.0); };
-  CHECK(judge(1, SweepResolution{}, 1e-6, straight).refused == 0);
+  CHECK(judge(1, usualSweep(), 1e-6, straight).refused == 0);
 }
 
 TEST_CASE("a vehicle of 10 cm gets poses as close as that, or it would jump over what is thin") {
   const auto straight = [](std::mt19937_64& random) { return randomArc(random, 0.0); };
   const FootprintSize tiny{0.05, 0.05, 0.05};
   for (const double distance : {0.1, 0.5}) {
-    const SweepResolution step{distance, 0.105, 0.3};
+    const SweepResolution step{distance, 0.105, 0.3, kVehicle.widened(0.09)};
     CHECK(judge(7, resolutionFor(tiny, 0.0, step), 1e-6, straight, tiny).refused == 0);
     CHECK(judge(7, step, 1e-6, straight, tiny).refused > 0);
   }
@@ -106,13 +107,13 @@ TEST_CASE("a vehicle of 10 cm gets poses as close as that, or it would jump over
 TEST_CASE("an arc or a turn that is accepted cuts no obstacle by more than 5 mm") {
   // Between two headings a corner swings out of both, by up to 5 cm.
   const auto arc = [](std::mt19937_64& random) { return randomArc(random, 2.0); };
-  CHECK(judge(2, SweepResolution{}, 0.005, arc).refused == 0);
-  CHECK(judge(3, SweepResolution{}, 0.005, randomSpotTurn).refused == 0);
+  CHECK(judge(2, usualSweep(), 0.005, arc).refused == 0);
+  CHECK(judge(3, usualSweep(), 0.005, randomSpotTurn).refused == 0);
 }
 
 TEST_CASE("with each margin that the search knows no more is cut than without") {
   const auto arc = [](std::mt19937_64& random) { return randomArc(random, 2.0); };
-  const FootprintSize size;
+  const FootprintSize size = kVehicle;
   Margins wide;
   wide.largest = 0.2;
   for (const Margins& margins : {Margins{}, wide}) {
@@ -124,7 +125,7 @@ TEST_CASE("with each margin that the search knows no more is cut than without") 
 
 TEST_CASE("coarser turns are no reason to cut more") {
   const auto arc = [](std::mt19937_64& random) { return randomArc(random, 2.0); };
-  const SweepResolution coarse{0.1, 0.5, 0.3};
+  const SweepResolution coarse{0.1, 0.5, 0.3, kVehicle.widened(0.09)};
   CHECK(judge(4, coarse, 0.005, arc).refused == 0);
   CHECK(judge(5, coarse, 0.005, randomSpotTurn).refused == 0);
 }
@@ -146,8 +147,8 @@ TEST_CASE("long, wide and off-centre vehicles and skidding ones cut no more than
 TEST_CASE("where a pattern is refused for what lies between its poses it hits or scrapes it") {
   // What is refused must be refused for a reason: a footprint larger by 1 mm meets something.
   std::mt19937_64 random(8);
-  const FootprintSize size;
-  const Footprint larger(size.front, size.rear, size.half_width, 1e-3);
+  const FootprintSize size = kVehicle;
+  const Footprint larger(size, 1e-3);
   RandomGround ground;
   ground.specks = 25;
   int refused = 0;
@@ -158,7 +159,7 @@ TEST_CASE("where a pattern is refused for what lies between its poses it hits or
       Primitive primitive;
       primitive.poses = i % 2 == 0 ? randomSpotTurn(random) : randomArc(random, 2.0);
       primitive.duration = primitive.cost = 1.0;
-      const PatternTable table({primitive}, SweepResolution{});
+      const PatternTable table({primitive}, usualSweep());
       const Pose2 start = ground.pose(random);
       if (!around.isFree(start, CollisionChecker::kBare)) continue;
       if (around.sweepFree(start, table.patterns().front(), CollisionChecker::kBare)) continue;
@@ -174,7 +175,7 @@ TEST_CASE("where a pattern is refused for what lies between its poses it hits or
 
 TEST_CASE("a cover is a part of the sweep, in its order, and never leaves more out than it may") {
   std::mt19937_64 random(6);
-  const SweepResolution step;
+  const SweepResolution step = usualSweep();
   for (int i = 0; i < testing::effort(500); ++i) {
     Primitive primitive;
     primitive.poses = i % 3 == 0 ? randomSpotTurn(random) : randomArc(random, 2.0);

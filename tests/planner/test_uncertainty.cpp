@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "modules/planner/core/search/uncertainty.hpp"
+#include "modules/planner/core/search/pattern_table.hpp"
 #include "tests/effort.hpp"
 
 using namespace tread;

@@ -73,10 +73,9 @@ void Referee::hear(const plan_t& message) {
 
 bool Referee::isFree(const Pose2& T_map_start,
                      const std::vector<const MotionPattern*>& patterns) const {
-  const planner::LocalMapConfig& local_map = system_.planner().local_map;
-  const Footprint footprint(local_map.footprint.front, local_map.footprint.rear,
-                            local_map.footprint.half_width, local_map.margins.check);
-  const auto cells = static_cast<int>(std::ceil(local_map.window / map_.cellSize()));
+  const planner::PlanningMapConfig& map = system_.planner().map;
+  const Footprint footprint(map.footprint, map.margins.check);
+  const auto cells = static_cast<int>(std::ceil(map.window / map_.cellSize()));
   const CellIndex here = Grid(map_.cellSize(), {}, 0, 0).indexOf(T_map_start.position());
   const Grid around = map_.window({here.x - cells / 2, here.y - cells / 2}, cells, cells);
   Pose2 start = T_map_start;

@@ -72,7 +72,7 @@ class RobotSystem {
   const PatternSet& patterns() const { return config_.learner.shipped; }
   const learner::LearnerNodeConfig& learnerConfig() const { return config_.learner; }
   const planner::PlannerConfig& planner() const { return config_.planner; }
-  const mapping::LocalMapConfig& map() const { return config_.mapping.map; }
+  const mapping::OccupancyMapConfig& map() const { return config_.mapping.map; }
   MemoryStore& learnerStore() { return learner_store_; }
 
  private:

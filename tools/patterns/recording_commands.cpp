@@ -2,25 +2,78 @@
 // Copyright (c) 2026 The Tread authors
 // record and average: what is done with recordings.
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "common/bus/lcm_bus.hpp"
+#include "common/bus/shell.hpp"
 #include "common/pattern/pattern_check.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/recordings/recordings.hpp"
 #include "common/recordings/text_file.hpp"
 #include "common/vehicle/model_file.hpp"
+#include "modules/pattern_recorder/recorder_node.hpp"
 #include "tools/patterns/commands.hpp"
-#include "tools/patterns/live_run.hpp"
 #include "tools/patterns/model_recording.hpp"
 #include "tools/patterns/set_text.hpp"
 
 namespace tread::patterns {
 namespace {
+
+/// The recorder, ending its own run once it is done or has failed.
+class RunToItsEnd : public Node {
+ public:
+  RunToItsEnd(pattern_recorder::RecorderNode& recorder, std::atomic<bool>& stop)
+      : recorder_(recorder), stop_(stop) {}
+
+  int64_t period() const override { return recorder_.period(); }
+  void step(int64_t utime) override {
+    recorder_.step(utime);
+    const bool runs = recorder_.state() == pattern_recorder::RecorderNode::State::kRunning;
+    if (!runs || interrupted_) stop_ = true;
+  }
+  void shutdown(int64_t utime) override { recorder_.shutdown(utime); }
+
+ private:
+  pattern_recorder::RecorderNode& recorder_;
+  std::atomic<bool>& stop_;
+  const std::atomic<bool>& interrupted_ = stopRequest(0);
+};
+
+/// Where the part was written, in words; empty if there was nothing to write.
+std::string keepPart(const std::string& path, const PatternSet& set,
+                     const pattern_recorder::RecorderNode& recorder) {
+  size_t executions = 0;
+  for (const auto& of_pattern : recorder.recorded()) executions += of_pattern.size();
+  if (executions == 0) return "";
+  recordings::writeText(path, recordings::formatSurface({"", recorder.recorded()}, set));
+  return "; the " + std::to_string(executions) + " executions until then are in " + path;
+}
+
+/// Runs a RecorderNode over real LCM to its end and prints what it says; the executions by pattern.
+/** Throws std::runtime_error if it fails or is interrupted (SIGINT, SIGTERM, SIGHUP), after the
+ * robot was told to stop; what was recorded until then is written to `part`, in a folder that is
+ * there, as far as it goes. */
+std::vector<std::vector<recordings::Execution>> recordLive(
+    const PatternSet& set, const pattern_recorder::RecordingConfig& how, const std::string& lcm_url,
+    const std::string& part) {
+  std::atomic<bool> stop{false};
+  LcmBus bus(lcm_url, TimeSource::kFollow);
+  pattern_recorder::RecorderNode recorder(
+      set, how, bus, [](const std::string& line) { std::cout << line << std::endl; });
+  RunToItsEnd node(recorder, stop);
+  bus.run(node, stop);
+  if (recorder.state() == pattern_recorder::RecorderNode::State::kDone) return recorder.recorded();
+  const bool failed = recorder.state() == pattern_recorder::RecorderNode::State::kFailed;
+  throw std::runtime_error((failed ? recorder.reason() : "interrupted, the robot was stopped") +
+                           keepPart(part, set, recorder));
+}
 
 struct RecordOptions {
   std::string patterns;

@@ -41,7 +41,7 @@ CellIndex LatticeRules::cellAt(double x, double y) const {
 }
 
 LatticePlanner::LatticePlanner(const CellCosts& costs, double cell_size, int bins,
-                               const std::vector<LatticePrimitive>& primitives)
+                               const std::vector<SearchPrimitive>& primitives)
     : cell_size_(cell_size),
       patterns_({primitives.begin(), primitives.end()}, planner::SweepResolution{}),
       rules_(costs, cell_size, primitives),

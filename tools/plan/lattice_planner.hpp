@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "modules/planner/core/search/path_planner.hpp"
+#include "tools/plan/primitives.hpp"
 
 // SBPL's lattice problem for our search (SBPL: environment_navxythetalat, BSD).
 namespace tread::plan {
@@ -45,17 +46,11 @@ class CellCosts {
   int blocked_from_;
 };
 
-/// A primitive of one start heading, with the cells that it passes.
-struct LatticePrimitive : planner::Primitive {
-  int start_bin = 0;             ///< heading bin in which it may begin
-  std::vector<CellIndex> cells;  ///< that it passes, relative to the cell of its start
-};
-
 /// SBPL's rules: a primitive begins in its heading bin only, and costs its own cost times one more
 /// than the greatest cost of the cells that it passes.
 class LatticeRules : public planner::EdgeRules {
  public:
-  LatticeRules(CellCosts costs, double cell_size, std::vector<LatticePrimitive> primitives)
+  LatticeRules(CellCosts costs, double cell_size, std::vector<SearchPrimitive> primitives)
       : costs_(std::move(costs)), per_cell_(1.0 / cell_size), primitives_(std::move(primitives)) {}
 
   bool mayBegin(const planner::TablePattern& pattern, int heading_bin) const override {
@@ -70,7 +65,7 @@ class LatticeRules : public planner::EdgeRules {
 
   CellCosts costs_;
   double per_cell_;
-  std::vector<LatticePrimitive> primitives_;  // by id
+  std::vector<SearchPrimitive> primitives_;  // by id
 };
 
 /// Finds the cheapest plan of a point on SBPL's lattice; the goal is one cell and one heading.
@@ -78,7 +73,7 @@ class LatticePlanner {
  public:
   /// `bins`: headings of the lattice. The id of a primitive is its place.
   LatticePlanner(const CellCosts& costs, double cell_size, int bins,
-                 const std::vector<LatticePrimitive>& primitives);
+                 const std::vector<SearchPrimitive>& primitives);
 
   /// Unreachable is certain: all states of the lattice were seen.
   planner::PathAnswer answer(const planner::PathQuery& query, const planner::StopPredicate& stop,

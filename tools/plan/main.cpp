@@ -77,7 +77,7 @@ int planOne(const PlanTask& task, const PlanOptions& options) {
     scene.result = headline(answer);
     drawPlan(options.picture, scene);
   }
-  return answer.status == PlanStatus::kSolved ? 0 : 1;
+  return answer.end == planner::PathEnd::kSolved ? 0 : 1;
 }
 
 int planMany(const PlanTask& task, const PlanOptions& options) {

@@ -14,7 +14,14 @@ namespace tread::plan {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using planner::PathEnd;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // JSON writes it as null
+
+/// As JSON has it.
+const char* nameOf(PathEnd end) {
+  if (end == PathEnd::kSolved) return "solved";
+  return end == PathEnd::kUnreachable ? "unreachable" : "none_in_time";
+}
 
 /// What many answers have in common.
 struct Totals {
@@ -33,10 +40,10 @@ Totals totalsOf(const std::vector<PlanAnswer>& answers) {
   double expansions = 0.0;
   double search_ms = 0.0;
   for (const PlanAnswer& answer : answers) {
-    const bool solved = answer.status == PlanStatus::kSolved;
+    const bool solved = answer.end == PathEnd::kSolved;
     totals.solved += solved ? 1 : 0;
-    totals.unreachable += answer.status == PlanStatus::kUnreachable ? 1 : 0;
-    totals.none_in_time += answer.status == PlanStatus::kNoneInTime ? 1 : 0;
+    totals.unreachable += answer.end == PathEnd::kUnreachable ? 1 : 0;
+    totals.none_in_time += answer.end == PathEnd::kNoneInTime ? 1 : 0;
     if (solved && answer.first_solution_ms) totals.first_ms.push_back(*answer.first_solution_ms);
     totals.total_ms.push_back(answer.total_ms);
     length += solved ? answer.length : 0.0;
@@ -104,16 +111,11 @@ std::string effortText(const PlanAnswer& answer) {
           ? "first plan after " + fixed(*answer.first_solution_ms, 2) + " ms, ended after "
           : "ended after ";
   return first + fixed(answer.total_ms, 2) + " ms (clearance " + fixed(answer.clearance_ms, 2) +
-         ", way to go " + fixed(answer.heuristic_ms, 2) + "), " +
+         ", heuristics " + fixed(answer.heuristic_ms, 2) + "), " +
          std::to_string(answer.expansions) + " expansions, " + fixed(answer.memory_mb, 1) + " MB\n";
 }
 
 }  // namespace
-
-const char* nameOf(PlanStatus status) {
-  if (status == PlanStatus::kSolved) return "solved";
-  return status == PlanStatus::kUnreachable ? "unreachable" : "none_in_time";
-}
 
 double nearestRank(std::vector<double> values, double share) {
   if (values.empty()) return kNone;
@@ -130,8 +132,8 @@ void addPreparation(PlanAnswer& answer, double preparation_ms) {
 
 Json answerJson(const PlanAnswer& answer) {
   Json json;
-  json["solved"] = answer.status == PlanStatus::kSolved;
-  json["status"] = nameOf(answer.status);
+  json["solved"] = answer.end == PathEnd::kSolved;
+  json["status"] = nameOf(answer.end);
   json["reason"] = answer.reason;
   json["cost"] = ofPlan(answer, answer.cost);
   json["time_s"] = ofPlan(answer, answer.time);
@@ -168,7 +170,7 @@ Json answersJson(const std::vector<PlanQuery>& queries, const std::vector<PlanAn
     const PlanAnswer& answer = answers[i];
     json["answers"].push_back({{"start", poseJson(queries[i].T_map_start)},
                                {"goal", poseJson(queries[i].T_map_goal)},
-                               {"status", nameOf(answer.status)},
+                               {"status", nameOf(answer.end)},
                                {"reason", answer.reason},
                                {"cost", ofPlan(answer, answer.cost)},
                                {"time_s", ofPlan(answer, answer.time)},
@@ -186,15 +188,15 @@ void writeJson(const std::string& path, const Json& json) {
 }
 
 std::string headline(const PlanAnswer& answer) {
-  if (answer.status == PlanStatus::kSolved)
+  if (answer.end == PathEnd::kSolved)
     return "solved: " + planText(answer) + (answer.reason.empty() ? "" : "; " + answer.reason);
-  const bool never = answer.status == PlanStatus::kUnreachable;
+  const bool never = answer.end == PathEnd::kUnreachable;
   const char* const none = answer.all_seen ? "none found: " : "none in time: ";
   return (never ? "unreachable: " : none) + answer.reason;
 }
 
 std::string answerText(const PlanAnswer& answer) {
-  const bool solved = answer.status == PlanStatus::kSolved;
+  const bool solved = answer.end == PathEnd::kSolved;
   return headline(answer) + "\n" + (solved ? "" : failureText(answer)) + effortText(answer);
 }
 

@@ -9,20 +9,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/geometry/se2.hpp"
+#include "modules/planner/core/search/path_planner.hpp"
 #include "tools/plan/query_file.hpp"
 
 namespace tread::plan {
-
-/// How a query ended.
-enum class PlanStatus {
-  kSolved,       ///< the plan ends within the goal's tolerance
-  kUnreachable,  ///< there is no way, known for sure
-  kNoneInTime    ///< none was found before the deadline
-};
-
-/// "solved", "unreachable" or "none_in_time".
-const char* nameOf(PlanStatus status);
 
 /// How near to the goal something could come.
 struct ClosestApproach {
@@ -32,7 +22,7 @@ struct ClosestApproach {
 
 /// All that is told about the answer to one query. Poses are in the map's own frame.
 struct PlanAnswer {
-  PlanStatus status = PlanStatus::kNoneInTime;
+  planner::PathEnd end = planner::PathEnd::kNoneInTime;
   bool all_seen = false;              ///< no more time would help: there is nothing better
   std::string reason;                 ///< in words; empty if it is solved
   double cost = 0.0;                  ///< of the plan, as the planner counts it
@@ -47,7 +37,7 @@ struct PlanAnswer {
   std::optional<double> first_solution_ms;  ///< from the query to the first plan to the goal
   double total_ms = 0.0;                    ///< from the query to the end, all work for it included
   double clearance_ms = 0.0;                ///< of that for what all queries on a map share
-  double heuristic_ms = 0.0;                ///< of that for the way to go
+  double heuristic_ms = 0.0;                ///< of that for the heuristics
   double memory_mb = 0.0;                   ///< the most that the program has needed so far
 };
 
@@ -59,7 +49,7 @@ nlohmann::ordered_json answerJson(const PlanAnswer& answer);
 
 /// What the answers to many queries have in common, and a short line about each.
 /** Quantiles are of nearest rank; first_ms and length_m are of the solved ones only, and null if
- * there is none. expansions_per_s counts the time without that for the way to go. preparation_ms
+ * there is none. expansions_per_s counts the time without that for the heuristics. preparation_ms
  * was spent once, before the first query, and is not in the others. */
 nlohmann::ordered_json answersJson(const std::vector<PlanQuery>& queries,
                                    const std::vector<PlanAnswer>& answers, double preparation_ms);

@@ -127,7 +127,7 @@ void readWanted(const PlanOptions& options, PlanTask& task) {
 /// Nothing that is read may be written over.
 void protectInputs(const PlanOptions& options, const MapFile& map) {
   recordings::checkOutputs({options.json, options.picture, options.write_queries},
-                         {options.map, map.image, options.patterns, options.queries});
+                           {options.map, map.image, options.patterns, options.queries});
 }
 
 }  // namespace
@@ -160,7 +160,7 @@ PlanTask loadTask(const PlanOptions& options) {
 bool standsFree(const PlanTask& task, const ClearanceField& clearance, const Pose2& T_grid_body) {
   if (task.shape.isRectangle()) {
     const double half_length = task.shape.length / 2.0;
-    const Footprint footprint(half_length, half_length, task.shape.width / 2.0, 0.0);
+    const Footprint footprint({half_length, half_length, task.shape.width / 2.0}, 0.0);
     return footprint.isFree(task.grid, clearance, T_grid_body, true);
   }
   return isFree(task.grid.at(task.grid.indexOf(T_grid_body.position())));

@@ -168,37 +168,49 @@ Primitive readPrimitive(Tokenizer& tokens, const PrimitiveFile& file) {
 
 }  // namespace
 
-std::vector<FreePrimitive> headingFree(const PrimitiveFile& file, const PrimitivePace& pace) {
-  std::vector<FreePrimitive> free;
-  for (const Primitive& primitive : file.primitives) {
-    if (primitive.start_bin != 0) continue;
-    std::vector<Pose2> poses = fromStart(primitive, file.headings.front());
-    const double turn = std::abs(poses.back().yaw);
-    const double duration = seconds(lengthOf(poses), turn, pace);
-    poses.erase(poses.begin());
-    free.push_back(
-        {primitive.id, std::move(poses), duration, static_cast<double>(primitive.cost_multiplier)});
+std::vector<SearchPrimitive> headingFree(const PrimitiveFile& file, const PrimitivePace& pace) {
+  std::vector<SearchPrimitive> primitives;
+  for (const Primitive& read : file.primitives) {
+    if (read.start_bin != 0) continue;
+    SearchPrimitive primitive;
+    primitive.id = static_cast<int>(primitives.size());
+    primitive.file_id = read.id;
+    primitive.poses = fromStart(read, file.headings.front());
+    const double turn = std::abs(primitive.poses.back().yaw);
+    primitive.duration = seconds(lengthOf(primitive.poses), turn, pace);
+    primitive.cost = primitive.duration * read.cost_multiplier;
+    primitive.poses.erase(primitive.poses.begin());
+    primitives.push_back(std::move(primitive));
   }
-  if (free.empty())
+  if (primitives.empty())
     throw ConfigError(file.name + ": no primitive begins in heading bin 0; without that heading " +
                       "none can be used for all");
-  return free;
+  return primitives;
 }
 
-std::vector<std::vector<LatticeAction>> latticeActions(const PrimitiveFile& file,
-                                                       const PrimitivePace& pace) {
-  std::vector<std::vector<LatticeAction>> actions(file.headings.size());
-  for (const Primitive& primitive : file.primitives) {
-    const auto start = static_cast<size_t>(primitive.start_bin);
-    const double turn =
-        turnBetween(file.headings[start], file.headings[static_cast<size_t>(primitive.end_bin)]);
-    const double duration = seconds(lengthOf(primitive.poses), turn, pace);
-    const double time = std::ceil(1000.0 * duration);
-    actions[start].push_back({primitive.id, primitive.dx, primitive.dy, primitive.end_bin,
-                              static_cast<int64_t>(time) * primitive.cost_multiplier, duration,
-                              passedCells(primitive, file.resolution)});
+std::vector<SearchPrimitive> onLattice(const PrimitiveFile& file, const PrimitivePace& pace) {
+  std::vector<SearchPrimitive> primitives;
+  for (int bin = 0; bin < static_cast<int>(file.headings.size()); ++bin) {
+    for (const Primitive& read : file.primitives) {
+      if (read.start_bin != bin) continue;
+      const double start = file.headings[static_cast<size_t>(bin)];
+      const double end = file.headings[static_cast<size_t>(read.end_bin)];
+      SearchPrimitive primitive;
+      primitive.id = static_cast<int>(primitives.size());
+      primitive.file_id = read.id;
+      primitive.start_bin = bin;
+      primitive.duration = seconds(lengthOf(read.poses), turnBetween(start, end), pace);
+      primitive.cost = std::ceil(1000.0 * primitive.duration) * read.cost_multiplier;
+      Pose2 T_start_end =
+          between({0.0, 0.0, start}, {read.dx * file.resolution, read.dy * file.resolution, end});
+      T_start_end.yaw = wrapAngle(T_start_end.yaw);
+      primitive.poses = {T_start_end};
+      primitive.cells = passedCells(read, file.resolution);
+      primitive.cells.push_back({read.dx, read.dy});
+      primitives.push_back(std::move(primitive));
+    }
   }
-  return actions;
+  return primitives;
 }
 
 int nearestBin(const std::vector<double>& headings, double yaw) {

@@ -38,7 +38,7 @@ class Watch {
     if (!first_) first_ = now();
   }
   void noteSearch() { searching_ = now(); }
-  /// When the way to go was known.
+  /// When the heuristics were computed.
   std::optional<double> searching() const { return searching_; }
   /// When the first plan was there.
   std::optional<double> first() const { return first_; }
@@ -56,52 +56,7 @@ double peakMegabytes() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-std::vector<planner::Primitive> freePrimitives(const PlanTask& task,
-                                               std::vector<std::string>& names) {
-  std::vector<planner::Primitive> primitives;
-  for (FreePrimitive& free : headingFree(*task.primitives, task.pace)) {
-    planner::Primitive primitive;
-    primitive.id = static_cast<int>(primitives.size());
-    primitive.poses = std::move(free.trajectory);
-    primitive.duration = free.duration;
-    primitive.cost = free.duration * free.cost_factor;
-    primitives.push_back(std::move(primitive));
-    names.push_back(std::to_string(free.id));
-  }
-  return primitives;
-}
-
-/// Where an action ends, in the frame of its start: exactly on the lattice.
-Pose2 endOf(const LatticeAction& action, size_t start_bin, const PrimitiveFile& file) {
-  const Pose2 T_map_end{action.dx * file.resolution, action.dy * file.resolution,
-                        file.headings[static_cast<size_t>(action.end_bin)]};
-  Pose2 end = between({0.0, 0.0, file.headings[start_bin]}, T_map_end);
-  end.yaw = wrapAngle(end.yaw);
-  return end;
-}
-
-std::vector<LatticePrimitive> latticePrimitives(const PlanTask& task,
-                                                std::vector<std::string>& names) {
-  std::vector<LatticePrimitive> primitives;
-  const auto actions = latticeActions(*task.primitives, task.pace);
-  for (size_t bin = 0; bin < actions.size(); ++bin) {
-    for (const LatticeAction& action : actions[bin]) {
-      LatticePrimitive primitive;
-      primitive.id = static_cast<int>(primitives.size());
-      primitive.poses = {endOf(action, bin, *task.primitives)};
-      primitive.cost = static_cast<double>(action.cost);
-      primitive.duration = action.duration;
-      primitive.start_bin = static_cast<int>(bin);
-      primitive.cells = action.cells;
-      primitive.cells.push_back({action.dx, action.dy});
-      primitives.push_back(std::move(primitive));
-      names.push_back(std::to_string(action.id));
-    }
-  }
-  return primitives;
-}
-
-planner::FootprintSize footprintOf(const RobotShape& shape) {
+FootprintSize footprintOf(const RobotShape& shape) {
   const double length = shape.isRectangle() ? shape.length : kPoint;
   const double width = shape.isRectangle() ? shape.width : kPoint;
   return {length / 2.0, length / 2.0, width / 2.0};
@@ -116,11 +71,6 @@ planner::SweepResolution sweepResolution(const PlanTask& task) {
   return step;
 }
 
-PlanStatus statusOf(planner::PathEnd end) {
-  if (end == planner::PathEnd::kSolved) return PlanStatus::kSolved;
-  return end == planner::PathEnd::kUnreachable ? PlanStatus::kUnreachable : PlanStatus::kNoneInTime;
-}
-
 }  // namespace
 
 TaskPlanner::TaskPlanner(const PlanTask& task) : task_(task) {
@@ -133,12 +83,13 @@ TaskPlanner::TaskPlanner(const PlanTask& task) : task_(task) {
 }
 
 void TaskPlanner::prepareLattice() {
+  primitives_ = onLattice(*task_.primitives, task_.pace);
   const CostThresholds& thresholds = task_.map.thresholds;
   const CellCosts costs(task_.grid.width(), task_.grid.height(), task_.map.costs,
                         std::min(thresholds.obstacle, thresholds.inscribed));
   lattice_ = std::make_unique<LatticePlanner>(costs, task_.grid.cellSize(),
                                               static_cast<int>(task_.primitives->headings.size()),
-                                              latticePrimitives(task_, names_));
+                                              primitives_);
 }
 
 void TaskPlanner::preparePlanner() {
@@ -148,8 +99,10 @@ void TaskPlanner::preparePlanner() {
     if (const std::string defect = patterns_->defect(); !defect.empty())
       throw std::runtime_error("--patterns: " + defect);
   } else {
-    patterns_ = std::make_unique<planner::PatternTable>(freePrimitives(task_, names_),
-                                                        sweepResolution(task_));
+    primitives_ = headingFree(*task_.primitives, task_.pace);
+    patterns_ = std::make_unique<planner::PatternTable>(
+        std::vector<planner::Primitive>{primitives_.begin(), primitives_.end()},
+        sweepResolution(task_));
   }
   planner::PathConfig config;
   config.footprint = footprintOf(task_.shape);
@@ -175,18 +128,18 @@ PlanAnswer TaskPlanner::answer(const PlanQuery& query, double spent_ms) {
   answer.first_solution_ms = watch.first();
   if (!task_.exact) answer.heuristic_ms = watch.searching().value_or(0.0);
   answer.expansions = found.search.expansions;
-  answer.status = statusOf(found.end);
+  answer.end = found.end;
   answer.all_seen = found.search.exhausted;
   answer.reason = found.reason;
   tellPlan(wanted.T_map_start, found.search, answer);
-  if (answer.status != PlanStatus::kSolved || found.closest)
+  if (answer.end != planner::PathEnd::kSolved || found.closest)
     answer.closest = closestApproach(found, query, answer);
   answer.memory_mb = peakMegabytes();
   return answer;
 }
 
 std::string TaskPlanner::nameOf(int number) const {
-  if (!task_.patterns) return names_[static_cast<size_t>(number)];
+  if (!task_.patterns) return std::to_string(primitives_[static_cast<size_t>(number)].file_id);
   const MotionPattern* pattern = task_.patterns->find(number);
   return pattern == nullptr ? std::to_string(number) : pattern->name;
 }

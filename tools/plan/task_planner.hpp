@@ -44,7 +44,7 @@ class TaskPlanner {
                                   const PlanAnswer& answer) const;
 
   const PlanTask& task_;
-  std::vector<std::string> names_;  // of primitives, which are numbered
+  std::vector<SearchPrimitive> primitives_;  // if those of a file are used
   std::unique_ptr<planner::PatternTable> patterns_;
   std::unique_ptr<planner::PathPlanner> planner_;
   std::unique_ptr<LatticePlanner> lattice_;  // in its place if the primitives are used exactly

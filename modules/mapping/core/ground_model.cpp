@@ -12,9 +12,9 @@ constexpr double kMemory = 10.0;
 /// Changes of height and doubt below this are not worth judging the columns again [m].
 constexpr double kNoticeable = 0.02;
 
-int patchNumber(int cell) {
-  const int size = GroundModel::kPatchCells;
-  return cell >= 0 ? cell / size : -((size - 1 - cell) / size);
+CellIndex patchOf(CellIndex cell) {
+  return {floorDivide(cell.x, GroundModel::kPatchCells),
+          floorDivide(cell.y, GroundModel::kPatchCells)};
 }
 
 }  // namespace
@@ -29,7 +29,7 @@ GroundModel::GroundModel(const GroundConfig& config, double cell_size, int side_
     : config_(config), cell_size_(cell_size), patches_(side_cells / kPatchCells) {}
 
 void GroundModel::moveTo(CellIndex lower) {
-  patches_.moveTo({patchNumber(lower.x), patchNumber(lower.y)});
+  patches_.moveTo(patchOf(lower));
 }
 
 Eigen::Vector2d GroundModel::centreOf(CellIndex patch) const {
@@ -71,7 +71,7 @@ bool GroundModel::refine(Patch& patch, const Eigen::Vector2d& centre,
 }
 
 GroundHeight GroundModel::at(CellIndex cell) const {
-  const CellIndex index{patchNumber(cell.x), patchNumber(cell.y)};
+  const CellIndex index = patchOf(cell);
   const Patch& patch = patches_.at(index);
   const Eigen::Vector2d centre((cell.x + 0.5) * cell_size_, (cell.y + 0.5) * cell_size_);
   return {patch.z + patch.slope.dot(centre - centreOf(index)), config_.slope_doubt * patch.nearest};

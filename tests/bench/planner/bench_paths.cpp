@@ -83,11 +83,11 @@ void manyGoals(benchmark::State& state, const Scenario& scenario) {
     TaskPlanner planner(*task);
     for (const PlanQuery& query : task->queries) {
       const PlanAnswer answer = planner.answer(query);
-      if (answer.status == PlanStatus::kUnreachable)
+      if (answer.end == planner::PathEnd::kUnreachable)
         refused.push_back(answer.total_ms);
       else
         total.push_back(answer.total_ms);
-      if (answer.status == PlanStatus::kSolved) first.push_back(*answer.first_solution_ms);
+      if (answer.end == planner::PathEnd::kSolved) first.push_back(*answer.first_solution_ms);
       expansions += static_cast<double>(answer.expansions);
       searching += answer.total_ms - answer.heuristic_ms;
     }

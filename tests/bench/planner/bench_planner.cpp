@@ -6,10 +6,11 @@
 #include <stdexcept>
 
 #include "modules/planner/core/map/clearance_map.hpp"
-#include "modules/planner/core/map/local_map.hpp"
+#include "modules/planner/core/map/planning_map.hpp"
 #include "modules/planner/core/search/pattern_search.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 namespace {
 
@@ -29,8 +30,7 @@ struct Scene {
   }
   Grid window() const { return map.window({-120, -120}, 240, 240); }
   DistanceToGoal field() const {
-    return DistanceToGoal(map, mission.goal, mission.T_map_start.position(), {},
-                          DistanceFieldConfig{});
+    return DistanceToGoal(map, mission.goal, mission.T_map_start.position(), {}, usualField());
   }
 
   Mission mission;
@@ -41,7 +41,7 @@ struct Scene {
 void cutSurroundings(benchmark::State& state) {
   const Scene scene(3);
   for (auto _ : state)
-    benchmark::DoNotOptimize(CollisionChecker(scene.window(), FootprintSize{}, Margins{}));
+    benchmark::DoNotOptimize(CollisionChecker(scene.window(), kVehicle, Margins{}));
 }
 BENCHMARK(cutSurroundings)->Unit(benchmark::kMicrosecond);
 
@@ -68,7 +68,7 @@ BENCHMARK(wayToGo)->Unit(benchmark::kMicrosecond);
 
 void preparePatterns(benchmark::State& state) {
   const PatternSet set = samplePatterns();
-  for (auto _ : state) benchmark::DoNotOptimize(PatternTable(set, SweepResolution{}, {}));
+  for (auto _ : state) benchmark::DoNotOptimize(PatternTable(set, usualSweep(), {}));
 }
 BENCHMARK(preparePatterns)->Unit(benchmark::kMicrosecond);
 
@@ -90,10 +90,10 @@ PatternSet fivePatterns() {
 
 /// Worlds with all that a search wants of them.
 struct Worlds {
-  explicit Worlds(const PatternSet& set) : table(set, SweepResolution{}, {}) {
+  explicit Worlds(const PatternSet& set) : table(set, usualSweep(), {}) {
     for (uint64_t seed = 1; seed <= 10; ++seed) scenes.emplace_back(seed);
     for (const Scene& scene : scenes) {
-      around.emplace_back(scene.window(), FootprintSize{}, Margins{});
+      around.emplace_back(scene.window(), kVehicle, Margins{});
       fields.push_back(scene.field());
     }
   }

@@ -5,11 +5,12 @@
 // cm, and the pattern set. As a ratio to the clearance transform of that map, timed between the
 // cycles.
 #include "modules/planner/core/execution/supervisor.hpp"
-#include "modules/planner/core/map/local_map.hpp"
+#include "modules/planner/core/map/planning_map.hpp"
 #include "modules/planner/core/search/pattern_search.hpp"
 #include "tests/bench/planner/path_figures.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 namespace {
 
@@ -37,15 +38,16 @@ PatternSet fifteenPatterns(double turn_error) {
   return *set;
 }
 
-/// A cycle: field and way to go of the changed map, the table of the changed set, the search.
+/// A cycle: field and distance to the goal of the changed map, the table of the changed set, the
+/// search.
 void replan(benchmark::State& state) {
-  LocalMapConfig config;
+  PlanningMapConfig config = usualMap();
   config.window = kSide;
   config.window_period = config.field_period = 0;
   std::vector<double> cycles, transforms;
   uint64_t seed = 0;
   int64_t now = 0;
-  std::vector<LocalMap> maps(20, LocalMap(config));
+  std::vector<PlanningMap> maps(20, PlanningMap(config));
   std::vector<Mission> missions;
   std::vector<Grid> grids;
   std::vector<std::vector<Tile>> tiles;
@@ -55,7 +57,7 @@ void replan(benchmark::State& state) {
     tiles.push_back(tilesOf(grids[i], ToyMapping::kTileCells, 1));
     // The robot has been there for a while.
     for (const Tile& tile : tiles[i]) maps[i].put(tile, ToyMapping::kCell, ToyMapping::kTileCells);
-    maps[i].updateSurroundings(missions[i].T_map_start, 1);
+    maps[i].updateCollisionChecker(missions[i].T_map_start, 1);
     maps[i].updateDistance(missions[i].T_map_start, missions[i].goal, 1);
   }
   PatternSearch search(SearchConfig{});
@@ -72,9 +74,9 @@ void replan(benchmark::State& state) {
     }
     for (const Tile& tile : tiles[i]) maps[i].put(tile, ToyMapping::kCell, ToyMapping::kTileCells);
     const bench::StopWatch watch;
-    maps[i].updateSurroundings(mission.T_map_start, now);
+    maps[i].updateCollisionChecker(mission.T_map_start, now);
     maps[i].updateDistance(mission.T_map_start, mission.goal, now);
-    const PatternTable table(set, SweepResolution{}, {});
+    const PatternTable table(set, usualSweep(), {});
     SearchProblem problem;
     problem.T_map_start = mission.T_map_start;
     problem.start_class = table.restClass();

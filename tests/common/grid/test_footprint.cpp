@@ -33,10 +33,10 @@ double overlapAlong(const Eigen::Vector2d& axis, const std::array<Eigen::Vector2
 /// Separating axes: the definition of overlap of two rectangles [m], positive = overlap.
 double overlap(const Footprint& footprint, const Pose2& pose, CellIndex cell, double size) {
   const std::array<Eigen::Vector2d, 4> rectangle{
-      pose * Eigen::Vector2d(footprint.front(), footprint.halfWidth()),
-      pose * Eigen::Vector2d(-footprint.rear(), footprint.halfWidth()),
-      pose * Eigen::Vector2d(-footprint.rear(), -footprint.halfWidth()),
-      pose * Eigen::Vector2d(footprint.front(), -footprint.halfWidth())};
+      pose * Eigen::Vector2d(footprint.size().front, footprint.size().half_width),
+      pose * Eigen::Vector2d(-footprint.size().rear, footprint.size().half_width),
+      pose * Eigen::Vector2d(-footprint.size().rear, -footprint.size().half_width),
+      pose * Eigen::Vector2d(footprint.size().front, -footprint.size().half_width)};
   const double x = cell.x * size;
   const double y = cell.y * size;
   const std::array<Eigen::Vector2d, 4> square{
@@ -79,8 +79,8 @@ TEST_CASE("a footprint is free exactly where no blocked cell overlaps it") {
   std::uniform_real_distribution<double> position(-1.5, 5.5);
   std::uniform_real_distribution<double> turn(-7.0, 7.0);
   const std::array<Footprint, 4> footprints{
-      Footprint(0.75, 0.75, 0.5, 0.05), Footprint(0.2, 1.3, 0.2, 0.0),
-      Footprint(0.02, 0.02, 0.6, 0.0), Footprint(2.0, -0.5, 0.3, 0.0)};
+      Footprint({0.75, 0.75, 0.5}, 0.05), Footprint({0.2, 1.3, 0.2}, 0.0),
+      Footprint({0.02, 0.02, 0.6}, 0.0), Footprint({2.0, -0.5, 0.3}, 0.0)};
   Grid grid;
   ClearanceField field;
   ClearanceField other;  // made with the other choice of unknown_blocks
@@ -114,7 +114,7 @@ TEST_CASE("the cells of a footprint are those that it overlaps, whatever its hea
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> draw(-3.0, 3.0);
   const Grid grid(0.1, {0, 0}, 1, 1);
-  const Footprint footprint(0.9, 0.4, 0.35, 0.0);
+  const Footprint footprint({0.9, 0.4, 0.35}, 0.0);
   for (int i = 0; i < 200; ++i) {
     const Pose2 pose{draw(random), draw(random), draw(random)};
     const auto cells = footprint.cells(grid, pose);
@@ -135,7 +135,7 @@ TEST_CASE("a footprint that lies on the borders of cells touches its neighbours 
   for (int y = -3; y < 3; ++y)
     for (int x = -5; x < 5; ++x) grid.set({x, y}, kFree);
   const ClearanceField field(grid, true);
-  const Footprint footprint(0.5, 0.5, 0.3, 0.0);
+  const Footprint footprint({0.5, 0.5, 0.3}, 0.0);
   for (const double yaw : {0.0, kPi, -kPi, 2.0 * kPi})
     REQUIRE(footprint.isFree(grid, field, {0.0, 0.0, yaw}, true));
   REQUIRE_FALSE(footprint.isFree(grid, field, {0.001, 0.0, 0.0}, true));
@@ -146,7 +146,7 @@ TEST_CASE("a footprint that lies on the borders of cells touches its neighbours 
 TEST_CASE("poses that are no poses are not free and cover no cell") {
   const Grid grid(0.1, {0, 0}, 10, 10);
   const ClearanceField field(grid, false);
-  const Footprint footprint(0.5, 0.5, 0.3, 0.0);
+  const Footprint footprint({0.5, 0.5, 0.3}, 0.0);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Pose2 bad :
        {Pose2{nan, 0, 0}, Pose2{0, nan, 0}, Pose2{0, 0, nan}, Pose2{1e300, 0, 0}}) {
@@ -157,11 +157,11 @@ TEST_CASE("poses that are no poses are not free and cover no cell") {
 }
 
 TEST_CASE("a footprint has its margin on all sides and must have an area") {
-  const Footprint footprint(0.8, 0.6, 0.5, 0.1);
-  REQUIRE(footprint.front() == Approx(0.9));
-  REQUIRE(footprint.rear() == Approx(0.7));
-  REQUIRE(footprint.halfWidth() == Approx(0.6));
+  const Footprint footprint({0.8, 0.6, 0.5}, 0.1);
+  REQUIRE(footprint.size().front == Approx(0.9));
+  REQUIRE(footprint.size().rear == Approx(0.7));
+  REQUIRE(footprint.size().half_width == Approx(0.6));
   REQUIRE(footprint.circumscribed() == Approx(std::hypot(0.9, 0.6)));
-  REQUIRE_THROWS_AS(Footprint(0.5, -0.6, 0.5, 0.0), std::invalid_argument);
-  REQUIRE_THROWS_AS(Footprint(0.5, 0.5, 0.0, 0.0), std::invalid_argument);
+  REQUIRE_THROWS_AS(Footprint({0.5, -0.6, 0.5}, 0.0), std::invalid_argument);
+  REQUIRE_THROWS_AS(Footprint({0.5, 0.5, 0.0}, 0.0), std::invalid_argument);
 }

@@ -91,7 +91,7 @@ class Drive {
     if (!options.whole_map_known) return;
     const Grid grid = mission_.ground.paint(ToyMapping::kCell, {-16.0, -16.0}, {48.0, 16.0});
     for (const Tile& tile : tilesOf(grid, ToyMapping::kTileCells, 1))
-      supervisor_.localMap().put(tile, ToyMapping::kCell, ToyMapping::kTileCells);
+      supervisor_.map().put(tile, ToyMapping::kCell, ToyMapping::kTileCells);
   }
 
   DriveOutcome run() {
@@ -140,11 +140,11 @@ class Drive {
     if (options_.whole_map_known) {
       Tile tick{1000, 1000, now_,
                 std::vector<Cell>(ToyMapping::kTileCells * ToyMapping::kTileCells, kUnknown)};
-      supervisor_.localMap().put(tick, ToyMapping::kCell, ToyMapping::kTileCells);
+      supervisor_.map().put(tick, ToyMapping::kCell, ToyMapping::kTileCells);
       return;
     }
     for (Tile& tile : mapping_.scan(mission_.ground, state_.pose, now_))
-      supervisor_.localMap().put(std::move(tile), ToyMapping::kCell, ToyMapping::kTileCells);
+      supervisor_.map().put(std::move(tile), ToyMapping::kCell, ToyMapping::kTileCells);
   }
 
   PlannerInputs inputs() {
@@ -174,8 +174,7 @@ class Drive {
     outcome_.reason = decision.report.reason;
     orders_.push_back(
         {now_ + options_.latency, supervisor_.program().running(), supervisor_.program().next()});
-    const double clearance =
-        mission_.ground.clearance(options_.config.local_map.footprint, state_.pose);
+    const double clearance = mission_.ground.clearance(options_.config.map.footprint, state_.pose);
     outcome_.least_clearance = std::min(outcome_.least_clearance, clearance);
     if (clearance <= 0.0) ++outcome_.collisions;
     done_ = decision.report.status == PlanStatus::kArrived;

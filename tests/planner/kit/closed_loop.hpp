@@ -8,6 +8,7 @@
 #include "modules/planner/core/execution/supervisor.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 namespace tread::planner::testkit {
 
@@ -67,7 +68,7 @@ struct DriveOutcome {
 
 /// Options of a drive.
 struct DriveOptions {
-  PlannerConfig config;
+  PlannerConfig config = usualPlanner();
   GroundErrors errors;
   TrackModel vehicle;
   uint64_t seed = 1;

@@ -11,12 +11,13 @@
 #include "tests/planner/kit/random_ground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
 #include "tests/planner/kit/search_bench.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 namespace tread::planner::testkit {
 
 /// A random ground with queries on it, the patterns of the tests and a planner.
 struct PathBench {
-  explicit PathBench(uint64_t seed, bool unknown_blocks = true, SweepResolution step = {})
+  explicit PathBench(uint64_t seed, bool unknown_blocks = true, SweepResolution step = usualSweep())
       : random(seed), ground(shape(random)), grid(ground.draw(random)) {
     table.emplace(samplePatterns(), step, DefaultSigma{});
     config.unknown_blocks = unknown_blocks;
@@ -53,7 +54,7 @@ struct PathBench {
   std::mt19937_64 random;
   RandomGround ground;
   Grid grid;
-  PathConfig config;
+  PathConfig config = usualPaths();
   std::optional<PatternTable> table;
   std::optional<PathPlanner> planner;
 };

@@ -5,13 +5,14 @@
 #include <functional>
 
 #include "tests/planner/kit/closed_loop.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 namespace tread::planner::testkit {
 
 /// A supervisor with an ideal robot: poses come true exactly, MOTOR and EXECUTION are prompt.
 class Rig {
  public:
-  explicit Rig(const Playground& ground = {}, const PlannerConfig& config = {})
+  explicit Rig(const Playground& ground = {}, const PlannerConfig& config = usualPlanner())
       : supervisor_(config, 77) {
     supervisor_.takeSet(samplePatterns());
     paint(ground);
@@ -22,7 +23,7 @@ class Rig {
   void paint(const Playground& ground) {
     ++painted_;
     for (Tile& tile : tilesOf(ground.paint(0.1, {-9.6, -9.6}, {16.0, 9.6}), 32, 1 + painted_))
-      supervisor_.localMap().put(std::move(tile), 0.1, 32);
+      supervisor_.map().put(std::move(tile), 0.1, 32);
   }
 
   /// Runs for a time [s]; `tamper` may spoil the situation of each step.
@@ -69,7 +70,7 @@ class Rig {
  private:
   void freshMap() {
     Tile tile{500, 500, now_, std::vector<Cell>(32 * 32, kFree)};
-    supervisor_.localMap().put(std::move(tile), 0.1, 32);
+    supervisor_.map().put(std::move(tile), 0.1, 32);
   }
 
   Supervisor supervisor_;

@@ -6,16 +6,17 @@
 #include "modules/planner/core/search/pattern_search.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 namespace tread::planner::testkit {
 
 /// A place, wholly known, with everything that a search wants of it.
 struct SearchBench {
   SearchBench(const Grid& grid, const PatternSet& set, const Goal& aim, const Margins& margins = {},
-              const DistanceFieldConfig& field = {})
+              const DistanceFieldConfig& field = usualField())
       : map(grid.cellSize(), 32, ClearanceMapConfig{}),
-        collision_checker(grid, FootprintSize{}, margins),
-        table(set, SweepResolution{}, {}) {
+        collision_checker(grid, kVehicle, margins),
+        table(set, usualSweep(), {}) {
     for (const Tile& tile : tilesOf(grid, 32, 1)) map.put(tile);
     map.refresh();
     goal = aim;

@@ -9,6 +9,7 @@
 #include "common/bus/virtual_bus.hpp"
 #include "modules/planner/planner_node.hpp"
 #include "tests/planner/kit/toy_robot.hpp"
+#include "tests/planner/kit/vehicle.hpp"
 
 namespace tread::planner::testkit {
 
@@ -17,7 +18,7 @@ struct Yard {
   explicit Yard(FaultPlan faults = {}) : bus(7, std::move(faults)), start(bus.now()) {
     bus.addNode("robot", [](Bus& end) { return std::make_unique<ToyRobot>(end); });
     bus.addNode("planner",
-                [](Bus& end) { return std::make_unique<PlannerNode>(PlannerConfig{}, end); },
+                [](Bus& end) { return std::make_unique<PlannerNode>(usualPlanner(), end); },
                 {8'000, 3'000});
     bus.outside().subscribe<plan_t>(kPlan, [this](const plan_t& message) {
       plan = message;

@@ -122,7 +122,7 @@ FaultPlan lossyBus() {
 
 TEST_CASE("a robot of another size drives by its configuration alone") {
   const RobotConfig small = readRobot(std::string(TREAD_SOURCE_DIR) + "/tests/data/robots/small");
-  CHECK(small.planner.local_map.footprint.half_width == 0.31);
+  CHECK(small.planner.map.footprint.half_width == 0.31);
   CHECK(small.mapping.map.robot.rear == 0.3);
   MissionOptions options;
   options.shortest_line = 8.0;

@@ -177,8 +177,8 @@ TEST_CASE("what is set on the command line stands in the place of the robot's fi
   const std::string folder = std::string(TREAD_SOURCE_DIR) + "/config/robots/teodor";
   const RobotConfig robot =
       readRobot(folder, {"planner.margins.growth=0", "learner.rule=collective"});
-  CHECK(teodor().planner.local_map.margins.growth > 0.0);
-  CHECK(robot.planner.local_map.margins.growth == 0.0);
+  CHECK(teodor().planner.map.margins.growth > 0.0);
+  CHECK(robot.planner.map.margins.growth == 0.0);
   CHECK(robot.learner.rule.rule == "collective");
   CHECK_THROWS_WITH(readRobot(folder, {"planer.margins.growth=0"}),
                     Catch::Contains("--set planer.margins.growth=0") && Catch::Contains("planner"));

@@ -20,7 +20,9 @@ class LatticeOracle {
  public:
   LatticeOracle(const MapFile& map, const PrimitiveFile& file)
       : map_(map), file_(file), blocked_(gridForPoint(map)) {
-    actions_ = latticeActions(file, {*map.nominal_speed, *map.turn_time});
+    actions_.resize(file.headings.size());
+    for (SearchPrimitive& action : onLattice(file, {*map.nominal_speed, *map.turn_time}))
+      actions_[static_cast<size_t>(action.start_bin)].push_back(std::move(action));
   }
 
   int64_t cost() {
@@ -33,10 +35,12 @@ class LatticeOracle {
       open.erase(open.begin());
       if (state == goal) return cost;
       if (cost > best[state]) continue;
-      for (const LatticeAction& action : actions_[static_cast<size_t>(std::get<2>(state))]) {
+      for (const SearchPrimitive& action : actions_[static_cast<size_t>(std::get<2>(state))]) {
         const auto [x, y, bin] = state;
         const int64_t step = costOf({x, y}, action);
-        const State next{x + action.dx, y + action.dy, action.end_bin};
+        const CellIndex end = action.cells.back();
+        const double yaw = file_.headings[static_cast<size_t>(bin)] + action.poses.back().yaw;
+        const State next{x + end.x, y + end.y, nearestBin(file_.headings, yaw)};
         const auto known = best.find(next);
         if (step < 0 || (known != best.end() && known->second <= cost + step)) continue;
         best[next] = cost + step;
@@ -54,23 +58,22 @@ class LatticeOracle {
     return {cell.x, cell.y, nearestBin(file_.headings, pose.yaw)};
   }
 
-  int64_t costOf(CellIndex from, const LatticeAction& action) const {
+  int64_t costOf(CellIndex from, const SearchPrimitive& action) const {
     int dearest = 0;
     std::vector<CellIndex> cells = action.cells;
     cells.push_back({0, 0});
-    cells.push_back({action.dx, action.dy});
     for (const CellIndex& offset : cells) {
       const CellIndex cell{from.x + offset.x, from.y + offset.y};
       if (blocked_.at(cell) != kFree) return -1;
       dearest = std::max<int>(dearest, map_.costs[map_.grid.offset(cell)]);
     }
-    return action.cost * (dearest + 1);
+    return static_cast<int64_t>(action.cost) * (dearest + 1);
   }
 
   const MapFile& map_;
   const PrimitiveFile& file_;
   Grid blocked_;
-  std::vector<std::vector<LatticeAction>> actions_;
+  std::vector<std::vector<SearchPrimitive>> actions_;  // by start bin
 };
 
 }  // namespace tread::plan::samples

@@ -33,12 +33,12 @@ std::vector<uint8_t> randomCosts(std::mt19937_64& random, int count, int blocked
 }
 
 /// A lattice of quarter turns: one and three cells ahead, and turns to both sides.
-std::vector<LatticePrimitive> quarterLattice() {
-  std::vector<LatticePrimitive> primitives;
+std::vector<SearchPrimitive> quarterLattice() {
+  std::vector<SearchPrimitive> primitives;
   for (int bin = 0; bin < kBins; ++bin) {
     const CellIndex ahead{bin == 0 ? 1 : bin == 2 ? -1 : 0, bin == 1 ? 1 : bin == 3 ? -1 : 0};
     for (const int cells : {1, 3}) {
-      LatticePrimitive primitive;
+      SearchPrimitive primitive;
       primitive.id = static_cast<int>(primitives.size());
       for (int k = 1; k <= cells; ++k) {
         primitive.poses.push_back({k * kCell, 0.0, 0.0});
@@ -50,7 +50,7 @@ std::vector<LatticePrimitive> quarterLattice() {
       primitives.push_back(primitive);
     }
     for (const double turn : {kPi / 2.0, -kPi / 2.0}) {
-      LatticePrimitive primitive;
+      SearchPrimitive primitive;
       primitive.id = static_cast<int>(primitives.size());
       primitive.poses = {{0.0, 0.0, turn}};
       primitive.duration = primitive.cost = 1.5;
@@ -62,7 +62,7 @@ std::vector<LatticePrimitive> quarterLattice() {
 }
 
 /// Cheapest plan between two cells and headings; infinite if there is none.
-double bruteForce(const CellCosts& costs, const std::vector<LatticePrimitive>& primitives,
+double bruteForce(const CellCosts& costs, const std::vector<SearchPrimitive>& primitives,
                   CellIndex from, int from_bin, CellIndex to, int to_bin) {
   using State = std::tuple<int, int, int>;
   using Entry = std::pair<double, State>;
@@ -75,7 +75,7 @@ double bruteForce(const CellCosts& costs, const std::vector<LatticePrimitive>& p
     if (!settled.emplace(state, cost).second) continue;
     const auto [x, y, bin] = state;
     if (x == to.x && y == to.y && bin == to_bin) return cost;
-    for (const LatticePrimitive& primitive : primitives) {
+    for (const SearchPrimitive& primitive : primitives) {
       if (primitive.start_bin != bin) continue;
       int worst = costs.at({x, y});
       bool blocked = false;
@@ -121,7 +121,7 @@ TEST_CASE("the worst of some cells is the dearest of them and of where they begi
 
 TEST_CASE("on a lattice with costs the plan is as cheap as brute force finds it") {
   std::mt19937_64 random(7);
-  const std::vector<LatticePrimitive> primitives = quarterLattice();
+  const std::vector<SearchPrimitive> primitives = quarterLattice();
   int solved = 0;
   int unreachable = 0;
   for (int i = 0; i < testing::effort(400); ++i) {

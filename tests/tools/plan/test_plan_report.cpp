@@ -18,7 +18,7 @@ namespace {
 
 PlanAnswer solvedAnswer() {
   PlanAnswer answer;
-  answer.status = PlanStatus::kSolved;
+  answer.end = planner::PathEnd::kSolved;
   answer.cost = 2.5;
   answer.time = 2.25;
   answer.length = 1.5;
@@ -36,7 +36,7 @@ PlanAnswer solvedAnswer() {
 
 PlanAnswer unreachableAnswer() {
   PlanAnswer answer;
-  answer.status = PlanStatus::kUnreachable;
+  answer.end = planner::PathEnd::kUnreachable;
   answer.reason = "the goal is walled in";
   answer.closest = ClosestApproach{{2.0, 3.0}, 0.75};
   answer.total_ms = 1.0;
@@ -132,7 +132,7 @@ TEST_CASE("people read how a query ended, how good the plan is and what it took"
   CHECK_THAT(none, Contains("unreachable: the goal is walled in\n"));
   CHECK_THAT(none, Contains("closest approach: 0.75 m from the goal, at 2.00 3.00\n"));
   PlanAnswer partial = solvedAnswer();
-  partial.status = PlanStatus::kNoneInTime;
+  partial.end = planner::PathEnd::kNoneInTime;
   partial.reason = "the deadline came first";
   partial.first_solution_ms.reset();
   CHECK_THAT(answerText(partial),

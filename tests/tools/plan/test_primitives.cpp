@@ -100,8 +100,8 @@ TEST_CASE("damaged primitives are read or refused in one line, never worse") {
   for (int i = 0; i < 4000; ++i) {
     try {
       const PrimitiveFile file = parse(damaged(kPrimitives, random));
-      for (const auto& actions : latticeActions(file, {0.001, 1e4}))
-        for (const LatticeAction& action : actions) CHECK(action.cost > 0);
+      for (const SearchPrimitive& primitive : onLattice(file, {0.001, 1e4}))
+        CHECK(primitive.cost > 0.0);
       headingFree(file, {});
     } catch (const ConfigError& error) {
       ++refused;
@@ -119,13 +119,13 @@ TEST_CASE("heading-free primitives are those of heading 0 with the slower of way
   const auto free = headingFree(parse(kPrimitives), {0.5, 1.0});
   REQUIRE(free.size() == 2);
   CHECK(free[0].id == 0);
-  REQUIRE(free[0].trajectory.size() == 2);  // without the start
-  CHECK(free[0].trajectory[0].x == 0.2);
+  REQUIRE(free[0].poses.size() == 2);  // without the start
+  CHECK(free[0].poses[0].x == 0.2);
   CHECK(free[0].duration == Approx(0.5 / 0.5));
-  CHECK(free[0].cost_factor == 1.0);
+  CHECK(free[0].cost == free[0].duration);
   // A quarter turn takes 2 s, its way of 0.3 + 0.4 + 0.224 m 1.85 s.
   CHECK(free[1].duration == Approx(2.0).epsilon(1e-4));
-  CHECK(free[1].cost_factor == 3.0);
+  CHECK(free[1].cost == Approx(3.0 * free[1].duration));
   CHECK(headingFree(parse(kPrimitives), {0.1, 1.0})[1].duration ==
         Approx((0.7 + std::hypot(0.2, 0.1)) / 0.1));
 }
@@ -145,11 +145,11 @@ TEST_CASE("heading-free primitives stand in the frame of their start, their yaw 
   put("0.5000 0.0000 0.0000\n", "0.5000 0.0000 5.1000\n");
   const auto free = headingFree(parse(text), {});
   REQUIRE(free.size() == 1);
-  REQUIRE(free[0].trajectory.size() == 2);
-  CHECK(free[0].trajectory[0].x == Approx(0.2 * std::cos(0.5)));
-  CHECK(free[0].trajectory[0].y == Approx(-0.2 * std::sin(0.5)));
-  CHECK(free[0].trajectory[0].yaw == Approx(-0.5));
-  CHECK(free[0].trajectory[1].yaw == Approx(5.1 - 0.5 - 2.0 * kPi));
+  REQUIRE(free[0].poses.size() == 2);
+  CHECK(free[0].poses[0].x == Approx(0.2 * std::cos(0.5)));
+  CHECK(free[0].poses[0].y == Approx(-0.2 * std::sin(0.5)));
+  CHECK(free[0].poses[0].yaw == Approx(-0.5));
+  CHECK(free[0].poses[1].yaw == Approx(5.1 - 0.5 - 2.0 * kPi));
   CHECK(free[0].duration == Approx((0.5 + 2.0 * kPi - 5.1) / (kPi / 4.0) * 2.0));
 }
 
@@ -162,20 +162,21 @@ TEST_CASE("without a primitive of heading 0 there is none for all headings") {
                     Contains("a.mprim: no primitive begins in heading bin 0"));
 }
 
-TEST_CASE("lattice actions have whole costs and the cells that their poses pass") {
-  const auto actions = latticeActions(parse(kPrimitives), {0.3, 1.0});
-  REQUIRE(actions.size() == 4);
-  REQUIRE(actions[0].size() == 2);
-  CHECK(actions[1].empty());
-  CHECK(actions[0][0].cost == 1667);  // 1666.7 ms
-  CHECK(actions[0][0].cells == std::vector<CellIndex>{{0, 0}, {1, 0}});
-  CHECK(actions[0][1].cost == 3 * 3079);  // 0.9236 m
+TEST_CASE("primitives on a lattice have whole costs and the cells that their poses pass") {
+  const auto actions = onLattice(parse(kPrimitives), {0.3, 1.0});
+  REQUIRE(actions.size() == 3);
+  CHECK(actions[0].start_bin == 0);
+  CHECK(actions[0].cost == 1667);                                             // 1666.7 ms
+  CHECK(actions[0].cells == std::vector<CellIndex>{{0, 0}, {1, 0}, {1, 0}});  // and the end's
+  CHECK(actions[1].start_bin == 0);
+  CHECK(actions[1].cost == 3 * 3079);  // 0.9236 m
   // 0.25 + 0.3 m is beyond the first cell's border at 0.5 m.
-  CHECK(actions[0][1].cells == std::vector<CellIndex>{{0, 0}, {1, 0}, {1, 1}});
-  REQUIRE(actions[3].size() == 1);
-  CHECK(actions[3][0].end_bin == 3);
-  CHECK(actions[3][0].cells == std::vector<CellIndex>{{0, 0}, {0, 1}});
-  CHECK(latticeActions(parse(kPrimitives), {10.0, 1.0})[0][1].cost == 3 * 2000);  // the turn
+  CHECK(actions[1].cells == std::vector<CellIndex>{{0, 0}, {1, 0}, {1, 1}, {1, 1}});
+  CHECK(actions[2].start_bin == 3);
+  CHECK(actions[2].file_id == 0);
+  CHECK(actions[2].poses.back().yaw == 0.0);
+  CHECK(actions[2].cells == std::vector<CellIndex>{{0, 0}, {0, 1}, {0, 1}});
+  CHECK(onLattice(parse(kPrimitives), {10.0, 1.0})[1].cost == 3 * 2000);  // the turn
 }
 
 TEST_CASE("recorded primitives on a recorded map cost what an exact search found") {
@@ -212,6 +213,6 @@ TEST_CASE("recorded primitives have as many for heading 0 as was published") {
     CHECK(file.primitives.size() == 16 * count);
     const auto free = headingFree(file, {1.0, 20.0});
     CHECK(free.size() == count);
-    for (const FreePrimitive& primitive : free) CHECK(primitive.duration > 0.0);
+    for (const SearchPrimitive& primitive : free) CHECK(primitive.duration > 0.0);
   }
 }

@@ -52,7 +52,7 @@ TEST_CASE("a broken query is one clear line with its number") {
 TEST_CASE("random queries are free, apart and the same for the same seed") {
   const Grid grid = walledRoom();
   const ClearanceField clearance(grid, true);
-  const Footprint footprint(0.4, 0.4, 0.3, 0.0);
+  const Footprint footprint({0.4, 0.4, 0.3}, 0.0);
   const auto is_free = [&](const Pose2& T_grid_body) {
     return footprint.isFree(grid, clearance, T_grid_body, true);
   };

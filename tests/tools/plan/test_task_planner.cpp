@@ -95,12 +95,12 @@ TEST_CASE("exact plans cost what Dijkstra finds, and unreachable is what it does
     const int64_t least = LatticeOracle(task.map, *task.primitives).cost();
     CAPTURE(i, least);
     if (least < 0) {
-      CHECK(answer.status == PlanStatus::kUnreachable);
+      CHECK(answer.end == planner::PathEnd::kUnreachable);
       CHECK_FALSE(answer.reason.empty());
       continue;
     }
     ++solved;
-    REQUIRE(answer.status == PlanStatus::kSolved);
+    REQUIRE(answer.end == planner::PathEnd::kSolved);
     CHECK(answer.cost == static_cast<double>(least));
     CHECK(answer.poses.back().x == Approx(1.35));
     CHECK(answer.poses.back().y == Approx(1.05));
@@ -115,7 +115,7 @@ TEST_CASE("a plan's poses are free, lead from the start to the goal and leave no
   TaskPlanner planner(task);
   const PlanQuery& query = task.queries.front();
   const PlanAnswer answer = planner.answer(query);
-  REQUIRE(answer.status == PlanStatus::kSolved);
+  REQUIRE(answer.end == planner::PathEnd::kSolved);
   const ClearanceField clearance(task.grid, true);
   for (const Pose2& T_map_body : answer.poses)
     CHECK(standsFree(task, clearance, between(task.map.T_map_grid, T_map_body)));
@@ -154,8 +154,8 @@ TEST_CASE("a map's origin shifts and turns a plan and changes nothing else") {
   query = {T_other_map * query.T_map_start, T_other_map * query.T_map_goal};
   TaskPlanner there(moved);
   const PlanAnswer other = there.answer(query);
-  REQUIRE(plain.status == PlanStatus::kSolved);
-  REQUIRE(other.status == PlanStatus::kSolved);
+  REQUIRE(plain.end == planner::PathEnd::kSolved);
+  REQUIRE(other.end == planner::PathEnd::kSolved);
   // Rounding may choose another of two plans that are as good.
   CHECK(other.cost == Approx(plain.cost).epsilon(0.02));
   CHECK((other.poses.back().position() - query.T_map_goal.position()).norm() <= 0.25 + 1e-6);
@@ -173,7 +173,7 @@ TEST_CASE("a goal in a closed room is unreachable, and it is told how near one c
     }
   TaskPlanner planner(task);
   const PlanAnswer answer = planner.answer(task.queries.front());
-  CHECK(answer.status == PlanStatus::kUnreachable);
+  CHECK(answer.end == planner::PathEnd::kUnreachable);
   CHECK_FALSE(answer.reason.empty());
   CHECK(answer.patterns.empty());
   REQUIRE(answer.closest);
@@ -186,7 +186,7 @@ TEST_CASE("at the deadline the best so far is the answer") {
   task.deadline_ms = 1e-3;
   TaskPlanner planner(task);
   const PlanAnswer answer = planner.answer(task.queries.front());
-  CHECK(answer.status == PlanStatus::kNoneInTime);
+  CHECK(answer.end == planner::PathEnd::kNoneInTime);
   CHECK_FALSE(answer.reason.empty());
   CHECK(answer.closest);
   CHECK(answer.expansions < 1000);
@@ -216,9 +216,9 @@ TEST_CASE("strange maps and queries are answered, never worse") {
     TaskPlanner planner(task);
     const PlanAnswer answer = planner.answer(task.queries.front());
     CAPTURE(i, answer.reason);
-    ++ends[static_cast<size_t>(answer.status)];
-    CHECK(answer.reason.empty() == (answer.status == PlanStatus::kSolved));
-    CHECK(answer.closest.has_value() == (answer.status != PlanStatus::kSolved));
+    ++ends[static_cast<size_t>(answer.end)];
+    CHECK(answer.reason.empty() == (answer.end == planner::PathEnd::kSolved));
+    CHECK(answer.closest.has_value() == (answer.end != planner::PathEnd::kSolved));
     CHECK(answer.poses.empty() == answer.patterns.empty());
     planner.scene(task.queries.front(), answer);
   }
@@ -237,7 +237,7 @@ TEST_CASE("a round robot never comes nearer to anything than its radius") {
   const PlanTask task = loadTask(options);
   TaskPlanner planner(task);
   const PlanAnswer answer = planner.answer(task.queries.front());
-  REQUIRE(answer.status == PlanStatus::kSolved);
+  REQUIRE(answer.end == planner::PathEnd::kSolved);
   const ClearanceField clearance(task.map.grid, true);
   for (const Pose2& T_map_body : answer.poses)
     CHECK(clearance.bounds(T_map_body.position()).upper >= 0.3);

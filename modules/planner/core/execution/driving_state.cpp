@@ -61,8 +61,8 @@ const TablePattern* DrivingState::runningPattern() const {
 
 SearchResult DrivingState::search(int64_t now, const PlanStep& start, int expansions) {
   const bool may_keep_next = runningPattern() != nullptr;
-  SearchResult result = planner.plan({set.table(), local_map, start, plan.steps, may_keep_next},
-                                     expansions, counters);
+  SearchResult result =
+      planner.plan({set.table(), map, start, plan.steps, may_keep_next}, expansions, counters);
   plan.made = now;
   status.changed = true;
   plan.expansions = result.expansions;
@@ -73,14 +73,14 @@ SearchResult DrivingState::search(int64_t now, const PlanStep& start, int expans
 }
 
 bool DrivingState::sayUnreachable() {
-  if (!local_map.distanceToGoal().unreachable()) return false;
+  if (!map.distanceToGoal().unreachable()) return false;
   plan.time_to_go = std::numeric_limits<double>::quiet_NaN();
-  status.say(PlanStatus::kUnreachable, local_map.distanceToGoal().problem());
+  status.say(PlanStatus::kUnreachable, map.distanceToGoal().problem());
   return true;
 }
 
 void DrivingState::sayDriving(int64_t now) {
-  const std::string& reason = local_map.goalSubstitutionReason();
+  const std::string& reason = map.goalSubstitutionReason();
   status.sayDriving(now, reason.empty() ? stopAhead(tracker.running(), plan, table()) : reason);
 }
 

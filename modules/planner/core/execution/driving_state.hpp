@@ -13,7 +13,7 @@
 #include "common/geometry/track.hpp"
 #include "modules/planner/core/execution/motion_planner.hpp"
 #include "modules/planner/core/execution/planner_inputs.hpp"
-#include "modules/planner/core/map/local_map.hpp"
+#include "modules/planner/core/map/planning_map.hpp"
 #include "modules/planner/core/search/prediction.hpp"
 
 namespace tread::planner {
@@ -36,7 +36,7 @@ struct PolicyConfig {
 
 /// The configuration of the planner.
 struct PlannerConfig {
-  LocalMapConfig local_map;
+  PlanningMapConfig map;
   SearchConfig search;
   PolicyConfig policy;
   SideHysteresisConfig side_hysteresis;
@@ -126,7 +126,7 @@ enum class DrivingMode { kStanding, kDriving, kSettling };
 struct DrivingState {
   DrivingState(const PlannerConfig& planner_config, int64_t run_id)
       : config(planner_config),
-        local_map(planner_config.local_map),
+        map(planner_config.map),
         set(planner_config.sweep, planner_config.default_sigma),
         planner(planner_config.search, planner_config.side_hysteresis),
         tracker(run_id) {}
@@ -148,7 +148,7 @@ struct DrivingState {
   }
 
   PlannerConfig config;
-  LocalMap local_map;
+  PlanningMap map;
   ActiveSet set;
   MotionPlanner planner;
   ExecutionTracker tracker;

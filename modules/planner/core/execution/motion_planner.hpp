@@ -4,18 +4,59 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "modules/planner/core/execution/side_hysteresis.hpp"
-#include "modules/planner/core/map/local_map.hpp"
+#include "modules/planner/core/map/planning_map.hpp"
+#include "modules/planner/core/search/pattern_search.hpp"
+#include "modules/planner/core/search/pattern_table.hpp"
 
 namespace tread::planner {
+
+/// When the planner may change its mind about the side it turns to.
+struct SideHysteresisConfig {
+  double gain = 4.0;   ///< [s] a plan to the other side must be cheaper by; 0 = any cheaper one
+  double turn = 0.12;  ///< [rad] a pattern that turns more gives a plan its side
+  double ahead = 3.0;  ///< [s] if it begins within this from where the plan begins
+};
+
+/// Remembers to which side the vehicle is about to turn, and judges plans to the other one.
+/** What is kept in mind is the last plan that had a side; patterns that begin as it says leave it,
+ * so that it always begins where the running pattern ends. Plans without a side leave it as it is:
+ * left, straight on and right is a change of mind, too. */
+class SideHysteresis {
+ public:
+  explicit SideHysteresis(const SideHysteresisConfig& config) : config_(config) {}
+
+  /// The bridge has begun a pattern.
+  void begun(int pattern_id);
+  void forget() { intended_.clear(); }
+  /// Takes the plan that is followed from now on.
+  void take(const std::vector<PlanStep>& plan, const PatternTable& table);
+  /// Ids of the patterns with which a plan must begin to turn to the side it is about to turn to;
+  /// empty if the given plan does not turn to the other one.
+  std::vector<int> opposedBy(const std::vector<PlanStep>& plan, const PatternTable& table) const;
+  /// Whether a fresh plan is so much better than the best one along the branch that it is taken.
+  /** One that leads somewhere is better than one that was cut off. */
+  bool isWorth(const SearchResult& fresh, const SearchResult& along_branch) const;
+
+ private:
+  /// The pattern of a sequence that gives it its side: its place, or none.
+  struct Turn {
+    size_t index = 0;
+    bool left = false;
+  };
+  std::optional<Turn> turnOf(const std::vector<int>& ids, const PatternTable& table) const;
+
+  SideHysteresisConfig config_;
+  std::vector<int> intended_;  ///< ids from the end of the running pattern on
+};
 
 /// From where to plan, and with what.
 struct PlanRequest {
   std::shared_ptr<const PatternTable> table;
-  const LocalMap& local_map;
+  const PlanningMap& map;
   const PlanStep& start;                    ///< the end of the running pattern, or where it stands
   const std::vector<PlanStep>& last_steps;  ///< of the last plan, from there on
   bool may_keep_next;                       ///< a pattern runs: its queued successor may be kept

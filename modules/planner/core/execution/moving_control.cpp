@@ -49,7 +49,7 @@ bool MovingControl::frozen(const PlannerInputs& s) const {
 
 std::optional<double> MovingControl::conflict(const Pose2& here,
                                               const std::vector<ExpectedPose>& poses) const {
-  const CollisionChecker& around = state_.local_map.collisionChecker();
+  const CollisionChecker& around = state_.map.collisionChecker();
   const int level = around.freeLevel(here, CollisionChecker::kCheck);
   if (level >= 0) return firstConflict(around, poses, level);
   // On blocked ground already: it must not become worse.
@@ -125,7 +125,7 @@ void MovingControl::searchNext(const PlannerInputs& s, const Prediction& running
 }
 
 bool MovingControl::stopNext(const Prediction& running) {
-  const CollisionChecker& around = state_.local_map.collisionChecker();
+  const CollisionChecker& around = state_.map.collisionChecker();
   const int motion_class = state_.runningPattern()->exit;
   const TablePattern* best = nullptr;
   const int level = around.freeLevel(running.T_map_end, CollisionChecker::kCheck);
@@ -155,7 +155,7 @@ bool MovingControl::stopNext(const Prediction& running) {
 bool MovingControl::stoppingIsBetter(const PlannerInputs& s,
                                      const std::vector<ExpectedPose>& poses) const {
   if (!s.pose->twist) return true;
-  const CollisionChecker& around = state_.local_map.collisionChecker();
+  const CollisionChecker& around = state_.map.collisionChecker();
   const auto worst = [&](const std::vector<ExpectedPose>& way) {
     int level = CollisionChecker::kCheck;
     for (const ExpectedPose& at : way)

@@ -2,15 +2,74 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "modules/planner/core/execution/motion_monitors.hpp"
 #include "modules/planner/core/execution/moving_control.hpp"
-#include "modules/planner/core/execution/recovery.hpp"
+#include "modules/planner/core/execution/planner_inputs.hpp"
+#include "modules/planner/core/map/collision_checker.hpp"
+#include "modules/planner/core/search/pattern_table.hpp"
 
 namespace tread::planner {
+
+/// Knows when the vehicle has come to a stand: by its twist, or by its poses where no twist is
+/// measured.
+class StandstillDetector {
+ public:
+  /// Takes the newest pose; the same again is no news.
+  void take(const PoseReading& pose);
+  /// Whether the vehicle has stood for a moment, judged by poses measured after `since` [us] only.
+  bool stands(int64_t since) const;
+
+ private:
+  static constexpr int64_t kMoment = 200'000;  ///< [us]
+  static constexpr double kSlow = 0.08;        ///< [m/s, rad/s]
+
+  std::deque<PoseReading> poses_;
+};
+
+/// Knows when the vehicle does not come nearer to its goal any more.
+class ProgressMonitor {
+ public:
+  /// `patience` [us] without progress is too long.
+  explicit ProgressMonitor(int64_t patience) : patience_(patience) {}
+
+  void restart(int64_t now);
+  /// Takes the distance to the goal [m]. Returns true if there was no progress for too long, and
+  /// begins anew.
+  /** A way that has become much longer is a dead end that was seen: patience begins anew, but only
+   * so often. */
+  bool stuck(double distance_to_go, int64_t now);
+
+ private:
+  static constexpr double kProgress = 0.5;  ///< [m]
+  static constexpr double kDeadEnd = 3.0;   ///< [m]
+  static constexpr int kDeadEnds = 10;
+
+  int64_t patience_;
+  int64_t since_ = 0;
+  double best_ = 0.0;
+  bool any_ = false;
+  int dead_ends_ = 0;
+};
+
+/// Moves for a vehicle that stands and finds no way on: back a little, or turn and look.
+class Recovery {
+ public:
+  /// Ids of patterns that lead from rest to rest over free ground; empty if there are none.
+  /** Every call prefers another kind: backing out, turning one way, turning the other way. On
+   * blocked ground only moves that overlap no more than the vehicle does already. */
+  std::vector<int> propose(const PatternTable& table, const CollisionChecker& collision_checker,
+                           const Pose2& T_map_body);
+  int tries() const { return tries_; }
+  void restart() { tries_ = 0; }
+
+ private:
+  int tries_ = 0;
+};
 
 /// While the vehicle stands: sets off, and where nothing is free waits, tries to get out, and gives
 /// a way up.

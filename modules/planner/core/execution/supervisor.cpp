@@ -45,7 +45,7 @@ Decision Supervisor::step(const PlannerInputs& s, const StopPredicate& stop) {
   if (state_.set.retry(state_.tracker)) noteNewSet();
   state_.planner.countCycle(state_.set.table(), state_.mode == DrivingMode::kDriving);
   was_armed_ = was_armed_ || (s.bridge && s.bridge->armed());
-  const MapAndSet map_and_set{state_.local_map.newestUtime(),
+  const MapAndSet map_and_set{state_.map.newestUtime(),
                               state_.set.table() ? state_.table().defect() : "no PATTERN_SET yet",
                               was_armed_};
   act(s, checkPreconditions(s, map_and_set, state_.config.ages));
@@ -61,8 +61,8 @@ void Supervisor::act(const PlannerInputs& s, const Preconditions& ready) {
       return state_.status.say(PlanStatus::kIdle, "");
     return state_.status.say(ready.status, ready.reason);
   }
-  state_.local_map.updateSurroundings(s.pose->T_map_body, s.now);
-  if (s.goal) state_.local_map.updateDistance(s.pose->T_map_body, *s.goal, s.now);
+  state_.map.updateCollisionChecker(s.pose->T_map_body, s.now);
+  if (s.goal) state_.map.updateDistance(s.pose->T_map_body, *s.goal, s.now);
   if (s.goal && ready.level == Preconditions::Level::kGo && !standing_.arrived()) watchProgress(s);
   if (state_.mode == DrivingMode::kSettling) {
     const bool too_long = s.now - state_.settling_since > state_.config.policy.settle_limit;
@@ -82,7 +82,7 @@ void Supervisor::followGoal(const PlannerInputs& s) {
   goal_id_ = id;
   standing_.restart();
   state_.planner.side().forget();
-  state_.local_map.forgetDetours();
+  state_.map.forgetDetours();
   progress_.restart(s.now);
   state_.status.clearNote();
   state_.plan.made.reset();
@@ -137,7 +137,7 @@ void Supervisor::watchProgress(const PlannerInputs& s) {
   const int64_t patience = state_.config.policy.patience / 1'000'000;
   state_.status.note("no progress for " + std::to_string(patience) + " s: looking for another way",
                      s.now + kNoteTime);
-  state_.local_map.addDetourAhead(p, state_.config.policy.detours);
+  state_.map.addDetourAhead(p, state_.config.policy.detours);
 }
 
 PlanReport Supervisor::report(const PlannerInputs& s) const {

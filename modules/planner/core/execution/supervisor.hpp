@@ -17,7 +17,7 @@ struct Decision {
 };
 
 /// The planner without its wires: what to hand over to the motor bridge, from all that is known.
-/** Call takeSet() and localMap().put() as things come, then step() at 20 Hz. It
+/** Call takeSet() and map().put() as things come, then step() at 20 Hz. It
     1. learns from MOTOR and EXECUTION what became of what it handed over;
     2. checks the preconditions, and empties the program or lets the vehicle come to rest;
     3. checks what is under way against the newest map: a running pattern that will hit something is
@@ -38,8 +38,8 @@ class Supervisor {
    * first step in which it fits, which may be when the vehicle stands. */
   bool takeSet(const PatternSet& set);
   const std::string& setRefusal() const { return state_.set.refusal(); }
-  LocalMap& localMap() { return state_.local_map; }
-  const DistanceToGoal& distanceToGoal() const { return state_.local_map.distanceToGoal(); }
+  PlanningMap& map() { return state_.map; }
+  const DistanceToGoal& distanceToGoal() const { return state_.map.distanceToGoal(); }
 
   /// `stop` may end a search early (a deadline); the configured expansions end it in any case.
   Decision step(const PlannerInputs& inputs, const StopPredicate& stop);

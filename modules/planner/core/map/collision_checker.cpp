@@ -11,10 +11,6 @@ namespace {
 /// Beyond the footprint nobody needs to know how far off things are [m].
 constexpr double kFarthestLook = 1.5;
 
-Footprint withMargin(const FootprintSize& size, double margin) {
-  return Footprint(size.front, size.rear, size.half_width, margin);
-}
-
 /// A pose of a pattern that begins at `start`.
 TurnedPose alongFrom(const TurnedPose& start, const SweptPose& at) {
   const double c = start.cos_yaw;
@@ -30,7 +26,7 @@ CollisionChecker::CollisionChecker(Grid grid, const FootprintSize& size, const M
     : grid_(std::move(grid)),
       unknown_blocks_(unknown_blocks),
       margins_(margins),
-      arm_(withMargin(size, 0.0).circumscribed()) {
+      arm_(Footprint(size, 0.0).circumscribed()) {
   const double most = arm_ + 2.0 * std::max(margins.plan, margins.largest);
   field_ = ClearanceField(grid_, unknown_blocks, most + kFarthestLook);
   const double check = std::min(margins.check, margins.plan);
@@ -40,7 +36,7 @@ CollisionChecker::CollisionChecker(Grid grid, const FootprintSize& size, const M
     level_margins_.push_back(margins.plan + share * std::max(0.0, margins.largest - margins.plan));
   }
   for (const double margin : level_margins_) {
-    levels_.push_back(withMargin(size, margin));
+    levels_.emplace_back(size, margin);
     // The least that makes plan + growth * sigma reach the margin.
     const double sigma = std::max(0.0, margin - margins.plan) / std::max(1e-9, margins.growth);
     level_variances_.push_back(static_cast<float>(sigma * sigma));
@@ -100,7 +96,7 @@ bool CollisionChecker::sweptFootprintFree(const TurnedPose& start, const SweptFo
   // The end first: patterns that hit something mostly hit it with their end.
   for (auto pose = cover.poses.rbegin(); pose != cover.poses.rend(); ++pose)
     if (!footprint.isFree(field_, alongFrom(start, pose->at))) return false;
-  const auto inset = static_cast<float>(cover.front - footprint.front());
+  const auto inset = static_cast<float>(cover.front - footprint.size().front);
   int free_way = -1;  // the last one that was checked in full
   for (const CornerDisc& disc : cover.discs) {
     const auto x = static_cast<double>(disc.x - inset * disc.out_x);

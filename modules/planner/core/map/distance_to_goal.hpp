@@ -62,7 +62,7 @@ inline bool isWithin(const Goal& goal, const Pose2& T_map_body, double share = 1
 
 /// Weights and extent of DistanceToGoal.
 struct DistanceFieldConfig {
-  double inflation = 0.34;      ///< [m] clearance below which a cell is blocked: half the width
+  double inflation = 0.0;       ///< [m] clearance below which a cell is blocked: half the width
   double wide = 0.7;            ///< [m] clearance from which on ground counts as open
   double tight_weight = 1.0;    ///< [1] extra length of a just passable cell; 0 = none
   double detour_weight = 8.0;   ///< [1] extra length where the vehicle did not get through
@@ -72,7 +72,7 @@ struct DistanceFieldConfig {
   double reach = 14.0;          ///< [m] around the vehicle that must be filled in
 };
 
-/// A place to go round, because the vehicle did not get through.
+/// A spot to go round, because the vehicle did not get through.
 struct Detour {
   Eigen::Vector2d p_map{0.0, 0.0};
   double radius = 0.6;  ///< [m]
@@ -80,6 +80,40 @@ struct Detour {
 
 /// Polled during a computation: true ends it early.
 using Interruption = std::function<bool()>;
+
+/// The cells of a rectangle of map, numbered row by row, with a rim of further ones around them.
+struct RimmedCells {
+  double size = 0.2;      ///< [m] side of a cell
+  double per_size = 5.0;  ///< [1/m]
+  int lower_x = 0;
+  int lower_y = 0;
+  int width = 0;  ///< without the rim
+  int height = 0;
+  int stride = 0;  ///< width with the rim
+
+  bool empty() const { return width == 0 || height == 0; }
+  size_t count() const { return static_cast<size_t>(stride) * static_cast<size_t>(height + 2); }
+  /// Number of the cell in a column and row, counted from the rectangle's lower left one.
+  size_t number(int x, int y) const { return static_cast<size_t>((y + 1) * stride + x + 1); }
+  /// A cell, and how far from its centre a point lies [cells]; cell 0, of the rim, for all outside.
+  struct Place {
+    size_t cell = 0;
+    float dx = 0.0F;
+    float dy = 0.0F;
+  };
+  Place placeOf(double x, double y) const {
+    const double column = x * per_size - lower_x;
+    const double row = y * per_size - lower_y;
+    if (!(column >= 0.0 && row >= 0.0 && column < width && row < height)) return {};
+    const int cx = static_cast<int>(column);
+    const int cy = static_cast<int>(row);
+    return {number(cx, cy), static_cast<float>(column - cx - 0.5),
+            static_cast<float>(row - cy - 0.5)};
+  }
+  /// The cell under a point; the nearest one for a point outside.
+  size_t cellAt(const Eigen::Vector2d& p_map) const;
+  Eigen::Vector2d centreOf(size_t cell) const;
+};
 
 /// Length of the shortest way to the goal around known obstacles, from everywhere [m].
 /** Fast marching (first order, upwind) from the goal over coarse cells: obstacles are grown by half
@@ -90,6 +124,7 @@ class DistanceToGoal {
  public:
   /// Lengths times this do not exceed the true ones (first-order error, coarse cells; tested).
   static constexpr double kAdmissibleShare = 0.92;
+  static constexpr double kMuchNearer = 0.5;  ///< [m] see nearestWithinReach()
 
   DistanceToGoal() = default;
   DistanceToGoal(const ClearanceSource& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
@@ -102,13 +137,12 @@ class DistanceToGoal {
                const std::vector<Detour>& detours, const DistanceFieldConfig& config,
                const Interruption& interruption = {});
 
-  bool empty() const { return width_ == 0 || height_ == 0; }
-  /// Way from a point to the rim of the goal's tolerance [m]; infinite if there is none.
+  /// Length from a point to the rim of the goal's tolerance [m]; infinite if there is no way.
   /** Interpolated between coarse cells. On ground that is blocked: from the best cell within half a
    * metre. */
   double length(const Eigen::Vector2d& p_map) const;
 
-  /// Way to go at a point, and its direction.
+  /// Length at a point, and the direction of the way.
   struct Sample {
     float length = 0.0F;   ///< [m] infinite if there is no way
     float along_x = 0.0F;  ///< unit vector towards the goal; zero where none is known
@@ -117,22 +151,18 @@ class DistanceToGoal {
   /// Quicker than length(): from one cell, whose slope is followed. Off by at most cellSlack() from
   /// what the cells around would tell.
   Sample sample(double x, double y) const {
-    const Place at = placeOf(x, y);
+    const RimmedCells::Place at = cells_.placeOf(x, y);
     if (!(settled_[at.cell] < kOpen)) return {static_cast<float>(length({x, y})), 0.0F, 0.0F};
     const Slope& slope = slopes_[at.cell];
     const float gone = slope.step * (slope.along_x * at.dx + slope.along_y * at.dy);
     return {std::max(0.0F, settled_[at.cell] - gone), slope.along_x, slope.along_y};
   }
   /// Whether sample() needs no length(), which takes long and is wanted on blocked ground mostly.
-  bool isSettled(double x, double y) const { return settled_[placeOf(x, y).cell] < kOpen; }
+  bool isSettled(double x, double y) const { return settled_[cells_.placeOf(x, y).cell] < kOpen; }
   /// What the length at a point may be off by, because cells are coarse [m].
-  double cellSlack() const { return 0.75 * size_; }
-  /// Way from a point until the way to the goal leaves what is known [m]; capped at 10 m.
-  double untilUnknown(const Eigen::Vector2d& p_map) const {
-    const size_t cell = placeOf(p_map.x(), p_map.y()).cell;
-    return static_cast<double>(settled_[cell] < kOpen ? slopes_[cell].until_unknown
-                                                      : untilUnknownUnsettled(p_map));
-  }
+  double cellSlack() const { return 0.75 * cells_.size; }
+  /// Length from a point until the way to the goal leaves what is known [m]; capped at 10 m.
+  double untilUnknown(const Eigen::Vector2d& p_map) const;
   /// Unit vector along the way to the goal at a point; zero at the goal or where there is no way.
   Eigen::Vector2d direction(const Eigen::Vector2d& p_map) const;
   /// Points down the way to the goal, a step apart, at most `count`.
@@ -141,21 +171,20 @@ class DistanceToGoal {
   /// empty if there is one.
   const std::string& problem() const { return problem_; }
   bool unreachable() const { return !problem_.empty(); }
-  /// Where there is no way to the goal: the place nearest to it among those that the vehicle can
-  /// get to. Nothing if the vehicle stands on blocked ground, or nothing was worked out.
+  /// Where there is no way to the goal: the point nearest to it among those that the vehicle can
+  /// get to. Nothing if the vehicle stands on blocked ground, or nothing was computed.
   /** `before`, what was chosen the last time, is kept where nothing else is nearer by kMuchNearer:
-   * of two places that are as good the vehicle must not go from the one to the other. */
+   * between two points that are as good the vehicle must not go back and forth. */
   std::optional<Eigen::Vector2d> nearestWithinReach(
       const Eigen::Vector2d& p_vehicle, const Eigen::Vector2d& p_goal,
       const std::optional<Eigen::Vector2d>& before = std::nullopt) const;
-  static constexpr double kMuchNearer = 0.5;  ///< [m]
-  /// Whether a point lies well within the area that was worked out.
+  /// Whether a point lies in the area that was computed, `reach` [m] from its border at least.
   bool covers(const Eigen::Vector2d& p_map, double reach) const;
   /// Number of coarse cells filled in, for measuring.
   int filled() const { return filled_; }
 
  private:
-  struct Front;
+  class March;
   static constexpr float kUnknownCap = 10.0F;  // [m]
   static constexpr float kOpen = std::numeric_limits<float>::infinity();
   static constexpr float kNoWay = kOpen;
@@ -167,45 +196,12 @@ class DistanceToGoal {
     float until_unknown = 0.0F;
   };
 
-  void layOut(const ClearanceSource& map, const Goal& goal, const Eigen::Vector2d& p_vehicle,
-              double margin, const DistanceFieldConfig& config);
-  void chooseArea(const Eigen::Vector2d& p_goal, const Eigen::Vector2d& p_vehicle, double margin,
-                  const DistanceFieldConfig& config);
+  void layOut(const RimmedCells& cells);
   void paint(const ClearanceSource& map, const std::vector<Detour>& detours,
              const DistanceFieldConfig& config);
-  bool seed(const Goal& goal, Front& front);
-  bool march(const Goal& goal, const Eigen::Vector2d& p_vehicle, const DistanceFieldConfig& config,
-             const Interruption& interruption);
-  void relax(size_t cell, Front& front);
-  void settle(size_t cell);
   double lengthNearby(const Eigen::Vector2d& p_map) const;
-  /// A cell, and how far from its centre a point lies [cells]; cell 0, of the rim, for all outside.
-  struct Place {
-    size_t cell = 0;
-    float dx = 0.0F;
-    float dy = 0.0F;
-  };
-  Place placeOf(double x, double y) const {
-    const double column = x * per_size_ - lower_x_;
-    const double row = y * per_size_ - lower_y_;
-    if (!(column >= 0.0 && row >= 0.0 && column < width_ && row < height_)) return {};
-    const int cx = static_cast<int>(column);
-    const int cy = static_cast<int>(row);
-    return {static_cast<size_t>((cy + 1) * stride_ + cx + 1), static_cast<float>(column - cx - 0.5),
-            static_cast<float>(row - cy - 0.5)};
-  }
-  float untilUnknownUnsettled(const Eigen::Vector2d& p_map) const;
-  size_t cellAt(const Eigen::Vector2d& p_map) const;
-  Eigen::Vector2d centreOf(size_t cell) const;
 
-  // Cells are numbered row by row, with a rim of blocked ones around them.
-  double size_ = 0.2;
-  double per_size_ = 5.0;
-  int lower_x_ = 0;
-  int lower_y_ = 0;
-  int width_ = 0;
-  int height_ = 0;
-  int stride_ = 0;
+  RimmedCells cells_;                  // blocked in the rim
   std::vector<float> slowness_;        // [m of way per m]; infinite where blocked or settled
   std::vector<float> tentative_;       // [m] as short as was found
   std::vector<float> settled_{kOpen};  // [m] final; infinite before
@@ -213,8 +209,6 @@ class DistanceToGoal {
   std::vector<uint8_t> unknown_;
   float cut_ = 0.0F;  // beyond this nothing was filled in
   bool cut_short_ = false;
-  bool touched_border_ = false;
-  bool goal_blocked_ = false;
   std::string problem_;
   int filled_ = 0;
 };

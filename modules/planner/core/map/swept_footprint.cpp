@@ -12,8 +12,8 @@ namespace {
 /// An arc may bulge so much between two poses that are checked [m].
 constexpr double kSagitta = 0.0015;
 
-/// How far from the body's origin its outline is, about: what a turn moves [m].
-constexpr double kArm = 0.7;
+/// What a radian of turn counts of the reach [m/rad].
+constexpr double kReachOfTurn = 0.7;
 
 /// A vehicle's neighbouring poses overlap by more than half of its length [1].
 constexpr double kLengthShare = 0.45;
@@ -40,7 +40,7 @@ void addReach(std::vector<SweptPose>& sweep) {
   SweptPose before;
   for (SweptPose& at : sweep) {
     at.reach = before.reach + distanceBetween(before.pose, at.pose) +
-               kArm * std::abs(at.pose.yaw - before.pose.yaw);
+               kReachOfTurn * std::abs(at.pose.yaw - before.pose.yaw);
     before = at;
   }
 }

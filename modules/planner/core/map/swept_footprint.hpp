@@ -5,21 +5,10 @@
 #include <cmath>
 #include <vector>
 
+#include "common/geometry/footprint_size.hpp"
 #include "common/geometry/se2.hpp"
 
 namespace tread::planner {
-
-/// The vehicle's rectangle in the body frame [m].
-struct FootprintSize {
-  double front = 0.65;       ///< from the body origin forward
-  double rear = 0.65;        ///< and backward
-  double half_width = 0.34;  ///< to both sides
-
-  double length() const { return front + rear; }
-  FootprintSize widened(double margin) const {
-    return {front + margin, rear + margin, half_width + margin};
-  }
-};
 
 /// A pose along a pattern, relative to its start, with its turn worked out.
 struct SweptPose {
@@ -38,7 +27,7 @@ struct SweepResolution {
   /// is at least so long: the search checks no more poses than that, and as many as turns need.
   double covered = 0.3;
   /// The largest footprint that is asked about, margins included: how far its corners swing.
-  FootprintSize outline = FootprintSize{}.widened(0.09);
+  FootprintSize outline;
 };
 
 /// A step for a footprint that is asked about with at most such a margin [m].

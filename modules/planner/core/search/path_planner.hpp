@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "modules/planner/core/map/coarse_clearance.hpp"
+#include "modules/planner/core/map/clearance_map.hpp"
 #include "modules/planner/core/search/pattern_search.hpp"
 
 namespace tread::planner {

@@ -308,10 +308,10 @@ SearchResult PatternSearch::finish(int leaf, SearchEnd end) {
   result.cost = static_cast<double>(last.cost);
   result.expected = static_cast<double>(last.inflated);
   const bool any_field = problem_->distance_to_goal != nullptr;
-  result.way_to_go =
+  result.distance_to_go =
       any_field ? problem_->distance_to_goal->length({last.x, last.y})
                 : (problem_->goal.T_map_goal.position() - Eigen::Vector2d(last.x, last.y)).norm();
-  result.time_to_go = static_cast<double>(last.time) + result.way_to_go / costs_.bestSpeed();
+  result.time_to_go = static_cast<double>(last.time) + result.distance_to_go / costs_.bestSpeed();
   return result;
 }
 

@@ -27,7 +27,7 @@ struct SearchConfig {
   double switch_penalty = 0.6;    ///< [s] for leaving the plan that was made before
   double horizon = 9.0;           ///< [s] farther ahead nothing needs to be planned
   double least_rate = 0.3;  ///< [1] of the best speed that a plan to the horizon must gain on the
-                            ///< way to go; below that it is looked ahead twice as far
+                            ///< distance to the goal; below that it is looked ahead twice as far
   double frontier = 2.5;    ///< [m] before the unknown a plan may end
   double least_progress = 0.3;  ///< [s] of time to go that a plan must gain
   int escape_patterns = 3;      ///< so many patterns may be needed to leave blocked ground
@@ -97,7 +97,7 @@ struct SearchResult {
   double cost = 0.0;        ///< [s] of the steps, with penalties
   double expected = 0.0;    ///< [s] inflated heuristic from there on
   double time_to_go = 0.0;  ///< [s] of the steps, and the distance from there on at the best speed
-  double way_to_go = 0.0;   ///< [m] from the end of the plan
+  double distance_to_go = 0.0;  ///< [m] from the end of the plan
   int expansions = 0;
   bool exhausted = false;  ///< the whole space was searched: no better plan at this resolution
   std::string reason;      ///< why there is nothing, in words

@@ -8,11 +8,39 @@
 
 #include "common/geometry/footprint_size.hpp"
 #include "common/grid/footprint.hpp"
-#include "modules/mapping/core/column_classifier.hpp"
 #include "modules/mapping/core/ground_model.hpp"
 #include "modules/mapping/core/voxel_map.hpp"
 
 namespace tread::mapping {
+
+/// What counts as an obstacle for this robot.
+struct ObstacleConfig {
+  double step = 0.15;         ///< [m] above the ground: lower things are driven over
+  double robot_height = 0.0;  ///< [m] above the ground: higher things are driven under
+};
+
+/// Says what a column is, by heights above the ground of its voxels' centres.
+/** With ground g, doubt u, and the band from g + step to g + robot_height:
+ *  1. Obstacle: something occupied in the band, and above g + step + u.
+ *  2. In doubt (occupied in the band, but no higher than g + step + u: perhaps the ground itself):
+ *     free if the space above it in the band was seen free, else unknown. Driving nearer ends the
+ *     doubt.
+ *  3. Free: something in the band, widened by u, was seen free. Otherwise unknown.
+ *  The ground is no higher than the lowest voxel that was seen: that lowers g by up to u and a
+ *  cell. */
+class ColumnClassifier {
+ public:
+  ColumnClassifier(const ObstacleConfig& config, double cell_size)
+      : config_(config), cell_size_(cell_size) {}
+
+  Cell classify(const Column& column, int lower_z, const GroundHeight& ground) const;
+
+ private:
+  uint64_t band(double from, double to, int lower_z) const;
+
+  ObstacleConfig config_;
+  double cell_size_;
+};
 
 /// The window's middle follows the robot's height only when it is this many voxels off.
 inline constexpr int kMostOffHeight = kColumnHeight / 6;
@@ -36,7 +64,7 @@ struct Scan {
 };
 
 /// Everything that shapes the local map.
-struct LocalMapConfig {
+struct OccupancyMapConfig {
   VoxelConfig voxels;
   GroundConfig ground;
   ObstacleConfig obstacle;
@@ -59,11 +87,11 @@ struct LocalMapConfig {
  *  what is beside nor behind it and the robot could not turn on the spot. In these an obstacle
  *  that is seen wins. Whoever starts the robot, or mapping anew, asserts that this radius is free.
  */
-class LocalMap {
+class OccupancyMap {
  public:
   /// Throws std::invalid_argument if tile_cells is no multiple of the patches or sizes are not
   /// positive.
-  explicit LocalMap(const LocalMapConfig& config);
+  explicit OccupancyMap(const OccupancyMapConfig& config);
 
   /// Why a scan was not taken.
   enum class Refusal { kNone, kNotNewer, kToppled, kTooFar };
@@ -72,7 +100,7 @@ class LocalMap {
   Refusal insert(const Scan& scan);
 
   const Grid& grid() const { return grid_; }
-  const LocalMapConfig& config() const { return config_; }
+  const OccupancyMapConfig& config() const { return config_; }
   const VoxelMap& voxels() const { return voxels_; }
   GroundHeight groundAt(CellIndex cell) const { return ground_.at(cell); }
 
@@ -105,7 +133,7 @@ class LocalMap {
   void classifyPatch(CellIndex lower);
   TileState& tileOf(size_t offset);
 
-  LocalMapConfig config_;
+  OccupancyMapConfig config_;
   VoxelMap voxels_;
   GroundModel ground_;
   ColumnClassifier classifier_;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/planner/core/map/local_map.hpp"
+#include "modules/planner/core/map/planning_map.hpp"
 
 #include <cmath>
 #include <limits>
 
-#include "modules/planner/core/map/local_map.hpp"
+#include "modules/planner/core/map/planning_map.hpp"
 
 namespace tread::planner {
 namespace {
@@ -22,7 +22,7 @@ constexpr double kDetourNear = 0.8;
 
 }  // namespace
 
-bool LocalMap::put(Tile tile, double cell_size, int tile_cells) {
+bool PlanningMap::put(Tile tile, double cell_size, int tile_cells) {
   if (!(cell_size > 0.0) || tile_cells <= 0) return false;
   if (tile.cells.size() != static_cast<size_t>(tile_cells) * static_cast<size_t>(tile_cells))
     return false;
@@ -34,13 +34,12 @@ bool LocalMap::put(Tile tile, double cell_size, int tile_cells) {
   return true;
 }
 
-void LocalMap::assumeFreeUnder(const Pose2& T_map_body) {
-  const FootprintSize& size = config_.footprint;
-  const Footprint bare(size.front, size.rear, size.half_width, 0.0);
+void PlanningMap::assumeFreeUnder(const Pose2& T_map_body) {
+  const Footprint bare(config_.footprint, 0.0);
   map_->assumeFree(bare.cells(Grid(map_->cellSize(), {}, 0, 0), T_map_body));
 }
 
-void LocalMap::updateSurroundings(const Pose2& T_map_body, int64_t now) {
+void PlanningMap::updateCollisionChecker(const Pose2& T_map_body, int64_t now) {
   assumeFreeUnder(T_map_body);
   const Eigen::Vector2d p = T_map_body.position();
   const bool moved = (p - p_window_).norm() > kWindowSlack;
@@ -59,7 +58,7 @@ void LocalMap::updateSurroundings(const Pose2& T_map_body, int64_t now) {
   p_window_ = p;
 }
 
-bool LocalMap::sameGoal(const Goal& goal) const {
+bool PlanningMap::sameGoal(const Goal& goal) const {
   const Pose2& a = goal.T_map_goal;
   return field_goal_ && field_goal_->id == goal.id && field_goal_->T_map_goal.x == a.x &&
          field_goal_->T_map_goal.y == a.y && field_goal_->T_map_goal.yaw == a.yaw &&
@@ -67,7 +66,7 @@ bool LocalMap::sameGoal(const Goal& goal) const {
          field_goal_->yaw_tolerance == goal.yaw_tolerance;
 }
 
-void LocalMap::updateDistance(const Pose2& T_map_body, const Goal& goal, int64_t now) {
+void PlanningMap::updateDistance(const Pose2& T_map_body, const Goal& goal, int64_t now) {
   if (field_goal_ && field_goal_->id != goal.id) forgetDetours();
   const Eigen::Vector2d p = T_map_body.position();
   const bool same = sameGoal(goal);
@@ -89,8 +88,8 @@ void LocalMap::updateDistance(const Pose2& T_map_body, const Goal& goal, int64_t
   if (config_.come_close && distance_to_goal_.unreachable()) substituteGoal(p, before);
 }
 
-void LocalMap::substituteGoal(const Eigen::Vector2d& p_vehicle,
-                              const std::optional<Eigen::Vector2d>& before) {
+void PlanningMap::substituteGoal(const Eigen::Vector2d& p_vehicle,
+                                 const std::optional<Eigen::Vector2d>& before) {
   const Eigen::Vector2d p_goal = target_.T_map_goal.position();
   const std::optional<Eigen::Vector2d> nearest =
       distance_to_goal_.nearestWithinReach(p_vehicle, p_goal, before);
@@ -105,12 +104,12 @@ void LocalMap::substituteGoal(const Eigen::Vector2d& p_vehicle,
   distance_to_goal_.compute(*map_, target_, p_vehicle, detours_, config_.field);
 }
 
-void LocalMap::addDetour(const Eigen::Vector2d& p_map) {
+void PlanningMap::addDetour(const Eigen::Vector2d& p_map) {
   detours_.push_back({p_map, 0.7});
   detours_changed_ = true;
 }
 
-void LocalMap::addDetourAhead(const Eigen::Vector2d& p_vehicle, int most) {
+void PlanningMap::addDetourAhead(const Eigen::Vector2d& p_vehicle, int most) {
   if (static_cast<int>(detours_.size()) >= most) return forgetDetours();
   std::optional<Eigen::Vector2d> narrowest;
   double least = std::numeric_limits<double>::infinity();
@@ -124,7 +123,7 @@ void LocalMap::addDetourAhead(const Eigen::Vector2d& p_vehicle, int most) {
   if (narrowest) addDetour(*narrowest);
 }
 
-void LocalMap::forgetDetours() {
+void PlanningMap::forgetDetours() {
   detours_changed_ = detours_changed_ || !detours_.empty();
   detours_.clear();
 }

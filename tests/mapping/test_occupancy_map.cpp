@@ -53,7 +53,7 @@ TEST_CASE(
     "nothing") {
   SmallWorld world;
   world.boxes = {wall(9.0, -1.0, 9.3, 1.0)};
-  LocalMapConfig config = usualMap();
+  OccupancyMapConfig config = usualMap();
   config.marking_range = 6.0;
   config.clearing_range = 8.0;
   Mapper mapper(config);
@@ -275,13 +275,13 @@ TEST_CASE("scans that are not newer, of a robot on its side or too far away are 
   Mapper mapper;
   mapper.look(world, world.stand(0, 0, 0));
   mapper.utime -= 100'000;
-  REQUIRE(mapper.look(world, world.stand(0, 0, 0)) == LocalMap::Refusal::kNotNewer);
+  REQUIRE(mapper.look(world, world.stand(0, 0, 0)) == OccupancyMap::Refusal::kNotNewer);
   Eigen::Isometry3d toppled = world.stand(0, 0, 0);
   toppled.rotate(Eigen::AngleAxisd(kPi / 2, Eigen::Vector3d::UnitX()));
-  REQUIRE(mapper.look(world, toppled) == LocalMap::Refusal::kToppled);
+  REQUIRE(mapper.look(world, toppled) == OccupancyMap::Refusal::kToppled);
   Eigen::Isometry3d far = world.stand(0, 0, 0);
   far.translation().x() = 3300.0;
-  REQUIRE(mapper.look(world, far) == LocalMap::Refusal::kTooFar);
+  REQUIRE(mapper.look(world, far) == OccupancyMap::Refusal::kTooFar);
 }
 
 TEST_CASE("the same scans give the same map") {

@@ -1,14 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/mapping/core/local_map.hpp"
+#include "modules/mapping/core/occupancy_map.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "common/geometry/se3.hpp"
+#include "modules/mapping/core/voxel_map.hpp"
 
 namespace tread::mapping {
 namespace {
+
+/// Bits 0 to count - 1.
+uint64_t lowBits(double count) {
+  if (!(count > 0.0)) return 0;
+  if (count >= kColumnHeight) return ~uint64_t{0};
+  return (uint64_t{1} << static_cast<int>(count)) - 1;
+}
+
+/// All bits above the highest one that is set.
+uint64_t above(uint64_t bits) {
+  for (int shift = 1; shift < kColumnHeight; shift *= 2) bits |= bits >> shift;
+  return ~bits;
+}
 
 /// OctoMap numbers 2^15 voxels to each side of the origin.
 constexpr double kMostCells = 32000.0;
@@ -50,19 +65,41 @@ class Between {
 
 }  // namespace
 
-LocalMap::LocalMap(const LocalMapConfig& config)
+/// Voxels whose centre lies above `from` and below `to` [m].
+uint64_t ColumnClassifier::band(double from, double to, int lower_z) const {
+  const double first = std::floor(from / cell_size_ - lower_z - 0.5) + 1.0;
+  const double end = std::ceil(to / cell_size_ - lower_z - 0.5);
+  return lowBits(end) & ~lowBits(first);
+}
+
+Cell ColumnClassifier::classify(const Column& column, int lower_z,
+                                const GroundHeight& ground) const {
+  if (column.known == 0) return kUnknown;
+  const double lowest_seen = (lower_z + lowestBit(column.known) + 1) * cell_size_;
+  const double z = std::max(std::min(ground.z, lowest_seen), ground.z - ground.doubt - cell_size_);
+  const double top = z + config_.robot_height;
+  const double step = z + config_.step;
+  const uint64_t in_band = band(step, top, lower_z);
+  const uint64_t occupied = column.occupied & in_band;
+  if ((occupied & band(step + ground.doubt, top, lower_z)) != 0) return kObstacle;
+  if (occupied != 0) return (column.free() & in_band & above(occupied)) != 0 ? kFree : kUnknown;
+  const uint64_t seen = band(step - ground.doubt, top + ground.doubt, lower_z);
+  return (column.free() & seen) != 0 ? kFree : kUnknown;
+}
+
+OccupancyMap::OccupancyMap(const OccupancyMapConfig& config)
     : config_(config),
       voxels_(config.voxels, config.tile_cells * config.window_tiles),
       ground_(config.ground, config.voxels.cell_size, config.tile_cells * config.window_tiles),
       classifier_(config.obstacle, config.voxels.cell_size),
-      footprint_(config.robot.front, config.robot.rear, config.robot.half_width, 0.0),
+      footprint_(config.robot, 0.0),
       trust_(config.tile_cells * config.window_tiles),
       tiles_(config.window_tiles),
       tile_of_cell_(trust_.size()) {
   if (config.tile_cells < 1 || config.window_tiles < 2 ||
       config.tile_cells % GroundModel::kPatchCells != 0)
     throw std::invalid_argument(
-        "local map: tile_cells must be a multiple of 8 and window_tiles 2 or more");
+        "occupancy map: tile_cells must be a multiple of 8 and window_tiles 2 or more");
   for (size_t i = 0; i < tile_of_cell_.size(); ++i) {
     const CellIndex cell = trust_.indexOf(i);
     tile_of_cell_[i] = static_cast<uint32_t>(
@@ -70,7 +107,7 @@ LocalMap::LocalMap(const LocalMapConfig& config)
   }
 }
 
-LocalMap::Refusal LocalMap::insert(const Scan& scan) {
+OccupancyMap::Refusal OccupancyMap::insert(const Scan& scan) {
   if (scan.utime <= utime_) return Refusal::kNotNewer;
   const auto plane = planeUnder(scan.T_map_body_last);
   if (!plane) return Refusal::kToppled;
@@ -86,7 +123,7 @@ LocalMap::Refusal LocalMap::insert(const Scan& scan) {
   return Refusal::kNone;
 }
 
-bool LocalMap::place(const Eigen::Isometry3d& T_map_body) {
+bool OccupancyMap::place(const Eigen::Isometry3d& T_map_body) {
   const Eigen::Vector3d& p_map = T_map_body.translation();
   const double side = config_.tile_cells * config_.voxels.cell_size;
   const double half = 0.5 * config_.window_tiles;
@@ -104,7 +141,7 @@ bool LocalMap::place(const Eigen::Isometry3d& T_map_body) {
   return true;
 }
 
-void LocalMap::moveWindow(CellIndex lower, int lower_z) {
+void OccupancyMap::moveWindow(CellIndex lower, int lower_z) {
   const CellIndex lower_cell{lower.x * config_.tile_cells, lower.y * config_.tile_cells};
   voxels_.moveTo(lower_cell, lower_z);
   ground_.moveTo(lower_cell);
@@ -119,7 +156,7 @@ void LocalMap::moveWindow(CellIndex lower, int lower_z) {
   grid_ = std::move(moved);
 }
 
-void LocalMap::learnGround(const GroundPlane& plane, bool window_moved) {
+void OccupancyMap::learnGround(const GroundPlane& plane, bool window_moved) {
   if (!window_moved && !isNewStand(plane, *last_stand_)) return;
   last_stand_ = plane;
   const std::vector<CellIndex> changed = ground_.learn(plane);
@@ -130,13 +167,13 @@ void LocalMap::learnGround(const GroundPlane& plane, bool window_moved) {
   }
 }
 
-void LocalMap::assumeStartFree(const Eigen::Vector2d& p_map) {
+void OccupancyMap::assumeStartFree(const Eigen::Vector2d& p_map) {
   for (size_t i = 0; i < trust_.size(); ++i)
     trust_[i].stood_on =
         (grid_.centre(trust_.indexOf(i)) - p_map).norm() < config_.start_free_radius;
 }
 
-void LocalMap::standAt(const Pose2& T_map_body) {
+void OccupancyMap::standAt(const Pose2& T_map_body) {
   std::vector<size_t> left = std::move(under_robot_);
   under_robot_.clear();
   for (const size_t offset : left) trust_[offset].under_robot = false;
@@ -155,14 +192,14 @@ void LocalMap::standAt(const Pose2& T_map_body) {
   for (const size_t offset : under_robot_) classify(offset);
 }
 
-bool LocalMap::isOwnBody(const Eigen::Vector3d& p_body) const {
+bool OccupancyMap::isOwnBody(const Eigen::Vector3d& p_body) const {
   const FootprintSize& robot = config_.robot;
   return p_body.x() < robot.front + kOwnBodyMargin && p_body.x() > -robot.rear - kOwnBodyMargin &&
          std::abs(p_body.y()) < robot.half_width + kOwnBodyMargin &&
          p_body.z() < config_.obstacle.robot_height;
 }
 
-const std::vector<Ray>& LocalMap::raysOf(const Scan& scan) {
+const std::vector<Ray>& OccupancyMap::raysOf(const Scan& scan) {
   const Between body(scan.T_map_body_first, scan.T_map_body_last);
   rays_.clear();
   for (const Beam& beam : scan.beams) {
@@ -178,7 +215,7 @@ const std::vector<Ray>& LocalMap::raysOf(const Scan& scan) {
   return rays_;
 }
 
-void LocalMap::classify(size_t offset) {
+void OccupancyMap::classify(size_t offset) {
   const Trust& trust = trust_[offset];
   Cell cell = kFree;
   if (!trust.under_robot) {
@@ -193,24 +230,24 @@ void LocalMap::classify(size_t offset) {
   tile.utime = utime_;
 }
 
-void LocalMap::classifyPatch(CellIndex lower) {
+void OccupancyMap::classifyPatch(CellIndex lower) {
   for (int y = 0; y < GroundModel::kPatchCells; ++y)
     for (int x = 0; x < GroundModel::kPatchCells; ++x)
       classify(trust_.offset({lower.x + x, lower.y + y}));
 }
 
-LocalMap::TileState& LocalMap::tileOf(size_t offset) {
+OccupancyMap::TileState& OccupancyMap::tileOf(size_t offset) {
   return tiles_[tile_of_cell_[offset]];
 }
 
-std::vector<CellIndex> LocalMap::seenTiles() const {
+std::vector<CellIndex> OccupancyMap::seenTiles() const {
   std::vector<CellIndex> seen;
   for (size_t i = 0; i < tiles_.size(); ++i)
     if (tiles_[i].utime > 0) seen.push_back(tiles_.indexOf(i));
   return seen;
 }
 
-std::vector<CellIndex> LocalMap::takeChangedTiles() {
+std::vector<CellIndex> OccupancyMap::takeChangedTiles() {
   std::vector<CellIndex> changed;
   for (size_t i = 0; i < tiles_.size(); ++i) {
     if (tiles_[i].changed) changed.push_back(tiles_.indexOf(i));
@@ -219,7 +256,7 @@ std::vector<CellIndex> LocalMap::takeChangedTiles() {
   return changed;
 }
 
-Tile LocalMap::tile(CellIndex index) const {
+Tile OccupancyMap::tile(CellIndex index) const {
   Tile tile{index.x, index.y, tiles_.at(index).utime, {}};
   const int side = config_.tile_cells;
   tile.cells.reserve(static_cast<size_t>(side) * static_cast<size_t>(side));

@@ -20,7 +20,7 @@ inline std::string withTenths(double value) {
 }
 
 /// How the planner keeps and interprets the map.
-struct LocalMapConfig {
+struct PlanningMapConfig {
   FootprintSize footprint;
   Margins margins;
   ClearanceMapConfig clearance;
@@ -33,9 +33,9 @@ struct LocalMapConfig {
 };
 
 /// The received map, and what is derived from it on demand: collision checker and distance to goal.
-class LocalMap {
+class PlanningMap {
  public:
-  explicit LocalMap(const LocalMapConfig& config) : config_(config) {}
+  explicit PlanningMap(const PlanningMapConfig& config) : config_(config) {}
 
   /// Takes a tile; a map of another cell size replaces what is there. False if the tile is
   /// malformed.
@@ -46,8 +46,8 @@ class LocalMap {
 
   /// Updates the collision checker if the map changed or the vehicle moved on. Needs a map.
   /** Unknown ground under the vehicle becomes free: it stands there. */
-  void updateSurroundings(const Pose2& T_map_body, int64_t now);
-  /// Updates the distance to the goal. Needs updateSurroundings().
+  void updateCollisionChecker(const Pose2& T_map_body, int64_t now);
+  /// Updates the distance to the goal. Needs updateCollisionChecker().
   void updateDistance(const Pose2& T_map_body, const Goal& goal, int64_t now);
   /// Makes a place more expensive until the goal changes.
   void addDetour(const Eigen::Vector2d& p_map);
@@ -63,7 +63,7 @@ class LocalMap {
   const Goal& target() const { return target_; }
   /// Why the target is not the goal, in words; empty if it is.
   const std::string& goalSubstitutionReason() const { return goal_substitution_reason_; }
-  const LocalMapConfig& config() const { return config_; }
+  const PlanningMapConfig& config() const { return config_; }
 
  private:
   void assumeFreeUnder(const Pose2& T_map_body);
@@ -71,7 +71,7 @@ class LocalMap {
   void substituteGoal(const Eigen::Vector2d& p_vehicle,
                       const std::optional<Eigen::Vector2d>& before);
 
-  LocalMapConfig config_;
+  PlanningMapConfig config_;
   std::optional<ClearanceMap> map_;
   std::optional<CollisionChecker> checker_;
   Eigen::Vector2d p_window_{0.0, 0.0};
