@@ -2,11 +2,15 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include <tread/ins_t.hpp>
 
 #include "common/geometry/se3.hpp"
+#include "common/geometry/track.hpp"
 
 namespace tread {
 
@@ -24,5 +28,36 @@ std::optional<Twist2> planarTwist(const ins_t& ins);
 /// Inclination of the ground under the robot [rad], from roll and pitch; nothing if attitude is
 /// missing.
 std::optional<double> inclination(const ins_t& ins);
+
+/// Brings INS messages, which may come late, twice or overtaken, into the order of (utime, seq)
+/// before they become a track.
+class InsQueue {
+ public:
+  explicit InsQueue(int64_t span_us) : history_(span_us) {}
+
+  /// `now` [us]: a time far from it is that of a broken message.
+  void add(const ins_t& ins, int64_t now);
+  /// Moves everything up to `horizon` [us] into the track.
+  void settle(int64_t horizon);
+
+  /// Time of the first INS message that was heard [us]; INT64_MIN before it.
+  int64_t begin() const { return begin_; }
+  const TrackHistory& history() const { return history_; }
+  int64_t invalid() const { return invalid_; }           ///< its time cannot be
+  int64_t tooLate() const { return too_late_; }          ///< came after its time had been settled
+  int64_t withoutPose() const { return without_pose_; }  ///< no position or no heading
+
+ private:
+  void append(const ins_t& ins);
+
+  std::map<std::pair<int64_t, int64_t>, ins_t> waiting_;  ///< by (utime, seq)
+  TrackHistory history_;
+  int64_t settled_ = INT64_MIN;
+  int64_t begin_ = INT64_MIN;
+  bool jumped_ = false;
+  int64_t invalid_ = 0;
+  int64_t too_late_ = 0;
+  int64_t without_pose_ = 0;
+};
 
 }  // namespace tread

@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+
+#include <tread/program_slot_t.hpp>
 
 #include "common/messages/blank.hpp"
+#include "common/pattern/pattern_check.hpp"
 
 namespace tread {
 namespace {
@@ -30,6 +34,103 @@ pattern_set_part_t partOf(const PatternSet& set, size_t index) {
   part.times_learned = pattern.times_learned;
   std::copy(pattern.end_covariance.begin(), pattern.end_covariance.end(), part.end_covariance);
   return part;
+}
+
+/// An empty text, or what is wrong: "what; what is allowed".
+using Problem = std::string;
+
+template <class Numbers>
+bool allFinite(const Numbers& numbers) {
+  return std::all_of(std::begin(numbers), std::end(numbers),
+                     [](double number) { return std::isfinite(number); });
+}
+
+Problem headProblem(const pattern_set_part_t& part) {
+  if (part.set_version < 1) return "version is not 1 or more";
+  if (part.parent_version < 0 || part.parent_version >= part.set_version)
+    return "parent version is not 0 or one before";
+  if (part.part_count < 1 || part.part_count > static_cast<int32_t>(PatternLimits::kMaxPatterns))
+    return "part count is not 1.." + std::to_string(PatternLimits::kMaxPatterns);
+  if (part.part < 0 || part.part >= part.part_count) return "part number is not below the count";
+  if (part.set_command_kind != program_slot_t::KIND_POWER &&
+      part.set_command_kind != program_slot_t::KIND_TRACK_SPEED)
+    return "command kind is unknown";
+  if (part.set_period < PatternLimits::kMinPeriodUs ||
+      part.set_period > PatternLimits::kMaxPeriodUs)
+    return "period is not 5 ms..1 s";
+  return {};
+}
+
+Problem seriesProblem(const pattern_set_part_t& part) {
+  const auto samples = static_cast<size_t>(std::max(part.num_samples, 0));
+  if (samples < 1 || samples > PatternLimits::kMaxSamples)
+    return "number of samples is not 1.." + std::to_string(PatternLimits::kMaxSamples);
+  if (part.command.size() != samples || part.trajectory.size() != samples)
+    return "lengths of commands and trajectory are not the number of samples";
+  for (size_t i = 0; i < samples; ++i) {
+    if (part.command[i].size() != 2 || !allFinite(part.command[i]))
+      return "command " + std::to_string(i) + " is not two finite numbers";
+    if (part.trajectory[i].size() != 3 || !allFinite(part.trajectory[i]))
+      return "pose " + std::to_string(i) + " is not three finite numbers";
+  }
+  return {};
+}
+
+Problem partProblem(const pattern_set_part_t& part) {
+  if (Problem problem = headProblem(part); !problem.empty()) return problem;
+  for (const std::string* name :
+       {&part.set_name, &part.pattern_name, &part.entry_class, &part.exit_class})
+    if (name->empty() || name->size() > PatternLimits::kMaxNameLength)
+      return "a name has not 1.." + std::to_string(PatternLimits::kMaxNameLength) + " characters";
+  if (!allFinite(part.entry_twist) || !allFinite(part.exit_twist) ||
+      !allFinite(part.entry_steady) || !allFinite(part.exit_steady))
+    return "a motion class is not finite";
+  for (const double variance : part.end_covariance)
+    if (std::isinf(variance)) return "end covariance is infinite";
+  if (part.set_pattern_id < 0 || part.times_learned < 0) return "pattern id or count is negative";
+  return seriesProblem(part);
+}
+
+/// Whether two parts tell the same about their set.
+bool sameSet(const pattern_set_part_t& a, const pattern_set_part_t& b) {
+  return a.utime == b.utime && a.parent_version == b.parent_version &&
+         a.set_checksum == b.set_checksum && a.set_name == b.set_name &&
+         a.part_count == b.part_count && a.set_command_kind == b.set_command_kind &&
+         a.set_period == b.set_period;
+}
+
+MotionPattern patternOf(const pattern_set_part_t& part) {
+  MotionPattern pattern;
+  pattern.id = part.set_pattern_id;
+  pattern.name = part.pattern_name;
+  pattern.entry_class = part.entry_class;
+  pattern.exit_class = part.exit_class;
+  pattern.times_learned = part.times_learned;
+  std::copy(std::begin(part.end_covariance), std::end(part.end_covariance),
+            pattern.end_covariance.begin());
+  for (const auto& command : part.command) pattern.commands.push_back({command[0], command[1]});
+  for (const auto& pose : part.trajectory)
+    pattern.trajectory.push_back({pose[0], pose[1], pose[2]});
+  return pattern;
+}
+
+/// Adds a class, or compares it with the one of that name; false if they differ.
+bool addClass(std::vector<MotionClass>& classes, const std::string& name, const double (&twist)[3],
+              const double (&steady)[2]) {
+  const auto known = std::find_if(classes.begin(), classes.end(),
+                                  [&](const MotionClass& motion) { return motion.name == name; });
+  if (known == classes.end()) {
+    classes.push_back({name, {twist[0], twist[1], twist[2]}, {steady[0], steady[1]}});
+    return true;
+  }
+  return known->twist.v_x == twist[0] && known->twist.v_y == twist[1] &&
+         known->twist.omega == twist[2] && known->steady.left == steady[0] &&
+         known->steady.right == steady[1];
+}
+
+std::string about(const pattern_set_part_t& part) {
+  return "PATTERN_SET version " + std::to_string(part.set_version) + ", part " +
+         std::to_string(part.part) + ": ";
 }
 
 }  // namespace
@@ -57,6 +158,69 @@ std::vector<pattern_set_part_t> toMessages(const PatternSet& set) {
     parts.push_back(std::move(part));
   }
   return parts;
+}
+
+std::optional<PatternSet> PatternSetAssembler::add(const pattern_set_part_t& part) {
+  refusal_.clear();
+  const Problem problem = partProblem(part);
+  if (!problem.empty()) return refuse(about(part) + problem);
+  if (part.set_version <= last_version_) return std::nullopt;
+  Pending& pending = pendingOf(part.set_version);
+  const bool fits = pending.parts.empty() || sameSet(pending.parts.begin()->second, part);
+  // Which of the two is broken is not known: begin anew with this one, the rest is repeated.
+  if (!fits) pending.parts.clear();
+  pending.parts.insert_or_assign(part.part, part);
+  if (pending.parts.size() == static_cast<size_t>(part.part_count)) return complete(pending);
+  if (!fits) return refuse(about(part) + "contradicts the other parts of its version");
+  return std::nullopt;
+}
+
+PatternSetAssembler::Pending& PatternSetAssembler::pendingOf(int64_t version) {
+  constexpr size_t kMostPending = 3;
+  const auto known = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& pending) {
+    return pending.version == version;
+  });
+  if (known != pending_.end()) {
+    pending_.splice(pending_.end(), pending_, known);
+  } else {
+    if (pending_.size() == kMostPending) pending_.pop_front();
+    pending_.push_back({version, {}});
+  }
+  return pending_.back();
+}
+
+std::optional<PatternSet> PatternSetAssembler::complete(Pending& pending) {
+  const pattern_set_part_t first = pending.parts.begin()->second;
+  PatternSetContent content;
+  content.name = first.set_name;
+  content.version = first.set_version;
+  content.parent_version = first.parent_version;
+  content.utime = first.utime;
+  content.kind = static_cast<CommandKind>(first.set_command_kind);
+  content.period_us = first.set_period;
+  bool same_classes = true;
+  for (const auto& [index, part] : pending.parts) {
+    same_classes &=
+        addClass(content.classes, part.entry_class, part.entry_twist, part.entry_steady);
+    same_classes &= addClass(content.classes, part.exit_class, part.exit_twist, part.exit_steady);
+    content.patterns.push_back(patternOf(part));
+  }
+  pending.parts.clear();
+  const std::string version = "PATTERN_SET version " + std::to_string(first.set_version) + ": ";
+  if (!same_classes) return refuse(version + "two parts tell different twists of one motion class");
+  std::string why;
+  auto set = PatternSet::make(std::move(content), why);
+  if (!set) return refuse(version + why);
+  if (set->checksum() != first.set_checksum) return refuse(version + "checksum differs");
+  last_version_ = set->version();
+  pending_.remove_if([&](const Pending& older) { return older.version <= last_version_; });
+  return set;
+}
+
+std::optional<PatternSet> PatternSetAssembler::refuse(const std::string& why) {
+  ++refused_;
+  refusal_ = why;
+  return std::nullopt;
 }
 
 }  // namespace tread

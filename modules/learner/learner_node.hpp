@@ -9,9 +9,8 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/health.hpp"
-#include "common/messages/command_watch.hpp"
-#include "common/messages/execution_queue.hpp"
-#include "common/messages/ins_queue.hpp"
+#include "common/messages/execution_messages.hpp"
+#include "common/messages/ins_messages.hpp"
 #include "common/store/store.hpp"
 #include "modules/learner/core/learner.hpp"
 #include "modules/learner/learner_config.hpp"

@@ -3,9 +3,19 @@
 #include "modules/motor_bridge/motor_bridge_config.hpp"
 
 #include "common/vehicle/robot_file.hpp"
+#include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
 
 namespace tread::motor {
 namespace {
+
+MakeMotorController roboteq(ConfigReader section, const DriveDescription& drive) {
+  const RoboteqConfig config = readRoboteqConfig(section, drive);
+  return [config] { return std::make_unique<RoboteqConnection>(config); };
+}
+
+/// A new controller is one line here and a folder of its own.
+const std::map<std::string, MakeMotorController (*)(ConfigReader, const DriveDescription&)>
+    kControllers{{"roboteq", roboteq}};
 
 void readTimes(ConfigReader& reader, BridgeConfig& bridge) {
   reader.seconds("step", bridge.step_us, {0.001, 0.02});
@@ -19,6 +29,14 @@ void readTimes(ConfigReader& reader, BridgeConfig& bridge) {
 }
 
 }  // namespace
+
+MakeMotorController readMotorController(ConfigReader& reader, const DriveDescription& drive) {
+  std::vector<std::string> known;
+  for (const auto& [name, read] : kControllers) known.push_back(name);
+  std::string name = "roboteq";
+  reader.choice("controller", name, known);
+  return kControllers.at(name)(reader.section(name), drive);
+}
 
 MotorBridgeConfig readMotorBridgeConfig(ConfigReader& reader) {
   MotorBridgeConfig config;

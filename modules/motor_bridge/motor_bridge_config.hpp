@@ -2,13 +2,21 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <string>
 
 #include "common/config/config_reader.hpp"
+#include "common/vehicle/robot_description.hpp"
 #include "modules/motor_bridge/core/bridge.hpp"
-#include "modules/motor_bridge/motor_controllers.hpp"
+#include "modules/motor_bridge/core/motor_controller.hpp"
 
 namespace tread::motor {
+
+using MakeMotorController = std::function<std::unique_ptr<MotorController>()>;
+
+/// Reads which controller the robot has (key `controller`) and the section of that name.
+MakeMotorController readMotorController(ConfigReader& reader, const DriveDescription& drive);
 
 /// Configuration of motor_bridge, with its defaults.
 struct MotorBridgeConfig {

@@ -4,6 +4,11 @@
 
 #include <string>
 
+#include <tread/execution_record_t.hpp>
+#include <tread/ins_t.hpp>
+#include <tread/motor_t.hpp>
+#include <tread/program_t.hpp>
+
 #include "common/bus/bus.hpp"
 #include "common/bus/health.hpp"
 #include "common/link/link.hpp"
@@ -11,6 +16,15 @@
 #include "modules/motor_bridge/motor_bridge_config.hpp"
 
 namespace tread::motor {
+
+/// The core's words for a message. Nothing is checked here: that is the gate's work.
+Program fromMessage(const program_t& message);
+InsNotice fromMessage(const ins_t& message);
+
+/// One record of EXECUTION.
+execution_record_t toMessage(const ExecutionRecord& record);
+/// MOTOR, without utime and seq.
+motor_t toMessage(const BridgeOutput& output, const MotorTelemetry& telemetry);
 
 /// The motor_bridge process. PROGRAM, ARM, ESTOP, INS in; the controller, MOTOR, EXECUTION, HEALTH,
 /// CONFIG out.

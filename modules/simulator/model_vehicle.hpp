@@ -8,8 +8,8 @@
 
 #include "common/vehicle/measurement.hpp"
 #include "common/vehicle/model_document.hpp"
-#include "modules/simulator/core/ins.hpp"
-#include "modules/simulator/core/motion_noise.hpp"
+#include "modules/simulator/core/instruments.hpp"
+#include "modules/simulator/core/noise.hpp"
 #include "modules/simulator/core/robot.hpp"
 
 namespace tread::sim {

@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 
 #include "common/geometry/se2.hpp"
-#include "modules/ins_driver/nmea/nmea_fields.hpp"
 #include "modules/ins_driver/nmea/nmea_parser.hpp"
 
 using namespace tread;

@@ -12,7 +12,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/geometry/se2.hpp"
-#include "modules/simulator/core/motion_noise.hpp"
+#include "modules/simulator/core/noise.hpp"
 #include "modules/simulator/core/vehicle.hpp"
 #include "tests/simulator/shipped_robot.hpp"
 

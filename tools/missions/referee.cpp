@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/grid/footprint.hpp"
-#include "tools/robot/operator/drive_progress.hpp"
+#include "tools/robot/operator/goal_call.hpp"
 
 namespace tread::missions {
 namespace {

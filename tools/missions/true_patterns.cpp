@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "modules/simulator/core/motion_noise.hpp"
+#include "modules/simulator/core/noise.hpp"
 #include "modules/simulator/core/vehicle.hpp"
 
 namespace tread::missions {

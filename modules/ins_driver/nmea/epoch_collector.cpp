@@ -4,7 +4,7 @@
 
 #include <tuple>
 
-#include "modules/ins_driver/nmea/nmea_fields.hpp"
+#include "modules/ins_driver/nmea/nmea_parser.hpp"
 
 namespace tread::ins {
 namespace {

@@ -2,13 +2,53 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/ins_driver/nmea/nmea_parser.hpp"
 
+#include <charconv>
+
 #include "common/geometry/se2.hpp"
-#include "modules/ins_driver/nmea/nmea_fields.hpp"
 
 namespace tread::ins {
 namespace {
 
 constexpr double kRadPerDeg = kPi / 180.0;
+
+bool isDigit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+bool allDigits(std::string_view text) {
+  for (const char c : text) {
+    if (!isDigit(c)) return false;
+  }
+  return !text.empty();
+}
+
+/// A decimal number: optional sign, digits with at most one point, nothing else.
+std::optional<double> decimal(std::string_view text) {
+  const bool plus = !text.empty() && text.front() == '+';
+  if (plus) text.remove_prefix(1);
+  const size_t first = !plus && !text.empty() && text.front() == '-' ? 1 : 0;
+  // std::from_chars would also take "inf" and "nan".
+  if (first >= text.size() || (!isDigit(text[first]) && text[first] != '.')) return std::nullopt;
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value, std::chars_format::fixed);
+  if (error != std::errc{} || stop != end) return std::nullopt;
+  return value;
+}
+
+/// Value of a string of at most nine digits.
+int digits(std::string_view text) {
+  int value = 0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+int daysInMonth(int year, int month) {
+  constexpr int kDays[12] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
+  const bool leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+  return month == 2 && leap ? 29 : kDays[month - 1];
+}
+
 constexpr double kMpsPerKnot = 1852.0 / 3600.0;
 constexpr double kMpsPerKmh = 1.0 / 3.6;
 constexpr double kMaxKnots = 1000.0;              // the limit of civil receivers
@@ -140,6 +180,162 @@ const Reader* readerFor(const NmeaFields& fields) {
 }
 
 }  // namespace
+
+int64_t daysSinceEpoch(const CivilDate& date) {
+  // Years start in March here, so that the leap day is the last; 719468 days lie between 0000-03-01
+  // and 1970-01-01.
+  const int64_t year = date.month > 2 ? date.year : date.year - 1;
+  const int64_t month = date.month > 2 ? date.month - 3 : date.month + 9;
+  const int64_t day_of_year = (153 * month + 2) / 5 + date.day - 1;
+  return 365 * year + year / 4 - year / 100 + year / 400 + day_of_year - 719468;
+}
+
+NmeaFields::NmeaFields(std::string_view body) {
+  size_t index = 0;
+  for (;;) {
+    const size_t comma = body.find(',');
+    fields_[index] = body.substr(0, comma);
+    if (comma == std::string_view::npos) break;
+    if (index == kMaxFields) {
+      refuse(SentenceRefusal::kFieldCount);
+      break;
+    }
+    ++index;
+    body.remove_prefix(comma + 1);
+  }
+  count_ = index;
+}
+
+void NmeaFields::refuse(SentenceRefusal reason) {
+  if (!refusal_) refusal_ = reason;
+}
+
+std::optional<double> NmeaFields::number(size_t index, double low, double high, double scale) {
+  const std::string_view field = text(index);
+  if (field.empty()) return std::nullopt;
+  const std::optional<double> value = decimal(field);
+  if (!value) {
+    refuse(SentenceRefusal::kBadField);
+    return std::nullopt;
+  }
+  if (*value < low || *value > high) {
+    refuse(SentenceRefusal::kOutOfRange);
+    return std::nullopt;
+  }
+  return *value * scale;
+}
+
+std::optional<int> NmeaFields::integer(size_t index, int low, int high) {
+  const std::string_view field = text(index);
+  if (field.empty()) return std::nullopt;
+  if (!allDigits(field) || field.size() > 9) {
+    refuse(SentenceRefusal::kBadField);
+    return std::nullopt;
+  }
+  const int value = digits(field);
+  if (value < low || value > high) {
+    refuse(SentenceRefusal::kOutOfRange);
+    return std::nullopt;
+  }
+  return value;
+}
+
+char NmeaFields::letter(size_t index, std::string_view allowed) {
+  const std::string_view field = text(index);
+  if (field.empty()) return '\0';
+  if (field.size() == 1 && allowed.find(field[0]) != std::string_view::npos) return field[0];
+  refuse(SentenceRefusal::kBadField);
+  return '\0';
+}
+
+std::optional<int64_t> NmeaFields::timeOfDay(size_t index) {
+  const std::string_view field = text(index);
+  if (field.empty()) return std::nullopt;
+  const bool whole = field.size() == 6;
+  const bool with_fraction =
+      field.size() > 7 && field.size() <= 16 && field[6] == '.' && allDigits(field.substr(7));
+  if (!allDigits(field.substr(0, 6)) || (!whole && !with_fraction)) {
+    refuse(SentenceRefusal::kBadField);
+    return std::nullopt;
+  }
+  const int hour = digits(field.substr(0, 2));
+  const int minute = digits(field.substr(2, 2));
+  const int second = digits(field.substr(4, 2));
+  const bool leap_second = hour == 23 && minute == 59 && second == 60;
+  if (hour > 23 || minute > 59 || (second > 59 && !leap_second)) {
+    refuse(SentenceRefusal::kOutOfRange);
+    return std::nullopt;
+  }
+  int64_t fraction = 0;
+  for (size_t i = 0; i < 6; ++i)
+    fraction = fraction * 10 + (7 + i < field.size() ? field[7 + i] - '0' : 0);
+  return ((hour * 60 + minute) * 60 + second) * int64_t{1000000} + fraction;
+}
+
+std::optional<double> NmeaFields::angle(size_t index, size_t degree_digits, double limit,
+                                        std::string_view hemispheres) {
+  const std::string_view field = text(index);
+  const char hemisphere = letter(index + 1, hemispheres);
+  if (field.empty()) return std::nullopt;
+  const size_t whole_digits = degree_digits + 2;
+  const bool of_its_form =
+      field.size() >= whole_digits && allDigits(field.substr(0, whole_digits)) &&
+      (field.size() == whole_digits || field[whole_digits] == '.') && hemisphere != '\0';
+  const std::optional<double> minutes =
+      of_its_form ? decimal(field.substr(degree_digits)) : std::nullopt;
+  if (!minutes) {
+    refuse(SentenceRefusal::kBadField);
+    return std::nullopt;
+  }
+  const double degrees = digits(field.substr(0, degree_digits)) + *minutes / 60.0;
+  if (*minutes >= 60.0 || degrees > limit) {
+    refuse(SentenceRefusal::kOutOfRange);
+    return std::nullopt;
+  }
+  return (hemisphere == hemispheres[0] ? degrees : -degrees) * kRadPerDeg;
+}
+
+std::optional<GeoPoint> NmeaFields::point(size_t index) {
+  const std::optional<double> latitude = angle(index, 2, 90.0, "NS");
+  const std::optional<double> longitude = angle(index + 2, 3, 180.0, "EW");
+  if (!latitude || !longitude) return std::nullopt;
+  return GeoPoint{*latitude, *longitude};
+}
+
+std::optional<double> NmeaFields::yawFromHeading(size_t index) {
+  const std::optional<double> heading = number(index, 0.0, 360.0, kRadPerDeg);
+  if (!heading) return std::nullopt;
+  return wrapAngle(kPi / 2.0 - *heading);
+}
+
+std::optional<CivilDate> NmeaFields::checked(const CivilDate& date) {
+  if (date.month >= 1 && date.month <= 12 && date.day >= 1 &&
+      date.day <= daysInMonth(date.year, date.month)) {
+    return date;
+  }
+  refuse(SentenceRefusal::kOutOfRange);
+  return std::nullopt;
+}
+
+std::optional<CivilDate> NmeaFields::shortDate(size_t index) {
+  const std::string_view field = text(index);
+  if (field.empty()) return std::nullopt;
+  if (field.size() != 6 || !allDigits(field)) {
+    refuse(SentenceRefusal::kBadField);
+    return std::nullopt;
+  }
+  const int year = digits(field.substr(4, 2));
+  return checked({year < 80 ? 2000 + year : 1900 + year, digits(field.substr(2, 2)),
+                  digits(field.substr(0, 2))});
+}
+
+std::optional<CivilDate> NmeaFields::date(size_t index) {
+  const std::optional<int> day = integer(index, 1, 31);
+  const std::optional<int> month = integer(index + 1, 1, 12);
+  const std::optional<int> year = integer(index + 2, 1980, 2200);
+  if (!day || !month || !year) return std::nullopt;
+  return checked({*year, *month, *day});
+}
 
 std::optional<int64_t> timeOfDay(const NmeaSentence& sentence) {
   return std::visit(

@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "modules/simulator/core/ins.hpp"
-#include "modules/simulator/core/laser.hpp"
-#include "modules/simulator/core/motion_noise.hpp"
+#include "modules/simulator/core/instruments.hpp"
+#include "modules/simulator/core/noise.hpp"
 #include "modules/simulator/core/vehicle.hpp"
 #include "modules/simulator/core/world.hpp"
 

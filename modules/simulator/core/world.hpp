@@ -8,7 +8,6 @@
 
 #include "common/geometry/se2.hpp"
 #include "modules/simulator/core/obstacle.hpp"
-#include "modules/simulator/core/obstacle_grid.hpp"
 #include "modules/simulator/core/terrain.hpp"
 
 namespace tread::sim {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "common/link/back_off.hpp"
+#include "common/link/descriptor_link.hpp"
 #include "common/link/link.hpp"
 
 namespace tread {

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "modules/simulator/core/random.hpp"
+#include "modules/simulator/core/noise.hpp"
 #include "tests/study/hide/event_edit.hpp"
 #include "tests/study/hide/rng.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "modules/simulator/core/random.hpp"
+#include "modules/simulator/core/noise.hpp"
 #include "tests/study/hide/bad_log.hpp"
 #include "tests/study/hide/blind_log.hpp"
 #include "tests/study/hide/instruments.hpp"

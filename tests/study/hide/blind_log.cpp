@@ -8,7 +8,7 @@
 
 #include "common/log/drive_log.hpp"
 #include "common/messages/blank.hpp"
-#include "modules/simulator/core/random.hpp"
+#include "modules/simulator/core/noise.hpp"
 
 namespace tread::blind {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/log/event_log.hpp"
-#include "modules/simulator/core/ins.hpp"
+#include "modules/simulator/core/instruments.hpp"
 #include "tests/study/hide/hidden_drive.hpp"
 
 namespace tread::blind {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "modules/simulator/core/body_pose.hpp"
-#include "modules/simulator/core/random.hpp"
+#include "modules/simulator/core/instruments.hpp"
+#include "modules/simulator/core/noise.hpp"
 
 namespace tread::blind {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "modules/simulator/core/random.hpp"
+#include "modules/simulator/core/noise.hpp"
 
 namespace tread::blind {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "modules/simulator/core/ins.hpp"
+#include "modules/simulator/core/instruments.hpp"
 #include "tests/study/hide/hidden_drive.hpp"
 
 namespace tread::blind {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "modules/simulator/core/random.hpp"
+#include "modules/simulator/core/noise.hpp"
 #include "tests/study/hide/rng.hpp"
 
 namespace tread::blind {

@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/geometry/se2.hpp"
-#include "modules/simulator/core/random.hpp"
+#include "modules/simulator/core/noise.hpp"
 #include "tests/study/hide/effect_list.hpp"
 #include "tests/study/hide/event_edit.hpp"
 #include "tests/study/hide/rng.hpp"

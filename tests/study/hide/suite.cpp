@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "modules/simulator/core/random.hpp"
+#include "modules/simulator/core/noise.hpp"
 #include "tests/study/hide/bad_log.hpp"
 #include "tests/study/hide/effect_list.hpp"
 #include "tests/study/hide/rng.hpp"

@@ -18,7 +18,6 @@
 #include "common/bus/tcp_relay.hpp"
 #include "common/config/command_line.hpp"
 #include "tools/robot/launch/host.hpp"
-#include "tools/robot/launch/run_command.hpp"
 #include "tools/robot/launch/supervision.hpp"
 
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "modules/simulator/core/laser.hpp"
+#include "modules/simulator/core/instruments.hpp"
 
 namespace tread::sim {
 

@@ -9,7 +9,7 @@
 
 #include <GeographicLib/LocalCartesian.hpp>
 
-#include "modules/simulator/core/ins.hpp"
+#include "modules/simulator/core/instruments.hpp"
 
 namespace tread::sim {
 

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "tests/tools/robot/launch/launched.hpp"
+#include "tools/robot/launch/host.hpp"
 #include "tools/robot/launch/launch_file.hpp"
-#include "tools/robot/launch/run_command.hpp"
 
 using namespace tread;
 using namespace tread::testing;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/simulator/core/motion_noise.hpp"
+#include "modules/simulator/core/noise.hpp"
 
 #include <cmath>
 

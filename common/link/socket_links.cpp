@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <netdb.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <optional>
 #include <utility>
 #include <vector>
+
+#include <arpa/inet.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include "common/link/descriptor_link.hpp"
 #include "common/link/kinds.hpp"
@@ -161,10 +162,122 @@ class TcpLink final : public DescriptorLink {
   std::optional<int64_t> since_;  // utime at which connecting began, where known
 };
 
+class TcpServerLink final : public DescriptorLink {
+ public:
+  explicit TcpServerLink(const LinkAddress& address)
+      : DescriptorLink(address.text), host_(address.host), port_(address.port) {
+    attempt();
+  }
+  ~TcpServerLink() override {
+    if (listener_ >= 0) ::close(listener_);
+  }
+
+ private:
+  int openDevice(std::string& reason) override {
+    if (listener_ < 0 && !beginListening(reason)) return -1;
+    const int fd = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    const bool nobody = fd < 0 && (errno == EAGAIN || errno == EWOULDBLOCK);
+    if (fd < 0) reason = nobody ? "nobody has connected" : systemReason(errno);
+    const int at_once = 1;
+    if (fd >= 0) ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
+    return fd;
+  }
+
+  bool beginListening(std::string& reason) {
+    sockaddr_in local{};
+    local.sin_family = AF_INET;
+    local.sin_port = htons(port_);
+    local.sin_addr.s_addr = htonl(INADDR_ANY);
+    if (!host_.empty() && ::inet_pton(AF_INET, host_.c_str(), &local.sin_addr) != 1) {
+      reason = "\"" + host_ + "\" is no IPv4 number; write tcp-server:127.0.0.1:port";
+      return false;
+    }
+    const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    // Else the port of an emulator that has just ended stays taken for a minute.
+    const int again = 1;
+    if (fd >= 0) ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &again, sizeof again);
+    if (fd >= 0 && ::bind(fd, reinterpret_cast<const sockaddr*>(&local), sizeof local) == 0 &&
+        ::listen(fd, 1) == 0) {
+      listener_ = fd;
+      return true;
+    }
+    reason = systemReason(errno);
+    if (fd >= 0) ::close(fd);
+    return false;
+  }
+
+  ssize_t writeSome(const uint8_t* bytes, size_t size) override {
+    return ::send(descriptor(), bytes, size, MSG_NOSIGNAL);
+  }
+
+  std::string host_;
+  uint16_t port_;
+  int listener_ = -1;
+};
+
+class UdpLink final : public DescriptorLink {
+ public:
+  explicit UdpLink(const LinkAddress& address)
+      : DescriptorLink(address.text), host_(address.host), port_(address.port) {
+    attempt();
+  }
+
+  bool write(const uint8_t* /*bytes*/, size_t /*size*/) override { return false; }
+
+ private:
+  int openDevice(std::string& reason) override {
+    sockaddr_in local{};
+    local.sin_family = AF_INET;
+    local.sin_port = htons(port_);
+    local.sin_addr.s_addr = htonl(INADDR_ANY);
+    if (!host_.empty() && ::inet_pton(AF_INET, host_.c_str(), &local.sin_addr) != 1) {
+      reason = "\"" + host_ + "\" is no IPv4 number; write udp:port or udp:127.0.0.1:port";
+      return -1;
+    }
+    const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    if (fd >= 0 && ::bind(fd, reinterpret_cast<const sockaddr*>(&local), sizeof local) == 0) {
+      taken_ = datagram_.size();
+      return fd;
+    }
+    reason = systemReason(errno);
+    if (fd >= 0) ::close(fd);
+    return -1;
+  }
+
+  /// What is left of the last datagram, else the next one: a short buffer must not cut it off.
+  ssize_t readSome(uint8_t* buffer, size_t capacity) override {
+    constexpr size_t kLargestDatagram = 65536;
+    while (taken_ == datagram_.size()) {
+      datagram_.resize(kLargestDatagram);
+      const ssize_t count = ::recv(descriptor(), datagram_.data(), datagram_.size(), 0);
+      datagram_.resize(static_cast<size_t>(std::max<ssize_t>(count, 0)));
+      taken_ = 0;
+      if (count < 0) return count;
+    }
+    const size_t count = std::min(capacity, datagram_.size() - taken_);
+    std::memcpy(buffer, datagram_.data() + taken_, count);
+    taken_ += count;
+    return static_cast<ssize_t>(count);
+  }
+
+  std::string host_;
+  uint16_t port_;
+  std::vector<uint8_t> datagram_;
+  size_t taken_ = 0;
+};
+
 }  // namespace
 
 std::unique_ptr<Link> makeTcpLink(const LinkAddress& address) {
   return std::make_unique<TcpLink>(address);
+}
+
+std::unique_ptr<Link> makeTcpServerLink(const LinkAddress& address) {
+  return std::make_unique<TcpServerLink>(address);
+}
+
+std::unique_ptr<Link> makeUdpLink(const LinkAddress& address) {
+  return std::make_unique<UdpLink>(address);
 }
 
 }  // namespace tread
