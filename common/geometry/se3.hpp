@@ -16,6 +16,12 @@ struct YawPitchRoll {
   double roll = 0.0;
 };
 
+/// Where and how an instrument sits in the body.
+struct Mounting {
+  Eigen::Vector3d p_body = Eigen::Vector3d::Zero();  ///< [m]
+  YawPitchRoll angles;                               ///< of its forward-left-up axes [rad]
+};
+
 /// Transform from a position [m] and yaw, pitch, roll [rad]. Uses mrpt::poses::CPose3D.
 Eigen::Isometry3d isometryFrom(const Eigen::Vector3d& position, const YawPitchRoll& angles);
 

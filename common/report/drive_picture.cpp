@@ -31,12 +31,10 @@ Colour surfaceColour(const std::string& surface) {
   return {0.95, 0.95, 0.95};
 }
 
-/// The outline of the vehicle of which the track is, about; only to show its size.
-std::vector<Vector2d> outlineAt(const Pose2& pose) {
-  constexpr double kHalfLength = 0.65;  // [m]
-  constexpr double kHalfWidth = 0.34;
-  return {pose * Vector2d(kHalfLength, kHalfWidth), pose * Vector2d(-kHalfLength, kHalfWidth),
-          pose * Vector2d(-kHalfLength, -kHalfWidth), pose * Vector2d(kHalfLength, -kHalfWidth)};
+std::vector<Vector2d> outlineAt(const FootprintSize& size, const Pose2& pose) {
+  return {
+      pose * Vector2d(size.front, size.half_width), pose * Vector2d(-size.rear, size.half_width),
+      pose * Vector2d(-size.rear, -size.half_width), pose * Vector2d(size.front, -size.half_width)};
 }
 
 struct Bounds {
@@ -102,8 +100,8 @@ void drawTrack(Panel& panel, const DriveScene& scene) {
   double next_outline = 0.0;
   for (const DriveMoment& moment : scene.track) {
     points.push_back(moment.T_map_body.position());
-    if (moment.time < next_outline) continue;
-    panel.polygon(outlineAt(moment.T_map_body), {0.0, 0.45, 0.70, 0.13});
+    if (!scene.outline || moment.time < next_outline) continue;
+    panel.polygon(outlineAt(*scene.outline, moment.T_map_body), {0.0, 0.45, 0.70, 0.13});
     next_outline = moment.time + 2.0;
   }
   panel.line(points, {kBlue, 2.2, false, "driven"});

@@ -2,9 +2,11 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "common/geometry/footprint_size.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/grid/grid.hpp"
 
@@ -68,6 +70,7 @@ struct DriveScene {
   TileMap map{0.1, 32};  ///< what mapping published
   std::vector<TreeEdge> tree;
   std::vector<DriveMoment> track;
+  std::optional<FootprintSize> outline;  ///< of the vehicle, drawn along the track
   Pose2 T_map_start;
   Pose2 T_map_goal;
   std::vector<Eigen::Vector2d> contacts;  ///< p_map [m]

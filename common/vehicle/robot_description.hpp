@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <Eigen/Core>
@@ -11,12 +12,6 @@
 #include "common/pattern/pattern.hpp"
 
 namespace tread {
-
-/// Where an instrument sits in the body.
-struct Mounting {
-  Eigen::Vector3d p_body = Eigen::Vector3d::Zero();  ///< [m]
-  YawPitchRoll angles;                               ///< of its forward-left-up axes [rad]
-};
 
 /// What drives the tracks, and how it is wired.
 struct DriveDescription {
@@ -42,7 +37,8 @@ struct RobotDescription {
   DriveDescription drive;
   Mounting ins;  ///< p_body: the point whose position the INS reports
   Mounting range_finder;
-  double max_speed = 0.0;  ///< [m/s] it is never faster: what is, is an error of the INS
+  double max_speed = 0.0;          ///< [m/s] it is never faster: what is, is an error of the INS
+  std::optional<double> max_tilt;  ///< [rad] what it drives on a steeper slope teaches nothing
 };
 
 }  // namespace tread

@@ -44,6 +44,9 @@ RobotDescription readDescription(ConfigReader& reader) {
   robot.range_finder = readMounting(reader.section("range_finder", true), "position");
   ConfigReader limits = reader.section("limits", true);
   limits.number("speed", robot.max_speed, {0.5, 50.0}, "m/s", true);
+  double tilt = std::numeric_limits<double>::quiet_NaN();
+  limits.number("tilt", tilt, {0.0, 1.6}, "rad");
+  if (std::isfinite(tilt)) robot.max_tilt = tilt;
   return robot;
 }
 

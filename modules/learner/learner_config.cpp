@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/pattern/pattern_file.hpp"
+#include "common/vehicle/robot_file.hpp"
 
 namespace tread::learner {
 namespace {
@@ -70,6 +71,8 @@ LearnerNodeConfig readLearnerConfig(ConfigReader& reader) {
   std::string patterns;
   reader.path("patterns", patterns, true);
   LearnerNodeConfig config(readPatternFile(patterns));
+  if (reader.has("robot"))
+    config.limits.max_slope = readRobot(reader).max_tilt.value_or(config.limits.max_slope);
   readLearnerSettings(reader, config);
   reader.finish();
   return config;

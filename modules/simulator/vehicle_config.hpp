@@ -8,13 +8,14 @@
 namespace tread::sim {
 
 /// Reads a dynamic vehicle in physical quantities. The ranges keep the integration stable at 1 ms.
-/** What is not named stays as it is; with `whole`, the body must be named. So a drive that has lost
- * power or a weak battery is hidden behind the serial lines. */
+/** What is not named stays as it is; with `whole`, what is of this machine alone must be named. So
+ * a drive that has lost power or a weak battery is hidden behind the serial lines. */
 void readVehicle(ConfigReader reader, VehicleParameters& vehicle, bool whole = false);
 
 /// The simulated robot of a configuration: keys `robot` and `dynamics`, each a file or a map.
-/** Outline and mountings are the described robot's (robot.yaml), the rest of the vehicle stands in
- * dynamics.yaml; both beside the configuration if they are not named. */
+/** Outline, mountings and, unless dynamics.yaml says otherwise, gauge and free speed are the
+ * described robot's (robot.yaml), the rest of the vehicle stands in dynamics.yaml; both beside the
+ * configuration if they are not named. */
 void readSimulatedRobot(ConfigReader& reader, RobotSettings& settings);
 
 /// The same from a robot's folder.

@@ -233,7 +233,7 @@ TEST_CASE("beams of one sweep are measured where the sensor is at their time") {
       const Eigen::Vector3d p_sensor(scan.ranges[i] * std::cos(angle),
                                      scan.ranges[i] * std::sin(angle), 0.0);
       const Eigen::Vector3d p_map =
-          body.p_map + body.R_map_body * (settings.laser.p_body + p_sensor);
+          body.p_map + body.R_map_body * (settings.laser.mounting.p_body + p_sensor);
       CHECK(p_map.y() == Approx(11.5).margin(0.001));
       ++checked;
     }

@@ -110,7 +110,7 @@ class BatchRun {
 MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOptions& options) {
   const double cpu_start = threadSeconds();
   MissionRun run;
-  run.scene.world = makeMissionWorld(seed, options.shortest_line);
+  run.scene.world = makeMissionWorld(seed, robot.simulated.vehicle.outline, options.shortest_line);
   RobotSystem system(robot, run.scene.world.description, run.scene.world.T_map_start, seed,
                      options.rule, options.faults, options.true_patterns);
   shadow::ShadowLearners shadows(system.learnerConfig(), options.shadows, system.bus().now());
@@ -132,6 +132,7 @@ MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOpti
   run.result.seed = seed;
   run.result.rearmed = person.rearmed();
   referee.fillScene(run.scene);
+  run.scene.outline = robot.simulated.vehicle.outline;
   run.virtual_time = static_cast<double>(system.bus().now() - start) * 1e-6;
   run.cpu_time = threadSeconds() - cpu_start;
   return run;
@@ -146,6 +147,7 @@ report::DriveScene driveSceneOf(const MissionResult& result, const MissionScene&
     drive.patches.push_back({region.surface, region.corners});
   for (const sim::Obstacle& obstacle : world.obstacles)
     drive.obstacles.push_back({obstacle.corners, obstacle.centre, obstacle.radius});
+  drive.outline = scene.outline;
   drive.map = scene.map;
   drive.tree = scene.tree;
   for (const TrackPoint& point : result.track)

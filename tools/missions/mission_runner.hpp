@@ -27,6 +27,7 @@ struct MissionOptions {
 /// World, map and search tree for a picture of a mission.
 struct MissionScene {
   MissionWorld world;
+  FootprintSize outline;               ///< of the robot
   TileMap map{0.1, 32};                ///< what mapping published
   std::vector<report::TreeEdge> tree;  ///< of a plan on the way
 };

@@ -12,8 +12,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kRobotLength = 1.30;
-constexpr double kRobotWidth = 0.68;
 /// Around start and goal: room to turn on the spot.
 constexpr double kFreeRadius = 2.2;
 
@@ -34,6 +32,7 @@ class Rng {
 
 /// Obstacles in the frame of the way: start in the origin, goal on the x axis.
 struct Layout {
+  FootprintSize robot;  ///< its outline
   double length = 0.0;
   std::vector<sim::Obstacle> obstacles;
 };
@@ -90,7 +89,7 @@ bool addApart(Layout& layout, const std::vector<sim::Obstacle>& parts, double ga
 /// A wall across the way with one gap beside the straight line.
 void addWall(Layout& layout, Rng& rng, double x) {
   const double yaw = kPi / 2 + rng.between(-0.3, 0.3);
-  const double gap = rng.between(kNarrowestGap, 2.0);
+  const double gap = rng.between(narrowestGap(layout.robot), narrowestGap(layout.robot) + 0.92);
   const double gap_at = rng.sign() * rng.between(1.6, 4.5);
   const double half = rng.between(7.0, 11.0);
   const double thickness = rng.between(0.25, 0.5);
@@ -132,14 +131,15 @@ void addBoulders(Layout& layout, Rng& rng) {
         rng.chance(0.6) ? sim::discObstacle(at, rng.between(0.15, 0.7), height)
                         : sim::boxObstacle({at.x(), at.y(), rng.between(0.0, kPi)},
                                            rng.between(0.4, 1.6), rng.between(0.3, 1.0), height);
-    if (addApart(layout, {boulder}, kNarrowestGap)) ++i;
+    if (addApart(layout, {boulder}, narrowestGap(layout.robot))) ++i;
   }
 }
 
 bool lineBlocked(const Layout& layout) {
   for (double x = 0.0; x <= layout.length; x += 0.1)
     for (const sim::Obstacle& obstacle : layout.obstacles)
-      if (sim::penetrationOf(obstacle, {kRobotLength, kRobotWidth}, {x, 0.0, 0.0}) > 0.0)
+      if (sim::penetrationOf(obstacle, {layout.robot.length(), 2.0 * layout.robot.half_width},
+                             {x, 0.0, 0.0}) > 0.0)
         return true;
   return false;
 }
@@ -157,7 +157,7 @@ bool hasWay(const Layout& layout) {
   std::vector<char> closed(static_cast<size_t>(width * height), 0);
   const auto blocked = [&](int x, int y) {
     for (const sim::Obstacle& obstacle : layout.obstacles)
-      if (distanceTo(obstacle, centre(x, y)) < kRobotWidth / 2 + 0.12) return true;
+      if (distanceTo(obstacle, centre(x, y)) < layout.robot.half_width + 0.12) return true;
     return false;
   };
   const int start_x = static_cast<int>(8.0 / kCell), start_y = height / 2;
@@ -181,8 +181,9 @@ bool hasWay(const Layout& layout) {
   return false;
 }
 
-Layout drawLayout(Rng& rng, double shortest) {
+Layout drawLayout(Rng& rng, const FootprintSize& robot, double shortest) {
   Layout layout;
+  layout.robot = robot;
   layout.length = rng.between(shortest, 1.68 * shortest);
   const int barriers = 1 + rng.below(3);
   for (int i = 0; i < barriers; ++i) {
@@ -242,15 +243,15 @@ sim::Obstacle moved(const sim::Obstacle& obstacle, const Pose2& T_map_way) {
 
 }  // namespace
 
-MissionWorld makeMissionWorld(uint64_t seed, double shortest) {
+MissionWorld makeMissionWorld(uint64_t seed, const FootprintSize& robot, double shortest) {
   // Neighbouring seeds must not give similar engines: spread them first (Weyl constant).
   Rng rng(seed * 0x9e3779b97f4a7c15ull + 1);
   MissionWorld world;
   world.seed = seed;
-  Layout layout = drawLayout(rng, shortest);
+  Layout layout = drawLayout(rng, robot, shortest);
   const bool may_be_open = rng.chance(0.1);
   while (!hasWay(layout) || (!may_be_open && !lineBlocked(layout)))
-    layout = drawLayout(rng, shortest);
+    layout = drawLayout(rng, robot, shortest);
   const Pose2 T_map_way{0.0, 0.0, rng.between(-kPi, kPi)};
   world.T_map_start = T_map_way * Pose2{0.0, 0.0, rng.between(-0.8, 0.8)};
   world.T_map_goal = T_map_way * Pose2{layout.length, 0.0, 0.0};

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "common/geometry/footprint_size.hpp"
 #include "modules/simulator/core/world.hpp"
 
 namespace tread::missions {
@@ -27,10 +28,12 @@ struct MissionWorld {
 inline constexpr double kShortestLine = 25.0;
 
 /** `shortest` [m]: with longer lines each surface is driven for longer. */
-MissionWorld makeMissionWorld(uint64_t seed, double shortest = kShortestLine);
+MissionWorld makeMissionWorld(uint64_t seed, const FootprintSize& robot,
+                              double shortest = kShortestLine);
 
-/// Narrowest gap between obstacles that a mission may hold [m]: the footprint's width (0.68 m) plus
-/// 0.4 m.
-inline constexpr double kNarrowestGap = 1.08;
+/// Narrowest gap between obstacles that a mission may hold [m].
+constexpr double narrowestGap(const FootprintSize& robot) {
+  return 2.0 * robot.half_width + 0.4;
+}
 
 }  // namespace tread::missions

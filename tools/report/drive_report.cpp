@@ -6,9 +6,12 @@
 #include <cmath>
 #include <set>
 
+#include "common/config/config_reader.hpp"
 #include "common/log/drive_log.hpp"
+#include "common/messages/execution_messages.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/report/text.hpp"
+#include "common/vehicle/robot_file.hpp"
 
 namespace tread::report {
 namespace {
@@ -16,11 +19,6 @@ namespace {
 /// The last plans before the goal are short; the richest one made farther away [m] is drawn.
 constexpr double kNear = 8.0;
 constexpr double kTrackStep = 0.05;  // [m]
-
-bool mayDrive(int16_t state) {
-  return state == motor_t::STATE_ARMED || state == motor_t::STATE_DRIVING ||
-         state == motor_t::STATE_STOPPING;
-}
 
 /// Takes in a log event by event.
 class Reader {
@@ -32,7 +30,7 @@ class Reader {
     drive_.latencies.add(event);
     dispatch(
         event, [&](const auto& message) { hear(message); }, kIns, kGoal, kPlan, kPlanTree, kMap,
-        kLearning, kExecution, kMotor);
+        kLearning, kExecution, kMotor, kConfig);
   }
 
  private:
@@ -92,6 +90,12 @@ class Reader {
       ++(record.outcome == execution_record_t::OUTCOME_COMPLETED ? drive_.completed
                                                                  : drive_.aborted);
     }
+  }
+  /// Mapping says which robot it was; logs from before robots were described do not.
+  void hear(const config_t& config) {
+    if (config.config_process != "mapping" || drive_.outline) return;
+    ConfigReader reader = ConfigReader::fromText(config.config_text, "CONFIG of mapping");
+    if (reader.has("robot")) drive_.outline = readRobot(reader).outline;
   }
   void hear(const motor_t& motor) {
     const bool may = mayDrive(motor.bridge_state);
@@ -222,6 +226,7 @@ DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth,
   }
   if (drive.map) scene.map = *drive.map;
   scene.tree = drive.tree;
+  scene.outline = drive.outline;
   scene.track = drive.track;
   if (!drive.track.empty()) scene.T_map_start = drive.track.front().T_map_body;
   scene.T_map_goal = drive.T_map_goal;

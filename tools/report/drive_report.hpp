@@ -34,6 +34,7 @@ struct DriveRecord {
   std::vector<DriveMoment> track;    ///< as the INS measured, time since begun
   std::vector<TreeEdge> tree;        ///< the richest one on the way
   std::unique_ptr<TileMap> map;
+  std::optional<FootprintSize> outline;  ///< of the robot; none = the log does not say
   Latencies latencies;
 
   double seconds() const { return static_cast<double>(ended - begun) * 1e-6; }

@@ -16,6 +16,21 @@ OrnsteinUhlenbeck biasProcess(const InsParameters& parameters, Gaussian& gaussia
   return {parameters.bias_time, static_cast<double>(parameters.period_us) * 1e-6, gaussian};
 }
 
+/// R = Rz(yaw) Ry(pitch) Rx(roll).
+Eigen::Matrix3d rotationOf(const YawPitchRoll& angles) {
+  using Eigen::AngleAxisd;
+  using Eigen::Vector3d;
+  return (AngleAxisd(angles.yaw, Vector3d::UnitZ()) * AngleAxisd(angles.pitch, Vector3d::UnitY()) *
+          AngleAxisd(angles.roll, Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+bool isAtOrigin(const Mounting& mounting) {
+  const YawPitchRoll& angles = mounting.angles;
+  return mounting.p_body.isZero(0.0) && angles.yaw == 0.0 && angles.pitch == 0.0 &&
+         angles.roll == 0.0;
+}
+
 }  // namespace
 
 BodyPose poseOnGround(const Pose2& T_map_body, double height, const Eigen::Vector2d& gradient) {
@@ -36,8 +51,7 @@ BodyPose poseOnGround(const Pose2& T_map_body, double height, const Eigen::Vecto
 
 Ins::Ins(const InsParameters& parameters, uint64_t seed, int64_t start_utime)
     : parameters_(parameters),
-      at_origin_(parameters.p_body.isZero(0.0) && parameters.yaw == 0.0 &&
-                 parameters.pitch == 0.0 && parameters.roll == 0.0),
+      at_origin_(isAtOrigin(parameters.mounting)),
       gaussian_(seed),
       bias_x_(biasProcess(parameters, gaussian_)),
       bias_y_(biasProcess(parameters, gaussian_)),
@@ -53,14 +67,10 @@ Eigen::Vector3d Ins::noise3(double sigma) {
 
 InsInput Ins::atInstrument(InsInput truth) const {
   if (at_origin_) return truth;
-  using Eigen::AngleAxisd;
-  using Eigen::Vector3d;
-  truth.body.p_map += truth.body.R_map_body * parameters_.p_body;
-  truth.v_body += truth.rate_body.cross(parameters_.p_body);
-  const Eigen::Matrix3d R_body_device = (AngleAxisd(parameters_.yaw, Vector3d::UnitZ()) *
-                                         AngleAxisd(parameters_.pitch, Vector3d::UnitY()) *
-                                         AngleAxisd(parameters_.roll, Vector3d::UnitX()))
-                                            .toRotationMatrix();
+  const Eigen::Vector3d& p_body = parameters_.mounting.p_body;
+  truth.body.p_map += truth.body.R_map_body * p_body;
+  truth.v_body += truth.rate_body.cross(p_body);
+  const Eigen::Matrix3d R_body_device = rotationOf(parameters_.mounting.angles);
   const Eigen::Matrix3d R = truth.body.R_map_body * R_body_device;
   truth.v_body = R_body_device.transpose() * truth.v_body;
   truth.yaw += wrapAngle(std::atan2(R(1, 0), R(0, 0)) - truth.yaw);
@@ -100,13 +110,10 @@ std::vector<InsSample> Ins::takeSamples(int64_t utime) {
 }
 
 Laser::Laser(const LaserParameters& parameters, uint64_t seed, int64_t start_utime)
-    : parameters_(parameters), gaussian_(streamSeed(seed, 0)), dropouts_(streamSeed(seed, 1)) {
-  using Eigen::AngleAxisd;
-  using Eigen::Vector3d;
-  R_body_sensor_ = (AngleAxisd(parameters.yaw, Vector3d::UnitZ()) *
-                    AngleAxisd(parameters.pitch, Vector3d::UnitY()) *
-                    AngleAxisd(parameters.roll, Vector3d::UnitX()))
-                       .toRotationMatrix();
+    : parameters_(parameters),
+      R_body_sensor_(rotationOf(parameters.mounting.angles)),
+      gaussian_(streamSeed(seed, 0)),
+      dropouts_(streamSeed(seed, 1)) {
   current_.angle_min = -parameters.field_of_view / 2.0;
   current_.angle_step = parameters.field_of_view / (parameters.beams - 1);
   for (int i = 0; i < parameters.beams; ++i) {
@@ -129,7 +136,7 @@ int64_t Laser::beamTime(int beam) const {
 
 void Laser::advanceTo(int64_t utime, const World& world, const BodyPose& body) {
   if (utime < beamTime(static_cast<int>(current_.ranges.size()))) return;
-  const Eigen::Vector3d p_map = body.p_map + body.R_map_body * parameters_.p_body;
+  const Eigen::Vector3d p_map = body.p_map + body.R_map_body * parameters_.mounting.p_body;
   const Eigen::Matrix3d R_map_sensor = body.R_map_body * R_body_sensor_;
   int beam = static_cast<int>(current_.ranges.size());
   while (beam < parameters_.beams && beamTime(beam) <= utime)

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "common/geometry/se2.hpp"
+#include "common/geometry/se3.hpp"
 #include "modules/simulator/core/noise.hpp"
 #include "modules/simulator/core/world.hpp"
 
@@ -28,21 +28,18 @@ BodyPose poseOnGround(const Pose2& T_map_body, double height, const Eigen::Vecto
 
 /// An inertial navigation system with satellite positions. Noise is per sample, one sigma.
 struct InsParameters {
-  Eigen::Vector3d p_body{0.0, 0.0, 0.0};  ///< the point whose position it reports [m]
-  double yaw = 0.0;                       ///< mounting, R = Rz(yaw) Ry(pitch) Rx(roll) [rad]
-  double pitch = 0.0;                     ///< nose down positive [rad]
-  double roll = 0.0;                      ///< [rad]
-  int64_t period_us = 20000;              ///< from measurement to measurement
-  int64_t latency_us = 20000;             ///< from measurement to output
-  double position_noise = 0.003;          ///< [m]
-  double position_bias = 0.02;            ///< wanders slowly, one sigma [m]
-  double height_noise = 0.005;            ///< [m]
-  double heading_noise = 0.001;           ///< [rad]
-  double heading_bias = 0.002;            ///< wanders slowly, one sigma [rad]
-  double attitude_noise = 0.001;          ///< of roll and pitch [rad]
-  double velocity_noise = 0.01;           ///< per axis [m/s]
-  double rate_noise = 0.002;              ///< per axis [rad/s]
-  double bias_time = 120.0;               ///< correlation time of both biases [s]
+  Mounting mounting;              ///< p_body: the point whose position it reports
+  int64_t period_us = 20000;      ///< from measurement to measurement
+  int64_t latency_us = 20000;     ///< from measurement to output
+  double position_noise = 0.003;  ///< [m]
+  double position_bias = 0.02;    ///< wanders slowly, one sigma [m]
+  double height_noise = 0.005;    ///< [m]
+  double heading_noise = 0.001;   ///< [rad]
+  double heading_bias = 0.002;    ///< wanders slowly, one sigma [rad]
+  double attitude_noise = 0.001;  ///< of roll and pitch [rad]
+  double velocity_noise = 0.01;   ///< per axis [m/s]
+  double rate_noise = 0.002;      ///< per axis [rad/s]
+  double bias_time = 120.0;       ///< correlation time of both biases [s]
 };
 
 /// The truth that the INS senses.
@@ -104,10 +101,7 @@ class Ins {
 
 /// A scanning laser range finder: one plane, beams in turn from right to left.
 struct LaserParameters {
-  Eigen::Vector3d p_body{0.0, 0.0, 0.0};       ///< where it is mounted [m]
-  double yaw = 0.0;                            ///< mounting, R = Rz(yaw) Ry(pitch) Rx(roll) [rad]
-  double pitch = 0.0;                          ///< nose down positive [rad]
-  double roll = 0.0;                           ///< [rad]
+  Mounting mounting;
   double field_of_view = 270.0 * kPi / 180.0;  ///< [rad], centred on its x axis
   int beams = 541;
   int64_t period_us = 100000;  ///< from scan to scan

@@ -2,8 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/simulator/core/noise.hpp"
 
-#include <cmath>
-
 namespace tread::sim {
 namespace {
 

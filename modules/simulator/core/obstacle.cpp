@@ -2,10 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/simulator/core/obstacle.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 namespace tread::sim {
 namespace {

@@ -14,8 +14,8 @@ inline constexpr int kTrackSegments = 5;
 
 /// Where the track touches the ground: axes of the body, origin midway between the two patches.
 struct TrackGeometry {
-  double length = 0.90;   ///< of the contact patch [m]
-  double lateral = 0.25;  ///< y of the track's middle [m]
+  double length = 0.0;   ///< of the contact patch [m]
+  double lateral = 0.0;  ///< y of the track's middle [m]
 
   /// x of the middle of a segment, from the middle of the patch [m].
   double segmentX(int i) const { return length * (0.5 - (i + 0.5) / kTrackSegments); }

@@ -10,18 +10,19 @@
 
 namespace tread::sim {
 
-/// Battery, power stage, motors and gears of a tracked vehicle, seen at the tracks.
+/// Battery, power stage, motors and gears of a tracked vehicle, seen at the tracks; those of a 24 V
+/// machine, but for what its size and weight decide.
 struct DriveParameters {
-  double free_speed = 1.20;     ///< track speed at full power, nominal voltage and no load [m/s]
-  double stiffness = 4000.0;    ///< loss of drive force per track speed, one track [N s/m]
-  double force_limit = 2500.0;  ///< current limit of the power stage, as force at the track [N]
-  double power_lag = 0.09;      ///< first-order lag of the power stage's output [s]
-  double dead_power = 0.0;      ///< commands up to it give nothing, larger ones lose as much [1]
-  double track_mass = 60.0;     ///< belt, sprockets, gear and rotor, as mass at the track [kg]
-  double gear_friction = 40.0;  ///< dry friction of gear and belt, one track [N]
-  double brake_force = 2000.0;  ///< parking brake, holds while there is no power [N]
-  double brake_power = 0.004;   ///< below this output the parking brake may close [1]
-  double brake_speed = 0.02;    ///< and only below this track speed [m/s]
+  double free_speed = 0.0;     ///< track speed at full power, nominal voltage and no load [m/s]
+  double stiffness = 0.0;      ///< loss of drive force per track speed, one track [N s/m]
+  double force_limit = 0.0;    ///< current limit of the power stage, as force at the track [N]
+  double power_lag = 0.09;     ///< first-order lag of the power stage's output [s]
+  double dead_power = 0.0;     ///< commands up to it give nothing, larger ones lose as much [1]
+  double track_mass = 0.0;     ///< belt, sprockets, gear and rotor, as mass at the track [kg]
+  double gear_friction = 0.0;  ///< dry friction of gear and belt, one track [N]
+  double brake_force = 0.0;    ///< parking brake, holds while there is no power [N]
+  double brake_power = 0.004;  ///< below this output the parking brake may close [1]
+  double brake_speed = 0.02;   ///< and only below this track speed [m/s]
   double force_per_current = 20.0;   ///< [N/A] of motor current
   double nominal_voltage = 25.0;     ///< [V]
   double full_voltage = 25.6;        ///< without load, battery full [V]

@@ -10,7 +10,9 @@ using namespace tread;
 using namespace tread::missions;
 
 TEST_CASE("a mission's world is the same for the same seed and another for another") {
-  const MissionWorld a = makeMissionWorld(5), b = makeMissionWorld(5), c = makeMissionWorld(6);
+  const MissionWorld a = makeMissionWorld(5, {0.65, 0.65, 0.34}),
+                     b = makeMissionWorld(5, {0.65, 0.65, 0.34}),
+                     c = makeMissionWorld(6, {0.65, 0.65, 0.34});
   REQUIRE(a.description.obstacles.size() == b.description.obstacles.size());
   REQUIRE(a.T_map_goal.x == b.T_map_goal.x);
   REQUIRE(a.T_map_goal.x != c.T_map_goal.x);
@@ -21,7 +23,7 @@ TEST_CASE("mission worlds are hard: far goals, blocked lines, changing ground, a
   constexpr int kWorlds = 60;
   for (uint64_t seed = 1; seed <= kWorlds; ++seed) {
     CAPTURE(seed);
-    const MissionWorld world = makeMissionWorld(seed);
+    const MissionWorld world = makeMissionWorld(seed, {0.65, 0.65, 0.34});
     REQUIRE((world.T_map_goal.position() - world.T_map_start.position()).norm() >= 25.0);
     blocked += world.line_blocked ? 1 : 0;
     const auto& regions = world.description.regions;
@@ -64,7 +66,7 @@ TEST_CASE("walls have gaps from the footprint plus 0.4 m up") {
   // A wall is two collinear boxes; its gap is the distance between their nearest corners.
   double narrowest = 1e9;
   for (uint64_t seed = 1; seed <= 80; ++seed) {
-    const MissionWorld world = makeMissionWorld(seed);
+    const MissionWorld world = makeMissionWorld(seed, {0.65, 0.65, 0.34});
     const auto& obstacles = world.description.obstacles;
     for (size_t i = 0; i < obstacles.size(); ++i)
       for (size_t j = i + 1; j < obstacles.size(); ++j) {
@@ -76,6 +78,6 @@ TEST_CASE("walls have gaps from the footprint plus 0.4 m up") {
         if (gap > 0.5) narrowest = std::min(narrowest, gap);
       }
   }
-  REQUIRE(narrowest >= kNarrowestGap - 1e-9);
+  REQUIRE(narrowest >= narrowestGap({0.65, 0.65, 0.34}) - 1e-9);
   REQUIRE(narrowest < 1.2);
 }

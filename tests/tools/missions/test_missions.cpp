@@ -11,6 +11,7 @@
 
 #include <unistd.h>
 
+#include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
 #include "tools/missions/mission_runner.hpp"
 #include "tools/missions/operator.hpp"
 #include "tools/missions/referee.hpp"
@@ -31,7 +32,7 @@ const RobotConfig& teodor() {
 /// A mission that the test moves on by itself, with the operator and the referee.
 struct Bench {
   explicit Bench(uint64_t seed, const FaultPlan& faults = {})
-      : world(makeMissionWorld(seed)),
+      : world(makeMissionWorld(seed, {0.65, 0.65, 0.34})),
         system(teodor(), world.description, world.T_map_start, seed, "collective", faults),
         watch(system, world),
         person(system.bus().outside(), world.T_map_goal) {
@@ -261,12 +262,13 @@ TEST_CASE(
   SECTION("every sentence corrupted") {
     faults.corrupt_share = 1.0;
   }
-  bench.system.devices().ins().setFaults(faults);
+  auto& device = dynamic_cast<sim::NmeaInsEmulator&>(bench.system.devices().ins());
+  device.setFaults(faults);
   const double zero = bench.secondsToZero(1.0);
   CHECK(zero >= 0.0);
   CHECK(zero <= 0.5);
   bench.run(2.0);
-  bench.system.devices().ins().setFaults({});
+  device.setFaults({});
   bench.runToEnd();
   CHECK(bench.watch.result().outcome == MissionOutcome::kArrived);
 }

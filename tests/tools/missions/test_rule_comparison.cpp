@@ -192,8 +192,8 @@ TEST_CASE("a comparison says in text and in JSON what each rule did") {
 }
 
 TEST_CASE("longer missions keep each surface longer") {
-  const MissionWorld usual = makeMissionWorld(5);
-  const MissionWorld longer = makeMissionWorld(5, 75.0);
+  const MissionWorld usual = makeMissionWorld(5, {0.65, 0.65, 0.34});
+  const MissionWorld longer = makeMissionWorld(5, {0.65, 0.65, 0.34}, 75.0);
   CHECK(longer.straight_line == Approx(3.0 * usual.straight_line));
   CHECK(longer.straight_line >= 75.0);
   CHECK_FALSE(sim::worldFault(longer.description));

@@ -37,7 +37,7 @@ const TruePatterns& truePatterns() {
 std::vector<ScoredExecution> driveOn(const std::string& surface, const PatternSet& set) {
   RobotConfig robot = teodor();
   robot.learner.shipped = set;
-  MissionWorld world = makeMissionWorld(8);
+  MissionWorld world = makeMissionWorld(8, {0.65, 0.65, 0.34});
   world.description.base_surface = surface;
   world.description.regions.clear();
   world.description.terrain.waves.clear();
@@ -112,7 +112,7 @@ TEST_CASE("what is driven errs less from the true patterns than from the shipped
 
 TEST_CASE("the omniscient robot gets another set where the ground becomes another one") {
   const uint64_t seed = 8;
-  const MissionWorld world = makeMissionWorld(seed);
+  const MissionWorld world = makeMissionWorld(seed, {0.65, 0.65, 0.34});
   RobotSystem system(teodor(), world.description, world.T_map_start, seed, "", {}, &truePatterns());
   Operator person(system.bus().outside(), world.T_map_goal);
   Referee watch(system, world);

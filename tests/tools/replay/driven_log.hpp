@@ -23,7 +23,7 @@ namespace tread::samples {
 /// The first seconds of a mission, everything on its bus recorded in memory.
 inline std::vector<LogEvent> drivenLog(double seconds, const FaultPlan& faults = {}) {
   constexpr int64_t kTick = 50'000;
-  const missions::MissionWorld world = missions::makeMissionWorld(14);
+  const missions::MissionWorld world = missions::makeMissionWorld(14, {0.65, 0.65, 0.34});
   missions::RobotSystem system(missions::readRobot(TREAD_SOURCE_DIR "/config/robots/teodor"),
                                world.description, world.T_map_start, 14, "collective", faults);
   std::vector<LogEvent> events;

@@ -65,7 +65,8 @@ std::string absolutePath(const std::string& path, const std::string& folder) {
 }
 
 /// The file's own placeholders, with those of the command line put in.
-void readValues(ConfigReader& reader, const LaunchSettings& settings, Placeholders& placeholders) {
+void readValues(ConfigReader& reader, const LaunchSettings& settings, const std::string& folder,
+                Placeholders& placeholders) {
   ConfigReader values = reader.section("values");
   std::string names;
   for (const std::string& key : values.keys()) {
@@ -81,6 +82,12 @@ void readValues(ConfigReader& reader, const LaunchSettings& settings, Placeholde
       throw ConfigError(settings.file + ": has no value '" + key + "' to set; there " +
                         (names.empty() ? "are none" : "is " + names));
     placeholders[key] = value;
+  }
+  // What names a file, seen from this one, does so wherever the process runs.
+  for (const std::string& key : values.keys()) {
+    const std::string path = absolutePath(placeholders[key], folder);
+    if (placeholders[key].find('/') != std::string::npos && fs::exists(path))
+      placeholders[key] = path;
   }
 }
 
@@ -129,7 +136,7 @@ LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings) 
   reader.flag("simulated", launch.simulated);
   Placeholders placeholders{
       {"run", settings.run}, {"bin", settings.bin}, {"here", folder}, {"lcm_url", launch.lcm_url}};
-  readValues(reader, settings, placeholders);
+  readValues(reader, settings, folder, placeholders);
   std::set<std::string> names{"supervisord"};  // whose log is beside theirs
   for (ConfigReader& item : reader.sections("processes", true)) {
     launch.processes.push_back(readProcess(item, placeholders, folder));

@@ -47,7 +47,8 @@ std::string readLaunchName(const std::string& file);
 /** Keys: name, lcm_url, simulated, values (a map of own placeholders with their defaults) and
  * processes, a list of maps: name, program, config, arguments, foreign, stop_signal, stop_time.
  * Placeholders in program, config and arguments: {run}, {lcm_url}, {bin}, {here} (the file's
- * folder) and the own ones. Relative paths are taken from the file's folder. */
+ * folder) and the own ones. Relative paths are taken from the file's folder; an own placeholder
+ * that names a file or folder there stands for its absolute path. */
 LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings);
 
 /// The words that start a process: ours get --config, --lcm-url and --with-parent, foreign ones

@@ -72,6 +72,26 @@ TEST_CASE("the command line replaces the address and the values of a launch file
         "/etc/robots/launch/r.yaml: has no value 'robbot' to set; there is robot");
 }
 
+TEST_CASE("one choice of the robot reaches every process of a shipped launch, the simulator too") {
+  const std::string source = TREAD_SOURCE_DIR;
+  const std::string small = source + "/tests/data/robots/small";
+  for (const char* name : {"robot", "recording", "simulated", "simulated_recording"}) {
+    LaunchSettings settings = kSettings;
+    settings.file = source + "/config/launch/" + name + ".yaml";
+    settings.values = {{"robot", "../../tests/data/robots/small"}};
+    ConfigReader reader = ConfigReader::fromFile(settings.file);
+    for (const LaunchProcess& process : readLaunchFile(reader, settings).processes) {
+      CAPTURE(name, process.name);
+      if (process.name == "logger") continue;
+      const Words& words = process.arguments;
+      if (process.name == "simulator")
+        CHECK(std::count(words.begin(), words.end(), "--set=robot=" + small + "/robot.yaml") == 1);
+      else
+        CHECK_THAT(process.config, StartsWith(small + "/"));
+    }
+  }
+}
+
 TEST_CASE("mistakes in a launch file are named with file and line") {
   CHECK_THAT(mistake("name: r\n"), StartsWith("r.yaml:") && Contains("processes"));
   CHECK_THAT(mistake("name: r\nprocesses: []\n"), StartsWith("r.yaml:2: processes: is empty"));
