@@ -54,12 +54,15 @@ SimulatorConfig readSimulatorConfig(ConfigReader& reader) {
   config.model = readModel(reader);
   readSimulatedRobot(reader, robot);
   readVehicle(reader.section("vehicle"), robot.vehicle);
+  const EmulatedDevices known = emulatedDevices();
+  reader.choice("controller", config.settings.controller, known.controllers);
+  reader.choice("source", config.settings.source, known.sources);
+  reader.choice("device", config.settings.device, known.devices);
   readAddress(reader, "ins", config.ins);
   readAddress(reader, "motor", config.motor);
   readAddress(reader, "laser", config.laser);
   reader.text("record", config.record);
   reader.finish();
-  config.effective = reader.effective();
   return config;
 }
 

@@ -20,7 +20,6 @@ struct SimulatorConfig {
   std::string motor = "pty:devices/motor";
   std::string laser = "tcp-server:127.0.0.1:10940";
   std::string record = "none";  ///< path of the truth as CSV, or none
-  std::string effective;        ///< as YAML text
 };
 
 /// Reads it strictly, the model file, too; throws ConfigError with file:line.

@@ -86,7 +86,7 @@ TEST_CASE("emulated controller: started up, it gets what is played, and every li
   RoboteqConfig config;
   config.layout.rpm_per_mps = settings.rpm_per_speed;
   EmulatedRig rig(config, settings);
-  sim::RoboteqMeasurements measured;
+  sim::DriveMeasurements measured;
   measured.battery_voltage = 24.3;
   measured.motor_current = {5.5, 6.5};
   measured.track_speed = {0.8, -0.4};

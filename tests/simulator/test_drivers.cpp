@@ -10,6 +10,7 @@
 #include "common/geometry/se3.hpp"
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
+#include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
 #include "modules/simulator/emulators/simulated_devices.hpp"
 #include "tests/simulator/shipped_robot.hpp"
 
@@ -122,7 +123,7 @@ TEST_CASE(
     "after a reboot of the controller motor_bridge starts it up anew and it stood meanwhile") {
   Loop loop;
   for (int i = 0; i < 500; ++i) loop.step({0.7, 0.7});
-  loop.devices.motor().reboot(loop.now);
+  dynamic_cast<RoboteqEmulator&>(loop.devices.motor()).reboot(loop.now);
   CHECK(loop.devices.motor().output(loop.now) == std::array<double, 2>{0.0, 0.0});
   bool lost = false;
   for (int i = 0; i < 2000; ++i) {

@@ -185,17 +185,6 @@ TEST_CASE("bytes take their time on the line in both directions") {
   CHECK(line.controller.output(line.now + 89000) == Output{0.01, 0.01});
 }
 
-TEST_CASE("a query history is repeated until it is cleared") {
-  Terminal line;
-  line.quiet();
-  line.ask("?A\r?FF\r");
-  line.ask("# 200\r", 150000);
-  CHECK(line.ask("", 60000) == "FF=0\r");
-  CHECK(line.ask("", 200000) == "A=0:0\r");
-  line.ask("# C\r");
-  CHECK(line.ask("", 1000000) == "");
-}
-
 TEST_CASE("lost and cut replies fall away, the command counts all the same") {
   Terminal line;
   line.quiet();
@@ -218,7 +207,7 @@ TEST_CASE("half a command is no command, whatever follows") {
   CHECK(line.output() == Output{0.1, 0.1});
 }
 
-TEST_CASE("a reboot brings back echo, the default watchdog and zero, unless settings were saved") {
+TEST_CASE("a reboot brings back echo, the default watchdog and zero") {
   Terminal line;
   line.quiet();
   line.ask("^RWD 250\r!M 700 700\r");
@@ -227,12 +216,6 @@ TEST_CASE("a reboot brings back echo, the default watchdog and zero, unless sett
   CHECK(line.ask("?FF\r", 300000) == "");
   line.now += 200000;
   CHECK(line.ask("~RWD\r") == "~RWD\rRWD=1000\r");
-
-  line.quiet();
-  line.ask("^RWD 250\r");
-  CHECK(line.ask("%EESAV\r") == "+\r");
-  line.ask("%RESET 321654987\r", 500000);
-  CHECK(line.ask("~RWD\r") == "RWD=250\r");
 }
 
 TEST_CASE("a brown-out switches the power stage off, tells so and lets go when it is over") {

@@ -75,9 +75,7 @@ TEST_CASE("the start-up that drivers use is answered command by command") {
   CHECK(pp[5] == std::string("ARES:720;") + scipSum("ARES:720"));
   CHECK(pp[8] == std::string("AFRT:270;") + scipSum("AFRT:270"));
   CHECK(linesOf(ask("VV")).size() == 8);
-  CHECK(linesOf(ask("II"))[3].substr(0, 8) == "LASR:ON;");
   CHECK(ask("QT") == "QT\n00P\n\n");
-  CHECK(linesOf(ask("II"))[3].substr(0, 9) == "LASR:OFF;");
 }
 
 TEST_CASE("bytes may come one at a time and lines may end with CR or LF") {
@@ -147,21 +145,7 @@ TEST_CASE("requests out of range are refused with the reason's code") {
   CHECK(status("MD0000054001x00") == "06");
   CHECK(status("MD00000540010x0") == "07");
   CHECK(status("MD00") == "0C");
-  CHECK(status("GD0000054001") == "10");
   device.add(scanOf(541, 0));
-  CHECK(device.transmit(0).empty());
-}
-
-TEST_CASE("GD gives the newest scan once, when the laser is on") {
-  ScipEmulator device({}, 1);
-  device.receive("BM\n", 0);
-  device.transmit(0);
-  device.add(scanOf(541, 7000));
-  device.receive("GD0000000901\n", 0);
-  const auto lines = linesOf(device.transmit(0));
-  CHECK(lines[0] == "GD0000000901");
-  CHECK(lines[1] == "00P");
-  CHECK(rangesOf(lines, 3).size() == 10);
   CHECK(device.transmit(0).empty());
 }
 

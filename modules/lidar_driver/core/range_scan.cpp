@@ -20,31 +20,6 @@ float classified(float range, double range_min, double range_max) {
 
 }  // namespace
 
-double ScipGeometry::angleStep() const {
-  return kTurn / steps_per_turn;
-}
-
-double ScipGeometry::angleFirst() const {
-  return (first_step - front_step) * angleStep();
-}
-
-double ScipGeometry::shareOfTurn() const {
-  return static_cast<double>(last_step - first_step) / steps_per_turn;
-}
-
-std::optional<std::string> ScipGeometry::problem() const {
-  if (steps_per_turn < 8 || steps_per_turn > 100000)
-    return "the device says ARES " + std::to_string(steps_per_turn) +
-           " steps a turn; allowed 8..100000";
-  if (first_step < 0 || last_step <= first_step || last_step - first_step >= steps_per_turn)
-    return "the device says AMIN " + std::to_string(first_step) + ", AMAX " +
-           std::to_string(last_step) +
-           "; a sweep must be longer than one step and shorter than a turn";
-  if (front_step < 0 || front_step >= steps_per_turn)
-    return "the device says AFRT " + std::to_string(front_step) + "; allowed 0..ARES-1";
-  return std::nullopt;
-}
-
 std::string ScanCheck::problemOf(const RangeScan& raw) const {
   if (raw.ranges.empty()) return "no beams";
   if (raw.ranges.size() > static_cast<size_t>(limits_.max_beams)) return "too many beams";

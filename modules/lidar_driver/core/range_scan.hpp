@@ -20,23 +20,6 @@ struct RangeScan {
   std::vector<float> ranges;  ///< [m]
 };
 
-/// Angles of a SCIP 2.0 device from its own parameters: AMIN, AMAX, AFRT, ARES.
-/** Not from the library's aperture, which is one step too wide (n instead of n-1 steps) and ignores
- * AFRT. */
-struct ScipGeometry {
-  int first_step = 0;      ///< AMIN
-  int last_step = 0;       ///< AMAX
-  int front_step = 0;      ///< AFRT: the step that looks forward
-  int steps_per_turn = 0;  ///< ARES
-
-  double angleFirst() const;
-  double angleStep() const;
-  /// Share of a turn between the first and the last beam.
-  double shareOfTurn() const;
-  /// One clear line if these numbers cannot be a device's; nothing if they can.
-  std::optional<std::string> problem() const;
-};
-
 /// What the check lets through.
 struct ScanLimits {
   double range_min = 0.1;   ///< [m]

@@ -3,7 +3,12 @@
 #include "modules/simulator/emulators/simulated_devices.hpp"
 
 #include <cmath>
+#include <map>
 #include <utility>
+
+#include "modules/simulator/emulators/hokuyo/scip_emulator.hpp"
+#include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
+#include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
 
 namespace tread::sim {
 namespace {
@@ -11,6 +16,7 @@ namespace {
 constexpr int64_t kStepUs = 1000;
 constexpr uint64_t kInsStream = 10;  // of random numbers, beside those of the robot
 constexpr uint64_t kLaserStream = 11;
+constexpr uint64_t kMotorStream = 12;
 /// Scans kept for a reader that does not come; older ones are dropped.
 constexpr size_t kMostScans = 20;
 
@@ -19,14 +25,45 @@ double drivingCurrent(const TrackDrive& track) {
   return std::copysign(1.0, track.power) * track.current;
 }
 
+// A new device is one line in one of these tables and a folder of its own.
+using Settings = SimulatorSettings;
+template <class Kind>
+using Table = std::map<std::string, std::unique_ptr<Kind> (*)(const Settings&, uint64_t seed)>;
+
+const Table<MotorEmulator> kControllers{
+    {"roboteq", [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
+       return std::make_unique<RoboteqEmulator>();
+     }}};
+const Table<InsEmulator> kSources{
+    {"nmea", [](const Settings& settings, uint64_t seed) -> std::unique_ptr<InsEmulator> {
+       return std::make_unique<NmeaInsEmulator>(NmeaInsSettings{settings.ins, {}}, seed);
+     }}};
+const Table<LaserEmulator> kRangeFinders{
+    {"hokuyo", [](const Settings& settings, uint64_t seed) -> std::unique_ptr<LaserEmulator> {
+       return std::make_unique<ScipEmulator>(scipSettingsOf(settings.robot.laser), seed);
+     }}};
+
+template <class Kind>
+std::vector<std::string> namesIn(const Table<Kind>& table) {
+  std::vector<std::string> names;
+  for (const auto& [name, make] : table) names.push_back(name);
+  return names;
+}
+
 }  // namespace
+
+EmulatedDevices emulatedDevices() {
+  return {namesIn(kControllers), namesIn(kSources), namesIn(kRangeFinders)};
+}
 
 SimulatedDevices::SimulatedDevices(std::shared_ptr<const World> world,
                                    const SimulatorSettings& settings, RobotParts parts)
     : robot_(std::move(world), settings.robot, std::move(parts)),
-      ins_(settings.ins, streamSeed(settings.robot.seed, kInsStream)),
-      motor_(settings.motor),
-      laser_(scipSettingsOf(settings.robot.laser), streamSeed(settings.robot.seed, kLaserStream)) {
+      ins_(kSources.at(settings.source)(settings, streamSeed(settings.robot.seed, kInsStream))),
+      motor_(kControllers.at(settings.controller)(settings,
+                                                  streamSeed(settings.robot.seed, kMotorStream))),
+      laser_(kRangeFinders.at(settings.device)(settings,
+                                               streamSeed(settings.robot.seed, kLaserStream))) {
   measureDrive();
 }
 
@@ -37,9 +74,9 @@ void SimulatedDevices::advanceTo(int64_t utime) {
     robot_.advanceTo(robot_.truth().utime + kStepUs);
     measureDrive();
   }
-  for (const InsSample& sample : robot_.takeInsSamples()) ins_.add(sample);
+  for (const InsSample& sample : robot_.takeInsSamples()) ins_->add(sample);
   for (LaserScan& scan : robot_.takeScans()) {
-    laser_.add(scan);
+    laser_->add(scan);
     scans_.push_back(std::move(scan));
   }
   if (scans_.size() > kMostScans) scans_.erase(scans_.begin(), scans_.end() - kMostScans);
@@ -47,7 +84,7 @@ void SimulatedDevices::advanceTo(int64_t utime) {
 
 std::array<double, 2> SimulatedDevices::power(int64_t utime) {
   const MotorWiring& wiring = robot_.settings().wiring;
-  std::array<double, 2> power = motor_.output(utime);
+  std::array<double, 2> power = motor_->output(utime);
   if (wiring.left_channel == 2) std::swap(power[0], power[1]);
   if (wiring.invert_left) power[0] = -power[0];
   if (wiring.invert_right) power[1] = -power[1];
@@ -58,15 +95,15 @@ void SimulatedDevices::measureDrive() {
   const MotorWiring& wiring = robot_.settings().wiring;
   const TrackDrive& left = robot_.vehicle().left();
   const TrackDrive& right = robot_.vehicle().right();
-  RoboteqMeasurements seen{robot_.vehicle().battery().voltage,
-                           {drivingCurrent(left), drivingCurrent(right)},
-                           {wiring.invert_left ? -left.speed : left.speed,
-                            wiring.invert_right ? -right.speed : right.speed}};
+  DriveMeasurements seen{robot_.vehicle().battery().voltage,
+                         {drivingCurrent(left), drivingCurrent(right)},
+                         {wiring.invert_left ? -left.speed : left.speed,
+                          wiring.invert_right ? -right.speed : right.speed}};
   if (wiring.left_channel == 2) {
     std::swap(seen.motor_current[0], seen.motor_current[1]);
     std::swap(seen.track_speed[0], seen.track_speed[1]);
   }
-  motor_.measure(seen);
+  motor_->measure(seen);
 }
 
 std::vector<LaserScan> SimulatedDevices::takeScans() {

@@ -4,27 +4,36 @@
 
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "modules/simulator/core/robot.hpp"
-#include "modules/simulator/emulators/hokuyo/scip_emulator.hpp"
-#include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
-#include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
+#include "modules/simulator/emulators/emulator.hpp"
 
 namespace tread::sim {
 
-/// Robot and devices of one simulation.
+/// Robot and devices of one simulation. A device's name is the one that its driver's configuration
+/// has for it.
 struct SimulatorSettings {
   RobotSettings robot;
-  NmeaInsSettings ins;
-  RoboteqSettings motor;
+  MapOnEarth ins;
+  std::string controller = "roboteq";  ///< of the motors
+  std::string source = "nmea";         ///< the INS
+  std::string device = "hokuyo";       ///< the range finder
 };
+
+/// Names of the devices that there are emulators of.
+struct EmulatedDevices {
+  std::vector<std::string> controllers;
+  std::vector<std::string> sources;
+  std::vector<std::string> devices;
+};
+EmulatedDevices emulatedDevices();
 
 /// The simulated robot with its three devices: bytes in and out are all that a driver sees of it.
 /** Pure: no clock, no links. */
 class SimulatedDevices {
  public:
+  /// Throws std::out_of_range for a device of another name than emulatedDevices() has.
   SimulatedDevices(std::shared_ptr<const World> world, const SimulatorSettings& settings,
                    RobotParts parts = {});
 
@@ -38,17 +47,17 @@ class SimulatedDevices {
   std::vector<LaserScan> takeScans();
 
   const SimulatedRobot& robot() const { return robot_; }
-  NmeaInsEmulator& ins() { return ins_; }
-  RoboteqEmulator& motor() { return motor_; }
-  ScipEmulator& laser() { return laser_; }
+  InsEmulator& ins() { return *ins_; }
+  MotorEmulator& motor() { return *motor_; }
+  LaserEmulator& laser() { return *laser_; }
 
  private:
   void measureDrive();
 
   SimulatedRobot robot_;
-  NmeaInsEmulator ins_;
-  RoboteqEmulator motor_;
-  ScipEmulator laser_;
+  std::unique_ptr<InsEmulator> ins_;
+  std::unique_ptr<MotorEmulator> motor_;
+  std::unique_ptr<LaserEmulator> laser_;
   std::vector<LaserScan> scans_;
 };
 

@@ -63,11 +63,11 @@ ScipSettings scipSettingsOf(const LaserParameters& laser) {
 ScipEmulator::ScipEmulator(const ScipSettings& settings, uint64_t seed)
     : settings_(settings), random_(seed) {}
 
-void ScipEmulator::receive(std::string_view bytes, int64_t utime) {
+void ScipEmulator::receive(std::string_view bytes, int64_t /*utime*/) {
   if (faults_.silent) return;
   for (char byte : bytes) {
     if (byte == '\n' || byte == '\r') {
-      if (!line_.empty() && line_.size() <= kLongestCommand) runLine(line_, utime);
+      if (!line_.empty() && line_.size() <= kLongestCommand) runLine(line_);
       line_.clear();
     } else if (line_.size() <= kLongestCommand) {
       line_ += byte;
@@ -92,15 +92,13 @@ void ScipEmulator::answer(const std::string& line, const std::string& status,
   out_ += "\n";
 }
 
-void ScipEmulator::runLine(const std::string& line, int64_t utime) {
+void ScipEmulator::runLine(const std::string& line) {
   // A note after ';' belongs to the echo, not to the command.
   const std::string command = line.substr(0, line.find(';'));
   const std::string name = command.substr(0, 2);
   if (name == "MD") return startMeasuring(line);
-  if (name == "GD") return measureOnce(line);
   if (name == "PP") return answer(line, "00", parameterLines());
   if (name == "VV") return answer(line, "00", versionLines());
-  if (name == "II") return answer(line, "00", stateLines(utime));
   if (name == "BM") {
     const bool was_on = std::exchange(laser_on_, true);
     return answer(line, was_on ? "02" : "00");
@@ -133,40 +131,27 @@ std::vector<std::string> ScipEmulator::parameterLines() const {
           line("SCAN:", settings_.turns_per_minute)};
 }
 
-std::vector<std::string> ScipEmulator::stateLines(int64_t utime) const {
-  return {"MODL:" + settings_.model,
-          std::string("LASR:") + (laser_on_ ? "ON" : "OFF"),
-          "SCSP:" + std::to_string(settings_.turns_per_minute),
-          std::string("MESM:") + (streaming_ ? "Measuring" : "Idle"),
-          "SBPS:Ethernet",
-          "TIME:" + scipEncode(deviceTime(utime), 4),
-          "STAT:Sensor works well"};
-}
-
 std::string ScipEmulator::parseRequest(const std::string& line, Request& request) const {
   const std::string command = line.substr(0, line.find(';'));
-  const bool repeated = command.substr(0, 2) == "MD";
-  if (command.size() != (repeated ? 15u : 12u)) return "0C";
+  if (command.size() != 15u) return "0C";
   const auto first = digits(command, 2, 4), last = digits(command, 6, 4);
   const auto cluster = digits(command, 10, 2);
+  const auto interval = digits(command, 12, 1), count = digits(command, 13, 2);
   if (!first) return "01";
   if (!last) return "02";
   if (!cluster) return "03";
   if (*last > settings_.last_step) return "04";
   if (*last < *first) return "05";
-  request.first = *first;
-  request.last = *last;
-  request.cluster = std::max(1, *cluster);
-  request.note = line.substr(command.size());
-  request.command = command;
-  if (!repeated) return "00";
-  const auto interval = digits(command, 12, 1), count = digits(command, 13, 2);
   if (!interval) return "06";
   if (!count) return "07";
-  request.interval = *interval;
-  request.count = *count;
-  request.endless = *count == 0;
-  request.command = command.substr(0, 13);
+  request = {command.substr(0, 13),
+             line.substr(command.size()),
+             *first,
+             *last,
+             std::max(1, *cluster),
+             *interval,
+             *count,
+             *count == 0};
   return "00";
 }
 
@@ -180,17 +165,7 @@ void ScipEmulator::startMeasuring(const std::string& line) {
   skipped_ = request.interval;
 }
 
-void ScipEmulator::measureOnce(const std::string& line) {
-  Request request;
-  std::string status = parseRequest(line, request);
-  if (status == "00" && (!laser_on_ || !newest_)) status = "10";
-  if (status != "00") return answer(line, status);
-  out_ += line + "\n" + status + scipSum(status) + "\n";
-  appendScan(out_, *newest_, request);
-}
-
 void ScipEmulator::add(const LaserScan& scan) {
-  newest_ = scan;
   if (faults_.silent || !streaming_) return;
   Request& request = *streaming_;
   if (skipped_ < request.interval) {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "modules/simulator/core/instruments.hpp"
+#include "modules/simulator/emulators/emulator.hpp"
 
 namespace tread::sim {
 
@@ -36,27 +36,23 @@ struct ScipFaults {
 };
 
 /// A laser range finder that speaks SCIP 2.0, byte by byte; good behind TCP or a serial line.
-/** Commands end with LF or CR: QT RS BM HS SS TM PP VV II GD MD and SCIP2.0. An answer is the
+/** Commands end with LF or CR: QT RS BM HS SS PP VV MD and SCIP2.0. An answer is the
    command's echo, a status with its sum, lines each with a sum, and an empty line. Ranges are three
    characters (18 bits, mm); 65533 stands for nothing hit, 1 for no measurement. MD switches the
    laser on. */
-class ScipEmulator {
+class ScipEmulator final : public LaserEmulator {
  public:
   ScipEmulator(const ScipSettings& settings, uint64_t seed);
 
-  /// Bytes from the robot.
-  void receive(std::string_view bytes, int64_t utime);
-  /// A scan that the device has just finished.
-  void add(const LaserScan& scan);
-  /// Bytes to the robot since the last call.
-  std::string transmit(int64_t utime);
-  /// The line was closed and opened again: unread commands are gone, streaming stops.
-  void reconnect();
-
+  void receive(std::string_view bytes, int64_t utime) override;
+  void add(const LaserScan& scan) override;
+  std::string transmit(int64_t utime) override;
+  /// Unread commands are gone, streaming stops.
+  void reconnect() override;
   void setFaults(const ScipFaults& faults) { faults_ = faults; }
 
  private:
-  /// A measurement request: GD or MD with its fields.
+  /// A measurement request: MD with its fields.
   struct Request {
     std::string command;  ///< as received, without the count
     std::string note;     ///< text after ';'
@@ -68,17 +64,15 @@ class ScipEmulator {
     bool endless = true;
   };
 
-  void runLine(const std::string& line, int64_t utime);
+  void runLine(const std::string& line);
   void answer(const std::string& line, const std::string& status,
               const std::vector<std::string>& lines = {});
   void startMeasuring(const std::string& line);
-  void measureOnce(const std::string& line);
   std::string parseRequest(const std::string& line, Request& request) const;
   std::string rangesOf(const LaserScan& scan, const Request& request) const;
   void appendScan(std::string& out, const LaserScan& scan, const Request& request) const;
   std::vector<std::string> versionLines() const;
   std::vector<std::string> parameterLines() const;
-  std::vector<std::string> stateLines(int64_t utime) const;
 
   ScipSettings settings_;
   ScipFaults faults_;
@@ -88,7 +82,6 @@ class ScipEmulator {
   bool laser_on_ = false;
   std::optional<Request> streaming_;
   int skipped_ = 0;
-  std::optional<LaserScan> newest_;
 };
 
 /// Sum character of SCIP 2.0: the low six bits of the sum of all bytes, plus 0x30.

@@ -3,57 +3,25 @@
 #include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
 
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
+#include <ctime>
 #include <utility>
+
+#include "common/report/text.hpp"
 
 namespace tread::sim {
 namespace {
 
 constexpr double kDegree = kPi / 180.0;
 constexpr double kKnot = 1852.0 / 3600.0;  // [m/s]
-constexpr int64_t kSecondsPerDay = 86400;
-
-[[gnu::format(printf, 1, 2)]] std::string print(const char* format, ...) {
-  char line[160];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof line, format, arguments);
-  va_end(arguments);
-  return line;
-}
-
-struct Date {
-  int year;
-  int month;
-  int day;
-};
-
-/// Gregorian date of a day counted from 1970-01-01 (years here begin in March: leap days come
-/// last).
-Date dateOf(int64_t days) {
-  const int64_t shifted = days + 719468;
-  const int64_t era = shifted / 146097;
-  const int64_t day_of_era = shifted % 146097;
-  const int64_t year_of_era =
-      (day_of_era - day_of_era / 1460 + day_of_era / 36524 - day_of_era / 146096) / 365;
-  const int64_t day_of_year =
-      day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-  const int64_t march_month = (5 * day_of_year + 2) / 153;
-  const int day = static_cast<int>(day_of_year - (153 * march_month + 2) / 5 + 1);
-  const int month = static_cast<int>(march_month < 10 ? march_month + 3 : march_month - 9);
-  const int64_t year = 400 * era + year_of_era + (month <= 2 ? 1 : 0);
-  return {static_cast<int>(year), month, day};
-}
 
 /// Degrees and minutes as NMEA writes them, 8 decimals of a minute (0.02 mm), with the hemisphere.
 std::string angle(double degrees, int digits, char positive, char negative) {
   constexpr int64_t kPerMinute = 100000000;
   const int64_t parts = std::llround(std::abs(degrees) * 60.0 * static_cast<double>(kPerMinute));
   const int64_t minutes = parts / kPerMinute;
-  return print("%0*lld%02lld.%08lld,%c", digits, static_cast<long long>(minutes / 60),
-               static_cast<long long>(minutes % 60), static_cast<long long>(parts % kPerMinute),
-               degrees < 0.0 ? negative : positive);
+  return formatted("%0*lld%02lld.%08lld,%c", digits, static_cast<long long>(minutes / 60),
+                   static_cast<long long>(minutes % 60), static_cast<long long>(parts % kPerMinute),
+                   degrees < 0.0 ? negative : positive);
 }
 
 /// Clockwise angle in [0, 360) degrees, rounded to three decimals so that 360.000 is never printed.
@@ -72,7 +40,7 @@ bool due(int64_t n, int every) {
 /// A measurement in the words of NMEA.
 struct NmeaInsEmulator::Fix {
   std::string time;  ///< hhmmss.sss
-  Date date{};
+  std::tm utc{};
   std::string latitude;   ///< with hemisphere
   std::string longitude;  ///< with hemisphere
   double altitude = 0.0;  ///< above the geoid [m]
@@ -89,11 +57,10 @@ NmeaInsEmulator::NmeaInsEmulator(const NmeaInsSettings& settings, uint64_t seed)
 NmeaInsEmulator::Fix NmeaInsEmulator::fixOf(const InsSample& sample) const {
   Fix fix;
   const int64_t milliseconds = (settings_.utc_at_zero + sample.utime + 500) / 1000;
-  const int64_t seconds = milliseconds / 1000;
-  const int in_day = static_cast<int>(seconds % kSecondsPerDay);
-  fix.date = dateOf(seconds / kSecondsPerDay);
-  fix.time = print("%02d%02d%02d.%03d", in_day / 3600, in_day / 60 % 60, in_day % 60,
-                   static_cast<int>(milliseconds % 1000));
+  const std::time_t seconds = milliseconds / 1000;
+  gmtime_r(&seconds, &fix.utc);
+  fix.time = formatted("%02d%02d%02d.%03d", fix.utc.tm_hour, fix.utc.tm_min, fix.utc.tm_sec,
+                       static_cast<int>(milliseconds % 1000));
   double latitude = 0.0, longitude = 0.0, height = 0.0;
   map_.Reverse(sample.p_map.x(), sample.p_map.y(), sample.p_map.z(), latitude, longitude, height);
   fix.latitude = angle(latitude, 2, 'N', 'S');
@@ -119,42 +86,44 @@ void NmeaInsEmulator::sayPlace(int64_t n, const Fix& fix) {
   const char* time = fix.time.c_str();
   const std::string place = fix.latitude + "," + fix.longitude;
   if (due(n, settings_.rates.zda))
-    say(print("GPZDA,%s,%02d,%02d,%04d,00,00", time, fix.date.day, fix.date.month, fix.date.year));
+    say(formatted("GPZDA,%s,%02d,%02d,%04d,00,00", time, fix.utc.tm_mday, fix.utc.tm_mon + 1,
+                  fix.utc.tm_year + 1900));
   if (due(n, settings_.rates.rmc)) {
     const std::string date =
-        print("%02d%02d%02d", fix.date.day, fix.date.month, fix.date.year % 100);
-    say(valid ? print("GPRMC,%s,A,%s,%.3f,%.3f,%s,,,R", time, place.c_str(), fix.speed / kKnot,
-                      fix.course, date.c_str())
-              : print("GPRMC,%s,V,,,,,,,%s,,,N", time, date.c_str()));
+        formatted("%02d%02d%02d", fix.utc.tm_mday, fix.utc.tm_mon + 1, fix.utc.tm_year % 100);
+    say(valid ? formatted("GPRMC,%s,A,%s,%.3f,%.3f,%s,,,R", time, place.c_str(), fix.speed / kKnot,
+                          fix.course, date.c_str())
+              : formatted("GPRMC,%s,V,,,,,,,%s,,,N", time, date.c_str()));
   }
   if (due(n, settings_.rates.gga)) {
-    say(valid ? print("GPGGA,%s,%s,4,14,0.7,%.4f,M,%.3f,M,1.0,0001", time, place.c_str(),
-                      fix.altitude, settings_.geoid_separation)
-              : print("GPGGA,%s,,,,,0,00,,,M,,M,,", time));
+    say(valid ? formatted("GPGGA,%s,%s,4,14,0.7,%.4f,M,%.3f,M,1.0,0001", time, place.c_str(),
+                          fix.altitude, settings_.geoid_separation)
+              : formatted("GPGGA,%s,,,,,0,00,,,M,,M,,", time));
   }
 }
 
 void NmeaInsEmulator::sayMotion(int64_t n, const Fix& fix, const InsSample& sample) {
   const bool valid = !faults_.no_fix;
   if (due(n, settings_.rates.vtg)) {
-    say(valid ? print("GPVTG,%.3f,T,,M,%.4f,N,%.4f,K,D", fix.course, fix.speed / kKnot,
-                      fix.speed * 3.6)
+    say(valid ? formatted("GPVTG,%.3f,T,,M,%.4f,N,%.4f,K,D", fix.course, fix.speed / kKnot,
+                          fix.speed * 3.6)
               : std::string("GPVTG,,T,,M,,N,,K,N"));
   }
   if (due(n, settings_.rates.hdt))
-    say(faults_.no_heading ? std::string("GPHDT,,T") : print("GPHDT,%.3f,T", fix.heading));
+    say(faults_.no_heading ? std::string("GPHDT,,T") : formatted("GPHDT,%.3f,T", fix.heading));
   if (due(n, settings_.rates.pashr) && !faults_.no_heading) {
-    say(print("PASHR,%s,%07.3f,T,%+07.3f,%+07.3f,%+06.2f,0.060,0.060,0.060,%d,0", fix.time.c_str(),
-              fix.heading, sample.roll / kDegree, -sample.pitch / kDegree, 0.0, valid ? 1 : 0));
+    say(formatted("PASHR,%s,%07.3f,T,%+07.3f,%+07.3f,%+06.2f,0.060,0.060,0.060,%d,0",
+                  fix.time.c_str(), fix.heading, sample.roll / kDegree, -sample.pitch / kDegree,
+                  0.0, valid ? 1 : 0));
   }
   if (due(n, settings_.rates.rot))
-    say(print("GPROT,%.3f,A", -sample.rate_body.z() / kDegree * 60.0));
+    say(formatted("GPROT,%.3f,A", -sample.rate_body.z() / kDegree * 60.0));
 }
 
 void NmeaInsEmulator::say(const std::string& body) {
   unsigned sum = 0;
   for (char c : body) sum ^= static_cast<unsigned char>(c);
-  std::string line = "$" + body + print("*%02X", sum);
+  std::string line = "$" + body + formatted("*%02X", sum);
   if (faults_.garbage_share > 0.0 && chance() < faults_.garbage_share) {
     const size_t length = random_() % 40 + 1;
     for (size_t i = 0; i < length; ++i) out_ += static_cast<char>(random_() % 256);

@@ -9,7 +9,7 @@
 
 #include <GeographicLib/LocalCartesian.hpp>
 
-#include "modules/simulator/core/instruments.hpp"
+#include "modules/simulator/emulators/emulator.hpp"
 
 namespace tread::sim {
 
@@ -24,13 +24,8 @@ struct NmeaRates {
   int rot = 1;
 };
 
-/// Where and when the emulated INS is.
-struct NmeaInsSettings {
-  double origin_latitude = 50.3629;        ///< of the map's origin, WGS84 [deg]
-  double origin_longitude = 7.5587;        ///< [deg]
-  double origin_height = 120.0;            ///< above the ellipsoid [m]
-  double geoid_separation = 47.0;          ///< geoid above the ellipsoid [m]
-  int64_t utc_at_zero = 1790000000000000;  ///< UTC of utime 0 [us since 1970]
+/// Where and when the emulated INS is, and what it sends.
+struct NmeaInsSettings : MapOnEarth {
   NmeaRates rates;
 };
 
@@ -50,17 +45,14 @@ struct NmeaInsFaults {
    clockwise from north; PASHR's roll is positive with the left side up, its pitch with the bow up;
    ROT is in degrees a minute, negative to the left. All times in sentences are UTC of the
    measurement. */
-class NmeaInsEmulator {
+class NmeaInsEmulator final : public InsEmulator {
  public:
   NmeaInsEmulator(const NmeaInsSettings& settings, uint64_t seed);
 
   /// The device takes no commands; bytes to it are ignored.
-  void receive(std::string_view /*bytes*/, int64_t /*utime*/) {}
-  /// A measurement that leaves the device now.
-  void add(const InsSample& sample);
-  /// Bytes sent since the last call.
-  std::string transmit(int64_t utime);
-
+  void receive(std::string_view /*bytes*/, int64_t /*utime*/) override {}
+  void add(const InsSample& sample) override;
+  std::string transmit(int64_t utime) override;
   void setFaults(const NmeaInsFaults& faults) { faults_ = faults; }
 
  private:

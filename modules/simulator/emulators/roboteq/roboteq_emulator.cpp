@@ -50,16 +50,10 @@ void RoboteqEmulator::advance(int64_t utime) {
   while (from_robot_.arrived(utime)) {
     const SerialLine::Byte byte = from_robot_.front();
     from_robot_.pop();
-    tick(byte.utime);
+    firmware_.advance(byte.utime);
     if (!silent_ && byte.utime >= deaf_until_) hear(byte.value, byte.utime);
   }
-  tick(utime);
-}
-
-void RoboteqEmulator::tick(int64_t utime) {
   firmware_.advance(utime);
-  while (const auto repeated = firmware_.repeatedReply(utime))
-    reply(repeated->line, repeated->utime);
 }
 
 void RoboteqEmulator::hear(char byte, int64_t utime) {
@@ -82,7 +76,6 @@ void RoboteqEmulator::endLine(int64_t utime) {
   if (line.size() > kLongestLine) return reply("-", utime);
   const auto answer = firmware_.execute(line, utime);
   if (answer) reply(*answer, utime);
-  if (firmware_.takeResetRequest()) reboot(utime);
 }
 
 void RoboteqEmulator::reply(const std::string& line, int64_t utime) {

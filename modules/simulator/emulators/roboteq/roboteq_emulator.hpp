@@ -57,18 +57,14 @@ class SerialLine {
 /// A Roboteq controller at the end of a serial line: paced bytes, echo, line ends, faults.
 /** Lines end with CR or '_'; other characters below space are ignored. Echo is on after power-up:
    each character comes back before the reply. */
-class RoboteqEmulator {
+class RoboteqEmulator final : public MotorEmulator {
  public:
   explicit RoboteqEmulator(const RoboteqSettings& settings = {});
 
-  /// Bytes from the robot. Times of all calls must not go back.
-  void receive(std::string_view bytes, int64_t utime);
-  /// Bytes to the robot since the last call.
-  std::string transmit(int64_t utime);
-  /// Power on the motors now, -1..1: left and right.
-  std::array<double, 2> output(int64_t utime);
-
-  void measure(const RoboteqMeasurements& measurements) { firmware_.measure(measurements); }
+  void receive(std::string_view bytes, int64_t utime) override;
+  std::string transmit(int64_t utime) override;
+  std::array<double, 2> output(int64_t utime) override;
+  void measure(const DriveMeasurements& measurements) override { firmware_.measure(measurements); }
 
   // Faults.
   /// The next n replies (not echoes) never come.
@@ -84,7 +80,6 @@ class RoboteqEmulator {
 
  private:
   void advance(int64_t utime);
-  void tick(int64_t utime);
   void hear(char byte, int64_t utime);
   void endLine(int64_t utime);
   void reply(const std::string& line, int64_t utime);

@@ -2,18 +2,15 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/simulator/emulators/roboteq/roboteq_firmware.hpp"
 
-#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <utility>
 
 namespace tread::sim {
 namespace {
 
 constexpr int kFullCommand = 1000;       // per mille
 constexpr int kLongestWatchdog = 65000;  // [ms]
-constexpr int kResetKey = 321654987;     // guards %RESET
 constexpr int64_t kMicrosPerMilli = 1000;
 
 std::optional<int> integerOf(const std::string& word) {
@@ -31,7 +28,6 @@ std::string sign(bool good) {
   return good ? "+" : "-";
 }
 
-constexpr size_t kHistoryDepth = 16;
 constexpr double kBrownOutVoltage = 12.0;  // what is left of the motor supply [V]
 constexpr int kUndervoltageFault = 4;      // bits of ?FF
 constexpr int kEmergencyStopFault = 16;
@@ -64,22 +60,16 @@ RoboteqWords roboteqWords(const std::string& text) {
 
 std::optional<std::string> RoboteqFirmware::execute(const std::string& line, int64_t utime) {
   if (line.empty()) return std::nullopt;
-  const std::string text = line.substr(1);
-  const RoboteqWords words = roboteqWords(text);
+  const RoboteqWords words = roboteqWords(line.substr(1));
   switch (line[0]) {
     case '!':
       return sign(runCommand(words, utime));
     case '?':
-      return runQuery(text).value_or(sign(false));
+      return answer(words).value_or(sign(false));
     case '^':
       return sign(setConfiguration(words));
     case '~':
       return readConfiguration(words.name).value_or(sign(false));
-    case '%':
-      return sign(runMaintenance(words));
-    case '#':
-      runHistory(words, utime);
-      return std::nullopt;
     default:
       return sign(false);
   }
@@ -91,17 +81,10 @@ void RoboteqFirmware::advance(int64_t utime) {
 }
 
 void RoboteqFirmware::powerUp() {
-  configuration_ = saved_;
+  configuration_ = {};
   commanded_ = {0, 0};
   serial_active_ = false;
   emergency_stop_ = false;
-  reset_requested_ = false;
-  history_.clear();
-  repeat_us_ = 0;
-}
-
-bool RoboteqFirmware::takeResetRequest() {
-  return std::exchange(reset_requested_, false);
 }
 
 bool RoboteqFirmware::runCommand(const RoboteqWords& words, int64_t utime) {
@@ -166,31 +149,12 @@ std::optional<std::string> RoboteqFirmware::readConfiguration(const std::string&
   return std::nullopt;
 }
 
-bool RoboteqFirmware::runMaintenance(const RoboteqWords& words) {
-  if (words.name == "EESAV" && words.numbers.empty()) {
-    saved_ = configuration_;
-    return true;
-  }
-  const bool key = words.numbers.size() == 1 && words.numbers[0] == kResetKey;
-  if (words.name == "RESET" && key) reset_requested_ = true;
-  return reset_requested_;
-}
-
 bool RoboteqFirmware::supplyLow() const {
   return brown_out_ || measurements_.battery_voltage < settings_.undervoltage;
 }
 
 std::array<int, 2> RoboteqFirmware::applied() const {
   return serial_active_ && powerStageOn() ? commanded_ : std::array<int, 2>{0, 0};
-}
-
-std::optional<std::string> RoboteqFirmware::runQuery(const std::string& text) {
-  auto reply = answer(roboteqWords(text));
-  if (!reply) return std::nullopt;
-  const bool known = std::find(history_.begin(), history_.end(), text) != history_.end();
-  if (!known) history_.push_back(text);
-  if (history_.size() > kHistoryDepth) history_.erase(history_.begin());
-  return reply;
 }
 
 std::optional<std::string> RoboteqFirmware::answer(const RoboteqWords& words) const {
@@ -244,23 +208,6 @@ std::optional<std::string> RoboteqFirmware::channelAnswer(const RoboteqWords& wo
   if (words.numbers.empty())
     return name + std::to_string(values[0]) + ":" + std::to_string(values[1]);
   return name + std::to_string(values[static_cast<size_t>(*words.numbers[0] - 1)]);
-}
-
-void RoboteqFirmware::runHistory(const RoboteqWords& words, int64_t utime) {
-  if (words.name == "C") {
-    history_.clear();
-    repeat_us_ = 0;
-  }
-  if (words.numbers.size() != 1 || !words.numbers[0] || *words.numbers[0] < 0) return;
-  repeat_us_ = *words.numbers[0] * int64_t{1000};
-  next_repeat_ = utime + repeat_us_;
-}
-
-std::optional<RoboteqFirmware::Repeated> RoboteqFirmware::repeatedReply(int64_t utime) {
-  if (repeat_us_ == 0 || history_.empty() || next_repeat_ > utime) return std::nullopt;
-  const int64_t due = std::exchange(next_repeat_, next_repeat_ + repeat_us_);
-  next_in_history_ = (next_in_history_ + 1) % history_.size();
-  return Repeated{answer(roboteqWords(history_[next_in_history_])).value_or("-"), due};
 }
 
 }  // namespace tread::sim

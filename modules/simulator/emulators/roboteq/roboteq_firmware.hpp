@@ -8,14 +8,9 @@
 #include <string>
 #include <vector>
 
-namespace tread::sim {
+#include "modules/simulator/emulators/emulator.hpp"
 
-/// What the controller measures, from the simulated drive. Channel 1 is the left track.
-struct RoboteqMeasurements {
-  double battery_voltage = 25.6;                  ///< [V]
-  std::array<double, 2> motor_current{0.0, 0.0};  ///< [A]
-  std::array<double, 2> track_speed{0.0, 0.0};    ///< [m/s]
-};
+namespace tread::sim {
 
 /// How the emulated controller is built.
 struct RoboteqSettings {
@@ -39,8 +34,8 @@ RoboteqWords roboteqWords(const std::string& text);
 /** Two-channel Roboteq controller after its manual (v2.0, 2019). Only '!' commands feed the
    watchdog: when it expires the motors stop, and the next good '!' command of any kind lets them
    run on at the old speed. !EX latches bit 16 of ?FF until !MG, which also brings the old speed
-   back. Settings are volatile until %EESAV. Where the manual is silent this takes what is worse for
-   a careless driver. */
+   back. Its memory for settings and its history of queries are left out: no driver of ours uses
+   them. Where the manual is silent this takes what is worse for a careless driver. */
 class RoboteqFirmware {
  public:
   explicit RoboteqFirmware(const RoboteqSettings& settings) : settings_(settings) {}
@@ -49,20 +44,9 @@ class RoboteqFirmware {
   std::optional<std::string> execute(const std::string& line, int64_t utime);
   /// Lets the watchdog look at the time.
   void advance(int64_t utime);
-  /// Reply of a query that # repeats.
-  struct Repeated {
-    std::string line;
-    int64_t utime;  ///< when it was due
-  };
-  /// The next of them that is due; call until it has none.
-  std::optional<Repeated> repeatedReply(int64_t utime);
-
-  /// Back to the power-up state: saved settings, zero, no active command source.
+  /// Back to the power-up state: default settings, zero, no active command source.
   void powerUp();
-  /// True once after %RESET.
-  bool takeResetRequest();
-
-  void measure(const RoboteqMeasurements& measurements) { measurements_ = measurements; }
+  void measure(const DriveMeasurements& measurements) { measurements_ = measurements; }
   /// The motor supply drops below what the power stage needs, or recovers.
   void setBrownOut(bool active) { brown_out_ = active; }
 
@@ -72,7 +56,7 @@ class RoboteqFirmware {
 
  private:
   using Numbers = std::vector<std::optional<int>>;
-  /// What ^ sets and %EESAV keeps.
+  /// What ^ sets.
   struct Configuration {
     int watchdog_ms = 1000;
     bool echo_off = false;
@@ -82,32 +66,23 @@ class RoboteqFirmware {
   bool setBoth(const Numbers& numbers);
   bool setOne(const Numbers& numbers);
   bool stop(const Numbers& numbers);
-  std::optional<std::string> runQuery(const std::string& text);
   std::optional<std::string> answer(const RoboteqWords& words) const;
   std::optional<std::string> channelAnswer(const RoboteqWords& words) const;
   std::string voltages(const Numbers& numbers) const;
   bool setConfiguration(const RoboteqWords& words);
   std::optional<std::string> readConfiguration(const std::string& name) const;
-  bool runMaintenance(const RoboteqWords& words);
-  void runHistory(const RoboteqWords& words, int64_t utime);
 
   bool supplyLow() const;
   bool powerStageOn() const { return !emergency_stop_ && !supplyLow(); }
 
   RoboteqSettings settings_;
-  RoboteqMeasurements measurements_;
+  DriveMeasurements measurements_;
   Configuration configuration_;
-  Configuration saved_;
   std::array<int, 2> commanded_{0, 0};  ///< per mille, kept while not applied
   bool serial_active_ = false;          ///< false before the first command and after the watchdog
   bool emergency_stop_ = false;
   bool brown_out_ = false;
-  bool reset_requested_ = false;
   int64_t last_command_ = 0;
-  std::vector<std::string> history_;  ///< queries that # repeats
-  size_t next_in_history_ = 0;
-  int64_t repeat_us_ = 0;  ///< 0 = off
-  int64_t next_repeat_ = 0;
 };
 
 }  // namespace tread::sim

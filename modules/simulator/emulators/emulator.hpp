@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "modules/simulator/core/instruments.hpp"
+
+namespace tread::sim {
+
+/// A device of the simulated robot at its end of the line: the doors for the next ones.
+/** Pure: bytes and time [us] are arguments; times of all calls must not go back. */
+class Emulator {
+ public:
+  virtual ~Emulator() = default;
+  /// Bytes from the robot.
+  virtual void receive(std::string_view bytes, int64_t utime) = 0;
+  /// Bytes to the robot since the last call.
+  virtual std::string transmit(int64_t utime) = 0;
+  /// The line was closed and opened again.
+  virtual void reconnect() {}
+};
+
+/// Where and when the simulated map is.
+struct MapOnEarth {
+  double origin_latitude = 50.3629;        ///< of the map's origin, WGS84 [deg]
+  double origin_longitude = 7.5587;        ///< [deg]
+  double origin_height = 120.0;            ///< above the ellipsoid [m]
+  double geoid_separation = 47.0;          ///< geoid above the ellipsoid [m]
+  int64_t utc_at_zero = 1790000000000000;  ///< UTC of utime 0 [us since 1970]
+};
+
+/// An INS behind its driver's line.
+class InsEmulator : public Emulator {
+ public:
+  /// A measurement that leaves the device now.
+  virtual void add(const InsSample& sample) = 0;
+};
+
+/// A range finder behind its driver's line.
+class LaserEmulator : public Emulator {
+ public:
+  /// A scan that the device has just finished.
+  virtual void add(const LaserScan& scan) = 0;
+};
+
+/// What a motor controller measures, from the simulated drive, by channel.
+struct DriveMeasurements {
+  double battery_voltage = 25.6;                  ///< [V]
+  std::array<double, 2> motor_current{0.0, 0.0};  ///< [A]
+  std::array<double, 2> track_speed{0.0, 0.0};    ///< [m/s]
+};
+
+/// A motor controller behind its driver's line.
+class MotorEmulator : public Emulator {
+ public:
+  /// Power on the motors of both channels now, -1..1.
+  virtual std::array<double, 2> output(int64_t utime) = 0;
+  virtual void measure(const DriveMeasurements& measurements) = 0;
+};
+
+}  // namespace tread::sim
