@@ -15,4 +15,11 @@ inline int64_t hostNow() {
   return duration_cast<microseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// Present UTC of this host [us since 1970]; only to date logs.
+inline int64_t hostUtc() {
+  using std::chrono::duration_cast;
+  using std::chrono::microseconds;
+  return duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
 }  // namespace tread

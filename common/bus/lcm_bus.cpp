@@ -55,9 +55,7 @@ int64_t LcmBus::now() const {
 }
 
 int64_t LcmBus::utc() const {
-  using std::chrono::duration_cast;
-  using std::chrono::microseconds;
-  return duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return hostUtc();
 }
 
 bool LcmBus::onReceipt(int64_t utime) {

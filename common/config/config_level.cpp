@@ -119,15 +119,24 @@ ConfigReader::Level::Entry* ConfigReader::Level::find(const std::string& key) {
   return found == entries.end() ? nullptr : &*found;
 }
 
-const ConfigReader::Level::Entry* ConfigReader::Level::ask(const std::string& key, bool required) {
+std::optional<ConfigReader::Level::Found> ConfigReader::Level::ask(const std::string& key,
+                                                                   bool required) {
   know(key);
   Entry* entry = find(key);
-  if (entry == nullptr) {
-    if (required) throw missing(key);
-    return nullptr;
-  }
+  if (entry == nullptr && required) throw missing(key);
+  if (entry == nullptr) return std::nullopt;
   entry->asked = true;
-  return entry;
+  return Found{entry->value, path(key), lineOf(*entry)};
+}
+
+std::vector<ConfigReader::Level::Found> ConfigReader::Level::items(
+    const Found& list, const std::string& wanted) const {
+  if (!list.value.IsSequence()) throw errorAt(list, " is not a list; " + wanted + " is needed");
+  std::vector<Found> items;
+  for (const auto& item : list.value)
+    items.push_back({item, list.name + "[" + std::to_string(items.size()) + "]",
+                     lineFrom(item.Mark(), list.line)});
+  return items;
 }
 
 void ConfigReader::Level::know(const std::string& key) {
@@ -180,59 +189,57 @@ int ConfigReader::Level::lineOf(const Entry& entry) {
   return entry.value.IsScalar() ? lineFrom(entry.value.Mark(), entry.line) : entry.line;
 }
 
-std::string ConfigReader::Level::scalar(const YAML::Node& node, const std::string& name, int at,
-                                        const std::string& wanted, bool quotes_allowed) const {
-  if (!node.IsScalar())
-    throw errorAt(at, name + " is " + kindOf(node) + "; " + wanted + " is needed");
-  const std::string& tag = node.Tag();
+std::string ConfigReader::Level::scalar(const Found& found, const std::string& wanted,
+                                        bool quotes_allowed) const {
+  if (!found.value.IsScalar())
+    throw errorAt(found, std::string(" is ") + kindOf(found.value) + "; " + wanted + " is needed");
+  const std::string& tag = found.value.Tag();
   const bool quoted = tag == "!";
   if (!quoted && tag != "?" && !tag.empty())
-    throw errorAt(at, name + " has the tag " + shown(tag) + "; " + wanted + " is needed");
-  if (quoted) refuseOpenQuote(node, name, at);
+    throw errorAt(found, " has the tag " + shown(tag) + "; " + wanted + " is needed");
+  if (quoted) refuseOpenQuote(found);
   if (quoted && !quotes_allowed)
-    throw errorAt(at, name + " is text in quotes; " + wanted + " is needed");
-  return node.Scalar();
+    throw errorAt(found, " is text in quotes; " + wanted + " is needed");
+  return found.value.Scalar();
 }
 
-void ConfigReader::Level::refuseOpenQuote(const YAML::Node& node, const std::string& name,
-                                          int at) const {
+void ConfigReader::Level::refuseOpenQuote(const Found& found) const {
   // yaml-cpp takes a quote that is never closed as text up to the end of the file, with all keys
   // that follow.
   const std::string& text = source->text;
-  const size_t open = source->offsetOf(node.Mark());
+  const size_t open = source->offsetOf(found.value.Mark());
   if (open >= text.size() || (text[open] != '"' && text[open] != '\'')) return;
   if (!isClosed(text, open))
-    throw errorAt(at, name + " begins with a quote that is never closed; close it");
+    throw errorAt(found, " begins with a quote that is never closed; close it");
 }
 
-double ConfigReader::Level::number(const YAML::Node& node, const std::string& name, int at,
-                                   Range range, const std::string& unit) const {
+double ConfigReader::Level::number(const Found& found, Range range, const std::string& unit) const {
+  if (const auto good = goodNumber(found.value, range)) return *good;
   const std::string allowed = "; allowed " + formatRange(range, unit);
-  const std::string text = scalar(node, name, at, "a number, " + formatRange(range, unit), false);
+  const std::string text = scalar(found, "a number, " + formatRange(range, unit), false);
   const auto value = parseNumber(text);
-  if (!value) throw errorAt(at, name + " is " + shown(text) + ", not a decimal number" + allowed);
+  if (!value) throw errorAt(found, " is " + shown(text) + ", not a decimal number" + allowed);
   if (!(*value >= range.min && *value <= range.max))
-    throw errorAt(at, name + " is " + formatQuantity(*value, unit) + allowed);
+    throw errorAt(found, " is " + formatQuantity(*value, unit) + allowed);
   return *value;
 }
 
-std::vector<double> ConfigReader::Level::numberList(const YAML::Node& node, const std::string& name,
-                                                    int at, size_t size, Range range,
+std::vector<double> ConfigReader::Level::numberList(const Found& list, size_t size, Range range,
                                                     const std::string& unit) const {
-  if (!node.IsSequence())
-    throw errorAt(at, name + " is " + kindOf(node) + "; a list of numbers is needed");
-  if (size != 0 && node.size() != size)
-    throw errorAt(at, name + " has " + std::to_string(node.size()) + " numbers; " +
-                          std::to_string(size) + " needed");
+  if (!list.value.IsSequence())
+    throw errorAt(list, std::string(" is ") + kindOf(list.value) + "; a list of numbers is needed");
+  if (size != 0 && list.value.size() != size)
+    throw errorAt(list, " has " + std::to_string(list.value.size()) + " numbers; " +
+                            std::to_string(size) + " needed");
   std::vector<double> values;
-  for (const auto& item : node) {
+  for (const auto& item : list.value) {
     if (const auto good = goodNumber(item, range)) {
       values.push_back(*good);
       continue;
     }
-    const std::string item_name = name + "[" + std::to_string(values.size()) + "]";
-    const int item_line = item.IsScalar() ? lineFrom(item.Mark(), at) : at;
-    values.push_back(number(item, item_name, item_line, range, unit));
+    const int item_line = item.IsScalar() ? lineFrom(item.Mark(), list.line) : list.line;
+    values.push_back(number(
+        {item, list.name + "[" + std::to_string(values.size()) + "]", item_line}, range, unit));
   }
   return values;
 }

@@ -57,6 +57,13 @@ struct ConfigReader::Level {
     std::vector<std::shared_ptr<Level>> children;
   };
 
+  /// What stands under a key, or an item of a list there.
+  struct Found {
+    YAML::Node value;
+    std::string name;  ///< with its sections, for messages
+    int line = 0;  ///< 1-based: its own for scalars, that of its key for lists, maps and nothing
+  };
+
   /// Parses a whole text: one document, a map (or nothing at all).
   static std::shared_ptr<Level> parse(std::string text, const std::string& name,
                                       const std::vector<std::string>& overrides);
@@ -65,9 +72,11 @@ struct ConfigReader::Level {
                                    const std::string& prefix, const YAML::Node& map, int line);
 
   Entry* find(const std::string& key);
-  /// The value of a key, which counts as asked for from now on; nullptr if it is absent.
-  /** Throws if it is required and absent, or if it is there and empty. */
-  const Entry* ask(const std::string& key, bool required);
+  /// The value of a key, which counts as asked for from now on; nothing if it is absent.
+  /** Throws if it is required and absent. */
+  std::optional<Found> ask(const std::string& key, bool required);
+  /// The items of a list; `wanted` names what is needed in the error.
+  std::vector<Found> items(const Found& list, const std::string& wanted) const;
   /// What the program will use for a key; replaces an earlier answer.
   Answer& answer(const std::string& key, const std::string& value);
   const Answer* answered(const std::string& key) const;
@@ -76,6 +85,9 @@ struct ConfigReader::Level {
   /// Name of a key with its sections, for messages.
   std::string path(const std::string& key) const;
   ConfigError errorAt(int line, const std::string& problem) const;
+  ConfigError errorAt(const Found& found, const std::string& problem) const {
+    return errorAt(found.line, found.name + problem);
+  }
   ConfigError missing(const std::string& key) const;
   ConfigError unknown(const Entry& entry) const;
   /// Line of a value: its own for scalars, that of its key for lists, maps and empty values.
@@ -83,13 +95,11 @@ struct ConfigReader::Level {
 
   /// The scalar's text; throws if it is a list, a map, empty, tagged, or quoted where that is not
   /// allowed.
-  std::string scalar(const YAML::Node& node, const std::string& name, int line,
-                     const std::string& wanted, bool quotes_allowed) const;
-  double number(const YAML::Node& node, const std::string& name, int line, Range range,
-                const std::string& unit) const;
-  std::vector<double> numberList(const YAML::Node& node, const std::string& name, int line,
-                                 size_t size, Range range, const std::string& unit) const;
-
+  std::string scalar(const Found& found, const std::string& wanted, bool quotes_allowed) const;
+  double number(const Found& found, Range range, const std::string& unit) const;
+  /// `size` 0 = any.
+  std::vector<double> numberList(const Found& list, size_t size, Range range,
+                                 const std::string& unit) const;
   void finish() const;
   std::string effective(const std::string& indent) const;
 
@@ -101,7 +111,7 @@ struct ConfigReader::Level {
 
  private:
   void collect(const YAML::Node& map);
-  void refuseOpenQuote(const YAML::Node& node, const std::string& name, int line) const;
+  void refuseOpenQuote(const Found& found) const;
 };
 
 /// "0.05..1 s", "at least 0 m" and the like.

@@ -69,8 +69,7 @@ bool ConfigReader::has(const std::string& key) const {
 
 void ConfigReader::number(const std::string& key, double& value, Range range,
                           const std::string& unit, bool required) {
-  if (const auto* entry = level_->ask(key, required))
-    value = level_->number(entry->value, level_->path(key), Level::lineOf(*entry), range, unit);
+  if (const auto found = level_->ask(key, required)) value = level_->number(*found, range, unit);
   level_->answer(key, numberAnswer(value));
 }
 
@@ -82,50 +81,43 @@ void ConfigReader::seconds(const std::string& key, int64_t& value_us, Range rang
 
 void ConfigReader::integer(const std::string& key, int64_t& value, Range range,
                            const std::string& unit, bool required) {
-  if (const auto* entry = level_->ask(key, required)) {
-    const std::string name = level_->path(key);
-    const int line = Level::lineOf(*entry);
+  if (const auto found = level_->ask(key, required)) {
     const std::string allowed = formatRange(range, unit);
-    const std::string text =
-        level_->scalar(entry->value, name, line, "a whole number, " + allowed, false);
+    const std::string text = level_->scalar(*found, "a whole number, " + allowed, false);
     const auto parsed = parseInteger(text);
     if (!parsed)
-      throw level_->errorAt(line, name + " is " + formatText(text) +
-                                      ", not a plain decimal whole number; allowed " + allowed);
+      throw level_->errorAt(*found, " is " + formatText(text) +
+                                        ", not a plain decimal whole number; allowed " + allowed);
     const auto as_number = static_cast<double>(*parsed);
     if (!(as_number >= range.min && as_number <= range.max))
-      throw level_->errorAt(
-          line, name + " is " + formatQuantity(as_number, unit) + "; allowed " + allowed);
+      throw level_->errorAt(*found,
+                            " is " + formatQuantity(as_number, unit) + "; allowed " + allowed);
     value = *parsed;
   }
   level_->answer(key, std::to_string(value));
 }
 
 void ConfigReader::flag(const std::string& key, bool& value, bool required) {
-  if (const auto* entry = level_->ask(key, required)) {
-    const std::string name = level_->path(key);
-    const int line = Level::lineOf(*entry);
-    const std::string text = level_->scalar(entry->value, name, line, "true or false", false);
+  if (const auto found = level_->ask(key, required)) {
+    const std::string text = level_->scalar(*found, "true or false", false);
     if (text != "true" && text != "false")
-      throw level_->errorAt(line, name + " is " + formatText(text) + "; allowed true, false");
+      throw level_->errorAt(*found, " is " + formatText(text) + "; allowed true, false");
     value = text == "true";
   }
   level_->answer(key, value ? "true" : "false");
 }
 
 void ConfigReader::text(const std::string& key, std::string& value, bool required) {
-  if (const auto* entry = level_->ask(key, required))
-    value = level_->scalar(entry->value, level_->path(key), Level::lineOf(*entry), "text", true);
+  if (const auto found = level_->ask(key, required)) value = level_->scalar(*found, "text", true);
   level_->answer(key, formatText(value));
 }
 
 void ConfigReader::path(const std::string& key, std::string& value, bool required) {
-  if (const auto* entry = level_->ask(key, required)) {
-    const int line = Level::lineOf(*entry);
-    value = level_->scalar(entry->value, level_->path(key), line, "a path", true);
+  if (const auto found = level_->ask(key, required)) {
+    value = level_->scalar(*found, "a path", true);
     const size_t slash = level_->source->name.rfind('/');
     if (slash != std::string::npos && value.compare(0, 1, "/") != 0 &&
-        !level_->source->isOverride(line))
+        !level_->source->isOverride(found->line))
       value = level_->source->name.substr(0, slash + 1) + value;
   }
   level_->answer(key, formatText(value));
@@ -133,16 +125,13 @@ void ConfigReader::path(const std::string& key, std::string& value, bool require
 
 void ConfigReader::choice(const std::string& key, std::string& value,
                           const std::vector<std::string>& allowed, bool required) {
-  if (const auto* entry = level_->ask(key, required)) {
-    const std::string name = level_->path(key);
-    const int line = Level::lineOf(*entry);
-    const std::string wanted = "one of " + joinWords(allowed);
-    const std::string text = level_->scalar(entry->value, name, line, wanted, true);
+  if (const auto found = level_->ask(key, required)) {
+    const std::string text = level_->scalar(*found, "one of " + joinWords(allowed), true);
     if (std::find(allowed.begin(), allowed.end(), text) == allowed.end()) {
       const auto meant = nearestSpelling(text, allowed);
-      throw level_->errorAt(line, name + " is " + formatText(text) +
-                                      (meant ? "; is " + *meant + " meant?" : "") + "; allowed " +
-                                      joinWords(allowed));
+      throw level_->errorAt(*found, " is " + formatText(text) +
+                                        (meant ? "; is " + *meant + " meant?" : "") + "; allowed " +
+                                        joinWords(allowed));
     }
     value = text;
   }
@@ -151,62 +140,44 @@ void ConfigReader::choice(const std::string& key, std::string& value,
 
 void ConfigReader::numbers(const std::string& key, std::vector<double>& values, size_t size,
                            Range range, const std::string& unit, bool required) {
-  if (const auto* entry = level_->ask(key, required))
-    values = level_->numberList(entry->value, level_->path(key), Level::lineOf(*entry), size, range,
-                                unit);
+  if (const auto found = level_->ask(key, required))
+    values = level_->numberList(*found, size, range, unit);
   level_->answer(key, listAnswer(values));
 }
 
 void ConfigReader::table(const std::string& key, std::vector<std::vector<double>>& rows,
                          size_t columns, Range range, const std::string& unit, bool required) {
-  if (const auto* entry = level_->ask(key, required)) {
-    const std::string name = level_->path(key);
-    if (!entry->value.IsSequence())
-      throw level_->errorAt(Level::lineOf(*entry), name + " is not a list; a list of rows of " +
-                                                       std::to_string(columns) +
-                                                       " numbers is needed");
+  if (const auto found = level_->ask(key, required)) {
     std::vector<std::vector<double>> read;
-    for (const auto& row : entry->value) {
-      const int line = row.Mark().is_null() ? entry->line : row.Mark().line + 1;
-      const std::string row_name = name + "[" + std::to_string(read.size()) + "]";
-      read.push_back(level_->numberList(row, row_name, line, columns, range, unit));
-    }
+    const std::string wanted = "a list of rows of " + std::to_string(columns) + " numbers";
+    for (const Level::Found& row : level_->items(*found, wanted))
+      read.push_back(level_->numberList(row, columns, range, unit));
     rows = std::move(read);
   }
   std::vector<std::string> written;
-  written.reserve(rows.size());
   for (const auto& row : rows) written.push_back(listAnswer(row));
   level_->answer(key, "[" + joinWords(written) + "]");
 }
 
 void ConfigReader::texts(const std::string& key, std::vector<std::string>& values, bool required) {
-  if (const auto* entry = level_->ask(key, required)) {
-    const std::string name = level_->path(key);
-    if (!entry->value.IsSequence())
-      throw level_->errorAt(Level::lineOf(*entry),
-                            name + " is not a list; a list of texts is needed");
+  if (const auto found = level_->ask(key, required)) {
     std::vector<std::string> read;
-    for (const auto& item : entry->value) {
-      const int line = item.Mark().is_null() ? entry->line : item.Mark().line + 1;
-      const std::string item_name = name + "[" + std::to_string(read.size()) + "]";
-      read.push_back(level_->scalar(item, item_name, line, "text", true));
-    }
+    for (const Level::Found& item : level_->items(*found, "a list of texts"))
+      read.push_back(level_->scalar(item, "text", true));
     values = std::move(read);
   }
   std::vector<std::string> words;
-  words.reserve(values.size());
   for (const std::string& value : values) words.push_back(formatText(value));
   level_->answer(key, "[" + joinWords(words) + "]");
 }
 
 ConfigReader ConfigReader::section(const std::string& key, bool required) {
-  const auto* entry = level_->ask(key, required);
+  const auto found = level_->ask(key, required);
   auto& answer = level_->answer(key, "");
-  if (answer.children.empty()) {
-    const YAML::Node map = entry != nullptr ? entry->value : YAML::Node();
-    const int line = entry != nullptr ? entry->line : level_->line;
-    answer.children = {Level::of(level_->source, level_->path(key) + ".", map, line)};
-  }
+  if (answer.children.empty())
+    answer.children = {Level::of(level_->source, level_->path(key) + ".",
+                                 found ? found->value : YAML::Node(),
+                                 found ? level_->find(key)->line : level_->line)};
   return ConfigReader(answer.children.front());
 }
 
@@ -225,19 +196,12 @@ ConfigReader ConfigReader::file(const std::string& key, const std::string& usual
 }
 
 std::vector<ConfigReader> ConfigReader::sections(const std::string& key, bool required) {
-  const auto* entry = level_->ask(key, required);
+  const auto found = level_->ask(key, required);
   auto& answer = level_->answer(key, "");
   answer.is_list = true;
-  const std::string name = level_->path(key);
-  if (entry != nullptr && !entry->value.IsSequence())
-    throw level_->errorAt(entry->line, name + " is not a list; a list of maps is needed");
-  if (entry != nullptr && answer.children.empty()) {
-    for (const auto& item : entry->value) {
-      const int line = item.Mark().is_null() ? entry->line : item.Mark().line + 1;
-      const std::string prefix = name + "[" + std::to_string(answer.children.size()) + "].";
-      answer.children.push_back(Level::of(level_->source, prefix, item, line));
-    }
-  }
+  if (found && answer.children.empty())
+    for (const Level::Found& item : level_->items(*found, "a list of maps"))
+      answer.children.push_back(Level::of(level_->source, item.name + ".", item.value, item.line));
   std::vector<ConfigReader> readers;
   for (const auto& child : answer.children) readers.push_back(ConfigReader(child));
   return readers;

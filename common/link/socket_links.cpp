@@ -162,6 +162,30 @@ class TcpLink final : public DescriptorLink {
   std::optional<int64_t> since_;  // utime at which connecting began, where known
 };
 
+/// A socket at a port of this host; an empty `host` means all of its addresses. -1 and the reason
+/// if it cannot be had.
+int boundSocket(int type, const std::string& host, uint16_t port, const std::string& example,
+                std::string& reason) {
+  sockaddr_in local{};
+  local.sin_family = AF_INET;
+  local.sin_port = htons(port);
+  local.sin_addr.s_addr = htonl(INADDR_ANY);
+  if (!host.empty() && ::inet_pton(AF_INET, host.c_str(), &local.sin_addr) != 1) {
+    reason = "\"" + host + "\" is no IPv4 number; write " + example;
+    return -1;
+  }
+  const int fd = ::socket(AF_INET, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  // Else the port of an emulator that has just ended stays taken for a minute.
+  const int again = 1;
+  if (type == SOCK_STREAM && fd >= 0)
+    ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &again, sizeof again);
+  if (fd >= 0 && ::bind(fd, reinterpret_cast<const sockaddr*>(&local), sizeof local) == 0)
+    return fd;
+  reason = systemReason(errno);
+  if (fd >= 0) ::close(fd);
+  return -1;
+}
+
 class TcpServerLink final : public DescriptorLink {
  public:
   explicit TcpServerLink(const LinkAddress& address)
@@ -184,25 +208,14 @@ class TcpServerLink final : public DescriptorLink {
   }
 
   bool beginListening(std::string& reason) {
-    sockaddr_in local{};
-    local.sin_family = AF_INET;
-    local.sin_port = htons(port_);
-    local.sin_addr.s_addr = htonl(INADDR_ANY);
-    if (!host_.empty() && ::inet_pton(AF_INET, host_.c_str(), &local.sin_addr) != 1) {
-      reason = "\"" + host_ + "\" is no IPv4 number; write tcp-server:127.0.0.1:port";
-      return false;
-    }
-    const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    // Else the port of an emulator that has just ended stays taken for a minute.
-    const int again = 1;
-    if (fd >= 0) ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &again, sizeof again);
-    if (fd >= 0 && ::bind(fd, reinterpret_cast<const sockaddr*>(&local), sizeof local) == 0 &&
-        ::listen(fd, 1) == 0) {
+    const int fd = boundSocket(SOCK_STREAM, host_, port_, "tcp-server:127.0.0.1:port", reason);
+    if (fd < 0) return false;
+    if (::listen(fd, 1) == 0) {
       listener_ = fd;
       return true;
     }
     reason = systemReason(errno);
-    if (fd >= 0) ::close(fd);
+    ::close(fd);
     return false;
   }
 
@@ -226,22 +239,9 @@ class UdpLink final : public DescriptorLink {
 
  private:
   int openDevice(std::string& reason) override {
-    sockaddr_in local{};
-    local.sin_family = AF_INET;
-    local.sin_port = htons(port_);
-    local.sin_addr.s_addr = htonl(INADDR_ANY);
-    if (!host_.empty() && ::inet_pton(AF_INET, host_.c_str(), &local.sin_addr) != 1) {
-      reason = "\"" + host_ + "\" is no IPv4 number; write udp:port or udp:127.0.0.1:port";
-      return -1;
-    }
-    const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    if (fd >= 0 && ::bind(fd, reinterpret_cast<const sockaddr*>(&local), sizeof local) == 0) {
-      taken_ = datagram_.size();
-      return fd;
-    }
-    reason = systemReason(errno);
-    if (fd >= 0) ::close(fd);
-    return -1;
+    const int fd = boundSocket(SOCK_DGRAM, host_, port_, "udp:port or udp:127.0.0.1:port", reason);
+    if (fd >= 0) taken_ = datagram_.size();
+    return fd;
   }
 
   /// What is left of the last datagram, else the next one: a short buffer must not cut it off.

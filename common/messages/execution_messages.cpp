@@ -3,28 +3,22 @@
 #include "common/messages/execution_messages.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include "common/messages/blank.hpp"
+#include "common/report/text.hpp"
 
 namespace tread {
 namespace {
 
 BridgeReading::State stateFrom(int16_t state) {
-  switch (state) {
-    case motor_t::STATE_ARMED:
-      return BridgeReading::State::kArmed;
-    case motor_t::STATE_DRIVING:
-      return BridgeReading::State::kDriving;
-    case motor_t::STATE_STOPPING:
-      return BridgeReading::State::kStopping;
-    case motor_t::STATE_FAULT:
-      return BridgeReading::State::kFault;
-    case motor_t::STATE_ESTOP:
-      return BridgeReading::State::kEstopped;
-    default:
-      return BridgeReading::State::kDisarmed;
-  }
+  using State = BridgeReading::State;
+  // The same states in the same order.
+  static_assert(static_cast<int16_t>(State::kArmed) == motor_t::STATE_ARMED);
+  static_assert(static_cast<int16_t>(State::kDriving) == motor_t::STATE_DRIVING);
+  static_assert(static_cast<int16_t>(State::kStopping) == motor_t::STATE_STOPPING);
+  static_assert(static_cast<int16_t>(State::kEstopped) == motor_t::STATE_ESTOP);
+  const bool known = state >= motor_t::STATE_DISARMED && state <= motor_t::STATE_ESTOP;
+  return known ? static_cast<State>(state) : State::kDisarmed;
 }
 
 /// Far more than the eight that are repeated.
@@ -50,6 +44,12 @@ BridgeReading readingFrom(const motor_t& message) {
   reading.execution_id = message.execution_id;
   reading.command_index = message.command_index;
   return reading;
+}
+
+bool mayDrive(int16_t bridge_state) {
+  BridgeReading reading;
+  reading.state = stateFrom(bridge_state);
+  return reading.armed();
 }
 
 std::vector<ExecutionReading> readingsFrom(const execution_t& message) {
@@ -154,11 +154,8 @@ std::string CommandWatch::unexpectedCommand(const ExecutionKey& execution,
     if (std::abs(given.left - command.left) <= kTolerance &&
         std::abs(given.right - command.right) <= kTolerance)
       continue;
-    char line[160];
-    std::snprintf(line, sizeof line,
-                  "command %zu was (%.3f, %.3f) on the motors, (%.3f, %.3f) in the pattern", index,
-                  given.left, given.right, command.left, command.right);
-    return line;
+    return formatted("command %zu was (%.3f, %.3f) on the motors, (%.3f, %.3f) in the pattern",
+                     index, given.left, given.right, command.left, command.right);
   }
   return {};
 }

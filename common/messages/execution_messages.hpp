@@ -21,6 +21,8 @@
 namespace tread {
 
 BridgeReading readingFrom(const motor_t& message);
+/// Whether the permission to drive is there in this state of the motor bridge (motor_t::STATE_*).
+bool mayDrive(int16_t bridge_state);
 std::vector<ExecutionReading> readingsFrom(const execution_t& message);
 program_slot_t toMessage(const ProgramSlot& slot);
 

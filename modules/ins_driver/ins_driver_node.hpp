@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "common/bus/bus.hpp"

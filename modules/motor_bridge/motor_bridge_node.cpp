@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "common/report/text.hpp"
+
 namespace tread::sim {
 namespace {
 
@@ -25,12 +27,10 @@ void TruthRecord::note(const RobotTruth& truth, const std::array<double, 2>& pow
   if (!due && power == power_) return;
   power_ = power;
   last_row_ = truth.utime;
-  char row[256];
-  std::snprintf(row, sizeof row, "%lld,%.4f,%.4f,%.5f,%.4f,%.3f,%.3f,%s,%zu,%.3f\n",
-                static_cast<long long>(truth.utime), truth.T_map_body.x, truth.T_map_body.y,
-                truth.T_map_body.yaw, truth.v_body.v_x, power[0], power[1], truth.surface.c_str(),
-                truth.collisions.size(), truth.distance);
-  out_ << row;
+  out_ << formatted("%lld,%.4f,%.4f,%.5f,%.4f,%.3f,%.3f,%s,%zu,%.3f\n",
+                    static_cast<long long>(truth.utime), truth.T_map_body.x, truth.T_map_body.y,
+                    truth.T_map_body.yaw, truth.v_body.v_x, power[0], power[1],
+                    truth.surface.c_str(), truth.collisions.size(), truth.distance);
   if (last_flush_ != INT64_MIN && truth.utime - last_flush_ < kFlushEvery) return;
   last_flush_ = truth.utime;
   out_.flush();

@@ -2,9 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/simulator/world_file.hpp"
 
-#include <cstdio>
-#include <fstream>
-
 #include "common/config/config_reader.hpp"
 
 namespace tread::sim {
@@ -128,73 +125,6 @@ WorldDescription readWorld(ConfigReader reader) {
   return world;
 }
 
-/// Shortest text that reads back to the same number.
-std::string number(double value) {
-  char text[40];
-  for (int digits = 6; digits <= 17; ++digits) {
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
-    if (std::stod(text) == value) break;
-  }
-  return text;
-}
-
-std::string point(const Eigen::Vector2d& p) {
-  return "[" + number(p.x()) + ", " + number(p.y()) + "]";
-}
-
-std::string points(const std::vector<Eigen::Vector2d>& corners) {
-  std::string text = "[";
-  for (const Eigen::Vector2d& corner : corners)
-    text += (text.size() > 1 ? ", " : "") + point(corner);
-  return text + "]";
-}
-
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + "\"";
-}
-
-std::string formatSurface(const SurfaceParameters& surface) {
-  return "  - name: " + quoted(surface.name) + "\n    friction: " + number(surface.friction) +
-         "\n    shear_displacement: " + number(surface.shear_displacement) +
-         "\n    lateral_displacement: " + number(surface.lateral_displacement) +
-         "\n    resistance_constant: " + number(surface.resistance_constant) +
-         "\n    resistance_viscous: " + number(surface.resistance_viscous) +
-         "\n    scrub_resistance: " + number(surface.scrub_resistance) +
-         "\n    pressure_offset: " + number(surface.pressure_offset) +
-         "\n    spread_forward: " + number(surface.spread.forward) +
-         "\n    spread_yaw: " + number(surface.spread.yaw) +
-         "\n    spread_heading: " + number(surface.spread.heading) + "\n";
-}
-
-std::string formatTerrain(const Terrain& terrain) {
-  std::string text = "terrain:\n";
-  if (!terrain.waves.empty()) text += "  waves:\n";
-  for (const TerrainWave& wave : terrain.waves) {
-    text += "    - {amplitude: " + number(wave.amplitude) + ", k: " + point(wave.k) +
-            ", phase: " + number(wave.phase) + "}\n";
-  }
-  if (!terrain.bumps.empty()) text += "  bumps:\n";
-  for (const TerrainBump& bump : terrain.bumps) {
-    text += "    - {centre: " + point(bump.centre) + ", height: " + number(bump.height) +
-            ", radius: " + number(bump.radius) + "}\n";
-  }
-  return text;
-}
-
-std::string formatObstacle(const Obstacle& obstacle) {
-  std::string text = obstacle.isDisc() ? "  - {disc: " + point(obstacle.centre) +
-                                             ", radius: " + number(obstacle.radius)
-                                       : "  - {corners: " + points(obstacle.corners);
-  text += ", height: " + number(obstacle.height);
-  if (!obstacle.name.empty()) text += ", name: " + quoted(obstacle.name);
-  return text + "}\n";
-}
-
 }  // namespace
 
 WorldDescription readWorld(const std::string& path) {
@@ -203,32 +133,6 @@ WorldDescription readWorld(const std::string& path) {
 
 WorldDescription parseWorld(const std::string& text, const std::string& name) {
   return readWorld(ConfigReader::fromText(text, name));
-}
-
-std::string formatWorld(const WorldDescription& world) {
-  const Extent& bounds = world.bounds;
-  std::string text = "# A world of the simulator. Metres and radians; later regions lie on top.\n";
-  text += "name: " + quoted(world.name) + "\nbounds: [" + number(bounds.low.x()) + ", " +
-          number(bounds.low.y()) + ", " + number(bounds.high.x()) + ", " + number(bounds.high.y()) +
-          "]\nbase_surface: " + quoted(world.base_surface) + "\n";
-  if (!world.surfaces.empty()) text += "surfaces:\n";
-  for (const SurfaceParameters& surface : world.surfaces) text += formatSurface(surface);
-  if (!world.regions.empty()) text += "regions:\n";
-  for (const SurfaceRegion& region : world.regions) {
-    text +=
-        "  - {surface: " + quoted(region.surface) + ", corners: " + points(region.corners) + "}\n";
-  }
-  if (!world.terrain.flat()) text += formatTerrain(world.terrain);
-  if (!world.obstacles.empty()) text += "obstacles:\n";
-  for (const Obstacle& obstacle : world.obstacles) text += formatObstacle(obstacle);
-  return text;
-}
-
-void writeWorld(const std::string& path, const WorldDescription& world) {
-  std::ofstream file(path);
-  file << formatWorld(world);
-  file.close();
-  if (!file) throw std::runtime_error(path + ": cannot be written; check folder and permissions");
 }
 
 }  // namespace tread::sim

@@ -13,9 +13,4 @@ WorldDescription readWorld(const std::string& path);
 /// The same from text; `name` stands for the file in messages.
 WorldDescription parseWorld(const std::string& text, const std::string& name);
 
-/// The world as a file that readWorld() reads back to the same numbers. Boxes become their corners.
-std::string formatWorld(const WorldDescription& world);
-/// Writes formatWorld() to a file; throws std::runtime_error with one clear line if it cannot.
-void writeWorld(const std::string& path, const WorldDescription& world);
-
 }  // namespace tread::sim

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include "modules/ins_driver/nmea/nmea_ins.hpp"
 #include "modules/ins_driver/nmea/nmea_log.hpp"
 #include "tests/ins_driver/nmea_lines.hpp"
 
@@ -11,6 +12,44 @@ using namespace tread::ins;
 namespace {
 
 constexpr double kDeg = kPi / 180.0;
+
+/// What a recorded log holds.
+struct NmeaLogSummary {
+  NmeaCounts counts;
+  AssemblerCounts epochs;
+  std::optional<GeoOrigin> origin;
+  std::vector<InsEstimate> estimates;
+  std::optional<InsEstimate> first_pose;  ///< first with position and heading
+  std::optional<InsEstimate> last_pose;   ///< last likewise
+};
+
+/// Runs a whole log through the core, in its own time.
+NmeaLogSummary summarise(std::string_view log, const InsConfig& config) {
+  NmeaIns ins(config);
+  NmeaLogSummary summary;
+  const auto collect = [&](int64_t now) {
+    while (const std::optional<InsEstimate> estimate = ins.next(now))
+      summary.estimates.push_back(*estimate);
+  };
+  int64_t now = 0;
+  for (const NmeaBurst& burst : scheduleNmeaLog(log)) {
+    // What the line's silence before this burst ended.
+    collect(burst.utime);
+    now = burst.utime;
+    ins.push(burst.bytes, now);
+  }
+  ins.interrupt();
+  collect(now);
+  for (const InsEstimate& estimate : summary.estimates) {
+    if (estimate.status & (kNoPosition | kNoHeading)) continue;
+    if (!summary.first_pose) summary.first_pose = estimate;
+    summary.last_pose = estimate;
+  }
+  summary.counts = ins.counts();
+  summary.epochs = ins.assembler().counts();
+  summary.origin = ins.assembler().origin();
+  return summary;
+}
 
 int64_t ofType(const NmeaLogSummary& summary, const std::string& type) {
   for (size_t i = 0; i < kSentenceTypes; ++i) {

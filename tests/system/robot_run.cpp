@@ -6,6 +6,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "common/messages/execution_messages.hpp"
+
 namespace tread::testing {
 namespace {
 
@@ -170,7 +172,7 @@ void RobotRun::sendGoal() {
 }
 
 bool RobotRun::armed() const {
-  return motor_.any() && operators::mayDrive(motor_.message().bridge_state);
+  return motor_.any() && mayDrive(motor_.message().bridge_state);
 }
 
 bool RobotRun::untilDriving(double seconds, const std::function<bool()>& condition) {

@@ -2,8 +2,12 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cmath>
+
 #include <Eigen/Core>
 #include <GeographicLib/LocalCartesian.hpp>
+
+#include "common/geometry/se2.hpp"
 
 namespace tread::ins {
 
@@ -25,13 +29,25 @@ struct GeoOrigin {
    leaving it out scales the plane by less than 2e-5 (100 m of 6378 km). */
 class LocalFrame {
  public:
-  explicit LocalFrame(const GeoOrigin& origin);
+  explicit LocalFrame(const GeoOrigin& origin)
+      : origin_(origin),
+        cartesian_(origin.point.latitude * kDegPerRad, origin.point.longitude * kDegPerRad,
+                   origin.altitude) {}
 
   /// p_map of a point [m].
-  Eigen::Vector3d toMap(const GeoPoint& point, double altitude) const;
+  Eigen::Vector3d toMap(const GeoPoint& point, double altitude) const {
+    double east = 0.0, north = 0.0, up = 0.0;
+    cartesian_.Forward(point.latitude * kDegPerRad, point.longitude * kDegPerRad, altitude, east,
+                       north, up);
+    const double c = std::cos(origin_.yaw);
+    const double s = std::sin(origin_.yaw);
+    return {c * east + s * north, c * north - s * east, up};
+  }
   const GeoOrigin& origin() const { return origin_; }
 
  private:
+  static constexpr double kDegPerRad = 180.0 / kPi;
+
   GeoOrigin origin_;
   GeographicLib::LocalCartesian cartesian_;
 };

@@ -31,9 +31,6 @@ double rangeError(FixQuality quality) {
 
 /// After this time without a position sentence, instants with attitude alone are published, too.
 constexpr int64_t kPositionsExpectedUs = 1'500'000;
-/// The device's time ran ahead of the host's by this since the last epochs: its clock was set
-/// forward.
-constexpr int64_t kClockStepUs = 1'000'000;
 
 /// So many RMC fixes without a GGA in between: this device tells no altitude, the origin need not
 /// wait for it.

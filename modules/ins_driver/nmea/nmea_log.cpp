@@ -6,6 +6,7 @@
 #include <array>
 
 #include "modules/ins_driver/nmea/epoch_collector.hpp"
+#include "modules/ins_driver/nmea/nmea_framer.hpp"
 #include "modules/ins_driver/nmea/nmea_parser.hpp"
 
 namespace tread::ins {
@@ -87,33 +88,6 @@ std::vector<NmeaBurst> scheduleNmeaLog(std::string_view log) {
     untimed = 0;
   }
   return bursts;
-}
-
-NmeaLogSummary summarise(std::string_view log, const InsConfig& config) {
-  NmeaIns ins(config);
-  NmeaLogSummary summary;
-  const auto collect = [&](int64_t now) {
-    while (const std::optional<InsEstimate> estimate = ins.next(now))
-      summary.estimates.push_back(*estimate);
-  };
-  int64_t now = 0;
-  for (const NmeaBurst& burst : scheduleNmeaLog(log)) {
-    // What the line's silence before this burst ended.
-    collect(burst.utime);
-    now = burst.utime;
-    ins.push(burst.bytes, now);
-  }
-  ins.interrupt();
-  collect(now);
-  for (const InsEstimate& estimate : summary.estimates) {
-    if (estimate.status & (kNoPosition | kNoHeading)) continue;
-    if (!summary.first_pose) summary.first_pose = estimate;
-    summary.last_pose = estimate;
-  }
-  summary.counts = ins.counts();
-  summary.epochs = ins.assembler().counts();
-  summary.origin = ins.assembler().origin();
-  return summary;
 }
 
 }  // namespace tread::ins

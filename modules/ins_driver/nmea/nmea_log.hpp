@@ -6,8 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "modules/ins_driver/nmea/nmea_ins.hpp"
-
 namespace tread::ins {
 
 /// Lines of a recorded log that the device sent together.
@@ -22,18 +20,5 @@ struct NmeaBurst {
    runs backwards, a burst follows 100 ms after the one before; pauses are cut to 60 s. The bytes of
    the bursts together are the log. */
 std::vector<NmeaBurst> scheduleNmeaLog(std::string_view log);
-
-/// What a recorded log holds.
-struct NmeaLogSummary {
-  NmeaCounts counts;
-  AssemblerCounts epochs;
-  std::optional<GeoOrigin> origin;
-  std::vector<InsEstimate> estimates;
-  std::optional<InsEstimate> first_pose;  ///< first with position and heading
-  std::optional<InsEstimate> last_pose;   ///< last likewise
-};
-
-/// Runs a whole log through the core, in its own time.
-NmeaLogSummary summarise(std::string_view log, const InsConfig& config);
 
 }  // namespace tread::ins

@@ -2,8 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/motor_bridge/core/safeguards.hpp"
 
-#include <algorithm>
-
 namespace tread::motor {
 
 void InsWatch::receive(const InsNotice& notice, int64_t now) {

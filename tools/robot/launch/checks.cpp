@@ -3,6 +3,7 @@
 #include "tools/robot/launch/checks.hpp"
 
 #include <algorithm>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 
@@ -17,28 +18,6 @@ constexpr int64_t kNeededSpace = 20'000'000;     // for the states and some line
 constexpr const char* kRouteRemedy =
     "ip link set lo up multicast on; ip route replace 224.0.0.0/4 dev lo  (as root)";
 constexpr const char* kRemedyWithoutRoot = "; or without root: --lcm-url tcpq://127.0.0.1:7668";
-
-std::optional<int64_t> wholeNumber(const std::string& text) {
-  if (text.empty() || text.size() > 12 ||
-      !std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }))
-    return std::nullopt;
-  return std::stoll(text);
-}
-
-/// ttl=0&recv_buf_size=2097152; false if a number cannot be read.
-bool readOptions(const std::string& text, LcmAddress& address) {
-  std::istringstream options(text);
-  for (std::string option; std::getline(options, option, '&');) {
-    const size_t equals = option.find('=');
-    const std::string key = option.substr(0, equals);
-    if (key != "ttl" && key != "recv_buf_size") continue;
-    const auto number = wholeNumber(equals == std::string::npos ? "" : option.substr(equals + 1));
-    if (!number) return false;
-    if (key == "ttl") address.ttl = static_cast<int>(std::min<int64_t>(*number, 255));
-    if (key == "recv_buf_size") address.receive_buffer = *number;
-  }
-  return true;
-}
 
 std::string megabytes(int64_t bytes) {
   return std::to_string(bytes / 1'000'000) + " MB";
@@ -57,28 +36,33 @@ bool anyCritical(const std::vector<Finding>& findings) {
 }
 
 std::optional<LcmAddress> parseLcmUrl(const std::string& url) {
-  const size_t colon = url.find("://");
-  if (colon == std::string::npos || colon == 0) return std::nullopt;
+  static const std::regex kUrl(R"re(([^:]+)://([^:?]*)(?::(\d{1,5}))?(?:\?(.*))?)re");
+  static const std::regex kOption(R"re((ttl|recv_buf_size)=(\d{1,12}))re");
+  std::smatch part;
+  if (!std::regex_match(url, part, kUrl)) return std::nullopt;
   LcmAddress address;
-  address.provider = url.substr(0, colon);
+  address.provider = part[1];
   if (address.provider == "tcpq") {
     address.group = "127.0.0.1";
     address.port = 7700;
-  } else if (address.provider != "udpm") {
-    return address;
   }
-  const size_t question = url.find('?');
-  const std::string place = url.substr(
-      colon + 3, question == std::string::npos ? std::string::npos : question - colon - 3);
-  const size_t port_colon = place.find(':');
-  if (port_colon > 0 && !place.empty()) address.group = place.substr(0, port_colon);
-  if (port_colon != std::string::npos) {
-    const auto port = wholeNumber(place.substr(port_colon + 1));
-    if (!port || *port < 1 || *port > 65535) return std::nullopt;
-    address.port = static_cast<uint16_t>(*port);
+  if (part[2].length() > 0) address.group = part[2];
+  if (part[3].matched) {
+    const int port = std::stoi(part[3]);
+    if (port < 1 || port > 65535) return std::nullopt;
+    address.port = static_cast<uint16_t>(port);
   }
-  if (question != std::string::npos && !readOptions(url.substr(question + 1), address))
-    return std::nullopt;
+  std::istringstream options(part[4]);
+  for (std::string option; std::getline(options, option, '&');) {
+    std::smatch found;
+    const std::string key = option.substr(0, option.find('='));
+    if (key != "ttl" && key != "recv_buf_size") continue;
+    if (!std::regex_match(option, found, kOption)) return std::nullopt;
+    if (key == "ttl")
+      address.ttl = static_cast<int>(std::min<int64_t>(std::stoll(found[2]), 255));
+    else
+      address.receive_buffer = std::stoll(found[2]);
+  }
   return address;
 }
 

@@ -2,8 +2,9 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/robot/launch/launch_progress.hpp"
 
-#include <cstdio>
 #include <utility>
+
+#include "common/report/text.hpp"
 
 namespace tread::launch {
 namespace {
@@ -64,12 +65,8 @@ std::optional<std::string> LaunchProgress::ended(const std::string& process,
 std::optional<std::string> LaunchProgress::running(const std::string& process, double seconds) {
   const bool back = ends_.erase(process) > 0;
   const bool first = ran_.insert(process).second;
-  if (first && ran_.size() == processes_) {
-    char text[160];
-    std::snprintf(text, sizeof text, "%s: all %zu processes run after %.1f s", name_.c_str(),
-                  processes_, seconds);
-    return text;
-  }
+  if (first && ran_.size() == processes_)
+    return formatted("%s: all %zu processes run after %.1f s", name_.c_str(), processes_, seconds);
   if (back) return name_ + ": " + process + " runs again";
   return std::nullopt;
 }

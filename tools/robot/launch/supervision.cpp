@@ -24,6 +24,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "common/report/text.hpp"
 #include "tools/robot/launch/launch_progress.hpp"
 
 namespace tread::launch {
@@ -38,12 +39,6 @@ constexpr double kLongestStop = 120.0;  // s
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::string oneDecimal(double seconds) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f s", seconds);
-  return text;
 }
 
 /// Supervisord looks at its processes once a second, or when somebody calls: a call that says
@@ -261,7 +256,8 @@ void Run::tell() {
 int Run::conclude() const {
   const bool clean = WIFEXITED(status_) && WEXITSTATUS(status_) == 0;
   if (stopping_ && clean) {
-    std::cout << name_ << ": stopped after " << oneDecimal(secondsSince(stop_)) << std::endl;
+    std::cout << name_ << ": stopped after " << formatted("%.1f s", secondsSince(stop_))
+              << std::endl;
     return 0;
   }
   std::cerr << name_ << ": the supervisor "
@@ -298,13 +294,13 @@ int stopRun(const std::string& name, const RunPaths& paths) {
   }
   while (RunLock::isHeld(paths.lock)) {
     if (secondsSince(start) > kLongestStop) {
-      std::cerr << name << ": still runs after " << oneDecimal(kLongestStop)
+      std::cerr << name << ": still runs after " << formatted("%.1f s", kLongestStop)
                 << "; its supervisor's pid is in " << paths.pid << std::endl;
       return 1;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  std::cout << name << ": stopped after " << oneDecimal(secondsSince(start)) << std::endl;
+  std::cout << name << ": stopped after " << formatted("%.1f s", secondsSince(start)) << std::endl;
   return 0;
 }
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "tools/robot/launch/run_lock.hpp"
+#include "tools/robot/launch/host.hpp"
 #include "tools/robot/launch/supervisor_config.hpp"
 
 namespace tread::launch {

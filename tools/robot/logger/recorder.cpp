@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/robot/logger/recorder.hpp"
 
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
@@ -21,12 +20,6 @@ constexpr int64_t kRetry = 1'000'000;     // [us] between attempts after the dis
 constexpr int64_t kReserve = 10'000'000;  // [bytes] that must be free to begin again
 constexpr int kMostFailures = 10;         // of LCM in a row
 constexpr int64_t kOverhead = 60;         // [bytes] of an event beside its message, about
-
-int64_t utcNow() {
-  using std::chrono::duration_cast;
-  using std::chrono::microseconds;
-  return duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
 
 namespace fs = std::filesystem;
 
@@ -84,7 +77,7 @@ void Recorder::record(const std::string& channel, const uint8_t* bytes, size_t s
     return;
   }
   try {
-    writer_->write(utcNow(), channel, bytes, size);
+    writer_->write(hostUtc(), channel, bytes, size);
     written_ += kOverhead + static_cast<int64_t>(size);
   } catch (const std::exception& error) {
     ++lost_;

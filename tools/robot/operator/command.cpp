@@ -5,7 +5,10 @@
 #include <csignal>
 #include <iostream>
 
+#include <CLI/CLI.hpp>
+
 #include "common/bus/lcm_bus.hpp"
+#include "common/config/command_line.hpp"
 
 namespace tread::operators {
 namespace {
@@ -59,6 +62,22 @@ int runCall(const std::string& name, const CommandOptions& options,
     std::cerr << name << ": " << error.what() << std::endl;
     return 1;
   }
+}
+
+int runPermissionCommand(int argc, char** argv, const PermissionCommand& command) {
+  CLI::App app{command.description, command.name};
+  CommandOptions options;
+  Requester requester;
+  bool taken_back = false;
+  double patience = 5.0;
+  app.add_option("--by", requester.by, "who " + command.verb);
+  app.add_option("--why", requester.why, "why, for the log");
+  app.add_flag(command.withdraw, taken_back, command.withdraw_help);
+  app.add_option("--timeout", patience, "how long to try [s]")->check(CLI::Range(0.5, 600.0));
+  app.add_option("--lcm-url", options.lcm_url, "LCM provider");
+  if (const auto code = parseCommandLine(app, argc, argv)) return *code;
+  return runCall(command.name, options,
+                 [&](Bus& bus) { return command.make(bus, requester, !taken_back, patience); });
 }
 
 }  // namespace tread::operators

@@ -24,4 +24,17 @@ struct CommandOptions {
 int runCall(const std::string& name, const CommandOptions& options,
             const std::function<std::unique_ptr<Call>(Bus&)>& make);
 
+/// What tread-arm and tread-stop differ in.
+struct PermissionCommand {
+  std::string name;
+  std::string description;
+  std::string verb;      ///< "arms"
+  std::string withdraw;  ///< the flag that takes it back
+  std::string withdraw_help;
+  /// `given` is false where it is taken back; `patience` [s].
+  std::function<std::unique_ptr<Call>(Bus&, const Requester&, bool given, double patience)> make;
+};
+/// The main function of such a command.
+int runPermissionCommand(int argc, char** argv, const PermissionCommand& command);
+
 }  // namespace tread::operators

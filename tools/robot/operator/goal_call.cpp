@@ -3,11 +3,10 @@
 #include "tools/robot/operator/goal_call.hpp"
 
 #include <cmath>
-#include <cstdio>
-#include <limits>
 #include <utility>
 
 #include "common/messages/blank.hpp"
+#include "common/messages/execution_messages.hpp"
 #include "common/report/text.hpp"
 
 namespace tread::operators {
@@ -47,43 +46,24 @@ std::string statusWord(int16_t plan_status) {
   }
 }
 
-DriveProgress::DriveProgress(Bus& bus, const Pose2& T_map_goal, SurfaceNames surface_names)
-    : T_map_goal_(T_map_goal),
-      surface_names_(std::move(surface_names)),
-      ins_(bus, kIns),
-      plan_(bus, kPlan),
-      motor_(bus, kMotor),
-      execution_(bus, kExecution),
-      learning_(bus, kLearning) {
-  bus.subscribe<pattern_set_part_t>(kPatternSet, [this](const pattern_set_part_t& part) {
-    names_[part.set_pattern_id] = part.pattern_name;
-  });
-}
-
-double DriveProgress::toGo() const {
-  if (!ins_.any()) return std::numeric_limits<double>::quiet_NaN();
-  const auto& place = ins_.message().position;
-  return std::hypot(T_map_goal_.x - place[0], T_map_goal_.y - place[1]);
-}
-
-std::string DriveProgress::patternName(int32_t id) const {
+std::string GoalCall::patternName(int32_t id) const {
   const auto found = names_.find(id);
   return found == names_.end() ? "pattern " + std::to_string(id) : found->second;
 }
 
-std::string DriveProgress::line(int64_t utime) const {
+std::string GoalCall::progress(int64_t utime) const {
   if (ins_.age(utime) > kFreshAge) return "no INS: is tread-ins-driver running?";
   if (plan_.age(utime) > kFreshAge) return "no PLAN: is tread-planner running?";
   const plan_t& plan = plan_.message();
-  std::string text = formatted("to go %5.1f m  ", toGo()) + statusWord(plan.plan_status);
+  const auto& place = ins_.message().position;
+  const double to_go =
+      std::hypot(request_.T_map_goal.x - place[0], request_.T_map_goal.y - place[1]);
+  std::string text = formatted("to go %5.1f m  ", to_go) + statusWord(plan.plan_status);
   if (!plan.reason.empty()) text += " (" + plan.reason + ")";
   if (motor_.any() && motor_.message().execution_id != 0 && execution_.any() &&
       !execution_.message().records.empty())
     text += "  " + patternName(execution_.message().records.back().record_pattern_id);
-  if (surface_names_) {
-    const auto& place = ins_.message().position;
-    text += " on " + surface_names_({place[0], place[1]});
-  }
+  if (surface_names_) text += " on " + surface_names_({place[0], place[1]});
   if (learning_.any() && std::isfinite(learning_.message().error_position)) {
     const learning_t& learned = learning_.message();
     text += formatted("  last error %.2f m", learned.error_position) +
@@ -97,7 +77,16 @@ GoalCall::GoalCall(Bus& bus, const GoalRequest& request, int64_t goal_id,
     : bus_(bus),
       request_(request),
       goal_id_(goal_id),
-      progress_(bus, request.T_map_goal, std::move(surface_names)) {}
+      surface_names_(std::move(surface_names)),
+      ins_(bus, kIns),
+      plan_(bus, kPlan),
+      motor_(bus, kMotor),
+      execution_(bus, kExecution),
+      learning_(bus, kLearning) {
+  bus.subscribe<pattern_set_part_t>(kPatternSet, [this](const pattern_set_part_t& part) {
+    names_[part.set_pattern_id] = part.pattern_name;
+  });
+}
 
 void GoalCall::send(int64_t utime, int64_t goal_id) {
   auto goal = blank<goal_t>();
@@ -119,8 +108,8 @@ CallResult GoalCall::step(int64_t utime) {
     next_ = utime + kRepeat;
   }
   if (lostPermission(utime)) return CallResult::kRefused;
-  if (!progress_.plan().any() || !isOurs(progress_.plan().message())) return CallResult::kPending;
-  const int16_t status = progress_.plan().message().plan_status;
+  if (!plan_.any() || plan_.message().goal_id != goal_id_) return CallResult::kPending;
+  const int16_t status = plan_.message().plan_status;
   if (status == plan_t::PLAN_ARRIVED) return CallResult::kDone;
   if (!isStuck(status)) stuck_since_.reset();
   if (isStuck(status) && !stuck_since_) stuck_since_ = utime;
@@ -131,8 +120,8 @@ CallResult GoalCall::step(int64_t utime) {
 
 /// Was armed, and is not any more for a while. Before the first arming the goal just waits.
 bool GoalCall::lostPermission(int64_t utime) {
-  if (!progress_.motor().any()) return false;
-  const bool may = mayDrive(progress_.motor().message().bridge_state);
+  if (!motor_.any()) return false;
+  const bool may = mayDrive(motor_.message().bridge_state);
   was_armed_ = was_armed_ || may;
   if (may) disarmed_since_.reset();
   if (!may && was_armed_ && !disarmed_since_) disarmed_since_ = utime;
@@ -140,13 +129,11 @@ bool GoalCall::lostPermission(int64_t utime) {
 }
 
 std::string GoalCall::describe(int64_t utime) const {
-  char time[32] = "";
+  std::string words = progress(utime);
   if (started_)
-    std::snprintf(time, sizeof time, "%5.0f s  ", static_cast<double>(utime - *started_) * 1e-6);
-  std::string words = time + progress_.line(utime);
+    words = formatted("%5.0f s  ", static_cast<double>(utime - *started_) * 1e-6) + words;
   if (disarmed_since_)
-    words += "; not armed any more (" + progress_.motor().message().state_reason +
-             "): tread-arm, then again";
+    words += "; not armed any more (" + motor_.message().state_reason + "): tread-arm, then again";
   return words;
 }
 

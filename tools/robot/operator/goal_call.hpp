@@ -16,31 +16,6 @@ namespace tread::operators {
 /// Name of the ground at a point of the map, where somebody knows it.
 using SurfaceNames = std::function<std::string(const Eigen::Vector2d& p_map)>;
 
-/// Follows a drive on the bus and tells it in one line.
-class DriveProgress {
- public:
-  DriveProgress(Bus& bus, const Pose2& T_map_goal, SurfaceNames surface_names);
-
-  /// "to go 12.3 m  driving  left-soft on gravel  last error 0.04 m 1.2 deg  set 17".
-  std::string line(int64_t utime) const;
-  /// Distance to the goal [m]; NaN while there is no pose.
-  double toGo() const;
-  const Latest<plan_t>& plan() const { return plan_; }
-  const Latest<motor_t>& motor() const { return motor_; }
-
- private:
-  std::string patternName(int32_t id) const;
-
-  Pose2 T_map_goal_;
-  SurfaceNames surface_names_;
-  Latest<ins_t> ins_;
-  Latest<plan_t> plan_;
-  Latest<motor_t> motor_;
-  Latest<execution_t> execution_;
-  Latest<learning_t> learning_;
-  std::map<int32_t, std::string> names_;  ///< of patterns by id
-};
-
 /// A planner's status in a word.
 std::string statusWord(int16_t plan_status);
 
@@ -68,14 +43,22 @@ class GoalCall : public Call {
  private:
   void send(int64_t utime, int64_t goal_id);
   bool lostPermission(int64_t utime);
-  bool isOurs(const plan_t& plan) const { return plan.goal_id == goal_id_; }
+  /// "to go 12.3 m  driving  left-soft on gravel  last error 0.04 m 1.2 deg  set 17".
+  std::string progress(int64_t utime) const;
+  std::string patternName(int32_t id) const;
 
   Bus& bus_;
   GoalRequest request_;
   int64_t goal_id_;
-  DriveProgress progress_;
-  std::optional<int64_t> started_;  ///< [us]
-  int64_t next_ = 0;                ///< [us]
+  SurfaceNames surface_names_;
+  Latest<ins_t> ins_;
+  Latest<plan_t> plan_;
+  Latest<motor_t> motor_;
+  Latest<execution_t> execution_;
+  Latest<learning_t> learning_;
+  std::map<int32_t, std::string> names_;  ///< of patterns by id
+  std::optional<int64_t> started_;        ///< [us]
+  int64_t next_ = 0;                      ///< [us]
   std::optional<int64_t> stuck_since_;
   bool was_armed_ = false;
   std::optional<int64_t> disarmed_since_;  ///< [us]; none while armed, and before the first arming

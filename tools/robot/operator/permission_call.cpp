@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/messages/blank.hpp"
+#include "common/messages/execution_messages.hpp"
 
 namespace tread::operators {
 namespace {
@@ -16,11 +17,6 @@ constexpr int64_t kFreshAge = 500'000;   // [us] a MOTOR message older than this
 constexpr int64_t kSettle = 200'000;  // [us]
 
 }  // namespace
-
-bool mayDrive(int16_t bridge_state) {
-  return bridge_state == motor_t::STATE_ARMED || bridge_state == motor_t::STATE_DRIVING ||
-         bridge_state == motor_t::STATE_STOPPING;
-}
 
 PermissionCall::PermissionCall(Bus& bus, double patience, Request request)
     : request_(std::move(request)),

@@ -30,9 +30,6 @@ class Call {
   virtual void cancel(int64_t /*utime*/) {}
 };
 
-/// Whether the permission to drive is there in this state of the motor bridge (motor_t::STATE_*).
-bool mayDrive(int16_t bridge_state);
-
 /// Who asks, and why; both go into the log.
 struct Requester {
   std::string by = "operator";

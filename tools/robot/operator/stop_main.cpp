@@ -1,25 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <CLI/CLI.hpp>
-
-#include "common/config/command_line.hpp"
 #include "tools/robot/operator/command.hpp"
 
 int main(int argc, char** argv) {
   using namespace tread::operators;
-  CLI::App app{"Emergency stop over LCM. It is no replacement for the button on the machine.",
-               "tread-stop"};
-  CommandOptions options;
-  Requester requester;
-  bool clear = false;
-  double patience = 5.0;
-  app.add_option("--by", requester.by, "who stops");
-  app.add_option("--why", requester.why, "why, for the log");
-  app.add_flag("--clear", clear, "clear the stop; arming is still needed");
-  app.add_option("--timeout", patience, "how long to try [s]")->check(CLI::Range(0.5, 600.0));
-  app.add_option("--lcm-url", options.lcm_url, "LCM provider");
-  if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
-  return runCall("tread-stop", options, [&](tread::Bus& bus) {
-    return std::make_unique<StopCall>(bus, requester, !clear, patience);
-  });
+  return runPermissionCommand(
+      argc, argv,
+      {"tread-stop", "Emergency stop over LCM. It is no replacement for the button on the machine.",
+       "stops", "--clear", "clear the stop; arming is still needed",
+       [](tread::Bus& bus, const Requester& requester, bool given, double patience) {
+         return std::make_unique<StopCall>(bus, requester, given, patience);
+       }});
 }

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/tools/robot/launch/launched.hpp"
-#include "tools/robot/launch/run_lock.hpp"
+#include "tools/robot/launch/host.hpp"
 
 using namespace tread::testing;
 using Catch::Contains;
