@@ -8,9 +8,8 @@
 #include <vector>
 
 #include "common/execution/measurement.hpp"
-#include "common/messages/command_watch.hpp"
-#include "common/messages/execution_queue.hpp"
-#include "common/messages/ins_queue.hpp"
+#include "common/messages/execution_messages.hpp"
+#include "common/messages/ins_messages.hpp"
 #include "common/messages/robot_inputs.hpp"
 #include "common/recordings/recordings.hpp"
 #include "modules/pattern_recorder/core/recording_drive.hpp"
