@@ -66,12 +66,22 @@ void tune(int fd) {
   set(IPPROTO_TCP, TCP_USER_TIMEOUT, 5000);  // [ms]
 }
 
-class TcpLink final : public DescriptorLink {
- public:
-  explicit TcpLink(const LinkAddress& address)
-      : DescriptorLink(address.text), host_(address.host), port_(address.port) {
-    attempt();
+/// A line to or at a port.
+class SocketLink : public DescriptorLink {
+ protected:
+  explicit SocketLink(const LinkAddress& address)
+      : DescriptorLink(address.text), host_(address.host), port_(address.port) {}
+  ssize_t writeSome(const uint8_t* bytes, size_t size) override {
+    return ::send(descriptor(), bytes, size, MSG_NOSIGNAL);
   }
+
+  std::string host_;
+  uint16_t port_;
+};
+
+class TcpLink final : public SocketLink {
+ public:
+  explicit TcpLink(const LinkAddress& address) : SocketLink(address) { attempt(); }
   ~TcpLink() override { abandon(); }
 
   bool reopen(int64_t utime) override {
@@ -144,18 +154,12 @@ class TcpLink final : public DescriptorLink {
     connecting_ = -1;
   }
 
-  ssize_t writeSome(const uint8_t* bytes, size_t size) override {
-    return ::send(descriptor(), bytes, size, MSG_NOSIGNAL);
-  }
-
   // A plain close would still send what is queued: half a command.
   void dropQueued() override {
     const linger at_once{1, 0};
     ::setsockopt(descriptor(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
   }
 
-  std::string host_;
-  uint16_t port_;
   std::vector<Endpoint> endpoints_;
   size_t next_ = 0;
   int connecting_ = -1;
@@ -186,12 +190,9 @@ int boundSocket(int type, const std::string& host, uint16_t port, const std::str
   return -1;
 }
 
-class TcpServerLink final : public DescriptorLink {
+class TcpServerLink final : public SocketLink {
  public:
-  explicit TcpServerLink(const LinkAddress& address)
-      : DescriptorLink(address.text), host_(address.host), port_(address.port) {
-    attempt();
-  }
+  explicit TcpServerLink(const LinkAddress& address) : SocketLink(address) { attempt(); }
   ~TcpServerLink() override {
     if (listener_ >= 0) ::close(listener_);
   }
@@ -219,21 +220,12 @@ class TcpServerLink final : public DescriptorLink {
     return false;
   }
 
-  ssize_t writeSome(const uint8_t* bytes, size_t size) override {
-    return ::send(descriptor(), bytes, size, MSG_NOSIGNAL);
-  }
-
-  std::string host_;
-  uint16_t port_;
   int listener_ = -1;
 };
 
-class UdpLink final : public DescriptorLink {
+class UdpLink final : public SocketLink {
  public:
-  explicit UdpLink(const LinkAddress& address)
-      : DescriptorLink(address.text), host_(address.host), port_(address.port) {
-    attempt();
-  }
+  explicit UdpLink(const LinkAddress& address) : SocketLink(address) { attempt(); }
 
   bool write(const uint8_t* /*bytes*/, size_t /*size*/) override { return false; }
 
@@ -260,8 +252,6 @@ class UdpLink final : public DescriptorLink {
     return static_cast<ssize_t>(count);
   }
 
-  std::string host_;
-  uint16_t port_;
   std::vector<uint8_t> datagram_;
   size_t taken_ = 0;
 };

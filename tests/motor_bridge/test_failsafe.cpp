@@ -16,7 +16,7 @@ constexpr int64_t kStep = 10'000;
 
 /// Drives a failsafe in virtual time; inputs are good unless a test says otherwise.
 struct Rig {
-  Failsafe failsafe{FailsafeTimes{}};
+  Failsafe failsafe;
   FailsafeInputs in;
   FailsafeOutputs out;
 

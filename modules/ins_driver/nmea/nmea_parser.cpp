@@ -74,7 +74,7 @@ NmeaSentence readGga(NmeaFields& fields) {
   gga.hdop = fields.number(8, 0.0, 100.0);
   gga.altitude = fields.number(9, -1000.0, 20000.0);
   fields.letter(10, "M");
-  gga.geoid_separation = fields.number(11, -200.0, 200.0);
+  fields.number(11, -200.0, 200.0);  // geoid separation: heights stay above mean sea level
   fields.letter(12, "M");
   fields.number(13, 0.0, 1e6);  // age of corrections: read only to refuse what is not a number
   if (!usable(gga.quality)) gga.position.reset();
@@ -124,12 +124,12 @@ NmeaSentence readPashr(NmeaFields& fields) {
   fields.letter(3, "T");
   pashr.roll = fields.number(4, -180.0, 180.0, kRadPerDeg);
   pashr.pitch = fields.number(5, -90.0, 90.0, -kRadPerDeg);
-  pashr.heave = fields.number(6, -1000.0, 1000.0);
+  fields.number(6, -1000.0, 1000.0);  // heave
   pashr.roll_std = fields.number(7, 0.0, 360.0, kRadPerDeg);
   pashr.pitch_std = fields.number(8, 0.0, 360.0, kRadPerDeg);
   pashr.yaw_std = fields.number(9, 0.0, 360.0, kRadPerDeg);
-  pashr.gnss_quality = fields.integer(10, 0, 9);
-  pashr.imu_status = fields.integer(11, 0, 9);
+  fields.integer(10, 0, 9);  // of GNSS and of the IMU: the makers do not agree what they mean
+  fields.integer(11, 0, 9);
   return pashr;
 }
 

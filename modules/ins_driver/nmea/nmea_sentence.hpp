@@ -43,8 +43,7 @@ struct Gga {
   FixQuality quality = FixQuality::kNone;
   std::optional<GeoPoint> position;  ///< absent without a fix, and for typed-in or simulated ones
   std::optional<double> altitude;    ///< above mean sea level [m]; absent with the position
-  std::optional<double> geoid_separation;  ///< mean sea level above the ellipsoid [m]
-  std::optional<double> hdop;              ///< horizontal dilution of precision [1]
+  std::optional<double> hdop;        ///< horizontal dilution of precision [1]
   std::optional<int> satellites;
 };
 
@@ -75,12 +74,9 @@ struct Pashr {
   std::optional<double> yaw;    ///< [rad]
   std::optional<double> roll;   ///< right side down positive, about x forward [rad]
   std::optional<double> pitch;  ///< nose down positive, about y left [rad]; the device says nose up
-  std::optional<double> heave;  ///< [m]
   std::optional<double> roll_std;   ///< [rad]
   std::optional<double> pitch_std;  ///< [rad]
   std::optional<double> yaw_std;    ///< [rad]
-  std::optional<int> gnss_quality;
-  std::optional<int> imu_status;  ///< the makers do not agree what it means: kept, not interpreted
 };
 
 /// Rate of turn.

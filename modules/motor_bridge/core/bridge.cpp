@@ -5,11 +5,7 @@
 namespace tread::motor {
 
 Bridge::Bridge(const BridgeConfig& config)
-    : config_(config),
-      gate_(config.gate),
-      ins_(config.ins),
-      requests_(config.requests),
-      failsafe_(config.times) {}
+    : config_(config), gate_(config.gate), ins_(config.ins) {}
 
 void Bridge::receive(const Program& program, int64_t now) {
   const ProgramGate::Admission admission = gate_.admit(program, now, !isArmed(failsafe_.state()));

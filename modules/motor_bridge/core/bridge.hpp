@@ -23,8 +23,6 @@ struct BridgeConfig {
   int64_t max_stall_us = 100'000;        ///< longest gap between steps [us]
   GateLimits gate;
   InsLimits ins;
-  RequestLimits requests;
-  FailsafeTimes times;
 };
 
 /// What a step decided.

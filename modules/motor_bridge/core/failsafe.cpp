@@ -5,6 +5,9 @@
 namespace tread::motor {
 namespace {
 
+constexpr int64_t kHealthyBeforeArm = 1'000'000;  // [us] for which inputs must be good
+constexpr int64_t kFastZero = 1'000'000;          // [us] of zero at the command rate after a stop
+
 struct Fault {
   State state = State::kDisarmed;
   std::string reason;
@@ -56,7 +59,7 @@ FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
   FailsafeOutputs out;
   out.state = state_;
   out.may_drive = state_ == State::kDriving;
-  out.zero_fast = in.now - *zero_since_ < times_.fast_zero_us;
+  out.zero_fast = in.now - *zero_since_ < kFastZero;
   out.arm_refused = in.arm && !refusal_.empty();
   out.reason =
       refusal_.empty() || isArmed(state_) ? reason_ : reason_ + "; ARM refused: " + refusal_;
@@ -92,9 +95,9 @@ bool Failsafe::stopOnFault(const FailsafeInputs& in) {
 
 std::string Failsafe::whyNotArm(const FailsafeInputs& in) const {
   const int64_t healthy = healthy_since_ ? in.now - *healthy_since_ : 0;
-  if (healthy >= times_.healthy_before_arm_us) return "";
+  if (healthy >= kHealthyBeforeArm) return "";
   return "inputs good for " + std::to_string(healthy / 1000) + " ms, " +
-         std::to_string(times_.healthy_before_arm_us / 1000) + " are needed";
+         std::to_string(kHealthyBeforeArm / 1000) + " are needed";
 }
 
 bool Failsafe::serveRequest(const FailsafeInputs& in) {
@@ -113,7 +116,7 @@ void Failsafe::serveSeries(const FailsafeInputs& in) {
     enter(State::kStopping, in.series_end.empty() ? "series ended" : in.series_end, in.now);
   } else if ((state_ == State::kArmed || state_ == State::kStopping) && in.start_wanted) {
     enter(State::kDriving, "playing", in.now);
-  } else if (state_ == State::kStopping && in.now - *zero_since_ >= times_.fast_zero_us) {
+  } else if (state_ == State::kStopping && in.now - *zero_since_ >= kFastZero) {
     enter(State::kArmed, reason_, in.now);
   }
 }

@@ -55,20 +55,12 @@ struct FailsafeOutputs {
   std::string standing_fault;  ///< worst fault of this step; empty = inputs are good
 };
 
-/// Times of the failsafe [us].
-struct FailsafeTimes {
-  int64_t healthy_before_arm_us = 1'000'000;  ///< inputs must be good this long
-  int64_t fast_zero_us = 1'000'000;           ///< zero at the command rate after a stop
-};
-
 /// The ranked state machine that decides whether the motors may turn. Pure: time is an input.
 /** Ranks, worst first: E-stop, link, device, bridge, program, lease, INS. A series can only start
     from a state that gave zero in the step before. Everything but the normal end of a series
     needs ARM, and ARM needs inputs that were good for a second. */
 class Failsafe {
  public:
-  explicit Failsafe(const FailsafeTimes& times) : times_(times) {}
-
   FailsafeOutputs update(const FailsafeInputs& in);
 
   State state() const { return state_; }
@@ -85,7 +77,6 @@ class Failsafe {
   void serveSeries(const FailsafeInputs& in);
   std::string whyNotArm(const FailsafeInputs& in) const;
 
-  FailsafeTimes times_;
   State state_ = State::kDisarmed;
   std::string reason_ = "not armed yet";
   std::optional<int64_t> healthy_since_;

@@ -60,17 +60,9 @@ struct EstopRequest {
   std::string why;
 };
 
-/// How old or early a request may be [us].
-struct RequestLimits {
-  int64_t max_age_us = 1'500'000;  ///< requests are repeated for a second
-  int64_t max_future_us = 50'000;
-};
-
 /// Sorts the operator's requests: an old permission counts for nothing, a stop always counts.
 class OperatorRequests {
  public:
-  explicit OperatorRequests(const RequestLimits& limits) : limits_(limits) {}
-
   /// What a request to arm or disarm leads to.
   enum class Effect { kIgnored, kArm, kDisarm };
   /// Classifies a request received at now [us]; one to arm must have been given after disarmed_at
@@ -88,7 +80,6 @@ class OperatorRequests {
  private:
   bool timely(int64_t utime, int64_t now) const;
 
-  RequestLimits limits_;
   int64_t served_utime_ = -1;
   bool engaged_ = false;
   int64_t engaged_utime_ = 0;

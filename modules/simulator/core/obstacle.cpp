@@ -124,17 +124,19 @@ std::optional<std::string> obstacleFault(const Obstacle& obstacle) {
   return std::nullopt;
 }
 
-Extent extentOf(const Obstacle& obstacle) {
-  if (obstacle.isDisc()) {
-    const Eigen::Vector2d reach(obstacle.radius, obstacle.radius);
-    return {obstacle.centre - reach, obstacle.centre + reach};
-  }
-  Extent extent{obstacle.corners.front(), obstacle.corners.front()};
-  for (const Eigen::Vector2d& corner : obstacle.corners) {
+Extent extentOf(const std::vector<Eigen::Vector2d>& corners) {
+  Extent extent{corners.front(), corners.front()};
+  for (const Eigen::Vector2d& corner : corners) {
     extent.low = extent.low.cwiseMin(corner);
     extent.high = extent.high.cwiseMax(corner);
   }
   return extent;
+}
+
+Extent extentOf(const Obstacle& obstacle) {
+  if (!obstacle.isDisc()) return extentOf(obstacle.corners);
+  const Eigen::Vector2d reach(obstacle.radius, obstacle.radius);
+  return {obstacle.centre - reach, obstacle.centre + reach};
 }
 
 std::optional<Crossing> crossingOf(const Obstacle& obstacle, const Eigen::Vector2d& start,

@@ -45,6 +45,7 @@ struct Extent {
   }
 };
 Extent extentOf(const Obstacle& obstacle);
+Extent extentOf(const std::vector<Eigen::Vector2d>& corners);  ///< at least one
 
 /// The part of a horizontal ray inside a shape, as distances from its start [m].
 struct Crossing {

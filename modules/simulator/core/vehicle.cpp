@@ -80,10 +80,7 @@ Ground levelGround(const SurfaceParameters& surface) {
   return ground;
 }
 
-TrackedVehicle::TrackedVehicle(const VehicleParameters& parameters)
-    : parameters_(parameters),
-      left_geometry_{parameters.contact_length, parameters.gauge / 2.0},
-      right_geometry_{parameters.contact_length, -parameters.gauge / 2.0} {
+TrackedVehicle::TrackedVehicle(const VehicleParameters& parameters) : parameters_(parameters) {
   const DriveParameters& drive = parameters.drive;
   battery_.charge = parameters.charge;
   battery_.voltage =
@@ -93,16 +90,16 @@ TrackedVehicle::TrackedVehicle(const VehicleParameters& parameters)
 void TrackedVehicle::rebuild(const VehicleParameters& parameters) {
   v_centre_.v_y += v_centre_.omega * (parameters.centre - parameters_.centre);
   parameters_ = parameters;
-  left_geometry_ = {parameters.contact_length, parameters.gauge / 2.0};
-  right_geometry_ = {parameters.contact_length, -parameters.gauge / 2.0};
 }
 
 void TrackedVehicle::step(const MotorPower& power, const Ground& ground, double dt) {
   const Loads loads = loadsOn(parameters_, ground);
+  const TrackGeometry left_track{parameters_.contact_length, parameters_.gauge / 2.0};
+  const TrackGeometry right_track{parameters_.contact_length, -parameters_.gauge / 2.0};
   const TrackForce left =
-      left_contact_.step(left_geometry_, ground.left, v_centre_, left_.speed, loads.left, dt);
+      left_contact_.step(left_track, ground.left, v_centre_, left_.speed, loads.left, dt);
   const TrackForce right =
-      right_contact_.step(right_geometry_, ground.right, v_centre_, right_.speed, loads.right, dt);
+      right_contact_.step(right_track, ground.right, v_centre_, right_.speed, loads.right, dt);
   moveBody(left, right, ground, dt);
   stepTrack(parameters_.drive, parameters_.left_power * std::clamp(power.left, -1.0, 1.0),
             battery_.voltage, {-left.along, left.dry_friction}, dt, left_);

@@ -155,8 +155,6 @@ class TrackedVehicle final : public Plant {
   void moveBody(const TrackForce& left, const TrackForce& right, const Ground& ground, double dt);
 
   VehicleParameters parameters_;
-  TrackGeometry left_geometry_;
-  TrackGeometry right_geometry_;
   TrackContact left_contact_;
   TrackContact right_contact_;
   TrackDrive left_;

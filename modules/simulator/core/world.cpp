@@ -28,33 +28,28 @@ bool insidePolygon(const std::vector<Eigen::Vector2d>& corners, const Eigen::Vec
   return inside;
 }
 
-Extent extentOf(const std::vector<Eigen::Vector2d>& corners) {
-  Extent extent{corners.front(), corners.front()};
-  for (const Eigen::Vector2d& corner : corners) {
-    extent.low = extent.low.cwiseMin(corner);
-    extent.high = extent.high.cwiseMax(corner);
-  }
-  return extent;
+/// The one of that name, or the end.
+template <class Surfaces>
+auto findNamed(Surfaces& surfaces, const std::string& name) {
+  return std::find_if(surfaces.begin(), surfaces.end(),
+                      [&](const SurfaceParameters& surface) { return surface.name == name; });
 }
 
 /// The built-in surfaces with the description's own, which replace those of the same name.
 std::vector<SurfaceParameters> surfacesOf(const WorldDescription& description) {
   std::vector<SurfaceParameters> surfaces = builtInSurfaces();
   for (const SurfaceParameters& own : description.surfaces) {
-    const auto same = std::find_if(surfaces.begin(), surfaces.end(),
-                                   [&](const auto& other) { return other.name == own.name; });
-    if (same == surfaces.end()) {
+    const auto same = findNamed(surfaces, own.name);
+    if (same == surfaces.end())
       surfaces.push_back(own);
-    } else {
+    else
       *same = own;
-    }
   }
   return surfaces;
 }
 
 bool named(const std::vector<SurfaceParameters>& surfaces, const std::string& name) {
-  return std::any_of(surfaces.begin(), surfaces.end(),
-                     [&](const SurfaceParameters& surface) { return surface.name == name; });
+  return findNamed(surfaces, name) != surfaces.end();
 }
 
 }  // namespace
@@ -94,7 +89,7 @@ World::World(WorldDescription description)
   for (const SurfaceRegion& region : description_.regions)
     patches_.push_back({surfaceIndex(region.surface), extentOf(region.corners)});
   for (const Obstacle& obstacle : description_.obstacles) {
-    const Extent extent = sim::extentOf(obstacle);
+    const Extent extent = extentOf(obstacle);
     tops_.push_back(height((extent.low + extent.high) / 2.0) + obstacle.height);
   }
   grid_ = ObstacleGrid(description_.obstacles, kGridEdge);
@@ -106,9 +101,7 @@ World::World(WorldDescription description)
 }
 
 size_t World::surfaceIndex(const std::string& name) const {
-  const auto found = std::find_if(surfaces_.begin(), surfaces_.end(),
-                                  [&](const auto& surface) { return surface.name == name; });
-  return static_cast<size_t>(found - surfaces_.begin());
+  return static_cast<size_t>(findNamed(surfaces_, name) - surfaces_.begin());
 }
 
 const SurfaceParameters& World::surface(const Eigen::Vector2d& p_map) const {
