@@ -121,6 +121,13 @@ const double* findParameter(const ModelDocument& document, const std::string& pa
   return findParameter(const_cast<ModelDocument&>(document), path);
 }
 
+std::string unitOf(const std::string& path) {
+  if (const EffectParameter* parameter = findEffectParameter(path)) return parameter->unit;
+  if (path == "lag" || path == "delay") return "s";
+  if (path == "full_speed") return "m/s";
+  return path == "gauge" ? "m" : "1";
+}
+
 std::optional<ParameterBounds> plausibleBounds(const ModelDocument& document,
                                                const std::string& path) {
   for (const ParameterBounds& bounds : document.bounds)

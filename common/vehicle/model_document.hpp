@@ -88,6 +88,9 @@ inline bool isOn(const Effect& effect, const ModelDocument& document) {
 double* findParameter(ModelDocument& document, const std::string& path);
 const double* findParameter(const ModelDocument& document, const std::string& path);
 
+/// Its unit.
+std::string unitOf(const std::string& path);
+
 /// Values between which a parameter is plausible: the document's bounds, else the catalogue's; what
 /// is added to a number of the model can take no more away than it has. Nothing is said of numbers
 /// of the nominal model without bounds.

@@ -27,8 +27,7 @@ struct Rig {
   Rig(const Values& hidden, double seconds, uint64_t seed, const SyntheticNoise& noise = {})
       : drives{syntheticDrive(vehicleWith(hidden), seconds, seed, noise)},
         data(drives, {}),
-        fitter(data),
-        all(data.all().size(), 1) {}
+        fitter(data) {}
 
   /// A state of the nominal vehicle whose residuals are these; no parameter is free.
   FitState stateOf(const Eigen::VectorXd& residuals, double scale) const {
@@ -42,14 +41,14 @@ struct Rig {
 
   /// The nominal vehicle with these parameters free, fitted, with its own noise.
   FitState fitted(const Values& begin) const {
-    FitState state = fitter.start(syntheticVehicle(), {}, all);
+    FitState state = fitter.start(syntheticVehicle(), {});
     for (const auto& [path, value] : begin) {
       FreeParameter parameter = freeParameter(state.model, path);
-      fitter.add(state, parameter, value, all);
+      fitter.add(state, parameter, value);
     }
-    fitter.fitRoughly(state, all);
-    fitter.renewNoise(state, all);
-    fitter.fit(state, all);
+    fitter.fitRoughly(state);
+    fitter.renewNoise(state);
+    fitter.fit(state);
     return state;
   }
 
@@ -58,7 +57,6 @@ struct Rig {
   std::vector<Drive> drives;
   Observations data;
   Fitter fitter;
-  std::vector<char> all;
 };
 
 /// Noise of size 1 of whose variance a share is common to all rows of a channel and block.

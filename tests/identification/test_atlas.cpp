@@ -7,7 +7,6 @@
 
 #include "core_rig.hpp"
 #include "modules/identification/core/adequacy.hpp"
-#include "modules/identification/core/atlas.hpp"
 
 using namespace tread;
 using namespace tread::gap;

@@ -3,8 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core_rig.hpp"
-#include "modules/identification/core/confirmation.hpp"
-#include "modules/identification/core/search_steps.hpp"
+#include "modules/identification/core/search.hpp"
 
 using namespace tread;
 using namespace tread::gap;
@@ -20,7 +19,7 @@ const Progress kSilent = [](const std::string&) {};
 /// A search that ended with these parameters fitted.
 SearchResult resultOf(const Rig& rig, const Values& begin) {
   SearchResult result;
-  result.calibrated = rig.fitter.start(syntheticVehicle(), {}, rig.all);
+  result.calibrated = rig.fitter.start(syntheticVehicle(), {});
   rig.fitter.renewJacobian(result.calibrated);
   result.state = rig.fitted(begin);
   for (const auto& [path, value] : begin) result.effects.push_back(effectOf(path));
@@ -44,7 +43,7 @@ TEST_CASE("an effect of the drive lessens the end error where it was not fitted,
   const Rig rig({{"motor_deadband.speed", 0.1}}, 200.0, 2);
   SearchResult result = resultOf(rig, {{"motor_deadband.speed", 0.05}});
   const double size = *findParameter(result.state.model, "motor_deadband.speed");
-  dropUnconfirmed(rig.fitter, rig.all, {}, result, kSilent);
+  dropUnconfirmed({rig.fitter, {}, kSilent, result});
   CHECK(result.effects == Names{"motor_deadband"});
   CHECK(*findParameter(result.state.model, "motor_deadband.speed") == size);
   CHECK(result.record.negligible.empty());
@@ -61,8 +60,8 @@ TEST_CASE("an effect that only bends the model away from the drive goes, and is 
   result.effects = {"yaw_pull"};
   const SearchResult begin = result;
   Names said;
-  dropUnconfirmed(rig.fitter, rig.all, {}, result,
-                  [&said](const std::string& line) { said.push_back(line); });
+  const Progress hear = [&said](const std::string& line) { said.push_back(line); };
+  dropUnconfirmed({rig.fitter, {}, hear, result});
   CHECK(result.effects.empty());
   CHECK(result.record.negligible == Names{"yaw_pull"});
   CHECK(*findParameter(result.state.model, "yaw_pull.pull") == 0.0);
@@ -71,7 +70,7 @@ TEST_CASE("an effect that only bends the model away from the drive goes, and is 
   SearchResult kept = begin;
   SearchSettings settings;
   settings.accepted = {"yaw_pull"};
-  dropUnconfirmed(rig.fitter, rig.all, settings, kept, kSilent);
+  dropUnconfirmed({rig.fitter, settings, kSilent, kept});
   CHECK(kept.effects == Names{"yaw_pull"});
 }
 
@@ -87,25 +86,24 @@ TEST_CASE("an effect that each half of the driving sizes the other way is not co
   const Observations data(drives, {});
   REQUIRE(data.blocks() == 10);
   const Fitter fitter(data);
-  const std::vector<char> all(data.all().size(), 1);
   SearchResult result;
-  result.calibrated = fitter.start(syntheticVehicle(), {}, all);
+  result.calibrated = fitter.start(syntheticVehicle(), {});
   result.state = result.calibrated;
-  fitter.add(result.state, freeParameter(result.state.model, "yaw_pull.pull"), 0.01, all);
+  fitter.add(result.state, freeParameter(result.state.model, "yaw_pull.pull"), 0.01);
   result.effects = {"yaw_pull"};
   for (int half : {0, 1}) {
-    const FitState own = refitted(fitter, result, halfMask(data, half));
+    const FitState own = refitted(fitter.onRows(halfMask(data, half)), result);
     CHECK(*findParameter(own.model, "yaw_pull.pull") ==
           Approx(half == 0 ? 0.1 : -0.1).margin(0.03));
   }
-  dropUnconfirmed(fitter, all, {}, result, kSilent);
+  dropUnconfirmed({fitter, {}, kSilent, result});
   CHECK(result.effects.empty());
 }
 
 TEST_CASE("a bias of the gyro moves no pose, and is confirmed by the yaw rate") {
   const Rig rig({{"gyro_bias.rate", 0.03}}, 200.0, 3);
   SearchResult result = resultOf(rig, {{"gyro_bias.rate", 0.01}});
-  dropUnconfirmed(rig.fitter, rig.all, {}, result, kSilent);
+  dropUnconfirmed({rig.fitter, {}, kSilent, result});
   CHECK(result.effects == Names{"gyro_bias"});
 }
 
@@ -113,7 +111,7 @@ TEST_CASE("without effects there is nothing to confirm") {
   const Rig rig({}, 60.0, 1);
   SearchResult result = resultOf(rig, {});
   const Eigen::VectorXd predicted = result.state.predicted;
-  dropUnconfirmed(rig.fitter, rig.all, {}, result, [](const std::string&) { FAIL("said"); });
+  dropUnconfirmed({rig.fitter, {}, [](const std::string&) { FAIL("said"); }, result});
   CHECK(result.state.predicted == predicted);
   CHECK(result.record.negligible.empty());
 }
@@ -123,7 +121,7 @@ TEST_CASE("a structure is refitted on other rows with its own values to begin at
   const SearchResult result = resultOf(rig, {{"motor_deadband.speed", 0.05}});
   const double whole = *findParameter(result.state.model, "motor_deadband.speed");
   for (int half : {0, 1}) {
-    const FitState state = refitted(rig.fitter, result, halfMask(rig.data, half));
+    const FitState state = refitted(rig.fitter.onRows(halfMask(rig.data, half)), result);
     REQUIRE(state.free.size() == 1);
     const double size = *findParameter(state.model, "motor_deadband.speed");
     CHECK(size == Approx(whole).margin(0.02));
@@ -133,12 +131,11 @@ TEST_CASE("a structure is refitted on other rows with its own values to begin at
 
 TEST_CASE("an effect that is a free number of the model is not taken in beside it") {
   const Rig rig({}, 100.0, 1);
-  FitState state =
-      rig.fitter.start(syntheticVehicle(), givenParameters(syntheticVehicle(), true), rig.all);
-  rig.fitter.fit(state, rig.all);
+  FitState state = rig.fitter.start(syntheticVehicle(), givenParameters(syntheticVehicle(), true));
+  rig.fitter.fit(state);
   const size_t free = state.free.size();
   const double loss = state.loss;
-  CHECK(takeIn(rig.fitter, state, "actuator_lag", rig.all) ==
+  CHECK(takeIn(rig.fitter, state, "actuator_lag") ==
         "it is a number of the nominal model, which is free");
   CHECK(state.free.size() == free);
   CHECK(state.loss == loss);
@@ -149,10 +146,11 @@ TEST_CASE(
   const Rig rig({{"slip_ratio.slip", 0.1}}, 100.0, 1);
   const FitState nominal = rig.fitted({});
   FitState state = nominal;
-  CHECK(takeIn(rig.fitter, state, "slip_ratio", rig.all).empty());
+  CHECK(takeIn(rig.fitter, state, "slip_ratio").empty());
   REQUIRE(state.free.size() == 1);
   CHECK(*findParameter(state.model, "slip_ratio.slip") == Approx(0.1).margin(0.02));
-  CHECK(state.loss < totalLoss(rig.data.residuals(nominal.predicted), state.scales, rig.all));
+  CHECK(state.loss <
+        totalLoss(rig.data.residuals(nominal.predicted), state.scales, rig.fitter.mask()));
   const FitState off = switchedOff(rig.fitter, state, {"slip_ratio"});
   CHECK(off.free.empty());
   CHECK(off.predicted == nominal.predicted);

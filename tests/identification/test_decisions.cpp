@@ -4,7 +4,7 @@
 
 #include "core_rig.hpp"
 #include "modules/identification/core/discovery.hpp"
-#include "modules/identification/core/search_steps.hpp"
+#include "modules/identification/core/search.hpp"
 
 using namespace tread;
 using namespace tread::gap;
@@ -107,7 +107,7 @@ TEST_CASE("what the drive cannot size cannot be accepted, and one line says why"
 TEST_CASE("an effect is taken in with its size, from the most promising of its change points") {
   const Rig rig({{"terrain_change.width_1", 0.3}, {"terrain_change.time_1", 133.0}}, 240.0, 1);
   FitState state = rig.fitted({});
-  CHECK(takeIn(rig.fitter, state, "terrain_change", rig.all).empty());
+  CHECK(takeIn(rig.fitter, state, "terrain_change").empty());
   CHECK(*findParameter(state.model, "terrain_change.width_1") == Approx(0.3).margin(0.03));
   CHECK(*findParameter(state.model, "terrain_change.time_1") == Approx(133.0).margin(2.0));
 }
@@ -117,10 +117,9 @@ TEST_CASE("an effect that nothing excites leaves the state as it was") {
   for (InsSample& sample : rig.drives[0].segments[0].ins) sample.pitch = 0.0;
   const Observations level(rig.drives, {});
   const Fitter fitter(level);
-  const std::vector<char> all(level.all().size(), 1);
-  FitState state = fitter.start(syntheticVehicle(), {}, all);
+  FitState state = fitter.start(syntheticVehicle(), {});
   const double loss = state.loss;
-  CHECK_FALSE(takeIn(fitter, state, "slope_pitch", all).empty());
+  CHECK_FALSE(takeIn(fitter, state, "slope_pitch").empty());
   CHECK(state.free.empty());
   CHECK(state.loss == loss);
 }

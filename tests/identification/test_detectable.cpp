@@ -31,8 +31,8 @@ TEST_CASE("of a limit the gentlest one that shows is what would have been seen")
   Eigen::MatrixXd directions(rig.size(), 3);
   directions << 0.01 * wave, 2.0 * wave, 3.0 * wave;
   const std::vector<Candidate> limits{limitOf(0.5), limitOf(1.0), limitOf(2.0)};
-  const ScoreTest test(rig.data, rig.stateOf(samples::blockNoise(rig.data, 5, 0.1), 1.0),
-                       directions, rig.all);
+  const ScoreTest test(rig.fitter, rig.stateOf(samples::blockNoise(rig.data, 5, 0.1), 1.0),
+                       directions);
   const double needed = 1.1 / std::max(test.sizeError(1), test.sizeError(2) / 2.0) /* in between */;
   REQUIRE(0.5 < 0.9 * test.sizeError(0) / test.sizeError(1));
   for (size_t i : {0U, 1U, 2U}) {
@@ -48,7 +48,7 @@ TEST_CASE("an effect without a threshold is visible from a size that falls with 
   slip.effect = "slip_ratio";
   slip.parameter = "slip";
   slip.change = 0.02;
-  const ScoreTest test(rig.data, rig.stateOf(samples::blockNoise(rig.data, 5, 0.1), 1.0),
-                       samples::waves(rig.data, 1), rig.all);
+  const ScoreTest test(rig.fitter, rig.stateOf(samples::blockNoise(rig.data, 5, 0.1), 1.0),
+                       samples::waves(rig.data, 1));
   CHECK(detectableSize({slip}, test, 0, 3.0) == Approx(3.0 * test.sizeError(0)));
 }

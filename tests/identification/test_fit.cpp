@@ -104,7 +104,7 @@ TEST_CASE("a size on its bound ran there, one that is off, a time or a lag taken
 
 TEST_CASE("a column of the Jacobian is the finite difference of predictions") {
   const Rig rig({}, 100.0, 1);
-  FitState state = rig.fitter.start(vehicleWith({{"slip_ratio.slip", 0.05}}), {}, rig.all);
+  FitState state = rig.fitter.start(vehicleWith({{"slip_ratio.slip", 0.05}}), {});
   for (const char* path : {"slip_ratio.slip", "yaw_pull.pull", "lag", "lever_arm_y.offset"})
     state.free.push_back(freeParameter(state.model, path));
   rig.fitter.renewJacobian(state);
@@ -126,7 +126,7 @@ TEST_CASE("a difference at the upper bound is taken inwards") {
   ModelDocument model = syntheticVehicle();
   FreeParameter slip = freeParameter(model, "slip_ratio.slip");
   *findParameter(model, slip.path) = slip.max;
-  FitState state = rig.fitter.start(model, {slip}, rig.all);
+  FitState state = rig.fitter.start(model, {slip});
   rig.fitter.renewJacobian(state);
   ModelDocument inside = model;
   *findParameter(inside, slip.path) = slip.max - slip.step;
@@ -136,10 +136,10 @@ TEST_CASE("a difference at the upper bound is taken inwards") {
 
 TEST_CASE("a parameter comes with its column and goes with it") {
   const Rig rig({}, 60.0, 1);
-  FitState state = rig.fitter.start(syntheticVehicle(), {}, rig.all);
+  FitState state = rig.fitter.start(syntheticVehicle(), {});
   const double loss = state.loss;
   for (const char* path : {"slip_ratio.slip", "yaw_pull.pull", "icr_offset.offset"})
-    rig.fitter.add(state, freeParameter(state.model, path), 0.01, rig.all);
+    rig.fitter.add(state, freeParameter(state.model, path), 0.01);
   REQUIRE(state.jacobian.cols() == 3);
   CHECK(state.loss != loss);
   CHECK(*findParameter(state.model, "yaw_pull.pull") == 0.01);
@@ -156,12 +156,12 @@ TEST_CASE("without noise a fit finds the numbers that the drive was made with") 
   const samples::Values truth{
       {"slip_ratio.slip", 0.08}, {"yaw_pull.pull", 0.04}, {"lever_arm_y.offset", 0.15}};
   const Rig rig(truth, 100.0, 3, noNoise());
-  FitState state = rig.fitter.start(syntheticVehicle(), {}, rig.all);
+  FitState state = rig.fitter.start(syntheticVehicle(), {});
   for (const auto& [path, value] : truth)
-    rig.fitter.add(state, freeParameter(state.model, path), 0.0, rig.all);
-  rig.fitter.fit(state, rig.all);
-  rig.fitter.renewNoise(state, rig.all);
-  rig.fitter.fit(state, rig.all);
+    rig.fitter.add(state, freeParameter(state.model, path), 0.0);
+  rig.fitter.fit(state);
+  rig.fitter.renewNoise(state);
+  rig.fitter.fit(state);
   for (const auto& [path, value] : truth) {
     INFO(path);
     CHECK(*findParameter(state.model, path) == Approx(value).epsilon(0.02));
@@ -173,11 +173,12 @@ TEST_CASE(
   const Rig rig({{"slip_ratio.slip", 0.08}, {"yaw_pull.pull", 0.04}}, 120.0, 3);
   std::vector<char> mask;
   for (const Observation& row : rig.data.all()) mask.push_back(row.block % 2 == 0);
-  FitState state = rig.fitter.start(syntheticVehicle(), {}, mask);
+  const Fitter part = rig.fitter.onRows(mask);
+  FitState state = part.start(syntheticVehicle(), {});
   for (const char* path : {"slip_ratio.slip", "yaw_pull.pull"})
-    rig.fitter.add(state, freeParameter(state.model, path), 0.0, mask);
+    part.add(state, freeParameter(state.model, path), 0.0);
   const double before = state.loss;
-  rig.fitter.fit(state, mask);
+  part.fit(state);
   CHECK(state.loss < before - 10.0);
   const auto lossAt = [&](size_t parameter, double change) {
     ModelDocument model = state.model;
@@ -192,13 +193,13 @@ TEST_CASE(
 TEST_CASE("a fit stays within the bounds, and near what was known with certainty") {
   const Rig rig({{"slip_ratio.slip", 0.1}}, 100.0, 4);
   const auto fittedSlip = [&](double max, double expected, double deviation) {
-    FitState state = rig.fitter.start(syntheticVehicle(), {}, rig.all);
+    FitState state = rig.fitter.start(syntheticVehicle(), {});
     FreeParameter slip = freeParameter(state.model, "slip_ratio.slip");
     slip.max = max;
     slip.expected = expected;
     slip.deviation = deviation;
-    rig.fitter.add(state, slip, 0.02, rig.all);
-    rig.fitter.fit(state, rig.all);
+    rig.fitter.add(state, slip, 0.02);
+    rig.fitter.fit(state);
     return *findParameter(state.model, "slip_ratio.slip");
   };
   CHECK(fittedSlip(0.5, 0.0, kNothing) == Approx(0.1).margin(0.02));
@@ -211,17 +212,17 @@ TEST_CASE("a fit stays within the bounds, and near what was known with certainty
 
 TEST_CASE("a state without free parameters is fitted already") {
   const Rig rig({}, 60.0, 4);
-  FitState state = rig.fitter.start(syntheticVehicle(), {}, rig.all);
+  FitState state = rig.fitter.start(syntheticVehicle(), {});
   const double loss = state.loss;
-  rig.fitter.fit(state, rig.all);
-  rig.fitter.fitRoughly(state, rig.all);
+  rig.fitter.fit(state);
+  rig.fitter.fitRoughly(state);
   CHECK(state.loss == loss);
   CHECK(std::isfinite(loss));
 }
 
 TEST_CASE("columns that are made at the same time are those made one after the other, to the bit") {
   const Rig rig({}, 60.0, 4);
-  FitState state = rig.fitter.start(syntheticVehicle(), {}, rig.all);
+  FitState state = rig.fitter.start(syntheticVehicle(), {});
   for (const char* path : {"slip_ratio.slip", "yaw_pull.pull", "lag", "lever_arm_y.offset"})
     state.free.push_back(freeParameter(state.model, path));
   rig.fitter.renewJacobian(state);

@@ -52,7 +52,7 @@ TEST_CASE("a drive without measurements has no rows, and nothing of it breaks") 
     const Observations data(drives, {});
     CHECK(data.all().empty());
     CHECK(data.predict(syntheticVehicle()).size() == 0);
-    CHECK(measuredBlocks(data) == 0);
+    CHECK(data.measuredBlocks() == 0);
     CHECK(tooLittleDriving(data).find("too little to tell chance from cause") != std::string::npos);
   }
   const std::vector<Drive> none;
@@ -72,7 +72,7 @@ TEST_CASE("what is needed to tell chance from cause is 200 s of driving that was
     }
   const Observations measured(half, {});
   CHECK(measured.blocks() == 10);
-  CHECK(measuredBlocks(measured) == 5);
+  CHECK(measured.measuredBlocks() == 5);
   CHECK(tooLittleDriving(measured).find("only 100 s of measured driving") == 0);
 }
 

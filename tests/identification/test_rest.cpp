@@ -5,7 +5,7 @@
 #include "core_rig.hpp"
 #include "modules/identification/core/adequacy.hpp"
 #include "modules/identification/core/candidates.hpp"
-#include "modules/identification/core/change_points.hpp"
+#include "modules/identification/core/fit.hpp"
 
 // The rest of the stages: moments of change, and whether anything is left.
 
@@ -19,17 +19,17 @@ TEST_CASE("the moment of a change is found from seconds away, and its interval h
   const std::string path = "terrain_change.time_1";
   ModelDocument model = syntheticVehicle();
   *findParameter(model, path) = 100.0;
-  FitState state = rig.fitter.start(model, {}, rig.all);
+  FitState state = rig.fitter.start(model, {});
   const double before = state.loss;
-  rig.fitter.add(state, freeParameter(model, "terrain_change.width_1"), 0.2, rig.all);
+  rig.fitter.add(state, freeParameter(model, "terrain_change.width_1"), 0.2);
   CHECK(changePointsOn(state.model) == std::vector<std::string>{path});
-  rig.fitter.fitRoughly(state, rig.all);
-  refineChangePoint(rig.fitter, state, path, rig.all);
-  rig.fitter.fit(state, rig.all);
+  rig.fitter.fitRoughly(state);
+  refineChangePoint(rig.fitter, state, path);
+  rig.fitter.fit(state);
   CHECK(*findParameter(state.model, path) == Approx(133.0).margin(2.0));
   CHECK(*findParameter(state.model, "terrain_change.width_1") == Approx(0.3).margin(0.03));
   CHECK(state.loss < before);
-  const auto [low, high] = changePointInterval(rig.fitter, state, path, rig.all, 10.0);
+  const auto [low, high] = changePointInterval(rig.fitter, state, path, 10.0);
   CHECK(low < 133.0);
   CHECK(133.0 < high);
   CHECK(high - low < 20.0);
@@ -53,7 +53,7 @@ TEST_CASE(
   int false_alarms = 0;
   for (uint64_t seed = 1; seed <= 60; ++seed) {
     const FitState state = rig.stateOf(blockNoise(rig.data, seed), 1.0);
-    const Adequacy adequacy = testAdequacy(rig.fitter, state, rig.all, kAlpha, seed);
+    const Adequacy adequacy = testAdequacy(rig.fitter, state, kAlpha, seed);
     CHECK((adequacy.p_value <= kAlpha) == !adequacy.unexplained.empty());
     false_alarms += adequacy.p_value <= kAlpha;
   }
@@ -72,7 +72,7 @@ TEST_CASE("what no effect explains is named by its channel and by what it depend
     if (rig.data.all()[i].channel == Channel::kAcross)
       residuals[static_cast<Eigen::Index>(i)] +=
           4.0 * squared->values[static_cast<Eigen::Index>(i)];
-  const Adequacy adequacy = testAdequacy(rig.fitter, rig.stateOf(residuals, 1.0), rig.all, 0.01, 2);
+  const Adequacy adequacy = testAdequacy(rig.fitter, rig.stateOf(residuals, 1.0), 0.01, 2);
   CHECK(adequacy.p_value <= 0.01);
   REQUIRE_FALSE(adequacy.unexplained.empty());
   CHECK(adequacy.unexplained[0].channel == "lateral");

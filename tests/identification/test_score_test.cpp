@@ -4,7 +4,7 @@
 
 #include "core_rig.hpp"
 #include "modules/identification/core/likelihood.hpp"
-#include "modules/identification/core/score_test.hpp"
+#include "modules/identification/core/validation.hpp"
 
 using namespace tread;
 using namespace tread::gap;
@@ -40,7 +40,7 @@ double rareEvidence(const Rig& rig, double size, uint64_t seed, bool first = fal
   directions << waves(rig.data, kCandidates), rareDirection(rig.data);
   const Eigen::VectorXd residuals =
       blockNoise(rig.data, seed, 0.1) + size * directions.col(kCandidates);
-  const ScoreTest test(rig.data, rig.stateOf(residuals, 1.0), directions, rig.all);
+  const ScoreTest test(rig.fitter, rig.stateOf(residuals, 1.0), directions);
   CHECK(test.activeBlocks(kCandidates) < 6.0);
   const Needed needed{criticalScore(test.largestByChance(kDraws, seed), kAlpha),
                       test.usualOverdispersion(), first};
@@ -55,8 +55,7 @@ TEST_CASE(
   const Eigen::MatrixXd directions = waves(rig.data, kCandidates);
   int false_alarms = 0;
   for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const ScoreTest test(rig.data, rig.stateOf(blockNoise(rig.data, seed), 1.0), directions,
-                         rig.all);
+    const ScoreTest test(rig.fitter, rig.stateOf(blockNoise(rig.data, seed), 1.0), directions);
     if (familyWise(test.largestByChance(kDraws, seed), largestScore(test)) <= kAlpha)
       ++false_alarms;
   }
@@ -74,7 +73,7 @@ TEST_CASE("a direction that is in the residuals is found among the others, with 
   double mean = 0.0;
   for (uint64_t seed = 1; seed <= 20; ++seed) {
     const Eigen::VectorXd residuals = blockNoise(rig.data, seed) + kSize * directions.col(kHidden);
-    const ScoreTest test(rig.data, rig.stateOf(residuals, 1.0), directions, rig.all);
+    const ScoreTest test(rig.fitter, rig.stateOf(residuals, 1.0), directions);
     if (familyWise(test.largestByChance(kDraws, seed), test.score(kHidden)) <= kAlpha) ++found;
     mean += test.size(kHidden) / 20.0;
     CHECK(test.promise(kHidden) > 0.0);
@@ -87,12 +86,12 @@ TEST_CASE("what the free parameters explain is no candidate's merit") {
   const Rig rig({}, 300.0, 1);
   const Eigen::MatrixXd directions = waves(rig.data, 2);
   FitState state = rig.stateOf(blockNoise(rig.data, 1) + 2.0 * directions.col(0), 1.0);
-  const ScoreTest before(rig.data, state, directions, rig.all);
+  const ScoreTest before(rig.fitter, state, directions);
   CHECK(before.uniqueness(0) == Approx(1.0));
   CHECK(std::abs(before.score(0)) > 3.0);
   state.free.push_back(freeParameter(state.model, "yaw_pull.pull"));
   state.jacobian = directions.col(0);
-  const ScoreTest after(rig.data, state, directions, rig.all);
+  const ScoreTest after(rig.fitter, state, directions);
   CHECK(after.score(0) == 0.0);
   CHECK(after.uniqueness(0) == 0.0);
   CHECK(after.uniqueness(1) == Approx(1.0));  // of another channel
@@ -138,7 +137,7 @@ TEST_CASE("a score is the sum of the blocks' pulls over the root of their square
   const Eigen::MatrixXd directions = waves(rig.data, 3);
   const Eigen::VectorXd residuals = blockNoise(rig.data, 7);
   constexpr double kScale = 0.8;
-  const ScoreTest test(rig.data, rig.stateOf(residuals, kScale), directions, rig.all);
+  const ScoreTest test(rig.fitter, rig.stateOf(residuals, kScale), directions);
   REQUIRE(test.candidates() == 3);
   for (Eigen::Index c = 0; c < 3; ++c) {
     std::vector<double> pulls(static_cast<size_t>(rig.data.blocks()), 0.0);
@@ -166,7 +165,7 @@ TEST_CASE("the unit of a candidate changes its size and nothing else") {
   const Rig rig({}, 200.0, 1);
   Eigen::MatrixXd directions(rig.size(), 2);
   directions << waves(rig.data, 1).col(0), -40.0 * waves(rig.data, 1).col(0);
-  const ScoreTest test(rig.data, rig.stateOf(blockNoise(rig.data, 3), 1.0), directions, rig.all);
+  const ScoreTest test(rig.fitter, rig.stateOf(blockNoise(rig.data, 3), 1.0), directions);
   CHECK(test.score(1) == Approx(-test.score(0)));
   CHECK(test.size(1) == Approx(-test.size(0) / 40.0));
   CHECK(test.sizeError(1) == Approx(test.sizeError(0) / 40.0));
@@ -181,9 +180,8 @@ TEST_CASE("no score exceeds the root of the number of blocks in which its direct
   for (Eigen::Index i = 0; i < directions.rows(); ++i)
     if (rig.data.all()[static_cast<size_t>(i)].block >= 3) directions(i, 0) = 0.0;
   for (const double size : {0.0, 1.0, 1e3}) {
-    const ScoreTest test(rig.data,
-                         rig.stateOf(blockNoise(rig.data, 4) + size * directions.col(0), 1.0),
-                         directions, rig.all);
+    const ScoreTest test(
+        rig.fitter, rig.stateOf(blockNoise(rig.data, 4) + size * directions.col(0), 1.0), directions);
     CHECK(std::abs(test.score(0)) <= std::sqrt(3.0) + 1e-12);
     CHECK(test.activeBlocks(0) <= 3.0 + 1e-12);
     CHECK(test.activeBlocks(0) > 2.5);
@@ -193,15 +191,16 @@ TEST_CASE("no score exceeds the root of the number of blocks in which its direct
 TEST_CASE("rows that do not count change no bit of a score test") {
   const Rig rig({}, 200.0, 1);
   const Eigen::MatrixXd directions = waves(rig.data, 4);
-  std::vector<char> mask = rig.all;
+  std::vector<char> mask = rig.fitter.mask();
   Eigen::VectorXd residuals = blockNoise(rig.data, 5);
   Eigen::VectorXd spoilt = residuals;
   for (size_t i = 0; i < mask.size(); i += 3) {
     mask[i] = 0;
     spoilt[static_cast<Eigen::Index>(i)] = 1e6;
   }
-  const ScoreTest test(rig.data, rig.stateOf(residuals, 1.0), directions, mask);
-  const ScoreTest same(rig.data, rig.stateOf(spoilt, 1.0), directions, mask);
+  const Fitter part = rig.fitter.onRows(mask);
+  const ScoreTest test(part, rig.stateOf(residuals, 1.0), directions);
+  const ScoreTest same(part, rig.stateOf(spoilt, 1.0), directions);
   for (Eigen::Index c = 0; c < 4; ++c) {
     CHECK(same.score(c) == test.score(c));
     CHECK(same.size(c) == test.size(c));
@@ -213,7 +212,7 @@ TEST_CASE("a direction that changes nothing is no candidate's, and has no size")
   const Rig rig({}, 200.0, 1);
   const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(rig.size(), 1);
   const FitState state = rig.stateOf(blockNoise(rig.data, 2), 1.0);
-  const ScoreTest test(rig.data, state, nothing, rig.all);
+  const ScoreTest test(rig.fitter, state, nothing);
   CHECK(test.score(0) == 0.0);
   CHECK(test.size(0) == 0.0);
   CHECK(test.promise(0) == 0.0);
@@ -223,7 +222,7 @@ TEST_CASE("a direction that changes nothing is no candidate's, and has no size")
   CHECK(std::isinf(test.sizeError(0)));
   CHECK(test.usualOverdispersion() == 1.0);
   for (const double largest : test.largestByChance(20, 1)) CHECK(largest == 0.0);
-  const ScoreTest none(rig.data, state, Eigen::MatrixXd(rig.size(), 0), rig.all);
+  const ScoreTest none(rig.fitter, state, Eigen::MatrixXd(rig.size(), 0));
   CHECK(none.candidates() == 0);
   CHECK(none.usualOverdispersion() == 1.0);
   CHECK(none.largestByChance(3, 1) == std::vector<double>(3, 0.0));
@@ -240,7 +239,7 @@ TEST_CASE("uniqueness is the sine of the angle to what the free parameters can d
   Eigen::MatrixXd directions(rig.size(), 4);
   for (Eigen::Index c = 0; c < 4; ++c)
     directions.col(c) = std::cos(angles[c]) * axes.col(0) + std::sin(angles[c]) * axes.col(1);
-  const ScoreTest test(rig.data, state, directions, rig.all);
+  const ScoreTest test(rig.fitter, state, directions);
   for (Eigen::Index c = 0; c < 4; ++c) {
     CHECK(test.uniqueness(c) == Approx(std::sin(angles[c])).epsilon(1e-4));
     CHECK(test.own(c).dot(axes.col(0)) == Approx(0.0).margin(1e-6));
@@ -254,7 +253,7 @@ TEST_CASE("chance gives every pattern of signs of the blocks equally often") {
   REQUIRE(blocks == 5);
   const Eigen::MatrixXd direction = waves(rig.data, 1);
   const Eigen::VectorXd residuals = blockNoise(rig.data, 6);
-  const ScoreTest test(rig.data, rig.stateOf(residuals, 1.0), direction, rig.all);
+  const ScoreTest test(rig.fitter, rig.stateOf(residuals, 1.0), direction);
   std::vector<double> pulls(5, 0.0);
   for (Eigen::Index i = 0; i < residuals.size(); ++i)
     pulls[static_cast<size_t>(rig.data.all()[static_cast<size_t>(i)].block)] +=
@@ -289,12 +288,11 @@ TEST_CASE("candidates that are the same one do not count twice, different ones d
   const Eigen::MatrixXd many = waves(rig.data, kCandidates);
   const Eigen::MatrixXd one = many.col(0);
   const Eigen::MatrixXd copies = one.replicate(1, kCandidates);
-  const std::vector<double> alone =
-      ScoreTest(rig.data, state, one, rig.all).largestByChance(kDraws, 5);
+  const std::vector<double> alone = ScoreTest(rig.fitter, state, one).largestByChance(kDraws, 5);
   const std::vector<double> copied =
-      ScoreTest(rig.data, state, copies, rig.all).largestByChance(kDraws, 5);
+      ScoreTest(rig.fitter, state, copies).largestByChance(kDraws, 5);
   const std::vector<double> different =
-      ScoreTest(rig.data, state, many, rig.all).largestByChance(kDraws, 5);
+      ScoreTest(rig.fitter, state, many).largestByChance(kDraws, 5);
   for (size_t i = 0; i < alone.size(); ++i) {
     CHECK(copied[i] == Approx(alone[i]).margin(1e-12));
     CHECK(different[i] >= alone[i] - 1e-12);
@@ -304,8 +302,7 @@ TEST_CASE("candidates that are the same one do not count twice, different ones d
 
 TEST_CASE("the same seed draws the same chance, another one another") {
   const Rig rig({}, 200.0, 1);
-  const ScoreTest test(rig.data, rig.stateOf(blockNoise(rig.data, 8), 1.0), waves(rig.data, 3),
-                       rig.all);
+  const ScoreTest test(rig.fitter, rig.stateOf(blockNoise(rig.data, 8), 1.0), waves(rig.data, 3));
   CHECK(test.largestByChance(99, 4) == test.largestByChance(99, 4));
   CHECK(test.largestByChance(99, 4) != test.largestByChance(99, 5));
   CHECK(test.largestByChance(0, 4).empty());
@@ -317,12 +314,12 @@ TEST_CASE("blocks that share their noise scatter more than the scales say, other
   for (Eigen::Index i = 0; i < steady.rows(); ++i)
     steady(i, static_cast<Eigen::Index>(rig.data.all()[static_cast<size_t>(i)].channel)) = 1.0;
   const auto usual = [&](double share) {
-    return ScoreTest(rig.data, rig.stateOf(blockNoise(rig.data, 9, share), 1.0), steady, rig.all)
+    return ScoreTest(rig.fitter, rig.stateOf(blockNoise(rig.data, 9, share), 1.0), steady)
         .usualOverdispersion();
   };
   CHECK(usual(0.0) < 2.0);
   CHECK(usual(0.5) > 5.0);
-  const ScoreTest test(rig.data, rig.stateOf(blockNoise(rig.data, 9), 1.0), steady, rig.all);
+  const ScoreTest test(rig.fitter, rig.stateOf(blockNoise(rig.data, 9), 1.0), steady);
   for (Eigen::Index c = 0; c < 4; ++c) {
     CHECK(test.overdispersion(c) >= 1.0);
     CHECK(std::abs(test.sparseScore(c, 1e3)) < std::abs(test.sparseScore(c, 1.0)) + 1e-12);

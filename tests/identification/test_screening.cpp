@@ -155,7 +155,7 @@ TEST_CASE("what is left out is out, and the rest stays in its order") {
 
 TEST_CASE("a direction from the cache is the finite difference of predictions") {
   const Rig rig({}, 60.0, 1);
-  const FitState state = rig.fitter.start(syntheticVehicle(), {}, rig.all);
+  const FitState state = rig.fitter.start(syntheticVehicle(), {});
   const std::vector<Candidate> candidates = steadyCandidates(rig, state);
   SensitivityCache cache;
   const Eigen::MatrixXd directions = cache.directions(rig.fitter, state, candidates);
@@ -175,8 +175,8 @@ TEST_CASE("a direction from the cache is the finite difference of predictions") 
 
 TEST_CASE("the cache serves what it knows until it is renewed") {
   const Rig rig({}, 60.0, 1);
-  const FitState state = rig.fitter.start(syntheticVehicle(), {}, rig.all);
-  const FitState other = rig.fitter.start(vehicleWith({{"yaw_pull.pull", 0.2}}), {}, rig.all);
+  const FitState state = rig.fitter.start(syntheticVehicle(), {});
+  const FitState other = rig.fitter.start(vehicleWith({{"yaw_pull.pull", 0.2}}), {});
   const std::vector<Candidate> steady = steadyCandidates(rig, state);
   const std::vector<Candidate> slip{ofEffect(steady, "slip_ratio")};
   SensitivityCache cache;
@@ -196,7 +196,7 @@ TEST_CASE("the cache serves what it knows until it is renewed") {
 
 TEST_CASE("excitation is measured once, with the first state") {
   const Rig rig({}, 60.0, 1);
-  const FitState state = rig.fitter.start(syntheticVehicle(), {}, rig.all);
+  const FitState state = rig.fitter.start(syntheticVehicle(), {});
   FitState slow = state;
   slow.model.vehicle.full_speed = 0.1;
   SensitivityCache cache;
@@ -207,10 +207,10 @@ TEST_CASE("excitation is measured once, with the first state") {
 
 TEST_CASE("a held term that may have changed has its own column, one that is not free is refused") {
   const Rig rig({}, 60.0, 1);
-  FitState state = rig.fitter.start(vehicleWith({{"slip_ratio.slip", 0.05}}), {}, rig.all);
+  FitState state = rig.fitter.start(vehicleWith({{"slip_ratio.slip", 0.05}}), {});
   FreeParameter slip = freeParameter(state.model, "slip_ratio.slip");
   slip.deviation = 0.01;
-  rig.fitter.add(state, slip, 0.05, rig.all);
+  rig.fitter.add(state, slip, 0.05);
   std::vector<Candidate> candidates = candidatesFor(state, excitationOf(rig.data, state.model));
   candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
                                   [](const Candidate& c) { return !c.release; }),
@@ -219,7 +219,7 @@ TEST_CASE("a held term that may have changed has its own column, one that is not
   CHECK(candidates[0].effect == "slip_ratio");
   SensitivityCache cache;
   CHECK(cache.directions(rig.fitter, state, candidates).col(0) == state.jacobian.col(0));
-  addCandidate(rig.fitter, state, candidates[0], 0.02, rig.all);
+  addCandidate(rig.fitter, state, candidates[0], 0.02);
   CHECK(std::isinf(state.free[0].deviation));
   rig.fitter.release(state, 0);
   CHECK_THROWS_AS(cache.directions(rig.fitter, state, candidates), std::logic_error);
@@ -227,7 +227,7 @@ TEST_CASE("a held term that may have changed has its own column, one that is not
 
 TEST_CASE("what changes at a time changes nothing before it") {
   const Rig rig({}, 100.0, 1);
-  const FitState state = rig.fitter.start(syntheticVehicle(), {}, rig.all);
+  const FitState state = rig.fitter.start(syntheticVehicle(), {});
   std::vector<Candidate> changes;
   for (const Candidate& candidate : candidatesFor(state, excitationOf(rig.data, state.model)))
     if (candidate.change_point == "terrain_change.time_1") changes.push_back(candidate);
@@ -247,7 +247,7 @@ TEST_CASE("what changes at a time changes nothing before it") {
 
 TEST_CASE("directions that are simulated in any order are the same, to the bit") {
   const Rig rig({}, 60.0, 1);
-  const FitState state = rig.fitter.start(syntheticVehicle(), {}, rig.all);
+  const FitState state = rig.fitter.start(syntheticVehicle(), {});
   const auto candidates = candidatesFor(state, excitationOf(rig.data, state.model));
   const Fitter backwards(rig.data, [](size_t count, const std::function<void(size_t)>& body) {
     while (count > 0) body(--count);
@@ -258,12 +258,12 @@ TEST_CASE("directions that are simulated in any order are the same, to the bit")
 TEST_CASE(
     "a screening has one test for each effect, strongest first, and none for a rejected one") {
   const Rig rig({{"slip_ratio.slip", 0.1}}, 200.0, 1);
-  const FitState state = rig.fitter.start(syntheticVehicle(), {}, rig.all);
+  const FitState state = rig.fitter.start(syntheticVehicle(), {});
   SearchSettings settings;
   settings.draws = 199;
   settings.rejected = {"lever_arm_x"};
   SensitivityCache cache;
-  const Screening first = screen(rig.fitter, state, rig.all, settings, true, cache);
+  const Screening first = screen(rig.fitter, state, settings, true, cache);
   std::set<std::string> names;
   for (size_t i = 0; i < first.tests.size(); ++i) {
     CHECK(names.insert(first.tests[i].effect).second);
@@ -280,7 +280,7 @@ TEST_CASE(
   CHECK(std::is_sorted(first.chance.begin(), first.chance.end()));
   CHECK(first.alpha == settings.alpha);
   CHECK_FALSE(significant(first).empty());
-  const Screening later = screen(rig.fitter, state, rig.all, settings, false, cache);
+  const Screening later = screen(rig.fitter, state, settings, false, cache);
   CHECK(later.alpha == settings.alpha_more);
   CHECK(later.scores == first.scores);
 }

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core_rig.hpp"
-#include "modules/identification/core/search_steps.hpp"
+#include "modules/identification/core/search.hpp"
 
 using namespace tread;
 using namespace tread::gap;
@@ -30,7 +30,7 @@ SearchResult resultOf(const Rig& rig, const Values& begin) {
 }
 
 SearchResult pruned(const Rig& rig, SearchResult result, const SearchSettings& settings = {}) {
-  pruneEffects(rig.fitter, rig.all, settings, kNeeded, result, kSilent);
+  pruneEffects({rig.fitter, settings, kSilent, result}, kNeeded);
   return result;
 }
 
@@ -84,7 +84,7 @@ TEST_CASE("an effect that is real but does not change where drives end is neglig
   SearchResult kept = begin;
   SearchSettings small;
   small.least_gain = 0.0;
-  pruneEffects(rig.fitter, rig.all, small, kNeeded, kept, kSilent);
+  pruneEffects({rig.fitter, small, kSilent, kept}, kNeeded);
   CHECK(kept.effects == Names{"gyro_bias"});
 }
 
@@ -93,9 +93,9 @@ TEST_CASE("an effect that runs to the end of its plausible range goes, for that 
   SearchResult begin;
   ModelDocument model = syntheticVehicle();
   model.bounds.push_back({"motor_deadband.speed", 0.0, 0.05});
-  begin.state = rig.fitter.start(model, {}, rig.all);
-  rig.fitter.add(begin.state, freeParameter(model, "motor_deadband.speed"), 0.02, rig.all);
-  rig.fitter.fit(begin.state, rig.all);
+  begin.state = rig.fitter.start(model, {});
+  rig.fitter.add(begin.state, freeParameter(model, "motor_deadband.speed"), 0.02);
+  rig.fitter.fit(begin.state);
   begin.effects = {"motor_deadband"};
   begin.evidence["motor_deadband"].p_value = 0.001;
   const SearchResult result = pruned(rig, begin);
@@ -110,7 +110,7 @@ TEST_CASE("an effect that runs to the end of its plausible range goes, for that 
 TEST_CASE("without an effect the others are fitted anew, and the loss tells what it was worth") {
   const Rig rig({{"motor_deadband.speed", 0.1}}, 240.0, 4);
   const FitState with = rig.fitted({{"motor_deadband.speed", 0.05}, {"slip_ratio.slip", 0.01}});
-  const FitState reduced = without(rig.fitter, with, "motor_deadband", rig.all);
+  const FitState reduced = without(rig.fitter, with, "motor_deadband");
   CHECK(*findParameter(reduced.model, "motor_deadband.speed") == 0.0);
   REQUIRE(reduced.free.size() == 1);
   CHECK(reduced.free[0].path == "slip_ratio.slip");
@@ -123,7 +123,7 @@ TEST_CASE("without an effect the others are fitted anew, and the loss tells what
 TEST_CASE("two effects that imitate one become that one") {
   const Rig rig({{"position_scale.scale", -0.06}}, 300.0, 5);
   SearchResult result = resultOf(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.01}});
-  replacePairs(rig.fitter, rig.all, {}, result, kSilent);
+  replacePairs({rig.fitter, {}, kSilent, result});
   CHECK(result.effects == Names{"position_scale"});
   CHECK(result.evidence["position_scale"].replaced == Names{"slip_ratio", "track_width"});
   CHECK(*findParameter(result.state.model, "position_scale.scale") == Approx(-0.06).margin(0.01));
@@ -143,7 +143,7 @@ TEST_CASE("neither does an accepted effect go into another one, nor does a rejec
       settings.accepted = {"track_width"};
     else
       settings.rejected = {"position_scale"};
-    replacePairs(rig.fitter, rig.all, settings, result, kSilent);
+    replacePairs({rig.fitter, settings, kSilent, result});
     CHECK(result.effects == Names{"slip_ratio", "track_width"});
   }
 }
@@ -152,7 +152,7 @@ TEST_CASE("two effects that no single one fits as well stay two") {
   const Rig rig({{"slip_ratio.slip", 0.1}, {"track_width.widening", 0.25}}, 300.0, 6);
   SearchResult result = resultOf(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.1}});
   const double loss = result.state.loss;
-  replacePairs(rig.fitter, rig.all, {}, result, kSilent);
+  replacePairs({rig.fitter, {}, kSilent, result});
   CHECK(result.effects == Names{"slip_ratio", "track_width"});
   CHECK(result.record.steps.empty());
   CHECK(result.state.loss == loss);

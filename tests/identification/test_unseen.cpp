@@ -18,9 +18,9 @@ double apart(const Overlay& overlay, size_t point) {
 }
 
 ShownExecutions shownOf(const Rig& rig, size_t least_executions, const ModelDocument& model) {
-  const FitState state = rig.fitter.start(model, {}, rig.all);
+  const FitState state = rig.fitter.start(model, {});
   const Noise noise = estimateNoise(rig.data.all(), rig.data.residuals(state.predicted),
-                                    activityOf(rig.data.all(), state.predicted), rig.all);
+                                    activityOf(rig.data.all(), state.predicted), rig.fitter.mask());
   Unseen unseen{&rig.data, model, endErrors(rig.data, model), 2};
   if (unseen.errors.size() > least_executions) unseen.errors.resize(least_executions);
   return shownExecutions({unseen}, syntheticVehicle(), noise);

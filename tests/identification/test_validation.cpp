@@ -23,8 +23,8 @@ Gain gainOfThree(const Rig& rig, const Eigen::VectorXd& residuals) {
   three.jacobian = waves(rig.data, 3);
   for (const char* path : {"yaw_pull.pull", "slip_ratio.slip", "track_asymmetry.share"})
     three.free.push_back(freeParameter(three.model, path));
-  return gap::gainOf(heldOutLoss(rig.data, none, rig.all), heldOutLoss(rig.data, three, rig.all),
-                     blocksThatCount(rig.data, rig.all));
+  return gap::gainOf(heldOutLoss(rig.fitter, none), heldOutLoss(rig.fitter, three),
+                     rig.fitter.blocksThatCount());
 }
 
 /// A vehicle that stands: its gyro says a bias with noise that each block has in common.
@@ -96,14 +96,13 @@ TEST_CASE("the 95 percent interval from the blocks' scatter covers the truth 95 
     settings.piece = 1.0;
     const Observations data(drives, settings);
     const Fitter fitter(data);
-    const std::vector<char> all(data.all().size(), 1);
     const ModelDocument model = syntheticVehicle();
-    FitState state = fitter.start(model, {freeParameter(model, "gyro_bias.rate")}, all);
-    fitter.fitRoughly(state, all);
-    fitter.renewNoise(state, all);  // of a worse fit it is too large
-    fitter.fit(state, all);
+    FitState state = fitter.start(model, {freeParameter(model, "gyro_bias.rate")});
+    fitter.fitRoughly(state);
+    fitter.renewNoise(state);  // of a worse fit it is too large
+    fitter.fit(state);
     const double half =
-        studentQuantile(data.blocks() - 1) * std::sqrt(parameterCovariance(data, state, all)(0, 0));
+        studentQuantile(data.blocks() - 1) * std::sqrt(parameterCovariance(fitter, state)(0, 0));
     covered += std::abs(*findParameter(state.model, "gyro_bias.rate") - kBias) < half;
   }
   // 190 are expected; a thousandth of all honest intervals lies outside of these.
@@ -118,7 +117,7 @@ TEST_CASE("a parameter that the drive does not show is as good as unknown") {
   state.jacobian.col(1) = 2.0 * state.jacobian.col(0);
   for (const char* path : {"yaw_pull.pull", "track_asymmetry.share"})
     state.free.push_back(freeParameter(state.model, path));
-  const Eigen::MatrixXd covariance = parameterCovariance(rig.data, state, rig.all);
+  const Eigen::MatrixXd covariance = parameterCovariance(rig.fitter, state);
   for (Eigen::Index i : {0, 1}) {
     const FreeParameter& parameter = state.free[static_cast<size_t>(i)];
     CHECK(std::sqrt(covariance(i, i)) > parameter.max - parameter.min);
@@ -131,11 +130,11 @@ TEST_CASE("what a block says is in no parameter that its own loss is told with")
   state.jacobian = waves(rig.data, 3);
   for (const char* path : {"yaw_pull.pull", "slip_ratio.slip", "track_asymmetry.share"})
     state.free.push_back(freeParameter(state.model, path));
-  const Eigen::VectorXd loss = heldOutLoss(rig.data, state, rig.all);
+  const Eigen::VectorXd loss = heldOutLoss(rig.fitter, state);
   constexpr int kChanged = 4;
   for (Eigen::Index i = 0; i < rig.size(); ++i)
     if (rig.data.all()[static_cast<size_t>(i)].block == kChanged) state.predicted[i] -= 3.0;
-  const Eigen::VectorXd other = heldOutLoss(rig.data, state, rig.all);
+  const Eigen::VectorXd other = heldOutLoss(rig.fitter, state);
   CHECK(other[kChanged] > loss[kChanged] + 100.0);
   int unmoved = 0;
   for (Eigen::Index b = 0; b < loss.size(); ++b) unmoved += other[b] == loss[b];
@@ -150,9 +149,9 @@ TEST_CASE("without free parameters the held out loss is that of each block's row
   Eigen::VectorXd expected = Eigen::VectorXd::Zero(rig.data.blocks());
   for (Eigen::Index i = 0; i < rig.size(); ++i)
     expected[rig.data.all()[static_cast<size_t>(i)].block] += lossOf(residuals[i], 0.7);
-  const Eigen::VectorXd loss = heldOutLoss(rig.data, state, rig.all);
+  const Eigen::VectorXd loss = heldOutLoss(rig.fitter, state);
   CHECK((loss - expected).cwiseAbs().maxCoeff() < 1e-9);
-  CHECK(loss.sum() == Approx(totalLoss(residuals, state.scales, rig.all)));
+  CHECK(loss.sum() == Approx(totalLoss(residuals, state.scales, rig.fitter.mask())));
 }
 
 TEST_CASE("the held out loss of small residuals is that of least squares on the other blocks") {
@@ -164,7 +163,7 @@ TEST_CASE("the held out loss of small residuals is that of least squares on the 
   state.jacobian.col(2) += 0.5 * state.jacobian.col(0);
   for (const char* path : {"yaw_pull.pull", "slip_ratio.slip", "track_asymmetry.share"})
     state.free.push_back(freeParameter(state.model, path));
-  const Eigen::VectorXd loss = heldOutLoss(rig.data, state, rig.all);
+  const Eigen::VectorXd loss = heldOutLoss(rig.fitter, state);
   Eigen::VectorXd expected = Eigen::VectorXd::Zero(rig.data.blocks());
   for (int fold = 0; fold < 5; ++fold) {
     Eigen::MatrixXd train = state.jacobian;
@@ -194,10 +193,10 @@ TEST_CASE("a parameter that is known for certain follows nothing") {
   held.free[0].expected = 0.0;
   held.free[0].deviation = 1e-9;
   held.jacobian = waves(rig.data, 1);
-  const Eigen::VectorXd without = heldOutLoss(rig.data, none, rig.all);
-  CHECK((heldOutLoss(rig.data, held, rig.all) - without).cwiseAbs().maxCoeff() < 1e-6);
+  const Eigen::VectorXd without = heldOutLoss(rig.fitter, none);
+  CHECK((heldOutLoss(rig.fitter, held) - without).cwiseAbs().maxCoeff() < 1e-6);
   held.free[0].deviation = std::numeric_limits<double>::infinity();
-  CHECK(heldOutLoss(rig.data, held, rig.all).sum() < without.sum() - 10.0);
+  CHECK(heldOutLoss(rig.fitter, held).sum() < without.sum() - 10.0);
 }
 
 TEST_CASE("rows that do not count have no held out loss and change no other") {
@@ -207,11 +206,12 @@ TEST_CASE("rows that do not count have no held out loss and change no other") {
   FitState state = rig.stateOf(blockNoise(rig.data, 1), 1.0);
   state.jacobian = waves(rig.data, 1);
   state.free.push_back(freeParameter(state.model, "yaw_pull.pull"));
-  const std::vector<char> counts = blocksThatCount(rig.data, mask);
-  const Eigen::VectorXd loss = heldOutLoss(rig.data, state, mask);
+  const Fitter part = rig.fitter.onRows(mask);
+  const std::vector<char> counts = part.blocksThatCount();
+  const Eigen::VectorXd loss = heldOutLoss(part, state);
   for (Eigen::Index i = 0; i < rig.size(); ++i)
     if (!mask[static_cast<size_t>(i)]) state.predicted[i] = 1e6;
-  const Eigen::VectorXd same = heldOutLoss(rig.data, state, mask);
+  const Eigen::VectorXd same = heldOutLoss(part, state);
   for (Eigen::Index b = 0; b < loss.size(); ++b) {
     CHECK((counts[static_cast<size_t>(b)] != 0) == (b % 3 != 1));
     CHECK((loss[b] == 0.0) == (b % 3 == 1));
@@ -226,7 +226,7 @@ TEST_CASE("parameters that follow the residuals in first order leave the model a
   state.free.push_back(freeParameter(state.model, "yaw_pull.pull"));
   state.jacobian = directions.col(0);
   const Eigen::VectorXd before = state.predicted;
-  followLinearly(rig.fitter, state, rig.all);
+  followLinearly(rig.fitter, state);
   CHECK(*findParameter(state.model, "yaw_pull.pull") == 0.0);
   // Along the direction and nowhere else, until nothing of it is left in the residuals.
   const Eigen::VectorXd moved = state.predicted - before;
@@ -249,15 +249,15 @@ TEST_CASE("the covariance is the scatter of the blocks' pulls over the informati
         pullOf(residuals[i], 0.9) * state.jacobian(i, 0);
   const double information = 5.0 / 7.0 * state.jacobian.squaredNorm() / (0.9 * 0.9);
   const auto blocks = static_cast<double>(rig.data.blocks());
-  const Eigen::MatrixXd covariance = parameterCovariance(rig.data, state, rig.all);
+  const Eigen::MatrixXd covariance = parameterCovariance(rig.fitter, state);
   REQUIRE(covariance.size() == 1);
   CHECK(covariance(0, 0) ==
         Approx(pulls.squaredNorm() * blocks / (blocks - 1.0) / (information * information)));
   state.free[0].deviation = 1e-4;  // far better known than the drive says
-  CHECK(parameterCovariance(rig.data, state, rig.all)(0, 0) ==
+  CHECK(parameterCovariance(rig.fitter, state)(0, 0) ==
         Approx(1e-8 * blocks / (blocks - 1.0)).epsilon(0.01));
   state.free.clear();
-  CHECK(parameterCovariance(rig.data, state, rig.all).size() == 0);
+  CHECK(parameterCovariance(rig.fitter, state).size() == 0);
 }
 
 TEST_CASE("a covariance is symmetric, has no negative variance and changes with the units") {
@@ -267,11 +267,11 @@ TEST_CASE("a covariance is symmetric, has no negative variance and changes with 
   state.jacobian.col(2) += 0.8 * state.jacobian.col(1);
   for (const char* path : {"yaw_pull.pull", "slip_ratio.slip", "track_asymmetry.share"})
     state.free.push_back(freeParameter(state.model, path));
-  const Eigen::MatrixXd covariance = parameterCovariance(rig.data, state, rig.all);
+  const Eigen::MatrixXd covariance = parameterCovariance(rig.fitter, state);
   CHECK((covariance - covariance.transpose()).norm() < 1e-12 * covariance.norm());
   CHECK(covariance.determinant() > 0.0);
   state.jacobian.col(1) *= 1000.0;  // the parameter in thousandths
-  const Eigen::MatrixXd other = parameterCovariance(rig.data, state, rig.all);
+  const Eigen::MatrixXd other = parameterCovariance(rig.fitter, state);
   CHECK(other(1, 1) == Approx(1e-6 * covariance(1, 1)));
   CHECK(other(1, 2) == Approx(1e-3 * covariance(1, 2)));
   CHECK(other(2, 2) == Approx(covariance(2, 2)));

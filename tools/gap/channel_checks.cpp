@@ -7,7 +7,7 @@
 #include <string>
 
 #include "common/messages/ins_messages.hpp"
-#include "tools/gap/log_checks.hpp"
+#include "tools/gap/reading.hpp"
 
 namespace tread::gap {
 namespace {

@@ -8,19 +8,16 @@
 
 #include "modules/identification/core/fit.hpp"
 
-// The subcommands of tread-gap. Each adds itself to the program and does its work in its callback,
-// once the whole command line is read; it sets the program's exit status, and what it throws ends
-// the program with its one line and 2.
+// Subcommands of tread-gap, and what several have in common. Each adds itself to the program and
+// does its work in its callback, once the whole command line is read; it sets the program's exit
+// status, and what it throws ends the program with its one line and 2.
 namespace tread::gap {
 
 /// Exit statuses beside those of the verdicts.
 inline constexpr int kBadInput = 2;
 
-CLI::App* addFind(CLI::App& app, int& status);
-CLI::App* addExplain(CLI::App& app);
-CLI::App* addWhatIf(CLI::App& app);
-CLI::App* addPlan(CLI::App& app, int& status);
-CLI::App* addCompare(CLI::App& app, int& status);
+void addPlan(CLI::App& app, int& status);
+void addWhatIf(CLI::App& app);
 
 /// Runs on so many threads.
 ParallelFor onThreads(int threads);

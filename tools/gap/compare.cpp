@@ -11,7 +11,7 @@
 #include "modules/identification/core/likelihood.hpp"
 #include "modules/identification/core/search.hpp"
 #include "modules/identification/core/verdict.hpp"
-#include "tools/gap/report/effect_words.hpp"
+#include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {
@@ -31,16 +31,8 @@ std::vector<FreeParameter> comparedParameters(const ModelDocument& model) {
   return free;
 }
 
-std::string unitOf(const std::string& path) {
-  const EffectParameter* parameter = findEffectParameter(path);
-  if (parameter != nullptr) return parameter->unit;
-  if (path == "lag" || path == "delay") return "s";
-  if (path == "full_speed") return "m/s";
-  return path == "gauge" ? "m" : "1";
-}
-
 EndErrors endErrorsOf(const Observations& data, const ModelDocument& model) {
-  return summaryOf(endErrors(data, model), [](const ExecutionError&) { return true; });
+  return summaryOf(endErrors(data, model));
 }
 
 /// Limits as their reciprocals are said: errors of first order.
@@ -104,14 +96,13 @@ LogFit fitLog(const ModelDocument& model, const Drive& drive, const ParallelFor&
   const Observations data(drives, ObservationSettings{});
   requireEnough(data);
   const Fitter fitter(data, parallel);
-  const std::vector<char> mask(data.all().size(), 1);
-  FitState state = fitter.start(model, comparedParameters(model), mask);
-  fitter.fit(state, mask);
-  fitter.renewNoise(state, mask);
-  fitter.fit(state, mask);
+  FitState state = fitter.start(model, comparedParameters(model));
+  fitter.fit(state);
+  fitter.renewNoise(state);
+  fitter.fit(state);
   fitter.renewJacobian(state);
-  const Eigen::MatrixXd covariance = parameterCovariance(data, state, mask);
-  LogFit fit{state.model, {}, {}, {}, measuredBlocks(data)};
+  const Eigen::MatrixXd covariance = parameterCovariance(fitter, state);
+  LogFit fit{state.model, {}, {}, {}, data.measuredBlocks()};
   for (size_t i = 0; i < state.free.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     fit.parameters.push_back(state.free[i].path);

@@ -13,8 +13,7 @@
 #include "common/log/drive_log.hpp"
 #include "common/report/hash.hpp"
 #include "modules/identification/core/log_validation.hpp"
-#include "tools/gap/log_checks.hpp"
-#include "tools/gap/segments.hpp"
+#include "tools/gap/reading.hpp"
 
 namespace tread::gap {
 namespace {

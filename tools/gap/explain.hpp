@@ -4,10 +4,32 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/vehicle/effects.hpp"
+#include "modules/identification/core/finding.hpp"
 
+/// What one must know to read a report and to act on it.
 namespace tread::gap {
+
+/// A word and what it means here.
+struct Word {
+  std::string word;
+  std::string meaning;
+};
+
+/// The words of a report that are not everybody's.
+const std::vector<Word>& glossary();
+
+/// A verdict, what it means and what to do then.
+struct Advice {
+  GapVerdict verdict;
+  std::string meaning;
+  std::string next;
+};
+
+/// That for a verdict.
+const Advice& adviceFor(GapVerdict verdict);
 
 /// What an effect is, its equation and parameters, what it looks like, what it is confused with
 /// and how to check it in two minutes.
@@ -15,9 +37,6 @@ std::string explanation(const Effect& effect);
 
 /// One line for each effect of the catalogue.
 std::string listOfEffects();
-
-/// Text in lines of at most `width` letters, each after the first one indented.
-std::string wrapped(const std::string& text, size_t width, size_t indent);
 
 /// What `tread-gap explain` says beside effects: start (from a log of one's own to a first run),
 /// verdicts (what to do after each) and words (of the report); nothing for another name.

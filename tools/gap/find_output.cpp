@@ -15,8 +15,8 @@
 #include "common/recordings/text_file.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/gap/explain.hpp"
-#include "tools/gap/report/effect_words.hpp"
 #include "tools/gap/report/sections.hpp"
+#include "tools/gap/report/words.hpp"
 
 namespace fs = std::filesystem;
 

@@ -1,10 +1,218 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "common/config/command_line.hpp"
+#include "common/report/hash.hpp"
+#include "common/vehicle/model_file.hpp"
+#include "modules/identification/core/discovery.hpp"
 #include "tools/gap/commands.hpp"
+#include "tools/gap/compare.hpp"
+#include "tools/gap/drive_log.hpp"
+#include "tools/gap/explain.hpp"
+#include "tools/gap/find_output.hpp"
+#include "tools/gap/report/sections.hpp"
+#include "tools/gap/report/words.hpp"
+
+namespace tread::gap {
+namespace {
+
+struct FindOptions {
+  std::string model;
+  std::vector<std::string> train;
+  std::vector<std::string> test;
+  std::string out;
+  int64_t seed = 1;
+  int threads = 1;
+  bool calibrate = false;
+  bool keep_small = false;
+  std::vector<std::string> accepted;
+  std::vector<std::string> rejected;
+  std::string by;
+};
+
+constexpr const char* kFooter =
+    "Into --out: verdict.json, model.yaml (the new model; nothing is applied by itself; none "
+    "after\n"
+    "CANNOT_TELL), report.md and report.html. Exit status: 0 NO_DISCREPANCY, 10 FOUND, 11 "
+    "AMBIGUOUS, 12 PARTIAL,\n"
+    "13 NOT_IN_CATALOGUE, 14 MEASUREMENT, 15 CANNOT_TELL, 2 bad input (one line says which).\n"
+    "The same files and the same seed give the same bytes, with any number of threads.";
+
+std::string fileName(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+void say(const std::string& line) {
+  std::cout << line << std::endl;
+}
+
+/// Stage 0: what a log is, and what is wrong with it.
+void tell(const Drive& drive) {
+  say("0 " + drive.name + ": " + threeDigits(drive.driven()) + " s of driving, " +
+      std::to_string(drive.executions.size()) + " executions");
+  for (const LogNote& note : drive.notes) say((note.fatal ? "  ! " : "  ") + note.what);
+}
+
+/// Reads logs of one role; the same log twice would count its noise twice.
+std::vector<Drive> readDrives(const std::vector<std::string>& paths, InputFile::Role role,
+                              const ModelDocument& model, std::vector<InputFile>& inputs) {
+  std::vector<Drive> drives;
+  for (const std::string& path : paths) {
+    Drive drive = readDriveFor(model, path);
+    for (const InputFile& input : inputs)
+      if (input.sha256 == drive.sha256)
+        throw std::runtime_error(path + ": the same file as " + input.name +
+                                 "; give each log once");
+    inputs.push_back({role, fileName(path), drive.sha256});
+    tell(drive);
+    drives.push_back(std::move(drive));
+  }
+  return drives;
+}
+
+/// Where the files are; a model that an earlier run left is not this one's.
+void sayWhere(const std::string& folder, const Finding& finding) {
+  say("Report: " + folder + "/report.html");
+  if (hasNewModel(finding)) {
+    say("New model, not applied by itself: " + folder + "/model.yaml");
+    return;
+  }
+  const bool old = std::filesystem::exists(folder + "/model.yaml");
+  say(std::string("No model was written") +
+      (old ? "; " + folder + "/model.yaml is left from an earlier run." : "."));
+}
+
+int find(const FindOptions& options) {
+  tryFolder(options.out);
+  std::vector<InputFile> inputs;
+  GapTask task;
+  task.model = readModelDocument(options.model);
+  task.decisions = decisionsOf({options.accepted, options.rejected, options.by}, task.model);
+  inputs.push_back({InputFile::Role::kModel, fileName(options.model), sha256OfFile(options.model)});
+  task.train = readDrives(options.train, InputFile::Role::kTrain, task.model, inputs);
+  task.test = readDrives(options.test, InputFile::Role::kTest, task.model, inputs);
+  for (const std::vector<Drive>* drives : {&task.train, &task.test})
+    for (const Drive& drive : *drives) {
+      for (const Drive& other : task.train) {
+        requireSameRobot(other, drive);
+        requireSameImport(other, drive);
+      }
+      task.log_notes.insert(task.log_notes.end(), drive.notes.begin(), drive.notes.end());
+    }
+  task.seed = static_cast<uint64_t>(options.seed);
+  task.parallel = onThreads(options.threads);
+  task.calibrate = options.calibrate;
+  task.keep_small = options.keep_small;
+  makeFolder(options.out);
+  const Finding finding = findGap(task, say);
+  writeFinding(options.out, finding, inputs);
+  for (const std::string& line : closingLines(finding)) say(line);
+  sayWhere(options.out, finding);
+  return static_cast<int>(finding.verdict);
+}
+
+constexpr int kSomethingMoved = 10;
+
+struct CompareOptions {
+  std::string first;
+  std::string second;
+  std::string model;
+  int threads = 1;
+};
+
+int compare(const CompareOptions& options) {
+  const ModelDocument model = readModelDocument(options.model);
+  const Drive first = readSoundDriveFor(model, options.first);
+  const Drive second = readSoundDriveFor(model, options.second);
+  if (first.sha256 == second.sha256)
+    throw std::runtime_error(options.second + ": the same file as the first; give two logs");
+  requireSameRobot(first, second);
+  requireSameImport(first, second);
+  const LogChange change = compareLogs(model, first, second, onThreads(options.threads));
+  for (const Drive* drive : {&first, &second})
+    if (!drive->lost.empty()) std::cout << drive->lost << '\n';
+  std::cout << textOf(change) << std::flush;
+  return change.anyMoved() ? kSomethingMoved : 0;
+}
+
+void addFind(CLI::App& app, int& status) {
+  const auto options = std::make_shared<FindOptions>();
+  CLI::App* command = app.add_subcommand(
+      "find", "where do simulation and measurement disagree, and what is it called?");
+  command->footer(kFooter);
+  command->add_option("--model", options->model, "model file (YAML)")->required();
+  command->add_option("--train", options->train, "logs to learn from")->required()->expected(-1);
+  command
+      ->add_option("--test", options->test,
+                   "logs for the errors before and after only; without any, blocks of the training "
+                   "logs are kept apart in turn")
+      ->expected(-1);
+  command->add_option("--out", options->out, "folder for the four files; made if needed")
+      ->required();
+  command->add_flag("--calibrate", options->calibrate,
+                    "fit lag, delay and gains of the nominal model, too: makes the model of a new "
+                    "vehicle from a long log");
+  command->add_flag("--keep-small", options->keep_small,
+                    "effects that are real stay in the model, even if they change the end error "
+                    "by less than 1 %: for a model that others are to be compared with");
+  command
+      ->add_option("--accept", options->accepted,
+                   "effects that are in the model from the start and stay, whatever the tests say")
+      ->expected(-1);
+  command->add_option("--reject", options->rejected, "effects that are not considered")
+      ->expected(-1);
+  command->add_option("--by", options->by,
+                      "who accepts or rejects; for the new model's provenance");
+  addSeedAndThreads(*command, options->seed, options->threads);
+  command->callback([options, &status] { status = find(*options); });
+}
+
+void addExplain(CLI::App& app) {
+  const auto name = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand(
+      "explain", "what an effect is, what it looks like and how to check it in two minutes");
+  command->add_option("EFFECT", *name,
+                      "name of an effect, or start, verdicts or words; without it, a list");
+  command->callback([name] {
+    const auto about = topic(*name);
+    std::cout << (name->empty() ? listOfEffects() + listOfTopics()
+                  : about       ? *about
+                                : explanation(effectOrGuess(*name)))
+              << std::flush;
+  });
+}
+
+void addCompare(CLI::App& app, int& status) {
+  const auto options = std::make_shared<CompareOptions>();
+  options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  CLI::App* command =
+      app.add_subcommand("compare", "what changed from one log to another, yesterday and today");
+  command->footer(
+      "Fits the same terms on both logs and tells which parameters moved beyond chance, at three\n"
+      "sigma for all of them together: of a hundred pairs of equal logs at most one is said to\n"
+      "have changed. Exit status 0: nothing moved; 10: something did; 2: bad input.");
+  command->add_option("FIRST", options->first, "log")->required();
+  command->add_option("SECOND", options->second, "log")->required();
+  command->add_option("--model", options->model, "model file whose terms are fitted (YAML)")
+      ->required();
+  command->add_option("--threads", options->threads, "no influence on any byte")
+      ->check(CLI::Range(1, 1024));
+  command->callback([options, &status] { status = compare(*options); });
+}
+
+}  // namespace
+}  // namespace tread::gap
 
 int main(int argc, char** argv) {
   int status = 0;

@@ -7,9 +7,15 @@
 
 #include "common/vehicle/model_document.hpp"
 #include "tools/gap/manoeuvres.hpp"
-#include "tools/gap/plan_rival.hpp"
 
 namespace tread::gap {
+
+/// How exactly a drive is measured.
+struct InsNoise {
+  double fix = 0.01;       ///< [m] of a position
+  double heading = 0.003;  ///< [rad]
+  double gyro = 0.01;      ///< [rad/s] of its mean over half a second
+};
 
 /// What a design is asked: whether one effect or the other is there.
 struct DesignTask {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/gap/segments.hpp"
+#include "tools/gap/reading.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -174,16 +174,13 @@ void cut(size_t segment, double begin, double end, std::vector<Execution>& piece
   }
 }
 
-bool isZero(const TrackCommand& command) {
-  return command.left == 0.0 && command.right == 0.0;
-}
-
 /// Whether anything is commanded in a piece or in the second before it.
 bool drives(const Segment& segment, const Execution& piece) {
   for (size_t i = 0; i < segment.commands.size(); ++i) {
     const double begin = segment.commands[i].time;
     const double end = i + 1 < segment.commands.size() ? segment.commands[i + 1].time : segment.end;
-    if (begin < piece.end && end > piece.begin - 1.0 && !isZero(segment.commands[i].command))
+    if (begin < piece.end && end > piece.begin - 1.0 &&
+        segment.commands[i].command != TrackCommand{})
       return true;
   }
   return false;
@@ -192,7 +189,7 @@ bool drives(const Segment& segment, const Execution& piece) {
 /// From when on a segment has poses [s].
 double posesBegin(const Segment& segment) {
   for (const InsSample& sample : segment.ins)
-    if (std::isfinite(sample.T_map_body.x)) return sample.time;
+    if (sample.hasPose()) return sample.time;
   return segment.end;
 }
 

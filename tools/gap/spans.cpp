@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/gap/spans.hpp"
+#include "tools/gap/reading.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -63,10 +63,6 @@ class SpanFinder {
   double last_ = 0.0;
   bool open_ = false;
 };
-
-bool isStill(const TrackCommand& command) {
-  return command.left == 0.0 && command.right == 0.0;
-}
 
 /// A vehicle that was told to stand this long stands [s].
 constexpr double kSettled = 1.0;
@@ -186,11 +182,11 @@ TrackCommand commandAt(const CommandSpan& span, double time) {
 }
 
 bool standsBetween(const CommandSpan& span, double from, double to) {
-  if (!isStill(commandAt(span, from))) return false;
+  if (commandAt(span, from) != TrackCommand{}) return false;
   auto sample = std::upper_bound(span.commands.begin(), span.commands.end(), from,
                                  [](double t, const CommandSample& c) { return t < c.time; });
   for (; sample != span.commands.end() && sample->time < to; ++sample)
-    if (!isStill(sample->command)) return false;
+    if (sample->command != TrackCommand{}) return false;
   return true;
 }
 

@@ -6,11 +6,31 @@
 #include <vector>
 
 #include "common/report/page.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "modules/identification/core/drive.hpp"
 #include "modules/identification/core/finding.hpp"
 #include "tools/gap/manoeuvres.hpp"
 
 namespace tread::gap {
+
+/// What shall be otherwise in a model.
+struct ModelChange {
+  std::vector<std::string> remove;  ///< effects
+  std::vector<std::string> add;     ///< effects; at their typical size unless set
+  /// parameter=value: effect.parameter, a parameter of the last effect added, or a number of the
+  /// nominal model; limits by their natural names, too.
+  std::vector<std::string> set;
+};
+
+/// Turns an effect off.
+void turnOff(ModelDocument& model, const Effect& effect);
+
+/// Gives an effect's first strength its typical value, and its shapes theirs.
+void turnOn(ModelDocument& model, const Effect& effect);
+
+/// The model after the change; throws std::runtime_error with one line for what is not possible:
+/// unknown names, values beyond what is plausible, removing what is off, adding what is on.
+ModelDocument changed(const ModelDocument& model, const ModelChange& change);
 
 /// One manoeuvre driven by two models, as the INS would say it.
 struct ManoeuvreComparison {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "modules/identification/core/score_test.hpp"
+#include "modules/identification/core/validation.hpp"
 
 namespace tread::gap {
 namespace {
@@ -137,10 +137,9 @@ std::vector<Variable> variablesOf(const Observations& data, const ModelDocument&
   return variables;
 }
 
-Adequacy testAdequacy(const Fitter& fitter, const FitState& state, const std::vector<char>& mask,
-                      double alpha, uint64_t seed) {
+Adequacy testAdequacy(const Fitter& fitter, const FitState& state, double alpha, uint64_t seed) {
   const std::vector<Variable> variables = variablesOf(fitter.data(), state.model);
-  const ScoreTest test(fitter.data(), state, perChannel(fitter.data(), variables), mask);
+  const ScoreTest test(fitter, state, perChannel(fitter.data(), variables));
   const std::vector<double> chance = test.largestByChance(kDraws, seed);
   Adequacy adequacy;
   for (size_t channel = 0; channel < kChannels; ++channel)

@@ -9,6 +9,7 @@
 #include "modules/identification/core/finding.hpp"
 #include "modules/identification/core/fit.hpp"
 
+// On what residuals still depend: a test, and pictures of it.
 namespace tread::gap {
 
 /// A quantity on which residuals may depend, at each observation.
@@ -22,7 +23,13 @@ struct Variable {
 std::vector<Variable> variablesOf(const Observations& data, const ModelDocument& model);
 
 /// Tests every channel of the residuals for every variable, with the state's free parameters.
-Adequacy testAdequacy(const Fitter& fitter, const FitState& state, const std::vector<char>& mask,
-                      double alpha, uint64_t seed);
+Adequacy testAdequacy(const Fitter& fitter, const FitState& state, double alpha, uint64_t seed);
+
+/// Where the residuals of two models are: curves of every channel over every variable, and maps
+/// over speed and yaw rate.
+/** The interval of a curve's cell is from the scatter of its blocks' means; cells that exclude 0
+ * after correction for the number of cells (Bonferroni, 5 %) are marked. */
+ResidualAtlas residualAtlas(const Observations& observations, const ModelDocument& before,
+                            const ModelDocument& after);
 
 }  // namespace tread::gap

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/identification/core/atlas.hpp"
+#include "modules/identification/core/adequacy.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
-#include "modules/identification/core/adequacy.hpp"
 #include "modules/identification/core/likelihood.hpp"
 
 namespace tread::gap {

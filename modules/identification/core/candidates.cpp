@@ -6,8 +6,6 @@
 #include <cmath>
 #include <map>
 
-#include "modules/identification/core/change_points.hpp"
-
 namespace tread::gap {
 namespace {
 
@@ -245,7 +243,7 @@ void leaveOut(std::vector<Candidate>& candidates, const std::vector<std::string>
 ModelDocument tried(const ModelDocument& model, const Candidate& candidate) {
   ModelDocument changed = model;
   for (const auto& [path, value] : candidate.shapes) numberIn(changed, path) = value;
-  numberIn(changed, candidate.effect + "." + candidate.parameter) = candidate.value;
+  numberIn(changed, candidate.path()) = candidate.value;
   return changed;
 }
 
@@ -260,9 +258,7 @@ Eigen::MatrixXd directionsOf(const Fitter& fitter, const FitState& state,
     source[i] = i;
     const Candidate& candidate = candidates[i];
     if (std::isfinite(candidate.since))
-      source[i] =
-          earliest.try_emplace({candidate.effect + "." + candidate.parameter, candidate.change}, i)
-              .first->second;
+      source[i] = earliest.try_emplace({candidate.path(), candidate.change}, i).first->second;
     if (source[i] == i) simulated.push_back(i);
   }
   fitter.parallel()(simulated.size(), [&](size_t n) {
@@ -282,9 +278,8 @@ Eigen::MatrixXd directionsOf(const Fitter& fitter, const FitState& state,
   return directions;
 }
 
-void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candidate, double size,
-                  const std::vector<char>& mask) {
-  const std::string strength = candidate.effect + "." + candidate.parameter;
+void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candidate, double size) {
+  const std::string strength = candidate.path();
   if (candidate.release) {
     for (FreeParameter& held : state.free)
       if (held.path == strength) held.deviation = std::numeric_limits<double>::infinity();
@@ -302,7 +297,7 @@ void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candid
     double value = *findParameter(state.model, path);
     if (path == strength) value = begin == 0.0 ? 0.1 * known.typical : begin;
     parameter.expected = 0.0;
-    fitter.add(state, parameter, value, mask);
+    fitter.add(state, parameter, value);
   }
 }
 

@@ -23,6 +23,9 @@ struct Candidate {
   std::vector<std::string> free;  ///< paths that a fit of this candidate frees
   std::string change_point;       ///< path of the time of a change; empty = none
   bool release = false;           ///< frees a held term: what was known of it no longer counts
+
+  /// Of the strength.
+  std::string path() const { return effect + "." + parameter; }
 };
 
 /// The most that a drive demands, in first approximation; limits are probed below it.
@@ -61,8 +64,7 @@ Eigen::MatrixXd directionsOf(const Fitter& fitter, const FitState& state,
                              const std::vector<Candidate>& candidates);
 
 /// Frees the candidate's parameters in a state, from its trial value scaled by first order.
-void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candidate, double size,
-                  const std::vector<char>& mask);
+void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candidate, double size);
 
 /// Whether a size is nothing beside what is typical.
 bool isVanishing(const std::string& effect, const std::string& parameter, double size);

@@ -11,7 +11,6 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kNearest = 0.25;    // [s] a fix may be away from an execution's begin or end
 constexpr double kStep = 0.05;       // [s] of integration
 constexpr double kEncoderGap = 0.5;  // [s] over which encoders are held
 constexpr double kCertain = 0.5;     // |correlation| that a scale needs
@@ -88,36 +87,15 @@ std::vector<Rates> pairs(const std::vector<PoseIncrement>& increments,
   return all;
 }
 
-const InsSample* fixNear(const Segment& segment, double time) {
-  const InsSample* nearest = nullptr;
-  for (const InsSample& sample : segment.ins) {
-    if (std::abs(sample.time - time) > kNearest || !std::isfinite(sample.T_map_body.x)) continue;
-    if (nearest == nullptr || std::abs(sample.time - time) < std::abs(nearest->time - time))
-      nearest = &sample;
-  }
-  return nearest;
-}
-
 /// One drive with all that its reckoning needs.
 class Reckoner {
  public:
   Reckoner(const Drive& drive, const Reckoning& fit)
       : drive_(drive), fit_(fit), speed_(encoderSums(drive)), gyro_(gyroSums(drive)) {}
 
-  std::optional<ExecutionError> errorOf(const Execution& execution) const {
-    const Segment& segment = drive_.segments[execution.segment];
-    const InsSample* from = fixNear(segment, execution.begin);
-    const InsSample* to = fixNear(segment, execution.end);
-    if (from == nullptr || to == nullptr) return std::nullopt;
-    const double length = to->time - from->time;
-    if (length < 0.75 * kHorizon || length > 1.25 * kHorizon) return std::nullopt;
-    const auto reckoned = motion(execution.segment, from->time, to->time);
-    if (!reckoned) return std::nullopt;
-    const Pose2 measured = between(from->T_map_body, to->T_map_body);
-    ExecutionError error;
-    error.position = kHorizon / length * (reckoned->position() - measured.position()).norm();
-    error.yaw = kHorizon / length * std::abs(reckoned->yaw - measured.yaw);
-    return error;
+  std::optional<ExecutionError> errorOfReckoning(const Execution& execution) const {
+    return errorOf(drive_.segments[execution.segment], execution,
+                   [&](double from, double to) { return motion(execution.segment, from, to); });
   }
 
  private:
@@ -182,10 +160,10 @@ std::optional<EndErrors> deadReckoningFloor(const std::vector<Drive>& drives) {
     if (!fit) continue;
     const Reckoner reckoner(drive, *fit);
     for (const Execution& execution : drive.executions)
-      if (const auto error = reckoner.errorOf(execution)) errors.push_back(*error);
+      if (const auto error = reckoner.errorOfReckoning(execution)) errors.push_back(*error);
   }
   if (errors.empty()) return std::nullopt;
-  return summaryOf(errors, [](const ExecutionError&) { return true; });
+  return summaryOf(errors);
 }
 
 }  // namespace tread::gap

@@ -7,11 +7,8 @@
 #include <stdexcept>
 
 #include "modules/identification/core/adequacy.hpp"
-#include "modules/identification/core/atlas.hpp"
-#include "modules/identification/core/confirmation.hpp"
 #include "modules/identification/core/dead_reckoning.hpp"
 #include "modules/identification/core/end_errors.hpp"
-#include "modules/identification/core/estimates.hpp"
 #include "modules/identification/core/verdict.hpp"
 
 namespace tread::gap {
@@ -19,10 +16,6 @@ namespace {
 
 constexpr int kLeastHalf = 10;           // blocks from which effects can be chosen, too
 constexpr double kAdequacyAlpha = 0.01;  // with the tests' 2 %: 3 % false alarms altogether
-
-bool all(const ExecutionError&) {
-  return true;
-}
 
 /// Why nothing can be concluded; empty if something can.
 std::string reasonNotToTell(const GapTask& task, const Observations& data) {
@@ -66,9 +59,9 @@ struct UnseenErrors {
 UnseenErrors errorsOnTest(const GapTask& task, const Observations& test,
                           const ModelDocument& after) {
   UnseenErrors unseen;
-  unseen.gap.before = summaryOf(endErrors(test, task.model), all);
+  unseen.gap.before = summaryOf(endErrors(test, task.model));
   unseen.parts.push_back({&test, after, endErrors(test, after), task.train.size()});
-  unseen.gap.after = summaryOf(unseen.parts.back().errors, all);
+  unseen.gap.after = summaryOf(unseen.parts.back().errors);
   return unseen;
 }
 
@@ -77,33 +70,33 @@ UnseenErrors errorsOnHalves(const GapTask& task, const Fitter& fitter, const Sea
                             SearchSettings settings, SearchMemory& memory) {
   const Observations& data = fitter.data();
   UnseenErrors unseen;
-  unseen.gap.structure_nested = measuredBlocks(data) >= 2 * kLeastHalf;
-  unseen.gap.before = summaryOf(endErrors(data, task.model), all);
+  unseen.gap.structure_nested = data.measuredBlocks() >= 2 * kLeastHalf;
+  unseen.gap.before = summaryOf(endErrors(data, task.model));
   std::vector<ExecutionError> outside;  // of either half
   settings.all_sized = false;           // half of the driving may not show all
   const Progress silent = [](const std::string&) {};
   for (int half : {0, 1}) {
-    const std::vector<char> mask = halfMask(data, half);
+    const Fitter on_half = fitter.onRows(halfMask(data, half));
     const ModelDocument model =
         unseen.gap.structure_nested
-            ? search(fitter, task.model, mask, settings, memory, silent).state.model
-            : refitted(fitter, result, mask).model;
+            ? search(on_half, task.model, settings, memory, silent).state.model
+            : refitted(on_half, result).model;
     unseen.parts.push_back({&data, model, {}, 0});
     std::vector<ExecutionError>& errors = unseen.parts.back().errors;
     for (const ExecutionError& error : endErrors(data, model))
       if (error.block % 2 != half) errors.push_back(error);
     outside.insert(outside.end(), errors.begin(), errors.end());
   }
-  unseen.gap.after = summaryOf(outside, all);
+  unseen.gap.after = summaryOf(outside);
   return unseen;
 }
 
 /// Noise of what a model leaves, channel by channel.
-Noise residualNoise(const Observations& data, const ModelDocument& model,
-                    const std::vector<char>& mask) {
+Noise residualNoise(const Fitter& fitter, const ModelDocument& model) {
+  const Observations& data = fitter.data();
   const Eigen::VectorXd predicted = data.predict(model);
   return estimateNoise(data.all(), data.residuals(predicted), activityOf(data.all(), predicted),
-                       mask);
+                       fitter.mask());
 }
 
 }  // namespace
@@ -111,8 +104,7 @@ Noise residualNoise(const Observations& data, const ModelDocument& model,
 Finding findGap(const GapTask& task, const Progress& say) {
   const Observations data(task.train, {});
   const Fitter fitter(data, task.parallel);
-  const std::vector<char> every(data.all().size(), 1);
-  const int blocks = measuredBlocks(data);
+  const int blocks = data.measuredBlocks();
   Finding finding;
   finding.source = {task.seed, task.log_notes, task.decisions, static_cast<size_t>(blocks),
                     data.blockLength()};
@@ -125,15 +117,15 @@ Finding findGap(const GapTask& task, const Progress& say) {
   say("2-5 test, refit, validate, prune");
   const SearchSettings settings = settingsOf(task);
   SearchMemory memory;
-  SearchResult result = search(fitter, task.model, every, settings, memory, say);
+  SearchResult result = search(fitter, task.model, settings, memory, say);
   requireSized(result, settings);
   // What was seen but does not matter is no rest without a name.
   const FitState tested = result.state;
-  if (!task.keep_small) dropUnconfirmed(fitter, every, settings, result, say);
-  finding.identified = identifiedModel(fitter, task.model, every, settings, result);
+  if (!task.keep_small) dropUnconfirmed({fitter, settings, say, result});
+  finding.identified = identifiedModel(fitter, task.model, settings, result);
   finding.search = result.record;
   say("6 adequacy");
-  finding.adequacy = testAdequacy(fitter, tested, every, kAdequacyAlpha, task.seed);
+  finding.adequacy = testAdequacy(fitter, tested, kAdequacyAlpha, task.seed);
   say("7 error on driving that was not used");
   std::optional<Observations> test;
   if (!task.test.empty()) test.emplace(task.test, ObservationSettings{});
@@ -143,7 +135,7 @@ Finding findGap(const GapTask& task, const Progress& say) {
   finding.gap = unseen.gap;
   finding.gap->floor = deadReckoningFloor(task.test.empty() ? task.train : task.test);
   finding.atlas = residualAtlas(data, task.model, after);
-  finding.shown = shownExecutions(unseen.parts, task.model, residualNoise(data, after, every));
+  finding.shown = shownExecutions(unseen.parts, task.model, residualNoise(fitter, after));
   judge(finding, kAdequacyAlpha, settings.least_gain);
   return finding;
 }

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -28,6 +29,11 @@ struct InsSample {
   double omega = kNotMeasured;  ///< [rad/s] of the gyro
   double roll = kNotMeasured;   ///< [rad] left side up positive
   double pitch = kNotMeasured;  ///< [rad] nose down positive
+
+  bool hasPose() const {
+    return std::isfinite(T_map_body.x) && std::isfinite(T_map_body.y) &&
+           std::isfinite(T_map_body.yaw);
+  }
 };
 
 /// Driving without a gap: all commands are known, and the INS gives one track.

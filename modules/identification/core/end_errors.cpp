@@ -21,7 +21,7 @@ const InsSample* nearestFix(const Segment& segment, double time) {
                        [](const InsSample& sample, double from) { return sample.time < from; });
   for (auto sample = after; sample != segment.ins.end() && sample->time <= time + kNearest;
        ++sample) {
-    if (!std::isfinite(sample->T_map_body.x)) continue;
+    if (!sample->hasPose()) continue;
     if (nearest == nullptr || std::abs(sample->time - time) < std::abs(nearest->time - time))
       nearest = &*sample;
   }
@@ -31,28 +31,6 @@ const InsSample* nearestFix(const Segment& segment, double time) {
 Pose2 predictedBetween(const std::vector<MotionSample>& motion, const MeasurementModel& ins,
                        double from, double to) {
   return between(measuredAt(motion, ins, from).T_map_body, measuredAt(motion, ins, to).T_map_body);
-}
-
-std::optional<ExecutionError> errorOf(const Observations& data, size_t drive,
-                                      const Execution& execution, const Motions& motions,
-                                      const MeasurementModel& ins) {
-  const Segment& segment = data.drives()[drive].segments[execution.segment];
-  const InsSample* from = nearestFix(segment, execution.begin);
-  const InsSample* to = nearestFix(segment, execution.end);
-  if (from == nullptr || to == nullptr) return std::nullopt;
-  const double length = to->time - from->time;
-  if (length < 0.75 * kHorizon || length > 1.25 * kHorizon) return std::nullopt;
-  const auto& motion = motions[data.segmentIndex(drive, execution.segment)];
-  const Pose2 predicted = predictedBetween(motion, ins, from->time, to->time);
-  const Pose2 measured = between(from->T_map_body, to->T_map_body);
-  const double scale = kHorizon / length;
-  ExecutionError error;
-  error.drive = drive;
-  error.execution = execution;
-  error.block = data.blockAt(drive, execution.segment, (from->time + to->time) / 2.0);
-  error.position = scale * (predicted.position() - measured.position()).norm();
-  error.yaw = scale * std::abs(predicted.yaw - measured.yaw);
-  return error;
 }
 
 ErrorFigure figureOf(std::vector<double> errors) {
@@ -143,34 +121,58 @@ std::vector<double> factorsOf(const std::vector<Shown>& all) {
 
 }  // namespace
 
+std::optional<ExecutionError> errorOf(
+    const Segment& segment, const Execution& execution,
+    const std::function<std::optional<Pose2>(double from, double to)>& predict) {
+  const InsSample* from = nearestFix(segment, execution.begin);
+  const InsSample* to = nearestFix(segment, execution.end);
+  if (from == nullptr || to == nullptr) return std::nullopt;
+  const double length = to->time - from->time;
+  if (length < 0.75 * kHorizon || length > 1.25 * kHorizon) return std::nullopt;
+  const auto predicted = predict(from->time, to->time);
+  if (!predicted) return std::nullopt;
+  const Pose2 measured = between(from->T_map_body, to->T_map_body);
+  const double scale = kHorizon / length;
+  ExecutionError error;
+  error.execution = execution;
+  error.position = scale * (predicted->position() - measured.position()).norm();
+  error.yaw = scale * std::abs(predicted->yaw - measured.yaw);
+  return error;
+}
+
 std::vector<ExecutionError> endErrors(const Observations& data, const ModelDocument& model) {
   return endErrors(data, data.simulate(model.vehicle), model.measurement);
 }
 
 std::vector<ExecutionError> endErrors(const Observations& data, const Motions& motions,
-                                      const MeasurementModel& measurement) {
+                                      const MeasurementModel& ins) {
   std::vector<ExecutionError> errors;
   for (size_t drive = 0; drive < data.drives().size(); ++drive)
-    for (const Execution& execution : data.drives()[drive].executions)
-      if (const auto error = errorOf(data, drive, execution, motions, measurement))
-        errors.push_back(*error);
+    for (const Execution& execution : data.drives()[drive].executions) {
+      const size_t segment = execution.segment;
+      const auto& motion = motions[data.segmentIndex(drive, segment)];
+      int block = 0;
+      auto error = errorOf(data.drives()[drive].segments[segment], execution,
+                           [&](double from, double to) -> std::optional<Pose2> {
+                             block = data.blockAt(drive, segment, (from + to) / 2.0);
+                             return predictedBetween(motion, ins, from, to);
+                           });
+      if (!error) continue;
+      error->drive = drive;
+      error->block = block;
+      errors.push_back(*error);
+    }
   return errors;
 }
 
-EndErrors summaryOf(const std::vector<ExecutionError>& errors,
-                    const std::function<bool(const ExecutionError&)>& counts) {
+EndErrors summaryOf(const std::vector<ExecutionError>& errors) {
   std::vector<double> position;
   std::vector<double> yaw;
   for (const ExecutionError& error : errors) {
-    if (!counts(error)) continue;
     position.push_back(error.position);
     yaw.push_back(error.yaw);
   }
-  EndErrors summary;
-  summary.executions = position.size();
-  summary.position = figureOf(std::move(position));
-  summary.yaw = figureOf(std::move(yaw));
-  return summary;
+  return {figureOf(std::move(position)), figureOf(std::move(yaw)), errors.size()};
 }
 
 OverlayMaker::OverlayMaker(const Observations& data, const ModelDocument& before,
@@ -182,8 +184,7 @@ OverlayMaker::OverlayMaker(const Observations& data, const ModelDocument& before
     for (const Segment& segment : drive.segments) {
       measured_.emplace_back();
       for (const InsSample& sample : segment.ins)
-        if (std::isfinite(sample.T_map_body.x))
-          measured_.back().push_back({sample.time, sample.T_map_body});
+        if (sample.hasPose()) measured_.back().push_back({sample.time, sample.T_map_body});
     }
 }
 

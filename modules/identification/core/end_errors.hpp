@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "modules/identification/core/finding.hpp"
@@ -31,11 +32,17 @@ std::vector<ExecutionError> endErrors(const Observations& data, const ModelDocum
 /// Observations::simulate().
 std::vector<ExecutionError> endErrors(const Observations& data,
                                       const std::vector<std::vector<MotionSample>>& motions,
-                                      const MeasurementModel& measurement);
+                                      const MeasurementModel& ins);
 
-/// Median and root mean square of those that `counts`.
-EndErrors summaryOf(const std::vector<ExecutionError>& errors,
-                    const std::function<bool(const ExecutionError&)>& counts);
+/// Error of one execution, given the motion predicted between two times of its segment; drive and
+/// block are left open.
+/** Nothing where there are no fixes near its ends, or no prediction. */
+std::optional<ExecutionError> errorOf(
+    const Segment& segment, const Execution& execution,
+    const std::function<std::optional<Pose2>(double from, double to)>& predict);
+
+/// Median and root mean square.
+EndErrors summaryOf(const std::vector<ExecutionError>& errors);
 
 /// Executions as measured and as two models predict them.
 class OverlayMaker {

@@ -45,24 +45,11 @@ double priorLoss(const FitState& state) {
   return sum;
 }
 
-/// Normal equations of one iterated least squares step.
-struct Normal {
-  Eigen::MatrixXd matrix;
-  Eigen::VectorXd pull;
-};
-
-Normal normalOf(const FitState& state, const Eigen::VectorXd& residuals,
-                const std::vector<char>& mask) {
-  const Eigen::Index count = state.jacobian.cols();
-  Eigen::VectorXd weights(residuals.size());
-  for (Eigen::Index i = 0; i < residuals.size(); ++i)
-    weights[i] = mask[static_cast<size_t>(i)] ? weightOf(residuals[i], state.scales[i]) : 0.0;
-  Normal normal;
-  const Eigen::MatrixXd weighted = weights.asDiagonal() * state.jacobian;
-  normal.matrix = state.jacobian.transpose() * weighted;
-  normal.pull = weighted.transpose() * residuals;
+Normal priorNormal(const FitState& state, const Eigen::VectorXd& residuals,
+                   const std::vector<char>& mask) {
+  Normal normal = normalOf(state, residuals, mask);
   const Eigen::VectorXd prior = priorPrecision(state.free);
-  for (Eigen::Index i = 0; i < count; ++i) {
+  for (Eigen::Index i = 0; i < prior.size(); ++i) {
     const FreeParameter& parameter = state.free[static_cast<size_t>(i)];
     normal.matrix(i, i) += prior[i];
     normal.pull[i] -= prior[i] * (valueOf(state.model, parameter.path) - parameter.expected);
@@ -86,6 +73,17 @@ Eigen::VectorXd dampedStep(const FitState& state, Normal normal, double damping)
     normal.matrix(i, i) *= 1.0 + damping;
   }
   return normal.matrix.ldlt().solve(normal.pull);
+}
+
+constexpr double kFirstStep = 16.0;  // [s]
+constexpr double kLastStep = 0.25;   // [s]
+constexpr double kFarthest = 120.0;  // [s] that an interval is looked for to either side
+
+double lossAt(const Fitter& fitter, const FitState& state, const std::string& path, double time) {
+  ModelDocument model = state.model;
+  *findParameter(model, path) = time;
+  const Observations& data = fitter.data();
+  return totalLoss(data.residuals(data.predict(model)), state.scales, fitter.mask());
 }
 
 }  // namespace
@@ -129,30 +127,43 @@ bool runsToBound(const ModelDocument& model, const FreeParameter& parameter) {
   return value != 0.0 && !to_nothing && !isTime(parameter) && onBound(model, parameter);
 }
 
-FitState Fitter::start(const ModelDocument& model, std::vector<FreeParameter> free,
-                       const std::vector<char>& mask) const {
+Normal normalOf(const FitState& state, const Eigen::VectorXd& residuals,
+                const std::vector<char>& mask) {
+  Eigen::VectorXd weights(residuals.size());
+  for (Eigen::Index i = 0; i < residuals.size(); ++i)
+    weights[i] = mask[static_cast<size_t>(i)] ? weightOf(residuals[i], state.scales[i]) : 0.0;
+  const Eigen::MatrixXd weighted = weights.asDiagonal() * state.jacobian;
+  return {state.jacobian.transpose() * weighted, weighted.transpose() * residuals};
+}
+
+Fitter Fitter::onRows(std::vector<char> mask) const {
+  Fitter other = *this;
+  other.mask_ = std::move(mask);
+  return other;
+}
+
+FitState Fitter::start(const ModelDocument& model, std::vector<FreeParameter> free) const {
   FitState state;
   state.model = model;
   state.free = std::move(free);
   state.predicted = data_.predict(model);
-  renewNoise(state, mask);
+  renewNoise(state);
   return state;
 }
 
-void Fitter::renewNoise(FitState& state, const std::vector<char>& mask) const {
+void Fitter::renewNoise(FitState& state) const {
   const Eigen::VectorXd activity = activityOf(data_.all(), state.predicted);
-  const Noise noise = estimateNoise(data_.all(), data_.residuals(state.predicted), activity, mask);
+  const Noise noise = estimateNoise(data_.all(), data_.residuals(state.predicted), activity, mask_);
   state.scales = scalesOf(data_.all(), noise, activity);
-  state.loss = lossOf(state, mask);
+  state.loss = lossOf(state);
 }
 
-void Fitter::add(FitState& state, const FreeParameter& parameter, double value,
-                 const std::vector<char>& mask) const {
+void Fitter::add(FitState& state, const FreeParameter& parameter, double value) const {
   if (state.jacobian.cols() != static_cast<Eigen::Index>(state.free.size())) renewJacobian(state);
   state.free.push_back(parameter);
   valueOf(state.model, parameter.path) = value;
   state.predicted = data_.predict(state.model);
-  state.loss = lossOf(state, mask);
+  state.loss = lossOf(state);
   state.jacobian.conservativeResize(state.predicted.size(), state.jacobian.cols() + 1);
   state.jacobian.rightCols(1) = column(state, state.free.size() - 1);
 }
@@ -166,8 +177,8 @@ void Fitter::release(FitState& state, size_t index) const {
   state.jacobian.conservativeResize(state.jacobian.rows(), state.jacobian.cols() - 1);
 }
 
-double Fitter::lossOf(const FitState& state, const std::vector<char>& mask) const {
-  return totalLoss(data_.residuals(state.predicted), state.scales, mask) + priorLoss(state);
+double Fitter::lossOf(const FitState& state) const {
+  return totalLoss(data_.residuals(state.predicted), state.scales, mask_) + priorLoss(state);
 }
 
 Eigen::VectorXd Fitter::secant(const FitState& state, const ModelDocument& changed,
@@ -191,9 +202,8 @@ void Fitter::renewJacobian(FitState& state) const {
             [&](size_t i) { state.jacobian.col(static_cast<Eigen::Index>(i)) = column(state, i); });
 }
 
-bool Fitter::stepOnce(FitState& state, const std::vector<char>& mask, double& damping,
-                      double& gained) const {
-  const Normal normal = normalOf(state, data_.residuals(state.predicted), mask);
+bool Fitter::stepOnce(FitState& state, double& damping, double& gained) const {
+  const Normal normal = priorNormal(state, data_.residuals(state.predicted), mask_);
   while (damping < kMostDamping) {
     FitState tried = state;
     const Eigen::VectorXd step = dampedStep(state, normal, damping);
@@ -206,7 +216,7 @@ bool Fitter::stepOnce(FitState& state, const std::vector<char>& mask, double& da
       taken[i] = value - old;
     }
     tried.predicted = data_.predict(tried.model);
-    tried.loss = lossOf(tried, mask);
+    tried.loss = lossOf(tried);
     gained = state.loss - tried.loss;
     if (std::isfinite(tried.loss) && gained > 0.0) {
       // Broyden: the Jacobian along the step is now known for nothing.
@@ -223,31 +233,85 @@ bool Fitter::stepOnce(FitState& state, const std::vector<char>& mask, double& da
   return false;
 }
 
-void Fitter::fitRoughly(FitState& state, const std::vector<char>& mask) const {
+void Fitter::fitRoughly(FitState& state) const {
   if (state.free.empty()) return;
   if (state.jacobian.cols() != static_cast<Eigen::Index>(state.free.size())) renewJacobian(state);
-  state.loss = lossOf(state, mask);
+  state.loss = lossOf(state);
   double damping = 1e-3;
   double gained = 0.0;
   for (int i = 0; i < kMostSteps; ++i)
-    if (!stepOnce(state, mask, damping, gained) || gained < kRoughlyEnough) return;
+    if (!stepOnce(state, damping, gained) || gained < kRoughlyEnough) return;
 }
 
-void Fitter::fit(FitState& state, const std::vector<char>& mask) const {
+void Fitter::fit(FitState& state) const {
   if (state.free.empty()) return;
-  fitRoughly(state, mask);
+  fitRoughly(state);
   for (int round = 0; round < kMostRounds; ++round) {
     // With a Jacobian of these values: what is left is found, and covariances hold.
     renewJacobian(state);
     double damping = 1e-3;
     double gained = 0.0;
     double together = 0.0;
-    while (stepOnce(state, mask, damping, gained)) {
+    while (stepOnce(state, damping, gained)) {
       together += gained;
       if (gained < kEnough) break;
     }
     if (together < kEnough * 5.0) return;
   }
+}
+
+bool hasChanged(const Effect& effect, const ChangePoint& change, const ModelDocument& model) {
+  return std::any_of(change.strengths.begin(), change.strengths.end(),
+                     [&](const std::string& strength) {
+                       return *findParameter(model, effect.name + "." + strength) != 0.0;
+                     });
+}
+
+std::vector<std::string> changePointsOn(const ModelDocument& model) {
+  std::vector<std::string> paths;
+  for (const Effect& effect : effectCatalogue())
+    for (const ChangePoint& change : effect.search.change_points)
+      if (hasChanged(effect, change, model)) paths.push_back(effect.name + "." + change.time);
+  return paths;
+}
+
+void refineChangePoint(const Fitter& fitter, FitState& state, const std::string& path) {
+  double& time = *findParameter(state.model, path);
+  double least = lossAt(fitter, state, path, time);
+  for (double step = kFirstStep; step >= kLastStep;) {
+    const double later = lossAt(fitter, state, path, time + step);
+    const double earlier = time > step ? lossAt(fitter, state, path, time - step) : least;
+    if (std::min(later, earlier) >= least) {
+      step /= 2.0;
+      continue;
+    }
+    time += later < earlier ? step : -step;
+    least = std::min(later, earlier);
+  }
+  state.predicted = fitter.data().predict(state.model);
+  fitter.renewJacobian(state);
+}
+
+std::pair<double, double> changePointInterval(const Fitter& fitter, const FitState& state,
+                                              const std::string& path, double allowed) {
+  const double time = *findParameter(state.model, path);
+  const double least = lossAt(fitter, state, path, time);
+  const auto reach = [&](double direction) {
+    double inside = 0.0;
+    double outside = 0.5;
+    while (outside < kFarthest &&
+           lossAt(fitter, state, path, time + direction * outside) < least + allowed) {
+      inside = outside;
+      outside *= 2.0;
+    }
+    for (int i = 0; i < 4; ++i) {
+      const double middle = (inside + outside) / 2.0;
+      const bool within = lossAt(fitter, state, path, time + direction * middle) < least + allowed;
+      (within ? inside : outside) = middle;
+    }
+    return outside;
+  };
+  return {std::max(0.0, time - reach(-1.0)), time + reach(1.0)};
 }
 
 }  // namespace tread::gap

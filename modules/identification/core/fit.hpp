@@ -42,7 +42,7 @@ struct FitState {
   Eigen::VectorXd predicted;  ///< rows x 1
   Eigen::VectorXd scales;     ///< rows x 1, held during a fit
   Eigen::MatrixXd jacobian;   ///< rows x free: change of the prediction; may be of earlier values
-  double loss = 0.0;          ///< of the rows of the mask, with what is known beforehand [nats]
+  double loss = 0.0;          ///< of the rows that count, with what is known beforehand [nats]
 };
 
 /// Runs body(0) .. body(count - 1), possibly at the same time; results must not depend on the
@@ -57,40 +57,55 @@ inline void serialFor(size_t count, const std::function<void(size_t)>& body) {
 /// Fits models to rows by iterated, damped least squares within bounds.
 class Fitter {
  public:
+  /// To all rows; the rows must outlive it.
   explicit Fitter(const Observations& data, ParallelFor parallel = serialFor)
-      : data_(data), parallel_(std::move(parallel)) {}
+      : data_(data), mask_(data.all().size(), 1), parallel_(std::move(parallel)) {}
+
+  /// The same with other rows; those whose mask is 0 do not count.
+  Fitter onRows(std::vector<char> mask) const;
 
   /// A state of a model with its prediction and own noise; nothing is fitted.
-  FitState start(const ModelDocument& model, std::vector<FreeParameter> free,
-                 const std::vector<char>& mask) const;
+  FitState start(const ModelDocument& model, std::vector<FreeParameter> free) const;
   /// Noise and scales of the state's residuals (and its loss with them).
-  void renewNoise(FitState& state, const std::vector<char>& mask) const;
+  void renewNoise(FitState& state) const;
   /// Takes a parameter into the state, with a value to begin at.
-  void add(FitState& state, const FreeParameter& parameter, double value,
-           const std::vector<char>& mask) const;
+  void add(FitState& state, const FreeParameter& parameter, double value) const;
   /// Holds one of them at its value.
   void release(FitState& state, size_t index) const;
   /// Minimises the loss; columns that are missing in the Jacobian are made first.
-  void fit(FitState& state, const std::vector<char>& mask) const;
+  void fit(FitState& state) const;
   /// The same to within half a nat, with a Jacobian updated from the steps (Broyden): to compare.
-  void fitRoughly(FitState& state, const std::vector<char>& mask) const;
+  void fitRoughly(FitState& state) const;
   /// The Jacobian at the state's values.
   void renewJacobian(FitState& state) const;
   /// Change of the prediction per change of a parameter to `value` (rows x 1); 0 where it is equal.
   Eigen::VectorXd secant(const FitState& state, const ModelDocument& changed, double change) const;
 
   const Observations& data() const { return data_; }
+  const std::vector<char>& mask() const { return mask_; }
+  /// Which blocks have rows that count.
+  std::vector<char> blocksThatCount() const { return data_.blocksOf(mask_); }
   const ParallelFor& parallel() const { return parallel_; }
 
  private:
-  double lossOf(const FitState& state, const std::vector<char>& mask) const;
+  double lossOf(const FitState& state) const;
   Eigen::VectorXd column(const FitState& state, size_t index) const;
-  bool stepOnce(FitState& state, const std::vector<char>& mask, double& damping,
-                double& gained) const;
+  bool stepOnce(FitState& state, double& damping, double& gained) const;
 
   const Observations& data_;
+  std::vector<char> mask_;
   ParallelFor parallel_;
 };
+
+/// Normal equations of one iterated least squares step.
+struct Normal {
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd pull;
+};
+
+/// Those of rows whose mask is not 0, without what is known beforehand.
+Normal normalOf(const FitState& state, const Eigen::VectorXd& residuals,
+                const std::vector<char>& mask);
 
 /// Prior precision of the free parameters (diagonal).
 Eigen::VectorXd priorPrecision(const std::vector<FreeParameter>& free);
@@ -108,5 +123,20 @@ inline bool isTime(const FreeParameter& parameter) {
 /** An effect that is off has no size, a change point no range; the lag or delay of a model may be
  * taken away altogether. */
 bool runsToBound(const ModelDocument& model, const FreeParameter& parameter);
+
+/// Whether a strength of a change point is not 0.
+bool hasChanged(const Effect& effect, const ChangePoint& change, const ModelDocument& model);
+
+/// Paths of the change points at which effects of a model that are on begin to act.
+std::vector<std::string> changePointsOn(const ModelDocument& model);
+
+/// Moves a change point to where the loss is least, all else as it is.
+/** The loss over its time is not smooth (each time concerns other data), so it is searched, not
+ * followed downhill: halving steps down to a quarter of a second. */
+void refineChangePoint(const Fitter& fitter, FitState& state, const std::string& path);
+
+/// Times between which the loss stays within `allowed` nats of the state's [s].
+std::pair<double, double> changePointInterval(const Fitter& fitter, const FitState& state,
+                                              const std::string& path, double allowed);
 
 }  // namespace tread::gap

@@ -13,11 +13,6 @@ constexpr double kLongest = 1.2;   // [s]
 constexpr double kGyroGap = 0.5;   // [s] over which the gyro is not interpolated
 constexpr size_t kFewest = 12;     // increments of a match
 
-bool hasPose(const InsSample& sample) {
-  return std::isfinite(sample.T_map_body.x) && std::isfinite(sample.T_map_body.y) &&
-         std::isfinite(sample.T_map_body.yaw) && std::isfinite(sample.time);
-}
-
 template <class Rate>
 RunningSums commandSums(const Drive& drive, Rate rate) {
   RunningSums sums;
@@ -40,7 +35,7 @@ std::vector<PoseIncrement> poseIncrements(const Drive& drive) {
   for (size_t s = 0; s < drive.segments.size(); ++s) {
     const InsSample* from = nullptr;
     for (const InsSample& sample : drive.segments[s].ins) {
-      if (!hasPose(sample)) continue;
+      if (!sample.hasPose() || !std::isfinite(sample.time)) continue;
       const double duration = from == nullptr ? 0.0 : sample.time - from->time;
       if (from != nullptr && duration < kShortest) continue;
       if (from != nullptr && duration <= kLongest)

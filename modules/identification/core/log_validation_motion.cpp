@@ -15,11 +15,6 @@ constexpr double kSettled = 3.0;         // [s] after which a vehicle stands; tr
 constexpr double kNearlyStraight = 0.3;  // [rad]
 constexpr double kLeastAlong = 0.6;      // of the way, squared: else the heading is another one
 
-bool hasPose(const InsSample& sample) {
-  return std::isfinite(sample.T_map_body.x) && std::isfinite(sample.T_map_body.y) &&
-         std::isfinite(sample.T_map_body.yaw);
-}
-
 /// Quantile of values, which are reordered; NaN of none.
 double quantile(std::vector<double>& values, double share) {
   if (values.empty()) return kNotMeasured;
@@ -43,7 +38,7 @@ PoseSteps poseSteps(const Drive& drive) {
     const InsSample* last = nullptr;
     steps.readings += segment.ins.size();
     for (const InsSample& sample : segment.ins) {
-      if (!hasPose(sample)) continue;
+      if (!sample.hasPose()) continue;
       if (last != nullptr && sample.time > last->time) {
         const double duration = sample.time - last->time;
         const double way = (sample.T_map_body.position() - last->T_map_body.position()).norm();
@@ -197,7 +192,7 @@ void describeStandstill(const Drive& drive, Diagnostics& notes) {
       for (const InsSample& sample : segment.ins) {
         if (sample.time < from || sample.time >= to) continue;
         if (std::isfinite(sample.omega)) gyro.add(sample.omega);
-        if (!hasPose(sample)) continue;
+        if (!sample.hasPose()) continue;
         x.add(sample.T_map_body.x);
         y.add(sample.T_map_body.y);
         yaw.add(sample.T_map_body.yaw);

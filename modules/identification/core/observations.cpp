@@ -35,15 +35,10 @@ struct Endpoint {
   size_t next = 0;  ///< first fix after those that were used
 };
 
-bool hasPose(const InsSample& sample) {
-  return std::isfinite(sample.T_map_body.x) && std::isfinite(sample.T_map_body.y) &&
-         std::isfinite(sample.T_map_body.yaw);
-}
-
 std::vector<InsSample> fixesOf(const Segment& segment) {
   std::vector<InsSample> fixes;
   for (const InsSample& sample : segment.ins)
-    if (hasPose(sample)) fixes.push_back(sample);
+    if (sample.hasPose()) fixes.push_back(sample);
   return fixes;
 }
 
@@ -210,6 +205,18 @@ void Observations::addDrive(size_t index, double block) {
   blocks_ += count;
 }
 
+std::vector<char> Observations::blocksOf(const std::vector<char>& mask) const {
+  std::vector<char> counts(static_cast<size_t>(blocks_), 0);
+  for (size_t i = 0; i < mask.size(); ++i)
+    if (mask[i]) counts[static_cast<size_t>(all_[i].block)] = 1;
+  return counts;
+}
+
+int Observations::measuredBlocks() const {
+  const std::vector<char> counts = blocksOf(std::vector<char>(all_.size(), 1));
+  return static_cast<int>(std::count(counts.begin(), counts.end(), char{1}));
+}
+
 int Observations::blockAt(size_t drive, size_t segment, double time) const {
   const auto& [before, duration] = driven_[segmentIndex(drive, segment)];
   const double length = drive_lengths_[drive];
@@ -279,10 +286,6 @@ std::vector<std::vector<MotionSample>> Observations::simulate(const VehicleModel
   motions.reserve(plans_.size());
   for (const SegmentPlan& plan : plans_) motions.push_back(plan.simulate(vehicle));
   return motions;
-}
-
-Eigen::VectorXd Observations::predict(const ModelDocument& model) const {
-  return predict(simulate(model.vehicle), model.measurement);
 }
 
 Eigen::VectorXd Observations::predict(const std::vector<std::vector<MotionSample>>& motions,

@@ -94,19 +94,21 @@ class Observations {
 
   /// True motions of all segments, drive after drive.
   std::vector<std::vector<MotionSample>> simulate(const VehicleModel& vehicle) const;
-  /// One of them.
-  std::vector<MotionSample> simulateSegment(size_t index, const VehicleModel& vehicle) const {
-    return plans_[index].simulate(vehicle);
-  }
   /// What the rows would be if the vehicle and the INS were the model's (rows x 1).
-  Eigen::VectorXd predict(const ModelDocument& model) const;
+  Eigen::VectorXd predict(const ModelDocument& model) const {
+    return predict(simulate(model.vehicle), model.measurement);
+  }
   /// The same from simulated motions.
   Eigen::VectorXd predict(const std::vector<std::vector<MotionSample>>& motions,
-                          const MeasurementModel& measurement) const;
+                          const MeasurementModel& ins) const;
   /// Measured less predicted (rows x 1).
   Eigen::VectorXd residuals(const Eigen::VectorXd& predicted) const {
     return measured_ - predicted;
   }
+  /// Which blocks have rows whose mask is not 0.
+  std::vector<char> blocksOf(const std::vector<char>& mask) const;
+  /// Blocks in which something was measured.
+  int measuredBlocks() const;
   /// Block in which a time of a segment lies.
   int blockAt(size_t drive, size_t segment, double time) const;
   /// Index of a segment among all, as in simulate().

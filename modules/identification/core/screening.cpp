@@ -22,7 +22,7 @@ bool isSame(const Candidate& a, const Candidate& b) {
 
 /// Of a term that is fitted: its column of the Jacobian.
 Eigen::VectorXd releaseDirection(const FitState& state, const Candidate& candidate) {
-  const std::string path = candidate.effect + "." + candidate.parameter;
+  const std::string path = candidate.path();
   for (size_t i = 0; i < state.free.size(); ++i)
     if (state.free[i].path == path) return state.jacobian.col(static_cast<Eigen::Index>(i));
   throw std::logic_error("" + path + " is not free, and cannot be released");
@@ -119,15 +119,14 @@ double detectableSize(const std::vector<Candidate>& candidates, const ScoreTest&
   return gentlest;
 }
 
-Screening screen(const Fitter& fitter, const FitState& state, const std::vector<char>& mask,
-                 const SearchSettings& settings, bool first, SensitivityCache& cache) {
+Screening screen(const Fitter& fitter, const FitState& state, const SearchSettings& settings,
+                 bool first, SensitivityCache& cache) {
   Screening screening;
   screening.first = first;
   screening.alpha = first ? settings.alpha : settings.alpha_more;
   screening.candidates = candidatesFor(state, cache.excitation(fitter, state));
   leaveOut(screening.candidates, settings.rejected);
-  const ScoreTest test(fitter.data(), state, cache.directions(fitter, state, screening.candidates),
-                       mask);
+  const ScoreTest test(fitter, state, cache.directions(fitter, state, screening.candidates));
   screening.chance = test.largestByChance(settings.draws, settings.seed);
   screening.overdispersion = test.usualOverdispersion();
   for (size_t i = 0; i < screening.candidates.size(); ++i) {

@@ -9,7 +9,7 @@
 
 #include "modules/identification/core/candidates.hpp"
 #include "modules/identification/core/finding.hpp"
-#include "modules/identification/core/score_test.hpp"
+#include "modules/identification/core/validation.hpp"
 
 namespace tread::gap {
 
@@ -82,8 +82,8 @@ struct Screening {
 
 /// Tests every candidate for a state, with directions from the cache.
 /** `first`: nothing has been found yet, so that what usually scatters is not known. */
-Screening screen(const Fitter& fitter, const FitState& state, const std::vector<char>& mask,
-                 const SearchSettings& settings, bool first, SensitivityCache& cache);
+Screening screen(const Fitter& fitter, const FitState& state, const SearchSettings& settings,
+                 bool first, SensitivityCache& cache);
 
 /// Of each effect beyond chance the most promising candidate; the most promising effects first.
 std::vector<size_t> significant(const Screening& screening);

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "modules/identification/core/change_points.hpp"
-#include "modules/identification/core/diagnostics.hpp"
-#include "modules/identification/core/search_steps.hpp"
+#include "common/report/text.hpp"
 
 namespace tread::gap {
 namespace {
@@ -15,16 +13,16 @@ namespace {
 constexpr size_t kRenewed = 10;  // directions that are simulated again in a screening
 
 bool hasVanished(const ModelDocument& model, const Candidate& candidate) {
-  const double size = *findParameter(model, candidate.effect + "." + candidate.parameter) -
-                      (candidate.value - candidate.change);
+  const double size =
+      *findParameter(model, candidate.path()) - (candidate.value - candidate.change);
   return isVanishing(candidate.effect, candidate.parameter, size);
 }
 
 class EffectSelection {
  public:
-  EffectSelection(const Fitter& fitter, const std::vector<char>& mask,
-                  const SearchSettings& settings, SearchMemory& memory, const Progress& say)
-      : fitter_(fitter), mask_(mask), settings_(settings), memory_(memory), say_(say) {}
+  EffectSelection(const Fitter& fitter, const SearchSettings& settings, SearchMemory& memory,
+                  const Progress& say)
+      : fitter_(fitter), settings_(settings), memory_(memory), say_(say) {}
 
   SearchResult run(const ModelDocument& model) {
     calibrate(model);
@@ -74,7 +72,7 @@ class EffectSelection {
   }
 
   void calibrate(const ModelDocument& model) {
-    state() = fitter_.start(model, givenParameters(model, settings_.calibrate), mask_);
+    state() = fitter_.start(model, givenParameters(model, settings_.calibrate));
     settle(state());
     result_.calibrated = state();
   }
@@ -83,7 +81,7 @@ class EffectSelection {
   void takeInAccepted() {
     for (const std::string& effect : settings_.accepted) {
       if (isOn(effectNamed(effect), state().model)) continue;
-      const std::string why = takeIn(fitter_, state(), effect, mask_);
+      const std::string why = takeIn(fitter_, state(), effect);
       if (why.empty())
         result_.effects.push_back(effect);
       else
@@ -94,14 +92,14 @@ class EffectSelection {
 
   /// Fits, re-estimates the noise and fits again: the noise of a worse fit is too large.
   void settle(FitState& fitted) const {
-    fitter_.fitRoughly(fitted, mask_);
-    fitter_.renewNoise(fitted, mask_);
-    fitter_.fit(fitted, mask_);
+    fitter_.fitRoughly(fitted);
+    fitter_.renewNoise(fitted);
+    fitter_.fit(fitted);
     if (fitted.jacobian.rows() == 0) fitter_.renewJacobian(fitted);
   }
 
   Screening test(SensitivityCache& cache) const {
-    return screen(fitter_, state(), mask_, settings_, !has_nuisance_, cache);
+    return screen(fitter_, state(), settings_, !has_nuisance_, cache);
   }
 
   /// What could have been seen beside what was found: before, its size hid the rest.
@@ -134,7 +132,7 @@ class EffectSelection {
       FreeParameter parameter =
           freeParameter(state().model, effect->name + "." + effect->parameters.front().name);
       parameter.expected = 0.0;
-      fitter_.add(state(), parameter, 0.0, mask_);
+      fitter_.add(state(), parameter, 0.0);
       result_.effects.push_back(effect->name);
       ++nuisance_terms_;
     }
@@ -155,11 +153,11 @@ class EffectSelection {
     Trial trial;
     trial.candidate = index;
     trial.state = state();
-    addCandidate(fitter_, trial.state, screening.candidates[index], screening.sizes[index], mask_);
-    fitter_.fitRoughly(trial.state, mask_);
+    addCandidate(fitter_, trial.state, screening.candidates[index], screening.sizes[index]);
+    fitter_.fitRoughly(trial.state);
     if (!screening.candidates[index].change_point.empty()) {
-      refineChangePoint(fitter_, trial.state, screening.candidates[index].change_point, mask_);
-      fitter_.fitRoughly(trial.state, mask_);
+      refineChangePoint(fitter_, trial.state, screening.candidates[index].change_point);
+      fitter_.fitRoughly(trial.state);
     }
     if (hasVanished(trial.state.model, screening.candidates[index]))
       trial.refused = "its size vanishes in the fit";
@@ -168,8 +166,8 @@ class EffectSelection {
           *findParameter(trial.state.model, parameter.path) != 0.0 &&
           onBound(trial.state.model, parameter))
         trial.refused = parameter.path + " runs to the end of its plausible range";
-    trial.loss = heldOutLoss(fitter_.data(), trial.state, mask_);
-    trial.gain = gainOf(loss_now, trial.loss, blocksThatCount(fitter_.data(), mask_));
+    trial.loss = heldOutLoss(fitter_, trial.state);
+    trial.gain = gainOf(fitter_, loss_now, trial.loss);
     // First order may promise more than the refit keeps.
     trial.gain.value = std::min(trial.gain.value, state().loss - trial.state.loss);
     return trial;
@@ -180,7 +178,7 @@ class EffectSelection {
   bool addBest(const Screening& screening) {
     const std::vector<size_t> found = significant(screening);
     if (found.empty()) return false;
-    const Eigen::VectorXd now = heldOutLoss(fitter_.data(), state(), mask_);
+    const Eigen::VectorXd now = heldOutLoss(fitter_, state());
     std::vector<Trial> trials;
     const Trial* best = nullptr;
     for (size_t begin = 0; begin < found.size() && best == nullptr; begin += settings_.tried) {
@@ -205,27 +203,25 @@ class EffectSelection {
   void noteTrials(const Screening& screening, const std::vector<Trial>& trials, const Trial* best) {
     SearchStep step;
     for (const Trial& trial : trials) {
-      const std::string& effect = screening.candidates[trial.candidate].effect;
+      const Candidate& candidate = screening.candidates[trial.candidate];
+      const std::string& effect = candidate.effect;
+      const double score = screening.scores[trial.candidate];
+      const double p_value = pValueOf(screening, score, screening.evidence[trial.candidate]);
       if (&trial == best) {
-        step.effect = effect;
-        step.score = screening.scores[trial.candidate];
-        step.p_value = pValueOf(screening, step.score, screening.evidence[trial.candidate]);
-        step.gain = trial.gain.value;
-        step.gain_error = trial.gain.error;
-        if (screening.candidates[trial.candidate].release)
-          step.remark = "is not what the model says";
-      } else if (!trial.refused.empty() && screening.candidates[trial.candidate].release) {
+        step = {effect,
+                false,
+                score,
+                p_value,
+                trial.gain.value,
+                trial.gain.error,
+                std::move(step.runner_ups),
+                candidate.release ? "is not what the model says" : ""};
+      } else if (!trial.refused.empty() && candidate.release) {
         continue;  // the term stays what the model says
       } else if (!trial.refused.empty()) {
-        SearchStep refused;
-        refused.effect = effect;
-        refused.score = screening.scores[trial.candidate];
-        refused.p_value = pValueOf(screening, refused.score, screening.evidence[trial.candidate]);
-        refused.removed = true;
-        refused.remark = trial.refused;
-        result_.record.steps.push_back(refused);
+        result_.record.steps.push_back({effect, true, score, p_value, 0.0, 0.0, {}, trial.refused});
       } else if (best != nullptr) {
-        const Gain behind = gainOf(trial.loss, best->loss, blocksThatCount(fitter_.data(), mask_));
+        const Gain behind = gainOf(fitter_, trial.loss, best->loss);
         step.runner_ups.push_back({effect, behind.value, behind.error});
       }
     }
@@ -238,13 +234,13 @@ class EffectSelection {
   }
 
   void prune(const Screening& last) {
+    const SearchState search{fitter_, settings_, say_, result_};
     const Needed needed{criticalScore(last.chance, settings_.alpha_more), last.overdispersion,
                         false, true};
-    pruneEffects(fitter_, mask_, settings_, needed, result_, say_);
+    pruneEffects(search, needed);
     const size_t before = result_.record.steps.size();
-    replacePairs(fitter_, mask_, settings_, result_, say_);
-    if (result_.record.steps.size() > before)
-      pruneEffects(fitter_, mask_, settings_, needed, result_, say_);
+    replacePairs(search);
+    if (result_.record.steps.size() > before) pruneEffects(search, needed);
     for (const std::string& effect : result_.effects) {
       EffectEvidence& of = result_.evidence[effect];
       const double known = of.p_value.value_or(1.0);
@@ -256,7 +252,6 @@ class EffectSelection {
   }
 
   const Fitter& fitter_;
-  const std::vector<char>& mask_;
   const SearchSettings& settings_;
   SearchMemory& memory_;
   const Progress& say_;
@@ -298,14 +293,14 @@ std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool cali
   return free;
 }
 
-SearchResult search(const Fitter& fitter, const ModelDocument& model, const std::vector<char>& mask,
+SearchResult search(const Fitter& fitter, const ModelDocument& model,
                     const SearchSettings& settings, SearchMemory& memory, const Progress& say) {
-  return EffectSelection(fitter, mask, settings, memory, say).run(model);
+  return EffectSelection(fitter, settings, memory, say).run(model);
 }
 
-FitState refitted(const Fitter& fitter, const SearchResult& result, const std::vector<char>& mask) {
+FitState refitted(const Fitter& fitter, const SearchResult& result) {
   FitState state = result.state;
-  fitter.fit(state, mask);
+  fitter.fit(state);
   return state;
 }
 

@@ -44,12 +44,23 @@ struct SearchMemory {
   SensitivityCache with_nuisance;
 };
 
+/// A search under way: what it works with, and what it has found.
+struct SearchState {
+  const Fitter& fitter;
+  const SearchSettings& settings;
+  const Progress& say;
+  SearchResult& result;
+
+  const Observations& data() const { return fitter.data(); }
+  bool isAccepted(const std::string& effect) const { return contains(settings.accepted, effect); }
+};
+
 /// Which parameters of a model are free: strengths of effects that are on, and the numbers of the
 /// nominal model of which the model's covariance says how sure they are; all held by what it says.
 /// When calibrating all numbers of the nominal model are free without limits of belief.
 std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool calibrate);
 
-/// Finds the effects that a model lacks, on rows of the mask.
+/// Finds the effects that a model lacks, on the fitter's rows.
 /** 1. Calibrates what is on. 2. Tests all that is off; ends if chance explains it. 3. Else frees
  * the plain causes (slip, width, lag, delay, latency) as nuisance terms, so that they cannot pass
  * as something rarer, 4. tests, refits the best, validates on blocks left out and adds the best, as
@@ -57,10 +68,49 @@ std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool cali
  * included, and what runs to its bound. Where nothing is left the candidates of step 2 are tried
  * without nuisance terms. Given terms are held by the model's covariance; to free a held term is a
  * candidate like an effect. */
-SearchResult search(const Fitter& fitter, const ModelDocument& model, const std::vector<char>& mask,
+SearchResult search(const Fitter& fitter, const ModelDocument& model,
                     const SearchSettings& settings, SearchMemory& memory, const Progress& say);
 
-/// Refits the structure of a result on other rows, from the result's values.
-FitState refitted(const Fitter& fitter, const SearchResult& result, const std::vector<char>& mask);
+/// Refits the structure of a result on the fitter's rows, from the result's values.
+FitState refitted(const Fitter& fitter, const SearchResult& result);
+
+// Steps of a search.
+
+/// Switches an effect of the catalogue on in a state and fits all, whatever tests would say.
+/** Of several ways in which it could act (thresholds, change points) the most promising one.
+ * Returns why the drive cannot size it, and leaves the state as it was; empty if it can. */
+std::string takeIn(const Fitter& fitter, FitState& state, const std::string& effect);
+
+/// The state with effects switched off; nothing is refitted.
+FitState switchedOff(const Fitter& fitter, const FitState& state,
+                     const std::vector<std::string>& effects);
+
+/// The state without an effect, its other parameters refitted, with current Jacobian.
+FitState without(const Fitter& fitter, const FitState& state, const std::string& effect);
+
+/// The same in first order and without a simulation; nothing is refitted, the model stays as it
+/// was.
+FitState withoutLinearly(const Fitter& fitter, const FitState& state, const std::string& effect);
+
+/// Removes effects, weakest first, that the others make superfluous.
+/** Each that stays passes the score test alone in the presence of the others (evidence() >= 1),
+ * improves blocks left out, and the end error by at least `least_gain` of it (0 = however little);
+ * accepted ones stay in any case. Fills evidence and record of the result. */
+void pruneEffects(const SearchState& search, const Needed& needed);
+
+/// Puts one effect in the place of two where it explains as much.
+/** Search goes step by step and may reach what one effect does by two others: a scale of positions
+ * is slip and track width together. Only effects whose signature the found ones can imitate are
+ * tried; the pair goes if it is not better on blocks left out by more than a standard error. */
+void replacePairs(const SearchState& search);
+
+/// Rows of every other block: those of `half` (0 or 1) count.
+std::vector<char> halfMask(const Observations& data, int half);
+
+/// Takes the effects that were not accepted out of a result unless the end error falls with them,
+/// by more than its standard error over blocks, on halves of the driving that the sizes of the
+/// effects were not fitted to.
+/** Effects of the INS, which may move no pose, may lessen what is left of the yaw rate instead. */
+void dropUnconfirmed(const SearchState& search);
 
 }  // namespace tread::gap

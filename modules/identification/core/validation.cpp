@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include <Eigen/Eigenvalues>
 
@@ -14,6 +15,15 @@ constexpr int kFolds = 5;
 constexpr int kRefits = 3;                 // iterated least squares steps of a linearised refit
 constexpr double kLeastEigenvalue = 1e-7;  // of the normal matrix in units of its diagonal
 constexpr double kUnknown = 1e12;
+constexpr double kFewBlocks = 1.25;  // a root of active blocks below so many critical scores
+constexpr double kNearly = 0.999;
+constexpr double kSparse = 3.9;  // normal quantile: 1e-4
+/// The same of a first effect: 1e-3 each. With it 2 of 400 null logs of ten blocks named something.
+constexpr double kFirst = 3.3;
+constexpr double kLeastActive = 3.0;   // blocks that must excite it
+constexpr double kLeastUnique = 0.02;  // below it a column is what the model's curvature leaves
+/// Mean slope of the pull by the residual, over 1 / scale^2: (f + 1) / (f + 3).
+constexpr double kInformation = (kFreedom + 1.0) / (kFreedom + 3.0);
 
 /// Fold of each row: whole blocks, counted among those that count.
 std::vector<int> foldsOf(const Observations& data, const std::vector<char>& counts) {
@@ -44,16 +54,12 @@ Eigen::VectorXd refitted(const FitState& state, const Eigen::VectorXd& residuals
   Eigen::VectorXd change = Eigen::VectorXd::Zero(prior.size());
   Eigen::VectorXd now = residuals;
   for (int n = 0; n < kRefits; ++n) {
-    Eigen::VectorXd weights(now.size());
-    for (Eigen::Index i = 0; i < now.size(); ++i)
-      weights[i] = train[static_cast<size_t>(i)] ? weightOf(now[i], state.scales[i]) : 0.0;
-    const Eigen::MatrixXd weighted = weights.asDiagonal() * state.jacobian;
-    Eigen::MatrixXd normal = state.jacobian.transpose() * weighted;
+    auto [normal, pull] = normalOf(state, now, train);
     normal.diagonal() += prior;
     normal.diagonal() *= 1.0 + 1e-9;
     for (Eigen::Index i = 0; i < normal.rows(); ++i)
       if (normal(i, i) <= 0.0) normal(i, i) = 1.0;
-    const Eigen::VectorXd pull = weighted.transpose() * now - prior.cwiseProduct(off + change);
+    pull -= prior.cwiseProduct(off + change);
     const Eigen::VectorXd step = normal.ldlt().solve(pull);
     change += step;
     now -= state.jacobian * step;
@@ -61,19 +67,26 @@ Eigen::VectorXd refitted(const FitState& state, const Eigen::VectorXd& residuals
   return change;
 }
 
-}  // namespace
-
-std::vector<char> blocksThatCount(const Observations& data, const std::vector<char>& mask) {
-  std::vector<char> counts(static_cast<size_t>(data.blocks()), 0);
-  for (size_t i = 0; i < mask.size(); ++i)
-    if (mask[i]) counts[static_cast<size_t>(data.all()[i].block)] = 1;
-  return counts;
+/// Columns made orthogonal to the free parameters' in the metric of 1 / scale^2.
+Eigen::MatrixXd orthogonal(const FitState& state, const Eigen::MatrixXd& directions,
+                           const Eigen::VectorXd& metric) {
+  if (state.free.empty()) return directions;
+  const Eigen::MatrixXd weighted = metric.asDiagonal() * state.jacobian;
+  Eigen::MatrixXd normal = state.jacobian.transpose() * weighted;
+  normal.diagonal() += priorPrecision(state.free) / kInformation;
+  // A ridge far below rounding of the data keeps columns apart that are the same.
+  normal.diagonal() += 1e-10 * normal.diagonal() +
+                       Eigen::VectorXd::Constant(normal.rows(), 1e-12 * normal.trace() + 1e-300);
+  return directions - state.jacobian * normal.ldlt().solve(weighted.transpose() * directions);
 }
 
-Eigen::VectorXd heldOutLoss(const Observations& data, const FitState& state,
-                            const std::vector<char>& mask) {
+}  // namespace
+
+Eigen::VectorXd heldOutLoss(const Fitter& fitter, const FitState& state) {
+  const Observations& data = fitter.data();
+  const std::vector<char>& mask = fitter.mask();
   const Eigen::VectorXd residuals = data.residuals(state.predicted);
-  const std::vector<int> folds = foldsOf(data, blocksThatCount(data, mask));
+  const std::vector<int> folds = foldsOf(data, fitter.blocksThatCount());
   Eigen::VectorXd loss = Eigen::VectorXd::Zero(data.blocks());
   for (int fold = 0; fold < kFolds; ++fold) {
     std::vector<char> train(mask.size());
@@ -89,10 +102,10 @@ Eigen::VectorXd heldOutLoss(const Observations& data, const FitState& state,
   return loss;
 }
 
-void followLinearly(const Fitter& fitter, FitState& state, const std::vector<char>& mask) {
+void followLinearly(const Fitter& fitter, FitState& state) {
   if (state.free.empty()) return;
   const Eigen::VectorXd residuals = fitter.data().residuals(state.predicted);
-  state.predicted += state.jacobian * refitted(state, residuals, mask);
+  state.predicted += state.jacobian * refitted(state, residuals, fitter.mask());
 }
 
 Gain gainOf(const Eigen::VectorXd& first, const Eigen::VectorXd& second,
@@ -111,17 +124,20 @@ Gain gainOf(const Eigen::VectorXd& first, const Eigen::VectorXd& second,
   return gain;
 }
 
-Eigen::MatrixXd parameterCovariance(const Observations& data, const FitState& state,
-                                    const std::vector<char>& mask) {
+Gain gainOf(const Fitter& fitter, const Eigen::VectorXd& first, const Eigen::VectorXd& second) {
+  return gainOf(first, second, fitter.blocksThatCount());
+}
+
+Eigen::MatrixXd parameterCovariance(const Fitter& fitter, const FitState& state) {
+  const Observations& data = fitter.data();
   const auto count = static_cast<Eigen::Index>(state.free.size());
   if (count == 0) return {};
   const Eigen::VectorXd residuals = data.residuals(state.predicted);
   Eigen::MatrixXd pulls = Eigen::MatrixXd::Zero(data.blocks(), count);
   Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(count, count);
-  constexpr double kInformation = (kFreedom + 1.0) / (kFreedom + 3.0);
   Eigen::VectorXd metric = Eigen::VectorXd::Zero(residuals.size());
   for (Eigen::Index i = 0; i < residuals.size(); ++i) {
-    if (!mask[static_cast<size_t>(i)]) continue;
+    if (!fitter.mask()[static_cast<size_t>(i)]) continue;
     metric[i] = kInformation / (state.scales[i] * state.scales[i]);
     pulls.row(data.all()[static_cast<size_t>(i)].block) +=
         pullOf(residuals[i], state.scales[i]) * state.jacobian.row(i);
@@ -130,7 +146,7 @@ Eigen::MatrixXd parameterCovariance(const Observations& data, const FitState& st
   curvature.diagonal() += priorPrecision(state.free);
   Eigen::MatrixXd scatter = pulls.transpose() * pulls;
   scatter.diagonal() += priorPrecision(state.free);
-  const auto counts = blocksThatCount(data, mask);
+  const auto counts = fitter.blocksThatCount();
   const auto blocks = static_cast<double>(std::count(counts.begin(), counts.end(), char{1}));
   if (blocks > 1.0) scatter *= blocks / (blocks - 1.0);
   // In units of each diagonal, so that metres and seconds compare.
@@ -153,6 +169,147 @@ Eigen::MatrixXd parameterCovariance(const Observations& data, const FitState& st
     if (lost[i] > 1e-3)
       covariance(i, i) += kUnknown * std::pow(state.free[static_cast<size_t>(i)].step, 2);
   return covariance;
+}
+
+ScoreTest::ScoreTest(const Fitter& fitter, const FitState& state,
+                     const Eigen::MatrixXd& directions) {
+  const Observations& data = fitter.data();
+  const Eigen::VectorXd residuals = data.residuals(state.predicted);
+  Eigen::VectorXd metric(residuals.size());
+  Eigen::VectorXd pull(residuals.size());
+  for (Eigen::Index i = 0; i < residuals.size(); ++i) {
+    const bool counts = fitter.mask()[static_cast<size_t>(i)];
+    metric[i] = counts ? 1.0 / (state.scales[i] * state.scales[i]) : 0.0;
+    pull[i] = counts ? pullOf(residuals[i], state.scales[i]) : 0.0;
+  }
+  own_ = orthogonal(state, directions, metric);
+  const Eigen::Index count = directions.cols();
+  pulls_ = Eigen::MatrixXd::Zero(std::max(1, data.blocks()), count);
+  block_information_ = pulls_;
+  for (Eigen::Index i = 0; i < residuals.size(); ++i)
+    if (metric[i] > 0.0) {
+      const int block = data.all()[static_cast<size_t>(i)].block;
+      pulls_.row(block) += pull[i] * own_.row(i);
+      block_information_.row(block) += kInformation * metric[i] * own_.row(i).cwiseAbs2();
+    }
+  scores_ = Eigen::VectorXd::Zero(count);
+  uniqueness_ = Eigen::VectorXd::Zero(count);
+  information_ = Eigen::VectorXd::Zero(count);
+  for (Eigen::Index c = 0; c < count; ++c) {
+    const double whole = directions.col(c).cwiseAbs2().dot(metric);
+    const double own = own_.col(c).cwiseAbs2().dot(metric);
+    if (whole <= 0.0 || own <= kLeastUnique * kLeastUnique * whole) {
+      pulls_.col(c).setZero();
+      block_information_.col(c).setZero();
+      continue;
+    }
+    uniqueness_[c] = std::sqrt(own / whole);
+    information_[c] = kInformation * own;
+    const double root = pulls_.col(c).norm();
+    if (root > 0.0) scores_[c] = pulls_.col(c).sum() / root;
+  }
+}
+
+double ScoreTest::size(Eigen::Index candidate) const {
+  return information_[candidate] > 0.0 ? pulls_.col(candidate).sum() / information_[candidate]
+                                       : 0.0;
+}
+
+double ScoreTest::promise(Eigen::Index candidate) const {
+  return 0.5 * size(candidate) * pulls_.col(candidate).sum();
+}
+
+double ScoreTest::sizeError(Eigen::Index candidate) const {
+  if (information_[candidate] <= 0.0) return std::numeric_limits<double>::infinity();
+  return pulls_.col(candidate).norm() / information_[candidate];
+}
+
+double ScoreTest::activeBlocks(Eigen::Index candidate) const {
+  const double squares = block_information_.col(candidate).squaredNorm();
+  return squares > 0.0 ? std::pow(information_[candidate], 2) / squares : 0.0;
+}
+
+double ScoreTest::overdispersion(Eigen::Index candidate) const {
+  if (information_[candidate] <= 0.0) return 1.0;
+  const double common = size(candidate);
+  double scatter = 0.0;
+  for (Eigen::Index b = 0; b < pulls_.rows(); ++b) {
+    const double information = block_information_(b, candidate);
+    // What a block has itself drawn the common size to is given back.
+    const double rest = std::max(0.05, 1.0 - information / information_[candidate]);
+    scatter += std::pow(pulls_(b, candidate) - common * information, 2) / rest;
+  }
+  return std::max(1.0, scatter / information_[candidate]);
+}
+
+double ScoreTest::usualOverdispersion() const {
+  std::vector<double> all;
+  for (Eigen::Index c = 0; c < candidates(); ++c)
+    if (information_[c] > 0.0) all.push_back(overdispersion(c));
+  if (all.empty()) return 1.0;
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  std::nth_element(all.begin(), middle, all.end());
+  return *middle;
+}
+
+double ScoreTest::sparseScore(Eigen::Index candidate, double usual) const {
+  if (information_[candidate] <= 0.0) return 0.0;
+  return pulls_.col(candidate).sum() /
+         std::sqrt(information_[candidate] * std::max(usual, overdispersion(candidate)));
+}
+
+std::vector<double> ScoreTest::largestByChance(int draws, uint64_t seed) const {
+  std::mt19937_64 random(seed);
+  Eigen::MatrixXd normalised = pulls_;
+  for (Eigen::Index c = 0; c < normalised.cols(); ++c) {
+    const double root = normalised.col(c).norm();
+    if (root > 0.0) normalised.col(c) /= root;
+  }
+  std::vector<double> largest;
+  largest.reserve(static_cast<size_t>(draws));
+  Eigen::RowVectorXd sign(normalised.rows());
+  for (int draw = 0; draw < draws; ++draw) {
+    for (Eigen::Index b = 0; b < sign.size(); ++b) sign[b] = (random() >> 63U) != 0U ? 1.0 : -1.0;
+    largest.push_back(normalised.cols() > 0 ? (sign * normalised).cwiseAbs().maxCoeff() : 0.0);
+  }
+  std::sort(largest.begin(), largest.end());
+  return largest;
+}
+
+bool isSparse(const ScoreTest& test, Eigen::Index candidate, double score) {
+  return std::sqrt(test.activeBlocks(candidate)) < kFewBlocks * score;
+}
+
+double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& needed) {
+  double by_blocks = std::abs(test.score(candidate)) / needed.score;
+  // Where few blocks act chance reaches the largest score of all: to equal it is nothing.
+  if (by_blocks < 1.0 + 1e-9) by_blocks = std::min(by_blocks, kNearly);
+  if (!needed.size_counts || !isSparse(test, candidate, needed.score)) return by_blocks;
+  if (needed.first && test.activeBlocks(candidate) < kLeastActive) return by_blocks;
+  const double by_size =
+      needed.first ? std::abs(test.ownScore(candidate)) /
+                         studentQuantile(test.activeBlocks(candidate) - 1.0, kFirst)
+                   : std::abs(test.sparseScore(candidate, needed.overdispersion)) / kSparse;
+  return std::max(by_blocks, by_size);
+}
+
+double chanceOfSize(double evidence, size_t candidates, bool first) {
+  return std::min(1.0, static_cast<double>(candidates) *
+                           std::erfc(evidence * (first ? kFirst : kSparse) / std::sqrt(2.0)));
+}
+
+double familyWise(const std::vector<double>& largest_by_chance, double score) {
+  const auto from =
+      std::lower_bound(largest_by_chance.begin(), largest_by_chance.end(), std::abs(score) - 1e-12);
+  const auto larger = static_cast<double>(std::distance(from, largest_by_chance.end()));
+  return (larger + 1.0) / (static_cast<double>(largest_by_chance.size()) + 1.0);
+}
+
+double criticalScore(const std::vector<double>& largest_by_chance, double alpha) {
+  if (largest_by_chance.empty()) return std::numeric_limits<double>::infinity();
+  const auto at =
+      static_cast<size_t>(std::ceil((1.0 - alpha) * static_cast<double>(largest_by_chance.size())));
+  return largest_by_chance[std::min(at, largest_by_chance.size() - 1)];
 }
 
 }  // namespace tread::gap

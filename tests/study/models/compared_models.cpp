@@ -25,30 +25,29 @@ std::vector<FreeParameter> freeParameters(const ModelDocument& model,
 }
 
 /// Fit and noise in turn: the noise of a worse fit is too large.
-void settle(const Fitter& fitter, FitState& state, const std::vector<char>& mask) {
-  fitter.fitRoughly(state, mask);
-  fitter.renewNoise(state, mask);
-  fitter.fit(state, mask);
+void settle(const Fitter& fitter, FitState& state) {
+  fitter.fitRoughly(state);
+  fitter.renewNoise(state);
+  fitter.fit(state);
 }
 
 /// The fits of one set of rows, each beginning where the one before ended.
 class Climb {
  public:
-  Climb(const Fitter& fitter, const std::vector<char>& mask) : fitter_(fitter), mask_(mask) {}
+  explicit Climb(const Fitter& fitter) : fitter_(fitter) {}
 
   FitState gains(const ModelDocument& ideal) const {
     FitState state = fitter_.start(
         ideal,
-        freeParameters(ideal, {"slip_ratio.slip", "track_width.widening", "ins_latency.latency"}),
-        mask_);
-    settle(fitter_, state, mask_);
+        freeParameters(ideal, {"slip_ratio.slip", "track_width.widening", "ins_latency.latency"}));
+    settle(fitter_, state);
     return state;
   }
 
   FitState lags(FitState state) const {
     add(state, "actuator_lag.lag", std::max(0.0, kFirstLag - state.model.vehicle.lag));
     add(state, "command_delay.delay", std::max(0.0, kFirstDelay - state.model.vehicle.delay));
-    settle(fitter_, state, mask_);
+    settle(fitter_, state);
     return state;
   }
 
@@ -59,27 +58,26 @@ class Climb {
     for (double share : {0.92, 0.8, 0.65, 0.45}) {
       FitState tried = state;
       add(tried, "speed_saturation.inverse_limit", 1.0 / std::max(1e-3, share * most));
-      fitter_.fitRoughly(tried, mask_);
+      fitter_.fitRoughly(tried);
       if (tried.loss < best.loss && tried.loss < state.loss - kBites) best = tried;
     }
-    settle(fitter_, best, mask_);
+    settle(fitter_, best);
     return best;
   }
 
   FitState asymmetry(FitState state) const {
     add(state, "track_asymmetry.share", 0.0);
     add(state, "icr_offset.offset", 0.0);
-    settle(fitter_, state, mask_);
+    settle(fitter_, state);
     return state;
   }
 
  private:
   void add(FitState& state, const std::string& path, double value) const {
-    fitter_.add(state, freeParameter(state.model, path), value, mask_);
+    fitter_.add(state, freeParameter(state.model, path), value);
   }
 
   const Fitter& fitter_;
-  const std::vector<char>& mask_;
 };
 
 RungModel rungOf(const FitState& state) {
@@ -123,12 +121,12 @@ const char* rungKey(Rung rung) {
 }
 
 RungModels fitRungs(const Fitter& fitter, const ModelDocument& ideal, bool ideal_known,
-                    const std::vector<char>& mask, const Progress& say) {
+                    const Progress& say) {
   RungModels models;
   const auto set = [&models](Rung rung, RungModel model) {
     models[static_cast<size_t>(rung)] = std::move(model);
   };
-  const Climb climb(fitter, mask);
+  const Climb climb(fitter);
   if (ideal_known) set(Rung::kIdeal, {ideal, {}, {}, {}});
   say("  gain, track, powertrain, ICR");
   const FitState gains = climb.gains(ideal);
@@ -137,21 +135,20 @@ RungModels fitRungs(const Fitter& fitter, const ModelDocument& ideal, bool ideal
   const FitState powertrain = climb.asymmetry(limited);
   set(Rung::kPowertrain, rungOf(powertrain));
   say("  slip regression, black box");
-  RungModel slip = corrected(
-      limited, fitRegression(fitter, limited.model, slipTerms(), {{kSlipPrior}, false}, mask));
+  RungModel slip =
+      corrected(limited, fitRegression(fitter, limited.model, slipTerms(), {{kSlipPrior}, false}));
   addCoefficients(slip);
   set(Rung::kSlipRegression, std::move(slip));
   RungModel box =
       corrected(powertrain, fitRegression(fitter, powertrain.model, blackBoxTerms(),
-                                          {{std::begin(kRidges), std::end(kRidges)}, true}, mask));
+                                          {{std::begin(kRidges), std::end(kRidges)}, true}));
   box.numbers.emplace_back("ridge", box.correction.deviation);
   set(Rung::kBlackBox, std::move(box));
   return models;
 }
 
-ModelDocument calibratedNumbers(const Fitter& fitter, const ModelDocument& ideal,
-                                const std::vector<char>& mask) {
-  const Climb climb(fitter, mask);
+ModelDocument calibratedNumbers(const Fitter& fitter, const ModelDocument& ideal) {
+  const Climb climb(fitter);
   const FitState fitted = climb.lags(climb.gains(ideal));
   const VehicleModel& vehicle = fitted.model.vehicle;
   ModelDocument model = ideal;
@@ -163,13 +160,13 @@ ModelDocument calibratedNumbers(const Fitter& fitter, const ModelDocument& ideal
   return model;
 }
 
-SearchResult discover(const Fitter& fitter, const ModelDocument& begin,
-                      const std::vector<char>& mask, uint64_t seed, const Progress& say) {
+SearchResult discover(const Fitter& fitter, const ModelDocument& begin, uint64_t seed,
+                      const Progress& say) {
   SearchSettings settings;
   settings.seed = seed;
   settings.calibrate = true;
   SearchMemory memory;  // of its own: nothing of other driving
-  return search(fitter, begin, mask, settings, memory, say);
+  return search(fitter, begin, settings, memory, say);
 }
 
 RungModel discoveredRung(const SearchResult& found, const FitState& state) {

@@ -50,18 +50,18 @@ struct RungModel {
 /// Models by rung; nothing where a rung cannot be had.
 using RungModels = std::array<std::optional<RungModel>, kRungs>;
 
-/// The rungs up to the black box, from rows of the mask.
+/// The rungs up to the black box, from the fitter's rows.
 /** Without kIdeal where the ideal model is not known and only a guess to begin at. */
 RungModels fitRungs(const Fitter& fitter, const ModelDocument& ideal, bool ideal_known,
-                    const std::vector<char>& mask, const Progress& say);
+                    const Progress& say);
 
-/// Lag, delay and gains where a fit to rows of the mask puts them, as numbers of the nominal model.
-ModelDocument calibratedNumbers(const Fitter& fitter, const ModelDocument& ideal,
-                                const std::vector<char>& mask);
+/// Lag, delay and gains where a fit to the fitter's rows puts them, as numbers of the nominal
+/// model.
+ModelDocument calibratedNumbers(const Fitter& fitter, const ModelDocument& ideal);
 
-/// What find --calibrate finds on rows of the mask, beginning at a model.
-SearchResult discover(const Fitter& fitter, const ModelDocument& begin,
-                      const std::vector<char>& mask, uint64_t seed, const Progress& say);
+/// What find --calibrate finds on the fitter's rows, beginning at a model.
+SearchResult discover(const Fitter& fitter, const ModelDocument& begin, uint64_t seed,
+                      const Progress& say);
 /// As a rung, with the state of the search or one refitted elsewhere.
 RungModel discoveredRung(const SearchResult& found, const FitState& state);
 

@@ -7,7 +7,7 @@
 
 #include "common/recordings/text_file.hpp"
 #include "tools/gap/find_output.hpp"
-#include "tools/gap/report/effect_words.hpp"
+#include "tools/gap/report/words.hpp"
 #include "tools/gap/report/sections.hpp"
 
 namespace tread::gap {

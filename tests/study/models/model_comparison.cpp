@@ -6,8 +6,8 @@
 #include <functional>
 #include <map>
 
-#include "modules/identification/core/confirmation.hpp"
 #include "modules/identification/core/dead_reckoning.hpp"
+#include "modules/identification/core/search.hpp"
 #include "modules/identification/core/verdict.hpp"
 
 namespace tread::gap {
@@ -58,7 +58,7 @@ void addErrors(const Observations& data, const RungModels& models,
 void summarise(const RungErrors& errors, ComparisonRow& row) {
   for (size_t r = 0; r < kRungs; ++r) {
     if (!errors[r]) continue;
-    row.errors[r] = summaryOf(*errors[r], [](const ExecutionError&) { return true; });
+    row.errors[r] = summaryOf(*errors[r]);
     if (r != kFound && errors[kFound]) row.behind[r] = differenceOf(*errors[r], *errors[kFound]);
   }
 }
@@ -73,7 +73,7 @@ std::string fatalNote(const Drive& drive) {
 ComparisonRow rowOf(const Drive& drive, const Observations& data) {
   ComparisonRow row;
   row.log = drive.name;
-  row.blocks = measuredBlocks(data);
+  row.blocks = data.measuredBlocks();
   row.driven = drive.driven();
   row.floor = deadReckoningFloor(data.drives());
   row.remark = fatalNote(drive);
@@ -85,20 +85,19 @@ class Discoverer {
  public:
   Discoverer(const Fitter& fitter, const ModelDocument& ideal, uint64_t seed, bool nested,
              const Progress& say)
-      : fitter_(fitter), ideal_(ideal), seed_(seed), say_(say) {
+      : ideal_(ideal), seed_(seed), say_(say) {
     if (nested) return;
-    const std::vector<char> all(fitter.data().all().size(), 1);
     say_("  effects on the whole log");
-    whole_ = searchOn(all);
+    whole_ = searchOn(fitter);
   }
 
-  RungModel on(const std::vector<char>& mask) const {
+  RungModel on(const Fitter& rows) const {
     say_("  search");
     RungModel rung;
     if (whole_) {
-      rung = discoveredRung(*whole_, refitted(fitter_, *whole_, mask));
+      rung = discoveredRung(*whole_, refitted(rows, *whole_));
     } else {
-      const SearchResult found = searchOn(mask);
+      const SearchResult found = searchOn(rows);
       rung = discoveredRung(found, found.state);
     }
     sayFound(rung, say_);
@@ -106,13 +105,12 @@ class Discoverer {
   }
 
  private:
-  SearchResult searchOn(const std::vector<char>& mask) const {
-    const ModelDocument begin = calibratedNumbers(fitter_, ideal_, mask);
+  SearchResult searchOn(const Fitter& rows) const {
+    const ModelDocument begin = calibratedNumbers(rows, ideal_);
     const Progress silent = [](const std::string&) {};
-    return discover(fitter_, begin, mask, seed_, silent);
+    return discover(rows, begin, seed_, silent);
   }
 
-  const Fitter& fitter_;
   const ModelDocument& ideal_;
   uint64_t seed_;
   const Progress& say_;
@@ -135,11 +133,11 @@ ComparisonRow nestedRow(const ComparisonLog& log, const ComparisonTask& task, co
   RungErrors errors;
   for (int half : {0, 1}) {
     say("  from half " + std::to_string(half + 1));
-    const std::vector<char> mask = halfMask(data, half);
+    const Fitter rows = fitter.onRows(halfMask(data, half));
     ComparisonFold fold;
     fold.trained_on = "half " + std::to_string(half + 1);
-    fold.models = fitRungs(fitter, log.ideal, log.ideal_known, mask, say);
-    fold.models[kFound] = discoverer.on(mask);
+    fold.models = fitRungs(rows, log.ideal, log.ideal_known, say);
+    fold.models[kFound] = discoverer.on(rows);
     addErrors(
         data, fold.models, [half](const ExecutionError& error) { return error.block % 2 != half; },
         errors);
@@ -168,11 +166,10 @@ ComparisonRow pooledRow(const ComparisonTask& task, size_t left_out, const Progr
     return row;
   }
   const Fitter fitter(data, task.parallel);
-  const std::vector<char> all(data.all().size(), 1);
   ComparisonFold fold;
   fold.trained_on = "all but " + row.log;
-  fold.models = fitRungs(fitter, log.ideal, log.ideal_known, all, say);
-  fold.models[kFound] = Discoverer(fitter, log.ideal, task.seed, true, say).on(all);
+  fold.models = fitRungs(fitter, log.ideal, log.ideal_known, say);
+  fold.models[kFound] = Discoverer(fitter, log.ideal, task.seed, true, say).on(fitter);
   RungErrors errors;
   addErrors(
       test_data, fold.models, [](const ExecutionError&) { return true; }, errors);

@@ -52,7 +52,7 @@ const EndErrors& errorsOf(const ComparisonRow& row, Rung rung) {
 EndErrors leastOf(const ModelDocument& truth, double seconds, uint64_t seed) {
   const std::vector<Drive> drives{syntheticDrive(truth, seconds, seed)};
   const Observations data(drives, {});
-  return summaryOf(endErrors(data, truth), [](const ExecutionError&) { return true; });
+  return summaryOf(endErrors(data, truth));
 }
 
 ExecutionError errorAt(int block, double yaw) {
@@ -89,8 +89,7 @@ TEST_CASE("a slip regression finds drift and pull, with their sizes") {
   const std::vector<Drive> drives{syntheticDrive(truth, 400.0, 2)};
   const Observations data(drives, {});
   const Fitter fitter(data);
-  const std::vector<char> all(data.all().size(), 1);
-  const TwistRegression found = fitRegression(fitter, syntheticVehicle(), slipTerms(), {}, all);
+  const TwistRegression found = fitRegression(fitter, syntheticVehicle(), slipTerms(), {});
   REQUIRE(found.terms[1].name == "v omega");
   CHECK(found.coefficients[1] == Approx(-0.2).margin(0.02));
   REQUIRE(found.terms[3].name == "v");

@@ -34,12 +34,12 @@ Eigen::MatrixX3d correctionOf(const std::vector<TwistTerm>& terms, const Eigen::
 class RegressionFit {
  public:
   RegressionFit(const Fitter& fitter, const ModelDocument& model, std::vector<TwistTerm> terms,
-                const RegressionSettings& settings, const std::vector<char>& mask)
+                const RegressionSettings& settings)
       : fitter_(fitter),
         data_(fitter.data()),
         ins_(model.measurement),
-        mask_(mask),
-        counts_(blocksThatCount(data_, mask)),
+        mask_(fitter.mask()),
+        counts_(fitter.blocksThatCount()),
         pieces_(data_, model.vehicle) {
     result_.terms = std::move(terms);
     if (settings.scaled) result_.scale = pieces_.scaleOf(counts_);
@@ -208,9 +208,8 @@ class RegressionFit {
 }  // namespace
 
 TwistRegression fitRegression(const Fitter& fitter, const ModelDocument& model,
-                              std::vector<TwistTerm> terms, const RegressionSettings& settings,
-                              const std::vector<char>& mask) {
-  return RegressionFit(fitter, model, std::move(terms), settings, mask).run(settings.deviations);
+                              std::vector<TwistTerm> terms, const RegressionSettings& settings) {
+  return RegressionFit(fitter, model, std::move(terms), settings).run(settings.deviations);
 }
 
 std::vector<std::vector<MotionSample>> simulateCorrected(const Observations& data,

@@ -58,12 +58,11 @@ struct RegressionSettings {
   bool scaled = false;
 };
 
-/// Fits the terms to what a model leaves on rows of the mask; the model is held.
+/// Fits the terms to what a model leaves on the fitter's rows; the model is held.
 /** In the integral form: rows of the corrected simulation against measured rows, the same Student
  * likelihood as all other fits, plus the prior (ridge), by iterated least squares. */
 TwistRegression fitRegression(const Fitter& fitter, const ModelDocument& model,
-                              std::vector<TwistTerm> terms, const RegressionSettings& settings,
-                              const std::vector<char>& mask);
+                              std::vector<TwistTerm> terms, const RegressionSettings& settings);
 
 /// Motions of all segments as a vehicle with the correction drives them.
 std::vector<std::vector<MotionSample>> simulateCorrected(const Observations& data,

@@ -10,9 +10,7 @@
 #include "common/vehicle/model_file.hpp"
 #include "tests/tools/gap/sample_findings.hpp"
 #include "tools/gap/find_output.hpp"
-#include "tools/gap/report/effect_words.hpp"
-#include "tools/gap/report/gap_words.hpp"
-#include "tools/gap/report/headline.hpp"
+#include "tools/gap/report/words.hpp"
 #include "tools/gap/report/sections.hpp"
 
 namespace tread::gap {

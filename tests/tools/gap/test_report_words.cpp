@@ -8,11 +8,9 @@
 
 #include "tests/tools/gap/sample_findings.hpp"
 #include "tools/gap/find_output.hpp"
-#include "tools/gap/report/effect_words.hpp"
-#include "tools/gap/report/gap_words.hpp"
-#include "tools/gap/report/headline.hpp"
-#include "tools/gap/report/pictures.hpp"
+#include "tools/gap/report/words.hpp"
 #include "tools/gap/report/sections.hpp"
+#include "tools/gap/report/pictures.hpp"
 
 namespace tread::gap {
 namespace {
@@ -225,7 +223,7 @@ TEST_CASE("a report says what to do after its verdict, and what its words mean")
 TEST_CASE("a number of the model that has changed is named, with the effect like it") {
   Finding finding;
   finding.identified.calibrated = {{"forward_gain", "1", 1.08, 1.07, 1.09, 1.11, true}};
-  CHECK(movedSentences(finding).front() ==
+  CHECK(sentencesOf(finding).back() ==
         "A number of the model has changed: forward_gain 108 % (107 to 109 %) instead of "
         "111 %; longitudinal slip would do the same.");
 }
@@ -234,7 +232,7 @@ TEST_CASE("a term of the model that has changed is said in its natural numbers")
   Finding finding = samples::finding(GapVerdict::kNoDiscrepancy);
   finding.identified.calibrated = {
       {"turn_power_limit.inverse_limit", "s/rad", 0.8, 0.78, 0.82, 0.5, true}};
-  CHECK(movedSentences(finding).front() ==
+  CHECK(sentencesOf(finding).back() ==
         "Limit of turning power, which the model has, has changed: limit 1.25 rad/s (1.22 "
         "to 1.28 rad/s) instead of 2 rad/s.");
 }

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/gap/report/headline.hpp"
+#include "tools/gap/report/sections.hpp"
 
 #include <algorithm>
 
-#include "tools/gap/report/effect_words.hpp"
-#include "tools/gap/report/gap_words.hpp"
-#include "tools/gap/report/guidance.hpp"
+#include "tools/gap/explain.hpp"
 #include "tools/gap/report/pictures.hpp"
+#include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {
@@ -26,8 +25,7 @@ std::vector<std::string> movedIn(const Finding& finding) {
   std::vector<std::string> names;
   for (const Estimate& estimate : finding.identified.calibrated) {
     const std::string effect = effectOfPath(estimate.parameter);
-    if (estimate.moved && std::find(names.begin(), names.end(), effect) == names.end())
-      names.push_back(effect);
+    if (estimate.moved && !contains(names, effect)) names.push_back(effect);
   }
   return names;
 }
@@ -82,7 +80,7 @@ std::string foundWords(const Finding& finding) {
   const std::vector<const FoundEffect*> sure = found(finding, true);
   const std::vector<const FoundEffect*> open = found(finding, false);
   if (open.empty())
-    return "Found: " + (sure.empty() ? shortTitlesOf(namesOf(finding)) : someOf(sure));
+    return "Found: " + (sure.empty() ? titlesOf(namesOf(finding), shortTitleOf) : someOf(sure));
   const std::string begin = sure.empty() ? "" : "Found: " + someOf(sure) + "; and ";
   if (open.size() == 1)
     return begin + eitherOr(*open.front()) + ": this drive cannot tell them apart";
@@ -128,11 +126,12 @@ void addNext(const Finding& finding, std::vector<Block>& blocks) {
     addUnsized(finding, points);
     const size_t unseen = finding.identified.not_excited.size();
     if (unseen > 0)
-      points.items.push_back("This drive would not have shown " +
-                             (unseen <= kNamed
-                                  ? inSentence(shortTitlesOf(finding.identified.not_excited)) + "."
-                                  : std::to_string(unseen) +
-                                        " effects; they stand below, with what would show them."));
+      points.items.push_back(
+          "This drive would not have shown " +
+          (unseen <= kNamed
+               ? inSentence(titlesOf(finding.identified.not_excited, shortTitleOf)) + "."
+               : std::to_string(unseen) +
+                     " effects; they stand below, with what would show them."));
   } else {
     addRivals(finding, points);
     if (finding.verdict != GapVerdict::kAmbiguous) addChecks(finding, points);
@@ -189,7 +188,7 @@ std::string headlineOf(const Finding& finding) {
     case GapVerdict::kNotInCatalogue:
       return "Something that is not in the catalogue";
     case GapVerdict::kMeasurement:
-      return "The INS, not the vehicle: " + shortTitlesOf(namesOf(finding));
+      return "The INS, not the vehicle: " + titlesOf(namesOf(finding), shortTitleOf);
     case GapVerdict::kCannotTell:
       return "This drive cannot tell";
   }
@@ -215,9 +214,7 @@ std::vector<std::string> closingLines(const Finding& finding) {
     lines.push_back("  " + finding.reason);
     if (!finding.identified.effects.empty()) lines.push_back(std::string("  ") + kNoResult);
   }
-  for (const FoundEffect& effect : finding.identified.effects)
-    lines.push_back("  " + titledSentenceOf(effect, finding.identified.model));
-  for (const std::string& sentence : movedSentences(finding)) lines.push_back("  " + sentence);
+  for (const std::string& sentence : sentencesOf(finding)) lines.push_back("  " + sentence);
   if (!finding.adequacy.unexplained.empty())
     lines.push_back("  Unexplained: " + remainsOf(finding.adequacy.unexplained) + ".");
   if (!finding.gap) return lines;
@@ -236,14 +233,10 @@ std::vector<Block> firstBlocks(const Finding& finding) {
   if (!words.empty()) blocks.push_back(Paragraph{words});
   if (finding.verdict == GapVerdict::kCannotTell && !finding.identified.effects.empty())
     blocks.push_back(Paragraph{kNoResult});
-  Points sentences;
-  for (const FoundEffect& effect : finding.identified.effects)
-    sentences.items.push_back(titledSentenceOf(effect, finding.identified.model));
-  for (const std::string& sentence : movedSentences(finding)) sentences.items.push_back(sentence);
+  const Points sentences{sentencesOf(finding)};
   if (!sentences.items.empty()) blocks.push_back(sentences);
-  if (!finding.adequacy.unexplained.empty()) {
+  if (!finding.adequacy.unexplained.empty())
     blocks.push_back(Paragraph{"Unexplained: " + remainsOf(finding.adequacy.unexplained) + "."});
-  }
   if (finding.gap) {
     blocks.push_back(Paragraph{gainOf(*finding.gap)});
     const std::string worse = worseOf(*finding.gap);

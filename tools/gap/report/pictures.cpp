@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/gap/report/effect_words.hpp"
+#include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 

@@ -11,6 +11,22 @@
 /// The sections of a report behind its first screen; a section without blocks is left out.
 namespace tread::gap {
 
+using report::Block, report::Commands, report::Page, report::Paragraph, report::Pictures;
+using report::Points, report::Section, report::Table;
+
+/// The headline of a report in one line, for instance "Found: Limit of turning power"; where the
+/// drive cannot tell, "A or B: this drive cannot tell them apart".
+std::string headlineOf(const Finding& finding);
+
+/// What find prints at its end, the verdict first.
+std::vector<std::string> closingLines(const Finding& finding);
+
+/// What stands on the first screen: sentences, gain, what to do next.
+std::vector<Block> firstBlocks(const Finding& finding);
+
+/// good, change or doubt.
+std::string moodOf(GapVerdict verdict);
+
 /// A file that `tread-gap find` has read.
 struct InputFile {
   enum class Role { kModel, kTrain, kTest };
@@ -19,23 +35,8 @@ struct InputFile {
   std::string sha256;  ///< 64 hexadecimal digits
 };
 
-using report::Block, report::Commands, report::Page, report::Paragraph, report::Pictures;
-using report::Points, report::Section, report::Table;
-
-Section effectsSection(const Finding& finding);
-Section atlasSection(const Finding& finding);
-Section executionsSection(const Finding& finding, const std::vector<InputFile>& inputs);
-Section placesSection(const Finding& finding, const std::vector<InputFile>& inputs);
-Section stepsSection(const Finding& finding);
-Section parametersSection(const Finding& finding);
-Section alternativesSection(const Finding& finding);
-Section notShownSection(const Finding& finding);
-Section decisionsSection(const Finding& finding);
-Section envelopeSection(const Finding& finding);
-Section logsSection(const Finding& finding);
-Section candidatesSection(const Finding& finding);
-Section wordsSection();
-Section filesSection(const Finding& finding, const std::vector<InputFile>& inputs);
+/// Those that show where and how well the model holds.
+std::vector<Section> evidenceSections(const Finding& finding, const std::vector<InputFile>& inputs);
 
 /// Name and version of this tool, for provenance.
 const char* toolVersion();

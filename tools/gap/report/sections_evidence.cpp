@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <map>
 
-#include "tools/gap/report/effect_words.hpp"
-#include "tools/gap/report/headline.hpp"
 #include "tools/gap/report/pictures.hpp"
 #include "tools/gap/report/sections.hpp"
+#include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {
@@ -74,35 +73,33 @@ std::string remarkOf(const SearchStep& step) {
   return text;
 }
 
-}  // namespace
-
-Section atlasSection(const Finding& finding) {
-  Section section{"Where simulation and measurement disagree", {}};
-  if (finding.atlas.curves.empty()) return section;
+std::vector<Block> atlasBlocks(const Finding& finding) {
+  if (finding.atlas.curves.empty()) return {};
+  std::vector<Block> blocks;
   size_t before = 0;
   size_t after = 0;
   for (const AtlasCurve& curve : finding.atlas.curves) {
     before += marked(curve.before);
     after += marked(curve.after);
   }
-  section.blocks.push_back(Paragraph{
+  blocks.push_back(Paragraph{
       "Residuals, measured less predicted, over what they may depend on. Of all fields " +
       std::to_string(before) + " were off beyond chance before and " + std::to_string(after) +
       " are now (filled dots: beyond chance even for so many fields; intervals: 95 % each, over "
       "blocks of driving)."});
   if (const std::vector<std::string> maps = mapPictures(finding); !maps.empty())
-    section.blocks.push_back(Pictures{maps,
-                                      "Mean residual over speed and yaw rate; white is right, "
-                                      "empty was not driven."});
+    blocks.push_back(Pictures{maps,
+                              "Mean residual over speed and yaw rate; white is right, "
+                              "empty was not driven."});
   Pictures curves{{}, "Orange, dashed: the old model. Blue: the new one."};
   for (const AtlasCurve& curve : finding.atlas.curves) curves.svg.push_back(atlasPicture(curve));
-  section.blocks.push_back(curves);
-  return section;
+  blocks.push_back(curves);
+  return blocks;
 }
 
-Section executionsSection(const Finding& finding, const std::vector<InputFile>& inputs) {
-  Section section{"Executions, as measured and as predicted", {}};
-  if (finding.shown.overlays.empty()) return section;
+std::vector<Block> executionsBlocks(const Finding& finding, const std::vector<InputFile>& inputs) {
+  if (finding.shown.overlays.empty()) return {};
+  std::vector<Block> blocks;
   constexpr size_t kTypical = 6;
   Pictures pictures{
       {},
@@ -114,38 +111,33 @@ Section executionsSection(const Finding& finding, const std::vector<InputFile>& 
     pictures.svg.push_back(overlayPicture(overlay, rank + ", " + threeDigits(overlay.begin) +
                                                        " s of " + logName(inputs, overlay.drive)));
   }
-  section.blocks.push_back(
+  blocks.push_back(
       Paragraph{"Six typical executions, then the three worst, none of them used for the fit: " +
                 predictedBy(finding, inputs)});
   if (!finding.shown.overlays.front().band.empty())
-    section.blocks.push_back(Paragraph{
+    blocks.push_back(Paragraph{
         "The shade is a 90 % band: the residual noise of the fitted model (for each channel a part "
         "that is always there and one in proportion to the motion), carried along the predicted "
         "path, times the factor with which it holds 9 of 10 of all " +
         std::to_string(finding.shown.places.size()) + " such executions at each time."});
-  section.blocks.push_back(pictures);
-  return section;
+  blocks.push_back(pictures);
+  return blocks;
 }
 
-Section placesSection(const Finding& finding, const std::vector<InputFile>& inputs) {
-  Section section{"Where on the ground", {}};
-  if (!finding.gap) return section;
-  if (finding.shown.places.empty()) {
-    section.blocks.push_back(
-        Paragraph{"No map: the logs have no absolute poses at the executions' ends."});
-    return section;
-  }
-  section.blocks.push_back(Pictures{
+std::vector<Block> placesBlocks(const Finding& finding, const std::vector<InputFile>& inputs) {
+  if (!finding.gap) return {};
+  if (finding.shown.places.empty())
+    return {Paragraph{"No map: the logs have no absolute poses at the executions' ends."}};
+  return {Pictures{
       placePictures(finding, inputs),
       "Position error at the end of each execution that was not used for the fit, where it was "
-      "driven; grey is right. Errors that gather in one place speak for the ground there."});
-  return section;
+      "driven; grey is right. Errors that gather in one place speak for the ground there."}};
 }
 
-Section stepsSection(const Finding& finding) {
-  Section section{"Step by step", {}};
-  if (finding.search.steps.empty()) return section;
-  section.blocks.push_back(Paragraph{
+std::vector<Block> stepsBlocks(const Finding& finding) {
+  if (finding.search.steps.empty()) return {};
+  std::vector<Block> blocks;
+  blocks.push_back(Paragraph{
       "Each step adds the effect that helps most on blocks of driving that were not fitted, or "
       "takes one away again that the others make superfluous. Gains in log likelihood (nats) with "
       "standard error; p "
@@ -158,27 +150,19 @@ Section stepsSection(const Finding& finding) {
                           threeDigits(step.score), saidChance(step.p_value),
                           threeDigits(step.gain) + " \u00b1 " + threeDigits(step.gain_error)});
   }
-  section.blocks.push_back(table);
-  section.blocks.push_back(Pictures{{stepsPicture(finding.search.steps)}, "Gain of each step."});
-  return section;
+  blocks.push_back(table);
+  blocks.push_back(Pictures{{stepsPicture(finding.search.steps)}, "Gain of each step."});
+  return blocks;
 }
 
-Section logsSection(const Finding& finding) {
-  Section section{"State of the logs", {}};
-  Points points;
-  for (const LogNote& note : finding.source.log_notes)
-    points.items.push_back((note.log.empty() ? "" : note.log + ": ") + note.what +
-                           (note.fatal ? " (nothing can be concluded from this log)" : ""));
-  if (finding.source.log_notes.empty()) points.items.push_back("Nothing to remark.");
-  section.blocks.push_back(points);
-  if (finding.source.blocks > 0)
-    section.blocks.push_back(Paragraph{std::to_string(finding.source.blocks) +
-                                       " independent blocks of " +
-                                       threeDigits(finding.source.block_length) +
-                                       " s; whatever is said about chance counts blocks, not "
-                                       "samples. Test for what remains: p " +
-                                       saidChance(finding.adequacy.p_value) + "."});
-  return section;
+}  // namespace
+
+std::vector<Section> evidenceSections(const Finding& finding,
+                                      const std::vector<InputFile>& inputs) {
+  return {{"Where simulation and measurement disagree", atlasBlocks(finding)},
+          {"Executions, as measured and as predicted", executionsBlocks(finding, inputs)},
+          {"Where on the ground", placesBlocks(finding, inputs)},
+          {"Step by step", stepsBlocks(finding)}};
 }
 
 }  // namespace tread::gap

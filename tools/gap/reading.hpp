@@ -7,6 +7,7 @@
 
 #include "common/log/drive_log.hpp"
 #include "modules/identification/core/drive.hpp"
+#include "modules/identification/core/log_validation.hpp"
 
 namespace tread::gap {
 
@@ -92,5 +93,28 @@ struct HeardSpan {
   CommandSpan commands;
   SpanReadings ins;
 };
+
+/// Length of an execution [s].
+inline constexpr double kExecutionLength = 2.0;
+
+/// The segments of a log: spans, cut where the INS begins a new track.
+std::vector<Segment> segmentsOf(const std::vector<HeardSpan>& spans,
+                                const std::vector<EncoderSample>& encoders);
+
+/// The executions to be predicted; `records` in seconds, in order of time.
+std::vector<Execution> executionsOf(const std::vector<Segment>& segments,
+                                    const std::vector<Execution>& records);
+
+inline constexpr int64_t kOvertaking = 200'000;  ///< [us] by which messages may come out of order
+
+/// Missing channels, messages of another type, commands of two kinds, silences, jumps and frozen
+/// poses.
+void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes);
+
+/// Clocks that jump or go back, pauses over which the robot did not move among them.
+void checkClocks(const SortedLog& log, Diagnostics& notes);
+
+/// Two robots (or two publishers of a channel) in one log.
+void checkPublishers(const SortedLog& log, Diagnostics& notes);
 
 }  // namespace tread::gap

@@ -13,17 +13,18 @@
 #include "common/recordings/text_file.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/gap/commands.hpp"
+#include "tools/gap/drive_log.hpp"
 #include "tools/gap/explain.hpp"
-#include "tools/gap/model_change.hpp"
+#include "tools/gap/manoeuvres.hpp"
 #include "tools/gap/plan_design.hpp"
-#include "tools/gap/plan_patterns.hpp"
-#include "tools/gap/report/effect_words.hpp"
+#include "tools/gap/report/words.hpp"
+#include "tools/gap/what_if.hpp"
 #include "tools/patterns/model_recording.hpp"
 
 namespace tread::gap {
 namespace {
 
-struct Options {
+struct PlanOptions {
   std::string truth;
   std::string rival;
   std::string model;
@@ -46,8 +47,7 @@ constexpr const char* kFooter =
 std::string fromTable(const std::string& a, const std::string& b) {
   std::string text;
   for (const ConfoundedGroup* group : confoundedGroupsOf(a)) {
-    if (std::find(group->members.begin(), group->members.end(), b) == group->members.end())
-      continue;
+    if (!contains(group->members, b)) continue;
     const std::string when = group->when.empty() ? "" : " (" + group->when + ")";
     text += "  " + asSentence(group->because) + when + ".\n  " + group->separates + "\n";
   }
@@ -106,7 +106,7 @@ std::string sideText(const DesignSide& side) {
          sizeOf(side.rival_model, side.rival) + ")\n";
 }
 
-void tellFound(const Options& options, const DesignTask& task, const Design& design,
+void tellFound(const PlanOptions& options, const DesignTask& task, const Design& design,
                const PatternSet& set) {
   const DesignSide& side = design.sides.front();
   std::cout << "To tell " << inSentence(titleOf(side.truth)) << " from "
@@ -144,7 +144,7 @@ void tellNone(const Design& design) {
 }
 
 /// The built-in manoeuvres: what a person asks for, else what the model knows.
-std::vector<Manoeuvre> builtInManoeuvres(const Options& options, const ModelDocument& model) {
+std::vector<Manoeuvre> builtInManoeuvres(const PlanOptions& options, const ModelDocument& model) {
   if (options.speed > 0.0) return planManoeuvres(model, options.speed);
   std::vector<Manoeuvre> all = planManoeuvres(model, fullCommand(model));
   if (model.envelope) keepWithin(*model.envelope, model.vehicle, all);
@@ -152,7 +152,7 @@ std::vector<Manoeuvre> builtInManoeuvres(const Options& options, const ModelDocu
 }
 
 /// Of patterns and speeds that a person asks for, and where the model does not say what it knows.
-void warnBeyond(const Options& options, const ModelDocument& model, const PatternSet& set) {
+void warnBeyond(const PlanOptions& options, const ModelDocument& model, const PatternSet& set) {
   patterns::warnOutside(model, options.model, set);
   if (model.envelope) return;
   const Envelope asked = patterns::envelopeOf(model.vehicle, set);
@@ -161,7 +161,7 @@ void warnBeyond(const Options& options, const ModelDocument& model, const Patter
             << " rad/s of it, whatever it was made from\n";
 }
 
-int plan(const Options& options) {
+int plan(const PlanOptions& options) {
   effectOrGuess(options.truth);
   effectOrGuess(options.rival);
   if (options.truth == options.rival)
@@ -192,10 +192,91 @@ int plan(const Options& options) {
   return 0;
 }
 
+struct WhatIfOptions {
+  std::string model;
+  ModelChange change;
+  std::string log;
+  std::string out;
+  double minutes = 10.0;
+  double pitch = 0.0;         // [deg]
+  double roll = 0.0;          // [deg]
+  double battery_drop = 0.0;  // [%]
+  double worked = 0.5;
+};
+
+Circumstances circumstancesOf(const WhatIfOptions& options) {
+  Circumstances circumstances;
+  circumstances.session_time = 60.0 * options.minutes;
+  circumstances.battery_drop = 0.01 * options.battery_drop;
+  circumstances.roll = options.roll * kPi / 180.0;
+  circumstances.pitch = options.pitch * kPi / 180.0;
+  circumstances.worked = options.worked;
+  return circumstances;
+}
+
+/// "What if without A, with B and limit=1.2".
+std::string questionOf(const ModelChange& change) {
+  std::vector<std::string> parts;
+  for (const std::string& effect : change.remove)
+    parts.push_back("without " + inSentence(titleOf(effect)));
+  for (const std::string& effect : change.add)
+    parts.push_back("with " + inSentence(titleOf(effect)));
+  for (const std::string& assignment : change.set) parts.push_back(assignment);
+  return "What if: " + joined(parts) + "?";
+}
+
+bool endsWith(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+void whatIf(const WhatIfOptions& options) {
+  if (options.change.remove.empty() && options.change.add.empty() && options.change.set.empty())
+    throw std::runtime_error("what-if: nothing to change; give --remove, --add or --set");
+  const bool svg = endsWith(options.out, ".svg");
+  if (!options.out.empty() && !svg && !endsWith(options.out, ".html"))
+    throw std::runtime_error(options.out + ": what kind of file? end it with .html or .svg");
+  const ModelDocument model = readModelDocument(options.model);
+  const ModelDocument other = changed(model, options.change);
+  const std::vector<ManoeuvreComparison> comparisons =
+      compareModels(model, other, circumstancesOf(options));
+  std::vector<LogComparison> on_log;
+  std::string lost;
+  if (!options.log.empty()) {
+    const Drive drive = readSoundDriveFor(model, options.log);
+    lost = drive.lost;
+    on_log.push_back(compareOnLog(drive, model, other));
+  }
+  const std::string question = questionOf(options.change);
+  const std::string setting = settingOf(model, other, options.model, options.log);
+  std::cout << question << "\n" << setting << "\n\n" << textOf(comparisons);
+  for (const LogComparison& comparison : on_log) std::cout << '\n' << textOf(comparison);
+  if (!lost.empty()) std::cout << lost << '\n';
+  if (!options.out.empty())
+    recordings::writeText(
+        options.out,
+        svg ? svgOf(comparisons, on_log) : htmlOf(pageOf(question, setting, comparisons, on_log)));
+  std::cout << std::flush;
+}
+
+void addCircumstances(CLI::App& command, WhatIfOptions& options) {
+  command.add_option("--minutes", options.minutes, "since the start of the session")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 10000.0));
+  command.add_option("--pitch", options.pitch, "deg, of the ground, nose down positive")
+      ->check(CLI::Range(-45.0, 45.0));
+  command.add_option("--roll", options.roll, "deg, of the ground, left side up positive")
+      ->check(CLI::Range(-45.0, 45.0));
+  command.add_option("--battery-drop", options.battery_drop, "%, fall of the voltage since then")
+      ->check(CLI::Range(0.0, 100.0));
+  command.add_option("--worked", options.worked, "mean square of the duty until now, 0..1")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+}
+
 }  // namespace
 
-CLI::App* addPlan(CLI::App& app, int& status) {
-  const auto options = std::make_shared<Options>();
+void addPlan(CLI::App& app, int& status) {
+  const auto options = std::make_shared<PlanOptions>();
   CLI::App* command =
       app.add_subcommand("plan", "the shortest drive that tells effect A from effect B");
   command->footer(kFooter);
@@ -211,7 +292,23 @@ CLI::App* addPlan(CLI::App& app, int& status) {
       ->check(CLI::Range(0.01, 20.0));
   command->add_option("--out", options->out, "pattern set to write (YAML)");
   command->callback([options, &status] { status = plan(*options); });
-  return command;
+}
+
+void addWhatIf(CLI::App& app) {
+  const auto options = std::make_shared<WhatIfOptions>();
+  CLI::App* command = app.add_subcommand(
+      "what-if", "simulate with an effect removed, added or of another size, and show it");
+  command->add_option("--model", options->model, "model file (YAML)")->required();
+  command->add_option("--remove", options->change.remove, "turn this effect off");
+  command->add_option("--add", options->change.add,
+                      "turn this effect on, at its typical size; of one that is on, --set another");
+  command->add_option(
+      "--set", options->change.set,
+      "parameter=number: of the effect added, or effect.parameter, or lag, delay..");
+  command->add_option("--log", options->log, "a log; its executions are simulated, too");
+  command->add_option("--out", options->out, "pictures: FILE.html or FILE.svg");
+  addCircumstances(*command, *options);
+  command->callback([options] { whatIf(*options); });
 }
 
 }  // namespace tread::gap

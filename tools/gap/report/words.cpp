@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/gap/report/effect_words.hpp"
+#include "tools/gap/report/words.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <string>
 
 namespace tread::gap {
@@ -63,6 +64,37 @@ bool isKnown(const std::vector<RivalPair>& pairs, const std::string& one,
   });
 }
 
+constexpr double kNegligible = 0.01;  // of an error: less is no change
+
+std::string saidErrors(const EndErrors& errors, bool rms) {
+  return saidDistance(rms ? errors.position.rms : errors.position.median) + " and " +
+         saidAngle(rms ? errors.yaw.rms : errors.yaw.median);
+}
+
+/// Dead reckoning bounds what a model can do only as long as no model does better.
+std::string floorWords(const Gap& gap) {
+  std::vector<std::string> better;
+  if (gap.after.position.median < gap.floor->position.median) better.emplace_back("position");
+  if (gap.after.yaw.median < gap.floor->yaw.median) better.emplace_back("heading");
+  const std::string reaches = " reaches " + saidErrors(*gap.floor, false);
+  if (better.empty())
+    return " Dead reckoning with encoders and gyro, about the best that is possible," + reaches +
+           ".";
+  return " Dead reckoning with encoders and gyro" + reaches + "; the new model does better in " +
+         joined(better) + ".";
+}
+
+/// A median before and after.
+struct Change {
+  const char* what;
+  double before;
+  double after;
+  std::string (*said)(double);
+
+  bool isWorse() const { return after > (1.0 + kNegligible) * before; }
+  bool isBetter() const { return after < before; }
+};
+
 }  // namespace
 
 std::string lastPart(const std::string& path) {
@@ -100,28 +132,20 @@ std::string saidEstimate(const Estimate& estimate) {
 }
 
 std::string titleOf(const std::string& effect) {
-  for (const Effect& known : effectCatalogue())
-    if (known.name == effect) return known.title;
-  return effect;
+  const Effect* known = findEffect(effect);
+  return known != nullptr ? known->title : effect;
 }
 
-std::string titlesOf(const std::vector<std::string>& effects, const std::string& last_joint) {
+std::string titlesOf(const std::vector<std::string>& effects,
+                     std::string (*title)(const std::string&)) {
   std::vector<std::string> titles;
-  titles.reserve(effects.size());
-  for (const std::string& effect : effects) titles.push_back(titleOf(effect));
-  return joined(titles, last_joint);
+  for (const std::string& effect : effects) titles.push_back(title(effect));
+  return joined(titles);
 }
 
 std::string shortTitleOf(const std::string& effect) {
   const std::string title = titleOf(effect);
   return title.substr(0, title.find(','));
-}
-
-std::string shortTitlesOf(const std::vector<std::string>& effects, const std::string& last_joint) {
-  std::vector<std::string> titles;
-  titles.reserve(effects.size());
-  for (const std::string& effect : effects) titles.push_back(shortTitleOf(effect));
-  return joined(titles, last_joint);
 }
 
 std::string sentenceOf(const FoundEffect& effect) {
@@ -134,10 +158,6 @@ std::string sentenceOf(const FoundEffect& effect, const ModelDocument& model) {
     if (const auto total = totalOf(estimate.parameter, model))
       totals.push_back(total->name + " " + said(total->value, total->unit));
   return withNumbers(effect, totals);
-}
-
-std::string titledSentenceOf(const FoundEffect& effect, const ModelDocument& model) {
-  return shortTitleOf(effect.name) + ": " + inSentence(sentenceOf(effect, model));
 }
 
 std::optional<Total> totalOf(const std::string& path, const ModelDocument& model) {
@@ -154,23 +174,21 @@ std::string checkOf(const FoundEffect& effect) {
   return known.negative_check + said(-effect.parameters.front().value, "1") + ". " + known.check;
 }
 
-std::vector<std::string> movedSentences(const Finding& finding) {
+std::vector<std::string> sentencesOf(const Finding& finding) {
   std::vector<std::string> sentences;
+  for (const FoundEffect& effect : finding.identified.effects)
+    sentences.push_back(shortTitleOf(effect.name) + ": " +
+                        inSentence(sentenceOf(effect, finding.identified.model)));
   for (const Estimate& estimate : finding.identified.calibrated)
     if (estimate.moved) sentences.push_back(movedSentence(estimate));
   return sentences;
 }
 
-PlausibleRange plausibleRange(const Finding& finding, const std::string& path) {
-  const auto bounds = plausibleBounds(finding.identified.model, path);
-  return bounds ? PlausibleRange{bounds->min, bounds->max} : PlausibleRange{};
-}
-
 bool isAtLimit(const Finding& finding, const Estimate& estimate) {
-  const PlausibleRange range = plausibleRange(finding, estimate.parameter);
-  const double near = 1e-6 * (range.max - range.min);
+  const auto bounds = plausibleBounds(finding.identified.model, estimate.parameter);
+  const double near = bounds ? 1e-6 * (bounds->max - bounds->min) : 0.0;
   return near > 0.0 && estimate.value != 0.0 &&
-         (estimate.value <= range.min + near || estimate.value >= range.max - near);
+         (estimate.value <= bounds->min + near || estimate.value >= bounds->max - near);
 }
 
 std::vector<std::string> rivalsOf(const FoundEffect& effect) {
@@ -222,6 +240,53 @@ std::vector<RivalPair> rivalPairs(const Finding& finding) {
         pairs.push_back({effect.name, runner_up.effect, false, runner_up.behind, runner_up.error});
   }
   return pairs;
+}
+
+std::string gainOf(const Gap& gap) {
+  std::string text =
+      threeDigits(gap.horizon) +
+      " s end-pose error on driving it has not seen: " + threeDigits(gap.before.position.median) +
+      " -> " + saidDistance(gap.after.position.median) + ", heading " +
+      threeDigits(gap.before.yaw.median * 180.0 / kPi) + " -> " + saidAngle(gap.after.yaw.median) +
+      " (median of " + std::to_string(gap.after.executions) + " executions; rms " +
+      saidErrors(gap.before, true) + " -> " + saidErrors(gap.after, true) + ").";
+  if (gap.floor) text += floorWords(gap);
+  if (!gap.structure_nested)
+    text +=
+        " The parameters were fitted without these executions, the effects were chosen with "
+        "them.";
+  return text;
+}
+
+std::string worseOf(const Gap& gap) {
+  const Change changes[] = {
+      {"position", gap.before.position.median, gap.after.position.median, saidDistance},
+      {"heading", gap.before.yaw.median, gap.after.yaw.median, saidAngle}};
+  std::vector<std::string> worse;
+  std::string better;
+  for (const Change& change : changes) {
+    if (change.isWorse())
+      worse.push_back(std::string(change.what) + " (median " + change.said(change.before) +
+                      " before, " + change.said(change.after) + " now)");
+    if (change.isBetter()) better = change.what;
+  }
+  if (worse.empty()) return "";
+  return "Not better, but worse on driving it has not seen: " + joined(worse) +
+         (better.empty() ? "." : "; only " + better + " got better.");
+}
+
+std::string remainsOf(const std::vector<Unexplained>& rests) {
+  std::vector<std::string> channels;
+  std::map<std::string, std::vector<std::string>> variables;
+  for (const Unexplained& rest : rests) {
+    if (variables.count(rest.channel) == 0) channels.push_back(rest.channel);
+    variables[rest.channel].push_back(rest.variable);
+  }
+  std::string text;
+  for (const std::string& channel : channels)
+    text += (text.empty() ? "" : "; ") + std::string("the ") + channel + " residual depends on " +
+            joined(variables[channel]);
+  return text;
 }
 
 }  // namespace tread::gap

@@ -28,14 +28,13 @@ std::string saidUnit(const Estimate& natural);
 /// "limit 1.18 rad/s (1.15 to 1.21 rad/s)".
 std::string saidEstimate(const Estimate& estimate);
 
-/// Titles of effects, "A, B and C"; what is no effect (forward_gain) as it is.
+/// Title of an effect; what is no effect (forward_gain) as it is.
 std::string titleOf(const std::string& effect);
-std::string titlesOf(const std::vector<std::string>& effects,
-                     const std::string& last_joint = "and");
-/// The same up to the first comma of each title.
+/// The same up to its first comma.
 std::string shortTitleOf(const std::string& effect);
-std::string shortTitlesOf(const std::vector<std::string>& effects,
-                          const std::string& last_joint = "and");
+/// Titles of effects, "A, B and C".
+std::string titlesOf(const std::vector<std::string>& effects,
+                     std::string (*title)(const std::string&) = titleOf);
 
 /// One sentence in the words of the workshop with the effect's numbers and its direction.
 std::string sentenceOf(const FoundEffect& effect);
@@ -43,11 +42,9 @@ std::string sentenceOf(const FoundEffect& effect);
 /// The same; of a term that acts on top of what the model had with their sum, too.
 std::string sentenceOf(const FoundEffect& effect, const ModelDocument& model);
 
-/// The same behind the effect's name.
-std::string titledSentenceOf(const FoundEffect& effect, const ModelDocument& model);
-
-/// One sentence for each term of the model that has changed.
-std::vector<std::string> movedSentences(const Finding& finding);
+/// One such sentence for each effect found, behind its name, and one for each term of the model
+/// that has changed.
+std::vector<std::string> sentencesOf(const Finding& finding);
 
 /// What a term and what it acts on top of make together.
 struct Total {
@@ -61,15 +58,6 @@ std::optional<Total> totalOf(const std::string& path, const ModelDocument& model
 
 /// How to check an effect in two minutes, with what its sign may mean beside.
 std::string checkOf(const FoundEffect& effect);
-
-/// Values between which a parameter is plausible; not known where the two are equal.
-struct PlausibleRange {
-  double min = 0.0;
-  double max = 0.0;
-};
-
-/// The model file's bounds of a parameter, else the catalogue's.
-PlausibleRange plausibleRange(const Finding& finding, const std::string& path);
 
 /// Whether an estimate ran to the end of what is plausible: then it is no measurement.
 bool isAtLimit(const Finding& finding, const Estimate& estimate);
@@ -103,5 +91,14 @@ bool driveMayTell(const RivalPair& pair);
 
 /// All pairs of a finding, each once, whichever of the two was found first.
 std::vector<RivalPair> rivalPairs(const Finding& finding);
+
+/// "2 s end-pose error on driving it has not seen: 0.64 -> 0.45 m, heading 20.5 -> 10.7 deg ...".
+std::string gainOf(const Gap& gap);
+
+/// Which of position and heading got worse on driving it has not seen; empty if neither did.
+std::string worseOf(const Gap& gap);
+
+/// "the yaw rate residual depends on speed and elapsed time; the along residual on ...".
+std::string remainsOf(const std::vector<Unexplained>& rests);
 
 }  // namespace tread::gap

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// Steps of a search beside adding and removing: taking in what a person has accepted, one effect in
+// the place of two, and the proof on driving that sizes were not fitted to.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "modules/identification/core/end_errors.hpp"
+#include "modules/identification/core/search.hpp"
+
+namespace tread::gap {
+namespace {
+
+constexpr double kUnknown = 2.0;  // times its typical size: what the 95 % interval must not exceed
+
+/// The candidate that promises most; none that would change anything = candidates.
+size_t mostPromising(const ScoreTest& test) {
+  const auto count = static_cast<size_t>(test.candidates());
+  size_t best = count;
+  double promise = 0.0;
+  for (size_t i = 0; i < count; ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (test.uniqueness(at) <= 0.0 || (best < count && test.promise(at) <= promise)) continue;
+    best = i;
+    promise = test.promise(at);
+  }
+  return best;
+}
+
+std::string reasonNotSized(const Fitter& fitter, const FitState& state,
+                           const Candidate& candidate) {
+  const std::string strength = candidate.path();
+  const Eigen::MatrixXd covariance = parameterCovariance(fitter, state);
+  const double typical = parameterNamed(effectNamed(candidate.effect), candidate.parameter).typical;
+  for (size_t i = 0; i < state.free.size(); ++i) {
+    if (state.free[i].path != strength) continue;
+    const auto at = static_cast<Eigen::Index>(i);
+    if (isVanishing(candidate.effect, candidate.parameter, *findParameter(state.model, strength)))
+      return "its size vanishes in the fit";
+    if (onBound(state.model, state.free[i]))
+      return "its size runs to the end of its plausible range";
+    if (!(1.96 * std::sqrt(covariance(at, at)) < kUnknown * std::abs(typical)))
+      return "nothing in this drive makes it visible";
+  }
+  return "";
+}
+
+constexpr double kHopeless = 2.5;       // standard errors by which a pair is better in first order
+constexpr double kHopelessNats = 20.0;  // and what rounding of that order may cost
+constexpr double kBearableNats = 10.0;  // that simplicity may cost
+constexpr double kImitated = 0.35;  // uniqueness below which the found effects imitate another one
+
+/// An effect that the found ones can imitate, and what it would change.
+struct Single {
+  Candidate candidate;
+  Eigen::VectorXd direction;
+};
+
+/// One of each such effect.
+std::vector<Single> imitated(const SearchState& search) {
+  const Fitter& fitter = search.fitter;
+  const FitState& state = search.result.state;
+  auto candidates = candidatesFor(state, excitationOf(fitter.data(), state.model));
+  leaveOut(candidates, search.settings.rejected);
+  const Eigen::MatrixXd directions = directionsOf(fitter, state, candidates);
+  const ScoreTest test(fitter, state, directions);
+  std::vector<Single> chosen;
+  std::set<std::string> names;
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const Effect& effect = effectNamed(candidates[i].effect);
+    // A change early in the drive has more numbers than the two, and is no simpler.
+    if (!candidates[i].change_point.empty()) continue;
+    if (isOn(effect, state.model)) continue;
+    if (test.uniqueness(at) < kImitated && names.insert(effect.name).second)
+      chosen.push_back({candidates[i], directions.col(at)});
+  }
+  return chosen;
+}
+
+/// The state with one effect in the place of two, in first order and without a simulation.
+FitState linearlyReplaced(const Fitter& fitter, const FitState& state, const Single& single,
+                          const std::string& a, const std::string& b) {
+  FitState reduced = withoutLinearly(fitter, withoutLinearly(fitter, state, a), b);
+  reduced.free.push_back(freeParameter(reduced.model, single.candidate.path()));
+  reduced.jacobian.conservativeResize(reduced.predicted.size(), reduced.jacobian.cols() + 1);
+  reduced.jacobian.rightCols(1) = single.direction;
+  followLinearly(fitter, reduced);
+  return reduced;
+}
+
+/// One effect in the place of two.
+struct Exchange {
+  std::string single;
+  std::string a;
+  std::string b;
+  FitState state;
+  Gain pair_gain;
+};
+
+/// Keeps the exchange of two effects for a single one if it is bearable and the best so far.
+void tryExchange(const SearchState& search, const Single& imitated_one, const std::string& a,
+                 const std::string& b, const Eigen::VectorXd& loss, std::optional<Exchange>& best) {
+  if (search.isAccepted(a) || search.isAccepted(b)) return;
+  const Fitter& fitter = search.fitter;
+  const FitState& state = search.result.state;
+  const FitState nearly = linearlyReplaced(fitter, state, imitated_one, a, b);
+  const Gain first_order = gainOf(fitter, heldOutLoss(fitter, nearly), loss);
+  if (first_order.value > kHopeless * first_order.error + kHopelessNats) return;
+  const Candidate& single = imitated_one.candidate;
+  FitState tried = switchedOff(fitter, state, {a, b});
+  const ScoreTest test(fitter, tried, directionsOf(fitter, tried, {single}));
+  addCandidate(fitter, tried, single, test.size(0));
+  fitter.fitRoughly(tried);
+  for (const FreeParameter& parameter : tried.free)
+    if (effectOf(parameter.path) == single.effect && onBound(tried.model, parameter)) return;
+  // What does not fit as well needs no validation; that is in first order and may be mistaken.
+  if (tried.loss - state.loss > 2.0 * kBearableNats) return;
+  if (best && tried.loss >= best->state.loss) return;
+  const Gain pair_gain = gainOf(fitter, heldOutLoss(fitter, tried), loss);
+  if (pair_gain.value > std::min(pair_gain.error, kBearableNats)) return;
+  best = Exchange{single.effect, a, b, std::move(tried), pair_gain};
+}
+
+/// The exchange whose single effect fits best, if any is bearable.
+std::optional<Exchange> bestExchange(const SearchState& search) {
+  const std::vector<std::string>& effects = search.result.effects;
+  if (effects.size() < 2) return std::nullopt;
+  const std::vector<Single> singles = imitated(search);
+  if (singles.empty()) return std::nullopt;
+  const Eigen::VectorXd loss = heldOutLoss(search.fitter, search.result.state);
+  std::optional<Exchange> best;
+  for (const Single& single : singles)
+    for (size_t a = 0; a < effects.size(); ++a)
+      for (size_t b = a + 1; b < effects.size(); ++b)
+        tryExchange(search, single, effects[a], effects[b], loss, best);
+  return best;
+}
+
+/// Adds what a state misses on every other block: position, yaw and yaw rate (blocks x 3).
+void addMissed(const Observations& data, const FitState& state, int half, Eigen::MatrixXd& sums) {
+  for (const ExecutionError& error : endErrors(data, state.model))
+    if (error.block % 2 == half)
+      sums.row(error.block).head(2) += Eigen::RowVector2d(error.position, error.yaw);
+  const Eigen::VectorXd residuals = data.residuals(state.predicted);
+  for (size_t i = 0; i < data.all().size(); ++i) {
+    const Observation& row = data.all()[i];
+    if (row.channel == Channel::kYawRate && row.block % 2 == half)
+      sums(row.block, 2) += std::abs(residuals[static_cast<Eigen::Index>(i)]);
+  }
+}
+
+/// The result with its given, released and accepted terms alone.
+FitState withoutFound(const SearchState& search) {
+  const SearchResult& result = search.result;
+  if (result.released.empty()) return result.calibrated;
+  std::vector<std::string> found;
+  for (const std::string& effect : result.effects)
+    if (!search.isAccepted(effect)) found.push_back(effect);
+  FitState state = switchedOff(search.fitter, result.state, found);
+  search.fitter.fit(state);
+  return state;
+}
+
+bool isConfirmed(const SearchState& search, const FitState& lacking) {
+  const Observations& data = search.data();
+  const SearchResult& result = search.result;
+  Eigen::MatrixXd with = Eigen::MatrixXd::Zero(data.blocks(), 3);
+  Eigen::MatrixXd without = with;
+  for (int half : {0, 1}) {
+    const Fitter on_half = search.fitter.onRows(halfMask(data, half));
+    addMissed(data, refitted(on_half, result), 1 - half, with);
+    addMissed(data, lacking, half, without);
+  }
+  const bool measurement =
+      std::all_of(result.effects.begin(), result.effects.end(), [](const std::string& effect) {
+        return effectNamed(effect).kind() == EffectKind::kMeasurement;
+      });
+  const std::vector<char> every(static_cast<size_t>(data.blocks()), 1);
+  for (Eigen::Index i = 0; i < (measurement ? 3 : 2); ++i) {
+    const Gain gain = gainOf(without.col(i), with.col(i), every);
+    if (gain.value > gain.error) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string takeIn(const Fitter& fitter, FitState& state, const std::string& effect) {
+  const auto candidates = candidatesOf(effect, state, excitationOf(fitter.data(), state.model));
+  if (candidates.empty()) return "it is a number of the nominal model, which is free";
+  const ScoreTest test(fitter, state, directionsOf(fitter, state, candidates));
+  const size_t best = mostPromising(test);
+  if (best == candidates.size())
+    return "it changes nothing that this drive shows, or nothing that the model's other free "
+           "terms do not";
+  FitState tried = state;
+  addCandidate(fitter, tried, candidates[best], test.size(static_cast<Eigen::Index>(best)));
+  fitter.fitRoughly(tried);
+  if (!candidates[best].change_point.empty())
+    refineChangePoint(fitter, tried, candidates[best].change_point);
+  fitter.renewNoise(tried);
+  fitter.fit(tried);
+  const std::string why = reasonNotSized(fitter, tried, candidates[best]);
+  if (why.empty()) state = std::move(tried);
+  return why;
+}
+
+void replacePairs(const SearchState& search) {
+  while (const auto exchange = bestExchange(search)) {
+    const auto& [single, a, b, state, pair_gain] = *exchange;
+    const std::string remark = "in the place of " + a + " and " + b;
+    search.result.record.steps.push_back(
+        {single, false, 0.0, 1.0, -pair_gain.value, pair_gain.error, {}, remark});
+    search.say("  = " + single + " " + remark);
+    auto& effects = search.result.effects;
+    effects.erase(std::remove(effects.begin(), effects.end(), a), effects.end());
+    effects.erase(std::remove(effects.begin(), effects.end(), b), effects.end());
+    effects.push_back(single);
+    search.result.evidence[single].replaced = {a, b};
+    search.result.state = state;
+  }
+}
+
+std::vector<char> halfMask(const Observations& data, int half) {
+  std::vector<char> mask;
+  for (const Observation& row : data.all()) mask.push_back(row.block % 2 == half);
+  return mask;
+}
+
+void dropUnconfirmed(const SearchState& search) {
+  SearchResult& result = search.result;
+  if (result.effects.empty()) return;
+  FitState lacking = withoutFound(search);
+  if (isConfirmed(search, lacking)) return;
+  std::vector<std::string> kept;
+  for (const std::string& effect : result.effects) {
+    if (search.isAccepted(effect)) {
+      kept.push_back(effect);
+      continue;
+    }
+    search.say("  - " + effect + ": does not lessen the end error on driving it was not fitted to");
+    result.record.negligible.push_back(effect);
+  }
+  result.effects = kept;
+  result.state = std::move(lacking);
+}
+
+}  // namespace tread::gap
