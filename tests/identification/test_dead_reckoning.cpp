@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "modules/identification/core/dead_reckoning.hpp"
+#include "modules/identification/core/end_errors.hpp"
 
 using namespace tread;
 using namespace tread::gap;

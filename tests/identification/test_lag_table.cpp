@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "modules/identification/core/lag_table.hpp"
+#include "modules/identification/core/log_validation.hpp"
 
 using namespace tread;
 using namespace tread::gap;

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core_rig.hpp"
-#include "modules/identification/core/verdict.hpp"
+#include "modules/identification/core/discovery.hpp"
 
 using namespace tread;
 using namespace tread::gap;

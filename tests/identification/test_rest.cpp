@@ -4,7 +4,7 @@
 
 #include "core_rig.hpp"
 #include "modules/identification/core/adequacy.hpp"
-#include "modules/identification/core/candidates.hpp"
+#include "modules/identification/core/screening.hpp"
 #include "modules/identification/core/fit.hpp"
 
 // The rest of the stages: moments of change, and whether anything is left.

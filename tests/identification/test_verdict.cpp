@@ -5,7 +5,7 @@
 #include <set>
 
 #include "modules/identification/core/fit.hpp"
-#include "modules/identification/core/verdict.hpp"
+#include "modules/identification/core/discovery.hpp"
 #include "synthetic_drive.hpp"
 
 using namespace tread;

@@ -115,7 +115,7 @@ void checkCommandGaps(const std::vector<HeardSpan>& spans, Diagnostics& notes) {
   double first = 0.0;
   double longest = 0.0;
   for (size_t i = 1; i < spans.size(); ++i) {
-    if (spans[i].commands.before != Before::kMotorSilent) continue;
+    if (!spans[i].commands.after_silence) continue;
     if (gaps++ == 0) first = spans[i - 1].commands.end;
     longest = std::max(longest, spans[i].commands.begin() - spans[i - 1].commands.end);
   }

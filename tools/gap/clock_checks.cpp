@@ -47,9 +47,8 @@ bool samePace(const std::vector<Stamp>& stamps) {
       paces.push_back(logged / static_cast<double>(stamps[i].utime - before.utime));
   }
   if (paces.empty()) return true;
-  const auto middle = paces.begin() + static_cast<long>(paces.size() / 2);
-  std::nth_element(paces.begin(), middle, paces.end());
-  return *middle > 0.8 && *middle < 1.25;
+  const double usual = quantile(std::move(paces));
+  return usual > 0.8 && usual < 1.25;
 }
 
 /// Time going back, and the robot's clock against the recorder's.

@@ -7,10 +7,10 @@
 #include <limits>
 #include <stdexcept>
 
+#include "modules/identification/core/discovery.hpp"
 #include "modules/identification/core/end_errors.hpp"
 #include "modules/identification/core/likelihood.hpp"
 #include "modules/identification/core/search.hpp"
-#include "modules/identification/core/verdict.hpp"
 #include "tools/gap/report/words.hpp"
 
 namespace tread::gap {

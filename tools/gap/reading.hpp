@@ -29,18 +29,11 @@ inline bool isNext(int64_t seq, int64_t before) {
   return static_cast<uint64_t>(seq) - static_cast<uint64_t>(before) == 1;
 }
 
-/// What was before a span of known commands.
-enum class Before {
-  kLogBegins,
-  kUnknownCommands,  ///< a fault, an emergency stop or an operator
-  kMotorSilent       ///< messages are missing
-};
-
 /// A time in which all commands are known.
 struct CommandSpan {
   std::vector<CommandSample> commands;  ///< changes only, the first one at the begin; not empty
   double end = 0.0;                     ///< [s]
-  Before before = Before::kLogBegins;
+  bool after_silence = false;           ///< MOTOR messages before it are missing
 
   double begin() const { return commands.front().time; }
 };

@@ -137,7 +137,7 @@ class Cutter {
       return;
     }
     const bool stood =
-        span.before != Before::kMotorSilent ||
+        !span.after_silence ||
         (before_ != nullptr && standsBetween(*before_, before_->end - 1.0, before_->end) &&
          span.commands.front().command == TrackCommand{});
     if (stood) return;
@@ -150,7 +150,7 @@ class Cutter {
 
   /// Whether this is the next step of an imported recording, which the import set apart.
   bool wentOnAtOnce(const CommandSpan& span, const TrackCommand& speed) const {
-    if (before_ == nullptr || span.before != Before::kMotorSilent) return false;
+    if (before_ == nullptr || !span.after_silence) return false;
     const double silence = span.begin() - before_->end;
     const auto previous = speedBefore(encoders_, before_->end);
     return previous && silence >= kStepSilence[0] && silence <= kStepSilence[1] &&

@@ -33,11 +33,11 @@ class SpanFinder {
   explicit SpanFinder(double period) : period_(period) {}
 
   void add(double time, const std::optional<TrackCommand>& command) {
-    if (open_ && time - last_ > kLongestSilence) close(last_ + period_, Before::kMotorSilent);
-    if (open_ && !command) close(time, Before::kUnknownCommands);
-    if (!command) before_ = Before::kUnknownCommands;
+    if (open_ && time - last_ > kLongestSilence) close(last_ + period_, true);
+    if (open_ && !command) close(time, false);
+    if (!command) after_silence_ = false;
     if (!command) return;
-    if (!open_) spans_.push_back({{{time, *command}}, time, before_});
+    if (!open_) spans_.push_back({{{time, *command}}, time, after_silence_});
     open_ = true;
     last_ = time;
     std::vector<CommandSample>& commands = spans_.back().commands;
@@ -45,21 +45,21 @@ class SpanFinder {
   }
 
   std::vector<CommandSpan> finished() {
-    if (open_) close(last_ + period_, before_);
+    if (open_) close(last_ + period_, after_silence_);
     return std::move(spans_);
   }
 
  private:
-  void close(double end, Before why) {
+  void close(double end, bool by_silence) {
     spans_.back().end = end;
     if (end - spans_.back().begin() < kShortestSpan) spans_.pop_back();
     open_ = false;
-    before_ = why;
+    after_silence_ = by_silence;
   }
 
   double period_;
   std::vector<CommandSpan> spans_;
-  Before before_ = Before::kLogBegins;
+  bool after_silence_ = false;
   double last_ = 0.0;
   bool open_ = false;
 };

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <set>
 
+#include "modules/identification/core/likelihood.hpp"
 #include "modules/identification/core/validation.hpp"
 
 namespace tread::gap {
@@ -123,6 +126,174 @@ Eigen::MatrixXd perChannel(const Observations& data, const std::vector<Variable>
   return directions;
 }
 
+constexpr int kCells = 9;
+constexpr size_t kLeastRows = 12;
+constexpr size_t kLeastBlocks = 4;
+constexpr double kMarked = 3.9;  // normal quantile: 5 % over some 500 cells
+
+/// Cells of equal numbers of rows over one variable.
+std::vector<double> edgesOf(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  std::vector<double> edges;
+  for (int i = 0; i <= kCells; ++i) {
+    const size_t at = (values.size() - 1) * static_cast<size_t>(i) / kCells;
+    if (edges.empty() || values[at] > edges.back() + 1e-9) edges.push_back(values[at]);
+  }
+  return edges;
+}
+
+AtlasCell cellOf(const Observations& data, const std::vector<size_t>& members,
+                 const Eigen::VectorXd& residuals) {
+  AtlasCell cell;
+  cell.rows = members.size();
+  std::map<int, std::pair<double, double>> blocks;  // sum, number
+  for (size_t i : members) {
+    auto& block = blocks[data.all()[i].block];
+    block.first += residuals[static_cast<Eigen::Index>(i)];
+    block.second += 1.0;
+    cell.mean += residuals[static_cast<Eigen::Index>(i)];
+  }
+  if (members.size() < kLeastRows || blocks.size() < kLeastBlocks) {
+    cell.low = -std::numeric_limits<double>::infinity();
+    cell.high = std::numeric_limits<double>::infinity();
+    if (!members.empty()) cell.mean /= static_cast<double>(members.size());
+    return cell;
+  }
+  const auto count = static_cast<double>(members.size());
+  cell.mean /= count;
+  double scatter = 0.0;
+  for (const auto& [block, sum] : blocks)
+    scatter += std::pow(sum.first - sum.second * cell.mean, 2);
+  const auto number = static_cast<double>(blocks.size());
+  const double error = std::sqrt(scatter * number / (number - 1.0)) / count;
+  const double half = studentQuantile(number - 1.0) * error;
+  cell.low = cell.mean - half;
+  cell.high = cell.mean + half;
+  cell.marked = std::abs(cell.mean) > studentQuantile(number - 1.0, kMarked) * error;
+  return cell;
+}
+
+std::vector<AtlasCell> cellsOf(const Observations& data, const std::vector<size_t>& members,
+                               const Eigen::VectorXd& variable, const std::vector<double>& edges,
+                               const Eigen::VectorXd& residuals) {
+  std::vector<std::vector<size_t>> in_cell(edges.size() - 1);
+  for (size_t i : members) {
+    const double value = variable[static_cast<Eigen::Index>(i)];
+    const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, value);
+    in_cell[static_cast<size_t>(std::distance(edges.begin() + 1, above))].push_back(i);
+  }
+  std::vector<AtlasCell> cells;
+  for (size_t c = 0; c < in_cell.size(); ++c) {
+    cells.push_back(cellOf(data, in_cell[c], residuals));
+    cells.back().from = edges[c];
+    cells.back().to = edges[c + 1];
+  }
+  return cells;
+}
+
+/// Variables that a person looks at; the others are combinations of them.
+bool isShown(const std::string& variable) {
+  static const std::set<std::string> kShown{"v",           "yaw rate",           "v x yaw rate",
+                                            "change of v", "change of yaw rate", "pitch",
+                                            "roll",        "elapsed time"};
+  return kShown.count(variable) != 0;
+}
+
+Variable elapsedTime(const Observations& data) {
+  Variable time{"elapsed time", "s", Eigen::VectorXd(data.all().size())};
+  for (size_t i = 0; i < data.all().size(); ++i)
+    time.values[static_cast<Eigen::Index>(i)] = data.all()[i].begin;
+  return time;
+}
+
+constexpr size_t kFields = 10;       // along each axis
+constexpr size_t kLeastInField = 4;  // a mean of fewer is not shown
+
+/// Equal fields over what is common: one reading in a hundred at either end is left out.
+std::vector<double> fieldEdges(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const size_t margin = values.size() / 100;
+  const double low = values[margin];
+  const double high = values[values.size() - 1 - margin];
+  if (!(high - low > 1e-9)) return {};
+  std::vector<double> edges(kFields + 1);
+  for (size_t i = 0; i <= kFields; ++i)
+    edges[i] = low + (high - low) * static_cast<double>(i) / static_cast<double>(kFields);
+  return edges;
+}
+
+/// The field in which a value lies; nothing outside.
+std::optional<size_t> fieldOf(const std::vector<double>& edges, double value) {
+  if (value < edges.front() || value > edges.back()) return std::nullopt;
+  const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, value);
+  return static_cast<size_t>(std::distance(edges.begin() + 1, above));
+}
+
+std::vector<double> meansOf(const AtlasMap& map, const std::vector<size_t>& members,
+                            const Eigen::VectorXd& v, const Eigen::VectorXd& omega,
+                            const Eigen::VectorXd& residuals) {
+  std::vector<double> sums(kFields * kFields, 0.0);
+  std::vector<size_t> numbers(kFields * kFields, 0);
+  for (const size_t i : members) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const auto column = fieldOf(map.v_edges, v[at]);
+    const auto row = fieldOf(map.omega_edges, omega[at]);
+    if (!column || !row) continue;
+    sums[*row * kFields + *column] += residuals[at];
+    ++numbers[*row * kFields + *column];
+  }
+  for (size_t i = 0; i < sums.size(); ++i)
+    sums[i] = numbers[i] < kLeastInField ? kNotMeasured : sums[i] / static_cast<double>(numbers[i]);
+  return sums;
+}
+
+std::vector<double> pick(const Eigen::VectorXd& values, const std::vector<size_t>& members) {
+  std::vector<double> picked;
+  picked.reserve(members.size());
+  for (const size_t i : members) picked.push_back(values[static_cast<Eigen::Index>(i)]);
+  return picked;
+}
+
+const Variable& named(const std::vector<Variable>& variables, const std::string& name) {
+  return *std::find_if(variables.begin(), variables.end(),
+                       [&name](const Variable& variable) { return variable.name == name; });
+}
+
+/// Variables and the residuals of both models in every row.
+struct AtlasRows {
+  std::vector<Variable> variables;
+  Eigen::VectorXd before;
+  Eigen::VectorXd after;
+};
+
+void addCurves(const Observations& data, const AtlasRows& of, Channel channel,
+               const std::vector<size_t>& members, std::vector<AtlasCurve>& curves) {
+  for (const Variable& variable : of.variables) {
+    if (!isShown(variable.name)) continue;
+    const std::vector<double> edges = edgesOf(pick(variable.values, members));
+    if (edges.size() < 3) continue;
+    curves.push_back({channelName(channel), channelUnit(channel), variable.name, variable.unit,
+                      cellsOf(data, members, variable.values, edges, of.before),
+                      cellsOf(data, members, variable.values, edges, of.after)});
+  }
+}
+
+void addMap(const AtlasRows& of, Channel channel, const std::vector<size_t>& members,
+            std::vector<AtlasMap>& maps) {
+  const Eigen::VectorXd& v = named(of.variables, "v").values;
+  const Eigen::VectorXd& omega = named(of.variables, "yaw rate").values;
+  AtlasMap map{channelName(channel),
+               channelUnit(channel),
+               fieldEdges(pick(v, members)),
+               fieldEdges(pick(omega, members)),
+               {},
+               {}};
+  if (map.v_edges.empty() || map.omega_edges.empty()) return;
+  map.before = meansOf(map, members, v, omega, of.before);
+  map.after = meansOf(map, members, v, omega, of.after);
+  maps.push_back(std::move(map));
+}
+
 }  // namespace
 
 std::vector<Variable> variablesOf(const Observations& data, const ModelDocument& model) {
@@ -156,6 +327,24 @@ Adequacy testAdequacy(const Fitter& fitter, const FitState& state, double alpha,
                      return std::abs(a.score) > std::abs(b.score);
                    });
   return adequacy;
+}
+
+ResidualAtlas residualAtlas(const Observations& data, const ModelDocument& before,
+                            const ModelDocument& after) {
+  AtlasRows of{variablesOf(data, before), data.residuals(data.predict(before)),
+               data.residuals(data.predict(after))};
+  of.variables.push_back(elapsedTime(data));
+  ResidualAtlas atlas;
+  for (size_t c = 0; c < kChannels; ++c) {
+    const auto channel = static_cast<Channel>(c);
+    std::vector<size_t> members;
+    for (size_t i = 0; i < data.all().size(); ++i)
+      if (data.all()[i].channel == channel) members.push_back(i);
+    if (members.empty()) continue;
+    addCurves(data, of, channel, members, atlas.curves);
+    addMap(of, channel, members, atlas.maps);
+  }
+  return atlas;
 }
 
 }  // namespace tread::gap

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/identification/core/candidates.hpp"
+#include "modules/identification/core/screening.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 
 namespace tread::gap {
@@ -15,23 +16,10 @@ constexpr double kVanished = 2e-3;    // of an effect's typical size
 constexpr int kChanges = 15;          // times at which a change is looked for
 constexpr double kEdge = 0.06;        // share of the drive without changes at either end
 
-double& numberIn(ModelDocument& model, const std::string& path) {
-  return *findParameter(model, path);
-}
-
 /// The most that a drive demands of what a limit limits, in the unit of the limit.
 double demandOn(LimitedQuantity limited, const Excitation& most) {
-  switch (limited) {
-    case LimitedQuantity::kTrackSpeed:
-      return most.track_speed;
-    case LimitedQuantity::kYawRate:
-      return most.omega;
-    case LimitedQuantity::kLateralAcceleration:
-      return most.v_omega;
-    case LimitedQuantity::kNone:
-      break;
-  }
-  return 0.0;
+  if (limited == LimitedQuantity::kTrackSpeed) return most.track_speed;
+  return limited == LimitedQuantity::kYawRate ? most.omega : most.v_omega;
 }
 
 std::vector<double> probesOf(const EffectParameter& parameter, const Excitation& most) {
@@ -171,13 +159,16 @@ void addHeldTerms(const FitState& state, std::vector<Candidate>& candidates) {
   }
 }
 
+void takeOut(std::vector<Candidate>& candidates,
+             const std::function<bool(const Candidate&)>& which) {
+  candidates.erase(std::remove_if(candidates.begin(), candidates.end(), which), candidates.end());
+}
+
 /// Effects that are a number of the nominal model under another name.
 void forgetNominal(std::vector<Candidate>& candidates) {
-  candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
-                                  [](const Candidate& candidate) {
-                                    return !effectNamed(candidate.effect).search.nominal.empty();
-                                  }),
-                   candidates.end());
+  takeOut(candidates, [](const Candidate& candidate) {
+    return !effectNamed(candidate.effect).search.nominal.empty();
+  });
 }
 
 }  // namespace
@@ -232,18 +223,14 @@ std::vector<Candidate> candidatesOf(const std::string& effect, const FitState& s
 }
 
 void leaveOut(std::vector<Candidate>& candidates, const std::vector<std::string>& effects) {
-  candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
-                                  [&effects](const Candidate& candidate) {
-                                    return std::find(effects.begin(), effects.end(),
-                                                     candidate.effect) != effects.end();
-                                  }),
-                   candidates.end());
+  takeOut(candidates,
+          [&](const Candidate& candidate) { return contains(effects, candidate.effect); });
 }
 
 ModelDocument tried(const ModelDocument& model, const Candidate& candidate) {
   ModelDocument changed = model;
-  for (const auto& [path, value] : candidate.shapes) numberIn(changed, path) = value;
-  numberIn(changed, candidate.path()) = candidate.value;
+  for (const auto& [path, value] : candidate.shapes) *findParameter(changed, path) = value;
+  *findParameter(changed, candidate.path()) = candidate.value;
   return changed;
 }
 
@@ -285,7 +272,7 @@ void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candid
       if (held.path == strength) held.deviation = std::numeric_limits<double>::infinity();
     return;
   }
-  for (const auto& [path, value] : candidate.shapes) numberIn(state.model, path) = value;
+  for (const auto& [path, value] : candidate.shapes) *findParameter(state.model, path) = value;
   // Thresholds begin at their probe, whose slope is known; the others at their first order size.
   const EffectParameter& known = parameterNamed(effectNamed(candidate.effect), candidate.parameter);
   const bool threshold = known.reciprocal() || (!known.probes.empty() && !known.search_from_slope);

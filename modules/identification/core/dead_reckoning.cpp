@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/identification/core/dead_reckoning.hpp"
+#include "modules/identification/core/end_errors.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "modules/identification/core/end_errors.hpp"
-#include "modules/identification/core/lag_table.hpp"
+#include "modules/identification/core/log_validation.hpp"
 
 namespace tread::gap {
 namespace {
@@ -57,9 +56,7 @@ double scaleOf(std::vector<Rates> rates, double offset) {
 double offsetOf(const std::vector<Rates>& rates, double scale) {
   std::vector<double> rest;
   for (const Rates& r : rates) rest.push_back(r.following - scale * r.leading);
-  const auto middle = rest.begin() + static_cast<long>(rest.size() / 2);
-  std::nth_element(rest.begin(), middle, rest.end());
-  return *middle;
+  return quantile(std::move(rest));
 }
 
 /// Motion to the side for each v omega, from poses alone [s].
@@ -127,12 +124,8 @@ class Reckoner {
 std::optional<Reckoning> fitReckoning(const Drive& drive) {
   if (drive.encoders.empty()) return std::nullopt;
   const auto increments = poseIncrements(drive);
-  std::vector<double> v;
-  std::vector<double> omega;
-  for (const PoseIncrement& increment : increments) {
-    v.push_back(increment.v());
-    omega.push_back(increment.omega());
-  }
+  const std::vector<double> v = ratesOf(increments, &PoseIncrement::v);
+  const std::vector<double> omega = ratesOf(increments, &PoseIncrement::omega);
   const RunningSums encoders = encoderSums(drive);
   const RunningSums gyro = gyroSums(drive);
   const auto lags = lagGrid(-0.5, 1.0, 0.02);

@@ -7,9 +7,7 @@
 #include <stdexcept>
 
 #include "modules/identification/core/adequacy.hpp"
-#include "modules/identification/core/dead_reckoning.hpp"
 #include "modules/identification/core/end_errors.hpp"
-#include "modules/identification/core/verdict.hpp"
 
 namespace tread::gap {
 namespace {

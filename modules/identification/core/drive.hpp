@@ -2,7 +2,9 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -15,6 +17,14 @@
 namespace tread::gap {
 
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+/// The value that a share of the values does not exceed, the nearest one; NaN of none.
+inline double quantile(std::vector<double> values, double share = 0.5) {
+  if (values.empty()) return kNotMeasured;
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<size_t>(at)];
+}
 
 /// A command that acts on the motors until the next one.
 struct CommandSample {

@@ -26,23 +26,10 @@ enum class GapVerdict {
 
 /// Name as in verdict.json.
 inline const char* verdictName(GapVerdict verdict) {
-  switch (verdict) {
-    case GapVerdict::kNoDiscrepancy:
-      return "NO_DISCREPANCY";
-    case GapVerdict::kFound:
-      return "FOUND";
-    case GapVerdict::kAmbiguous:
-      return "AMBIGUOUS";
-    case GapVerdict::kPartial:
-      return "PARTIAL";
-    case GapVerdict::kNotInCatalogue:
-      return "NOT_IN_CATALOGUE";
-    case GapVerdict::kMeasurement:
-      return "MEASUREMENT";
-    case GapVerdict::kCannotTell:
-      return "CANNOT_TELL";
-  }
-  return "";
+  if (verdict == GapVerdict::kNoDiscrepancy) return "NO_DISCREPANCY";
+  static constexpr const char* kNames[] = {
+      "FOUND", "AMBIGUOUS", "PARTIAL", "NOT_IN_CATALOGUE", "MEASUREMENT", "CANNOT_TELL"};
+  return kNames[static_cast<int>(verdict) - static_cast<int>(GapVerdict::kFound)];
 }
 
 /// A parameter as it was estimated.

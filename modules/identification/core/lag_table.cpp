@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/identification/core/lag_table.hpp"
+#include "modules/identification/core/log_validation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -45,6 +45,13 @@ std::vector<PoseIncrement> poseIncrements(const Drive& drive) {
     }
   }
   return increments;
+}
+
+std::vector<double> ratesOf(const std::vector<PoseIncrement>& increments,
+                            double (PoseIncrement::*rate)() const) {
+  std::vector<double> rates;
+  for (const PoseIncrement& increment : increments) rates.push_back((increment.*rate)());
+  return rates;
 }
 
 void RunningSum::add(double begin, double end, double rate) {

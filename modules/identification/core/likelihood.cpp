@@ -28,9 +28,7 @@ double negativeLogLikelihood(const ChannelResiduals& of, const ChannelNoise& noi
 double medianSize(std::vector<double> values) {
   if (values.empty()) return kLeastScale;
   for (double& value : values) value = std::abs(value);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return std::max(kLeastScale, *middle);
+  return std::max(kLeastScale, quantile(std::move(values)));
 }
 
 /// Least negative log likelihood by steps along either logarithm, halved when none helps.

@@ -21,18 +21,6 @@ constexpr const char* kFitted = "; how late the heading is, the fit says (INS la
 constexpr const char* kAhead = "; the heading is ahead of the gyro: are both stamped by one clock?";
 constexpr double kPart = 60.0;  // [s] of increments
 
-std::vector<double> turning(const std::vector<PoseIncrement>& increments) {
-  std::vector<double> rates;
-  for (const PoseIncrement& increment : increments) rates.push_back(increment.omega());
-  return rates;
-}
-
-std::vector<double> driving(const std::vector<PoseIncrement>& increments) {
-  std::vector<double> rates;
-  for (const PoseIncrement& increment : increments) rates.push_back(increment.v());
-  return rates;
-}
-
 double square(double value) {
   return value * value;
 }
@@ -62,7 +50,8 @@ bool isAhead(const LagTable& table, const LagMatch& match) {
 }
 
 LagTable gyroTable(const Drive& drive, const std::vector<PoseIncrement>& increments) {
-  return {increments, turning(increments), gyroSums(drive), lagGrid(-0.3, 0.8, kLagGrid)};
+  return {increments, ratesOf(increments, &PoseIncrement::omega), gyroSums(drive),
+          lagGrid(-0.3, 0.8, kLagGrid)};
 }
 
 /// How far lags of commands can be looked for: a fifth of a typical segment, at most 10 s.
@@ -168,13 +157,6 @@ constexpr double kLeastTurn = 0.35;   // [rad] that heading and gyro may differ 
 constexpr double kLeastCourse = 0.6;  // [rad] of the way against the heading
 constexpr double kFar = 6.0;          // robust standard deviations
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Segments whose value is further from the median than a least distance and than six robust
 /// standard deviations.
 void markOutliers(const std::map<size_t, double>& values, double least,
@@ -182,9 +164,9 @@ void markOutliers(const std::map<size_t, double>& values, double least,
   if (values.size() < kFewest) return;
   std::vector<double> all;
   for (const auto& [segment, value] : values) all.push_back(value);
-  const double middle = median(all);
+  const double middle = quantile(all);
   for (double& value : all) value = std::abs(value - middle);
-  const double limit = std::max(least, kFar * 1.4826 * median(all));
+  const double limit = std::max(least, kFar * 1.4826 * quantile(all));
   for (const auto& [segment, value] : values)
     if (std::abs(value - middle) > limit) marked.push_back(segment);
 }
@@ -263,14 +245,16 @@ void checkCommands(const Drive& drive, const std::vector<PoseIncrement>& increme
                    Diagnostics& notes) {
   const double reach = lagReach(drive);
   const auto lags = lagGrid(-reach, reach, 0.1);
-  checkFollower({"flipped sign: the heading turns against the commands; are left and right, or the "
-                 "INS's sense of turning, swapped?",
-                 {increments, turning(increments), turnCommandSums(drive), lags}},
-                increments, notes);
-  checkFollower({"flipped sign: the robot goes backwards when told forward; is the heading turned "
-                 "half round, or are the commands negative?",
-                 {increments, driving(increments), driveCommandSums(drive), lags}},
-                increments, notes);
+  checkFollower(
+      {"flipped sign: the heading turns against the commands; are left and right, or the "
+       "INS's sense of turning, swapped?",
+       {increments, ratesOf(increments, &PoseIncrement::omega), turnCommandSums(drive), lags}},
+      increments, notes);
+  checkFollower(
+      {"flipped sign: the robot goes backwards when told forward; is the heading turned "
+       "half round, or are the commands negative?",
+       {increments, ratesOf(increments, &PoseIncrement::v), driveCommandSums(drive), lags}},
+      increments, notes);
 }
 
 std::vector<LogNote> validateLog(const Drive& drive) {

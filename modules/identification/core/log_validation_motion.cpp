@@ -15,14 +15,6 @@ constexpr double kSettled = 3.0;         // [s] after which a vehicle stands; tr
 constexpr double kNearlyStraight = 0.3;  // [rad]
 constexpr double kLeastAlong = 0.6;      // of the way, squared: else the heading is another one
 
-/// Quantile of values, which are reordered; NaN of none.
-double quantile(std::vector<double>& values, double share) {
-  if (values.empty()) return kNotMeasured;
-  const auto index = static_cast<size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(index), values.end());
-  return values[index];
-}
-
 /// Steps between new poses.
 struct PoseSteps {
   size_t readings = 0;
@@ -215,12 +207,10 @@ void describeStandstill(const Drive& drive, Diagnostics& notes) {
 
 void describeDriving(const Drive& drive, const std::vector<PoseIncrement>& increments,
                      Diagnostics& notes) {
-  std::vector<double> v, omega, v_omega;
-  for (const PoseIncrement& increment : increments) {
-    v.push_back(increment.v());
-    omega.push_back(increment.omega());
-    v_omega.push_back(increment.v() * increment.omega());
-  }
+  std::vector<double> v = ratesOf(increments, &PoseIncrement::v);
+  std::vector<double> omega = ratesOf(increments, &PoseIncrement::omega);
+  std::vector<double> v_omega;
+  for (size_t i = 0; i < v.size(); ++i) v_omega.push_back(v[i] * omega[i]);
   notes.note("driven " + digits(drive.driven(), 0) + " s in " +
              std::to_string(drive.segments.size()) + " segments: speed " + range(v, "m/s") +
              ", yaw rate " + range(omega, "rad/s") + ", their product " + range(v_omega, "m/s2") +

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/report/text.hpp"
+#include "modules/identification/core/log_validation.hpp"
 
 namespace tread::gap {
 namespace {

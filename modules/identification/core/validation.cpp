@@ -246,10 +246,7 @@ double ScoreTest::usualOverdispersion() const {
   std::vector<double> all;
   for (Eigen::Index c = 0; c < candidates(); ++c)
     if (information_[c] > 0.0) all.push_back(overdispersion(c));
-  if (all.empty()) return 1.0;
-  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-  std::nth_element(all.begin(), middle, all.end());
-  return *middle;
+  return all.empty() ? 1.0 : quantile(std::move(all));
 }
 
 double ScoreTest::sparseScore(Eigen::Index candidate, double usual) const {
@@ -294,8 +291,8 @@ double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& nee
 }
 
 double chanceOfSize(double evidence, size_t candidates, bool first) {
-  return std::min(1.0, static_cast<double>(candidates) *
-                           std::erfc(evidence * (first ? kFirst : kSparse) / std::sqrt(2.0)));
+  return std::min(
+      1.0, static_cast<double>(candidates) * chanceBeyond(evidence * (first ? kFirst : kSparse)));
 }
 
 double familyWise(const std::vector<double>& largest_by_chance, double score) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/identification/core/verdict.hpp"
+#include "modules/identification/core/discovery.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
 
-#include "common/report/text.hpp"
+#include "modules/identification/core/log_validation.hpp"
 
 namespace tread::gap {
 namespace {

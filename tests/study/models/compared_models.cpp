@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "modules/identification/core/candidates.hpp"
+#include "modules/identification/core/screening.hpp"
 #include "tests/study/models/twist_dictionary.hpp"
 
 namespace tread::gap {

@@ -6,9 +6,9 @@
 #include <functional>
 #include <map>
 
-#include "modules/identification/core/dead_reckoning.hpp"
+#include "modules/identification/core/end_errors.hpp"
 #include "modules/identification/core/search.hpp"
-#include "modules/identification/core/verdict.hpp"
+#include "modules/identification/core/discovery.hpp"
 
 namespace tread::gap {
 namespace {
