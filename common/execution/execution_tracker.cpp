@@ -26,11 +26,7 @@ std::string conflictOf(const PatternSet& set, const ProgramSlot& slot) {
                            set.content().period_us == slot.set->content().period_us;
   const bool same_ends =
       theirs->entry_class == ours.entry_class && theirs->exit_class == ours.exit_class;
-  const bool same_commands =
-      std::equal(ours.commands.begin(), ours.commands.end(), theirs->commands.begin(),
-                 theirs->commands.end(), [](const TrackCommand& a, const TrackCommand& b) {
-                   return a.left == b.left && a.right == b.right;
-                 });
+  const bool same_commands = ours.commands == theirs->commands;
   if (same_timing && same_ends && same_commands) return {};
   return where + pattern + ", which is under way, has other " +
          (!same_timing ? "timing"

@@ -28,10 +28,6 @@ double seconds(int64_t us) {
   return static_cast<double>(us) * 1e-6;
 }
 
-double distance(const Pose2& a, const Pose2& b) {
-  return std::hypot(b.x - a.x, b.y - a.y);
-}
-
 /// Fills a measurement step by step; the first gate that closes stays.
 class Cutter {
  public:
@@ -90,22 +86,12 @@ class Cutter {
       result_.trajectory.push_back(between(T_map_start, *pose));
     }
     result_.covered = result_.trajectory.size();
-    measurePath();
+    if (result_.covered > 0) result_.path_length = lengthOfPath(result_.trajectory);
     continueAsPredicted();
   }
 
   int64_t sampleTime(size_t t) const {
     return cut_.started + static_cast<int64_t>(t + 1) * period_us_;
-  }
-
-  void measurePath() {
-    if (result_.covered == 0) return;
-    result_.path_length = 0.0;
-    Pose2 last;
-    for (const Pose2& pose : result_.trajectory) {
-      result_.path_length += distance(last, pose);
-      last = pose;
-    }
   }
 
   /// Where the INS tells nothing, the prediction's own motion is kept, so that nothing is learned
@@ -167,7 +153,7 @@ class Cutter {
     for (size_t t = stride - 1; t < result_.covered; ++t) {
       const Pose2 before = t >= stride ? result_.trajectory[t - stride] : Pose2{};
       const double span = static_cast<double>(stride) * seconds(period_us_);
-      fastest = std::max(fastest, distance(before, result_.trajectory[t]) / span);
+      fastest = std::max(fastest, distanceBetween(before, result_.trajectory[t]) / span);
     }
     return fastest;
   }
@@ -199,35 +185,20 @@ class Cutter {
 }  // namespace
 
 const char* gateName(Gate gate) {
-  switch (gate) {
-    case Gate::kNone:
-      return "none";
-    case Gate::kAborted:
-      return "aborted";
-    case Gate::kUnknownPattern:
-      return "unknown pattern";
-    case Gate::kRecord:
-      return "invalid record";
-    case Gate::kCommands:
-      return "other commands";
-    case Gate::kNoTrack:
-      return "no INS at its start";
-    case Gate::kInsGap:
-      return "INS gap";
-    case Gate::kCoveredTime:
-      return "covered time";
-    case Gate::kNotFinite:
-      return "lost poses";
-    case Gate::kSpeed:
-      return "impossible speed";
-    case Gate::kNoMotion:
-      return "no motion";
-    case Gate::kEntryTwist:
-      return "entry twist";
-    case Gate::kSlope:
-      return "slope";
-  }
-  return "none";
+  constexpr const char* kNames[] = {"none",
+                                    "aborted",
+                                    "unknown pattern",
+                                    "invalid record",
+                                    "other commands",
+                                    "no INS at its start",
+                                    "INS gap",
+                                    "covered time",
+                                    "lost poses",
+                                    "impossible speed",
+                                    "no motion",
+                                    "entry twist",
+                                    "slope"};
+  return kNames[static_cast<size_t>(gate)];
 }
 
 Measurement measure(const TrackHistory& history, const ExecutionCut& cut,
@@ -243,7 +214,7 @@ double largestSpeed(const PatternSet& set) {
   for (const MotionPattern& pattern : set.patterns()) {
     Pose2 last;
     for (const Pose2& pose : pattern.trajectory) {
-      largest = std::max(largest, distance(last, pose) / set.periodSeconds());
+      largest = std::max(largest, distanceBetween(last, pose) / set.periodSeconds());
       last = pose;
     }
     if (set.content().kind != CommandKind::kTrackSpeed) continue;

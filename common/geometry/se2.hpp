@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -53,6 +54,21 @@ inline Pose2 inverse(const Pose2& T_a_b) {
 /// T_b_c = inverse(T_a_b) * T_a_c; yaw difference unwrapped.
 inline Pose2 between(const Pose2& T_a_b, const Pose2& T_a_c) {
   return inverse(T_a_b) * T_a_c;
+}
+
+inline double distanceBetween(const Pose2& a, const Pose2& b) {
+  return std::hypot(b.x - a.x, b.y - a.y);
+}
+
+/// Length of a path from the origin through some poses [m].
+inline double lengthOfPath(const std::vector<Pose2>& poses) {
+  double length = 0.0;
+  Pose2 last;
+  for (const Pose2& pose : poses) {
+    length += distanceBetween(last, pose);
+    last = pose;
+  }
+  return length;
 }
 
 /// Body velocity of a planar motion.

@@ -32,6 +32,16 @@ YawPitchRoll yawPitchRoll(const Eigen::Quaterniond& R_map_body) {
   return angles;
 }
 
+Eigen::Isometry3d interpolated(const Eigen::Isometry3d& first, const Eigen::Isometry3d& last,
+                               double share) {
+  const Eigen::Quaterniond from(first.linear());
+  const Eigen::Quaterniond to(last.linear());
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = from.slerp(share, to).toRotationMatrix();
+  T.translation() = first.translation() + share * (last.translation() - first.translation());
+  return T;
+}
+
 Pose2 planar(const Eigen::Vector3d& p_map, const Eigen::Quaterniond& R_map_body) {
   return {p_map.x(), p_map.y(), yawPitchRoll(R_map_body).yaw};
 }

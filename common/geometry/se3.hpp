@@ -28,6 +28,11 @@ Eigen::Isometry3d isometryFrom(const Eigen::Vector3d& position, const YawPitchRo
 /// Yaw, pitch and roll of a rotation, also at pitch +-90 degrees. Uses mrpt::poses::CPose3D.
 YawPitchRoll yawPitchRoll(const Eigen::Quaterniond& R_map_body);
 
+/// The pose a share 0..1 of the way from one to another: position linearly, orientation the short
+/// way round.
+Eigen::Isometry3d interpolated(const Eigen::Isometry3d& first, const Eigen::Isometry3d& last,
+                               double share);
+
 /// The pose in the plane below a pose in space: x, y and yaw.
 Pose2 planar(const Eigen::Vector3d& p_map, const Eigen::Quaterniond& R_map_body);
 

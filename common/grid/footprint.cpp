@@ -176,14 +176,6 @@ bool Footprint::isFree(const ClearanceField& clearance, const TurnedPose& T_map_
   return true;
 }
 
-bool Footprint::isFree(const Grid& grid, const ClearanceField& clearance, const Pose2& T_map_body,
-                       bool unknown_blocks) const {
-  if (unknown_blocks != clearance.unknownBlocks())
-    return isUsable(turned(T_map_body), grid.cellSize()) &&
-           blockedCells(grid, T_map_body, unknown_blocks) == 0;
-  return isFree(clearance, turned(T_map_body));
-}
-
 std::vector<CellIndex> Footprint::cells(const Grid& grid, const Pose2& T_map_body) const {
   std::vector<CellIndex> covered;
   if (!isUsable(turned(T_map_body), grid.cellSize())) return covered;

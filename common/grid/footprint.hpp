@@ -37,13 +37,8 @@ class Footprint {
   /// Whether the footprint at a pose overlaps no blocked cell: discs on the clearance field first,
   /// exact cells last.
   /** Exact: a cell is blocked over its whole area, and touching its border is no overlap; unknown
-   *  cells and all outside the grid block if `unknown_blocks`. `clearance` must be made from this
-   *  grid; one made with the other choice of `unknown_blocks` is not used (slower, same result).
-   *  False for a pose that is not finite. */
-  bool isFree(const Grid& grid, const ClearanceField& clearance, const Pose2& T_map_body,
-              bool unknown_blocks) const;
-  /// The same for a pose whose turn is given by its cosine and sine, and without a grid: unknown
-  /// cells block as they do in the field.
+   *  cells and all outside the grid block as they do in the field. False for a pose that is not
+   *  finite. */
   bool isFree(const ClearanceField& clearance, const TurnedPose& T_map_body) const;
   /// Cells (of the grid's lattice, also outside its window) that the footprint at a pose overlaps,
   /// row by row.

@@ -159,7 +159,6 @@ class ClearanceField {
   /// Both bounds of the clearance; outside the window the upper one is infinite.
   Bounds bounds(const Eigen::Vector2d& p_map) const;
 
-  bool unknownBlocks() const { return unknown_blocks_; }
   CellIndex lower() const { return lower_; }
   double cellSize() const { return cell_size_; }
 

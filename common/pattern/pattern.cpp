@@ -91,16 +91,6 @@ int64_t checksumOf(const PatternSetContent& content) {
 
 }  // namespace
 
-double MotionPattern::pathLength() const {
-  double length = 0.0;
-  Pose2 last;
-  for (const Pose2& pose : trajectory) {
-    length += std::hypot(pose.x - last.x, pose.y - last.y);
-    last = pose;
-  }
-  return length;
-}
-
 std::optional<PatternSet> PatternSet::make(PatternSetContent content, std::string& why) {
   why.clear();
   if (const auto problem = firstProblem(content)) {
@@ -139,6 +129,19 @@ std::vector<const MotionPattern*> PatternSet::startingIn(const std::string& entr
   for (const MotionPattern& pattern : patterns())
     if (pattern.entry_class == entry_class) starting.push_back(&pattern);
   return starting;
+}
+
+std::set<std::string> connectedClasses(const PatternSet& set, std::set<std::string> found,
+                                       bool backwards) {
+  for (size_t before = 0; before != found.size();) {
+    before = found.size();
+    for (const MotionPattern& pattern : set.patterns()) {
+      const std::string& from = backwards ? pattern.exit_class : pattern.entry_class;
+      const std::string& to = backwards ? pattern.entry_class : pattern.exit_class;
+      if (found.count(from) > 0) found.insert(to);
+    }
+  }
+  return found;
 }
 
 }  // namespace tread

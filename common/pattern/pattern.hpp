@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -63,7 +64,7 @@ struct MotionPattern {
 
   const Pose2& end() const { return trajectory.back(); }
   /// Length of the path through the origin and all r_t [m].
-  double pathLength() const;
+  double pathLength() const { return lengthOfPath(trajectory); }
 };
 
 /// Everything in a pattern set, not yet checked.
@@ -115,5 +116,10 @@ class PatternSet {
   std::shared_ptr<const PatternSetContent> content_;
   int64_t checksum_ = 0;
 };
+
+/// The classes `found` and all that chains of patterns reach from them; where `backwards`, all from
+/// which such chains reach them.
+std::set<std::string> connectedClasses(const PatternSet& set, std::set<std::string> found,
+                                       bool backwards);
 
 }  // namespace tread

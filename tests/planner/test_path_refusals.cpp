@@ -78,7 +78,7 @@ TEST_CASE("unreachable is only what a plain flood fill of the inscribed disc fin
     for (int k = 0; k < 6; ++k) {
       const PathQuery query = bench.query();
       const PathAnswer answer = bench.answer(query, 60);
-      const bool joined = connected(bench.grid, field, query, bench.planner->inscribedRadius());
+      const bool joined = connected(bench.grid, field, query, kVehicle.half_width);
       INFO("seed " << 5000 + i << " query " << k << ": " << answer.reason);
       apart += joined ? 0 : 1;
       if (answer.end == PathEnd::kSolved) ++solved;

@@ -93,36 +93,18 @@ constexpr double kTurnOff = 0.20;   // [rad/s]
 constexpr double kShareOff = 0.10;  // [1] of the class's own speed or rate, if that is more
 constexpr double kEndSpan = 0.1;    // [s] over which the twist at the end is taken
 
-bool stands(const MotionClass& motion) {
-  return motion.steady.left == 0.0 && motion.steady.right == 0.0;
-}
-
-/// Classes that chains of patterns reach from these, or that reach these when `backwards`.
-std::set<std::string> connected(const PatternSet& set, std::set<std::string> found,
-                                bool backwards) {
-  for (size_t before = 0; before != found.size();) {
-    before = found.size();
-    for (const MotionPattern& pattern : set.patterns()) {
-      const std::string& from = backwards ? pattern.exit_class : pattern.entry_class;
-      const std::string& to = backwards ? pattern.entry_class : pattern.exit_class;
-      if (found.count(from) > 0) found.insert(to);
-    }
-  }
-  return found;
-}
-
 void adviseClasses(const PatternSet& set, std::vector<std::string>& advice) {
   std::set<std::string> standing;
   for (const MotionClass& motion : set.content().classes)
-    if (stands(motion)) standing.insert(motion.name);
+    if (motion.steady == TrackCommand{}) standing.insert(motion.name);
   if (standing.empty()) {
     advice.push_back(
         "no class stands still (steady command 0, 0): a robot can neither begin nor end with this "
         "set");
     return;
   }
-  const std::set<std::string> reached = connected(set, standing, false);
-  const std::set<std::string> left = connected(set, standing, true);
+  const std::set<std::string> reached = connectedClasses(set, standing, false);
+  const std::set<std::string> left = connectedClasses(set, standing, true);
   for (const MotionClass& motion : set.content().classes) {
     if (reached.count(motion.name) == 0)
       advice.push_back(formatted(

@@ -145,12 +145,6 @@ struct Header {
 /// Reads the value of a key of the header.
 using Readers = std::map<std::string, std::function<void()>>;
 
-Pose2 readPose(Tokenizer& tokens, const std::string& what) {
-  const double x = tokens.number(what + "'s x", {-1e6, 1e6}, "m");
-  const double y = tokens.number(what + "'s y", {-1e6, 1e6}, "m");
-  return {x, y, tokens.number(what + "'s heading", {-100.0, 100.0}, "rad")};
-}
-
 Readers readersOf(Tokenizer& tokens, Header& header, MapFile& map) {
   const auto threshold = [&tokens](int& value, int64_t min) {
     value = static_cast<int>(tokens.integer("the threshold", min, 256));
@@ -177,8 +171,8 @@ Readers readersOf(Tokenizer& tokens, Header& header, MapFile& map) {
        [&] {
          map.turn_time = tokens.number("the time to turn", {1e-3, 1e4}, "s");
        }},
-      {"start(meters,rads):", [&] { map.T_map_start = readPose(tokens, "the start"); }},
-      {"end(meters,rads):", [&] { map.T_map_goal = readPose(tokens, "the end"); }},
+      {"start(meters,rads):", [&] { map.T_map_start = tokens.pose("the start", 1e6, 100.0); }},
+      {"end(meters,rads):", [&] { map.T_map_goal = tokens.pose("the end", 1e6, 100.0); }},
   };
 }
 

@@ -161,7 +161,7 @@ bool standsFree(const PlanTask& task, const ClearanceField& clearance, const Pos
   if (task.shape.isRectangle()) {
     const double half_length = task.shape.length / 2.0;
     const Footprint footprint({half_length, half_length, task.shape.width / 2.0}, 0.0);
-    return footprint.isFree(task.grid, clearance, T_grid_body, true);
+    return footprint.isFree(clearance, turned(T_grid_body));
   }
   return isFree(task.grid.at(task.grid.indexOf(T_grid_body.position())));
 }

@@ -112,12 +112,6 @@ void readHeader(Tokenizer& tokens, PrimitiveFile& file) {
   file.headings = stated ? statedHeadings(tokens, bins) : evenHeadings(bins);
 }
 
-Pose2 readPose(Tokenizer& tokens) {
-  const double x = tokens.number("a pose's x", {-kFarthestPose, kFarthestPose}, "m");
-  const double y = tokens.number("a pose's y", {-kFarthestPose, kFarthestPose}, "m");
-  return {x, y, tokens.number("a pose's heading", {-kMostTurn, kMostTurn}, "rad")};
-}
-
 /// Bins may be written as one turn more or less.
 int wrapBin(int bin, int bins) {
   return (bin % bins + bins) % bins;
@@ -161,7 +155,8 @@ Primitive readPrimitive(Tokenizer& tokens, const PrimitiveFile& file) {
     tokens.number("turning_radius", {-1e9, 1e9}, "m");
   }
   const int poses = readInt(tokens, "intermediateposes", 2, kMostPoses);
-  for (int i = 0; i < poses; ++i) primitive.poses.push_back(readPose(tokens));
+  for (int i = 0; i < poses; ++i)
+    primitive.poses.push_back(tokens.pose("a pose", kFarthestPose, kMostTurn));
   checkEnds(tokens, primitive, file);
   return primitive;
 }

@@ -21,33 +21,22 @@ constexpr double kPoint = 1e-3;  // [m]
 constexpr size_t kDrawnNodes = 60'000;
 
 /// Takes the time of one query [ms].
-class Watch {
- public:
+struct Watch {
   /// `spent` of the deadline is over already.
-  explicit Watch(std::optional<double> deadline = std::nullopt, double spent = 0.0)
-      : deadline_(deadline) {
-    if (deadline_) deadline_ = std::max(0.0, *deadline_ - spent);
+  explicit Watch(std::optional<double> until = std::nullopt, double spent = 0.0) : deadline(until) {
+    if (deadline) deadline = std::max(0.0, *deadline - spent);
   }
 
   double now() const {
-    return std::chrono::duration<double, std::milli>(Clock::now() - begin_).count();
+    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
   }
   /// A little before the deadline: the rest is needed to put the answer together.
-  bool isLate() const { return deadline_ && now() >= *deadline_ - std::min(2.0, *deadline_ / 20); }
-  void noteSolution() {
-    if (!first_) first_ = now();
-  }
-  void noteSearch() { searching_ = now(); }
-  /// When the heuristics were computed.
-  std::optional<double> searching() const { return searching_; }
-  /// When the first plan was there.
-  std::optional<double> first() const { return first_; }
+  bool isLate() const { return deadline && now() >= *deadline - std::min(2.0, *deadline / 20); }
 
- private:
-  Clock::time_point begin_ = Clock::now();
-  std::optional<double> deadline_;
-  std::optional<double> searching_;
-  std::optional<double> first_;
+  Clock::time_point begin = Clock::now();
+  std::optional<double> deadline;
+  std::optional<double> searching;  ///< when the heuristics were computed
+  std::optional<double> first;      ///< when the first plan was there
 };
 
 double peakMegabytes() {
@@ -118,15 +107,16 @@ PlanAnswer TaskPlanner::answer(const PlanQuery& query, double spent_ms) {
   wanted.position_tolerance = task_.position_tolerance;
   wanted.yaw_tolerance = task_.yaw_tolerance;
   wanted.come_close = task_.come_close;
-  const planner::PathEvents events{[&watch] { watch.noteSearch(); },
-                                   [&watch](double, int) { watch.noteSolution(); }};
+  const planner::PathEvents events{
+      [&watch] { watch.searching = watch.now(); },
+      [&watch](double, int) { watch.first = watch.first.value_or(watch.now()); }};
   const auto stop = [&watch](int) { return watch.isLate(); };
   const planner::PathAnswer found =
       task_.exact ? lattice_->answer(wanted, stop, events) : planner_->answer(wanted, stop, events);
   PlanAnswer answer;
   answer.total_ms = watch.now();
-  answer.first_solution_ms = watch.first();
-  if (!task_.exact) answer.heuristic_ms = watch.searching().value_or(0.0);
+  answer.first_solution_ms = watch.first;
+  if (!task_.exact) answer.heuristic_ms = watch.searching.value_or(0.0);
   answer.expansions = found.search.expansions;
   answer.end = found.end;
   answer.all_seen = found.search.exhausted;

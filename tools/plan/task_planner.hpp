@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "tools/plan/lattice_planner.hpp"
-#include "tools/plan/plan_picture.hpp"
 #include "tools/plan/plan_report.hpp"
 #include "tools/plan/plan_task.hpp"
 

@@ -84,6 +84,12 @@ double Tokenizer::number(const std::string& what, Range range, const std::string
   return *value;
 }
 
+Pose2 Tokenizer::pose(const std::string& what, double farthest, double most_turn) {
+  const double x = number(what + "'s x", {-farthest, farthest}, "m");
+  const double y = number(what + "'s y", {-farthest, farthest}, "m");
+  return {x, y, number(what + "'s heading", {-most_turn, most_turn}, "rad")};
+}
+
 std::string_view Tokenizer::rest() {
   const std::string_view all = std::string_view(text_).substr(at_);
   at_ = text_.size();

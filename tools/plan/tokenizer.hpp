@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "common/config/config_reader.hpp"
+#include "common/geometry/se2.hpp"
 
 namespace tread::plan {
 
@@ -28,6 +29,8 @@ class Tokenizer {
   void expect(const std::string& word);
   int64_t integer(const std::string& what, int64_t min, int64_t max);
   double number(const std::string& what, Range range, const std::string& unit);
+  /// x, y [m] and heading [rad] of `what`, no greater than these.
+  Pose2 pose(const std::string& what, double farthest, double most_turn);
 
   /// Characters that were not taken yet.
   size_t left() const { return text_.size() - at_; }

@@ -40,29 +40,6 @@ bool isNewStand(const GroundPlane& stand, const GroundPlane& last) {
   return step.head<2>().norm() > kStandDistance || std::abs(step.z()) > kStandHeight;
 }
 
-/// Poses between two poses: position linearly, orientation the short way round.
-class Between {
- public:
-  Between(const Eigen::Isometry3d& first, const Eigen::Isometry3d& last)
-      : p_first_(first.translation()),
-        p_step_(last.translation() - first.translation()),
-        R_first_(first.linear()),
-        R_last_(last.linear()) {}
-
-  Eigen::Isometry3d at(double share) const {
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.linear() = R_first_.slerp(share, R_last_).toRotationMatrix();
-    T.translation() = p_first_ + share * p_step_;
-    return T;
-  }
-
- private:
-  Eigen::Vector3d p_first_;
-  Eigen::Vector3d p_step_;
-  Eigen::Quaterniond R_first_;
-  Eigen::Quaterniond R_last_;
-};
-
 }  // namespace
 
 /// Voxels whose centre lies above `from` and below `to` [m].
@@ -200,7 +177,6 @@ bool OccupancyMap::isOwnBody(const Eigen::Vector3d& p_body) const {
 }
 
 const std::vector<Ray>& OccupancyMap::raysOf(const Scan& scan) {
-  const Between body(scan.T_map_body_first, scan.T_map_body_last);
   rays_.clear();
   for (const Beam& beam : scan.beams) {
     if (beam.hit && isOwnBody(scan.T_body_sensor * beam.end)) continue;
@@ -208,7 +184,8 @@ const std::vector<Ray>& OccupancyMap::raysOf(const Scan& scan) {
     const bool marks = beam.hit && range <= config_.marking_range;
     const double reach = marks ? range : std::min(range, config_.clearing_range);
     if (!(range > 0.0)) continue;
-    const Eigen::Isometry3d T_map_sensor = body.at(beam.share) * scan.T_body_sensor;
+    const Eigen::Isometry3d T_map_sensor =
+        interpolated(scan.T_map_body_first, scan.T_map_body_last, beam.share) * scan.T_body_sensor;
     rays_.push_back({T_map_sensor.translation(),
                      T_map_sensor * Eigen::Vector3d(beam.end * (reach / range)), marks});
   }

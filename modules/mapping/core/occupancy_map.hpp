@@ -102,7 +102,6 @@ class OccupancyMap {
   const Grid& grid() const { return grid_; }
   const OccupancyMapConfig& config() const { return config_; }
   const VoxelMap& voxels() const { return voxels_; }
-  GroundHeight groundAt(CellIndex cell) const { return ground_.at(cell); }
 
   /// Indices of the tiles of the window of which something was seen, row by row.
   std::vector<CellIndex> seenTiles() const;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "common/geometry/se3.hpp"
+
 namespace tread::mapping {
 namespace {
 
@@ -21,12 +23,13 @@ void SpatialTrack::clear() {
 
 bool SpatialTrack::follows(const TimedPose& next, const TimedPose& before) const {
   const double dt = static_cast<double>(next.utime - before.utime) * 1e-6;
-  return dt > 0.0 && (next.p_map - before.p_map).norm() <= top_speed_ * dt + kStepMargin;
+  const Eigen::Vector3d step = next.T_map_body.translation() - before.T_map_body.translation();
+  return dt > 0.0 && step.norm() <= top_speed_ * dt + kStepMargin;
 }
 
 SpatialTrack::PoseCheck SpatialTrack::push(int64_t utime, const Eigen::Isometry3d& T_map_body) {
   if (utime < 0 || (!poses_.empty() && utime <= newest())) return PoseCheck::kNotNewer;
-  const TimedPose pose{utime, T_map_body.translation(), Eigen::Quaterniond(T_map_body.linear())};
+  const TimedPose pose{utime, T_map_body};
   if (!poses_.empty() && !follows(pose, poses_.back())) return doubt(pose);
   doubted_.clear();
   append(pose);
@@ -60,10 +63,7 @@ std::optional<Eigen::Isometry3d> SpatialTrack::at(int64_t utime, int64_t max_gap
   if (gap > max_gap_us) return std::nullopt;
   const double share =
       exact ? 0.0 : static_cast<double>(utime - before.utime) / static_cast<double>(gap);
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = before.R_map_body.slerp(share, after->R_map_body).toRotationMatrix();
-  T.translation() = before.p_map + share * (after->p_map - before.p_map);
-  return T;
+  return interpolated(before.T_map_body, after->T_map_body, share);
 }
 
 }  // namespace tread::mapping

@@ -38,8 +38,7 @@ class SpatialTrack {
  private:
   struct TimedPose {
     int64_t utime;
-    Eigen::Vector3d p_map;
-    Eigen::Quaterniond R_map_body;
+    Eigen::Isometry3d T_map_body;
   };
 
   bool follows(const TimedPose& next, const TimedPose& before) const;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <stdexcept>
 
 namespace tread::pattern_recorder {
@@ -122,16 +121,11 @@ void Tour::findWays() {
 }
 
 void Tour::requireConnected(const PatternSet& set) const {
-  std::set<size_t> reached{standing_};
-  for (size_t before = 0; before != reached.size();) {
-    before = reached.size();
-    for (const size_t from : std::set<size_t>(reached))
-      for (const Step& step : steps_[from]) reached.insert(step.to);
-  }
+  const std::set<std::string> reached = connectedClasses(set, {standing()}, false);
   for (size_t c = 0; c < class_names_.size(); ++c) {
     const std::string which =
         "class '" + class_names_[c] + "' of set '" + set.content().name + "' ";
-    if (reached.count(c) == 0)
+    if (reached.count(class_names_[c]) == 0)
       throw std::runtime_error(which +
                                "cannot be reached from standing: add a pattern that leads "
                                "into it");

@@ -83,7 +83,6 @@ TEST_CASE("a footprint is free exactly where no blocked cell overlaps it") {
       Footprint({0.02, 0.02, 0.6}, 0.0), Footprint({2.0, -0.5, 0.3}, 0.0)};
   Grid grid;
   ClearanceField field;
-  ClearanceField other;  // made with the other choice of unknown_blocks
   int free = 0;
   for (const double density : {0.0, 0.001, 0.01})
     for (int i = 0; i < 2400; ++i) {
@@ -91,16 +90,14 @@ TEST_CASE("a footprint is free exactly where no blocked cell overlaps it") {
       if (i % 100 == 0) {
         grid = randomGrid(random, {-5, -7}, 51, 49, density, density);
         field = ClearanceField(grid, unknown_blocks);
-        other = ClearanceField(grid, !unknown_blocks);
       }
       const Footprint& footprint = footprints[static_cast<size_t>(i) % footprints.size()];
       const Pose2 pose{position(random), position(random), turn(random)};
       const Truth truth = blockedUnder(footprint, pose, grid, unknown_blocks);
-      const bool judged = footprint.isFree(grid, field, pose, unknown_blocks);
+      const bool judged = footprint.isFree(field, turned(pose));
       CAPTURE(pose.x, pose.y, pose.yaw, truth.surely, truth.perhaps, unknown_blocks);
       if (truth.surely > 0) REQUIRE_FALSE(judged);
       if (truth.surely == 0 && truth.perhaps == 0) REQUIRE(judged);
-      REQUIRE(judged == footprint.isFree(grid, other, pose, unknown_blocks));
       const int blocked = footprint.blockedCells(grid, pose, unknown_blocks);
       REQUIRE(blocked >= truth.surely);
       REQUIRE(blocked <= truth.surely + truth.perhaps);
@@ -137,9 +134,9 @@ TEST_CASE("a footprint that lies on the borders of cells touches its neighbours 
   const ClearanceField field(grid, true);
   const Footprint footprint({0.5, 0.5, 0.3}, 0.0);
   for (const double yaw : {0.0, kPi, -kPi, 2.0 * kPi})
-    REQUIRE(footprint.isFree(grid, field, {0.0, 0.0, yaw}, true));
-  REQUIRE_FALSE(footprint.isFree(grid, field, {0.001, 0.0, 0.0}, true));
-  REQUIRE_FALSE(footprint.isFree(grid, field, {0.0, 0.0, 0.01}, true));
+    REQUIRE(footprint.isFree(field, turned({0.0, 0.0, yaw})));
+  REQUIRE_FALSE(footprint.isFree(field, turned({0.001, 0.0, 0.0})));
+  REQUIRE_FALSE(footprint.isFree(field, turned({0.0, 0.0, 0.01})));
   REQUIRE(footprint.cells(grid, {0.0, 0.0, 0.0}).size() == 60);
 }
 
@@ -150,7 +147,7 @@ TEST_CASE("poses that are no poses are not free and cover no cell") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Pose2 bad :
        {Pose2{nan, 0, 0}, Pose2{0, nan, 0}, Pose2{0, 0, nan}, Pose2{1e300, 0, 0}}) {
-    REQUIRE_FALSE(footprint.isFree(grid, field, bad, false));
+    REQUIRE_FALSE(footprint.isFree(field, turned(bad)));
     REQUIRE(footprint.cells(grid, bad).empty());
     REQUIRE(footprint.blockedCells(grid, bad, true) == 0);
   }

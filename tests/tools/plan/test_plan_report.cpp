@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "tests/tools/plan/plan_samples.hpp"
-#include "tools/plan/plan_picture.hpp"
 #include "tools/plan/plan_report.hpp"
 
 using namespace tread;

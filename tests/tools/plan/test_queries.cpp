@@ -54,7 +54,7 @@ TEST_CASE("random queries are free, apart and the same for the same seed") {
   const ClearanceField clearance(grid, true);
   const Footprint footprint({0.4, 0.4, 0.3}, 0.0);
   const auto is_free = [&](const Pose2& T_grid_body) {
-    return footprint.isFree(grid, clearance, T_grid_body, true);
+    return footprint.isFree(clearance, turned(T_grid_body));
   };
   const Pose2 T_map_grid{-2.0, 7.0, 0.3};
   RandomQueries wanted;

@@ -92,14 +92,21 @@ SearchResult MotionPlanner::plan(const PlanRequest& request, int expansions, Cou
   return result;
 }
 
+/// The best plan along problem.branch; it and the fresh one know the expansions of both.
+SearchResult MotionPlanner::alongBranch(const SearchProblem& problem, const StopPredicate& stop,
+                                        SearchResult& fresh) {
+  SearchResult along = branch_search_.run(problem, stop);
+  fresh.expansions += along.expansions;
+  along.expansions = fresh.expansions;
+  return along;
+}
+
 /// The fresh plan, or the best along the branch if that turns to the other side and is as good.
 SearchResult MotionPlanner::keepSide(SearchProblem& problem, SearchResult fresh,
                                      const StopPredicate& stop, Counters& counters) {
   problem.branch = side_.opposedBy(fresh.steps, *problem.patterns);
   if (problem.branch.empty()) return fresh;
-  SearchResult along = branch_search_.run(problem, stop);
-  const int expansions = fresh.expansions + along.expansions;
-  fresh.expansions = along.expansions = expansions;
+  SearchResult along = alongBranch(problem, stop, fresh);
   if (side_.isWorth(fresh, along)) {
     ++counters["turned to the other side"];
     return fresh;
@@ -115,9 +122,7 @@ SearchResult MotionPlanner::keepNext(SearchProblem& problem, SearchResult fresh,
                                      const StopPredicate& stop, Counters& counters) {
   if (problem.committed.empty()) return fresh;
   problem.branch = {problem.committed.front()};
-  SearchResult along = branch_search_.run(problem, stop);
-  const int expansions = fresh.expansions + along.expansions;
-  fresh.expansions = along.expansions = expansions;
+  SearchResult along = alongBranch(problem, stop, fresh);
   if (along.end == SearchEnd::kNothing) return fresh;
   ++counters["kept to its next pattern"];
   std::swap(search_, branch_search_);

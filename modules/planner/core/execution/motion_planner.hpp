@@ -83,6 +83,8 @@ class MotionPlanner {
   void setReplaced() { cycles_with_old_set_ = 0; }
 
  private:
+  SearchResult alongBranch(const SearchProblem& problem, const StopPredicate& stop,
+                           SearchResult& fresh);
   SearchResult keepSide(SearchProblem& problem, SearchResult fresh, const StopPredicate& stop,
                         Counters& counters);
   SearchResult keepNext(SearchProblem& problem, SearchResult fresh, const StopPredicate& stop,

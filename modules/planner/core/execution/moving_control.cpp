@@ -14,6 +14,15 @@ constexpr int64_t kTrackGap = 150'000;
 /// Steps in which coasting on is checked [s].
 constexpr double kCoastStep = 0.1;
 
+/// Poses of a vehicle that keeps its twist for `duration` [s] from `begin` [s] on.
+std::vector<ExpectedPose> coasting(const Pose2& T_map_body, const Twist2& twist, double begin,
+                                   double duration) {
+  std::vector<ExpectedPose> poses;
+  for (double t = kCoastStep; t <= duration + 1e-9; t += kCoastStep)
+    poses.push_back({T_map_body * integrate(twist, t), begin + t});
+  return poses;
+}
+
 }  // namespace
 
 void MovingControl::drive(const PlannerInputs& s, const Preconditions& ready) {
@@ -71,9 +80,7 @@ std::vector<ExpectedPose> MovingControl::posesAfter(const Prediction& running) c
   }
   // Nothing follows: the series ends, and the vehicle coasts.
   const Twist2& twist = state_.table().motionClass(state_.runningPattern()->exit).twist;
-  for (double t = kCoastStep; t <= state_.config.policy.coast_time + 1e-9; t += kCoastStep)
-    poses.push_back({running.T_map_end * integrate(twist, t), running.time_left + t});
-  return poses;
+  return coasting(running.T_map_end, twist, running.time_left, state_.config.policy.coast_time);
 }
 
 bool MovingControl::nextCollides(const Prediction& running) const {
@@ -162,10 +169,8 @@ bool MovingControl::stoppingIsBetter(const PlannerInputs& s,
       level = std::min(level, around.freeLevel(at.T_map_body, level));
     return level;
   };
-  std::vector<ExpectedPose> coast;
-  for (double t = kCoastStep; t <= state_.config.policy.coast_time + 1e-9; t += kCoastStep)
-    coast.push_back({s.pose->T_map_body * integrate(*s.pose->twist, t), t});
-  return worst(coast) >= worst(poses);
+  return worst(coasting(s.pose->T_map_body, *s.pose->twist, 0.0,
+                        state_.config.policy.coast_time)) >= worst(poses);
 }
 
 void MovingControl::keepClear(const PlannerInputs& s, const Prediction& running) {

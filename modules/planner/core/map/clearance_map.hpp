@@ -96,9 +96,7 @@ class CoarseClearance : public ClearanceSource {
   CoarseClearance(const Grid& grid, const ClearanceField& field, int coarse);
 
   double coarseSize() const override { return size_; }
-  std::optional<ClearanceWindow> bounds() const override {
-    return ClearanceWindow{lower_x_, lower_y_, width_, height_, {}, {}};
-  }
+  std::optional<ClearanceWindow> bounds() const override { return cells_; }
   void fill(ClearanceWindow& window) const override;
 
   /// Numbers the areas in which a disc of this radius [m] can move; afterwards areaAt() answers.
@@ -112,22 +110,15 @@ class CoarseClearance : public ClearanceSource {
                                            const Eigen::Vector2d& p_map) const;
 
  private:
-  size_t at(int x, int y) const {
-    return static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x);
+  bool contains(int x, int y) const {
+    return x >= cells_.lower_x && y >= cells_.lower_y && x < cells_.lower_x + cells_.width &&
+           y < cells_.lower_y + cells_.height;
   }
-  bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
-  Eigen::Vector2d centreOf(int x, int y) const {
-    return {(lower_x_ + x + 0.5) * size_, (lower_y_ + y + 0.5) * size_};
-  }
+  Eigen::Vector2d centreOf(int x, int y) const { return {(x + 0.5) * size_, (y + 0.5) * size_}; }
   void flood(int x, int y, int number, float radius);
 
   double size_;
-  int lower_x_;
-  int lower_y_;
-  int width_;
-  int height_;
-  std::vector<float> clearance_;
-  std::vector<uint8_t> unknown_;
+  ClearanceWindow cells_;
   std::vector<int> area_;
 };
 

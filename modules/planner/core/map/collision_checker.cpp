@@ -61,10 +61,6 @@ int CollisionChecker::level(const Uncertainty& uncertainty) const {
   return level;
 }
 
-bool CollisionChecker::isFree(const Pose2& T_map_body, int level) const {
-  return levels_[static_cast<size_t>(level)].isFree(grid_, field_, T_map_body, unknown_blocks_);
-}
-
 bool CollisionChecker::isFree(const TurnedPose& T_map_body, int level) const {
   return levels_[static_cast<size_t>(level)].isFree(field_, T_map_body);
 }

@@ -51,9 +51,6 @@ class CollisionChecker {
   double nearness(double x, double y, double distance) const {
     return std::max(0.0, 1.0 - field_.quick(x, y) / distance);
   }
-  bool isUnknown(const Eigen::Vector2d& p_map) const {
-    return grid_.at(grid_.indexOf(p_map)) == kUnknown;
-  }
   /// Levels of margin, rising: none, that for checking, that for planning, and more between them.
   static constexpr int kBare = 0;
   static constexpr int kCheck = 2;
@@ -66,7 +63,9 @@ class CollisionChecker {
   /** What counts is the footprint's corner, which a turn moves, too. */
   int level(const Uncertainty& uncertainty) const;
   /// Whether the footprint with the margin of a level is free at a pose.
-  bool isFree(const Pose2& T_map_body, int level) const;
+  bool isFree(const Pose2& T_map_body, int level) const {
+    return isFree(turned(T_map_body), level);
+  }
   bool isFree(const TurnedPose& T_map_body, int level) const;
   /// Highest level, at most `wanted`, at which a pose is free; -1 if it is not free at all.
   int freeLevel(const Pose2& T_map_body, int wanted) const;

@@ -41,31 +41,11 @@ Step stepAlong(int heading) {
   }
 }
 
-/// The two bounds of the least cost, of a part of the patterns (see PatternTable::leastCosts()).
 MotionRates::Rate rateOf(const std::vector<const TablePattern*>& patterns) {
-  MotionRates::Rate rate;
-  rate.any = !patterns.empty();
-  double metres = 0.0;
-  double radians = 0.0;
-  for (const TablePattern* p : patterns) {
-    metres = std::max(metres, p->length / p->cost);
-    radians = std::max(radians, std::abs(p->end().pose.yaw) / p->cost);
-  }
-  rate.turns = radians > 0.0;
-  rate.by_way = {metres > 0.0 ? 1.0 / metres : 0.0, kNever};
-  rate.by_turn = {kNever, radians > 0.0 ? 1.0 / radians : 0.0};
-  for (const TablePattern* p : patterns) {
-    const double turn = std::abs(p->end().pose.yaw);
-    if (turn > 0.0)
-      rate.by_way.per_radian =
-          std::min(rate.by_way.per_radian, (p->cost - rate.by_way.per_metre * p->length) / turn);
-    if (p->length > 0.0)
-      rate.by_turn.per_metre =
-          std::min(rate.by_turn.per_metre, (p->cost - rate.by_turn.per_radian * turn) / p->length);
-  }
-  for (double* value : {&rate.by_way.per_radian, &rate.by_turn.per_metre})
-    *value = std::isfinite(*value) ? std::max(0.0, *value) : 0.0;
-  return rate;
+  const std::array<LeastCost, 2> least = leastCostsOf(patterns);
+  const bool turns = std::any_of(patterns.begin(), patterns.end(),
+                                 [](const TablePattern* p) { return p->end().pose.yaw != 0.0; });
+  return {least[0], least[1], !patterns.empty(), turns};
 }
 
 }  // namespace

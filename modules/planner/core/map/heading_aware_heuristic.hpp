@@ -91,9 +91,8 @@ MotionRates motionRates(const PatternTable& patterns);
 /// Cost to the goal by position and heading on a coarse grid: it knows what turns cost.
 /** The vehicle drives along its heading, ahead or back, and turns on the way or on the spot, each
  * for the least that the set's patterns do it for, but with no least radius. A* from the goal over
- * positions and headings towards the start; filled in until that is reached, and some further. Only
- * PathPlanner uses it: it needs the goal on the map in which collisions are checked, and the
- * robot's goal mostly lies outside of its window. */
+ * positions and headings towards the start; filled in until that is reached, and some further. See
+ * SearchProblem::heading_heuristic for who uses it. */
 class HeadingAwareHeuristic {
  public:
   static constexpr int kHeadings = FreeConfigurations::kHeadings;

@@ -63,10 +63,6 @@ struct SweptFootprint {
   double front = 0.0;  ///< [m] of the outline that they were worked out for
 };
 
-inline double distanceBetween(const Pose2& a, const Pose2& b) {
-  return std::hypot(b.x - a.x, b.y - a.y);
-}
-
 /// Poses along a trajectory of equal periods, the origin left out, neighbours at most a step apart.
 std::vector<SweptPose> sampleSweep(const std::vector<Pose2>& trajectory, double period,
                                    const SweepResolution& step);

@@ -85,8 +85,6 @@ class PathPlanner {
   const PatternSearch& search() const { return search_; }
   /// Whether the footprint is free at a pose.
   bool isFree(const Pose2& T_map_body) const;
-  /// [m] of the disc inside the footprint, around the body's origin.
-  double inscribedRadius() const { return inscribed_; }
 
  private:
   std::optional<PathAnswer> refusalOfAreas(const PathQuery& query) const;
@@ -107,7 +105,7 @@ class PathPlanner {
   const PatternTable& patterns_;
   PathConfig config_;
   PatternSearch search_;
-  double inscribed_;
+  double inscribed_;  ///< [m] radius of the disc inside the footprint, around the body's origin
   CollisionChecker checker_;
   FreeConfigurations configurations_;
   CoarseClearance coarse_clearance_;

@@ -25,16 +25,6 @@ void addDisc(TablePattern& entry) {
     entry.radius = std::max(entry.radius, (at.pose.position() - entry.centre).norm());
 }
 
-double lengthOf(const std::vector<Pose2>& poses) {
-  double length = 0.0;
-  Pose2 before;
-  for (const Pose2& pose : poses) {
-    length += distanceBetween(before, pose);
-    before = pose;
-  }
-  return length;
-}
-
 Uncertainty uncertaintyOf(const DefaultSigma& sigma) {
   Uncertainty result;
   result.xx = result.yy = static_cast<float>(sigma.position * sigma.position);
@@ -42,92 +32,86 @@ Uncertainty uncertaintyOf(const DefaultSigma& sigma) {
   return result;
 }
 
-TablePattern prepare(const Primitive& primitive, const SweepResolution& step) {
+/// What all patterns have: their path, and what is checked along it.
+TablePattern swept(const std::vector<Pose2>& poses, double period, const SweepResolution& step) {
   TablePattern entry;
-  entry.number = primitive.id;
-  entry.duration = primitive.duration;
-  entry.cost = primitive.cost;
-  entry.length = lengthOf(primitive.poses);
-  entry.reverses = primitive.poses.back().x < -kStanding;
-  const double period = primitive.duration / static_cast<double>(primitive.poses.size());
-  entry.swept_poses = sampleSweep(primitive.poses, period, step);
-  entry.swept_footprint = sweptFootprintOf(entry.swept_poses, primitive.poses, period, step);
+  entry.length = lengthOfPath(poses);
+  entry.reverses = poses.back().x < -kStanding;
+  entry.swept_poses = sampleSweep(poses, period, step);
+  entry.swept_footprint = sweptFootprintOf(entry.swept_poses, poses, period, step);
   addDisc(entry);
   return entry;
 }
 
 }  // namespace
 
+std::array<LeastCost, 2> leastCostsOf(const std::vector<const TablePattern*>& patterns) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  double most_metres = 0.0;  // per cost, as the next
+  double most_radians = 0.0;
+  for (const TablePattern* p : patterns) {
+    most_metres = std::max(most_metres, p->length / p->cost);
+    most_radians = std::max(most_radians, std::abs(p->end().pose.yaw) / p->cost);
+  }
+  LeastCost by_way{most_metres > 0.0 ? 1.0 / most_metres : 0.0, kNone};
+  LeastCost by_turn{kNone, most_radians > 0.0 ? 1.0 / most_radians : 0.0};
+  for (const TablePattern* p : patterns) {
+    const double turn = std::abs(p->end().pose.yaw);
+    if (turn > 0.0)
+      by_way.per_radian =
+          std::min(by_way.per_radian, (p->cost - by_way.per_metre * p->length) / turn);
+    if (p->length > 0.0)
+      by_turn.per_metre =
+          std::min(by_turn.per_metre, (p->cost - by_turn.per_radian * turn) / p->length);
+  }
+  // Rounding can leave a little below nothing; what never turns or moves leaves no bound.
+  for (double* value : {&by_way.per_radian, &by_turn.per_metre})
+    *value = std::isfinite(*value) ? std::max(0.0, *value) : 0.0;
+  return {by_way, by_turn};
+}
+
 PatternTable::PatternTable(PatternSet set, const SweepResolution& step, const DefaultSigma& sigma)
     : set_(std::move(set)), rest_class_(findRestClass()) {
   for (const MotionPattern& pattern : set_->patterns())
     patterns_.push_back(prepare(pattern, step, sigma));
   index(set_->content().classes.size());
-  computeLeastCosts();
 }
 
 PatternTable::PatternTable(const std::vector<Primitive>& primitives, const SweepResolution& step)
     : rest_class_(0) {
-  for (const Primitive& primitive : primitives)
-    patterns_.push_back(planner::prepare(primitive, step));
+  for (const Primitive& primitive : primitives) {
+    const double period = primitive.duration / static_cast<double>(primitive.poses.size());
+    patterns_.push_back(swept(primitive.poses, period, step));
+    patterns_.back().number = primitive.id;
+    patterns_.back().duration = primitive.duration;
+    patterns_.back().cost = primitive.cost;
+  }
   index(1);
-  computeLeastCosts();
 }
 
 void PatternTable::index(size_t classes) {
+  std::vector<const TablePattern*> all;
   from_.resize(classes);
   stops_.resize(classes);
   for (const TablePattern& entry : patterns_) {
     from_[static_cast<size_t>(entry.entry)].push_back(&entry);
     if (entry.exit == rest_class_) stops_[static_cast<size_t>(entry.entry)].push_back(&entry);
-  }
-}
-
-void PatternTable::computeLeastCosts() {
-  double most_metres = 0.0;  // per cost, as the next
-  double most_radians = 0.0;
-  for (const TablePattern& entry : patterns_) {
-    const double turn = std::abs(entry.end().pose.yaw);
     best_speed_ = std::max(best_speed_, entry.length / entry.duration);
-    best_turn_rate_ = std::max(best_turn_rate_, turn / entry.duration);
-    most_metres = std::max(most_metres, entry.length / entry.cost);
-    most_radians = std::max(most_radians, turn / entry.cost);
+    all.push_back(&entry);
   }
-  LeastCost& by_way = least_costs_[0];
-  LeastCost& by_turn = least_costs_[1];
-  by_way = {most_metres > 0.0 ? 1.0 / most_metres : 0.0, std::numeric_limits<double>::infinity()};
-  by_turn = {std::numeric_limits<double>::infinity(),
-             most_radians > 0.0 ? 1.0 / most_radians : 0.0};
-  for (const TablePattern& entry : patterns_) {
-    const double turn = std::abs(entry.end().pose.yaw);
-    if (turn > 0.0)
-      by_way.per_radian =
-          std::min(by_way.per_radian, (entry.cost - by_way.per_metre * entry.length) / turn);
-    if (entry.length > 0.0)
-      by_turn.per_metre =
-          std::min(by_turn.per_metre, (entry.cost - by_turn.per_radian * turn) / entry.length);
-  }
-  // Rounding can leave a little below nothing; a set that never turns or moves leaves no bound.
-  for (double* value : {&by_way.per_radian, &by_turn.per_metre})
-    *value = std::isfinite(*value) ? std::max(0.0, *value) : 0.0;
+  least_costs_ = leastCostsOf(all);
 }
 
 TablePattern PatternTable::prepare(const MotionPattern& pattern, const SweepResolution& step,
                                    const DefaultSigma& sigma) const {
-  TablePattern entry;
+  TablePattern entry = swept(pattern.trajectory, set_->periodSeconds(), step);
   entry.pattern = &pattern;
   entry.number = pattern.id;
   entry.entry = classIndex(pattern.entry_class);
   entry.exit = classIndex(pattern.exit_class);
   entry.duration = set_->periodSeconds() * static_cast<double>(pattern.commands.size());
   entry.cost = entry.duration;
-  entry.length = pattern.pathLength();
-  entry.reverses = pattern.end().x < -kStanding;
-  entry.swept_poses = sampleSweep(pattern.trajectory, set_->periodSeconds(), step);
-  entry.swept_footprint =
-      sweptFootprintOf(entry.swept_poses, pattern.trajectory, set_->periodSeconds(), step);
   entry.uncertainty = uncertaintyOf(pattern.end_covariance, uncertaintyOf(sigma));
-  addDisc(entry);
   return entry;
 }
 

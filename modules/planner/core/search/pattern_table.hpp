@@ -115,6 +115,9 @@ struct LeastCost {
   double per_radian = 0.0;  ///< [s/rad]
 };
 
+/// Two bounds of what some patterns cost: with as much as possible per metre, and per radian.
+std::array<LeastCost, 2> leastCostsOf(const std::vector<const TablePattern*>& patterns);
+
 /// All patterns of a set prepared for searching: sampled once, turned and moved while searching.
 /** Nothing is assumed about where patterns end: the learner may bend them at will. */
 class PatternTable {
@@ -147,9 +150,7 @@ class PatternTable {
   int classIndex(const std::string& name) const;
   /// Greatest path length over duration of a pattern [m/s]: nothing in the set is faster.
   double bestSpeed() const { return best_speed_; }
-  /// Greatest turn over duration of a pattern [rad/s].
-  double bestTurnRate() const { return best_turn_rate_; }
-  /// Two bounds, with as much as possible per metre and per radian.
+  /// leastCostsOf() all patterns.
   const std::array<LeastCost, 2>& leastCosts() const { return least_costs_; }
   /// Why nobody can drive with this set, in words; empty if one can.
   std::string defect() const;
@@ -159,7 +160,6 @@ class PatternTable {
                        const DefaultSigma& sigma) const;
   int findRestClass() const;
   void index(size_t classes);
-  void computeLeastCosts();
 
   std::optional<PatternSet> set_;
   std::vector<TablePattern> patterns_;
@@ -167,7 +167,6 @@ class PatternTable {
   std::vector<std::vector<const TablePattern*>> stops_;
   int rest_class_ = -1;
   double best_speed_ = 0.0;
-  double best_turn_rate_ = 0.0;
   std::array<LeastCost, 2> least_costs_;
 };
 

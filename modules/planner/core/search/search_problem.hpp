@@ -55,7 +55,10 @@ struct SearchProblem {
   const PatternTable* patterns = nullptr;
   const CollisionChecker* collision_checker = nullptr;
   const DistanceToGoal* distance_to_goal = nullptr;  ///< nullptr = straight to the goal
-  /// If given, it replaces distance_share and turn_weight.
+  /// If given, it replaces distance_share and turn_weight. PathPlanner gives it: of 500 queries on
+  /// five whole maps 462 have a plan after 100 ms, without it 444 (turn_weight at its best). The
+  /// robot does without: its plans would take 5 to 7 ms more each, where their search takes 0.7 ms,
+  /// and it is at the goal no sooner and no more often (tests/bench/RESULTS.md).
   const HeadingAwareHeuristic* heading_heuristic = nullptr;
   const EdgeRules* rules = nullptr;  ///< if given, in the place of the collision checker
   Goal goal;
