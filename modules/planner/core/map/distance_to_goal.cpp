@@ -254,21 +254,24 @@ void DistanceToGoal::March::settle(size_t cell) {
 }
 
 void DistanceToGoal::March::relax(size_t cell) {
-  const std::vector<float>& settled = of_.settled_;
+  const float* const settled = of_.settled_.data();
+  const float* const slownesses = of_.slowness_.data();
+  float* const tentative = of_.tentative_.data();
+  const size_t stride = stride_;
   const auto size = static_cast<float>(cells_.size);
-  for (const size_t next : {cell - 1, cell + 1, cell - stride_, cell + stride_}) {
-    const float slowness = of_.slowness_[next];
+  for (const size_t next : {cell - 1, cell + 1, cell - stride, cell + stride}) {
+    const float slowness = slownesses[next];
     if (slowness == kNoWay) continue;
     const float step = slowness * size;
     const float a = std::min(settled[next - 1], settled[next + 1]);
-    const float b = std::min(settled[next - stride_], settled[next + stride_]);
+    const float b = std::min(settled[next - stride], settled[next + stride]);
     const float nearer = std::min(a, b);
-    if (nearer + kLeastStep * step >= of_.tentative_[next]) continue;
+    if (nearer + kLeastStep * step >= tentative[next]) continue;
     const float apart = std::min(std::max(a, b) - nearer, step);
     // Upwind solution of |grad| = slowness; one-sided where the two sides are too far apart.
     const float value = nearer + 0.5F * (apart + std::sqrt(2.0F * step * step - apart * apart));
-    if (value >= of_.tentative_[next]) continue;
-    of_.tentative_[next] = value;
+    if (value >= tentative[next]) continue;
+    tentative[next] = value;
     front_.add(next, value);
   }
 }
