@@ -9,7 +9,7 @@
 #include "common/vehicle/effects.hpp"
 #include "modules/identification/core/finding.hpp"
 
-/// What one must know to read a report and to act on it.
+// What one must know to read a report and to act on it.
 namespace tread::gap {
 
 /// A word and what it means here.
@@ -28,7 +28,7 @@ struct Advice {
   std::string next;
 };
 
-/// That for a verdict.
+/// What a verdict means.
 const Advice& adviceFor(GapVerdict verdict);
 
 /// What an effect is, its equation and parameters, what it looks like, what it is confused with

@@ -33,10 +33,13 @@ sim::VehicleParameters plainVehicle() {
   vehicle.outline = {0.65, 0.65, 0.34};
   // Turning follows the tracks as promptly as driving does.
   vehicle.yaw_inertia = 28.3;
+  vehicle.drive.free_speed = 1.2;
   vehicle.drive.stiffness = 8000.0;
   vehicle.drive.force_limit = 8000.0;
   vehicle.drive.power_lag = 0.2;
+  vehicle.drive.track_mass = 60.0;
   vehicle.drive.gear_friction = 1.0;
+  vehicle.drive.brake_force = 2000.0;
   vehicle.drive.inner_resistance = 0.0005;
   vehicle.drive.capacity = 1e9;
   return vehicle;
