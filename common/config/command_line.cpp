@@ -3,7 +3,9 @@
 #include "common/config/command_line.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <exception>
 #include <vector>
 
 #include "common/config/scalars.hpp"
@@ -72,6 +74,18 @@ std::string whatIsWrong(const CLI::App& app, const CLI::App& part, const CLI::Er
   return is(error, CLI::ExitCodes::ArgumentMismatch) ? missingValue(error.what()) : error.what();
 }
 
+/// CLI::Range lets NaN pass, and an option without a range infinity, too.
+void requireFiniteNumbers(CLI::App& app) {
+  const auto problemOf = [](const std::string& text) {
+    double number = 0.0;
+    const bool finite = !CLI::detail::lexical_cast(text, number) || std::isfinite(number);
+    return finite ? std::string() : "'" + text + "' is no finite number";
+  };
+  for (CLI::Option* option : app.get_options())
+    if (option->get_type_name().rfind("FLOAT", 0) == 0) option->check(problemOf);
+  for (CLI::App* command : app.get_subcommands({})) requireFiniteNumbers(*command);
+}
+
 }  // namespace
 
 std::string usageError(const CLI::App& app, const CLI::Error& error) {
@@ -83,14 +97,22 @@ std::string usageError(const CLI::App& app, const CLI::Error& error) {
 }
 
 std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv) {
+  requireFiniteNumbers(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // help
     std::fprintf(stderr, "%s\n", usageError(app, error).c_str());
-    return 2;
+    return kBadInput;
   }
   return std::nullopt;
+}
+
+int runProgram(const char* name, const std::function<int()>& run) try {
+  return run();
+} catch (const std::exception& problem) {
+  std::fprintf(stderr, "%s: %s\n", name, problem.what());
+  return kBadInput;
 }
 
 }  // namespace tread

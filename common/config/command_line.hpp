@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -9,12 +10,19 @@
 
 namespace tread {
 
+/// Exit code of a program that cannot use its command line or what it was given to read.
+inline constexpr int kBadInput = 2;
+
 /// What is wrong with a command line, in one line: where, what, and what would be right.
 /** "tread-gap find: '--thread' is not known; did you mean --threads? See tread-gap find --help". */
 std::string usageError(const CLI::App& app, const CLI::Error& error);
 
-/// Parses a command line; the exit code if the program ends here: 0 after --help, 2 after a usage
-/// error, with one line on stderr, as with all our programs (CLI11's own codes begin at 100).
+/// Parses a command line; the exit code if the program ends here: 0 after --help, kBadInput after a
+/// usage error, with one line on stderr, as with all our programs (CLI11's own codes begin at 100).
+/** Options of real numbers take finite ones only. */
 std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv);
+
+/// The exit code of `run`; kBadInput with one line "name: what it threw" on stderr if it throws.
+int runProgram(const char* name, const std::function<int()>& run);
 
 }  // namespace tread

@@ -13,7 +13,7 @@
 
 #include "common/config/scalars.hpp"
 #include "common/pattern/pattern_file.hpp"
-#include "common/recordings/text_file.hpp"
+#include "common/store/store.hpp"
 
 namespace tread::recordings {
 namespace {

@@ -9,8 +9,4 @@ namespace tread {
 /// SHA-256 (FIPS 180-4) of bytes, as 64 hexadecimal digits.
 std::string sha256(const std::string& bytes);
 
-/// SHA-256 of a file.
-/** Throws std::runtime_error with one clear line if it cannot be read. */
-std::string sha256OfFile(const std::string& path);
-
 }  // namespace tread

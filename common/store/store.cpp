@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include <fcntl.h>
@@ -37,7 +38,7 @@ std::string badEntryName() {
 /// A file descriptor that is closed at the end of its scope.
 class Descriptor {
  public:
-  Descriptor(const std::string& path, int flags, mode_t mode = 0)
+  Descriptor(const fs::path& path, int flags, mode_t mode = 0)
       : fd_(::open(path.c_str(), flags | O_CLOEXEC, mode)) {}
   ~Descriptor() { close(); }
   Descriptor(const Descriptor&) = delete;
@@ -66,23 +67,70 @@ bool writeAll(int fd, const std::string& content) {
   return true;
 }
 
-/// Writes a new file and waits until its content is on the disk.
-bool writeDurably(const std::string& path, const std::string& content) {
-  Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  return file.isOpen() && writeAll(file.get(), content) && ::fsync(file.get()) == 0 && file.close();
+/// Writes a file and, if `durably`, waits until its content is on the disk.
+bool writeFile(const fs::path& path, const std::string& content, bool durably) {
+  Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  return file.isOpen() && writeAll(file.get(), content) && (!durably || ::fsync(file.get()) == 0) &&
+         file.close();
 }
 
 /// Waits until the names of a folder are on the disk: without it a rename may be lost with the
 /// power.
-bool syncFolder(const std::string& folder) {
+bool syncFolder(const fs::path& folder) {
   const Descriptor entry(folder, O_RDONLY | O_DIRECTORY);
   return entry.isOpen() && ::fsync(entry.get()) == 0;
+}
+
+/// Puts a file in the place of another, whole or not at all. False, with errno, if that fails.
+bool replaceFile(const fs::path& path, const std::string& content) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  // In the same folder, because a rename is atomic only within a file system.
+  const fs::path temporary =
+      folder / ("." + path.filename().string() + "." + std::to_string(::getpid()) + ".tmp");
+  if (writeFile(temporary, content, true) && ::rename(temporary.c_str(), path.c_str()) == 0 &&
+      syncFolder(folder))
+    return true;
+  const int error = errno;
+  ::unlink(temporary.c_str());
+  errno = error;
+  return false;
 }
 
 /// A file that a crash left behind: hidden, so that it is never taken for an entry.
 bool isLeftover(const std::string& name) {
   constexpr const char* kEnding = ".tmp";
   return name.size() > 5 && name.front() == '.' && name.substr(name.size() - 4) == kEnding;
+}
+
+std::optional<std::string> readFile(const fs::path& path) {
+  const Descriptor file(path, O_RDONLY);
+  if (!file.isOpen()) return std::nullopt;
+  std::string content;
+  char piece[65536];
+  for (;;) {
+    const ssize_t count = ::read(file.get(), piece, sizeof piece);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return std::nullopt;
+    if (count == 0) return content;
+    content.append(piece, static_cast<size_t>(count));
+  }
+}
+
+/// Where a link leads, so that the link itself stays.
+fs::path targetOf(const std::string& path) {
+  std::error_code failure;
+  const fs::path target = fs::weakly_canonical(path, failure);
+  return failure ? fs::path(path) : target;
+}
+
+/// A device, a pipe: there is nothing to put in its place.
+bool isSpecial(const std::string& path) {
+  std::error_code failure;
+  return fs::exists(path, failure) && !fs::is_regular_file(path, failure);
+}
+
+[[noreturn]] void refuse(const std::string& path) {
+  throw std::runtime_error(path + ": cannot be written; check folder and rights");
 }
 
 }  // namespace
@@ -99,31 +147,15 @@ FileStore::FileStore(std::string folder) : folder_(std::move(folder)) {
 }
 
 std::optional<std::string> FileStore::read(const std::string& name) const {
-  if (!isEntryName(name)) return std::nullopt;
-  const Descriptor file(folder_ + "/" + name, O_RDONLY);
-  if (!file.isOpen()) return std::nullopt;
-  std::string content;
-  char piece[65536];
-  for (;;) {
-    const ssize_t count = ::read(file.get(), piece, sizeof piece);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return std::nullopt;
-    if (count == 0) return content;
-    content.append(piece, static_cast<size_t>(count));
-  }
+  return isEntryName(name) ? readFile(folder_ + "/" + name) : std::nullopt;
 }
 
 std::optional<std::string> FileStore::write(const std::string& name, const std::string& content) {
   if (!isEntryName(name)) return badEntryName();
   const std::string path = folder_ + "/" + name;
-  // In the same folder, because a rename is atomic only within a file system.
-  const std::string temporary = folder_ + "/." + name + "." + std::to_string(::getpid()) + ".tmp";
-  if (writeDurably(temporary, content) && ::rename(temporary.c_str(), path.c_str()) == 0 &&
-      syncFolder(folder_))
-    return std::nullopt;
-  const std::string reason = std::strerror(errno);
-  ::unlink(temporary.c_str());
-  return "store: cannot write " + path + " (" + reason + "); check space and permissions";
+  if (replaceFile(path, content)) return std::nullopt;
+  return "store: cannot write " + path + " (" + std::strerror(errno) +
+         "); check space and permissions";
 }
 
 void FileStore::remove(const std::string& name) {
@@ -164,6 +196,58 @@ std::vector<std::string> MemoryStore::names() const {
   std::vector<std::string> all;
   for (const auto& entry : entries_) all.push_back(entry.first);
   return all;
+}
+
+std::string readText(const std::string& path) {
+  std::optional<std::string> text = readFile(path);
+  if (!text) throw std::runtime_error(path + ": cannot be read; check name and rights");
+  return std::move(*text);
+}
+
+void writeText(const std::string& path, const std::string& text) {
+  const bool written =
+      isSpecial(path) ? writeFile(path, text, false) : replaceFile(targetOf(path), text);
+  if (!written) refuse(path);
+}
+
+void requireWritable(const std::string& path) {
+  std::error_code failure;
+  const fs::path target = targetOf(path);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const bool there = fs::exists(path, failure);
+  const bool may =
+      there ? ::access(path.c_str(), W_OK) == 0
+            : fs::is_directory(folder, failure) && ::access(folder.c_str(), W_OK | X_OK) == 0;
+  if (!may || fs::is_directory(path, failure)) refuse(path);
+}
+
+void refuseToReplace(const std::string& output, const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    std::error_code failure;
+    if (fs::equivalent(output, input, failure))
+      throw std::runtime_error(output + ": this is the input " + input +
+                               "; give another file to write");
+  }
+}
+
+void checkOutputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
+  std::vector<fs::path> named;
+  for (const std::string& output : outputs) {
+    if (output.empty()) continue;
+    refuseToReplace(output, inputs);
+    requireWritable(output);
+    if (isSpecial(output)) continue;
+    const fs::path target = targetOf(fs::absolute(output));
+    if (std::find(named.begin(), named.end(), target) != named.end())
+      throw std::runtime_error(output + ": two results cannot be written to one file");
+    named.push_back(target);
+  }
+}
+
+void writeOutput(const std::string& path, const std::string& text,
+                 const std::vector<std::string>& inputs) {
+  refuseToReplace(path, inputs);
+  writeText(path, text);
 }
 
 }  // namespace tread

@@ -9,8 +9,7 @@
 
 #include "common/config/scalars.hpp"
 #include "common/recordings/drive_recordings.hpp"
-#include "tools/experiment/rng.hpp"
-#include "tools/experiment/transition_world.hpp"
+#include "tools/experiment/ground.hpp"
 
 namespace tread::experiment {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/experiment/text_tables.hpp"
+#include "tools/experiment/tables.hpp"
 
 namespace tread::experiment {
 
@@ -69,15 +69,5 @@ std::string watchedPattern(const Batch& batch);
 
 /// Writes all files into a folder, which is made if needed.
 void writeBatch(const std::string& folder, const Batch& batch);
-
-/// The pictures of a batch, PNG bytes.
-struct Pictures {
-  std::string figure4;
-  std::string figure5;
-  std::string drift;  ///< empty if nothing is watched
-};
-
-/// Text of report.html.
-std::string htmlOf(const Batch& batch, const Pictures& pictures);
 
 }  // namespace tread::experiment

@@ -10,7 +10,7 @@
 #include <mutex>
 #include <thread>
 
-#include "tools/experiment/rng.hpp"
+#include "tools/experiment/ground.hpp"
 
 namespace tread::experiment {
 namespace {

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "common/report/plot.hpp"
-#include "tools/experiment/paper_numbers.hpp"
+#include "tools/experiment/tables.hpp"
 
 namespace tread::experiment {
 namespace {

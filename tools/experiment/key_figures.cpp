@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/report/text.hpp"
-#include "tools/experiment/text_tables.hpp"
+#include "tools/experiment/tables.hpp"
 
 namespace tread::experiment {
 namespace {

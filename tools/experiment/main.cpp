@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <string>
@@ -117,11 +116,8 @@ int main(int argc, char** argv) {
       "transitions", "section V of the paper: what rules err after a change of surface");
   define(*transitions, arguments);
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
-  try {
+  return tread::runProgram("tread-experiment", [&] {
     run(arguments);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "tread-experiment: %s\n", error.what());
-    return 1;
-  }
-  return 0;
+    return 0;
+  });
 }

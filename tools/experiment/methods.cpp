@@ -7,7 +7,7 @@
 
 #include "common/config/scalars.hpp"
 #include "common/report/text.hpp"
-#include "tools/experiment/rng.hpp"
+#include "tools/experiment/ground.hpp"
 
 namespace tread::experiment {
 namespace {

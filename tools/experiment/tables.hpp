@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -65,5 +66,68 @@ std::string csvOf(const Tables& tables, const TableFile& file);
 std::string csvOfDrift(const ExperimentErrors& errors, const ExperimentSettings& settings);
 /// books.csv: table,seed,from,to,quantity,rule,against,k,value of each book.
 std::string csvOfBooks(const std::vector<Tables>& books, uint64_t first_seed);
+
+/// A cell of the paper's Tables I and II for one transition and quantity, as printed.
+struct PaperCell {
+  const char* from;
+  const char* to;
+  const char* quantity;
+  std::array<double, 4> errors;  ///< columns a, b, c, d per driven metre or radian
+  double reduction;              ///< [%] of c against b
+};
+
+/// All 24 cells.
+const std::vector<PaperCell>& paperCells();
+/// The cell, if the paper has these surfaces.
+const PaperCell* paperCell(const std::string& from, const std::string& to,
+                           const std::string& quantity);
+/// The rules of columns a, b, c, d.
+const std::array<std::string, 4>& paperRules();
+
+/// Why a printed number is probably a misprint; empty if nothing speaks against it.
+std::string doubtOfError(const PaperCell& cell, size_t column);
+std::string doubtOfReduction(const PaperCell& cell);
+
+/// How near a table comes to the paper's.
+struct Agreement {
+  /// Root of the mean squared difference in columns a, b, c, d; the transition cinder -> tarmac is
+  /// left out of the orientation. NaN where nothing can be compared.
+  std::array<double, 4> position_rms;
+  std::array<double, 4> orientation_rms;
+  int cells = 0;  ///< compared reductions of each quantity
+  int position_signs = 0;
+  int orientation_signs = 0;
+};
+
+/// Nothing if no transition of the tables is the paper's.
+std::optional<Agreement> agreementWithPaper(const Tables& tables);
+
+/// What a text about an experiment must know beside its numbers.
+struct Setting {
+  std::vector<std::string> surfaces;
+  std::vector<std::string> rules;
+  bool paper_reference = false;
+  size_t books = 1;
+};
+
+/// Rules side by side in one table that is narrow enough to read: the paper's columns a, b, c, d
+/// first, then what else was compared.
+std::vector<std::vector<std::string>> columnGroups(const Setting& setting);
+
+/// Table I in the paper's layout: rows from, groups of columns to; a, b, c, d as in the paper,
+/// further rules in tables after them; the paper's numbers below.
+std::string textOfErrors(const Tables& tables, const Setting& setting);
+/// Table II: collective against single as in the paper, then each other rule.
+std::string textOfReductions(const Tables& tables, const Setting& setting);
+/// RMS deviations and signs, and those of single books; empty where nothing can be compared.
+std::string textOfAgreement(const Tables& tables, const Setting& setting,
+                            const std::vector<Tables>& books);
+/// Medians and worst cases by rule: reductions, all patterns, unchanged ground; with several books
+/// means and deviations over them.
+std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
+                             const std::vector<Tables>& books);
+
+/// The median; NaN of nothing.
+double median(std::vector<double> values);
 
 }  // namespace tread::experiment

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/experiment/text_tables.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/report/text.hpp"
-#include "tools/experiment/paper_numbers.hpp"
+#include "tools/experiment/tables.hpp"
 
 namespace tread::experiment {
 namespace {

@@ -13,9 +13,6 @@
 // status, and what it throws ends the program with its one line and 2.
 namespace tread::gap {
 
-/// Exit statuses beside those of the verdicts.
-inline constexpr int kBadInput = 2;
-
 void addPlan(CLI::App& app, int& status);
 void addWhatIf(CLI::App& app);
 

@@ -12,6 +12,7 @@
 #include "common/config/scalars.hpp"
 #include "common/log/drive_log.hpp"
 #include "common/report/hash.hpp"
+#include "common/store/store.hpp"
 #include "modules/identification/core/log_validation.hpp"
 #include "tools/gap/reading.hpp"
 
@@ -143,7 +144,7 @@ Drive readDrive(const std::string& path) {
                                  ? "log " + path + ": no event in it; is this an LCM log?"
                                  : log.problem);
   Drive drive = toDrive(log);
-  drive.sha256 = sha256OfFile(path);
+  drive.sha256 = sha256(readText(path));
   if (log.problem.empty()) return drive;
   // Whole events are as good as in a whole log; whether they are enough is judged later.
   const double span = 1e-6 * static_cast<double>(events.back().utime - events.front().utime);

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "common/recordings/text_file.hpp"
+#include "common/store/store.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/gap/explain.hpp"
 #include "tools/gap/report/sections.hpp"
@@ -224,12 +224,12 @@ void writeFinding(const std::string& folder, const Finding& finding,
   if (hasNewModel(finding)) {
     const std::string model = formatModelDocument(newModel(finding, inputs));
     parseModelDocument(model, folder + "/model.yaml");  // a file that nobody can read is none
-    recordings::writeText(folder + "/model.yaml", model);
+    writeText(folder + "/model.yaml", model);
   }
-  recordings::writeText(folder + "/report.md", markdownOf(page));
-  recordings::writeText(folder + "/report.html", htmlOf(page));
+  writeText(folder + "/report.md", markdownOf(page));
+  writeText(folder + "/report.html", htmlOf(page));
   // Last: whoever finds the verdict finds the rest, too.
-  recordings::writeText(folder + "/verdict.json", verdictJson(finding, inputs).dump(2) + "\n");
+  writeText(folder + "/verdict.json", verdictJson(finding, inputs).dump(2) + "\n");
 }
 
 }  // namespace tread::gap

@@ -2,8 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -14,6 +12,7 @@
 
 #include "common/config/command_line.hpp"
 #include "common/report/hash.hpp"
+#include "common/store/store.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "modules/identification/core/discovery.hpp"
 #include "tools/gap/commands.hpp"
@@ -99,7 +98,7 @@ int find(const FindOptions& options) {
   GapTask task;
   task.model = readModelDocument(options.model);
   task.decisions = decisionsOf({options.accepted, options.rejected, options.by}, task.model);
-  inputs.push_back({InputFile::Role::kModel, fileName(options.model), sha256OfFile(options.model)});
+  inputs.push_back({InputFile::Role::kModel, fileName(options.model), sha256(readText(options.model))});
   task.train = readDrives(options.train, InputFile::Role::kTrain, task.model, inputs);
   task.test = readDrives(options.test, InputFile::Role::kTest, task.model, inputs);
   for (const std::vector<Drive>* drives : {&task.train, &task.test})
@@ -215,8 +214,8 @@ void addCompare(CLI::App& app, int& status) {
 }  // namespace tread::gap
 
 int main(int argc, char** argv) {
-  int status = 0;
-  try {
+  return tread::runProgram("tread-gap", [&] {
+    int status = 0;
     CLI::App app{"Finds, names and closes the gap between simulation and measurement.",
                  "tread-gap"};
     app.require_subcommand(1);
@@ -225,10 +224,6 @@ int main(int argc, char** argv) {
     tread::gap::addWhatIf(app);
     tread::gap::addPlan(app, status);
     tread::gap::addCompare(app, status);
-    if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "tread-gap: %s\n", error.what());
-    return tread::gap::kBadInput;
-  }
-  return status;
+    return tread::parseCommandLine(app, argc, argv).value_or(status);
+  });
 }

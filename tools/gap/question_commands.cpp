@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/pattern/pattern_file.hpp"
-#include "common/recordings/text_file.hpp"
+#include "common/store/store.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/gap/commands.hpp"
 #include "tools/gap/drive_log.hpp"
@@ -119,7 +119,7 @@ void tellFound(const PlanOptions& options, const DesignTask& task, const Design&
   const std::string known = fromTable(side.truth, side.rival);
   if (!known.empty()) std::cout << "\nThey resemble each other; another way to tell:\n" << known;
   if (options.out.empty()) return;
-  recordings::writeText(options.out, formatPatterns(set));
+  writeText(options.out, formatPatterns(set));
   std::cout
       << "\n"
       << options.out << ": a pattern set. Record a log (tread-logger) while\n"
@@ -252,7 +252,7 @@ void whatIf(const WhatIfOptions& options) {
   for (const LogComparison& comparison : on_log) std::cout << '\n' << textOf(comparison);
   if (!lost.empty()) std::cout << lost << '\n';
   if (!options.out.empty())
-    recordings::writeText(
+    writeText(
         options.out,
         svg ? svgOf(comparisons, on_log) : htmlOf(pageOf(question, setting, comparisons, on_log)));
   std::cout << std::flush;

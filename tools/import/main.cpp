@@ -16,8 +16,6 @@ using namespace tread::recordings;
 
 namespace {
 
-constexpr int kBadInput = 2;  // and whatever else keeps the log from being made, as tread-gap
-
 struct Arguments {
   std::string format;
   std::string sessions;
@@ -111,10 +109,5 @@ int parseAndRun(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return parseAndRun(argc, argv);
-  } catch (const std::exception& problem) {
-    std::fprintf(stderr, "tread-import: %s\n", problem.what());
-    return kBadInput;
-  }
+  return tread::runProgram("tread-import", [&] { return parseAndRun(argc, argv); });
 }

@@ -8,7 +8,7 @@
 #include <ostream>
 
 #include "common/report/text.hpp"
-#include "tools/missions/settling.hpp"
+#include "tools/missions/prediction_errors.hpp"
 
 namespace tread::missions {
 namespace {

@@ -7,9 +7,9 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
+#include "common/store/store.hpp"
 #include "tools/missions/comparison_report.hpp"
 #include "tools/missions/mission_runner.hpp"
-#include "common/recordings/text_file.hpp"
 
 namespace {
 
@@ -137,8 +137,7 @@ void protectInputs(const Arguments& arguments) {
   std::error_code failure;
   for (const auto& file : std::filesystem::directory_iterator(arguments.robot, failure))
     inputs.push_back(file.path().string());
-  recordings::checkOutputs({arguments.json, arguments.show ? arguments.picture : "", arguments.log},
-                         inputs);
+  checkOutputs({arguments.json, arguments.show ? arguments.picture : "", arguments.log}, inputs);
 }
 
 void drive(const Arguments& arguments) {
@@ -161,14 +160,11 @@ int main(int argc, char** argv) {
   Arguments arguments;
   define(app, arguments);
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
-  try {
+  return runProgram("tread-missions", [&] {
     // --show alone means: that mission.
     if (arguments.show && app.count("--seed") == 0 && arguments.missions == 1)
       arguments.seed = *arguments.show;
     drive(arguments);
-  } catch (const std::exception& error) {
-    std::cerr << "tread-missions: " << error.what() << std::endl;
-    return 2;
-  }
-  return 0;
+    return 0;
+  });
 }

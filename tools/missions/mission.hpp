@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/geometry/se2.hpp"
-#include "tools/missions/steadiness.hpp"
 #include "tools/replay/shadow_learners.hpp"
+#include "tools/report/drive_picture.hpp"
 
 namespace tread::missions {
 
@@ -43,18 +43,8 @@ struct ScoredExecution {
   std::vector<shadow::PredictionError> by_rule;
 };
 
-/// A change of the true surface under the robot. Who turns round on a border crosses it again.
-struct Crossing {
-  double time = 0.0;  ///< [s]
-  std::string from;
-  std::string to;
-};
-
-/// The true pose at a time, for pictures.
-struct TrackPoint {
-  double time = 0.0;
-  Pose2 T_map_body;
-};
+using report::Crossing;
+using report::TrackPoint;
 
 /// A contact of the true footprint with a true obstacle.
 struct Contact {
@@ -62,6 +52,20 @@ struct Contact {
   std::string pattern;       ///< being executed; empty = none
   Pose2 T_map_body;          ///< where the body was when it was seen
   double penetration = 0.0;  ///< [m] deepest attempt
+};
+
+/// The planner changed from one side to the other.
+struct Flip {
+  double time = 0.0;  ///< [s] since the start of the mission
+  std::string from;   ///< pattern that turned to the old side
+  std::string to;     ///< and the one that turns to the new one
+};
+
+/// The robot came to rest between start and goal.
+struct Stop {
+  double time = 0.0;      ///< [s] since the start of the mission
+  double duration = 0.0;  ///< [s] that it stood
+  std::string reason;     ///< as published; empty = none
 };
 
 /// What happened in one mission: one entry of the report, hence so many fields.
@@ -83,9 +87,9 @@ struct MissionResult {
   std::vector<Crossing> crossings;
   std::vector<ScoredExecution> executions;
   std::vector<learner::Rule> shadow_rules;  ///< that predicted the same executions
-  std::vector<TrackPoint> track;
-  std::vector<Contact> contacts;  ///< one per collision
-  std::vector<Stop> stops;        ///< between start and arrival
+  std::vector<TrackPoint> track;            ///< the true poses, for pictures
+  std::vector<Contact> contacts;            ///< one per collision
+  std::vector<Stop> stops;                  ///< between start and arrival
   std::vector<Flip> flips;
 
   int collisions() const { return static_cast<int>(contacts.size()); }

@@ -12,8 +12,8 @@
 
 #include "common/bus/virtual_bus.hpp"
 #include "common/report/text.hpp"
-#include "tools/missions/operator.hpp"
 #include "tools/missions/referee.hpp"
+#include "tools/missions/robot_system.hpp"
 
 namespace tread::missions {
 namespace {
@@ -140,18 +140,12 @@ MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOpti
 
 report::DriveScene driveSceneOf(const MissionResult& result, const MissionScene& scene) {
   report::DriveScene drive;
-  const sim::WorldDescription& world = scene.world.description;
   drive.title = titleOf(result);
-  drive.base_surface = world.base_surface;
-  for (const sim::SurfaceRegion& region : world.regions)
-    drive.patches.push_back({region.surface, region.corners});
-  for (const sim::Obstacle& obstacle : world.obstacles)
-    drive.obstacles.push_back({obstacle.corners, obstacle.centre, obstacle.radius});
+  drive.world = scene.world.description;
   drive.outline = scene.outline;
   drive.map = scene.map;
   drive.tree = scene.tree;
-  for (const TrackPoint& point : result.track)
-    drive.track.push_back({point.time, point.T_map_body});
+  drive.track = result.track;
   drive.T_map_start = scene.world.T_map_start;
   drive.T_map_goal = scene.world.T_map_goal;
   for (const Contact& contact : result.contacts)
@@ -159,8 +153,7 @@ report::DriveScene driveSceneOf(const MissionResult& result, const MissionScene&
   for (const ScoredExecution& execution : result.executions)
     if (execution.measured)
       drive.errors.push_back({execution.time, execution.error_position, execution.error_yaw});
-  for (const Crossing& crossing : result.crossings)
-    drive.crossings.push_back({crossing.time, crossing.to});
+  drive.crossings = result.crossings;
   drive.duration = result.time;
   return drive;
 }

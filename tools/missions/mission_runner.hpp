@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "common/log/event_log.hpp"
-#include "common/report/drive_picture.hpp"
 #include "tools/missions/mission_world.hpp"
 #include "tools/missions/report.hpp"
 #include "tools/missions/robot_system.hpp"
+#include "tools/report/drive_picture.hpp"
 
 namespace tread::missions {
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 namespace tread::missions {
 namespace {
@@ -143,6 +144,172 @@ std::vector<ErrorAfterChange> errorsAfterChange(const std::vector<MissionResult>
   std::vector<ErrorAfterChange> errors;
   for (const auto& [pair, sum] : sums) errors.push_back({sum.mean(), pair.first, pair.second});
   return errors;
+}
+
+namespace {
+
+constexpr size_t kKnownAfter = 10;     ///< executions on a surface that make it one met before
+constexpr size_t kFewestChanges = 10;  ///< that a pooled ratio stands on
+
+/// Errors of a rule and of the omniscient one in one execution.
+struct Pair {
+  double position, yaw;
+  double best_position, best_yaw;
+
+  void add(const Pair& other) {
+    position += other.position;
+    yaw += other.yaw;
+    best_position += other.best_position;
+    best_yaw += other.best_yaw;
+  }
+};
+
+using Stretch = std::vector<Pair>;
+
+Pair window(const Stretch& stretch, size_t from) {
+  Pair sum{0.0, 0.0, 0.0, 0.0};
+  for (size_t i = from; i < from + Settling::kWindow; ++i) sum.add(stretch[i]);
+  return sum;
+}
+
+size_t windowsIn(const Stretch& stretch) {
+  return stretch.size() < Settling::kWindow ? 0 : stretch.size() - Settling::kWindow + 1;
+}
+
+bool within(double error, double best) {
+  return error <= Settling::kWithin * best;
+}
+
+/// When the first window fulfils a condition, or how long none did.
+template <class Condition>
+std::pair<int, bool> timeOf(const Stretch& stretch, Condition condition) {
+  const size_t windows = windowsIn(stretch);
+  for (size_t n = 0; n < windows; ++n)
+    if (condition(window(stretch, n))) return {static_cast<int>(n), true};
+  return {static_cast<int>(windows) - 1, false};
+}
+
+bool counts(const MissionResult& result, size_t change, Met met) {
+  if (met == Met::kAny) return true;
+  size_t before = 0;
+  bool met_before = false;
+  for (size_t i = 0; i <= change; ++i) {
+    if (result.crossings[i].from != result.crossings[change].to) continue;
+    met_before = true;
+    before += stretchOf(result, i).size();
+  }
+  return met == Met::kFirst ? !met_before : before >= kKnownAfter;
+}
+
+Stretch stretchAfter(const MissionResult& result, size_t change, const ErrorOf& errorOf,
+                     const Omniscient& omniscient) {
+  Stretch stretch;
+  for (const ScoredExecution* execution : stretchOf(result, change + 1)) {
+    if (execution->surface != result.crossings[change].to) continue;
+    const auto error = errorOf(*execution, result.seed);
+    const auto best = omniscient.errorOf(*execution, result.seed);
+    if (error && best)
+      stretch.push_back(
+          {error->position, std::abs(error->yaw), best->position, std::abs(best->yaw)});
+  }
+  return stretch;
+}
+
+void fillRatios(const std::vector<Stretch>& stretches, Settling& settling) {
+  for (size_t n = 0;; ++n) {
+    Pair sum{0.0, 0.0, 0.0, 0.0};
+    size_t changes = 0;
+    for (const Stretch& stretch : stretches) {
+      if (n >= windowsIn(stretch)) continue;
+      sum.add(window(stretch, n));
+      ++changes;
+    }
+    if (changes < kFewestChanges) return;
+    settling.position_ratio.push_back(sum.position / sum.best_position);
+    settling.yaw_ratio.push_back(sum.yaw / sum.best_yaw);
+  }
+}
+
+}  // namespace
+
+void Omniscient::Ends::add(const Pose2& end) {
+  ++count;
+  x += end.x;
+  y += end.y;
+  yaw += end.yaw;
+}
+
+void Omniscient::Ends::remove(const Ends& other) {
+  count -= other.count;
+  x -= other.x;
+  y -= other.y;
+  yaw -= other.yaw;
+}
+
+void Omniscient::add(const MissionResult& result) {
+  for (const ScoredExecution& execution : result.executions) {
+    if (!execution.measured || execution.surface.empty()) continue;
+    const Key key{execution.surface, execution.pattern};
+    all_[key].add(execution.measured_end);
+    by_seed_[result.seed][key].add(execution.measured_end);
+  }
+}
+
+std::optional<shadow::PredictionError> Omniscient::errorOf(const ScoredExecution& execution,
+                                                           uint64_t seed) const {
+  const Key key{execution.surface, execution.pattern};
+  const auto known = all_.find(key);
+  if (known == all_.end()) return std::nullopt;
+  Ends ends = known->second;
+  const auto own = by_seed_.find(seed);
+  if (own != by_seed_.end() && own->second.count(key) > 0) ends.remove(own->second.at(key));
+  if (ends.count < kFewest) return std::nullopt;
+  const Pose2& end = execution.measured_end;
+  return shadow::PredictionError{
+      std::hypot(end.x - ends.x / ends.count, end.y - ends.y / ends.count),
+      wrapAngle(end.yaw - ends.yaw / ends.count)};
+}
+
+double medianTime(std::vector<std::pair<int, bool>> times) {
+  std::sort(times.begin(), times.end());
+  double waiting = 1.0;
+  for (size_t i = 0; i < times.size();) {
+    const auto at_risk = static_cast<double>(times.size() - i);
+    const int time = times[i].first;
+    int reached = 0;
+    for (; i < times.size() && times[i].first == time; ++i) reached += times[i].second ? 1 : 0;
+    waiting *= 1.0 - reached / at_risk;
+    if (waiting <= 0.5 + 1e-12) return time;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+Settling settlingOf(const std::vector<MissionResult>& results, const ErrorOf& error,
+                    const Omniscient& omniscient, Met met) {
+  Settling settling;
+  std::vector<Stretch> stretches;
+  std::set<uint64_t> missions;
+  std::vector<std::pair<int, bool>> position, yaw, both;
+  for (const MissionResult& result : results)
+    for (size_t change = 0; change < result.crossings.size(); ++change) {
+      if (!counts(result, change, met)) continue;
+      Stretch stretch = stretchAfter(result, change, error, omniscient);
+      if (windowsIn(stretch) == 0) continue;
+      const auto in_position = [](const Pair& w) { return within(w.position, w.best_position); };
+      const auto in_yaw = [](const Pair& w) { return within(w.yaw, w.best_yaw); };
+      position.push_back(timeOf(stretch, in_position));
+      yaw.push_back(timeOf(stretch, in_yaw));
+      both.push_back(timeOf(stretch, [&](const Pair& w) { return in_position(w) && in_yaw(w); }));
+      stretches.push_back(std::move(stretch));
+      missions.insert(result.seed);
+    }
+  settling.missions = static_cast<int>(missions.size());
+  settling.changes = static_cast<int>(stretches.size());
+  settling.position = medianTime(std::move(position));
+  settling.yaw = medianTime(std::move(yaw));
+  settling.both = medianTime(std::move(both));
+  fillRatios(stretches, settling);
+  return settling;
 }
 
 }  // namespace tread::missions

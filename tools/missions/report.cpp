@@ -8,8 +8,8 @@
 #include <map>
 #include <ostream>
 
-#include "common/recordings/text_file.hpp"
 #include "common/report/text.hpp"
+#include "common/store/store.hpp"
 #include "tools/missions/prediction_errors.hpp"
 
 namespace tread::missions {
@@ -269,7 +269,7 @@ nlohmann::ordered_json batchJson(const Batch& batch) {
 
 void writeJsonFile(const std::string& path, const nlohmann::ordered_json& json) {
   // A reason comes from a message, which may have been broken: its bytes need not be UTF-8.
-  recordings::writeText(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n');
+  writeText(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n');
 }
 
 void writeJson(const std::string& path, const Batch& batch) {

@@ -65,4 +65,10 @@ struct Errors {
 };
 Errors medianErrors(const std::vector<Piece>& pieces, size_t model, size_t sample);
 
+/// Draws six pieces, evenly chosen over the drive, as measured and by model, and how the models'
+/// median errors grow.
+/** Throws std::runtime_error with one clear line if the file cannot be written. */
+void drawOverlay(const std::string& path, const std::string& title,
+                 const std::vector<Piece>& pieces, const std::vector<std::string>& model_names);
+
 }  // namespace tread::overlay

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <cstdio>
-#include <iostream>
 #include <set>
 
 #include "common/config/command_line.hpp"
 #include "common/vehicle/model_file.hpp"
-#include "tools/overlay/overlay_picture.hpp"
+#include "tools/overlay/drive_pieces.hpp"
 
 namespace {
 
@@ -71,7 +70,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return runProgram("tread-overlay", [&] {
     CLI::App app{
         "Drives a log's commands through model files once more, and compares with what the INS "
         "measured.",
@@ -80,8 +79,5 @@ int main(int argc, char** argv) {
     describe(app, arguments);
     if (const auto code = parseCommandLine(app, argc, argv)) return *code;
     return run(arguments);
-  } catch (const std::exception& error) {
-    std::cerr << "tread-overlay: " << error.what() << std::endl;
-    return 1;
-  }
+  });
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/overlay/overlay_picture.hpp"
+#include "tools/overlay/drive_pieces.hpp"
 
 #include <algorithm>
 

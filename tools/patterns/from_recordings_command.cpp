@@ -12,7 +12,7 @@
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/drive_recordings.hpp"
 #include "common/recordings/execution_log.hpp"
-#include "common/recordings/text_file.hpp"
+#include "common/store/store.hpp"
 #include "tools/patterns/commands.hpp"
 
 namespace tread::patterns {
@@ -91,9 +91,8 @@ void writeBook(const Options& options, const DriveRecordings& drives) {
   refuseOtherSurfaces(options.book, drives);
   recordings::writeRecordings(options.book, drives.recordings);
   for (size_t i = 0; i < drives.surfaces.size(); ++i)
-    recordings::writeOutput(
-        (fs::path(options.book) / (drives.surfaces[i].surface + ".yaml")).string(),
-        formatPatterns(recordings::averagedSet(drives, i)), {options.recipe});
+    writeOutput((fs::path(options.book) / (drives.surfaces[i].surface + ".yaml")).string(),
+                formatPatterns(recordings::averagedSet(drives, i)), {options.recipe});
 }
 
 void fromRecordings(const Options& options) {

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <cstdio>
-#include <exception>
 
 #include "common/config/command_line.hpp"
 #include "tools/patterns/commands.hpp"
 
 int main(int argc, char** argv) {
-  try {
+  return tread::runProgram("tread-patterns", [&] {
     CLI::App app{"Makes, records, averages, shows and checks motion patterns."};
     app.require_subcommand(1);
     tread::patterns::addMake(app);
@@ -18,8 +16,5 @@ int main(int argc, char** argv) {
     tread::patterns::addCheck(app);
     tread::patterns::addMirror(app);
     return tread::parseCommandLine(app, argc, argv).value_or(0);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "tread-patterns: %s\n", error.what());
-    return 1;
-  }
+  });
 }

@@ -16,7 +16,7 @@
 #include "common/pattern/pattern_check.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/recordings/recordings.hpp"
-#include "common/recordings/text_file.hpp"
+#include "common/store/store.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "modules/pattern_recorder/recorder_node.hpp"
 #include "tools/patterns/commands.hpp"
@@ -52,7 +52,7 @@ std::string keepPart(const std::string& path, const PatternSet& set,
   size_t executions = 0;
   for (const auto& of_pattern : recorder.recorded()) executions += of_pattern.size();
   if (executions == 0) return "";
-  recordings::writeText(path, recordings::formatSurface({"", recorder.recorded()}, set));
+  writeText(path, recordings::formatSurface({"", recorder.recorded()}, set));
   return "; the " + std::to_string(executions) + " executions until then are in " + path;
 }
 
@@ -196,9 +196,8 @@ void average(const AverageOptions& options) {
   const std::string name =
       options.name.empty() ? book.patterns.content().name + "_" + options.surface : options.name;
   const PatternSet set = named(averaged, name);
-  recordings::writeOutput(
-      options.output, formatPatterns(set),
-      {options.book + "/patterns.yaml", options.book + "/" + options.surface + ".csv"});
+  writeOutput(options.output, formatPatterns(set),
+              {options.book + "/patterns.yaml", options.book + "/" + options.surface + ".csv"});
   for (const AverageNote& note : notes) std::cout << noteLine(note);
   std::cout << table(set);
 }

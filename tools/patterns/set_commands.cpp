@@ -10,7 +10,7 @@
 
 #include "common/config/config_reader.hpp"
 #include "common/pattern/pattern_file.hpp"
-#include "common/recordings/text_file.hpp"
+#include "common/store/store.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/patterns/commands.hpp"
 #include "tools/patterns/mirror.hpp"
@@ -32,7 +32,7 @@ void make(const MakeOptions& options) {
   const ModelDocument model = readModelDocument(options.model);
   const PatternSet set = makeSet(ConfigReader::fromFile(options.recipe), model.vehicle);
   warnOutside(model, options.model, set);
-  recordings::writeOutput(options.output, formatPatterns(set), {options.recipe, options.model});
+  writeOutput(options.output, formatPatterns(set), {options.recipe, options.model});
   std::cout << table(set);
 }
 
@@ -59,7 +59,7 @@ struct MirrorOptions {
 void mirror(const MirrorOptions& options) {
   std::vector<std::string> notes;
   const PatternSet set = withMirrors(readPatternFile(options.file), options.pattern, notes);
-  recordings::writeOutput(options.output, formatPatterns(set), {options.file});
+  writeOutput(options.output, formatPatterns(set), {options.file});
   for (const std::string& note : notes) std::cout << note << '\n';
   if (notes.empty()) std::cout << "every pattern that turns has its mirror image already\n";
   std::cout << options.output << ": " << set.patterns().size() << " patterns\n";
@@ -88,7 +88,7 @@ void show(const ShowOptions& options) {
     pictured.push_back({labelOf(options.other, options.file), other});
   }
   if (options.picture.empty()) return;
-  recordings::refuseToReplace(options.picture, {options.file, options.other});
+  refuseToReplace(options.picture, {options.file, options.other});
   drawSets(pictured, options.picture);
 }
 

@@ -105,10 +105,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& problem) {
-    std::fprintf(stderr, "tread-plan: %s\n", problem.what());
-    return 2;
-  }
+  return tread::runProgram("tread-plan", [&] { return run(argc, argv); });
 }

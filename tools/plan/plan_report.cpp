@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "common/config/scalars.hpp"
-#include "common/recordings/text_file.hpp"
 #include "common/report/plot.hpp"
 #include "common/report/text.hpp"
+#include "common/store/store.hpp"
 
 namespace tread::plan {
 namespace {
@@ -284,7 +284,7 @@ Json answersJson(const std::vector<PlanQuery>& queries, const std::vector<PlanAn
 
 void writeJson(const std::string& path, const Json& json) {
   // A name comes from a file, which may have been broken: its bytes need not be UTF-8.
-  recordings::writeText(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  writeText(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 std::string headline(const PlanAnswer& answer) {

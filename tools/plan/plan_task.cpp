@@ -10,7 +10,7 @@
 #include "common/config/scalars.hpp"
 #include "common/grid/footprint.hpp"
 #include "common/pattern/pattern_file.hpp"
-#include "common/recordings/text_file.hpp"
+#include "common/store/store.hpp"
 #include "tools/plan/query_file.hpp"
 
 namespace tread::plan {
@@ -126,8 +126,8 @@ void readWanted(const PlanOptions& options, PlanTask& task) {
 
 /// Nothing that is read may be written over.
 void protectInputs(const PlanOptions& options, const MapFile& map) {
-  recordings::checkOutputs({options.json, options.picture, options.write_queries},
-                           {options.map, map.image, options.patterns, options.queries});
+  checkOutputs({options.json, options.picture, options.write_queries},
+               {options.map, map.image, options.patterns, options.queries});
 }
 
 }  // namespace
@@ -153,7 +153,7 @@ PlanTask loadTask(const PlanOptions& options) {
   if (!task.deadline_ms && !task.exact) task.deadline_ms = kDeadline;
   readWanted(options, task);
   if (!options.write_queries.empty())
-    recordings::writeOutput(options.write_queries, formatQueries(task.queries), {});
+    writeOutput(options.write_queries, formatQueries(task.queries), {});
   return task;
 }
 

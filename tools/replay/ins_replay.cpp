@@ -8,8 +8,8 @@
 
 #include "common/bus/virtual_bus.hpp"
 #include "common/messages/ins_messages.hpp"
-#include "common/recordings/text_file.hpp"
 #include "common/report/plot.hpp"
+#include "common/store/store.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"
 #include "modules/ins_driver/nmea/nmea_log.hpp"
 
@@ -113,7 +113,7 @@ InsReplay replayIns(const std::string& log, ins::InsDriverConfig config) {
 }
 
 InsReplay replayInsFile(const std::string& path, const ins::InsDriverConfig& config) {
-  return replayIns(recordings::readText(path), config);
+  return replayIns(readText(path), config);
 }
 
 std::string reportOf(const InsReplay& replay) {

@@ -7,7 +7,7 @@
 
 #include "common/config/command_line.hpp"
 #include "common/pattern/pattern_file.hpp"
-#include "common/recordings/text_file.hpp"
+#include "common/store/store.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/replay/ins_replay.hpp"
 #include "tools/replay/learner_report.hpp"
@@ -33,7 +33,7 @@ void addOutput(CLI::App& command, Output& output) {
 
 void say(const std::string& report, const Output& output) {
   std::fputs(report.c_str(), stdout);
-  if (!output.report.empty()) recordings::writeText(output.report, report);
+  if (!output.report.empty()) writeText(output.report, report);
 }
 
 /// Options of every command, and whether a comparison found a difference.
@@ -126,8 +126,7 @@ void replayLearner(LearnerArguments& arguments) {
   const PatternSet set = arguments.model.empty()
                              ? readPatternFile(arguments.patterns)
                              : replay::predictedSet(log, readModelFile(arguments.model));
-  if (!arguments.write_patterns.empty())
-    recordings::writeText(arguments.write_patterns, formatPatterns(set));
+  if (!arguments.write_patterns.empty()) writeText(arguments.write_patterns, formatPatterns(set));
   learner::LearnerNodeConfig config(set);
   std::string notes =
       "Each execution is scored with the newest set when it began, as a planner knows it;\n"
@@ -215,10 +214,5 @@ int parseAndRun(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return parseAndRun(argc, argv);
-  } catch (const std::exception& problem) {
-    std::fprintf(stderr, "tread-replay: %s\n", problem.what());
-    return 1;
-  }
+  return runProgram("tread-replay", [&] { return parseAndRun(argc, argv); });
 }

@@ -14,7 +14,7 @@
 #include "modules/learner/learner_node.hpp"
 #include "tools/replay/learner_lives.hpp"
 #include "tools/replay/log_bus.hpp"
-#include "tools/replay/message_difference.hpp"
+#include "tools/replay/replay_check.hpp"
 
 namespace tread::replay {
 namespace {

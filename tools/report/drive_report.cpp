@@ -121,9 +121,9 @@ std::string latencyLine(const char* name, const Durations& durations) {
 }
 
 /// Borders that the robot crossed, from the true surface along the way; short visits left out.
-std::vector<BorderCrossing> crossingsOf(const DriveRecord& drive, const SimulationTruth& truth) {
+std::vector<Crossing> crossingsOf(const DriveRecord& drive, const SimulationTruth& truth) {
   constexpr double kVisit = 0.5;  // [s]
-  std::vector<BorderCrossing> crossings;
+  std::vector<Crossing> crossings;
   std::string present;
   std::string perhaps;
   double since = 0.0;
@@ -134,8 +134,8 @@ std::vector<BorderCrossing> crossingsOf(const DriveRecord& drive, const Simulati
     if (row.surface != perhaps) since = time;
     perhaps = row.surface;
     if (perhaps == present || time - since < kVisit) continue;
+    crossings.push_back({since, present, perhaps});
     present = perhaps;
-    crossings.push_back({since, present});
   }
   return crossings;
 }
@@ -202,7 +202,7 @@ std::string reportOf(const DriveRecord& drive, const SimulationTruth& truth,
                      mean(drive, &PatternError::yaw) * 180.0 / kPi, drive.errors.size());
   words += formatted(" (%d refused)\n", drive.refused);
   std::vector<int64_t> changes;
-  for (const BorderCrossing& crossing : crossingsOf(drive, truth))
+  for (const Crossing& crossing : crossingsOf(drive, truth))
     changes.push_back(drive.begun + std::llround(crossing.time * 1e6));
   if (!by_rule.rules.empty()) words += reportOf(by_rule, changes);
   words += "latency, as the logger received:\n";
@@ -217,13 +217,7 @@ DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth,
                    const RuleErrors& by_rule) {
   DriveScene scene;
   scene.title = resultLine(drive, truth);
-  if (truth.world) {
-    scene.base_surface = truth.world->base_surface;
-    for (const sim::SurfaceRegion& region : truth.world->regions)
-      scene.patches.push_back({region.surface, region.corners});
-    for (const sim::Obstacle& obstacle : truth.world->obstacles)
-      scene.obstacles.push_back({obstacle.corners, obstacle.centre, obstacle.radius});
-  }
+  scene.world = truth.world;
   if (drive.map) scene.map = *drive.map;
   scene.tree = drive.tree;
   scene.outline = drive.outline;

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "common/grid/grid.hpp"
-#include "common/report/drive_picture.hpp"
 #include "modules/simulator/core/world.hpp"
 #include "modules/simulator/truth_record.hpp"
+#include "tools/report/drive_picture.hpp"
 #include "tools/report/latency.hpp"
 #include "tools/report/rule_errors.hpp"
 
@@ -31,7 +31,7 @@ struct DriveRecord {
   int refused = 0;                   ///< executions that were no fair measurement
   int disarmed = 0;                  ///< times that a permission to drive was lost
   std::vector<PatternError> errors;  ///< time since begun
-  std::vector<DriveMoment> track;    ///< as the INS measured, time since begun
+  std::vector<TrackPoint> track;     ///< as the INS measured, time since begun
   std::vector<TreeEdge> tree;        ///< the richest one on the way
   std::unique_ptr<TileMap> map;
   std::optional<FootprintSize> outline;  ///< of the robot; none = the log does not say

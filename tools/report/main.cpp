@@ -60,10 +60,5 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember(names));
   app.add_option("--picture", arguments.picture, "file of the picture (PNG)");
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
-  try {
-    return run(arguments);
-  } catch (const std::exception& error) {
-    std::cerr << "tread-report: " << error.what() << std::endl;
-    return 1;
-  }
+  return runProgram("tread-report", [&] { return run(arguments); });
 }

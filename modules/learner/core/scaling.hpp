@@ -9,7 +9,6 @@
 
 #include "common/execution/measurement.hpp"
 #include "common/pattern/pattern.hpp"
-#include "modules/learner/core/trajectory_table.hpp"
 
 // The arithmetic of collective motion pattern scaling (paper, section IV):
 //   1. the box around a trajectory and its start, and the interval of its yaw;
@@ -19,6 +18,44 @@
 // The guards against boxes that hold nothing but noise are decided once, from the shipped set: a
 // test of each execution against a threshold would work as a ratchet.
 namespace tread::learner {
+
+/// T x 3 numbers in memory: all x, then all y, then all yaw, so that a loop over samples is a loop
+/// over neighbours.
+using Trajectory = Eigen::Map<Eigen::Array<double, Eigen::Dynamic, 3>>;
+using ConstTrajectory = Eigen::Map<const Eigen::Array<double, Eigen::Dynamic, 3>>;
+
+/// Trajectories of all patterns of a set in one block of memory.
+class TrajectoryTable {
+ public:
+  TrajectoryTable() = default;
+  explicit TrajectoryTable(const std::vector<MotionPattern>& patterns);
+
+  size_t patterns() const { return begins_.empty() ? 0 : begins_.size() - 1; }
+  Eigen::Index samples(size_t pattern) const {
+    return (begins_[pattern + 1] - begins_[pattern]) / 3;
+  }
+  /// To be changed in place.
+  Trajectory change(size_t pattern) {
+    return {numbers_.data() + begins_[pattern], samples(pattern), 3};
+  }
+  ConstTrajectory of(size_t pattern) const {
+    return {numbers_.data() + begins_[pattern], samples(pattern), 3};
+  }
+  /// The last pose of a pattern.
+  Pose2 end(size_t pattern) const;
+  /// Takes over all numbers of a table of the same shape; allocates nothing.
+  void copyNumbers(const TrajectoryTable& other);
+  bool sameShape(const TrajectoryTable& other) const { return begins_ == other.begins_; }
+
+ private:
+  std::vector<double> numbers_;
+  std::vector<Eigen::Index> begins_;
+};
+
+/// Poses as a trajectory: `numbers` gets T x 3 of them.
+void fill(const std::vector<Pose2>& poses, std::vector<double>& numbers);
+/// And back.
+std::vector<Pose2> posesOf(const ConstTrajectory& trajectory);
 
 /// One number for each of x, y and yaw of a trajectory in its start frame.
 using Axes = Eigen::Array3d;

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cstring>
 
-#include "tools/experiment/transition_world.hpp"
+#include "tools/experiment/ground.hpp"
 #include "tools/experiment/trials.hpp"
 
 namespace {

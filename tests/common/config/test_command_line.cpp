@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
+#include <optional>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -29,7 +32,44 @@ std::string errorOf(const std::string& arguments) {
   return "";
 }
 
+/// The exit code of a program with an option of each kind of number.
+std::optional<int> codeOf(std::vector<std::string> arguments) {
+  CLI::App app{"A program.", "tread-sample"};
+  double length = 0.0, ratio = 0.0;
+  std::optional<double> limit;
+  int count = 0;
+  std::string word;
+  app.add_option("--length", length, "a number")->check(CLI::Range(1.0, 60.0));
+  app.add_option("--count", count, "a whole number");
+  app.add_option("--limit", limit, "a number that may be missing");
+  app.add_option("--word", word, "no number");
+  app.add_subcommand("find", "finds")->add_option("--ratio", ratio, "a number of a command");
+  arguments.insert(arguments.begin(), "tread-sample");
+  std::vector<char*> words;
+  for (std::string& argument : arguments) words.push_back(argument.data());
+  return parseCommandLine(app, static_cast<int>(words.size()), words.data());
+}
+
 }  // namespace
+
+TEST_CASE("options of numbers take finite ones, in every command, and words are left alone") {
+  CHECK(codeOf({"--length", "2", "--count", "3", "--limit", "0.5", "--word", "nan"}) ==
+        std::nullopt);
+  CHECK(codeOf({"find", "--ratio", "1e300"}) == std::nullopt);
+  for (const char* number : {"nan", "inf", "-inf", "NaN", "1e999"}) {
+    INFO(number);
+    CHECK(codeOf({std::string("--length=") + number}) == kBadInput);
+    CHECK(codeOf({std::string("--limit=") + number}) == kBadInput);
+    CHECK(codeOf({"find", std::string("--ratio=") + number}) == kBadInput);
+  }
+  CHECK(codeOf({"--count", "nan"}) == kBadInput);
+}
+
+TEST_CASE("a program ends with its own code, or with that of bad input where it throws") {
+  CHECK(runProgram("tread-sample", [] { return 1; }) == 1);
+  CHECK(runProgram("tread-sample", []() -> int { throw std::runtime_error("no such log"); }) ==
+        kBadInput);
+}
 
 TEST_CASE("a usage error is one line that says where, what, and what would be right") {
   const std::pair<std::string, std::string> kBad[] = {

@@ -7,7 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/pattern/pattern_file.hpp"
-#include "common/recordings/text_file.hpp"
+#include "common/store/store.hpp"
 #include "tests/common/recordings/samples.hpp"
 
 using namespace tread;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/recordings/text_file.hpp"
+#include "common/store/store.hpp"
 #include "tools/gap/find_output.hpp"
 #include "tools/gap/report/words.hpp"
 #include "tools/gap/report/sections.hpp"
@@ -256,8 +256,8 @@ Page comparisonPage(const ComparisonReport& report) {
 
 void writeComparison(const std::string& folder, const ComparisonReport& report) {
   makeFolder(folder);
-  recordings::writeText(folder + "/comparison.md", markdownOf(comparisonPage(report)));
-  recordings::writeText(folder + "/comparison.json", comparisonJson(report).dump(2) + "\n");
+  writeText(folder + "/comparison.md", markdownOf(comparisonPage(report)));
+  writeText(folder + "/comparison.json", comparisonJson(report).dump(2) + "\n");
 }
 
 nlohmann::ordered_json comparisonJson(const ComparisonReport& report) {

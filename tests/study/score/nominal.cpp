@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "common/report/hash.hpp"
+#include "common/store/store.hpp"
 #include "tests/study/score/child.hpp"
 #include "tests/study/score/study.hpp"
 #include "tests/study/score/suites.hpp"
@@ -137,7 +138,7 @@ Json nominalStory(const Study& study, const std::vector<HiddenCase>& cases) {
   Json all = Json::object();
   for (const std::string& name : names) {
     const std::string model = nominalModel(study, name);
-    Json story = {{"sha256", sha256OfFile(model)}};
+    Json story = {{"sha256", sha256(readText(model))}};
     const fs::path told = fs::path(model).parent_path() / kStory;
     if (study.nominal.empty() || recordingNamed(study, name)) {
       const Json told_story = readJson(told);

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "common/report/hash.hpp"
+#include "common/store/store.hpp"
 #include "tests/study/score/batch.hpp"
 #include "tests/study/score/child.hpp"
 #include "tests/study/score/suites.hpp"
@@ -57,7 +58,7 @@ void claim(const Study& study, const Json& header) {
   const fs::path note = fs::path(shardFolder(study)) / "study.json";
   Json all = header;
   for (const char* program : {"tread-hide", "tread-gap"})
-    all[program] = sha256OfFile(study.programs + "/" + program);
+    all[program] = sha256(readText(study.programs + "/" + program));
   const std::string text = all.dump(2) + "\n";
   if (fs::exists(note) && contentOf(note) != text)
     throw std::runtime_error(note.string() +

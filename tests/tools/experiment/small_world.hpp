@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tools/experiment/batch.hpp"
-#include "tools/experiment/transition_world.hpp"
+#include "tools/experiment/ground.hpp"
 
 namespace tread::experiment::testing {
 

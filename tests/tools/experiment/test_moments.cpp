@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 
 #include "tests/effort.hpp"
-#include "tools/experiment/moments.hpp"
 #include "tools/experiment/tables.hpp"
+#include "tools/experiment/trials.hpp"
 
 namespace tread::experiment {
 namespace {

@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/tools/experiment/small_world.hpp"
-#include "tools/experiment/paper_numbers.hpp"
+#include "tools/experiment/tables.hpp"
 
 namespace tread::experiment {
 namespace {

@@ -53,7 +53,7 @@ const std::string kFour = " --rules off,single,collective,omniscient --repetitio
 void refuses(const std::string& arguments, const std::string& words) {
   const auto [code, printed] = run(arguments);
   INFO(arguments << "\n" << printed);
-  CHECK(code == 1);
+  CHECK(code == 2);
   CHECK(printed.find("tread-experiment: ") == 0);
   CHECK(printed.find(words) != std::string::npos);
   CHECK(printed.find('\n') == printed.size() - 1);

@@ -9,7 +9,7 @@
 
 #include "tests/tools/experiment/small_world.hpp"
 #include "tools/experiment/figures.hpp"
-#include "tools/experiment/paper_numbers.hpp"
+#include "tools/experiment/tables.hpp"
 
 namespace tread::experiment {
 namespace {

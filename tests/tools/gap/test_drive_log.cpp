@@ -9,6 +9,7 @@
 
 #include "common/recordings/imported_log.hpp"
 #include "common/report/hash.hpp"
+#include "common/store/store.hpp"
 #include "tests/tools/gap/small_log.hpp"
 #include "tests/tools/import/drive_samples.hpp"
 #include "tools/gap/drive_log.hpp"
@@ -294,7 +295,7 @@ TEST_CASE("a drive says of which robot it was imported, and how") {
 
 TEST_CASE("the hash of a log is its SHA-256") {
   const Folder folder("gap_hash");
-  REQUIRE(sha256OfFile(folder.file("abc", "abc")) ==
+  REQUIRE(sha256(readText(folder.file("abc", "abc"))) ==
           "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 

@@ -11,7 +11,7 @@
 
 #include "tests/tools/called_program.hpp"
 #include "tools/missions/comparison_report.hpp"
-#include "tools/missions/settling.hpp"
+#include "tools/missions/prediction_errors.hpp"
 
 using namespace tread;
 using namespace tread::missions;

@@ -13,7 +13,7 @@
 
 #include "tools/missions/comparison_report.hpp"
 #include "tools/missions/mission_runner.hpp"
-#include "tools/missions/settling.hpp"
+#include "tools/missions/prediction_errors.hpp"
 
 using namespace tread;
 using namespace tread::missions;

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <map>
 
-#include "tools/missions/operator.hpp"
 #include "tools/missions/prediction_errors.hpp"
 #include "tools/missions/referee.hpp"
+#include "tools/missions/robot_system.hpp"
 
 using namespace tread;
 using namespace tread::missions;

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "common/pattern/pattern_file.hpp"
+#include "tools/missions/referee.hpp"
 #include "tools/missions/report.hpp"
-#include "tools/missions/steadiness.hpp"
 
 using namespace tread;
 using namespace tread::missions;

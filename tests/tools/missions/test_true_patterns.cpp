@@ -13,8 +13,8 @@
 
 #include "modules/simulator/core/terrain.hpp"
 #include "tools/missions/comparison_report.hpp"
-#include "tools/missions/operator.hpp"
 #include "tools/missions/referee.hpp"
+#include "tools/missions/robot_system.hpp"
 #include "tools/missions/true_patterns.hpp"
 
 using namespace tread;

@@ -59,7 +59,7 @@ TEST_CASE("from-recordings says in one line what is wrong") {
   const auto complaint = [](const std::string& arguments) {
     const CalledProgram outcome = called(arguments);
     INFO(outcome.printed);
-    CHECK(outcome.status == 1);
+    CHECK(outcome.status == 2);
     CHECK(std::count(outcome.printed.begin(), outcome.printed.end(), '\n') == 1);
     return outcome.printed;
   };
@@ -82,6 +82,6 @@ TEST_CASE("from-recordings does not mix its surfaces with those of another book"
   folder.file("book/ice.csv", "pattern,execution,sample,x_m,y_m,yaw_rad\n");
   const CalledProgram outcome =
       called("tread-patterns from-recordings " + drives + " -o " + folder.file("book"));
-  CHECK(outcome.status == 1);
+  CHECK(outcome.status == 2);
   CHECK(outcome.printed.find("ice.csv: a surface of another book") != std::string::npos);
 }

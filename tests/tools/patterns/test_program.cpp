@@ -64,18 +64,18 @@ TEST_CASE("tread-patterns warns where patterns ask for more than a model was mad
   }
   CHECK_FALSE(run("check " + kSet + " --model " + kGrass).says("asked for"));
   const Run foreign = run("check " + kSet + " --model " + kConfig + "models/warthog_nominal.yaml");
-  CHECK(foreign.status == 1);
+  CHECK(foreign.status == 2);
   CHECK(foreign.says("the model takes track speed"));
 }
 
 TEST_CASE("tread-patterns says in one line what is wrong") {
   const Run missing = run("show no/such/file.yaml");
-  CHECK(missing.status == 1);
+  CHECK(missing.status == 2);
   CHECK(missing.printed.find("tread-patterns: no/such/file.yaml") == 0);
   CHECK(missing.printed.find('\n') == missing.printed.size() - 1);
   const Run unwritable = run("make " + kConfig + "patterns/recipes/teodor.yaml --model " + kGrass +
                              " -o /no/such/folder/set.yaml");
-  CHECK(unwritable.status == 1);
+  CHECK(unwritable.status == 2);
   CHECK(unwritable.says("cannot be written"));
 }
 
@@ -102,7 +102,7 @@ TEST_CASE("Two sets are compared, and drawn into a picture") {
   CHECK(shown.says("The heading differs most in 'sharp_left': a turns 91.9 deg, b 115.0 deg."));
   CHECK(folder.text("both.png").substr(1, 3) == "PNG");
   const Run over = run("show " + kSet + " --picture " + kSet);
-  CHECK(over.status == 1);
+  CHECK(over.status == 2);
   CHECK(over.says("this is the input"));
   CHECK(run("show " + kSet).status == 0);
 }
@@ -114,7 +114,7 @@ TEST_CASE("A file is checked: ok, or one line with file and line") {
   CHECK(good.printed == kSet + ": ok, 23 patterns, 3 classes, version 1\n");
   std::ofstream(folder.path("bad.yaml")) << "name: bad\nkind: wind\nperiod_us: 50000\n";
   const Run bad = run("check " + folder.path("bad.yaml"));
-  CHECK(bad.status == 1);
+  CHECK(bad.status == 2);
   CHECK(bad.printed.find("tread-patterns: " + folder.path("bad.yaml") + ":2: ") == 0);
   CHECK(bad.printed.find('\n') == bad.printed.size() - 1);
 }
@@ -126,11 +126,11 @@ TEST_CASE("A set is mirrored into another file, never over itself") {
   CHECK(complete.says("every pattern that turns has its mirror image already"));
   const Run itself =
       run("mirror " + folder.path("same.yaml") + " -o " + folder.path("./same.yaml"));
-  CHECK(itself.status == 1);
+  CHECK(itself.status == 2);
   CHECK(itself.says("this is the input"));
   const Run straight =
       run("mirror " + kSet + " -o " + folder.path("x.yaml") + " --pattern straight");
-  CHECK(straight.status == 1);
+  CHECK(straight.status == 2);
   CHECK(straight.says("its own mirror image"));
 }
 

@@ -55,15 +55,15 @@ TEST_CASE("Recording and averaging refuse what makes no sense with one line") {
   const Folder folder;
   REQUIRE(record(folder, "--surface grass -n 2").status == 0);
   const Run few = run("average " + folder.path("book") + " grass -o " + folder.path("x.yaml"));
-  CHECK(few.status == 1);
+  CHECK(few.status == 2);
   CHECK(few.says("pattern 'straight' has 2 fair executions of 2; at least 3 are needed"));
   CHECK_FALSE(std::filesystem::exists(folder.path("x.yaml")));
   const Run unknown = run("average " + folder.path("book") + " sand -o " + folder.path("x.yaml"));
-  CHECK(unknown.status == 1);
+  CHECK(unknown.status == 2);
   CHECK(unknown.says("no surface 'sand'; recorded are grass"));
   const Run over = run("average " + folder.path("book") + " grass --min-executions 1 -o " +
                        folder.path("book/patterns.yaml"));
-  CHECK(over.status == 1);
+  CHECK(over.status == 2);
   CHECK(over.says("this is the input"));
   REQUIRE(run("make " + kConfig + "patterns/recipes/teodor.yaml --model " + kGrass + " -o " +
               folder.path("same.yaml"))
@@ -73,13 +73,13 @@ TEST_CASE("Recording and averaging refuse what makes no sense with one line") {
   CHECK(record(folder, "--surface s -n 0").status == 2);
   CHECK(record(folder, "").status == 2);
   const std::string bad = "record " + kSet + " --book " + folder.path("b") + " --surface a/b ";
-  CHECK(run(bad + "--model " + kGrass).status == 1);
+  CHECK(run(bad + "--model " + kGrass).status == 2);
   // Before it drives for an hour, not afterwards.
   const Run live = run(bad + "--live");
-  CHECK(live.status == 1);
+  CHECK(live.status == 2);
   CHECK(live.says("surface 'a/b': its name is that of its file"));
   CHECK(run(bad + "--live --model " + kGrass).status == 2);
-  CHECK(run("record " + kSet + " --live --book /proc/none --surface x").status == 1);
+  CHECK(run("record " + kSet + " --live --book /proc/none --surface x").status == 2);
 }
 
 TEST_CASE("A book stays one of the patterns that it began with") {
@@ -92,9 +92,9 @@ TEST_CASE("A book stays one of the patterns that it began with") {
   other.replace(at, 14, "name: forwards");
   std::ofstream(folder.path("other.yaml")) << other;
   const Run refused = record(folder, "--surface lawn -n 2", folder.path("other.yaml"));
-  CHECK(refused.status == 1);
-  CHECK(
-      refused.says("book/patterns.yaml: these recordings are of another set ('straight' in the place of "
-                   "'forwards'); record into another folder"));
+  CHECK(refused.status == 2);
+  CHECK(refused.says(
+      "book/patterns.yaml: these recordings are of another set ('straight' in the place of "
+      "'forwards'); record into another folder"));
   CHECK(folder.text("book/patterns.yaml") == patterns);
 }

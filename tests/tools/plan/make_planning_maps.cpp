@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "common/config/command_line.hpp"
-#include "common/recordings/text_file.hpp"
+#include "common/store/store.hpp"
 #include "tests/tools/plan/planning_maps.hpp"
 
 namespace {
@@ -23,8 +23,8 @@ int run(int argc, char** argv) {
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   std::filesystem::create_directories(folder);
   for (const PlanningMap& map : planningMaps(seed)) {
-    recordings::writeText(folder + "/" + map.name + ".yaml", map.yaml);
-    recordings::writeText(folder + "/" + map.name + ".pgm", map.picture);
+    writeText(folder + "/" + map.name + ".yaml", map.yaml);
+    writeText(folder + "/" + map.name + ".pgm", map.picture);
     std::printf("%s/%s.yaml\n", folder.c_str(), map.name.c_str());
   }
   return 0;

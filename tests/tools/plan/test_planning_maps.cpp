@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/grid/grid.hpp"
-#include "common/recordings/text_file.hpp"
+#include "common/store/store.hpp"
 #include "tests/tools/plan/plan_samples.hpp"
 #include "tests/tools/plan/planning_maps.hpp"
 #include "tools/plan/map_file.hpp"
@@ -78,8 +78,8 @@ int straightSteps(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
 TEST_CASE("our maps in the tree are those that make-planning-maps makes") {
   for (const PlanningMap& map : planningMaps(kPlanningMapsSeed)) {
     CAPTURE(map.name);
-    CHECK(recordings::readText(kFolder + map.name + ".yaml") == map.yaml);
-    CHECK((recordings::readText(kFolder + map.name + ".pgm") == map.picture));
+    CHECK(readText(kFolder + map.name + ".yaml") == map.yaml);
+    CHECK((readText(kFolder + map.name + ".pgm") == map.picture));
   }
 }
 

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "tools/missions/mission_world.hpp"
-#include "tools/missions/operator.hpp"
 #include "tools/missions/robot_system.hpp"
 #include "tools/replay/robot_log.hpp"
 

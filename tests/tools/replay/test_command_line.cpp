@@ -76,10 +76,10 @@ TEST_CASE("executions of a length that is no whole number of commands are refuse
 
 TEST_CASE("bad arguments of tread-replay are one clear line each") {
   const CalledProgram missing = called("tread-replay learner /nowhere.log --model " + kModel);
-  REQUIRE(missing.status == 1);
+  REQUIRE(missing.status == 2);
   REQUIRE(lines(missing.printed) == 1);
   REQUIRE(missing.printed.find("/nowhere.log") != std::string::npos);
-  REQUIRE(called("tread-replay learner /nowhere.log").status == 1);
+  REQUIRE(called("tread-replay learner /nowhere.log").status == 2);
   REQUIRE(called("tread-replay learner x --rule best --model " + kModel).status == 2);
   REQUIRE(called("tread-replay").status == 2);
   REQUIRE(called("tread-replay --no-such-option").status == 2);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "modules/learner/core/rules/local_filter.hpp"
+#include "modules/learner/core/rules/ground_filter.hpp"
 
 namespace tread::learner {
 namespace {

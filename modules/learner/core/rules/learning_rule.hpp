@@ -11,7 +11,7 @@
 
 #include "common/pattern/pattern.hpp"
 #include "modules/learner/core/rules/rule_config.hpp"
-#include "modules/learner/core/trajectory_table.hpp"
+#include "modules/learner/core/scaling.hpp"
 
 namespace tread::learner {
 

@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "modules/learner/core/rules/bank.hpp"
-#include "modules/learner/core/rules/local_filter.hpp"
+#include "modules/learner/core/rules/ground_filter.hpp"
 #include "modules/learner/core/rules/scaling_rules.hpp"
 
 namespace tread::learner {

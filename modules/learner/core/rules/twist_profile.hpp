@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 
 #include "common/pattern/pattern.hpp"
-#include "modules/learner/core/trajectory_table.hpp"
+#include "modules/learner/core/scaling.hpp"
 
 namespace tread::learner {
 

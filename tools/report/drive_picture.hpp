@@ -9,25 +9,13 @@
 #include "common/geometry/footprint_size.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/grid/grid.hpp"
+#include "modules/simulator/core/world.hpp"
 
 namespace tread {
 class plan_tree_t;
 }
 
 namespace tread::report {
-
-/// A patch of ground; later ones lie on top.
-struct GroundPatch {
-  std::string surface;
-  std::vector<Eigen::Vector2d> corners;  ///< p_map [m]
-};
-
-/// A true obstacle: a polygon, or a disc where it has no corners.
-struct ObstacleShape {
-  std::vector<Eigen::Vector2d> corners;  ///< p_map [m]
-  Eigen::Vector2d centre{0.0, 0.0};
-  double radius = 0.0;  ///< [m]
-};
 
 /// One branch of a search tree, in map.
 struct TreeEdge {
@@ -36,9 +24,9 @@ struct TreeEdge {
   bool chosen = false;
 };
 
-/// Where the vehicle was at a time [s].
-struct DriveMoment {
-  double time = 0.0;
+/// Where the vehicle was at a time.
+struct TrackPoint {
+  double time = 0.0;  ///< [s] since the drive began
   Pose2 T_map_body;
 };
 
@@ -55,28 +43,27 @@ struct RuleSeries {
   std::vector<PatternError> errors;
 };
 
-/// The ground became another.
-struct BorderCrossing {
-  double time = 0.0;  ///< [s]
+/// A change of the true surface under the robot. Who turns round on a border crosses it again.
+struct Crossing {
+  double time = 0.0;  ///< [s] since the drive began
+  std::string from;
   std::string to;
 };
 
 /// All that a picture of a drive shows. What is empty is left out.
 struct DriveScene {
   std::string title;
-  std::string base_surface;  ///< where no patch lies; empty = unknown
-  std::vector<GroundPatch> patches;
-  std::vector<ObstacleShape> obstacles;
+  std::optional<sim::WorldDescription> world;  ///< true ground and obstacles, if they are known
   TileMap map{0.1, 32};  ///< what mapping published
   std::vector<TreeEdge> tree;
-  std::vector<DriveMoment> track;
+  std::vector<TrackPoint> track;
   std::optional<FootprintSize> outline;  ///< of the vehicle, drawn along the track
   Pose2 T_map_start;
   Pose2 T_map_goal;
   std::vector<Eigen::Vector2d> contacts;  ///< p_map [m]
   std::vector<PatternError> errors;       ///< as driven
   std::vector<RuleSeries> by_rule;        ///< drawn as running means
-  std::vector<BorderCrossing> crossings;
+  std::vector<Crossing> crossings;
   double duration = 1.0;  ///< [s]
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/report/drive_picture.hpp"
+#include "tools/report/drive_picture.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,19 +50,19 @@ Bounds boundsOf(const DriveScene& scene) {
   Bounds bounds;
   bounds.add(scene.T_map_start.position(), 6.0);
   bounds.add(scene.T_map_goal.position(), 6.0);
-  for (const DriveMoment& moment : scene.track) bounds.add(moment.T_map_body.position(), 4.0);
+  for (const TrackPoint& point : scene.track) bounds.add(point.T_map_body.position(), 4.0);
   return bounds;
 }
 
 void drawSurfaces(Panel& panel, const DriveScene& scene, const Bounds& bounds) {
-  if (scene.base_surface.empty()) return;
+  if (!scene.world) return;
   const Vector2d more(60.0, 60.0);
   const Vector2d low = bounds.low - more;
   const Vector2d high = bounds.high + more;
   panel.polygon({low, {high.x(), low.y()}, high, {low.x(), high.y()}},
-                surfaceColour(scene.base_surface));
-  for (const GroundPatch& patch : scene.patches)
-    panel.polygon(patch.corners, surfaceColour(patch.surface));
+                surfaceColour(scene.world->base_surface));
+  for (const sim::SurfaceRegion& region : scene.world->regions)
+    panel.polygon(region.corners, surfaceColour(region.surface));
 }
 
 /// What mapping published: obstacles dark; free and unknown cells do not hide the world.
@@ -78,8 +78,9 @@ void drawMap(Panel& panel, const TileMap& map) {
 }
 
 void drawObstacles(Panel& panel, const DriveScene& scene) {
+  if (!scene.world) return;
   const Colour fill{0.45, 0.38, 0.35, 0.55};
-  for (const ObstacleShape& obstacle : scene.obstacles) {
+  for (const sim::Obstacle& obstacle : scene.world->obstacles) {
     if (obstacle.corners.empty()) {
       panel.disc(obstacle.centre, obstacle.radius, fill);
     } else {
@@ -98,11 +99,11 @@ void drawTree(Panel& panel, const std::vector<TreeEdge>& tree) {
 void drawTrack(Panel& panel, const DriveScene& scene) {
   std::vector<Vector2d> points;
   double next_outline = 0.0;
-  for (const DriveMoment& moment : scene.track) {
-    points.push_back(moment.T_map_body.position());
-    if (!scene.outline || moment.time < next_outline) continue;
-    panel.polygon(outlineAt(*scene.outline, moment.T_map_body), {0.0, 0.45, 0.70, 0.13});
-    next_outline = moment.time + 2.0;
+  for (const TrackPoint& point : scene.track) {
+    points.push_back(point.T_map_body.position());
+    if (!scene.outline || point.time < next_outline) continue;
+    panel.polygon(outlineAt(*scene.outline, point.T_map_body), {0.0, 0.45, 0.70, 0.13});
+    next_outline = point.time + 2.0;
   }
   panel.line(points, {kBlue, 2.2, false, "driven"});
 }
@@ -170,7 +171,7 @@ void drawErrors(Picture& picture, Box box, const std::string& title, const std::
   drawRules(panel, scene, error);
   double height = 1.07;
   double last = -1e9;
-  for (const BorderCrossing& crossing : scene.crossings) {
+  for (const Crossing& crossing : scene.crossings) {
     panel.verticalLine(crossing.time, {kRed, 1.2, true, ""});
     // Names that would overlap step down.
     height = crossing.time - last < 0.16 * scene.duration ? height - 0.07 : 1.07;
@@ -181,7 +182,7 @@ void drawErrors(Picture& picture, Box box, const std::string& title, const std::
 }
 
 void drawSurfaceLegend(Picture& picture, const DriveScene& scene) {
-  if (scene.base_surface.empty()) return;
+  if (!scene.world) return;
   double x = 900;
   for (const NamedColour& known : kSurfaces) {
     picture.fill({x, 648, 16, 16}, known.colour);
