@@ -22,10 +22,6 @@ bool finite(const Pose2& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
 }
 
-bool hasShape(const Execution& poses, const MotionPattern& pattern) {
-  return poses.size() == pattern.commands.size() && std::all_of(poses.begin(), poses.end(), finite);
-}
-
 /// The largest speed of an execution over kSpeedSpan [m/s].
 double fastest(const Execution& poses, double period) {
   const auto wanted = static_cast<size_t>(std::max(1.0, std::ceil(kSpeedSpan / period - 1e-9)));
@@ -57,7 +53,8 @@ double usualMaxSpeed(const PatternSet& set, const SurfaceRecordings& recordings)
   for (size_t p = 0; p < recordings.executions.size(); ++p) {
     std::vector<double> speeds;
     for (const Execution& poses : recordings.executions[p])
-      if (hasShape(poses, set.patterns()[p])) speeds.push_back(fastest(poses, set.periodSeconds()));
+      if (isWhole(poses, set.patterns()[p].commands.size()))
+        speeds.push_back(fastest(poses, set.periodSeconds()));
     if (speeds.empty()) continue;
     const auto middle = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2);
     std::nth_element(speeds.begin(), middle, speeds.end());

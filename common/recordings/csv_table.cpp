@@ -8,6 +8,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "common/config/scalars.hpp"
+
 namespace tread::recordings {
 namespace {
 
@@ -76,11 +78,9 @@ void CsvTable::read(std::istream& file) {
 }
 
 void CsvTable::require(const std::vector<std::string>& names) const {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
   for (const std::string& name : names)
     if (columns_.count(name) == 0)
-      throw RecordingError(path_ + ":1: no column " + name + "; needed are " + all);
+      throw RecordingError(path_ + ":1: no column " + name + "; needed are " + joinWords(names));
 }
 
 const std::string& CsvTable::text(size_t row, std::string_view column) const {

@@ -6,13 +6,76 @@
 #include <string>
 #include <vector>
 
-#include "common/recordings/local_motion.hpp"
+#include "common/config/config_reader.hpp"
 #include "common/recordings/recordings.hpp"
+#include "common/recordings/sessions.hpp"
+
+// What a command does on a surface, from windows of commands around it:
+//   1. distance of windows: d^2 = ((v_i - v) / v_max)^2 + ((w_i - w) / w_max)^2, with the largest
+//      |v| and |w| of the patterns; the nearest k are taken;
+//   2. local-linear regression, for each component c of the twist profile (mean and slope):
+//      c_i = c + g_v (v_i - v) + g_w (w_i - w) + e_i, Huber's loss, weights (1 - (d_i / h)^3)^3
+//      with h beyond the farthest, so that what bends far away does not pull: c is the profile at
+//      the command itself;
+//   3. deviations of executions: (c_1 - c_2) / sqrt(2) of the two windows of one step, whose
+//      commands are the same: its variance is that of one window about its step. Both signs are
+//      used, so that deviations have no mean. A step is left out if a component of its difference
+//      is beyond 3.5 robust standard deviations (1.4826 median), both of all steps and of the
+//      nearest (twice as many as are used): speed that changes by metres per second under a
+//      constant command is a failure of the lidar's poses.
 
 // Recordings of the same patterns on several surfaces, built from drives in which no command was
 // ever given twice: windows of each surface are moved to the patterns' commands (local_motion.hpp)
 // and integrated. Nothing about any robot, surface or session is known here. Units: m, rad, s.
 namespace tread::recordings {
+
+/// One pattern to build: its command held for its whole length.
+struct PatternWish {
+  std::string name;
+  BodyCommand command;
+};
+
+/// Which patterns are built from drives, and how.
+struct PatternRecipe {
+  std::string name = "drive";
+  double period = 0.05;  ///< [s] of the recordings' commands
+  double length = 2.0;   ///< [s] of a pattern; that of a steady window
+  int neighbours = 30;   ///< windows nearest to a command that its mean comes from
+  int deviations =
+      15;  ///< steps whose deviation is used, with both signs: twice as many recordings
+  std::vector<PatternWish> patterns;
+
+  size_t samples() const;
+  /// Largest |v| and |w| among the commands; at least 0.01.
+  BodyCommand reach() const;
+};
+
+/// What is built without --recipe; config/patterns/recipes/drive.yaml says the same.
+PatternRecipe defaultRecipe();
+
+/// Reads a recipe; throws ConfigError at file:line.
+PatternRecipe readRecipe(ConfigReader reader);
+
+/// The same with all v and all w multiplied.
+PatternRecipe scaledRecipe(PatternRecipe recipe, double v_factor, double w_factor);
+
+/// Motion of one pattern on one surface.
+struct LocalMotion {
+  TwistProfile mean;
+  std::vector<TwistProfile> deviations;  ///< one sign; add and subtract
+  size_t implausible = 0;  ///< steps passed over for deviations: their windows disagree
+  double reach = 0.0;      ///< [1] distance of the farthest window used
+  size_t windows = 0;      ///< that the mean comes from
+};
+
+/// The motion for a command; `reach` holds the largest |v| and |w| of the patterns.
+/** Throws RecordingError if there are fewer windows than neighbours wanted, fewer than `deviations`
+ * steps of which both windows are there and agree, or none with as large a command. */
+LocalMotion localMotion(const std::vector<SteadyWindow>& windows, const BodyCommand& command,
+                        const PatternRecipe& recipe);
+
+/// Profiles of all recordings of a motion: the mean plus and minus each deviation.
+std::vector<TwistProfile> recordedProfiles(const LocalMotion& motion);
 
 /// What is made of a folder of drives.
 struct DriveRequest {

@@ -186,28 +186,13 @@ class LogMaker {
   Pose2 T_map_start_;
 };
 
-void requireFit(const PatternSet& shipped, const SurfaceRecordings& surface) {
-  const std::string place = "surface '" + surface.surface + "': ";
-  requireSamePatternCount(surface, shipped);
-  for (size_t p = 0; p < surface.executions.size(); ++p) {
-    const MotionPattern& pattern = shipped.patterns()[p];
-    if (surface.executions[p].empty())
-      throw RecordingError(place + "pattern '" + pattern.name + "' has no recording");
-    for (const Execution& poses : surface.executions[p])
-      if (poses.size() != pattern.commands.size())
-        throw RecordingError(place + "pattern '" + pattern.name + "' has a recording of " +
-                             std::to_string(poses.size()) + " poses and " +
-                             std::to_string(pattern.commands.size()) + " commands");
-  }
-}
-
 }  // namespace
 
 std::vector<LogEvent> executionLog(const PatternSet& shipped, const SurfaceRecordings& from,
                                    const SurfaceRecordings& to,
                                    const ExecutionLogRequest& request) {
-  requireFit(shipped, from);
-  requireFit(shipped, to);
+  requireReadable(from, shipped);
+  requireReadable(to, shipped);
   std::mt19937_64 random(request.seed);
   LogMaker maker(shipped, request);
   maker.addSurface(from, random);

@@ -5,8 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <system_error>
@@ -121,24 +119,12 @@ class SurfaceReader {
   int number_ = 0;
 };
 
-template <typename Number>
-void append(std::string& text, Number value) {
-  std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  text.append(digits.data(), static_cast<size_t>(end - digits.data()));
-}
-
 void appendExecution(std::string& text, const std::string& pattern, size_t number,
                      const Execution& poses) {
   for (size_t i = 0; i < poses.size(); ++i) {
-    text += pattern + ',';
-    append(text, number);
-    text += ',';
-    append(text, i + 1);
-    for (const double value : {poses[i].x, poses[i].y, poses[i].yaw}) {
-      text += ',';
-      append(text, value);
-    }
+    text += pattern + ',' + std::to_string(number) + ',' + std::to_string(i + 1);
+    for (const double value : {poses[i].x, poses[i].y, poses[i].yaw})
+      text += ',' + formatNumber(value);
     text += '\n';
   }
 }
@@ -168,30 +154,6 @@ void requirePatternName(const std::string& name) {
     throw RecordingError("pattern '" + name +
                          "' has a comma or a leading # in its name, which its table of " +
                          "recordings could not hold; rename it");
-}
-
-bool isWhole(const Execution& poses, size_t samples) {
-  const auto finite = [](const Pose2& pose) {
-    return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
-  };
-  return poses.size() == samples && std::all_of(poses.begin(), poses.end(), finite);
-}
-
-/// Refuses what readRecordings() would refuse, before anything is written.
-void requireReadable(const SurfaceRecordings& surface, const PatternSet& set) {
-  requireSurfaceName(surface.surface);
-  requireSamePatternCount(surface, set);
-  for (size_t p = 0; p < set.patterns().size(); ++p) {
-    const MotionPattern& pattern = set.patterns()[p];
-    const std::string place = "surface '" + surface.surface + "': pattern '" + pattern.name + "' ";
-    requirePatternName(pattern.name);
-    if (surface.executions[p].empty())
-      throw RecordingError(place + "has no execution; record it or take it out of the set");
-    for (size_t e = 0; e < surface.executions[p].size(); ++e)
-      if (!isWhole(surface.executions[p][e], pattern.commands.size()))
-        throw RecordingError(place + "execution " + std::to_string(e + 1) +
-                             " is not one finite pose a command; leave it out");
-  }
 }
 
 /// A file that holds the same set already keeps the comments that people wrote into it.
@@ -243,6 +205,29 @@ void requireSamePatternCount(const SurfaceRecordings& surface, const PatternSet&
     throw RecordingError("surface '" + surface.surface + "': recordings of " +
                          std::to_string(surface.executions.size()) + " patterns, the set has " +
                          std::to_string(set.patterns().size()));
+}
+
+bool isWhole(const Execution& poses, size_t samples) {
+  const auto finite = [](const Pose2& pose) {
+    return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
+  };
+  return poses.size() == samples && std::all_of(poses.begin(), poses.end(), finite);
+}
+
+void requireReadable(const SurfaceRecordings& surface, const PatternSet& set) {
+  requireSurfaceName(surface.surface);
+  requireSamePatternCount(surface, set);
+  for (size_t p = 0; p < set.patterns().size(); ++p) {
+    const MotionPattern& pattern = set.patterns()[p];
+    const std::string place = "surface '" + surface.surface + "': pattern '" + pattern.name + "' ";
+    requirePatternName(pattern.name);
+    if (surface.executions[p].empty())
+      throw RecordingError(place + "has no execution; record it or take it out of the set");
+    for (size_t e = 0; e < surface.executions[p].size(); ++e)
+      if (!isWhole(surface.executions[p][e], pattern.commands.size()))
+        throw RecordingError(place + "execution " + std::to_string(e + 1) +
+                             " is not one finite pose a command; leave it out");
+  }
 }
 
 PatternRecordings readRecordings(const std::string& folder) try {

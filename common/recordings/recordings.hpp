@@ -31,6 +31,13 @@ struct SurfaceRecordings {
 /// Throws RecordingError unless there are recordings of as many patterns as the set has.
 void requireSamePatternCount(const SurfaceRecordings& surface, const PatternSet& set);
 
+/// Whether an execution has as many poses as that, all of them finite.
+bool isWhole(const Execution& poses, size_t samples);
+
+/// Throws RecordingError for what readRecordings() would refuse: another number of patterns, a
+/// pattern without an execution, one that is not whole, names that files cannot hold.
+void requireReadable(const SurfaceRecordings& surface, const PatternSet& set);
+
 /// Recordings of one pattern set on several surfaces.
 struct PatternRecordings {
   PatternSet patterns;

@@ -11,41 +11,6 @@
 namespace tread::learner {
 namespace {
 
-void readScaling(ConfigReader& reader, RuleConfig& rule) {
-  ConfigReader section = reader.section("scaling");
-  ScalingLimits& limits = rule.scaling;
-  std::vector<double> box{limits.min_box[0], limits.min_box[1], limits.min_box[2]};
-  section.numbers("min_box", box, 3, {0.001, 1.0}, "m, m, rad");
-  limits.min_box = {box[0], box[1], box[2]};
-  section.number("min_box_sigmas", limits.min_box_sigmas, {0.0, 10.0}, "1");
-  section.number("min_turn", limits.min_turn, {0.0, 1.0}, "rad");
-  section.number("min_length", limits.min_length, {0.0, 1.0}, "m");
-  section.number("min_factor", limits.min_factor, {0.1, 1.0}, "1");
-  section.number("max_factor", limits.max_factor, {1.0, 10.0}, "1");
-  section.number("sign_sigmas", rule.sign_sigmas, {0.0, 10.0}, "1");
-}
-
-void readFilter(ConfigReader& reader, FilterConfig& filter) {
-  ConfigReader section = reader.section("filter");
-  section.number("forward_noise", filter.noise.forward, {0.001, 1.0}, "1");
-  section.number("lateral_noise", filter.noise.lateral, {0.001, 1.0}, "1");
-  section.number("yaw_noise", filter.noise.yaw, {0.001, 1.0}, "1");
-  section.number("recorded", filter.recorded, {0.0, 1.0}, "1");
-  section.number("caution", filter.caution, {1.0, 10.0}, "1");
-  section.number("hazard", filter.hazard, {0.0, 0.9}, "1");
-  section.number("steady", filter.steady, {0.01, 10.0}, "1");
-  section.number("drift", filter.drift, {0.0, 0.5}, "1");
-}
-
-void readBank(ConfigReader& reader, BankConfig& bank) {
-  ConfigReader section = reader.section("bank");
-  section.number("hazard", bank.hazard, {0.001, 0.9}, "1");
-  section.number("unknown_prior", bank.unknown_prior, {0.001, 1.0}, "1");
-  section.integer("settled_after", bank.settled_after, {3, 100}, "1");
-  section.number("new_margin", bank.new_margin, {0.0, 100.0}, "1");
-  section.integer("capacity", bank.capacity, {1, 64}, "1");
-}
-
 void readGates(ConfigReader& reader, MeasurementLimits& limits) {
   ConfigReader gates = reader.section("gates");
   gates.seconds("max_gap", limits.max_gap_us, {0.01, 5.0});
@@ -85,9 +50,7 @@ void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config) {
   config.rule.rule = rule;
   // w = 1 would never learn and never say why: `off` is the word for that.
   reader.number("memory", config.rule.memory, {0.0, 0.999}, "1");
-  readScaling(reader, config.rule);
-  readFilter(reader, config.rule.filter);
-  readBank(reader, config.rule.bank);
+  readRules(reader, config.rule);
   readGates(reader, config.limits);
   // Not shorter: the publisher sends a portion a step, and LCM loses more than 100 kB in 20 ms.
   reader.seconds("period", config.period_us, {0.02, 0.1});

@@ -223,7 +223,7 @@ TEST_CASE("only the catalogue names effects") {
       {"common/vehicle/model_file.cpp", "crab"},
       {"modules/learner/core/state_text.cpp", "crab"},
       {"modules/simulator/vehicle_config.cpp", "yaw_inertia"},
-      {"tools/experiment/transition_world.cpp", "crab"}};
+      {"tools/experiment/ground.cpp", "crab"}};
   const std::regex literal("\"(" + effects + ")[\".]");
   for (const char* folder : {"common", "modules", "tools"})
     for (const fs::path& path : sourcesUnder(folder)) {

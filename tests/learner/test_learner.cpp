@@ -227,12 +227,11 @@ TEST_CASE("the end covariance is unknown until three errors are known, then thei
 TEST_CASE("a shipped covariance is where the observed one starts, and old errors fade") {
   MotionPattern left = smallContent().patterns[1];
   left.end_covariance = {0.01, 0.0, 0.0, 0.01, 0.0, 0.01};
-  const ResidualLimits limits;
-  EndResiduals residuals = residualsOf(left, limits);
-  REQUIRE(covarianceOf(residuals, limits)[0] == 0.01);
-  addResidual(residuals, {0.4, 0.0, 0.0}, limits);
+  EndResiduals residuals = residualsOf(left);
+  REQUIRE(covarianceOf(residuals)[0] == 0.01);
+  addResidual(residuals, {0.4, 0.0, 0.0});
   REQUIRE(residuals.mean[0] == Approx((5.0 * 0.01 + 0.16) / 6.0));
-  for (int i = 0; i < 100; ++i) addResidual(residuals, {0.0, 0.0, 0.0}, limits);
+  for (int i = 0; i < 100; ++i) addResidual(residuals, {0.0, 0.0, 0.0});
   REQUIRE(residuals.mean[0] < 1e-5);
 }
 
@@ -245,7 +244,7 @@ TEST_CASE("an end that was not measured adds nothing to the covariance") {
 TEST_CASE("a shipped covariance without spread in one axis is still one, without any it is none") {
   MotionPattern straight = smallContent().patterns[0];
   straight.end_covariance = {7e-4, 0.0, 0.0, 1e-3, 0.0, 0.0};
-  REQUIRE(residualsOf(straight, {}).count == ResidualLimits{}.shipped_count);
+  REQUIRE(residualsOf(straight).count == 5);
   straight.end_covariance.fill(0.0);
-  REQUIRE(residualsOf(straight, {}).count == 0);
+  REQUIRE(residualsOf(straight).count == 0);
 }

@@ -40,7 +40,7 @@ void checkRules(const std::vector<std::string>& rules) {
   }
 }
 
-PatternRecordings bookOfFolder(const Request& request, Batch& batch) {
+PatternRecordings recordingsOfFolder(const Request& request, Batch& batch) {
   const fs::path folder(request.recordings);
   if (fs::exists(folder / "sessions.csv")) {
     recordings::DriveRequest drives;
@@ -78,7 +78,7 @@ Sequence sequenceOf(const std::vector<std::string>& names, const PatternSet& set
   return sequence;
 }
 
-/// Runs book after book.
+/// Runs one set of recordings after the other.
 class Runner {
  public:
   Runner(const Request& request, const std::function<void(double)>& progress)
@@ -91,7 +91,7 @@ class Runner {
     batch_.settings.excitation = request.excitation;
     batch_.settings.threads = request.threads;
     batch_.settings.change_inside = request.change_inside;
-    batch_.setting.books = static_cast<size_t>(request.books);
+    batch_.setting.sets = static_cast<size_t>(request.sets);
   }
 
   Batch run() {
@@ -99,20 +99,20 @@ class Runner {
       runFolder();
     else
       runWorld();
-    batch_.tables = combined(batch_.books);
+    batch_.tables = combined(batch_.sets);
     return std::move(batch_);
   }
 
  private:
   void runFolder() {
     const Request& request = batch_.request;
-    if (request.books != 1 || request.length != 1)
+    if (request.sets != 1 || request.length != 1)
       throw std::invalid_argument(
           "--books and --length need a --world, which can be recorded anew");
     batch_.source = "recordings " + fs::path(request.recordings).filename().string();
-    const PatternRecordings book = bookOfFolder(request, batch_);
-    chooseSequences(book.patterns, {{"left", "left", "right"}, {"right", "right", "left"}});
-    runBook(book, 0);
+    const PatternRecordings recorded = recordingsOfFolder(request, batch_);
+    chooseSequences(recorded.patterns, {{"left", "left", "right"}, {"right", "right", "left"}});
+    runRecordings(recorded, 0);
   }
 
   void runWorld() {
@@ -124,11 +124,10 @@ class Runner {
     // The paper's numbers are for patterns of one second and changes between patterns.
     batch_.setting.paper_reference =
         world.paper_reference && request.length == 1 && !request.change_inside;
-    for (int book = 0; book < request.books; ++book) {
-      const auto number = static_cast<uint64_t>(book);
+    for (uint64_t number = 0; number < static_cast<uint64_t>(request.sets); ++number) {
       const PatternRecordings recorded = record(world, request.seed + number, request.length);
-      if (book == 0) chooseSequences(recorded.patterns, world.sequences);
-      runBook(recorded, number);
+      if (number == 0) chooseSequences(recorded.patterns, world.sequences);
+      runRecordings(recorded, number);
     }
   }
 
@@ -141,20 +140,20 @@ class Runner {
       batch_.settings.sequences.push_back(sequenceOf(names, set));
   }
 
-  void runBook(const PatternRecordings& book, uint64_t number) {
+  void runRecordings(const PatternRecordings& recorded, uint64_t number) {
     std::vector<std::string> notes;
-    std::vector<Ground> grounds = groundsOf(book, notes);
+    std::vector<Ground> grounds = groundsOf(recorded, notes);
     batch_.notes.insert(batch_.notes.end(), notes.begin(), notes.end());
     batch_.settings.seed = batch_.request.seed + number;
     const auto begun = std::chrono::steady_clock::now();
-    const auto books = static_cast<double>(batch_.request.books);
+    const auto sets = static_cast<double>(batch_.request.sets);
     ExperimentErrors errors = runExperiment(grounds, batch_.settings, [&](size_t done, size_t all) {
       const double part = static_cast<double>(done) / static_cast<double>(all);
-      if (progress_) progress_((static_cast<double>(number) + part) / books);
+      if (progress_) progress_((static_cast<double>(number) + part) / sets);
     });
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begun;
     batch_.seconds += passed.count();
-    batch_.books.push_back(tablesOf(errors, batch_.settings, grounds));
+    batch_.sets.push_back(tablesOf(errors, batch_.settings, grounds));
     if (number > 0) return;
     for (const Ground& ground : grounds) batch_.setting.surfaces.push_back(ground.surface);
     const auto& rules = batch_.settings.rules;
@@ -171,13 +170,14 @@ class Runner {
   std::function<void(double)> progress_;
 };
 
-/// What --extras asks for, in words and as a request: a tenth of the repetitions, few books.
+/// What --extras asks for, in words and as a request: a tenth of the repetitions, few sets of
+/// recordings.
 std::vector<std::pair<std::string, Request>> variantsOf(const Request& request) {
   constexpr int64_t kFewest = 100;
-  constexpr int kBooks = 3;
+  constexpr int kSets = 3;
   Request base = request;
   base.repetitions = std::max(kFewest, request.repetitions / 10);
-  base.books = std::min(request.books, kBooks);
+  base.sets = std::min(request.sets, kSets);
   std::vector<std::pair<std::string, Request>> variants;
   if (!request.world.empty()) {
     Request longer = base;
@@ -208,7 +208,7 @@ Batch runBatch(const Request& request, const std::function<void(double)>& progre
   done = main_share;
   for (const auto& [words, of_variant] : variants) {
     Batch other = Runner(of_variant, shared).run();
-    batch.variants.push_back({words, std::move(other.tables), std::move(other.books)});
+    batch.variants.push_back({words, std::move(other.tables), std::move(other.sets)});
     done += part;
   }
   return batch;

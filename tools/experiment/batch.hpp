@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/experiment/experiment.hpp"
 #include "tools/experiment/tables.hpp"
 
 namespace tread::experiment {
@@ -22,7 +23,7 @@ struct Request {
   double memory = 0.5;       ///< [1] w of equation (2)
   uint64_t seed = 1;
   int threads = 1;
-  int books = 1;   ///< of a world: sets of recordings, from seeds that count up
+  int sets = 1;    ///< of a world: sets of recordings, from seeds that count up
   int length = 1;  ///< of a world: each command is held so many times as long
   bool change_inside = false;
   bool extras = false;  ///< twice as long patterns and changes inside a pattern, too
@@ -32,7 +33,7 @@ struct Request {
 struct Variant {
   std::string words;
   Tables tables;
-  std::vector<Tables> books;
+  std::vector<Tables> sets;
 };
 
 /// A request and its results.
@@ -42,9 +43,9 @@ struct Batch {
   ExperimentSettings settings;
   std::string source;              ///< the world or folder, in words
   std::vector<std::string> notes;  ///< about the recordings
-  std::vector<Tables> books;
-  Tables tables;                          ///< of all books together
-  std::vector<Ground> grounds;            ///< of the first book
+  std::vector<Tables> sets;
+  Tables tables;                          ///< of all sets of recordings together
+  std::vector<Ground> grounds;            ///< of the first set of recordings
   ExperimentErrors first;                 ///< of it, for the pictures
   std::vector<ExcitationRun> excitation;  ///< of the rule bank, by surface it comes home to
   std::vector<Variant> variants;          ///< if the request wants extras
@@ -69,5 +70,26 @@ std::string watchedPattern(const Batch& batch);
 
 /// Writes all files into a folder, which is made if needed.
 void writeBatch(const std::string& folder, const Batch& batch);
+
+/// The transition of the paper's figures: from cinder to grass if it is there, else the one that
+/// costs most without learning. An index into errors.transitions.
+size_t transitionOfFigures(const ExperimentErrors& errors, const ExperimentSettings& settings,
+                           const std::vector<Ground>& grounds);
+
+/// "cinder to grass".
+std::string wordsOf(const TransitionErrors& transition, const std::vector<Ground>& grounds);
+
+/// Figure 4: error and its deviation over executions without a reset, by rule (PNG).
+void drawDevelopment(const std::string& path, const TransitionErrors& transition,
+                     const ExperimentSettings& settings, const std::string& words);
+
+/// Figure 5: how often which error occurs over the test sequences, by rule (PNG).
+void drawDistributions(const std::string& path, const TransitionErrors& transition,
+                       const ExperimentSettings& settings, const std::string& words);
+
+/// How wide each rule predicts a pattern that is never executed, over executions on unchanged
+/// ground (PNG).
+void drawDrift(const std::string& path, const std::vector<std::vector<double>>& drift,
+               const ExperimentSettings& settings, const std::string& watched);
 
 }  // namespace tread::experiment

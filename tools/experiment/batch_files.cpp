@@ -8,7 +8,6 @@
 #include "common/report/text.hpp"
 #include "common/store/store.hpp"
 #include "tools/experiment/batch.hpp"
-#include "tools/experiment/figures.hpp"
 
 namespace tread::experiment {
 
@@ -20,8 +19,8 @@ std::string aboutLine(const Batch& batch) {
       std::to_string(request.repetitions) +
       " repetitions of each transition, memory w = " + formatted("%g", request.memory) + ", seed " +
       std::to_string(request.seed);
-  if (request.books > 1)
-    text += ", means over " + std::to_string(request.books) + " sets of recordings";
+  if (request.sets > 1)
+    text += ", means over " + std::to_string(request.sets) + " sets of recordings";
   if (request.length > 1)
     text += ", each command held " + std::to_string(request.length) + " times as long";
   if (request.change_inside) text += "; the ground changes in the middle of the first execution";
@@ -110,9 +109,9 @@ report::Page pageOf(const Batch& batch, const std::string& transition, const std
   page.verdict = page.title + ": " + batch.source;
   page.first = {report::Paragraph{aboutLine(batch)}};
   page.sections = {
-      textSection("Key figures", textOfKeyFigures(batch.tables, batch.setting, batch.books)),
+      textSection("Key figures", textOfKeyFigures(batch.tables, batch.setting, batch.sets)),
       textSection("Table I: errors", textOfErrors(batch.tables, batch.setting) +
-                                         textOfAgreement(batch.tables, batch.setting, batch.books)),
+                                         textOfAgreement(batch.tables, batch.setting, batch.sets)),
       textSection("Table II: error reductions", textOfReductions(batch.tables, batch.setting)),
       {"Figure 4: from " + transition, {picture(folder + "/figure4.png", "error over executions")}},
       {"Figure 5: from " + transition, {picture(folder + "/figure5.png", "error distributions")}},
@@ -166,9 +165,9 @@ std::string textOfVariants(const Batch& batch) {
   for (const Variant& variant : batch.variants) {
     Setting setting = batch.setting;
     setting.paper_reference = false;
-    setting.books = variant.books.size();
+    setting.sets = variant.sets.size();
     text += "VARIANT: " + variant.words + ", a tenth of the repetitions.\n" +
-            textOfKeyFigures(variant.tables, setting, variant.books) + "\n";
+            textOfKeyFigures(variant.tables, setting, variant.sets) + "\n";
   }
   return text;
 }
@@ -192,13 +191,13 @@ void writeBatch(const std::string& folder, const Batch& batch) {
   for (const TableFile& file : tableFiles())
     writeText(path(std::string(file.name) + ".csv"), csvOf(tables, file));
   if (!watched.empty()) writeText(path("drift.csv"), csvOfDrift(batch.first, batch.settings));
-  if (batch.books.size() > 1)
-    writeText(path("books.csv"), csvOfBooks(batch.books, batch.request.seed));
+  if (batch.sets.size() > 1)
+    writeText(path("books.csv"), csvOfSets(batch.sets, batch.request.seed));
   writeText(path("table1.txt"), textOfErrors(tables, batch.setting) + "\n" +
-                                    textOfAgreement(tables, batch.setting, batch.books));
+                                    textOfAgreement(tables, batch.setting, batch.sets));
   writeText(path("table2.txt"), textOfReductions(tables, batch.setting));
   writeText(path("key_figures.txt"),
-            textOfVariants(batch) + textOfKeyFigures(tables, batch.setting, batch.books));
+            textOfVariants(batch) + textOfKeyFigures(tables, batch.setting, batch.sets));
   if (!batch.excitation.empty()) writeText(path("bank.txt"), textOfBank(batch));
   writeText(path("report.html"), report::htmlOf(pageOf(batch, words, folder)));
 }

@@ -40,11 +40,11 @@ Executions::Executions(const std::vector<recordings::Execution>& executions, siz
 
 namespace {
 
-Ground groundOf(const recordings::PatternRecordings& book,
+Ground groundOf(const recordings::PatternRecordings& recorded,
                 const recordings::SurfaceRecordings& surface, std::vector<std::string>& notes) {
   std::vector<recordings::AverageNote> averaging;
   Ground ground{
-      surface.surface, recordings::averageSet(book.patterns, surface, {}, averaging), {}, {}};
+      surface.surface, recordings::averageSet(recorded.patterns, surface, {}, averaging), {}, {}};
   for (const recordings::AverageNote& note : averaging)
     for (const std::string& line : note.rejected)
       notes.push_back(surface.surface + ", " + note.pattern + ": " + line);
@@ -59,16 +59,16 @@ Ground groundOf(const recordings::PatternRecordings& book,
 
 }  // namespace
 
-std::vector<Ground> groundsOf(const recordings::PatternRecordings& book,
+std::vector<Ground> groundsOf(const recordings::PatternRecordings& recorded,
                               std::vector<std::string>& notes) {
-  if (book.surfaces.size() < 2)
+  if (recorded.surfaces.size() < 2)
     throw recordings::RecordingError(
         "a transition needs recordings of at least two surfaces; there " +
-        (book.surfaces.empty() ? std::string("is none")
-                               : "is one: '" + book.surfaces.front().surface + "'"));
+        (recorded.surfaces.empty() ? std::string("is none")
+                                   : "is one: '" + recorded.surfaces.front().surface + "'"));
   std::vector<Ground> grounds;
-  for (const recordings::SurfaceRecordings& surface : book.surfaces)
-    grounds.push_back(groundOf(book, surface, notes));
+  for (const recordings::SurfaceRecordings& surface : recorded.surfaces)
+    grounds.push_back(groundOf(recorded, surface, notes));
   return grounds;
 }
 
@@ -191,7 +191,7 @@ TransitionWorld readWorld(ConfigReader reader, const std::string& file) {
 using recordings::Execution;
 
 /// The commands of a pattern, each held `length` times as long.
-std::vector<TrackCommand> stretched(const std::vector<TrackCommand>& commands, int length) {
+std::vector<TrackCommand> heldLonger(const std::vector<TrackCommand>& commands, int length) {
   std::vector<TrackCommand> longer;
   for (const TrackCommand& command : commands)
     longer.insert(longer.end(), static_cast<size_t>(length), command);
@@ -210,7 +210,7 @@ PatternSet setOf(const TransitionWorld& world, int length) {
     pattern.id = static_cast<int>(content.patterns.size()) + 1;
     pattern.name = executed.name;
     pattern.entry_class = pattern.exit_class = "entry";
-    pattern.commands = stretched(executed.commands, length);
+    pattern.commands = heldLonger(executed.commands, length);
     pattern.trajectory =
         simulate(model, pattern.commands, world.period, steadyEntry(model, world.entry));
     content.patterns.push_back(std::move(pattern));
@@ -246,20 +246,20 @@ TransitionWorld parseTransitionWorld(const std::string& text, const std::string&
 }
 
 recordings::PatternRecordings record(const TransitionWorld& world, uint64_t seed, int length) {
-  recordings::PatternRecordings book{setOf(world, length), {}};
+  recordings::PatternRecordings recorded{setOf(world, length), {}};
   for (size_t s = 0; s < world.surfaces.size(); ++s) {
     recordings::SurfaceRecordings surface{world.surfaces[s].name, {}};
     for (size_t p = 0; p < world.patterns.size(); ++p) {
       std::mt19937_64 random(seedOf({seed, s, p}));
       std::vector<Execution> executions;
       for (int64_t i = 0; i < world.recordings; ++i)
-        executions.push_back(
-            execute(world, world.surfaces[s].model, book.patterns.patterns()[p].commands, random));
+        executions.push_back(execute(world, world.surfaces[s].model,
+                                     recorded.patterns.patterns()[p].commands, random));
       surface.executions.push_back(std::move(executions));
     }
-    book.surfaces.push_back(std::move(surface));
+    recorded.surfaces.push_back(std::move(surface));
   }
-  return book;
+  return recorded;
 }
 
 }  // namespace tread::experiment

@@ -53,11 +53,11 @@ struct Ground {
 
 ExecutionEnd executionEnd(const learner::ConstTrajectory& trajectory);
 
-/// Averages a book surface by surface and lays its recordings out for the experiment.
+/// Averages a set of recordings surface by surface and lays its recordings out for the experiment.
 /** Throws recordings::RecordingError with one line if a pattern has too few executions or there is
  * one surface only. What is no fair execution is neither averaged nor driven; a line for each goes
  * to `notes`. */
-std::vector<Ground> groundsOf(const recordings::PatternRecordings& book,
+std::vector<Ground> groundsOf(const recordings::PatternRecordings& recorded,
                               std::vector<std::string>& notes);
 
 /// One surface of a world: the vehicle on it.

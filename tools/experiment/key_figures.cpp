@@ -38,7 +38,7 @@ double medianCost(const std::vector<Row>& rows, const std::string& quantity,
 struct Figure {
   const char* title;
   const char* format;
-  /// Over all books at once, for cells that are means over them.
+  /// Over all sets of recordings at once, for cells that are means over them.
   bool of_means;
   double (*value)(const Tables& tables, const std::string& quantity, const std::string& rule);
 };
@@ -92,17 +92,17 @@ std::string shown(const char* format, double value) {
   return std::isfinite(value) ? formatted(format, value) : "-";
 }
 
-/// Mean over the books, and the deviation between them.
-std::string cellOf(const Figure& figure, const std::vector<Tables>& books,
+/// Mean over the sets of recordings, and the deviation between them.
+std::string cellOf(const Figure& figure, const std::vector<Tables>& sets,
                    const std::string& quantity, const std::string& rule) {
-  const auto n = static_cast<double>(books.size());
+  const auto n = static_cast<double>(sets.size());
   double mean = 0.0, squares = 0.0;
   std::vector<double> values;
-  for (const Tables& book : books) values.push_back(figure.value(book, quantity, rule));
+  for (const Tables& set : sets) values.push_back(figure.value(set, quantity, rule));
   for (const double value : values) mean += value / n;
   for (const double value : values) squares += (value - mean) * (value - mean);
   const std::string text = shown(figure.format, mean);
-  if (books.size() < 2 || !std::isfinite(mean)) return text;
+  if (sets.size() < 2 || !std::isfinite(mean)) return text;
   const bool ratio = std::string(figure.format) == "%.3f";
   return text + " +-" + shown(ratio ? "%.3f" : "%.1f", std::sqrt(squares / (n - 1.0)));
 }
@@ -114,7 +114,7 @@ std::string padded(const std::string& text, size_t width) {
 }  // namespace
 
 std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
-                             const std::vector<Tables>& books) {
+                             const std::vector<Tables>& sets) {
   constexpr size_t kName = 13, kWidth = 15;
   std::string text =
       "KEY FIGURES. Reductions [%] against single: median over transitions, test sequences, and "
@@ -122,22 +122,22 @@ std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
       "than no learning, test sequences, and over\nall patterns after 3 executions. Unchanged: "
       "error in the long run over the omniscient one, median over surfaces,\nrandom patterns, and "
       "test sequences.";
-  if (books.size() > 1)
-    text += " Means and deviations over " + std::to_string(books.size()) +
+  if (sets.size() > 1)
+    text += " Means and deviations over " + std::to_string(sets.size()) +
             " books; of means: the worst of the\nmeans over the books.";
   text += "\n";
   for (const char* quantity : kQuantities) {
     text += "\n" + std::string(quantity) +
             std::string(kName - std::min(kName, std::string(quantity).size()), ' ');
     for (const Figure& figure : kFigures)
-      if (books.size() > 1 || !figure.of_means) text += padded(figure.title, kWidth);
+      if (sets.size() > 1 || !figure.of_means) text += padded(figure.title, kWidth);
     text += "\n";
     for (const std::string& rule : setting.rules) {
       text += rule + std::string(kName - std::min(kName, rule.size()), ' ');
       for (const Figure& figure : kFigures)
         if (!figure.of_means)
-          text += padded(cellOf(figure, books, quantity, rule), kWidth);
-        else if (books.size() > 1)
+          text += padded(cellOf(figure, sets, quantity, rule), kWidth);
+        else if (sets.size() > 1)
           text += padded(shown(figure.format, figure.value(tables, quantity, rule)), kWidth);
       text += "\n";
     }

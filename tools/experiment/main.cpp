@@ -65,7 +65,7 @@ void define(CLI::App& command, Arguments& arguments) {
   command.add_option("--threads", request.threads, "no influence on any number")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  command.add_option("--books", request.books, "world: so many sets of recordings")
+  command.add_option("--books", request.sets, "world: so many sets of recordings")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
   command.add_option("--length", request.length, "world: each command held so many times as long")
@@ -94,10 +94,10 @@ void run(const Arguments& arguments) {
   if (!arguments.out.empty()) tread::experiment::writeBatch(arguments.out, batch);
   std::cout << textOfErrors(batch.tables, batch.setting) << '\n'
             << textOfReductions(batch.tables, batch.setting) << '\n'
-            << textOfAgreement(batch.tables, batch.setting, batch.books) << '\n'
+            << textOfAgreement(batch.tables, batch.setting, batch.sets) << '\n'
             << textOfBank(batch) << '\n'
             << textOfDrift(batch) << '\n'
-            << textOfVariants(batch) << textOfKeyFigures(batch.tables, batch.setting, batch.books)
+            << textOfVariants(batch) << textOfKeyFigures(batch.tables, batch.setting, batch.sets)
             << std::flush;
   std::fprintf(stderr, "%s: %zu transitions, %.2f s of trials on %d threads\n",
                batch.source.c_str(), batch.first.transitions.size(), batch.seconds,

@@ -64,25 +64,25 @@ void addUnchanged(const Errors& errors, const ExperimentSettings& settings, cons
   });
 }
 
-/// The i-th row of one table, over all books.
-Row combinedRow(const std::vector<const Row*>& books) {
-  Row row = *books.front();
-  if (books.size() < 2) return row;
-  const auto n = static_cast<double>(books.size());
+/// The i-th row of one table, over all sets of recordings.
+Row combinedRow(const std::vector<const Row*>& sets) {
+  Row row = *sets.front();
+  if (sets.size() < 2) return row;
+  const auto n = static_cast<double>(sets.size());
   double mean = 0.0, squares = 0.0;
-  for (const Row* book : books) mean += book->estimate.value / n;
-  for (const Row* book : books) squares += std::pow(book->estimate.value - mean, 2);
+  for (const Row* set : sets) mean += set->estimate.value / n;
+  for (const Row* set : sets) squares += std::pow(set->estimate.value - mean, 2);
   row.spread = std::sqrt(squares / (n - 1.0));
-  const double half = student99(books.size()) * row.spread / std::sqrt(n);
+  const double half = student99(sets.size()) * row.spread / std::sqrt(n);
   row.estimate = {mean, mean - half, mean + half};
   return row;
 }
 
-std::vector<Row> combinedRows(const std::vector<Tables>& books, std::vector<Row> Tables::*table) {
+std::vector<Row> combinedRows(const std::vector<Tables>& sets, std::vector<Row> Tables::*table) {
   std::vector<Row> rows;
-  for (size_t i = 0; i < (books.front().*table).size(); ++i) {
+  for (size_t i = 0; i < (sets.front().*table).size(); ++i) {
     std::vector<const Row*> same;
-    for (const Tables& book : books) same.push_back(&(book.*table)[i]);
+    for (const Tables& set : sets) same.push_back(&(set.*table)[i]);
     rows.push_back(combinedRow(same));
   }
   return rows;
@@ -150,9 +150,9 @@ Tables tablesOf(const ExperimentErrors& errors, const ExperimentSettings& settin
   return tables;
 }
 
-Tables combined(const std::vector<Tables>& books) {
+Tables combined(const std::vector<Tables>& sets) {
   Tables all;
-  for (const TableFile& file : kTableFiles) all.*file.rows = combinedRows(books, file.rows);
+  for (const TableFile& file : kTableFiles) all.*file.rows = combinedRows(sets, file.rows);
   return all;
 }
 
@@ -184,12 +184,12 @@ std::string csvOfDrift(const ExperimentErrors& errors, const ExperimentSettings&
   return text;
 }
 
-std::string csvOfBooks(const std::vector<Tables>& books, uint64_t first_seed) {
+std::string csvOfSets(const std::vector<Tables>& sets, uint64_t first_seed) {
   std::string text = "table,seed,from,to,quantity,rule,against,k,value\n";
-  for (size_t book = 0; book < books.size(); ++book)
+  for (size_t set = 0; set < sets.size(); ++set)
     for (const TableFile& file : kTableFiles)
-      for (const Row& row : books[book].*file.rows)
-        text += std::string(file.name) + "," + std::to_string(first_seed + book) + "," + what(row) +
+      for (const Row& row : sets[set].*file.rows)
+        text += std::string(file.name) + "," + std::to_string(first_seed + set) + "," + what(row) +
                 "," + row.against + "," + std::to_string(row.k) + "," + number(row.estimate.value) +
                 "\n";
   return text;

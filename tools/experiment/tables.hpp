@@ -24,7 +24,7 @@ struct Row {
   std::string against;  ///< reductions: the rule that is improved on
   int k = 0;            ///< executions before, where that counts
   Estimate estimate;
-  double spread = std::numeric_limits<double>::quiet_NaN();  ///< deviation over books
+  double spread = std::numeric_limits<double>::quiet_NaN();  ///< deviation over sets of recordings
 };
 
 /// The numbers of an experiment.
@@ -39,9 +39,9 @@ struct Tables {
 Tables tablesOf(const ExperimentErrors& errors, const ExperimentSettings& settings,
                 const std::vector<Ground>& grounds);
 
-/// Means over the books, number by number, with the spread and the 99 % interval of the mean (by
-/// Student); of one book that book.
-Tables combined(const std::vector<Tables>& books);
+/// Means over the sets of recordings, number by number, with the spread and the 99 % interval of
+/// the mean (by Student); of one set of recordings that set of recordings.
+Tables combined(const std::vector<Tables>& sets);
 
 /// The row of these words; nullptr if there is none.
 const Row* find(const std::vector<Row>& rows, const std::string& from, const std::string& to,
@@ -58,14 +58,15 @@ struct TableFile {
   const char* header;
   std::string (*line)(const Row& row);
 };
-/// All tables, in the order of books.csv.
+/// All tables, in the order of sets of recordings.csv.
 const std::array<TableFile, 5>& tableFiles();
 std::string csvOf(const Tables& tables, const TableFile& file);
 
 /// drift.csv: rule,executions,width of the watched pattern over its shipped one [1].
 std::string csvOfDrift(const ExperimentErrors& errors, const ExperimentSettings& settings);
-/// books.csv: table,seed,from,to,quantity,rule,against,k,value of each book.
-std::string csvOfBooks(const std::vector<Tables>& books, uint64_t first_seed);
+/// sets of recordings.csv: table,seed,from,to,quantity,rule,against,k,value of each set of
+/// recordings.
+std::string csvOfSets(const std::vector<Tables>& sets, uint64_t first_seed);
 
 /// A cell of the paper's Tables I and II for one transition and quantity, as printed.
 struct PaperCell {
@@ -107,7 +108,7 @@ struct Setting {
   std::vector<std::string> surfaces;
   std::vector<std::string> rules;
   bool paper_reference = false;
-  size_t books = 1;
+  size_t sets = 1;
 };
 
 /// Rules side by side in one table that is narrow enough to read: the paper's columns a, b, c, d
@@ -119,13 +120,14 @@ std::vector<std::vector<std::string>> columnGroups(const Setting& setting);
 std::string textOfErrors(const Tables& tables, const Setting& setting);
 /// Table II: collective against single as in the paper, then each other rule.
 std::string textOfReductions(const Tables& tables, const Setting& setting);
-/// RMS deviations and signs, and those of single books; empty where nothing can be compared.
+/// RMS deviations and signs, and those of single sets of recordings; empty where nothing can be
+/// compared.
 std::string textOfAgreement(const Tables& tables, const Setting& setting,
-                            const std::vector<Tables>& books);
-/// Medians and worst cases by rule: reductions, all patterns, unchanged ground; with several books
-/// means and deviations over them.
+                            const std::vector<Tables>& sets);
+/// Medians and worst cases by rule: reductions, all patterns, unchanged ground; with several sets
+/// of recordings means and deviations over them.
 std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
-                             const std::vector<Tables>& books);
+                             const std::vector<Tables>& sets);
 
 /// The median; NaN of nothing.
 double median(std::vector<double> values);

@@ -72,7 +72,7 @@ std::string reductionCell(const Row* row, const Setting& setting, const std::str
   if (row == nullptr) return "-";
   const Estimate& e = row->estimate;
   std::string text = formatted("%.1f", e.value);
-  if (setting.books > 1)
+  if (setting.sets > 1)
     text += " +-" + formatted("%.1f", row->spread);
   else
     text += " [" + formatted("%.1f", e.low) + ", " + formatted("%.1f", e.high) + "]";
@@ -109,11 +109,11 @@ std::string rmsLine(const std::string& name, const std::array<double, 4>& rms) {
   return line + "\n";
 }
 
-/// The largest deviations and the fewest and most signs of single books.
-std::string booksLines(const std::vector<Tables>& books) {
-  Agreement most = *agreementWithPaper(books.front()), fewest = most;
-  for (const Tables& book : books) {
-    const Agreement one = *agreementWithPaper(book);
+/// The largest deviations and the fewest and most signs of single sets of recordings.
+std::string extremesLines(const std::vector<Tables>& sets) {
+  Agreement most = *agreementWithPaper(sets.front()), fewest = most;
+  for (const Tables& set : sets) {
+    const Agreement one = *agreementWithPaper(set);
     for (size_t c = 0; c < 4; ++c) {
       most.position_rms[c] = std::max(most.position_rms[c], one.position_rms[c]);
       most.orientation_rms[c] = std::max(most.orientation_rms[c], one.orientation_rms[c]);
@@ -134,14 +134,14 @@ std::string booksLines(const std::vector<Tables>& books) {
 }
 
 std::string spreadNote(const Tables& tables, const Setting& setting) {
-  if (setting.books < 2) return "";
+  if (setting.sets < 2) return "";
   double largest[2] = {0.0, 0.0};
   for (const Row& row : tables.errors)
     if (row.from != row.to) {
       double& most = largest[row.quantity == kPosition ? 0 : 1];
       most = std::max(most, row.spread);
     }
-  return "Means over " + std::to_string(setting.books) +
+  return "Means over " + std::to_string(setting.sets) +
          " books of recordings; largest deviation of a cell from book to book: position " +
          formatted("%.4f", largest[0]) + ", orientation " + formatted("%.4f", largest[1]) + ".\n";
 }
@@ -212,8 +212,8 @@ std::string textOfErrors(const Tables& tables, const Setting& setting) {
 
 std::string textOfReductions(const Tables& tables, const Setting& setting) {
   std::string text = "TABLE II: error reductions in per cent";
-  text += setting.books > 1 ? " (mean +- deviation from book to book" : " [paired 99 % interval";
-  text += setting.books > 1 ? ")" : "]";
+  text += setting.sets > 1 ? " (mean +- deviation from book to book" : " [paired 99 % interval";
+  text += setting.sets > 1 ? ")" : "]";
   if (setting.paper_reference) text += " (the paper's; ? = doubtful)";
   text += "\n";
   for (const char* against : {"single", "off"})
@@ -234,7 +234,7 @@ std::string textOfReductions(const Tables& tables, const Setting& setting) {
 }
 
 std::string textOfAgreement(const Tables& tables, const Setting& setting,
-                            const std::vector<Tables>& books) {
+                            const std::vector<Tables>& sets) {
   const std::optional<Agreement> agreement = agreementWithPaper(tables);
   if (!setting.paper_reference || !agreement) return "";
   std::string text =
@@ -246,7 +246,7 @@ std::string textOfAgreement(const Tables& tables, const Setting& setting,
             std::to_string(agreement->orientation_signs) + "/" + std::to_string(agreement->cells) +
             ", position " + std::to_string(agreement->position_signs) + "/" +
             std::to_string(agreement->cells) + "\n";
-  return books.size() < 2 ? text : text + booksLines(books);
+  return sets.size() < 2 ? text : text + extremesLines(sets);
 }
 
 }  // namespace tread::experiment

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/missions/comparison_report.hpp"
+#include "tools/missions/report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -149,14 +149,6 @@ void printDrives(std::ostream& out, const RuleComparison& comparison) {
         countOf(batch, MissionOutcome::kIdle), countOf(batch, MissionOutcome::kStopped),
         collisionsOf(batch), metres, patterns);
   }
-}
-
-Json errorJson(const MeanError& error) {
-  return {{"count", error.count},
-          {"position_m", error.position},
-          {"yaw_rad", error.yaw},
-          {"position_per_m", error.position_per_m},
-          {"yaw_per_rad", error.yaw_per_rad}};
 }
 
 /// JSON has no infinity: null = never.

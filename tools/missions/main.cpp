@@ -8,8 +8,8 @@
 
 #include "common/config/command_line.hpp"
 #include "common/store/store.hpp"
-#include "tools/missions/comparison_report.hpp"
 #include "tools/missions/mission_runner.hpp"
+#include "tools/missions/report.hpp"
 
 namespace {
 
@@ -50,10 +50,9 @@ void define(CLI::App& app, Arguments& arguments) {
                "drive all missions, and once more without learning: the planner is given the true "
                "patterns of the ground below it; ratio of times to the goal")
       ->excludes(several);
-  app.add_option(
-         "--length", arguments.length,
-         "shortest straight line to the goal [m]; longer ones give longer stretches of each "
-         "surface")
+  app.add_option("--length", arguments.length,
+                 "shortest straight line to the goal [m]; longer ones stay longer on each "
+                 "surface")
       ->check(CLI::Range(25.0, 300.0));
   app.add_option("--faults", arguments.fault_file, "YAML file with faults of messages and nodes");
   app.add_option("--threads", arguments.threads, "missions at the same time")

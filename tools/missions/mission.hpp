@@ -6,11 +6,40 @@
 #include <string>
 #include <vector>
 
+#include "common/geometry/footprint_size.hpp"
 #include "common/geometry/se2.hpp"
+#include "modules/simulator/core/world.hpp"
 #include "tools/replay/shadow_learners.hpp"
 #include "tools/report/drive_picture.hpp"
 
 namespace tread::missions {
+
+/// What a mission takes place in: hard on purpose, the same for the same seed.
+/** From start to goal at least `shortest`, at most 1.68 times that; walls whose only near gap lies
+ * off the straight line, pockets that open towards the start, scattered boulders; no gap between
+ * obstacles is narrower than the footprint plus 0.4 m; one to three changes of surface on the way;
+ * gentle slopes. A way of the footprint's width exists. */
+struct MissionWorld {
+  uint64_t seed = 0;
+  Pose2 T_map_start;
+  Pose2 T_map_goal;
+  double straight_line = 0.0;  ///< [m]
+  bool line_blocked = false;   ///< the footprint cannot drive the straight line
+  int surface_changes = 0;     ///< borders between surfaces that the straight line crosses: 1 to 3
+  sim::WorldDescription description;
+};
+
+/// Shortest straight line from start to goal [m].
+inline constexpr double kShortestLine = 25.0;
+
+/** `shortest` [m]: with longer lines each surface is driven for longer. */
+MissionWorld makeMissionWorld(uint64_t seed, const FootprintSize& robot,
+                              double shortest = kShortestLine);
+
+/// Narrowest gap between obstacles that a mission may hold [m].
+constexpr double narrowestGap(const FootprintSize& robot) {
+  return 2.0 * robot.half_width + 0.4;
+}
 
 /// How a mission ended. Every mission ends in exactly one of these.
 enum class MissionOutcome {
@@ -27,7 +56,7 @@ inline const char* nameOf(MissionOutcome outcome) {
 
 /// One execution of a pattern as the learner scored it, with the true surface under it.
 struct ScoredExecution {
-  shadow::ExecutionKey key;
+  ExecutionKey key;
   double time = 0.0;  ///< [s] of its end since the start of the mission
   std::string pattern;
   std::string surface;          ///< true surface at its end; empty if it crossed a border

@@ -30,7 +30,7 @@ double threadSeconds() {
 void addShadows(shadow::ShadowLearners& shadows, MissionResult& result) {
   shadows.finish();
   result.shadow_rules = shadows.rules();
-  std::map<shadow::ExecutionKey, std::vector<shadow::PredictionError>> errors;
+  std::map<ExecutionKey, std::vector<shadow::PredictionError>> errors;
   for (shadow::ShadowedExecution& execution : shadows.executions())
     errors[execution.key] = std::move(execution.by_rule);
   for (ScoredExecution& execution : result.executions) execution.by_rule = errors[execution.key];

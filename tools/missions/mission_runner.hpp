@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/log/event_log.hpp"
-#include "tools/missions/mission_world.hpp"
+#include "tools/missions/mission.hpp"
 #include "tools/missions/report.hpp"
 #include "tools/missions/robot_system.hpp"
 #include "tools/report/drive_picture.hpp"

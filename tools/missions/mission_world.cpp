@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/missions/mission_world.hpp"
+#include "tools/missions/mission.hpp"
 
 #include <algorithm>
 #include <cmath>

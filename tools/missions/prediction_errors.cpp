@@ -50,8 +50,8 @@ struct SumsAround {
   ErrorSums before, after, settled;
 
   void add(const MissionResult& result, size_t change, const ErrorOf& error) {
-    const Executions on_old = stretchOf(result, change);
-    const Executions on_new = stretchOf(result, change + 1);
+    const Executions on_old = segmentOf(result, change);
+    const Executions on_new = segmentOf(result, change + 1);
     before.add(on_old, result.seed, on_old.size() > 5 ? on_old.size() - 4 : 1, on_old.size(),
                error);
     after.add(on_new, result.seed, 1, 3, error);
@@ -84,7 +84,7 @@ void addAfterChanges(const MissionResult& result, int first, int last,
 
 }  // namespace
 
-std::vector<const ScoredExecution*> stretchOf(const MissionResult& result, size_t index) {
+std::vector<const ScoredExecution*> segmentOf(const MissionResult& result, size_t index) {
   const auto& changes = result.crossings;
   const double from = index == 0 ? -1.0 : changes[index - 1].time;
   const double to =
@@ -131,7 +131,7 @@ MeanError meanErrorOf(const std::vector<MissionResult>& results, const ErrorOf& 
   ErrorSums all;
   for (const MissionResult& result : results)
     for (size_t index = 0; index <= result.crossings.size(); ++index) {
-      const Executions executions = stretchOf(result, index);
+      const Executions executions = segmentOf(result, index);
       all.add(executions, result.seed, 1, executions.size(), error);
     }
   return all.mean();
@@ -164,16 +164,16 @@ struct Pair {
   }
 };
 
-using Stretch = std::vector<Pair>;
+using Segment = std::vector<Pair>;
 
-Pair window(const Stretch& stretch, size_t from) {
+Pair window(const Segment& segment, size_t from) {
   Pair sum{0.0, 0.0, 0.0, 0.0};
-  for (size_t i = from; i < from + Settling::kWindow; ++i) sum.add(stretch[i]);
+  for (size_t i = from; i < from + Settling::kWindow; ++i) sum.add(segment[i]);
   return sum;
 }
 
-size_t windowsIn(const Stretch& stretch) {
-  return stretch.size() < Settling::kWindow ? 0 : stretch.size() - Settling::kWindow + 1;
+size_t windowsIn(const Segment& segment) {
+  return segment.size() < Settling::kWindow ? 0 : segment.size() - Settling::kWindow + 1;
 }
 
 bool within(double error, double best) {
@@ -182,10 +182,10 @@ bool within(double error, double best) {
 
 /// When the first window fulfils a condition, or how long none did.
 template <class Condition>
-std::pair<int, bool> timeOf(const Stretch& stretch, Condition condition) {
-  const size_t windows = windowsIn(stretch);
+std::pair<int, bool> timeOf(const Segment& segment, Condition condition) {
+  const size_t windows = windowsIn(segment);
   for (size_t n = 0; n < windows; ++n)
-    if (condition(window(stretch, n))) return {static_cast<int>(n), true};
+    if (condition(window(segment, n))) return {static_cast<int>(n), true};
   return {static_cast<int>(windows) - 1, false};
 }
 
@@ -196,32 +196,32 @@ bool counts(const MissionResult& result, size_t change, Met met) {
   for (size_t i = 0; i <= change; ++i) {
     if (result.crossings[i].from != result.crossings[change].to) continue;
     met_before = true;
-    before += stretchOf(result, i).size();
+    before += segmentOf(result, i).size();
   }
   return met == Met::kFirst ? !met_before : before >= kKnownAfter;
 }
 
-Stretch stretchAfter(const MissionResult& result, size_t change, const ErrorOf& errorOf,
+Segment segmentAfter(const MissionResult& result, size_t change, const ErrorOf& errorOf,
                      const Omniscient& omniscient) {
-  Stretch stretch;
-  for (const ScoredExecution* execution : stretchOf(result, change + 1)) {
+  Segment segment;
+  for (const ScoredExecution* execution : segmentOf(result, change + 1)) {
     if (execution->surface != result.crossings[change].to) continue;
     const auto error = errorOf(*execution, result.seed);
     const auto best = omniscient.errorOf(*execution, result.seed);
     if (error && best)
-      stretch.push_back(
+      segment.push_back(
           {error->position, std::abs(error->yaw), best->position, std::abs(best->yaw)});
   }
-  return stretch;
+  return segment;
 }
 
-void fillRatios(const std::vector<Stretch>& stretches, Settling& settling) {
+void fillRatios(const std::vector<Segment>& segments, Settling& settling) {
   for (size_t n = 0;; ++n) {
     Pair sum{0.0, 0.0, 0.0, 0.0};
     size_t changes = 0;
-    for (const Stretch& stretch : stretches) {
-      if (n >= windowsIn(stretch)) continue;
-      sum.add(window(stretch, n));
+    for (const Segment& segment : segments) {
+      if (n >= windowsIn(segment)) continue;
+      sum.add(window(segment, n));
       ++changes;
     }
     if (changes < kFewestChanges) return;
@@ -287,28 +287,28 @@ double medianTime(std::vector<std::pair<int, bool>> times) {
 Settling settlingOf(const std::vector<MissionResult>& results, const ErrorOf& error,
                     const Omniscient& omniscient, Met met) {
   Settling settling;
-  std::vector<Stretch> stretches;
+  std::vector<Segment> segments;
   std::set<uint64_t> missions;
   std::vector<std::pair<int, bool>> position, yaw, both;
   for (const MissionResult& result : results)
     for (size_t change = 0; change < result.crossings.size(); ++change) {
       if (!counts(result, change, met)) continue;
-      Stretch stretch = stretchAfter(result, change, error, omniscient);
-      if (windowsIn(stretch) == 0) continue;
+      Segment segment = segmentAfter(result, change, error, omniscient);
+      if (windowsIn(segment) == 0) continue;
       const auto in_position = [](const Pair& w) { return within(w.position, w.best_position); };
       const auto in_yaw = [](const Pair& w) { return within(w.yaw, w.best_yaw); };
-      position.push_back(timeOf(stretch, in_position));
-      yaw.push_back(timeOf(stretch, in_yaw));
-      both.push_back(timeOf(stretch, [&](const Pair& w) { return in_position(w) && in_yaw(w); }));
-      stretches.push_back(std::move(stretch));
+      position.push_back(timeOf(segment, in_position));
+      yaw.push_back(timeOf(segment, in_yaw));
+      both.push_back(timeOf(segment, [&](const Pair& w) { return in_position(w) && in_yaw(w); }));
+      segments.push_back(std::move(segment));
       missions.insert(result.seed);
     }
   settling.missions = static_cast<int>(missions.size());
-  settling.changes = static_cast<int>(stretches.size());
+  settling.changes = static_cast<int>(segments.size());
   settling.position = medianTime(std::move(position));
   settling.yaw = medianTime(std::move(yaw));
   settling.both = medianTime(std::move(both));
-  fillRatios(stretches, settling);
+  fillRatios(segments, settling);
   return settling;
 }
 

@@ -38,9 +38,9 @@ struct ErrorsAroundChanges {
   MeanError settled;  ///< the fifth to the fifteenth
 };
 
-/// Measured executions that lie wholly on one stretch of surface: after crossing `index` - 1,
+/// Measured executions that lie wholly on one segment of surface: after crossing `index` - 1,
 /// before crossing `index`; 0 = before the first.
-std::vector<const ScoredExecution*> stretchOf(const MissionResult& result, size_t index);
+std::vector<const ScoredExecution*> segmentOf(const MissionResult& result, size_t index);
 
 /// Of one change, an index into crossings, as driven.
 ErrorsAroundChanges errorsAroundChange(const MissionResult& result, size_t change);
@@ -100,7 +100,7 @@ enum class Met {
 /// How many executions a rule needs on a new surface.
 /** The measure: n is the smallest number of measured executions on the new surface after which the
  * mean error of the next five is at most 1.2 times the omniscient one's of the same five; 0 = at
- * once. For position, yaw, and both in the same five. A stretch that ends earlier (next change,
+ * once. For position, yaw, and both in the same five. A segment that ends earlier (next change,
  * goal) is censored there: medians are those of Kaplan and Meier. Changes with fewer than five
  * executions after them are left out. */
 struct Settling {

@@ -64,7 +64,7 @@ void StopDetector::step(int64_t utime, const Twist2& v_body, const StopReasons& 
   if (!slow || begun_ == 0) return;
   if (resting_) {
     rests_.back().to = utime;
-  } else if (utime - slowed_.from >= kMoment) {
+  } else if (utime - slowed_.from >= kAtRestAfter) {
     rests_.push_back({slowed_.from, utime, slowed_.reason});
     resting_ = true;
   }
@@ -103,8 +103,6 @@ Referee::Referee(RobotSystem& system, const MissionWorld& world)
   result_.straight_line = world.straight_line;
   result_.line_blocked = world.line_blocked;
   result_.surface_changes = world.surface_changes;
-  for (const MotionPattern& pattern : system.patterns().patterns())
-    pattern_names_[pattern.id] = pattern.name;
   listen(system.bus().outside());
 }
 
@@ -246,8 +244,8 @@ void Referee::noteContacts() {
 std::string Referee::presentPattern() const {
   const auto record = records_.find({motor_.motor_run_id, motor_.execution_id});
   if (motor_.execution_id == 0 || record == records_.end()) return {};
-  const auto name = pattern_names_.find(record->second.record_pattern_id);
-  return name == pattern_names_.end() ? std::string() : name->second;
+  const MotionPattern* pattern = system_.patterns().find(record->second.record_pattern_id);
+  return pattern == nullptr ? std::string() : pattern->name;
 }
 
 std::optional<int64_t> SurfaceTracker::step(int64_t utime, const std::string& present) {

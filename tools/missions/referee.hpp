@@ -83,8 +83,8 @@ class StopDetector {
   double driven() const { return static_cast<double>(driven_) * 1e-6; }
 
  private:
-  static constexpr int64_t kMoment = 200'000;  ///< [us]
-  static constexpr double kSlow = 0.05;        ///< [m/s, rad/s]
+  static constexpr int64_t kAtRestAfter = 200'000;  ///< [us]
+  static constexpr double kSlow = 0.05;             ///< [m/s, rad/s]
 
   struct Rest {
     int64_t from = 0;
@@ -162,7 +162,6 @@ class Referee {
   FlipDetector flips_;
   StopDetector stops_;
   std::string abort_reason_;  ///< of the newest execution, if it was aborted
-  std::map<int, std::string> pattern_names_;
   std::map<std::pair<int64_t, int64_t>, execution_record_t> records_;  ///< by run and execution id
   SurfaceTracker surfaces_;
   std::optional<int64_t> refused_since_;

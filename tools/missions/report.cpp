@@ -81,14 +81,10 @@ std::string errorText(const MeanError& error) {
 
 Json errorsJson(const Batch& batch, int first, int last) {
   Json rows = Json::array();
-  for (const ErrorAfterChange& error : errorsAfterChange(batch.results, first, last))
-    rows.push_back({{"from", error.from},
-                    {"to", error.to},
-                    {"count", error.count},
-                    {"position_m", error.position},
-                    {"yaw_rad", error.yaw},
-                    {"position_per_m", error.position_per_m},
-                    {"yaw_per_rad", error.yaw_per_rad}});
+  for (const ErrorAfterChange& error : errorsAfterChange(batch.results, first, last)) {
+    rows.push_back({{"from", error.from}, {"to", error.to}});
+    rows.back().update(errorJson(error));
+  }
   return rows;
 }
 
@@ -243,6 +239,14 @@ void printSummary(std::ostream& out, const Batch& batch) {
                    batch.virtual_time / std::max(1e-9, batch.cpu_time));
   printErrors(out, batch, 1, 3);
   printErrors(out, batch, 5, 15);
+}
+
+nlohmann::ordered_json errorJson(const MeanError& error) {
+  return {{"count", error.count},
+          {"position_m", error.position},
+          {"yaw_rad", error.yaw},
+          {"position_per_m", error.position_per_m},
+          {"yaw_per_rad", error.yaw_per_rad}};
 }
 
 nlohmann::ordered_json batchJson(const Batch& batch) {

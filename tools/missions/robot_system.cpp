@@ -9,6 +9,7 @@
 
 #include "common/bus/channels.hpp"
 #include "common/config/config_reader.hpp"
+#include "common/config/scalars.hpp"
 #include "common/messages/blank.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"
 #include "modules/learner/learner_node.hpp"
@@ -52,7 +53,7 @@ class RobotFiles {
       const auto& nodes = robotNodes();
       if (dot == std::string::npos || std::find(nodes.begin(), nodes.end(), process) == nodes.end())
         throw ConfigError("--set " + words + ": write PROCESS.KEY=VALUE, PROCESS one of " +
-                          listOf(nodes));
+                          joinWords(nodes));
       overrides_[process].push_back(words.substr(dot + 1));
     }
   }
@@ -65,12 +66,6 @@ class RobotFiles {
   }
 
  private:
-  static std::string listOf(const std::vector<std::string>& names) {
-    std::string list;
-    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-    return list;
-  }
-
   std::string folder_;
   std::map<std::string, std::vector<std::string>> overrides_;
 };

@@ -75,7 +75,6 @@ class RobotSystem {
   const learner::LearnerNodeConfig& learnerConfig() const { return config_.learner; }
   const planner::PlannerConfig& planner() const { return config_.planner; }
   const mapping::OccupancyMapConfig& map() const { return config_.mapping.map; }
-  MemoryStore& learnerStore() { return learner_store_; }
 
  private:
   class SimulatedScans;

@@ -10,7 +10,7 @@
 
 namespace tread::overlay {
 
-/// A command that was on the motors from a moment until the next one.
+/// A command that was on the motors from a time until the next one.
 struct GivenCommand {
   double time = 0.0;  ///< [s] since the first MOTOR message
   TrackCommand command;

@@ -8,8 +8,8 @@
 
 #include <tread/ins_t.hpp>
 
-#include "modules/ins_driver/nmea/nmea_ins.hpp"
 #include "modules/ins_driver/ins_driver_config.hpp"
+#include "modules/ins_driver/nmea/nmea_ins.hpp"
 
 namespace tread {
 

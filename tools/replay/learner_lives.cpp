@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/replay/learner_lives.hpp"
+#include "tools/replay/robot_learner.hpp"
 
 #include <algorithm>
 #include <set>
@@ -116,12 +116,12 @@ LearnerLife lifeOf(const RobotLog& log, const Snapshot& snapshot, const PatternS
 bool namesKnownSets(const RobotLog& log, const LearnerLife& life) {
   std::set<int64_t> known;
   for (const PatternSet& set : life.earlier) known.insert(set.version());
-  const std::set<tread::ExecutionKey> handled(life.state.handled.begin(), life.state.handled.end());
+  const std::set<ExecutionKey> handled(life.state.handled.begin(), life.state.handled.end());
   for (const TimedEvent& timed : log.events) {
     execution_t message;
     if (!decode(timed.event, kExecution, message)) continue;
     for (const execution_record_t& record : message.records) {
-      const tread::ExecutionKey key{record.record_run_id, record.record_execution_id};
+      const ExecutionKey key = keyOf(record);
       const bool is_known = known.count(record.record_set_version) > 0 ||
                             record.record_set_version >= life.state.set.version();
       if (!is_known && handled.count(key) == 0) return false;

@@ -10,7 +10,7 @@
 #include "common/store/store.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/replay/ins_replay.hpp"
-#include "tools/replay/learner_report.hpp"
+#include "tools/replay/learner_replay.hpp"
 #include "tools/replay/mapping_replay.hpp"
 #include "tools/replay/recipe.hpp"
 #include "tools/replay/robot_learner.hpp"

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <iterator>
 #include <type_traits>
 
+#include "common/config/scalars.hpp"
 #include "tools/replay/recipe.hpp"
 
 namespace tread::replay {
@@ -89,9 +89,7 @@ class FieldComparison {
   template <class Value>
   static std::string text(const Value& value) {
     if constexpr (std::is_floating_point_v<Value>) {
-      std::array<char, 40> digits;
-      const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), double{value});
-      return {digits.data(), end.ptr};
+      return formatNumber(double{value});
     } else if constexpr (std::is_integral_v<Value>) {
       return std::to_string(value);
     } else {

@@ -12,7 +12,6 @@
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/store.hpp"
 #include "modules/learner/learner_node.hpp"
-#include "tools/replay/learner_lives.hpp"
 #include "tools/replay/log_bus.hpp"
 #include "tools/replay/replay_check.hpp"
 
@@ -25,7 +24,6 @@ constexpr int64_t kAfterwards = 100'000;
 /// Yaw is unwrapped from the first INS on: a replay that begins later rounds otherwise.
 constexpr double kMiddleTolerance = 1e-9;
 
-using ExecutionKey = std::pair<int64_t, int64_t>;
 using SetParts = std::map<int32_t, pattern_set_part_t>;
 
 /// What the learner published: in the log, or in a replay.

@@ -9,7 +9,6 @@
 
 #include "modules/planner/planner_node.hpp"
 #include "tools/replay/log_bus.hpp"
-#include "tools/replay/planner_inputs.hpp"
 #include "tools/replay/replay_check.hpp"
 
 namespace tread::replay {

@@ -10,13 +10,10 @@
 
 #include <tread/program_t.hpp>
 
-#include "common/log/event_log.hpp"
+#include "common/log/drive_log.hpp"
 #include "modules/learner/learner_config.hpp"
 
 namespace tread::shadow {
-
-/// An execution by run id and execution id.
-using ExecutionKey = std::pair<int64_t, int64_t>;
 
 /// Distance of an execution's measured end from the predicted one.
 struct PredictionError {

@@ -2,19 +2,83 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cstdint>
+#include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "common/grid/grid.hpp"
+#include "common/log/event_log.hpp"
 #include "modules/simulator/core/world.hpp"
 #include "modules/simulator/truth_record.hpp"
+#include "tools/replay/shadow_learners.hpp"
 #include "tools/report/drive_picture.hpp"
-#include "tools/report/latency.hpp"
-#include "tools/report/rule_errors.hpp"
 
 namespace tread::report {
+
+/// The executions of one drive, predicted by several rules of learning.
+struct RuleErrors {
+  std::string problem;  ///< why there are none, one line; empty = there are
+  std::string driven;   ///< rule that the robot drove with
+  std::vector<learner::Rule> rules;
+  std::vector<shadow::ShadowedExecution> executions;  ///< in the order in which they ended
+};
+
+/// Replays the log's INS, EXECUTION and MOTOR through a learner process for each rule.
+/** Configured as the log's CONFIG of the learner says, with the shipped set that it names: in the
+ * log, or among the pattern files of `patterns_folder`. Each begins with that set and remembers no
+ * surface, whatever the robot had learned before. `logs`: parts of one recording, in order. */
+RuleErrors errorsByRule(const std::vector<std::string>& logs, const std::string& patterns_folder,
+                        const std::vector<learner::Rule>& rules);
+
+/// Means side by side, some lines. `changes`: when the ground became another [us], ascending;
+/// empty = not known.
+std::string reportOf(const RuleErrors& errors, const std::vector<int64_t>& changes);
+
+/// Times that something took [ms].
+class Durations {
+ public:
+  void add(double milliseconds) { values_.push_back(milliseconds); }
+  size_t count() const { return values_.size(); }
+  /// The value that a share (0..1) does not exceed; NaN if there is none.
+  double quantile(double share) const;
+
+ private:
+  std::vector<double> values_;
+};
+
+/// How long messages wait for each other, by the times at which the logger received them.
+/** INS to set: from the INS message that passes the end of an execution to the first part of the
+ * set that was learned from it. Set to plan: from the last part of a set's first appearance to the
+ * first PLAN made with it. Scan to tile: from SCAN to the next MAP message that holds it. */
+class Latencies {
+ public:
+  void add(const LogEvent& event);
+
+  const Durations& insToSet() const { return ins_to_set_; }
+  const Durations& setToPlan() const { return set_to_plan_; }
+  const Durations& scanToTile() const { return scan_to_tile_; }
+
+ private:
+  struct Received {
+    int64_t utime;     ///< [us] of the message
+    int64_t received;  ///< [us] by the logger
+  };
+  void hear(const learning_t& message);
+  void hear(const pattern_set_part_t& message, int64_t received);
+
+  std::deque<Received> ins_;                 ///< of the last seconds
+  std::deque<Received> scans_;               ///< not yet in a tile
+  std::map<int64_t, int64_t> first_part_;    ///< by version: when its first part came
+  std::map<int64_t, int64_t> awaited_sets_;  ///< by version: when the INS came that allowed it
+  std::map<int64_t, int64_t> unplanned_;     ///< by version: when it was complete
+  std::map<int64_t, int> parts_;             ///< by version: parts so far
+  int64_t newest_version_ = 0;
+  Durations ins_to_set_, set_to_plan_, scan_to_tile_;
+};
 
 /// One drive in a log: from the first goal to the arrival, or to the log's end.
 struct DriveRecord {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/report/rule_errors.hpp"
+#include "tools/report/drive_report.hpp"
 
 #include <algorithm>
 #include <array>
@@ -27,33 +27,33 @@ replay::RobotLog relevantLog(const std::vector<std::string>& paths) {
   return replay::toRobotLog(paths.empty() ? "no log" : paths.front(), std::move(events));
 }
 
-/// Executions wholly on one surface, each with its number on it, from 1; and on which stretch.
+/// Executions wholly on one surface, each with its number on it, from 1; and on which segment.
 struct Numbered {
   const shadow::ShadowedExecution* execution = nullptr;
-  size_t stretch = 0;
+  size_t segment = 0;
   int number = 0;
 };
 
 std::vector<Numbered> numbered(const RuleErrors& errors, const std::vector<int64_t>& changes) {
   std::vector<Numbered> result;
-  size_t stretch = 0;
+  size_t segment = 0;
   int number = 0;
   for (const shadow::ShadowedExecution& execution : errors.executions) {
-    while (stretch < changes.size() && changes[stretch] <= execution.ended) {
-      ++stretch;
+    while (segment < changes.size() && changes[segment] <= execution.ended) {
+      ++segment;
       number = 0;
     }
-    const bool across = stretch > 0 && execution.began < changes[stretch - 1];
-    if (execution.measured && !across) result.push_back({&execution, stretch, ++number});
+    const bool across = segment > 0 && execution.began < changes[segment - 1];
+    if (execution.measured && !across) result.push_back({&execution, segment, ++number});
   }
   return result;
 }
 
-/// The last five of each stretch that has a change behind it.
+/// The last five of each segment that has a change behind it.
 Executions beforeChanges(const std::vector<Numbered>& all, size_t changes) {
   Executions chosen;
   for (size_t i = 0; i < all.size(); ++i)
-    if (all[i].stretch < changes && (i + 5 >= all.size() || all[i + 5].stretch != all[i].stretch))
+    if (all[i].segment < changes && (i + 5 >= all.size() || all[i + 5].segment != all[i].segment))
       chosen.push_back(all[i].execution);
   return chosen;
 }
@@ -61,7 +61,7 @@ Executions beforeChanges(const std::vector<Numbered>& all, size_t changes) {
 Executions afterChanges(const std::vector<Numbered>& all, int first, int last) {
   Executions chosen;
   for (const Numbered& one : all)
-    if (one.stretch > 0 && one.number >= first && one.number <= last)
+    if (one.segment > 0 && one.number >= first && one.number <= last)
       chosen.push_back(one.execution);
   return chosen;
 }

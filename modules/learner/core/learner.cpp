@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/learner/core/learner.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tread::learner {
@@ -11,6 +12,12 @@ void append(std::string& text, const std::string& more) {
   if (!text.empty()) text += "; ";
   text += more;
 }
+
+/// Residuals before a covariance is called known, and those that a shipped covariance counts for.
+constexpr int64_t kFewestResiduals = 3;
+constexpr int64_t kShippedCount = 5;
+/// [1] of the newest residual, however many there were.
+constexpr double kLeastWeight = 0.10;
 
 /// The guards of a note in words.
 std::string guardsOf(const RuleNote& note) {
@@ -28,14 +35,26 @@ std::string guardsOf(const RuleNote& note) {
   return guards;
 }
 
-void write(const ConstTrajectory& from, std::vector<Pose2>& to) {
-  for (size_t t = 0; t < to.size(); ++t) {
-    const auto row = static_cast<Eigen::Index>(t);
-    to[t] = {from(row, 0), from(row, 1), from(row, 2)};
-  }
+}  // namespace
+
+EndResiduals residualsOf(const MotionPattern& shipped) {
+  if (!isKnown(shipped.end_covariance)) return {};
+  return {kShippedCount, shipped.end_covariance};
 }
 
-}  // namespace
+void addResidual(EndResiduals& residuals, const Pose2& error) {
+  const PoseCovariance square{error.x * error.x, error.x * error.y,   error.x * error.yaw,
+                              error.y * error.y, error.y * error.yaw, error.yaw * error.yaw};
+  ++residuals.count;
+  const double weight = std::max(1.0 / static_cast<double>(residuals.count), kLeastWeight);
+  for (size_t i = 0; i < square.size(); ++i)
+    residuals.mean[i] += weight * (square[i] - residuals.mean[i]);
+}
+
+PoseCovariance covarianceOf(const EndResiduals& residuals) {
+  if (residuals.count >= kFewestResiduals) return residuals.mean;
+  return kUnknownCovariance;
+}
 
 Pose2 endError(const Measurement& measurement, const MotionPattern& predicted) {
   const Pose2& m = measurement.trajectory.back();
@@ -43,15 +62,14 @@ Pose2 endError(const Measurement& measurement, const MotionPattern& predicted) {
   return {m.x - r.x, m.y - r.y, wrapAngle(m.yaw - r.yaw)};
 }
 
-Learner::Learner(RuleConfig config, PatternSet shipped)
-    : config_(std::move(config)),
-      shipped_(std::move(shipped)),
+Learner::Learner(const RuleConfig& config, PatternSet shipped)
+    : shipped_(std::move(shipped)),
       set_(shipped_),
-      rule_(makeRule(config_, shipped_)),
+      rule_(makeRule(config, shipped_)),
       before_(rule_->clone()) {
   for (const MotionPattern& pattern : shipped_.patterns()) {
     index_.emplace(pattern.id, index_.size());
-    residuals_[pattern.id] = residualsOf(pattern, config_.residuals);
+    residuals_[pattern.id] = residualsOf(pattern);
   }
 }
 
@@ -86,7 +104,7 @@ PatternSetContent Learner::predicted() const {
     const auto samples = static_cast<Eigen::Index>(pattern.trajectory.size());
     numbers.resize(static_cast<size_t>(3 * samples));
     rule_->predict(p, Trajectory(numbers.data(), samples, 3));
-    write(ConstTrajectory(numbers.data(), samples, 3), pattern.trajectory);
+    pattern.trajectory = posesOf(ConstTrajectory(numbers.data(), samples, 3));
     if (const auto covariance = rule_->endCovariance(p)) pattern.end_covariance = *covariance;
   }
   return content;
@@ -106,12 +124,11 @@ Correction Learner::learn(int pattern_id, const Measurement& measurement,
   correction.guards = guardsOf(correction.note);
 
   EndResiduals residuals = residuals_[pattern_id];
-  if (end_error) addResidual(residuals, *end_error, config_.residuals);
+  if (end_error) addResidual(residuals, *end_error);
   PatternSetContent content = predicted();
   MotionPattern& learned = content.patterns[executed];
   ++learned.times_learned;
-  if (!rule_->endCovariance(executed))
-    learned.end_covariance = covarianceOf(residuals, config_.residuals);
+  if (!rule_->endCovariance(executed)) learned.end_covariance = covarianceOf(residuals);
   content.parent_version = content.version;
   ++content.version;
   content.utime = utime;

@@ -21,13 +21,30 @@ struct Correction {
   std::string reason;  ///< what the rule took it for, in words; empty if nothing changed
 };
 
+/// Running mean of squared prediction errors of one pattern's end pose: about zero, because a bias
+/// misleads the planner as much as noise does.
+struct EndResiduals {
+  int64_t count = 0;
+  PoseCovariance mean{};  ///< [m2, m rad, rad2]; meaningless while count is 0
+};
+
+/// The beginning for a pattern, from its shipped covariance if that is known.
+EndResiduals residualsOf(const MotionPattern& shipped);
+
+/// Takes one error of the end pose, measured relative to predicted, in the pattern's start frame,
+/// yaw wrapped.
+void addResidual(EndResiduals& residuals, const Pose2& error);
+
+/// What may be told to the planner: NaN until enough was seen.
+PoseCovariance covarianceOf(const EndResiduals& residuals);
+
 /// What has been learned, beside the set itself.
 using ResidualTable = std::map<int, EndResiduals>;
 
 /// Learns a pattern set from measured executions. Every change makes a new version with its parent.
 class Learner {
  public:
-  Learner(RuleConfig config, PatternSet shipped);
+  Learner(const RuleConfig& config, PatternSet shipped);
 
   /// The newest set.
   const PatternSet& set() const { return set_; }
@@ -62,7 +79,6 @@ class Learner {
   /// The newest set with what the rule predicts now, not yet checked.
   PatternSetContent predicted() const;
 
-  RuleConfig config_;
   PatternSet shipped_;
   PatternSet set_;
   std::map<int, size_t> index_;  ///< by pattern id

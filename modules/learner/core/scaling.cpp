@@ -100,4 +100,11 @@ void smooth(const ConstTrajectory& measured, double memory, Trajectory predicted
   predicted = (1.0 - memory) * measured + memory * predicted;  // equation (2)
 }
 
+bool isKnown(const PoseCovariance& covariance) {
+  const bool finite = std::all_of(covariance.begin(), covariance.end(),
+                                  [](double element) { return std::isfinite(element); });
+  // Nothing is certain: all variances zero come from a model that tells of no spread.
+  return finite && (covariance[0] > 0.0 || covariance[3] > 0.0 || covariance[5] > 0.0);
+}
+
 }  // namespace tread::learner

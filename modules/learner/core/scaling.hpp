@@ -98,4 +98,7 @@ void scale(const Axes& factors, const PatternRole& role, Trajectory predicted);
  *  Both trajectories have the same number of poses, yaw unwrapped. */
 void smooth(const ConstTrajectory& measured, double memory, Trajectory predicted);
 
+/// Whether a covariance says anything: all numbers finite, not all variances zero.
+bool isKnown(const PoseCovariance& covariance);
+
 }  // namespace tread::learner

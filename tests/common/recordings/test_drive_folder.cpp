@@ -29,7 +29,7 @@ DriveRequest requestOf(const std::string& folder, const std::string& robot) {
   return request;
 }
 
-/// What making a book throws, without the folder's name.
+/// What making a set of recordings throws, without the folder's name.
 std::string complaint(const DriveRequest& request) {
   try {
     recordingsFromDrives(request);

@@ -76,18 +76,19 @@ TEST_CASE("Student's quantile falls to the normal one") {
 }
 
 TEST_CASE("several books become a mean, its interval and the deviation between them") {
-  const auto bookWith = [](double value) {
+  const auto recordingsWith = [](double value) {
     Tables tables;
     Row row;
     row.estimate = {value, value - 1.0, value + 1.0};
     tables.errors = {row};
     return tables;
   };
-  const Row row = combined({bookWith(1.0), bookWith(2.0), bookWith(3.0)}).errors.front();
+  const Row row =
+      combined({recordingsWith(1.0), recordingsWith(2.0), recordingsWith(3.0)}).errors.front();
   CHECK(row.estimate.value == Approx(2.0));
   CHECK(row.spread == Approx(1.0));
   CHECK(row.estimate.high - row.estimate.value == Approx(9.925 / std::sqrt(3.0)));
-  const Row alone = combined({bookWith(5.0)}).errors.front();
+  const Row alone = combined({recordingsWith(5.0)}).errors.front();
   CHECK(alone.estimate.high == 6.0);
   CHECK(std::isnan(alone.spread));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Section V of the paper on the two calibrations, with fewer repetitions and books than a report.
+// Section V of the paper on the two calibrations, with fewer repetitions and sets of recordings
+// than a report.
 #include <cmath>
 
 #include <catch2/catch.hpp>
@@ -18,7 +19,7 @@ Batch paperBatch(const std::string& world) {
   request.world = kWorlds + world;
   request.rules = {"off", "single", "collective", kOmniscient};
   request.repetitions = 2000;
-  request.books = 3;
+  request.sets = 3;
   request.threads = 2;
   return runBatch(request, {});
 }

@@ -109,9 +109,9 @@ TEST_CASE("several books give means with their spread, and each book's numbers")
   REQUIRE(code == 0);
   CHECK(printed.find("Means over 3 books") != std::string::npos);
   CHECK(printed.find("paper") == std::string::npos);
-  const auto books = linesOf(folder / "out/books.csv");
-  CHECK(books[0] == "table,seed,from,to,quantity,rule,against,k,value");
-  CHECK(books.size() == 1 + 3 * (2 * 2 * 4 + 2 * 2 * 3 + 2 * 2 * 4 * 4 + 2 * (2 * 2 * 4)));
+  const auto sets = linesOf(folder / "out/books.csv");
+  CHECK(sets[0] == "table,seed,from,to,quantity,rule,against,k,value");
+  CHECK(sets.size() == 1 + 3 * (2 * 2 * 4 + 2 * 2 * 3 + 2 * 2 * 4 * 4 + 2 * (2 * 2 * 4)));
 }
 
 TEST_CASE("all rules with extras: the bank is shown, lines are short, variants are told") {
@@ -174,12 +174,12 @@ TEST_CASE("what cannot be done is one clear line") {
   refuses("--recordings " + (folder / "none"), "neither sessions.csv");
   refuses("--recordings " + folder.path.string() + " --books 2", "--world");
 
-  recordings::PatternRecordings book = record(parseTransitionWorld(kSmallWorld, "small"), 1);
-  book.surfaces[1].executions[1].resize(2);
-  recordings::writeRecordings(folder / "few", book);
+  recordings::PatternRecordings recorded = record(parseTransitionWorld(kSmallWorld, "small"), 1);
+  recorded.surfaces[1].executions[1].resize(2);
+  recordings::writeRecordings(folder / "few", recorded);
   refuses("--recordings " + (folder / "few") + kFour, "at least 3");
-  book.surfaces.resize(1);
-  recordings::writeRecordings(folder / "one", book);
+  recorded.surfaces.resize(1);
+  recordings::writeRecordings(folder / "one", recorded);
   refuses("--recordings " + (folder / "one") + kFour, "two surfaces");
   refuses("--recordings " + (folder / "one") + " --robot husky" + kFour, "sessions.csv");
 }

@@ -8,7 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/tools/experiment/small_world.hpp"
-#include "tools/experiment/figures.hpp"
+#include "tools/experiment/batch.hpp"
 #include "tools/experiment/tables.hpp"
 
 namespace tread::experiment {
@@ -155,7 +155,7 @@ TEST_CASE("the file of books has every row of every book under its seed") {
   const Tables tables = knownTables();
   size_t rows = 0;
   for (const TableFile& file : tableFiles()) rows += (tables.*file.rows).size();
-  const std::vector<std::string> lines = linesOf(csvOfBooks({tables, tables}, 40));
+  const std::vector<std::string> lines = linesOf(csvOfSets({tables, tables}, 40));
   REQUIRE(lines.size() == 1 + 2 * rows);
   CHECK(lines[1] == "table1,40,ice,road,position,off,,0,0.400000");
   CHECK(lines[1 + rows] == "table1,41,ice,road,position,off,,0,0.400000");

@@ -78,8 +78,8 @@ TEST_CASE("the shipped worlds are the calibration: the same motion to a tenth of
 
 TEST_CASE("recordings spread as the world says, and a seed gives the same ones") {
   const TransitionWorld world = readTransitionWorld(kWorlds + "transitions_symmetric.yaml");
-  const recordings::PatternRecordings book = record(world, 3), again = record(world, 3);
-  const auto& straight = book.surfaces[0].executions[0];
+  const recordings::PatternRecordings recorded = record(world, 3), again = record(world, 3);
+  const auto& straight = recorded.surfaces[0].executions[0];
   REQUIRE(straight.size() == 300);
   double mean = 0.0, square = 0.0;
   for (size_t i = 0; i < straight.size(); ++i) {

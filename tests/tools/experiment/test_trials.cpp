@@ -144,10 +144,10 @@ TEST_CASE("progress tells every part once, and a failing part ends the run with 
 
 TEST_CASE("twice as long commands make patterns twice as long") {
   const TransitionWorld world = parseTransitionWorld(kSmallWorld, "small.yaml");
-  const recordings::PatternRecordings book = record(world, 1, 2);
-  CHECK(book.patterns.patterns()[1].commands.size() == 20);
-  CHECK(book.surfaces[0].executions[0][0].size() == 20);
-  CHECK(book.surfaces[0].executions[0][0].back().x == Approx(1.1 * 1.1).epsilon(0.1));
+  const recordings::PatternRecordings recorded = record(world, 1, 2);
+  CHECK(recorded.patterns.patterns()[1].commands.size() == 20);
+  CHECK(recorded.surfaces[0].executions[0][0].size() == 20);
+  CHECK(recorded.surfaces[0].executions[0][0].back().x == Approx(1.1 * 1.1).epsilon(0.1));
 }
 
 }  // namespace tread::experiment

@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/called_program.hpp"
-#include "tools/missions/comparison_report.hpp"
 #include "tools/missions/prediction_errors.hpp"
+#include "tools/missions/report.hpp"
 
 using namespace tread;
 using namespace tread::missions;
@@ -195,14 +195,14 @@ TEST_CASE("errors after changes are pooled by pair of surfaces, each execution o
   CHECK(contains(summaryOf(batch), "  all changes            3        0.3333     0.3333\n"));
 }
 
-TEST_CASE("a stretch is what lies between two changes, measured and on one surface") {
+TEST_CASE("a segment is what lies between two changes, measured and on one surface") {
   MissionResult result = mission(1, MissionOutcome::kArrived);
   result.crossings = {{2.5, "grass", "tarmac"}};
   result.executions = {scored(1, "grass", 0.1), scored(2, "", 0.1), scored(2.5, "grass", 0.1),
                        scored(3, "tarmac", 0.1)};
-  CHECK(stretchOf(result, 0).size() == 2);
-  CHECK(stretchOf(result, 1).size() == 1);
-  CHECK(stretchOf(result, 1)[0]->time == 3.0);
+  CHECK(segmentOf(result, 0).size() == 2);
+  CHECK(segmentOf(result, 1).size() == 1);
+  CHECK(segmentOf(result, 1)[0]->time == 3.0);
 }
 
 TEST_CASE("a rule settles where five executions together are within a fifth of the best") {

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "tools/missions/mission_world.hpp"
+#include "tools/missions/mission.hpp"
 
 using namespace tread;
 using namespace tread::missions;

@@ -122,7 +122,7 @@ TEST_CASE("a collision is one contact with time, place and pattern, however long
   CHECK(stage.referee.result().contacts[1].time > first.contacts[0].time + 3.0);
 }
 
-TEST_CASE("a change of surface is a crossing from when the robot came there, stretches are whole") {
+TEST_CASE("a change of surface is a crossing from when the robot came there, segments are whole") {
   MissionWorld world = flatWorld(30.0);
   world.description.regions.push_back(sim::stripRegion("grass", {4.0, 0.0}, {18.0, 0.0}, 20.0));
   Stage stage(world);
@@ -139,7 +139,7 @@ TEST_CASE("a change of surface is a crossing from when the robot came there, str
   CHECK(result.crossings[0].time == Approx(before->time).margin(0.35));
 }
 
-TEST_CASE("a surface counts once the robot has been on it for a second, from its first moment on") {
+TEST_CASE("a surface counts once the robot has been on it for a second, from the start on") {
   SurfaceTracker tracker(0, "grass");
   CHECK_FALSE(tracker.step(1'000'000, "cinder"));
   CHECK_FALSE(tracker.step(1'950'000, "cinder"));

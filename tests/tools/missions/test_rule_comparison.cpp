@@ -11,9 +11,9 @@
 
 #include <unistd.h>
 
-#include "tools/missions/comparison_report.hpp"
 #include "tools/missions/mission_runner.hpp"
 #include "tools/missions/prediction_errors.hpp"
+#include "tools/missions/report.hpp"
 
 using namespace tread;
 using namespace tread::missions;

@@ -47,7 +47,7 @@ const std::vector<learner::Rule> kRules{"collective", "bank"};
 
 void fillByRule(shadow::ShadowLearners& shadows, MissionResult& result) {
   shadows.finish();
-  std::map<shadow::ExecutionKey, std::vector<shadow::PredictionError>> errors;
+  std::map<ExecutionKey, std::vector<shadow::PredictionError>> errors;
   for (auto& execution : shadows.executions()) errors[execution.key] = execution.by_rule;
   for (ScoredExecution& execution : result.executions) execution.by_rule = errors[execution.key];
 }

@@ -12,8 +12,8 @@
 #include <unistd.h>
 
 #include "modules/simulator/core/terrain.hpp"
-#include "tools/missions/comparison_report.hpp"
 #include "tools/missions/referee.hpp"
+#include "tools/missions/report.hpp"
 #include "tools/missions/robot_system.hpp"
 #include "tools/missions/true_patterns.hpp"
 

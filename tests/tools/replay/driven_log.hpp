@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/missions/mission_world.hpp"
+#include "tools/missions/mission.hpp"
 #include "tools/missions/robot_system.hpp"
 #include "tools/replay/robot_log.hpp"
 

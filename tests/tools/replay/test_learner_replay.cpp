@@ -11,7 +11,7 @@
 #include "common/recordings/csv_table.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tests/tools/replay/synthetic_drive.hpp"
-#include "tools/replay/learner_report.hpp"
+#include "tools/replay/learner_replay.hpp"
 
 using namespace tread;
 using namespace tread::replay;
@@ -149,19 +149,19 @@ TEST_CASE("commands are told apart by what they ask for") {
   REQUIRE(classOf(0.0, 0.0) == "standing");
 }
 
-TEST_CASE("foreign messages in a log are skipped and counted") {
+TEST_CASE("messages of other programs in a log are skipped and counted") {
   recordings::Session session;
   session.pose_rate = 20.0;
   recordings::LogCounts counts;
   auto events = recordings::makeLog(syntheticRecording(kTruth, 2), session, "steps", {}, counts);
-  LogEvent foreign;
-  foreign.utime = events[5].utime;
-  foreign.channel = "INS";
-  foreign.bytes = {1, 2, 3};
-  events.push_back(foreign);
-  foreign.channel = "POSE";
-  events.push_back(foreign);
-  const DriveLog log = toLearnerLog("foreign", events);
+  LogEvent other;
+  other.utime = events[5].utime;
+  other.channel = "INS";
+  other.bytes = {1, 2, 3};
+  events.push_back(other);
+  other.channel = "POSE";
+  events.push_back(other);
+  const DriveLog log = toLearnerLog("other", events);
   REQUIRE(log.invalid == 1);
   REQUIRE(log.executions.size() == 4);
 }

@@ -245,17 +245,17 @@ TEST_CASE("a recipe plays to a bus of its own what the process hears, for each p
 
 TEST_CASE("tread-replay says of a log that it cannot use what is missing, in one line") {
   const samples::OwnFolder folder;
-  const std::string foreign = folder.path("foreign.lcmlog");
+  const std::string noise = folder.path("noise.lcmlog");
   const std::string bare = folder.path("bare.lcmlog");
   {
-    LogWriter(foreign).write(1, "NOISE", nullptr, 0);
+    LogWriter(noise).write(1, "NOISE", nullptr, 0);
     LogWriter(bare).write(kIns, insAt(1'000'000, 0));
   }
   const std::string text = folder.write("text.lcmlog", "this is no log\n");
   for (const std::string command : {"planner", "learner"}) {
     const std::vector<std::pair<std::string, std::string>> refused{
         {bare, "no CONFIG of the " + command},
-        {foreign, "no event on any of our channels"},
+        {noise, "no event on any of our channels"},
         {text, text},
         {folder.path("none.lcmlog"), "none.lcmlog"},
         {bare + " --config /no/such.yaml", "/no/such.yaml"}};

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/tools/report/invented_drive.hpp"
-#include "tools/report/latency.hpp"
+#include "tools/report/drive_report.hpp"
 
 using namespace tread;
 using namespace tread::report;

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "tools/missions/mission_runner.hpp"
-#include "tools/report/rule_errors.hpp"
+#include "tools/report/drive_report.hpp"
 
 using namespace tread;
 
@@ -36,7 +36,7 @@ TEST_CASE("a log tells what each rule would have predicted, as shadows of the dr
   std::remove(path.c_str());
   REQUIRE(errors.problem.empty());
   CHECK(errors.driven == "collective");
-  std::map<shadow::ExecutionKey, std::vector<shadow::PredictionError>> in_log;
+  std::map<ExecutionKey, std::vector<shadow::PredictionError>> in_log;
   for (const shadow::ShadowedExecution& execution : errors.executions)
     in_log[execution.key] = execution.by_rule;
   int compared = 0, equal = 0;

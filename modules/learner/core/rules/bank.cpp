@@ -13,6 +13,8 @@ namespace {
 
 /// A surface is sure with more than this [1].
 constexpr double kSure = 0.9;
+/// Probability of a change from which on the ground counts as changed [1].
+constexpr double kChanged = 0.5;
 /// Among stored surfaces a block expects a change this seldom [1].
 constexpr double kSlowHazard = 0.05;
 
@@ -198,12 +200,12 @@ void Bank::learn(size_t executed, const ConstTrajectory& measured, RuleNote& not
   for (size_t k = 0; k < surfaces_.size(); ++k) logs_[k + 1] = surfaces_.logLikelihood(k, sample);
   weigh(filter_.update(executed, sample.mean_twist));
   note.change_probability = filter_.changeProbability();
-  if (note.change_probability > config_.settled_change) clearBlock();
+  if (note.change_probability > kChanged) clearBlock();
   weighKnown();
   addToBlock(sample);
   // Who leaves a known surface for an unknown one leaves from there.
   for (size_t k = 0; k < surfaces_.size(); ++k)
-    if (weights_[k + 1] > kSure) filter_.restartAt(surfaces_[k].mean(), config_.unknown_share);
+    if (weights_[k + 1] > kSure) filter_.restartAt(surfaces_[k].mean(), 1.0);
   if (static_cast<int64_t>(block_.size()) >= config_.settled_after) closeBlock(note);
   mix();
   const auto likeliest = std::max_element(weights_.begin(), weights_.end());

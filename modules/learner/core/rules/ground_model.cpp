@@ -109,7 +109,6 @@ GroundModel::GroundModel(const FilterConfig& config, const PatternSet& shipped)
     Eigen::Matrix<double, Eigen::Dynamic, 3> QH(dimension_, 3);
     timesResponse(change_, p, QH);
     change_response_.push_back(QH);
-    change_spread_.push_back(response(QH, p));
   }
 }
 

@@ -45,11 +45,10 @@ class GroundModel {
   const Eigen::MatrixXd& changeCovariance() const { return change_; }
   /// Q^-1.
   const Eigen::MatrixXd& changeInformation() const { return change_information_; }
-  /// Q H' and H Q H' of a pattern.
+  /// Q H' of a pattern.
   const Eigen::Matrix<double, Eigen::Dynamic, 3>& changeResponse(size_t pattern) const {
     return change_response_[pattern];
   }
-  const Eigen::Matrix3d& changeSpread(size_t pattern) const { return change_spread_[pattern]; }
   /// R: covariance of one execution's mean twist on unchanged ground.
   /** Where the shipped set knows the spread of a pattern's end, half of it and half of what the
    * configuration expects: other grounds may be rougher or smoother than the shipped one. */
@@ -71,7 +70,6 @@ class GroundModel {
   Eigen::MatrixXd change_;
   Eigen::MatrixXd change_information_;
   std::vector<Eigen::Matrix<double, Eigen::Dynamic, 3>> change_response_;
-  std::vector<Eigen::Matrix3d> change_spread_;
   std::vector<Eigen::Matrix3d> noise_;
   std::vector<Eigen::Matrix3d> end_noise_;
 };

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
-#include "modules/learner/core/end_residuals.hpp"
 #include "modules/learner/core/scaling.hpp"
 
 namespace tread::learner {
@@ -39,13 +39,11 @@ struct FilterConfig {
 
 /// Parameters of the bank of remembered surfaces.
 struct BankConfig {
-  double hazard = 0.32;         ///< [1] probability that the surface changes before an execution
-  double unknown_prior = 0.5;   ///< [1] that the next one is not in the bank
-  int64_t settled_after = 10;   ///< executions without a change that make a block
-  double new_margin = 3.0;      ///< [1] of log density, by which a block must be likelier as new
-  double settled_change = 0.5;  ///< [1] probability of a change that counts as one
-  double unknown_share = 1.0;   ///< [1] of Q: how far an unknown surface is from the known one
-  int64_t capacity = 16;        ///< surfaces; the one that was met longest ago makes room
+  double hazard = 0.32;        ///< [1] probability that the surface changes before an execution
+  double unknown_prior = 0.5;  ///< [1] that the next one is not in the bank
+  int64_t settled_after = 10;  ///< executions without a change that make a block
+  double new_margin = 3.0;     ///< [1] of log density, by which a block must be likelier as new
+  int64_t capacity = 16;       ///< surfaces; the one that was met longest ago makes room
 };
 
 /// Name of a rule of learning: one of ruleNames().
@@ -56,13 +54,57 @@ struct RuleConfig {
   Rule rule = "bank";
   double memory = 0.5;  ///< w of equation (2): weight of the OLD prediction, 0 <= w < 1
   ScalingLimits scaling;
-  ResidualLimits residuals;
   double sign_sigmas = 3.0;  ///< how far beyond the noise M and R must disagree in sign
-  /// [1] of a prediction's end where no covariance is known
-  Axes relative_noise{0.03, 0.03, 0.08};
-  Axes absolute_noise{0.02, 0.02, 0.02};  ///< [m, m, rad] added to it
   FilterConfig filter;
   BankConfig bank;
 };
+
+// The keys of learner.yaml, a section for each kind of rule. The reader is a ConfigReader; a core
+// does not know it by name.
+
+template <class Reader>
+void readScaling(Reader& reader, RuleConfig& rule) {
+  Reader section = reader.section("scaling");
+  ScalingLimits& limits = rule.scaling;
+  std::vector<double> box{limits.min_box[0], limits.min_box[1], limits.min_box[2]};
+  section.numbers("min_box", box, 3, {0.001, 1.0}, "m, m, rad");
+  limits.min_box = {box[0], box[1], box[2]};
+  section.number("min_box_sigmas", limits.min_box_sigmas, {0.0, 10.0}, "1");
+  section.number("min_turn", limits.min_turn, {0.0, 1.0}, "rad");
+  section.number("min_length", limits.min_length, {0.0, 1.0}, "m");
+  section.number("min_factor", limits.min_factor, {0.1, 1.0}, "1");
+  section.number("max_factor", limits.max_factor, {1.0, 10.0}, "1");
+  section.number("sign_sigmas", rule.sign_sigmas, {0.0, 10.0}, "1");
+}
+
+template <class Reader>
+void readFilter(Reader& reader, FilterConfig& filter) {
+  Reader section = reader.section("filter");
+  section.number("forward_noise", filter.noise.forward, {0.001, 1.0}, "1");
+  section.number("lateral_noise", filter.noise.lateral, {0.001, 1.0}, "1");
+  section.number("yaw_noise", filter.noise.yaw, {0.001, 1.0}, "1");
+  section.number("recorded", filter.recorded, {0.0, 1.0}, "1");
+  section.number("caution", filter.caution, {1.0, 10.0}, "1");
+  section.number("hazard", filter.hazard, {0.0, 0.9}, "1");
+  section.number("steady", filter.steady, {0.01, 10.0}, "1");
+  section.number("drift", filter.drift, {0.0, 0.5}, "1");
+}
+
+template <class Reader>
+void readBank(Reader& reader, BankConfig& bank) {
+  Reader section = reader.section("bank");
+  section.number("hazard", bank.hazard, {0.001, 0.9}, "1");
+  section.number("unknown_prior", bank.unknown_prior, {0.001, 1.0}, "1");
+  section.integer("settled_after", bank.settled_after, {3, 100}, "1");
+  section.number("new_margin", bank.new_margin, {0.0, 100.0}, "1");
+  section.integer("capacity", bank.capacity, {1, 64}, "1");
+}
+
+template <class Reader>
+void readRules(Reader& reader, RuleConfig& rule) {
+  readScaling(reader, rule);
+  readFilter(reader, rule.filter);
+  readBank(reader, rule.bank);
+}
 
 }  // namespace tread::learner

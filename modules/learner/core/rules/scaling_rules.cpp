@@ -10,14 +10,15 @@ namespace {
 
 /// A box that no vehicle can drive [m, m, rad] must not become a prediction.
 constexpr double kLargestBox = 1e6;
+/// Of a prediction's end where no covariance is known: [1] of x, y and yaw, and [m, m, rad] added.
+constexpr double kRelativeNoise[3] = {0.03, 0.03, 0.08};
+constexpr double kAbsoluteNoise[3] = {0.02, 0.02, 0.02};
 
 }  // namespace
 
 ScalingRule::ScalingRule(const RuleConfig& config, const PatternSet& shipped)
     : StoredPredictions(config, shipped),
       limits_(config.scaling),
-      relative_noise_(config.relative_noise),
-      absolute_noise_(config.absolute_noise),
       sign_sigmas_(config.sign_sigmas) {
   for (const MotionPattern& pattern : shipped.patterns()) {
     roles_.push_back(roleOf(pattern, config.scaling));
@@ -30,7 +31,7 @@ bool ScalingRule::opposite(size_t executed, int axis, double measured, double pr
   if (!roles_[executed].scalable[static_cast<size_t>(axis)] || measured * predicted >= 0.0)
     return false;
   const double variance = variances_[executed][axis];
-  const double assumed = relative_noise_[axis] * std::abs(predicted) + absolute_noise_[axis];
+  const double assumed = kRelativeNoise[axis] * std::abs(predicted) + kAbsoluteNoise[axis];
   const double sigma = variance > 0.0 ? std::sqrt(variance) : assumed;
   return std::abs(measured - predicted) > sign_sigmas_ * sigma;
 }

@@ -81,8 +81,6 @@ class ScalingRule : public StoredPredictions {
 
   std::vector<PatternRole> roles_;
   std::vector<Axes> variances_;  ///< of the shipped ends; NaN = unknown
-  Axes relative_noise_;
-  Axes absolute_noise_;
   double sign_sigmas_;
 };
 

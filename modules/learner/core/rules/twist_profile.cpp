@@ -44,8 +44,8 @@ Eigen::Vector3d sampleMotion(const Pose2& from, const Pose2& to) {
   const double s = std::sin(from.yaw + half);
   const double dx = to.x - from.x;
   const double dy = to.y - from.y;
-  const double stretch = 1.0 / chordShare(half, HalfTurn(half).sinc);
-  return {stretch * (c * dx + s * dy), stretch * (c * dy - s * dx), 2.0 * half};
+  const double arc_over_chord = 1.0 / chordShare(half, HalfTurn(half).sinc);
+  return {arc_over_chord * (c * dx + s * dy), arc_over_chord * (c * dy - s * dx), 2.0 * half};
 }
 
 /// A correction beyond these is none that ground makes; predictions stay drivable.

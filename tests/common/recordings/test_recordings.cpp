@@ -23,7 +23,7 @@ std::string rows(const std::string& pattern, int execution) {
   return start + "1,0.05,0,0\n" + start + "2,0.1,0,0\n" + start + "3,0.15,0,0\n";
 }
 
-/// The error of a book whose only surface has this text.
+/// The error of a set of recordings whose only surface has this text.
 std::string errorOf(const std::string& text) {
   const Folder folder;
   folder.write("patterns.yaml", formatPatterns(samples::twoPatterns()));
@@ -48,19 +48,19 @@ void expectError(const std::string& text, const std::string& line, const std::st
 
 TEST_CASE("A book that was written is read again bit for bit, surfaces sorted by name") {
   const Folder folder;
-  PatternRecordings book{samples::twoPatterns(), {}};
-  book.surfaces.push_back(samples::scattered(book.patterns, "gravel", 4, 1));
-  book.surfaces.push_back(samples::scattered(book.patterns, "clay", 2, 2));
-  writeRecordings(folder.path("new/book"), book);
+  PatternRecordings recorded{samples::twoPatterns(), {}};
+  recorded.surfaces.push_back(samples::scattered(recorded.patterns, "gravel", 4, 1));
+  recorded.surfaces.push_back(samples::scattered(recorded.patterns, "clay", 2, 2));
+  writeRecordings(folder.path("new/book"), recorded);
   const PatternRecordings read = readRecordings(folder.path("new/book"));
-  CHECK(read.patterns.checksum() == book.patterns.checksum());
+  CHECK(read.patterns.checksum() == recorded.patterns.checksum());
   REQUIRE(read.surfaces.size() == 2);
   CHECK(read.surfaces[0].surface == "clay");
   REQUIRE(read.surfaces[1].executions.size() == 2);
   for (size_t p = 0; p < 2; ++p) {
     REQUIRE(read.surfaces[1].executions[p].size() == 4);
     for (size_t e = 0; e < 4; ++e)
-      CHECK(samples::same(read.surfaces[1].executions[p][e], book.surfaces[0].executions[p][e]));
+      CHECK(samples::same(read.surfaces[1].executions[p][e], recorded.surfaces[0].executions[p][e]));
   }
 }
 
@@ -69,9 +69,9 @@ TEST_CASE("Executions may take turns, have numbers left out, and comments betwee
   folder.write("patterns.yaml", formatPatterns(samples::twoPatterns()));
   folder.write("clay.csv", "# a wet day\n" + kHeader + rows("left", 1) + rows("straight", 1) +
                                "# execution 2 slid off\n\n" + rows("left", 3));
-  const PatternRecordings book = readRecordings(folder.path());
-  CHECK(book.surfaces[0].executions[0].size() == 1);
-  CHECK(book.surfaces[0].executions[1].size() == 2);
+  const PatternRecordings recorded = readRecordings(folder.path());
+  CHECK(recorded.surfaces[0].executions[0].size() == 1);
+  CHECK(recorded.surfaces[0].executions[1].size() == 2);
 }
 
 TEST_CASE("A bad surface is refused with file, line and what to do") {
@@ -108,16 +108,16 @@ TEST_CASE("A folder that is no book is refused with what is missing") {
 
 TEST_CASE("What could not be read again is not written") {
   const Folder folder;
-  PatternRecordings book{samples::twoPatterns(), {}};
-  book.surfaces.push_back(samples::scattered(book.patterns, "clay", 2, 2));
-  PatternRecordings bad = book;
+  PatternRecordings recorded{samples::twoPatterns(), {}};
+  recorded.surfaces.push_back(samples::scattered(recorded.patterns, "clay", 2, 2));
+  PatternRecordings bad = recorded;
   bad.surfaces[0].surface = "../clay";
   CHECK_THROWS_AS(writeRecordings(folder.path("b"), bad), RecordingError);
-  bad = book;
+  bad = recorded;
   bad.surfaces[0].executions[1].clear();
   CHECK_THROWS_WITH(writeRecordings(folder.path("b"), bad),
                     Catch::Contains("'left' has no execution"));
-  bad = book;
+  bad = recorded;
   bad.surfaces[0].executions[1][1][2].x = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_WITH(writeRecordings(folder.path("b"), bad), Catch::Contains("execution 2"));
   CHECK_FALSE(std::filesystem::exists(folder.path("b")));
@@ -129,10 +129,10 @@ TEST_CASE("A book of four surfaces, five patterns and 300 executions is read wit
   for (int id = 1; id <= 5; ++id)
     patterns.push_back(
         samples::pattern(id, "pattern_" + std::to_string(id), {0.5, 0.0, 0.1 * id}, 20));
-  PatternRecordings book{samples::setOf(patterns), {}};
+  PatternRecordings recorded{samples::setOf(patterns), {}};
   for (const char* surface : {"a", "b", "c", "d"})
-    book.surfaces.push_back(samples::scattered(book.patterns, surface, 300, 1));
-  writeRecordings(folder.path(), book);
+    recorded.surfaces.push_back(samples::scattered(recorded.patterns, surface, 300, 1));
+  writeRecordings(folder.path(), recorded);
   const auto begin = std::chrono::steady_clock::now();
   const PatternRecordings read = readRecordings(folder.path());
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
