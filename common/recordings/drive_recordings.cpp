@@ -22,10 +22,10 @@ Twist2 rounded(const Twist2& twist) {
 }
 
 /// Mean over the surfaces of a pattern's profile.
-TwistProfile meanProfile(const std::vector<SurfaceSummary>& surfaces, size_t pattern) {
+TwistLine meanProfile(const std::vector<SurfaceSummary>& surfaces, size_t pattern) {
   Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
   for (const SurfaceSummary& surface : surfaces) sum += surface.motions[pattern].mean.vector();
-  return TwistProfile::of(sum / static_cast<double>(surfaces.size()));
+  return TwistLine::of(sum / static_cast<double>(surfaces.size()));
 }
 
 PatternSet patternSet(const std::vector<SurfaceSummary>& surfaces, const PatternRecipe& recipe,
@@ -35,7 +35,7 @@ PatternSet patternSet(const std::vector<SurfaceSummary>& surfaces, const Pattern
   content.kind = CommandKind::kTrackSpeed;
   content.period_us = std::llround(recipe.period * 1e6);
   for (size_t p = 0; p < recipe.patterns.size(); ++p) {
-    const TwistProfile mean = meanProfile(surfaces, p);
+    const TwistLine mean = meanProfile(surfaces, p);
     const TrackCommand exact = trackCommand(recipe.patterns[p].command, baseline);
     const TrackCommand tracks{rounded(exact.left), rounded(exact.right)};
     MotionPattern pattern;
@@ -58,7 +58,7 @@ SurfaceRecordings recordingsOf(const SurfaceSummary& summary, const PatternRecip
   result.surface = summary.surface;
   for (const LocalMotion& motion : summary.motions) {
     std::vector<Execution> executions;
-    for (const TwistProfile& profile : recordedProfiles(motion)) {
+    for (const TwistLine& profile : recordedProfiles(motion)) {
       Execution poses = integrated(profile, recipe.samples(), recipe.period);
       for (Pose2& pose : poses) pose = {rounded(pose.x), rounded(pose.y), rounded(pose.yaw)};
       executions.push_back(std::move(poses));
@@ -176,7 +176,7 @@ std::vector<SurfaceWindows> readSurfaces(const DriveRequest& request, const Sess
 /// Root mean square of the mean twist's deviations, per component.
 Twist2 spreadOf(const LocalMotion& motion) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const TwistProfile& deviation : motion.deviations)
+  for (const TwistLine& deviation : motion.deviations)
     sum += deviation.vector().head<3>().cwiseAbs2();
   sum = (sum / static_cast<double>(motion.deviations.size())).cwiseSqrt();
   return {sum[0], sum[1], sum[2]};

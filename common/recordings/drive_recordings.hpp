@@ -25,7 +25,7 @@
 //      constant command is a failure of the lidar's poses.
 
 // Recordings of the same patterns on several surfaces, built from drives in which no command was
-// ever given twice: windows of each surface are moved to the patterns' commands (local_motion.hpp)
+// ever given twice: windows of each surface are moved to the patterns' commands (above)
 // and integrated. Nothing about any robot, surface or session is known here. Units: m, rad, s.
 namespace tread::recordings {
 
@@ -61,11 +61,11 @@ PatternRecipe scaledRecipe(PatternRecipe recipe, double v_factor, double w_facto
 
 /// Motion of one pattern on one surface.
 struct LocalMotion {
-  TwistProfile mean;
-  std::vector<TwistProfile> deviations;  ///< one sign; add and subtract
-  size_t implausible = 0;  ///< steps passed over for deviations: their windows disagree
-  double reach = 0.0;      ///< [1] distance of the farthest window used
-  size_t windows = 0;      ///< that the mean comes from
+  TwistLine mean;
+  std::vector<TwistLine> deviations;  ///< one sign; add and subtract
+  size_t implausible = 0;             ///< steps passed over for deviations: their windows disagree
+  double reach = 0.0;                 ///< [1] distance of the farthest window used
+  size_t windows = 0;                 ///< that the mean comes from
 };
 
 /// The motion for a command; `reach` holds the largest |v| and |w| of the patterns.
@@ -75,7 +75,7 @@ LocalMotion localMotion(const std::vector<SteadyWindow>& windows, const BodyComm
                         const PatternRecipe& recipe);
 
 /// Profiles of all recordings of a motion: the mean plus and minus each deviation.
-std::vector<TwistProfile> recordedProfiles(const LocalMotion& motion);
+std::vector<TwistLine> recordedProfiles(const LocalMotion& motion);
 
 /// What is made of a folder of drives.
 struct DriveRequest {

@@ -56,8 +56,8 @@ std::vector<Neighbour> byDistance(const std::vector<SteadyWindow>& windows,
   return sorted;
 }
 
-TwistProfile regressed(const std::vector<Neighbour>& neighbours, const BodyCommand& command,
-                       const BodyCommand& reach) {
+TwistLine regressed(const std::vector<Neighbour>& neighbours, const BodyCommand& command,
+                    const BodyCommand& reach) {
   const auto n = static_cast<Eigen::Index>(neighbours.size());
   const double bandwidth = kBandwidth * std::max(neighbours.back().distance, 1e-6);
   Eigen::MatrixXd A(n, 3);
@@ -73,7 +73,7 @@ TwistProfile regressed(const std::vector<Neighbour>& neighbours, const BodyComma
   Eigen::Matrix<double, 6, 1> mean;
   for (Eigen::Index c = 0; c < 6; ++c)
     mean[c] = huberFit(A, targets.col(c), prior, {1, kSmall[c]})[0];
-  return TwistProfile::of(mean);
+  return TwistLine::of(mean);
 }
 
 /// The other window of a step, or nullptr.
@@ -123,7 +123,7 @@ void addDeviations(const std::vector<SteadyWindow>& windows, const std::vector<N
     if ((difference.cwiseAbs() - bound).maxCoeff() > 0.0)
       ++motion.implausible;
     else
-      motion.deviations.push_back(TwistProfile::of(difference));
+      motion.deviations.push_back(TwistLine::of(difference));
   }
 }
 
@@ -216,12 +216,12 @@ LocalMotion localMotion(const std::vector<SteadyWindow>& windows, const BodyComm
   return motion;
 }
 
-std::vector<TwistProfile> recordedProfiles(const LocalMotion& motion) {
-  std::vector<TwistProfile> profiles;
+std::vector<TwistLine> recordedProfiles(const LocalMotion& motion) {
+  std::vector<TwistLine> profiles;
   const Eigen::Matrix<double, 6, 1> mean = motion.mean.vector();
-  for (const TwistProfile& deviation : motion.deviations) {
-    profiles.push_back(TwistProfile::of(mean + deviation.vector()));
-    profiles.push_back(TwistProfile::of(mean - deviation.vector()));
+  for (const TwistLine& deviation : motion.deviations) {
+    profiles.push_back(TwistLine::of(mean + deviation.vector()));
+    profiles.push_back(TwistLine::of(mean - deviation.vector()));
   }
   return profiles;
 }

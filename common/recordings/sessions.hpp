@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/pattern/pattern.hpp"
-#include "common/recordings/twist_profile.hpp"
+#include "common/recordings/twist_line.hpp"
 
 // A folder of recorded drives: sessions.csv (robot, surface, geometry, lag of the poses),
 // steps_quality.csv (each held command, and whether its step is fit for use), steps/SESSION.csv
@@ -66,7 +66,7 @@ struct SteadyWindow {
   int step = 0;         ///< number of the command in its session
   int window = 0;       ///< 1 or 2 within its step
   BodyCommand command;  ///< by the reference baseline of the robot
-  TwistProfile profile;
+  TwistLine profile;
 };
 
 /// The steady windows (1 and 2) of a session, those that were left out by reason.

@@ -21,6 +21,10 @@ constexpr int64_t kHighestReserve = 1'000'000'000'000;
 /// Robot time for one version where nothing is known [us].
 constexpr int64_t kTimePerVersionUs = 100'000;
 
+void append(std::string& problem, const std::string& another) {
+  problem += (problem.empty() ? "" : "; ") + another;
+}
+
 }  // namespace
 
 std::optional<int64_t> LearnerMemory::storedReserve(std::string& problem) const {
@@ -31,8 +35,7 @@ std::optional<int64_t> LearnerMemory::storedReserve(std::string& problem) const 
   // The whole entry must be the number: half a number would be a lower one.
   const bool whole = (in >> reserve) && (in >> std::ws).eof();
   if (whole && reserve >= 1 && reserve <= kHighestReserve) return reserve;
-  if (!problem.empty()) problem += "; ";
-  problem += std::string(kVersions) + " is damaged: versions go on far above";
+  append(problem, std::string(kVersions) + " is damaged: versions go on far above");
   return std::nullopt;
 }
 
@@ -44,8 +47,7 @@ StoredLearning LearnerMemory::recall(const PatternSet& shipped, int64_t utime) {
     std::string why;
     auto state = parseState(*content, shipped, why);
     if (!state) {
-      if (!found.problem.empty()) found.problem += "; ";
-      found.problem += std::string(kSlots[slot]) + " " + why;
+      append(found.problem, std::string(kSlots[slot]) + " " + why);
       continue;
     }
     if (found.state && found.state->set.version() >= state->set.version()) continue;
@@ -90,8 +92,7 @@ bool LearnerMemory::recallBank(const PatternSet& shipped, SurfaceBank& bank, std
     bank_text_ = *content;
     return true;
   }
-  if (!problem.empty()) problem += "; ";
-  problem += std::string(kBank) + " " + *why;
+  append(problem, std::string(kBank) + " " + *why);
   const auto names = store_.names();
   int number = 1;
   const auto aside = [&] { return std::string(kBank) + ".aside_" + std::to_string(number); };

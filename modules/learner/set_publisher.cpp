@@ -44,23 +44,20 @@ void SetPublisher::putState(const PatternSet& set, const std::string& rule,
 
 void SetPublisher::step(int64_t utime) {
   int left = kPortion;
-  while (!sets_.empty()) {
-    const int size = sets_.front().getEncodedSize();
-    if (size > left && left < kPortion) return;
-    sets_.front().seq = seq_set_++;
-    bus_.publish(kPatternSet, sets_.front());
-    sets_.pop_front();
-    left -= size;
-  }
-  while (!states_.empty()) {
-    const int size = states_.front().getEncodedSize();
-    if (size > left && left < kPortion) return;
-    states_.front().utime = utime;
-    states_.front().seq = seq_state_++;
-    bus_.publish(kLearnerState, states_.front());
-    states_.pop_front();
-    left -= size;
-  }
+  const auto send = [&](const auto& channel, auto& waiting, int64_t& seq) {
+    while (!waiting.empty()) {
+      const int size = waiting.front().getEncodedSize();
+      if (size > left && left < kPortion) return;
+      waiting.front().seq = seq++;
+      bus_.publish(channel, waiting.front());
+      waiting.pop_front();
+      left -= size;
+    }
+  };
+  send(kPatternSet, sets_, seq_set_);
+  if (!sets_.empty()) return;
+  for (learner_state_t& state : states_) state.utime = utime;
+  send(kLearnerState, states_, seq_state_);
 }
 
 }  // namespace tread::learner

@@ -22,18 +22,13 @@ uint64_t fingerprint(const std::string& text) {
   return hash;
 }
 
-std::string hexadecimal(uint64_t value) {
-  std::array<char, 20> text;
-  const auto result = std::to_chars(text.data(), text.data() + text.size(), value, 16);
-  return {text.data(), result.ptr};
-}
-
 std::string lastLine(const std::string& content) {
-  return "end " + hexadecimal(fingerprint(content)) + "\n";
+  std::ostringstream line;
+  line << "end " << std::hex << fingerprint(content) << '\n';
+  return line.str();
 }
 
 /// The shortest text that reads back as the same number, whatever the locale.
-
 std::string number(double value) {
   std::array<char, 40> text;
   const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
@@ -61,40 +56,29 @@ class Words {
 
   bool good() const { return good_; }
   void require(bool condition) { good_ = good_ && condition; }
-  void expect(const char* word);
-  std::string word();
-  int64_t integer();
-  double real();
+  void expect(const char* expected) { require(word() == expected); }
+  std::string word() {
+    std::string found;
+    good_ = good_ && (in_ >> found);
+    return found;
+  }
+  int64_t integer() {
+    int64_t value = 0;
+    good_ = good_ && (in_ >> value);
+    return good_ ? value : 0;
+  }
+  double real() {
+    const std::string text = word();
+    double value = 0.0;
+    const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+    require(result.ec == std::errc() && result.ptr == text.data() + text.size());
+    return value;
+  }
 
  private:
   std::istringstream in_;
   bool good_ = true;
 };
-
-void Words::expect(const char* word) {
-  std::string found;
-  good_ = good_ && (in_ >> found) && found == word;
-}
-
-std::string Words::word() {
-  std::string found;
-  good_ = good_ && (in_ >> found);
-  return found;
-}
-
-int64_t Words::integer() {
-  int64_t value = 0;
-  good_ = good_ && (in_ >> value);
-  return good_ ? value : 0;
-}
-
-double Words::real() {
-  const std::string text = word();
-  double value = 0.0;
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-  good_ = good_ && result.ec == std::errc() && result.ptr == text.data() + text.size();
-  return value;
-}
 
 constexpr const char* kStateHeader = "tread-learner-state 2";
 /// No state of a thousand patterns has more executions in its list than this.

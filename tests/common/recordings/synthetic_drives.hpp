@@ -15,13 +15,13 @@
 namespace tread::samples {
 
 /// What a command does on a ground.
-using Ground = std::function<recordings::TwistProfile(const recordings::BodyCommand&)>;
+using Ground = std::function<recordings::TwistLine(const recordings::BodyCommand&)>;
 
 /// Twists in proportion to the command; sideslip with the yaw rate.
 inline Ground linearGround(double forward, double yaw, double slip) {
   return [=](const recordings::BodyCommand& command) {
-    return recordings::TwistProfile{{forward * command.v, slip * command.w, yaw * command.w},
-                                    {0.0, 0.0, 0.0}};
+    return recordings::TwistLine{{forward * command.v, slip * command.w, yaw * command.w},
+                                 {0.0, 0.0, 0.0}};
   };
 }
 
@@ -46,8 +46,8 @@ inline std::vector<recordings::SteadyWindow> drawnWindows(const Ground& ground, 
     const auto profile = ground(command).vector();
     Eigen::Matrix<double, 6, 1> off;
     for (int i = 0; i < 6; ++i) off[i] = noise * draws.next();
-    windows.push_back({"drawn", step, 1, command, recordings::TwistProfile::of(profile + off)});
-    windows.push_back({"drawn", step, 2, command, recordings::TwistProfile::of(profile - off)});
+    windows.push_back({"drawn", step, 1, command, recordings::TwistLine::of(profile + off)});
+    windows.push_back({"drawn", step, 2, command, recordings::TwistLine::of(profile - off)});
   }
   return windows;
 }

@@ -13,7 +13,7 @@ namespace {
 
 const Ground kGround = linearGround(0.9, 0.5, -0.1);
 
-double distance(const TwistProfile& a, const TwistProfile& b) {
+double distance(const TwistLine& a, const TwistLine& b) {
   return (a.vector() - b.vector()).cwiseAbs().maxCoeff();
 }
 
@@ -57,7 +57,7 @@ TEST_CASE("recordings vary about the mean as the windows of one step do, with bo
   REQUIRE(profiles.size() == 30);
   Eigen::Matrix<double, 6, 1> mean = Eigen::Matrix<double, 6, 1>::Zero();
   double square = 0.0;
-  for (const TwistProfile& profile : profiles) {
+  for (const TwistLine& profile : profiles) {
     mean += profile.vector() / 30.0;
     square += std::pow(profile.mean.omega - motion.mean.mean.omega, 2) / 30.0;
   }
@@ -72,13 +72,12 @@ TEST_CASE("a step in which the poses failed tells nothing of how executions diff
   const LocalMotion motion = localMotion(windows, {2.5, 1.5}, defaultRecipe());
   CHECK(motion.deviations.size() == 15);
   CHECK(motion.implausible > 0);
-  for (const TwistProfile& deviation : motion.deviations)
-    CHECK(std::abs(deviation.slope.v_x) < 0.1);
+  for (const TwistLine& deviation : motion.deviations) CHECK(std::abs(deviation.slope.v_x) < 0.1);
 }
 
 TEST_CASE("mirrored drives make mirrored patterns") {
   const Ground skewed = [](const BodyCommand& command) {
-    return TwistProfile{
+    return TwistLine{
         {0.9 * command.v - 0.05 * std::abs(command.w) * command.v,
          0.1 * command.v * command.w + 0.02 * command.v, 0.5 * command.w + 0.03 * command.v},
         {0.0, 0.01, 0.02}};

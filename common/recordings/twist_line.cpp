@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/recordings/twist_profile.hpp"
+#include "common/recordings/twist_line.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -126,23 +126,23 @@ Eigen::VectorXd huberFit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
   return x;
 }
 
-Eigen::Matrix<double, 6, 1> TwistProfile::vector() const {
+Eigen::Matrix<double, 6, 1> TwistLine::vector() const {
   Eigen::Matrix<double, 6, 1> all;
   all << mean.v_x, mean.v_y, mean.omega, slope.v_x, slope.v_y, slope.omega;
   return all;
 }
 
-TwistProfile TwistProfile::of(const Eigen::Matrix<double, 6, 1>& vector) {
+TwistLine TwistLine::of(const Eigen::Matrix<double, 6, 1>& vector) {
   return {{vector[0], vector[1], vector[2]}, {vector[3], vector[4], vector[5]}};
 }
 
-Twist2 TwistProfile::at(double time, double duration) const {
+Twist2 TwistLine::at(double time, double duration) const {
   const double centred = time - duration / 2.0;
   return {mean.v_x + centred * slope.v_x, mean.v_y + centred * slope.v_y,
           mean.omega + centred * slope.omega};
 }
 
-TwistProfile TwistProfile::mirrored() const {
+TwistLine TwistLine::mirrored() const {
   return {{mean.v_x, -mean.v_y, -mean.omega}, {slope.v_x, -slope.v_y, -slope.omega}};
 }
 
@@ -160,13 +160,13 @@ std::string windowProblem(const std::vector<WindowPose>& poses, double duration)
   return "";
 }
 
-TwistProfile smoothed(const std::vector<WindowPose>& poses, double duration) {
+TwistLine smoothed(const std::vector<WindowPose>& poses, double duration) {
   const Eigen::VectorXd yaw = fitYaw(poses, duration);
   const Eigen::VectorXd motion = fitPosition(poses, yaw, duration);
   return {{motion[2], motion[4], yaw[1]}, {motion[3], motion[5], 2.0 * yaw[2]}};
 }
 
-std::vector<Pose2> integrated(const TwistProfile& profile, size_t samples, double period) {
+std::vector<Pose2> integrated(const TwistLine& profile, size_t samples, double period) {
   const double duration = static_cast<double>(samples) * period;
   std::vector<Pose2> trajectory;
   trajectory.reserve(samples);

@@ -2,17 +2,17 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "common/recordings/twist_profile.hpp"
+#include "common/recordings/twist_line.hpp"
 
 using namespace tread;
 using namespace tread::recordings;
 
 namespace {
 
-const TwistProfile kTurn{{2.1, -0.2, 0.9}, {0.1, 0.05, -0.15}};
+const TwistLine kTurn{{2.1, -0.2, 0.9}, {0.1, 0.05, -0.15}};
 
 /// Poses every 0.2 s of a profile, seen from a map in which the window begins somewhere.
-std::vector<WindowPose> drivenPoses(const TwistProfile& profile) {
+std::vector<WindowPose> drivenPoses(const TwistLine& profile) {
   const Pose2 T_map_start{3.0, -2.0, 2.5};
   const std::vector<Pose2> fine = integrated(profile, 400, 0.005);
   std::vector<WindowPose> poses;
@@ -22,7 +22,7 @@ std::vector<WindowPose> drivenPoses(const TwistProfile& profile) {
   return poses;
 }
 
-void requireNear(const TwistProfile& a, const TwistProfile& b, double tolerance) {
+void requireNear(const TwistLine& a, const TwistLine& b, double tolerance) {
   INFO(a.vector().transpose() << " against " << b.vector().transpose());
   REQUIRE((a.vector() - b.vector()).cwiseAbs().maxCoeff() < tolerance);
 }
@@ -31,7 +31,7 @@ void requireNear(const TwistProfile& a, const TwistProfile& b, double tolerance)
 
 TEST_CASE("smoothing recovers a twist that changes linearly from poses of a window") {
   requireNear(smoothed(drivenPoses(kTurn), 2.0), kTurn, 1e-4);
-  const TwistProfile spin{{0.05, -0.1, -1.4}, {0.0, 0.0, 0.2}};
+  const TwistLine spin{{0.05, -0.1, -1.4}, {0.0, 0.0, 0.2}};
   requireNear(smoothed(drivenPoses(spin), 2.0), spin, 1e-4);
 }
 
@@ -39,7 +39,7 @@ TEST_CASE("a pose that jumped hardly moves the smoothed twist") {
   std::vector<WindowPose> poses = drivenPoses(kTurn);
   poses[4].T_map_body.x += 1.0;
   poses[6].T_map_body.yaw += 0.5;
-  const TwistProfile found = smoothed(poses, 2.0);
+  const TwistLine found = smoothed(poses, 2.0);
   CHECK(std::abs(found.mean.v_x - kTurn.mean.v_x) < 0.02);
   CHECK(std::abs(found.mean.v_y - kTurn.mean.v_y) < 0.02);
   CHECK(std::abs(found.mean.omega - kTurn.mean.omega) < 0.02);
@@ -48,7 +48,7 @@ TEST_CASE("a pose that jumped hardly moves the smoothed twist") {
 TEST_CASE("mirrored poses smooth to the mirrored twist") {
   std::vector<WindowPose> poses = drivenPoses(kTurn);
   poses[3].T_map_body.y += 0.3;
-  const TwistProfile straight = smoothed(poses, 2.0);
+  const TwistLine straight = smoothed(poses, 2.0);
   for (WindowPose& pose : poses) {
     pose.T_map_body.y = -pose.T_map_body.y;
     pose.T_map_body.yaw = -pose.T_map_body.yaw;

@@ -40,17 +40,17 @@ struct WindowPose {
 };
 
 /// Mean and change of the body twist over a window.
-struct TwistProfile {
+struct TwistLine {
   Twist2 mean;   ///< [m/s, m/s, rad/s] at the middle of the window
   Twist2 slope;  ///< per second
 
   /// v_x, v_y, omega, and their slopes.
   Eigen::Matrix<double, 6, 1> vector() const;
-  static TwistProfile of(const Eigen::Matrix<double, 6, 1>& vector);
+  static TwistLine of(const Eigen::Matrix<double, 6, 1>& vector);
   /// The twist `time` seconds after the beginning of a window of `duration`.
   Twist2 at(double time, double duration) const;
   /// What the mirrored robot would do.
-  TwistProfile mirrored() const;
+  TwistLine mirrored() const;
 };
 
 /// [s] after a command its motion is steady: a delay of 0.4 s and four time constants of 0.35 s, as
@@ -62,9 +62,9 @@ inline constexpr double kSettle = 1.8;
 std::string windowProblem(const std::vector<WindowPose>& poses, double duration);
 
 /// The profile that fits the poses of a window best. windowProblem() must be empty.
-TwistProfile smoothed(const std::vector<WindowPose>& poses, double duration);
+TwistLine smoothed(const std::vector<WindowPose>& poses, double duration);
 
 /// Poses after each of `samples` periods, relative to the start: the profile integrated.
-std::vector<Pose2> integrated(const TwistProfile& profile, size_t samples, double period);
+std::vector<Pose2> integrated(const TwistLine& profile, size_t samples, double period);
 
 }  // namespace tread::recordings
