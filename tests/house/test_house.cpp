@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "common/bus/channels.hpp"
+#include "tests/helpers.hpp"
 
 namespace fs = std::filesystem;
 
@@ -24,10 +25,7 @@ struct Include {
   std::string target;  // what stands between the quotes or brackets
 };
 
-std::string contentOf(const fs::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using tread::testing::contentOf;
 
 std::vector<fs::path> sourcesUnder(const std::string& folder) {
   std::vector<fs::path> files;

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/helpers.hpp"
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -55,10 +57,7 @@ std::vector<std::string> typesIn(const std::string& text) {
   return types;
 }
 
-std::string contentOf(const fs::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using tread::testing::contentOf;
 
 }  // namespace
 

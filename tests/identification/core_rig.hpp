@@ -8,9 +8,12 @@
 #include <vector>
 
 #include "modules/identification/core/fit.hpp"
+#include "modules/identification/core/search.hpp"
 #include "synthetic_drive.hpp"
 
 namespace tread::gap::samples {
+
+inline const Progress kSilent = [](const std::string&) {};
 
 using Values = std::vector<std::pair<std::string, double>>;
 

@@ -14,7 +14,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-const Progress kSilent = [](const std::string&) {};
+using samples::kSilent;
 
 /// A search that ended with these parameters fitted.
 SearchResult resultOf(const Rig& rig, const Values& begin) {

@@ -4,13 +4,14 @@
 
 #include "modules/identification/core/discovery.hpp"
 #include "synthetic_drive.hpp"
+#include "tests/identification/core_rig.hpp"
 
 using namespace tread;
 using namespace tread::gap;
 
 namespace {
 
-const Progress kSilent = [](const std::string&) {};
+using samples::kSilent;
 
 using Values = std::vector<std::pair<std::string, double>>;
 

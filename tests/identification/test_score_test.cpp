@@ -17,7 +17,7 @@ namespace {
 constexpr int kDraws = 399;
 constexpr int kCandidates = 24;
 constexpr int kSeeds = 200;
-constexpr double kAlpha = 0.05;
+constexpr double kLevel = 0.05;
 
 double largestScore(const ScoreTest& test) {
   double largest = 0.0;
@@ -42,7 +42,7 @@ double rareEvidence(const Rig& rig, double size, uint64_t seed, bool first = fal
       blockNoise(rig.data, seed, 0.1) + size * directions.col(kCandidates);
   const ScoreTest test(rig.fitter, rig.stateOf(residuals, 1.0), directions);
   CHECK(test.activeBlocks(kCandidates) < 6.0);
-  const Needed needed{criticalScore(test.largestByChance(kDraws, seed), kAlpha),
+  const Needed needed{criticalScore(test.largestByChance(kDraws, seed), kLevel),
                       test.usualOverdispersion(), first};
   return evidence(test, kCandidates, needed);
 }
@@ -56,7 +56,7 @@ TEST_CASE(
   int false_alarms = 0;
   for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const ScoreTest test(rig.fitter, rig.stateOf(blockNoise(rig.data, seed), 1.0), directions);
-    if (familyWise(test.largestByChance(kDraws, seed), largestScore(test)) <= kAlpha)
+    if (familyWise(test.largestByChance(kDraws, seed), largestScore(test)) <= kLevel)
       ++false_alarms;
   }
   // 10 are expected; a thousandth of all honest tests lies outside of these.
@@ -74,7 +74,7 @@ TEST_CASE("a direction that is in the residuals is found among the others, with 
   for (uint64_t seed = 1; seed <= 20; ++seed) {
     const Eigen::VectorXd residuals = blockNoise(rig.data, seed) + kSize * directions.col(kHidden);
     const ScoreTest test(rig.fitter, rig.stateOf(residuals, 1.0), directions);
-    if (familyWise(test.largestByChance(kDraws, seed), test.score(kHidden)) <= kAlpha) ++found;
+    if (familyWise(test.largestByChance(kDraws, seed), test.score(kHidden)) <= kLevel) ++found;
     mean += test.size(kHidden) / 20.0;
     CHECK(test.promise(kHidden) > 0.0);
   }
@@ -180,8 +180,9 @@ TEST_CASE("no score exceeds the root of the number of blocks in which its direct
   for (Eigen::Index i = 0; i < directions.rows(); ++i)
     if (rig.data.all()[static_cast<size_t>(i)].block >= 3) directions(i, 0) = 0.0;
   for (const double size : {0.0, 1.0, 1e3}) {
-    const ScoreTest test(
-        rig.fitter, rig.stateOf(blockNoise(rig.data, 4) + size * directions.col(0), 1.0), directions);
+    const ScoreTest test(rig.fitter,
+                         rig.stateOf(blockNoise(rig.data, 4) + size * directions.col(0), 1.0),
+                         directions);
     CHECK(std::abs(test.score(0)) <= std::sqrt(3.0) + 1e-12);
     CHECK(test.activeBlocks(0) <= 3.0 + 1e-12);
     CHECK(test.activeBlocks(0) > 2.5);
@@ -297,7 +298,7 @@ TEST_CASE("candidates that are the same one do not count twice, different ones d
     CHECK(copied[i] == Approx(alone[i]).margin(1e-12));
     CHECK(different[i] >= alone[i] - 1e-12);
   }
-  CHECK(criticalScore(different, kAlpha) > criticalScore(alone, kAlpha) + 0.3);
+  CHECK(criticalScore(different, kLevel) > criticalScore(alone, kLevel) + 0.3);
 }
 
 TEST_CASE("the same seed draws the same chance, another one another") {

@@ -14,11 +14,11 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-const Progress kSilent = [](const std::string&) {};
+using samples::kSilent;
 const Needed kNeeded{3.0, 1.0};
 
 /// A search that has ended with the parameters that begin so.
-SearchResult resultOf(const Rig& rig, const Values& begin) {
+SearchResult searchedWith(const Rig& rig, const Values& begin) {
   SearchResult result;
   result.state = rig.fitted(begin);
   for (const auto& [path, value] : begin) {
@@ -39,7 +39,7 @@ SearchResult pruned(const Rig& rig, SearchResult result, const SearchSettings& s
 TEST_CASE("a superfluous effect goes, with a step that says why, and a real one stays") {
   const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
   const SearchResult result =
-      pruned(rig, resultOf(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}}));
+      pruned(rig, searchedWith(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}}));
   CHECK(result.effects == Names{"motor_deadband"});
   CHECK(result.state.free.size() == 1);
   CHECK(*findParameter(result.state.model, "yaw_pull.pull") == 0.0);
@@ -55,7 +55,7 @@ TEST_CASE("a superfluous effect goes, with a step that says why, and a real one 
 
 TEST_CASE("an accepted effect stays though it is superfluous, and its numbers are told") {
   const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
-  SearchResult begin = resultOf(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}});
+  SearchResult begin = searchedWith(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}});
   SearchSettings settings;
   settings.accepted = {"yaw_pull"};
   const SearchResult result = pruned(rig, begin, settings);
@@ -66,7 +66,8 @@ TEST_CASE("an accepted effect stays though it is superfluous, and its numbers ar
 
 TEST_CASE("a plain cause that was only a nuisance term goes without a word") {
   const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
-  SearchResult covered = resultOf(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}});
+  SearchResult covered =
+      searchedWith(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}});
   covered.evidence["yaw_pull"].p_value.reset();
   const SearchResult result = pruned(rig, covered);
   CHECK(result.effects == Names{"motor_deadband"});
@@ -77,7 +78,7 @@ TEST_CASE("an effect that is real but does not change where drives end is neglig
   SyntheticNoise noise;
   noise.gyro = 0.002;
   const Rig rig({{"gyro_bias.rate", 0.002}}, 300.0, 3, noise);
-  const SearchResult begin = resultOf(rig, {{"gyro_bias.rate", 0.001}});
+  const SearchResult begin = searchedWith(rig, {{"gyro_bias.rate", 0.001}});
   const SearchResult result = pruned(rig, begin);
   CHECK(result.effects.empty());
   CHECK(result.record.negligible == Names{"gyro_bias"});
@@ -122,7 +123,8 @@ TEST_CASE("without an effect the others are fitted anew, and the loss tells what
 
 TEST_CASE("two effects that imitate one become that one") {
   const Rig rig({{"position_scale.scale", -0.06}}, 300.0, 5);
-  SearchResult result = resultOf(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.01}});
+  SearchResult result =
+      searchedWith(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.01}});
   replacePairs({rig.fitter, {}, kSilent, result});
   CHECK(result.effects == Names{"position_scale"});
   CHECK(result.evidence["position_scale"].replaced == Names{"slip_ratio", "track_width"});
@@ -135,7 +137,7 @@ TEST_CASE("two effects that imitate one become that one") {
 TEST_CASE("neither does an accepted effect go into another one, nor does a rejected one come") {
   const Rig rig({{"position_scale.scale", -0.06}}, 300.0, 5);
   const SearchResult begin =
-      resultOf(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.01}});
+      searchedWith(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.01}});
   for (const bool accepted : {false, true}) {
     SearchResult result = begin;
     SearchSettings settings;
@@ -150,7 +152,8 @@ TEST_CASE("neither does an accepted effect go into another one, nor does a rejec
 
 TEST_CASE("two effects that no single one fits as well stay two") {
   const Rig rig({{"slip_ratio.slip", 0.1}, {"track_width.widening", 0.25}}, 300.0, 6);
-  SearchResult result = resultOf(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.1}});
+  SearchResult result =
+      searchedWith(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.1}});
   const double loss = result.state.loss;
   replacePairs({rig.fitter, {}, kSilent, result});
   CHECK(result.effects == Names{"slip_ratio", "track_width"});

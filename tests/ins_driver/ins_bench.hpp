@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
+#include "tests/helpers.hpp"
 #include "tests/ins_driver/nmea_lines.hpp"
 
 namespace tread::ins {
 
-inline constexpr double kDeg = kPi / 180.0;
-inline constexpr int64_t kSecond = 1'000'000;
+using tread::testing::kDeg;
+using tread::testing::kSecond;
 inline constexpr double kNoon = 43200.0;
 
 /// A device on a line, the core behind it, and what came out.

@@ -6,12 +6,13 @@
 
 #include "modules/ins_driver/core/arrival_filter.hpp"
 #include "modules/ins_driver/nmea/epoch_collector.hpp"
+#include "tests/helpers.hpp"
 
 using namespace tread::ins;
 
 namespace {
 
-constexpr int64_t kSecond = 1'000'000;
+using tread::testing::kSecond;
 
 Gga ggaAt(int64_t time_of_day) {
   Gga gga;

@@ -9,6 +9,7 @@
 #include "common/bus/virtual_bus.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"
+#include "tests/helpers.hpp"
 #include "tests/ins_driver/nmea_lines.hpp"
 
 using namespace tread;
@@ -16,8 +17,8 @@ using namespace tread::ins;
 
 namespace {
 
-constexpr double kDeg = kPi / 180.0;
-constexpr int64_t kSecond = 1'000'000;
+using tread::testing::kDeg;
+using tread::testing::kSecond;
 
 InsDriverConfig configured(const std::string& yaml = "{}") {
   ConfigReader reader = ConfigReader::fromText(yaml, TREAD_SOURCE_DIR "/config/robots/teodor/test");

@@ -4,6 +4,7 @@
 
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
 #include "modules/ins_driver/nmea/nmea_log.hpp"
+#include "tests/helpers.hpp"
 #include "tests/ins_driver/nmea_lines.hpp"
 
 using namespace tread;
@@ -11,7 +12,7 @@ using namespace tread::ins;
 
 namespace {
 
-constexpr double kDeg = kPi / 180.0;
+using tread::testing::kDeg;
 
 /// What a recorded log holds.
 struct NmeaLogSummary {

@@ -4,13 +4,14 @@
 
 #include "common/geometry/se2.hpp"
 #include "modules/ins_driver/nmea/nmea_parser.hpp"
+#include "tests/helpers.hpp"
 
 using namespace tread;
 using namespace tread::ins;
 
 namespace {
 
-constexpr double kDeg = kPi / 180.0;
+using tread::testing::kDeg;
 
 template <class Sentence>
 Sentence good(const std::string& body) {

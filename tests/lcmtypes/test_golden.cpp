@@ -9,6 +9,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/helpers.hpp"
 #include "type_samples.hpp"
 
 namespace tread {
@@ -26,10 +27,7 @@ std::string hexOf(const std::vector<uint8_t>& bytes) {
   return text;
 }
 
-std::string contentOf(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using tread::testing::contentOf;
 
 }  // namespace
 

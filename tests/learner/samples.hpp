@@ -9,10 +9,11 @@
 
 #include "common/execution/measurement.hpp"
 #include "common/pattern/pattern.hpp"
+#include "tests/helpers.hpp"
 
 namespace tread::learner::samples {
 
-inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using tread::testing::kNan;
 
 /// Ids of the patterns of smallSet().
 enum Id { kStraight = 1, kLeft = 2, kRight = 3, kSpin = 4, kReverse = 5 };

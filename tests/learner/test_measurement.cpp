@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "common/execution/measurement.hpp"
+#include "tests/helpers.hpp"
 #include "tests/learner/samples.hpp"
 
 using namespace tread;
@@ -15,7 +16,7 @@ using namespace tread::learner::samples;
 namespace {
 
 constexpr int64_t kStart = 10'000'000;
-constexpr int64_t kSecond = 1'000'000;
+using tread::testing::kSecond;
 constexpr int64_t kPeriod = 50'000;
 
 /// A robot that cruises at 1 m/s until kStart and then turns left with some twist, seen by an INS

@@ -6,7 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "modules/learner/core/rules/ground_filter.hpp"
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 #include "tests/learner/rule_bench.hpp"
 
 using namespace tread;

@@ -8,7 +8,7 @@
 
 #include "common/vehicle/kernel.hpp"
 #include "modules/learner/core/scaling.hpp"
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 #include "tests/learner/rule_bench.hpp"
 
 using namespace tread;
@@ -18,7 +18,7 @@ using tread::testing::effort;
 
 namespace {
 
-constexpr double kPeriod = 0.05;
+constexpr double kPeriodS = 0.05;
 constexpr size_t kExecutions = 20;
 
 /// Teodor on a surface (config/models).
@@ -61,7 +61,7 @@ class Recording {
       executions_.emplace_back();
       for (size_t i = 0; i < kExecutions; ++i)
         executions_.back().push_back(
-            simulate(model, commands, kPeriod, cruise, drawNoise(model.spread, random)));
+            simulate(model, commands, kPeriodS, cruise, drawNoise(model.spread, random)));
     }
     average(patterns);
   }

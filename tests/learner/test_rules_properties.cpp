@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "modules/learner/core/learner.hpp"
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 #include "tests/learner/rule_bench.hpp"
 
 using namespace tread;

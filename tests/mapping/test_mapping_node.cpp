@@ -6,6 +6,7 @@
 
 #include "common/bus/virtual_bus.hpp"
 #include "modules/mapping/mapping_node.hpp"
+#include "tests/helpers.hpp"
 #include "tests/mapping/small_world.hpp"
 
 using namespace tread;
@@ -22,7 +23,7 @@ MappingConfig usualConfig() {
   return config;
 }
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using tread::testing::kNan;
 
 ins_t insAt(int64_t utime, int64_t seq, const Eigen::Isometry3d& T_map_body) {
   ins_t message{};

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 #include "tests/mapping/small_world.hpp"
 
 using namespace tread;

@@ -7,7 +7,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 #include "tests/motor_bridge/bridge_world.hpp"
 
 using namespace tread;

@@ -12,7 +12,7 @@ using namespace tread::motor;
 
 namespace {
 
-constexpr int64_t kStep = 10'000;
+constexpr int64_t kCycle = 10'000;
 
 /// Drives a failsafe in virtual time; inputs are good unless a test says otherwise.
 struct Rig {
@@ -23,7 +23,7 @@ struct Rig {
   Rig() { in.now = 1'000'000; }
 
   void step() {
-    in.now += kStep;
+    in.now += kCycle;
     out = failsafe.update(in);
     in.arm = in.disarm = false;
     in.series_end.clear();
@@ -238,7 +238,7 @@ TEST_CASE("any sequence of inputs keeps the promises (ten hours of random scenar
     rig.in.start_wanted = chance(0.5);
     rig.in.playing = before == State::kDriving && chance(0.98);
     rig.step();
-    if (!good) good_since = rig.in.now + kStep;
+    if (!good) good_since = rig.in.now + kCycle;
     const State after = rig.out.state;
     const bool enabled = !isArmed(before) && isArmed(after);
     REQUIRE(rig.out.may_drive == (after == State::kDriving));

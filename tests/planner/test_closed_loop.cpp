@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdio>
 
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 #include "tests/planner/kit/closed_loop.hpp"
 
 using namespace tread;

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "modules/planner/core/map/clearance_map.hpp"
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 #include "tests/planner/kit/random_ground.hpp"
 
 using namespace tread;

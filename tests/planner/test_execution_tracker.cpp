@@ -4,6 +4,7 @@
 
 #include "common/execution/execution_tracker.hpp"
 #include "modules/planner/core/execution/standing_control.hpp"
+#include "tests/helpers.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
 
 using namespace tread;
@@ -13,7 +14,7 @@ using namespace tread::planner::testkit;
 namespace {
 
 constexpr int64_t kRun = 5;
-constexpr int64_t kSecond = 1'000'000;
+using tread::testing::kSecond;
 using Event = ExecutionTracker::Event;
 using Outcome = ExecutionReading::State;
 

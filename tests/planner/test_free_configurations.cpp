@@ -6,7 +6,7 @@
 #include <random>
 
 #include "modules/planner/core/map/heading_aware_heuristic.hpp"
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 #include "tests/planner/kit/random_ground.hpp"
 #include "tests/planner/kit/vehicle.hpp"
 
@@ -20,8 +20,8 @@ const FootprintSize kSize = kVehicle;
 constexpr double kBin = 2.0 * kPi / FreeConfigurations::kHeadings;
 
 /// A ground and what is free on it, with and without the short cuts.
-struct Bench {
-  explicit Bench(std::mt19937_64& random, bool unknown_blocks)
+struct ConfigurationBench {
+  explicit ConfigurationBench(std::mt19937_64& random, bool unknown_blocks)
       : ground(shape(random)),
         unknown(unknown_blocks),
         around(ground.draw(random), kSize, Margins{}, unknown_blocks),
@@ -66,7 +66,7 @@ TEST_CASE("a square is free in a heading only if the footprint has room at one o
   int free = 0;
   int blocked = 0;
   for (int i = 0; i < testing::effort(20); ++i) {
-    Bench bench(random, i % 2 == 0);
+    ConfigurationBench bench(random, i % 2 == 0);
     FreeConfigurations& configurations = bench.configurations;
     for (int k = 0; k < 500; ++k) {
       const int column = drawn(random, 0, configurations.width() - 1);
@@ -90,7 +90,7 @@ TEST_CASE("wherever the footprint is free, the square is passable") {
   std::mt19937_64 random(2);
   int free = 0;
   for (int i = 0; i < testing::effort(40); ++i) {
-    const Bench bench(random, i % 2 == 0);
+    const ConfigurationBench bench(random, i % 2 == 0);
     for (int k = 0; k < 500; ++k) {
       const Pose2 pose = bench.ground.pose(random);
       if (!bench.isFree(pose)) continue;
@@ -107,7 +107,7 @@ TEST_CASE(
     "a point lies in the square that is asked for, and beyond the map's rim nothing is free") {
   std::mt19937_64 random(3);
   for (int i = 0; i < testing::effort(20); ++i) {
-    Bench bench(random, false);
+    ConfigurationBench bench(random, false);
     FreeConfigurations& configurations = bench.configurations;
     for (int k = 0; k < 100; ++k) {
       const Pose2 pose = bench.ground.pose(random);

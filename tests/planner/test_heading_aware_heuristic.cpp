@@ -7,7 +7,7 @@
 #include <random>
 
 #include "modules/planner/core/map/heading_aware_heuristic.hpp"
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 #include "tests/planner/kit/guide_reference.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/random_ground.hpp"
@@ -20,8 +20,8 @@ using namespace tread::planner::testkit;
 
 namespace {
 
-const FootprintSize kSize = kVehicle;
-constexpr double kBin = 2.0 * kPi / HeadingAwareHeuristic::kHeadings;
+const FootprintSize kHeuristicSize = kVehicle;
+constexpr double kHeadingBin = 2.0 * kPi / HeadingAwareHeuristic::kHeadings;
 constexpr double kEverything = 1e6;
 
 Primitive move(const Pose2& end, double cost) {
@@ -40,10 +40,10 @@ std::vector<Primitive> plainMoves(bool reverse) {
 }
 
 /// A ground and the guide on it.
-struct Bench {
-  Bench(const Grid& grid, bool unknown_blocks, const PatternTable& patterns)
-      : around(grid, kSize, Margins{}, unknown_blocks),
-        configurations(around, kSize.half_width),
+struct HeuristicBench {
+  HeuristicBench(const Grid& grid, bool unknown_blocks, const PatternTable& patterns)
+      : around(grid, kHeuristicSize, Margins{}, unknown_blocks),
+        configurations(around, kHeuristicSize.half_width),
         rates(motionRates(patterns)) {}
   HeadingAwareHeuristic guide(const Pose2& start, const Goal& goal, double beyond = kEverything) {
     return HeadingAwareHeuristic(configurations, goal, start, rates, beyond);
@@ -52,7 +52,7 @@ struct Bench {
   double at(const HeadingAwareHeuristic& guide, int column, int row, int heading) const {
     const Eigen::Vector2d p = configurations.centre(column, row);
     return static_cast<double>(
-        guide.at(p.x(), p.y(), static_cast<float>(wrapAngle(heading * kBin))));
+        guide.at(p.x(), p.y(), static_cast<float>(wrapAngle(heading * kHeadingBin))));
   }
 
   CollisionChecker around;
@@ -73,7 +73,7 @@ struct Compared {
 };
 
 template <class Visit>
-void visitStates(const Bench& bench, const Visit& visit) {
+void visitStates(const HeuristicBench& bench, const Visit& visit) {
   for (int row = 0; row < bench.configurations.height(); ++row)
     for (int column = 0; column < bench.configurations.width(); ++column)
       for (int heading = 0; heading < HeadingAwareHeuristic::kHeadings; ++heading)
@@ -87,7 +87,7 @@ double leastPerMetre(const MotionRates& rates) {
   return least;
 }
 
-Compared motionRatio(const Bench& bench, const HeadingAwareHeuristic& guide,
+Compared motionRatio(const HeuristicBench& bench, const HeadingAwareHeuristic& guide,
                      const GuideReference& truth) {
   Compared result;
   visitStates(bench, [&](int column, int row, int heading) {
@@ -115,7 +115,7 @@ void onRandomGrounds(uint64_t seed, int count, const Visit& visit) {
     ground.blocks = drawn(random, 0, 14);
     ground.walls = drawn(random, 0, 2);
     ground.gap = 14;
-    Bench bench(ground.draw(random), i % 2 == 0, i % 3 == 0 ? forward : sample);
+    HeuristicBench bench(ground.draw(random), i % 2 == 0, i % 3 == 0 ? forward : sample);
     const Goal goal{1, ground.pose(random), drawn(random, 0.1, 0.6), i % 4 == 0 ? 4.0 : 0.3};
     visit(bench, ground.pose(random), goal);
   }
@@ -126,13 +126,14 @@ void onRandomGrounds(uint64_t seed, int count, const Visit& visit) {
 TEST_CASE("wholly filled in, the guide is what brute force over the same moves finds") {
   int finite = 0;
   int endless = 0;
-  onRandomGrounds(1, testing::effort(40), [&](Bench& bench, const Pose2& start, const Goal& goal) {
-    const HeadingAwareHeuristic guide = bench.guide(start, goal);
-    const GuideReference truth(bench.configurations, goal, start, bench.rates);
-    const Compared compared = motionRatio(bench, guide, truth);
-    finite += compared.finite;
-    endless += compared.endless;
-  });
+  onRandomGrounds(1, testing::effort(40),
+                  [&](HeuristicBench& bench, const Pose2& start, const Goal& goal) {
+                    const HeadingAwareHeuristic guide = bench.guide(start, goal);
+                    const GuideReference truth(bench.configurations, goal, start, bench.rates);
+                    const Compared compared = motionRatio(bench, guide, truth);
+                    finite += compared.finite;
+                    endless += compared.endless;
+                  });
   CHECK(finite > testing::effort(100'000));
   CHECK(endless > testing::effort(10'000));
 }
@@ -140,51 +141,53 @@ TEST_CASE("wholly filled in, the guide is what brute force over the same moves f
 TEST_CASE("filled in as far as the start, the guide is right wherever it may be worth to go") {
   constexpr double kBeyond = 0.15;
   int right = 0;
-  onRandomGrounds(2, testing::effort(60), [&](Bench& bench, const Pose2& start, const Goal& goal) {
-    const HeadingAwareHeuristic guide = bench.guide(start, goal, kBeyond);
-    const GuideReference truth(bench.configurations, goal, start, bench.rates);
-    const int own_column = bench.configurations.column(start.x);
-    const int own_row = bench.configurations.row(start.y);
-    const int own =
-        static_cast<int>(std::lround(start.yaw / kBin)) + HeadingAwareHeuristic::kHeadings;
-    const double whole = truth.at(own_column, own_row, own % HeadingAwareHeuristic::kHeadings);
-    REQUIRE(guide.reached() == std::isfinite(whole));
-    if (!guide.reached()) return;
-    ++right;
-    CHECK(static_cast<double>(guide.at(start.x, start.y, static_cast<float>(start.yaw))) ==
-          Approx(whole).epsilon(1e-4));
-    visitStates(bench, [&](int column, int row, int heading) {
-      const double from_start = leastPerMetre(bench.rates) * bench.configurations.size() *
-                                std::hypot(column - own_column, row - own_row);
-      const double expected = truth.at(column, row, heading);
-      const double value = bench.at(guide, column, row, heading);
-      if (from_start + expected < (1.0 + kBeyond) * whole)
-        REQUIRE(value == Approx(expected).epsilon(1e-4).margin(1e-4));
-      else  // what was left out does not look better than that
-        REQUIRE(from_start + value >= (1.0 + kBeyond) * whole * (1.0 - 1e-4));
-    });
-  });
+  onRandomGrounds(
+      2, testing::effort(60), [&](HeuristicBench& bench, const Pose2& start, const Goal& goal) {
+        const HeadingAwareHeuristic guide = bench.guide(start, goal, kBeyond);
+        const GuideReference truth(bench.configurations, goal, start, bench.rates);
+        const int own_column = bench.configurations.column(start.x);
+        const int own_row = bench.configurations.row(start.y);
+        const int own = static_cast<int>(std::lround(start.yaw / kHeadingBin)) +
+                        HeadingAwareHeuristic::kHeadings;
+        const double whole = truth.at(own_column, own_row, own % HeadingAwareHeuristic::kHeadings);
+        REQUIRE(guide.reached() == std::isfinite(whole));
+        if (!guide.reached()) return;
+        ++right;
+        CHECK(static_cast<double>(guide.at(start.x, start.y, static_cast<float>(start.yaw))) ==
+              Approx(whole).epsilon(1e-4));
+        visitStates(bench, [&](int column, int row, int heading) {
+          const double from_start = leastPerMetre(bench.rates) * bench.configurations.size() *
+                                    std::hypot(column - own_column, row - own_row);
+          const double expected = truth.at(column, row, heading);
+          const double value = bench.at(guide, column, row, heading);
+          if (from_start + expected < (1.0 + kBeyond) * whole)
+            REQUIRE(value == Approx(expected).epsilon(1e-4).margin(1e-4));
+          else  // what was left out does not look better than that
+            REQUIRE(from_start + value >= (1.0 + kBeyond) * whole * (1.0 - 1e-4));
+        });
+      });
   CHECK(right > testing::effort(20));
 }
 
 TEST_CASE("filled in as far as the start, the guide is nowhere more than what brute force finds") {
   int less = 0;
-  onRandomGrounds(3, testing::effort(60), [&](Bench& bench, const Pose2& start, const Goal& goal) {
-    const HeadingAwareHeuristic guide = bench.guide(start, goal, 0.05);
-    const GuideReference truth(bench.configurations, goal, start, bench.rates);
-    visitStates(bench, [&](int column, int row, int heading) {
-      const double expected = truth.at(column, row, heading);
-      const double value = bench.at(guide, column, row, heading);
-      REQUIRE(value <= expected * (1.0 + 1e-4) + 1e-4);
-      less += value < 0.99 * expected ? 1 : 0;
-    });
-  });
+  onRandomGrounds(3, testing::effort(60),
+                  [&](HeuristicBench& bench, const Pose2& start, const Goal& goal) {
+                    const HeadingAwareHeuristic guide = bench.guide(start, goal, 0.05);
+                    const GuideReference truth(bench.configurations, goal, start, bench.rates);
+                    visitStates(bench, [&](int column, int row, int heading) {
+                      const double expected = truth.at(column, row, heading);
+                      const double value = bench.at(guide, column, row, heading);
+                      REQUIRE(value <= expected * (1.0 + 1e-4) + 1e-4);
+                      less += value < 0.99 * expected ? 1 : 0;
+                    });
+                  });
   CHECK(less > testing::effort(10'000));  // enough was not filled in
 }
 
 TEST_CASE("on empty ground a way ahead and a turn cost what the patterns charge for them") {
   const PatternTable table(plainMoves(true), usualSweep());
-  Bench bench(openGround(6.0), false, table);
+  HeuristicBench bench(openGround(6.0), false, table);
   const Eigen::Vector2d middle = bench.configurations.centre(20, 20);
   const Goal goal{1, {middle.x(), middle.y(), 0.0}, 0.01, 0.01};
   const HeadingAwareHeuristic guide = bench.guide({}, goal);
@@ -194,8 +197,8 @@ TEST_CASE("on empty ground a way ahead and a turn cost what the patterns charge 
     CHECK(bench.at(guide, 20 + squares, 20, 0) == Approx(5.0 * squares * size).epsilon(1e-4));
   }
   for (int turn = 1; turn <= 8; ++turn) {
-    CHECK(bench.at(guide, 20, 20, turn) == Approx(3.0 * turn * kBin).epsilon(1e-4));
-    CHECK(bench.at(guide, 20, 20, 16 - turn) == Approx(3.0 * turn * kBin).epsilon(1e-4));
+    CHECK(bench.at(guide, 20, 20, turn) == Approx(3.0 * turn * kHeadingBin).epsilon(1e-4));
+    CHECK(bench.at(guide, 20, 20, 16 - turn) == Approx(3.0 * turn * kHeadingBin).epsilon(1e-4));
   }
   // A quarter turn, and the way across to the goal, sideways being no direction to drive in.
   CHECK(bench.at(guide, 20, 10, 0) == Approx(20.0 * size + 3.0 * kPi).epsilon(0.1));
@@ -203,7 +206,7 @@ TEST_CASE("on empty ground a way ahead and a turn cost what the patterns charge 
 
 TEST_CASE("with the patterns of the tests a way ahead costs its time at the best speed") {
   const PatternTable table(samplePatterns(), usualSweep(), {});
-  Bench bench(openGround(6.0), false, table);
+  HeuristicBench bench(openGround(6.0), false, table);
   const Eigen::Vector2d middle = bench.configurations.centre(20, 20);
   const HeadingAwareHeuristic guide =
       bench.guide({}, {1, {middle.x(), middle.y(), 0.0}, 0.01, 0.01});
@@ -214,7 +217,7 @@ TEST_CASE("with the patterns of the tests a way ahead costs its time at the best
 
 TEST_CASE("a set that cannot reverse is never guided backwards") {
   const PatternTable table(plainMoves(false), usualSweep());
-  Bench bench(openGround(6.0), false, table);
+  HeuristicBench bench(openGround(6.0), false, table);
   const Eigen::Vector2d middle = bench.configurations.centre(20, 20);
   const HeadingAwareHeuristic guide =
       bench.guide({}, {1, {middle.x(), middle.y(), 0.0}, 0.01, 0.01});
@@ -231,14 +234,14 @@ TEST_CASE("a wall is gone around, and what is shut in has no way") {
   const PatternTable table(plainMoves(true), usualSweep());
   Grid grid = openGround(6.0);
   for (int y = -40; y < 40; ++y) grid.set({0, y}, kObstacle);
-  Bench bench(grid, false, table);
+  HeuristicBench bench(grid, false, table);
   const Goal goal{1, {2.0, 0.0, 0.0}, 0.2, 4.0};
   const HeadingAwareHeuristic guide = bench.guide({-2.0, 0.0, 0.0}, goal);
   REQUIRE(guide.reached());
   const double around = 2.0 * std::hypot(2.0, 4.0);
   CHECK(static_cast<double>(guide.at(-2.0, 0.0, 0.0F)) > 2.0 * (around - 0.6));
   for (int y = -60; y < 60; ++y) grid.set({0, y}, kObstacle);
-  Bench shut(grid, true, table);
+  HeuristicBench shut(grid, true, table);
   const HeadingAwareHeuristic none = shut.guide({-2.0, 0.0, 0.0}, goal);
   CHECK_FALSE(none.reached());
   CHECK(std::isinf(none.at(-2.0, 0.0, 0.0F)));
@@ -249,7 +252,7 @@ TEST_CASE("a start on blocked ground is reached, a goal outside the map is not")
   const PatternTable table(plainMoves(true), usualSweep());
   Grid grid = openGround(3.9);
   for (int y = -5; y < 5; ++y) grid.set({4, y}, kObstacle);
-  Bench bench(grid, false, table);
+  HeuristicBench bench(grid, false, table);
   const Pose2 before_wall{0.05, 0.05, 0.0};
   REQUIRE_FALSE(bench.configurations.isFree(
       bench.configurations.number(bench.configurations.column(before_wall.x),
@@ -266,7 +269,7 @@ TEST_CASE("a start on blocked ground is reached, a goal outside the map is not")
 
 TEST_CASE("outside the map, and on a map smaller than a square, the guide still answers") {
   const PatternTable table(plainMoves(true), usualSweep());
-  Bench bench(openGround(4.0), true, table);
+  HeuristicBench bench(openGround(4.0), true, table);
   const Goal goal{1, {2.0, 0.0, 0.0}, 0.2, 4.0};
   const HeadingAwareHeuristic guide = bench.guide({-2.0, 0.0, 0.0}, goal, 0.15);
   REQUIRE(guide.reached());
@@ -278,18 +281,18 @@ TEST_CASE("outside the map, and on a map smaller than a square, the guide still 
   }
   Grid one(0.1, {0, 0}, 1, 1);
   one.set({0, 0}, kFree);
-  Bench tiny(one, false, table);
+  HeuristicBench tiny(one, false, table);
   const HeadingAwareHeuristic here =
       tiny.guide({0.05, 0.05, 1.0}, {1, {0.05, 0.05, 0.0}, 0.1, 0.1});
   CHECK(here.reached());
-  CHECK(static_cast<double>(here.at(0.05, 0.05, static_cast<float>(2.0 * kBin))) ==
-        Approx(3.0 * 2.0 * kBin).epsilon(1e-4));
-  Bench none(Grid{}, true, table);
+  CHECK(static_cast<double>(here.at(0.05, 0.05, static_cast<float>(2.0 * kHeadingBin))) ==
+        Approx(3.0 * 2.0 * kHeadingBin).epsilon(1e-4));
+  HeuristicBench none(Grid{}, true, table);
   CHECK(none.guide({}, goal).reached() == false);
 }
 
 TEST_CASE("a set that goes nowhere makes no guide") {
   const PatternTable table({move({0.0, 0.0, 0.0}, 1.0)}, usualSweep());
-  Bench bench(openGround(3.0), true, table);
+  HeuristicBench bench(openGround(3.0), true, table);
   CHECK(bench.guide({}, {1, {1.0, 0.0, 0.0}, 0.2, 4.0}).empty());
 }

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "modules/planner/core/search/search_containers.hpp"
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 
 using namespace tread::planner;
 
@@ -15,10 +15,10 @@ namespace {
 
 constexpr uint64_t kKeyBits = (uint64_t{1} << 56U) - 1;
 
-using Known = std::unordered_map<uint64_t, std::pair<float, int>>;
+using KnownNodes = std::unordered_map<uint64_t, std::pair<float, int>>;
 
 /// Asks for a key and compares with what is known; then stores something new in it.
-void visit(NodeTable& table, Known& known, uint64_t key, int number) {
+void visit(NodeTable& table, KnownNodes& known, uint64_t key, int number) {
   NodeTable::Entry& slot = table[key];
   const auto found = known.find(key);
   if (found == known.end()) {
@@ -49,7 +49,7 @@ uint64_t cellKey(std::mt19937_64& random, int spread) {
 TEST_CASE("a table holds what was put in, however large it has to grow") {
   std::mt19937_64 random(1);
   NodeTable table;
-  Known known;
+  KnownNodes known;
   const size_t small = table.bytes();
   const int count = tread::testing::effort(200'000);
   for (int i = 0; i < count; ++i) {
@@ -70,7 +70,7 @@ TEST_CASE("what was cleared never comes back, also after many more clears than a
   std::mt19937_64 random(2);
   NodeTable table;
   for (int round = 0; round < 600; ++round) {
-    Known known;
+    KnownNodes known;
     // Few and the same keys in most rounds: slots keep what earlier rounds left in them.
     const int count = round % 50 == 0 ? 3000 : 30;
     for (int i = 0; i < count; ++i) visit(table, known, cellKey(random, 6), round * 10'000 + i);
@@ -82,7 +82,7 @@ TEST_CASE("what was cleared never comes back, also after many more clears than a
 TEST_CASE("the least and the greatest key are keys like any other") {
   NodeTable table;
   for (int round = 0; round < 300; ++round) {
-    Known known;
+    KnownNodes known;
     for (const uint64_t key : {uint64_t{0}, kKeyBits, uint64_t{1}, kKeyBits, uint64_t{0}})
       visit(table, known, key, round);
     table.clear();

@@ -8,19 +8,19 @@
 #include <utility>
 
 #include "modules/planner/core/search/search_containers.hpp"
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 
 using namespace tread::planner;
 
 namespace {
 
-using Known = std::multimap<float, std::pair<int, float>>;
+using KnownKeys = std::multimap<float, std::pair<int, float>>;
 
 /// How far above the least a bucket's estimates may be [1].
 constexpr float kBucket = 1.0F + 1.0F / 2048.0F;
 
 /// Takes one and finds it in what is known: its estimate must be the least, nearly.
-void takeOne(OpenList& open, Known& known, float least) {
+void takeOne(OpenList& open, KnownKeys& known, float least) {
   const OpenList::Entry entry = open.take();
   const float limit = std::max(least, known.begin()->first) * kBucket;
   for (auto it = known.begin(); it != known.end() && it->first <= limit; ++it) {
@@ -34,7 +34,7 @@ void takeOne(OpenList& open, Known& known, float least) {
 void playAtRandom(std::mt19937_64& random, OpenList& open, float least, double spread) {
   std::lognormal_distribution<float> estimate(0.0F, static_cast<float>(spread));
   std::uniform_int_distribution<int> chance(0, 99);
-  Known known;
+  KnownKeys known;
   open.clear(least);
   int node = 0;
   for (int i = 0; i < 3000; ++i) {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 #include "tests/planner/kit/path_bench.hpp"
 
 using namespace tread;

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 #include "tests/planner/kit/path_bench.hpp"
 #include "tests/planner/kit/vehicle.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 #include "tests/planner/kit/path_bench.hpp"
 #include "tests/planner/kit/vehicle.hpp"
 

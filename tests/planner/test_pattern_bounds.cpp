@@ -8,7 +8,7 @@
 
 #include "modules/planner/core/map/heading_aware_heuristic.hpp"
 #include "modules/planner/core/search/pattern_table.hpp"
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 #include "tests/planner/kit/random_ground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
 #include "tests/planner/kit/vehicle.hpp"

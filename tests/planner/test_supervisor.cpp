@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "tests/helpers.hpp"
 #include "tests/planner/kit/policy_rig.hpp"
 
 using namespace tread;
@@ -12,7 +13,7 @@ using namespace tread::planner::testkit;
 
 namespace {
 
-constexpr int64_t kSecond = 1'000'000;  // [us]
+using tread::testing::kSecond;
 
 }  // namespace
 

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "modules/planner/core/search/pattern_table.hpp"
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 
 using namespace tread;
 using namespace tread::planner;

@@ -9,16 +9,12 @@
 #include <catch2/catch.hpp>
 
 #include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
+#include "tests/helpers.hpp"
 
 namespace tread::sim {
 namespace {
 
-std::vector<std::string> linesOf(const std::string& bytes) {
-  std::vector<std::string> lines;
-  std::istringstream stream(bytes);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
+using tread::testing::linesOf;
 
 bool checksumFits(const std::string& line) {
   const size_t star = line.find('*');

@@ -7,16 +7,12 @@
 #include <catch2/catch.hpp>
 
 #include "modules/simulator/emulators/hokuyo/scip_emulator.hpp"
+#include "tests/helpers.hpp"
 
 namespace tread::sim {
 namespace {
 
-std::vector<std::string> linesOf(const std::string& bytes) {
-  std::vector<std::string> lines;
-  std::istringstream stream(bytes);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
+using tread::testing::linesOf;
 
 LaserScan scanOf(int beams, int64_t utime) {
   LaserScan scan;

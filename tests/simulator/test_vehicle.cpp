@@ -10,13 +10,13 @@
 namespace tread::sim {
 namespace {
 
-constexpr double kStep = 1e-3;
+constexpr double kVehicleStep = 1e-3;
 
 Pose2 drive(TrackedVehicle& vehicle, const MotorPower& power, const Ground& ground, double time) {
   Pose2 T_start_body;
-  for (int i = 0; i < static_cast<int>(std::lround(time / kStep)); ++i) {
-    vehicle.step(power, ground, kStep);
-    T_start_body = T_start_body * integrate(vehicle.velocity(), kStep);
+  for (int i = 0; i < static_cast<int>(std::lround(time / kVehicleStep)); ++i) {
+    vehicle.step(power, ground, kVehicleStep);
+    T_start_body = T_start_body * integrate(vehicle.velocity(), kVehicleStep);
   }
   return T_start_body;
 }

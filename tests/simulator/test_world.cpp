@@ -8,7 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/simulator/core/world.hpp"
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 
 namespace tread::sim {
 namespace {

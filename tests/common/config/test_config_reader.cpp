@@ -10,11 +10,12 @@
 #include <catch2/catch.hpp>
 
 #include "common/config/config_reader.hpp"
+#include "tests/helpers.hpp"
 
 namespace tread {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using tread::testing::kInf;
 
 /// A configuration with one of everything.
 struct Everything {

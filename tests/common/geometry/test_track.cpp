@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/geometry/track.hpp"
+#include "tests/helpers.hpp"
 
 namespace tread {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 constexpr int64_t kSpan = 60'000'000;
 constexpr int64_t kStep = 20'000;  // [us] between poses: 50 Hz
 constexpr int64_t kAnyGap = std::numeric_limits<int64_t>::max();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using tread::testing::kNan;
 
 /// A track of a steady motion from the origin, its yaw wrapped as an INS tells it.
 PoseTrack trackOf(const Twist2& twist, int64_t duration) {

@@ -7,7 +7,7 @@
 
 #include "common/grid/grid.hpp"
 #include "tests/common/grid/worlds.hpp"
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 
 using namespace tread;
 

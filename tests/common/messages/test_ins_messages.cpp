@@ -7,12 +7,13 @@
 #include <catch2/catch.hpp>
 
 #include "common/messages/ins_messages.hpp"
+#include "tests/helpers.hpp"
 
 namespace tread {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using tread::testing::kInf;
+using tread::testing::kNan;
 
 /// A good message: at (3, 4, 5), turned by yaw, pitch and roll, moving.
 ins_t messageAt(double yaw, double pitch, double roll) {

@@ -9,12 +9,13 @@
 
 #include "common/messages/pattern_messages.hpp"
 #include "tests/common/pattern/pattern_samples.hpp"
+#include "tests/helpers.hpp"
 
 namespace tread {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using tread::testing::kInf;
+using tread::testing::kNan;
 
 PatternSet setOf(int64_t version) {
   PatternSetContent content = testing::goodContent();

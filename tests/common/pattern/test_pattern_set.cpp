@@ -10,13 +10,14 @@
 #include <catch2/catch.hpp>
 
 #include "tests/common/pattern/pattern_samples.hpp"
+#include "tests/helpers.hpp"
 
 using namespace tread;
 using tread::testing::goodContent;
 
 namespace {
 
-const double kNan = std::numeric_limits<double>::quiet_NaN();
+using tread::testing::kNan;
 const double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Refusal {

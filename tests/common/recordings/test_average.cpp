@@ -7,13 +7,14 @@
 #include <catch2/catch.hpp>
 
 #include "tests/common/recordings/samples.hpp"
+#include "tests/helpers.hpp"
 
 using namespace tread;
 using namespace tread::recordings;
 
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using tread::testing::kNan;
 
 /// A set of one pattern and executions of it that move with these twists.
 struct OnePattern {

@@ -10,10 +10,11 @@ using namespace tread;
 
 namespace {
 
-const std::string kHead = "name: m\nkind: power\nfull_speed: 1.1\ngauge: 0.6\n";  // 4 lines
-const std::string kEffect = "effects:\n  icr_offset:\n    offset: 0.1\n";         // 3 lines
+const std::string kDocumentHead = "name: m\nkind: power\nfull_speed: 1.1\ngauge: 0.6\n";  // 4 lines
+const std::string kEffect = "effects:\n  icr_offset:\n    offset: 0.1\n";                 // 3 lines
 
-void expectError(const std::string& text, const std::string& place, const std::string& part) {
+void expectDocumentError(const std::string& text, const std::string& place,
+                         const std::string& part) {
   std::string message = "no error";
   try {
     parseModelDocument(text, "m.yaml");
@@ -27,7 +28,7 @@ void expectError(const std::string& text, const std::string& place, const std::s
 }
 
 ModelDocument fullDocument() {
-  ModelDocument document = parseModelDocument(kHead + kEffect, "m.yaml");
+  ModelDocument document = parseModelDocument(kDocumentHead + kEffect, "m.yaml");
   document.measurement.ins_latency = 0.1 / 3.0;
   document.measurement.lever_arm_y = -1.0 / 7.0;
   document.bounds = {{"icr_offset.offset", -0.1 / 3.0, 0.2}, {"yaw_gain", 0.5, 1.1}};
@@ -85,26 +86,29 @@ TEST_CASE("The vehicle part and the measurement part of a file stand apart") {
 }
 
 TEST_CASE("Bad bounds, covariances, origins and envelopes are refused in one clear line") {
-  const std::string base = kHead + kEffect;  // 7 lines
-  expectError(base + "bounds:\n  icr_offset: [-1, 1]\n", "9", "is no parameter");
-  expectError(base + "bounds:\n  icr_offset.offset: [0.2, 0.3]\n", "9", "between");
-  expectError(base + "bounds:\n  icr_offset.offset: [0.3]\n", "9", "2");
-  expectError(base + "covariance:\n  parameters: [lag, lags]\n", "9", "'lags' is no parameter");
-  expectError(base + "covariance:\n  parameters: [lag, lag]\n", "9", "twice");
+  const std::string base = kDocumentHead + kEffect;  // 7 lines
+  expectDocumentError(base + "bounds:\n  icr_offset: [-1, 1]\n", "9", "is no parameter");
+  expectDocumentError(base + "bounds:\n  icr_offset.offset: [0.2, 0.3]\n", "9", "between");
+  expectDocumentError(base + "bounds:\n  icr_offset.offset: [0.3]\n", "9", "2");
+  expectDocumentError(base + "covariance:\n  parameters: [lag, lags]\n", "9",
+                      "'lags' is no parameter");
+  expectDocumentError(base + "covariance:\n  parameters: [lag, lag]\n", "9", "twice");
   const std::string two = base + "covariance:\n  parameters: [lag, delay]\n  matrix: ";
-  expectError(two + "[[1, 0]]\n", "10", "one row per parameter");
-  expectError(two + "[[1, 0], [0.1, 1]]\n", "10", "symmetric");
-  expectError(two + "[[1, 0], [0, -1]]\n", "10", "negative");
-  expectError(base + "provenance:\n  seed: 1.5\n", "9", "seed");
-  expectError(base + "provenance:\n  logs:\n    - name: a\n      sha256: beef\n", "11",
-              "64 digits");
-  expectError(base + "provenance:\n  decisions:\n    - effect: yaw_pull\n      decision: maybe\n",
-              "11", "accepted");
-  expectError(base + "provenance:\n  decisions:\n    - effect: yaw_pul\n      decision: accepted\n",
-              "10", "'yaw_pul' is no effect of the catalogue; did you mean yaw_pull?");
-  expectError(base + "envelope:\n  v: 1\n", "8", "omega");
-  expectError(base + "envelope:\n  v: -1\n  omega: 1\n  v_omega: 1\n", "9", "0..100 m/s");
-  expectError(base + "measurement:\n  ins_latency:\n    latency: 3\n", "10", "-1..2 s");
+  expectDocumentError(two + "[[1, 0]]\n", "10", "one row per parameter");
+  expectDocumentError(two + "[[1, 0], [0.1, 1]]\n", "10", "symmetric");
+  expectDocumentError(two + "[[1, 0], [0, -1]]\n", "10", "negative");
+  expectDocumentError(base + "provenance:\n  seed: 1.5\n", "9", "seed");
+  expectDocumentError(base + "provenance:\n  logs:\n    - name: a\n      sha256: beef\n", "11",
+                      "64 digits");
+  expectDocumentError(
+      base + "provenance:\n  decisions:\n    - effect: yaw_pull\n      decision: maybe\n", "11",
+      "accepted");
+  expectDocumentError(
+      base + "provenance:\n  decisions:\n    - effect: yaw_pul\n      decision: accepted\n", "10",
+      "'yaw_pul' is no effect of the catalogue; did you mean yaw_pull?");
+  expectDocumentError(base + "envelope:\n  v: 1\n", "8", "omega");
+  expectDocumentError(base + "envelope:\n  v: -1\n  omega: 1\n  v_omega: 1\n", "9", "0..100 m/s");
+  expectDocumentError(base + "measurement:\n  ins_latency:\n    latency: 3\n", "10", "-1..2 s");
 }
 
 TEST_CASE("Outside of its envelope a model warns, once for each quantity, within it is silent") {
@@ -120,7 +124,7 @@ TEST_CASE("Outside of its envelope a model warns, once for each quantity, within
 }
 
 TEST_CASE("The envelope of a drive holds its largest motions") {
-  VehicleModel model = parseModelDocument(kHead, "m.yaml").vehicle;
+  VehicleModel model = parseModelDocument(kDocumentHead, "m.yaml").vehicle;
   const Envelope envelope = envelopeOf(model, {{1.0, 1.0}, {-0.5, 0.5}, {-1.0, -1.0}}, 0.1, {});
   CHECK(envelope.v == Approx(1.1));
   CHECK(envelope.omega == Approx(1.1 / 0.6));

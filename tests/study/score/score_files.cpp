@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include "tests/study/score/score_files.hpp"
+#include "tests/helpers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,10 +26,7 @@ void write(const fs::path& path, const std::string& text) {
   if (!file) throw std::runtime_error(path.string() + ": cannot be written");
 }
 
-std::string contentOf(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using tread::testing::contentOf;
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);

@@ -12,6 +12,7 @@
 
 #include "common/report/hash.hpp"
 #include "common/store/store.hpp"
+#include "tests/helpers.hpp"
 #include "tests/study/score/batch.hpp"
 #include "tests/study/score/child.hpp"
 #include "tests/study/score/suites.hpp"
@@ -25,10 +26,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr size_t kBatch = 40;
 
-std::string contentOf(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using tread::testing::contentOf;
 
 /// What the study is; shards with another line here are not of one study.
 Json headerOf(const Study& study, const std::vector<HiddenCase>& cases) {

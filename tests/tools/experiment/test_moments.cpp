@@ -4,14 +4,14 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 #include "tools/experiment/tables.hpp"
 #include "tools/experiment/trials.hpp"
 
 namespace tread::experiment {
 namespace {
 
-using testing::effort;
+using tread::testing::effort;
 
 /// Paired trials: rule 0 errs by 0.2 of what is covered in the mean, rule 1 by 0.8 of rule 0.
 RatioMoments trials(uint64_t seed, int repetitions) {

@@ -8,6 +8,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/helpers.hpp"
 #include "tests/tools/called_program.hpp"
 #include "tests/tools/experiment/small_world.hpp"
 
@@ -39,10 +40,7 @@ std::vector<std::string> linesOf(const std::string& path) {
   return lines;
 }
 
-std::string contentOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using tread::testing::contentOf;
 
 void write(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;

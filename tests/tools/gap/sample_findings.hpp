@@ -14,6 +14,10 @@
 /// Findings made by hand, to look at what is written of them.
 namespace tread::gap::samples {
 
+inline bool has(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
 inline ModelDocument model() {
   ModelDocument model;
   model.vehicle.name = "sample";

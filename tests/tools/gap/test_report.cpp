@@ -16,6 +16,8 @@
 namespace tread::gap {
 namespace {
 
+using samples::has;
+
 const GapVerdict kVerdicts[] = {GapVerdict::kNoDiscrepancy,  GapVerdict::kFound,
                                 GapVerdict::kAmbiguous,      GapVerdict::kPartial,
                                 GapVerdict::kNotInCatalogue, GapVerdict::kMeasurement,
@@ -27,10 +29,6 @@ std::string html(GapVerdict verdict) {
 
 std::string markdown(GapVerdict verdict) {
   return markdownOf(reportPage(samples::finding(verdict), samples::inputs()));
-}
-
-bool has(const std::string& text, const std::string& words) {
-  return text.find(words) != std::string::npos;
 }
 
 /// The first tag that is not closed in its turn; empty = well-formed.

@@ -15,6 +15,8 @@
 namespace tread::gap {
 namespace {
 
+using samples::has;
+
 FoundEffect effect(const std::string& name, const std::vector<std::string>& as_good = {},
                    double gain = 10.0) {
   FoundEffect found;
@@ -36,10 +38,6 @@ std::string headline(GapVerdict verdict, const std::vector<FoundEffect>& effects
 
 std::string report(const Finding& finding) {
   return markdownOf(reportPage(finding, samples::inputs()));
-}
-
-bool has(const std::string& text, const std::string& words) {
-  return text.find(words) != std::string::npos;
 }
 
 size_t count(const std::string& text, const std::string& words) {

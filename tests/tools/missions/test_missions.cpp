@@ -12,6 +12,8 @@
 #include <unistd.h>
 
 #include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
+#include "tests/helpers.hpp"
+#include "tests/tools/missions/shipped_robot.hpp"
 #include "tools/missions/mission_runner.hpp"
 #include "tools/missions/referee.hpp"
 #include "tools/missions/report.hpp"
@@ -19,14 +21,9 @@
 
 using namespace tread;
 using namespace tread::missions;
+using samples::teodor;
 
 namespace {
-
-const RobotConfig& teodor() {
-  static const RobotConfig robot =
-      readRobot(std::string(TREAD_SOURCE_DIR) + "/config/robots/teodor");
-  return robot;
-}
 
 /// A mission that the test moves on by itself, with the operator and the referee.
 struct Bench {
@@ -87,10 +84,7 @@ struct Bench {
   bool version_went_back = false;
 };
 
-std::string bytesOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using tread::testing::contentOf;
 
 std::string recordedMission(uint64_t seed, const FaultPlan& faults) {
   const std::string path = "test_missions_" + std::to_string(getpid()) + ".lcmlog";
@@ -101,7 +95,7 @@ std::string recordedMission(uint64_t seed, const FaultPlan& faults) {
     options.faults = faults;
     runMission(teodor(), seed, options);
   }
-  std::string bytes = bytesOf(path);
+  std::string bytes = contentOf(path);
   std::remove(path.c_str());
   return bytes;
 }
@@ -296,7 +290,7 @@ TEST_CASE("a report says what happened, in text and in JSON") {
   CHECK(crossings.find(run.result.crossings.at(0).to) != std::string::npos);
   const std::string path = "test_missions_" + std::to_string(getpid()) + ".json";
   writeJson(path, batch);
-  const std::string json = bytesOf(path);
+  const std::string json = contentOf(path);
   std::remove(path.c_str());
   for (const char* key : {"missions", "arrived", "refused", "idle", "stopped", "collisions",
                           "virtual_s", "wall_s", "seed", "runs", "result", "reason", "time_s",

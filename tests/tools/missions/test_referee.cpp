@@ -7,18 +7,14 @@
 #include <cmath>
 
 #include "common/messages/blank.hpp"
+#include "tests/tools/missions/shipped_robot.hpp"
 #include "tools/missions/referee.hpp"
 
 using namespace tread;
 using namespace tread::missions;
+using samples::teodor;
 
 namespace {
-
-const RobotConfig& teodor() {
-  static const RobotConfig robot =
-      readRobot(std::string(TREAD_SOURCE_DIR) + "/config/robots/teodor");
-  return robot;
-}
 
 MissionWorld flatWorld(double goal_x) {
   MissionWorld world;

@@ -11,20 +11,17 @@
 
 #include <unistd.h>
 
+#include "tests/helpers.hpp"
+#include "tests/tools/missions/shipped_robot.hpp"
 #include "tools/missions/mission_runner.hpp"
 #include "tools/missions/prediction_errors.hpp"
 #include "tools/missions/report.hpp"
 
 using namespace tread;
 using namespace tread::missions;
+using samples::teodor;
 
 namespace {
-
-const RobotConfig& teodor() {
-  static const RobotConfig robot =
-      readRobot(std::string(TREAD_SOURCE_DIR) + "/config/robots/teodor");
-  return robot;
-}
 
 /// A mission from tarmac to grass whose only pattern ends at x = 1 m on tarmac and 0.8 m on grass,
 /// give or take a centimetre; a rule that needs `needed` executions to learn the grass.
@@ -63,10 +60,7 @@ Omniscient omniscientOf(const std::vector<MissionResult>& results) {
   return omniscient;
 }
 
-std::string bytesOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using tread::testing::contentOf;
 
 }  // namespace
 
@@ -181,7 +175,7 @@ TEST_CASE("a comparison says in text and in JSON what each rule did") {
     CHECK(text.str().find(words) != std::string::npos);
   const std::string path = "test_comparison_" + std::to_string(getpid()) + ".json";
   writeComparison(path, comparison);
-  const std::string json = bytesOf(path);
+  const std::string json = contentOf(path);
   std::remove(path.c_str());
   for (const char* key : {"same_worlds", "same_executions", "omniscient", "median_both",
                           "after_1_to_3", "settled_5_to_15", "campaigns"})

@@ -6,20 +6,16 @@
 #include <cmath>
 #include <map>
 
+#include "tests/tools/missions/shipped_robot.hpp"
 #include "tools/missions/prediction_errors.hpp"
 #include "tools/missions/referee.hpp"
 #include "tools/missions/robot_system.hpp"
 
 using namespace tread;
 using namespace tread::missions;
+using samples::teodor;
 
 namespace {
-
-const RobotConfig& teodor() {
-  static const RobotConfig robot =
-      readRobot(std::string(TREAD_SOURCE_DIR) + "/config/robots/teodor");
-  return robot;
-}
 
 /// Grass without obstacles. Between x = 10 m and 40 m the way runs along a hillside: a hill to the
 /// left, a hollow to the right, up to 0.52 rad across the way; level before and after.

@@ -14,23 +14,23 @@ using namespace tread::missions;
 
 namespace {
 
-const PatternSet& teodor() {
+const PatternSet& teodorPatterns() {
   static const PatternSet set =
-      readPatternFile(std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor.yaml");
+      readPatternFile(std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodorPatterns.yaml");
   return set;
 }
 
 /// Plans as the planner would publish them, one after the other.
 class Published {
  public:
-  Published() { watch_.take(teodor()); }
+  Published() { watch_.take(teodorPatterns()); }
 
   /// The pattern that runs under an execution id, and those after it.
   std::optional<Flip> plan(int64_t execution, const std::vector<std::string>& names) {
     plan_t plan{};
     Pose2 pose{5.0, 1.0, 0.3};
     for (const std::string& name : names) {
-      const MotionPattern& pattern = *teodor().findByName(name);
+      const MotionPattern& pattern = *teodorPatterns().findByName(name);
       pose = pose * pattern.end();
       plan.pattern_id.push_back(pattern.id);
       plan.pose.push_back({pose.x, pose.y, pose.yaw});
@@ -77,7 +77,7 @@ TEST_CASE("it is none if the plan before has become impossible, asked from where
   CHECK_FALSE(bus.plan(1, {"start", "right", "straight"}));
   CHECK(bus.asked == 1);
   CHECK(bus.asked_for == std::vector<std::string>{"left", "straight"});
-  const Pose2 expected = Pose2{5.0, 1.0, 0.3} * teodor().findByName("start")->end();
+  const Pose2 expected = Pose2{5.0, 1.0, 0.3} * teodorPatterns().findByName("start")->end();
   CHECK(std::hypot(bus.asked_from.x - expected.x, bus.asked_from.y - expected.y) < 1e-9);
 }
 

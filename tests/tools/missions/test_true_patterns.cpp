@@ -12,6 +12,8 @@
 #include <unistd.h>
 
 #include "modules/simulator/core/terrain.hpp"
+#include "tests/helpers.hpp"
+#include "tests/tools/missions/shipped_robot.hpp"
 #include "tools/missions/referee.hpp"
 #include "tools/missions/report.hpp"
 #include "tools/missions/robot_system.hpp"
@@ -19,14 +21,9 @@
 
 using namespace tread;
 using namespace tread::missions;
+using samples::teodor;
 
 namespace {
-
-const RobotConfig& teodor() {
-  static const RobotConfig robot =
-      readRobot(std::string(TREAD_SOURCE_DIR) + "/config/robots/teodor");
-  return robot;
-}
 
 const TruePatterns& truePatterns() {
   static const TruePatterns patterns(teodor().learner.shipped, teodor().simulated.vehicle);
@@ -72,10 +69,7 @@ MissionResult arrivedAfter(uint64_t seed, double seconds) {
   return result;
 }
 
-std::string textOf(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using tread::testing::contentOf;
 
 }  // namespace
 
@@ -167,7 +161,7 @@ TEST_CASE("times are compared from the first motion, where both arrive") {
   CHECK(text.str().find("median 1.125, p90 1.225, worst 1.250") != std::string::npos);
   const std::string path = "omniscient_" + std::to_string(getpid()) + ".json";
   writeOmniscient(path, comparison);
-  const std::string json = textOf(path);
+  const std::string json = contentOf(path);
   std::remove(path.c_str());
   for (const char* key : {"both_arrived", "time_ratio", "median", "p90", "learning", "omniscient"})
     CHECK(json.find('"' + std::string(key) + "\":") != std::string::npos);

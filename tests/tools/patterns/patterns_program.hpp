@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "common/pattern/pattern_file.hpp"
 #include "tests/tools/called_program.hpp"
 
 namespace tread::patterns::samples {
@@ -19,5 +20,10 @@ inline Run run(const std::string& arguments) {
 inline const std::string kConfig = std::string(TREAD_SOURCE_DIR) + "/config/";
 inline const std::string kSet = kConfig + "patterns/teodor.yaml";
 inline const std::string kGrass = kConfig + "models/teodor_grass.yaml";
+
+inline const PatternSet& shipped() {
+  static const PatternSet set = readPatternFile(kSet);
+  return set;
+}
 
 }  // namespace tread::patterns::samples

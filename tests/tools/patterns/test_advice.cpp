@@ -7,6 +7,7 @@
 
 #include "common/pattern/pattern_file.hpp"
 #include "tests/tools/patterns/few_patterns.hpp"
+#include "tests/tools/patterns/patterns_program.hpp"
 #include "tools/patterns/set_text.hpp"
 
 using namespace tread;
@@ -14,9 +15,7 @@ using namespace tread::patterns;
 
 namespace {
 
-PatternSet shipped() {
-  return readPatternFile(std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor.yaml");
-}
+using samples::shipped;
 
 std::string joined(const std::vector<std::string>& lines) {
   std::string text;

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "tests/common/recordings/synthetic_drives.hpp"
+#include "tests/helpers.hpp"
 #include "tests/tools/called_program.hpp"
 
 using namespace tread;
@@ -13,10 +14,7 @@ using namespace tread::samples;
 
 namespace {
 
-std::string textOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using tread::testing::contentOf;
 
 std::string drivesIn(const Folder& folder) {
   return writeDrives(folder, {{"one", "Rover", "hard", linearGround(0.95, 0.50, -0.05)},
@@ -46,9 +44,9 @@ TEST_CASE("from-recordings writes a book, averaged sets and a log that the learn
   INFO(replay.printed);
   CHECK(replay.status == 0);
   CHECK(replay.printed.find("soft: 32 executions in, 32 measured, 0 refused") != std::string::npos);
-  const std::string before = textOf(log) + textOf(book + "/soft.csv");
+  const std::string before = contentOf(log) + contentOf(book + "/soft.csv");
   REQUIRE(called(arguments).status == 0);
-  CHECK(before == textOf(log) + textOf(book + "/soft.csv"));
+  CHECK(before == contentOf(log) + contentOf(book + "/soft.csv"));
 }
 
 TEST_CASE("from-recordings says in one line what is wrong") {

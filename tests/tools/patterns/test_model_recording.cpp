@@ -7,8 +7,9 @@
 #include <catch2/catch.hpp>
 
 #include "common/pattern/pattern_file.hpp"
-#include "common/vehicle/model_file.hpp"
 #include "common/vehicle/kernel.hpp"
+#include "common/vehicle/model_file.hpp"
+#include "tests/tools/patterns/patterns_program.hpp"
 #include "tools/patterns/model_recording.hpp"
 
 using namespace tread;
@@ -16,11 +17,8 @@ using namespace tread::patterns;
 
 namespace {
 
-const std::string kConfig = std::string(TREAD_SOURCE_DIR) + "/config/";
-
-PatternSet shipped() {
-  return readPatternFile(kConfig + "patterns/teodor.yaml");
-}
+using samples::kConfig;
+using samples::shipped;
 
 ModelDocument grass() {
   return readModelDocument(kConfig + "models/teodor_grass.yaml");

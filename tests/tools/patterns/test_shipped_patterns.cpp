@@ -13,18 +13,15 @@
 #include "common/config/config_reader.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/vehicle/model_file.hpp"
+#include "tests/tools/patterns/patterns_program.hpp"
 #include "tools/patterns/recipe.hpp"
 
 using namespace tread;
 
 namespace {
 
-const std::string kConfig = std::string(TREAD_SOURCE_DIR) + "/config/";
-
-const PatternSet& shipped() {
-  static const PatternSet set = readPatternFile(kConfig + "patterns/teodor.yaml");
-  return set;
-}
+using patterns::samples::kConfig;
+using patterns::samples::shipped;
 
 std::set<std::string> reachableFrom(const std::string& first) {
   std::set<std::string> reached{first};

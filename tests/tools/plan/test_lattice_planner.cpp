@@ -9,7 +9,7 @@
 #include <random>
 #include <tuple>
 
-#include "tests/effort.hpp"
+#include "tests/helpers.hpp"
 #include "tools/plan/lattice_planner.hpp"
 
 using namespace tread;

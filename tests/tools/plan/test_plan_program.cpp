@@ -14,7 +14,7 @@ namespace {
 
 const std::string kSource = TREAD_SOURCE_DIR;
 const std::string kOffice = "--map " + kSource + "/tests/data/planning/office.yaml ";
-const std::string kSet = "--patterns " + kSource + "/config/patterns/teodor.yaml ";
+const std::string kWithSet = "--patterns " + kSource + "/config/patterns/teodor.yaml ";
 const std::string kRobot = "--footprint 1.3,0.68 ";
 const std::string kTask = "--start -13.5,0.1,0 --goal 13.5,0.1,0 ";
 
@@ -39,7 +39,7 @@ void checkRefused(const std::string& arguments, const std::string& tokens) {
 
 TEST_CASE("tread-plan plans through our office, tells it and writes JSON and a picture") {
   const Folder folder;
-  const Run result = run(kOffice + kSet + kRobot + kTask + "--deadline-ms 20000 --json " +
+  const Run result = run(kOffice + kWithSet + kRobot + kTask + "--deadline-ms 20000 --json " +
                          folder.path("a.json") + " --picture " + folder.path("a.png"));
   CHECK(result.status == 0);
   CHECK_THAT(result.printed, Catch::StartsWith("solved: "));
@@ -58,8 +58,9 @@ TEST_CASE("tread-plan plans through our office, tells it and writes JSON and a p
 
 TEST_CASE("tread-plan ends with 1 for a goal that cannot be come to, and says why and how near") {
   const Folder folder;
-  const Run result = run(kOffice + kSet + kRobot + "--start -13.5,0.1,0 --goal 80,0.1,0 --json " +
-                         folder.path("a.json") + " --picture " + folder.path("a.png"));
+  const Run result =
+      run(kOffice + kWithSet + kRobot + "--start -13.5,0.1,0 --goal 80,0.1,0 --json " +
+          folder.path("a.json") + " --picture " + folder.path("a.png"));
   CHECK(result.status == 1);
   CHECK_THAT(result.printed, Catch::StartsWith("unreachable: the goal lies outside the map"));
   const Json json = Json::parse(folder.text("a.json"));
@@ -72,7 +73,7 @@ TEST_CASE("tread-plan ends with 1 for a goal that cannot be come to, and says wh
 TEST_CASE(
     "tread-plan told to come close plans to the nearest place, and says why not to the goal") {
   const Folder folder;
-  const Run result = run(kOffice + kSet + kRobot + "--start -13.5,0.1,0 --goal 80,0.1,0 " +
+  const Run result = run(kOffice + kWithSet + kRobot + "--start -13.5,0.1,0 --goal 80,0.1,0 " +
                          "--deadline-ms 20000 --come-close --json " + folder.path("a.json"));
   CHECK(result.status == 0);
   CHECK_THAT(result.printed, Contains("as close as possible: the goal lies outside the map"));
@@ -103,7 +104,7 @@ TEST_CASE("tread-plan takes start, goal and pace from an SBPL environment") {
 
 TEST_CASE("tread-plan answers many queries and writes what they have in common") {
   const Folder folder;
-  const std::string shared = kOffice + kSet + kRobot + "--deadline-ms 300 --json ";
+  const std::string shared = kOffice + kWithSet + kRobot + "--deadline-ms 300 --json ";
   const Run drawn = run(shared + folder.path("a.json") + " --random 12 --seed 5 --apart 4 " +
                         "--write-queries " + folder.path("q.txt"));
   CHECK(drawn.status == 0);
@@ -127,29 +128,31 @@ TEST_CASE("tread-plan refuses bad input in one line that says what to do") {
   const Folder folder;
   const std::string cfg = "--map " + folder.write("a.cfg", kEnvironment) + " ";
   const std::string mprim = "--patterns " + folder.write("a.mprim", kPrimitives) + " ";
-  checkRefused(kSet, "--map is required");
-  checkRefused(kOffice + kSet + "--footprnt 1,1", "did you mean --footprint?");
-  checkRefused("--map nowhere.yaml " + kSet, "nowhere.yaml: cannot be read");
-  checkRefused("--map " + kSource + "/README.md " + kSet, "a map is the .yaml of a nav2 map");
+  checkRefused(kWithSet, "--map is required");
+  checkRefused(kOffice + kWithSet + "--footprnt 1,1", "did you mean --footprint?");
+  checkRefused("--map nowhere.yaml " + kWithSet, "nowhere.yaml: cannot be read");
+  checkRefused("--map " + kSource + "/README.md " + kWithSet, "a map is the .yaml of a nav2 map");
   checkRefused(cfg + "--patterns nowhere.yaml", "nowhere.yaml: cannot be read");
-  checkRefused(kOffice + kSet + kTask, "give --footprint LENGTH,WIDTH or --radius");
-  checkRefused(kOffice + kSet + kTask + "--footprint 1", "--footprint is \"1\"; LENGTH,WIDTH");
-  checkRefused(kOffice + kSet + kTask + "--footprint 1,nan", "LENGTH,WIDTH [m] is needed");
-  checkRefused(kOffice + kSet + kTask + kRobot + "--radius 1", "exclude each other");
-  checkRefused(kOffice + kSet + kRobot, "Give --start and --goal, --queries or --random");
-  checkRefused(kOffice + kSet + kRobot + "--start 1,2 --goal 1,2,3", "--start is \"1,2\"; x,y,yaw");
-  checkRefused(kOffice + kSet + kRobot + kTask + "--tolerance 0.1,0", "METRES,RADIANS is needed");
-  checkRefused(kOffice + kSet + kRobot + kTask + "--random 3", "exclude each other");
-  checkRefused(kOffice + kSet + kRobot + kTask + "--write-queries q", "needs --random");
-  checkRefused(kOffice + kSet + kRobot + "--random 3 --picture a.png", "shows one plan");
-  checkRefused(kOffice + kSet + "--radius 9.9 --random 1", "only 0 of 1 random queries found");
-  checkRefused(cfg + kSet + "--mprim-exact", "needs --patterns with a .mprim");
+  checkRefused(kOffice + kWithSet + kTask, "give --footprint LENGTH,WIDTH or --radius");
+  checkRefused(kOffice + kWithSet + kTask + "--footprint 1", "--footprint is \"1\"; LENGTH,WIDTH");
+  checkRefused(kOffice + kWithSet + kTask + "--footprint 1,nan", "LENGTH,WIDTH [m] is needed");
+  checkRefused(kOffice + kWithSet + kTask + kRobot + "--radius 1", "exclude each other");
+  checkRefused(kOffice + kWithSet + kRobot, "Give --start and --goal, --queries or --random");
+  checkRefused(kOffice + kWithSet + kRobot + "--start 1,2 --goal 1,2,3",
+               "--start is \"1,2\"; x,y,yaw");
+  checkRefused(kOffice + kWithSet + kRobot + kTask + "--tolerance 0.1,0",
+               "METRES,RADIANS is needed");
+  checkRefused(kOffice + kWithSet + kRobot + kTask + "--random 3", "exclude each other");
+  checkRefused(kOffice + kWithSet + kRobot + kTask + "--write-queries q", "needs --random");
+  checkRefused(kOffice + kWithSet + kRobot + "--random 3 --picture a.png", "shows one plan");
+  checkRefused(kOffice + kWithSet + "--radius 9.9 --random 1", "only 0 of 1 random queries found");
+  checkRefused(cfg + kWithSet + "--mprim-exact", "needs --patterns with a .mprim");
   checkRefused(cfg + mprim + "--mprim-exact --radius 1", "plans for a point");
   checkRefused(kOffice + mprim + kTask + "--mprim-exact --radius 0", "needs --map with an SBPL");
   checkRefused(cfg + mprim + "--json " + folder.path("a.cfg"), "this is the input");
   for (const char* const name : {"office.yaml", "office.pgm"})
     std::filesystem::copy_file(kSource + "/tests/data/planning/" + name, folder.path(name));
-  const std::string own = "--map " + folder.path("office.yaml") + " " + kSet + kRobot + kTask;
+  const std::string own = "--map " + folder.path("office.yaml") + " " + kWithSet + kRobot + kTask;
   checkRefused(own + "--picture " + folder.path("office.pgm"), "this is the input");
   checkRefused(own + "--json " + folder.path("a") + " --picture " + folder.path("./a"),
                "two results cannot be written to one file");

@@ -8,10 +8,11 @@
 
 #include "common/log/event_log.hpp"
 #include "common/messages/blank.hpp"
+#include "tests/helpers.hpp"
 
 namespace tread::samples {
 
-inline constexpr int64_t kSecond = 1'000'000;  ///< [us]
+using tread::testing::kSecond;
 
 inline goal_t goalAt(double seconds, double x, int64_t id = 1) {
   auto goal = blank<goal_t>();

@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/helpers.hpp"
 #include "tests/system/process.hpp"
 
 namespace tread::testing {
@@ -30,10 +31,7 @@ inline bool within(double seconds, const std::function<bool()>& condition) {
   return true;
 }
 
-inline std::string contentOf(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using tread::testing::contentOf;
 
 /// What is wrong, line by line. Advice is left out: a host may have little disk or small buffers.
 inline std::vector<std::string> withoutAdvice(const std::string& output) {
