@@ -5,6 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "common/vehicle/effects.hpp"
 #include "common/vehicle/kernel.hpp"
 
 namespace {

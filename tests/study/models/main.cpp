@@ -149,7 +149,7 @@ int main(int argc, char** argv) {
     tread::gap::compare(options);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "tread-compare-models: %s\n", error.what());
-    return tread::gap::kBadInput;
+    return tread::kBadInput;
   }
   return 0;
 }

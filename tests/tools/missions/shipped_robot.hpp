@@ -6,7 +6,7 @@
 
 #include "tools/missions/robot_system.hpp"
 
-namespace tread::missions::samples {
+namespace tread::missions {
 
 /// The robot of config/robots/teodor.
 inline const RobotConfig& teodor() {
@@ -15,4 +15,4 @@ inline const RobotConfig& teodor() {
   return robot;
 }
 
-}  // namespace tread::missions::samples
+}  // namespace tread::missions

@@ -21,7 +21,6 @@
 
 using namespace tread;
 using namespace tread::missions;
-using samples::teodor;
 
 namespace {
 

@@ -12,7 +12,6 @@
 
 using namespace tread;
 using namespace tread::missions;
-using samples::teodor;
 
 namespace {
 

@@ -19,7 +19,6 @@
 
 using namespace tread;
 using namespace tread::missions;
-using samples::teodor;
 
 namespace {
 

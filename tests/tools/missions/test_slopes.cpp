@@ -13,7 +13,6 @@
 
 using namespace tread;
 using namespace tread::missions;
-using samples::teodor;
 
 namespace {
 

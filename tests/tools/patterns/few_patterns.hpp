@@ -8,7 +8,7 @@
 
 #include "common/pattern/pattern.hpp"
 
-namespace tread::patterns::samples {
+namespace tread::patterns::kit {
 
 /// A pattern of ten samples that moves with one twist; `commands` are held throughout.
 inline MotionPattern pattern(int id, const std::string& name, const TrackCommand& command,
@@ -45,4 +45,4 @@ inline PatternSet withoutRight() {
                true);
 }
 
-}  // namespace tread::patterns::samples
+}  // namespace tread::patterns::kit

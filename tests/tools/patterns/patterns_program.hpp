@@ -7,7 +7,7 @@
 #include "common/pattern/pattern_file.hpp"
 #include "tests/tools/called_program.hpp"
 
-namespace tread::patterns::samples {
+namespace tread::patterns::kit {
 
 using Run = tread::samples::CalledProgram;
 using Folder = tread::samples::OwnFolder;
@@ -26,4 +26,4 @@ inline const PatternSet& shipped() {
   return set;
 }
 
-}  // namespace tread::patterns::samples
+}  // namespace tread::patterns::kit

@@ -15,7 +15,7 @@ using namespace tread::patterns;
 
 namespace {
 
-using samples::shipped;
+using kit::shipped;
 
 std::string joined(const std::vector<std::string>& lines) {
   std::string text;
@@ -30,40 +30,41 @@ TEST_CASE("The shipped patterns need no advice") {
 }
 
 TEST_CASE("Advice: a turn without its mirror image") {
-  CHECK(joined(adviceFor(samples::setOf(
-            {samples::pattern(1, "left", {0.4, 0.5}, {0.5, 0.0, 0.1}),
-             samples::pattern(2, "start", {0.5, 0.5}, {0.5, 0.0, 0.0}, "rest", "cruise"),
-             samples::pattern(3, "stop", {0.0, 0.0}, {0.0, 0.0, 0.0}, "cruise", "rest")},
+  CHECK(joined(adviceFor(kit::setOf(
+            {kit::pattern(1, "left", {0.4, 0.5}, {0.5, 0.0, 0.1}),
+             kit::pattern(2, "start", {0.5, 0.5}, {0.5, 0.0, 0.0}, "rest", "cruise"),
+             kit::pattern(3, "stop", {0.0, 0.0}, {0.0, 0.0, 0.0}, "cruise", "rest")},
             true))) == "pattern 'left' has no mirror image; add it with tread-patterns mirror\n");
 }
 
 TEST_CASE("Advice: a class that nobody stands in, reaches or leaves") {
-  const auto straight = samples::pattern(1, "straight", {0.5, 0.5}, {0.5, 0.0, 0.0});
-  CHECK(joined(adviceFor(samples::setOf({straight}))).find("no class stands still") == 0);
-  const auto start = samples::pattern(2, "start", {0.5, 0.5}, {0.5, 0.0, 0.0}, "rest", "cruise");
-  CHECK(joined(adviceFor(samples::setOf({straight, start}, true)))
+  const auto straight = kit::pattern(1, "straight", {0.5, 0.5}, {0.5, 0.0, 0.0});
+  CHECK(joined(adviceFor(kit::setOf({straight}))).find("no class stands still") == 0);
+  const auto start = kit::pattern(2, "start", {0.5, 0.5}, {0.5, 0.0, 0.0}, "rest", "cruise");
+  CHECK(joined(adviceFor(kit::setOf({straight, start}, true)))
             .find("class 'cruise' cannot be left") == 0);
-  const auto stop = samples::pattern(3, "stop", {0.0, 0.0}, {0.0, 0.0, 0.0}, "cruise", "rest");
-  CHECK(joined(adviceFor(samples::setOf({straight, stop}, true)))
+  const auto stop = kit::pattern(3, "stop", {0.0, 0.0}, {0.0, 0.0, 0.0}, "cruise", "rest");
+  CHECK(joined(adviceFor(kit::setOf({straight, stop}, true)))
             .find("class 'cruise' cannot be reached") == 0);
 }
 
 TEST_CASE("Advice: a trajectory that does not end in its exit class's twist") {
-  auto fast = samples::pattern(1, "fast", {0.5, 0.5}, {0.7, 0.0, 0.0});
-  const std::string advice = joined(adviceFor(samples::setOf({fast})));
+  auto fast = kit::pattern(1, "fast", {0.5, 0.5}, {0.7, 0.0, 0.0});
+  const std::string advice = joined(adviceFor(kit::setOf({fast})));
   CHECK(advice.find("pattern 'fast' ends with 0.70 m/s") != std::string::npos);
 }
 
 TEST_CASE("Advice: end covariances that nobody knows") {
-  auto straight = samples::pattern(1, "straight", {0.5, 0.5}, {0.5, 0.0, 0.0});
-  auto other = samples::pattern(2, "other", {0.5, 0.5}, {0.5, 0.0, 0.0});
+  auto straight = kit::pattern(1, "straight", {0.5, 0.5}, {0.5, 0.0, 0.0});
+  auto other = kit::pattern(2, "other", {0.5, 0.5}, {0.5, 0.0, 0.0});
   other.end_covariance = kUnknownCovariance;
-  CHECK(joined(adviceFor(samples::setOf({straight, other})))
-            .find("unknown end covariance of 'other'") != std::string::npos);
+  CHECK(
+      joined(adviceFor(kit::setOf({straight, other}))).find("unknown end covariance of 'other'") !=
+      std::string::npos);
 }
 
 TEST_CASE("Two sets are compared by name, and the words name the pattern that differs most") {
-  const PatternSet a = samples::withoutRight();
+  const PatternSet a = kit::withoutRight();
   PatternSetContent content = a.content();
   content.patterns[0].trajectory.back().x += 0.02;
   content.patterns[1].trajectory.back().yaw += 0.1;

@@ -10,13 +10,17 @@
 #include "tests/tools/called_program.hpp"
 
 using namespace tread;
-using namespace tread::samples;
 
 namespace {
 
+using tread::samples::called;
+using tread::samples::CalledProgram;
+using tread::samples::linearGround;
+using tread::samples::writeDrives;
 using tread::testing::contentOf;
+using DriveFolder = tread::samples::Folder;
 
-std::string drivesIn(const Folder& folder) {
+std::string drivesIn(const DriveFolder& folder) {
   return writeDrives(folder, {{"one", "Rover", "hard", linearGround(0.95, 0.50, -0.05)},
                               {"two", "Rover", "soft", linearGround(0.85, 0.43, -0.10)}});
 }
@@ -24,7 +28,7 @@ std::string drivesIn(const Folder& folder) {
 }  // namespace
 
 TEST_CASE("from-recordings writes a book, averaged sets and a log that the learner learns from") {
-  const Folder folder("from_recordings");
+  const DriveFolder folder("from_recordings");
   const std::string drives = drivesIn(folder);
   const std::string book = folder.file("book");
   const std::string log = folder.file("soft.log");
@@ -50,7 +54,7 @@ TEST_CASE("from-recordings writes a book, averaged sets and a log that the learn
 }
 
 TEST_CASE("from-recordings says in one line what is wrong") {
-  const Folder folder("from_recordings_bad");
+  const DriveFolder folder("from_recordings_bad");
   const std::string drives = drivesIn(folder);
   const std::string make =
       "tread-patterns from-recordings " + drives + " -o " + folder.file("book");
@@ -74,7 +78,7 @@ TEST_CASE("from-recordings says in one line what is wrong") {
 }
 
 TEST_CASE("from-recordings does not mix its surfaces with those of another book") {
-  const Folder folder("from_recordings_mixed");
+  const DriveFolder folder("from_recordings_mixed");
   const std::string drives = drivesIn(folder);
   std::filesystem::create_directories(folder.file("book"));
   folder.file("book/ice.csv", "pattern,execution,sample,x_m,y_m,yaw_rad\n");

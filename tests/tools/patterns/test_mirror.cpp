@@ -22,7 +22,7 @@ TEST_CASE("The name of a mirror image exchanges left and right, words only") {
 }
 
 TEST_CASE("A mirror image has y, yaw and their covariances with x negated") {
-  const MotionPattern left = *samples::withoutRight().findByName("left");
+  const MotionPattern left = *kit::withoutRight().findByName("left");
   const MotionPattern right = mirrored(left);
   CHECK(right.name == "right");
   CHECK(right.commands[0].left == left.commands[0].right);
@@ -35,7 +35,7 @@ TEST_CASE("A mirror image has y, yaw and their covariances with x negated") {
 
 TEST_CASE("Mirroring adds what is missing, once") {
   std::vector<std::string> notes;
-  const PatternSet once = withMirrors(samples::withoutRight(), std::nullopt, notes);
+  const PatternSet once = withMirrors(kit::withoutRight(), std::nullopt, notes);
   CHECK(notes == std::vector<std::string>{"pattern 'right' added with id 5"});
   REQUIRE(once.findByName("right") != nullptr);
   const PatternSet twice = withMirrors(once, std::nullopt, notes);
@@ -62,12 +62,11 @@ TEST_CASE("A mirror image of the shipped set's patterns is the shipped partner")
 
 TEST_CASE("What cannot be mirrored is refused by name and noted in passing") {
   std::vector<std::string> notes;
-  const PatternSet set = samples::withoutRight();
+  const PatternSet set = kit::withoutRight();
   CHECK_THROWS_WITH(withMirrors(set, "lift", notes), "no pattern 'lift' in set 'few'");
   CHECK_THROWS_WITH(withMirrors(set, "straight", notes), Catch::Contains("its own mirror image"));
-  const PatternSet taken =
-      samples::setOf({samples::pattern(1, "left", {0.4, 0.5}, {0.5, 0.0, 0.1}),
-                      samples::pattern(2, "right", {0.5, 0.3}, {0.4, 0.0, -0.2})});
+  const PatternSet taken = kit::setOf({kit::pattern(1, "left", {0.4, 0.5}, {0.5, 0.0, 0.1}),
+                                       kit::pattern(2, "right", {0.5, 0.3}, {0.4, 0.0, -0.2})});
   CHECK_THROWS_WITH(withMirrors(taken, "left", notes), Catch::Contains("belongs to a pattern"));
   CHECK(withMirrors(taken, std::nullopt, notes).patterns().size() == 2);
   CHECK(notes.size() == 2);
@@ -85,10 +84,9 @@ TEST_CASE("Between classes that turn, the mirror image is between their mirror i
   content.period_us = 100'000;
   content.classes = {{"left", {0.5, 0.0, 0.2}, {0.4, 0.6}},
                      {"right", {0.5, 0.0, -0.2}, {0.6, 0.4}}};
-  content.patterns = {
-      samples::pattern(1, "left", {0.4, 0.6}, {0.5, 0.0, 0.2}, "left", "left"),
-      samples::pattern(2, "hold", {0.6, 0.4}, {0.5, 0.0, -0.2}, "right", "right"),
-      samples::pattern(3, "swing_left", {0.3, 0.6}, {0.5, 0.0, 0.2}, "right", "left")};
+  content.patterns = {kit::pattern(1, "left", {0.4, 0.6}, {0.5, 0.0, 0.2}, "left", "left"),
+                      kit::pattern(2, "hold", {0.6, 0.4}, {0.5, 0.0, -0.2}, "right", "right"),
+                      kit::pattern(3, "swing_left", {0.3, 0.6}, {0.5, 0.0, 0.2}, "right", "left")};
   std::string why;
   const PatternSet set = PatternSet::make(content, why).value();
   REQUIRE(mirrorPartner(set, set.patterns()[0]) != nullptr);
@@ -122,13 +120,13 @@ TEST_CASE("The mirror image of a mirror image is the pattern itself, with its ow
 }
 
 TEST_CASE("A mirror image was never learned, and keeps the length of its path") {
-  MotionPattern left = *samples::withoutRight().findByName("left");
+  MotionPattern left = *kit::withoutRight().findByName("left");
   left.times_learned = 7;
   const MotionPattern right = mirrored(left);
   CHECK(right.times_learned == 0);
   CHECK(right.pathLength() == left.pathLength());
   // A straight sample has no negative zero, which a file would show as -0.
-  MotionPattern straight = *samples::withoutRight().findByName("straight");
+  MotionPattern straight = *kit::withoutRight().findByName("straight");
   for (const Pose2& pose : mirrored(straight).trajectory) {
     CHECK_FALSE(std::signbit(pose.y));
     CHECK_FALSE(std::signbit(pose.yaw));

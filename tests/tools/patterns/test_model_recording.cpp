@@ -17,8 +17,8 @@ using namespace tread::patterns;
 
 namespace {
 
-using samples::kConfig;
-using samples::shipped;
+using kit::kConfig;
+using kit::shipped;
 
 ModelDocument grass() {
   return readModelDocument(kConfig + "models/teodor_grass.yaml");

@@ -5,7 +5,7 @@
 
 #include "tests/tools/patterns/patterns_program.hpp"
 
-using namespace tread::patterns::samples;
+using namespace tread::patterns::kit;
 
 namespace {
 

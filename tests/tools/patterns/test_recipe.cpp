@@ -39,7 +39,8 @@ std::string with(const std::string& piece, const std::string& replacement) {
 }
 
 PatternSet made(const std::string& recipe, const std::string& model = kModel) {
-  return patterns::makeSet(ConfigReader::fromText(recipe, "r.yaml"), parseModelDocument(model, "m.yaml").vehicle);
+  return patterns::makeSet(ConfigReader::fromText(recipe, "r.yaml"),
+                           parseModelDocument(model, "m.yaml").vehicle);
 }
 
 void expectError(const std::string& recipe, const std::string& place, const std::string& part) {

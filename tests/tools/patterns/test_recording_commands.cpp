@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "tests/tools/patterns/patterns_program.hpp"
 
-using namespace tread::patterns::samples;
+using namespace tread::patterns::kit;
 
 namespace {
 

@@ -20,8 +20,8 @@ using namespace tread;
 
 namespace {
 
-using patterns::samples::kConfig;
-using patterns::samples::shipped;
+using patterns::kit::kConfig;
+using patterns::kit::shipped;
 
 std::set<std::string> reachableFrom(const std::string& first) {
   std::set<std::string> reached{first};
