@@ -82,7 +82,7 @@ TEST_CASE("A tour that began too far away leads back") {
 }
 
 TEST_CASE("Where nothing that is needed fits into the room any more, a tour ends standing") {
-  const Driven driven = drivenBy(tread::patterns::samples::withoutRight(), 5.0, 30);
+  const Driven driven = drivenBy(tread::patterns::kit::withoutRight(), 5.0, 30);
   CHECK(driven.names.size() < 20);
   CHECK(driven.farthest <= 5.0);
   CHECK(driven.ends_in == "rest");
@@ -90,15 +90,15 @@ TEST_CASE("Where nothing that is needed fits into the room any more, a tour ends
 
 TEST_CASE("A set without a way from standing and back is refused") {
   const auto straight =
-      tread::patterns::samples::pattern(1, "straight", {0.5, 0.5}, {0.5, 0.0, 0.0});
-  CHECK_THROWS_WITH(Tour(tread::patterns::samples::setOf({straight}), 5.0),
+      tread::patterns::kit::pattern(1, "straight", {0.5, 0.5}, {0.5, 0.0, 0.0});
+  CHECK_THROWS_WITH(Tour(tread::patterns::kit::setOf({straight}), 5.0),
                     Catch::Contains("stands still"));
   const auto start =
-      tread::patterns::samples::pattern(2, "start", {0.5, 0.5}, {0.5, 0.0, 0.0}, "rest", "cruise");
-  CHECK_THROWS_WITH(Tour(tread::patterns::samples::setOf({straight, start}, true), 5.0),
+      tread::patterns::kit::pattern(2, "start", {0.5, 0.5}, {0.5, 0.0, 0.0}, "rest", "cruise");
+  CHECK_THROWS_WITH(Tour(tread::patterns::kit::setOf({straight, start}, true), 5.0),
                     Catch::Contains("class 'cruise' of set 'few' cannot be left"));
   const auto stop =
-      tread::patterns::samples::pattern(3, "stop", {0.0, 0.0}, {0.0, 0.0, 0.0}, "cruise", "rest");
-  CHECK_THROWS_WITH(Tour(tread::patterns::samples::setOf({straight, stop}, true), 5.0),
+      tread::patterns::kit::pattern(3, "stop", {0.0, 0.0}, {0.0, 0.0, 0.0}, "cruise", "rest");
+  CHECK_THROWS_WITH(Tour(tread::patterns::kit::setOf({straight, stop}, true), 5.0),
                     Catch::Contains("class 'cruise' of set 'few' cannot be reached"));
 }
