@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <vector>
 
 #include "common/config/scalars.hpp"
@@ -98,6 +99,7 @@ std::string usageError(const CLI::App& app, const CLI::Error& error) {
 
 std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv) {
   requireFiniteNumbers(app);
+  if (app.get_name().empty()) app.name(std::filesystem::path(argv[0]).filename());
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// What holds for all programs that people type, whichever parser they use.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/helpers.hpp"
+#include "tests/tools/called_program.hpp"
+
+using tread::samples::called;
+using tread::samples::CalledProgram;
+using tread::testing::contentOf;
+using tread::testing::linesOf;
+
+namespace {
+
+/// "tread-gap", and "tread-gap find", "tread-gap compare" after it.
+struct Command {
+  std::string words;
+  std::string help;
+};
+
+std::vector<std::string> programs() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(TREAD_BIN_DIR)) {
+    const std::string name = entry.path().filename();
+    if (name.rfind("tread-", 0) == 0) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string helpOf(const std::string& words) {
+  const CalledProgram help = called(words + " --help");
+  INFO(words);
+  CHECK(help.status == 0);
+  return help.printed;
+}
+
+std::vector<Command> commandsOf(const std::string& program) {
+  std::vector<Command> commands{{program, helpOf(program)}};
+  bool listed = false;
+  for (const std::string& line : linesOf(commands.front().help)) {
+    std::smatch command;
+    if (listed && std::regex_search(line, command, std::regex("^  ([a-z-]+)  ")))
+      commands.push_back({program + " " + command.str(1), helpOf(program + " " + command.str(1))});
+    if (line.empty()) listed = false;
+    if (line == "Subcommands:") listed = true;
+  }
+  return commands;
+}
+
+const std::vector<Command>& allCommands() {
+  static const std::vector<Command> all = [] {
+    std::vector<Command> found;
+    for (const std::string& program : programs())
+      for (Command& command : commandsOf(program)) found.push_back(std::move(command));
+    return found;
+  }();
+  return all;
+}
+
+void checkRefused(const std::string& arguments, const std::string& name, const std::string& what) {
+  const CalledProgram refused = called(arguments + " </dev/null");
+  INFO(arguments << ": " << refused.printed);
+  CHECK(refused.status == 2);
+  CHECK(refused.isOneLine());
+  CHECK(refused.printed.rfind(name + ": ", 0) == 0);
+  CHECK(refused.says(what));
+}
+
+}  // namespace
+
+TEST_CASE("every program and command says in --help what it is for, and how it is called") {
+  REQUIRE(allCommands().size() > 30);
+  for (const Command& command : allCommands()) {
+    INFO(command.words << ": " << command.help);
+    const std::vector<std::string> lines = linesOf(command.help);
+    REQUIRE(lines.size() > 1);
+    CHECK(lines.front().size() > 15);
+    CHECK(std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
+      return line.rfind("Usage: " + command.words, 0) == 0 ||
+             line.rfind("usage: " + command.words, 0) == 0;
+    }));
+  }
+}
+
+TEST_CASE("every program refuses an unknown option with code 2 and one line of its own name") {
+  for (const Command& command : allCommands())
+    checkRefused(command.words + " --no-such-option", command.words, "--no-such-option");
+}
+
+TEST_CASE("no number on a command line may be nan or infinite") {
+  const std::regex real("^  (--[a-z-]+) FLOAT");
+  int numbers = 0;
+  for (const Command& command : allCommands()) {
+    for (const std::string& line : linesOf(command.help)) {
+      std::smatch option;
+      if (!std::regex_search(line, option, real)) continue;
+      ++numbers;
+      for (const char* value : {"nan", "inf"})
+        checkRefused(command.words + " " + option.str(1) + " " + value, command.words, "--");
+    }
+  }
+  CHECK(numbers > 15);
+}
+
+TEST_CASE("the README names every program that is installed") {
+  const std::string readme = contentOf(std::string(TREAD_SOURCE_DIR) + "/README.md");
+  const std::set<std::string> studies{"tread-hide", "tread-blind", "tread-compare-models"};
+  for (const std::string& name : programs()) {
+    INFO(name);
+    const std::string ending = name.substr(name.find('-'));
+    if (studies.count(name) == 0)
+      CHECK((readme.find(name) != std::string::npos ||
+             readme.find("`" + ending) != std::string::npos));
+  }
+}
