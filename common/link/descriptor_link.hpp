@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include <sys/types.h>
+#include <termios.h>
 
 #include "common/link/link.hpp"
 
@@ -90,5 +92,35 @@ class DescriptorLink : public Link {
 
 /// The system's words for an errno value.
 std::string systemReason(int error);
+
+/// A serial line or pseudo-terminal, raw, 8 data bits, no parity, one stop bit, no flow control.
+std::unique_ptr<Link> makeTtyLink(const LinkAddress& address);
+/// A new pseudo-terminal whose other side is found behind a symlink: an emulated serial device.
+/** The symlink (and its folder) is made here and taken away with the link. Bytes that nobody reads
+ * stay until the line is full, then are lost; who opens the other side drops them. */
+std::unique_ptr<Link> makePtyLink(const LinkAddress& address);
+/// A TCP server with one client at a time: an emulated device. Open while a client is connected.
+std::unique_ptr<Link> makeTcpServerLink(const LinkAddress& address);
+/// A client of a TCP server. Connecting goes on over several reopen() calls and is given up after
+/// one second.
+/** A host's name is looked up once, which may block: on a robot write its number. */
+std::unique_ptr<Link> makeTcpLink(const LinkAddress& address);
+/// Listens on a UDP port (IPv4); datagrams follow each other in one stream. It never writes.
+std::unique_ptr<Link> makeUdpLink(const LinkAddress& address);
+/// Reads a file once, from front to end; then it stays closed. It never writes.
+std::unique_ptr<Link> makeFileLink(const LinkAddress& address);
+
+/// The termios constant of a line rate [1/s]; nothing if serial lines do not have it.
+inline std::optional<speed_t> speedOf(int baud) {
+  static constexpr std::pair<int, speed_t> kRates[] = {
+      {1200, B1200},       {2400, B2400},       {4800, B4800},       {9600, B9600},
+      {19200, B19200},     {38400, B38400},     {57600, B57600},     {115200, B115200},
+      {230400, B230400},   {460800, B460800},   {500000, B500000},   {921600, B921600},
+      {1000000, B1000000}, {1500000, B1500000}, {2000000, B2000000}, {3000000, B3000000},
+      {4000000, B4000000}};
+  for (const auto& [rate, speed] : kRates)
+    if (rate == baud) return speed;
+  return std::nullopt;
+}
 
 }  // namespace tread

@@ -11,6 +11,20 @@
 
 namespace tread {
 
+/// A link's address in parts.
+struct LinkAddress {
+  enum class Kind { kTty, kPty, kTcp, kTcpServer, kUdp, kFile };
+  Kind kind = Kind::kTty;
+  std::string text;   ///< as configured
+  std::string path;   ///< tty, pty and file
+  std::string host;   ///< tcp: name or number; tcp-server, udp: number to listen on, empty = all
+  uint16_t port = 0;  ///< tcp, tcp-server and udp
+  int baud = 115200;  ///< tty [1/s]
+};
+
+/// Takes an address apart; throws std::invalid_argument with one clear line.
+LinkAddress parseLinkAddress(const std::string& text);
+
 /// Byte stream to a device. A vanished line is closed at once and opened again by name with
 /// back-off.
 /** Nothing waits for the device, with two exceptions: the rest of a half taken write, 20 ms at

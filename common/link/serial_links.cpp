@@ -12,9 +12,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "common/link/baud_rates.hpp"
 #include "common/link/descriptor_link.hpp"
-#include "common/link/kinds.hpp"
 
 namespace tread {
 namespace {

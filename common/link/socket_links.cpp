@@ -16,7 +16,6 @@
 #include <unistd.h>
 
 #include "common/link/descriptor_link.hpp"
-#include "common/link/kinds.hpp"
 
 namespace tread {
 namespace {

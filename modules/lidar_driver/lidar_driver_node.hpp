@@ -7,7 +7,7 @@
 #include "common/bus/health.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/vehicle/robot_description.hpp"
-#include "modules/lidar_driver/core/scan_source.hpp"
+#include "modules/lidar_driver/core/range_scan.hpp"
 
 namespace tread::lidar {
 

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/shell.hpp"
-#include "common/link/address.hpp"
+#include "common/link/link.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 
 namespace {

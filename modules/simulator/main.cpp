@@ -6,9 +6,8 @@
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/shell.hpp"
 #include "modules/simulator/model_vehicle.hpp"
-#include "modules/simulator/simulator_config.hpp"
+#include "modules/simulator/simulator_files.hpp"
 #include "modules/simulator/simulator_node.hpp"
-#include "modules/simulator/world_file.hpp"
 
 namespace {
 

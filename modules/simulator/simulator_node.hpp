@@ -3,15 +3,32 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/health.hpp"
+#include "common/config/config_reader.hpp"
 #include "common/link/link.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "modules/simulator/emulators/simulated_devices.hpp"
 #include "modules/simulator/truth_record.hpp"
 
 namespace tread::sim {
+
+/// Configuration of the simulator process (config/simulators).
+struct SimulatorConfig {
+  std::string world;                   ///< path of a world file
+  SimulatorSettings settings;          ///< start_utime and utc_at_zero are the process's to set
+  std::optional<ModelDocument> model;  ///< drives in the place of the dynamic vehicle
+  std::string ins = "pty:devices/ins";
+  std::string motor = "pty:devices/motor";
+  std::string laser = "tcp-server:127.0.0.1:10940";
+  std::string record = "none";  ///< path of the truth as CSV, or none
+};
+
+/// Reads it strictly, the model file, too; throws ConfigError with file:line.
+SimulatorConfig readSimulatorConfig(ConfigReader& reader);
 
 /// The devices' ends of the lines to the drivers.
 struct DeviceLines {

@@ -220,7 +220,7 @@ TEST_CASE("only the catalogue names effects") {
   const std::set<std::pair<std::string, std::string>> others{
       {"common/vehicle/model_file.cpp", "crab"},
       {"modules/learner/core/state_text.cpp", "crab"},
-      {"modules/simulator/vehicle_config.cpp", "yaw_inertia"},
+      {"modules/simulator/simulator_files.cpp", "yaw_inertia"},
       {"tools/experiment/ground.cpp", "crab"}};
   const std::regex literal("\"(" + effects + ")[\".]");
   for (const char* folder : {"common", "modules", "tools"})

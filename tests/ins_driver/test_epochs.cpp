@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "modules/ins_driver/core/arrival_filter.hpp"
+#include "modules/ins_driver/core/track_monitor.hpp"
 #include "modules/ins_driver/nmea/epoch_collector.hpp"
 #include "tests/helpers.hpp"
 

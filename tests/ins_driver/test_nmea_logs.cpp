@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include "modules/ins_driver/nmea/nmea_framer.hpp"
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
-#include "modules/ins_driver/nmea/nmea_log.hpp"
 #include "tests/helpers.hpp"
 #include "tests/ins_driver/nmea_lines.hpp"
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "modules/lidar_driver/core/range_scan.hpp"
-#include "modules/lidar_driver/hokuyo/scip_geometry.hpp"
+#include "modules/lidar_driver/hokuyo/hokuyo_source.hpp"
 
 using namespace tread::lidar;
 

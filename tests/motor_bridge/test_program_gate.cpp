@@ -4,8 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "modules/motor_bridge/core/failsafe.hpp"
 #include "modules/motor_bridge/core/program.hpp"
-#include "modules/motor_bridge/core/safeguards.hpp"
 #include "tests/motor_bridge/programs.hpp"
 
 using namespace tread;

@@ -4,7 +4,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "modules/motor_bridge/roboteq/roboteq_codec.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_session.hpp"
 
 using namespace tread;

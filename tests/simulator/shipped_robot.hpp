@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include "modules/simulator/vehicle_config.hpp"
+#include "modules/simulator/simulator_files.hpp"
 
 namespace tread::sim {
 

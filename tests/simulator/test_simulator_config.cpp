@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "modules/simulator/simulator_config.hpp"
+#include "modules/simulator/simulator_node.hpp"
 
 namespace tread::sim {
 namespace {

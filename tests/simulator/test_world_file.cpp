@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/config/config_reader.hpp"
-#include "modules/simulator/world_file.hpp"
+#include "modules/simulator/simulator_files.hpp"
 
 namespace tread::sim {
 namespace {

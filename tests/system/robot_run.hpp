@@ -12,7 +12,7 @@
 #include "common/geometry/se2.hpp"
 #include "tests/system/process.hpp"
 #include "tests/system/zero_after.hpp"
-#include "tools/robot/operator/permission_call.hpp"
+#include "tools/robot/operator/calls.hpp"
 
 namespace tread::testing {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/grid/footprint.hpp"
-#include "tools/robot/operator/goal_call.hpp"
+#include "tools/robot/operator/calls.hpp"
 
 namespace tread::missions {
 

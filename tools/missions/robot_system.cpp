@@ -14,8 +14,8 @@
 #include "modules/ins_driver/ins_driver_node.hpp"
 #include "modules/learner/learner_node.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
+#include "modules/simulator/simulator_files.hpp"
 #include "modules/simulator/simulator_node.hpp"
-#include "modules/simulator/vehicle_config.hpp"
 
 namespace tread::missions {
 namespace {

@@ -11,7 +11,7 @@
 #include "common/report/plot.hpp"
 #include "common/store/store.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"
-#include "modules/ins_driver/nmea/nmea_log.hpp"
+#include "modules/ins_driver/nmea/nmea_framer.hpp"
 
 namespace tread {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <tread/ins_t.hpp>
 
-#include "modules/ins_driver/ins_driver_config.hpp"
+#include "modules/ins_driver/ins_driver_node.hpp"
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
 
 namespace tread {

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
-#include "modules/simulator/world_file.hpp"
+#include "modules/simulator/simulator_files.hpp"
 #include "tools/report/drive_report.hpp"
 
 namespace {

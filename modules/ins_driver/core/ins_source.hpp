@@ -2,14 +2,130 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "modules/ins_driver/core/ins_estimate.hpp"
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <GeographicLib/LocalCartesian.hpp>
+
+#include "common/geometry/se2.hpp"
+#include "common/geometry/se3.hpp"
 
 namespace tread::ins {
+
+/// A point on the WGS84 ellipsoid [rad].
+struct GeoPoint {
+  double latitude = 0.0;   ///< north positive
+  double longitude = 0.0;  ///< east positive
+};
+
+/// Where the map frame lies on the Earth.
+struct GeoOrigin {
+  GeoPoint point;         ///< WGS84 [rad]
+  double altitude = 0.0;  ///< above mean sea level [m]
+  double yaw = 0.0;       ///< direction of the map's x axis, counter-clockwise from east [rad]
+};
+
+/// The map frame as a plane that touches the Earth at the origin.
+/** Heights are above mean sea level throughout: not every device tells the geoid separation, and
+   leaving it out scales the plane by less than 2e-5 (100 m of 6378 km). */
+class LocalFrame {
+ public:
+  explicit LocalFrame(const GeoOrigin& origin)
+      : origin_(origin),
+        cartesian_(origin.point.latitude * kDegPerRad, origin.point.longitude * kDegPerRad,
+                   origin.altitude) {}
+
+  /// p_map of a point [m].
+  Eigen::Vector3d toMap(const GeoPoint& point, double altitude) const {
+    double east = 0.0, north = 0.0, up = 0.0;
+    cartesian_.Forward(point.latitude * kDegPerRad, point.longitude * kDegPerRad, altitude, east,
+                       north, up);
+    const double c = std::cos(origin_.yaw);
+    const double s = std::sin(origin_.yaw);
+    return {c * east + s * north, c * north - s * east, up};
+  }
+  const GeoOrigin& origin() const { return origin_; }
+
+ private:
+  static constexpr double kDegPerRad = 180.0 / kPi;
+
+  GeoOrigin origin_;
+  GeographicLib::LocalCartesian cartesian_;
+};
+
+inline constexpr double kUnmeasured = std::numeric_limits<double>::quiet_NaN();
+
+/// Bits of InsEstimate::status; the same values as in ins_t.
+enum InsStatus : int32_t {
+  kGood = 0,
+  kNoPosition = 1,
+  kNoHeading = 2,
+  kGap = 4,
+  kJump = 8,
+  kNoAttitude = 16,
+  kNoVelocity = 32
+};
+
+/// What the device measured at one instant, of the body in the map. NaN where it did not measure.
+struct InsEstimate {
+  int64_t utime = 0;        ///< host time of the measurement [us]
+  int64_t device_utc = -1;  ///< [us] since 1970-01-01; -1 before the device told a date
+  Eigen::Vector3d p_map_body = Eigen::Vector3d::Constant(kUnmeasured);  ///< [m]
+  Eigen::Quaterniond R_map_body = {kUnmeasured, kUnmeasured, kUnmeasured, kUnmeasured};
+  /// Forward and left: velocity over the level ground; up: never measured by NMEA [m/s].
+  Eigen::Vector3d v_body = Eigen::Vector3d::Constant(kUnmeasured);
+  Eigen::Vector3d rate_body = Eigen::Vector3d::Constant(kUnmeasured);     ///< [rad/s]
+  Eigen::Vector3d position_std = Eigen::Vector3d::Constant(kUnmeasured);  ///< along map axes [m]
+  Eigen::Vector3d attitude_std =
+      Eigen::Vector3d::Constant(kUnmeasured);  ///< roll, pitch, yaw [rad]
+  int32_t status = kGood;                      ///< bits of InsStatus
+  int satellites = -1;                         ///< -1 unknown
+};
+
+/// How the device sits in the vehicle and what it may be believed.
+struct InsConfig {
+  /// The point whose position the device reports (antenna or INS reference), in body [m].
+  Eigen::Vector3d p_body_antenna = Eigen::Vector3d::Zero();
+  /// Rotation of the device's forward-left-up axes in body [rad].
+  YawPitchRoll body_device;
+  /// The map's place on Earth; absent: the first good fix, x to the east.
+  std::optional<GeoOrigin> origin;
+  /// A fix with a larger dilution of precision does not become the origin [1].
+  double origin_max_hdop = 5.0;
+  /// Positions further from the origin are refused: the plane no longer fits the Earth (20 km: 31 m
+  /// too low) [m].
+  double max_distance = 20000.0;
+  /// Below this speed the course is noise: the velocity counts as zero [m/s].
+  double standstill_speed = 0.1;
+  /// Faster than the vehicle can go: a position further off than that is a jump [m/s].
+  double max_speed = 10.0;
+  /// Distance that is never called a jump [m].
+  double jump_slack = 0.5;
+  /// From the measurement to the first byte on the shortest way: the device's and the line's delay
+  /// [us].
+  int64_t latency_us = 0;
+  /// Silence on the line that ends an epoch [us].
+  int64_t quiet_us = 10'000;
+  /// Index in NmeaSentence of the type that ends each epoch, so that the silence need not be
+  /// awaited.
+  std::optional<size_t> last_type;
+  /// Longest time that an attitude is carried to a position measured after it [us].
+  int64_t attitude_hold_us = 60'000;
+  /// Window of the arrival filter [us].
+  int64_t offset_window_us = 10'000'000;
+  /// Nominal time between positions, to tell gaps [us]; 0 = learn it.
+  int64_t period_us = 0;
+  /// Also publish instants at which only the attitude was measured.
+  bool attitude_epochs = false;
+};
 
 /// What to look at when a device is silent or says too little; parts of HEALTH's lines.
 struct InsAdvice {

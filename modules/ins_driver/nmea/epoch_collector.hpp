@@ -6,7 +6,7 @@
 #include <deque>
 #include <optional>
 
-#include "modules/ins_driver/nmea/nmea_sentence.hpp"
+#include "modules/ins_driver/nmea/nmea_parser.hpp"
 
 namespace tread::ins {
 

@@ -7,11 +7,10 @@
 
 #include <Eigen/Core>
 
-#include "modules/ins_driver/core/arrival_filter.hpp"
-#include "modules/ins_driver/core/ins_estimate.hpp"
+#include "modules/ins_driver/core/ins_source.hpp"
 #include "modules/ins_driver/core/track_monitor.hpp"
 #include "modules/ins_driver/nmea/epoch_collector.hpp"
-#include "modules/ins_driver/nmea/nmea_sentence.hpp"
+#include "modules/ins_driver/nmea/nmea_parser.hpp"
 
 namespace tread::ins {
 

@@ -13,7 +13,6 @@
 
 #include "common/bus/host_clock.hpp"
 #include "common/link/link.hpp"
-#include "modules/lidar_driver/hokuyo/scip_geometry.hpp"
 
 namespace tread::lidar {
 namespace {

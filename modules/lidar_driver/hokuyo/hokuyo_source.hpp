@@ -3,11 +3,44 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 
-#include "common/link/address.hpp"
-#include "modules/lidar_driver/core/scan_source.hpp"
+#include "common/link/link.hpp"
+#include "modules/lidar_driver/core/range_scan.hpp"
 
 namespace tread::lidar {
+
+/// Angles of a SCIP 2.0 device from its own parameters: AMIN, AMAX, AFRT, ARES.
+/** Not from the library's aperture, which is one step too wide (n instead of n-1 steps) and ignores
+ * AFRT. */
+struct ScipGeometry {
+  int first_step = 0;      ///< AMIN
+  int last_step = 0;       ///< AMAX
+  int front_step = 0;      ///< AFRT: the step that looks forward
+  int steps_per_turn = 0;  ///< ARES
+
+  double angleFirst() const { return (first_step - front_step) * angleStep(); }
+  double angleStep() const { return 6.28318530717958647692 / steps_per_turn; }
+  /// Share of a turn between the first and the last beam.
+  double shareOfTurn() const {
+    return static_cast<double>(last_step - first_step) / steps_per_turn;
+  }
+
+  /// One clear line if these numbers cannot be a device's; nothing if they can.
+  std::optional<std::string> problem() const {
+    if (steps_per_turn < 8 || steps_per_turn > 100000)
+      return "the device says ARES " + std::to_string(steps_per_turn) +
+             " steps a turn; allowed 8..100000";
+    if (first_step < 0 || last_step <= first_step || last_step - first_step >= steps_per_turn)
+      return "the device says AMIN " + std::to_string(first_step) + ", AMAX " +
+             std::to_string(last_step) +
+             "; a sweep must be longer than one step and shorter than a turn";
+    if (front_step < 0 || front_step >= steps_per_turn)
+      return "the device says AFRT " + std::to_string(front_step) + "; allowed 0..ARES-1";
+    return std::nullopt;
+  }
+};
 
 /// A range finder's address in parts; throws std::invalid_argument with one clear line if it is not
 /// tcp:host:port.

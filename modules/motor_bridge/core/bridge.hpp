@@ -10,7 +10,6 @@
 #include "modules/motor_bridge/core/failsafe.hpp"
 #include "modules/motor_bridge/core/motor_controller.hpp"
 #include "modules/motor_bridge/core/program.hpp"
-#include "modules/motor_bridge/core/safeguards.hpp"
 #include "modules/motor_bridge/core/series_player.hpp"
 
 namespace tread::motor {

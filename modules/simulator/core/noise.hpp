@@ -92,17 +92,39 @@ struct MotionFactors {
 class MotionNoise {
  public:
   /// One step is `step` seconds long.
-  MotionNoise(uint64_t seed, double step);
+  MotionNoise(uint64_t seed, double step)
+      : gaussian_(seed),
+        forward_(kCorrelationTime, step, gaussian_),
+        yaw_(kCorrelationTime, step, gaussian_),
+        heading_(kCorrelationTime, step, gaussian_),
+        scale_(1.0 /
+               std::sqrt(OrnsteinUhlenbeck::varianceOfMean(kCorrelationTime, kExecutionTime))) {}
 
   /// Advances the processes by one step.
-  void step();
+  void step() {
+    forward_.step(gaussian_);
+    yaw_.step(gaussian_);
+    heading_.step(gaussian_);
+  }
 
   /// What the processes are now, for a spread.
-  MotionFactors factors(const MotionSpread& spread) const;
+  MotionFactors factors(const MotionSpread& spread) const {
+    return {1.0 + scale_ * spread.forward * forward_.value(),
+            1.0 + scale_ * spread.yaw * yaw_.value(), scale_ * spread.heading * heading_.value()};
+  }
   /// The body velocity that comes out of the dynamics' velocity on a surface.
-  Twist2 disturb(const Twist2& v_body, const MotionSpread& spread) const;
+  Twist2 disturb(const Twist2& v_body, const MotionSpread& spread) const {
+    const MotionFactors now = factors(spread);
+    const double v_x = v_body.v_x * now.forward;
+    return {v_x, v_body.v_y + v_x * std::tan(now.heading), v_body.omega * now.yaw};
+  }
 
  private:
+  /// How long the ground stays like itself under a moving vehicle [s].
+  static constexpr double kCorrelationTime = 2.0;
+  /// The calibration's executions last this long [s].
+  static constexpr double kExecutionTime = 1.0;
+
   Gaussian gaussian_;
   OrnsteinUhlenbeck forward_;
   OrnsteinUhlenbeck yaw_;

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "common/bus/followed_time.hpp"
+#include "common/bus/lcm_bus.hpp"
 
 using namespace tread;
 

@@ -4,7 +4,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "common/link/address.hpp"
 #include "common/link/link.hpp"
 
 namespace tread {

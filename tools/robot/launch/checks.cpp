@@ -7,7 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "common/link/address.hpp"
+#include "common/link/link.hpp"
 #include "tools/robot/launch/supervisor_config.hpp"
 
 namespace tread::launch {

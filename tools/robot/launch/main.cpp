@@ -17,7 +17,6 @@
 #include "common/bus/tcp_relay.hpp"
 #include "common/config/command_line.hpp"
 #include "tools/robot/launch/host.hpp"
-#include "tools/robot/launch/supervision.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/robot/launch/supervision.hpp"
+#include "tools/robot/launch/host.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -25,7 +25,7 @@
 #include <unistd.h>
 
 #include "common/report/text.hpp"
-#include "tools/robot/launch/launch_progress.hpp"
+#include "tools/robot/launch/supervisor_config.hpp"
 
 namespace tread::launch {
 namespace {

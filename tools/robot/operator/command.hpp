@@ -7,7 +7,7 @@
 #include <string>
 
 #include "common/bus/bus.hpp"
-#include "tools/robot/operator/permission_call.hpp"
+#include "tools/robot/operator/calls.hpp"
 
 namespace tread::operators {
 

@@ -5,9 +5,9 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
-#include "modules/simulator/world_file.hpp"
+#include "modules/simulator/simulator_files.hpp"
+#include "tools/robot/operator/calls.hpp"
 #include "tools/robot/operator/command.hpp"
-#include "tools/robot/operator/goal_call.hpp"
 
 namespace {
 

@@ -6,12 +6,87 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "modules/simulator/emulators/roboteq/roboteq_firmware.hpp"
+#include "modules/simulator/emulators/emulator.hpp"
 
 namespace tread::sim {
+
+/// How the emulated controller is built.
+struct RoboteqSettings {
+  int baud = 115200;
+  int64_t reply_delay_us = 300;  ///< from the end of a line to the first byte of its reply
+  int64_t boot_us = 400000;      ///< deaf and dumb after a reboot
+  bool encoders = false;         ///< with encoders ?S is answered
+  double rpm_per_speed = 400.0;  ///< motor turns a minute per track speed [rpm s/m]
+  double undervoltage = 18.0;    ///< power stage off below [V]
+};
+
+/// A line in capitals, taken apart: name in letters, then numbers.
+struct RoboteqWords {
+  std::string name;
+  std::vector<std::optional<int>> numbers;  ///< empty: not an integer
+};
+/// Takes a line without its first character apart.
+RoboteqWords roboteqWords(const std::string& text);
+
+/// The controller behind its serial port: commands, queries, settings, watchdog.
+/** Two-channel Roboteq controller after its manual (v2.0, 2019). Only '!' commands feed the
+   watchdog: when it expires the motors stop, and the next good '!' command of any kind lets them
+   run on at the old speed. !EX latches bit 16 of ?FF until !MG, which also brings the old speed
+   back. Its memory for settings and its history of queries are left out: no driver of ours uses
+   them. Where the manual is silent this takes what is worse for a careless driver. */
+class RoboteqFirmware {
+ public:
+  explicit RoboteqFirmware(const RoboteqSettings& settings) : settings_(settings) {}
+
+  /// Runs one line in capitals; its reply without CR, or nothing if it has none.
+  std::optional<std::string> execute(const std::string& line, int64_t utime);
+  /// Lets the watchdog look at the time.
+  void advance(int64_t utime);
+  /// Back to the power-up state: default settings, zero, no active command source.
+  void powerUp();
+  void measure(const DriveMeasurements& measurements) { measurements_ = measurements; }
+  /// The motor supply drops below what the power stage needs, or recovers.
+  void setBrownOut(bool active) { brown_out_ = active; }
+
+  bool echo() const { return !configuration_.echo_off; }
+  /// On the motors now, per mille.
+  std::array<int, 2> applied() const;
+
+ private:
+  using Numbers = std::vector<std::optional<int>>;
+  /// What ^ sets.
+  struct Configuration {
+    int watchdog_ms = 1000;
+    bool echo_off = false;
+  };
+
+  bool runCommand(const RoboteqWords& words, int64_t utime);
+  bool setBoth(const Numbers& numbers);
+  bool setOne(const Numbers& numbers);
+  bool stop(const Numbers& numbers);
+  std::optional<std::string> answer(const RoboteqWords& words) const;
+  std::optional<std::string> channelAnswer(const RoboteqWords& words) const;
+  std::string voltages(const Numbers& numbers) const;
+  bool setConfiguration(const RoboteqWords& words);
+  std::optional<std::string> readConfiguration(const std::string& name) const;
+
+  bool supplyLow() const;
+  bool powerStageOn() const { return !emergency_stop_ && !supplyLow(); }
+
+  RoboteqSettings settings_;
+  DriveMeasurements measurements_;
+  Configuration configuration_;
+  std::array<int, 2> commanded_{0, 0};  ///< per mille, kept while not applied
+  bool serial_active_ = false;          ///< false before the first command and after the watchdog
+  bool emergency_stop_ = false;
+  bool brown_out_ = false;
+  int64_t last_command_ = 0;
+};
 
 /// One direction of a serial line: bytes arrive one after the other at the line's speed.
 class SerialLine {

@@ -4,7 +4,6 @@
 
 #include <stdexcept>
 
-#include "tools/robot/launch/launch_progress.hpp"
 #include "tools/robot/launch/supervisor_config.hpp"
 
 using namespace tread::launch;

@@ -5,8 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/bus/virtual_bus.hpp"
-#include "tools/robot/operator/goal_call.hpp"
-#include "tools/robot/operator/permission_call.hpp"
+#include "tools/robot/operator/calls.hpp"
 
 namespace tread::operators {
 namespace {

@@ -2,10 +2,18 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <string>
+
 #include "common/config/config_reader.hpp"
 #include "modules/simulator/core/robot.hpp"
+#include "modules/simulator/core/world.hpp"
 
 namespace tread::sim {
+
+/// Reads a world file (config/worlds); throws ConfigError with file:line.
+WorldDescription readWorld(const std::string& path);
+/// The same from text; `name` stands for the file in messages.
+WorldDescription parseWorld(const std::string& text, const std::string& name);
 
 /// Reads a dynamic vehicle in physical quantities. The ranges keep the integration stable at 1 ms.
 /** What is not named stays as it is; with `whole`, what is of this machine alone must be named. So
