@@ -15,7 +15,6 @@
 #include <tread/program_slot_t.hpp>
 
 #include "common/execution/execution_tracker.hpp"
-#include "common/execution/readings.hpp"
 #include "common/pattern/pattern.hpp"
 
 namespace tread {

@@ -9,7 +9,7 @@
 #include <tread/program_slot_t.hpp>
 
 #include "common/messages/blank.hpp"
-#include "common/pattern/pattern_check.hpp"
+#include "common/pattern/pattern.hpp"
 
 namespace tread {
 namespace {

@@ -12,7 +12,7 @@
 #include <tread/program_t.hpp>
 
 #include "common/bus/health.hpp"
-#include "common/execution/readings.hpp"
+#include "common/execution/execution_tracker.hpp"
 #include "common/messages/execution_messages.hpp"
 
 namespace tread {

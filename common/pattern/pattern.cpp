@@ -9,8 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "common/pattern/pattern_check.hpp"
-
 namespace tread {
 namespace {
 

@@ -11,7 +11,7 @@
 
 #include "common/config/config_reader.hpp"
 #include "common/config/scalars.hpp"
-#include "common/pattern/pattern_check.hpp"
+#include "common/pattern/pattern.hpp"
 
 namespace tread {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "common/pattern/pattern_check.hpp"
+#include "common/pattern/pattern.hpp"
 #include "common/recordings/recordings.hpp"
 #include "common/report/text.hpp"
 

@@ -3,11 +3,19 @@
 #pragma once
 
 #include "common/bus/health.hpp"
+#include "common/config/config_reader.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/messages/robot_inputs.hpp"
-#include "modules/planner/planner_config.hpp"
+#include "modules/planner/core/execution/supervisor.hpp"
 
 namespace tread::planner {
+
+/// Reads the configuration; throws ConfigError with file:line.
+PlannerConfig readPlannerConfig(ConfigReader& reader);
+
+/// The same from a CONFIG message in a log. Keys of older versions that are constants today are
+/// ignored.
+PlannerConfig readLoggedPlannerConfig(ConfigReader& reader);
 
 /// Plans towards GOAL on MAP with the newest PATTERN_SET, and tells the motor bridge in PROGRAM
 /// what to play.

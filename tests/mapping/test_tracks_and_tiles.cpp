@@ -5,8 +5,8 @@
 #include <set>
 
 #include "common/geometry/se3.hpp"
+#include "modules/mapping/core/occupancy_map.hpp"
 #include "modules/mapping/core/spatial_track.hpp"
-#include "modules/mapping/core/tile_schedule.hpp"
 
 using namespace tread;
 using namespace tread::mapping;

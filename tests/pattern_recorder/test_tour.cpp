@@ -8,7 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/pattern/pattern_file.hpp"
-#include "modules/pattern_recorder/core/tour.hpp"
+#include "modules/pattern_recorder/core/recording_drive.hpp"
 #include "tests/tools/patterns/few_patterns.hpp"
 
 using namespace tread;
@@ -89,8 +89,7 @@ TEST_CASE("Where nothing that is needed fits into the room any more, a tour ends
 }
 
 TEST_CASE("A set without a way from standing and back is refused") {
-  const auto straight =
-      tread::patterns::kit::pattern(1, "straight", {0.5, 0.5}, {0.5, 0.0, 0.0});
+  const auto straight = tread::patterns::kit::pattern(1, "straight", {0.5, 0.5}, {0.5, 0.0, 0.0});
   CHECK_THROWS_WITH(Tour(tread::patterns::kit::setOf({straight}), 5.0),
                     Catch::Contains("stands still"));
   const auto start =

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "modules/planner/core/execution/driving_state.hpp"
 #include "modules/planner/core/map/collision_checker.hpp"
 #include "modules/planner/core/search/pattern_table.hpp"
-#include "modules/planner/core/search/prediction.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
 #include "tests/planner/kit/vehicle.hpp"

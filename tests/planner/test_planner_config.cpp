@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include "modules/planner/planner_config.hpp"
+#include "modules/planner/planner_node.hpp"
 
 using namespace tread;
 using namespace tread::planner;

@@ -19,7 +19,7 @@
 #include "tools/gap/plan_design.hpp"
 #include "tools/gap/report/words.hpp"
 #include "tools/gap/what_if.hpp"
-#include "tools/patterns/model_recording.hpp"
+#include "tools/patterns/recipe.hpp"
 
 namespace tread::gap {
 namespace {
@@ -252,9 +252,8 @@ void whatIf(const WhatIfOptions& options) {
   for (const LogComparison& comparison : on_log) std::cout << '\n' << textOf(comparison);
   if (!lost.empty()) std::cout << lost << '\n';
   if (!options.out.empty())
-    writeText(
-        options.out,
-        svg ? svgOf(comparisons, on_log) : htmlOf(pageOf(question, setting, comparisons, on_log)));
+    writeText(options.out, svg ? svgOf(comparisons, on_log)
+                               : htmlOf(pageOf(question, setting, comparisons, on_log)));
   std::cout << std::flush;
 }
 

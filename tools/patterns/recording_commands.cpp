@@ -13,14 +13,14 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/shell.hpp"
-#include "common/pattern/pattern_check.hpp"
+#include "common/pattern/pattern.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/recordings/recordings.hpp"
 #include "common/store/store.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "modules/pattern_recorder/recorder_node.hpp"
 #include "tools/patterns/commands.hpp"
-#include "tools/patterns/model_recording.hpp"
+#include "tools/patterns/recipe.hpp"
 #include "tools/patterns/set_text.hpp"
 
 namespace tread::patterns {

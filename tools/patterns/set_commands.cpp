@@ -13,10 +13,7 @@
 #include "common/store/store.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tools/patterns/commands.hpp"
-#include "tools/patterns/mirror.hpp"
-#include "tools/patterns/model_recording.hpp"
 #include "tools/patterns/recipe.hpp"
-#include "tools/patterns/set_picture.hpp"
 #include "tools/patterns/set_text.hpp"
 
 namespace tread::patterns {

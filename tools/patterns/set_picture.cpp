@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/patterns/set_picture.hpp"
+#include "tools/patterns/set_text.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/plan/query_file.hpp"
+#include "tools/plan/map_file.hpp"
 
 #include <array>
-
 #include <cmath>
 #include <random>
 #include <stdexcept>
+
 #include "common/config/scalars.hpp"
 #include "tools/plan/tokenizer.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "common/geometry/track.hpp"
 #include "common/grid/grid.hpp"
-#include "modules/mapping/mapping_config.hpp"
+#include "modules/mapping/mapping_node.hpp"
 
 namespace tread {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/bus/bus.hpp"
-#include "modules/planner/planner_config.hpp"
+#include "modules/planner/planner_node.hpp"
 #include "tools/replay/replay_check.hpp"
 #include "tools/replay/robot_log.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/execution/readings.hpp"
+#include "common/execution/execution_tracker.hpp"
 #include "modules/learner/core/learner.hpp"
 #include "modules/learner/core/rules/surface_bank.hpp"
 

@@ -5,12 +5,23 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 
 #include "common/geometry/se3.hpp"
 #include "modules/mapping/core/voxel_map.hpp"
 
 namespace tread::mapping {
 namespace {
+
+/// A patch forgets beyond this many stands of full weight, so that a drifting height is followed.
+constexpr double kMemory = 10.0;
+/// Changes of height and doubt below this are not worth judging the columns again [m].
+constexpr double kNoticeable = 0.02;
+
+CellIndex patchOf(CellIndex cell) {
+  return {floorDivide(cell.x, GroundModel::kPatchCells),
+          floorDivide(cell.y, GroundModel::kPatchCells)};
+}
 
 /// Bits 0 to count - 1.
 uint64_t lowBits(double count) {
@@ -40,7 +51,69 @@ bool isNewStand(const GroundPlane& stand, const GroundPlane& last) {
   return step.head<2>().norm() > kStandDistance || std::abs(step.z()) > kStandHeight;
 }
 
+bool comesAfter(CellIndex a, CellIndex b) {
+  return std::tie(a.y, a.x) > std::tie(b.y, b.x);
+}
+
 }  // namespace
+
+std::optional<GroundPlane> planeUnder(const Eigen::Isometry3d& T_map_body) {
+  const Eigen::Vector3d up = T_map_body.linear().col(2);
+  if (!(up.z() > 0.5)) return std::nullopt;
+  return GroundPlane{T_map_body.translation(), -up.head<2>() / up.z()};
+}
+
+GroundModel::GroundModel(const GroundConfig& config, double cell_size, int side_cells)
+    : config_(config), cell_size_(cell_size), patches_(side_cells / kPatchCells) {}
+
+void GroundModel::moveTo(CellIndex lower) {
+  patches_.moveTo(patchOf(lower));
+}
+
+Eigen::Vector2d GroundModel::centreOf(CellIndex patch) const {
+  const double side = kPatchCells * cell_size_;
+  return {(patch.x + 0.5) * side, (patch.y + 0.5) * side};
+}
+
+std::vector<CellIndex> GroundModel::learn(const GroundPlane& plane) {
+  std::vector<CellIndex> moved;
+  for (size_t i = 0; i < patches_.size(); ++i) {
+    const CellIndex index = patches_.indexOf(i);
+    if (refine(patches_[i], centreOf(index), plane))
+      moved.push_back({index.x * kPatchCells, index.y * kPatchCells});
+  }
+  return moved;
+}
+
+bool GroundModel::refine(Patch& patch, const Eigen::Vector2d& centre,
+                         const GroundPlane& plane) const {
+  const Eigen::Vector2d offset = centre - plane.p_map.head<2>();
+  const double d = offset.norm();
+  const double from_slope = config_.slope_noise * d;
+  const double from_curvature = 0.5 * config_.curvature * d * d;
+  const double noise = config_.height_noise;
+  const double weight =
+      1.0 / (noise * noise + from_slope * from_slope + from_curvature * from_curvature);
+  patch.weight = std::min(patch.weight, kMemory / (noise * noise)) + weight;
+  const double gain = weight / patch.weight;
+  patch.z += gain * (plane.p_map.z() + plane.slope.dot(offset) - patch.z);
+  patch.slope += gain * (plane.slope - patch.slope);
+  patch.nearest = std::min(patch.nearest, d);
+  const bool moved = std::abs(patch.z - patch.told_z) > kNoticeable ||
+                     config_.slope_doubt * (patch.told_nearest - patch.nearest) > kNoticeable;
+  if (moved) {
+    patch.told_z = patch.z;
+    patch.told_nearest = patch.nearest;
+  }
+  return moved;
+}
+
+GroundHeight GroundModel::at(CellIndex cell) const {
+  const CellIndex index = patchOf(cell);
+  const Patch& patch = patches_.at(index);
+  const Eigen::Vector2d centre((cell.x + 0.5) * cell_size_, (cell.y + 0.5) * cell_size_);
+  return {patch.z + patch.slope.dot(centre - centreOf(index)), config_.slope_doubt * patch.nearest};
+}
 
 /// Voxels whose centre lies above `from` and below `to` [m].
 uint64_t ColumnClassifier::band(double from, double to, int lower_z) const {
@@ -243,6 +316,38 @@ Tile OccupancyMap::tile(CellIndex index) const {
         static_cast<std::ptrdiff_t>(grid_.offset({index.x * side, index.y * side + y}));
     tile.cells.insert(tile.cells.end(), row, row + side);
   }
+  return tile;
+}
+
+bool TileSchedule::isQueued(CellIndex tile) const {
+  return std::find(queue_.begin(), queue_.end(), tile) != queue_.end();
+}
+
+void TileSchedule::begin(const std::vector<CellIndex>& seen,
+                         const std::vector<CellIndex>& changed) {
+  std::deque<CellIndex> kept;
+  for (const CellIndex tile : queue_)
+    if (std::find(seen.begin(), seen.end(), tile) != seen.end()) kept.push_back(tile);
+  queue_ = std::move(kept);
+  for (const CellIndex tile : changed)
+    if (!isQueued(tile)) queue_.push_back(tile);
+  // The turn goes by index, so that it survives tiles that come and go.
+  const auto first = std::find_if(seen.begin(), seen.end(),
+                                  [&](CellIndex tile) { return comesAfter(tile, last_turn_); });
+  const size_t start = first == seen.end() ? 0 : static_cast<size_t>(first - seen.begin());
+  size_t turns = 0;
+  for (size_t i = 0; i < seen.size() && turns < refresh_; ++i) {
+    const CellIndex tile = seen[(start + i) % seen.size()];
+    if (isQueued(tile)) continue;
+    queue_.push_back(tile);
+    last_turn_ = tile;
+    ++turns;
+  }
+}
+
+CellIndex TileSchedule::take() {
+  const CellIndex tile = queue_.front();
+  queue_.pop_front();
   return tile;
 }
 

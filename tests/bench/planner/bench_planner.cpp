@@ -5,8 +5,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "modules/planner/core/execution/motion_planner.hpp"
 #include "modules/planner/core/map/clearance_map.hpp"
-#include "modules/planner/core/map/planning_map.hpp"
 #include "modules/planner/core/search/pattern_search.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"

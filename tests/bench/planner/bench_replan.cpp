@@ -4,8 +4,8 @@
 // One cycle of the planner when everything has changed at once: the local map of 40 x 40 m at 10
 // cm, and the pattern set. As a ratio to the clearance transform of that map, timed between the
 // cycles.
+#include "modules/planner/core/execution/motion_planner.hpp"
 #include "modules/planner/core/execution/supervisor.hpp"
-#include "modules/planner/core/map/planning_map.hpp"
 #include "modules/planner/core/search/pattern_search.hpp"
 #include "tests/bench/planner/path_figures.hpp"
 #include "tests/planner/kit/playground.hpp"

@@ -8,7 +8,7 @@
 
 #include "common/pattern/pattern_file.hpp"
 #include "tests/tools/patterns/few_patterns.hpp"
-#include "tools/patterns/mirror.hpp"
+#include "tools/patterns/set_text.hpp"
 
 using namespace tread;
 using namespace tread::patterns;

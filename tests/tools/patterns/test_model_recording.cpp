@@ -10,7 +10,7 @@
 #include "common/vehicle/kernel.hpp"
 #include "common/vehicle/model_file.hpp"
 #include "tests/tools/patterns/patterns_program.hpp"
-#include "tools/patterns/model_recording.hpp"
+#include "tools/patterns/recipe.hpp"
 
 using namespace tread;
 using namespace tread::patterns;

@@ -2,11 +2,66 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/planner/core/execution/driving_state.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace tread::planner {
 namespace {
+
+using Level = Preconditions::Level;
+
+std::string oldAs(const char* what, int64_t age) {
+  return std::string(what) + " is " + std::to_string(age / 1000) + " ms old";
+}
+
+Preconditions waiting(Level level, const std::string& reason) {
+  return {level, PlanStatus::kWaiting, reason};
+}
+
+/// What empties the program at once, except what the bridge and the operator say.
+Preconditions checkSensors(const PlannerInputs& s, const MapAndSet& supplies,
+                           const AgeLimits& limits) {
+  if (!s.pose) return waiting(Level::kStop, "no usable INS yet");
+  if (s.now - s.pose->utime > limits.pose)
+    return waiting(Level::kStop, oldAs("INS", s.now - s.pose->utime));
+  if (supplies.map_utime == 0) return waiting(Level::kStop, "no MAP yet");
+  if (s.now - supplies.map_utime > limits.map_stop)
+    return waiting(Level::kStop, oldAs("MAP", s.now - supplies.map_utime));
+  if (!supplies.set_defect.empty()) return waiting(Level::kStop, supplies.set_defect);
+  return {};
+}
+
+/// What lets the vehicle finish its pattern and stop.
+Preconditions checkSupplies(const PlannerInputs& s, const MapAndSet& supplies,
+                            const AgeLimits& limits) {
+  if (!s.goal) return {Level::kFinish, PlanStatus::kIdle, ""};
+  if (s.now - supplies.map_utime > limits.map_slow)
+    return waiting(Level::kFinish, oldAs("MAP", s.now - supplies.map_utime));
+  if (s.now - s.set_received > limits.pattern_set)
+    return waiting(Level::kFinish,
+                   "the learner is lost: " + oldAs("PATTERN_SET", s.now - s.set_received));
+  return {};
+}
+
+Preconditions checkPermission(const PlannerInputs& s, const MapAndSet& supplies,
+                              const AgeLimits& limits) {
+  if (s.estopped) return {Level::kStop, PlanStatus::kStopped, "E-stop is engaged"};
+  if (!s.bridge) return waiting(Level::kStop, "no MOTOR yet");
+  if (s.now - s.bridge->utime > limits.bridge)
+    return waiting(Level::kStop, oldAs("MOTOR", s.now - s.bridge->utime));
+  if (!s.bridge->armed())
+    return {Level::kStop, supplies.was_armed ? PlanStatus::kStopped : PlanStatus::kWaiting,
+            "motor_bridge: " + s.bridge->reason};
+  if (!s.armed_by_operator) return waiting(Level::kStop, "not armed since the planner's start");
+  return {};
+}
+
+/// So much motion may be noise or a moment's disturbance [m, rad].
+constexpr double kWayDoubt = 0.3;
+constexpr double kTurnDoubt = 0.15;
+constexpr double kLeastRatio = 0.6;
+constexpr double kMostRatio = 1.6;
 
 /// Why the running or the next pattern ends at rest, in words; empty if neither does.
 std::string stopAhead(const ProgramSlot& running, const CurrentPlan& plan,
@@ -26,6 +81,70 @@ std::string stopAhead(const ProgramSlot& running, const CurrentPlan& plan,
 }
 
 }  // namespace
+
+Preconditions checkPreconditions(const PlannerInputs& inputs, const MapAndSet& supplies,
+                                 const AgeLimits& limits) {
+  Preconditions found = checkSensors(inputs, supplies, limits);
+  if (found.level == Level::kGo) found = checkPermission(inputs, supplies, limits);
+  if (found.level == Level::kGo) found = checkSupplies(inputs, supplies, limits);
+  return found;
+}
+
+MotionRatio motionRatio(const Pose2& T_start_now, double time, const TablePattern& pattern,
+                        double period) {
+  const Pose2 expected = poseAlong(pattern.pattern->trajectory, period, time);
+  const auto ratio = [](double measured, double promised, double doubt) {
+    return std::clamp((measured + doubt) / (promised + doubt), kLeastRatio, kMostRatio);
+  };
+  MotionRatio so_far;
+  // Along the way that was expected: sideways slip is not more way.
+  const double length = std::hypot(expected.x, expected.y);
+  const double along =
+      length > 0.0 ? (T_start_now.x * expected.x + T_start_now.y * expected.y) / length : 0.0;
+  so_far.way = ratio(along, length, kWayDoubt);
+  const double sign = expected.yaw < 0.0 ? -1.0 : 1.0;
+  so_far.turn = ratio(sign * T_start_now.yaw, sign * expected.yaw, kTurnDoubt);
+  return so_far;
+}
+
+Prediction predict(const Pose2& T_map_body, double time, const TablePattern& pattern,
+                   const PatternTable& table, const MotionRatio& so_far) {
+  Prediction prediction;
+  Pose2 pose = T_map_body;
+  if (time < 0.0) pose = pose * integrate(table.motionClass(pattern.entry).twist, -time);
+  const double period = table.set().periodSeconds();
+  Pose2 before = poseAlong(pattern.pattern->trajectory, period, time);
+  for (const SweptPose& at : pattern.swept_poses) {
+    if (at.time <= time) continue;
+    const Pose2 step = between(before, at.pose);
+    pose = pose * Pose2{so_far.way * step.x, so_far.way * step.y, so_far.turn * step.yaw};
+    before = at.pose;
+    prediction.ahead.push_back({pose, at.time - time});
+  }
+  prediction.T_map_end = pose;
+  prediction.time_left = pattern.duration - time;
+  const double share = std::clamp(prediction.time_left / pattern.duration, 0.0, 1.0);
+  prediction.uncertainty = scaled(pattern.uncertainty, share, T_map_body.yaw);
+  return prediction;
+}
+
+std::optional<double> firstConflict(const CollisionChecker& collision_checker,
+                                    const std::vector<ExpectedPose>& poses, int level) {
+  for (const ExpectedPose& at : poses)
+    if (!collision_checker.isFree(at.T_map_body, level)) return at.time;
+  return std::nullopt;
+}
+
+bool leftCorridor(const Prediction& then, const Prediction& now) {
+  constexpr double kSigmas = 3.0;
+  constexpr double kLeastWay = 0.1;   // [m]
+  constexpr double kLeastTurn = 0.1;  // [rad]
+  const Pose2 off = between(then.T_map_end, now.T_map_end);
+  const double way = kSigmas * std::sqrt(static_cast<double>(then.uncertainty.position()));
+  const double turn = kSigmas * std::sqrt(static_cast<double>(then.uncertainty.yawyaw));
+  return std::hypot(off.x, off.y) > std::max(kLeastWay, way) ||
+         std::abs(wrapAngle(off.yaw)) > std::max(kLeastTurn, turn);
+}
 
 bool leadsToRest(const ProgramSlot& slot, const PatternTable& table) {
   return slot.pattern().exit_class == table.motionClass(table.restClass()).name;

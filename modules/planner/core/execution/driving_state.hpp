@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <memory>
@@ -12,11 +13,120 @@
 #include "common/execution/execution_tracker.hpp"
 #include "common/geometry/track.hpp"
 #include "modules/planner/core/execution/motion_planner.hpp"
-#include "modules/planner/core/execution/planner_inputs.hpp"
-#include "modules/planner/core/map/planning_map.hpp"
-#include "modules/planner/core/search/prediction.hpp"
+#include "modules/planner/core/map/collision_checker.hpp"
+#include "modules/planner/core/map/distance_to_goal.hpp"
+#include "modules/planner/core/search/pattern_search.hpp"
+#include "modules/planner/core/search/pattern_table.hpp"
 
 namespace tread::planner {
+
+/// Everything the planner knows at one moment, apart from map and patterns.
+struct PlannerInputs : RobotReadings {
+  std::optional<Goal> goal;
+  int64_t set_received = 0;  ///< [us] when a part of a pattern set came last; 0 = never
+};
+
+/// How the planner stands to its goal; the numbers are those of plan_t.
+enum class PlanStatus : int16_t {
+  kIdle = 0,
+  kDriving = 1,
+  kArrived = 2,
+  kWaiting = 3,
+  kBlocked = 4,
+  kUnreachable = 5,
+  kStopped = 6
+};
+
+/// What the planner intends, for those who look on.
+struct PlanReport {
+  PlanStatus status = PlanStatus::kIdle;
+  std::string reason;
+  int64_t utime = 0;  ///< [us] of the pose it is based on
+  int64_t goal_id = 0;
+  int64_t set_version = 0;
+  double time_to_go = 0.0;  ///< [s]; NaN unknown
+  int expansions = 0;
+  std::vector<int64_t> execution_ids;  ///< as many as steps; 0 = not yet given to the bridge
+  std::vector<PlanStep> steps;
+};
+
+/// The limits of the inputs' ages [us].
+struct AgeLimits {
+  int64_t pose = 150'000;        ///< older: the program is emptied
+  int64_t bridge = 500'000;      ///< older: the same
+  int64_t map_slow = 2'000'000;  ///< older: no new patterns but one that stops
+  int64_t map_stop = 5'000'000;  ///< older: the program is emptied
+  int64_t pattern_set =
+      5'000'000;  ///< older: the learner is lost, no new patterns but one that stops
+};
+
+/// Whether the inputs allow to drive.
+struct Preconditions {
+  enum class Level {
+    kGo,
+    kFinish,  ///< no new pattern but one that stops
+    kStop     ///< the program is emptied now
+  };
+  Level level = Level::kGo;
+  PlanStatus status = PlanStatus::kDriving;  ///< to report if not kGo
+  std::string reason;                        ///< in words, empty if kGo
+};
+
+/// What map and patterns are like, beside the inputs.
+struct MapAndSet {
+  int64_t map_utime = 0;                          ///< [us] of the newest scan in the map; 0 = none
+  std::string set_defect = "no PATTERN_SET yet";  ///< why the set is of no use; empty = good
+  bool was_armed = false;                         ///< the bridge was armed since the start
+};
+
+/// Judges the inputs: the worst of what is wrong decides.
+Preconditions checkPreconditions(const PlannerInputs& inputs, const MapAndSet& supplies,
+                                 const AgeLimits& limits);
+
+/// A pose expected at a time from now on.
+struct ExpectedPose {
+  Pose2 T_map_body;
+  double time = 0.0;  ///< [s] from the measurement that it is based on
+};
+
+/// What is left of a pattern, laid on the newest measured pose.
+struct Prediction {
+  std::vector<ExpectedPose> ahead;  ///< poses still to come, the end last
+  Pose2 T_map_end;
+  double time_left = 0.0;   ///< [s] from the measurement to the end
+  Uncertainty uncertainty;  ///< of the end, in map axes
+};
+
+/// Whether a pattern leads elsewhere than was expected when the plan behind it was made.
+/** Its end as it is expected now lies more than three standard deviations from where it was
+ * expected then, and more than 10 cm or .1 rad: less is not worth a plan. */
+bool leftCorridor(const Prediction& then, const Prediction& now);
+
+/// How much of what a running pattern promised has come true so far, each about 1.
+struct MotionRatio {
+  double way = 1.0;
+  double turn = 1.0;
+};
+
+/// Compares the motion since the start of a running pattern with what was expected of it up to
+/// `time` [s].
+/** Little motion tells little: the ratios are drawn towards 1 by as much motion as INS noise and a
+ * moment's disturbance may make. Within 0.6 and 1.6. */
+MotionRatio motionRatio(const Pose2& T_start_now, double time, const TablePattern& pattern,
+                        double period);
+
+/// What is left of a pattern that has been running for `time` [s] when the vehicle was measured at
+/// a pose.
+/** What is left is scaled by what has come true so far: on ground that turns the vehicle more than
+ * expected it will go on to do so. A negative time: it will begin that much later; until then the
+ * vehicle keeps the twist of its entry class. */
+Prediction predict(const Pose2& T_map_body, double time, const TablePattern& pattern,
+                   const PatternTable& table, const MotionRatio& so_far = {});
+
+/// Time until the first of the poses that is not free with a margin level [s]; nothing if all are
+/// free.
+std::optional<double> firstConflict(const CollisionChecker& collision_checker,
+                                    const std::vector<ExpectedPose>& poses, int level);
 
 /// Periods, waiting times and numbers of tries.
 struct PolicyConfig {

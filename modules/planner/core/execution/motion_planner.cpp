@@ -3,10 +3,21 @@
 #include "modules/planner/core/execution/motion_planner.hpp"
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace tread::planner {
 namespace {
+
+/// The vehicle may leave the middle of the window this far before it is cut anew [m].
+constexpr double kWindowSlack = 2.0;
+/// The distance field must reach this far around the vehicle [m].
+constexpr double kFieldSlack = 5.0;
+/// How far down the way to the goal the narrowest place is looked for [m].
+constexpr double kDetourLook = 3.0;
+constexpr double kDetourStep = 0.2;
+/// Nearer than this to the vehicle nothing is made a detour [m].
+constexpr double kDetourNear = 0.8;
 
 std::vector<int> idsOf(const std::vector<PlanStep>& plan) {
   std::vector<int> ids;
@@ -19,6 +30,112 @@ bool isCutOff(const SearchResult& result) {
 }
 
 }  // namespace
+
+bool PlanningMap::put(Tile tile, double cell_size, int tile_cells) {
+  if (!(cell_size > 0.0) || tile_cells <= 0) return false;
+  if (tile.cells.size() != static_cast<size_t>(tile_cells) * static_cast<size_t>(tile_cells))
+    return false;
+  if (!map_ || map_->cellSize() != cell_size || map_->tileCells() != tile_cells) {
+    map_.emplace(cell_size, tile_cells, config_.clearance);
+    window_revision_ = field_revision_ = -1;
+  }
+  map_->put(std::move(tile));
+  return true;
+}
+
+void PlanningMap::assumeFreeUnder(const Pose2& T_map_body) {
+  const Footprint bare(config_.footprint, 0.0);
+  map_->assumeFree(bare.cells(Grid(map_->cellSize(), {}, 0, 0), T_map_body));
+}
+
+void PlanningMap::updateCollisionChecker(const Pose2& T_map_body, int64_t now) {
+  assumeFreeUnder(T_map_body);
+  const Eigen::Vector2d p = T_map_body.position();
+  const bool moved = (p - p_window_).norm() > kWindowSlack;
+  const bool due = window_revision_ < 0 || now - window_time_ >= config_.window_period;
+  const bool changed = window_revision_ != map_->revision() && due;
+  if (checker_ && !changed && !moved) return;
+  window_time_ = now;
+  map_->forgetBeyond(p);
+  const double cell = map_->cellSize();
+  const int cells = static_cast<int>(std::ceil(config_.window / cell));
+  const CellIndex lower{static_cast<int>(std::floor(p.x() / cell)) - cells / 2,
+                        static_cast<int>(std::floor(p.y() / cell)) - cells / 2};
+  checker_.emplace(map_->window(lower, cells, cells), config_.footprint, config_.margins,
+                   config_.unknown_blocks);
+  window_revision_ = map_->revision();
+  p_window_ = p;
+}
+
+bool PlanningMap::sameGoal(const Goal& goal) const {
+  const Pose2& a = goal.T_map_goal;
+  return field_goal_ && field_goal_->id == goal.id && field_goal_->T_map_goal.x == a.x &&
+         field_goal_->T_map_goal.y == a.y && field_goal_->T_map_goal.yaw == a.yaw &&
+         field_goal_->position_tolerance == goal.position_tolerance &&
+         field_goal_->yaw_tolerance == goal.yaw_tolerance;
+}
+
+void PlanningMap::updateDistance(const Pose2& T_map_body, const Goal& goal, int64_t now) {
+  if (field_goal_ && field_goal_->id != goal.id) forgetDetours();
+  const Eigen::Vector2d p = T_map_body.position();
+  const bool same = sameGoal(goal);
+  const bool covered =
+      same && distance_to_goal_.covers(p, kFieldSlack) && (p - p_field_).norm() < kFieldSlack;
+  if (covered && now - field_time_ < config_.field_period) return;
+  map_->refresh();
+  field_time_ = now;
+  if (covered && field_revision_ == map_->clearanceRevision() && !detours_changed_) return;
+  distance_to_goal_.compute(*map_, goal, p, detours_, config_.field);
+  field_goal_ = goal;
+  field_revision_ = map_->clearanceRevision();
+  p_field_ = p;
+  detours_changed_ = false;
+  std::optional<Eigen::Vector2d> before;
+  if (same && !goal_substitution_reason_.empty()) before = target_.T_map_goal.position();
+  target_ = goal;
+  goal_substitution_reason_.clear();
+  if (config_.come_close && distance_to_goal_.unreachable()) substituteGoal(p, before);
+}
+
+void PlanningMap::substituteGoal(const Eigen::Vector2d& p_vehicle,
+                                 const std::optional<Eigen::Vector2d>& before) {
+  const Eigen::Vector2d p_goal = target_.T_map_goal.position();
+  const std::optional<Eigen::Vector2d> nearest =
+      distance_to_goal_.nearestWithinReach(p_vehicle, p_goal, before);
+  if (!nearest) return;
+  goal_substitution_reason_ = "as close as possible, " + withTenths((*nearest - p_goal).norm()) +
+                              " m: " + distance_to_goal_.problem();
+  target_.T_map_goal = {nearest->x(), nearest->y(), target_.T_map_goal.yaw};
+  target_.yaw_tolerance = kPi;
+  // Half the width is free there, but the vehicle may not fit in every heading.
+  const double arm = checker_->circumscribedRadius() + config_.margins.plan;
+  target_.position_tolerance = std::max(target_.position_tolerance, arm);
+  distance_to_goal_.compute(*map_, target_, p_vehicle, detours_, config_.field);
+}
+
+void PlanningMap::addDetour(const Eigen::Vector2d& p_map) {
+  detours_.push_back({p_map, 0.7});
+  detours_changed_ = true;
+}
+
+void PlanningMap::addDetourAhead(const Eigen::Vector2d& p_vehicle, int most) {
+  if (static_cast<int>(detours_.size()) >= most) return forgetDetours();
+  std::optional<Eigen::Vector2d> narrowest;
+  double least = std::numeric_limits<double>::infinity();
+  const int points = static_cast<int>(kDetourLook / kDetourStep);
+  for (const Eigen::Vector2d& at : distance_to_goal_.descend(p_vehicle, kDetourStep, points)) {
+    const double clearance = checker_->clearance(at);
+    if ((at - p_vehicle).norm() < kDetourNear || clearance >= least) continue;
+    least = clearance;
+    narrowest = at;
+  }
+  if (narrowest) addDetour(*narrowest);
+}
+
+void PlanningMap::forgetDetours() {
+  detours_changed_ = detours_changed_ || !detours_.empty();
+  detours_.clear();
+}
 
 std::optional<SideHysteresis::Turn> SideHysteresis::turnOf(const std::vector<int>& ids,
                                                            const PatternTable& table) const {

@@ -5,9 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "modules/planner/core/search/cost_model.hpp"
-#include "modules/planner/core/search/node_checker.hpp"
 #include "modules/planner/core/search/search_containers.hpp"
+#include "modules/planner/core/search/search_problem.hpp"
 
 namespace tread::planner {
 
