@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/vehicle/effects.hpp"
-#include "common/vehicle/measurement.hpp"
+#include "common/vehicle/kernel.hpp"
 #include "common/vehicle/model.hpp"
 
 /// The catalogue by chapters; use effectCatalogue() and confoundedGroups().

@@ -11,7 +11,7 @@ namespace tread {
 
 struct EffectValues;      // model.hpp
 struct VehicleModel;      // model.hpp
-struct MeasurementModel;  // measurement.hpp
+struct MeasurementModel;  // kernel.hpp
 
 /// Whether an effect changes the motion or only what the INS says of it.
 enum class EffectKind { kVehicle, kMeasurement };
@@ -86,7 +86,7 @@ struct EffectSearch {
 
 /// A named departure from the nominal two-track model.
 /** A new effect is one more entry of the catalogue and its value and line in model.hpp (or
- * measurement.hpp); files, search, tests and reports learn of it from the catalogue. */
+ * kernel.hpp); files, search, tests and reports learn of it from the catalogue. */
 struct Effect {
   std::string name;      ///< identifier in files and reports
   std::string title;     ///< what the field calls it

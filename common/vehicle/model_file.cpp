@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/vehicle/model_file.hpp"
+#include "common/config/config_reader.hpp"
+#include "common/vehicle/model_document.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -13,6 +13,8 @@
 
 namespace tread {
 
+class ConfigReader;
+
 /// What drives the tracks, and how it is wired.
 struct DriveDescription {
   CommandKind kind = CommandKind::kPower;
@@ -40,5 +42,14 @@ struct RobotDescription {
   double max_speed = 0.0;          ///< [m/s] it is never faster: what is, is an error of the INS
   std::optional<double> max_tilt;  ///< [rad] what it drives on a steeper slope teaches nothing
 };
+
+/// The robot of a process: what its key `robot` holds or the file that it names, else robot.yaml
+/// beside the process's own file.
+/** Strict; throws ConfigError with file:line. reader.effective() then holds the description, too,
+ * so that a logged CONFIG can be read without the file. */
+RobotDescription readRobot(ConfigReader& reader);
+
+/// Three keys that are all required: front, rear and half_width [m].
+FootprintSize readFootprint(ConfigReader reader);
 
 }  // namespace tread

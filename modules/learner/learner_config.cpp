@@ -5,8 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "common/config/config_reader.hpp"
 #include "common/pattern/pattern_file.hpp"
-#include "common/vehicle/robot_file.hpp"
+#include "common/vehicle/robot_description.hpp"
 
 namespace tread::learner {
 namespace {

@@ -4,8 +4,9 @@
 
 #include <sstream>
 
+#include "common/config/config_reader.hpp"
 #include "common/messages/blank.hpp"
-#include "common/vehicle/robot_file.hpp"
+#include "common/vehicle/robot_description.hpp"
 
 namespace tread::lidar {
 

@@ -10,7 +10,7 @@
 #include "common/geometry/se2.hpp"
 #include "common/messages/blank.hpp"
 #include "common/messages/ins_messages.hpp"
-#include "common/vehicle/robot_file.hpp"
+#include "common/vehicle/robot_description.hpp"
 
 namespace tread::mapping {
 namespace {

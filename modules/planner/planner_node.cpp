@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/messages/blank.hpp"
-#include "common/vehicle/robot_file.hpp"
+#include "common/vehicle/robot_description.hpp"
 
 namespace tread::planner {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/vehicle/measurement.hpp"
+#include "common/vehicle/kernel.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "modules/simulator/core/instruments.hpp"
 #include "modules/simulator/core/noise.hpp"

@@ -3,7 +3,7 @@
 #include "modules/simulator/simulator_files.hpp"
 
 #include "common/config/config_reader.hpp"
-#include "common/vehicle/robot_file.hpp"
+#include "common/vehicle/robot_description.hpp"
 
 namespace tread::sim {
 namespace {

@@ -9,7 +9,7 @@
 #include <tread/health_t.hpp>
 
 #include "common/link/link.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "modules/simulator/simulator_files.hpp"
 
 namespace tread::sim {

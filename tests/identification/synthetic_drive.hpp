@@ -6,7 +6,6 @@
 #include <random>
 
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/measurement.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "modules/identification/core/drive.hpp"
 

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 
 #include "core_rig.hpp"
-#include "modules/identification/core/adequacy.hpp"
-#include "modules/identification/core/screening.hpp"
+#include "modules/identification/core/discovery.hpp"
 #include "modules/identification/core/fit.hpp"
+#include "modules/identification/core/screening.hpp"
 
 // The rest of the stages: moments of change, and whether anything is left.
 

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "core_rig.hpp"
-#include "modules/identification/core/likelihood.hpp"
-#include "modules/identification/core/validation.hpp"
+#include "modules/identification/core/observations.hpp"
+#include "modules/identification/core/screening.hpp"
 
 using namespace tread;
 using namespace tread::gap;

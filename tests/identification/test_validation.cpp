@@ -5,8 +5,8 @@
 #include <Eigen/LU>
 
 #include "core_rig.hpp"
-#include "modules/identification/core/likelihood.hpp"
-#include "modules/identification/core/validation.hpp"
+#include "modules/identification/core/observations.hpp"
+#include "modules/identification/core/screening.hpp"
 
 using namespace tread;
 using namespace tread::gap;

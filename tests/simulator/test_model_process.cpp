@@ -10,8 +10,8 @@
 
 #include "common/link/link.hpp"
 #include "common/messages/ins_messages.hpp"
-#include "common/vehicle/measurement.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/kernel.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "tests/system/robot_run.hpp"
 #include "tests/system/worlds.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "common/config/config_reader.hpp"
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 
 namespace tread::experiment {
 

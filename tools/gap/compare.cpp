@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/gap/compare.hpp"
+#include "tools/gap/questions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 
 #include "modules/identification/core/discovery.hpp"
 #include "modules/identification/core/end_errors.hpp"
-#include "modules/identification/core/likelihood.hpp"
+#include "modules/identification/core/observations.hpp"
 #include "modules/identification/core/search.hpp"
-#include "tools/gap/report/words.hpp"
+#include "tools/gap/report/report.hpp"
 
 namespace tread::gap {
 namespace {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/gap/explain.hpp"
+#include "tools/gap/report/report.hpp"
 
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
 #include "common/config/scalars.hpp"
-#include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {

@@ -13,10 +13,8 @@
 #include <system_error>
 
 #include "common/store/store.hpp"
-#include "common/vehicle/model_file.hpp"
-#include "tools/gap/explain.hpp"
-#include "tools/gap/report/sections.hpp"
-#include "tools/gap/report/words.hpp"
+#include "common/vehicle/model_document.hpp"
+#include "tools/gap/report/report.hpp"
 
 namespace fs = std::filesystem;
 

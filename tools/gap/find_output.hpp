@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tools/gap/report/sections.hpp"
+#include "tools/gap/report/report.hpp"
 
 namespace tread::gap {
 

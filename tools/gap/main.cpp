@@ -11,17 +11,16 @@
 #include <vector>
 
 #include "common/config/command_line.hpp"
+#include "common/config/config_reader.hpp"
 #include "common/report/hash.hpp"
 #include "common/store/store.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "modules/identification/core/discovery.hpp"
 #include "tools/gap/commands.hpp"
-#include "tools/gap/compare.hpp"
 #include "tools/gap/drive_log.hpp"
-#include "tools/gap/explain.hpp"
 #include "tools/gap/find_output.hpp"
-#include "tools/gap/report/sections.hpp"
-#include "tools/gap/report/words.hpp"
+#include "tools/gap/questions.hpp"
+#include "tools/gap/report/report.hpp"
 
 namespace tread::gap {
 namespace {
@@ -98,7 +97,8 @@ int find(const FindOptions& options) {
   GapTask task;
   task.model = readModelDocument(options.model);
   task.decisions = decisionsOf({options.accepted, options.rejected, options.by}, task.model);
-  inputs.push_back({InputFile::Role::kModel, fileName(options.model), sha256(readText(options.model))});
+  inputs.push_back(
+      {InputFile::Role::kModel, fileName(options.model), sha256(readText(options.model))});
   task.train = readDrives(options.train, InputFile::Role::kTrain, task.model, inputs);
   task.test = readDrives(options.test, InputFile::Role::kTest, task.model, inputs);
   for (const std::vector<Drive>* drives : {&task.train, &task.test})

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/gap/manoeuvres.hpp"
+#include "tools/gap/questions.hpp"
 
 #include <algorithm>
 #include <cmath>

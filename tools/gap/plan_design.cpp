@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/gap/plan_design.hpp"
+#include "tools/gap/questions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,6 @@
 
 #include "modules/identification/core/fit.hpp"
 #include "modules/identification/core/search.hpp"
-#include "tools/gap/manoeuvres.hpp"
-#include "tools/gap/what_if.hpp"
 
 namespace tread::gap {
 namespace {

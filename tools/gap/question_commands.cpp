@@ -9,16 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "common/config/config_reader.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/store.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "tools/gap/commands.hpp"
 #include "tools/gap/drive_log.hpp"
-#include "tools/gap/explain.hpp"
-#include "tools/gap/manoeuvres.hpp"
-#include "tools/gap/plan_design.hpp"
-#include "tools/gap/report/words.hpp"
-#include "tools/gap/what_if.hpp"
+#include "tools/gap/questions.hpp"
+#include "tools/gap/report/report.hpp"
 #include "tools/patterns/recipe.hpp"
 
 namespace tread::gap {

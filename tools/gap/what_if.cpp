@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/gap/what_if.hpp"
+#include "tools/gap/questions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,10 @@
 
 #include "common/config/scalars.hpp"
 #include "common/report/chart.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "modules/identification/core/end_errors.hpp"
 #include "modules/identification/core/observations.hpp"
-#include "tools/gap/report/pictures.hpp"
-#include "tools/gap/report/words.hpp"
+#include "tools/gap/report/report.hpp"
 
 namespace tread::gap {
 

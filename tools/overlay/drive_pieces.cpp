@@ -9,7 +9,7 @@
 
 #include "common/log/drive_log.hpp"
 #include "common/messages/ins_messages.hpp"
-#include "common/vehicle/measurement.hpp"
+#include "common/vehicle/kernel.hpp"
 
 namespace tread::overlay {
 namespace {

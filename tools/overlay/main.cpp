@@ -4,7 +4,8 @@
 #include <set>
 
 #include "common/config/command_line.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/config/config_reader.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "tools/overlay/drive_pieces.hpp"
 
 namespace {

@@ -13,11 +13,12 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/shell.hpp"
+#include "common/config/config_reader.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/recordings/recordings.hpp"
 #include "common/store/store.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "modules/pattern_recorder/recorder_node.hpp"
 #include "tools/patterns/commands.hpp"
 #include "tools/patterns/recipe.hpp"

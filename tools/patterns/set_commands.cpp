@@ -11,7 +11,7 @@
 #include "common/config/config_reader.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/store.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "tools/patterns/commands.hpp"
 #include "tools/patterns/recipe.hpp"
 #include "tools/patterns/set_text.hpp"

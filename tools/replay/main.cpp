@@ -6,9 +6,10 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
+#include "common/config/config_reader.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/store.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "tools/replay/ins_replay.hpp"
 #include "tools/replay/learner_replay.hpp"
 #include "tools/replay/mapping_replay.hpp"

@@ -12,7 +12,7 @@
 #include "common/messages/execution_messages.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/report/text.hpp"
-#include "common/vehicle/robot_file.hpp"
+#include "common/vehicle/robot_description.hpp"
 
 namespace tread::report {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/identification/core/adequacy.hpp"
+#include "modules/identification/core/discovery.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <map>
 #include <set>
 
-#include "modules/identification/core/likelihood.hpp"
-#include "modules/identification/core/validation.hpp"
+#include "modules/identification/core/observations.hpp"
+#include "modules/identification/core/screening.hpp"
 
 namespace tread::gap {
 namespace {

@@ -2,14 +2,240 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/identification/core/discovery.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <stdexcept>
+#include <tuple>
 
-#include "modules/identification/core/adequacy.hpp"
 #include "modules/identification/core/end_errors.hpp"
+#include "modules/identification/core/log_validation.hpp"
 
 namespace tread::gap {
+
+namespace {
+
+constexpr double kChangeNats = 10.0;  // 2 nats times what correlated ground takes off
+constexpr double kMoved = 4.0;        // standard errors; a few terms are looked at in each log
+constexpr double kInvisible = 2.0;    // times its typical size: not excited
+
+/// `half` of the 95 % interval.
+Estimate estimateOf(const std::string& path, const ModelDocument& before,
+                    const ModelDocument& after, double half) {
+  const double value = *findParameter(after, path);
+  return {path, unitOf(path), value, value - half, value + half, *findParameter(before, path)};
+}
+
+/// Whether a term of the model has changed, or a number of which it says how sure it is.
+bool hasMoved(const Estimate& estimate, double error, const ModelDocument& before, bool calibrate) {
+  const bool number = estimate.parameter.find('.') == std::string::npos;
+  if (number && calibrate) return false;
+  const ParameterCovariance& known = before.covariance;
+  double variance = error * error;
+  for (size_t i = 0; i < known.parameters.size(); ++i)
+    if (known.parameters[i] == estimate.parameter) variance += known.matrix[i][i];
+  return std::abs(estimate.value - estimate.before) > kMoved * std::sqrt(variance);
+}
+
+FoundEffect foundEffect(const std::string& name, const SearchResult& result,
+                        const SearchSettings& settings, std::vector<Estimate> parameters) {
+  const auto known = result.evidence.find(name);
+  const EffectEvidence evidence = known == result.evidence.end() ? EffectEvidence{} : known->second;
+  FoundEffect effect;
+  effect.name = name;
+  effect.parameters = std::move(parameters);
+  effect.score = evidence.score;
+  effect.p_value = evidence.p_value.value_or(0.0);
+  effect.gain = evidence.gain.value;
+  effect.gain_error = evidence.gain.error;
+  effect.accepted = contains(settings.accepted, name);
+  if (effect.accepted) return effect;  // decided: nothing else is in its place
+  std::vector<std::string> group = confoundedEffects(name, result.state.model.measurement);
+  for (const std::string& pair : evidence.replaced) group.push_back(pair);
+  for (const std::string& other : group)
+    if (!contains(settings.rejected, other)) effect.group.push_back(other);
+  // What came in beside it later does not stand in its place.
+  for (const RunnerUp& other : evidence.runner_ups)
+    if (!contains(result.effects, other.effect) && !contains(result.released, other.effect))
+      effect.runner_ups.push_back(other);
+  return effect;
+}
+
+bool isExcited(const CandidateTest& test) {
+  const double typical = parameterNamed(effectNamed(test.effect), test.parameter).typical;
+  return test.detectable <= kInvisible * std::abs(typical);
+}
+
+ParameterCovariance knownCovariance(const FitState& state, const Eigen::MatrixXd& covariance) {
+  ParameterCovariance known;
+  std::vector<Eigen::Index> sure;
+  for (size_t i = 0; i < state.free.size(); ++i) {
+    const FreeParameter& parameter = state.free[i];
+    const auto at = static_cast<Eigen::Index>(i);
+    if (!(std::sqrt(covariance(at, at)) < parameter.max - parameter.min)) continue;
+    known.parameters.push_back(parameter.path);
+    sure.push_back(at);
+  }
+  for (Eigen::Index i : sure) {
+    known.matrix.emplace_back();
+    for (Eigen::Index j : sure) known.matrix.back().push_back(covariance(i, j));
+  }
+  return known;
+}
+
+Envelope envelopeOf(const Observations& data, const VehicleModel& vehicle) {
+  Envelope envelope;
+  for (const auto& motion : data.simulate(vehicle))
+    for (size_t i = 1; i < motion.size(); ++i) {
+      const double dt = motion[i].time - motion[i - 1].time;
+      if (dt > 0.0)
+        envelope.include(twistTo(between(motion[i - 1].T_map_body, motion[i].T_map_body), dt));
+    }
+  return envelope;
+}
+
+constexpr double kShareOfTypical = 0.1;
+
+bool isAmbiguous(const FoundEffect& effect) {
+  if (!effect.group.empty()) return true;
+  return std::any_of(effect.runner_ups.begin(), effect.runner_ups.end(),
+                     [](const RunnerUp& other) { return other.behind < other.error; });
+}
+
+EffectKind kindOf(const Estimate& estimate) {
+  return effectNamed(effectOfPath(estimate.parameter)).kind();
+}
+
+/// Whether a term of the INS has changed by a share of its typical size: the ends of executions do
+/// not show it, since they begin with the same error.
+bool hasInstrumentChanged(const Estimate& estimate) {
+  const size_t dot = estimate.parameter.find('.');
+  if (dot == std::string::npos || kindOf(estimate) != EffectKind::kMeasurement) return false;
+  const double typical = parameterNamed(effectNamed(effectOfPath(estimate.parameter)),
+                                        estimate.parameter.substr(dot + 1))
+                             .typical;
+  return std::abs(estimate.value - estimate.before) > kShareOfTypical * std::abs(typical);
+}
+
+/// A change of what the model already has is a discrepancy if the end error falls with it.
+void dropIrrelevantMoves(Finding& finding, double least_gain) {
+  const Gap& gap = *finding.gap;
+  const double least = 1.0 - least_gain;
+  const bool matters = gap.after.position.median < least * gap.before.position.median ||
+                       gap.after.yaw.median < least * gap.before.yaw.median;
+  for (Estimate& estimate : finding.identified.calibrated)
+    estimate.moved = estimate.moved && (matters || hasInstrumentChanged(estimate));
+}
+
+GapVerdict verdictWithoutEffects(const Finding& finding, bool adequate) {
+  bool any = false;
+  bool vehicle = false;
+  for (const Estimate& estimate : finding.identified.calibrated) {
+    if (!estimate.moved) continue;
+    any = true;
+    vehicle = vehicle || kindOf(estimate) == EffectKind::kVehicle;
+  }
+  if (!any) return adequate ? GapVerdict::kNoDiscrepancy : GapVerdict::kNotInCatalogue;
+  if (!adequate) return GapVerdict::kPartial;
+  return vehicle ? GapVerdict::kFound : GapVerdict::kMeasurement;
+}
+
+GapVerdict verdictOf(const Finding& finding, const std::vector<FoundEffect>& shown, bool adequate) {
+  if (!adequate) return GapVerdict::kPartial;
+  if (std::any_of(shown.begin(), shown.end(), isAmbiguous)) return GapVerdict::kAmbiguous;
+  const bool measurement = std::all_of(shown.begin(), shown.end(), [](const FoundEffect& effect) {
+    return effectNamed(effect.name).kind() == EffectKind::kMeasurement;
+  });
+  // A term of the vehicle that has changed is a finding, too.
+  const bool moved =
+      std::any_of(finding.identified.calibrated.begin(), finding.identified.calibrated.end(),
+                  [](const Estimate& estimate) {
+                    return estimate.moved && kindOf(estimate) == EffectKind::kVehicle;
+                  });
+  return measurement && !moved ? GapVerdict::kMeasurement : GapVerdict::kFound;
+}
+
+/// A size at the end of what is plausible is no measurement.
+void refuseOnBound(const Estimate& estimate, Finding& finding) {
+  if (!runsToBound(finding.identified.model, freeParameter(finding.before, estimate.parameter)))
+    return;
+  finding.verdict = GapVerdict::kCannotTell;
+  finding.reason = estimate.parameter + " runs to the end of its plausible range";
+}
+
+}  // namespace
+
+IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& before,
+                                const SearchSettings& settings, const SearchResult& result) {
+  const Observations& data = fitter.data();
+  const FitState& state = result.state;
+  const Eigen::MatrixXd covariance = parameterCovariance(fitter, state);
+  const double quantile = studentQuantile(data.measuredBlocks() - 1);
+  IdentifiedModel identified;
+  std::map<std::string, std::vector<Estimate>> of_effect;
+  for (size_t i = 0; i < state.free.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const double error = std::sqrt(covariance(at, at));
+    const std::string effect = effectOf(state.free[i].path);
+    Estimate estimate = estimateOf(state.free[i].path, before, state.model, quantile * error);
+    if (contains(result.effects, effect)) {
+      of_effect[effect].push_back(estimate);
+    } else {
+      estimate.moved = hasMoved(estimate, error, before, settings.calibrate);
+      identified.calibrated.push_back(estimate);
+    }
+  }
+  for (const std::string& path : changePointsOn(state.model)) {
+    const std::string effect = effectOf(path);
+    if (!contains(result.effects, effect)) continue;
+    Estimate estimate = estimateOf(path, ModelDocument{}, state.model, 0.0);
+    std::tie(estimate.low, estimate.high) = changePointInterval(fitter, state, path, kChangeNats);
+    of_effect[effect].push_back(estimate);
+  }
+  for (const std::string& name : result.effects)
+    identified.effects.push_back(foundEffect(name, result, settings, of_effect[name]));
+  for (const CandidateTest& test : result.record.candidates)
+    if (!contains(result.effects, test.effect) && !isExcited(test) &&
+        !isOn(effectNamed(test.effect), before))
+      identified.not_excited.push_back(test.effect);
+  identified.model = state.model;
+  identified.model.covariance = knownCovariance(state, covariance);
+  identified.model.envelope = envelopeOf(data, state.model.vehicle);
+  return identified;
+}
+
+std::string tooLittleDriving(const Observations& data) {
+  const int measured = data.measuredBlocks();
+  if (measured >= kLeastBlocks) return "";
+  double driven = 0.0;
+  for (const Drive& drive : data.drives()) driven += drive.driven();
+  if (data.blocks() > measured && data.blockLength() > 0.0) driven = measured * data.blockLength();
+  return "only " + fixed(driven, 0) +
+         " s of measured driving, too little to tell chance from cause: drive at least " +
+         fixed(kLeastBlocks * ObservationSettings{}.block, 0) + " s";
+}
+
+void judge(Finding& finding, double adequacy_alpha, double least_gain) {
+  const bool adequate = finding.adequacy.p_value > adequacy_alpha;
+  std::vector<FoundEffect> shown;
+  std::copy_if(finding.identified.effects.begin(), finding.identified.effects.end(),
+               std::back_inserter(shown), isShown);
+  if (shown.empty()) {
+    dropIrrelevantMoves(finding, least_gain);
+    finding.verdict = verdictWithoutEffects(finding, adequate);
+  } else {
+    finding.verdict = verdictOf(finding, shown, adequate);
+  }
+  if (finding.verdict == GapVerdict::kNoDiscrepancy && !finding.search.at_bound.empty()) {
+    finding.verdict = GapVerdict::kCannotTell;
+    finding.reason = finding.search.at_bound.front() + " runs to the end of its plausible range";
+  }
+  for (const Estimate& estimate : finding.identified.calibrated) refuseOnBound(estimate, finding);
+  for (const FoundEffect& effect : finding.identified.effects)
+    for (const Estimate& estimate : effect.parameters) refuseOnBound(estimate, finding);
+}
+
 namespace {
 
 constexpr int kLeastHalf = 10;           // blocks from which effects can be chosen, too

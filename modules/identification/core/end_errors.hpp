@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "modules/identification/core/finding.hpp"
-#include "modules/identification/core/likelihood.hpp"
 #include "modules/identification/core/observations.hpp"
 
 namespace tread::gap {

@@ -10,7 +10,6 @@
 
 #include <Eigen/Core>
 
-#include "modules/identification/core/likelihood.hpp"
 #include "modules/identification/core/observations.hpp"
 
 namespace tread::gap {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "modules/identification/core/screening.hpp"
-#include "modules/identification/core/validation.hpp"
 
 namespace tread::gap {
 

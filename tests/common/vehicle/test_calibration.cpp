@@ -8,7 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 
 using namespace tread;
 

@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "common/vehicle/measurement.hpp"
+#include "common/vehicle/kernel.hpp"
 #include "tests/common/vehicle/rich_drive.hpp"
 
 using namespace tread;

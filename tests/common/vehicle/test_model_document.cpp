@@ -4,7 +4,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "common/vehicle/model_file.hpp"
+#include "common/config/config_reader.hpp"
+#include "common/vehicle/model_document.hpp"
 
 using namespace tread;
 

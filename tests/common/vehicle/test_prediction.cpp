@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 
 using namespace tread;
 

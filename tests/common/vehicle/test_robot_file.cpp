@@ -5,7 +5,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "common/vehicle/robot_file.hpp"
+#include "common/config/config_reader.hpp"
+#include "common/vehicle/robot_description.hpp"
 
 using namespace tread;
 using Catch::Contains;

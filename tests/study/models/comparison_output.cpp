@@ -7,8 +7,7 @@
 
 #include "common/store/store.hpp"
 #include "tools/gap/find_output.hpp"
-#include "tools/gap/report/words.hpp"
-#include "tools/gap/report/sections.hpp"
+#include "tools/gap/report/report.hpp"
 
 namespace tread::gap {
 

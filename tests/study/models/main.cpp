@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "common/config/command_line.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "tests/study/models/comparison_output.hpp"
 #include "tools/gap/commands.hpp"
 #include "tools/gap/drive_log.hpp"

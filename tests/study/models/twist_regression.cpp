@@ -7,7 +7,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "modules/identification/core/validation.hpp"
+#include "modules/identification/core/screening.hpp"
 #include "tests/study/models/twist_pieces.hpp"
 
 namespace tread::gap {

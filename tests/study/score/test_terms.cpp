@@ -7,7 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/vehicle/effects.hpp"
-#include "common/vehicle/measurement.hpp"
+#include "common/vehicle/kernel.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "tests/study/hide/effect_list.hpp"
 #include "tests/study/hide/instruments.hpp"

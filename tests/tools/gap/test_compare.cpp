@@ -2,9 +2,9 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "modules/identification/core/likelihood.hpp"
+#include "modules/identification/core/observations.hpp"
 #include "tests/identification/core_rig.hpp"
-#include "tools/gap/compare.hpp"
+#include "tools/gap/questions.hpp"
 
 using namespace tread;
 using namespace tread::gap;

@@ -8,7 +8,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "tests/tools/gap/arc_drive.hpp"
 #include "tests/tools/gap/gap_program.hpp"
 

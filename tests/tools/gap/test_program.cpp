@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/vehicle/effects.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "tests/tools/gap/arc_drive.hpp"
 #include "tests/tools/gap/gap_program.hpp"
 

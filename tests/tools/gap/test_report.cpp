@@ -7,11 +7,10 @@
 
 #include <catch2/catch.hpp>
 
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "tests/tools/gap/sample_findings.hpp"
 #include "tools/gap/find_output.hpp"
-#include "tools/gap/report/words.hpp"
-#include "tools/gap/report/sections.hpp"
+#include "tools/gap/report/report.hpp"
 
 namespace tread::gap {
 namespace {

@@ -8,9 +8,7 @@
 
 #include "tests/tools/gap/sample_findings.hpp"
 #include "tools/gap/find_output.hpp"
-#include "tools/gap/report/words.hpp"
-#include "tools/gap/report/sections.hpp"
-#include "tools/gap/report/pictures.hpp"
+#include "tools/gap/report/report.hpp"
 
 namespace tread::gap {
 namespace {

@@ -14,8 +14,8 @@
 #include <tread/motor_t.hpp>
 
 #include "common/log/event_log.hpp"
-#include "common/vehicle/measurement.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/kernel.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "tests/tools/called_program.hpp"
 #include "tools/overlay/drive_pieces.hpp"
 

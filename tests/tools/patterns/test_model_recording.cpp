@@ -8,7 +8,7 @@
 
 #include "common/pattern/pattern_file.hpp"
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "tests/tools/patterns/patterns_program.hpp"
 #include "tools/patterns/recipe.hpp"
 

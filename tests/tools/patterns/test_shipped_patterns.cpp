@@ -12,7 +12,7 @@
 
 #include "common/config/config_reader.hpp"
 #include "common/pattern/pattern_file.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "tests/tools/patterns/patterns_program.hpp"
 #include "tools/patterns/recipe.hpp"
 

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "common/recordings/csv_table.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "tests/tools/replay/synthetic_drive.hpp"
 #include "tools/replay/learner_replay.hpp"
 

@@ -12,7 +12,7 @@
 #include "common/bus/lcm_bus.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/recordings/csv_table.hpp"
-#include "common/vehicle/model_file.hpp"
+#include "common/vehicle/model_document.hpp"
 #include "tests/system/process.hpp"
 #include "tests/tools/replay/synthetic_drive.hpp"
 #include "tools/replay/recipe.hpp"

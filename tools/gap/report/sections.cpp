@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/gap/report/sections.hpp"
+#include "tools/gap/report/report.hpp"
 
 #include <algorithm>
 #include <cmath>
-
-#include "tools/gap/explain.hpp"
-#include "tools/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/gap/report/words.hpp"
+#include "tools/gap/report/report.hpp"
 
 #include <algorithm>
 #include <cctype>

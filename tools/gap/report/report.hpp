@@ -6,10 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "common/report/chart.hpp"
+#include "common/report/page.hpp"
 #include "common/report/text.hpp"
 #include "common/vehicle/effects.hpp"
 #include "modules/identification/core/finding.hpp"
 
+// A report's words and pictures, its first screen, the sections behind it (one without blocks is
+// left out), and what one must know to read it and to act on it.
 namespace tread::gap {
 
 /// The parameter's name without its effect.
@@ -100,5 +104,104 @@ std::string worseOf(const Gap& gap);
 
 /// "the yaw rate residual depends on speed and elapsed time; the along residual on ...".
 std::string remainsOf(const std::vector<Unexplained>& rests);
+
+/// A word and what it means here.
+struct Word {
+  std::string word;
+  std::string meaning;
+};
+
+/// The words of a report that are not everybody's.
+const std::vector<Word>& glossary();
+
+/// A verdict, what it means and what to do then.
+struct Advice {
+  GapVerdict verdict;
+  std::string meaning;
+  std::string next;
+};
+
+/// What a verdict means.
+const Advice& adviceFor(GapVerdict verdict);
+
+/// What an effect is, its equation and parameters, what it looks like, what it is confused with
+/// and how to check it in two minutes.
+std::string explanation(const Effect& effect);
+
+/// One line for each effect of the catalogue.
+std::string listOfEffects();
+
+/// What `tread-gap explain` says beside effects: start (from a log of one's own to a first run),
+/// verdicts (what to do after each) and words (of the report); nothing for another name.
+std::optional<std::string> topic(const std::string& name);
+
+/// One line for each topic.
+std::string listOfTopics();
+
+using report::Chart, report::ChartPoint, report::ChartRange;
+
+/// A residual over a variable, before and after, with 95 % intervals; filled dots are marked cells.
+std::string atlasPicture(const AtlasCurve& curve);
+
+/// The largest |mean| of a map before and after: equal colours need a common scale.
+double largestResidual(const AtlasMap& map);
+
+/// A residual over speed and yaw rate.
+std::string mapPicture(const AtlasMap& map, bool after, double full_colour);
+
+/// A driven path seen from above, ahead is up, with its heading where it ends.
+void drawPath(Chart& chart, const std::vector<Pose2>& poses, const char* colour, bool dashed);
+
+/// The part of the ground that paths need, with equal scales.
+ChartRange rangeOf(const std::vector<const std::vector<Pose2>*>& paths);
+
+/// One execution: measured, old and new model, seen from its beginning.
+std::string overlayPicture(const Overlay& overlay, const std::string& title);
+
+/// The error from which on places have their full colour: 19 of 20 are below it [m].
+double fullColourOf(const std::vector<PlaceError>& places);
+
+/// End errors where they were made, in the frame of the log.
+std::string placePicture(const std::vector<PlaceError>& places, bool after, double full_colour,
+                         const std::string& log);
+
+/// What each step of the search brought on blocks that were not fitted, with its standard error.
+std::string stepsPicture(const std::vector<SearchStep>& ladder);
+
+/// Median end errors before, after and the floor.
+std::string gapPicture(const Gap& gap, bool yaw);
+
+using report::Block, report::Commands, report::Page, report::Paragraph, report::Pictures;
+using report::Points, report::Section, report::Table;
+
+/// The headline of a report in one line, for instance "Found: Limit of turning power"; where the
+/// drive cannot tell, "A or B: this drive cannot tell them apart".
+std::string headlineOf(const Finding& finding);
+
+/// What find prints at its end, the verdict first.
+std::vector<std::string> closingLines(const Finding& finding);
+
+/// What stands on the first screen: sentences, gain, what to do next.
+std::vector<Block> firstBlocks(const Finding& finding);
+
+/// good, change or doubt.
+std::string moodOf(GapVerdict verdict);
+
+/// A file that `tread-gap find` has read.
+struct InputFile {
+  enum class Role { kModel, kTrain, kTest };
+  Role role = Role::kTrain;
+  std::string name;    ///< without its folder
+  std::string sha256;  ///< 64 hexadecimal digits
+};
+
+/// Those that show where and how well the model holds.
+std::vector<Section> evidenceSections(const Finding& finding, const std::vector<InputFile>& inputs);
+
+/// Name and version of this tool, for provenance.
+const char* toolVersion();
+
+/// The whole report.
+Page reportPage(const Finding& finding, const std::vector<InputFile>& inputs);
 
 }  // namespace tread::gap

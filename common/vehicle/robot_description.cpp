@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/vehicle/robot_file.hpp"
+#include "common/vehicle/robot_description.hpp"
+
+#include "common/config/config_reader.hpp"
 
 namespace tread {
 namespace {
