@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/recordings/execution_log.hpp"
+#include "common/recordings/recordings.hpp"
 
 #include <algorithm>
 #include <cmath>

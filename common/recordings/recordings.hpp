@@ -2,9 +2,11 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "common/log/drive_log.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/recordings/csv_table.hpp"
 
@@ -17,6 +19,7 @@
 //                    execution stand together; executions of a pattern have rising numbers from 1,
 //                    with gaps where some were taken out by hand. Lines that begin with # are
 //                    comments. Every pattern has at least one execution on every surface.
+// Units: m, rad, s.
 namespace tread::recordings {
 
 /// One execution: a pose after each command, as many as the pattern has.
@@ -96,5 +99,29 @@ struct AverageLimits {
  * is 0. Throws RecordingError if a pattern has too few. */
 PatternSet averageSet(const PatternSet& patterns, const SurfaceRecordings& recordings,
                       const AverageLimits& limits, std::vector<AverageNote>& notes);
+
+// Recordings as a robot would have sent them, so that the real learner process can hear them. First
+// all executions on one surface, then those on the other; MARK names the surface. Each execution is
+// a track of its own: INS and MOTOR tell of it from `lead` before its start to `tail` after its
+// end, and are silent between two. The windows that the recordings come from are steady, so before
+// its first and after its last pose the robot is taken to move by the mean twist of the recording
+// (that of its first sample alone would be mostly noise of the lidar's poses).
+//   INS        100 Hz; between two recorded poses by the constant twist that leads from one to the
+//              other
+//   MOTOR      20 Hz, the steady command; execution and index while the pattern is played
+//   EXECUTION  on start and end, the last eight records; they name the version of the shipped set
+
+struct ExecutionLogRequest {
+  int executions = 40;   ///< on each surface; patterns take turns in drawn order
+  uint64_t seed = 1;     ///< draws that order, and which recordings are played
+  double lead = 0.5;     ///< [s]
+  double tail = 0.3;     ///< [s]
+  double silence = 1.0;  ///< [s] between two executions
+};
+
+/// The log; `shipped` is the set that the executions name, with the patterns of the recordings.
+/** Throws RecordingError if they do not fit. Same arguments, same bytes. */
+std::vector<LogEvent> executionLog(const PatternSet& shipped, const SurfaceRecordings& from,
+                                   const SurfaceRecordings& to, const ExecutionLogRequest& request);
 
 }  // namespace tread::recordings

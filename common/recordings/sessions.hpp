@@ -6,13 +6,72 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
+#include "common/geometry/se2.hpp"
 #include "common/pattern/pattern.hpp"
-#include "common/recordings/twist_line.hpp"
 
 // A folder of recorded drives: sessions.csv (robot, surface, geometry, lag of the poses),
 // steps_quality.csv (each held command, and whether its step is fit for use), steps/SESSION.csv
 // (what was driven, at 20 Hz, by step and window). Further columns and files are not looked at.
+// Units: m, rad, s.
 namespace tread::recordings {
+
+// The body twist over a steady window of T seconds as a line in time:
+//   v_x(t) = v_x + v_x' (t - T/2), the same for v_y and omega, so that
+//   yaw(t) = yaw_0 + integral of omega (quadratic in t), and
+//   p(t)   = p_0 + integral of R(yaw(s)) (v_x(s), v_y(s)) ds.
+// Given yaw(t) the second is linear in p_0, v_x, v_x', v_y, v_y': two robust linear least squares.
+
+/// How a robust fit weighs its rows.
+struct HuberLimits {
+  int group = 1;             ///< so many neighbouring rows belong to one observation
+  double least_scale = 0.0;  ///< [unit of b] smaller residuals are never called large
+};
+
+/// x that minimises the sum of rho(|A x - b| per observation), rho of Huber (k = 1.345 scales).
+/** Solved by iteratively reweighted least squares (QR); the scale is 1.4826 times the median of the
+ * residuals' lengths per row, at least `least_scale`. `prior` holds a weight for each observation;
+ * those of zero do not count. Deterministic. */
+Eigen::VectorXd huberFit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
+                         const Eigen::VectorXd& prior, const HuberLimits& limits);
+
+/// Median of the entries; 0 if there are none.
+double medianOf(Eigen::VectorXd values);
+
+/// A pose at a time within its window [s].
+struct WindowPose {
+  double time = 0.0;
+  Pose2 T_map_body;  ///< yaw unwrapped
+};
+
+/// Mean and change of the body twist over a window.
+struct TwistLine {
+  Twist2 mean;   ///< [m/s, m/s, rad/s] at the middle of the window
+  Twist2 slope;  ///< per second
+
+  /// v_x, v_y, omega, and their slopes.
+  Eigen::Matrix<double, 6, 1> vector() const;
+  static TwistLine of(const Eigen::Matrix<double, 6, 1>& vector);
+  /// The twist `time` seconds after the beginning of a window of `duration`.
+  Twist2 at(double time, double duration) const;
+  /// What the mirrored robot would do.
+  TwistLine mirrored() const;
+};
+
+/// [s] after a command its motion is steady: a delay of 0.4 s and four time constants of 0.35 s, as
+/// skid-steer robots of 70 to 500 kg have them. What was measured earlier is not used.
+inline constexpr double kSettle = 1.8;
+
+/// Why a window cannot be smoothed, in words (a gap of more than 0.4 s, fewer than 5 poses); empty
+/// if it can.
+std::string windowProblem(const std::vector<WindowPose>& poses, double duration);
+
+/// The profile that fits the poses of a window best. windowProblem() must be empty.
+TwistLine smoothed(const std::vector<WindowPose>& poses, double duration);
+
+/// Poses after each of `samples` periods, relative to the start: the profile integrated.
+std::vector<Pose2> integrated(const TwistLine& profile, size_t samples, double period);
 
 /// What the wheels are told, as body motion of an ideal differential drive.
 struct BodyCommand {

@@ -2,22 +2,120 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/health.hpp"
+#include "common/config/config_reader.hpp"
 #include "common/messages/execution_messages.hpp"
 #include "common/messages/ins_messages.hpp"
+#include "common/pattern/pattern.hpp"
 #include "common/store/store.hpp"
 #include "modules/learner/core/learner.hpp"
-#include "modules/learner/learner_config.hpp"
-#include "modules/learner/learner_memory.hpp"
-#include "modules/learner/set_publisher.hpp"
 
 namespace tread::learner {
+
+/// What the learner finds when it starts.
+struct StoredLearning {
+  std::optional<LearnerState> state;  ///< newest valid one of this shipped set
+  int64_t first_version = 1;          ///< to publish now; above everything ever published
+  std::string problem;                ///< one clear line if something was damaged; else empty
+};
+
+/// The learner's files. Entries: learner_state_1 and _2, written in turn so that the one before is
+/// kept, learner_versions, a number that no published version exceeds, and surface_bank, the
+/// remembered surfaces.
+/** The rule of versions: learner_versions is written ahead, a hundred at a time, before they are
+ * used. A start begins above it, because the last versions may have been published from memory
+ * while the disk was full. Without it, above the newest state by a thousand; without that, too, at
+ * ten per second of robot time, which is faster than executions can be learned from. A node that
+ * then still hears of a higher version of its own goes above that (LearnerNode). */
+class LearnerMemory {
+ public:
+  explicit LearnerMemory(Store& store) : store_(store) {}
+
+  StoredLearning recall(const PatternSet& shipped, int64_t utime);
+
+  /// Makes sure that `version` may be published. One clear line if that could not be written.
+  std::optional<std::string> reserve(int64_t version);
+  /// Writes the state of a version over the older of the two. One clear line if it could not be
+  /// written.
+  std::optional<std::string> save(const std::string& state_text);
+
+  /// Reads the remembered surfaces into `bank`; true if there were any.
+  /** What cannot be read is set aside under another name, never overwritten: `problem` says so, one
+   * clear line. */
+  bool recallBank(const PatternSet& shipped, SurfaceBank& bank, std::string& problem);
+  /// Writes the remembered surfaces if they are others than last time. One clear line if they could
+  /// not be written.
+  std::optional<std::string> saveBank(const std::string& bank_text);
+
+ private:
+  /// Nothing where it is missing, or damaged, which is added to `problem`.
+  std::optional<int64_t> storedReserve(std::string& problem) const;
+
+  Store& store_;
+  int64_t reserved_ = 0;
+  int next_slot_ = 0;
+  std::string bank_text_;       ///< as it is in the store
+  std::string bank_in_danger_;  ///< why it must not be written; empty = it may
+};
+
+/// Sends sets and states in portions: LCM silently loses messages where one
+/// publisher sends more than 100 kB in 20 ms.
+class SetPublisher {
+ public:
+  explicit SetPublisher(Bus& bus) : bus_(bus) {}
+
+  /// The parts of a set; those of an older one that are still here are not sent any more.
+  void putSet(const PatternSet& set);
+  /// The parts of a state's text, sent after the sets. At most two states wait; more drop the
+  /// older.
+  void putState(const PatternSet& set, const std::string& rule, const std::string& text);
+
+  bool setsSent() const { return sets_.empty(); }
+  /// Sends one portion.
+  void step(int64_t utime);
+
+ private:
+  Bus& bus_;
+  std::deque<pattern_set_part_t> sets_;
+  std::deque<learner_state_t> states_;
+  int64_t seq_set_ = 0;
+  int64_t seq_state_ = 0;
+};
+
+/// Configuration of the learner process; the shell reads the shipped set from its file.
+struct LearnerNodeConfig {
+  PatternSet shipped;  ///< where learning begins
+  RuleConfig rule;
+  MeasurementLimits limits;
+  int64_t period_us = 20'000;  ///< [us] between steps
+  int64_t settle_us =
+      200'000;  ///< [us] what is this old has arrived: INS latency and disorder of the bus
+  int64_t give_up_us =
+      2'000'000;  ///< [us] after its end: an execution is then measured with the INS there is
+  int64_t repeat_us = 2'000'000;       ///< [us] between repetitions of the set
+  int64_t track_span_us = 60'000'000;  ///< [us] of INS that is kept
+  int64_t remembered_versions = 50;    ///< sets kept to score executions with the version they name
+
+  std::string store = "state/learner";  ///< folder of the state; used by the process
+
+  explicit LearnerNodeConfig(PatternSet set) : shipped(std::move(set)) {}
+  /// The configuration with its defaults, for CONFIG.
+  std::string effective() const;
+};
+
+/// Reads the configuration and the pattern file that it names; throws ConfigError with file:line.
+LearnerNodeConfig readLearnerConfig(ConfigReader& reader);
+
+/// Reads everything but the pattern file, over what `config` holds; does not finish() the reader.
+void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config);
 
 /// The learner process. INS, EXECUTION, MOTOR in; PATTERN_SET, LEARNER_STATE, LEARNING, HEALTH,
 /// CONFIG out.

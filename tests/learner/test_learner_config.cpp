@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "modules/learner/learner_config.hpp"
+#include "modules/learner/learner_node.hpp"
 
 using namespace tread;
 using namespace tread::learner;

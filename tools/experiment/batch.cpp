@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/experiment/batch.hpp"
+#include "tools/experiment/tables.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -9,7 +9,7 @@
 
 #include "common/config/scalars.hpp"
 #include "common/recordings/drive_recordings.hpp"
-#include "tools/experiment/ground.hpp"
+#include "tools/experiment/trials.hpp"
 
 namespace tread::experiment {
 namespace {

@@ -7,7 +7,7 @@
 #include "common/report/page.hpp"
 #include "common/report/text.hpp"
 #include "common/store/store.hpp"
-#include "tools/experiment/batch.hpp"
+#include "tools/experiment/tables.hpp"
 
 namespace tread::experiment {
 

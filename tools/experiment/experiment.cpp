@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/experiment/experiment.hpp"
+#include "tools/experiment/tables.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <mutex>
 #include <thread>
 
-#include "tools/experiment/ground.hpp"
+#include "tools/experiment/trials.hpp"
 
 namespace tread::experiment {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/experiment/ground.hpp"
+#include "tools/experiment/trials.hpp"
 
 #include <algorithm>
 #include <cmath>

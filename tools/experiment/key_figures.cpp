@@ -27,21 +27,13 @@ double largest(const std::vector<double>& values) {
 }
 
 double medianCost(const std::vector<Row>& rows, const std::string& quantity,
-                  const std::string& rule) {
+                  const std::string& rule, int k) {
   std::vector<double> costs;
   for (const Row& row : rows)
-    if (row.quantity == quantity && row.rule == rule) costs.push_back(row.estimate.value);
+    if (row.quantity == quantity && row.rule == rule && row.k == k)
+      costs.push_back(row.estimate.value);
   return median(costs);
 }
-
-/// One column of the key figures.
-struct Figure {
-  const char* title;
-  const char* format;
-  /// Over all sets of recordings at once, for cells that are means over them.
-  bool of_means;
-  double (*value)(const Tables& tables, const std::string& quantity, const std::string& rule);
-};
 
 double worst(const std::vector<Row>& rows, const std::string& quantity, const std::string& rule,
              int k) {
@@ -53,39 +45,31 @@ double reduced(const std::vector<Row>& rows, const std::string& quantity, const 
   return 100.0 * (1.0 - median(ratios(rows, quantity, rule, "single", k)));
 }
 
+/// One column of the key figures: what it makes of the rows of a table after k executions.
+struct Figure {
+  const char* title;
+  const char* format;
+  /// Over all sets of recordings at once, for cells that are means over them.
+  bool of_means;
+  std::vector<Row> Tables::*rows;
+  double (*of_rows)(const std::vector<Row>& rows, const std::string& quantity,
+                    const std::string& rule, int k);
+  int k;
+
+  double value(const Tables& tables, const std::string& quantity, const std::string& rule) const {
+    return of_rows(tables.*rows, quantity, rule, k);
+  }
+};
+
 const Figure kFigures[] = {
-    {"sequences", "%.1f", false,
-     [](const Tables& t, const std::string& q, const std::string& r) {
-       return reduced(t.errors, q, r, 0);
-     }},
-    {"worst to off", "%+.1f", false,
-     [](const Tables& t, const std::string& q, const std::string& r) {
-       return worst(t.errors, q, r, 0);
-     }},
-    {"of means", "%+.1f", true,
-     [](const Tables& t, const std::string& q, const std::string& r) {
-       return worst(t.errors, q, r, 0);
-     }},
-    {"all after 10", "%.1f", false,
-     [](const Tables& t, const std::string& q, const std::string& r) {
-       return reduced(t.all_patterns, q, r, 10);
-     }},
-    {"all 3 to off", "%+.1f", false,
-     [](const Tables& t, const std::string& q, const std::string& r) {
-       return worst(t.all_patterns, q, r, 3);
-     }},
-    {"of means", "%+.1f", true,
-     [](const Tables& t, const std::string& q, const std::string& r) {
-       return worst(t.all_patterns, q, r, 3);
-     }},
-    {"unchanged", "%.3f", false,
-     [](const Tables& t, const std::string& q, const std::string& r) {
-       return medianCost(t.unchanged, q, r);
-     }},
-    {"by sequences", "%.3f", false,
-     [](const Tables& t, const std::string& q, const std::string& r) {
-       return medianCost(t.unchanged_sequences, q, r);
-     }},
+    {"sequences", "%.1f", false, &Tables::errors, reduced, 0},
+    {"worst to off", "%+.1f", false, &Tables::errors, worst, 0},
+    {"of means", "%+.1f", true, &Tables::errors, worst, 0},
+    {"all after 10", "%.1f", false, &Tables::all_patterns, reduced, 10},
+    {"all 3 to off", "%+.1f", false, &Tables::all_patterns, worst, 3},
+    {"of means", "%+.1f", true, &Tables::all_patterns, worst, 3},
+    {"unchanged", "%.3f", false, &Tables::unchanged, medianCost, 0},
+    {"by sequences", "%.3f", false, &Tables::unchanged_sequences, medianCost, 0},
 };
 
 std::string shown(const char* format, double value) {

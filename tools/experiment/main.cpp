@@ -12,7 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
-#include "tools/experiment/batch.hpp"
+#include "tools/experiment/tables.hpp"
 
 namespace {
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/experiment/methods.hpp"
+#include "tools/experiment/trials.hpp"
 
 #include <algorithm>
 #include <random>
 
 #include "common/config/scalars.hpp"
 #include "common/report/text.hpp"
-#include "tools/experiment/ground.hpp"
 
 namespace tread::experiment {
 namespace {

@@ -3,13 +3,63 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "tools/experiment/experiment.hpp"
+#include "tools/experiment/trials.hpp"
 
 namespace tread::experiment {
+
+/// What to compare, on what, how often.
+struct ExperimentSettings {
+  std::vector<std::string> rules;  ///< names of contestants; "off" and "omniscient" among them
+  learner::RuleConfig config;      ///< of all rules
+  std::vector<Sequence> sequences;
+  int64_t repetitions = 30'000;  ///< each drives all sequences once
+  int64_t excitation = 200;      ///< executions on each surface that a bank meets before
+  uint64_t seed = 1;
+  int threads = 1;  ///< no influence on any number
+  bool change_inside = false;
+  std::vector<int> all_patterns_after{1, 2, 3, 10};  ///< executions, ascending
+  size_t development = 30;                           ///< executions of Figure 4
+  size_t drift = 300;                                ///< executions of the drift's figure
+
+  size_t ruleIndex(const std::string& name) const;  ///< rules.size() if it is not there
+};
+
+/// One ordered pair of surfaces.
+struct TransitionErrors {
+  size_t from = 0;
+  size_t to = 0;
+  SequenceErrors sequences;
+  std::vector<Errors> all_patterns;  ///< by all_patterns_after
+  std::vector<Errors> development;   ///< by execution
+};
+
+/// Section V on one set of recordings.
+struct ExperimentErrors {
+  std::vector<TransitionErrors> transitions;  ///< from each surface to each other one, in order
+  std::vector<Errors> unchanged;              ///< by surface, in the long run, random patterns
+  std::vector<Errors> unchanged_sequences;    ///< the same over the test sequences
+  /// Width of the pattern `watched` by rule, over executions on unchanged ground; see driveDrift().
+  std::vector<std::vector<double>> drift;
+};
+
+/// The widest pattern of a set that no sequence executes; nothing if all are executed or straight.
+std::optional<size_t> neverExecuted(const Ground& ground, const std::vector<Sequence>& sequences);
+
+/// Parts done and parts in all; called from the threads, one at a time.
+using Progress = std::function<void(size_t done, size_t all)>;
+
+/// Runs all trials. Same settings and grounds, same bytes, for any number of threads.
+ExperimentErrors runExperiment(const std::vector<Ground>& grounds,
+                               const ExperimentSettings& settings, const Progress& progress);
+
+/// Runs tasks on some threads; the first exception of one is thrown again here.
+void runTasks(const std::vector<std::function<void()>>& tasks, int threads,
+              const Progress& progress);
 
 inline constexpr const char* kPosition = "position";
 inline constexpr const char* kOrientation = "orientation";
@@ -131,5 +181,87 @@ std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
 
 /// The median; NaN of nothing.
 double median(std::vector<double> values);
+
+/// What the command line asks for.
+struct Request {
+  std::string world;                   ///< file; else `recordings` is used
+  std::string recordings;              ///< folder
+  std::string robot;                   ///< of a folder of drives
+  std::vector<std::string> sessions;   ///< of it; empty = all that are comparable
+  std::vector<std::string> sequences;  ///< "left,left,right"; empty = those of the world
+  std::vector<std::string> rules;
+  int64_t repetitions = 30'000;
+  int64_t excitation = 200;  ///< executions on each surface that a bank meets before
+  double memory = 0.5;       ///< [1] w of equation (2)
+  uint64_t seed = 1;
+  int threads = 1;
+  int sets = 1;    ///< of a world: sets of recordings, from seeds that count up
+  int length = 1;  ///< of a world: each command is held so many times as long
+  bool change_inside = false;
+  bool extras = false;  ///< twice as long patterns and changes inside a pattern, too
+};
+
+/// The same experiment on other terms, with fewer repetitions.
+struct Variant {
+  std::string words;
+  Tables tables;
+  std::vector<Tables> sets;
+};
+
+/// A request and its results.
+struct Batch {
+  Request request;
+  Setting setting;
+  ExperimentSettings settings;
+  std::string source;              ///< the world or folder, in words
+  std::vector<std::string> notes;  ///< about the recordings
+  std::vector<Tables> sets;
+  Tables tables;                          ///< of all sets of recordings together
+  std::vector<Ground> grounds;            ///< of the first set of recordings
+  ExperimentErrors first;                 ///< of it, for the pictures
+  std::vector<ExcitationRun> excitation;  ///< of the rule bank, by surface it comes home to
+  std::vector<Variant> variants;          ///< if the request wants extras
+  double seconds = 0.0;                   ///< of the trials, without recording
+};
+
+/// Runs everything; throws an exception with one line for what cannot be done. progress(share of
+/// the work that is done, 0..1).
+Batch runBatch(const Request& request, const std::function<void(double)>& progress);
+
+/// What the bank met before the transitions and holds; empty without that rule.
+std::string textOfBank(const Batch& batch);
+
+/// Key figures of the variants.
+std::string textOfVariants(const Batch& batch);
+
+/// Width of the never executed pattern after 100, 200, 300 executions on unchanged ground.
+std::string textOfDrift(const Batch& batch);
+
+/// Name of the pattern that is watched for drift; empty if there is none.
+std::string watchedPattern(const Batch& batch);
+
+/// Writes all files into a folder, which is made if needed.
+void writeBatch(const std::string& folder, const Batch& batch);
+
+/// The transition of the paper's figures: from cinder to grass if it is there, else the one that
+/// costs most without learning. An index into errors.transitions.
+size_t transitionOfFigures(const ExperimentErrors& errors, const ExperimentSettings& settings,
+                           const std::vector<Ground>& grounds);
+
+/// "cinder to grass".
+std::string wordsOf(const TransitionErrors& transition, const std::vector<Ground>& grounds);
+
+/// Figure 4: error and its deviation over executions without a reset, by rule (PNG).
+void drawDevelopment(const std::string& path, const TransitionErrors& transition,
+                     const ExperimentSettings& settings, const std::string& words);
+
+/// Figure 5: how often which error occurs over the test sequences, by rule (PNG).
+void drawDistributions(const std::string& path, const TransitionErrors& transition,
+                       const ExperimentSettings& settings, const std::string& words);
+
+/// How wide each rule predicts a pattern that is never executed, over executions on unchanged
+/// ground (PNG).
+void drawDrift(const std::string& path, const std::vector<std::vector<double>>& drift,
+               const ExperimentSettings& settings, const std::string& watched);
 
 }  // namespace tread::experiment

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/experiment/ground.hpp"
-
 namespace tread::experiment {
 
 void RatioMoments::add(double covered, const double* errors) {

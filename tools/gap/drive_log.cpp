@@ -11,7 +11,7 @@
 
 #include "common/config/scalars.hpp"
 #include "common/log/drive_log.hpp"
-#include "common/report/hash.hpp"
+#include "common/report/page.hpp"
 #include "common/store/store.hpp"
 #include "modules/identification/core/log_validation.hpp"
 #include "tools/gap/reading.hpp"

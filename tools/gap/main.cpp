@@ -12,7 +12,7 @@
 
 #include "common/config/command_line.hpp"
 #include "common/config/config_reader.hpp"
-#include "common/report/hash.hpp"
+#include "common/report/page.hpp"
 #include "common/store/store.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "modules/identification/core/discovery.hpp"

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "common/config/scalars.hpp"
-#include "common/report/chart.hpp"
+#include "common/report/page.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "modules/identification/core/end_errors.hpp"
 #include "modules/identification/core/observations.hpp"

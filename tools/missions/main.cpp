@@ -8,7 +8,6 @@
 
 #include "common/config/command_line.hpp"
 #include "common/store/store.hpp"
-#include "tools/missions/mission_runner.hpp"
 #include "tools/missions/report.hpp"
 
 namespace {

@@ -10,7 +10,7 @@
 #include "common/geometry/se2.hpp"
 #include "modules/simulator/core/world.hpp"
 #include "tools/replay/shadow_learners.hpp"
-#include "tools/report/drive_picture.hpp"
+#include "tools/report/drive_report.hpp"
 
 namespace tread::missions {
 

@@ -14,7 +14,7 @@
 #include "common/geometry/se2.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/pattern/pattern.hpp"
-#include "tools/missions/mission_runner.hpp"
+#include "tools/missions/report.hpp"
 
 namespace tread::missions {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/missions/true_patterns.hpp"
+#include "tools/missions/robot_system.hpp"
 
 #include <cmath>
 #include <stdexcept>

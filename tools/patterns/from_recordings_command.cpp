@@ -11,7 +11,7 @@
 #include "common/pattern/pattern_file.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/drive_recordings.hpp"
-#include "common/recordings/execution_log.hpp"
+#include "common/recordings/recordings.hpp"
 #include "common/store/store.hpp"
 #include "tools/patterns/commands.hpp"
 

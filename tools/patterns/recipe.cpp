@@ -13,7 +13,7 @@
 #include "common/pattern/pattern.hpp"
 #include "common/report/text.hpp"
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/measurement.hpp"
+#include "common/vehicle/model.hpp"
 
 namespace tread::patterns {
 namespace {

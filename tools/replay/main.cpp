@@ -13,9 +13,8 @@
 #include "tools/replay/ins_replay.hpp"
 #include "tools/replay/learner_replay.hpp"
 #include "tools/replay/mapping_replay.hpp"
-#include "tools/replay/recipe.hpp"
+#include "tools/replay/replay_check.hpp"
 #include "tools/replay/robot_learner.hpp"
-#include "tools/replay/robot_planner.hpp"
 
 using namespace tread;
 

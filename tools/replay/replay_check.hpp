@@ -86,4 +86,17 @@ std::string differenceOf(const program_t& log, const program_t& replay);
 /// To the bit; `search_time` is not compared.
 std::string differenceOf(const plan_t& log, const plan_t& replay);
 
+/// The processes that run from a played log: those without a device.
+std::vector<std::string> playableProcesses();
+
+/// The channels to play to a process: what it hears, without what it publishes itself and without
+/// what every process publishes, so that it never hears its own past.
+std::vector<std::string> playedChannels(const std::string& process);
+
+/// Expression for `lcm-logplayer -e`, anchored: LCM would find INS in INSIDE, too.
+std::string channelFilter(const std::string& process);
+
+/// The commands to type, with a line on each: the process, and lcm-logplayer with its filter.
+std::string recipeFor(const std::string& process, const std::string& log);
+
 }  // namespace tread::replay

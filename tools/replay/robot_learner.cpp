@@ -12,8 +12,8 @@
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/store.hpp"
 #include "modules/learner/learner_node.hpp"
-#include "tools/replay/log_bus.hpp"
 #include "tools/replay/replay_check.hpp"
+#include "tools/replay/robot_log.hpp"
 
 namespace tread::replay {
 namespace {

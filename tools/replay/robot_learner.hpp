@@ -2,10 +2,13 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <string>
 #include <vector>
 
-#include "modules/learner/core/state_text.hpp"
-#include "modules/learner/learner_config.hpp"
+#include "common/bus/bus.hpp"
+#include "modules/learner/core/learner.hpp"
+#include "modules/learner/learner_node.hpp"
+#include "modules/planner/planner_node.hpp"
 #include "tools/replay/replay_check.hpp"
 #include "tools/replay/robot_log.hpp"
 
@@ -54,5 +57,74 @@ struct LearnerLife {
 /// The lives in a log, in order. Throws std::runtime_error with one clear line if the log holds no
 /// whole state, or states of another shipped set.
 std::vector<LearnerLife> learnerLives(const RobotLog& log, const PatternSet& shipped);
+
+/// A robot's log through the planner.
+/** The planner steps when the log's planner did (utime of PROGRAM) and has then received what that
+ * one had received (newest_input, inputs_heard). Searches end by a count of expansions: the
+ * configured one, or that of the log's PLAN where the deadline cut the search on the robot.
+ * Compared per step, to the bit: PROGRAM and PLAN without seq and search_time. */
+struct PlannerCheck : ReplayCheck {
+  int compared = 0;  ///< lives whose start the log holds; the others cannot be compared
+  int64_t steps = 0;
+  int64_t searches_cut = 0;  ///< by the deadline on the robot
+  MessageCounts programs;
+  MessageCounts plans;
+  int64_t plans_lost = 0;  ///< PLANs that the log lacks, by seq
+  int64_t lacking = 0;     ///< messages that the planners had received and the log lacks
+
+  /// Whether both replays published what the log holds. Of the PLANs that only the replay has the
+  /// recorder lost as many as seq shows; nothing compared is not equal.
+  bool equal() const {
+    return same_twice && programs.equal > 0 && programs.different == 0 && plans.different == 0 &&
+           plans.only_in_log == 0 && plans.only_in_replay <= plans_lost;
+  }
+};
+
+/// The planner's configuration as the log's CONFIG has it. Throws std::runtime_error with one clear
+/// line.
+planner::PlannerConfig plannerConfigOf(const RobotLog& log);
+
+/// Replays the log twice and compares. Throws std::runtime_error with one clear line if the log
+/// holds no PROGRAM.
+PlannerCheck checkPlanner(const RobotLog& log, const planner::PlannerConfig& config);
+
+/// A few lines of text.
+std::string reportOf(const PlannerCheck& check);
+
+/// A message for the planner: its place in the log, and its channel, utime and seq.
+struct PlannerInput {
+  size_t event = 0;
+  Receipt receipt;
+};
+
+/// The log's messages on the planner's channels that can be decoded, in the order of the log.
+std::vector<PlannerInput> plannerInputs(const RobotLog& log, const planner::PlannerConfig& config);
+
+/// A step of the planner in the log.
+struct LoggedStep {
+  program_t program;
+  bool lost = false;  ///< the log lacks its PROGRAM: only `utime` is known, and only about
+};
+
+/// The messages of the log that a planner had received before each of its steps.
+struct Hearing {
+  std::vector<PlannerInput> inputs;  ///< in the order in which the planner heard them
+  size_t from = 0;                   ///< the first of them that it heard
+  std::vector<size_t> until;         ///< by step: the first that it had not heard yet
+  int64_t by_time = 0;               ///< steps whose newest message the log lacks: assigned by time
+  int64_t reordered = 0;  ///< pairs of messages that the recorder heard in the other order
+  int64_t lacking = 0;    ///< messages that the planner had heard and the log lacks
+  int64_t beyond = 0;     ///< messages of the log that the planner had not heard
+};
+
+/// Finds the newest message that each PROGRAM names (newest_input, its utime and seq) in the log.
+/** Processes on one host receive messages in the same order, except for pairs that arrive within
+ * microseconds: inputs_heard reveals those. It also shows where a planner began to receive, and
+ * messages that planner or recorder lost. */
+Hearing hearingOf(const RobotLog& log, std::vector<PlannerInput> inputs,
+                  const std::vector<LoggedStep>& steps);
+
+/// The counts in one line.
+std::string hearingLine(const Hearing& hearing);
 
 }  // namespace tread::replay

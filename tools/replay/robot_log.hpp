@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "common/bus/lcm_bus.hpp"
 #include "common/log/drive_log.hpp"
+#include "common/log/event_log.hpp"
 
 namespace tread::replay {
 
@@ -50,5 +52,56 @@ RobotLog readRobotLog(const std::string& path);
 
 /// The same from events in memory; `name` stands for the log in reports.
 RobotLog toRobotLog(const std::string& name, std::vector<LogEvent> events);
+
+/// The bus of one node that receives a log: the replay sets the time, and nothing is lost.
+/** The node's own messages are kept and delivered to nobody, so that it never receives its own
+ * past. */
+class LogBus : public Bus {
+ public:
+  explicit LogBus(int64_t boot_id) : now_(boot_id), boot_id_(boot_id) {}
+
+  int64_t now() const override { return knowsTime() ? now_ : start_->now(now_); }
+  int64_t bootId() const override { return boot_id_; }
+  void setNow(int64_t utime) { now_ = utime; }
+  /// Behaves like a process that has just started on a real host: the time is unknown until enough
+  /// messages agree on it.
+  void forgetTime() { start_.emplace(now_, LcmBus::kMaxJump); }
+  bool knowsTime() const { return !start_ || start_->started(); }
+
+  /// Hands an event to the node's handlers.
+  void hear(const LogEvent& event) {
+    const auto found = handlers_.find(event.channel);
+    if (found == handlers_.end()) return;
+    for (const RawHandler& handler : found->second)
+      deliver(handler, event.channel.c_str(), event.bytes.data(), event.bytes.size());
+  }
+  bool hears(const std::string& channel) const { return handlers_.count(channel) > 0; }
+  /// The channels that the node has subscribed to, sorted.
+  std::vector<std::string> heard() const {
+    std::vector<std::string> channels;
+    for (const auto& [channel, handlers] : handlers_) channels.push_back(channel);
+    return channels;
+  }
+
+  /// Messages published since the last call, at the time of publishing.
+  std::vector<LogEvent> takePublished() { return std::move(published_); }
+
+ protected:
+  bool send(const char* channel, const uint8_t* bytes, size_t size) override {
+    published_.push_back({now_, channel, {bytes, bytes + size}});
+    return true;
+  }
+  void listen(const char* channel, RawHandler handler) override {
+    handlers_[channel].push_back(std::move(handler));
+  }
+  bool onReceipt(int64_t utime) override { return knowsTime() || start_->observe(utime, now_); }
+
+ private:
+  int64_t now_;
+  int64_t boot_id_;
+  std::optional<FollowedTime> start_;
+  std::map<std::string, std::vector<RawHandler>> handlers_;
+  std::vector<LogEvent> published_;
+};
 
 }  // namespace tread::replay

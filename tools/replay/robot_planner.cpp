@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/replay/robot_planner.hpp"
+#include "tools/replay/robot_learner.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "modules/planner/planner_node.hpp"
-#include "tools/replay/log_bus.hpp"
 #include "tools/replay/replay_check.hpp"
+#include "tools/replay/robot_log.hpp"
 
 namespace tread::replay {
 namespace {

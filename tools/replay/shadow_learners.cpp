@@ -8,7 +8,7 @@
 
 #include "common/store/store.hpp"
 #include "modules/learner/learner_node.hpp"
-#include "tools/replay/log_bus.hpp"
+#include "tools/replay/robot_log.hpp"
 
 namespace tread::shadow {
 namespace {

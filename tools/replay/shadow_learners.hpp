@@ -11,7 +11,7 @@
 #include <tread/program_t.hpp>
 
 #include "common/log/drive_log.hpp"
-#include "modules/learner/learner_config.hpp"
+#include "modules/learner/learner_node.hpp"
 
 namespace tread::shadow {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/report/drive_picture.hpp"
+#include "tools/report/drive_report.hpp"
 
 #include <algorithm>
 #include <cmath>

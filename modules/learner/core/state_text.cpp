@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/learner/core/state_text.hpp"
+#include "modules/learner/core/learner.hpp"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstring>
 
-#include "tools/experiment/ground.hpp"
 #include "tools/experiment/trials.hpp"
 
 namespace {

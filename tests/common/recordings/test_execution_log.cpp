@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "common/recordings/csv_table.hpp"
-#include "common/recordings/execution_log.hpp"
+#include "common/recordings/recordings.hpp"
 #include "tests/common/recordings/synthetic_drives.hpp"
 #include "tools/replay/learner_replay.hpp"
 

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "common/recordings/twist_line.hpp"
+#include "common/recordings/sessions.hpp"
 
 using namespace tread;
 using namespace tread::recordings;

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "common/report/hash.hpp"
+#include "common/report/page.hpp"
 #include "common/report/text.hpp"
 #include "common/report/ticks.hpp"
 

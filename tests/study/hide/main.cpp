@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
-#include "common/report/hash.hpp"
+#include "common/report/page.hpp"
 #include "tests/study/hide/bad_log.hpp"
 #include "tests/study/hide/case_folder.hpp"
 #include "tests/study/hide/effect_list.hpp"

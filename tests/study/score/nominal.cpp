@@ -10,7 +10,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "common/report/hash.hpp"
+#include "common/report/page.hpp"
 #include "common/store/store.hpp"
 #include "tests/study/score/child.hpp"
 #include "tests/study/score/study.hpp"

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "common/report/hash.hpp"
+#include "common/report/page.hpp"
 #include "common/store/store.hpp"
 #include "tests/helpers.hpp"
 #include "tests/study/score/batch.hpp"

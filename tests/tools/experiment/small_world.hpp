@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "tools/experiment/batch.hpp"
-#include "tools/experiment/ground.hpp"
+#include "tools/experiment/tables.hpp"
+#include "tools/experiment/trials.hpp"
 
 namespace tread::experiment::testing {
 

@@ -8,7 +8,6 @@
 #include <catch2/catch.hpp>
 
 #include "tests/tools/experiment/small_world.hpp"
-#include "tools/experiment/batch.hpp"
 #include "tools/experiment/tables.hpp"
 
 namespace tread::experiment {

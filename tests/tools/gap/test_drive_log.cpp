@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "common/recordings/imported_log.hpp"
-#include "common/report/hash.hpp"
+#include "common/report/page.hpp"
 #include "common/store/store.hpp"
 #include "tests/tools/gap/small_log.hpp"
 #include "tests/tools/import/drive_samples.hpp"

@@ -14,7 +14,6 @@
 #include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
 #include "tests/helpers.hpp"
 #include "tests/tools/missions/shipped_robot.hpp"
-#include "tools/missions/mission_runner.hpp"
 #include "tools/missions/referee.hpp"
 #include "tools/missions/report.hpp"
 #include "tools/missions/robot_system.hpp"

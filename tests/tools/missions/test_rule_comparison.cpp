@@ -13,7 +13,6 @@
 
 #include "tests/helpers.hpp"
 #include "tests/tools/missions/shipped_robot.hpp"
-#include "tools/missions/mission_runner.hpp"
 #include "tools/missions/prediction_errors.hpp"
 #include "tools/missions/report.hpp"
 

@@ -16,7 +16,7 @@ namespace {
 
 const PatternSet& teodorPatterns() {
   static const PatternSet set =
-      readPatternFile(std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodorPatterns.yaml");
+      readPatternFile(std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor.yaml");
   return set;
 }
 

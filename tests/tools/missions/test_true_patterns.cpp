@@ -17,7 +17,6 @@
 #include "tools/missions/referee.hpp"
 #include "tools/missions/report.hpp"
 #include "tools/missions/robot_system.hpp"
-#include "tools/missions/true_patterns.hpp"
 
 using namespace tread;
 using namespace tread::missions;

@@ -17,9 +17,9 @@ inline Run run(const std::string& arguments) {
   return tread::samples::called("tread-patterns " + arguments);
 }
 
-inline const std::string kConfig = std::string(TREAD_SOURCE_DIR) + "/config/";
-inline const std::string kSet = kConfig + "patterns/teodor.yaml";
-inline const std::string kGrass = kConfig + "models/teodor_grass.yaml";
+inline const std::string kConfigFolder = std::string(TREAD_SOURCE_DIR) + "/config/";
+inline const std::string kSet = kConfigFolder + "patterns/teodor.yaml";
+inline const std::string kGrass = kConfigFolder + "models/teodor_grass.yaml";
 
 inline const PatternSet& shipped() {
   static const PatternSet set = readPatternFile(kSet);

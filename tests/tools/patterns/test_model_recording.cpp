@@ -17,11 +17,11 @@ using namespace tread::patterns;
 
 namespace {
 
-using kit::kConfig;
+using kit::kConfigFolder;
 using kit::shipped;
 
 ModelDocument grass() {
-  return readModelDocument(kConfig + "models/teodor_grass.yaml");
+  return readModelDocument(kConfigFolder + "models/teodor_grass.yaml");
 }
 
 bool same(const recordings::Execution& a, const recordings::Execution& b) {
@@ -68,7 +68,7 @@ TEST_CASE("The same seed records the same, another seed or surface does not") {
 }
 
 TEST_CASE("Patterns of one vehicle are not recorded on the model of another") {
-  const ModelDocument warthog = readModelDocument(kConfig + "models/warthog_nominal.yaml");
+  const ModelDocument warthog = readModelDocument(kConfigFolder + "models/warthog_nominal.yaml");
   CHECK_THROWS_WITH(recordModel(shipped(), warthog, "x", {}),
                     Catch::Contains("the patterns command power, the model takes track speed"));
 }

@@ -31,7 +31,7 @@ patterns:
 
 TEST_CASE("tread-patterns makes a file that it can show") {
   const Folder folder;
-  const Run made = run("make " + kConfig + "patterns/recipes/teodor.yaml --model " + kGrass +
+  const Run made = run("make " + kConfigFolder + "patterns/recipes/teodor.yaml --model " + kGrass +
                        " -o " + folder.path("set.yaml"));
   INFO(made.printed);
   CHECK(made.status == 0);
@@ -47,7 +47,7 @@ TEST_CASE("tread-patterns warns where patterns ask for more than a model was mad
   std::ofstream narrow(folder.path("narrow.yaml"));
   narrow << grass.rdbuf() << "envelope: {v: 1.2, omega: 1.5, v_omega: 2}\n";
   narrow.close();
-  const std::string recipe = kConfig + "patterns/recipes/teodor.yaml";
+  const std::string recipe = kConfigFolder + "patterns/recipes/teodor.yaml";
   const Run made = run("make " + recipe + " --model " + folder.path("narrow.yaml") + " -o " +
                        folder.path("set.yaml"));
   CHECK(made.status == 0);
@@ -63,7 +63,7 @@ TEST_CASE("tread-patterns warns where patterns ask for more than a model was mad
     CHECK(warned.says("narrow.yaml: warning: yaw rate up to"));
   }
   CHECK_FALSE(run("check " + kSet + " --model " + kGrass).says("asked for"));
-  const Run foreign = run("check " + kSet + " --model " + kConfig + "models/warthog_nominal.yaml");
+  const Run foreign = run("check " + kSet + " --model " + kConfigFolder + "models/warthog_nominal.yaml");
   CHECK(foreign.status == 2);
   CHECK(foreign.says("the model takes track speed"));
 }
@@ -73,7 +73,7 @@ TEST_CASE("tread-patterns says in one line what is wrong") {
   CHECK(missing.status == 2);
   CHECK(missing.printed.find("tread-patterns: no/such/file.yaml") == 0);
   CHECK(missing.printed.find('\n') == missing.printed.size() - 1);
-  const Run unwritable = run("make " + kConfig + "patterns/recipes/teodor.yaml --model " + kGrass +
+  const Run unwritable = run("make " + kConfigFolder + "patterns/recipes/teodor.yaml --model " + kGrass +
                              " -o /no/such/folder/set.yaml");
   CHECK(unwritable.status == 2);
   CHECK(unwritable.says("cannot be written"));
@@ -92,7 +92,7 @@ TEST_CASE("A wrong command line ends with code 2 and writes nothing") {
 
 TEST_CASE("Two sets are compared, and drawn into a picture") {
   const Folder folder;
-  REQUIRE(run("make " + kConfig + "patterns/recipes/teodor.yaml --model " + kGrass + " -o " +
+  REQUIRE(run("make " + kConfigFolder + "patterns/recipes/teodor.yaml --model " + kGrass + " -o " +
               folder.path("grass.yaml"))
               .status == 0);
   const Run shown = run("show " + kSet + " --compare " + folder.path("grass.yaml") + " --picture " +
@@ -184,7 +184,7 @@ TEST_CASE("check of two patterns with one id or one name names the second") {
 TEST_CASE("make, mirror and record give the same bytes again, record for the same seed only") {
   const Folder folder;
   for (const char* name : {"a.yaml", "b.yaml"})
-    REQUIRE(run("make " + kConfig + "patterns/recipes/teodor.yaml --model " + kGrass + " -o " +
+    REQUIRE(run("make " + kConfigFolder + "patterns/recipes/teodor.yaml --model " + kGrass + " -o " +
                 folder.path(name))
                 .status == 0);
   CHECK(folder.text("a.yaml") == folder.text("b.yaml"));

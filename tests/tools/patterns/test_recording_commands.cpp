@@ -65,7 +65,7 @@ TEST_CASE("Recording and averaging refuse what makes no sense with one line") {
                        folder.path("book/patterns.yaml"));
   CHECK(over.status == 2);
   CHECK(over.says("this is the input"));
-  REQUIRE(run("make " + kConfig + "patterns/recipes/teodor.yaml --model " + kGrass + " -o " +
+  REQUIRE(run("make " + kConfigFolder + "patterns/recipes/teodor.yaml --model " + kGrass + " -o " +
               folder.path("same.yaml"))
               .status == 0);
   CHECK(record(folder, "--surface lawn -n 2", folder.path("same.yaml")).status == 0);

@@ -20,7 +20,7 @@ using namespace tread;
 
 namespace {
 
-using patterns::kit::kConfig;
+using patterns::kit::kConfigFolder;
 using patterns::kit::shipped;
 
 std::set<std::string> reachableFrom(const std::string& first) {
@@ -47,9 +47,9 @@ double secondsHeldAtEnd(const MotionPattern& pattern) {
 
 TEST_CASE("The shipped patterns are what the recipe and the tarmac model make") {
   const PatternSet made =
-      patterns::makeSet(ConfigReader::fromFile(kConfig + "patterns/recipes/teodor.yaml"),
-                        readModelFile(kConfig + "models/teodor_tarmac.yaml"));
-  std::ifstream file(kConfig + "patterns/teodor.yaml");
+      patterns::makeSet(ConfigReader::fromFile(kConfigFolder + "patterns/recipes/teodor.yaml"),
+                        readModelFile(kConfigFolder + "models/teodor_tarmac.yaml"));
+  std::ifstream file(kConfigFolder + "patterns/teodor.yaml");
   std::ostringstream text;
   text << file.rdbuf();
   CHECK(formatPatterns(made) == text.str());

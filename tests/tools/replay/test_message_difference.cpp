@@ -8,7 +8,6 @@
 
 #include "common/messages/blank.hpp"
 #include "tests/tools/called_program.hpp"
-#include "tools/replay/recipe.hpp"
 #include "tools/replay/replay_check.hpp"
 
 using namespace tread;

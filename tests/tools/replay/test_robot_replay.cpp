@@ -10,10 +10,9 @@
 #include "modules/mapping/mapping_node.hpp"
 #include "modules/planner/planner_node.hpp"
 #include "tests/tools/replay/driven_log.hpp"
-#include "tools/replay/log_bus.hpp"
-#include "tools/replay/recipe.hpp"
+#include "tools/replay/replay_check.hpp"
 #include "tools/replay/robot_learner.hpp"
-#include "tools/replay/robot_planner.hpp"
+#include "tools/replay/robot_log.hpp"
 
 using namespace tread;
 using namespace tread::replay;

@@ -8,7 +8,7 @@
 
 #include <unistd.h>
 
-#include "tools/missions/mission_runner.hpp"
+#include "tools/missions/report.hpp"
 #include "tools/report/drive_report.hpp"
 
 using namespace tread;

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "common/report/chart.hpp"
 #include "common/report/page.hpp"
 #include "common/report/text.hpp"
 #include "common/vehicle/effects.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/learner/core/rules/bank.hpp"
+#include "modules/learner/core/rules/surface_bank.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,11 +3,146 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
-#include "modules/learner/core/rules/ground_model.hpp"
+#include <Eigen/Core>
+
+#include "common/pattern/pattern.hpp"
 #include "modules/learner/core/rules/learning_rule.hpp"
+#include "modules/learner/core/scaling.hpp"
 
 namespace tread::learner {
+
+/// What ground may do to the body twist of a pattern: corrections relative to the shipped
+/// prediction.
+/** With v, s, w the shipped forward, lateral and yaw velocity of a sample [m/s, m/s, rad/s]:
+ *    forward   v' = v (1 + f + r_x - tau |w|)
+ *    lateral   s' = s + kappa |v| w + (c + r_y) v
+ *    yaw       w' = w (1 + g + r_w + eta |v|) + b v
+ * f forward gain [1], g yaw gain [1], kappa sideslip [s], tau turn loss [s], eta yaw gain by speed
+ * [s/m], b yaw bias [rad/m], c crab [1] are common to all patterns; r_x, r_y, r_w [1] are the
+ * pattern's own. Linear in the ten, so that a mean twist is corrected exactly by a matrix; only
+ * predictions are kept within what ground can do (factors 0..3, lateral +-|v|, bias +-0.5 rad/m).
+ */
+struct TwistCorrection {
+  enum Index { kForward, kYaw, kSideslip, kTurnLoss, kYawBySpeed, kYawBias, kCrab, kCommon };
+  static constexpr int kOwn = 3;               ///< r_x, r_y, r_w, after the common ones
+  static constexpr int kAll = kCommon + kOwn;  ///< ten
+};
+using Correction10 = Eigen::Matrix<double, TwistCorrection::kAll, 1>;
+
+/// The body twists of a pattern's shipped prediction, sample by sample.
+/** A sample's twist is the constant one that leads from a pose to the next (SE(2) logarithm).
+ * Corrected profiles are integrated again exactly: in a sample of dt the pose moves by the chord
+ *    dt sinc(w' dt / 2) (v', s'),   turned by the yaw in the middle of the sample. */
+class TwistProfile {
+ public:
+  TwistProfile(const MotionPattern& shipped, double period);
+
+  /// R under a correction. Allocates nothing.
+  void integrate(const Correction10& correction, Trajectory prediction) const;
+  /// Its last pose alone.
+  Pose2 integrateEnd(const Correction10& correction) const;
+
+  /// Mean shipped twist (v, s, w).
+  const Eigen::Vector3d& mean() const { return mean_; }
+  /// Change of the mean twist per unit of each correction.
+  const Eigen::Matrix<double, 3, TwistCorrection::kAll>& meanResponse() const {
+    return mean_response_;
+  }
+  /// Change of the last pose (x, y, yaw) per unit of each correction, at the shipped prediction.
+  const Eigen::Matrix<double, 3, TwistCorrection::kAll>& endResponse() const {
+    return end_response_;
+  }
+  /// Change of the last pose per unit of a constant twist (v, s, w) added to all samples [s, m s].
+  const Eigen::Matrix3d& endLever() const { return end_lever_; }
+  double duration() const { return period_ * static_cast<double>(forward_.size()); }
+  /// Mean |v| and |w| along the pattern: how large it is, also where it goes there and back.
+  double meanSpeed() const { return mean_speed_; }
+  double meanTurn() const { return mean_turn_; }
+
+ private:
+  template <typename Put>
+  Pose2 walk(const Correction10& correction, Put&& put) const;
+  void measureResponses();
+
+  double period_;
+  std::vector<double> forward_, lateral_, yaw_;  ///< [m/s, m/s, rad/s] by sample
+  Eigen::Vector3d mean_;
+  Eigen::Matrix<double, 3, TwistCorrection::kAll> mean_response_;
+  Eigen::Matrix<double, 3, TwistCorrection::kAll> end_response_;
+  Eigen::Matrix3d end_lever_;
+  double mean_speed_ = 0.0;
+  double mean_turn_ = 0.0;
+};
+
+/// Mean body twist of a trajectory that begins in (0, 0, 0); allocates nothing.
+Eigen::Vector3d meanTwist(const ConstTrajectory& trajectory, double period);
+
+/// What is known before anything is measured: patterns as body twists, what one change of ground
+/// may do to them, and how exact one execution is. Immutable; filters share it.
+/** State x = (f, g, kappa, tau, eta, b, c, then r_x, r_y, r_w of each pattern); see
+ * TwistCorrection. D = 7 + 3 n. Residuals of different patterns are correlated by 0.1 k(i, j) + 0.7
+ * e(i, j) + 0.2 [i = j],   k = exp(-d(i, j)^2 / 2), d the distance of the patterns' mean (v, w)
+ * over 0.6 of the largest |v|, |w| in the set; e the same kernel made even (r_x, r_w) or odd (r_y)
+ * under mirroring w -> -w and brought to a unit diagonal: mirrored patterns are correlated by 0.7,
+ * neighbours by 0.8. */
+class GroundModel {
+ public:
+  GroundModel(const FilterConfig& config, const PatternSet& shipped);
+
+  size_t patterns() const { return profiles_.size(); }
+  Eigen::Index dimension() const { return dimension_; }
+  double period() const { return period_; }
+  const TwistProfile& profile(size_t pattern) const { return profiles_[pattern]; }
+
+  /// The ten corrections of a pattern out of a state.
+  Correction10 correctionOf(const Eigen::VectorXd& x, size_t pattern) const;
+  /// Their covariance out of the state's.
+  Eigen::Matrix<double, 10, 10> covarianceOf(const Eigen::MatrixXd& P, size_t pattern) const;
+  /// Predicted mean twist under a state: shipped mean + H x.
+  Eigen::Vector3d meanTwistUnder(const Eigen::VectorXd& x, size_t pattern) const;
+  /// P H' (D x 3), for the pattern's H.
+  void timesResponse(const Eigen::MatrixXd& P, size_t pattern,
+                     Eigen::Matrix<double, Eigen::Dynamic, 3>& result) const;
+  /// H A (3 x 3) of a D x 3 matrix.
+  Eigen::Matrix3d response(const Eigen::Matrix<double, Eigen::Dynamic, 3>& A, size_t pattern) const;
+
+  /// Q: covariance of what one change of ground does.
+  const Eigen::MatrixXd& changeCovariance() const { return change_; }
+  /// Q^-1.
+  const Eigen::MatrixXd& changeInformation() const { return change_information_; }
+  /// Q H' of a pattern.
+  const Eigen::Matrix<double, Eigen::Dynamic, 3>& changeResponse(size_t pattern) const {
+    return change_response_[pattern];
+  }
+  /// R: covariance of one execution's mean twist on unchanged ground.
+  /** Where the shipped set knows the spread of a pattern's end, half of it and half of what the
+   * configuration expects: other grounds may be rougher or smoother than the shipped one. */
+  const Eigen::Matrix3d& noise(size_t pattern) const { return noise_[pattern]; }
+  /// The same of its end pose (x, y, yaw).
+  const Eigen::Matrix3d& endNoise(size_t pattern) const { return end_noise_[pattern]; }
+  /// Position in the state of a pattern's own residuals.
+  static Eigen::Index ownAt(size_t pattern) {
+    return TwistCorrection::kCommon + 3 * static_cast<Eigen::Index>(pattern);
+  }
+
+ private:
+  void fillChangeCovariance(const FilterConfig& config);
+  void fillNoise(const FilterConfig& config, const PatternSet& shipped);
+
+  double period_;
+  Eigen::Index dimension_;
+  std::vector<TwistProfile> profiles_;
+  Eigen::MatrixXd change_;
+  Eigen::MatrixXd change_information_;
+  std::vector<Eigen::Matrix<double, Eigen::Dynamic, 3>> change_response_;
+  std::vector<Eigen::Matrix3d> noise_;
+  std::vector<Eigen::Matrix3d> end_noise_;
+};
+
+/// R with factors q on its variances: sqrt(q_i q_j) R_ij.
+Eigen::Matrix3d scaledNoise(const Eigen::Matrix3d& R, const Eigen::Vector3d& factors);
 
 /// Kalman filter of the ground's corrections, which may jump: two hypotheses a step, merged again.
 /** z = mean body twist of M, y = z - (shipped mean + H x), R the noise of an execution
@@ -79,9 +214,9 @@ Eigen::Vector3d plausible(const Eigen::Vector3d& twist);
 
 /// A hierarchical Kalman filter in body-twist space (own work).
 /** What the ground does to the executed pattern's mean body twist is split into corrections that
- * all patterns share (gains, sideslip, turn loss, ...: twist_profile.hpp) and the pattern's own
- * residual, in proportion to their covariances (ground_model.hpp), by a filter that expects jumps
- * (ground_filter.hpp). Predictions are the shipped twist profiles under the filter's mean,
+ * all patterns share (gains, sideslip, turn loss, ...: TwistCorrection) and the pattern's own
+ * residual, in proportion to their covariances (GroundModel), by a filter that expects jumps
+ * (GroundFilter). Predictions are the shipped twist profiles under the filter's mean,
  * integrated again; so a strong turn is corrected along its arc, which scaling x and y cannot do.
  * Covariance of an end pose [m2, m rad, rad2]: J P J' + that of one execution, J the response of
  * the end pose. It knows no driven trajectory by heart: shapes stay the shipped ones. */

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -10,10 +11,105 @@
 #include <vector>
 
 #include "common/pattern/pattern.hpp"
-#include "modules/learner/core/rules/rule_config.hpp"
 #include "modules/learner/core/scaling.hpp"
 
 namespace tread::learner {
+
+/// Noise of one execution on unchanged ground: standard deviations of its mean body twist.
+struct TwistNoise {
+  double forward = 0.03;      ///< [1] of |v_x|
+  double lateral = 0.03;      ///< [1] of v_y over |v_x|
+  double yaw = 0.08;          ///< [1] of |omega|
+  double floor_speed = 0.01;  ///< [m/s] added to the first two
+  double floor_yaw = 0.01;    ///< [rad/s] added to the third
+};
+
+/// Parameters of the local filter; the header of the rule has the equations.
+struct FilterConfig {
+  TwistNoise noise;           ///< expected where nothing was recorded
+  double recorded = 0.3;      ///< [1] share of the recorded spread of ends in the noise
+  double noise_factor = 1.2;  ///< [1] on the noise's standard deviations
+  double caution = 2.1;       ///< [1] the same once more on unknown ground: tails are heavy
+  double hazard = 0.05;       ///< [1] probability of a change of ground before an execution
+  /// Standard deviations of one change: forward gain [1], yaw gain [1], sideslip [s], turn loss
+  /// [s], yaw by speed [s/m], yaw bias [rad/m], crab [1].
+  std::array<double, 7> common{0.10, 0.20, 0.15, 0.15, 0.08, 0.02, 0.02};
+  /// Of a pattern's own residual: of v_x, of v_y over v_x, of omega [1].
+  std::array<double, 3> residual{0.08, 0.06, 0.12};
+  double common_factor = 0.7;  ///< [1] on `common`
+  double steady = 1.7;  ///< [1] covariance at the start, and in the long run unobserved, over Q
+  double drift = 0.01;  ///< [1] share by which P tends there before each execution
+};
+
+/// Parameters of the bank of remembered surfaces.
+struct BankConfig {
+  double hazard = 0.32;        ///< [1] probability that the surface changes before an execution
+  double unknown_prior = 0.5;  ///< [1] that the next one is not in the bank
+  int64_t settled_after = 10;  ///< executions without a change that make a block
+  double new_margin = 3.0;     ///< [1] of log density, by which a block must be likelier as new
+  int64_t capacity = 16;       ///< surfaces; the one that was met longest ago makes room
+};
+
+/// Name of a rule of learning: one of ruleNames().
+using Rule = std::string;
+
+/// The rule of learning and its guards.
+struct RuleConfig {
+  Rule rule = "bank";
+  double memory = 0.5;  ///< w of equation (2): weight of the OLD prediction, 0 <= w < 1
+  ScalingLimits scaling;
+  double sign_sigmas = 3.0;  ///< how far beyond the noise M and R must disagree in sign
+  FilterConfig filter;
+  BankConfig bank;
+};
+
+// The keys of learner.yaml, a section for each kind of rule. The reader is a ConfigReader; a core
+// does not know it by name.
+
+template <class Reader>
+void readScaling(Reader& reader, RuleConfig& rule) {
+  Reader section = reader.section("scaling");
+  ScalingLimits& limits = rule.scaling;
+  std::vector<double> box{limits.min_box[0], limits.min_box[1], limits.min_box[2]};
+  section.numbers("min_box", box, 3, {0.001, 1.0}, "m, m, rad");
+  limits.min_box = {box[0], box[1], box[2]};
+  section.number("min_box_sigmas", limits.min_box_sigmas, {0.0, 10.0}, "1");
+  section.number("min_turn", limits.min_turn, {0.0, 1.0}, "rad");
+  section.number("min_length", limits.min_length, {0.0, 1.0}, "m");
+  section.number("min_factor", limits.min_factor, {0.1, 1.0}, "1");
+  section.number("max_factor", limits.max_factor, {1.0, 10.0}, "1");
+  section.number("sign_sigmas", rule.sign_sigmas, {0.0, 10.0}, "1");
+}
+
+template <class Reader>
+void readFilter(Reader& reader, FilterConfig& filter) {
+  Reader section = reader.section("filter");
+  section.number("forward_noise", filter.noise.forward, {0.001, 1.0}, "1");
+  section.number("lateral_noise", filter.noise.lateral, {0.001, 1.0}, "1");
+  section.number("yaw_noise", filter.noise.yaw, {0.001, 1.0}, "1");
+  section.number("recorded", filter.recorded, {0.0, 1.0}, "1");
+  section.number("caution", filter.caution, {1.0, 10.0}, "1");
+  section.number("hazard", filter.hazard, {0.0, 0.9}, "1");
+  section.number("steady", filter.steady, {0.01, 10.0}, "1");
+  section.number("drift", filter.drift, {0.0, 0.5}, "1");
+}
+
+template <class Reader>
+void readBank(Reader& reader, BankConfig& bank) {
+  Reader section = reader.section("bank");
+  section.number("hazard", bank.hazard, {0.001, 0.9}, "1");
+  section.number("unknown_prior", bank.unknown_prior, {0.001, 1.0}, "1");
+  section.integer("settled_after", bank.settled_after, {3, 100}, "1");
+  section.number("new_margin", bank.new_margin, {0.0, 100.0}, "1");
+  section.integer("capacity", bank.capacity, {1, 64}, "1");
+}
+
+template <class Reader>
+void readRules(Reader& reader, RuleConfig& rule) {
+  readScaling(reader, rule);
+  readFilter(reader, rule.filter);
+  readBank(reader, rule.bank);
+}
 
 class SurfaceBank;
 
