@@ -2,12 +2,19 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <stdexcept>
+
 #include <CLI/CLI.hpp>
 
 // The subcommands of tread-patterns. Each adds itself to the program and does its work in its
 // callback, once the whole command line is read; what it throws ends the program with its one line
-// and 1.
+// and 2.
 namespace tread::patterns {
+
+/// A recording was interrupted, or the robot failed: exit code 1, as nothing given was wrong.
+struct RecordingStopped : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 CLI::App* addMake(CLI::App& app);
 CLI::App* addRecord(CLI::App& app);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <cstdio>
 
 #include "common/config/command_line.hpp"
 #include "tools/patterns/commands.hpp"
@@ -15,6 +16,11 @@ int main(int argc, char** argv) {
     tread::patterns::addShow(app);
     tread::patterns::addCheck(app);
     tread::patterns::addMirror(app);
-    return tread::parseCommandLine(app, argc, argv).value_or(0);
+    try {
+      return tread::parseCommandLine(app, argc, argv).value_or(0);
+    } catch (const tread::patterns::RecordingStopped& stopped) {
+      std::fprintf(stderr, "tread-patterns: %s\n", stopped.what());
+      return 1;
+    }
   });
 }

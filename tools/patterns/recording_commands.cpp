@@ -58,7 +58,7 @@ std::string keepPart(const std::string& path, const PatternSet& set,
 }
 
 /// Runs a RecorderNode over real LCM to its end and prints what it says; the executions by pattern.
-/** Throws std::runtime_error if it fails or is interrupted (SIGINT, SIGTERM, SIGHUP), after the
+/** Throws RecordingStopped if it fails or is interrupted (SIGINT, SIGTERM, SIGHUP), after the
  * robot was told to stop; what was recorded until then is written to `part`, in a folder that is
  * there, as far as it goes. */
 std::vector<std::vector<recordings::Execution>> recordLive(
@@ -72,8 +72,8 @@ std::vector<std::vector<recordings::Execution>> recordLive(
   bus.run(node, stop);
   if (recorder.state() == pattern_recorder::RecorderNode::State::kDone) return recorder.recorded();
   const bool failed = recorder.state() == pattern_recorder::RecorderNode::State::kFailed;
-  throw std::runtime_error((failed ? recorder.reason() : "interrupted, the robot was stopped") +
-                           keepPart(part, set, recorder));
+  throw RecordingStopped((failed ? recorder.reason() : "interrupted, the robot was stopped") +
+                         keepPart(part, set, recorder));
 }
 
 struct RecordOptions {
