@@ -44,11 +44,11 @@ struct LaunchSettings {
 std::string readLaunchName(const std::string& file);
 
 /// Reads a launch file; throws ConfigError with file:line.
-/** Keys: name, lcm_url, simulated, values (a map of own placeholders with their defaults) and
+/** Keys: name, lcm_url, simulated, values (further placeholders with their defaults) and
  * processes, a list of maps: name, program, config, arguments, foreign, stop_signal, stop_time.
  * Placeholders in program, config and arguments: {run}, {lcm_url}, {bin}, {here} (the file's
- * folder) and the own ones. Relative paths are taken from the file's folder; an own placeholder
- * that names a file or folder there stands for its absolute path. */
+ * folder) and those in `values`. Paths are relative to the file's folder. A value that names a file
+ * or folder there becomes its absolute path. */
 LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings);
 
 /// The words that start a process: ours get --config, --lcm-url and --with-parent, foreign ones
