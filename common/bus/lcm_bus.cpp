@@ -3,7 +3,6 @@
 #include "common/bus/lcm_bus.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <stdexcept>
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <thread>
 #include <vector>
 
 #include "common/config/scalars.hpp"
@@ -108,6 +109,13 @@ std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv) {
     return kBadInput;
   }
   return std::nullopt;
+}
+
+void addThreads(CLI::App& command, int& threads) {
+  threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  command.add_option("--threads", threads, "no influence on any byte")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
 }
 
 int runProgram(const char* name, const std::function<int()>& run) try {

@@ -22,6 +22,10 @@ std::string usageError(const CLI::App& app, const CLI::Error& error);
 /** Options of real numbers take finite ones only. */
 std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv);
 
+/// Adds --threads with as many as the machine has; `threads` must outlive the parsing. Only for
+/// what gives the same bytes with any number of them.
+void addThreads(CLI::App& command, int& threads);
+
 /// The exit code of `run`; kBadInput with one line "name: what it threw" on stderr if it throws.
 int runProgram(const char* name, const std::function<int()>& run);
 

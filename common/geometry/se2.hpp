@@ -101,4 +101,16 @@ inline Twist2 twistTo(const Pose2& T_start_end, double dt) {
           (-half * T_start_end.x + cot * T_start_end.y) / dt, T_start_end.yaw / dt};
 }
 
+/// A robot's rectangle in the body frame [m].
+struct FootprintSize {
+  double front = 0.0;       ///< from the body origin forward
+  double rear = 0.0;        ///< and backward
+  double half_width = 0.0;  ///< to both sides
+
+  constexpr double length() const { return front + rear; }
+  constexpr FootprintSize widened(double margin) const {
+    return {front + margin, rear + margin, half_width + margin};
+  }
+};
+
 }  // namespace tread

@@ -3,8 +3,6 @@
 #include "common/grid/footprint.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "common/geometry/footprint_size.hpp"
+#include "common/geometry/se2.hpp"
 #include "common/grid/grid.hpp"
 
 namespace tread {

@@ -2,14 +2,21 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <deque>
 #include <list>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include <tread/execution_t.hpp>
+#include <tread/motor_t.hpp>
 #include <tread/pattern_set_part_t.hpp>
+#include <tread/program_slot_t.hpp>
 
+#include "common/execution/execution_tracker.hpp"
 #include "common/pattern/pattern.hpp"
 
 namespace tread {
@@ -48,6 +55,67 @@ class PatternSetAssembler {
   int64_t last_version_ = 0;
   std::string refusal_;
   int64_t refused_ = 0;
+};
+
+BridgeReading readingFrom(const motor_t& message);
+/// Whether the permission to drive is there in this state of the motor bridge (motor_t::STATE_*).
+bool mayDrive(int16_t bridge_state);
+std::vector<ExecutionReading> readingsFrom(const execution_t& message);
+program_slot_t toMessage(const ProgramSlot& slot);
+
+/// The executions that are over and not yet learned from, in the order in which they ended.
+/** EXECUTION repeats the last eight, late, twice or in another order; each is given out exactly
+ * once. */
+class ExecutionQueue {
+ public:
+  /// Takes a message; executions that still run are left for a later one.
+  /** `now` [us]: what ends far behind it is a broken record. */
+  void add(const execution_t& message, int64_t now);
+
+  /// The one that ended first if it ended by `horizon` [us]; it counts as handled from now on.
+  std::optional<execution_record_t> takeEndedBy(int64_t horizon);
+
+  /// End of the one that would be next [us]; nothing if none waits.
+  std::optional<int64_t> nextEnd() const;
+
+  /// Keys of the executions handled last, oldest first.
+  std::vector<ExecutionKey> handled() const { return {order_.begin(), order_.end()}; }
+  /// Forgets nothing that a former life of this process has handled.
+  void remember(const std::vector<ExecutionKey>& handled);
+
+  /// Records that were dropped because nobody can tell what they mean.
+  int64_t invalid() const { return invalid_; }
+
+ private:
+  void noteHandled(const ExecutionKey& key);
+
+  std::map<std::tuple<int64_t, int64_t, int64_t>, execution_record_t>
+      waiting_;                     ///< by (ended, run, execution)
+  std::set<ExecutionKey> known_;    ///< waiting or handled
+  std::deque<ExecutionKey> order_;  ///< handled, oldest first
+  int64_t invalid_ = 0;
+};
+
+/// Remembers what the motors were given lately, so that R is compared with what its own commands
+/// did and no other.
+class CommandWatch {
+ public:
+  void add(const motor_t& motor);
+
+  /// The first command of an execution that differs from the pattern's, in words; empty if none was
+  /// seen.
+  std::string unexpectedCommand(const ExecutionKey& execution, const MotionPattern& pattern,
+                                CommandKind kind) const;
+
+ private:
+  struct Given {
+    ExecutionKey execution;
+    int32_t index;
+    int16_t kind;
+    double left;
+    double right;
+  };
+  std::deque<Given> given_;
 };
 
 }  // namespace tread

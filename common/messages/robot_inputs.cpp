@@ -8,6 +8,7 @@
 
 #include "common/messages/blank.hpp"
 #include "common/messages/ins_messages.hpp"
+#include "common/messages/pattern_messages.hpp"
 
 namespace tread {
 

@@ -11,9 +11,8 @@
 #include <tread/ins_t.hpp>
 #include <tread/program_t.hpp>
 
-#include "common/bus/health.hpp"
+#include "common/bus/bus.hpp"
 #include "common/execution/execution_tracker.hpp"
-#include "common/messages/execution_messages.hpp"
 
 namespace tread {
 

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
-#include <utility>
-#include <vector>
 
 namespace tread {
 namespace {

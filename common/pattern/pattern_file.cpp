@@ -11,7 +11,6 @@
 
 #include "common/config/config_reader.hpp"
 #include "common/config/scalars.hpp"
-#include "common/pattern/pattern.hpp"
 
 namespace tread {
 namespace {

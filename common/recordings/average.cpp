@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include <Eigen/Core>

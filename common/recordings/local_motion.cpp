@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "common/recordings/csv_table.hpp"
-#include "common/report/text.hpp"
 
 namespace tread::recordings {
 namespace {

@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/recordings/imported_log.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 

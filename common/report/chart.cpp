@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "common/report/text.hpp"
-#include "common/report/ticks.hpp"
 
 namespace tread::report {
 namespace {

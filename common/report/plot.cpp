@@ -8,7 +8,7 @@
 
 #include <cairo.h>
 
-#include "common/report/ticks.hpp"
+#include "common/report/text.hpp"
 
 namespace tread::report {
 

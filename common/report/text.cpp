@@ -162,4 +162,23 @@ std::string base64(const std::string& bytes) {
   return text;
 }
 
+double tickStep(double range, int pieces) {
+  const double rough = range / pieces;
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  for (const double factor : {1.0, 2.0, 5.0})
+    if (factor * power >= rough) return factor * power;
+  return 10.0 * power;
+}
+
+std::vector<double> ticks(double low, double high, double step) {
+  std::vector<double> all;
+  for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1.0)
+    all.push_back(k == 0.0 ? 0.0 : k * step);
+  return all;
+}
+
+std::string tickText(double value, double step) {
+  return fixed(value, std::clamp(static_cast<int>(-std::floor(std::log10(step) + 1e-9)), 0, 6));
+}
+
 }  // namespace tread

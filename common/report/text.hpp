@@ -33,6 +33,17 @@ std::string saidDistance(double distance);
 /// p values: "0.003", "below 0.001".
 std::string saidChance(double p_value);
 
+// Axes.
+
+/// A step of 1, 2 or 5 times a power of ten that cuts a range into about so many pieces.
+double tickStep(double range, int pieces);
+
+/// Whole multiples of a step within a range.
+std::vector<double> ticks(double low, double high, double step);
+
+/// The number beside a tick, with the decimals that its step needs.
+std::string tickText(double value, double step);
+
 // Sentences.
 
 /// The words with commas between them and `joint` before the last.

@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/vehicle/effects.hpp"
 
-#include <algorithm>
 #include <limits>
 #include <stdexcept>
 

@@ -9,7 +9,6 @@
 #include <Eigen/Core>
 
 #include "common/vehicle/effects.hpp"
-#include "common/vehicle/model.hpp"
 
 namespace tread {
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <stdexcept>
 
 namespace tread {
 namespace {

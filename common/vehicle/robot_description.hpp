@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "common/geometry/footprint_size.hpp"
+#include "common/geometry/se2.hpp"
 #include "common/geometry/se3.hpp"
 #include "common/pattern/pattern.hpp"
 

@@ -9,7 +9,6 @@
 #include <sstream>
 
 #include "common/messages/blank.hpp"
-#include "common/vehicle/robot_description.hpp"
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
 
 namespace tread::ins {

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "common/bus/bus.hpp"
-#include "common/bus/health.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/link/link.hpp"
 #include "common/store/store.hpp"

@@ -5,25 +5,19 @@
 #include "common/link/link.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"
 
-namespace {
-
-using namespace tread;
-
-ShellBody prepare(ConfigReader& reader) {
-  const ins::InsDriverConfig config = ins::readInsDriverConfig(reader);
-  parseLinkAddress(config.address);  // throws where it makes no sense
-  return [config](const std::string& lcm_url, const std::atomic<bool>& stop) {
-    LcmBus bus(lcm_url, TimeSource::kHost);
-    const std::unique_ptr<Link> link = makeLink(config.address);
-    FileStore store(config.store);
-    ins::InsDriverNode node(config, bus, *link, store);
-    bus.run(node, stop);
-  };
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
+  using namespace tread;
+  const auto prepare = [](ConfigReader& reader) -> ShellBody {
+    const ins::InsDriverConfig config = ins::readInsDriverConfig(reader);
+    parseLinkAddress(config.address);  // throws where it makes no sense
+    return [config](const std::string& lcm_url, const std::atomic<bool>& stop) {
+      LcmBus bus(lcm_url, TimeSource::kHost);
+      const std::unique_ptr<Link> link = makeLink(config.address);
+      FileStore store(config.store);
+      ins::InsDriverNode node(config, bus, *link, store);
+      bus.run(node, stop);
+    };
+  };
   return runShell(argc, argv, "tread-ins-driver", "Publishes INS from the INS on its line.",
                   prepare);
 }

@@ -4,16 +4,14 @@
 
 #include <deque>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "common/bus/bus.hpp"
-#include "common/bus/health.hpp"
 #include "common/config/config_reader.hpp"
-#include "common/messages/execution_messages.hpp"
 #include "common/messages/ins_messages.hpp"
+#include "common/messages/pattern_messages.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/store/store.hpp"
 #include "modules/learner/core/learner.hpp"

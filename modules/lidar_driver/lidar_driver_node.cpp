@@ -4,9 +4,7 @@
 
 #include <sstream>
 
-#include "common/config/config_reader.hpp"
 #include "common/messages/blank.hpp"
-#include "common/vehicle/robot_description.hpp"
 
 namespace tread::lidar {
 

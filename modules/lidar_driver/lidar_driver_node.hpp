@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "common/bus/health.hpp"
+#include "common/bus/bus.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/vehicle/robot_description.hpp"
 #include "modules/lidar_driver/core/range_scan.hpp"

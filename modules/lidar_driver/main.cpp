@@ -54,24 +54,23 @@ class GuardedSource : public ScanSource {
   bool& stuck_;
 };
 
-ShellBody prepare(ConfigReader& reader, bool& stuck) {
-  const LidarDriverConfig config = readLidarDriverConfig(reader);
-  const Device device = deviceNamed(config.device);
-  device.check_address(config.address);
-  return [config, device, &stuck](const std::string& lcm_url, const std::atomic<bool>& stop) {
-    LcmBus bus(lcm_url, TimeSource::kHost);
-    GuardedSource source(device.make(config), stuck);
-    LidarDriverNode node(config, bus, source);
-    bus.run(node, stop);
-  };
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   bool stuck = false;
-  const int code = runShell(argc, argv, "tread-lidar-driver", "Publishes SCAN from a range finder.",
-                            [&stuck](ConfigReader& reader) { return prepare(reader, stuck); });
+  const auto prepare = [&stuck](ConfigReader& reader) -> ShellBody {
+    const LidarDriverConfig config = readLidarDriverConfig(reader);
+    const Device device = deviceNamed(config.device);
+    device.check_address(config.address);
+    return [config, device, &stuck](const std::string& lcm_url, const std::atomic<bool>& stop) {
+      LcmBus bus(lcm_url, TimeSource::kHost);
+      GuardedSource source(device.make(config), stuck);
+      LidarDriverNode node(config, bus, source);
+      bus.run(node, stop);
+    };
+  };
+  const int code =
+      runShell(argc, argv, "tread-lidar-driver", "Publishes SCAN from a range finder.", prepare);
   if (stuck) std::_Exit(code);
   return code;
 }

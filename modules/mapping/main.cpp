@@ -4,22 +4,16 @@
 #include "common/bus/shell.hpp"
 #include "modules/mapping/mapping_node.hpp"
 
-namespace {
-
-using namespace tread;
-
-ShellBody prepare(ConfigReader& reader) {
-  const mapping::MappingConfig config = mapping::readMappingConfig(reader);
-  return [config](const std::string& lcm_url, const std::atomic<bool>& stop) {
-    LcmBus bus(lcm_url, TimeSource::kFollow);
-    mapping::MappingNode node(config, bus);
-    bus.run(node, stop);
-  };
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
+  using namespace tread;
+  const auto prepare = [](ConfigReader& reader) -> ShellBody {
+    const mapping::MappingConfig config = mapping::readMappingConfig(reader);
+    return [config](const std::string& lcm_url, const std::atomic<bool>& stop) {
+      LcmBus bus(lcm_url, TimeSource::kFollow);
+      mapping::MappingNode node(config, bus);
+      bus.run(node, stop);
+    };
+  };
   return runShell(argc, argv, "tread-mapping", "Makes MAP, the local grid, from SCAN and INS.",
                   prepare);
 }

@@ -9,7 +9,7 @@
 
 #include <tread/scan_t.hpp>
 
-#include "common/bus/health.hpp"
+#include "common/bus/bus.hpp"
 #include "common/config/config_reader.hpp"
 #include "modules/mapping/core/occupancy_map.hpp"
 #include "modules/mapping/core/spatial_track.hpp"

@@ -5,25 +5,19 @@
 #include "common/link/link.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 
-namespace {
-
-using namespace tread;
-using namespace tread::motor;
-
-ShellBody prepare(ConfigReader& reader) {
-  const MotorBridgeConfig config = readMotorBridgeConfig(reader);
-  parseLinkAddress(config.address);  // throws where it makes no sense
-  return [config](const std::string& lcm_url, const std::atomic<bool>& stop) {
-    LcmBus bus(lcm_url, TimeSource::kHost);
-    const std::unique_ptr<Link> link = makeLink(config.address);
-    MotorBridgeNode node(config, bus, *link);
-    bus.run(node, stop);
-  };
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
+  using namespace tread;
+  using namespace tread::motor;
+  const auto prepare = [](ConfigReader& reader) -> ShellBody {
+    const MotorBridgeConfig config = readMotorBridgeConfig(reader);
+    parseLinkAddress(config.address);  // throws where it makes no sense
+    return [config](const std::string& lcm_url, const std::atomic<bool>& stop) {
+      LcmBus bus(lcm_url, TimeSource::kHost);
+      const std::unique_ptr<Link> link = makeLink(config.address);
+      MotorBridgeNode node(config, bus, *link);
+      bus.run(node, stop);
+    };
+  };
   return runShell(argc, argv, "tread-motor-bridge",
                   "Plays PROGRAM on the motor controller and stops by itself.", prepare);
 }

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "common/messages/blank.hpp"
-#include "common/vehicle/robot_description.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
 
 namespace tread::motor {

@@ -12,7 +12,6 @@
 #include <tread/program_t.hpp>
 
 #include "common/bus/bus.hpp"
-#include "common/bus/health.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/link/link.hpp"
 #include "common/vehicle/robot_description.hpp"

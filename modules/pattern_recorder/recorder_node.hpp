@@ -3,13 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/execution/measurement.hpp"
-#include "common/messages/execution_messages.hpp"
 #include "common/messages/ins_messages.hpp"
+#include "common/messages/pattern_messages.hpp"
 #include "common/messages/robot_inputs.hpp"
 #include "common/recordings/recordings.hpp"
 #include "modules/pattern_recorder/core/recording_drive.hpp"
@@ -86,7 +85,7 @@ class RecorderNode : public Node {
   using State = RecordingDrive::State;
 
   /// `say` gets a line for everything worth telling. Throws std::runtime_error if the set cannot be
-  /// driven, see Tour.
+  /// driven, see ExcitationRun.
   RecorderNode(const PatternSet& set, const RecordingConfig& config, Bus& bus, Say say);
 
   int64_t period() const override { return 50'000; }

@@ -4,22 +4,16 @@
 #include "common/bus/shell.hpp"
 #include "modules/planner/planner_node.hpp"
 
-namespace {
-
-using namespace tread;
-
-ShellBody prepare(ConfigReader& reader) {
-  const planner::PlannerConfig config = planner::readPlannerConfig(reader);
-  return [config](const std::string& lcm_url, const std::atomic<bool>& stop) {
-    LcmBus bus(lcm_url, TimeSource::kFollow);
-    planner::PlannerNode node(config, bus);
-    bus.run(node, stop);
-  };
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
+  using namespace tread;
+  const auto prepare = [](ConfigReader& reader) -> ShellBody {
+    const planner::PlannerConfig config = planner::readPlannerConfig(reader);
+    return [config](const std::string& lcm_url, const std::atomic<bool>& stop) {
+      LcmBus bus(lcm_url, TimeSource::kFollow);
+      planner::PlannerNode node(config, bus);
+      bus.run(node, stop);
+    };
+  };
   return runShell(argc, argv, "tread-planner",
                   "Plans sequences of motion patterns to the goal and hands them to the motors.",
                   prepare);

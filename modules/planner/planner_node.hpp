@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include "common/bus/health.hpp"
+#include "common/bus/bus.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/messages/robot_inputs.hpp"

@@ -8,8 +8,6 @@
 
 #include <tread/health_t.hpp>
 
-#include "common/link/link.hpp"
-#include "common/vehicle/model_document.hpp"
 #include "modules/simulator/simulator_files.hpp"
 
 namespace tread::sim {

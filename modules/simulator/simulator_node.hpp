@@ -7,12 +7,11 @@
 #include <string>
 
 #include "common/bus/bus.hpp"
-#include "common/bus/health.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/link/link.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "modules/simulator/emulators/simulated_devices.hpp"
-#include "modules/simulator/truth_record.hpp"
+#include "modules/simulator/simulator_files.hpp"
 
 namespace tread::sim {
 

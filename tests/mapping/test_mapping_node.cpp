@@ -271,7 +271,7 @@ TEST_CASE("INS without pose, from the future or late is refused and counted") {
   REQUIRE(rig.at(4.05, 0.0) == kObstacle);
 }
 
-TEST_CASE("scans with foreign lengths, NaN or absurd numbers are refused with their reason") {
+TEST_CASE("scans with wrong lengths, NaN or absurd numbers are refused with their reason") {
   const std::vector<std::pair<std::function<void(scan_t&)>, std::string>> faults{
       {[](scan_t& s) { s.angle_step = kNan; }, "angles out of one turn"},
       {[](scan_t& s) { s.angle_step = 0.2; }, "angles out of one turn"},

@@ -209,7 +209,7 @@ TEST_CASE("dropped, duplicated and reordered programs: it drives on or stops, ne
   }
 }
 
-TEST_CASE("foreign and broken messages on its channels are counted and change nothing") {
+TEST_CASE("unexpected and broken messages on its channels are counted and change nothing") {
   NodeWorld world;
   world.drive();
   const std::vector<uint8_t> noise(100, 0x5a);

@@ -45,16 +45,16 @@ ExecutionReading record(int64_t id, int64_t started, Outcome outcome, int64_t ru
   return reading;
 }
 
-/// A book whose first pattern (1 s, execution 1) began at 10 s and whose next is execution 2.
+/// A tracker whose first pattern (1 s, execution 1) began at 10 s and whose next is execution 2.
 ExecutionTracker begun(const PatternSet& set) {
-  ExecutionTracker book(kRun);
-  book.begin(set, set.findByName("start")->id, 10 * kSecond);
-  book.setNext(set, set.findByName("straight")->id);
+  ExecutionTracker tracker(kRun);
+  tracker.begin(set, set.findByName("start")->id, 10 * kSecond);
+  tracker.setNext(set, set.findByName("straight")->id);
   PlannerInputs s = playing(10 * kSecond, 1);
   s.executions = {record(1, 10 * kSecond, Outcome::kRunning)};
-  REQUIRE(book.follow(s) == Event::kNone);
-  REQUIRE(book.confirmed());
-  return book;
+  REQUIRE(tracker.follow(s) == Event::kNone);
+  REQUIRE(tracker.confirmed());
+  return tracker;
 }
 
 }  // namespace
@@ -62,98 +62,98 @@ ExecutionTracker begun(const PatternSet& set) {
 TEST_CASE("Execution ids count up, and the same next pattern keeps its slot and its version") {
   const PatternSet set = samplePatterns(1);
   const PatternSet newer = samplePatterns(2);
-  ExecutionTracker book(kRun);
-  book.begin(set, 7, 0);
-  book.setNext(set, 1);
-  const int64_t first = book.next().execution_id;
-  CHECK(first > book.running().execution_id);
-  book.setNext(newer, 1);
-  CHECK(book.next().execution_id == first);
-  CHECK(book.next().set->version() == 1);
-  book.setNext(newer, 2);
-  CHECK(book.next().execution_id > first);
-  CHECK(book.next().set->version() == 2);
+  ExecutionTracker tracker(kRun);
+  tracker.begin(set, 7, 0);
+  tracker.setNext(set, 1);
+  const int64_t first = tracker.next().execution_id;
+  CHECK(first > tracker.running().execution_id);
+  tracker.setNext(newer, 1);
+  CHECK(tracker.next().execution_id == first);
+  CHECK(tracker.next().set->version() == 1);
+  tracker.setNext(newer, 2);
+  CHECK(tracker.next().execution_id > first);
+  CHECK(tracker.next().set->version() == 2);
 }
 
 TEST_CASE("The page is turned when MOTOR names the next execution") {
-  ExecutionTracker book = begun(samplePatterns());
-  CHECK(book.follow(playing(11 * kSecond - 5000, 2)) == Event::kSwitched);
-  CHECK(book.running().execution_id == 2);
-  CHECK(book.next().empty());
-  CHECK(book.started() == 11 * kSecond);
+  ExecutionTracker tracker = begun(samplePatterns());
+  CHECK(tracker.follow(playing(11 * kSecond - 5000, 2)) == Event::kSwitched);
+  CHECK(tracker.running().execution_id == 2);
+  CHECK(tracker.next().empty());
+  CHECK(tracker.started() == 11 * kSecond);
 }
 
 TEST_CASE("The page is turned by EXECUTION, with the exact time of the beginning") {
-  ExecutionTracker book = begun(samplePatterns());
+  ExecutionTracker tracker = begun(samplePatterns());
   PlannerInputs s = at(11 * kSecond + 20'000);
   s.executions = {record(1, 10 * kSecond, Outcome::kCompleted),
                   record(2, 11 * kSecond + 10'000, Outcome::kRunning)};
-  CHECK(book.follow(s) == Event::kSwitched);
-  CHECK(book.started() == 11 * kSecond + 10'000);
+  CHECK(tracker.follow(s) == Event::kSwitched);
+  CHECK(tracker.started() == 11 * kSecond + 10'000);
 }
 
 TEST_CASE("The page is turned by the clock where nothing is heard of the bridge") {
-  ExecutionTracker book = begun(samplePatterns());
-  CHECK(book.follow(at(11 * kSecond - 1)) == Event::kNone);
-  CHECK(book.follow(at(11 * kSecond)) == Event::kSwitched);
-  CHECK(book.running().execution_id == 2);
+  ExecutionTracker tracker = begun(samplePatterns());
+  CHECK(tracker.follow(at(11 * kSecond - 1)) == Event::kNone);
+  CHECK(tracker.follow(at(11 * kSecond)) == Event::kSwitched);
+  CHECK(tracker.running().execution_id == 2);
 }
 
 TEST_CASE("A next pattern that was replaced too late is what runs") {
   const PatternSet set = samplePatterns();
-  ExecutionTracker book = begun(set);
-  book.setNext(set, set.findByName("left")->id);  // execution 3, but the bridge plays 2 already
-  CHECK(book.follow(playing(11 * kSecond, 2)) == Event::kSwitched);
-  CHECK(book.running().execution_id == 2);
-  CHECK(book.running().pattern_id == set.findByName("straight")->id);
+  ExecutionTracker tracker = begun(set);
+  tracker.setNext(set, set.findByName("left")->id);  // execution 3, but the bridge plays 2 already
+  CHECK(tracker.follow(playing(11 * kSecond, 2)) == Event::kSwitched);
+  CHECK(tracker.running().execution_id == 2);
+  CHECK(tracker.running().pattern_id == set.findByName("straight")->id);
 }
 
 TEST_CASE("A series that ended without its next is an end, whatever the clock said") {
-  ExecutionTracker book = begun(samplePatterns());
-  REQUIRE(book.follow(at(11 * kSecond + 1)) == Event::kSwitched);
+  ExecutionTracker tracker = begun(samplePatterns());
+  REQUIRE(tracker.follow(at(11 * kSecond + 1)) == Event::kSwitched);
   PlannerInputs s = at(11 * kSecond + 50'000);
   s.executions = {record(1, 10 * kSecond, Outcome::kCompleted)};
-  CHECK(book.follow(s) == Event::kEnded);
-  CHECK(book.running().empty());
+  CHECK(tracker.follow(s) == Event::kEnded);
+  CHECK(tracker.running().empty());
 }
 
 TEST_CASE("An abort empties the program and keeps the reason") {
-  ExecutionTracker book = begun(samplePatterns());
+  ExecutionTracker tracker = begun(samplePatterns());
   PlannerInputs s = at(10 * kSecond + 500'000);
   s.executions = {record(1, 10 * kSecond, Outcome::kAborted)};
   s.executions.back().reason = "INS is stale";
-  CHECK(book.follow(s) == Event::kAborted);
-  CHECK(book.abortReason() == "INS is stale");
-  CHECK(book.running().empty());
-  CHECK(book.next().empty());
+  CHECK(tracker.follow(s) == Event::kAborted);
+  CHECK(tracker.abortReason() == "INS is stale");
+  CHECK(tracker.running().empty());
+  CHECK(tracker.next().empty());
 }
 
 TEST_CASE("Executions of another run concern nobody") {
-  ExecutionTracker book = begun(samplePatterns());
+  ExecutionTracker tracker = begun(samplePatterns());
   PlannerInputs s = at(10 * kSecond + 500'000);
   s.executions = {record(1, 10 * kSecond, Outcome::kAborted, kRun - 1)};
-  CHECK(book.follow(s) == Event::kNone);
+  CHECK(tracker.follow(s) == Event::kNone);
 }
 
 TEST_CASE("A pattern that the bridge does not begin within a second is taken back") {
   const PatternSet set = samplePatterns();
-  ExecutionTracker book(kRun);
-  book.begin(set, 7, 0);
-  CHECK(book.follow(at(900'000)) == Event::kNone);
-  CHECK(book.follow(at(1'100'000)) == Event::kNeverStarted);
-  CHECK(book.running().empty());
-  book.begin(set, 7, 2 * kSecond);
-  CHECK(book.running().execution_id == 2);
+  ExecutionTracker tracker(kRun);
+  tracker.begin(set, 7, 0);
+  CHECK(tracker.follow(at(900'000)) == Event::kNone);
+  CHECK(tracker.follow(at(1'100'000)) == Event::kNeverStarted);
+  CHECK(tracker.running().empty());
+  tracker.begin(set, 7, 2 * kSecond);
+  CHECK(tracker.running().execution_id == 2);
 }
 
 TEST_CASE("A standing bridge in the middle of a pattern means that it was aborted") {
-  ExecutionTracker book = begun(samplePatterns());
+  ExecutionTracker tracker = begun(samplePatterns());
   PlannerInputs s = at(10 * kSecond + 500'000);
   s.bridge = BridgeReading{};
   s.bridge->utime = s.now;
   s.bridge->state = BridgeReading::State::kDisarmed;
   s.bridge->reason = "no good PROGRAM within its lease";
-  CHECK(book.follow(s) == Event::kAborted);
+  CHECK(tracker.follow(s) == Event::kAborted);
 }
 
 TEST_CASE("Standing is told from the twist where it is measured, from the poses where not") {

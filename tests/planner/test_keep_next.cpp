@@ -21,8 +21,8 @@ int64_t keptBy(Rig& rig) {
 
 /// Id of what was handed over to follow the running pattern; 0 = nothing.
 int nextOf(Rig& rig) {
-  const ExecutionTracker& book = rig.supervisor().program();
-  return book.next().empty() ? 0 : book.next().pattern_id;
+  const ExecutionTracker& tracker = rig.supervisor().program();
+  return tracker.next().empty() ? 0 : tracker.next().pattern_id;
 }
 
 /// A door across the way with 6 cm of room on each side: enough for what is under way, too little

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "common/messages/execution_messages.hpp"
+#include "common/messages/pattern_messages.hpp"
 
 namespace tread::testing {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "modules/simulator/truth_record.hpp"
+#include "modules/simulator/simulator_files.hpp"
 
 namespace tread::testing {
 

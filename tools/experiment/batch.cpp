@@ -58,7 +58,7 @@ PatternRecordings recordingsOfFolder(const Request& request, Batch& batch) {
                                 "sessions.csv here");
   if (!fs::exists(folder / "patterns.yaml"))
     throw std::invalid_argument(request.recordings +
-                                ": neither sessions.csv (drives) nor patterns.yaml (a book of "
+                                ": neither sessions.csv (drives) nor patterns.yaml (pattern "
                                 "recordings) is there");
   return recordings::readRecordings(request.recordings);
 }
@@ -107,8 +107,7 @@ class Runner {
   void runFolder() {
     const Request& request = batch_.request;
     if (request.sets != 1 || request.length != 1)
-      throw std::invalid_argument(
-          "--books and --length need a --world, which can be recorded anew");
+      throw std::invalid_argument("--sets and --length need a --world, which can be recorded anew");
     batch_.source = "recordings " + fs::path(request.recordings).filename().string();
     const PatternRecordings recorded = recordingsOfFolder(request, batch_);
     chooseSequences(recorded.patterns, {{"left", "left", "right"}, {"right", "right", "left"}});

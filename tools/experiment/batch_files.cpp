@@ -191,8 +191,7 @@ void writeBatch(const std::string& folder, const Batch& batch) {
   for (const TableFile& file : tableFiles())
     writeText(path(std::string(file.name) + ".csv"), csvOf(tables, file));
   if (!watched.empty()) writeText(path("drift.csv"), csvOfDrift(batch.first, batch.settings));
-  if (batch.sets.size() > 1)
-    writeText(path("books.csv"), csvOfSets(batch.sets, batch.request.seed));
+  if (batch.sets.size() > 1) writeText(path("sets.csv"), csvOfSets(batch.sets, batch.request.seed));
   writeText(path("table1.txt"), textOfErrors(tables, batch.setting) + "\n" +
                                     textOfAgreement(tables, batch.setting, batch.sets));
   writeText(path("table2.txt"), textOfReductions(tables, batch.setting));

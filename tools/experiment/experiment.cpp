@@ -4,12 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include <atomic>
-#include <exception>
 #include <mutex>
-#include <thread>
 
+#include "common/parallel/parallel_for.hpp"
 #include "tools/experiment/trials.hpp"
 
 namespace tread::experiment {
@@ -231,41 +228,18 @@ std::optional<size_t> neverExecuted(const Ground& ground, const std::vector<Sequ
   return widest;
 }
 
-void runTasks(const std::vector<std::function<void()>>& tasks, int threads,
-              const Progress& progress) {
-  std::atomic<size_t> next{0};
-  std::mutex mutex;  // guards what follows
-  size_t done = 0;
-  std::exception_ptr error;
-  const auto work = [&] {
-    for (size_t i = next++; i < tasks.size(); i = next++) {
-      std::exception_ptr failure;
-      try {
-        tasks[i]();
-      } catch (...) {
-        failure = std::current_exception();
-      }
-      const std::lock_guard<std::mutex> lock(mutex);
-      if (failure) {
-        if (!error) error = failure;
-        next = tasks.size();
-        return;
-      }
-      ++done;
-      if (progress) progress(done, tasks.size());
-    }
-  };
-  std::vector<std::thread> helpers;
-  for (int i = 1; i < threads; ++i) helpers.emplace_back(work);
-  work();
-  for (std::thread& helper : helpers) helper.join();
-  if (error) std::rethrow_exception(error);
-}
-
 ExperimentErrors runExperiment(const std::vector<Ground>& grounds,
                                const ExperimentSettings& settings, const Progress& progress) {
   const Schedule schedule(grounds, settings);
-  runTasks(schedule.tasks(), settings.threads, progress);
+  const auto& tasks = schedule.tasks();
+  std::mutex mutex;  // guards what follows
+  size_t done = 0;
+  onThreads(settings.threads)(tasks.size(), [&](size_t i) {
+    tasks[i]();
+    const std::lock_guard<std::mutex> lock(mutex);
+    ++done;
+    if (progress) progress(done, tasks.size());
+  });
   return schedule.errors();
 }
 

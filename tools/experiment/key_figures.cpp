@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "common/report/text.hpp"
@@ -108,7 +107,7 @@ std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
       "test sequences.";
   if (sets.size() > 1)
     text += " Means and deviations over " + std::to_string(sets.size()) +
-            " books; of means: the worst of the\nmeans over the books.";
+            " sets of recordings; of means: the worst\nof the means over the sets.";
   text += "\n";
   for (const char* quantity : kQuantities) {
     text += "\n" + std::string(quantity) +

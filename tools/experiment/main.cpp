@@ -7,7 +7,6 @@
 #include <iostream>
 #include <string>
 #include <system_error>
-#include <thread>
 
 #include <CLI/CLI.hpp>
 
@@ -54,7 +53,7 @@ void define(CLI::App& command, Arguments& arguments) {
       ->check(CLI::Range(2, 100'000'000))
       ->capture_default_str();
   command
-      .add_option("--tour", request.excitation,
+      .add_option("--excitation", request.excitation,
                   "executions on each surface that the bank drives before a transition")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
@@ -62,10 +61,8 @@ void define(CLI::App& command, Arguments& arguments) {
       ->check(CLI::Range(0.0, 0.999))
       ->capture_default_str();
   command.add_option("--seed", request.seed, "of recordings and trials")->capture_default_str();
-  command.add_option("--threads", request.threads, "no influence on any number")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  command.add_option("--books", request.sets, "world: so many sets of recordings")
+  tread::addThreads(command, request.threads);
+  command.add_option("--sets", request.sets, "world: so many sets of recordings")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
   command.add_option("--length", request.length, "world: each command held so many times as long")
@@ -111,7 +108,6 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   Arguments arguments;
   arguments.request.rules = tread::experiment::methodNames();
-  arguments.request.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   CLI::App* transitions = app.add_subcommand(
       "transitions", "section V of the paper: what rules err after a change of surface");
   define(*transitions, arguments);

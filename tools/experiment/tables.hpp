@@ -57,10 +57,6 @@ using Progress = std::function<void(size_t done, size_t all)>;
 ExperimentErrors runExperiment(const std::vector<Ground>& grounds,
                                const ExperimentSettings& settings, const Progress& progress);
 
-/// Runs tasks on some threads; the first exception of one is thrown again here.
-void runTasks(const std::vector<std::function<void()>>& tasks, int threads,
-              const Progress& progress);
-
 inline constexpr const char* kPosition = "position";
 inline constexpr const char* kOrientation = "orientation";
 inline constexpr const char* kQuantities[] = {kPosition, kOrientation};

@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 
 #include <algorithm>
-#include <cmath>
 
 #include "common/report/text.hpp"
 #include "tools/experiment/tables.hpp"
@@ -123,7 +122,7 @@ std::string extremesLines(const std::vector<Tables>& sets) {
     fewest.position_signs = std::min(fewest.position_signs, one.position_signs);
     fewest.orientation_signs = std::min(fewest.orientation_signs, one.orientation_signs);
   }
-  std::string text = "Of single books at most:\n" + rmsLine(kPosition, most.position_rms) +
+  std::string text = "Of single sets at most:\n" + rmsLine(kPosition, most.position_rms) +
                      rmsLine(kOrientation, most.orientation_rms);
   if (most.cells > 0)
     text += "  signs: orientation " + std::to_string(fewest.orientation_signs) + " to " +
@@ -142,7 +141,7 @@ std::string spreadNote(const Tables& tables, const Setting& setting) {
       most = std::max(most, row.spread);
     }
   return "Means over " + std::to_string(setting.sets) +
-         " books of recordings; largest deviation of a cell from book to book: position " +
+         " sets of recordings; largest deviation of a cell from set to set: position " +
          formatted("%.4f", largest[0]) + ", orientation " + formatted("%.4f", largest[1]) + ".\n";
 }
 
@@ -212,7 +211,7 @@ std::string textOfErrors(const Tables& tables, const Setting& setting) {
 
 std::string textOfReductions(const Tables& tables, const Setting& setting) {
   std::string text = "TABLE II: error reductions in per cent";
-  text += setting.sets > 1 ? " (mean +- deviation from book to book" : " [paired 99 % interval";
+  text += setting.sets > 1 ? " (mean +- deviation from set to set" : " [paired 99 % interval";
   text += setting.sets > 1 ? ")" : "]";
   if (setting.paper_reference) text += " (the paper's; ? = doubtful)";
   text += "\n";

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "common/config/scalars.hpp"
-#include "common/log/drive_log.hpp"
 #include "common/report/page.hpp"
 #include "common/store/store.hpp"
 #include "modules/identification/core/log_validation.hpp"

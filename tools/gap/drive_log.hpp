@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "common/log/drive_log.hpp"
 #include "common/vehicle/model_document.hpp"

@@ -3,10 +3,9 @@
 #include "tools/gap/report/report.hpp"
 
 #include <algorithm>
-#include <sstream>
-#include <stdexcept>
 
 #include "common/config/scalars.hpp"
+#include "common/report/text.hpp"
 
 namespace tread::gap {
 namespace {

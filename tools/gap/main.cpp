@@ -7,7 +7,6 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "common/config/command_line.hpp"
@@ -18,7 +17,6 @@
 #include "modules/identification/core/discovery.hpp"
 #include "tools/gap/commands.hpp"
 #include "tools/gap/drive_log.hpp"
-#include "tools/gap/find_output.hpp"
 #include "tools/gap/questions.hpp"
 #include "tools/gap/report/report.hpp"
 
@@ -173,7 +171,10 @@ void addFind(CLI::App& app, int& status) {
       ->expected(-1);
   command->add_option("--by", options->by,
                       "who accepts or rejects; for the new model's provenance");
-  addSeedAndThreads(*command, options->seed, options->threads);
+  command->add_option("--seed", options->seed, "of the random draws of the tests")
+      ->capture_default_str()
+      ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));
+  addThreads(*command, options->threads);
   command->callback([options, &status] { status = find(*options); });
 }
 
@@ -194,7 +195,6 @@ void addExplain(CLI::App& app) {
 
 void addCompare(CLI::App& app, int& status) {
   const auto options = std::make_shared<CompareOptions>();
-  options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   CLI::App* command =
       app.add_subcommand("compare", "what changed from one log to another, yesterday and today");
   command->footer(
@@ -205,8 +205,7 @@ void addCompare(CLI::App& app, int& status) {
   command->add_option("SECOND", options->second, "log")->required();
   command->add_option("--model", options->model, "model file whose terms are fitted (YAML)")
       ->required();
-  command->add_option("--threads", options->threads, "no influence on any byte")
-      ->check(CLI::Range(1, 1024));
+  addThreads(*command, options->threads);
   command->callback([options, &status] { status = compare(*options); });
 }
 

@@ -122,7 +122,8 @@ void tellFound(const PlanOptions& options, const DesignTask& task, const Design&
       << "\n"
       << options.out << ": a pattern set. Record a log (tread-logger) while\n"
       << "  tread-patterns record " << options.out
-      << " --book plan_book --surface here --live -n 1 --room " << threeDigits(roomFor(set))
+      << " --recordings plan_recordings --surface here --live -n 1 --room "
+      << threeDigits(roomFor(set))
       << "\ndrives it, and give that log to tread-gap find with the old one (--train OLD NEW).\n";
 }
 

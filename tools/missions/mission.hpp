@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "common/geometry/footprint_size.hpp"
 #include "common/geometry/se2.hpp"
 #include "modules/simulator/core/world.hpp"
 #include "tools/replay/shadow_learners.hpp"

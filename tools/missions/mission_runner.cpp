@@ -2,15 +2,14 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/missions/report.hpp"
 
-#include <atomic>
 #include <chrono>
 #include <ctime>
 #include <iostream>
 #include <map>
 #include <mutex>
-#include <thread>
 
 #include "common/bus/virtual_bus.hpp"
+#include "common/parallel/parallel_for.hpp"
 #include "common/report/text.hpp"
 #include "tools/missions/referee.hpp"
 #include "tools/missions/robot_system.hpp"
@@ -56,31 +55,20 @@ class BatchRun {
     batch_.overrides = order_.overrides;
     batch_.results.resize(static_cast<size_t>(order_.missions));
     const auto started = std::chrono::steady_clock::now();
-    std::vector<std::thread> threads;
-    for (int i = 0; i < order_.threads; ++i) threads.emplace_back([this] { work(); });
-    for (std::thread& thread : threads) thread.join();
-    if (error_) std::rethrow_exception(error_);
+    onThreads(order_.threads)(batch_.results.size(), [this](size_t i) { driveOne(i); });
     batch_.wall_time =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return std::move(batch_);
   }
 
  private:
-  void work() {
-    try {
-      for (int i = next_++; i < order_.missions; i = next_++) {
-        MissionRun run = drive(order_.seed + static_cast<uint64_t>(i));
-        const std::lock_guard<std::mutex> lock(mutex_);
-        batch_.virtual_time += run.virtual_time;
-        batch_.cpu_time += run.cpu_time;
-        std::cout << lineOf(run.result) << '\n' << crossingsOf(run.result) << std::flush;
-        batch_.results[static_cast<size_t>(i)] = std::move(run.result);
-      }
-    } catch (...) {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      error_ = std::current_exception();
-      next_ = order_.missions;
-    }
+  void driveOne(size_t i) {
+    MissionRun run = drive(order_.seed + i);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    batch_.virtual_time += run.virtual_time;
+    batch_.cpu_time += run.cpu_time;
+    std::cout << lineOf(run.result) << '\n' << crossingsOf(run.result) << std::flush;
+    batch_.results[i] = std::move(run.result);
   }
 
   MissionRun drive(uint64_t seed) {
@@ -100,9 +88,7 @@ class BatchRun {
   const RobotConfig& robot_;
   const BatchOrder& order_;
   Batch batch_;
-  std::atomic<int> next_{0};
   std::mutex mutex_;
-  std::exception_ptr error_;
 };
 
 }  // namespace

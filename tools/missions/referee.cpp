@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/missions/referee.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "common/grid/footprint.hpp"

@@ -4,13 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
-#include <map>
 #include <ostream>
 
 #include "common/report/text.hpp"
 #include "common/store/store.hpp"
-#include "tools/missions/prediction_errors.hpp"
 
 namespace tread::missions {
 namespace {

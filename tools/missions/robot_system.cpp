@@ -11,9 +11,6 @@
 #include "common/config/config_reader.hpp"
 #include "common/config/scalars.hpp"
 #include "common/messages/blank.hpp"
-#include "modules/ins_driver/ins_driver_node.hpp"
-#include "modules/learner/learner_node.hpp"
-#include "modules/motor_bridge/motor_bridge_node.hpp"
 #include "modules/simulator/simulator_files.hpp"
 #include "modules/simulator/simulator_node.hpp"
 

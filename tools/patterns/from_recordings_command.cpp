@@ -26,14 +26,14 @@ struct Options {
   recordings::DriveRequest request;
   bool one_surface = false;
   std::string recipe;
-  std::string book;
+  std::string folder;
   std::string log;
   std::string from;
   std::string to;
   recordings::ExecutionLogRequest executions;
 };
 
-/// Surfaces of another book in the folder would be read as if they were of this one.
+/// Surfaces of other recordings in the folder would be read as if they were of these.
 void refuseOtherSurfaces(const std::string& folder, const DriveRecordings& drives) {
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none)) {
@@ -43,7 +43,7 @@ void refuseOtherSurfaces(const std::string& folder, const DriveRecordings& drive
                                   [&](const auto& surface) { return surface.surface == name; });
     if (!ours)
       throw RecordingError(entry.path().string() +
-                           ": a surface of another book; give an empty folder with -o");
+                           ": a surface of other recordings; give an empty folder with -o");
   }
 }
 
@@ -62,7 +62,7 @@ size_t surfaceCalled(const DriveRecordings& drives, const std::string& name,
   throw RecordingError(option + " '" + name + "': name one of the surfaces " + known);
 }
 
-/// The two surfaces of a log, as indices into the book.
+/// The two surfaces of a log, as indices into the recordings.
 struct Transition {
   size_t from = 0;
   size_t to = 0;
@@ -78,7 +78,7 @@ void writeLog(const Options& options, const DriveRecordings& drives, const Trans
     writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
   writer.flush();
   const std::string& known = drives.surfaces[from].surface;
-  const std::string shipped = (fs::path(options.book) / (known + ".yaml")).string();
+  const std::string shipped = (fs::path(options.folder) / (known + ".yaml")).string();
   std::printf(
       "\n%s: %d executions on %s, then %d on %s; its shipped set is %s. Try:\n"
       "  tread-replay learner %s --patterns %s\n",
@@ -87,11 +87,11 @@ void writeLog(const Options& options, const DriveRecordings& drives, const Trans
       options.log.c_str(), shipped.c_str());
 }
 
-void writeBook(const Options& options, const DriveRecordings& drives) {
-  refuseOtherSurfaces(options.book, drives);
-  recordings::writeRecordings(options.book, drives.recordings);
+void writeFolder(const Options& options, const DriveRecordings& drives) {
+  refuseOtherSurfaces(options.folder, drives);
+  recordings::writeRecordings(options.folder, drives.recordings);
   for (size_t i = 0; i < drives.surfaces.size(); ++i)
-    writeOutput((fs::path(options.book) / (drives.surfaces[i].surface + ".yaml")).string(),
+    writeOutput((fs::path(options.folder) / (drives.surfaces[i].surface + ".yaml")).string(),
                 formatPatterns(recordings::averagedSet(drives, i)), {options.recipe});
 }
 
@@ -107,10 +107,10 @@ void fromRecordings(const Options& options) {
   if (!options.log.empty())
     transition = {surfaceCalled(drives, options.from, "--from"),
                   surfaceCalled(drives, options.to, "--to")};
-  writeBook(options, drives);
+  writeFolder(options, drives);
   std::fputs(recordings::reportOf(drives).c_str(), stdout);
   std::printf("\n%s: patterns.yaml, recordings (SURFACE.csv) and averaged sets (SURFACE.yaml)\n",
-              options.book.c_str());
+              options.folder.c_str());
   if (!options.log.empty()) writeLog(options, drives, transition);
 }
 
@@ -148,8 +148,8 @@ CLI::App* addFromRecordings(CLI::App& app) {
       ->delimiter(',');
   command->add_option("--recipe", options->recipe,
                       "which patterns (YAML, see config/patterns/recipes/drive.yaml)");
-  command->add_flag("--one-surface", options->one_surface, "a book of a single surface will do");
-  command->add_option("-o,--output", options->book, "folder of recordings to write")->required();
+  command->add_flag("--one-surface", options->one_surface, "a single surface will do");
+  command->add_option("-o,--output", options->folder, "folder of recordings to write")->required();
   addLogOptions(*command, *options);
   command->callback([options] { fromRecordings(*options); });
   return command;

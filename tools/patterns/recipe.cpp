@@ -10,10 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/pattern/pattern.hpp"
 #include "common/report/text.hpp"
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/model.hpp"
 
 namespace tread::patterns {
 namespace {

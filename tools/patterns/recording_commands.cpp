@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // record and average: what is done with recordings.
-#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -78,7 +76,7 @@ std::vector<std::vector<recordings::Execution>> recordLive(
 
 struct RecordOptions {
   std::string patterns;
-  std::string book;
+  std::string folder;
   std::string surface;
   std::string model;
   bool live = false;
@@ -100,9 +98,9 @@ constexpr const char* kFooter =
 
 void record(const RecordOptions& options) {
   const PatternSet set = readPatternFile(options.patterns);
-  recordings::requireAddable(options.book, set, options.surface);
+  recordings::requireAddable(options.folder, set, options.surface);
   recordings::SurfaceRecordings surface{options.surface, {}};
-  const std::string part = options.book + "/" + options.surface + ".csv.part";
+  const std::string part = options.folder + "/" + options.surface + ".csv.part";
   if (options.live) {
     pattern_recorder::RecordingConfig how = options.live_how;
     how.executions = options.executions;
@@ -114,10 +112,10 @@ void record(const RecordOptions& options) {
     warnOutside(model, options.model, set);
     surface = recordModel(set, model, options.surface, how);
   }
-  const bool replaced = recordings::addSurface(options.book, set, surface);
+  const bool replaced = recordings::addSurface(options.folder, set, surface);
   std::error_code failure;
   if (options.live) std::filesystem::remove(part, failure);
-  std::cout << options.book << "/" << options.surface << ".csv: " << options.executions
+  std::cout << options.folder << "/" << options.surface << ".csv: " << options.executions
             << " executions of each of " << set.patterns().size() << " patterns"
             << (replaced ? ", in the place of what was there" : "") << std::endl;
 }
@@ -154,21 +152,21 @@ using recordings::PatternRecordings;
 using recordings::SurfaceRecordings;
 
 struct AverageOptions {
-  std::string book;
+  std::string folder;
   std::string surface;
   std::string output;
   std::string name;
   AverageLimits limits;
 };
 
-const SurfaceRecordings& surfaceNamed(const PatternRecordings& book,
+const SurfaceRecordings& surfaceNamed(const PatternRecordings& recorded,
                                       const AverageOptions& options) {
   std::string names;
-  for (const SurfaceRecordings& surface : book.surfaces) {
+  for (const SurfaceRecordings& surface : recorded.surfaces) {
     if (surface.surface == options.surface) return surface;
     names += (names.empty() ? "" : ", ") + surface.surface;
   }
-  throw recordings::RecordingError(options.book + ": no surface '" + options.surface +
+  throw recordings::RecordingError(options.folder + ": no surface '" + options.surface +
                                    "'; recorded are " + names);
 }
 
@@ -190,15 +188,17 @@ PatternSet named(const PatternSet& set, const std::string& name) {
 }
 
 void average(const AverageOptions& options) {
-  const PatternRecordings book = recordings::readRecordings(options.book);
-  const SurfaceRecordings& surface = surfaceNamed(book, options);
+  const PatternRecordings recorded = recordings::readRecordings(options.folder);
+  const SurfaceRecordings& surface = surfaceNamed(recorded, options);
   std::vector<AverageNote> notes;
-  const PatternSet averaged = recordings::averageSet(book.patterns, surface, options.limits, notes);
-  const std::string name =
-      options.name.empty() ? book.patterns.content().name + "_" + options.surface : options.name;
+  const PatternSet averaged =
+      recordings::averageSet(recorded.patterns, surface, options.limits, notes);
+  const std::string name = options.name.empty()
+                               ? recorded.patterns.content().name + "_" + options.surface
+                               : options.name;
   const PatternSet set = named(averaged, name);
   writeOutput(options.output, formatPatterns(set),
-              {options.book + "/patterns.yaml", options.book + "/" + options.surface + ".csv"});
+              {options.folder + "/patterns.yaml", options.folder + "/" + options.surface + ".csv"});
   for (const AverageNote& note : notes) std::cout << noteLine(note);
   std::cout << table(set);
 }
@@ -207,11 +207,13 @@ void average(const AverageOptions& options) {
 
 CLI::App* addRecord(CLI::App& app) {
   const auto options = std::make_shared<RecordOptions>();
-  CLI::App* command = app.add_subcommand(
-      "record", "execute each pattern many times and store what it did as a surface of a book");
+  CLI::App* command = app.add_subcommand("record",
+                                         "execute each pattern many times and store what it did as "
+                                         "a surface of a folder of recordings");
   command->footer(kFooter);
   command->add_option("PATTERNS", options->patterns, "pattern file (YAML)")->required();
-  command->add_option("--book", options->book, "folder of recordings; made if needed")->required();
+  command->add_option("--recordings", options->folder, "folder of recordings; made if needed")
+      ->required();
   command->add_option("--surface", options->surface, "name of the surface, replaced if recorded")
       ->required();
   CLI::Option_group* source = command->add_option_group("source", "who executes, one of");
@@ -231,8 +233,8 @@ CLI::App* addAverage(CLI::App& app) {
   const auto options = std::make_shared<AverageOptions>();
   CLI::App* command = app.add_subcommand(
       "average", "average the recordings of one surface: the set that is right there");
-  command->add_option("BOOK", options->book, "folder of recordings")->required();
-  command->add_option("SURFACE", options->surface, "surface, a SURFACE.csv of the book")
+  command->add_option("RECORDINGS", options->folder, "folder of recordings")->required();
+  command->add_option("SURFACE", options->surface, "surface, a SURFACE.csv of the folder")
       ->required();
   command->add_option("-o,--output", options->output, "pattern file to write")->required();
   command->add_option("--name", options->name, "name of the set (default: SET_SURFACE)");

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "common/config/config_reader.hpp"
-#include "common/config/scalars.hpp"
 #include "tools/plan/tokenizer.hpp"
 
 namespace tread::plan {

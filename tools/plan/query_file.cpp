@@ -3,7 +3,6 @@
 #include "tools/plan/map_file.hpp"
 
 #include <array>
-#include <cmath>
 #include <random>
 #include <stdexcept>
 

@@ -14,7 +14,6 @@
 #include "common/grid/footprint.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/store.hpp"
-#include "tools/plan/map_file.hpp"
 
 namespace tread::plan {
 namespace {

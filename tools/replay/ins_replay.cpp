@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/replay/ins_replay.hpp"
+#include "tools/replay/sensor_replay.hpp"
 
 #include <algorithm>
 #include <iomanip>
@@ -10,7 +10,6 @@
 #include "common/messages/ins_messages.hpp"
 #include "common/report/plot.hpp"
 #include "common/store/store.hpp"
-#include "modules/ins_driver/ins_driver_node.hpp"
 #include "modules/ins_driver/nmea/nmea_framer.hpp"
 
 namespace tread {

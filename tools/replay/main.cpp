@@ -10,11 +10,9 @@
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/store.hpp"
 #include "common/vehicle/model_document.hpp"
-#include "tools/replay/ins_replay.hpp"
 #include "tools/replay/learner_replay.hpp"
-#include "tools/replay/mapping_replay.hpp"
-#include "tools/replay/replay_check.hpp"
-#include "tools/replay/robot_learner.hpp"
+#include "tools/replay/robot_replay.hpp"
+#include "tools/replay/sensor_replay.hpp"
 
 using namespace tread;
 

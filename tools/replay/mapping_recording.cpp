@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/replay/mapping_replay.hpp"
+#include "tools/replay/sensor_replay.hpp"
 
 #include <zlib.h>
 

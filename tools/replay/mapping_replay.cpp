@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/replay/mapping_replay.hpp"
+#include "tools/replay/sensor_replay.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iomanip>
 #include <sstream>
 
 #include "common/bus/virtual_bus.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/report/plot.hpp"
-#include "modules/mapping/mapping_node.hpp"
 
 namespace tread {
 namespace {

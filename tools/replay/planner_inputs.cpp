@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/replay/robot_learner.hpp"
+#include "tools/replay/robot_replay.hpp"
 
 #include <algorithm>
 #include <cstdlib>

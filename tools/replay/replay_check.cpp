@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/replay/replay_check.hpp"
+#include "tools/replay/robot_replay.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <iterator>
-#include <map>
-#include <set>
 #include <type_traits>
 
-#include "common/bus/channels.hpp"
 #include "common/config/scalars.hpp"
 
 namespace tread::replay {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/replay/robot_learner.hpp"
+#include "tools/replay/robot_replay.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <sstream>
@@ -11,9 +10,6 @@
 #include "common/messages/pattern_messages.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/store.hpp"
-#include "modules/learner/learner_node.hpp"
-#include "tools/replay/replay_check.hpp"
-#include "tools/replay/robot_log.hpp"
 
 namespace tread::replay {
 namespace {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "common/messages/pattern_messages.hpp"
-#include "tools/replay/robot_learner.hpp"
+#include "tools/replay/robot_replay.hpp"
 
 namespace tread::replay {
 namespace {

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "common/store/store.hpp"
-#include "modules/learner/learner_node.hpp"
 #include "tools/replay/robot_log.hpp"
 
 namespace tread::shadow {

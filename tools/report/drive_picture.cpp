@@ -111,7 +111,7 @@ void drawTrack(Panel& panel, const DriveScene& scene) {
 void drawWay(Picture& picture, const DriveScene& scene) {
   const Bounds bounds = boundsOf(scene);
   Panel panel(picture, {60, 70, 760, 640},
-              {"the way", "x [m]", "y [m]", bounds.low.x(), bounds.high.x(), bounds.low.y(),
+              {"track", "x [m]", "y [m]", bounds.low.x(), bounds.high.x(), bounds.low.y(),
                bounds.high.y(), true});
   drawSurfaces(panel, scene, bounds);
   drawObstacles(panel, scene);
@@ -123,7 +123,7 @@ void drawWay(Picture& picture, const DriveScene& scene) {
   for (const Vector2d& contact : scene.contacts) panel.dot(contact, kPink, 6.0);
   if (!scene.contacts.empty()) panel.legendEntry({kPink, 6.0, false, "contact"});
   if (!scene.tree.empty()) {
-    panel.legendEntry({kOrange, 2.5, false, "a plan on the way"});
+    panel.legendEntry({kOrange, 2.5, false, "a plan underway"});
     panel.legendEntry({kSkyBlue, 1.0, false, "its tree"});
   }
   panel.legendEntry({kGreen, 6.0, false, "start"});

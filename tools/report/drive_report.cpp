@@ -9,8 +9,8 @@
 
 #include "common/config/config_reader.hpp"
 #include "common/log/drive_log.hpp"
-#include "common/messages/execution_messages.hpp"
 #include "common/messages/ins_messages.hpp"
+#include "common/messages/pattern_messages.hpp"
 #include "common/report/text.hpp"
 #include "common/vehicle/robot_description.hpp"
 

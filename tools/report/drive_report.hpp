@@ -10,12 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "common/geometry/footprint_size.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/grid/grid.hpp"
 #include "common/log/event_log.hpp"
 #include "modules/simulator/core/world.hpp"
-#include "modules/simulator/truth_record.hpp"
+#include "modules/simulator/simulator_files.hpp"
 #include "tools/replay/shadow_learners.hpp"
 
 namespace tread {

@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "common/report/text.hpp"
-#include "tools/replay/robot_learner.hpp"
 #include "tools/replay/robot_log.hpp"
+#include "tools/replay/robot_replay.hpp"
 
 namespace tread::report {
 namespace {

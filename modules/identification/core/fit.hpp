@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "common/parallel/parallel_for.hpp"
 #include "modules/identification/core/observations.hpp"
 
 namespace tread::gap {
@@ -43,15 +44,6 @@ struct FitState {
   Eigen::MatrixXd jacobian;   ///< rows x free: change of the prediction; may be of earlier values
   double loss = 0.0;          ///< of the rows that count, with what is known beforehand [nats]
 };
-
-/// Runs body(0) .. body(count - 1), possibly at the same time; results must not depend on the
-/// order.
-using ParallelFor = std::function<void(size_t count, const std::function<void(size_t)>& body)>;
-
-/// One after the other.
-inline void serialFor(size_t count, const std::function<void(size_t)>& body) {
-  for (size_t i = 0; i < count; ++i) body(i);
-}
 
 /// Fits models to rows by iterated, damped least squares within bounds.
 class Fitter {

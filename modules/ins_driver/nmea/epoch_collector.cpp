@@ -4,8 +4,6 @@
 
 #include <tuple>
 
-#include "modules/ins_driver/nmea/nmea_parser.hpp"
-
 namespace tread::ins {
 namespace {
 

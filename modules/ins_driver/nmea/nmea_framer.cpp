@@ -6,7 +6,6 @@
 #include <array>
 
 #include "modules/ins_driver/nmea/epoch_collector.hpp"
-#include "modules/ins_driver/nmea/nmea_parser.hpp"
 
 namespace tread::ins {
 namespace {

@@ -3,7 +3,6 @@
 #include "modules/learner/core/learner.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tread::learner {
 namespace {

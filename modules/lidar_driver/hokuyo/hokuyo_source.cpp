@@ -12,7 +12,6 @@
 #include <mrpt/hwdrivers/CHokuyoURG.h>
 
 #include "common/bus/host_clock.hpp"
-#include "common/link/link.hpp"
 
 namespace tread::lidar {
 namespace {

@@ -8,7 +8,6 @@
 #include <tuple>
 
 #include "common/geometry/se3.hpp"
-#include "modules/mapping/core/voxel_map.hpp"
 
 namespace tread::mapping {
 namespace {

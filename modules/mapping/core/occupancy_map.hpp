@@ -9,7 +9,7 @@
 
 #include <Eigen/Geometry>
 
-#include "common/geometry/footprint_size.hpp"
+#include "common/geometry/se2.hpp"
 #include "common/grid/footprint.hpp"
 #include "common/grid/grid.hpp"
 #include "modules/mapping/core/voxel_map.hpp"

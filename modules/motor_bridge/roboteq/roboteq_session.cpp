@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "modules/motor_bridge/core/program.hpp"
+
 namespace tread::motor {
 namespace {
 

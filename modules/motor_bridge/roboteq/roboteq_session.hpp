@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "modules/motor_bridge/core/motor_controller.hpp"
-#include "modules/motor_bridge/core/program.hpp"
 
 namespace tread::motor {
 

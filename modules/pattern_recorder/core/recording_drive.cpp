@@ -44,8 +44,8 @@ std::string placeOf(const Pose2& pose) {
 }  // namespace
 
 /// Depth-first search over chains, deeper and deeper; keeps the first pattern of the best one.
-struct Tour::Search {
-  const Tour& tour;
+struct ExcitationRun::Search {
+  const ExcitationRun& excitation;
   std::vector<int> needed;
   double most_needed;
   double limit;  // [m] for the place where it would stand
@@ -53,8 +53,8 @@ struct Tour::Search {
   double best_value = -std::numeric_limits<double>::infinity();
   std::optional<size_t> best_first;
 
-  Search(const Tour& of, const std::vector<int>& still_needed, double stands_within)
-      : tour(of),
+  Search(const ExcitationRun& of, const std::vector<int>& still_needed, double stands_within)
+      : excitation(of),
         needed(still_needed),
         most_needed(*std::max_element(needed.begin(), needed.end())),
         limit(stands_within) {}
@@ -73,10 +73,10 @@ struct Tour::Search {
 
   void extend(size_t motion_class, const Pose2& T_home_body, int depth, double value, double share,
               std::optional<size_t> first) {
-    for (const Step& step : tour.steps_[motion_class]) {
+    for (const Step& step : excitation.steps_[motion_class]) {
       if (++expansions >= kMaxExpansions) return;
       const Pose2 T_home_end = T_home_body * step.T_start_end;
-      if (distance(T_home_end * tour.ways_[step.to].T_start_end) > limit) continue;
+      if (distance(T_home_end * excitation.ways_[step.to].T_start_end) > limit) continue;
       const double gained = value - kTimeCost * step.duration + share * gain(step.pattern);
       const size_t chain_first = first.value_or(step.pattern);
       note(gained - kFarCost * std::pow(distance(T_home_end) / limit, 2), chain_first);
@@ -99,7 +99,7 @@ struct Tour::Search {
   }
 };
 
-Tour::Tour(const PatternSet& set, double room) : room_(room) {
+ExcitationRun::ExcitationRun(const PatternSet& set, double room) : room_(room) {
   const std::vector<MotionClass>& classes = set.content().classes;
   standing_ = classes.size();
   for (size_t c = 0; c < classes.size(); ++c) {
@@ -120,13 +120,13 @@ Tour::Tour(const PatternSet& set, double room) : room_(room) {
   requireConnected(set);
 }
 
-size_t Tour::classIndex(const std::string& name) const {
+size_t ExcitationRun::classIndex(const std::string& name) const {
   const auto found = std::find(class_names_.begin(), class_names_.end(), name);
   return static_cast<size_t>(found - class_names_.begin());
 }
 
 /// Bellman and Ford: patterns are few.
-void Tour::findWays() {
+void ExcitationRun::findWays() {
   ways_.assign(class_names_.size(), {});
   ways_[standing_].duration = 0.0;
   for (size_t round = 0; round < class_names_.size(); ++round)
@@ -140,7 +140,7 @@ void Tour::findWays() {
       }
 }
 
-void Tour::requireConnected(const PatternSet& set) const {
+void ExcitationRun::requireConnected(const PatternSet& set) const {
   const std::set<std::string> reached = connectedClasses(set, {standing()}, false);
   for (size_t c = 0; c < class_names_.size(); ++c) {
     const std::string which =
@@ -154,8 +154,8 @@ void Tour::requireConnected(const PatternSet& set) const {
   }
 }
 
-std::optional<size_t> Tour::next(const std::string& motion_class, const Pose2& T_home_body,
-                                 const std::vector<int>& needed) const {
+std::optional<size_t> ExcitationRun::next(const std::string& motion_class, const Pose2& T_home_body,
+                                          const std::vector<int>& needed) const {
   const size_t from = classIndex(motion_class);
   if (*std::max_element(needed.begin(), needed.end()) <= 0) return ways_[from].first;
   // Where it is too far away already, no pattern may lead farther.
@@ -169,7 +169,7 @@ RecordingDrive::RecordingDrive(const PatternSet& set, double room, int64_t run_i
     : set_(set),
       room_(room),
       say_(std::move(say)),
-      tour_(set, kPlannedShare * room),
+      excitation_(set, kPlannedShare * room),
       tracker_(run_id) {}
 
 void RecordingDrive::step(const RobotReadings& readings, const RecordingProgress& progress,
@@ -251,7 +251,7 @@ void RecordingDrive::begin(const RobotReadings& readings, const std::vector<int>
   if (*std::max_element(open.begin(), open.end()) <= 0) return;
   if (!T_map_home_) T_map_home_ = readings.pose->T_map_body;
   const std::optional<size_t> pattern =
-      tour_.next(tour_.standing(), fromHome(readings.pose->T_map_body), open);
+      excitation_.next(excitation_.standing(), fromHome(readings.pose->T_map_body), open);
   if (!pattern)
     return setReason("no pattern fits into the room from here: drive it back to where it began " +
                      placeOf(*T_map_home_));
@@ -265,8 +265,8 @@ void RecordingDrive::appendNext(const RobotReadings& readings, const std::vector
   if (!tracker_.confirmed() || !tracker_.next().empty() || tracker_.ends() - readings.now > kLead)
     return;
   const std::vector<int> open = needed(missing);
-  const std::optional<size_t> pattern = tour_.next(tracker_.running().pattern().exit_class,
-                                                   fromHome(predictedEnd(*readings.pose)), open);
+  const std::optional<size_t> pattern = excitation_.next(
+      tracker_.running().pattern().exit_class, fromHome(predictedEnd(*readings.pose)), open);
   if (!pattern || !gains(open[*pattern] > 0)) return;
   tracker_.setNext(set_, set_.patterns()[*pattern].id);
   under_way_[tracker_.next().execution_id] = *pattern;

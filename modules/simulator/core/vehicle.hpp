@@ -5,7 +5,6 @@
 #include <array>
 #include <string>
 
-#include "common/geometry/footprint_size.hpp"
 #include "common/geometry/se2.hpp"
 #include "modules/simulator/core/terrain.hpp"
 

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <thread>
 
-#include "common/bus/health.hpp"
+#include "common/bus/bus.hpp"
 #include "common/bus/host_clock.hpp"
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/tcp_relay.hpp"
@@ -164,7 +164,7 @@ TEST_CASE("a node that fails in a step makes its outputs safe before the process
   REQUIRE(node.shut_down);
 }
 
-TEST_CASE("a foreign type over LCM is counted and does not reach the handler") {
+TEST_CASE("an unexpected type over LCM is counted and does not reach the handler") {
   LcmBus bus("memq://", TimeSource::kHost);
   int heard = 0;
   bus.subscribe<ins_t>(kIns, [&](const ins_t&) { ++heard; });

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "common/bus/health.hpp"
+#include "common/bus/bus.hpp"
 #include "common/bus/virtual_bus.hpp"
 
 using namespace tread;
@@ -123,7 +123,7 @@ TEST_CASE("a killed node is silent, its unsent messages are lost, and a restart 
 }
 
 TEST_CASE(
-    "messages of a foreign type and corrupted ones are counted, told in one line, and harm "
+    "messages of an unexpected type and corrupted ones are counted, told in one line, and harm "
     "nobody") {
   VirtualBus bus(1);
   bus.addNode("listener", [](Bus& end) { return std::make_unique<Listener>(end); });

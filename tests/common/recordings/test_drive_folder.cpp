@@ -54,7 +54,7 @@ std::string complaintWith(const std::string& file, const std::string& content) {
 }  // namespace
 
 TEST_CASE("a folder of drives becomes recordings of what each surface does to the commands") {
-  const Folder folder("drive_book");
+  const Folder folder("drive_recordings");
   const DriveRecordings drives =
       recordingsFromDrives(requestOf(writeDrives(folder, twoSurfaces()), "rover"));
   REQUIRE(drives.recordings.surfaces.size() == 2);
@@ -80,7 +80,7 @@ TEST_CASE("a folder of drives becomes recordings of what each surface does to th
   CHECK(report.find("hard_dry: 48 steady windows used") != std::string::npos);
 }
 
-TEST_CASE("the same folder gives the same book, bit for bit") {
+TEST_CASE("the same folder gives the same recordings, bit for bit") {
   const Folder folder("drive_twice");
   const DriveRequest request = requestOf(writeDrives(folder, twoSurfaces()), "rover");
   const DriveRecordings first = recordingsFromDrives(request);

@@ -46,13 +46,13 @@ void expectError(const std::string& text, const std::string& line, const std::st
 
 }  // namespace
 
-TEST_CASE("A book that was written is read again bit for bit, surfaces sorted by name") {
+TEST_CASE("Recordings that were written are read again bit for bit, surfaces sorted by name") {
   const Folder folder;
   PatternRecordings recorded{samples::twoPatterns(), {}};
   recorded.surfaces.push_back(samples::scattered(recorded.patterns, "gravel", 4, 1));
   recorded.surfaces.push_back(samples::scattered(recorded.patterns, "clay", 2, 2));
-  writeRecordings(folder.path("new/book"), recorded);
-  const PatternRecordings read = readRecordings(folder.path("new/book"));
+  writeRecordings(folder.path("new/folder"), recorded);
+  const PatternRecordings read = readRecordings(folder.path("new/folder"));
   CHECK(read.patterns.checksum() == recorded.patterns.checksum());
   REQUIRE(read.surfaces.size() == 2);
   CHECK(read.surfaces[0].surface == "clay");
@@ -60,7 +60,8 @@ TEST_CASE("A book that was written is read again bit for bit, surfaces sorted by
   for (size_t p = 0; p < 2; ++p) {
     REQUIRE(read.surfaces[1].executions[p].size() == 4);
     for (size_t e = 0; e < 4; ++e)
-      CHECK(samples::same(read.surfaces[1].executions[p][e], recorded.surfaces[0].executions[p][e]));
+      CHECK(
+          samples::same(read.surfaces[1].executions[p][e], recorded.surfaces[0].executions[p][e]));
   }
 }
 
@@ -96,7 +97,7 @@ TEST_CASE("A bad surface is refused with file, line and what to do") {
   expectError(kHeader + "left,one,1,0,0,0\n", "2", "execution is 'one'");
 }
 
-TEST_CASE("A folder that is no book is refused with what is missing") {
+TEST_CASE("A folder without recordings is refused with what is missing") {
   const Folder folder;
   CHECK_THROWS_WITH(readRecordings(folder.path("none")), Catch::Contains("no such folder"));
   CHECK_THROWS_AS(readRecordings(folder.path()), RecordingError);
@@ -123,7 +124,8 @@ TEST_CASE("What could not be read again is not written") {
   CHECK_FALSE(std::filesystem::exists(folder.path("b")));
 }
 
-TEST_CASE("A book of four surfaces, five patterns and 300 executions is read within a second") {
+TEST_CASE(
+    "Recordings of four surfaces, five patterns and 300 executions are read within a second") {
   const Folder folder;
   std::vector<MotionPattern> patterns;
   for (int id = 1; id <= 5; ++id)

@@ -4,7 +4,6 @@
 
 #include "common/report/page.hpp"
 #include "common/report/text.hpp"
-#include "common/report/ticks.hpp"
 
 using namespace tread;
 
@@ -31,8 +30,8 @@ TEST_CASE("a hash is that of FIPS 180-4") {
 }
 
 TEST_CASE("ticks are round numbers within the range") {
-  CHECK(report::tickStep(1.0, 5) == Approx(0.2));
-  CHECK(report::ticks(-0.1, 0.5, 0.2).size() == 3);
-  CHECK(report::tickText(0.2, 0.2) == "0.2");
-  CHECK(report::tickText(100.0, 50.0) == "100");
+  CHECK(tickStep(1.0, 5) == Approx(0.2));
+  CHECK(ticks(-0.1, 0.5, 0.2).size() == 3);
+  CHECK(tickText(0.2, 0.2) == "0.2");
+  CHECK(tickText(100.0, 50.0) == "100");
 }

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "common/store/store.hpp"
-#include "tools/gap/find_output.hpp"
 #include "tools/gap/report/report.hpp"
 
 namespace tread::gap {

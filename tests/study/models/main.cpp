@@ -14,9 +14,8 @@
 #include "common/config/command_line.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "tests/study/models/comparison_output.hpp"
-#include "tools/gap/commands.hpp"
 #include "tools/gap/drive_log.hpp"
-#include "tools/gap/find_output.hpp"
+#include "tools/gap/report/report.hpp"
 
 namespace tread::gap {
 namespace {
@@ -144,7 +143,9 @@ int main(int argc, char** argv) {
                    "folder for comparison.json and comparison.md; made if needed")
         ->required();
     app.add_flag("--pool", options.pool, "also judge each log by what all others teach");
-    tread::gap::addSeedAndThreads(app, options.seed, options.threads);
+    app.add_option("--seed", options.seed, "of the random draws of the tests")
+        ->capture_default_str();
+    tread::addThreads(app, options.threads);
     if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
     tread::gap::compare(options);
   } catch (const std::exception& error) {

@@ -75,7 +75,7 @@ TEST_CASE("Student's quantile falls to the normal one") {
   CHECK(student99(100000) == Approx(kNormal99).epsilon(1e-4));
 }
 
-TEST_CASE("several books become a mean, its interval and the deviation between them") {
+TEST_CASE("several sets of recordings become a mean, its interval and the deviation between them") {
   const auto recordingsWith = [](double value) {
     Tables tables;
     Row row;

@@ -97,17 +97,17 @@ TEST_CASE("one command writes all tables, pictures and the report of a world") {
   CHECK(contentOf(out + "/table2.txt").find("collective against single") != std::string::npos);
 }
 
-TEST_CASE("several books give means with their spread, and each book's numbers") {
+TEST_CASE("several sets of recordings give means with their spread, and the numbers of each") {
   const Folder folder;
   write(folder / "small.yaml", kSmallWorld);
   const auto [code, printed] =
       run("--world " + (folder / "small.yaml") + kFour +
-          " --books 3 --length 2 --change-inside --out " + (folder / "out"));
+          " --sets 3 --length 2 --change-inside --out " + (folder / "out"));
   INFO(printed);
   REQUIRE(code == 0);
-  CHECK(printed.find("Means over 3 books") != std::string::npos);
+  CHECK(printed.find("Means over 3 sets") != std::string::npos);
   CHECK(printed.find("paper") == std::string::npos);
-  const auto sets = linesOf(folder / "out/books.csv");
+  const auto sets = linesOf(folder / "out/sets.csv");
   CHECK(sets[0] == "table,seed,from,to,quantity,rule,against,k,value");
   CHECK(sets.size() == 1 + 3 * (2 * 2 * 4 + 2 * 2 * 3 + 2 * 2 * 4 * 4 + 2 * (2 * 2 * 4)));
 }
@@ -117,7 +117,7 @@ TEST_CASE("all rules with extras: the bank is shown, lines are short, variants a
   write(folder / "small.yaml", kSmallWorld);
   const auto [code, printed] =
       run("--world " + (folder / "small.yaml") +
-          " --repetitions 20 --threads 2 --tour 40 --extras --out " + (folder / "out"));
+          " --repetitions 20 --threads 2 --excitation 40 --extras --out " + (folder / "out"));
   INFO(printed);
   REQUIRE(code == 0);
   CHECK(printed.find("VARIANT: each command held twice as long") != std::string::npos);
@@ -135,11 +135,12 @@ TEST_CASE("all rules with extras: the bank is shown, lines are short, variants a
 TEST_CASE("a folder of recordings gives the same tables as the world that they come from") {
   const Folder folder;
   write(folder / "small.yaml", kSmallWorld);
-  recordings::writeRecordings(folder / "book",
+  recordings::writeRecordings(folder / "recorded",
                               record(readTransitionWorld(folder / "small.yaml"), 1));
   REQUIRE(run("--world " + (folder / "small.yaml") + kFour + " --out " + (folder / "a")).first ==
           0);
-  REQUIRE(run("--recordings " + (folder / "book") + kFour + " --out " + (folder / "b")).first == 0);
+  REQUIRE(run("--recordings " + (folder / "recorded") + kFour + " --out " + (folder / "b")).first ==
+          0);
   CHECK(linesOf(folder / "a/table1.csv").size() == linesOf(folder / "b/table1.csv").size());
   // Surfaces of a folder are in the order of their names.
   CHECK(contentOf(folder / "b/table1.csv").find("ice,road,position,off,") != std::string::npos);
@@ -170,7 +171,7 @@ TEST_CASE("what cannot be done is one clear line") {
   refuses("--world " + kWorlds + "demo.yaml", "simulator");
   refuses("--world " + (folder / "none.yaml"), "none.yaml");
   refuses("--recordings " + (folder / "none"), "neither sessions.csv");
-  refuses("--recordings " + folder.path.string() + " --books 2", "--world");
+  refuses("--recordings " + folder.path.string() + " --sets 2", "--world");
 
   recordings::PatternRecordings recorded = record(parseTransitionWorld(kSmallWorld, "small"), 1);
   recorded.surfaces[1].executions[1].resize(2);

@@ -150,7 +150,7 @@ TEST_CASE("each CSV has a head and one line a row, all with as many fields") {
         std::string::npos);
 }
 
-TEST_CASE("the file of books has every row of every book under its seed") {
+TEST_CASE("the file of sets has every row of every set under its seed") {
   const Tables tables = knownTables();
   size_t rows = 0;
   for (const TableFile& file : tableFiles()) rows += (tables.*file.rows).size();

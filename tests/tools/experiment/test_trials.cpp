@@ -128,20 +128,6 @@ TEST_CASE("the bank allocates nothing but when it judges a block of executions")
   CHECK(judged <= executions / config.bank.settled_after + 1);
 }
 
-TEST_CASE("progress tells every part once, and a failing part ends the run with its reason") {
-  size_t last = 0, calls = 0;
-  std::vector<std::function<void()>> tasks(20, [] {});
-  runTasks(tasks, 3, [&](size_t done, size_t all) {
-    CHECK(done == last + 1);
-    CHECK(all == 20);
-    last = done;
-    ++calls;
-  });
-  CHECK(calls == 20);
-  tasks[7] = [] { throw std::runtime_error("seven"); };
-  CHECK_THROWS_WITH(runTasks(tasks, 3, {}), "seven");
-}
-
 TEST_CASE("twice as long commands make patterns twice as long") {
   const TransitionWorld world = parseTransitionWorld(kSmallWorld, "small.yaml");
   const recordings::PatternRecordings recorded = record(world, 1, 2);

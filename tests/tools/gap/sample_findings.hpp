@@ -9,7 +9,7 @@
 
 #include "common/vehicle/kernel.hpp"
 #include "modules/identification/core/finding.hpp"
-#include "tools/gap/find_output.hpp"
+#include "tools/gap/report/report.hpp"
 
 /// Findings made by hand, to look at what is written of them.
 namespace tread::gap::samples {

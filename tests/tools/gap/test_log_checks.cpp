@@ -247,7 +247,7 @@ TEST_CASE("a robot that stands, or is told so little that it may stand, has no f
   REQUIRE(fatal(log.sorted()) == "");
 }
 
-TEST_CASE("foreign bytes and numbers that are none never break the reader") {
+TEST_CASE("arbitrary bytes and numbers that are none never break the reader") {
   SmallLog log = goodLog();
   LogEvent odd;
   odd.utime = at(3.0);

@@ -66,8 +66,8 @@ TEST_CASE("plan writes a pattern set that tells two effects apart, and that can 
     seconds += set.periodSeconds() * static_cast<double>(pattern.commands.size());
   CHECK(seconds <= 120.0);
   const Run record = samples::runProgram(
-      "tread-patterns", "record " + folder.path("p.yaml") + " --book " + folder.path("book") +
-                            " --surface here -n 1 --model " + model);
+      "tread-patterns", "record " + folder.path("p.yaml") + " --recordings " +
+                            folder.path("recorded") + " --surface here -n 1 --model " + model);
   INFO(record.printed);
   CHECK(record.status == 0);
 }

@@ -9,7 +9,6 @@
 
 #include "common/vehicle/model_document.hpp"
 #include "tests/tools/gap/sample_findings.hpp"
-#include "tools/gap/find_output.hpp"
 #include "tools/gap/report/report.hpp"
 
 namespace tread::gap {

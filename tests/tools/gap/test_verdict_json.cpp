@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/tools/gap/sample_findings.hpp"
-#include "tools/gap/find_output.hpp"
+#include "tools/gap/report/report.hpp"
 
 namespace tread::gap {
 

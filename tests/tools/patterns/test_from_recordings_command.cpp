@@ -27,37 +27,38 @@ std::string drivesIn(const DriveFolder& folder) {
 
 }  // namespace
 
-TEST_CASE("from-recordings writes a book, averaged sets and a log that the learner learns from") {
+TEST_CASE(
+    "from-recordings writes recordings, averaged sets and a log that the learner learns from") {
   const DriveFolder folder("from_recordings");
   const std::string drives = drivesIn(folder);
-  const std::string book = folder.file("book");
+  const std::string recorded = folder.file("recorded");
   const std::string log = folder.file("soft.log");
   const std::string arguments = "tread-patterns from-recordings " + drives + " --robot rov -o " +
-                                book + " --log " + log +
+                                recorded + " --log " + log +
                                 " --from hard --to soft --executions 16 --seed 3";
   const CalledProgram made = called(arguments);
   INFO(made.printed);
   REQUIRE(made.status == 0);
   CHECK(made.printed.find("hard: 48 steady windows used") != std::string::npos);
-  const recordings::PatternRecordings read = recordings::readRecordings(book);
+  const recordings::PatternRecordings read = recordings::readRecordings(recorded);
   REQUIRE(read.surfaces.size() == 2);
   CHECK(read.surfaces[1].surface == "soft");
   CHECK(read.patterns.patterns().size() == 8);
-  const CalledProgram replay =
-      called("tread-replay learner " + log + " --patterns " + book + "/hard.yaml --rule single");
+  const CalledProgram replay = called("tread-replay learner " + log + " --patterns " + recorded +
+                                      "/hard.yaml --rule single");
   INFO(replay.printed);
   CHECK(replay.status == 0);
   CHECK(replay.printed.find("soft: 32 executions in, 32 measured, 0 refused") != std::string::npos);
-  const std::string before = contentOf(log) + contentOf(book + "/soft.csv");
+  const std::string before = contentOf(log) + contentOf(recorded + "/soft.csv");
   REQUIRE(called(arguments).status == 0);
-  CHECK(before == contentOf(log) + contentOf(book + "/soft.csv"));
+  CHECK(before == contentOf(log) + contentOf(recorded + "/soft.csv"));
 }
 
 TEST_CASE("from-recordings says in one line what is wrong") {
   const DriveFolder folder("from_recordings_bad");
   const std::string drives = drivesIn(folder);
   const std::string make =
-      "tread-patterns from-recordings " + drives + " -o " + folder.file("book");
+      "tread-patterns from-recordings " + drives + " -o " + folder.file("recorded");
   const auto complaint = [](const std::string& arguments) {
     const CalledProgram outcome = called(arguments);
     INFO(outcome.printed);
@@ -71,19 +72,19 @@ TEST_CASE("from-recordings says in one line what is wrong") {
         "tread-patterns: --to 'ice': name one of the surfaces hard, soft\n");
   CHECK(complaint(make + " --recipe /no/such/recipe.yaml").find("/no/such/recipe.yaml") !=
         std::string::npos);
-  CHECK(complaint("tread-patterns from-recordings /no/such/drives -o " + folder.file("book"))
+  CHECK(complaint("tread-patterns from-recordings /no/such/drives -o " + folder.file("recorded"))
             .find("/no/such/drives/sessions.csv: cannot be read") != std::string::npos);
   // A usage error has code 2.
   CHECK(called(make + " --log " + folder.file("a.log")).status == 2);
 }
 
-TEST_CASE("from-recordings does not mix its surfaces with those of another book") {
+TEST_CASE("from-recordings does not mix its surfaces with other recordings") {
   const DriveFolder folder("from_recordings_mixed");
   const std::string drives = drivesIn(folder);
-  std::filesystem::create_directories(folder.file("book"));
-  folder.file("book/ice.csv", "pattern,execution,sample,x_m,y_m,yaw_rad\n");
+  std::filesystem::create_directories(folder.file("recorded"));
+  folder.file("recorded/ice.csv", "pattern,execution,sample,x_m,y_m,yaw_rad\n");
   const CalledProgram outcome =
-      called("tread-patterns from-recordings " + drives + " -o " + folder.file("book"));
+      called("tread-patterns from-recordings " + drives + " -o " + folder.file("recorded"));
   CHECK(outcome.status == 2);
-  CHECK(outcome.printed.find("ice.csv: a surface of another book") != std::string::npos);
+  CHECK(outcome.printed.find("ice.csv: a surface of other recordings") != std::string::npos);
 }

@@ -55,17 +55,18 @@ TEST_CASE("tread-patterns warns where patterns ask for more than a model was mad
   CHECK_FALSE(made.says("warning: speed up to"));
   for (const std::string& arguments :
        {"check " + kSet + " --model " + folder.path("narrow.yaml"),
-        "record " + kSet + " -n 1 --surface s --book " + folder.path("book") + " --model " +
-            folder.path("narrow.yaml")}) {
+        "record " + kSet + " -n 1 --surface s --recordings " + folder.path("recorded") +
+            " --model " + folder.path("narrow.yaml")}) {
     const Run warned = run(arguments);
     INFO(warned.printed);
     CHECK(warned.status == 0);
     CHECK(warned.says("narrow.yaml: warning: yaw rate up to"));
   }
   CHECK_FALSE(run("check " + kSet + " --model " + kGrass).says("asked for"));
-  const Run foreign = run("check " + kSet + " --model " + kConfigFolder + "models/warthog_nominal.yaml");
-  CHECK(foreign.status == 2);
-  CHECK(foreign.says("the model takes track speed"));
+  const Run other =
+      run("check " + kSet + " --model " + kConfigFolder + "models/warthog_nominal.yaml");
+  CHECK(other.status == 2);
+  CHECK(other.says("the model takes track speed"));
 }
 
 TEST_CASE("tread-patterns says in one line what is wrong") {
@@ -73,8 +74,8 @@ TEST_CASE("tread-patterns says in one line what is wrong") {
   CHECK(missing.status == 2);
   CHECK(missing.printed.find("tread-patterns: no/such/file.yaml") == 0);
   CHECK(missing.printed.find('\n') == missing.printed.size() - 1);
-  const Run unwritable = run("make " + kConfigFolder + "patterns/recipes/teodor.yaml --model " + kGrass +
-                             " -o /no/such/folder/set.yaml");
+  const Run unwritable = run("make " + kConfigFolder + "patterns/recipes/teodor.yaml --model " +
+                             kGrass + " -o /no/such/folder/set.yaml");
   CHECK(unwritable.status == 2);
   CHECK(unwritable.says("cannot be written"));
 }
@@ -184,16 +185,16 @@ TEST_CASE("check of two patterns with one id or one name names the second") {
 TEST_CASE("make, mirror and record give the same bytes again, record for the same seed only") {
   const Folder folder;
   for (const char* name : {"a.yaml", "b.yaml"})
-    REQUIRE(run("make " + kConfigFolder + "patterns/recipes/teodor.yaml --model " + kGrass + " -o " +
-                folder.path(name))
+    REQUIRE(run("make " + kConfigFolder + "patterns/recipes/teodor.yaml --model " + kGrass +
+                " -o " + folder.path(name))
                 .status == 0);
   CHECK(folder.text("a.yaml") == folder.text("b.yaml"));
   REQUIRE(run("mirror " + folder.path("a.yaml") + " -o " + folder.path("c.yaml")).status == 0);
   CHECK(folder.text("c.yaml") == folder.text("a.yaml"));
-  for (const auto& [book, seed] :
+  for (const auto& [folder_name, seed] :
        {std::pair{"one", "4"}, std::pair{"two", "4"}, std::pair{"six", "6"}})
-    REQUIRE(run("record " + kSet + " --book " + folder.path(book) + " --model " + kGrass +
-                " --surface grass -n 2 --seed " + seed)
+    REQUIRE(run("record " + kSet + " --recordings " + folder.path(folder_name) + " --model " +
+                kGrass + " --surface grass -n 2 --seed " + seed)
                 .status == 0);
   CHECK(folder.text("one/grass.csv").size() > 1000);
   CHECK(folder.text("one/grass.csv") == folder.text("two/grass.csv"));

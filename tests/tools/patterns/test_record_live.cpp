@@ -37,12 +37,12 @@ PatternSet threePatterns() {
 class RecorderRun {
  public:
   explicit RecorderRun(const std::string& executions)
-      : run_(testing::kField, "[-10, 0, 0]"), book_(run_.folder() + "/book") {
+      : run_(testing::kField, "[-10, 0, 0]"), folder_(run_.folder() + "/recorded") {
     for (const char* name : {"simulator", "ins_driver", "motor_bridge"}) run_.start(name);
     std::ofstream(run_.folder() + "/set.yaml") << formatPatterns(threePatterns());
     const std::vector<std::string> arguments{"record",   run_.folder() + "/set.yaml",
-                                             "--live",   "--book",
-                                             book_,      "--surface",
+                                             "--live",   "--recordings",
+                                             folder_,    "--surface",
                                              "grass",    "-n",
                                              executions, "--room",
                                              "20",       "--lcm-url",
@@ -52,28 +52,28 @@ class RecorderRun {
 
   RobotRun& robot() { return run_; }
   Process& recorder() { return *recorder_; }
-  const std::string& book() const { return book_; }
+  const std::string& folder() const { return folder_; }
   std::string output_file() const { return run_.folder() + "/recorder.log"; }
   std::string output() const { return run_.output("recorder"); }
 
  private:
   RobotRun run_;
-  std::string book_;
+  std::string folder_;
   std::unique_ptr<Process> recorder_;
 };
 
 }  // namespace
 
-TEST_CASE("tread-patterns record --live drives the robot once it is armed and stores a book") {
+TEST_CASE("tread-patterns record --live drives the robot once it is armed and stores recordings") {
   RecorderRun run("1");
   run.robot().untilDriving(60.0, [&] { return !run.recorder().running(); });
   INFO(run.output());
   REQUIRE_FALSE(run.recorder().running());
   CHECK(run.recorder().exitCode() == 0);
-  const recordings::PatternRecordings book = recordings::readRecordings(run.book());
-  CHECK(book.surfaces[0].surface == "grass");
+  const recordings::PatternRecordings recorded = recordings::readRecordings(run.folder());
+  CHECK(recorded.surfaces[0].surface == "grass");
   for (size_t p = 0; p < 3; ++p) {
-    const double ahead = book.surfaces[0].executions[p][0].back().x;
+    const double ahead = recorded.surfaces[0].executions[p][0].back().x;
     CHECK(ahead == Approx(threePatterns().patterns()[p].end().x).epsilon(0.2));
   }
   CHECK(run.robot().until(1.0, [&] { return !run.robot().driving(); }));
@@ -90,6 +90,6 @@ TEST_CASE("Ctrl-C stops a recording: the robot stands, and what was measured is 
   CHECK(run.recorder().exitCode() == 1);
   CHECK(run.output().find("interrupted, the robot was stopped; the ") != std::string::npos);
   CHECK(run.robot().until(1.0, [&] { return !run.robot().driving(); }));
-  CHECK(std::filesystem::exists(run.book() + "/grass.csv.part"));
-  CHECK_FALSE(std::filesystem::exists(run.book() + "/grass.csv"));
+  CHECK(std::filesystem::exists(run.folder() + "/grass.csv.part"));
+  CHECK_FALSE(std::filesystem::exists(run.folder() + "/grass.csv"));
 }

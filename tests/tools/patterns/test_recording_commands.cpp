@@ -7,23 +7,23 @@ using namespace tread::patterns::kit;
 namespace {
 
 Run record(const Folder& folder, const std::string& more, const std::string& set = kSet) {
-  return run("record " + set + " --book " + folder.path("book") + " --model " + kGrass + " " +
-             more);
+  return run("record " + set + " --recordings " + folder.path("recorded") + " --model " + kGrass +
+             " " + more);
 }
 
 }  // namespace
 
-TEST_CASE("tread-patterns records surfaces into a book and averages one into a set") {
+TEST_CASE("tread-patterns records surfaces into a folder and averages one into a set") {
   const Folder folder;
   const Run first = record(folder, "--surface grass -n 20");
   INFO(first.printed);
   REQUIRE(first.status == 0);
-  CHECK(first.says("book/grass.csv: 20 executions of each of 23 patterns\n"));
+  CHECK(first.says("recorded/grass.csv: 20 executions of each of 23 patterns\n"));
   const Run again = record(folder, "--surface grass -n 20 --seed 2");
   CHECK(again.says("in the place of what was there"));
   CHECK(record(folder, "--surface lawn -n 3").status == 0);
   const Run averaged =
-      run("average " + folder.path("book") + " grass -o " + folder.path("grass.yaml"));
+      run("average " + folder.path("recorded") + " grass -o " + folder.path("grass.yaml"));
   INFO(averaged.printed);
   CHECK(averaged.status == 0);
   CHECK(averaged.says("left: 20 executions averaged by pose\n"));
@@ -37,13 +37,13 @@ TEST_CASE("tread-patterns records surfaces into a book and averages one into a s
 TEST_CASE("An average says which executions it rejected and why") {
   const Folder folder;
   REQUIRE(record(folder, "--surface grass -n 4").status == 0);
-  std::string text = folder.text("book/grass.csv");
+  std::string text = folder.text("recorded/grass.csv");
   const size_t at = text.find("straight,2,5,");
   REQUIRE(at != std::string::npos);
   text.replace(at, text.find('\n', at) - at, "straight,2,5,40,0,0");
-  std::ofstream(folder.path("book/grass.csv"), std::ios::binary) << text;
+  std::ofstream(folder.path("recorded/grass.csv"), std::ios::binary) << text;
   const Run averaged =
-      run("average " + folder.path("book") + " grass -o " + folder.path("grass.yaml"));
+      run("average " + folder.path("recorded") + " grass -o " + folder.path("grass.yaml"));
   INFO(averaged.printed);
   CHECK(averaged.status == 0);
   CHECK(
@@ -54,15 +54,16 @@ TEST_CASE("An average says which executions it rejected and why") {
 TEST_CASE("Recording and averaging refuse what makes no sense with one line") {
   const Folder folder;
   REQUIRE(record(folder, "--surface grass -n 2").status == 0);
-  const Run few = run("average " + folder.path("book") + " grass -o " + folder.path("x.yaml"));
+  const Run few = run("average " + folder.path("recorded") + " grass -o " + folder.path("x.yaml"));
   CHECK(few.status == 2);
   CHECK(few.says("pattern 'straight' has 2 fair executions of 2; at least 3 are needed"));
   CHECK_FALSE(std::filesystem::exists(folder.path("x.yaml")));
-  const Run unknown = run("average " + folder.path("book") + " sand -o " + folder.path("x.yaml"));
+  const Run unknown =
+      run("average " + folder.path("recorded") + " sand -o " + folder.path("x.yaml"));
   CHECK(unknown.status == 2);
   CHECK(unknown.says("no surface 'sand'; recorded are grass"));
-  const Run over = run("average " + folder.path("book") + " grass --min-executions 1 -o " +
-                       folder.path("book/patterns.yaml"));
+  const Run over = run("average " + folder.path("recorded") + " grass --min-executions 1 -o " +
+                       folder.path("recorded/patterns.yaml"));
   CHECK(over.status == 2);
   CHECK(over.says("this is the input"));
   REQUIRE(run("make " + kConfigFolder + "patterns/recipes/teodor.yaml --model " + kGrass + " -o " +
@@ -72,21 +73,22 @@ TEST_CASE("Recording and averaging refuse what makes no sense with one line") {
   REQUIRE(run("mirror " + kSet + " -o " + folder.path("other.yaml")).status == 0);
   CHECK(record(folder, "--surface s -n 0").status == 2);
   CHECK(record(folder, "").status == 2);
-  const std::string bad = "record " + kSet + " --book " + folder.path("b") + " --surface a/b ";
+  const std::string bad =
+      "record " + kSet + " --recordings " + folder.path("b") + " --surface a/b ";
   CHECK(run(bad + "--model " + kGrass).status == 2);
   // Before it drives for an hour, not afterwards.
   const Run live = run(bad + "--live");
   CHECK(live.status == 2);
   CHECK(live.says("surface 'a/b': its name is that of its file"));
   CHECK(run(bad + "--live --model " + kGrass).status == 2);
-  CHECK(run("record " + kSet + " --live --book /proc/none --surface x").status == 2);
+  CHECK(run("record " + kSet + " --live --recordings /proc/none --surface x").status == 2);
 }
 
-TEST_CASE("A book stays one of the patterns that it began with") {
+TEST_CASE("Recordings stay those of the patterns that they began with") {
   const Folder folder;
   REQUIRE(record(folder, "--surface grass -n 2").status == 0);
-  const std::string patterns = folder.text("book/patterns.yaml");
-  std::string other = folder.text("book/patterns.yaml");
+  const std::string patterns = folder.text("recorded/patterns.yaml");
+  std::string other = folder.text("recorded/patterns.yaml");
   const size_t at = other.find("name: straight");
   REQUIRE(at != std::string::npos);
   other.replace(at, 14, "name: forwards");
@@ -94,7 +96,7 @@ TEST_CASE("A book stays one of the patterns that it began with") {
   const Run refused = record(folder, "--surface lawn -n 2", folder.path("other.yaml"));
   CHECK(refused.status == 2);
   CHECK(refused.says(
-      "book/patterns.yaml: these recordings are of another set ('straight' in the place of "
+      "recorded/patterns.yaml: these recordings are of another set ('straight' in the place of "
       "'forwards'); record into another folder"));
-  CHECK(folder.text("book/patterns.yaml") == patterns);
+  CHECK(folder.text("recorded/patterns.yaml") == patterns);
 }

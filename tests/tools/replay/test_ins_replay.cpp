@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/ins_driver/nmea_lines.hpp"
-#include "tools/replay/ins_replay.hpp"
+#include "tools/replay/sensor_replay.hpp"
 
 using namespace tread;
 using namespace tread::ins;

@@ -15,8 +15,7 @@
 #include "common/vehicle/model_document.hpp"
 #include "tests/system/process.hpp"
 #include "tests/tools/replay/synthetic_drive.hpp"
-#include "tools/replay/replay_check.hpp"
-#include "tools/replay/robot_learner.hpp"
+#include "tools/replay/robot_replay.hpp"
 
 using namespace tread;
 using namespace tread::replay;

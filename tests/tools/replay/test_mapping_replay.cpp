@@ -9,7 +9,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "common/log/event_log.hpp"
-#include "tools/replay/mapping_replay.hpp"
+#include "tools/replay/sensor_replay.hpp"
 
 using namespace tread;
 
@@ -129,13 +129,13 @@ TEST_CASE("an MBot log that is cut off says so") {
   REQUIRE_FALSE(cut.problem.empty());
 }
 
-TEST_CASE("foreign messages on the MBot's channels are skipped and counted") {
+TEST_CASE("other messages on the MBot's channels are skipped and counted") {
   const TestFile file("mbot.log", "");
   {
     LogWriter log(file.path());
-    const std::vector<uint8_t> foreign(40, 7);
-    log.write(1'000'000, "LIDAR", foreign.data(), foreign.size());
-    log.write(1'000'100, "TRUE_POSE", foreign.data(), foreign.size());
+    const std::vector<uint8_t> other(40, 7);
+    log.write(1'000'000, "LIDAR", other.data(), other.size());
+    log.write(1'000'100, "TRUE_POSE", other.data(), other.size());
     const std::vector<uint8_t> truncated{0x89, 0xdc, 0x5b, 0x87, 0x9a, 0x50, 0x56, 0xcf, 0, 0};
     log.write(1'000'200, "LIDAR", truncated.data(), truncated.size());
   }
@@ -167,7 +167,7 @@ TEST_CASE("the Freiburg campus goes through mapping: every scan taken, walls whe
   }
 }
 
-TEST_CASE("a real LCM log of foreign types goes through mapping: the MBot's arena") {
+TEST_CASE("a real LCM log of other types goes through mapping: the MBot's arena") {
   const std::string path = recording("lcmlogs/mbot2017_sweep/sweep_drive_square.log");
   if (path.empty()) {
     WARN("skipped: the MBot log is not here (TREAD_RECORDINGS)");

@@ -8,7 +8,7 @@
 
 #include "common/messages/blank.hpp"
 #include "tests/tools/called_program.hpp"
-#include "tools/replay/replay_check.hpp"
+#include "tools/replay/robot_replay.hpp"
 
 using namespace tread;
 using namespace tread::replay;

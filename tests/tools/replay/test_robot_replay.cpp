@@ -10,9 +10,8 @@
 #include "modules/mapping/mapping_node.hpp"
 #include "modules/planner/planner_node.hpp"
 #include "tests/tools/replay/driven_log.hpp"
-#include "tools/replay/replay_check.hpp"
-#include "tools/replay/robot_learner.hpp"
 #include "tools/replay/robot_log.hpp"
+#include "tools/replay/robot_replay.hpp"
 
 using namespace tread;
 using namespace tread::replay;

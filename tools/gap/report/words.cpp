@@ -3,9 +3,7 @@
 #include "tools/gap/report/report.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <string>
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "common/link/link.hpp"
-#include "tools/robot/launch/supervisor_config.hpp"
+#include "tools/robot/launch/launch_file.hpp"
 
 namespace tread::launch {
 namespace {

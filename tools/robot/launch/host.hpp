@@ -7,7 +7,6 @@
 
 #include "tools/robot/launch/checks.hpp"
 #include "tools/robot/launch/launch_file.hpp"
-#include "tools/robot/launch/supervisor_config.hpp"
 
 namespace tread::launch {
 

@@ -99,11 +99,11 @@ LaunchProcess readProcess(ConfigReader& reader, const Placeholders& placeholders
   reader.text("program", process.program, true);
   reader.text("config", process.config);
   reader.texts("arguments", process.arguments);
-  reader.flag("foreign", process.foreign);
+  reader.flag("external", process.external);
   reader.choice("stop_signal", process.stop_signal, {"INT", "TERM", "HUP", "QUIT"});
   reader.integer("stop_time", process.stop_time, {1, 60}, "s");
-  if (process.foreign && !process.config.empty())
-    throw reader.error("config", "is for programs of Tread; a foreign one takes it in arguments");
+  if (process.external && !process.config.empty())
+    throw reader.error("config", "is for programs of Tread; an external one takes it in arguments");
   process.program = replaced(reader, "program", process.program, placeholders);
   if (process.program.empty()) throw reader.error("program", "is empty; name a program");
   if (process.program.find('/') != std::string::npos)
@@ -151,7 +151,7 @@ LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings) 
 std::vector<std::string> startCommand(const LaunchProcess& process, const std::string& program,
                                       const std::string& lcm_url) {
   std::vector<std::string> words;
-  if (process.foreign) {
+  if (process.external) {
     words = {"setpriv", "--pdeathsig", process.stop_signal, "--", program};
     words.insert(words.end(), process.arguments.begin(), process.arguments.end());
     return words;
@@ -165,7 +165,7 @@ std::vector<std::string> startCommand(const LaunchProcess& process, const std::s
 
 std::vector<std::string> checkCommand(const LaunchProcess& process, const std::string& program,
                                       const std::string& lcm_url) {
-  if (process.foreign) return {};
+  if (process.external) return {};
   std::vector<std::string> words = startCommand(process, program, lcm_url);
   std::replace(words.begin(), words.end(), std::string("--with-parent"), std::string("--check"));
   return words;

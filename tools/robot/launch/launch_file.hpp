@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,7 +20,7 @@ struct LaunchProcess {
   std::string config;                  ///< absolute path for --config; empty = none
   std::vector<std::string> arguments;  ///< further words
   /// Not a program of ours: no --config, --lcm-url, --with-parent and --check are given to it.
-  bool foreign = false;
+  bool external = false;
   std::string stop_signal = "INT";  ///< asks it to end
   int64_t stop_time = 5;            ///< s until it is killed
 };
@@ -45,19 +47,70 @@ std::string readLaunchName(const std::string& file);
 
 /// Reads a launch file; throws ConfigError with file:line.
 /** Keys: name, lcm_url, simulated, values (further placeholders with their defaults) and
- * processes, a list of maps: name, program, config, arguments, foreign, stop_signal, stop_time.
+ * processes, a list of maps: name, program, config, arguments, external, stop_signal, stop_time.
  * Placeholders in program, config and arguments: {run}, {lcm_url}, {bin}, {here} (the file's
  * folder) and those in `values`. Paths are relative to the file's folder. A value that names a file
  * or folder there becomes its absolute path. */
 LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings);
 
-/// The words that start a process: ours get --config, --lcm-url and --with-parent, foreign ones
+/// The words that start a process: ours get --config, --lcm-url and --with-parent, external ones
 /// run under setpriv, so that neither outlives a killed supervisor.
 std::vector<std::string> startCommand(const LaunchProcess& process, const std::string& program,
                                       const std::string& lcm_url);
 
-/// The words that make a program of ours check its configuration; empty for foreign ones.
+/// The words that make a program of ours check its configuration; empty for external ones.
 std::vector<std::string> checkCommand(const LaunchProcess& process, const std::string& program,
                                       const std::string& lcm_url);
+
+/// Where things of one run lie.
+struct RunPaths {
+  explicit RunPaths(const std::string& run);
+
+  std::string folder;
+  std::string lock;    ///< held while something runs here
+  std::string config;  ///< for supervisord
+  std::string socket;  ///< for supervisorctl
+  std::string pid;     ///< of supervisord
+  std::string logs;    ///< folder with one NAME.log a process
+  std::string supervisor_log;
+};
+
+/// A unix socket's path may have 107 bytes; supervisord binds one with its pid behind it first.
+constexpr size_t kMaxSocketPath = 107 - 8;
+
+/// A process with the words that start it.
+struct SupervisedProcess {
+  LaunchProcess process;
+  std::vector<std::string> command;
+};
+
+/// The configuration of Debian's supervisor for one run; `as_root` if root runs it.
+/** Throws std::invalid_argument, one line, for what its format cannot hold. */
+std::string supervisorConfig(const std::string& name,
+                             const std::vector<SupervisedProcess>& processes, const RunPaths& paths,
+                             bool as_root);
+
+/// Words as one line that supervisor takes apart into the same words.
+std::string supervisorCommand(const std::vector<std::string>& words);
+
+/// Turns supervisord's log (version 4.2) into a few lines for people: that all processes run, which
+/// one ended and how, that it runs again.
+class LaunchProgress {
+ public:
+  LaunchProgress(std::string name, size_t processes);
+  /// What to print for a line of the log, if anything; `seconds` since the start.
+  std::optional<std::string> lineFor(const std::string& log_line, double seconds);
+  /// Whether a line of the log says that a process ended by itself.
+  static bool isEnd(const std::string& log_line);
+
+ private:
+  std::optional<std::string> running(const std::string& process, double seconds);
+  std::optional<std::string> ended(const std::string& process, const std::string& how);
+
+  std::string name_;
+  size_t processes_;
+  std::set<std::string> ran_;        ///< have run at least once
+  std::map<std::string, int> ends_;  ///< how often in a row; absent = runs
+};
 
 }  // namespace tread::launch

@@ -25,7 +25,7 @@
 #include <unistd.h>
 
 #include "common/report/text.hpp"
-#include "tools/robot/launch/supervisor_config.hpp"
+#include "tools/robot/launch/launch_file.hpp"
 
 namespace tread::launch {
 namespace {

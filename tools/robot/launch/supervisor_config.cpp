@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/robot/launch/supervisor_config.hpp"
+#include "tools/robot/launch/launch_file.hpp"
 
 #include <sstream>
 #include <stdexcept>

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/messages/blank.hpp"
-#include "common/messages/execution_messages.hpp"
+#include "common/messages/pattern_messages.hpp"
 #include "common/report/text.hpp"
 
 namespace tread::operators {

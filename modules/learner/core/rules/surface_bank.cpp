@@ -3,14 +3,11 @@
 #include "modules/learner/core/rules/surface_bank.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-
-#include "modules/learner/core/rules/ground_filter.hpp"
 
 namespace tread::learner {
 namespace {

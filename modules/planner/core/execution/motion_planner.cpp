@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/planner/core/execution/motion_planner.hpp"
 
-#include <cmath>
 #include <limits>
 #include <utility>
 

@@ -3,7 +3,6 @@
 #include "modules/planner/core/execution/standing_control.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tread::planner {
 namespace {

@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/planner/core/map/collision_checker.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace tread::planner {

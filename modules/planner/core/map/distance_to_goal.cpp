@@ -2,10 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/planner/core/map/distance_to_goal.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace tread::planner {

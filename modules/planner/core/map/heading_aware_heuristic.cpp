@@ -2,9 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/planner/core/map/heading_aware_heuristic.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace tread::planner {
 namespace {
 

@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "modules/planner/core/search/search_containers.hpp"

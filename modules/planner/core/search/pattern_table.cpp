@@ -2,8 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/planner/core/search/pattern_table.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace tread::planner {

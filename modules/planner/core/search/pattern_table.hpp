@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "common/geometry/footprint_size.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/pattern/pattern.hpp"
 

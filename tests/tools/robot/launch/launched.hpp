@@ -46,7 +46,7 @@ inline std::vector<std::string> withoutAdvice(const std::string& output) {
 class Launched {
  public:
   /// `natures` are those of the stand-ins p0, p1, ...: good, deaf, brief, wrong. The last process
-  /// is a foreign one, which knows nothing of its parent. `more` are further lines of the file.
+  /// is an external one, which knows nothing of its parent. `more` are further lines of the file.
   explicit Launched(const std::vector<std::string>& natures, const std::string& stand_in,
                     const std::string& more = "simulated: true\n")
       : folder(std::filesystem::temp_directory_path() /
@@ -61,7 +61,7 @@ class Launched {
       file << "  - {name: " << name << ", program: " << stand_in << ", config: " << name
            << ".txt, arguments: [\"{run}\"], stop_time: 2}\n";
     }
-    file << "  - {name: other, program: sleep, arguments: [\"1000\"], foreign: true, "
+    file << "  - {name: other, program: sleep, arguments: [\"1000\"], external: true, "
             "stop_time: 2}\n";
   }
   ~Launched() {

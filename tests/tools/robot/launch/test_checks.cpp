@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "tools/robot/launch/checks.hpp"
-#include "tools/robot/launch/supervisor_config.hpp"
+#include "tools/robot/launch/launch_file.hpp"
 
 using namespace tread::launch;
 using Catch::Contains;

@@ -37,7 +37,7 @@ TEST_CASE("a launch file becomes processes in its order, with placeholders and p
 name: robot
 values: {robot: ../robots/teodor}
 processes:
-  - {name: logger, program: lcm-logger, foreign: true, stop_time: 9,
+  - {name: logger, program: lcm-logger, external: true, stop_time: 9,
      arguments: ["--lcm-url={lcm_url}", "{run}/log/x"]}
   - {name: planner, program: tread-planner, config: "{robot}/planner.yaml",
      stop_signal: TERM}
@@ -47,7 +47,7 @@ processes:
   CHECK(launch.lcm_url == "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=2097152");
   REQUIRE(launch.processes.size() == 3);
   const LaunchProcess& logger = launch.processes[0];
-  CHECK(logger.foreign);
+  CHECK(logger.external);
   CHECK(logger.stop_signal == "INT");
   CHECK(logger.stop_time == 9);
   CHECK(logger.arguments == Words{"--lcm-url=" + launch.lcm_url, "/run/r/log/x"});
@@ -111,13 +111,13 @@ TEST_CASE("mistakes in a launch file are named with file and line") {
              StartsWith("r.yaml:4:") && Contains("stands for nothing"));
   CHECK_THAT(mistake("name: r\nvalues:\n  run: /x\nprocesses: [{name: p, program: p}]"),
              StartsWith("r.yaml:3:") && Contains("has a meaning already"));
-  CHECK_THAT(mistake("name: r\nprocesses:\n  - {name: p, program: x, foreign: true, config: y}\n"),
-             StartsWith("r.yaml:3:") && Contains("a foreign one takes it in arguments"));
+  CHECK_THAT(mistake("name: r\nprocesses:\n  - {name: p, program: x, external: true, config: y}\n"),
+             StartsWith("r.yaml:3:") && Contains("an external one takes it in arguments"));
   CHECK_THAT(mistake("name: r\nprocesses:\n  - {name: supervisord, program: x}\n"),
              Contains("is taken"));
 }
 
-TEST_CASE("our programs watch their parent by themselves, foreign ones with setpriv") {
+TEST_CASE("our programs watch their parent by themselves, external ones with setpriv") {
   LaunchProcess process;
   process.config = "/c.yaml";
   process.arguments = {"--set", "a=b"};
@@ -126,7 +126,7 @@ TEST_CASE("our programs watch their parent by themselves, foreign ones with setp
                                                             "--set", "a=b"});
   CHECK(checkCommand(process, "/bin/p", "udpm://") ==
         Words{"/bin/p", "--config", "/c.yaml", "--lcm-url", "udpm://", "--check", "--set", "a=b"});
-  process.foreign = true;
+  process.external = true;
   process.config.clear();
   CHECK(startCommand(process, "/bin/p", "udpm://") ==
         Words{"setpriv", "--pdeathsig", "INT", "--", "/bin/p", "--set", "a=b"});

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "tools/robot/launch/supervisor_config.hpp"
+#include "tools/robot/launch/launch_file.hpp"
 
 using namespace tread::launch;
 using Catch::Contains;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/gap/find_output.hpp"
+#include "tools/gap/report/report.hpp"
 
 #include <unistd.h>
 #include <algorithm>
@@ -14,7 +14,6 @@
 
 #include "common/store/store.hpp"
 #include "common/vehicle/model_document.hpp"
-#include "tools/gap/report/report.hpp"
 
 namespace fs = std::filesystem;
 

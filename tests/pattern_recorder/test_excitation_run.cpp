@@ -30,13 +30,13 @@ struct Driven {
 
 /// Drives until nothing is left to do, or 2000 patterns are driven.
 Driven drivenBy(const PatternSet& set, double room, int executions, const Pose2& start = {}) {
-  const Tour tour(set, room);
+  const ExcitationRun excitation(set, room);
   std::vector<int> needed(set.patterns().size(), executions);
   Pose2 T_home_body = start;
   Driven driven;
-  driven.ends_in = tour.standing();
+  driven.ends_in = excitation.standing();
   while (driven.names.size() < 2000) {
-    const auto next = tour.next(driven.ends_in, T_home_body, needed);
+    const auto next = excitation.next(driven.ends_in, T_home_body, needed);
     if (!next) break;
     const MotionPattern& pattern = set.patterns()[*next];
     REQUIRE(pattern.entry_class == driven.ends_in);
@@ -52,7 +52,8 @@ Driven drivenBy(const PatternSet& set, double room, int executions, const Pose2&
 
 }  // namespace
 
-TEST_CASE("A tour drives every shipped pattern often enough, near where it began, and stands") {
+TEST_CASE(
+    "An excitation run drives every shipped pattern often enough, stays near, and ends standing") {
   const PatternSet set = shipped();
   const Driven driven = drivenBy(set, 4.0, 10);
   for (const MotionPattern& pattern : set.patterns()) {
@@ -65,7 +66,7 @@ TEST_CASE("A tour drives every shipped pattern often enough, near where it began
   CHECK(driven.names.size() < 250);
 }
 
-TEST_CASE("In a tour left and right take turns") {
+TEST_CASE("In an excitation run left and right take turns") {
   const Driven driven = drivenBy(shipped(), 6.0, 10);
   int balance = 0;
   for (const std::string& name : driven.names) {
@@ -75,13 +76,14 @@ TEST_CASE("In a tour left and right take turns") {
   }
 }
 
-TEST_CASE("A tour that began too far away leads back") {
+TEST_CASE("An excitation run that began too far away leads back") {
   const Driven driven = drivenBy(shipped(), 4.0, 3, {7.0, 0.0, 0.0});
   CHECK(driven.farthest <= 7.7);
   CHECK(driven.counts.at("straight") >= 3);
 }
 
-TEST_CASE("Where nothing that is needed fits into the room any more, a tour ends standing") {
+TEST_CASE(
+    "Where nothing that is needed fits into the room any more, an excitation run ends standing") {
   const Driven driven = drivenBy(tread::patterns::kit::withoutRight(), 5.0, 30);
   CHECK(driven.names.size() < 20);
   CHECK(driven.farthest <= 5.0);
@@ -90,14 +92,14 @@ TEST_CASE("Where nothing that is needed fits into the room any more, a tour ends
 
 TEST_CASE("A set without a way from standing and back is refused") {
   const auto straight = tread::patterns::kit::pattern(1, "straight", {0.5, 0.5}, {0.5, 0.0, 0.0});
-  CHECK_THROWS_WITH(Tour(tread::patterns::kit::setOf({straight}), 5.0),
+  CHECK_THROWS_WITH(ExcitationRun(tread::patterns::kit::setOf({straight}), 5.0),
                     Catch::Contains("stands still"));
   const auto start =
       tread::patterns::kit::pattern(2, "start", {0.5, 0.5}, {0.5, 0.0, 0.0}, "rest", "cruise");
-  CHECK_THROWS_WITH(Tour(tread::patterns::kit::setOf({straight, start}, true), 5.0),
+  CHECK_THROWS_WITH(ExcitationRun(tread::patterns::kit::setOf({straight, start}, true), 5.0),
                     Catch::Contains("class 'cruise' of set 'few' cannot be left"));
   const auto stop =
       tread::patterns::kit::pattern(3, "stop", {0.0, 0.0}, {0.0, 0.0, 0.0}, "cruise", "rest");
-  CHECK_THROWS_WITH(Tour(tread::patterns::kit::setOf({straight, stop}, true), 5.0),
+  CHECK_THROWS_WITH(ExcitationRun(tread::patterns::kit::setOf({straight, stop}, true), 5.0),
                     Catch::Contains("class 'cruise' of set 'few' cannot be reached"));
 }

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace tread {
+
+/// Runs body(0) .. body(count - 1), possibly at the same time; results must not depend on the
+/// order.
+using ParallelFor = std::function<void(size_t count, const std::function<void(size_t)>& body)>;
+
+/// One after the other.
+inline void serialFor(size_t count, const std::function<void(size_t)>& body) {
+  for (size_t i = 0; i < count; ++i) body(i);
+}
+
+/// On so many threads, the caller's included.
+/** After a call throws, no other begins; once those under way have ended, the caller gets what the
+ * first one threw. */
+ParallelFor onThreads(int threads);
+
+}  // namespace tread
