@@ -14,7 +14,7 @@ constexpr int64_t kSettle = 300'000;
 constexpr int64_t kStartLimit = 1'000'000;
 
 /// Why the set cannot provide the pattern of the slot; empty if it can.
-std::string conflictOf(const PatternSet& set, const ProgramSlot& slot) {
+std::string conflictOf(const PatternSet& set, const PlannedExecution& slot) {
   if (slot.empty()) return {};
   const MotionPattern& ours = slot.pattern();
   const MotionPattern* const theirs = set.find(slot.pattern_id);
@@ -40,7 +40,7 @@ std::string ExecutionTracker::conflictWith(const PatternSet& set) const {
   std::string why = conflictOf(set, running_);
   if (why.empty()) why = conflictOf(set, next_);
   // The bridge may have begun one of these before it was replaced.
-  for (const ProgramSlot& slot : replaced_)
+  for (const PlannedExecution& slot : replaced_)
     if (why.empty()) why = conflictOf(set, slot);
   return why;
 }
@@ -79,9 +79,9 @@ ExecutionTracker::Event ExecutionTracker::finish(Event event, const std::string&
   return event;
 }
 
-void ExecutionTracker::advanceTo(const ProgramSlot& to, int64_t started) {
+void ExecutionTracker::advanceTo(const PlannedExecution& to, int64_t started) {
   previous_id_ = running_.execution_id;
-  running_ = ProgramSlot(to);
+  running_ = PlannedExecution(to);
   next_ = {};
   replaced_.clear();
   handed_over_ = started_ = started;
@@ -93,9 +93,9 @@ bool ExecutionTracker::adopt(int64_t execution_id, int64_t started) {
     advanceTo(next_, started);
     return true;
   }
-  const auto found = std::find_if(replaced_.begin(), replaced_.end(), [&](const ProgramSlot& slot) {
-    return slot.execution_id == execution_id;
-  });
+  const auto found =
+      std::find_if(replaced_.begin(), replaced_.end(),
+                   [&](const PlannedExecution& slot) { return slot.execution_id == execution_id; });
   if (found == replaced_.end()) return false;
   advanceTo(*found, started);
   return true;

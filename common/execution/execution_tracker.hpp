@@ -61,7 +61,7 @@ struct RobotReadings {
 };
 
 /// A pattern handed over to the motor bridge, with the set that its prediction was made with.
-struct ProgramSlot {
+struct PlannedExecution {
   int64_t execution_id = 0;  ///< counts up within a run; 0 = empty
   int pattern_id = 0;
   std::optional<PatternSet> set;  ///< keeps its version even when a newer one has come
@@ -97,8 +97,8 @@ class ExecutionTracker {
   /// commands for it. Empty if it can.
   std::string conflictWith(const PatternSet& set) const;
 
-  const ProgramSlot& running() const { return running_; }
-  const ProgramSlot& next() const { return next_; }
+  const PlannedExecution& running() const { return running_; }
+  const PlannedExecution& next() const { return next_; }
   /// The bridge has begun the running pattern.
   bool confirmed() const { return confirmed_; }
   /// [us] when the running pattern began, as well as is known.
@@ -112,15 +112,16 @@ class ExecutionTracker {
   Event followMotor(const RobotReadings& readings);
   Event followExecutions(const RobotReadings& readings);
   Event followTime(int64_t now);
-  void advanceTo(const ProgramSlot& to, int64_t started);
+  void advanceTo(const PlannedExecution& to, int64_t started);
   Event finish(Event event, const std::string& reason);
   bool adopt(int64_t execution_id, int64_t started);
 
   int64_t run_id_;
   int64_t last_id_ = 0;
-  ProgramSlot running_;
-  ProgramSlot next_;
-  std::deque<ProgramSlot> replaced_;  ///< former next slots; the bridge may have begun one of them
+  PlannedExecution running_;
+  PlannedExecution next_;
+  std::deque<PlannedExecution>
+      replaced_;  ///< former next slots; the bridge may have begun one of them
   int64_t previous_id_ = 0;
   int64_t handed_over_ = 0;
   int64_t started_ = 0;

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <iterator>
 
-#include <tread/program_slot_t.hpp>
-
 #include "common/messages/blank.hpp"
 #include "common/report/text.hpp"
 
@@ -280,7 +278,7 @@ std::vector<ExecutionReading> readingsFrom(const execution_t& message) {
   return readings;
 }
 
-program_slot_t toMessage(const ProgramSlot& slot) {
+program_slot_t toMessage(const PlannedExecution& slot) {
   auto message = blank<program_slot_t>();
   if (slot.empty()) return message;
   const PatternSetContent& content = slot.set->content();

@@ -61,7 +61,7 @@ BridgeReading readingFrom(const motor_t& message);
 /// Whether the permission to drive is there in this state of the motor bridge (motor_t::STATE_*).
 bool mayDrive(int16_t bridge_state);
 std::vector<ExecutionReading> readingsFrom(const execution_t& message);
-program_slot_t toMessage(const ProgramSlot& slot);
+program_slot_t toMessage(const PlannedExecution& slot);
 
 /// The executions that are over and not yet learned from, in the order in which they ended.
 /** EXECUTION repeats the last eight, late, twice or in another order; each is given out exactly

@@ -27,7 +27,7 @@ void readGrid(ConfigReader& reader, OccupancyMapConfig& map) {
   reader.number("cell_size", map.voxels.cell_size, {0.02, 0.5}, "m");
   reader.integer("tile_cells", tile_cells, {8, 128}, "cells");
   reader.integer("window_tiles", window_tiles, {2, 32}, "tiles");
-  if (tile_cells % GroundModel::kPatchCells != 0)
+  if (tile_cells % GroundMap::kPatchCells != 0)
     throw reader.error("tile_cells", "must be a multiple of 8");
   if (tile_cells * window_tiles > 1024)
     throw reader.error("window_tiles", "window_tiles x tile_cells must not be above 1024 cells");

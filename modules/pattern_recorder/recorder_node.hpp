@@ -85,7 +85,7 @@ class RecorderNode : public Node {
   using State = RecordingDrive::State;
 
   /// `say` gets a line for everything worth telling. Throws std::runtime_error if the set cannot be
-  /// driven, see ExcitationRun.
+  /// driven, see ExcitationPlanner.
   RecorderNode(const PatternSet& set, const RecordingConfig& config, Bus& bus, Say say);
 
   int64_t period() const override { return 50'000; }

@@ -8,8 +8,6 @@
 
 #include <tread/health_t.hpp>
 
-#include "modules/simulator/simulator_files.hpp"
-
 namespace tread::sim {
 namespace {
 

@@ -129,7 +129,7 @@ TEST_CASE(
   for (const std::string& core : pureFolders()) {
     const bool is_core = core.rfind("/core") == core.size() - 5;
     std::set<std::string> concepts{"common/execution", "common/geometry", "common/grid",
-                                   "common/pattern", "common/vehicle"};
+                                   "common/parallel",  "common/pattern",  "common/vehicle"};
     // A device's folder reads its own section of the configuration.
     if (!is_core) concepts.insert("common/config");
     for (const Include& include : includesUnder(core)) {

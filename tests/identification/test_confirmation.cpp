@@ -17,8 +17,8 @@ using Names = std::vector<std::string>;
 using samples::kSilent;
 
 /// A search that ended with these parameters fitted.
-SearchResult resultOf(const Rig& rig, const Values& begin) {
-  SearchResult result;
+FoundTerms resultOf(const Rig& rig, const Values& begin) {
+  FoundTerms result;
   result.calibrated = rig.fitter.start(syntheticVehicle(), {});
   rig.fitter.renewJacobian(result.calibrated);
   result.state = rig.fitted(begin);
@@ -41,7 +41,7 @@ TEST_CASE("the halves share out the rows by whole blocks, every other one") {
 
 TEST_CASE("an effect of the drive lessens the end error where it was not fitted, and stays") {
   const Rig rig({{"motor_deadband.speed", 0.1}}, 200.0, 2);
-  SearchResult result = resultOf(rig, {{"motor_deadband.speed", 0.05}});
+  FoundTerms result = resultOf(rig, {{"motor_deadband.speed", 0.05}});
   const double size = *findParameter(result.state.model, "motor_deadband.speed");
   dropUnconfirmed({rig.fitter, {}, kSilent, result});
   CHECK(result.effects == Names{"motor_deadband"});
@@ -51,14 +51,14 @@ TEST_CASE("an effect of the drive lessens the end error where it was not fitted,
 
 TEST_CASE("an effect that only bends the model away from the drive goes, and is named") {
   const Rig rig({}, 200.0, 2);
-  SearchResult result = resultOf(rig, {});
+  FoundTerms result = resultOf(rig, {});
   result.state = rig.fitted({{"yaw_pull.pull", 0.01}});
   // Held far off, where no fit of half of the driving would take it back.
   result.state.free[0].expected = 0.1;
   result.state.free[0].deviation = 1e-4;
   *findParameter(result.state.model, "yaw_pull.pull") = 0.1;
   result.effects = {"yaw_pull"};
-  const SearchResult begin = result;
+  const FoundTerms begin = result;
   Names said;
   const Progress hear = [&said](const std::string& line) { said.push_back(line); };
   dropUnconfirmed({rig.fitter, {}, hear, result});
@@ -67,7 +67,7 @@ TEST_CASE("an effect that only bends the model away from the drive goes, and is 
   CHECK(*findParameter(result.state.model, "yaw_pull.pull") == 0.0);
   REQUIRE(said.size() == 1);
   CHECK(said[0].find("yaw_pull: does not lessen the end error") != std::string::npos);
-  SearchResult kept = begin;
+  FoundTerms kept = begin;
   SearchSettings settings;
   settings.accepted = {"yaw_pull"};
   dropUnconfirmed({rig.fitter, settings, kSilent, kept});
@@ -86,7 +86,7 @@ TEST_CASE("an effect that each half of the driving sizes the other way is not co
   const Observations data(drives, {});
   REQUIRE(data.blocks() == 10);
   const Fitter fitter(data);
-  SearchResult result;
+  FoundTerms result;
   result.calibrated = fitter.start(syntheticVehicle(), {});
   result.state = result.calibrated;
   fitter.add(result.state, freeParameter(result.state.model, "yaw_pull.pull"), 0.01);
@@ -102,14 +102,14 @@ TEST_CASE("an effect that each half of the driving sizes the other way is not co
 
 TEST_CASE("a bias of the gyro moves no pose, and is confirmed by the yaw rate") {
   const Rig rig({{"gyro_bias.rate", 0.03}}, 200.0, 3);
-  SearchResult result = resultOf(rig, {{"gyro_bias.rate", 0.01}});
+  FoundTerms result = resultOf(rig, {{"gyro_bias.rate", 0.01}});
   dropUnconfirmed({rig.fitter, {}, kSilent, result});
   CHECK(result.effects == Names{"gyro_bias"});
 }
 
 TEST_CASE("without effects there is nothing to confirm") {
   const Rig rig({}, 60.0, 1);
-  SearchResult result = resultOf(rig, {});
+  FoundTerms result = resultOf(rig, {});
   const Eigen::VectorXd predicted = result.state.predicted;
   dropUnconfirmed({rig.fitter, {}, [](const std::string&) { FAIL("said"); }, result});
   CHECK(result.state.predicted == predicted);
@@ -118,7 +118,7 @@ TEST_CASE("without effects there is nothing to confirm") {
 
 TEST_CASE("a structure is refitted on other rows with its own values to begin at") {
   const Rig rig({{"motor_deadband.speed", 0.1}}, 200.0, 2);
-  const SearchResult result = resultOf(rig, {{"motor_deadband.speed", 0.05}});
+  const FoundTerms result = resultOf(rig, {{"motor_deadband.speed", 0.05}});
   const double whole = *findParameter(result.state.model, "motor_deadband.speed");
   for (int half : {0, 1}) {
     const FitState state = refitted(rig.fitter.onRows(halfMask(rig.data, half)), result);

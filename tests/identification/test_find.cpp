@@ -68,7 +68,7 @@ TEST_CASE("a hidden effect of the drive is named, sized within its interval, and
   const Finding finding = findAfter({{"motor_deadband.speed", 0.1}}, 400.0, 2);
   CHECK(finding.verdict == GapVerdict::kFound);
   REQUIRE(namesIn(finding) == Names{"motor_deadband"});
-  const Estimate& speed = finding.identified.effects[0].parameters.at(0);
+  const ParameterEstimate& speed = finding.identified.effects[0].parameters.at(0);
   CHECK(speed.value == Approx(0.1).margin(0.01));
   CHECK(speed.low < speed.value);
   CHECK(speed.value < speed.high);
@@ -114,7 +114,7 @@ TEST_CASE("a term that the model was sure of and that is another now has moved")
   CHECK(finding.verdict == GapVerdict::kFound);
   CHECK(namesIn(finding).empty());
   REQUIRE(!finding.identified.calibrated.empty());
-  const Estimate& width = finding.identified.calibrated.front();
+  const ParameterEstimate& width = finding.identified.calibrated.front();
   CHECK(width.parameter == "track_width.widening");
   CHECK(width.moved);
   CHECK(width.value == Approx(0.4).margin(0.03));
@@ -127,7 +127,7 @@ TEST_CASE("terms that the model is sure of do not give way to what is new") {
   hidden.emplace_back("actuator_lag.lag", 0.15);
   const Finding finding = findOn(hidden, sureOf(known, 0.002), 400.0, 13);
   CHECK(namesIn(finding) == Names{"actuator_lag"});
-  for (const Estimate& estimate : finding.identified.calibrated) CHECK(!estimate.moved);
+  for (const ParameterEstimate& estimate : finding.identified.calibrated) CHECK(!estimate.moved);
 }
 
 TEST_CASE("95 % intervals hold the truth about as often as they say") {
@@ -139,7 +139,7 @@ TEST_CASE("95 % intervals hold the truth about as often as they say") {
   for (uint64_t seed = 100; seed < 136; ++seed) {
     const auto& [path, value] = hidden[seed % hidden.size()];
     for (const FoundEffect& effect : findAfter({{path, value}}, 300.0, seed).identified.effects)
-      for (const Estimate& estimate : effect.parameters) {
+      for (const ParameterEstimate& estimate : effect.parameters) {
         if (estimate.parameter != path) continue;
         ++named;
         held += estimate.low <= value && value <= estimate.high;

@@ -18,8 +18,8 @@ using samples::kSilent;
 const Needed kNeeded{3.0, 1.0};
 
 /// A search that has ended with the parameters that begin so.
-SearchResult searchedWith(const Rig& rig, const Values& begin) {
-  SearchResult result;
+FoundTerms searchedWith(const Rig& rig, const Values& begin) {
+  FoundTerms result;
   result.state = rig.fitted(begin);
   for (const auto& [path, value] : begin) {
     const std::string effect = path.substr(0, path.find('.'));
@@ -29,7 +29,7 @@ SearchResult searchedWith(const Rig& rig, const Values& begin) {
   return result;
 }
 
-SearchResult pruned(const Rig& rig, SearchResult result, const SearchSettings& settings = {}) {
+FoundTerms pruned(const Rig& rig, FoundTerms result, const SearchSettings& settings = {}) {
   pruneEffects({rig.fitter, settings, kSilent, result}, kNeeded);
   return result;
 }
@@ -38,7 +38,7 @@ SearchResult pruned(const Rig& rig, SearchResult result, const SearchSettings& s
 
 TEST_CASE("a superfluous effect goes, with a step that says why, and a real one stays") {
   const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
-  const SearchResult result =
+  const FoundTerms result =
       pruned(rig, searchedWith(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}}));
   CHECK(result.effects == Names{"motor_deadband"});
   CHECK(result.state.free.size() == 1);
@@ -55,10 +55,10 @@ TEST_CASE("a superfluous effect goes, with a step that says why, and a real one 
 
 TEST_CASE("an accepted effect stays though it is superfluous, and its numbers are told") {
   const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
-  SearchResult begin = searchedWith(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}});
+  FoundTerms begin = searchedWith(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}});
   SearchSettings settings;
   settings.accepted = {"yaw_pull"};
-  const SearchResult result = pruned(rig, begin, settings);
+  const FoundTerms result = pruned(rig, begin, settings);
   CHECK(result.effects == Names{"motor_deadband", "yaw_pull"});
   CHECK(result.record.steps.empty());
   CHECK(std::abs(result.evidence.at("yaw_pull").score) < kNeeded.score);
@@ -66,10 +66,9 @@ TEST_CASE("an accepted effect stays though it is superfluous, and its numbers ar
 
 TEST_CASE("a plain cause that was only a nuisance term goes without a word") {
   const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
-  SearchResult covered =
-      searchedWith(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}});
+  FoundTerms covered = searchedWith(rig, {{"motor_deadband.speed", 0.05}, {"yaw_pull.pull", 0.01}});
   covered.evidence["yaw_pull"].p_value.reset();
-  const SearchResult result = pruned(rig, covered);
+  const FoundTerms result = pruned(rig, covered);
   CHECK(result.effects == Names{"motor_deadband"});
   CHECK(result.record.steps.empty());
 }
@@ -78,11 +77,11 @@ TEST_CASE("an effect that is real but does not change where drives end is neglig
   SyntheticNoise noise;
   noise.gyro = 0.002;
   const Rig rig({{"gyro_bias.rate", 0.002}}, 300.0, 3, noise);
-  const SearchResult begin = searchedWith(rig, {{"gyro_bias.rate", 0.001}});
-  const SearchResult result = pruned(rig, begin);
+  const FoundTerms begin = searchedWith(rig, {{"gyro_bias.rate", 0.001}});
+  const FoundTerms result = pruned(rig, begin);
   CHECK(result.effects.empty());
   CHECK(result.record.negligible == Names{"gyro_bias"});
-  SearchResult kept = begin;
+  FoundTerms kept = begin;
   SearchSettings small;
   small.least_gain = 0.0;
   pruneEffects({rig.fitter, small, kSilent, kept}, kNeeded);
@@ -91,7 +90,7 @@ TEST_CASE("an effect that is real but does not change where drives end is neglig
 
 TEST_CASE("an effect that runs to the end of its plausible range goes, for that reason") {
   const Rig rig({{"motor_deadband.speed", 0.1}}, 300.0, 2);
-  SearchResult begin;
+  FoundTerms begin;
   ModelDocument model = syntheticVehicle();
   model.bounds.push_back({"motor_deadband.speed", 0.0, 0.05});
   begin.state = rig.fitter.start(model, {});
@@ -99,7 +98,7 @@ TEST_CASE("an effect that runs to the end of its plausible range goes, for that 
   rig.fitter.fit(begin.state);
   begin.effects = {"motor_deadband"};
   begin.evidence["motor_deadband"].p_value = 0.001;
-  const SearchResult result = pruned(rig, begin);
+  const FoundTerms result = pruned(rig, begin);
   CHECK(result.effects.empty());
   REQUIRE(result.record.steps.size() == 1);
   CHECK(result.record.steps[0].remark == "runs to the end of its plausible range");
@@ -123,7 +122,7 @@ TEST_CASE("without an effect the others are fitted anew, and the loss tells what
 
 TEST_CASE("two effects that imitate one become that one") {
   const Rig rig({{"position_scale.scale", -0.06}}, 300.0, 5);
-  SearchResult result =
+  FoundTerms result =
       searchedWith(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.01}});
   replacePairs({rig.fitter, {}, kSilent, result});
   CHECK(result.effects == Names{"position_scale"});
@@ -136,10 +135,10 @@ TEST_CASE("two effects that imitate one become that one") {
 
 TEST_CASE("neither does an accepted effect go into another one, nor does a rejected one come") {
   const Rig rig({{"position_scale.scale", -0.06}}, 300.0, 5);
-  const SearchResult begin =
+  const FoundTerms begin =
       searchedWith(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.01}});
   for (const bool accepted : {false, true}) {
-    SearchResult result = begin;
+    FoundTerms result = begin;
     SearchSettings settings;
     if (accepted)
       settings.accepted = {"track_width"};
@@ -152,8 +151,7 @@ TEST_CASE("neither does an accepted effect go into another one, nor does a rejec
 
 TEST_CASE("two effects that no single one fits as well stay two") {
   const Rig rig({{"slip_ratio.slip", 0.1}, {"track_width.widening", 0.25}}, 300.0, 6);
-  SearchResult result =
-      searchedWith(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.1}});
+  FoundTerms result = searchedWith(rig, {{"slip_ratio.slip", 0.05}, {"track_width.widening", 0.1}});
   const double loss = result.state.loss;
   replacePairs({rig.fitter, {}, kSilent, result});
   CHECK(result.effects == Names{"slip_ratio", "track_width"});

@@ -4,8 +4,8 @@
 
 #include <set>
 
-#include "modules/identification/core/fit.hpp"
 #include "modules/identification/core/discovery.hpp"
+#include "modules/identification/core/fit.hpp"
 #include "synthetic_drive.hpp"
 
 using namespace tread;
@@ -17,13 +17,13 @@ constexpr double kAlpha = 0.01;
 constexpr double kLeastGain = 0.01;
 
 /// A finding without effects, whose model errs as much as before times a factor.
-Finding findingWith(const std::vector<Estimate>& calibrated, double error_after) {
+Finding findingWith(const std::vector<ParameterEstimate>& calibrated, double error_after) {
   Finding finding;
   finding.before = syntheticVehicle();
-  for (const Estimate& estimate : calibrated)
+  for (const ParameterEstimate& estimate : calibrated)
     *findParameter(finding.before, estimate.parameter) = estimate.before;
   finding.identified.model = finding.before;
-  for (const Estimate& estimate : calibrated)
+  for (const ParameterEstimate& estimate : calibrated)
     *findParameter(finding.identified.model, estimate.parameter) = estimate.value;
   finding.identified.calibrated = calibrated;
   finding.adequacy.p_value = 0.5;
@@ -34,8 +34,8 @@ Finding findingWith(const std::vector<Estimate>& calibrated, double error_after)
   return finding;
 }
 
-Estimate moved(const std::string& parameter, double before, double now) {
-  Estimate estimate;
+ParameterEstimate moved(const std::string& parameter, double before, double now) {
+  ParameterEstimate estimate;
   estimate.parameter = parameter;
   estimate.before = before;
   estimate.value = now;
@@ -51,7 +51,7 @@ GapVerdict judged(Finding finding) {
 }  // namespace
 
 TEST_CASE("a term of the vehicle that moved is a finding if the end error falls with it") {
-  const Estimate width = moved("track_width.widening", 0.2, 0.4);
+  const ParameterEstimate width = moved("track_width.widening", 0.2, 0.4);
   CHECK(judged(findingWith({width}, 0.8)) == GapVerdict::kFound);
   CHECK(judged(findingWith({width}, 1.0)) == GapVerdict::kNoDiscrepancy);
 }
@@ -148,7 +148,7 @@ TEST_CASE("what a person accepted and no test shows makes no verdict") {
 TEST_CASE("a size at the end of its range tells nothing, and says of which parameter") {
   Finding finding = findingOf({foundEffect("slip_ratio")});
   const double most = freeParameter(finding.before, "slip_ratio.slip").max;
-  Estimate slip;
+  ParameterEstimate slip;
   slip.parameter = "slip_ratio.slip";
   slip.value = most;
   finding.identified.effects[0].parameters = {slip};

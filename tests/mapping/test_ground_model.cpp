@@ -16,7 +16,7 @@ GroundPlane levelAt(double x, double z = 0.0) {
 }  // namespace
 
 TEST_CASE("one stand is extended as a plane, with a doubt that grows with distance") {
-  GroundModel ground({}, 0.1, 256);
+  GroundMap ground({}, 0.1, 256);
   ground.moveTo({-128, -128});
   const auto moved = ground.learn({{0.0, 0.0, 2.0}, {0.1, -0.05}});
   REQUIRE(moved.size() == 32 * 32);
@@ -30,7 +30,7 @@ TEST_CASE("one stand is extended as a plane, with a doubt that grows with distan
 }
 
 TEST_CASE("driving nearer ends the doubt and brings the true height") {
-  GroundModel ground({}, 0.1, 256);
+  GroundMap ground({}, 0.1, 256);
   ground.moveTo({-128, -128});
   for (double x = 0.0; x < 8.0; x += 0.2) ground.learn(levelAt(x, x > 5.0 ? 0.3 : 0.0));
   REQUIRE(ground.at({78, 0}).z == Approx(0.3).margin(0.05));
@@ -39,7 +39,7 @@ TEST_CASE("driving nearer ends the doubt and brings the true height") {
 }
 
 TEST_CASE("a short pitch moves the ground far ahead little") {
-  GroundModel ground({}, 0.1, 256);
+  GroundMap ground({}, 0.1, 256);
   ground.moveTo({-128, -128});
   for (double x = 0.0; x < 6.0; x += 0.2) ground.learn(levelAt(x));
   ground.learn({{6.0, 0.0, 0.0}, {-0.09, 0.0}});
@@ -48,14 +48,14 @@ TEST_CASE("a short pitch moves the ground far ahead little") {
 }
 
 TEST_CASE("a patch that was driven over keeps its height when the robot has gone elsewhere") {
-  GroundModel ground({}, 0.1, 256);
+  GroundMap ground({}, 0.1, 256);
   ground.moveTo({-128, -128});
   for (double x = 0.0; x < 10.0; x += 0.2) ground.learn({{x, 0.0, 0.02 * x * x}, {0.04 * x, 0.0}});
   REQUIRE(ground.at({10, 0}).z == Approx(0.02).margin(0.05));
 }
 
 TEST_CASE("a height that drifts while the robot stands is followed under it") {
-  GroundModel ground({}, 0.1, 256);
+  GroundMap ground({}, 0.1, 256);
   ground.moveTo({-128, -128});
   for (int i = 0; i < 100; ++i) ground.learn(levelAt(0.4, 0.0));
   for (int i = 0; i < 30; ++i) ground.learn(levelAt(0.4, 0.5));
@@ -63,7 +63,7 @@ TEST_CASE("a height that drifts while the robot stands is followed under it") {
 }
 
 TEST_CASE("patches that come into the window are told with the next stand") {
-  GroundModel ground({}, 0.1, 256);
+  GroundMap ground({}, 0.1, 256);
   ground.moveTo({-128, -128});
   ground.learn(levelAt(0.0));
   REQUIRE(ground.learn(levelAt(0.0)).empty());

@@ -30,7 +30,7 @@ struct Driven {
 
 /// Drives until nothing is left to do, or 2000 patterns are driven.
 Driven drivenBy(const PatternSet& set, double room, int executions, const Pose2& start = {}) {
-  const ExcitationRun excitation(set, room);
+  const ExcitationPlanner excitation(set, room);
   std::vector<int> needed(set.patterns().size(), executions);
   Pose2 T_home_body = start;
   Driven driven;
@@ -92,14 +92,14 @@ TEST_CASE(
 
 TEST_CASE("A set without a way from standing and back is refused") {
   const auto straight = tread::patterns::kit::pattern(1, "straight", {0.5, 0.5}, {0.5, 0.0, 0.0});
-  CHECK_THROWS_WITH(ExcitationRun(tread::patterns::kit::setOf({straight}), 5.0),
+  CHECK_THROWS_WITH(ExcitationPlanner(tread::patterns::kit::setOf({straight}), 5.0),
                     Catch::Contains("stands still"));
   const auto start =
       tread::patterns::kit::pattern(2, "start", {0.5, 0.5}, {0.5, 0.0, 0.0}, "rest", "cruise");
-  CHECK_THROWS_WITH(ExcitationRun(tread::patterns::kit::setOf({straight, start}, true), 5.0),
+  CHECK_THROWS_WITH(ExcitationPlanner(tread::patterns::kit::setOf({straight, start}, true), 5.0),
                     Catch::Contains("class 'cruise' of set 'few' cannot be left"));
   const auto stop =
       tread::patterns::kit::pattern(3, "stop", {0.0, 0.0}, {0.0, 0.0, 0.0}, "cruise", "rest");
-  CHECK_THROWS_WITH(ExcitationRun(tread::patterns::kit::setOf({straight, stop}, true), 5.0),
+  CHECK_THROWS_WITH(ExcitationPlanner(tread::patterns::kit::setOf({straight, stop}, true), 5.0),
                     Catch::Contains("class 'cruise' of set 'few' cannot be reached"));
 }

@@ -133,7 +133,7 @@ TEST_CASE("Sets are exchanged between cycles, what was handed over keeps its ver
   bool consistent = true;
   std::map<int64_t, int64_t> versions;
   options.on_step = [&](double time, const Pose2&, Supervisor& supervisor, Playground&) {
-    for (const ProgramSlot* slot :
+    for (const PlannedExecution* slot :
          {&supervisor.program().running(), &supervisor.program().next()}) {
       if (slot->empty()) continue;
       const auto known = versions.emplace(slot->execution_id, slot->set->version()).first;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
@@ -37,7 +36,7 @@ struct FindOptions {
   std::string by;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kFindFooter =
     "Into --out: verdict.json, model.yaml (the new model; nothing is applied by itself; none "
     "after\n"
     "CANNOT_TELL), report.md and report.html. Exit status: 0 NO_DISCREPANCY, 10 FOUND, 11 "
@@ -147,7 +146,7 @@ void addFind(CLI::App& app, int& status) {
   const auto options = std::make_shared<FindOptions>();
   CLI::App* command = app.add_subcommand(
       "find", "where do simulation and measurement disagree, and what is it called?");
-  command->footer(kFooter);
+  command->footer(kFindFooter);
   command->add_option("--model", options->model, "model file (YAML)")->required();
   command->add_option("--train", options->train, "logs to learn from")->required()->expected(-1);
   command

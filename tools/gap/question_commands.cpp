@@ -32,7 +32,7 @@ struct PlanOptions {
   double speed = 0.0;  // [m/s], 0 = as the model's envelope says
 };
 
-constexpr const char* kFooter =
+constexpr const char* kPlanFooter =
     "Each effect is taken at its size in the model, else at its typical one (or as --set says); "
     "the\n"
     "other is refitted to look most like it, together with what the model says is uncertain. The\n"
@@ -277,7 +277,7 @@ void addPlan(CLI::App& app, int& status) {
   const auto options = std::make_shared<PlanOptions>();
   CLI::App* command =
       app.add_subcommand("plan", "the shortest drive that tells effect A from effect B");
-  command->footer(kFooter);
+  command->footer(kPlanFooter);
   command->add_option("A", options->truth, "effect that may be there")->required();
   command->add_option("B", options->rival, "effect that may be there instead")->required();
   command->add_option("--model", options->model, "model file (YAML)")->required();

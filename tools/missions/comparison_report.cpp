@@ -38,7 +38,7 @@ Row rowOf(const std::string& rule, const std::vector<MissionResult>& results, co
 
 Omniscient omniscientOf(const RuleComparison& comparison) {
   Omniscient omniscient;
-  for (const Batch& batch : comparison.batches)
+  for (const MissionBatch& batch : comparison.batches)
     for (const MissionResult& result : batch.results) omniscient.add(result);
   return omniscient;
 }
@@ -46,7 +46,7 @@ Omniscient omniscientOf(const RuleComparison& comparison) {
 /// Each rule in its own drives.
 std::vector<Row> rowsOfWorlds(const RuleComparison& comparison, const Omniscient& omniscient) {
   std::vector<Row> rows;
-  for (const Batch& batch : comparison.batches)
+  for (const MissionBatch& batch : comparison.batches)
     rows.push_back(rowOf(batch.rule, batch.results, errorAsDriven(), omniscient));
   return rows;
 }
@@ -136,7 +136,7 @@ void printSettlingTable(std::ostream& out, const std::vector<Row>& rows) {
 
 void printDrives(std::ostream& out, const RuleComparison& comparison) {
   out << "  rule         missions  arrived  refused  idle  stopped  contacts  metres  patterns\n";
-  for (const Batch& batch : comparison.batches) {
+  for (const MissionBatch& batch : comparison.batches) {
     double metres = 0.0;
     int patterns = 0;
     for (const MissionResult& result : batch.results) {
@@ -197,7 +197,7 @@ void printComparison(std::ostream& out, const RuleComparison& comparison) {
   printSettlingTable(out, own);
   std::vector<Row> same = rowsOfExecutions(comparison, omniscient);
   if (same.empty()) return;
-  const Batch& driven = comparison.batches.front();
+  const MissionBatch& driven = comparison.batches.front();
   out << "the same executions, those of the drives with " << driven.rule
       << ", predicted by each rule:\n";
   std::vector<Row> with_best = same;
@@ -208,7 +208,7 @@ void printComparison(std::ostream& out, const RuleComparison& comparison) {
 
 void writeComparison(const std::string& path, const RuleComparison& comparison) {
   const Omniscient omniscient = omniscientOf(comparison);
-  const Batch& driven = comparison.batches.front();
+  const MissionBatch& driven = comparison.batches.front();
   Json json;
   json["same_worlds"] = rowsJson(rowsOfWorlds(comparison, omniscient));
   json["same_executions_driven_with"] = driven.rule;
@@ -219,7 +219,8 @@ void writeComparison(const std::string& path, const RuleComparison& comparison) 
                         {"settled_5_to_15", errorJson(best.errors.settled)},
                         {"all", errorJson(best.all)}};
   json["campaigns"] = Json::array();
-  for (const Batch& batch : comparison.batches) json["campaigns"].push_back(batchJson(batch));
+  for (const MissionBatch& batch : comparison.batches)
+    json["campaigns"].push_back(batchJson(batch));
   writeJsonFile(path, json);
 }
 

@@ -92,7 +92,7 @@ BatchOrder orderOf(const Arguments& arguments, const std::string& name, bool fir
   return order;
 }
 
-Batch driveLearning(const Arguments& arguments, const RobotConfig& robot) {
+MissionBatch driveLearning(const Arguments& arguments, const RobotConfig& robot) {
   const std::string rule = arguments.rule.empty() ? robot.learner.rule.rule : arguments.rule;
   BatchOrder order = orderOf(arguments, rule);
   order.options.rule = rule;
@@ -145,7 +145,7 @@ void drive(const Arguments& arguments) {
   const RobotConfig robot = readRobot(arguments.robot, arguments.overrides);
   if (!arguments.rules.empty()) return compareRules(arguments, robot);
   if (arguments.compare_omniscient) return compareOmniscient(arguments, robot);
-  const Batch batch = driveLearning(arguments, robot);
+  const MissionBatch batch = driveLearning(arguments, robot);
   printSummary(std::cout, batch);
   if (!arguments.json.empty()) writeJson(arguments.json, batch);
 }

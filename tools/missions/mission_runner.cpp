@@ -49,7 +49,7 @@ class BatchRun {
  public:
   BatchRun(const RobotConfig& robot, const BatchOrder& order) : robot_(robot), order_(order) {}
 
-  Batch run() {
+  MissionBatch run() {
     batch_.seed = order_.seed;
     batch_.rule = order_.name;
     batch_.overrides = order_.overrides;
@@ -87,7 +87,7 @@ class BatchRun {
 
   const RobotConfig& robot_;
   const BatchOrder& order_;
-  Batch batch_;
+  MissionBatch batch_;
   std::mutex mutex_;
 };
 
@@ -144,7 +144,7 @@ report::DriveScene driveSceneOf(const MissionResult& result, const MissionScene&
   return drive;
 }
 
-Batch runBatch(const RobotConfig& robot, const BatchOrder& order) {
+MissionBatch runBatch(const RobotConfig& robot, const BatchOrder& order) {
   return BatchRun(robot, order).run();
 }
 

@@ -18,7 +18,7 @@ bool isDigit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-void printShares(std::ostream& out, const Batch& batch) {
+void printShares(std::ostream& out, const MissionBatch& batch) {
   const auto total = static_cast<double>(std::max<size_t>(1, batch.results.size()));
   for (const MissionOutcome outcome : {MissionOutcome::kArrived, MissionOutcome::kRefused,
                                        MissionOutcome::kIdle, MissionOutcome::kStopped}) {
@@ -49,7 +49,7 @@ void printSteadiness(std::ostream& out, const std::vector<MissionResult>& result
   }
 }
 
-void printErrors(std::ostream& out, const Batch& batch, int first, int last) {
+void printErrors(std::ostream& out, const MissionBatch& batch, int first, int last) {
   const auto errors = errorsAfterChange(batch.results, first, last);
   if (errors.empty()) return;
   out << formatted("prediction error of patterns %d..%d after a change of surface, rule %s:\n",
@@ -76,7 +76,7 @@ std::string errorText(const MeanError& error) {
   return error.count == 0 ? "-" : formatted("%.3f m %.3f rad", error.position, error.yaw);
 }
 
-Json errorsJson(const Batch& batch, int first, int last) {
+Json errorsJson(const MissionBatch& batch, int first, int last) {
   Json rows = Json::array();
   for (const ErrorAfterChange& error : errorsAfterChange(batch.results, first, last)) {
     rows.push_back({{"from", error.from}, {"to", error.to}});
@@ -100,7 +100,7 @@ Json flipsJson(const MissionResult& result) {
   return flips;
 }
 
-void addSteadiness(Json& json, const Batch& batch) {
+void addSteadiness(Json& json, const MissionBatch& batch) {
   const Steadiness steadiness = steadinessOf(batch.results);
   json["driven_s"] = steadiness.driven;
   json["flips"] = steadiness.flips;
@@ -189,13 +189,13 @@ Steadiness steadinessOf(const std::vector<MissionResult>& results) {
   return steadiness;
 }
 
-int countOf(const Batch& batch, MissionOutcome outcome) {
+int countOf(const MissionBatch& batch, MissionOutcome outcome) {
   return static_cast<int>(
       std::count_if(batch.results.begin(), batch.results.end(),
                     [&](const MissionResult& r) { return r.outcome == outcome; }));
 }
 
-int collisionsOf(const Batch& batch) {
+int collisionsOf(const MissionBatch& batch) {
   int collisions = 0;
   for (const MissionResult& result : batch.results) collisions += result.collisions();
   return collisions;
@@ -224,7 +224,7 @@ std::string crossingsOf(const MissionResult& result) {
   return lines;
 }
 
-void printSummary(std::ostream& out, const Batch& batch) {
+void printSummary(std::ostream& out, const MissionBatch& batch) {
   printShares(out, batch);
   int blocked = 0;
   for (const MissionResult& result : batch.results) blocked += result.line_blocked ? 1 : 0;
@@ -246,7 +246,7 @@ nlohmann::ordered_json errorJson(const MeanError& error) {
           {"yaw_per_rad", error.yaw_per_rad}};
 }
 
-nlohmann::ordered_json batchJson(const Batch& batch) {
+nlohmann::ordered_json batchJson(const MissionBatch& batch) {
   Json json;
   json["missions"] = batch.results.size();
   json["arrived"] = countOf(batch, MissionOutcome::kArrived);
@@ -273,7 +273,7 @@ void writeJsonFile(const std::string& path, const nlohmann::ordered_json& json) 
   writeText(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n');
 }
 
-void writeJson(const std::string& path, const Batch& batch) {
+void writeJson(const std::string& path, const MissionBatch& batch) {
   writeJsonFile(path, batchJson(batch));
 }
 

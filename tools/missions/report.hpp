@@ -19,7 +19,7 @@
 namespace tread::missions {
 
 /// A run of missions as a whole.
-struct Batch {
+struct MissionBatch {
   uint64_t seed = 0;
   std::string rule;
   std::vector<std::string> overrides;  ///< of the robot's configuration, as they were given
@@ -29,9 +29,9 @@ struct Batch {
   std::vector<MissionResult> results;
 };
 
-int countOf(const Batch& batch, MissionOutcome outcome);
+int countOf(const MissionBatch& batch, MissionOutcome outcome);
 /// Contacts of all its missions.
-int collisionsOf(const Batch& batch);
+int collisionsOf(const MissionBatch& batch);
 
 /// How steadily missions were driven.
 struct Steadiness {
@@ -61,13 +61,13 @@ std::string crossingsOf(const MissionResult& result);
 
 /// Shares with their reasons, collisions, speed, and prediction errors before and after changes of
 /// surface.
-void printSummary(std::ostream& out, const Batch& batch);
+void printSummary(std::ostream& out, const MissionBatch& batch);
 
 /// Means of errors, as JSON.
 nlohmann::ordered_json errorJson(const MeanError& error);
 
 /// What writeJson() writes of a batch.
-nlohmann::ordered_json batchJson(const Batch& batch);
+nlohmann::ordered_json batchJson(const MissionBatch& batch);
 
 /// Throws std::runtime_error with one clear line if the file cannot be written.
 void writeJsonFile(const std::string& path, const nlohmann::ordered_json& json);
@@ -77,7 +77,7 @@ void writeJsonFile(const std::string& path, const nlohmann::ordered_json& json);
 /** Of each run, `surface_changes` counts the borders that lie between start and goal (1 to 3), and
  * `crossings` lists what the robot crossed: more where it turned round on a border, fewer where it
  * never came so far. */
-void writeJson(const std::string& path, const Batch& batch);
+void writeJson(const std::string& path, const MissionBatch& batch);
 
 /// Every rule drives the same worlds; every rule also predicts the first rule's executions.
 /** Batches have the same seeds; the missions of the first one carry shadow rules. Two comparisons
@@ -86,7 +86,7 @@ void writeJson(const std::string& path, const Batch& batch);
  * nothing. With both, the number of executions until a rule is as good as the omniscient one
  * (Settling). */
 struct RuleComparison {
-  std::vector<Batch> batches;  ///< one per rule, at least one
+  std::vector<MissionBatch> batches;  ///< one per rule, at least one
 };
 
 /// Side by side, a line a rule.
@@ -98,8 +98,8 @@ void writeComparison(const std::string& path, const RuleComparison& comparison);
 
 /// The same missions driven by the learning robot and by one that knows its ground.
 struct OmniscientComparison {
-  Batch learning;
-  Batch omniscient;
+  MissionBatch learning;
+  MissionBatch omniscient;
 };
 
 /// Time to the goal of a mission over that of the omniscient robot.
@@ -169,6 +169,6 @@ struct BatchOrder {
 };
 
 /// Drives the missions; results are in the order of the seeds, lines go to stdout as they come.
-Batch runBatch(const RobotConfig& robot, const BatchOrder& order);
+MissionBatch runBatch(const RobotConfig& robot, const BatchOrder& order);
 
 }  // namespace tread::missions

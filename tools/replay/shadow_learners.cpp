@@ -17,12 +17,6 @@ learner::LearnerNodeConfig withRule(learner::LearnerNodeConfig config, learner::
   return config;
 }
 
-/// Where the patterns of a set end, from a time on.
-struct Predictions {
-  int64_t since = 0;
-  std::map<int, Pose2> ends;  ///< by pattern id
-};
-
 }  // namespace
 
 /// The learner process of one rule.
@@ -68,6 +62,12 @@ class ShadowLearners::Shadow {
   }
 
  private:
+  /// Where the patterns of a set end, from a time on.
+  struct Predictions {
+    int64_t since = 0;
+    std::map<int, Pose2> ends;  ///< by pattern id
+  };
+
   void takeMessages() {
     for (const LogEvent& event : bus_.takePublished()) {
       learning_t report;

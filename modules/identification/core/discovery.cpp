@@ -21,14 +21,15 @@ constexpr double kMoved = 4.0;        // standard errors; a few terms are looked
 constexpr double kInvisible = 2.0;    // times its typical size: not excited
 
 /// `half` of the 95 % interval.
-Estimate estimateOf(const std::string& path, const ModelDocument& before,
-                    const ModelDocument& after, double half) {
+ParameterEstimate estimateOf(const std::string& path, const ModelDocument& before,
+                             const ModelDocument& after, double half) {
   const double value = *findParameter(after, path);
   return {path, unitOf(path), value, value - half, value + half, *findParameter(before, path)};
 }
 
 /// Whether a term of the model has changed, or a number of which it says how sure it is.
-bool hasMoved(const Estimate& estimate, double error, const ModelDocument& before, bool calibrate) {
+bool hasMoved(const ParameterEstimate& estimate, double error, const ModelDocument& before,
+              bool calibrate) {
   const bool number = estimate.parameter.find('.') == std::string::npos;
   if (number && calibrate) return false;
   const ParameterCovariance& known = before.covariance;
@@ -38,8 +39,8 @@ bool hasMoved(const Estimate& estimate, double error, const ModelDocument& befor
   return std::abs(estimate.value - estimate.before) > kMoved * std::sqrt(variance);
 }
 
-FoundEffect foundEffect(const std::string& name, const SearchResult& result,
-                        const SearchSettings& settings, std::vector<Estimate> parameters) {
+FoundEffect foundEffect(const std::string& name, const FoundTerms& result,
+                        const SearchSettings& settings, std::vector<ParameterEstimate> parameters) {
   const auto known = result.evidence.find(name);
   const EffectEvidence evidence = known == result.evidence.end() ? EffectEvidence{} : known->second;
   FoundEffect effect;
@@ -103,13 +104,13 @@ bool isAmbiguous(const FoundEffect& effect) {
                      [](const RunnerUp& other) { return other.behind < other.error; });
 }
 
-EffectKind kindOf(const Estimate& estimate) {
+EffectKind kindOf(const ParameterEstimate& estimate) {
   return effectNamed(effectOfPath(estimate.parameter)).kind();
 }
 
 /// Whether a term of the INS has changed by a share of its typical size: the ends of executions do
 /// not show it, since they begin with the same error.
-bool hasInstrumentChanged(const Estimate& estimate) {
+bool hasInstrumentChanged(const ParameterEstimate& estimate) {
   const size_t dot = estimate.parameter.find('.');
   if (dot == std::string::npos || kindOf(estimate) != EffectKind::kMeasurement) return false;
   const double typical = parameterNamed(effectNamed(effectOfPath(estimate.parameter)),
@@ -124,14 +125,14 @@ void dropIrrelevantMoves(Finding& finding, double least_gain) {
   const double least = 1.0 - least_gain;
   const bool matters = gap.after.position.median < least * gap.before.position.median ||
                        gap.after.yaw.median < least * gap.before.yaw.median;
-  for (Estimate& estimate : finding.identified.calibrated)
+  for (ParameterEstimate& estimate : finding.identified.calibrated)
     estimate.moved = estimate.moved && (matters || hasInstrumentChanged(estimate));
 }
 
 GapVerdict verdictWithoutEffects(const Finding& finding, bool adequate) {
   bool any = false;
   bool vehicle = false;
-  for (const Estimate& estimate : finding.identified.calibrated) {
+  for (const ParameterEstimate& estimate : finding.identified.calibrated) {
     if (!estimate.moved) continue;
     any = true;
     vehicle = vehicle || kindOf(estimate) == EffectKind::kVehicle;
@@ -150,14 +151,14 @@ GapVerdict verdictOf(const Finding& finding, const std::vector<FoundEffect>& sho
   // A term of the vehicle that has changed is a finding, too.
   const bool moved =
       std::any_of(finding.identified.calibrated.begin(), finding.identified.calibrated.end(),
-                  [](const Estimate& estimate) {
+                  [](const ParameterEstimate& estimate) {
                     return estimate.moved && kindOf(estimate) == EffectKind::kVehicle;
                   });
   return measurement && !moved ? GapVerdict::kMeasurement : GapVerdict::kFound;
 }
 
 /// A size at the end of what is plausible is no measurement.
-void refuseOnBound(const Estimate& estimate, Finding& finding) {
+void refuseOnBound(const ParameterEstimate& estimate, Finding& finding) {
   if (!runsToBound(finding.identified.model, freeParameter(finding.before, estimate.parameter)))
     return;
   finding.verdict = GapVerdict::kCannotTell;
@@ -167,18 +168,19 @@ void refuseOnBound(const Estimate& estimate, Finding& finding) {
 }  // namespace
 
 IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& before,
-                                const SearchSettings& settings, const SearchResult& result) {
+                                const SearchSettings& settings, const FoundTerms& result) {
   const Observations& data = fitter.data();
   const FitState& state = result.state;
   const Eigen::MatrixXd covariance = parameterCovariance(fitter, state);
   const double quantile = studentQuantile(data.measuredBlocks() - 1);
   IdentifiedModel identified;
-  std::map<std::string, std::vector<Estimate>> of_effect;
+  std::map<std::string, std::vector<ParameterEstimate>> of_effect;
   for (size_t i = 0; i < state.free.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const double error = std::sqrt(covariance(at, at));
     const std::string effect = effectOf(state.free[i].path);
-    Estimate estimate = estimateOf(state.free[i].path, before, state.model, quantile * error);
+    ParameterEstimate estimate =
+        estimateOf(state.free[i].path, before, state.model, quantile * error);
     if (contains(result.effects, effect)) {
       of_effect[effect].push_back(estimate);
     } else {
@@ -189,7 +191,7 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
   for (const std::string& path : changePointsOn(state.model)) {
     const std::string effect = effectOf(path);
     if (!contains(result.effects, effect)) continue;
-    Estimate estimate = estimateOf(path, ModelDocument{}, state.model, 0.0);
+    ParameterEstimate estimate = estimateOf(path, ModelDocument{}, state.model, 0.0);
     std::tie(estimate.low, estimate.high) = changePointInterval(fitter, state, path, kChangeNats);
     of_effect[effect].push_back(estimate);
   }
@@ -231,9 +233,10 @@ void judge(Finding& finding, double adequacy_alpha, double least_gain) {
     finding.verdict = GapVerdict::kCannotTell;
     finding.reason = finding.search.at_bound.front() + " runs to the end of its plausible range";
   }
-  for (const Estimate& estimate : finding.identified.calibrated) refuseOnBound(estimate, finding);
+  for (const ParameterEstimate& estimate : finding.identified.calibrated)
+    refuseOnBound(estimate, finding);
   for (const FoundEffect& effect : finding.identified.effects)
-    for (const Estimate& estimate : effect.parameters) refuseOnBound(estimate, finding);
+    for (const ParameterEstimate& estimate : effect.parameters) refuseOnBound(estimate, finding);
 }
 
 namespace {
@@ -260,7 +263,7 @@ SearchSettings settingsOf(const GapTask& task) {
 }
 
 /// An accepted effect without a size would be a claim about nothing.
-void requireSized(const SearchResult& result, const SearchSettings& settings) {
+void requireSized(const FoundTerms& result, const SearchSettings& settings) {
   std::map<std::string, std::string> unsized = result.unsized;
   for (const FreeParameter& parameter : result.state.free) {
     const std::string effect = effectOf(parameter.path);
@@ -290,7 +293,7 @@ UnseenErrors errorsOnTest(const GapTask& task, const Observations& test,
 }
 
 /// Alternate blocks: what one half found predicts the other.
-UnseenErrors errorsOnHalves(const GapTask& task, const Fitter& fitter, const SearchResult& result,
+UnseenErrors errorsOnHalves(const GapTask& task, const Fitter& fitter, const FoundTerms& result,
                             SearchSettings settings, SearchMemory& memory) {
   const Observations& data = fitter.data();
   UnseenErrors unseen;
@@ -341,7 +344,7 @@ Finding findGap(const GapTask& task, const Progress& say) {
   say("2-5 test, refit, validate, prune");
   const SearchSettings settings = settingsOf(task);
   SearchMemory memory;
-  SearchResult result = search(fitter, task.model, settings, memory, say);
+  FoundTerms result = search(fitter, task.model, settings, memory, say);
   requireSized(result, settings);
   // What was seen but does not matter is no rest without a name.
   const FitState tested = result.state;

@@ -43,7 +43,7 @@ std::string tooLittleDriving(const Observations& data);
 /// and envelope, and the effects that the drive could not have shown.
 /** `before` is the model that the search began with. */
 IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& before,
-                                const SearchSettings& settings, const SearchResult& result);
+                                const SearchSettings& settings, const FoundTerms& result);
 
 /// The headline of a finding whose effects, calibrated terms, adequacy and errors are known: one
 /// verdict, with its reason where it is kCannotTell.

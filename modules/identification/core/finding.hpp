@@ -32,7 +32,7 @@ inline const char* verdictName(GapVerdict verdict) {
 }
 
 /// A parameter as it was estimated.
-struct Estimate {
+struct ParameterEstimate {
   std::string parameter;  ///< path as in findParameter(): effect.parameter or a nominal number
   std::string unit;
   double value = 0.0;
@@ -54,7 +54,7 @@ struct RunnerUp {
 /// An effect that was found.
 struct FoundEffect {
   std::string name;
-  std::vector<Estimate> parameters;
+  std::vector<ParameterEstimate> parameters;
   std::vector<std::string> group;  ///< members it cannot be told from (without itself)
   std::vector<RunnerUp> runner_ups;
   double score = 0.0;    ///< T of the score test in the presence of all others
@@ -220,8 +220,8 @@ struct FindingSource {
 struct IdentifiedModel {
   ModelDocument model;
   std::vector<FoundEffect> effects;
-  std::vector<Estimate> calibrated;      ///< of terms that were already on
-  std::vector<std::string> not_excited;  ///< effects that this drive could not have shown
+  std::vector<ParameterEstimate> calibrated;  ///< of terms that were already on
+  std::vector<std::string> not_excited;       ///< effects that this drive could not have shown
 };
 
 /// Everything that `tread-gap find` says: what each stage returned, and the verdict.

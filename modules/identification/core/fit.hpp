@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <functional>
 #include <limits>
 #include <string>
 #include <utility>

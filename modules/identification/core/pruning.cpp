@@ -104,7 +104,7 @@ double improvement(const Fitter& fitter, const FitState& old_state, const FitSta
 }
 
 /// Effects by how sure their strongest parameter is, least sure first.
-std::vector<std::string> leastSureFirst(const Fitter& fitter, const SearchResult& result) {
+std::vector<std::string> leastSureFirst(const Fitter& fitter, const FoundTerms& result) {
   const Eigen::MatrixXd covariance = parameterCovariance(fitter, result.state);
   std::map<std::string, double> sure;
   for (size_t i = 0; i < result.state.free.size(); ++i)
@@ -146,13 +146,13 @@ bool isAtBound(const FitState& state, const std::string& effect) {
 }
 
 /// Whether a test has named it: it is no mere nuisance term.
-bool wasNamed(const SearchResult& result, const std::string& effect) {
+bool wasNamed(const FoundTerms& result, const std::string& effect) {
   const auto known = result.evidence.find(effect);
   return known != result.evidence.end() && known->second.p_value;
 }
 
 /// What has passed the test once stays with a little less evidence.
-bool isNearly(const SearchResult& result, const std::string& effect, const Removal& removed) {
+bool isNearly(const FoundTerms& result, const std::string& effect, const Removal& removed) {
   return wasNamed(result, effect) && removed.evidence >= kNearly &&
          removed.gain.value > kNearlySure * removed.gain.error && removed.gain.value > kNearlyNats;
 }
@@ -202,7 +202,7 @@ bool removeAtBound(const SearchState& search, const Needed& needed, const Eigen:
 /// Looks at all, least sure first; true if one went.
 bool removeOne(const SearchState& search, const Needed& needed_of_all) {
   const Fitter& fitter = search.fitter;
-  SearchResult& result = search.result;
+  FoundTerms& result = search.result;
   const Eigen::VectorXd loss = heldOutLoss(fitter, result.state);
   for (const std::string& effect : leastSureFirst(fitter, result)) {
     // What is beyond doubt in first order needs no simulation without it.

@@ -24,7 +24,7 @@ class EffectSelection {
                   const Progress& say)
       : fitter_(fitter), settings_(settings), memory_(memory), say_(say) {}
 
-  SearchResult run(const ModelDocument& model) {
+  FoundTerms run(const ModelDocument& model) {
     calibrate(model);
     takeInAccepted();
     if (settings_.all_sized && !result_.unsized.empty()) return std::move(result_);
@@ -255,7 +255,7 @@ class EffectSelection {
   const SearchSettings& settings_;
   SearchMemory& memory_;
   const Progress& say_;
-  SearchResult result_;
+  FoundTerms result_;
   size_t nuisance_terms_ = 0;
   bool has_nuisance_ = false;
 };
@@ -293,12 +293,12 @@ std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool cali
   return free;
 }
 
-SearchResult search(const Fitter& fitter, const ModelDocument& model,
-                    const SearchSettings& settings, SearchMemory& memory, const Progress& say) {
+FoundTerms search(const Fitter& fitter, const ModelDocument& model, const SearchSettings& settings,
+                  SearchMemory& memory, const Progress& say) {
   return EffectSelection(fitter, settings, memory, say).run(model);
 }
 
-FitState refitted(const Fitter& fitter, const SearchResult& result) {
+FitState refitted(const Fitter& fitter, const FoundTerms& result) {
   FitState state = result.state;
   fitter.fit(state);
   return state;

@@ -26,7 +26,7 @@ struct EffectEvidence {
 };
 
 /// What a search ends with.
-struct SearchResult {
+struct FoundTerms {
   FitState state;                                  ///< of the new model
   FitState calibrated;                             ///< of the given terms alone
   std::vector<std::string> effects;                ///< switched on, in the order of acceptance
@@ -48,7 +48,7 @@ struct SearchState {
   const Fitter& fitter;
   const SearchSettings& settings;
   const Progress& say;
-  SearchResult& result;
+  FoundTerms& result;
 
   const Observations& data() const { return fitter.data(); }
   bool isAccepted(const std::string& effect) const { return contains(settings.accepted, effect); }
@@ -67,11 +67,11 @@ std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool cali
  * included, and what runs to its bound. Where nothing is left the candidates of step 2 are tried
  * without nuisance terms. Given terms are held by the model's covariance; to free a held term is a
  * candidate like an effect. */
-SearchResult search(const Fitter& fitter, const ModelDocument& model,
-                    const SearchSettings& settings, SearchMemory& memory, const Progress& say);
+FoundTerms search(const Fitter& fitter, const ModelDocument& model, const SearchSettings& settings,
+                  SearchMemory& memory, const Progress& say);
 
 /// Refits the structure of a result on the fitter's rows, from the result's values.
-FitState refitted(const Fitter& fitter, const SearchResult& result);
+FitState refitted(const Fitter& fitter, const FoundTerms& result);
 
 // Steps of a search.
 

@@ -13,7 +13,7 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kUnknown = 2.0;  // times its typical size: what the 95 % interval must not exceed
+constexpr double kUnsized = 2.0;  // times its typical size: what the 95 % interval must not exceed
 
 /// The candidate that promises most; none that would change anything = candidates.
 size_t mostPromising(const ScoreTest& test) {
@@ -41,7 +41,7 @@ std::string reasonNotSized(const Fitter& fitter, const FitState& state,
       return "its size vanishes in the fit";
     if (onBound(state.model, state.free[i]))
       return "its size runs to the end of its plausible range";
-    if (!(1.96 * std::sqrt(covariance(at, at)) < kUnknown * std::abs(typical)))
+    if (!(1.96 * std::sqrt(covariance(at, at)) < kUnsized * std::abs(typical)))
       return "nothing in this drive makes it visible";
   }
   return "";
@@ -154,7 +154,7 @@ void addMissed(const Observations& data, const FitState& state, int half, Eigen:
 
 /// The result with its given, released and accepted terms alone.
 FitState withoutFound(const SearchState& search) {
-  const SearchResult& result = search.result;
+  const FoundTerms& result = search.result;
   if (result.released.empty()) return result.calibrated;
   std::vector<std::string> found;
   for (const std::string& effect : result.effects)
@@ -166,7 +166,7 @@ FitState withoutFound(const SearchState& search) {
 
 bool isConfirmed(const SearchState& search, const FitState& lacking) {
   const Observations& data = search.data();
-  const SearchResult& result = search.result;
+  const FoundTerms& result = search.result;
   Eigen::MatrixXd with = Eigen::MatrixXd::Zero(data.blocks(), 3);
   Eigen::MatrixXd without = with;
   for (int half : {0, 1}) {
@@ -231,7 +231,7 @@ std::vector<char> halfMask(const Observations& data, int half) {
 }
 
 void dropUnconfirmed(const SearchState& search) {
-  SearchResult& result = search.result;
+  FoundTerms& result = search.result;
   if (result.effects.empty()) return;
   FitState lacking = withoutFound(search);
   if (isConfirmed(search, lacking)) return;

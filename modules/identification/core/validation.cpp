@@ -14,9 +14,9 @@ namespace {
 constexpr int kFolds = 5;
 constexpr int kRefits = 3;                 // iterated least squares steps of a linearised refit
 constexpr double kLeastEigenvalue = 1e-7;  // of the normal matrix in units of its diagonal
-constexpr double kUnknown = 1e12;
+constexpr double kUnknownVariance = 1e12;
 constexpr double kFewBlocks = 1.25;  // a root of active blocks below so many critical scores
-constexpr double kNearly = 0.999;
+constexpr double kAlmostOne = 0.999;
 constexpr double kSparse = 3.9;  // normal quantile: 1e-4
 /// The same of a first effect: 1e-3 each. With it 2 of 400 null logs of ten blocks named something.
 constexpr double kFirst = 3.3;
@@ -167,7 +167,7 @@ Eigen::MatrixXd parameterCovariance(const Fitter& fitter, const FitState& state)
   Eigen::MatrixXd covariance = solved * scatter * solved;
   for (Eigen::Index i = 0; i < count; ++i)
     if (lost[i] > 1e-3)
-      covariance(i, i) += kUnknown * std::pow(state.free[static_cast<size_t>(i)].step, 2);
+      covariance(i, i) += kUnknownVariance * std::pow(state.free[static_cast<size_t>(i)].step, 2);
   return covariance;
 }
 
@@ -280,7 +280,7 @@ bool isSparse(const ScoreTest& test, Eigen::Index candidate, double score) {
 double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& needed) {
   double by_blocks = std::abs(test.score(candidate)) / needed.score;
   // Where few blocks act chance reaches the largest score of all: to equal it is nothing.
-  if (by_blocks < 1.0 + 1e-9) by_blocks = std::min(by_blocks, kNearly);
+  if (by_blocks < 1.0 + 1e-9) by_blocks = std::min(by_blocks, kAlmostOne);
   if (!needed.size_counts || !isSparse(test, candidate, needed.score)) return by_blocks;
   if (needed.first && test.activeBlocks(candidate) < kLeastActive) return by_blocks;
   const double by_size =

@@ -18,8 +18,7 @@ constexpr double kMemory = 10.0;
 constexpr double kNoticeable = 0.02;
 
 CellIndex patchOf(CellIndex cell) {
-  return {floorDivide(cell.x, GroundModel::kPatchCells),
-          floorDivide(cell.y, GroundModel::kPatchCells)};
+  return {floorDivide(cell.x, GroundMap::kPatchCells), floorDivide(cell.y, GroundMap::kPatchCells)};
 }
 
 /// Bits 0 to count - 1.
@@ -62,19 +61,19 @@ std::optional<GroundPlane> planeUnder(const Eigen::Isometry3d& T_map_body) {
   return GroundPlane{T_map_body.translation(), -up.head<2>() / up.z()};
 }
 
-GroundModel::GroundModel(const GroundConfig& config, double cell_size, int side_cells)
+GroundMap::GroundMap(const GroundConfig& config, double cell_size, int side_cells)
     : config_(config), cell_size_(cell_size), patches_(side_cells / kPatchCells) {}
 
-void GroundModel::moveTo(CellIndex lower) {
+void GroundMap::moveTo(CellIndex lower) {
   patches_.moveTo(patchOf(lower));
 }
 
-Eigen::Vector2d GroundModel::centreOf(CellIndex patch) const {
+Eigen::Vector2d GroundMap::centreOf(CellIndex patch) const {
   const double side = kPatchCells * cell_size_;
   return {(patch.x + 0.5) * side, (patch.y + 0.5) * side};
 }
 
-std::vector<CellIndex> GroundModel::learn(const GroundPlane& plane) {
+std::vector<CellIndex> GroundMap::learn(const GroundPlane& plane) {
   std::vector<CellIndex> moved;
   for (size_t i = 0; i < patches_.size(); ++i) {
     const CellIndex index = patches_.indexOf(i);
@@ -84,8 +83,8 @@ std::vector<CellIndex> GroundModel::learn(const GroundPlane& plane) {
   return moved;
 }
 
-bool GroundModel::refine(Patch& patch, const Eigen::Vector2d& centre,
-                         const GroundPlane& plane) const {
+bool GroundMap::refine(Patch& patch, const Eigen::Vector2d& centre,
+                       const GroundPlane& plane) const {
   const Eigen::Vector2d offset = centre - plane.p_map.head<2>();
   const double d = offset.norm();
   const double from_slope = config_.slope_noise * d;
@@ -107,7 +106,7 @@ bool GroundModel::refine(Patch& patch, const Eigen::Vector2d& centre,
   return moved;
 }
 
-GroundHeight GroundModel::at(CellIndex cell) const {
+GroundHeight GroundMap::at(CellIndex cell) const {
   const CellIndex index = patchOf(cell);
   const Patch& patch = patches_.at(index);
   const Eigen::Vector2d centre((cell.x + 0.5) * cell_size_, (cell.y + 0.5) * cell_size_);
@@ -146,7 +145,7 @@ OccupancyMap::OccupancyMap(const OccupancyMapConfig& config)
       tiles_(config.window_tiles),
       tile_of_cell_(trust_.size()) {
   if (config.tile_cells < 1 || config.window_tiles < 2 ||
-      config.tile_cells % GroundModel::kPatchCells != 0)
+      config.tile_cells % GroundMap::kPatchCells != 0)
     throw std::invalid_argument(
         "occupancy map: tile_cells must be a multiple of 8 and window_tiles 2 or more");
   for (size_t i = 0; i < tile_of_cell_.size(); ++i) {
@@ -280,8 +279,8 @@ void OccupancyMap::classify(size_t offset) {
 }
 
 void OccupancyMap::classifyPatch(CellIndex lower) {
-  for (int y = 0; y < GroundModel::kPatchCells; ++y)
-    for (int x = 0; x < GroundModel::kPatchCells; ++x)
+  for (int y = 0; y < GroundMap::kPatchCells; ++y)
+    for (int x = 0; x < GroundMap::kPatchCells; ++x)
       classify(trust_.offset({lower.x + x, lower.y + y}));
 }
 

@@ -45,12 +45,12 @@ struct GroundHeight {
  *  (curvature d^2 / 2)^2. A patch is the weighted mean of all planes that were extrapolated to it.
  *  So the estimate follows the newest stand where the robot is and hardly moves far ahead when it
  *  pitches on a bump, and a patch that was driven over keeps the height that it had then. */
-class GroundModel {
+class GroundMap {
  public:
   /// Cells per side of a patch.
   static constexpr int kPatchCells = 8;
 
-  GroundModel(const GroundConfig& config, double cell_size, int side_cells);
+  GroundMap(const GroundConfig& config, double cell_size, int side_cells);
 
   /// Moves the window; `lower` is its lower left cell, a multiple of kPatchCells.
   void moveTo(CellIndex lower);
@@ -134,7 +134,7 @@ struct OccupancyMapConfig {
   GroundConfig ground;
   ObstacleConfig obstacle;
   FootprintSize robot;             ///< its outline
-  int tile_cells = 32;             ///< a multiple of GroundModel::kPatchCells
+  int tile_cells = 32;             ///< a multiple of GroundMap::kPatchCells
   int window_tiles = 8;            ///< tiles per side of the window
   double marking_range = 10.0;     ///< [m] returns from farther away mark nothing
   double clearing_range = 10.0;    ///< [m] beams clear no farther
@@ -144,7 +144,7 @@ struct OccupancyMapConfig {
 /// A rolling map of the robot's surroundings: free, obstacle or unknown, from scans and poses.
 /** 1. Each beam becomes a ray in map with the body's pose at that beam's time; returns from the
  *     robot itself are left out.
- *  2. The rays go into the voxels (VoxelMap), the robot's stand into the ground (GroundModel).
+ *  2. The rays go into the voxels (VoxelMap), the robot's stand into the ground (GroundMap).
  *  3. Columns are classified again (ColumnClassifier) where their voxels or their ground changed.
  *  Free without having been seen are: the cells under the robot (even if something was marked
  *  there: the robot stands in it); the cells that it stood on before, and, where a map begins, all
@@ -199,7 +199,7 @@ class OccupancyMap {
 
   OccupancyMapConfig config_;
   VoxelMap voxels_;
-  GroundModel ground_;
+  GroundMap ground_;
   ColumnClassifier classifier_;
   Footprint footprint_;
   Grid grid_;

@@ -21,7 +21,7 @@ void SpatialTrack::clear() {
   doubted_.clear();
 }
 
-bool SpatialTrack::follows(const TimedPose& next, const TimedPose& before) const {
+bool SpatialTrack::follows(const SpatialPose& next, const SpatialPose& before) const {
   const double dt = static_cast<double>(next.utime - before.utime) * 1e-6;
   const Eigen::Vector3d step = next.T_map_body.translation() - before.T_map_body.translation();
   return dt > 0.0 && step.norm() <= top_speed_ * dt + kStepMargin;
@@ -29,24 +29,24 @@ bool SpatialTrack::follows(const TimedPose& next, const TimedPose& before) const
 
 SpatialTrack::PoseCheck SpatialTrack::push(int64_t utime, const Eigen::Isometry3d& T_map_body) {
   if (utime < 0 || (!poses_.empty() && utime <= newest())) return PoseCheck::kNotNewer;
-  const TimedPose pose{utime, T_map_body};
+  const SpatialPose pose{utime, T_map_body};
   if (!poses_.empty() && !follows(pose, poses_.back())) return doubt(pose);
   doubted_.clear();
   append(pose);
   return PoseCheck::kTaken;
 }
 
-SpatialTrack::PoseCheck SpatialTrack::doubt(const TimedPose& pose) {
+SpatialTrack::PoseCheck SpatialTrack::doubt(const SpatialPose& pose) {
   if (!doubted_.empty() && !follows(pose, doubted_.back())) doubted_.clear();
   doubted_.push_back(pose);
   if (doubted_.size() < kEnoughDoubted) return PoseCheck::kDoubted;
   poses_.clear();
-  for (const TimedPose& believed : doubted_) append(believed);
+  for (const SpatialPose& believed : doubted_) append(believed);
   doubted_.clear();
   return PoseCheck::kJump;
 }
 
-void SpatialTrack::append(const TimedPose& pose) {
+void SpatialTrack::append(const SpatialPose& pose) {
   poses_.push_back(pose);
   while (poses_.front().utime < pose.utime - span_us_) poses_.pop_front();
 }
@@ -54,11 +54,11 @@ void SpatialTrack::append(const TimedPose& pose) {
 std::optional<Eigen::Isometry3d> SpatialTrack::at(int64_t utime, int64_t max_gap_us) const {
   const auto after =
       std::lower_bound(poses_.begin(), poses_.end(), utime,
-                       [](const TimedPose& pose, int64_t time) { return pose.utime < time; });
+                       [](const SpatialPose& pose, int64_t time) { return pose.utime < time; });
   if (after == poses_.end()) return std::nullopt;
   const bool exact = after->utime == utime;
   if (!exact && after == poses_.begin()) return std::nullopt;
-  const TimedPose& before = exact ? *after : *std::prev(after);
+  const SpatialPose& before = exact ? *after : *std::prev(after);
   const int64_t gap = after->utime - before.utime;
   if (gap > max_gap_us) return std::nullopt;
   const double share =

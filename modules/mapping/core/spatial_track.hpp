@@ -36,19 +36,19 @@ class SpatialTrack {
   int64_t newest() const { return poses_.empty() ? 0 : poses_.back().utime; }
 
  private:
-  struct TimedPose {
+  struct SpatialPose {
     int64_t utime;
     Eigen::Isometry3d T_map_body;
   };
 
-  bool follows(const TimedPose& next, const TimedPose& before) const;
-  PoseCheck doubt(const TimedPose& pose);
-  void append(const TimedPose& pose);
+  bool follows(const SpatialPose& next, const SpatialPose& before) const;
+  PoseCheck doubt(const SpatialPose& pose);
+  void append(const SpatialPose& pose);
 
   int64_t span_us_;
   double top_speed_;
-  std::deque<TimedPose> poses_;
-  std::deque<TimedPose> doubted_;
+  std::deque<SpatialPose> poses_;
+  std::deque<SpatialPose> doubted_;
 };
 
 }  // namespace tread::mapping

@@ -44,8 +44,8 @@ std::string placeOf(const Pose2& pose) {
 }  // namespace
 
 /// Depth-first search over chains, deeper and deeper; keeps the first pattern of the best one.
-struct ExcitationRun::Search {
-  const ExcitationRun& excitation;
+struct ExcitationPlanner::Search {
+  const ExcitationPlanner& excitation;
   std::vector<int> needed;
   double most_needed;
   double limit;  // [m] for the place where it would stand
@@ -53,7 +53,7 @@ struct ExcitationRun::Search {
   double best_value = -std::numeric_limits<double>::infinity();
   std::optional<size_t> best_first;
 
-  Search(const ExcitationRun& of, const std::vector<int>& still_needed, double stands_within)
+  Search(const ExcitationPlanner& of, const std::vector<int>& still_needed, double stands_within)
       : excitation(of),
         needed(still_needed),
         most_needed(*std::max_element(needed.begin(), needed.end())),
@@ -99,7 +99,7 @@ struct ExcitationRun::Search {
   }
 };
 
-ExcitationRun::ExcitationRun(const PatternSet& set, double room) : room_(room) {
+ExcitationPlanner::ExcitationPlanner(const PatternSet& set, double room) : room_(room) {
   const std::vector<MotionClass>& classes = set.content().classes;
   standing_ = classes.size();
   for (size_t c = 0; c < classes.size(); ++c) {
@@ -120,13 +120,13 @@ ExcitationRun::ExcitationRun(const PatternSet& set, double room) : room_(room) {
   requireConnected(set);
 }
 
-size_t ExcitationRun::classIndex(const std::string& name) const {
+size_t ExcitationPlanner::classIndex(const std::string& name) const {
   const auto found = std::find(class_names_.begin(), class_names_.end(), name);
   return static_cast<size_t>(found - class_names_.begin());
 }
 
 /// Bellman and Ford: patterns are few.
-void ExcitationRun::findWays() {
+void ExcitationPlanner::findWays() {
   ways_.assign(class_names_.size(), {});
   ways_[standing_].duration = 0.0;
   for (size_t round = 0; round < class_names_.size(); ++round)
@@ -140,7 +140,7 @@ void ExcitationRun::findWays() {
       }
 }
 
-void ExcitationRun::requireConnected(const PatternSet& set) const {
+void ExcitationPlanner::requireConnected(const PatternSet& set) const {
   const std::set<std::string> reached = connectedClasses(set, {standing()}, false);
   for (size_t c = 0; c < class_names_.size(); ++c) {
     const std::string which =
@@ -154,8 +154,9 @@ void ExcitationRun::requireConnected(const PatternSet& set) const {
   }
 }
 
-std::optional<size_t> ExcitationRun::next(const std::string& motion_class, const Pose2& T_home_body,
-                                          const std::vector<int>& needed) const {
+std::optional<size_t> ExcitationPlanner::next(const std::string& motion_class,
+                                              const Pose2& T_home_body,
+                                              const std::vector<int>& needed) const {
   const size_t from = classIndex(motion_class);
   if (*std::max_element(needed.begin(), needed.end()) <= 0) return ways_[from].first;
   // Where it is too far away already, no pattern may lead farther.

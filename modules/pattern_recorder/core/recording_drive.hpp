@@ -19,12 +19,12 @@ namespace tread::pattern_recorder {
  * that are needed, those that lag behind most, which makes left and right take turns; it loses by
  * time and by ending far away. Every pattern of it leaves a way to standing within the room.
  * Patterns are given by their place in the set. */
-class ExcitationRun {
+class ExcitationPlanner {
  public:
   /// `room` [m]: distance from where it began that ends of patterns keep.
   /** Throws std::runtime_error if no class stands still (steady command 0, 0), or a class cannot be
    * reached from there or left for it. */
-  ExcitationRun(const PatternSet& set, double room);
+  ExcitationPlanner(const PatternSet& set, double room);
 
   /// The best pattern to join to a motion class at a pose; `needed` executions by pattern.
   /** Where nothing is needed any more, the one that leads to standing. Nothing where it stands and
@@ -79,7 +79,7 @@ class RecordingDrive {
   enum class State { kRunning, kDone, kFailed };
 
   /// `room` [m] around the place where it begins. Throws std::runtime_error if the set cannot be
-  /// driven, see ExcitationRun.
+  /// driven, see ExcitationPlanner.
   RecordingDrive(const PatternSet& set, double room, int64_t run_id, Say say);
 
   /// `may_begin`: false keeps a standing robot standing.
@@ -114,7 +114,7 @@ class RecordingDrive {
   PatternSet set_;
   double room_;  ///< [m]
   Say say_;
-  ExcitationRun excitation_;
+  ExcitationPlanner excitation_;
   ExecutionTracker tracker_;
   std::map<int64_t, size_t> under_way_;  ///< handed over, not yet judged: pattern by execution id
   std::optional<Pose2> T_map_home_;

@@ -10,8 +10,8 @@
 
 namespace tread::planner::testkit {
 
-void ToyBridge::receive(int64_t run_id, const ProgramSlot& running, const ProgramSlot& next,
-                        int64_t now) {
+void ToyBridge::receive(int64_t run_id, const PlannedExecution& running,
+                        const PlannedExecution& next, int64_t now) {
   run_id_ = run_id;
   if (running.empty() || !armed_) {
     if (!current_.empty()) close(ExecutionReading::State::kAborted, "stopped by the planner");
@@ -26,7 +26,7 @@ void ToyBridge::receive(int64_t run_id, const ProgramSlot& running, const Progra
   }
 }
 
-void ToyBridge::begin(const ProgramSlot& slot, int64_t started) {
+void ToyBridge::begin(const PlannedExecution& slot, int64_t started) {
   current_ = slot;
   pending_ = {};
   started_ = started;
@@ -49,7 +49,7 @@ TrackCommand ToyBridge::step(int64_t now) {
   while (!current_.empty() && now >= started_ + current_.durationUs()) {
     const int64_t end = started_ + current_.durationUs();
     close(ExecutionReading::State::kCompleted, "");
-    const ProgramSlot next = pending_;
+    const PlannedExecution next = pending_;
     current_ = {};
     if (!next.empty()) begin(next, end);
   }
@@ -73,8 +73,8 @@ constexpr int64_t kScanPeriod = 100'000;
 
 struct Orders {
   int64_t due;
-  ProgramSlot running;
-  ProgramSlot next;
+  PlannedExecution running;
+  PlannedExecution next;
 };
 
 /// A drive under way.

@@ -17,7 +17,8 @@ namespace tread::planner::testkit {
 class ToyBridge {
  public:
   /// What the planner wants, received at now [us].
-  void receive(int64_t run_id, const ProgramSlot& running, const ProgramSlot& next, int64_t now);
+  void receive(int64_t run_id, const PlannedExecution& running, const PlannedExecution& next,
+               int64_t now);
   /// The command of now.
   TrackCommand step(int64_t now);
   void setArmed(bool armed) { armed_ = armed; }
@@ -28,7 +29,7 @@ class ToyBridge {
   int begun() const { return begun_; }
 
  private:
-  void begin(const ProgramSlot& slot, int64_t started);
+  void begin(const PlannedExecution& slot, int64_t started);
   void close(ExecutionReading::State outcome, const std::string& reason);
 
   bool armed_ = true;
@@ -36,8 +37,8 @@ class ToyBridge {
   int64_t last_id_ = 0;
   int begun_ = 0;
   int64_t started_ = 0;
-  ProgramSlot current_;
-  ProgramSlot pending_;
+  PlannedExecution current_;
+  PlannedExecution pending_;
   BridgeReading reading_;
   std::vector<ExecutionReading> executions_;
 };

@@ -92,7 +92,6 @@ inline Twins twins(const std::string& effect, double size, double minutes = 2.5,
 
 /// A programme of one command held for some patterns, after 2 s of standing.
 inline Programme oneCommand(const sim::MotorPower& power, int patterns) {
-  constexpr int64_t kPatternUs = kCommandsPerPattern * kCommandUs;
   Programme programme;
   for (int i = 0; i < patterns; ++i)
     programme.patterns.push_back({(i + 1) * kPatternUs, 1, 1, power});

@@ -8,6 +8,11 @@
 
 namespace tread::blind {
 
+/// A quantity that is so by construction.
+inline Quantity built(const char* name, double value, const char* unit) {
+  return {name, value, unit, false};
+}
+
 using PairValue = std::function<double(const SteadyPair&)>;
 
 /// The k of y = k x that fits best (least squares through the origin); 0 if x is always 0.

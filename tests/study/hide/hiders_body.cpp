@@ -13,12 +13,6 @@ namespace {
 
 using sim::OutsideForce;
 
-constexpr double kGravity = 9.81;  // [m/s^2]
-
-Quantity built(const char* name, double value, const char* unit) {
-  return {name, value, unit, false};
-}
-
 double lostSpeed(const SteadyPair& p) {
   return p.without.v_x - p.with.v_x;
 }

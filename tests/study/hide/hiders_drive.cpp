@@ -26,11 +26,6 @@ MotorPower each(const MotorPower& power, Change change) {
   return {change(power.left), change(power.right)};
 }
 
-/// A quantity that is so by construction.
-Quantity built(const char* name, double value, const char* unit) {
-  return {name, value, unit, false};
-}
-
 /// A first-order lag of power, one track.
 double follow(double& state, double wanted, double lag, double dt) {
   state += (wanted - state) * std::min(1.0, dt / lag);

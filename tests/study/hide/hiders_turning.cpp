@@ -13,10 +13,6 @@ namespace {
 
 using sim::OutsideForce;
 
-Quantity built(const char* name, double value, const char* unit) {
-  return {name, value, unit, false};
-}
-
 double lostYawRate(const SteadyPair& p) {
   return p.without.omega - p.with.omega;
 }

@@ -13,7 +13,6 @@ namespace tread::blind {
 namespace {
 
 constexpr double kWarmUpTime = 200.0;  // of a gyro [s]
-constexpr int64_t kPatternUs = kCommandsPerPattern * kCommandUs;
 
 /// Between two values every 10 ms.
 struct Place {

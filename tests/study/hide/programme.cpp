@@ -15,7 +15,6 @@ namespace {
 
 using sim::MotorPower;
 
-constexpr int64_t kPatternUs = kCommandsPerPattern * kCommandUs;
 constexpr int64_t kMinuteUs = 60'000'000;
 constexpr int64_t kStandUs = 25'000'000;
 constexpr int64_t kRestUs = 16'000'000;

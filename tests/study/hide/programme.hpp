@@ -13,6 +13,7 @@ namespace tread::blind {
 
 inline constexpr int64_t kCommandUs = 50'000;   ///< a command is held this long
 inline constexpr int kCommandsPerPattern = 40;  ///< 2 s
+inline constexpr int64_t kPatternUs = kCommandsPerPattern * kCommandUs;
 inline constexpr double kPatternSeconds = 2.0;
 
 /// Which motion patterns a programme is made of.

@@ -9,8 +9,6 @@
 namespace tread::blind {
 namespace {
 
-constexpr double kGravity = 9.81;  // [m/s^2]
-
 double weight() {
   return plainVehicle().mass * kGravity;
 }

@@ -14,6 +14,8 @@
 // a balanced body, a battery that does not fade.
 namespace tread::blind {
 
+inline constexpr double kGravity = 9.81;  ///< [m/s^2]
+
 /// How much is uncertain in a log, one sigma.
 struct NoiseLevel {
   std::string name;

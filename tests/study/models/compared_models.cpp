@@ -160,8 +160,8 @@ ModelDocument calibratedNumbers(const Fitter& fitter, const ModelDocument& ideal
   return model;
 }
 
-SearchResult discover(const Fitter& fitter, const ModelDocument& begin, uint64_t seed,
-                      const Progress& say) {
+FoundTerms discover(const Fitter& fitter, const ModelDocument& begin, uint64_t seed,
+                    const Progress& say) {
   SearchSettings settings;
   settings.seed = seed;
   settings.calibrate = true;
@@ -169,7 +169,7 @@ SearchResult discover(const Fitter& fitter, const ModelDocument& begin, uint64_t
   return search(fitter, begin, settings, memory, say);
 }
 
-RungModel discoveredRung(const SearchResult& found, const FitState& state) {
+RungModel discoveredRung(const FoundTerms& found, const FitState& state) {
   RungModel rung = rungOf(state);
   rung.effects = found.effects;
   return rung;

@@ -32,6 +32,7 @@ namespace tread::gap {
  * --calibrate. They begin where a fit of lag, delay, gain and track ends. */
 enum class Rung { kIdeal, kGains, kPowertrain, kSlipRegression, kBlackBox, kDiscovered };
 inline constexpr size_t kRungs = 6;
+inline constexpr auto kFound = static_cast<size_t>(Rung::kDiscovered);
 
 /// "ideal", "gain + track", ... as in tables.
 const char* rungName(Rung rung);
@@ -60,10 +61,10 @@ RungModels fitRungs(const Fitter& fitter, const ModelDocument& ideal, bool ideal
 ModelDocument calibratedNumbers(const Fitter& fitter, const ModelDocument& ideal);
 
 /// What find --calibrate finds on the fitter's rows, beginning at a model.
-SearchResult discover(const Fitter& fitter, const ModelDocument& begin, uint64_t seed,
-                      const Progress& say);
+FoundTerms discover(const Fitter& fitter, const ModelDocument& begin, uint64_t seed,
+                    const Progress& say);
 /// As a rung, with the state of the search or one refitted elsewhere.
-RungModel discoveredRung(const SearchResult& found, const FitState& state);
+RungModel discoveredRung(const FoundTerms& found, const FitState& state);
 
 /// End errors of a rung on executions of any rows.
 std::vector<ExecutionError> endErrors(const Observations& data, const RungModel& rung);

@@ -15,7 +15,6 @@ using namespace report;
 namespace {
 
 constexpr Rung kRivals[] = {Rung::kSlipRegression, Rung::kBlackBox};
-constexpr auto kFound = static_cast<size_t>(Rung::kDiscovered);
 
 /// What a table tells of end errors and their differences.
 struct Quantity {

@@ -6,9 +6,9 @@
 #include <functional>
 #include <map>
 
+#include "modules/identification/core/discovery.hpp"
 #include "modules/identification/core/end_errors.hpp"
 #include "modules/identification/core/search.hpp"
-#include "modules/identification/core/discovery.hpp"
 
 namespace tread::gap {
 namespace {
@@ -30,7 +30,6 @@ MeanDifference meanOf(const std::vector<double>& values, const std::vector<Execu
 }
 
 constexpr int kLeastForNestedEffects = 2 * kLeastBlocks;  // as find
-constexpr auto kFound = static_cast<size_t>(Rung::kDiscovered);
 
 using RungErrors = std::array<std::optional<std::vector<ExecutionError>>, kRungs>;
 
@@ -97,7 +96,7 @@ class Discoverer {
     if (whole_) {
       rung = discoveredRung(*whole_, refitted(rows, *whole_));
     } else {
-      const SearchResult found = searchOn(rows);
+      const FoundTerms found = searchOn(rows);
       rung = discoveredRung(found, found.state);
     }
     sayFound(rung, say_);
@@ -105,7 +104,7 @@ class Discoverer {
   }
 
  private:
-  SearchResult searchOn(const Fitter& rows) const {
+  FoundTerms searchOn(const Fitter& rows) const {
     const ModelDocument begin = calibratedNumbers(rows, ideal_);
     const Progress silent = [](const std::string&) {};
     return discover(rows, begin, seed_, silent);
@@ -114,7 +113,7 @@ class Discoverer {
   const ModelDocument& ideal_;
   uint64_t seed_;
   const Progress& say_;
-  std::optional<SearchResult> whole_;
+  std::optional<FoundTerms> whole_;
 };
 
 ComparisonRow nestedRow(const ComparisonLog& log, const ComparisonTask& task, const Progress& say) {

@@ -170,7 +170,7 @@ inline Finding finding(GapVerdict verdict) {
   for (const FoundEffect& effect : finding.identified.effects) {
     finding.search.steps.push_back({effect.name, false, effect.score, effect.p_value, effect.gain,
                                     effect.gain_error, effect.runner_ups, ""});
-    for (const Estimate& estimate : effect.parameters)
+    for (const ParameterEstimate& estimate : effect.parameters)
       *findParameter(finding.identified.model, estimate.parameter) = estimate.value;
   }
   return finding;

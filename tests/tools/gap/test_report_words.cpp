@@ -53,7 +53,7 @@ FoundEffect sized(const std::string& path, const std::string& unit, double value
 /// A finding whose new model has this parameter.
 Finding withSize(const FoundEffect& found) {
   Finding finding = withEffects(GapVerdict::kFound, {found});
-  const Estimate& estimate = found.parameters.front();
+  const ParameterEstimate& estimate = found.parameters.front();
   *findParameter(finding.identified.model, estimate.parameter) = estimate.value;
   return finding;
 }

@@ -33,8 +33,8 @@ MissionResult mission(uint64_t seed, MissionOutcome outcome, const std::string& 
   return result;
 }
 
-Batch invented() {
-  Batch batch;
+MissionBatch invented() {
+  MissionBatch batch;
   batch.seed = 1;
   batch.rule = "bank";
   batch.overrides = {"planner.margins.growth=0"};
@@ -54,7 +54,7 @@ Batch invented() {
   return batch;
 }
 
-std::string summaryOf(const Batch& batch) {
+std::string summaryOf(const MissionBatch& batch) {
   std::ostringstream text;
   printSummary(text, batch);
   return text.str();
@@ -104,7 +104,7 @@ HandMade handMade(int on_grass, int needed, double later = 0.1) {
 }  // namespace
 
 TEST_CASE("counts of a batch add up to its missions, in text and in JSON") {
-  const Batch batch = invented();
+  const MissionBatch batch = invented();
   const std::string text = summaryOf(batch);
   INFO(text);
   CHECK(contains(text, "arrived      3   50.0 %\n"));
@@ -159,7 +159,7 @@ TEST_CASE("a mission's line tells outcome, counts and reason") {
 }
 
 TEST_CASE("a crossing without executions about it has dashes in text and null in JSON") {
-  Batch batch;
+  MissionBatch batch;
   batch.results = {mission(1, MissionOutcome::kArrived)};
   batch.results[0].crossings = {{9.0, "grass", "tarmac"}};
   CHECK(contains(crossingsOf(batch.results[0]), "before / after / settled: - / - / -\n"));
@@ -190,7 +190,7 @@ TEST_CASE("errors after changes are pooled by pair of surfaces, each execution o
   CHECK(errors[2].to == "grass");
   CHECK(errors[2].count == 2);
   // Of the text, the row of all changes leaves the start out.
-  Batch batch;
+  MissionBatch batch;
   batch.results = {one};
   CHECK(contains(summaryOf(batch), "  all changes            3        0.3333     0.3333\n"));
 }
@@ -245,7 +245,7 @@ TEST_CASE("the pooled ratio is shown as far as ten changes have so many executio
 TEST_CASE("a comparison of rules counts each rule's missions and those of all together") {
   RuleComparison comparison;
   for (const char* rule : {"bank", "off"}) {
-    Batch batch = invented();
+    MissionBatch batch = invented();
     batch.rule = rule;
     comparison.batches.push_back(batch);
   }

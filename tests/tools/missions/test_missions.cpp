@@ -265,7 +265,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a report says what happened, in text and in JSON") {
-  Batch batch;
+  MissionBatch batch;
   batch.seed = 8;
   batch.rule = "off";
   MissionOptions options;

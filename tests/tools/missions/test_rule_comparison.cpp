@@ -156,7 +156,7 @@ TEST_CASE("the median of times counts those that were not seen to the end as not
 TEST_CASE("a comparison says in text and in JSON what each rule did") {
   RuleComparison comparison;
   for (const char* rule : {"collective", "off"}) {
-    Batch batch;
+    MissionBatch batch;
     batch.rule = rule;
     batch.results = inventedMissions(batch.rule == "off" ? 20 : 3);
     comparison.batches.push_back(batch);

@@ -37,7 +37,7 @@ Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-Json estimateJson(const Estimate& estimate) {
+Json estimateJson(const ParameterEstimate& estimate) {
   return {{"value", number(estimate.value)},
           {"unit", estimate.unit},
           {"low", number(estimate.low)},
@@ -45,16 +45,16 @@ Json estimateJson(const Estimate& estimate) {
 }
 
 /// Adds an estimate under its name and, where people say its reciprocal, under that name, too.
-void add(Json& parameters, const std::string& before_name, const Estimate& estimate) {
+void add(Json& parameters, const std::string& before_name, const ParameterEstimate& estimate) {
   parameters[before_name + lastPart(estimate.parameter)] = estimateJson(estimate);
-  const Estimate natural = naturalEstimate(estimate);
+  const ParameterEstimate natural = naturalEstimate(estimate);
   if (natural.parameter != estimate.parameter)
     parameters[before_name + natural.parameter] = estimateJson(natural);
 }
 
 Json effectJson(const FoundEffect& effect) {
   Json parameters = Json::object();
-  for (const Estimate& estimate : effect.parameters) add(parameters, "", estimate);
+  for (const ParameterEstimate& estimate : effect.parameters) add(parameters, "", estimate);
   Json runner_ups = Json::array();
   for (const RunnerUp& runner_up : effect.runner_ups) runner_ups.push_back(runner_up.effect);
   return {
@@ -66,9 +66,9 @@ Json effectJson(const FoundEffect& effect) {
       {"accepted", effect.accepted}};
 }
 
-Json calibratedJson(const std::vector<Estimate>& calibrated) {
+Json calibratedJson(const std::vector<ParameterEstimate>& calibrated) {
   Json all = Json::object();
-  for (const Estimate& estimate : calibrated) {
+  for (const ParameterEstimate& estimate : calibrated) {
     const size_t point = estimate.parameter.find('.');
     add(all, point == std::string::npos ? "" : estimate.parameter.substr(0, point + 1), estimate);
     all[estimate.parameter]["before"] = number(estimate.before);

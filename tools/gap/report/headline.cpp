@@ -19,7 +19,7 @@ constexpr const char* kFittedNumbers =
 /// Effects of the model that are other ones now.
 std::vector<std::string> movedIn(const Finding& finding) {
   std::vector<std::string> names;
-  for (const Estimate& estimate : finding.identified.calibrated) {
+  for (const ParameterEstimate& estimate : finding.identified.calibrated) {
     const std::string effect = effectOfPath(estimate.parameter);
     if (estimate.moved && !contains(names, effect)) names.push_back(effect);
   }
@@ -108,8 +108,9 @@ void addChecks(const Finding& finding, Points& points) {
 /// What to do about effects whose size is no measurement.
 void addUnsized(const Finding& finding, Points& points) {
   for (const FoundEffect& effect : finding.identified.effects)
-    if (std::any_of(effect.parameters.begin(), effect.parameters.end(),
-                    [&finding](const Estimate& estimate) { return isAtLimit(finding, estimate); }))
+    if (std::any_of(
+            effect.parameters.begin(), effect.parameters.end(),
+            [&finding](const ParameterEstimate& estimate) { return isAtLimit(finding, estimate); }))
       points.items.push_back(shortTitleOf(effect.name) +
                              " runs to the end of what is plausible. Drive what shows it (" +
                              withoutStop(effectNamed(effect.name).separates) +

@@ -25,13 +25,13 @@ std::string naturalUnit(const EffectParameter& parameter);
 
 /// An estimate of a reciprocal as people say it: the limit itself, its interval turned over.
 /** Others come back as they are. */
-Estimate naturalEstimate(const Estimate& estimate);
+ParameterEstimate naturalEstimate(const ParameterEstimate& estimate);
 
 /// Unit in which a natural estimate is said.
-std::string saidUnit(const Estimate& natural);
+std::string saidUnit(const ParameterEstimate& natural);
 
 /// "limit 1.18 rad/s (1.15 to 1.21 rad/s)".
-std::string saidEstimate(const Estimate& estimate);
+std::string saidEstimate(const ParameterEstimate& estimate);
 
 /// Title of an effect; what is no effect (forward_gain) as it is.
 std::string titleOf(const std::string& effect);
@@ -65,7 +65,7 @@ std::optional<Total> totalOf(const std::string& path, const ModelDocument& model
 std::string checkOf(const FoundEffect& effect);
 
 /// Whether an estimate ran to the end of what is plausible: then it is no measurement.
-bool isAtLimit(const Finding& finding, const Estimate& estimate);
+bool isAtLimit(const Finding& finding, const ParameterEstimate& estimate);
 
 /// Whether a drive leaves open which of two it is.
 inline bool isAsGood(const RunnerUp& runner_up) {

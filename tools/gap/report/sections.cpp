@@ -8,7 +8,7 @@
 namespace tread::gap {
 namespace {
 
-std::string saidRange(const Finding& finding, const Estimate& estimate) {
+std::string saidRange(const Finding& finding, const ParameterEstimate& estimate) {
   const auto range = plausibleBounds(finding.identified.model, estimate.parameter);
   if (!range || range->min == range->max) return "";
   const EffectParameter* parameter = findEffectParameter(estimate.parameter);
@@ -18,20 +18,20 @@ std::string saidRange(const Finding& finding, const Estimate& estimate) {
 }
 
 /// Before its effect was added a parameter was off.
-std::string saidBefore(const Estimate& estimate, const Estimate& natural) {
+std::string saidBefore(const ParameterEstimate& estimate, const ParameterEstimate& natural) {
   if (findEffectParameter(estimate.parameter) != nullptr && estimate.before == 0.0) return "off";
   return said(natural.before, saidUnit(natural));
 }
 
 /// What a parameter makes together with what it acts on top of.
-std::string saidTotal(const Finding& finding, const Estimate& estimate) {
+std::string saidTotal(const Finding& finding, const ParameterEstimate& estimate) {
   const auto total = totalOf(estimate.parameter, finding.identified.model);
   return total ? total->name + " " + said(total->value, total->unit) : "";
 }
 
-void addRow(const Finding& finding, const Estimate& estimate, const std::string& effect,
+void addRow(const Finding& finding, const ParameterEstimate& estimate, const std::string& effect,
             Table& table) {
-  const Estimate natural = naturalEstimate(estimate);
+  const ParameterEstimate natural = naturalEstimate(estimate);
   table.rows.push_back({effect, lastPart(natural.parameter), saidBefore(estimate, natural),
                         said(natural.value, saidUnit(natural)) +
                             (isAtLimit(finding, estimate) ? " (at its limit)" : ""),
@@ -138,9 +138,9 @@ std::vector<Block> parametersBlocks(const Finding& finding) {
   Table table{
       {"term", "parameter", "before", "now", "95 % interval", "plausible", "in all"}, {}, 2};
   for (const FoundEffect& effect : finding.identified.effects)
-    for (const Estimate& estimate : effect.parameters)
+    for (const ParameterEstimate& estimate : effect.parameters)
       addRow(finding, estimate, titleOf(effect.name), table);
-  for (const Estimate& estimate : finding.identified.calibrated) {
+  for (const ParameterEstimate& estimate : finding.identified.calibrated) {
     const bool term = findEffectParameter(estimate.parameter) != nullptr;
     addRow(finding, estimate,
            term ? titleOf(effectOfPath(estimate.parameter)) : std::string("nominal model"), table);

@@ -20,14 +20,14 @@ std::string plainSentence(const FoundEffect& effect) {
                                                                 : withoutStop(known.sentence);
 }
 
-std::string directionOf(const Estimate& estimate) {
+std::string directionOf(const ParameterEstimate& estimate) {
   const EffectParameter* parameter = findEffectParameter(estimate.parameter);
   if (parameter == nullptr) return "";
   return estimate.value < 0.0 ? parameter->negative : parameter->positive;
 }
 
-std::string movedSentence(const Estimate& estimate) {
-  const Estimate natural = naturalEstimate(estimate);
+std::string movedSentence(const ParameterEstimate& estimate) {
+  const ParameterEstimate natural = naturalEstimate(estimate);
   if (estimate.parameter.find('.') == std::string::npos)
     return "A number of the model has changed: " + saidEstimate(estimate) + " instead of " +
            said(natural.before, saidUnit(natural)) + "; " +
@@ -40,7 +40,7 @@ std::string movedSentence(const Estimate& estimate) {
 std::string withNumbers(const FoundEffect& effect, const std::vector<std::string>& totals) {
   std::vector<std::string> numbers;
   std::string direction;
-  for (const Estimate& estimate : effect.parameters) {
+  for (const ParameterEstimate& estimate : effect.parameters) {
     numbers.push_back(saidEstimate(estimate));
     if (direction.empty()) direction = directionOf(estimate);
   }
@@ -104,10 +104,10 @@ std::string naturalUnit(const EffectParameter& parameter) {
   return parameter.natural_unit == "1" ? "" : parameter.natural_unit;
 }
 
-Estimate naturalEstimate(const Estimate& estimate) {
+ParameterEstimate naturalEstimate(const ParameterEstimate& estimate) {
   const EffectParameter* parameter = findEffectParameter(estimate.parameter);
   if (parameter == nullptr || !parameter->reciprocal()) return estimate;
-  Estimate natural = estimate;
+  ParameterEstimate natural = estimate;
   natural.parameter = parameter->natural_name;
   natural.unit = parameter->natural_unit;
   natural.value = naturalValue(*parameter, estimate.value);
@@ -118,12 +118,12 @@ Estimate naturalEstimate(const Estimate& estimate) {
   return natural;
 }
 
-std::string saidUnit(const Estimate& natural) {
+std::string saidUnit(const ParameterEstimate& natural) {
   return natural.parameter == "friction" ? "" : natural.unit;
 }
 
-std::string saidEstimate(const Estimate& estimate) {
-  const Estimate natural = naturalEstimate(estimate);
+std::string saidEstimate(const ParameterEstimate& estimate) {
+  const ParameterEstimate natural = naturalEstimate(estimate);
   const std::string unit = saidUnit(natural);
   return lastPart(natural.parameter) + " " + said(natural.value, unit) + " (" +
          saidInterval(natural.low, natural.high, unit) + ")";
@@ -152,7 +152,7 @@ std::string sentenceOf(const FoundEffect& effect) {
 
 std::string sentenceOf(const FoundEffect& effect, const ModelDocument& model) {
   std::vector<std::string> totals;
-  for (const Estimate& estimate : effect.parameters)
+  for (const ParameterEstimate& estimate : effect.parameters)
     if (const auto total = totalOf(estimate.parameter, model))
       totals.push_back(total->name + " " + said(total->value, total->unit));
   return withNumbers(effect, totals);
@@ -177,12 +177,12 @@ std::vector<std::string> sentencesOf(const Finding& finding) {
   for (const FoundEffect& effect : finding.identified.effects)
     sentences.push_back(shortTitleOf(effect.name) + ": " +
                         inSentence(sentenceOf(effect, finding.identified.model)));
-  for (const Estimate& estimate : finding.identified.calibrated)
+  for (const ParameterEstimate& estimate : finding.identified.calibrated)
     if (estimate.moved) sentences.push_back(movedSentence(estimate));
   return sentences;
 }
 
-bool isAtLimit(const Finding& finding, const Estimate& estimate) {
+bool isAtLimit(const Finding& finding, const ParameterEstimate& estimate) {
   const auto bounds = plausibleBounds(finding.identified.model, estimate.parameter);
   const double near = bounds ? 1e-6 * (bounds->max - bounds->min) : 0.0;
   return near > 0.0 && estimate.value != 0.0 &&

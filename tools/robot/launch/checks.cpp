@@ -25,14 +25,14 @@ std::string megabytes(int64_t bytes) {
 
 }  // namespace
 
-std::string findingLine(const std::string& launch_name, const Finding& finding) {
+std::string findingLine(const std::string& launch_name, const HostFinding& finding) {
   return launch_name + (finding.critical ? ": " : ": advice: ") + finding.problem +
          "; fix: " + finding.remedy;
 }
 
-bool anyCritical(const std::vector<Finding>& findings) {
+bool anyCritical(const std::vector<HostFinding>& findings) {
   return std::any_of(findings.begin(), findings.end(),
-                     [](const Finding& finding) { return finding.critical; });
+                     [](const HostFinding& finding) { return finding.critical; });
 }
 
 std::optional<LcmAddress> parseLcmUrl(const std::string& url) {
@@ -86,7 +86,7 @@ std::string multicastProblem(const LcmAddress& address, const NetworkFacts& fact
   return "";
 }
 
-Finding smallBuffer(int64_t granted, int64_t wanted) {
+HostFinding smallBuffer(int64_t granted, int64_t wanted) {
   return {false,
           "net.core.rmem_max is " + std::to_string(granted) + ", so bursts of messages are lost",
           "sysctl -w net.core.rmem_max=" + std::to_string(wanted) +
@@ -95,8 +95,8 @@ Finding smallBuffer(int64_t granted, int64_t wanted) {
 
 }  // namespace
 
-std::vector<Finding> checkNetwork(const LcmAddress& address, const NetworkFacts& facts,
-                                  bool simulated) {
+std::vector<HostFinding> checkNetwork(const LcmAddress& address, const NetworkFacts& facts,
+                                      bool simulated) {
   if (address.provider == "tcpq" && address.group == "127.0.0.1" && simulated) return {};
   if (address.provider == "tcpq")
     return {{true, "LCM URL with provider tcpq is for simulated launches, on 127.0.0.1",
@@ -106,7 +106,7 @@ std::vector<Finding> checkNetwork(const LcmAddress& address, const NetworkFacts&
              "LCM URL with provider " + address.provider + " does not connect these processes",
              "--lcm-url udpm://239.255.76.67:7667?ttl=0"}};
   if (!facts.can_ask && !(simulated && facts.delivered)) return {missingTool("ip", "iproute2")};
-  std::vector<Finding> findings;
+  std::vector<HostFinding> findings;
   const std::string problem = multicastProblem(address, facts);
   const bool elsewhere =
       address.ttl == 0 && !facts.route_device.empty() && facts.route_device != "lo";
@@ -130,8 +130,8 @@ std::vector<Finding> checkNetwork(const LcmAddress& address, const NetworkFacts&
   return findings;
 }
 
-std::vector<Finding> checkProcess(const ProcessFacts& facts) {
-  std::vector<Finding> findings;
+std::vector<HostFinding> checkProcess(const ProcessFacts& facts) {
+  std::vector<HostFinding> findings;
   if (!facts.program_found)
     findings.push_back(
         {true, facts.name + ": there is no program " + facts.program,
@@ -177,8 +177,8 @@ std::string deviceOf(const std::vector<std::string>& arguments, const std::strin
   }
 }
 
-std::vector<Finding> checkFolder(const FolderFacts& facts) {
-  std::vector<Finding> findings;
+std::vector<HostFinding> checkFolder(const FolderFacts& facts) {
+  std::vector<HostFinding> findings;
   if (facts.occupied) {
     const std::string owner = facts.owner > 0 ? " (pid " + std::to_string(facts.owner) + ")" : "";
     findings.push_back({true, "runs already in " + facts.path + owner,
@@ -204,7 +204,7 @@ std::vector<Finding> checkFolder(const FolderFacts& facts) {
   return findings;
 }
 
-Finding missingTool(const std::string& tool, const std::string& package) {
+HostFinding missingTool(const std::string& tool, const std::string& package) {
   return {true, "there is no program " + tool,
           "tools/setup, or apt-get install " + package + "  (as root)"};
 }

@@ -10,18 +10,18 @@
 namespace tread::launch {
 
 /// Something that is missing, and the command that mends it.
-struct Finding {
+struct HostFinding {
   bool critical = true;  ///< false: starting makes sense all the same
   std::string problem;
   std::string remedy;
 };
 
 /// "NAME: PROBLEM; fix: REMEDY", and "advice" before what is not critical. One line.
-std::string findingLine(const std::string& launch_name, const Finding& finding);
-bool anyCritical(const std::vector<Finding>& findings);
+std::string findingLine(const std::string& launch_name, const HostFinding& finding);
+bool anyCritical(const std::vector<HostFinding>& findings);
 
 /// A program that the host must have, and its Debian package.
-Finding missingTool(const std::string& tool, const std::string& package);
+HostFinding missingTool(const std::string& tool, const std::string& package);
 
 /// An LCM URL in parts, as liblcm 1.3.1 reads it.
 struct LcmAddress {
@@ -53,8 +53,8 @@ std::string routeDevice(const std::string& answer);
 
 /// With ttl 0 messages must stay on the loopback device: there they also survive an unplugged
 /// network cable. A simulated launch may go over another device or TCP (tcpq), as in a container.
-std::vector<Finding> checkNetwork(const LcmAddress& address, const NetworkFacts& facts,
-                                  bool simulated);
+std::vector<HostFinding> checkNetwork(const LcmAddress& address, const NetworkFacts& facts,
+                                      bool simulated);
 
 /// One process: what the host says about its program, configuration and device.
 struct ProcessFacts {
@@ -70,7 +70,7 @@ struct ProcessFacts {
   bool device_usable = true;  ///< may be read and written
 };
 
-std::vector<Finding> checkProcess(const ProcessFacts& facts);
+std::vector<HostFinding> checkProcess(const ProcessFacts& facts);
 
 /// The tty that a process will open: of its last `--set address=`, else the configuration's
 /// address; empty if there is none or if it lies in the run folder, where a process makes it.
@@ -87,6 +87,6 @@ struct FolderFacts {
   bool occupied = false;      ///< somebody runs in it
 };
 
-std::vector<Finding> checkFolder(const FolderFacts& facts);
+std::vector<HostFinding> checkFolder(const FolderFacts& facts);
 
 }  // namespace tread::launch

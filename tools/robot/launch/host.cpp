@@ -279,9 +279,9 @@ FolderFacts folderFacts(const RunPaths& paths) {
   return facts;
 }
 
-std::vector<Finding> checkHost(const LaunchFile& launch, const LaunchSettings& settings) {
-  std::vector<Finding> findings;
-  const auto add = [&](const std::vector<Finding>& more) {
+std::vector<HostFinding> checkHost(const LaunchFile& launch, const LaunchSettings& settings) {
+  std::vector<HostFinding> findings;
+  const auto add = [&](const std::vector<HostFinding>& more) {
     findings.insert(findings.end(), more.begin(), more.end());
   };
   add(checkFolder(folderFacts(RunPaths(settings.run))));

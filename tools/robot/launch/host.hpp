@@ -20,7 +20,7 @@ std::string defaultRunFolder(const std::string& name);
 std::string findProgram(const std::string& word, const std::string& bin);
 
 /// The start-up checks of a launch: all that is missing on this host.
-std::vector<Finding> checkHost(const LaunchFile& launch, const LaunchSettings& settings);
+std::vector<HostFinding> checkHost(const LaunchFile& launch, const LaunchSettings& settings);
 
 /// For a run folder without asking for its owner.
 FolderFacts folderFacts(const RunPaths& paths);

@@ -86,8 +86,8 @@ std::vector<SupervisedProcess> withCommands(const LaunchFile& launch,
 
 /// The checks on the screen; false if starting makes no sense.
 bool checksPass(const LaunchFile& launch, const LaunchSettings& settings) {
-  const std::vector<Finding> findings = checkHost(launch, settings);
-  for (const Finding& finding : findings)
+  const std::vector<HostFinding> findings = checkHost(launch, settings);
+  for (const HostFinding& finding : findings)
     std::cerr << findingLine(launch.name, finding) << std::endl;
   return !anyCritical(findings);
 }

@@ -64,7 +64,7 @@ constexpr double kLeastRatio = 0.6;
 constexpr double kMostRatio = 1.6;
 
 /// Why the running or the next pattern ends at rest, in words; empty if neither does.
-std::string stopAhead(const ProgramSlot& running, const CurrentPlan& plan,
+std::string stopAhead(const PlannedExecution& running, const CurrentPlan& plan,
                       const PatternTable& table) {
   size_t after = 0;  // index in the plan of what begins when the vehicle stands
   if (!leadsToRest(running, table)) {
@@ -146,7 +146,7 @@ bool leftCorridor(const Prediction& then, const Prediction& now) {
          std::abs(wrapAngle(off.yaw)) > std::max(kLeastTurn, turn);
 }
 
-bool leadsToRest(const ProgramSlot& slot, const PatternTable& table) {
+bool leadsToRest(const PlannedExecution& slot, const PatternTable& table) {
   return slot.pattern().exit_class == table.motionClass(table.restClass()).name;
 }
 

@@ -227,7 +227,7 @@ class StatusLine {
 };
 
 /// Whether the pattern of a slot ends at rest.
-bool leadsToRest(const ProgramSlot& slot, const PatternTable& table);
+bool leadsToRest(const PlannedExecution& slot, const PatternTable& table);
 
 enum class DrivingMode { kStanding, kDriving, kSettling };
 

@@ -142,8 +142,8 @@ void Supervisor::watchProgress(const PlannerInputs& s) {
 
 PlanReport Supervisor::report(const PlannerInputs& s) const {
   const CurrentPlan& plan = state_.plan;
-  const ProgramSlot& running = state_.tracker.running();
-  const ProgramSlot& next = state_.tracker.next();
+  const PlannedExecution& running = state_.tracker.running();
+  const PlannedExecution& next = state_.tracker.next();
   PlanReport report;
   report.status = state_.status.status();
   report.reason = state_.status.reason();

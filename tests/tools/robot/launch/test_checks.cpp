@@ -24,13 +24,13 @@ NetworkFacts goodNetwork() {
 }
 
 /// The lines that the findings give, one behind the other.
-std::string lines(const std::vector<Finding>& findings) {
+std::string lines(const std::vector<HostFinding>& findings) {
   std::string text;
-  for (const Finding& finding : findings) text += findingLine("robot", finding) + "\n";
+  for (const HostFinding& finding : findings) text += findingLine("robot", finding) + "\n";
   return text;
 }
 
-std::string oneLine(const std::vector<Finding>& findings) {
+std::string oneLine(const std::vector<HostFinding>& findings) {
   REQUIRE(findings.size() == 1);
   return lines(findings);
 }
