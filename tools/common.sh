@@ -31,7 +31,10 @@ find_apart() {
 # them, and that one goes with whoever started it. Returns in the new command, or where nothing is allowed.
 become_apart() {
   if [ -n "${TREAD_APART:-}" ]; then return 0; fi
-  find_apart --pid --fork --kill-child --mount-proc || find_apart || return 0
+  if ! find_apart --pid --fork --kill-child --mount-proc && ! find_apart; then
+    echo "$me: no network of its own is allowed here; driving in the host's"
+    return 0
+  fi
   TREAD_APART=yes exec setpriv --pdeathsig KILL "${apart[@]}" "tools/$me" "$@"
 }
 

@@ -171,6 +171,7 @@ class Relay {
 
   static void subscribe(Client& client, uint32_t type, const std::string& channel) {
     if (type != kSubscribe && type != kUnsubscribe) throw std::runtime_error("unknown message");
+    static_cast<void>(std::regex(channel));  // an invalid one ends this client, not a publisher
     auto& all = client.subscriptions;
     const auto found = std::find(all.begin(), all.end(), channel);
     if (type == kSubscribe)

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -27,7 +28,11 @@ ParallelFor onThreads(int threads) {
       }
     };
     std::vector<std::thread> helpers;
-    for (size_t i = 1; i < workers; ++i) helpers.emplace_back(work);
+    try {
+      for (size_t i = 1; i < workers; ++i) helpers.emplace_back(work);
+    } catch (const std::system_error&) {
+      // Where no more threads are allowed, those that run do all the work.
+    }
     work();
     for (std::thread& helper : helpers) helper.join();
     if (error) std::rethrow_exception(error);

@@ -16,9 +16,9 @@ inline void serialFor(size_t count, const std::function<void(size_t)>& body) {
   for (size_t i = 0; i < count; ++i) body(i);
 }
 
-/// On so many threads, the caller's included.
-/** After a call throws, no other begins; once those under way have ended, the caller gets what the
- * first one threw. */
+/// On so many threads, the caller's included, or fewer where no more are allowed.
+/** After a call throws, no further one is handed out; once those under way have ended, the caller
+ * gets what the first one threw. */
 ParallelFor onThreads(int threads);
 
 }  // namespace tread

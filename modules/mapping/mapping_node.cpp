@@ -149,7 +149,7 @@ void takePoints(const scan_t& message, std::vector<Beam>& beams) {
 constexpr int64_t kTrackSpan = 6'000'000;
 /// Scans that wait for poses at the same time; more means that the poses do not come.
 constexpr size_t kMostWaiting = 20;
-/// What comes from farther ahead has another clock [us].
+/// A message stamped further in the future than this comes from another clock [us].
 constexpr int64_t kFarthestAhead = 200'000;
 /// LCM loses what a publisher sends above 100 kB in 20 ms, which is this node's period.
 constexpr size_t kBytesPerStep = 80'000;

@@ -138,8 +138,8 @@ PlannerConfig readLoggedPlannerConfig(ConfigReader& reader) {
   ConfigReader policy = reader.section("policy");
   policy.seconds("patience", config.policy.patience, {2.0, 600.0});
   reader.flag("come_close", map.come_close);
-  ConfigReader commitment = reader.section("commitment");
-  commitment.number("gain", config.side_hysteresis.gain, {0.0, 60.0}, "s");
+  ConfigReader side = reader.section("side_hysteresis");
+  side.number("gain", config.side_hysteresis.gain, {0.0, 60.0}, "s");
   readAges(reader.section("ages"), config.ages);
   reader.seconds("deadline", config.deadline, {0.005, 0.045});
   const Margins& margins = map.margins;

@@ -21,7 +21,7 @@ struct SyntheticNoise {
 
 /// A drive of two-second patterns that a model makes: commands, INS at 50 Hz, executions.
 /** The kernel simulates it, so that forms match exactly: for tests of the mathematics, not of what
- * the workflow is worth (tests/blind is for that). */
+ * the workflow is worth (tests/study is for that). */
 inline Drive syntheticDrive(const ModelDocument& truth, double seconds, uint64_t seed,
                             const SyntheticNoise& noise = {}) {
   std::mt19937_64 random(seed);

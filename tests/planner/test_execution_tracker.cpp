@@ -75,7 +75,7 @@ TEST_CASE("Execution ids count up, and the same next pattern keeps its slot and 
   CHECK(tracker.next().set->version() == 2);
 }
 
-TEST_CASE("The page is turned when MOTOR names the next execution") {
+TEST_CASE("The tracker switches when MOTOR names the next execution") {
   ExecutionTracker tracker = begun(samplePatterns());
   CHECK(tracker.follow(playing(11 * kSecond - 5000, 2)) == Event::kSwitched);
   CHECK(tracker.running().execution_id == 2);
@@ -83,7 +83,7 @@ TEST_CASE("The page is turned when MOTOR names the next execution") {
   CHECK(tracker.started() == 11 * kSecond);
 }
 
-TEST_CASE("The page is turned by EXECUTION, with the exact time of the beginning") {
+TEST_CASE("The tracker switches when EXECUTION says so, with the exact time of the beginning") {
   ExecutionTracker tracker = begun(samplePatterns());
   PlannerInputs s = at(11 * kSecond + 20'000);
   s.executions = {record(1, 10 * kSecond, Outcome::kCompleted),
@@ -92,7 +92,7 @@ TEST_CASE("The page is turned by EXECUTION, with the exact time of the beginning
   CHECK(tracker.started() == 11 * kSecond + 10'000);
 }
 
-TEST_CASE("The page is turned by the clock where nothing is heard of the bridge") {
+TEST_CASE("The tracker switches by the clock where nothing is heard of the bridge") {
   ExecutionTracker tracker = begun(samplePatterns());
   CHECK(tracker.follow(at(11 * kSecond - 1)) == Event::kNone);
   CHECK(tracker.follow(at(11 * kSecond)) == Event::kSwitched);

@@ -19,7 +19,7 @@ const std::string kHere = TREAD_SOURCE_DIR "/config/robots/teodor/planner.yaml";
 
 TEST_CASE("A configuration is read with its ranges, and mistakes are named at file and line") {
   ConfigReader good = ConfigReader::fromText(
-      "search: {horizon: 6}\npolicy: {patience: 12}\ncommitment: {gain: 2.5}\n", kHere);
+      "search: {horizon: 6}\npolicy: {patience: 12}\nside_hysteresis: {gain: 2.5}\n", kHere);
   const PlannerConfig config = readPlannerConfig(good);
   CHECK(config.map.footprint.half_width == 0.415);
   CHECK(config.map.field.inflation == 0.415);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The calibration of the four surfaces: the dynamic vehicle against the model of the calibration
-// file, whose equations are written down here once more (reference/calibration.yaml, block
-// "symmetric").
+// The calibration of the four surfaces: the dynamic vehicle against a first-order model of the
+// paper's robot, whose equations and numbers are written down here.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -218,9 +218,8 @@ void writeComparison(const std::string& path, const RuleComparison& comparison) 
                         {"after_1_to_3", errorJson(best.errors.after)},
                         {"settled_5_to_15", errorJson(best.errors.settled)},
                         {"all", errorJson(best.all)}};
-  json["campaigns"] = Json::array();
-  for (const MissionBatch& batch : comparison.batches)
-    json["campaigns"].push_back(batchJson(batch));
+  json["batches"] = Json::array();
+  for (const MissionBatch& batch : comparison.batches) json["batches"].push_back(batchJson(batch));
   writeJsonFile(path, json);
 }
 

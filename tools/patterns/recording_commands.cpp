@@ -51,7 +51,11 @@ std::string keepPart(const std::string& path, const PatternSet& set,
   size_t executions = 0;
   for (const auto& of_pattern : recorder.recorded()) executions += of_pattern.size();
   if (executions == 0) return "";
-  writeText(path, recordings::formatSurface({"", recorder.recorded()}, set));
+  try {
+    writeText(path, recordings::formatSurface({"", recorder.recorded()}, set));
+  } catch (const std::exception& error) {
+    return std::string("; what was recorded until then is lost: ") + error.what();
+  }
   return "; the " + std::to_string(executions) + " executions until then are in " + path;
 }
 
@@ -207,9 +211,8 @@ void average(const AverageOptions& options) {
 
 CLI::App* addRecord(CLI::App& app) {
   const auto options = std::make_shared<RecordOptions>();
-  CLI::App* command = app.add_subcommand("record",
-                                         "execute each pattern many times and store what it did as "
-                                         "a surface of a folder of recordings");
+  CLI::App* command = app.add_subcommand(
+      "record", "execute each pattern many times and store what it did under a surface's name");
   command->footer(kFooter);
   command->add_option("PATTERNS", options->patterns, "pattern file (YAML)")->required();
   command->add_option("--recordings", options->folder, "folder of recordings; made if needed")

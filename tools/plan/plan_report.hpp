@@ -11,7 +11,7 @@
 
 #include "common/grid/grid.hpp"
 #include "modules/planner/core/search/path_planner.hpp"
-#include "tools/plan/map_file.hpp"
+#include "tools/plan/plan_files.hpp"
 
 namespace tread::plan {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/plan/primitives.hpp"
+#include "tools/plan/plan_files.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/plan/map_file.hpp"
+#include "tools/plan/plan_files.hpp"
 
 #include <array>
 #include <random>

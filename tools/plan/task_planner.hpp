@@ -10,9 +10,8 @@
 
 #include "common/pattern/pattern.hpp"
 #include "tools/plan/lattice_planner.hpp"
-#include "tools/plan/map_file.hpp"
+#include "tools/plan/plan_files.hpp"
 #include "tools/plan/plan_report.hpp"
-#include "tools/plan/primitives.hpp"
 
 namespace tread::plan {
 

@@ -123,7 +123,7 @@ void drawWay(Picture& picture, const DriveScene& scene) {
   for (const Vector2d& contact : scene.contacts) panel.dot(contact, kPink, 6.0);
   if (!scene.contacts.empty()) panel.legendEntry({kPink, 6.0, false, "contact"});
   if (!scene.tree.empty()) {
-    panel.legendEntry({kOrange, 2.5, false, "a plan underway"});
+    panel.legendEntry({kOrange, 2.5, false, "one plan"});
     panel.legendEntry({kSkyBlue, 1.0, false, "its tree"});
   }
   panel.legendEntry({kGreen, 6.0, false, "start"});

@@ -151,7 +151,8 @@ class InsSource {
 
   /// The map's place on Earth once there is one: configured, or the first good fix.
   virtual std::optional<GeoOrigin> origin() const = 0;
-  /// Host time of the last message that was understood; nothing before the first.
+  /// Host time of the last well-formed message, also of a kind that is not used; nothing before the
+  /// first.
   virtual std::optional<int64_t> lastMessage() const = 0;
   /// Positions refused so far because they are too far from the origin, and the last one's distance
   /// [m].

@@ -69,7 +69,7 @@ class HeightTable {
   std::vector<double> heights_;  ///< columns x rows [m]
 };
 
-/// Spread of the motion from one execution of 1 s to the next; reference/calibration.yaml.
+/// Spread of the motion from one execution of 1 s to the next.
 struct MotionSpread {
   double forward = 0.0;  ///< sig_f, relative, of the forward gain [1]
   double yaw = 0.0;      ///< sig_psi, relative, of the yaw gain [1]

@@ -5,10 +5,13 @@
 #include <chrono>
 #include <thread>
 
+#include <lcm/lcm-cpp.hpp>
+
 #include "common/bus/bus.hpp"
 #include "common/bus/host_clock.hpp"
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/tcp_relay.hpp"
+#include "common/messages/blank.hpp"
 #include "tests/system/own_bus.hpp"
 
 using namespace tread;
@@ -208,6 +211,26 @@ TEST_CASE("without multicast messages go over a relay, each channel to whoever s
   CHECK(listener.statistics().lost == 0);
   // An answer within a millisecond or so each, not after a delayed acknowledgement.
   CHECK(hostNow() - started < 20'000'000);
+}
+
+TEST_CASE("who subscribes to no regular expression loses its own connection, not the publisher's") {
+  const TcpRelay relay(0);
+  lcm::LCM other(relay.url());
+  other.subscribeFunction(
+      "(?i)mark", +[](const lcm::ReceiveBuffer*, const std::string&, int) {},
+      0);  // only liblcm takes it
+  LcmBus listener(relay.url(), TimeSource::kHost);
+  int heard = 0;
+  listener.subscribe<mark_t>(kMark, [&](const mark_t&) { ++heard; });
+  LcmBus speaker(relay.url(), TimeSource::kHost);
+  auto mark = blank<mark_t>();
+  mark.utime = hostNow();
+  for (int i = 0; i < 50 && heard < 3; ++i) {
+    mark.seq = i;
+    REQUIRE(speaker.publish(kMark, mark));
+    listener.handle(20);
+  }
+  CHECK(heard == 3);
 }
 
 TEST_CASE("where no relay runs, that is said") {

@@ -144,7 +144,8 @@ int main(int argc, char** argv) {
         ->required();
     app.add_flag("--pool", options.pool, "also judge each log by what all others teach");
     app.add_option("--seed", options.seed, "of the random draws of the tests")
-        ->capture_default_str();
+        ->capture_default_str()
+        ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));
     tread::addThreads(app, options.threads);
     if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
     tread::gap::compare(options);

@@ -47,6 +47,19 @@ TEST_CASE("the number of threads has no influence on any byte, the seed has") {
   CHECK(filesOf(grounds, settings) != one);
 }
 
+TEST_CASE("progress tells every part once") {
+  ExperimentSettings settings = smallSettings();
+  settings.repetitions = 1;
+  settings.threads = 3;
+  size_t calls = 0, parts = 0;
+  runExperiment(groundsOfText(kSmallWorld), settings, [&](size_t done, size_t all) {
+    CHECK(done == ++calls);
+    parts = all;
+  });
+  CHECK(calls == parts);
+  CHECK(calls > 1);
+}
+
 TEST_CASE("every rule of the learner takes part, and others do not disturb it") {
   const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
   ExperimentSettings settings = smallSettings();

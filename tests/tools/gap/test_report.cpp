@@ -115,7 +115,7 @@ TEST_CASE("what remains is told channel by channel") {
         "the along residual depends on speed and time; the yaw rate residual depends on v");
 }
 
-TEST_CASE("a report shows where, how, the ladder, the parameters and what else it could be") {
+TEST_CASE("a report shows where, how, step by step, the parameters and what else it could be") {
   const std::string text = markdown(GapVerdict::kFound);
   for (const char* words : {"Where simulation and measurement disagree",
                             "Executions, as measured and as predicted",

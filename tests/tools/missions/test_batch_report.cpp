@@ -260,9 +260,9 @@ TEST_CASE("a comparison of rules counts each rule's missions and those of all to
   const OwnFolder folder;
   writeComparison(folder.path("rules.json"), comparison);
   const Json json = Json::parse(folder.text("rules.json"));
-  REQUIRE(json["campaigns"].size() == 2);
-  CHECK(json["campaigns"][1]["rule"] == "off");
-  CHECK(json["campaigns"][1]["missions"] == 5);
+  REQUIRE(json["batches"].size() == 2);
+  CHECK(json["batches"][1]["rule"] == "off");
+  CHECK(json["batches"][1]["missions"] == 5);
   CHECK(json["same_executions_driven_with"] == "bank");
   CHECK(json["same_worlds"][0]["settling"]["median_both"].is_null());
   CHECK(json["same_worlds"][0]["all"]["count"] == 0);

@@ -176,7 +176,7 @@ TEST_CASE("a comparison says in text and in JSON what each rule did") {
   const std::string json = contentOf(path);
   std::remove(path.c_str());
   for (const char* key : {"same_worlds", "same_executions", "omniscient", "median_both",
-                          "after_1_to_3", "settled_5_to_15", "campaigns"})
+                          "after_1_to_3", "settled_5_to_15", "batches"})
     CHECK(json.find('"' + std::string(key) + "\":") != std::string::npos);
   CHECK(json.find("\"median_position\": null") != std::string::npos);
   CHECK_THROWS_WITH(writeComparison("/nowhere/report.json", comparison),

@@ -9,8 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/plan/map_file.hpp"
-#include "tools/plan/primitives.hpp"
+#include "tools/plan/plan_files.hpp"
 
 namespace tread::plan::samples {
 

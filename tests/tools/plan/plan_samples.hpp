@@ -10,7 +10,7 @@
 #include <string>
 
 #include "tests/tools/called_program.hpp"
-#include "tools/plan/map_file.hpp"
+#include "tools/plan/plan_files.hpp"
 
 namespace tread::plan::samples {
 

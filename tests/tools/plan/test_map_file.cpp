@@ -6,7 +6,7 @@
 
 #include "common/config/config_reader.hpp"
 #include "tests/tools/plan/plan_samples.hpp"
-#include "tools/plan/map_file.hpp"
+#include "tools/plan/plan_files.hpp"
 
 using namespace tread;
 using namespace tread::plan;

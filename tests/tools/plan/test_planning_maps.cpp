@@ -8,7 +8,7 @@
 #include "common/store/store.hpp"
 #include "tests/tools/plan/plan_samples.hpp"
 #include "tests/tools/plan/planning_maps.hpp"
-#include "tools/plan/map_file.hpp"
+#include "tools/plan/plan_files.hpp"
 
 using namespace tread;
 using namespace tread::plan;

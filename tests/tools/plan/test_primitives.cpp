@@ -8,7 +8,7 @@
 #include "common/config/config_reader.hpp"
 #include "tests/tools/plan/lattice_oracle.hpp"
 #include "tests/tools/plan/plan_samples.hpp"
-#include "tools/plan/primitives.hpp"
+#include "tools/plan/plan_files.hpp"
 
 using namespace tread;
 using namespace tread::plan;
