@@ -152,7 +152,8 @@ class NearSquares {
   static constexpr int16_t kNone = 20'000;  // with a square of the reach added it fits as well
 
   /// Squared distances along y, with as much of the outside as is looked at on both sides.
-  void workOutColumns() {
+  /** Not inlined into its only caller: that is slower. */
+  [[gnu::noinline]] void workOutColumns() {
     along_y_.assign(padded_ * h_, outside_);
     const auto far = static_cast<int16_t>(cap_);
     std::vector<int16_t> steps(w_, outside_ == 0 ? int16_t{0} : far);  // rows to the last blocked
