@@ -160,7 +160,9 @@ void Panel::dot(const Eigen::Vector2d& at, Colour colour, double pixels) {
 
 void Panel::text(const Eigen::Vector2d& at, const std::string& words, Colour colour, double size) {
   const Eigen::Vector2d pixel = toPixels(at);
-  picture_.text(pixel.x(), pixel.y(), words, size, colour);
+  setFont(picture_.surface_->context, size, false);
+  const double room = box_.x + box_.width - textWidth(picture_.surface_->context, words);
+  picture_.text(std::max(box_.x, std::min(pixel.x(), room)), pixel.y(), words, size, colour);
 }
 
 void Panel::bar(double x, double height, double width, Colour fill) {

@@ -90,6 +90,7 @@ class Panel {
   void disc(const Eigen::Vector2d& centre, double radius, Colour fill);
   /// A mark of constant size [pixels].
   void dot(const Eigen::Vector2d& at, Colour colour, double pixels = 3.0);
+  /// Begins at a point, or farther left where it would leave the panel.
   void text(const Eigen::Vector2d& at, const std::string& words, Colour colour = kBlack,
             double size = 11.0);
   /// Vertical bar from 0 to `height`.
