@@ -79,6 +79,7 @@ remove_old() {
 build_programs() {
   local log=$1
   shift
+  echo "$me: building; the first time takes minutes ($log)"
   if ! tools/build release "$@" >"$log" 2>&1; then
     tail -30 "$log" >&2
     echo "$me: the build failed ($log)" >&2
@@ -89,4 +90,4 @@ build_programs() {
 
 # The programs of a simulated drive (config/launch/simulated*.yaml) and of its operator.
 robot_programs=(tread-launch tread-logger tread-simulator tread-ins-driver tread-lidar-driver tread-mapping tread-learner
-  tread-planner tread-motor-bridge tread-arm tread-goal)
+  tread-planner tread-motor-bridge tread-arm tread-goal tread-stop)

@@ -12,13 +12,13 @@
 namespace tread::recordings {
 namespace {
 
-constexpr int64_t kOriginUs = 1'000'000;
+constexpr int64_t kImportOriginUs = 1'000'000;
 constexpr int64_t kPeriodUs = 50'000;
-constexpr int64_t kRunId = 1;
+constexpr int64_t kImportRunId = 1;
 
 /// To whole milliseconds: the recordings know no more.
 int64_t utimeOf(double seconds) {
-  return kOriginUs + std::llround(seconds * 1e3) * 1000;
+  return kImportOriginUs + std::llround(seconds * 1e3) * 1000;
 }
 
 /// One execution of the log.
@@ -37,7 +37,7 @@ std::vector<Planned> plannedExecutions(const std::vector<CommandRun>& runs,
     ++number;
     for (int n = 0; n < layout.executions; ++n) {
       const int64_t started = utimeOf(run.begin + layout.offset + n * layout.length);
-      const int64_t full = started + utimeOf(layout.length) - kOriginUs;
+      const int64_t full = started + utimeOf(layout.length) - kImportOriginUs;
       const int64_t run_end = utimeOf(run.end);
       if (started >= run_end) break;
       Planned planned;
@@ -45,7 +45,7 @@ std::vector<Planned> plannedExecutions(const std::vector<CommandRun>& runs,
       planned.end = planned.completed ? full : run_end;
       planned.reason = planned.completed ? "" : run.end_reason;
       planned.record = blank<execution_record_t>();
-      planned.record.record_run_id = kRunId;
+      planned.record.record_run_id = kImportRunId;
       planned.record.record_execution_id = 10 * number + n + 1;
       planned.record.started = started;
       planned.record.record_pattern_id = run.step;
@@ -57,9 +57,9 @@ std::vector<Planned> plannedExecutions(const std::vector<CommandRun>& runs,
   return all;
 }
 
-class LogMaker {
+class ImportMaker {
  public:
-  explicit LogMaker(LogCounts& counts) : counts_(counts) {}
+  explicit ImportMaker(LogCounts& counts) : counts_(counts) {}
 
   void addNotes(const Session& session, const std::string& format, bool all_gyro,
                 const ExecutionLayout& layout, double begin) {
@@ -194,7 +194,7 @@ std::vector<LogEvent> makeLog(const RecordedDrive& recording, const Session& ses
   // Steps are interpolated to 20 Hz in the aligned format; elsewhere fixes come at the rate of the
   // ICP.
   const double step = format == "aligned" ? kPeriod : 1.0 / session.pose_rate;
-  LogMaker maker(counts);
+  ImportMaker maker(counts);
   maker.addNotes(session, format, !recording.gyro.empty(), layout, begin);
   maker.addIns(recording.fixes, recording.gyro, 3.0 * step);
   maker.addMotor(recording.drive, executions);

@@ -111,14 +111,14 @@ std::vector<Pair> pairsOf(const PatternSet& a, const PatternSet& b, const std::s
   std::vector<Pair> pairs;
   for (const MotionPattern& pattern : a.patterns()) {
     const MotionPattern* other = b.findByName(pattern.name);
-    if (other == nullptr)
+    if (other == nullptr) {
       remarks += formatted("'%s' is only in %s.\n", pattern.name.c_str(), name_a.c_str());
-    else if (other->commands != pattern.commands || a.content().kind != b.content().kind ||
-             a.content().period_us != b.content().period_us)
-      remarks += formatted("'%s' has other commands in the two sets; not compared.\n",
-                           pattern.name.c_str());
-    else
-      pairs.push_back({&pattern, other});
+      continue;
+    }
+    pairs.push_back({&pattern, other});
+    if (other->commands != pattern.commands || a.content().kind != b.content().kind ||
+        a.content().period_us != b.content().period_us)
+      remarks += formatted("'%s' has other commands in the two sets.\n", pattern.name.c_str());
   }
   for (const MotionPattern& pattern : b.patterns())
     if (a.findByName(pattern.name) == nullptr)

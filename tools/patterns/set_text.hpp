@@ -39,7 +39,7 @@ std::string table(const PatternSet& set);
 /// What two sets predict of the patterns that both have, matched by name: a line a pattern with
 /// both ends and their difference, and in words which differs most.
 /** The difference is that of end b from end a, in the frame of the start. Patterns whose commands
- * differ are named, not compared. */
+ * differ are named as well. */
 std::string comparison(const PatternSet& a, const std::string& name_a, const PatternSet& b,
                        const std::string& name_b);
 

@@ -121,6 +121,8 @@ std::string GoalCall::patternName(int32_t id) const {
 }
 
 std::string GoalCall::progress(int64_t utime) const {
+  if (!(ins_.any() && plan_.any()) && utime - started_.value_or(0) < kFreshAge)
+    return "listening to the robot";
   if (ins_.age(utime) > kFreshAge) return "no INS: is tread-ins-driver running?";
   if (plan_.age(utime) > kFreshAge) return "no PLAN: is tread-planner running?";
   const plan_t& plan = plan_.message();
