@@ -18,6 +18,8 @@ inline constexpr Cell kFree = 0;
 inline constexpr Cell kCostMax = 100;
 inline constexpr Cell kObstacle = 254;
 inline constexpr Cell kUnknown = 255;
+/// Sides of a cell that a robot's map may have [m]; finer ones cost the planner minutes.
+inline constexpr double kFinestCell = 0.02, kCoarsestCell = 0.5;
 
 inline bool isFree(Cell cell) {
   return cell <= kCostMax;

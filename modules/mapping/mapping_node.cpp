@@ -24,7 +24,7 @@ std::string metres(double length) {
 void readGrid(ConfigReader& reader, OccupancyMapConfig& map) {
   int64_t tile_cells = map.tile_cells;
   int64_t window_tiles = map.window_tiles;
-  reader.number("cell_size", map.voxels.cell_size, {0.02, 0.5}, "m");
+  reader.number("cell_size", map.voxels.cell_size, {kFinestCell, kCoarsestCell}, "m");
   reader.integer("tile_cells", tile_cells, {8, 128}, "cells");
   reader.integer("window_tiles", window_tiles, {2, 32}, "tiles");
   if (tile_cells % GroundMap::kPatchCells != 0)

@@ -77,7 +77,7 @@ std::optional<Goal> goalFrom(const goal_t& message) {
 std::optional<Tile> tileFrom(const map_tile_t& message) {
   const int side = message.tile_cells;
   if (side < 1 || side > kMaxTileCells || message.num_cells != side * side) return std::nullopt;
-  if (!(message.cell_size > 0.001 && message.cell_size < 10.0)) return std::nullopt;
+  if (!(message.cell_size >= kFinestCell && message.cell_size <= kCoarsestCell)) return {};
   if (std::abs(static_cast<int64_t>(message.tile_x)) * side > 1'000'000 ||
       std::abs(static_cast<int64_t>(message.tile_y)) * side > 1'000'000)
     return std::nullopt;

@@ -49,4 +49,18 @@ TEST_CASE("a broken byte anywhere costs neither memory nor time") {
   CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));
 }
 
+TEST_CASE("no length, wherever it stands, makes a decoder throw or read beyond the message") {
+  testing::forEachType([](const auto& sample) {
+    using Message = std::decay_t<decltype(sample)>;
+    const auto whole = testing::encode(sample);
+    for (size_t at = 0; at + 4 <= whole.size(); ++at)
+      for (const uint32_t length : {0x80000000U, 0x80000001U, 0xFFFFFFFFU, 0x7FFFFFFFU, 0U}) {
+        auto bytes = whole;
+        for (size_t i = 0; i < 4; ++i) bytes[at + i] = static_cast<uint8_t>(length >> (24 - 8 * i));
+        Message message{};
+        CHECK_NOTHROW(testing::decode(bytes, message));
+      }
+  });
+}
+
 }  // namespace tread

@@ -396,11 +396,7 @@ std::vector<uint8_t> encode(const Message& message) {
 template <class Message>
 [[gnu::noinline]] bool decode(const std::vector<uint8_t>& bytes, Message& message) {
   const int size = static_cast<int>(bytes.size());
-  try {
-    return message.decode(bytes.data(), 0, size) == size;
-  } catch (const std::exception&) {
-    return false;
-  }
+  return message.decode(bytes.data(), 0, size) == size;
 }
 
 }  // namespace tread::testing

@@ -192,8 +192,13 @@ TEST_CASE("Messages that make no sense are counted and change nothing") {
   map_tile_t tile{};
   tile.utime = yard.bus.now();
   tile.tile_cells = 32;
-  tile.cell_size = std::numeric_limits<double>::quiet_NaN();
-  yard.bus.outside().publish(kMap, tile);
+  tile.num_cells = 32 * 32;
+  tile.cells.assign(32 * 32, kObstacle);
+  // With a cell of 1.1 mm one tile kept the planner busy for 50 s.
+  for (const double size : {std::numeric_limits<double>::quiet_NaN(), 0.0011, 0.51}) {
+    tile.cell_size = size;
+    yard.bus.outside().publish(kMap, tile);
+  }
   tile.utime += 60'000'000;
   yard.bus.outside().publish(kMap, tile);
   yard.run(2.0);
@@ -202,7 +207,7 @@ TEST_CASE("Messages that make no sense are counted and change nothing") {
   for (const counter_t& counter : yard.health.counters)
     counters[counter.counter_name] = counter.counted;
   CHECK(counters["GOAL refused: invalid pose or tolerances"] == 2);
-  CHECK(counters["MAP refused: invalid sizes"] == 1);
+  CHECK(counters["MAP refused: invalid sizes"] == 3);
   CHECK(counters["MAP refused: from the future"] == 1);
 }
 
