@@ -120,8 +120,7 @@ class ExecutionTracker {
   int64_t last_id_ = 0;
   PlannedExecution running_;
   PlannedExecution next_;
-  std::deque<PlannedExecution>
-      replaced_;  ///< former next slots; the bridge may have begun one of them
+  std::deque<PlannedExecution> replaced_;  ///< former next ones; the bridge may have begun one
   int64_t previous_id_ = 0;
   int64_t handed_over_ = 0;
   int64_t started_ = 0;
