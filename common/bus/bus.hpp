@@ -53,6 +53,8 @@ class Bus {
   /// Differs for each start of a process on this robot [us]; the run id of a planner, the boot id
   /// in HEALTH.
   virtual int64_t bootId() const = 0;
+  /// Differs for each call, and between processes: the id of an operator program.
+  int64_t newStation() { return bootId() + stations_++; }
   /// The host's UTC [us since 1970], only to date logs; -1 in virtual time.
   virtual int64_t utc() const { return -1; }
   /// How long the node's steps took since the last call; zero in virtual time.
@@ -114,6 +116,7 @@ class Bus {
   bool refuseOversized(const ChannelSpec& spec, int size);
 
   BusStatistics statistics_;
+  int64_t stations_ = 0;
   /// The newest message of a channel, to count what is missing.
   struct Newest {
     int64_t seq;

@@ -16,6 +16,7 @@
 #include <tread/map_tile_t.hpp>
 #include <tread/mark_t.hpp>
 #include <tread/motor_t.hpp>
+#include <tread/operator_t.hpp>
 #include <tread/pattern_set_part_t.hpp>
 #include <tread/plan_t.hpp>
 #include <tread/plan_tree_t.hpp>
@@ -57,13 +58,15 @@ inline constexpr Channel<learner_state_t> kLearnerState{
 inline constexpr Channel<learning_t> kLearning{{"LEARNING", "learning_t", "learner", 0, 0, 1000}};
 inline constexpr Channel<health_t> kHealth{{"HEALTH", "health_t", "every process", 1, 3000, 8000}};
 inline constexpr Channel<arm_t> kArm{{"ARM", "arm_t", "tread-arm", 0, 1000, 1000}};
+inline constexpr Channel<operator_t> kOperator{
+    {"OPERATOR", "operator_t", "every operator program", 5, 1000, 400}};
 inline constexpr Channel<estop_t> kEstop{{"ESTOP", "estop_t", "anyone", 0, 0, 1000}};
 inline constexpr Channel<mark_t> kMark{{"MARK", "mark_t", "anyone", 0, 0, 1000}};
 inline constexpr Channel<config_t> kConfig{{"CONFIG", "config_t", "every process", 0.1, 0, 60000}};
 
 /// The whole table, for README, health checks and tests.
-inline constexpr std::array<ChannelSpec, 17> kChannels{
+inline constexpr std::array<ChannelSpec, 18> kChannels{
     kIns,        kScan,         kMap,      kGoal,   kPlan, kPlanTree, kProgram, kMotor, kExecution,
-    kPatternSet, kLearnerState, kLearning, kHealth, kArm,  kEstop,    kMark,    kConfig};
+    kPatternSet, kLearnerState, kLearning, kHealth, kArm,  kOperator, kEstop,   kMark,  kConfig};
 
 }  // namespace tread

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <thread>
 #include <vector>
+
+#include <unistd.h>
 
 #include "common/config/scalars.hpp"
 
@@ -123,6 +126,14 @@ int runProgram(const char* name, const std::function<int()>& run) try {
 } catch (const std::exception& problem) {
   std::fprintf(stderr, "%s: %s\n", name, problem.what());
   return kBadInput;
+}
+
+std::string operatorName() {
+  const char* user = std::getenv("USER");
+  char host[65] = "";
+  if (::gethostname(host, sizeof host - 1) != 0 || host[0] == '\0') return "operator";
+  const std::string name = user != nullptr && *user != '\0' ? user : std::to_string(::getuid());
+  return (name + "@" + host).substr(0, 64);
 }
 
 }  // namespace tread

@@ -26,6 +26,9 @@ std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv);
 /// what gives the same bytes with any number of them.
 void addThreads(CLI::App& command, int& threads);
 
+/// USER@HOST: who operates the robot from here, unless --by says otherwise.
+std::string operatorName();
+
 /// The exit code of `run`; kBadInput with one line "name: what it threw" on stderr if it throws.
 int runProgram(const char* name, const std::function<int()>& run);
 

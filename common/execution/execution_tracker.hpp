@@ -57,6 +57,7 @@ struct RobotReadings {
   std::optional<BridgeReading> bridge;
   std::vector<ExecutionReading> executions;  ///< the last ones, oldest first
   bool armed_by_operator = false;            ///< ARM came since the start and since the last stop
+  int64_t armed_since = 0;                   ///< [us] when it came
   bool estopped = false;
 };
 

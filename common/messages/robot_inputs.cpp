@@ -20,7 +20,9 @@ void DrivingPermission::revoke(int64_t utime) {
 void DrivingPermission::take(const arm_t& message, int64_t now) {
   if (!message.armed) return revoke(std::min(message.utime, now));
   const bool timely = message.utime <= now + kMaxFuture && message.utime >= now - kMaxAge;
-  if (timely && message.utime > revoked_ && !estopped_) armed_ = true;
+  if (armed_ || !timely || message.utime <= revoked_ || estopped_) return;
+  armed_ = true;
+  armed_since_ = now;
 }
 
 void DrivingPermission::take(const estop_t& message, int64_t now) {
@@ -37,11 +39,12 @@ void DrivingPermission::take(const BridgeReading& bridge) {
   bridge_armed_ = bridge.armed();
 }
 
-RobotInputs::RobotInputs(Bus& bus, HealthReporter& health)
-    : bus_(bus), health_(health), permission_(bus.now()) {
+RobotInputs::RobotInputs(Bus& bus, HealthReporter& health, int64_t operator_lease_us)
+    : bus_(bus), health_(health), permission_(bus.now()), operator_(operator_lease_us) {
   bus.subscribe<ins_t>(kIns, [this](const ins_t& message) { take(message); });
   bus.subscribe<motor_t>(kMotor, [this](const motor_t& message) { take(message); });
   bus.subscribe<execution_t>(kExecution, [this](const execution_t& message) { take(message); });
+  bus.subscribe<operator_t>(kOperator, [this](const operator_t& message) { take(message); });
   bus.subscribe<arm_t>(kArm,
                        [this](const arm_t& message) { permission_.take(message, bus_.now()); });
   bus.subscribe<estop_t>(kEstop,
@@ -52,6 +55,7 @@ bool RobotInputs::timeJumped(int64_t utime) {
   // A process that only hears the time does not know it at first, and may be frozen later.
   const bool jumped = stepped_ && std::abs(utime - *stepped_) > kTimeJump;
   stepped_ = utime;
+  operator_.update(utime, permission_.armed());
   if (jumped) permission_.restart(utime);
   return jumped;
 }
@@ -60,6 +64,7 @@ RobotReadings RobotInputs::readings(int64_t utime) const {
   RobotReadings readings = readings_;
   readings.now = utime;
   readings.armed_by_operator = permission_.armed();
+  readings.armed_since = permission_.armedSince();
   readings.estopped = permission_.estopped();
   return readings;
 }
@@ -70,6 +75,21 @@ bool RobotInputs::invalidTime(int64_t utime, const char* channel) {
   health_.addToCounter(std::string(channel) +
                        (future ? " refused: from the future" : " refused: no such time"));
   return true;
+}
+
+bool RobotInputs::untimely(int64_t utime, const char* channel) {
+  if (invalidTime(utime, channel)) return true;
+  if (utime >= bus_.now() - kMaxAge) return false;
+  health_.addToCounter(std::string(channel) + " refused: too old");
+  return true;
+}
+
+void RobotInputs::take(const operator_t& message) {
+  const std::optional<OperatorNotice> notice = noticeFrom(message);
+  if (!notice) return health_.addToCounter("OPERATOR ignored: its name is empty or too long");
+  const OperatorLease::Receipt receipt = operator_.receive(*notice, bus_.now());
+  if (receipt != OperatorLease::Receipt::kTaken)
+    health_.addToCounter(std::string("OPERATOR ignored: ") + describe(receipt));
 }
 
 void RobotInputs::take(const ins_t& message) {

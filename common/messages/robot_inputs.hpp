@@ -13,6 +13,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/execution/execution_tracker.hpp"
+#include "common/messages/operator_beacon.hpp"
 
 namespace tread {
 
@@ -30,6 +31,7 @@ class DrivingPermission {
   void take(const BridgeReading& bridge);
 
   bool armed() const { return armed_; }
+  int64_t armedSince() const { return armed_since_; }  ///< [us]
   bool estopped() const { return estopped_; }
 
  private:
@@ -39,17 +41,18 @@ class DrivingPermission {
 
   int64_t revoked_;  ///< [us] permissions given before count for nothing
   bool armed_ = false;
+  int64_t armed_since_ = 0;
   bool bridge_armed_ = false;
   bool estopped_ = false;
   int64_t estop_utime_ = 0;
 };
 
-/// Receives INS, MOTOR, EXECUTION, ARM and ESTOP for a node that drives the robot.
+/// Receives INS, MOTOR, EXECUTION, OPERATOR, ARM and ESTOP for a node that drives the robot.
 /** Messages with an impossible time, out of order or without a pose are refused and counted in
  * HEALTH. Comes up without permission: ARM must be seen after the start. */
 class RobotInputs {
  public:
-  RobotInputs(Bus& bus, HealthReporter& health);
+  RobotInputs(Bus& bus, HealthReporter& health, int64_t operator_lease_us);
   RobotInputs(const RobotInputs&) = delete;  // the bus calls it back
   RobotInputs& operator=(const RobotInputs&) = delete;
 
@@ -58,10 +61,13 @@ class RobotInputs {
   bool timeJumped(int64_t utime);
   RobotReadings readings(int64_t utime) const;
   DrivingPermission& permission() { return permission_; }
+  const OperatorLease& operatorLease() const { return operator_; }
 
   /// Whether a time is impossible: not positive, or so far ahead that it would look fresh for ever.
   /** Counted in HEALTH as refused on that channel. */
   bool invalidTime(int64_t utime, const char* channel);
+  /// The same for what must be of the present, like a permission.
+  bool untimely(int64_t utime, const char* channel);
 
   // Called with each message whose time is possible, before it is used.
   std::function<void(const ins_t&)> on_ins;
@@ -71,7 +77,9 @@ class RobotInputs {
  private:
   static constexpr int64_t kTimeJump = 1'000'000;  ///< [us] between two steps
   static constexpr int64_t kMaxFuture = 100'000;   ///< [us] by which a utime may be ahead
+  static constexpr int64_t kMaxAge = 1'500'000;    ///< [us] of what must be of the present
 
+  void take(const operator_t& message);
   void take(const ins_t& message);
   void take(const motor_t& message);
   void take(const execution_t& message);
@@ -79,6 +87,7 @@ class RobotInputs {
   Bus& bus_;
   HealthReporter& health_;
   DrivingPermission permission_;
+  OperatorLease operator_;
   RobotReadings readings_;
   std::optional<int64_t> stepped_;  ///< [us] the last step
   int64_t executions_utime_ = 0;

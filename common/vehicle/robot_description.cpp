@@ -31,6 +31,17 @@ Mounting readMounting(ConfigReader reader, const std::string& position_key) {
   return {{position[0], position[1], position[2]}, {angles[0], angles[1], angles[2]}};
 }
 
+/// Nothing here switches the lease off.
+OperatorRules readOperators(ConfigReader reader) {
+  OperatorRules rules;
+  std::string lost = "stop";
+  reader.seconds("lease", rules.lease_us, {0.5, 5.0});
+  reader.choice("lost", lost, {"stop", "finish"});
+  reader.seconds("wait", rules.wait_us, {1.0, 600.0});
+  rules.lost = lost == "finish" ? OperatorLost::kFinish : OperatorLost::kStop;
+  return rules;
+}
+
 RobotDescription readDescription(ConfigReader& reader) {
   RobotDescription robot;
   reader.text("name", robot.name, true);
@@ -49,6 +60,7 @@ RobotDescription readDescription(ConfigReader& reader) {
   double tilt = std::numeric_limits<double>::quiet_NaN();
   limits.number("tilt", tilt, {0.0, 1.6}, "rad");
   if (std::isfinite(tilt)) robot.max_tilt = tilt;
+  robot.operators = readOperators(reader.section("operator"));
   return robot;
 }
 
@@ -65,6 +77,10 @@ FootprintSize readFootprint(ConfigReader reader) {
 RobotDescription readRobot(ConfigReader& reader) {
   ConfigReader robot = reader.file("robot", "robot.yaml");
   return readDescription(robot);
+}
+
+bool describesOperators(ConfigReader& reader) {
+  return !reader.has("robot") || reader.section("robot").has("operator");
 }
 
 }  // namespace tread

@@ -28,6 +28,20 @@ struct DriveDescription {
   double fullCommand() const { return kind == CommandKind::kPower ? 1.0 : full_speed; }
 };
 
+/// What the robot does when its operator is lost: silent without having let go.
+enum class OperatorLost {
+  kStop,    ///< at once
+  kFinish,  ///< ends what runs, then stops
+};
+
+/// How the robot depends on its operator.
+struct OperatorRules {
+  int64_t lease_us = 1'000'000;  ///< [us] for which it counts what the operator has seen
+  OperatorLost lost = OperatorLost::kStop;
+  /// [us] after which an armed robot that stands is disarmed if no operator's program runs.
+  int64_t wait_us = 30'000'000;
+};
+
 /// One robot: all that more than one process or tool has to know of it. Nothing has a default that
 /// would fit any robot.
 struct RobotDescription {
@@ -41,6 +55,7 @@ struct RobotDescription {
   Mounting range_finder;
   double max_speed = 0.0;          ///< [m/s] it is never faster: what is, is an error of the INS
   std::optional<double> max_tilt;  ///< [rad] what it drives on a steeper slope teaches nothing
+  OperatorRules operators;
 };
 
 /// The robot of a process: what its key `robot` holds or the file that it names, else robot.yaml
@@ -48,6 +63,10 @@ struct RobotDescription {
 /** Strict; throws ConfigError with file:line. reader.effective() then holds the description, too,
  * so that a logged CONFIG can be read without the file. */
 RobotDescription readRobot(ConfigReader& reader);
+
+/// Whether a description that was logged with a configuration knows of operator leases. Older ones
+/// do not, and what they say was driven without.
+bool describesOperators(ConfigReader& reader);
 
 /// Three keys that are all required: front, rear and half_width [m].
 FootprintSize readFootprint(ConfigReader reader);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/messages/blank.hpp"
+#include "common/messages/operator_beacon.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
 
 namespace tread::motor {
@@ -103,7 +104,9 @@ MotorBridgeConfig readMotorBridgeConfig(ConfigReader& reader) {
   MotorBridgeConfig config;
   reader.text("address", config.address);
   readTimes(reader, config.bridge);
-  const DriveDescription drive = readRobot(reader).drive;
+  const RobotDescription robot = readRobot(reader);
+  const DriveDescription& drive = robot.drive;
+  config.bridge.operators = robot.operators;
   config.bridge.gate.slot.kind = drive.kind;
   config.bridge.gate.slot.max_command = drive.max_command;
   config.make_controller = readMotorController(reader, drive);
@@ -180,6 +183,7 @@ void MotorBridgeNode::listen() {
   });
   bus_.subscribe<ins_t>(
       kIns, [this](const ins_t& message) { bridge_.receive(fromMessage(message), bus_.now()); });
+  bus_.subscribe<operator_t>(kOperator, [this](const operator_t& message) { take(message); });
   bus_.subscribe<arm_t>(kArm, [this](const arm_t& message) {
     bridge_.receive(
         ArmRequest{message.utime, message.armed != 0, message.armed_by, message.arm_reason},
@@ -190,6 +194,12 @@ void MotorBridgeNode::listen() {
         EstopRequest{message.utime, message.engaged != 0, message.estop_by, message.estop_reason},
         bus_.now());
   });
+}
+
+void MotorBridgeNode::take(const operator_t& message) {
+  const std::optional<OperatorNotice> notice = noticeFrom(message);
+  if (!notice) return health_.addToCounter("OPERATOR ignored: its name is empty or too long");
+  bridge_.receive(*notice, bus_.now());
 }
 
 void MotorBridgeNode::step(int64_t utime) {

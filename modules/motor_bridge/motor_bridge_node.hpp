@@ -9,6 +9,7 @@
 #include <tread/execution_record_t.hpp>
 #include <tread/ins_t.hpp>
 #include <tread/motor_t.hpp>
+#include <tread/operator_t.hpp>
 #include <tread/program_t.hpp>
 
 #include "common/bus/bus.hpp"
@@ -47,8 +48,8 @@ execution_record_t toMessage(const ExecutionRecord& record);
 /// MOTOR, without utime and seq.
 motor_t toMessage(const BridgeOutput& output, const MotorTelemetry& telemetry);
 
-/// The motor_bridge process. PROGRAM, ARM, ESTOP, INS in; the controller, MOTOR, EXECUTION, HEALTH,
-/// CONFIG out.
+/// The motor_bridge process. PROGRAM, OPERATOR, ARM, ESTOP, INS in; the controller, MOTOR,
+/// EXECUTION, HEALTH, CONFIG out.
 /** The only process that may make the motors turn, and the only one that compares utime with the
     host clock: give it a bus whose now() is CLOCK_MONOTONIC. It steps every 10 ms, so that series
     of 50 ms begin, change and end on a step. */
@@ -65,6 +66,7 @@ class MotorBridgeNode : public Node {
 
  private:
   void listen();
+  void take(const operator_t& message);
   void readLink(int64_t utime);
   void writeLink(const std::string& bytes, int64_t utime);
   void drive(int64_t utime);

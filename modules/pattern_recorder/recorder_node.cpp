@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "common/vehicle/robot_description.hpp"
+
 namespace tread::pattern_recorder {
 namespace {
 
@@ -112,7 +114,8 @@ RecorderNode::RecorderNode(const PatternSet& set, const RecordingConfig& config,
     : config_(config),
       bus_(bus),
       health_(bus, "recorder", "pattern set: " + set.content().name + "\n"),
-      robot_(bus, health_),
+      robot_(bus, health_, OperatorRules{}.lease_us),
+      beacon_(bus, config.operator_name),
       drive_(set, config.room, bus.bootId(), say),
       collector_(set, bus.bootId(), config.executions, config.give_up_after, config.limits,
                  std::move(say)) {
@@ -134,6 +137,7 @@ void RecorderNode::take(const program_t& message) {
 
 void RecorderNode::step(int64_t utime) {
   if (robot_.timeJumped(utime) || !stepped_) begun_ = utime;
+  beacon_.step(utime);
   stepped_ = true;
   const RobotReadings readings = robot_.readings(utime);
   RecordingProgress progress;
@@ -151,6 +155,7 @@ void RecorderNode::step(int64_t utime) {
 void RecorderNode::shutdown(int64_t utime) {
   drive_.stop();
   publishProgram(utime, robot_.readings(utime));
+  beacon_.letGo(utime);
 }
 
 bool RecorderNode::stands() const {

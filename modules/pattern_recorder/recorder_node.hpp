@@ -8,6 +8,7 @@
 
 #include "common/execution/measurement.hpp"
 #include "common/messages/ins_messages.hpp"
+#include "common/messages/operator_beacon.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/messages/robot_inputs.hpp"
 #include "common/recordings/recordings.hpp"
@@ -67,11 +68,12 @@ class ExecutionCollector {
 
 /// What to record on a robot, and how patiently.
 struct RecordingConfig {
-  int executions = 10;         ///< of each pattern, fair ones
-  double room = 8.0;           ///< [m] around where it began; beyond it stops
-  int give_up_after = 10;      ///< refusals of a pattern one after the other
-  int64_t lease_us = 200'000;  ///< [us] of each PROGRAM
-  MeasurementLimits limits;    ///< of a fair measurement; max_speed 0 = the set's largest
+  int executions = 10;                     ///< of each pattern, fair ones
+  double room = 8.0;                       ///< [m] around where it began; beyond it stops
+  int give_up_after = 10;                  ///< refusals of a pattern one after the other
+  int64_t lease_us = 200'000;              ///< [us] of each PROGRAM
+  std::string operator_name = "operator";  ///< for whom it holds the robot; ARM must be theirs
+  MeasurementLimits limits;  ///< of a fair measurement; max_speed 0 = the set's largest
 };
 
 /// Takes the planner's place, drives each pattern many times and measures what it did.
@@ -115,6 +117,7 @@ class RecorderNode : public Node {
   Bus& bus_;
   HealthReporter health_;
   RobotInputs robot_;
+  OperatorBeacon beacon_;
   RecordingDrive drive_;
   ExecutionCollector collector_;
   int64_t begun_ = 0;    ///< [us] first step, or first after a jump of time

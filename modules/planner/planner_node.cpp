@@ -13,9 +13,16 @@ namespace {
 
 /// What plans keep free is the robot's; logs from before robots were described in a file of their
 /// own have it here.
-FootprintSize footprintOf(ConfigReader& reader) {
-  return reader.has("footprint") ? readFootprint(reader.section("footprint"))
-                                 : readRobot(reader).footprint;
+void readRobotInto(ConfigReader& reader, bool logged, PlannerConfig& config) {
+  config.operators.lease_us = 0;
+  if (reader.has("footprint")) {
+    config.map.footprint = readFootprint(reader.section("footprint"));
+    return;
+  }
+  const bool leases = !logged || describesOperators(reader);
+  const RobotDescription robot = readRobot(reader);
+  config.map.footprint = robot.footprint;
+  if (leases) config.operators = robot.operators;
 }
 
 void readMargins(ConfigReader reader, Margins& margins) {
@@ -122,12 +129,10 @@ plan_tree_t toMessage(const std::vector<TreeNode>& tree, const std::vector<int>&
   return message;
 }
 
-}  // namespace
-
-PlannerConfig readLoggedPlannerConfig(ConfigReader& reader) {
+PlannerConfig readConfig(ConfigReader& reader, bool logged) {
   PlannerConfig config;
   PlanningMapConfig& map = config.map;
-  map.footprint = footprintOf(reader);
+  readRobotInto(reader, logged, config);
   map.field.inflation = map.footprint.half_width;
   map.clearance.clearance_cap =
       std::max(map.clearance.clearance_cap, 1.5 * map.footprint.half_width);
@@ -148,8 +153,14 @@ PlannerConfig readLoggedPlannerConfig(ConfigReader& reader) {
   return config;
 }
 
+}  // namespace
+
+PlannerConfig readLoggedPlannerConfig(ConfigReader& reader) {
+  return readConfig(reader, true);
+}
+
 PlannerConfig readPlannerConfig(ConfigReader& reader) {
-  PlannerConfig config = readLoggedPlannerConfig(reader);
+  PlannerConfig config = readConfig(reader, false);
   reader.finish();
   return config;
 }
@@ -158,7 +169,7 @@ PlannerNode::PlannerNode(const PlannerConfig& config, Bus& bus)
     : config_(config),
       bus_(bus),
       health_(bus, "planner", config.effective),
-      robot_(bus, health_),
+      robot_(bus, health_, config.operators.lease_us),
       supervisor_(config, bus.bootId()) {
   subscribe();
 }
@@ -178,10 +189,23 @@ void PlannerNode::take(const map_tile_t& message) {
 }
 
 void PlannerNode::take(const goal_t& message) {
+  if (message.goal_id == 0) return goal_.cancel();
   const std::optional<Goal> goal = goalFrom(message);
-  if (!goal && message.goal_id != 0)
-    return health_.addToCounter("GOAL refused: invalid pose or tolerances");
-  inputs_.goal = goal;
+  if (!goal) return health_.addToCounter("GOAL refused: invalid pose or tolerances");
+  const bool leased = config_.operators.lease_us > 0;
+  if (leased && robot_.untimely(message.utime, "GOAL")) return;
+  if (!goal_.take(*goal, bus_.now())) health_.addToCounter("GOAL refused: it has ended before");
+}
+
+void PlannerNode::watchGoal(int64_t utime) {
+  const bool leased = config_.operators.lease_us > 0;
+  std::optional<int64_t> armed_since;
+  if (leased && inputs_.armed_by_operator) armed_since = inputs_.armed_since;
+  goal_.update(utime, armed_since, [&](int64_t goal_id) {
+    return !leased || robot_.operatorLease().standsFor(goal_id, utime);
+  });
+  inputs_.goal = goal_.goal();
+  inputs_.goal_lost = goal_.lost();
 }
 
 void PlannerNode::take(const pattern_set_part_t& message) {
@@ -200,6 +224,7 @@ void PlannerNode::take(const pattern_set_part_t& message) {
 void PlannerNode::step(int64_t utime) {
   if (robot_.timeJumped(utime) && inputs_.set_received != 0) inputs_.set_received = utime;
   static_cast<RobotReadings&>(inputs_) = robot_.readings(utime);
+  watchGoal(utime);
   const int64_t started = bus_.now();
   const Decision decision = supervisor_.step(inputs_, [&](int expansions) {
     return stop_ ? stop_(expansions) : bus_.now() - started > config_.deadline;

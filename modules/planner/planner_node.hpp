@@ -6,6 +6,7 @@
 #include "common/config/config_reader.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/messages/robot_inputs.hpp"
+#include "modules/planner/core/execution/goal_watch.hpp"
 #include "modules/planner/core/execution/supervisor.hpp"
 
 namespace tread::planner {
@@ -41,6 +42,7 @@ class PlannerNode : public Node {
   void take(const map_tile_t& message);
   void take(const goal_t& message);
   void take(const pattern_set_part_t& message);
+  void watchGoal(int64_t utime);
   void publishProgram(int64_t utime, const ExecutionTracker& program);
   void publishPlan(int64_t utime, const Decision& decision, int64_t search_time);
   void publishTree(const PlanReport& report);
@@ -50,6 +52,7 @@ class PlannerNode : public Node {
   Bus& bus_;
   HealthReporter health_;
   RobotInputs robot_;
+  GoalWatch goal_;
   Supervisor supervisor_;
   PatternSetAssembler sets_;
   PlannerInputs inputs_;

@@ -234,6 +234,20 @@ inline motor_t sampleOf<motor_t>() {
 }
 
 template <>
+inline operator_t sampleOf<operator_t>() {
+  operator_t m{};
+  m.utime = 1'000'017;
+  m.seq = 17;
+  m.station = 777;
+  m.operator_name = "ada@station";
+  m.allowed = operator_t::ALLOW_DRIVING;
+  m.seen_utime = 1'000'015;
+  m.stands_for = 5;
+  m.hand_over_to = "bob";
+  return m;
+}
+
+template <>
 inline pattern_set_part_t sampleOf<pattern_set_part_t>() {
   pattern_set_part_t m{};
   m.utime = 1'000'013;
@@ -356,8 +370,9 @@ void forEachType(Visitor&& visit) {
            sampleOf<execution_record_t>(), sampleOf<execution_t>(), sampleOf<goal_t>(),
            sampleOf<health_t>(), sampleOf<ins_t>(), sampleOf<learner_state_t>(),
            sampleOf<learning_t>(), sampleOf<map_tile_t>(), sampleOf<mark_t>(), sampleOf<motor_t>(),
-           sampleOf<pattern_set_part_t>(), sampleOf<plan_t>(), sampleOf<plan_tree_t>(),
-           sampleOf<program_slot_t>(), sampleOf<program_t>(), sampleOf<scan_t>());
+           sampleOf<operator_t>(), sampleOf<pattern_set_part_t>(), sampleOf<plan_t>(),
+           sampleOf<plan_tree_t>(), sampleOf<program_slot_t>(), sampleOf<program_t>(),
+           sampleOf<scan_t>());
 }
 
 /// Calls `visit` with each typed channel and a sample of its type.
@@ -378,6 +393,7 @@ void forEachChannel(Visitor&& visit) {
   visitOne(kLearning, sampleOf<learning_t>());
   visitOne(kHealth, sampleOf<health_t>());
   visitOne(kArm, sampleOf<arm_t>());
+  visitOne(kOperator, sampleOf<operator_t>());
   visitOne(kEstop, sampleOf<estop_t>());
   visitOne(kMark, sampleOf<mark_t>());
   visitOne(kConfig, sampleOf<config_t>());

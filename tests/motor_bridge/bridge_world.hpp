@@ -24,6 +24,8 @@ struct BridgeWorld {
   int64_t now = 10'000'000;
   bool planner_alive = true;
   bool ins_alive = true;
+  bool operator_alive = true;
+  int64_t view_age = 10'000;  ///< [us] age of what the operator sees
 
   static constexpr int64_t kStep = 10'000;
 
@@ -32,6 +34,8 @@ struct BridgeWorld {
     if (ins_alive && now % 20'000 == 0) bridge.receive(InsNotice{now - 5'000, true}, now);
     if (planner_alive && now % 50'000 == 0)
       bridge.receive(planner.plan(now - 1'000, newest(bridge.executions())), now);
+    if (operator_alive && now % 200'000 == 0)
+      bridge.receive(OperatorNotice{1, "operator", true, now - view_age, 0, ""}, now);
     out = bridge.step(now, device);
   }
   void run(int64_t us) {

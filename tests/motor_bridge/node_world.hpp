@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/bus/virtual_bus.hpp"
+#include "common/messages/operator_beacon.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
 #include "tests/motor_bridge/endless_planner.hpp"
@@ -47,6 +48,19 @@ class InsNode : public Node {
  private:
   Bus& bus_;
   int64_t seq_ = 0;
+};
+
+/// Somebody at the remote control.
+class OperatorNode : public Node {
+ public:
+  explicit OperatorNode(Bus& bus) : beacon_(bus, "operator") {}
+  int64_t period() const override { return 20'000; }
+  void step(int64_t utime) override { beacon_.step(utime); }
+  /// Ends in good order.
+  void shutdown(int64_t utime) override { beacon_.letGo(utime); }
+
+ private:
+  OperatorBeacon beacon_;
 };
 
 /// The controller on the other end of the line, looked at every millisecond.
@@ -98,13 +112,16 @@ struct NodeWorld {
         "motor_bridge",
         [this](Bus& end) {
           MotorBridgeConfig usual;
-          usual.make_controller = [] { return std::make_unique<RoboteqConnection>(RoboteqConfig{}); };
+          usual.make_controller = [] {
+            return std::make_unique<RoboteqConnection>(RoboteqConfig{});
+          };
           return std::make_unique<MotorBridgeNode>(usual, end, *pipe.first);
         },
         timing);
     bus.addNode("planner", [](Bus& end) { return std::make_unique<PlannerNode>(end); },
                 {3'000, 1'000});
     bus.addNode("ins", [](Bus& end) { return std::make_unique<InsNode>(end); });
+    bus.addNode("operator", [](Bus& end) { return std::make_unique<OperatorNode>(end); });
     watch();
   }
 

@@ -48,6 +48,7 @@ class Chaos {
   void disturb() {
     planner_silent_ = planner_silent_ ? !chance(0.02) : chance(0.001);
     ins_silent_ = ins_silent_ ? !chance(0.05) : chance(0.001);
+    operator_silent_ = operator_silent_ ? !chance(0.005) : chance(0.0005);
     if (chance(0.0003)) {
       endless_ = EndlessPlanner(++run_id_);
       endless_.commands = 2 + static_cast<int>(random_() % 60);
@@ -117,6 +118,11 @@ class Chaos {
 
   void operators() {
     armed_request_ = false;
+    if (now_ % 200'000 == 0 && !operator_silent_) {
+      const int64_t seen = now_ - static_cast<int64_t>(random_() % 300'000);
+      newest_seen_ = std::max(newest_seen_, seen);
+      bridge_.receive(OperatorNotice{1, "operator", true, seen, 0, ""}, now_);
+    }
     if (chance(0.01)) {
       bridge_.receive(ArmRequest{now_, true, "operator", "go"}, now_);
       armed_request_ = true;
@@ -135,7 +141,8 @@ class Chaos {
     const bool fault = !device_.link_fault.empty() || !device_.device_fault.empty();
     const bool lease = now_ - newest_program_ <= 200'000;
     const bool ins = now_ - newest_ins_ <= 100'000;
-    REQUIRE((zero || (was_armed_ && !estop_ && !fault && lease && ins)));
+    const bool leased = now_ - newest_seen_ <= 1'000'000;
+    REQUIRE((zero || (was_armed_ && !estop_ && !fault && lease && ins && leased)));
     REQUIRE((was_armed_ || !isArmed(out.failsafe.state) || (armed_request_ && zero)));
     REQUIRE((zero || out.execution_id > 0));
     REQUIRE((out.command == last_.command || out.send));
@@ -157,6 +164,8 @@ class Chaos {
   int64_t newest_ins_ = 0;
   bool planner_silent_ = false;
   bool ins_silent_ = false;
+  bool operator_silent_ = false;
+  int64_t newest_seen_ = 0;
   bool estop_ = false;
   bool was_armed_ = false;
   bool armed_request_ = false;

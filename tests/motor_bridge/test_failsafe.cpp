@@ -20,7 +20,10 @@ struct Rig {
   FailsafeInputs in;
   FailsafeOutputs out;
 
-  Rig() { in.now = 1'000'000; }
+  Rig() {
+    in.now = 1'000'000;
+    in.leased = true;
+  }
 
   void step() {
     in.now += kCycle;
@@ -58,6 +61,7 @@ const std::vector<Cause> kCauses = {
     {&FailsafeInputs::device_fault, State::kFault},
     {&FailsafeInputs::bridge_fault, State::kFault},
     {&FailsafeInputs::program_fault, State::kDisarmed},
+    {&FailsafeInputs::operator_fault, State::kDisarmed},
     {&FailsafeInputs::lease_fault, State::kDisarmed},
     {&FailsafeInputs::ins_fault, State::kDisarmed},
 };

@@ -15,6 +15,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/bus/lcm_bus.hpp"
+#include "common/messages/operator_beacon.hpp"
 #include "tests/motor_bridge/endless_planner.hpp"
 #include "tests/motor_bridge/messages.hpp"
 #include "tests/motor_bridge/scripted_roboteq.hpp"
@@ -96,6 +97,7 @@ class Rig {
     std::ofstream(config_) << "address: tty:" << terminal_.name()
                            << "\nrobot: " TREAD_SOURCE_DIR "/config/robots/teodor/robot.yaml\n";
     bus_ = std::make_unique<LcmBus>(url_, TimeSource::kHost);
+    beacon_ = std::make_unique<OperatorBeacon>(*bus_, "test");
     bus_->subscribe<motor_t>(kMotor, [this](const motor_t& m) { motor_ = m; });
     bus_->subscribe<execution_t>(kExecution, [this](const execution_t& m) { last_ = newest(m); });
     process_ = std::make_unique<Process>(config_, url_);
@@ -135,6 +137,7 @@ class Rig {
     const int64_t now = bus_->now();
     device.write(terminal_.read(), now);
     terminal_.write(device.read());
+    beacon_->step(now);
     if (now >= next_ins_) {
       bus_->publish(kIns, makeIns(now, seq_++));
       next_ins_ = now + 20'000;
@@ -149,6 +152,7 @@ class Rig {
   std::string url_;
   std::string config_;
   std::unique_ptr<LcmBus> bus_;
+  std::unique_ptr<OperatorBeacon> beacon_;
   std::unique_ptr<Process> process_;
   EndlessPlanner planner_;
   std::optional<ExecutionRecord> last_;

@@ -126,8 +126,8 @@ TEST_CASE("permission to drive must be fresh, newer than the last stop, and is u
   using Effect = OperatorRequests::Effect;
   const ArmRequest arm{kNow, true, "operator", "go"};
   CHECK(requests.classify(arm, kNow, kNow - 1) == Effect::kArm);
-  CHECK(requests.classify(arm, kNow + 1'500'001, 0) == Effect::kIgnored);
-  CHECK(requests.classify(arm, kNow - 50'001, 0) == Effect::kIgnored);
+  CHECK(requests.classify(arm, kNow + 1'500'001, 0) == Effect::kUntimely);
+  CHECK(requests.classify(arm, kNow - 50'001, 0) == Effect::kUntimely);
   CHECK(requests.classify(arm, kNow, kNow) == Effect::kIgnored);
   requests.consume(arm);
   CHECK(requests.classify(arm, kNow, 0) == Effect::kIgnored);
@@ -162,5 +162,5 @@ TEST_CASE("the smallest utime of all is old, not new: no difference overflows") 
   CHECK(watch.fault(kNow) == "no INS yet");
   OperatorRequests requests({});
   CHECK(requests.classify({kBeginning, true, "operator", "go"}, kNow, kBeginning) ==
-        OperatorRequests::Effect::kIgnored);
+        OperatorRequests::Effect::kUntimely);
 }

@@ -46,6 +46,7 @@ struct EmulatedRig {
       const auto last = log.empty() ? std::nullopt : std::optional(log.back());
       bridge.receive(planner.plan(now - 1'000, last), now);
     }
+    if (now % 200'000 == 0) bridge.receive(OperatorNotice{1, "operator", true, now, 0, ""}, now);
     connection.receive(device.transmit(now), now);
     out = bridge.step(now, connection.report(now));
     connection.holdStop(out.hold_device_stop);

@@ -53,9 +53,11 @@ class RecordedDrive {
         program_(system_.bus().outside(), kProgram) {
     for (const char* name : {"planner", "learner", "mapping", "lidar_driver"})
       system_.bus().kill(name);
-    system_.bus().addNode("recorder", [&, set, how](Bus& bus) {
+    RecordingConfig by_test = how;
+    by_test.operator_name = "test";
+    system_.bus().addNode("recorder", [&, set, by_test](Bus& bus) {
       return std::make_unique<RecorderNode>(
-          set, how, bus, [this](const std::string& line) { said.push_back(line); });
+          set, by_test, bus, [this](const std::string& line) { said.push_back(line); });
     });
   }
 

@@ -71,6 +71,8 @@ TEST_CASE("The node comes up disarmed: a permission from before its start counts
   CHECK(yard.health.health_reason == "not armed since the planner's start");
   // The toy bridge remembers ids of the old run: only the new run's id matters here.
   yard.arm();
+  yard.renewGoal();
+  yard.sendGoal(10.0);
   yard.run(0.3);
   CHECK(yard.run_id > old_run);
 }
@@ -149,6 +151,12 @@ TEST_CASE("Disarming and an emergency stop empty the program in the next step") 
       CHECK(yard.robot().program().running.execution_id == 0);
     }
     yard.arm();
+    yard.run(2.0);
+    // Arming alone moves nothing: the goal was given before.
+    CHECK(yard.robot().program().running.execution_id == 0);
+    CHECK(yard.plan.reason == "the goal was given before the arming: give it again");
+    yard.renewGoal();
+    yard.sendGoal(10.0);
     yard.run(2.0);
     CHECK(yard.robot().program().running.execution_id != 0);
   }
@@ -240,6 +248,12 @@ TEST_CASE("A time before all clocks is refused: no age overflows, and nothing is
     send(kExecution, execution_t{}, utime);
     send(kArm, arm, utime);
     send(kGoal, goal, bus.now());
+    operator_t person{};
+    person.operator_name = "test";
+    person.allowed = operator_t::ALLOW_DRIVING;
+    person.stands_for = goal.goal_id;
+    person.seen_utime = bus.now();
+    send(kOperator, person, bus.now());
     bus.runUntil(bus.now() + 1'000'000);
     CHECK(plan.plan_status == plan_t::PLAN_WAITING);
     CHECK(plan.reason == "no usable INS yet");
@@ -248,4 +262,66 @@ TEST_CASE("A time before all clocks is refused: no age overflows, and nothing is
   CHECK(counters["INS refused: no such time"] == 3);
   CHECK(counters["MOTOR refused: no such time"] == 3);
   CHECK(counters["EXECUTION refused: no such time"] == 3);
+}
+
+TEST_CASE("The sender of a goal is killed: the goal ends with its lease, and stays dead") {
+  Yard yard;
+  yard.run(1.0);
+  yard.sendGoal(10.0);
+  yard.arm();
+  yard.run(3.0);
+  REQUIRE(yard.robot().speed() > 0.5);
+  // Somebody else of the same name still holds the robot.
+  OperatorBeacon other(yard.bus.outside(), "test");
+  yard.operator_there = false;
+  const auto run = [&](double seconds) {
+    for (double t = 0.0; t < seconds; t += 0.05) {
+      other.step(yard.bus.now());
+      yard.run(0.05);
+    }
+  };
+  run(1.3);
+  CHECK(yard.robot().program().running.execution_id == 0);
+  CHECK(yard.plan.reason == "the operator who gave the goal is gone: give it again");
+  // It thaws: what has ended does not go on by itself.
+  yard.operator_there = true;
+  yard.sendGoal(10.0);
+  run(3.0);
+  CHECK(yard.robot().program().running.execution_id == 0);
+  yard.renewGoal();
+  yard.sendGoal(10.0);
+  run(1.0);
+  CHECK(yard.robot().program().running.execution_id != 0);
+}
+
+TEST_CASE("A goal out of a log moves nothing, and takes nothing from the goal of today") {
+  Yard yard;
+  yard.run(1.0);
+  yard.sendGoal(10.0);
+  yard.arm();
+  yard.run(3.0);
+  const int64_t goal = yard.plan.goal_id;
+  REQUIRE(yard.robot().speed() > 0.5);
+  // An hour older, and, from before a reboot, with times that fit by chance.
+  for (const int64_t age : {3'600'000'000LL, 0LL}) {
+    goal_t old{};
+    old.utime = yard.bus.now() - age;
+    old.goal_id = 4711;
+    old.goal_pose[1] = 5.0;
+    old.position_tolerance = 0.5;
+    old.yaw_tolerance = 4.0;
+    operator_t person{};
+    person.station = 99;
+    person.operator_name = "yesterday";
+    person.allowed = operator_t::ALLOW_DRIVING;
+    person.utime = person.seen_utime = old.utime;
+    person.stands_for = old.goal_id;
+    for (int i = 0; i < 20; ++i) {
+      yard.bus.outside().publish(kOperator, person);
+      yard.bus.outside().publish(kGoal, old);
+      yard.run(0.05);
+    }
+    CHECK(yard.plan.goal_id == goal);
+    CHECK(yard.robot().aborted() == 0);
+  }
 }

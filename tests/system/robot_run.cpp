@@ -35,7 +35,8 @@ RobotRun::RobotRun(const std::string& world, const std::string& start_pose)
       motor_(bus_, kMotor),
       plan_(bus_, kPlan),
       program_(bus_, kProgram),
-      ins_(bus_, kIns) {
+      ins_(bus_, kIns),
+      beacon_(bus_, "test") {
   fs::create_directories(folder_);
   std::ofstream(folder_ + "/world.yaml") << world;
   bus_.subscribe<health_t>(kHealth, [this](const health_t& m) { health_[m.process] = m; });
@@ -138,6 +139,7 @@ bool RobotRun::until(double seconds, const std::function<bool()>& condition) {
   const int64_t deadline = now() + static_cast<int64_t>(seconds * 1e6);
   while (!condition()) {
     if (now() >= deadline) return false;
+    if (operates_) beacon_.step(now());
     if (now() >= next_goal_) sendGoal();
     bus_.handle(5);
   }
@@ -146,21 +148,52 @@ bool RobotRun::until(double seconds, const std::function<bool()>& condition) {
 
 bool RobotRun::arm(double seconds) {
   calls_.push_back(std::make_unique<operators::ArmCall>(
-      bus_, operators::Requester{"test", "a test"}, true, seconds));
+      bus_, operators::Requester{"test", "a test"}, operators::ArmRequest{}, seconds));
   operators::CallResult result = operators::CallResult::kPending;
   until(seconds + 1.0, [&] {
     result = calls_.back()->step(now());
     return result != operators::CallResult::kPending;
   });
-  return result == operators::CallResult::kDone;
+  if (result != operators::CallResult::kDone) return false;
+  calls_.back()->letGo(now());
+  // A goal that was given before counts for nothing.
+  if (goal_.goal_id != 0) renewGoal();
+  return true;
 }
 
 void RobotRun::setGoal(double x, double y) {
-  goal_.goal_id = now();
+  goal_.goal_id = 1;
   goal_.goal_pose[0] = x;
   goal_.goal_pose[1] = y;
   goal_.position_tolerance = 0.6;
   goal_.yaw_tolerance = kPi;
+  renewGoal();
+}
+
+void RobotRun::leaveTo(double x, double y) {
+  processes_["operator"] =
+      std::make_unique<Process>("tread-goal",
+                                std::vector<std::string>{std::to_string(x), std::to_string(y),
+                                                         "--by", "test", "--lcm-url", url_},
+                                folder_ + "/operator.log");
+  const int64_t before = plan_.message().goal_id;
+  until(10.0, [&] { return plan_.message().goal_id != before && plan_.message().goal_id != 0; });
+  operates_ = false;
+  next_goal_ = INT64_MAX;
+  goal_.goal_id = 0;
+  beacon_.letGo(now());
+}
+
+void RobotRun::takeBack() {
+  if (processes_.count("operator") > 0) processes_.at("operator")->signal(SIGKILL);
+  processes_.erase("operator");
+  operates_ = true;
+}
+
+void RobotRun::renewGoal() {
+  goal_.goal_id = now();
+  beacon_.standFor(goal_.goal_id);
+  beacon_.step(now());
   sendGoal();
 }
 

@@ -53,6 +53,10 @@ class RobotRun {
   bool arm(double seconds = 10.0);
   /// Sends the goal each second from now on, whatever else is waited for; at once the first time.
   void setGoal(double x, double y);
+  /// From now on tread-goal operates, a process of the name "operator", and the test no more.
+  void leaveTo(double x, double y);
+  /// The test operates again; the next goal is its own.
+  void takeBack();
   int64_t now() const { return bus_.now(); }
   LcmBus& bus() { return bus_; }
 
@@ -84,6 +88,7 @@ class RobotRun {
  private:
   std::vector<std::string> argumentsOf(const std::string& name) const;
   void sendGoal();
+  void renewGoal();
 
   std::string folder_;
   std::string url_;
@@ -100,6 +105,8 @@ class RobotRun {
   int armed_again_ = 0;
   std::map<std::string, std::unique_ptr<Process>> processes_;
   std::vector<std::unique_ptr<operators::Call>> calls_;  ///< the bus knows them to its end
+  OperatorBeacon beacon_;
+  bool operates_ = true;
   goal_t goal_{};
   int64_t next_goal_ = INT64_MAX;
 };

@@ -88,6 +88,40 @@ void mustStop(const std::string& process, int how, double limit, const Reference
 
 }  // namespace
 
+TEST_CASE("a killed or frozen operator's program: the motors stand within its lease and 250 ms") {
+  for (const int how : {SIGKILL, SIGSTOP}) {
+    for (int trial = 1; trial <= kTrials; ++trial) {
+      RobotRun run(kField, "[-20, 0, 0]");
+      driveOff(run);
+      run.leaveTo(30.0, 1.0);
+      run.wait(1.5);
+      if (!run.driving() && trial < kTrials) continue;
+      const StallWatch watch;
+      const int64_t killed = run.now();
+      run.signal("operator", how);
+      const double stands = standsAfter(run, killed, 5.0);
+      if (watch.longest() > kWorstStall && trial < kTrials) continue;
+      INFO("by signal " << how << ": " << stands << " s, machine's stall " << watch.longest());
+      CHECK(stands > 0.5);
+      CHECK(stands <= 1.25);
+      CHECK_THAT(run.motor().message().state_reason, Catch::Contains("the operator is lost: test"));
+      // What thaws does not go on by itself.
+      run.signal("operator", SIGCONT);
+      const int64_t from = run.now();
+      run.wait(3.0);
+      for (const sim::TruthRow& row : run.truth())
+        if (row.utime > from) REQUIRE(row.motorsAtZero());
+      run.takeBack();
+      REQUIRE(run.arm(20.0));
+      run.wait(2.0);
+      CHECK_FALSE(run.driving());
+      run.setGoal(30.0, 0.0);
+      CHECK(run.untilDriving(20.0, [&] { return run.driving(); }));
+      break;
+    }
+  }
+}
+
 TEST_CASE("a killed or frozen planner: the motors stand within the lease and 250 ms") {
   for (const int how : {SIGKILL, SIGSTOP})
     mustStop("planner", how, 0.45,

@@ -11,6 +11,7 @@
 #include "common/config/config_reader.hpp"
 #include "common/config/scalars.hpp"
 #include "common/messages/blank.hpp"
+#include "common/messages/pattern_messages.hpp"
 #include "modules/simulator/simulator_files.hpp"
 #include "modules/simulator/simulator_node.hpp"
 
@@ -224,6 +225,7 @@ FaultPlan readFaultFile(const std::string& path) {
 
 namespace {
 
+const std::string kOperatorName = "mission operator";
 constexpr int64_t kGoalPeriod = 1'000'000;
 constexpr int64_t kFirstArming = 3'000'000;  ///< [us] after the start: all processes are up by then
 constexpr int64_t kArmAgainAfter = 2'000'000;  ///< [us] of standing disarmed: time to look around
@@ -232,24 +234,32 @@ constexpr int64_t kArmRepeats = 1'000'000;     ///< [us] for which ARM is repeat
 }  // namespace
 
 Operator::Operator(Bus& bus, const Pose2& T_map_goal)
-    : bus_(bus), T_map_goal_(T_map_goal), motor_(bus, kMotor), start_(bus.now()) {}
+    : bus_(bus),
+      T_map_goal_(T_map_goal),
+      beacon_(bus, kOperatorName),
+      motor_(bus, kMotor),
+      start_(bus.now()) {}
 
 void Operator::step(int64_t utime) {
-  if (utime >= next_goal_) {
-    sendGoal(utime);
-    next_goal_ = utime + kGoalPeriod;
-  }
-  if (needsArming(utime)) {
+  const bool may_drive = motor_.any() && mayDrive(motor_.message().bridge_state);
+  if (needsArming(utime, may_drive)) {
     ++arming_;
     arm_until_ = utime + kArmRepeats;
   }
+  if (may_drive && goal_id_ < arming_) {
+    goal_id_ = arming_;
+    next_goal_ = utime;
+    beacon_.standFor(goal_id_);
+  }
+  beacon_.step(utime);
   if (utime < arm_until_) sendArm(utime);
+  if (goal_id_ == 0 || utime < next_goal_) return;
+  sendGoal(utime);
+  next_goal_ = utime + kGoalPeriod;
 }
 
-bool Operator::needsArming(int64_t utime) {
+bool Operator::needsArming(int64_t utime, bool may_drive) {
   if (utime < start_ + kFirstArming || utime < arm_until_ || !motor_.any()) return false;
-  const int16_t state = motor_.message().bridge_state;
-  const bool may_drive = state == motor_t::STATE_ARMED || state == motor_t::STATE_DRIVING;
   if (may_drive) {
     disarmed_since_ = -1;
     return false;
@@ -264,7 +274,7 @@ void Operator::sendGoal(int64_t utime) {
   auto goal = blank<goal_t>();
   goal.utime = utime;
   goal.seq = seq_goal_++;
-  goal.goal_id = 1;
+  goal.goal_id = goal_id_;
   goal.goal_pose[0] = T_map_goal_.x;
   goal.goal_pose[1] = T_map_goal_.y;
   goal.goal_pose[2] = T_map_goal_.yaw;
@@ -278,7 +288,7 @@ void Operator::sendArm(int64_t utime) {
   arm.utime = utime;
   arm.seq = seq_arm_++;
   arm.armed = true;
-  arm.armed_by = "mission operator";
+  arm.armed_by = kOperatorName;
   arm.arm_reason = arming_ == 1 ? "mission begins" : "armed again after a stop";
   bus_.publish(kArm, arm);
 }

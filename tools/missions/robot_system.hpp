@@ -11,6 +11,7 @@
 #include "common/bus/virtual_bus.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/link/link.hpp"
+#include "common/messages/operator_beacon.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/store/store.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"
@@ -144,13 +145,15 @@ class Operator {
  private:
   void sendGoal(int64_t utime);
   void sendArm(int64_t utime);
-  bool needsArming(int64_t utime);
+  bool needsArming(int64_t utime, bool may_drive);
 
   Bus& bus_;
   Pose2 T_map_goal_;
+  OperatorBeacon beacon_;
   Latest<motor_t> motor_;
   int64_t start_;
   int64_t next_goal_ = 0;
+  int64_t goal_id_ = 0;    ///< a new one after each arming: an earlier goal counts for nothing
   int64_t arm_until_ = 0;  ///< ARM is repeated until then
   int64_t disarmed_since_ = -1;
   int arming_ = 0;

@@ -147,6 +147,9 @@ void addLiveOptions(CLI::App& command, pattern_recorder::RecordingConfig& how,
                   "with --live: refusals of one pattern in a row")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
+  how.operator_name = operatorName();
+  command.add_option("--by", how.operator_name, "with --live: who operates, as with tread-arm")
+      ->capture_default_str();
   command.add_option("--lcm-url", lcm_url, "with --live: LCM provider");
 }
 

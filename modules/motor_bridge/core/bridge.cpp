@@ -3,9 +3,27 @@
 #include "modules/motor_bridge/core/bridge.hpp"
 
 namespace tread::motor {
+namespace {
+
+/// What runs when the operator is lost may go on for so long at most [us].
+constexpr int64_t kLongestFinish = 15'000'000;
+
+std::string tenths(int64_t microseconds) {
+  const int64_t rounded = (microseconds + 50'000) / 100'000;
+  return std::to_string(rounded / 10) + "." + std::to_string(rounded % 10) + " s";
+}
+
+/// For people at a machine whose clock is another one.
+std::string untimely(const std::string& what, int64_t utime, int64_t now) {
+  if (utime > now)
+    return what + " ignored: its time is ahead of the robot's clock; do the clocks differ?";
+  return what + " ignored: its time is behind the robot's clock; do the clocks differ?";
+}
+
+}  // namespace
 
 Bridge::Bridge(const BridgeConfig& config)
-    : config_(config), gate_(config.gate), ins_(config.ins) {}
+    : config_(config), gate_(config.gate), ins_(config.ins), operator_(config.operators.lease_us) {}
 
 void Bridge::receive(const Program& program, int64_t now) {
   const ProgramGate::Admission admission = gate_.admit(program, now, !isArmed(failsafe_.state()));
@@ -44,6 +62,11 @@ void Bridge::take(const Program& program, int64_t now) {
 void Bridge::receive(const ArmRequest& request, int64_t now) {
   switch (requests_.classify(request, now, failsafe_.disarmedAt())) {
     case OperatorRequests::Effect::kArm:
+      if (operator_.valid(now) && operator_.holder() != request.by) {
+        since_.refusal = "ARM refused: the robot is held by " + operator_.holder();
+        count("ARM refused: of another operator than the one who holds the robot");
+        break;
+      }
       since_.arm = true;
       since_.request = request;
       break;
@@ -51,8 +74,12 @@ void Bridge::receive(const ArmRequest& request, int64_t now) {
       since_.disarm = true;
       since_.request = request;
       break;
+    case OperatorRequests::Effect::kUntimely:
+      since_.refusal = untimely("ARM", request.utime, now);
+      count("ARM ignored: too old or from the future");
+      break;
     case OperatorRequests::Effect::kIgnored:
-      count("ARM ignored: too old, from the future, served or given before the stop");
+      count("ARM ignored: served or given before the stop");
       break;
   }
 }
@@ -62,8 +89,16 @@ void Bridge::receive(const EstopRequest& request, int64_t now) {
   if (taken) {
     since_.estop_cleared = !request.engaged;
   } else {
+    if (requests_.estop() && !OperatorRequests::timely(request.utime, now))
+      since_.refusal = untimely("the clearing of the E-stop", request.utime, now);
     count("ESTOP clearing ignored: nothing to clear, or too old");
   }
+}
+
+void Bridge::receive(const OperatorNotice& notice, int64_t now) {
+  const OperatorLease::Receipt receipt = operator_.receive(notice, now);
+  if (receipt != OperatorLease::Receipt::kTaken)
+    count(std::string("OPERATOR ignored: ") + describe(receipt));
 }
 
 void Bridge::receive(const InsNotice& notice, int64_t now) {
@@ -90,6 +125,25 @@ BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
 std::string Bridge::stallFault(int64_t now) const {
   if (!last_step_ || (now >= *last_step_ && now - *last_step_ <= config_.max_stall_us)) return "";
   return "motor_bridge was held up for " + std::to_string((now - *last_step_) / 1000) + " ms";
+}
+
+void Bridge::lookForOperator(int64_t now, FailsafeInputs& in) {
+  operator_.update(now, isArmed(failsafe_.state()));
+  const OperatorLease::State state = operator_.state(now);
+  in.leased = state == OperatorLease::State::kValid;
+  if (state != OperatorLease::State::kLost) operator_lost_.reset();
+  if (in.leased) return;
+  const std::string& who = operator_.holder();
+  in.unattended = now - operator_.lastValid() > config_.operators.wait_us;
+  in.unleased = who.empty() ? "no operator's program is heard (OPERATOR)" : who + " has let go";
+  if (state != OperatorLease::State::kLost) return;
+  operator_lost_ = operator_lost_.value_or(now);
+  in.unleased = "the operator is lost: " + who + " has not seen the robot for " +
+                tenths(config_.operators.lease_us);
+  const bool may_finish = config_.operators.lost == OperatorLost::kFinish && player_.playing() &&
+                          now - *operator_lost_ < kLongestFinish;
+  in.leased = may_finish;
+  if (!may_finish) in.operator_fault = in.unleased;
 }
 
 std::string Bridge::leaseFault(int64_t now) const {
@@ -119,6 +173,7 @@ FailsafeInputs Bridge::look(int64_t now, const DeviceReport& device) {
   in.link_fault = device.link_fault;
   in.device_fault = device.device_fault;
   in.program_fault = since_.program_fault;
+  lookForOperator(now, in);
   in.lease_fault = leaseFault(now);
   in.ins_fault = ins_.fault(now);
   in.playing = player_.playing();
@@ -126,6 +181,7 @@ FailsafeInputs Bridge::look(int64_t now, const DeviceReport& device) {
   in.arm = since_.arm && !since_.disarm;
   in.disarm = since_.disarm;
   in.requested_by = since_.request.by;
+  in.refusal = since_.refusal;
   return in;
 }
 

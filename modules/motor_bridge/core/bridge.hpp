@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "common/execution/operator_lease.hpp"
+#include "common/vehicle/robot_description.hpp"
 #include "modules/motor_bridge/core/failsafe.hpp"
 #include "modules/motor_bridge/core/motor_controller.hpp"
 #include "modules/motor_bridge/core/program.hpp"
@@ -22,6 +24,7 @@ struct BridgeConfig {
   int64_t max_stall_us = 100'000;        ///< longest gap between steps [us]
   GateLimits gate;
   InsLimits ins;
+  OperatorRules operators;
 };
 
 /// What a step decided.
@@ -48,6 +51,7 @@ class Bridge {
   void receive(const ArmRequest& request, int64_t now);
   void receive(const EstopRequest& request, int64_t now);
   void receive(const InsNotice& notice, int64_t now);
+  void receive(const OperatorNotice& notice, int64_t now);
 
   /// Decides what the motors do from now [us] on.
   BridgeOutput step(int64_t now, const DeviceReport& device);
@@ -64,6 +68,7 @@ class Bridge {
     bool estop_cleared = false;
     bool planner_stop = false;
     ArmRequest request;
+    std::string refusal;
     std::string program_fault;
   };
 
@@ -71,6 +76,7 @@ class Bridge {
   void take(const Program& program, int64_t now);
   std::string stallFault(int64_t now) const;
   std::string leaseFault(int64_t now) const;
+  void lookForOperator(int64_t now, FailsafeInputs& in);
   std::string moveSchedule(int64_t now, bool stalled);
   FailsafeInputs look(int64_t now, const DeviceReport& device);
   void command(int64_t now, BridgeOutput& out);
@@ -81,6 +87,8 @@ class Bridge {
   SeriesPlayer player_;
   InsWatch ins_;
   OperatorRequests requests_;
+  OperatorLease operator_;
+  std::optional<int64_t> operator_lost_;  ///< [us] since when
   Failsafe failsafe_;
   Since since_;
   std::optional<int64_t> last_step_;

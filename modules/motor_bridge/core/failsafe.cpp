@@ -16,9 +16,11 @@ struct Fault {
 /// Worst fault of the inputs, if any: the order of the lines is the ranking.
 std::optional<Fault> worstFault(const FailsafeInputs& in) {
   if (in.estop) return Fault{State::kEstopped, "E-stop: " + in.estop_reason};
-  const Fault ranked[] = {{State::kFault, in.link_fault},     {State::kFault, in.device_fault},
-                          {State::kFault, in.bridge_fault},   {State::kDisarmed, in.program_fault},
-                          {State::kDisarmed, in.lease_fault}, {State::kDisarmed, in.ins_fault}};
+  const Fault ranked[] = {
+      {State::kFault, in.link_fault},        {State::kFault, in.device_fault},
+      {State::kFault, in.bridge_fault},      {State::kDisarmed, in.program_fault},
+      {State::kDisarmed, in.operator_fault}, {State::kDisarmed, in.lease_fault},
+      {State::kDisarmed, in.ins_fault}};
   for (const Fault& fault : ranked) {
     if (!fault.reason.empty()) return fault;
   }
@@ -46,7 +48,7 @@ std::string InsWatch::fault(int64_t now) const {
   return usable_ ? "" : "INS knows no position or no heading";
 }
 
-bool OperatorRequests::timely(int64_t utime, int64_t now) const {
+bool OperatorRequests::timely(int64_t utime, int64_t now) {
   constexpr int64_t kMaxAge = 1'500'000;  // [us]; requests are repeated for a second
   constexpr int64_t kMaxFuture = 50'000;  // [us]
   return utime <= now + kMaxFuture && utime >= now - kMaxAge;
@@ -55,9 +57,10 @@ bool OperatorRequests::timely(int64_t utime, int64_t now) const {
 OperatorRequests::Effect OperatorRequests::classify(const ArmRequest& request, int64_t now,
                                                     int64_t disarmed_at) {
   if (!request.armed) return Effect::kDisarm;
+  if (!timely(request.utime, now)) return Effect::kUntimely;
   const bool served = request.utime <= served_utime_;
   const bool after_stop = request.utime > disarmed_at;
-  return timely(request.utime, now) && after_stop && !served ? Effect::kArm : Effect::kIgnored;
+  return after_stop && !served ? Effect::kArm : Effect::kIgnored;
 }
 
 bool OperatorRequests::receive(const EstopRequest& request, int64_t now) {
@@ -107,8 +110,7 @@ FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
   out.may_drive = state_ == State::kDriving;
   out.zero_fast = in.now - *zero_since_ < kFastZero;
   out.arm_refused = in.arm && !refusal_.empty();
-  out.reason =
-      refusal_.empty() || isArmed(state_) ? reason_ : reason_ + "; ARM refused: " + refusal_;
+  out.reason = refusal_.empty() || isArmed(state_) ? reason_ : reason_ + "; " + refusal_;
   if (const std::optional<Fault> fault = worstFault(in)) out.standing_fault = fault->reason;
   out.changed = state_ != state_before || reason_ != reason_before || refusal_ != refusal_before;
   return out;
@@ -135,11 +137,13 @@ bool Failsafe::stopOnFault(const FailsafeInputs& in) {
   if (!fault) return false;
   const bool worse = fault->state == State::kEstopped && state_ != State::kEstopped;
   if (isArmed(state_) || worse) enter(fault->state, fault->reason, in.now);
-  if (in.arm) refusal_ = fault->reason;
+  if (in.arm) refusal_ = "ARM refused: " + fault->reason;
+  if (!in.arm && !in.refusal.empty()) refusal_ = in.refusal;
   return true;
 }
 
 std::string Failsafe::whyNotArm(const FailsafeInputs& in) const {
+  if (!in.leased) return in.unleased;
   const int64_t healthy = healthy_since_ ? in.now - *healthy_since_ : 0;
   if (healthy >= kHealthyBeforeArm) return "";
   return "inputs good for " + std::to_string(healthy / 1000) + " ms, " +
@@ -151,16 +155,23 @@ bool Failsafe::serveRequest(const FailsafeInputs& in) {
     if (isArmed(state_)) enter(State::kDisarmed, "disarmed by " + in.requested_by, in.now);
     return true;
   }
+  if (!in.refusal.empty() && !in.arm && !isArmed(state_)) refusal_ = in.refusal;
   if (!in.arm || isArmed(state_)) return false;
-  refusal_ = whyNotArm(in);
+  const std::string why_not = whyNotArm(in);
+  refusal_ = why_not.empty() ? "" : "ARM refused: " + why_not;
   if (refusal_.empty()) enter(State::kArmed, "armed by " + in.requested_by, in.now);
   return true;
 }
 
 void Failsafe::serveSeries(const FailsafeInputs& in) {
+  const bool stands = state_ == State::kArmed || state_ == State::kStopping;
   if (state_ == State::kDriving && !in.playing) {
     enter(State::kStopping, in.series_end.empty() ? "series ended" : in.series_end, in.now);
-  } else if ((state_ == State::kArmed || state_ == State::kStopping) && in.start_wanted) {
+  } else if (state_ == State::kDriving && !in.leased) {
+    enter(State::kStopping, in.unleased, in.now);
+  } else if (stands && in.unattended) {
+    enter(State::kDisarmed, in.unleased, in.now);
+  } else if (stands && in.start_wanted && in.leased) {
     enter(State::kDriving, "playing", in.now);
   } else if (state_ == State::kStopping && in.now - *zero_since_ >= kFastZero) {
     enter(State::kArmed, reason_, in.now);

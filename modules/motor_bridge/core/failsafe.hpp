@@ -64,7 +64,7 @@ struct EstopRequest {
 class OperatorRequests {
  public:
   /// What a request to arm or disarm leads to.
-  enum class Effect { kIgnored, kArm, kDisarm };
+  enum class Effect { kIgnored, kUntimely, kArm, kDisarm };
   /// Classifies a request received at now [us]; one to arm must have been given after disarmed_at
   /// [us].
   Effect classify(const ArmRequest& request, int64_t now, int64_t disarmed_at);
@@ -73,13 +73,13 @@ class OperatorRequests {
 
   /// An E-stop message received at now [us]. Returns false if it was ignored.
   bool receive(const EstopRequest& request, int64_t now);
+  /// Whether a permission of this time counts for its age at now [us].
+  static bool timely(int64_t utime, int64_t now);
   bool estop() const { return engaged_; }
   /// Who stopped and why; empty if not engaged.
   const std::string& estopReason() const { return reason_; }
 
  private:
-  bool timely(int64_t utime, int64_t now) const;
-
   int64_t served_utime_ = -1;
   bool engaged_ = false;
   int64_t engaged_utime_ = 0;
@@ -105,21 +105,26 @@ inline bool isArmed(State state) {
 
 /// What the failsafe looks at. Reasons are in words; empty = nothing wrong.
 struct FailsafeInputs {
-  int64_t now = 0;            ///< [us]
-  bool estop = false;         ///< an emergency stop is engaged
-  std::string estop_reason;   ///< by whom and why
-  std::string link_fault;     ///< no controller that was started up and answers
-  std::string device_fault;   ///< the controller reports a fault
-  std::string bridge_fault;   ///< the bridge itself was held up
-  std::string program_fault;  ///< a program broke its limits, or the planner changed
-  std::string lease_fault;    ///< no program within the lease
-  std::string ins_fault;      ///< no usable INS within its limit
-  bool playing = false;       ///< a series is being played and goes on
-  bool start_wanted = false;  ///< a series is offered to a standing robot
-  std::string series_end;     ///< why the series ended, if it did in this step
-  bool arm = false;           ///< a new request to arm arrived in this step
-  bool disarm = false;        ///< a request to disarm arrived in this step
-  std::string requested_by;   ///< who sent the request
+  int64_t now = 0;             ///< [us]
+  bool estop = false;          ///< an emergency stop is engaged
+  std::string estop_reason;    ///< by whom and why
+  std::string link_fault;      ///< no controller that was started up and answers
+  std::string device_fault;    ///< the controller reports a fault
+  std::string bridge_fault;    ///< the bridge itself was held up
+  std::string program_fault;   ///< a program broke its limits, or the planner changed
+  std::string operator_fault;  ///< the operator is lost
+  std::string lease_fault;     ///< no program within the lease
+  std::string ins_fault;       ///< no usable INS within its limit
+  bool playing = false;        ///< a series is being played and goes on
+  bool start_wanted = false;   ///< a series is offered to a standing robot
+  std::string series_end;      ///< why the series ended, if it did in this step
+  bool leased = false;         ///< an operator is there; without one nothing moves
+  std::string unleased;        ///< why not
+  bool unattended = false;     ///< no operator was there for longer than an armed robot waits
+  bool arm = false;            ///< a new request to arm arrived in this step
+  bool disarm = false;         ///< a request to disarm arrived in this step
+  std::string requested_by;    ///< who sent the request
+  std::string refusal;         ///< why a request counts for nothing, where people must know it
 };
 
 /// What the bridge has to do.
@@ -134,9 +139,10 @@ struct FailsafeOutputs {
 };
 
 /// The ranked state machine that decides whether the motors may turn. Pure: time is an input.
-/** Ranks, worst first: E-stop, link, device, bridge, program, lease, INS. A series can only start
-    from a state that gave zero in the step before. Everything but the normal end of a series
-    needs ARM, and ARM needs inputs that were good for a second. */
+/** Ranks, worst first: E-stop, link, device, bridge, program, operator, lease, INS. A series can
+    only start from a state that gave zero in the step before, and only while an operator is there.
+    Everything but the normal end of a series needs ARM, and ARM needs an operator and inputs that
+    were good for a second. */
 class Failsafe {
  public:
   FailsafeOutputs update(const FailsafeInputs& in);

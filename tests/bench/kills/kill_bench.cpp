@@ -18,9 +18,10 @@ namespace {
 using namespace tread;
 using namespace tread::testing;
 
-constexpr int64_t kLease = 200'000;   // [us] of a PROGRAM
-constexpr int64_t kHold = 1'000'000;  // [us] for which the motors must stay at zero
-constexpr double kBudget = 0.25;      // [s] from the end of lease or series, or from the kill
+constexpr int64_t kLease = 200'000;            // [us] of a PROGRAM
+constexpr int64_t kOperatorLease = 1'000'000;  // [us]
+constexpr int64_t kHold = 1'000'000;           // [us] for which the motors must stay at zero
+constexpr double kBudget = 0.25;  // [s] from the end of lease or series, or from the kill
 
 /// What came of one kill.
 struct Kill {
@@ -46,6 +47,7 @@ class KillBench {
     kill.process = process;
     kill.signal = signal;
     driveOff();
+    if (process == "operator") leave();
     const int64_t set = run_.lastSet();
     const StallWatch watch;
     run_.signal(process, signal);
@@ -64,7 +66,9 @@ class KillBench {
     }
     kill.stall = watch.longest();
     run_.forgetSet();
-    if (signal == SIGKILL)
+    if (process == "operator")
+      run_.signal(process, SIGCONT);
+    else if (signal == SIGKILL)
       run_.start(process);
     else
       run_.signal(process, SIGCONT);
@@ -73,6 +77,10 @@ class KillBench {
     for (const sim::TruthRow& row : run_.truth())
       kill.moved_unasked |= row.utime > restarted && !row.motorsAtZero();
     run_.until(10.0, [this] { return run_.lastSet() != 0; });
+    if (process == "operator") {
+      run_.takeBack();
+      nextGoal();
+    }
     kill.set_lost = run_.lastSet() < set;
     return kill;
   }
@@ -102,8 +110,22 @@ class KillBench {
     throw std::runtime_error("the robot does not drive: " + run_.plan().message().reason);
   }
 
+  /// To a program of its own, driving.
+  void leave() {
+    for (int i = 0; i < 20; ++i) {
+      run_.leaveTo(20.0 * side_, 1.0);
+      run_.wait(0.5);
+      if (run_.driving()) return;
+      run_.takeBack();
+      nextGoal();
+      driveOff();
+    }
+    throw std::runtime_error("the robot does not drive by tread-goal");
+  }
+
   /// When the permission that the process gave ends by itself.
   int64_t referenceOf(const std::string& process, int64_t killed) const {
+    if (process == "operator") return killed + kOperatorLease;
     if (process == "planner") return run_.program().message().utime + kLease;
     return killed;
   }
@@ -115,8 +137,9 @@ class KillBench {
 
 void print(const std::vector<Kill>& kills) {
   constexpr double kBin = 0.025;
-  std::printf("motors at zero after the lease's end (planner) or the kill (the others)\n");
-  for (const char* process : {"planner", "motor_bridge", "ins_driver"}) {
+  std::printf(
+      "motors at zero after the end of the lease (planner, operator) or the kill (the others)\n");
+  for (const char* process : {"planner", "motor_bridge", "ins_driver", "operator"}) {
     std::vector<int> bins(16, 0);
     double largest = 0.0;
     int count = 0;
@@ -161,10 +184,13 @@ int main(int argc, char** argv) {
   uint64_t seed = 1;
   app.add_option("--kills", count, "how many")->check(CLI::Range(1, 10000));
   app.add_option("--seed", seed, "of the moments");
+  std::string only;
+  app.add_option("--only", only, "this process alone: planner, motor_bridge, ins_driver, operator");
   CLI11_PARSE(app, argc, argv);
-  const std::vector<std::pair<std::string, int>> ways{
-      {"planner", SIGKILL}, {"motor_bridge", SIGKILL}, {"ins_driver", SIGKILL},
-      {"planner", SIGSTOP}, {"motor_bridge", SIGSTOP}, {"ins_driver", SIGSTOP}};
+  std::vector<std::pair<std::string, int>> ways;
+  for (const int signal : {SIGKILL, SIGSTOP})
+    for (const char* process : {"planner", "motor_bridge", "ins_driver", "operator"})
+      if (only.empty() || only == process) ways.push_back({process, signal});
   try {
     KillBench bench(seed);
     std::vector<Kill> kills;

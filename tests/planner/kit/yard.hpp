@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/bus/virtual_bus.hpp"
+#include "common/messages/operator_beacon.hpp"
 #include "modules/planner/planner_node.hpp"
 #include "tests/planner/kit/toy_robot.hpp"
 #include "tests/planner/kit/vehicle.hpp"
@@ -15,7 +16,9 @@ namespace tread::planner::testkit {
 
 /// The planner node and a toy robot on a virtual bus, and somebody who listens.
 struct Yard {
-  explicit Yard(FaultPlan faults = {}) : bus(7, std::move(faults)), start(bus.now()) {
+  explicit Yard(FaultPlan faults = {})
+      : bus(7, std::move(faults)), start(bus.now()), beacon(bus.outside(), "test") {
+    beacon.standFor(goal_id);
     bus.addNode("robot", [](Bus& end) { return std::make_unique<ToyRobot>(end); });
     bus.addNode("planner",
                 [](Bus& end) { return std::make_unique<PlannerNode>(usualPlanner(), end); },
@@ -41,7 +44,7 @@ struct Yard {
     goal_t message{};
     message.utime = bus.now();
     message.seq = seq++;
-    message.goal_id = 1;
+    message.goal_id = goal_id;
     message.goal_pose[0] = x;
     message.position_tolerance = tolerance;
     message.yaw_tolerance = 4.0;
@@ -65,11 +68,23 @@ struct Yard {
     bus.outside().publish(kEstop, message);
   }
 
-  void run(double seconds) { bus.runUntil(bus.now() + static_cast<int64_t>(seconds * 1e6)); }
+  /// From now on goals are new ones.
+  void renewGoal() { beacon.standFor(++goal_id); }
+
+  void run(double seconds) {
+    const int64_t end = bus.now() + static_cast<int64_t>(seconds * 1e6);
+    while (bus.now() < end) {
+      if (operator_there) beacon.step(bus.now());
+      bus.runUntil(std::min<int64_t>(end, bus.now() + 50'000));
+    }
+  }
   ToyRobot& robot() { return *dynamic_cast<ToyRobot*>(bus.node("robot")); }
 
   VirtualBus bus;
   int64_t start;
+  OperatorBeacon beacon;
+  int64_t goal_id = 1;
+  bool operator_there = true;
   int64_t seq = 0;
   plan_t plan{};
   plan_tree_t tree{};

@@ -17,6 +17,7 @@
 #include "common/bus/tcp_relay.hpp"
 #include "common/config/command_line.hpp"
 #include "tools/robot/launch/host.hpp"
+#include "tools/robot/launch/running_robots.hpp"
 
 namespace {
 
@@ -109,6 +110,7 @@ int start(const LaunchFile& launch, const LaunchSettings& settings) {
     stop_time = std::max(stop_time, process.stop_time);
   std::cout << launch.name << ": starting " << launch.processes.size() << " processes; logs in "
             << paths.logs << std::endl;
+  const Announcement announcement({launch.name, launch.lcm_url});
   return supervise(launch.name, launch.processes.size(), paths, lock,
                    static_cast<double>(stop_time));
 }

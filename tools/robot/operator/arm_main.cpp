@@ -4,11 +4,26 @@
 
 int main(int argc, char** argv) {
   using namespace tread::operators;
+  ArmRequest request;
+  bool disarm = false;
+  const auto addOptions = [&](CLI::App& app) {
+    auto* off = app.add_flag("--disarm", disarm, "take the permission back");
+    auto* hold =
+        app.add_flag("--hold", request.hold, "stay: the robot may drive only as long as this runs");
+    auto* next =
+        app.add_option("--hand-over", request.hand_over_to,
+                       "give the robot that you hold to this operator, whose program runs");
+    off->excludes(hold)->excludes(next);
+    hold->excludes(next);
+  };
   return runPermissionCommand(
       argc, argv,
-      {"tread-arm", "Arms the robot: it may drive from now on. Only an armed robot moves.", "arms",
-       "--disarm", "take the permission back",
-       [](tread::Bus& bus, const Requester& requester, bool given, double patience) {
-         return std::make_unique<ArmCall>(bus, requester, given, patience);
+      {"tread-arm",
+       "Arms the robot: it may drive to goals that are given from now on, as long as an operator's "
+       "program runs.",
+       "arms; programs of one name operate together", addOptions,
+       [&](tread::Bus& bus, const Requester& requester, double patience) {
+         request.arm = !disarm;
+         return std::make_unique<ArmCall>(bus, requester, request, patience);
        }});
 }

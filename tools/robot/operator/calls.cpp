@@ -12,9 +12,10 @@
 namespace tread::operators {
 namespace {
 
-constexpr int64_t kArmRepeat = 100'000;  // [us]
-constexpr int64_t kStopRepeat = 50'000;  // [us]
-constexpr int64_t kAnswerAge = 500'000;  // [us] a MOTOR message older than this shows nothing
+constexpr int64_t kArmRepeat = 100'000;   // [us]
+constexpr int64_t kStopRepeat = 50'000;   // [us]
+constexpr int64_t kHandOver = 1'000'000;  // [us] for which it is told
+constexpr int64_t kAnswerAge = 500'000;   // [us] a MOTOR message older than this shows nothing
 /// An answer counts only after this long: what came before the call is no answer.
 constexpr int64_t kSettle = 200'000;  // [us]
 
@@ -23,6 +24,8 @@ constexpr int64_t kGoalRepeat = 1'000'000;  // [us]
 
 /// A robot that lost its permission on the way does not go on by itself [us].
 constexpr int64_t kDisarmedPatience = 2'000'000;
+/// The planner shows a goal soon, and what it has ended does not come back [us].
+constexpr int64_t kGoalPatience = 1'500'000;
 
 bool isStuck(int16_t status) {
   return status == plan_t::PLAN_BLOCKED || status == plan_t::PLAN_UNREACHABLE;
@@ -30,8 +33,9 @@ bool isStuck(int16_t status) {
 
 }  // namespace
 
-PermissionCall::PermissionCall(Bus& bus, double patience, Request request)
-    : request_(std::move(request)),
+PermissionCall::PermissionCall(Bus& bus, const std::string& by, double patience, Request request)
+    : beacon_(bus, by),
+      request_(std::move(request)),
       patience_(static_cast<int64_t>(patience * 1e6)),
       motor_(bus, kMotor) {}
 
@@ -44,9 +48,9 @@ CallResult PermissionCall::step(int64_t utime) {
   if (!started_) started_ = utime;
   if (utime - *started_ > kSettle && shown(utime)) return CallResult::kDone;
   if (utime - *started_ > patience_) return CallResult::kRefused;
-  if (utime < next_) return CallResult::kPending;
+  if (utime < next_ || (request_.permits && !beacon_.hearsRobot())) return CallResult::kPending;
   next_ = utime + request_.repeat;
-  request_.send(utime, seq_++);
+  request_.send(beacon_.robotTime(utime), seq_++);
   return CallResult::kPending;
 }
 
@@ -61,23 +65,63 @@ std::string PermissionCall::describe(int64_t utime) const {
   return words + "the motor bridge says: " + (reason.empty() ? "nothing" : reason);
 }
 
-ArmCall::ArmCall(Bus& bus, const Requester& requester, bool arm, double patience)
-    : PermissionCall(bus, patience,
-                     {[&bus, requester, arm](int64_t utime, int64_t seq) {
-                        auto message = blank<arm_t>();
-                        message.utime = utime;
-                        message.seq = seq;
-                        message.armed = arm;
-                        message.armed_by = requester.by;
-                        message.arm_reason = requester.why;
-                        bus.publish(kArm, message);
-                      },
-                      [arm](int16_t bridge_state) { return mayDrive(bridge_state) == arm; },
-                      arm ? "armed" : "disarmed", arm ? "not armed" : "not disarmed", kArmRepeat}) {
+namespace {
+
+void sendArm(Bus& bus, const Requester& requester, bool arm, int64_t utime, int64_t seq) {
+  auto message = blank<arm_t>();
+  message.utime = utime;
+  message.seq = seq;
+  message.armed = arm;
+  message.armed_by = requester.by;
+  message.arm_reason = requester.why;
+  bus.publish(kArm, message);
+}
+
+}  // namespace
+
+ArmCall::ArmCall(Bus& bus, const Requester& requester, const ArmRequest& request, double patience)
+    : PermissionCall(
+          bus, requester.by, patience,
+          {[&bus, requester, arm = request.arm](int64_t utime, int64_t seq) {
+             sendArm(bus, requester, arm, utime, seq);
+           },
+           [arm = request.arm](int16_t bridge_state) { return mayDrive(bridge_state) == arm; },
+           request.arm ? "armed" : "disarmed", request.arm ? "not armed" : "not disarmed",
+           kArmRepeat, request.arm}),
+      bus_(bus),
+      requester_(requester),
+      request_(request) {
+  beacon_.handOverTo(request.hand_over_to);
+}
+
+CallResult ArmCall::step(int64_t utime) {
+  if (request_.arm) beacon_.step(utime);
+  if (!request_.hand_over_to.empty()) {
+    handed_over_ = handed_over_.value_or(utime);
+    return utime - *handed_over_ > kHandOver ? CallResult::kDone : CallResult::kPending;
+  }
+  if (!armed_) {
+    const CallResult result = PermissionCall::step(utime);
+    if (result != CallResult::kDone || !request_.hold) return result;
+    armed_ = utime;
+  }
+  return shown(utime) ? CallResult::kPending : CallResult::kRefused;
+}
+
+std::string ArmCall::describe(int64_t utime) const {
+  if (!request_.hand_over_to.empty()) return "handed over to " + request_.hand_over_to;
+  if (armed_ && !shown(utime)) return "not armed any more: " + bridgeReason();
+  return PermissionCall::describe(utime) + (armed_ ? " and held: Ctrl-C disarms" : "") +
+         beacon_.clockWords();
+}
+
+void ArmCall::cancel(int64_t utime) {
+  if (!armed_) return;
+  for (int i = 0; i < 3; ++i) sendArm(bus_, requester_, false, beacon_.robotTime(utime), i);
 }
 
 StopCall::StopCall(Bus& bus, const Requester& requester, bool engage, double patience)
-    : PermissionCall(bus, patience,
+    : PermissionCall(bus, requester.by, patience,
                      {[&bus, requester, engage](int64_t utime, int64_t seq) {
                         auto message = blank<estop_t>();
                         message.utime = utime;
@@ -92,7 +136,7 @@ StopCall::StopCall(Bus& bus, const Requester& requester, bool engage, double pat
                       },
                       engage ? "stopped; tread-stop --clear, then tread-arm, to go on"
                              : "emergency stop cleared; tread-arm to go on",
-                      engage ? "NOBODY CONFIRMS THE STOP" : "not cleared", kStopRepeat}) {}
+                      engage ? "NOBODY CONFIRMS THE STOP" : "not cleared", kStopRepeat, !engage}) {}
 
 std::string statusWord(int16_t plan_status) {
   switch (plan_status) {
@@ -143,12 +187,13 @@ std::string GoalCall::progress(int64_t utime) const {
   return text + "  set " + std::to_string(plan.set_version);
 }
 
-GoalCall::GoalCall(Bus& bus, const GoalRequest& request, int64_t goal_id,
+GoalCall::GoalCall(Bus& bus, const GoalRequest& request, const std::string& by, int64_t goal_id,
                    SurfaceNames surface_names)
     : bus_(bus),
       request_(request),
       goal_id_(goal_id),
       surface_names_(std::move(surface_names)),
+      beacon_(bus, by),
       ins_(bus, kIns),
       plan_(bus, kPlan),
       motor_(bus, kMotor),
@@ -157,11 +202,12 @@ GoalCall::GoalCall(Bus& bus, const GoalRequest& request, int64_t goal_id,
   bus.subscribe<pattern_set_part_t>(kPatternSet, [this](const pattern_set_part_t& part) {
     names_[part.set_pattern_id] = part.pattern_name;
   });
+  beacon_.standFor(goal_id);
 }
 
 void GoalCall::send(int64_t utime, int64_t goal_id) {
   auto goal = blank<goal_t>();
-  goal.utime = utime;
+  goal.utime = beacon_.robotTime(utime);
   goal.seq = seq_++;
   goal.goal_id = goal_id;
   goal.goal_pose[0] = request_.T_map_goal.x;
@@ -174,11 +220,12 @@ void GoalCall::send(int64_t utime, int64_t goal_id) {
 
 CallResult GoalCall::step(int64_t utime) {
   if (!started_) started_ = utime;
-  if (utime >= next_) {
+  beacon_.step(utime);
+  if (utime >= next_ && beacon_.hearsRobot()) {
     send(utime, goal_id_);
     next_ = utime + kGoalRepeat;
   }
-  if (lostPermission(utime)) return CallResult::kRefused;
+  if (lostPermission(utime) || lostGoal(utime)) return CallResult::kRefused;
   if (!plan_.any() || plan_.message().goal_id != goal_id_) return CallResult::kPending;
   const int16_t status = plan_.message().plan_status;
   if (status == plan_t::PLAN_ARRIVED) return CallResult::kDone;
@@ -189,14 +236,24 @@ CallResult GoalCall::step(int64_t utime) {
                                                           : CallResult::kPending;
 }
 
-/// Was armed, and is not any more for a while. Before the first arming the goal just waits.
+/// Not armed for a while. A goal that was given before the arming counts for nothing.
 bool GoalCall::lostPermission(int64_t utime) {
   if (!motor_.any()) return false;
   const bool may = mayDrive(motor_.message().bridge_state);
   was_armed_ = was_armed_ || may;
   if (may) disarmed_since_.reset();
-  if (!may && was_armed_ && !disarmed_since_) disarmed_since_ = utime;
+  if (!may && !disarmed_since_) disarmed_since_ = utime;
   return disarmed_since_ && utime - *disarmed_since_ > kDisarmedPatience;
+}
+
+/// The planner had this goal, and has it no more.
+bool GoalCall::lostGoal(int64_t utime) {
+  if (!plan_.any()) return false;
+  const bool has = plan_.message().goal_id == goal_id_;
+  was_goal_ = was_goal_ || has;
+  if (has) lost_since_.reset();
+  if (!has && was_goal_ && !lost_since_) lost_since_ = utime;
+  return lost_since_ && utime - *lost_since_ > kGoalPatience;
 }
 
 std::string GoalCall::describe(int64_t utime) const {
@@ -204,7 +261,10 @@ std::string GoalCall::describe(int64_t utime) const {
   if (started_)
     words = formatted("%5.0f s  ", static_cast<double>(utime - *started_) * 1e-6) + words;
   if (disarmed_since_)
-    words += "; not armed any more (" + motor_.message().state_reason + "): tread-arm, then again";
+    words += std::string(was_armed_ ? "; not armed any more (" : "; not armed (") +
+             motor_.message().state_reason + "): tread-arm, then again";
+  else if (lost_since_)
+    words += "; the planner follows this goal no more: give it again";
   return words;
 }
 

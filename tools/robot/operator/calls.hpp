@@ -9,6 +9,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/geometry/se2.hpp"
+#include "common/messages/operator_beacon.hpp"
 
 namespace tread::operators {
 
@@ -30,6 +31,8 @@ class Call {
   virtual std::string describe(int64_t utime) const = 0;
   /// The operator has lost patience: takes back what must not go on.
   virtual void cancel(int64_t /*utime*/) {}
+  /// The program ends in good order, whatever came of the call.
+  virtual void letGo(int64_t /*utime*/) {}
 };
 
 /// Who asks, and why; both go into the log.
@@ -46,19 +49,25 @@ class PermissionCall : public Call {
 
  protected:
   struct Request {
+    /// `utime` is the robot's.
     std::function<void(int64_t utime, int64_t seq)> send;
     /// Whether a bridge in this state (motor_t::STATE_*) has served it.
     std::function<bool(int16_t bridge_state)> served;
     std::string text_if_served;
     std::string text_if_not;
-    int64_t repeat;  ///< [us]
+    int64_t repeat;       ///< [us]
+    bool permits = true;  ///< worth nothing before the robot's time is known
   };
   /// `patience` [s] for which it is repeated.
-  PermissionCall(Bus& bus, double patience, Request request);
+  PermissionCall(Bus& bus, const std::string& by, double patience, Request request);
+
+  bool shown(int64_t utime) const;
+  /// What the bridge says of its state.
+  const std::string& bridgeReason() const { return motor_.message().state_reason; }
+
+  OperatorBeacon beacon_;
 
  private:
-  bool shown(int64_t utime) const;
-
   Request request_;
   int64_t patience_;  ///< [us]
   Latest<motor_t> motor_;
@@ -67,10 +76,30 @@ class PermissionCall : public Call {
   int64_t seq_ = 0;
 };
 
-/// Arms or disarms.
+/// What tread-arm is asked for.
+struct ArmRequest {
+  bool arm = true;           ///< false: disarm
+  bool hold = false;         ///< stay once armed: the robot may drive only as long as this runs
+  std::string hand_over_to;  ///< name of the operator who takes over; empty = nobody
+};
+
+/// Arms or disarms, and holds the robot for its operator meanwhile.
 class ArmCall : public PermissionCall {
  public:
-  ArmCall(Bus& bus, const Requester& requester, bool arm, double patience);
+  ArmCall(Bus& bus, const Requester& requester, const ArmRequest& request, double patience);
+
+  CallResult step(int64_t utime) override;
+  std::string describe(int64_t utime) const override;
+  /// A robot that is held is disarmed.
+  void cancel(int64_t utime) override;
+  void letGo(int64_t utime) override { beacon_.letGo(utime); }
+
+ private:
+  Bus& bus_;
+  Requester requester_;
+  ArmRequest request_;
+  std::optional<int64_t> armed_;        ///< [us] since when
+  std::optional<int64_t> handed_over_;  ///< [us]
 };
 
 /// Engages or clears the emergency stop.
@@ -94,21 +123,24 @@ struct GoalRequest {
   double patience = 30.0;
 };
 
-/// Repeats GOAL until the planner has arrived, gives up for good, or the permission to drive is
-/// lost on the way.
+/// Repeats GOAL until the planner has arrived or gives up for good, the permission to drive is not
+/// there or lost, or the goal has ended.
 class GoalCall : public Call {
  public:
   /// `goal_id` must be new to the planner.
-  GoalCall(Bus& bus, const GoalRequest& request, int64_t goal_id, SurfaceNames surface_names);
+  GoalCall(Bus& bus, const GoalRequest& request, const std::string& by, int64_t goal_id,
+           SurfaceNames surface_names);
 
   CallResult step(int64_t utime) override;
   std::string describe(int64_t utime) const override;
   /// Sends goal 0: the planner stops.
   void cancel(int64_t utime) override;
+  void letGo(int64_t utime) override { beacon_.letGo(utime); }
 
  private:
   void send(int64_t utime, int64_t goal_id);
   bool lostPermission(int64_t utime);
+  bool lostGoal(int64_t utime);
   /// "to go 12.3 m  driving  left-soft on gravel  last error 0.04 m 1.2 deg  set 17".
   std::string progress(int64_t utime) const;
   std::string patternName(int32_t id) const;
@@ -117,6 +149,7 @@ class GoalCall : public Call {
   GoalRequest request_;
   int64_t goal_id_;
   SurfaceNames surface_names_;
+  OperatorBeacon beacon_;
   Latest<ins_t> ins_;
   Latest<plan_t> plan_;
   Latest<motor_t> motor_;
@@ -127,7 +160,9 @@ class GoalCall : public Call {
   int64_t next_ = 0;                      ///< [us]
   std::optional<int64_t> stuck_since_;
   bool was_armed_ = false;
-  std::optional<int64_t> disarmed_since_;  ///< [us]; none while armed, and before the first arming
+  std::optional<int64_t> disarmed_since_;  ///< [us]; none while armed
+  bool was_goal_ = false;                  ///< the planner had this goal
+  std::optional<int64_t> lost_since_;      ///< [us] the planner has it no more
   int64_t seq_ = 0;
 };
 

@@ -5,10 +5,9 @@
 #include <csignal>
 #include <iostream>
 
-#include <CLI/CLI.hpp>
-
 #include "common/bus/lcm_bus.hpp"
 #include "common/config/command_line.hpp"
+#include "tools/robot/launch/running_robots.hpp"
 
 namespace tread::operators {
 namespace {
@@ -33,6 +32,7 @@ int run(const std::string& name, const CommandOptions& options, Bus& bus, Call& 
         options.timeout > 0.0 && static_cast<double>(now - begun) * 1e-6 > options.timeout;
     if (result != CallResult::kPending || late) {
       if (result != CallResult::kDone) call.cancel(now);
+      call.letGo(now);
       (result == CallResult::kDone ? std::cout : std::cerr)
           << name << ": " << (late ? "out of time: " : "") << call.describe(now) << std::endl;
       return result == CallResult::kDone ? 0 : 1;
@@ -44,6 +44,7 @@ int run(const std::string& name, const CommandOptions& options, Bus& bus, Call& 
     wait(kStepMs);
   }
   call.cancel(bus.now());
+  call.letGo(bus.now());
   std::cerr << name << ": interrupted" << std::endl;
   return 130;
 }
@@ -55,7 +56,7 @@ int runCall(const std::string& name, const CommandOptions& options,
   std::signal(SIGINT, noteSignal);
   std::signal(SIGTERM, noteSignal);
   try {
-    LcmBus bus(options.lcm_url, TimeSource::kHost);
+    LcmBus bus(launch::findLcmUrl(options.lcm_url), TimeSource::kHost);
     const std::unique_ptr<Call> call = make(bus);
     return run(name, options, bus, *call, [&bus](int ms) { bus.handle(ms); });
   } catch (const std::exception& error) {
@@ -68,16 +69,16 @@ int runPermissionCommand(int argc, char** argv, const PermissionCommand& command
   CLI::App app{command.description, command.name};
   CommandOptions options;
   Requester requester;
-  bool taken_back = false;
+  requester.by = operatorName();
   double patience = 5.0;
-  app.add_option("--by", requester.by, "who " + command.verb);
+  app.add_option("--by", requester.by, "who " + command.verb)->capture_default_str();
   app.add_option("--why", requester.why, "why, for the log");
-  app.add_flag(command.withdraw, taken_back, command.withdraw_help);
+  command.more(app);
   app.add_option("--timeout", patience, "how long to try [s]")->check(CLI::Range(0.5, 600.0));
-  app.add_option("--lcm-url", options.lcm_url, "LCM provider");
+  app.add_option("--lcm-url", options.lcm_url, kUrlHelp);
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return runCall(command.name, options,
-                 [&](Bus& bus) { return command.make(bus, requester, !taken_back, patience); });
+                 [&](Bus& bus) { return command.make(bus, requester, patience); });
 }
 
 }  // namespace tread::operators

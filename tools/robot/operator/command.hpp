@@ -6,14 +6,20 @@
 #include <memory>
 #include <string>
 
+#include <CLI/CLI.hpp>
+
 #include "common/bus/bus.hpp"
 #include "tools/robot/operator/calls.hpp"
 
 namespace tread::operators {
 
+/// Of --lcm-url.
+inline constexpr const char* kUrlHelp =
+    "LCM provider; else LCM_DEFAULT_URL, else the robot that tread-launch runs here";
+
 /// How a command runs its call.
 struct CommandOptions {
-  std::string lcm_url;    ///< empty = LCM_DEFAULT_URL or LCM's own default
+  std::string lcm_url;    ///< empty = found, see launch::findLcmUrl()
   double timeout = 0.0;   ///< [s] after which the call is cancelled; 0 = never
   double progress = 0.0;  ///< [s] between lines of progress; 0 = none
 };
@@ -28,11 +34,10 @@ int runCall(const std::string& name, const CommandOptions& options,
 struct PermissionCommand {
   std::string name;
   std::string description;
-  std::string verb;      ///< "arms"
-  std::string withdraw;  ///< the flag that takes it back
-  std::string withdraw_help;
-  /// `given` is false where it is taken back; `patience` [s].
-  std::function<std::unique_ptr<Call>(Bus&, const Requester&, bool given, double patience)> make;
+  std::string verb;                     ///< "arms"
+  std::function<void(CLI::App&)> more;  ///< adds its own options
+  /// `patience` [s].
+  std::function<std::unique_ptr<Call>(Bus&, const Requester&, double patience)> make;
 };
 /// The main function of such a command.
 int runPermissionCommand(int argc, char** argv, const PermissionCommand& command);

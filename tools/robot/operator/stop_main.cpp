@@ -4,11 +4,15 @@
 
 int main(int argc, char** argv) {
   using namespace tread::operators;
+  bool clear = false;
   return runPermissionCommand(
       argc, argv,
       {"tread-stop", "Emergency stop over LCM. It is no replacement for the button on the machine.",
-       "stops", "--clear", "clear the stop; arming is still needed",
-       [](tread::Bus& bus, const Requester& requester, bool given, double patience) {
-         return std::make_unique<StopCall>(bus, requester, given, patience);
+       "stops",
+       [&](CLI::App& app) {
+         app.add_flag("--clear", clear, "clear the stop; arming is still needed");
+       },
+       [&](tread::Bus& bus, const Requester& requester, double patience) {
+         return std::make_unique<StopCall>(bus, requester, !clear, patience);
        }});
 }

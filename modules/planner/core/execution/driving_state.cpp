@@ -34,8 +34,9 @@ Preconditions checkSensors(const PlannerInputs& s, const MapAndSet& supplies,
 
 /// What lets the vehicle finish its pattern and stop.
 Preconditions checkSupplies(const PlannerInputs& s, const MapAndSet& supplies,
-                            const AgeLimits& limits) {
-  if (!s.goal) return {Level::kFinish, PlanStatus::kIdle, ""};
+                            const AgeLimits& limits, OperatorLost lost) {
+  const bool at_once = !s.goal_lost.empty() && lost == OperatorLost::kStop;
+  if (!s.goal) return {at_once ? Level::kStop : Level::kFinish, PlanStatus::kIdle, s.goal_lost};
   if (s.now - supplies.map_utime > limits.map_slow)
     return waiting(Level::kFinish, oldAs("MAP", s.now - supplies.map_utime));
   if (s.now - s.set_received > limits.pattern_set)
@@ -83,10 +84,10 @@ std::string stopAhead(const PlannedExecution& running, const CurrentPlan& plan,
 }  // namespace
 
 Preconditions checkPreconditions(const PlannerInputs& inputs, const MapAndSet& supplies,
-                                 const AgeLimits& limits) {
+                                 const AgeLimits& limits, OperatorLost lost) {
   Preconditions found = checkSensors(inputs, supplies, limits);
   if (found.level == Level::kGo) found = checkPermission(inputs, supplies, limits);
-  if (found.level == Level::kGo) found = checkSupplies(inputs, supplies, limits);
+  if (found.level == Level::kGo) found = checkSupplies(inputs, supplies, limits, lost);
   return found;
 }
 

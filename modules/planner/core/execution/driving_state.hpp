@@ -11,6 +11,7 @@
 
 #include "common/execution/execution_tracker.hpp"
 #include "common/geometry/track.hpp"
+#include "common/vehicle/robot_description.hpp"
 #include "modules/planner/core/execution/motion_planner.hpp"
 #include "modules/planner/core/map/collision_checker.hpp"
 #include "modules/planner/core/map/distance_to_goal.hpp"
@@ -22,6 +23,7 @@ namespace tread::planner {
 /// Everything the planner knows at one moment, apart from map and patterns.
 struct PlannerInputs : RobotReadings {
   std::optional<Goal> goal;
+  std::string goal_lost;     ///< why the last goal has ended; empty if its operator took it back
   int64_t set_received = 0;  ///< [us] when a part of a pattern set came last; 0 = never
 };
 
@@ -80,7 +82,7 @@ struct MapAndSet {
 
 /// Judges the inputs: the worst of what is wrong decides.
 Preconditions checkPreconditions(const PlannerInputs& inputs, const MapAndSet& supplies,
-                                 const AgeLimits& limits);
+                                 const AgeLimits& limits, OperatorLost lost = OperatorLost::kStop);
 
 /// A pose expected at a time from now on.
 struct ExpectedPose {
@@ -152,6 +154,7 @@ struct PlannerConfig {
   AgeLimits ages;
   SweepResolution sweep;
   DefaultSigma default_sigma;  ///< errors at the end of a pattern of unknown covariance
+  OperatorRules operators;     ///< lease 0: a log from before there were leases
   int64_t lease = 200'000;     ///< [us] the motors stop when nothing newer came for this long
   int64_t deadline = 30'000;   ///< [us] after which a search is cut off on the robot
   std::string effective;       ///< the whole as YAML, for CONFIG

@@ -48,7 +48,7 @@ Decision Supervisor::step(const PlannerInputs& s, const StopPredicate& stop) {
   const MapAndSet map_and_set{state_.map.newestUtime(),
                               state_.set.table() ? state_.table().defect() : "no PATTERN_SET yet",
                               was_armed_};
-  act(s, checkPreconditions(s, map_and_set, state_.config.ages));
+  act(s, checkPreconditions(s, map_and_set, state_.config.ages, state_.config.operators.lost));
   return {state_.status.changed, report(s)};
 }
 
@@ -58,7 +58,7 @@ void Supervisor::act(const PlannerInputs& s, const Preconditions& ready) {
     standing_.forgetBlocked();
     progress_.restart(s.now);
     if (!s.goal && ready.status == PlanStatus::kWaiting)
-      return state_.status.say(PlanStatus::kIdle, "");
+      return state_.status.say(PlanStatus::kIdle, s.goal_lost);
     return state_.status.say(ready.status, ready.reason);
   }
   state_.map.updateCollisionChecker(s.pose->T_map_body, s.now);

@@ -21,6 +21,7 @@ struct Stand {
       ++stops;
       last_stop = message;
     });
+    bus.subscribe<operator_t>(kOperator, [this](const operator_t& m) { last_operator = m; });
     bus.subscribe<goal_t>(kGoal, [this](const goal_t& message) { goals.push_back(message); });
   }
   void motor(int64_t utime, int16_t state, const std::string& reason = "") {
@@ -43,6 +44,7 @@ struct Stand {
   int stops = 0;
   arm_t last_arm{};
   estop_t last_stop{};
+  operator_t last_operator{};
   std::vector<goal_t> goals;
 };
 
@@ -81,7 +83,7 @@ struct Scene {
 
 TEST_CASE("arming is repeated until MOTOR shows it, and an answer from before does not count") {
   Scene scene;
-  ArmCall call(scene.desk, {"me", "a try"}, true, 5.0);
+  ArmCall call(scene.desk, {"me", "a try"}, {}, 5.0);
   const auto result = scene.run(call, 6.0, [&](int64_t now) {
     scene.stand->motor(now,
                        scene.stand->arms >= 5 ? motor_t::STATE_ARMED : motor_t::STATE_DISARMED);
@@ -95,7 +97,7 @@ TEST_CASE("arming is repeated until MOTOR shows it, and an answer from before do
 
 TEST_CASE("a bridge that does not arm is quoted") {
   Scene scene;
-  ArmCall call(scene.desk, {}, true, 1.0);
+  ArmCall call(scene.desk, {}, {}, 1.0);
   const auto result = scene.run(call, 3.0, [&](int64_t now) {
     scene.stand->motor(now, motor_t::STATE_FAULT, "controller lost");
   });
@@ -117,9 +119,10 @@ TEST_CASE("a goal is repeated each second, ends with the arrival, and gives up w
   GoalRequest request;
   request.T_map_goal = {3.0, 4.0, 0.0};
   request.patience = 2.0;
-  GoalCall call(scene.desk, request, 77, {});
+  GoalCall call(scene.desk, request, "me", 77, {});
   const int64_t begun = scene.bus.now();
   auto result = scene.run(call, 10.0, [&](int64_t now) {
+    scene.stand->motor(now, motor_t::STATE_ARMED);
     // The arrival at somebody else's goal is none of ours.
     const bool ours = now - begun > 4'000'000;
     scene.stand->plan(now, ours ? 77 : 76, plan_t::PLAN_ARRIVED);
@@ -128,9 +131,10 @@ TEST_CASE("a goal is repeated each second, ends with the arrival, and gives up w
   CHECK(scene.stand->goals.size() == 5);
   CHECK(scene.stand->goals.front().goal_id == 77);
 
-  GoalCall hopeless(scene.desk, request, 78, {});
+  GoalCall hopeless(scene.desk, request, "me", 78, {});
   const int64_t asked = scene.bus.now();
   result = scene.run(hopeless, 10.0, [&](int64_t now) {
+    scene.stand->motor(now, motor_t::STATE_ARMED);
     // A moment's block is no end.
     const bool free = now - asked > 1'000'000 && now - asked < 1'500'000;
     scene.stand->plan(now, 78, free ? plan_t::PLAN_DRIVING : plan_t::PLAN_BLOCKED);
@@ -144,18 +148,67 @@ TEST_CASE("a goal is repeated each second, ends with the arrival, and gives up w
 
 TEST_CASE("a permission that is lost on the way ends the call with the bridge's reason") {
   Scene scene;
-  GoalCall call(scene.desk, {}, 5, {});
+  GoalCall call(scene.desk, {}, "me", 5, {});
   const int64_t begun = scene.bus.now();
   const auto result = scene.run(call, 10.0, [&](int64_t now) {
     scene.stand->plan(now, 5, plan_t::PLAN_DRIVING);
-    // Not armed yet, then armed, then lost; a moment's loss alone would be none.
+    // Armed, then lost; a moment's loss alone would be none.
     const double t = static_cast<double>(now - begun) * 1e-6;
-    const bool armed = t > 3.0 && t < 4.0;
+    const bool armed = t < 4.0;
     scene.stand->motor(now, armed ? motor_t::STATE_DRIVING : motor_t::STATE_FAULT, "INS is stale");
   });
   CHECK(result == CallResult::kRefused);
   CHECK(scene.bus.now() - begun > 5'900'000);
   CHECK_THAT(call.describe(scene.bus.now()), Catch::Contains("not armed any more (INS is stale)"));
+}
+
+TEST_CASE("a goal for a robot that is not armed, or that the planner has ended, is told at once") {
+  Scene scene;
+  GoalCall early(scene.desk, {}, "me", 5, {});
+  auto result = scene.run(early, 10.0, [&](int64_t now) {
+    scene.stand->motor(now, motor_t::STATE_DISARMED, "not armed yet");
+  });
+  CHECK(result == CallResult::kRefused);
+  CHECK_THAT(early.describe(scene.bus.now()),
+             Catch::Contains("not armed (not armed yet): tread-arm, then again"));
+  GoalCall ended(scene.desk, {}, "me", 6, {});
+  const int64_t begun = scene.bus.now();
+  result = scene.run(ended, 10.0, [&](int64_t now) {
+    scene.stand->motor(now, motor_t::STATE_ARMED);
+    scene.stand->plan(now, now - begun < 2'000'000 ? 6 : 0, plan_t::PLAN_IDLE);
+  });
+  CHECK(result == CallResult::kRefused);
+  CHECK_THAT(ended.describe(scene.bus.now()), Catch::Contains("give it again"));
+}
+
+TEST_CASE("a robot that is held stays held until the program ends, which disarms it") {
+  Scene scene;
+  ArmRequest holding;
+  holding.hold = true;
+  ArmCall call(scene.desk, {"me", ""}, holding, 5.0);
+  const auto result = scene.run(call, 60.0, [&](int64_t now) {
+    scene.stand->motor(now, scene.stand->arms > 0 ? motor_t::STATE_ARMED : motor_t::STATE_DISARMED);
+  });
+  CHECK(result == CallResult::kPending);
+  CHECK_THAT(call.describe(scene.bus.now()), Catch::Contains("armed and held"));
+  call.cancel(scene.bus.now());
+  call.letGo(scene.bus.now());
+  scene.bus.runUntil(scene.bus.now() + 100'000);
+  CHECK_FALSE(scene.stand->last_arm.armed);
+  CHECK(scene.stand->last_operator.allowed == operator_t::ALLOW_NOTHING);
+}
+
+TEST_CASE("whatever this machine's clock says, requests bear the robot's time") {
+  for (const int64_t ahead : {-3'600'000'000LL, 1'000'000LL, 86'400'000'000LL}) {
+    Scene scene;
+    ArmCall call(scene.desk, {"me", ""}, {}, 5.0);
+    const auto result = scene.run(call, 6.0, [&](int64_t now) {
+      const bool timely = std::abs(scene.stand->last_arm.utime - now - ahead) < 300'000;
+      scene.stand->motor(now + ahead, timely ? motor_t::STATE_ARMED : motor_t::STATE_DISARMED);
+    });
+    CHECK(result == CallResult::kDone);
+    CHECK_THAT(call.describe(scene.bus.now()), Catch::Contains("taken into account"));
+  }
 }
 
 }  // namespace tread::operators

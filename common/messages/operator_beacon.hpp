@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <tread/operator_t.hpp>
+
+#include "common/bus/bus.hpp"
+#include "common/execution/operator_lease.hpp"
+
+namespace tread {
+
+/// Nothing for a message without a name, or with one that is too long to be shown.
+std::optional<OperatorNotice> noticeFrom(const operator_t& message);
+
+/// By how much the robot's clock is ahead of this machine's.
+/** From the times of the robot's messages and of their receipt: the message that was on its way for
+ * the shortest time tells it best. The newest 5 to 10 s count, so that clocks may drift. */
+class RobotClock {
+ public:
+  /// A message of this utime was received at `host`, both [us].
+  void observe(int64_t utime, int64_t host);
+  /// [us]; nothing before the first message.
+  std::optional<int64_t> offset() const;
+
+ private:
+  static constexpr int64_t kSpan = 5'000'000;  ///< [us]
+
+  std::optional<int64_t> before_;  ///< largest offset of the span before this one
+  std::optional<int64_t> now_;     ///< largest offset of this span so far
+  int64_t span_began_ = 0;
+};
+
+/// An operator program's sign of life: OPERATOR at 5 Hz, once MOTOR has told the robot's time.
+class OperatorBeacon {
+ public:
+  /// `name`: who operates; programs of one name share the lease.
+  OperatorBeacon(Bus& bus, std::string name);
+  OperatorBeacon(const OperatorBeacon&) = delete;  // the bus calls it back
+  OperatorBeacon& operator=(const OperatorBeacon&) = delete;
+
+  /// Call each 20 ms or so with the bus's time [us].
+  void step(int64_t utime);
+  /// Goal that this program stands for; 0 = none.
+  void standFor(int64_t goal_id) {
+    goal_id_ = goal_id;
+    next_ = 0;
+  }
+  void handOverTo(const std::string& name) { hand_over_to_ = name; }
+  /// This program ends in good order: the robot needs no failsafe to notice.
+  void letGo(int64_t utime);
+
+  const std::string& name() const { return name_; }
+  bool hearsRobot() const { return clock_.offset().has_value(); }
+  /// The robot's time [us] at the bus's time; the same before the robot was heard.
+  int64_t robotTime(int64_t utime) const { return utime + clock_.offset().value_or(0); }
+  /// "; clocks differ by 1.2 s, which is taken into account", or empty if they hardly do.
+  std::string clockWords() const;
+
+ private:
+  static constexpr int64_t kPeriod = 200'000;  ///< [us]
+  void send(int64_t utime, int16_t allowed);
+
+  Bus& bus_;
+  std::string name_;
+  int64_t station_;
+  std::string hand_over_to_;
+  RobotClock clock_;
+  int64_t seen_utime_ = 0;
+  int64_t goal_id_ = 0;
+  int64_t next_ = 0;
+  int64_t seq_ = 0;
+};
+
+}  // namespace tread

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "modules/planner/core/map/distance_to_goal.hpp"
+
+namespace tread::planner {
+
+/// Decides which goal counts: given after the arming, and stood for by an operator who is there.
+/** A goal that nobody stands for replaces no other one. A goal that has ended stays dead: its
+ * sender must give another one. */
+class GoalWatch {
+ public:
+  /// Whether an operator who is there stands for a goal id now.
+  using StoodFor = std::function<bool(int64_t goal_id)>;
+
+  /// A goal was received at now [us]. False if it has ended before.
+  bool take(const Goal& goal, int64_t now);
+  /// The operator takes the goal back.
+  void cancel();
+  /// Call in each step. `armed_since` [us]: the operator's permission holds since then.
+  void update(int64_t now, std::optional<int64_t> armed_since, const StoodFor& stood_for);
+
+  /// The goal that counts, if any.
+  const std::optional<Goal>& goal() const { return goal_; }
+  /// Why the last goal has ended without being taken back; empty if it has not.
+  const std::string& lost() const { return lost_; }
+
+ private:
+  static constexpr size_t kRemembered = 16;
+  static constexpr int64_t kWait = 1'000'000;  ///< [us] a goal waits for its sender's OPERATOR
+
+  bool hasEnded(int64_t id) const;
+  void adopt(int64_t now, const StoodFor& stood_for);
+  void end(std::optional<Goal>& goal, const std::string& why);
+
+  std::optional<Goal> goal_;
+  std::optional<Goal> candidate_;  ///< nobody has stood for it yet
+  int64_t given_ = 0;              ///< [us] when the goal came first
+  int64_t candidate_given_ = 0;
+  std::deque<int64_t> ended_;
+  std::string lost_;
+};
+
+}  // namespace tread::planner
