@@ -130,7 +130,7 @@ InsNotice fromMessage(const ins_t& message) {
   const int32_t blind = ins_t::STATUS_NO_POSITION | ins_t::STATUS_NO_HEADING;
   const bool finite = std::isfinite(message.position[0]) && std::isfinite(message.position[1]) &&
                       std::isfinite(message.orientation[0]);
-  return {message.utime, (message.ins_status & blind) == 0 && finite};
+  return {message.utime, (message.ins_status & blind) == 0 && finite, message.seq};
 }
 
 execution_record_t toMessage(const ExecutionRecord& record) {

@@ -52,20 +52,23 @@ void readSearch(ConfigReader reader, SearchConfig& search) {
 }
 
 /// The limits can be made stricter, or a little wider; none can be switched off.
-void readAges(ConfigReader reader, AgeLimits& ages) {
+void readAges(ConfigReader reader, bool logged, AgeLimits& ages) {
   reader.seconds("pose", ages.pose, {0.02, 0.3});
   reader.seconds("bridge", ages.bridge, {0.1, 1.0});
-  reader.seconds("map_slow", ages.map_slow, {0.2, 5.0});
-  reader.seconds("map_stop", ages.map_stop, {0.5, 10.0});
+  // What is logged may be of a time when the limits were wider.
+  const double widest = logged ? 10.0 : 1.0;
+  reader.seconds("map_slow", ages.map_slow, {0.2, widest});
+  reader.seconds("map_stop", ages.map_stop, {0.3, widest});
   reader.seconds("pattern_set", ages.pattern_set, {2.5, 30.0});
 }
 
 constexpr double kFarthest = 1e6;  // [m] a goal can be from the origin of map
 constexpr int kMaxTileCells = 512;
 
-constexpr int64_t kPlanRepeat = 200'000;    // [us]
-constexpr int64_t kTreeRepeat = 1'000'000;  // [us]
-constexpr size_t kTreeNodes = 600;          // drawn at most: 15 kB
+constexpr int64_t kMapForgotten = 3'000'000;  // [us] without a tile, until another map may come
+constexpr int64_t kPlanRepeat = 200'000;      // [us]
+constexpr int64_t kTreeRepeat = 1'000'000;    // [us]
+constexpr size_t kTreeNodes = 600;            // drawn at most: 15 kB
 
 /// Nothing for an invalid message, as the next.
 std::optional<Goal> goalFrom(const goal_t& message) {
@@ -145,7 +148,7 @@ PlannerConfig readConfig(ConfigReader& reader, bool logged) {
   reader.flag("come_close", map.come_close);
   ConfigReader side = reader.section("side_hysteresis");
   side.number("gain", config.side_hysteresis.gain, {0.0, 60.0}, "s");
-  readAges(reader.section("ages"), config.ages);
+  readAges(reader.section("ages"), logged, config.ages);
   reader.seconds("deadline", config.deadline, {0.005, 0.045});
   const Margins& margins = map.margins;
   config.sweep = resolutionFor(map.footprint, std::max(margins.plan, margins.largest), {});
@@ -184,8 +187,14 @@ void PlannerNode::subscribe() {
 void PlannerNode::take(const map_tile_t& message) {
   if (robot_.invalidTime(message.utime, "MAP")) return;
   std::optional<Tile> tile = tileFrom(message);
+  // A second mapping, or a forged tile, must not empty the map of the first.
+  const bool in_use = cell_size_ > 0.0 && bus_.now() - map_taken_ < kMapForgotten;
+  if (tile && in_use && message.cell_size != cell_size_)
+    return health_.addToCounter("MAP refused: another cell size than that of the map in use");
   if (!tile || !supervisor_.map().put(std::move(*tile), message.cell_size, message.tile_cells))
-    health_.addToCounter("MAP refused: invalid sizes");
+    return health_.addToCounter("MAP refused: invalid sizes");
+  cell_size_ = message.cell_size;
+  map_taken_ = bus_.now();
 }
 
 void PlannerNode::take(const goal_t& message) {
@@ -229,6 +238,8 @@ void PlannerNode::step(int64_t utime) {
   const Decision decision = supervisor_.step(inputs_, [&](int expansions) {
     return stop_ ? stop_(expansions) : bus_.now() - started > config_.deadline;
   });
+  if (!decision.halted.empty() && config_.operators.lease_us > 0)
+    goal_.lose("stopped: " + decision.halted + "; look, then give the goal again");
   publishProgram(utime, supervisor_.program());
   publishPlan(utime, decision, bus_.now() - started);
   publishHealth(utime, decision.report);

@@ -56,6 +56,8 @@ class PlannerNode : public Node {
   Supervisor supervisor_;
   PatternSetAssembler sets_;
   PlannerInputs inputs_;
+  double cell_size_ = 0.0;    ///< [m] of the map in use; 0 = none yet
+  int64_t map_taken_ = 0;     ///< [us] the last tile of it
   StopPredicate stop_;        ///< empty = the deadline
   int64_t longest_swap_ = 0;  ///< [us]
   int64_t next_plan_ = 0;

@@ -296,3 +296,21 @@ TEST_CASE("commands leave at 50 Hz, on every change, and zero at 10 Hz a while a
   CHECK(fast == 50);
   CHECK(slow == 10);
 }
+
+TEST_CASE("an INS driver that is back within its limit is no reason to drive on: ARM is needed") {
+  BridgeWorld world;
+  world.drive();
+  world.run(1'000'000);
+  REQUIRE(world.state() == State::kDriving);
+  world.ins_alive = false;
+  world.run(70'000);
+  world.ins_alive = true;
+  world.ins_seq = 0;
+  CHECK(timeToZero(world) <= 30'000);
+  CHECK(world.reason() == "the INS driver has been restarted");
+  world.run(10'000'000);
+  CHECK(world.state() == State::kDisarmed);
+  world.arm();
+  world.run(100'000);
+  CHECK(world.state() == State::kDriving);
+}

@@ -154,7 +154,7 @@ TEST_CASE("Disarming and an emergency stop empty the program in the next step") 
     yard.run(2.0);
     // Arming alone moves nothing: the goal was given before.
     CHECK(yard.robot().program().running.execution_id == 0);
-    CHECK(yard.plan.reason == "the goal was given before the arming: give it again");
+    CHECK_THAT(yard.plan.reason, Catch::Contains("then give the goal again"));
     yard.renewGoal();
     yard.sendGoal(10.0);
     yard.run(2.0);
@@ -171,7 +171,52 @@ TEST_CASE("Without INS the node empties the program and says how old it is") {
   yard.robot().ins_alive = false;
   yard.run(0.3);
   CHECK(yard.robot().program().running.execution_id == 0);
-  CHECK(yard.plan.reason.find("INS is") == 0);
+  CHECK(yard.plan.reason.find("stopped: INS is") == 0);
+}
+
+TEST_CASE("Blind for half a second: the program is emptied, and the view's return moves nothing") {
+  Yard yard;
+  yard.run(1.0);
+  yard.sendGoal(10.0);
+  yard.arm();
+  yard.run(3.0);
+  REQUIRE(yard.robot().speed() > 0.5);
+  yard.robot().map_alive = false;
+  yard.run(0.65);
+  CHECK(yard.robot().program().running.execution_id == 0);
+  CHECK(yard.plan.reason.find("stopped: MAP is ") == 0);
+  yard.robot().map_alive = true;
+  yard.run(5.0);
+  CHECK(std::abs(yard.robot().speed()) < 0.01);
+  yard.renewGoal();
+  yard.sendGoal(10.0);
+  yard.run(1.0);
+  CHECK(yard.robot().speed() > 0.3);
+}
+
+TEST_CASE("A tile of another cell size does not empty the map in use") {
+  Yard yard;
+  yard.run(1.0);
+  yard.sendGoal(10.0);
+  yard.arm();
+  yard.run(2.0);
+  map_tile_t tile{};
+  tile.tile_cells = 8;
+  tile.num_cells = 64;
+  tile.cells.assign(64, kFree);
+  tile.cell_size = 0.31;
+  for (int i = 0; i < 20; ++i) {
+    tile.utime = yard.bus.now();
+    yard.bus.outside().publish(kMap, tile);
+    yard.run(0.1);
+    REQUIRE(yard.robot().speed() > 0.3);
+  }
+  yard.run(1.0);
+  int64_t refused = 0;
+  for (const counter_t& counter : yard.health.counters)
+    if (counter.counter_name.find("another cell size") != std::string::npos)
+      refused = counter.counted;
+  CHECK(refused == 20);
 }
 
 TEST_CASE(

@@ -148,7 +148,7 @@ bool RobotRun::until(double seconds, const std::function<bool()>& condition) {
 
 bool RobotRun::arm(double seconds) {
   calls_.push_back(std::make_unique<operators::ArmCall>(
-      bus_, operators::Requester{"test", "a test"}, operators::ArmRequest{}, seconds));
+      bus_, operators::Requester{"test", "a test", "test"}, operators::ArmRequest{}, seconds));
   operators::CallResult result = operators::CallResult::kPending;
   until(seconds + 1.0, [&] {
     result = calls_.back()->step(now());
@@ -174,7 +174,7 @@ void RobotRun::leaveTo(double x, double y) {
   processes_["operator"] =
       std::make_unique<Process>("tread-goal",
                                 std::vector<std::string>{std::to_string(x), std::to_string(y),
-                                                         "--by", "test", "--lcm-url", url_},
+                                                         "--operator", "test", "--lcm-url", url_},
                                 folder_ + "/operator.log");
   const int64_t before = plan_.message().goal_id;
   until(10.0, [&] { return plan_.message().goal_id != before && plan_.message().goal_id != 0; });

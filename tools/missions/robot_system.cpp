@@ -227,6 +227,8 @@ namespace {
 
 const std::string kOperatorName = "mission operator";
 constexpr int64_t kGoalPeriod = 1'000'000;
+constexpr int64_t kGoalPatience =
+    1'500'000;  ///< [us] until a goal that the planner does not follow is given anew
 constexpr int64_t kFirstArming = 3'000'000;  ///< [us] after the start: all processes are up by then
 constexpr int64_t kArmAgainAfter = 2'000'000;  ///< [us] of standing disarmed: time to look around
 constexpr int64_t kArmRepeats = 1'000'000;     ///< [us] for which ARM is repeated
@@ -238,6 +240,7 @@ Operator::Operator(Bus& bus, const Pose2& T_map_goal)
       T_map_goal_(T_map_goal),
       beacon_(bus, kOperatorName),
       motor_(bus, kMotor),
+      plan_(bus, kPlan),
       start_(bus.now()) {}
 
 void Operator::step(int64_t utime) {
@@ -246,10 +249,12 @@ void Operator::step(int64_t utime) {
     ++arming_;
     arm_until_ = utime + kArmRepeats;
   }
-  if (may_drive && goal_id_ < arming_) {
-    goal_id_ = arming_;
-    next_goal_ = utime;
-    beacon_.standFor(goal_id_);
+  const bool ended = goal_id_ > 0 && plan_.any() && plan_.message().goal_id != goal_id_ &&
+                     utime > given_ + kGoalPatience;
+  if (may_drive && (armed_ < arming_ || ended)) {
+    armed_ = arming_;
+    given_ = next_goal_ = utime;
+    beacon_.standFor(++goal_id_);
   }
   beacon_.step(utime);
   if (utime < arm_until_) sendArm(utime);

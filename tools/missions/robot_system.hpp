@@ -151,8 +151,11 @@ class Operator {
   Pose2 T_map_goal_;
   OperatorBeacon beacon_;
   Latest<motor_t> motor_;
+  Latest<plan_t> plan_;
   int64_t start_;
   int64_t next_goal_ = 0;
+  int64_t given_ = 0;      ///< [us]
+  int armed_ = 0;          ///< the arming that the goal was given after
   int64_t goal_id_ = 0;    ///< a new one after each arming: an earlier goal counts for nothing
   int64_t arm_until_ = 0;  ///< ARM is repeated until then
   int64_t disarmed_since_ = -1;

@@ -148,7 +148,7 @@ void addLiveOptions(CLI::App& command, pattern_recorder::RecordingConfig& how,
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
   how.operator_name = operatorName();
-  command.add_option("--by", how.operator_name, "with --live: who operates, as with tread-arm")
+  command.add_option("--operator", how.operator_name, "with --live: as with tread-arm")
       ->capture_default_str();
   command.add_option("--lcm-url", lcm_url, "with --live: LCM provider");
 }

@@ -20,6 +20,14 @@ std::string untimely(const std::string& what, int64_t utime, int64_t now) {
   return what + " ignored: its time is behind the robot's clock; do the clocks differ?";
 }
 
+/// Whether a request was signed by an operator: "ada@station" or "ADA (ada@station)".
+bool isOf(const std::string& signature, const std::string& holder) {
+  const std::string suffix = " (" + holder + ")";
+  return signature == holder ||
+         (signature.size() > suffix.size() &&
+          signature.compare(signature.size() - suffix.size(), suffix.size(), suffix) == 0);
+}
+
 }  // namespace
 
 Bridge::Bridge(const BridgeConfig& config)
@@ -62,7 +70,7 @@ void Bridge::take(const Program& program, int64_t now) {
 void Bridge::receive(const ArmRequest& request, int64_t now) {
   switch (requests_.classify(request, now, failsafe_.disarmedAt())) {
     case OperatorRequests::Effect::kArm:
-      if (operator_.valid(now) && operator_.holder() != request.by) {
+      if (operator_.valid(now) && !isOf(request.by, operator_.holder())) {
         since_.refusal = "ARM refused: the robot is held by " + operator_.holder();
         count("ARM refused: of another operator than the one who holds the robot");
         break;

@@ -8,6 +8,8 @@ namespace {
 constexpr int64_t kHealthyBeforeArm = 1'000'000;  // [us] for which inputs must be good
 constexpr int64_t kFastZero = 1'000'000;          // [us] of zero at the command rate after a stop
 
+constexpr int64_t kRestart = 100'000;  // [us] for which a restart is a fault
+
 struct Fault {
   State state = State::kDisarmed;
   std::string reason;
@@ -34,13 +36,16 @@ void InsWatch::receive(const InsNotice& notice, int64_t now) {
   const bool old = notice.utime < now - limits_.maxAge() - limits_.max_latency_us;
   const bool newer = !received_at_ || notice.utime > utime_;
   if (future || old || !newer) return;
+  if (received_at_ && notice.seq < seq_) restarted_at_ = now;
   received_at_ = now;
+  seq_ = notice.seq;
   utime_ = notice.utime;
   usable_ = notice.usable;
 }
 
 std::string InsWatch::fault(int64_t now) const {
   if (!received_at_) return "no INS yet";
+  if (restarted_at_ && now - *restarted_at_ < kRestart) return "the INS driver has been restarted";
   if (now - *received_at_ > limits_.maxAge())
     return "INS is stale: nothing new within " + std::to_string(limits_.maxAge() / 1000) + " ms";
   if (now - utime_ > limits_.maxAge() + limits_.max_latency_us)

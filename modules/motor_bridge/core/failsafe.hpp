@@ -23,6 +23,7 @@ struct InsLimits {
 struct InsNotice {
   int64_t utime = 0;   ///< [us] of the measurement
   bool usable = true;  ///< position and heading are known
+  int64_t seq = 0;     ///< counts up from the start of the INS driver
 };
 
 /// Watches that the INS goes on telling where the robot is.
@@ -41,6 +42,8 @@ class InsWatch {
   InsLimits limits_;
   std::optional<int64_t> received_at_;
   int64_t utime_ = 0;
+  int64_t seq_ = 0;
+  std::optional<int64_t> restarted_at_;
   bool usable_ = false;
 };
 

@@ -13,7 +13,7 @@ void ToyRobot::step(int64_t utime) {
   if (utime % 20'000 == 0) publishMotor(utime);
   if (utime % 20'000 == 0 && ins_alive) publishIns(utime);
   if (utime % 100'000 == 0) publishExecutions(utime);
-  if (utime % 50'000 == 0) publishTile(utime);
+  if (utime % 50'000 == 0 && map_alive) publishTile(utime);
   if (utime % 1'000'000 == 0 && learner_alive) publishSet();
 }
 

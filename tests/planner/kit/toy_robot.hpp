@@ -30,6 +30,7 @@ class ToyRobot : public Node {
   bool hasProgram() const { return program_.any(); }
 
   bool ins_alive = true;
+  bool map_alive = true;
   bool learner_alive = true;
 
  private:

@@ -21,8 +21,7 @@ int main(int argc, char** argv) {
       {"tread-arm",
        "Arms the robot: it may drive to goals that are given from now on, as long as an operator's "
        "program runs.",
-       "arms; programs of one name operate together", addOptions,
-       [&](tread::Bus& bus, const Requester& requester, double patience) {
+       "arms", addOptions, [&](tread::Bus& bus, const Requester& requester, double patience) {
          request.arm = !disarm;
          return std::make_unique<ArmCall>(bus, requester, request, patience);
        }});

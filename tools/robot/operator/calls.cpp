@@ -33,8 +33,9 @@ bool isStuck(int16_t status) {
 
 }  // namespace
 
-PermissionCall::PermissionCall(Bus& bus, const std::string& by, double patience, Request request)
-    : beacon_(bus, by),
+PermissionCall::PermissionCall(Bus& bus, const std::string& operator_name, double patience,
+                               Request request)
+    : beacon_(bus, operator_name),
       request_(std::move(request)),
       patience_(static_cast<int64_t>(patience * 1e6)),
       motor_(bus, kMotor) {}
@@ -72,7 +73,7 @@ void sendArm(Bus& bus, const Requester& requester, bool arm, int64_t utime, int6
   message.utime = utime;
   message.seq = seq;
   message.armed = arm;
-  message.armed_by = requester.by;
+  message.armed_by = requester.signature();
   message.arm_reason = requester.why;
   bus.publish(kArm, message);
 }
@@ -81,7 +82,7 @@ void sendArm(Bus& bus, const Requester& requester, bool arm, int64_t utime, int6
 
 ArmCall::ArmCall(Bus& bus, const Requester& requester, const ArmRequest& request, double patience)
     : PermissionCall(
-          bus, requester.by, patience,
+          bus, requester.operator_name, patience,
           {[&bus, requester, arm = request.arm](int64_t utime, int64_t seq) {
              sendArm(bus, requester, arm, utime, seq);
            },
@@ -121,13 +122,13 @@ void ArmCall::cancel(int64_t utime) {
 }
 
 StopCall::StopCall(Bus& bus, const Requester& requester, bool engage, double patience)
-    : PermissionCall(bus, requester.by, patience,
+    : PermissionCall(bus, requester.operator_name, patience,
                      {[&bus, requester, engage](int64_t utime, int64_t seq) {
                         auto message = blank<estop_t>();
                         message.utime = utime;
                         message.seq = seq;
                         message.engaged = engage;
-                        message.estop_by = requester.by;
+                        message.estop_by = requester.signature();
                         message.estop_reason = requester.why;
                         bus.publish(kEstop, message);
                       },
@@ -187,13 +188,13 @@ std::string GoalCall::progress(int64_t utime) const {
   return text + "  set " + std::to_string(plan.set_version);
 }
 
-GoalCall::GoalCall(Bus& bus, const GoalRequest& request, const std::string& by, int64_t goal_id,
-                   SurfaceNames surface_names)
+GoalCall::GoalCall(Bus& bus, const GoalRequest& request, const std::string& operator_name,
+                   int64_t goal_id, SurfaceNames surface_names)
     : bus_(bus),
       request_(request),
       goal_id_(goal_id),
       surface_names_(std::move(surface_names)),
-      beacon_(bus, by),
+      beacon_(bus, operator_name),
       ins_(bus, kIns),
       plan_(bus, kPlan),
       motor_(bus, kMotor),
@@ -246,14 +247,14 @@ bool GoalCall::lostPermission(int64_t utime) {
   return disarmed_since_ && utime - *disarmed_since_ > kDisarmedPatience;
 }
 
-/// The planner had this goal, and has it no more.
+/// The planner had this goal and has it no more, or does not take it.
 bool GoalCall::lostGoal(int64_t utime) {
   if (!plan_.any()) return false;
   const bool has = plan_.message().goal_id == goal_id_;
   was_goal_ = was_goal_ || has;
   if (has) lost_since_.reset();
-  if (!has && was_goal_ && !lost_since_) lost_since_ = utime;
-  return lost_since_ && utime - *lost_since_ > kGoalPatience;
+  if (!has && !lost_since_) lost_since_ = utime;
+  return lost_since_ && utime - *lost_since_ > (was_goal_ ? kGoalPatience : 2 * kGoalPatience);
 }
 
 std::string GoalCall::describe(int64_t utime) const {
@@ -264,7 +265,8 @@ std::string GoalCall::describe(int64_t utime) const {
     words += std::string(was_armed_ ? "; not armed any more (" : "; not armed (") +
              motor_.message().state_reason + "): tread-arm, then again";
   else if (lost_since_)
-    words += "; the planner follows this goal no more: give it again";
+    words += was_goal_ ? "; the planner follows this goal no more: give it again"
+                       : "; the planner does not take this goal";
   return words;
 }
 

@@ -39,6 +39,13 @@ class Call {
 struct Requester {
   std::string by = "operator";
   std::string why;
+  /// Name of the operator that the program works for; programs of one name share the lease.
+  std::string operator_name = "operator";
+
+  /// "ADA (root@station)": what the log says.
+  std::string signature() const {
+    return by == operator_name ? by : by + " (" + operator_name + ")";
+  }
 };
 
 /// A request to the motor bridge, repeated until MOTOR shows that it was served.
@@ -59,7 +66,7 @@ class PermissionCall : public Call {
     bool permits = true;  ///< worth nothing before the robot's time is known
   };
   /// `patience` [s] for which it is repeated.
-  PermissionCall(Bus& bus, const std::string& by, double patience, Request request);
+  PermissionCall(Bus& bus, const std::string& operator_name, double patience, Request request);
 
   bool shown(int64_t utime) const;
   /// What the bridge says of its state.
@@ -128,7 +135,7 @@ struct GoalRequest {
 class GoalCall : public Call {
  public:
   /// `goal_id` must be new to the planner.
-  GoalCall(Bus& bus, const GoalRequest& request, const std::string& by, int64_t goal_id,
+  GoalCall(Bus& bus, const GoalRequest& request, const std::string& operator_name, int64_t goal_id,
            SurfaceNames surface_names);
 
   CallResult step(int64_t utime) override;
@@ -162,7 +169,7 @@ class GoalCall : public Call {
   bool was_armed_ = false;
   std::optional<int64_t> disarmed_since_;  ///< [us]; none while armed
   bool was_goal_ = false;                  ///< the planner had this goal
-  std::optional<int64_t> lost_since_;      ///< [us] the planner has it no more
+  std::optional<int64_t> lost_since_;      ///< [us] the planner does not have it
   int64_t seq_ = 0;
 };
 

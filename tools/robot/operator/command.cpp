@@ -69,9 +69,11 @@ int runPermissionCommand(int argc, char** argv, const PermissionCommand& command
   CLI::App app{command.description, command.name};
   CommandOptions options;
   Requester requester;
-  requester.by = operatorName();
+  requester.by = requester.operator_name = operatorName();
   double patience = 5.0;
-  app.add_option("--by", requester.by, "who " + command.verb)->capture_default_str();
+  app.add_option("--by", requester.by, "who " + command.verb + ", for the log")
+      ->capture_default_str();
+  app.add_option("--operator", requester.operator_name, kOperatorHelp)->capture_default_str();
   app.add_option("--why", requester.why, "why, for the log");
   command.more(app);
   app.add_option("--timeout", patience, "how long to try [s]")->check(CLI::Range(0.5, 600.0));

@@ -17,6 +17,10 @@ namespace tread::operators {
 inline constexpr const char* kUrlHelp =
     "LCM provider; else LCM_DEFAULT_URL, else the robot that tread-launch runs here";
 
+/// Of --operator.
+inline constexpr const char* kOperatorHelp =
+    "whom this program works for: programs of one operator hold the robot together";
+
 /// How a command runs its call.
 struct CommandOptions {
   std::string lcm_url;    ///< empty = found, see launch::findLcmUrl()

@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
   CommandOptions options;
   GoalRequest request;
   std::string world;
-  std::string by = operatorName();
+  std::string operator_name = operatorName();
   bool quiet = false;
   request.yaw_tolerance = 180.0;
   double yaw_degrees = 0.0;
@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0.0, 86400.0));
   app.add_option("--world", world, "world file of a simulation: names the ground in the progress");
   app.add_flag("--quiet", quiet, "no progress");
-  app.add_option("--by", by, "who sends it, as with tread-arm")->capture_default_str();
+  app.add_option("--operator", operator_name, kOperatorHelp)->capture_default_str();
   app.add_option("--lcm-url", options.lcm_url, kUrlHelp);
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   request.T_map_goal.yaw = yaw_degrees * kPi / 180.0;
@@ -61,6 +61,6 @@ int main(int argc, char** argv) {
     return 1;
   }
   return runCall("tread-goal", options, [&](Bus& bus) {
-    return std::make_unique<GoalCall>(bus, request, by, bus.now(), names);
+    return std::make_unique<GoalCall>(bus, request, operator_name, bus.now(), names);
   });
 }

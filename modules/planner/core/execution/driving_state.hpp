@@ -53,10 +53,10 @@ struct PlanReport {
 
 /// The limits of the inputs' ages [us].
 struct AgeLimits {
-  int64_t pose = 150'000;        ///< older: the program is emptied
-  int64_t bridge = 500'000;      ///< older: the same
-  int64_t map_slow = 2'000'000;  ///< older: no new patterns but one that stops
-  int64_t map_stop = 5'000'000;  ///< older: the program is emptied
+  int64_t pose = 150'000;      ///< older: the program is emptied
+  int64_t bridge = 500'000;    ///< older: the same
+  int64_t map_slow = 450'000;  ///< older: no new patterns but one that stops
+  int64_t map_stop = 500'000;  ///< older: the program is emptied
   int64_t pattern_set =
       5'000'000;  ///< older: the learner is lost, no new patterns but one that stops
 };

@@ -24,6 +24,10 @@ class GoalWatch {
   bool take(const Goal& goal, int64_t now);
   /// The operator takes the goal back.
   void cancel();
+  /// The robot has stopped by itself: it does not go on by itself.
+  void lose(const std::string& why) {
+    if (goal_) end(goal_, why);
+  }
   /// Call in each step. `armed_since` [us]: the operator's permission holds since then.
   void update(int64_t now, std::optional<int64_t> armed_since, const StoodFor& stood_for);
 

@@ -35,6 +35,7 @@ void Supervisor::noteNewSet() {
 Decision Supervisor::step(const PlannerInputs& s, const StopPredicate& stop) {
   state_.planner.setStop(stop);
   state_.status.changed = false;
+  halted_.clear();
   state_.prediction.reset();
   if (s.pose) {
     standstill_.take(*s.pose);
@@ -49,12 +50,15 @@ Decision Supervisor::step(const PlannerInputs& s, const StopPredicate& stop) {
                               state_.set.table() ? state_.table().defect() : "no PATTERN_SET yet",
                               was_armed_};
   act(s, checkPreconditions(s, map_and_set, state_.config.ages, state_.config.operators.lost));
-  return {state_.status.changed, report(s)};
+  return {state_.status.changed, halted_, report(s)};
 }
 
 void Supervisor::act(const PlannerInputs& s, const Preconditions& ready) {
   if (ready.level == Preconditions::Level::kStop) {
-    if (state_.mode == DrivingMode::kDriving) state_.halt(s.now, ready.reason);
+    if (state_.mode == DrivingMode::kDriving) {
+      state_.halt(s.now, ready.reason);
+      halted_ = ready.reason;
+    }
     standing_.forgetBlocked();
     progress_.restart(s.now);
     if (!s.goal && ready.status == PlanStatus::kWaiting)

@@ -13,6 +13,7 @@ namespace tread::planner {
 /// What a step decided beside the program.
 struct Decision {
   bool planned = false;  ///< a new plan was made, or something changed that viewers want to know
+  std::string halted;  ///< why it was stopped by its preconditions in this step; empty = it was not
   PlanReport report;
 };
 
@@ -64,6 +65,7 @@ class Supervisor {
   StandstillDetector standstill_;
   ProgressMonitor progress_;
   std::optional<int64_t> goal_id_;
+  std::string halted_;
   bool was_armed_ = false;
 };
 
