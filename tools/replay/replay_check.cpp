@@ -19,7 +19,8 @@ const std::map<std::string, std::set<std::string>>& inputs() {
   static const std::map<std::string, std::set<std::string>> kInputs{
       {"learner", {"INS", "MOTOR", "EXECUTION"}},
       {"mapping", {"INS", "SCAN"}},
-      {"planner", {"INS", "MAP", "GOAL", "PATTERN_SET", "MOTOR", "EXECUTION", "ARM", "ESTOP"}}};
+      {"planner",
+       {"INS", "MAP", "GOAL", "PATTERN_SET", "MOTOR", "EXECUTION", "OPERATOR", "ARM", "ESTOP"}}};
   return kInputs;
 }
 

@@ -36,7 +36,7 @@ class OwnFolder {
 
 }  // namespace
 
-TEST_CASE("the only robot that runs is found; an address that is given goes before it") {
+TEST_CASE("the only robot that runs is found, and an address that is given goes before it") {
   const OwnFolder folder;
   CHECK(findLcmUrl("").empty());
   std::optional<Announcement> robot;
