@@ -9,6 +9,7 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "common/bus/host_clock.hpp"
+#include "common/bus/multicast_only.hpp"
 
 namespace tread {
 namespace {
@@ -79,8 +80,7 @@ LcmBus::LcmBus(const std::string& url, TimeSource time_source, int64_t max_jump_
       time_source_(time_source),
       boot_id_(hostNow()),
       followed_(boot_id_, max_jump_us) {
-  // getFileno() runs LCM's self-test now instead of at the first subscription.
-  if (!lcm_->good() || lcm_->getFileno() < 0)
+  if (!openForMulticastOnly(*lcm_, url))
     throw std::runtime_error(
         "LCM cannot use '" + (url.empty() ? std::string("the default URL") : url) +
         (url.rfind("tcpq:", 0) == 0

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "common/bus/lcm_address.hpp"
+
 namespace tread::launch {
 
 /// Something that is missing, and the command that mends it.
@@ -23,17 +25,8 @@ bool anyCritical(const std::vector<HostFinding>& findings);
 /// A program that the host must have, and its Debian package.
 HostFinding missingTool(const std::string& tool, const std::string& package);
 
-/// An LCM URL in parts, as liblcm 1.3.1 reads it.
-struct LcmAddress {
-  std::string provider = "udpm";
-  std::string group = "239.255.76.67";  ///< with tcpq the server's host
-  uint16_t port = 7667;
-  int ttl = 0;
-  int64_t receive_buffer = 0;  ///< byte; 0 = the kernel's default
-};
-
-/// Takes an LCM URL apart; nothing if it cannot be read.
-std::optional<LcmAddress> parseLcmUrl(const std::string& url);
+using tread::LcmAddress;
+using tread::parseLcmUrl;
 
 /// A burst of map tiles fits into such a receive buffer [byte].
 constexpr int64_t kWantedBuffer = 2097152;

@@ -9,6 +9,7 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "common/bus/host_clock.hpp"
+#include "common/bus/multicast_only.hpp"
 
 namespace tread::launch {
 namespace {
@@ -42,7 +43,7 @@ void makeRoomForLog(const std::string& file, int keep) {
 
 Recorder::Recorder(const RecorderSettings& settings)
     : settings_(settings), lcm_(std::make_unique<lcm::LCM>(settings.lcm_url)) {
-  if (!lcm_->good() || lcm_->getFileno() < 0)
+  if (!openForMulticastOnly(*lcm_, settings.lcm_url))
     throw std::runtime_error("LCM cannot be used" +
                              (settings.lcm_url.empty() ? "" : " at " + settings.lcm_url) +
                              "; tread-launch FILE --check says what is missing");
