@@ -17,23 +17,75 @@ constexpr int64_t kConfigPeriodUs = 10'000'000;
 /// CONFIG stays within one datagram.
 constexpr size_t kMaxConfigBytes = 50'000;
 
+/// Why a message is not taken, and what helps.
+std::string remedyFor(SealVerdict verdict) {
+  switch (verdict) {
+    case SealVerdict::kUnsealed:
+      return "start its sender with --key FILE";
+    case SealVerdict::kWrongTag:
+      return "its sender has another key, or somebody changed it";
+    case SealVerdict::kOtherSession:
+      return "it was sent from another host or before this one's last start";
+    case SealVerdict::kTooManySenders:
+      return "stop what starts senders again and again";
+    default:
+      return "it was recorded or held up on its way";
+  }
+}
+
 }  // namespace
 
-void Bus::deliver(const RawHandler& handler, const char* channel, const uint8_t* bytes,
+void Bus::setSealer(std::optional<Sealer> sealer) {
+  sealer_ = std::move(sealer);
+  if (sealer_ && sealer_->session()) sealer_->refuseBefore(sealClock());
+}
+
+std::vector<std::string> Bus::heard() const {
+  std::vector<std::string> channels;
+  for (const auto& [channel, subscribed] : subscribed_) channels.push_back(channel);
+  return channels;
+}
+
+void Bus::receive(const std::string& channel, const uint8_t* bytes, size_t size) {
+  const auto found = subscribed_.find(channel);
+  if (found == subscribed_.end()) return;
+  const std::optional<size_t> message = unseal(channel, found->second, bytes, size);
+  if (!message) return;
+  // Index loop: a handler may subscribe.
+  for (size_t i = 0; i < found->second.handlers.size(); ++i)
+    deliver(found->second.handlers[i], channel, bytes, *message);
+}
+
+std::optional<size_t> Bus::unseal(const std::string& channel, const Subscribed& subscribed,
+                                  const uint8_t* bytes, size_t size) {
+  trusted_ = true;
+  if (!sealer_) return sizeWithoutSeal(bytes, size);
+  const OpenedSeal opened = sealer_->open(channel, bytes, size, sealClock());
+  if (opened.verdict == SealVerdict::kGood) return opened.size;
+  trusted_ = false;
+  if (subscribed.stops != nullptr && subscribed.stops(bytes, opened.size)) return opened.size;
+  const std::string why = toWords(opened.verdict);
+  ++statistics_.refused[why];
+  statistics_.last_refusal =
+      channel + ": a message refused: " + why + "; " + remedyFor(opened.verdict);
+  return std::nullopt;
+}
+
+void Bus::deliver(const RawHandler& handler, const std::string& channel, const uint8_t* bytes,
                   size_t size) {
   try {
     handler(bytes, size);
   } catch (const std::exception& error) {
     ++statistics_.failed;
-    statistics_.last_refusal = std::string(channel) + ": handler failed: " + error.what();
+    statistics_.last_refusal = channel + ": handler failed: " + error.what();
   }
 }
 
 void Bus::noteReceipt(const ChannelSpec& spec, int64_t utime, int64_t seq) {
   ++statistics_.received;
   statistics_.newest = {spec.name, utime, seq};
-  // What may be old by its nature (a tile of the map) does not tell the time.
-  if (spec.max_age_ms > 0 && !onReceipt(utime)) {
+  // What may be old by its nature (a tile of the map) does not tell the time, nor does a stranger.
+  if (spec.max_age_ms > 0 && trusted_ && !onReceipt(utime)) {
     ++statistics_.jumps;
     statistics_.last_refusal = std::string(spec.name) + ": utime " + std::to_string(utime) +
                                " is not of the present; is its publisher's clock CLOCK_MONOTONIC?";
@@ -133,6 +185,7 @@ void HealthReporter::publishHealth(int64_t utime) {
     health.counters.push_back(counter);
   };
   for (const auto& [name, value] : counters_) add(name, value);
+  for (const auto& [why, count] : statistics.refused) add("refused: " + why, count);
   if (statistics.jumps > 0) add("time jumps refused", statistics.jumps);
   health.num_counters = static_cast<int32_t>(health.counters.size());
   const CycleTimes cycles = bus_.takeCycleTimes();

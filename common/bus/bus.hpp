@@ -3,12 +3,16 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "common/bus/channels.hpp"
+#include "common/seal/seal.hpp"
 
 namespace tread {
 
@@ -21,14 +25,16 @@ struct Receipt {
 
 /// What a bus endpoint counted since its start. Every refusal is here; none is silent.
 struct BusStatistics {
-  int64_t received = 0;      ///< messages that reached a handler
-  Receipt newest;            ///< the newest of them, in the order of receipt
-  int64_t undecodable = 0;   ///< of another or broken type
-  int64_t lost = 0;          ///< missing by seq
-  int64_t late = 0;          ///< older than their channel's maximum age on receipt
-  int64_t jumps = 0;         ///< their utime was too far ahead to be followed
-  int64_t failed = 0;        ///< handler threw
-  int64_t oversized = 0;     ///< own messages above the channel's max_bytes: not sent
+  int64_t received = 0;     ///< messages that reached a handler
+  Receipt newest;           ///< the newest of them, in the order of receipt
+  int64_t undecodable = 0;  ///< of another or broken type
+  int64_t lost = 0;         ///< missing by seq
+  int64_t late = 0;         ///< older than their channel's maximum age on receipt
+  int64_t jumps = 0;        ///< their utime was too far ahead to be followed
+  int64_t failed = 0;       ///< handler threw
+  int64_t oversized = 0;    ///< own messages above the channel's max_bytes: not sent
+  /// with a key: messages that were not taken, by why: "unsealed", "replayed"
+  std::map<std::string, int64_t> refused;
   std::string last_refusal;  ///< the newest refusal in one line: channel, what, size
 };
 
@@ -39,7 +45,9 @@ struct CycleTimes {
 };
 
 /// A node's end of the message bus. Two kinds: LcmBus (real LCM) and the endpoints of a VirtualBus.
-/** All calls come from one thread. Handlers run between steps, never inside publish(). */
+/** All calls come from one thread. Handlers run between steps, never inside publish(). With a key
+ * each message is sealed, and only sealed ones are taken, except those that stop (stops()); without
+ * one a seal is left out unread. */
 class Bus {
  public:
   virtual ~Bus() = default;
@@ -67,6 +75,7 @@ class Bus {
     if (size < 0 || size > channel.max_bytes) return refuseOversized(channel, size);
     buffer_.resize(static_cast<size_t>(size));
     if (message.encode(buffer_.data(), 0, size) != size) return refuseOversized(channel, size);
+    if (sealer_) sealer_->seal(channel.name, buffer_, sealClock());
     return send(channel.name, buffer_.data(), buffer_.size());
   }
 
@@ -75,30 +84,70 @@ class Bus {
   template <class Message>
   void subscribe(const Channel<Message>& channel, std::function<void(const Message&)> handler) {
     const ChannelSpec spec = channel;
-    listen(channel.name,
-           [this, spec, handler = std::move(handler)](const uint8_t* bytes, size_t size) {
-             Message message{};
-             if (!decode(spec, bytes, size, message)) return;
-             noteReceipt(spec, message.utime, message.seq);
-             handler(message);
-           });
+    const bool first = !hears(channel.name);
+    Subscribed& subscribed = subscribed_[channel.name];
+    if constexpr (MayStop<Message>::value) subscribed.stops = &isStop<Message>;
+    subscribed.handlers.push_back(
+        [this, spec, handler = std::move(handler)](const uint8_t* bytes, size_t size) {
+          Message message{};
+          if (!decode(spec, bytes, size, message)) return;
+          noteReceipt(spec, message.utime, message.seq);
+          handler(message);
+        });
+    if (first) listen(channel.name);
   }
+  bool hears(const std::string& channel) const { return subscribed_.count(channel) > 0; }
+  /// The channels subscribed to, sorted.
+  std::vector<std::string> heard() const;
 
   const BusStatistics& statistics() const { return statistics_; }
 
  protected:
-  using RawHandler = std::function<void(const uint8_t* bytes, size_t size)>;
-
   virtual bool send(const char* channel, const uint8_t* bytes, size_t size) = 0;
-  virtual void listen(const char* channel, RawHandler handler) = 0;
+  /// Somebody subscribes to this channel for the first time.
+  virtual void listen(const char* channel) = 0;
+  /// What seals say of when they were made [us]: one clock for all who share a key.
+  virtual int64_t sealClock() const { return now(); }
   /// A good message with this utime came in, on a channel that promises to be fresh. False if it
   /// cannot be of the present.
   virtual bool onReceipt(int64_t /*utime*/) { return true; }
 
-  /// Runs a raw handler behind the exception firewall: nothing may pass through LCM's C frames.
-  void deliver(const RawHandler& handler, const char* channel, const uint8_t* bytes, size_t size);
+  /// Seals and opens messages from now on; call it before anything is published or received.
+  void setSealer(std::optional<Sealer> sealer);
+  /// A message came in: opens its seal once, then calls the channel's handlers.
+  void receive(const std::string& channel, const uint8_t* bytes, size_t size);
 
  private:
+  using RawHandler = std::function<void(const uint8_t* bytes, size_t size)>;
+
+  template <class Message, class = void>
+  struct MayStop : std::false_type {};
+  template <class Message>
+  struct MayStop<Message, std::void_t<decltype(stops(std::declval<const Message&>()))>>
+      : std::true_type {};
+  /// Whether these bytes are a message that stops.
+  template <class Message>
+  static bool isStop(const uint8_t* bytes, size_t size) {
+    try {
+      Message message{};
+      const int expected = static_cast<int>(size);
+      return message.decode(bytes, 0, expected) == expected && stops(message);
+    } catch (const std::exception&) {
+      return false;
+    }
+  }
+  struct Subscribed {
+    std::deque<RawHandler> handlers;  ///< not moved when one subscribes while it runs
+    bool (*stops)(const uint8_t* bytes, size_t size) = nullptr;  ///< null: nothing here stops
+  };
+
+  /// The message's size without its seal, or nothing if it is not taken.
+  std::optional<size_t> unseal(const std::string& channel, const Subscribed& subscribed,
+                               const uint8_t* bytes, size_t size);
+  /// Runs a raw handler behind the exception firewall: nothing may pass through LCM's C frames.
+  void deliver(const RawHandler& handler, const std::string& channel, const uint8_t* bytes,
+               size_t size);
+
   template <class Message>
   bool decode(const ChannelSpec& spec, const uint8_t* bytes, size_t size, Message& message) {
     // A negative length in a broken message makes the generated code throw std::length_error.
@@ -115,6 +164,9 @@ class Bus {
   void noteUndecodable(const ChannelSpec& spec, size_t size);
   bool refuseOversized(const ChannelSpec& spec, int size);
 
+  std::map<std::string, Subscribed> subscribed_;
+  std::optional<Sealer> sealer_;
+  bool trusted_ = true;  ///< whether the message that is handled was sealed, where it must be
   BusStatistics statistics_;
   int64_t stations_ = 0;
   /// The newest message of a channel, to count what is missing.

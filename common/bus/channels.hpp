@@ -64,6 +64,18 @@ inline constexpr Channel<estop_t> kEstop{{"ESTOP", "estop_t", "anyone", 0, 0, 10
 inline constexpr Channel<mark_t> kMark{{"MARK", "mark_t", "anyone", 0, 0, 1000}};
 inline constexpr Channel<config_t> kConfig{{"CONFIG", "config_t", "every process", 0.1, 0, 60000}};
 
+/// Whether a message can only stop the robot. Stopping is always open: such a message is taken from
+/// everybody, also where messages must be sealed.
+inline bool stops(const estop_t& message) {
+  return message.engaged != 0;
+}
+inline bool stops(const arm_t& message) {
+  return message.armed == 0;
+}
+inline bool stops(const goal_t& message) {
+  return message.goal_id == 0;
+}
+
 /// The whole table, for README, health checks and tests.
 inline constexpr std::array<ChannelSpec, 18> kChannels{
     kIns,        kScan,         kMap,      kGoal,   kPlan, kPlanTree, kProgram, kMotor, kExecution,

@@ -63,30 +63,29 @@ void FollowedTime::set(int64_t utime, int64_t host) {
 struct LcmBus::Subscription {
   LcmBus* bus;
   std::string channel;
-  RawHandler handler;
 
   static void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel,
                       Subscription* self) {
     // LCM reads a channel name as a regular expression; ours have no special characters, others
     // may.
     if (channel != self->channel) return;
-    self->bus->deliver(self->handler, self->channel.c_str(),
-                       static_cast<const uint8_t*>(buffer->data), buffer->data_size);
+    self->bus->receive(channel, static_cast<const uint8_t*>(buffer->data), buffer->data_size);
   }
 };
 
-LcmBus::LcmBus(const std::string& url, TimeSource time_source, int64_t max_jump_us)
-    : lcm_(std::make_unique<lcm::LCM>(url)),
+LcmBus::LcmBus(BusAccess access, TimeSource time_source, int64_t max_jump_us)
+    : lcm_(std::make_unique<lcm::LCM>(access.url)),
       time_source_(time_source),
       boot_id_(hostNow()),
       followed_(boot_id_, max_jump_us) {
-  if (!openForMulticastOnly(*lcm_, url))
+  if (!openForMulticastOnly(*lcm_, access.url))
     throw std::runtime_error(
-        "LCM cannot use '" + (url.empty() ? std::string("the default URL") : url) +
-        (url.rfind("tcpq:", 0) == 0
+        "LCM cannot use '" + (access.url.empty() ? std::string("the default URL") : access.url) +
+        (access.url.rfind("tcpq:", 0) == 0
              ? "': no tread-launch with this --lcm-url runs"
              : "': is there a multicast route? type: sudo ip link set lo multicast on && "
                "sudo ip route add 224.0.0.0/4 dev lo"));
+  setSealer(std::move(access.sealer));
 }
 
 LcmBus::~LcmBus() = default;
@@ -94,6 +93,10 @@ LcmBus::~LcmBus() = default;
 int64_t LcmBus::now() const {
   if (time_source_ == TimeSource::kHost) return hostNow();
   return followed_.now(hostNow());
+}
+
+int64_t LcmBus::sealClock() const {
+  return hostNow();
 }
 
 int64_t LcmBus::utc() const {
@@ -108,9 +111,8 @@ bool LcmBus::send(const char* channel, const uint8_t* bytes, size_t size) {
   return lcm_->publish(channel, bytes, static_cast<unsigned int>(size)) == 0;
 }
 
-void LcmBus::listen(const char* channel, RawHandler handler) {
-  subscriptions_.push_back(
-      std::make_unique<Subscription>(Subscription{this, channel, std::move(handler)}));
+void LcmBus::listen(const char* channel) {
+  subscriptions_.push_back(std::make_unique<Subscription>(Subscription{this, channel}));
   lcm::Subscription* subscription =
       lcm_->subscribeFunction(channel, &Subscription::receive, subscriptions_.back().get());
   if (subscription == nullptr)

@@ -51,6 +51,12 @@ enum class TimeSource {
            ///< FollowedTime
 };
 
+/// How a process reaches the others.
+struct BusAccess {
+  std::string url;               ///< LCM provider; empty = LCM_DEFAULT_URL or LCM's own default
+  std::optional<Sealer> sealer;  ///< for the host's CLOCK_MONOTONIC, see hostSealer()
+};
+
 /// Bus over real LCM.
 /** Fails at once, with the commands to type, where there is no multicast route. UBSan: g++ 12 with
  *  -fsanitize=vptr crashes in lcm-cpp, so the sanitizer preset switches that check off. */
@@ -61,7 +67,9 @@ class LcmBus : public Bus {
   static constexpr int64_t kMaxJump = 100'000;
 
   /// Throws std::runtime_error with one clear line if LCM cannot be used.
-  LcmBus(const std::string& url, TimeSource time_source, int64_t max_jump_us = kMaxJump);
+  LcmBus(BusAccess access, TimeSource time_source, int64_t max_jump_us = kMaxJump);
+  LcmBus(const std::string& url, TimeSource time_source)
+      : LcmBus(BusAccess{url, std::nullopt}, time_source) {}
   ~LcmBus() override;
 
   int64_t now() const override;
@@ -77,7 +85,9 @@ class LcmBus : public Bus {
 
  protected:
   bool send(const char* channel, const uint8_t* bytes, size_t size) override;
-  void listen(const char* channel, RawHandler handler) override;
+  void listen(const char* channel) override;
+  /// The host's, also where now() follows the messages: whoever plays an old log has no old clock.
+  int64_t sealClock() const override;
   bool onReceipt(int64_t utime) override;
 
  private:

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/config/command_line.hpp"
+#include "common/seal/key_file.hpp"
 
 namespace tread {
 namespace {
@@ -24,6 +25,7 @@ void requestStop(int /*signal*/) {
 struct Arguments {
   std::string config_path;
   std::string lcm_url;
+  std::string key;
   std::vector<std::string> overrides;
   bool check = false;
   bool with_parent = false;
@@ -36,11 +38,21 @@ void describe(CLI::App& app, Arguments& arguments) {
       ->take_all();
   app.add_option("--lcm-url", arguments.lcm_url,
                  "LCM provider, for instance udpm://239.255.76.67:7667?ttl=0");
-  app.add_flag("--check", arguments.check, "only read the configuration");
+  addKeyOption(app, arguments.key);
+  app.add_flag("--check", arguments.check, "only read the configuration and the key");
   app.add_flag("--with-parent", arguments.with_parent, "end when the starting process is gone");
 }
 
 }  // namespace
+
+void addKeyOption(CLI::App& app, std::string& path) {
+  app.add_option("--key", path,
+                 "key of the robot (tread-key new FILE): messages are sealed, and others refused")
+      ->envname("TREAD_KEY")
+      ->check([](const std::string& given) {
+        return given.empty() ? std::string("--key: a file is missing") : std::string();
+      });
+}
 
 const std::atomic<bool>& stopRequest(pid_t parent) {
   std::signal(SIGINT, requestStop);
@@ -71,7 +83,8 @@ int runShell(int argc, char** argv, const std::string& name, const std::string& 
             ? ConfigReader::fromText("{}", "defaults (no --config)", arguments.overrides)
             : ConfigReader::fromFile(arguments.config_path, arguments.overrides);
     const ShellBody body = prepare(reader);
-    if (!arguments.check) body(arguments.lcm_url, stop);
+    BusAccess access{arguments.lcm_url, hostSealer(arguments.key)};
+    if (!arguments.check) body(std::move(access), stop);
   } catch (const std::exception& error) {
     std::cerr << name << ": " << error.what() << std::endl;
     return 1;

@@ -8,13 +8,20 @@
 
 #include <sys/types.h>
 
+#include "common/bus/lcm_bus.hpp"
 #include "common/config/config_reader.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace tread {
 
-/// What a process does once its configuration is read: runs on this LCM provider (empty =
-/// LCM_DEFAULT_URL or LCM's own default) until `stop`.
-using ShellBody = std::function<void(const std::string& lcm_url, const std::atomic<bool>& stop)>;
+/// Adds --key FILE, with the environment variable TREAD_KEY as its default, for hostSealer().
+void addKeyOption(CLI::App& app, std::string& path);
+
+/// What a process does once its configuration is read: runs on this bus until `stop`.
+using ShellBody = std::function<void(BusAccess access, const std::atomic<bool>& stop)>;
 /// Reads the configuration, all of it, without opening anything; throws ConfigError.
 using ShellPreparation = std::function<ShellBody(ConfigReader& reader)>;
 
@@ -23,10 +30,11 @@ using ShellPreparation = std::function<ShellBody(ConfigReader& reader)>;
 const std::atomic<bool>& stopRequest(pid_t parent);
 
 /// The main function of a process.
-/** Command line: --config FILE, --set KEY=VALUE (again and again), --lcm-url URL, --check (only
- * reads the configuration), --with-parent (ends as by SIGINT when the process that started it is
- * gone: a supervisor that is killed leaves nothing driving), --help. stopRequest() becomes `stop`.
- * Where something throws, one clear line and code 1; usage errors end with code 2. */
+/** Command line: --config FILE, --set KEY=VALUE (again and again), --lcm-url URL, --key FILE (only
+ * sealed messages), --check (only reads the configuration and the key), --with-parent (ends as by
+ * SIGINT when the process that started it is gone: a supervisor that is killed leaves nothing
+ * driving), --help. stopRequest() becomes `stop`. Where something throws, one clear line and code
+ * 1; usage errors end with code 2. */
 int runShell(int argc, char** argv, const std::string& name, const std::string& description,
              const ShellPreparation& prepare);
 

@@ -3,7 +3,6 @@
 #include "common/bus/virtual_bus.hpp"
 
 #include <algorithm>
-#include <deque>
 #include <random>
 #include <stdexcept>
 
@@ -26,16 +25,16 @@ struct VirtualBus::Packet {
 class VirtualBus::Endpoint : public Bus {
  public:
   Endpoint(VirtualBus& bus, Participant& participant)
-      : bus_(bus), participant_(participant), boot_id_(bus.now_) {}
+      : bus_(bus), participant_(participant), boot_id_(bus.now_) {
+    useKey();
+  }
   int64_t now() const override { return bus_.now_; }
   int64_t bootId() const override { return boot_id_; }
-  bool hears(const std::string& channel) const { return handlers_.count(channel) > 0; }
   void arrive(const Packet& packet) {
-    // Index loop and deque: a handler may subscribe, and must not be moved while it runs.
-    const auto found = handlers_.find(packet.channel);
-    if (found == handlers_.end()) return;
-    for (size_t i = 0; i < found->second.size(); ++i)
-      deliver(found->second[i], packet.channel.c_str(), packet.bytes->data(), packet.bytes->size());
+    receive(packet.channel, packet.bytes->data(), packet.bytes->size());
+  }
+  void useKey() {
+    if (bus_.key_) setSealer(Sealer(*bus_.key_, ++bus_.sealers_, kSession));
   }
 
  protected:
@@ -43,15 +42,14 @@ class VirtualBus::Endpoint : public Bus {
     bus_.publish(participant_, channel, bytes, size);
     return true;
   }
-  void listen(const char* channel, RawHandler handler) override {
-    handlers_[channel].push_back(std::move(handler));
-  }
+  void listen(const char* /*channel*/) override {}
 
  private:
+  static constexpr uint64_t kSession = 1;  // virtual time never begins again
+
   VirtualBus& bus_;
   Participant& participant_;
   int64_t boot_id_;
-  std::map<std::string, std::deque<RawHandler>> handlers_;
 };
 
 /// A node with its endpoint and its model of time.
@@ -164,6 +162,12 @@ Node* VirtualBus::node(const std::string& name) {
 const BusStatistics& VirtualBus::statistics(const std::string& name) const {
   const Participant& asked = participant(name);
   return asked.endpoint ? asked.endpoint->statistics() : asked.last_statistics;
+}
+
+void VirtualBus::useKey(const SealKey& key) {
+  key_ = key;
+  for (const auto& participant : participants_)
+    if (participant->endpoint) participant->endpoint->useKey();
 }
 
 Bus& VirtualBus::outside() {

@@ -72,6 +72,9 @@ class VirtualBus {
   Node* node(const std::string& name);
   const BusStatistics& statistics(const std::string& name) const;
 
+  /// All who are on this bus, and outside(), seal and open their messages; inject() does not.
+  void useKey(const SealKey& key);
+
   /// An endpoint for the tool or test itself: hears and says without delay and without faults.
   Bus& outside();
   void setTap(Tap tap) { tap_ = std::move(tap); }
@@ -101,6 +104,8 @@ class VirtualBus {
 
   int64_t start_;  ///< [us]
   int64_t now_;    ///< [us]
+  std::optional<SealKey> key_;
+  uint64_t sealers_ = 0;  ///< made so far
   Tap tap_;
   std::unique_ptr<MessageFaults> faults_;
   std::vector<std::unique_ptr<Participant>> participants_;  ///< the first is outside()

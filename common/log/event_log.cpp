@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "common/seal/seal.hpp"
+
 namespace tread {
 namespace {
 
@@ -256,7 +258,8 @@ bool LogReader::next(LogEvent& event) {
   const uint8_t* const name = bytes + kLogHeaderSize;
   event.utime = static_cast<int64_t>(getBigEndian<8>(bytes + 12));
   event.channel.assign(reinterpret_cast<const char*>(name), channel_size);
-  event.bytes.assign(name + channel_size, name + channel_size + message_size);
+  const uint8_t* const message = name + channel_size;
+  event.bytes.assign(message, message + sizeWithoutSeal(message, message_size));
   file_->position += kLogHeaderSize + channel_size + message_size;
   ++file_->events;
   return true;

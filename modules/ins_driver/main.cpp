@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/bus/lcm_bus.hpp"
 #include "common/bus/shell.hpp"
 #include "common/link/link.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"
@@ -10,8 +9,8 @@ int main(int argc, char** argv) {
   const auto prepare = [](ConfigReader& reader) -> ShellBody {
     const ins::InsDriverConfig config = ins::readInsDriverConfig(reader);
     parseLinkAddress(config.address);  // throws where it makes no sense
-    return [config](const std::string& lcm_url, const std::atomic<bool>& stop) {
-      LcmBus bus(lcm_url, TimeSource::kHost);
+    return [config](BusAccess access, const std::atomic<bool>& stop) {
+      LcmBus bus(std::move(access), TimeSource::kHost);
       const std::unique_ptr<Link> link = makeLink(config.address);
       FileStore store(config.store);
       ins::InsDriverNode node(config, bus, *link, store);

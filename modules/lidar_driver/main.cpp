@@ -5,7 +5,6 @@
 #include <iostream>
 #include <memory>
 
-#include "common/bus/lcm_bus.hpp"
 #include "common/bus/shell.hpp"
 #include "modules/lidar_driver/hokuyo/hokuyo_source.hpp"
 #include "modules/lidar_driver/lidar_driver_node.hpp"
@@ -62,8 +61,8 @@ int main(int argc, char** argv) {
     const LidarDriverConfig config = readLidarDriverConfig(reader);
     const Device device = deviceNamed(config.device);
     device.check_address(config.address);
-    return [config, device, &stuck](const std::string& lcm_url, const std::atomic<bool>& stop) {
-      LcmBus bus(lcm_url, TimeSource::kHost);
+    return [config, device, &stuck](BusAccess access, const std::atomic<bool>& stop) {
+      LcmBus bus(std::move(access), TimeSource::kHost);
       GuardedSource source(device.make(config), stuck);
       LidarDriverNode node(config, bus, source);
       bus.run(node, stop);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/bus/lcm_bus.hpp"
 #include "common/bus/shell.hpp"
 #include "modules/mapping/mapping_node.hpp"
 
@@ -8,8 +7,8 @@ int main(int argc, char** argv) {
   using namespace tread;
   const auto prepare = [](ConfigReader& reader) -> ShellBody {
     const mapping::MappingConfig config = mapping::readMappingConfig(reader);
-    return [config](const std::string& lcm_url, const std::atomic<bool>& stop) {
-      LcmBus bus(lcm_url, TimeSource::kFollow);
+    return [config](BusAccess access, const std::atomic<bool>& stop) {
+      LcmBus bus(std::move(access), TimeSource::kFollow);
       mapping::MappingNode node(config, bus);
       bus.run(node, stop);
     };

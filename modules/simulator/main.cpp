@@ -3,7 +3,6 @@
 #include <fstream>
 #include <iostream>
 
-#include "common/bus/lcm_bus.hpp"
 #include "common/bus/shell.hpp"
 #include "modules/simulator/model_vehicle.hpp"
 #include "modules/simulator/simulator_files.hpp"
@@ -32,8 +31,8 @@ void mustOffer(const Link& line) {
 ShellBody prepare(ConfigReader& reader) {
   const SimulatorConfig config = readSimulatorConfig(reader);
   const auto world = std::make_shared<const World>(readWorld(config.world));
-  return [config, world](const std::string& lcm_url, const std::atomic<bool>& stop) {
-    LcmBus bus(lcm_url, TimeSource::kHost);
+  return [config, world](BusAccess access, const std::atomic<bool>& stop) {
+    LcmBus bus(std::move(access), TimeSource::kHost);
     SimulatorSettings settings = config.settings;
     settings.robot.start_utime = bus.now();
     settings.ins.utc_at_zero = bus.utc() - bus.now();

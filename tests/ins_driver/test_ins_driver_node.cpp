@@ -92,7 +92,7 @@ class HostBus : public Bus {
       track.push_back(message);
     return true;
   }
-  void listen(const char* /*channel*/, RawHandler /*handler*/) override {}
+  void listen(const char* /*channel*/) override {}
 };
 
 /// A line on whose first read the process is held up.

@@ -9,12 +9,12 @@
 #include <system_error>
 #include <vector>
 
-#include "common/bus/lcm_bus.hpp"
 #include "common/bus/shell.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/recordings/recordings.hpp"
+#include "common/seal/key_file.hpp"
 #include "common/store/store.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "modules/pattern_recorder/recorder_node.hpp"
@@ -64,10 +64,10 @@ std::string keepPart(const std::string& path, const PatternSet& set,
  * robot was told to stop; what was recorded until then is written to `part`, in a folder that is
  * there, as far as it goes. */
 std::vector<std::vector<recordings::Execution>> recordLive(
-    const PatternSet& set, const pattern_recorder::RecordingConfig& how, const std::string& lcm_url,
+    const PatternSet& set, const pattern_recorder::RecordingConfig& how, BusAccess access,
     const std::string& part) {
   std::atomic<bool> stop{false};
-  LcmBus bus(lcm_url, TimeSource::kFollow);
+  LcmBus bus(std::move(access), TimeSource::kFollow);
   pattern_recorder::RecorderNode recorder(
       set, how, bus, [](const std::string& line) { std::cout << line << std::endl; });
   RunToItsEnd node(recorder, stop);
@@ -88,6 +88,7 @@ struct RecordOptions {
   ModelRecording how;
   pattern_recorder::RecordingConfig live_how;
   std::string lcm_url;
+  std::string key;
 };
 
 constexpr const char* kFooter =
@@ -108,7 +109,8 @@ void record(const RecordOptions& options) {
   if (options.live) {
     pattern_recorder::RecordingConfig how = options.live_how;
     how.executions = options.executions;
-    surface.executions = recordLive(set, how, options.lcm_url, part);
+    surface.executions =
+        recordLive(set, how, BusAccess{options.lcm_url, hostSealer(options.key)}, part);
   } else {
     ModelRecording how = options.how;
     how.executions = options.executions;
@@ -137,8 +139,8 @@ void addModelOptions(CLI::App& command, ModelRecording& how) {
       ->check(CLI::Range(0.0, 3.0));
 }
 
-void addLiveOptions(CLI::App& command, pattern_recorder::RecordingConfig& how,
-                    std::string& lcm_url) {
+void addLiveOptions(CLI::App& command, pattern_recorder::RecordingConfig& how, std::string& lcm_url,
+                    std::string& key) {
   command.add_option("--room", how.room, "with --live: m around where it begins that must be free")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 1000.0));
@@ -151,6 +153,7 @@ void addLiveOptions(CLI::App& command, pattern_recorder::RecordingConfig& how,
   command.add_option("--operator", how.operator_name, "with --live: as with tread-arm")
       ->capture_default_str();
   command.add_option("--lcm-url", lcm_url, "with --live: LCM provider");
+  addKeyOption(command, key);
 }
 
 using recordings::AverageLimits;
@@ -230,7 +233,7 @@ CLI::App* addRecord(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::Range(1, 100'000));
   addModelOptions(*command, options->how);
-  addLiveOptions(*command, options->live_how, options->lcm_url);
+  addLiveOptions(*command, options->live_how, options->lcm_url, options->key);
   command->callback([options] { record(*options); });
   return command;
 }

@@ -70,17 +70,7 @@ class LogBus : public Bus {
 
   /// Hands an event to the node's handlers.
   void hear(const LogEvent& event) {
-    const auto found = handlers_.find(event.channel);
-    if (found == handlers_.end()) return;
-    for (const RawHandler& handler : found->second)
-      deliver(handler, event.channel.c_str(), event.bytes.data(), event.bytes.size());
-  }
-  bool hears(const std::string& channel) const { return handlers_.count(channel) > 0; }
-  /// The channels that the node has subscribed to, sorted.
-  std::vector<std::string> heard() const {
-    std::vector<std::string> channels;
-    for (const auto& [channel, handlers] : handlers_) channels.push_back(channel);
-    return channels;
+    receive(event.channel, event.bytes.data(), event.bytes.size());
   }
 
   /// Messages published since the last call, at the time of publishing.
@@ -91,16 +81,13 @@ class LogBus : public Bus {
     published_.push_back({now_, channel, {bytes, bytes + size}});
     return true;
   }
-  void listen(const char* channel, RawHandler handler) override {
-    handlers_[channel].push_back(std::move(handler));
-  }
+  void listen(const char* /*channel*/) override {}
   bool onReceipt(int64_t utime) override { return knowsTime() || start_->observe(utime, now_); }
 
  private:
   int64_t now_;
   int64_t boot_id_;
   std::optional<FollowedTime> start_;
-  std::map<std::string, std::vector<RawHandler>> handlers_;
   std::vector<LogEvent> published_;
 };
 

@@ -5,8 +5,9 @@
 #include <csignal>
 #include <iostream>
 
-#include "common/bus/lcm_bus.hpp"
+#include "common/bus/shell.hpp"
 #include "common/config/command_line.hpp"
+#include "common/seal/key_file.hpp"
 #include "tools/robot/launch/running_robots.hpp"
 
 namespace tread::operators {
@@ -56,7 +57,8 @@ int runCall(const std::string& name, const CommandOptions& options,
   std::signal(SIGINT, noteSignal);
   std::signal(SIGTERM, noteSignal);
   try {
-    LcmBus bus(launch::findLcmUrl(options.lcm_url), TimeSource::kHost);
+    LcmBus bus(BusAccess{launch::findLcmUrl(options.lcm_url), hostSealer(options.key)},
+               TimeSource::kHost);
     const std::unique_ptr<Call> call = make(bus);
     return run(name, options, bus, *call, [&bus](int ms) { bus.handle(ms); });
   } catch (const std::exception& error) {
@@ -78,6 +80,7 @@ int runPermissionCommand(int argc, char** argv, const PermissionCommand& command
   command.more(app);
   app.add_option("--timeout", patience, "how long to try [s]")->check(CLI::Range(0.5, 600.0));
   app.add_option("--lcm-url", options.lcm_url, kUrlHelp);
+  addKeyOption(app, options.key);
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return runCall(command.name, options,
                  [&](Bus& bus) { return command.make(bus, requester, patience); });

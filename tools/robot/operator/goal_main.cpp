@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/bus/shell.hpp"
 #include "common/config/command_line.hpp"
 #include "modules/simulator/simulator_files.hpp"
 #include "tools/robot/operator/calls.hpp"
@@ -49,6 +50,7 @@ int main(int argc, char** argv) {
   app.add_flag("--quiet", quiet, "no progress");
   app.add_option("--operator", operator_name, kOperatorHelp)->capture_default_str();
   app.add_option("--lcm-url", options.lcm_url, kUrlHelp);
+  addKeyOption(app, options.key);
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   request.T_map_goal.yaw = yaw_degrees * kPi / 180.0;
   request.yaw_tolerance *= kPi / 180.0;
