@@ -103,8 +103,11 @@ struct NodeWorld {
   int64_t motors = 0;
   int64_t executions = 0;
 
-  explicit NodeWorld(uint64_t seed = 1, const FaultPlan& faults = {}, const NodeTiming& timing = {})
+  /// With a key all of them have it, and so has the operator.
+  explicit NodeWorld(uint64_t seed = 1, const FaultPlan& faults = {}, const NodeTiming& timing = {},
+                     std::optional<SealKey> key = {})
       : bus(seed, faults) {
+    if (key) bus.useKey(*key);
     bus.addNode("controller", [this](Bus&) {
       return std::make_unique<ControllerNode>(device, *pipe.second, moving);
     });

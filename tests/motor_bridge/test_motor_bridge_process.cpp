@@ -16,10 +16,12 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/messages/operator_beacon.hpp"
+#include "common/seal/key_file.hpp"
 #include "tests/motor_bridge/endless_planner.hpp"
 #include "tests/motor_bridge/messages.hpp"
 #include "tests/motor_bridge/scripted_roboteq.hpp"
 #include "tests/system/own_bus.hpp"
+#include "tests/tools/called_program.hpp"
 
 using namespace tread;
 using namespace tread::motor;
@@ -59,11 +61,12 @@ class Terminal {
 /// tread-motor-bridge as a child process.
 class Process {
  public:
-  Process(const std::string& config, const std::string& url) : pid_(fork()) {
+  Process(const std::string& config, const std::string& url, const std::string& key)
+      : pid_(fork()) {
     if (pid_ == 0) {
       const std::string program = TREAD_BIN_DIR "/tread-motor-bridge";
       execl(program.c_str(), program.c_str(), "--config", config.c_str(), "--lcm-url", url.c_str(),
-            nullptr);
+            key.empty() ? nullptr : "--key", key.c_str(), nullptr);
       _exit(127);
     }
   }
@@ -92,15 +95,21 @@ class Process {
 /// A planner, an INS, an operator and a controller in real time around the process.
 class Rig {
  public:
-  Rig() : url_(tread::testing::ownLcmUrl()) {
+  /// `key`: the process has one, `our_key`: the others have it, too.
+  explicit Rig(bool key = false, bool our_key = false) : url_(tread::testing::ownLcmUrl()) {
+    const std::string key_file = "/tmp/tread_motor_bridge_" + std::to_string(getpid()) + ".key";
+    unlink(key_file.c_str());
+    if (key) writeNewKey(key_file);
     config_ = "/tmp/tread_motor_bridge_" + std::to_string(getpid()) + ".yaml";
     std::ofstream(config_) << "address: tty:" << terminal_.name()
                            << "\nrobot: " TREAD_SOURCE_DIR "/config/robots/teodor/robot.yaml\n";
-    bus_ = std::make_unique<LcmBus>(url_, TimeSource::kHost);
+    bus_ = std::make_unique<LcmBus>(BusAccess{url_, hostSealer(our_key ? key_file : "")},
+                                    TimeSource::kHost);
     beacon_ = std::make_unique<OperatorBeacon>(*bus_, "test");
     bus_->subscribe<motor_t>(kMotor, [this](const motor_t& m) { motor_ = m; });
     bus_->subscribe<execution_t>(kExecution, [this](const execution_t& m) { last_ = newest(m); });
-    process_ = std::make_unique<Process>(config_, url_);
+    bus_->subscribe<health_t>(kHealth, [this](const health_t& m) { health_ = m; });
+    process_ = std::make_unique<Process>(config_, url_, key ? key_file : "");
   }
   ~Rig() { unlink(config_.c_str()); }
 
@@ -111,14 +120,26 @@ class Rig {
   /// Arms until the motors turn, for at most 20 s.
   bool drive() {
     for (int i = 0; i < 80 && !turning(); ++i) {
-      arm_t arm{};
-      arm.utime = bus_->now();
-      arm.armed = true;
-      arm.armed_by = "test";
-      bus_->publish(kArm, arm);
+      say(true);
       run(250'000);
     }
     return turning();
+  }
+  void say(bool armed) {
+    arm_t arm{};
+    arm.utime = bus_->now();
+    arm.armed = armed;
+    arm.armed_by = "test";
+    bus_->publish(kArm, arm);
+  }
+  /// An emergency stop of a program that has no key.
+  void stopUnsealed() const {
+    LcmBus other(url_, TimeSource::kHost);
+    estop_t stop{};
+    stop.utime = other.now();
+    stop.engaged = true;
+    stop.estop_by = "anyone";
+    other.publish(kEstop, stop);
   }
   bool turning() { return !device.stands(bus_->now()); }
   /// Time until the motors stand [us], at most a second.
@@ -129,6 +150,12 @@ class Rig {
   }
   Process& process() { return *process_; }
   const motor_t& motor() const { return motor_; }
+  /// A counter in the bridge's HEALTH; 0 without.
+  int64_t counted(const std::string& name) const {
+    for (const counter_t& counter : health_.counters)
+      if (counter.counter_name == name) return counter.counted;
+    return 0;
+  }
   ScriptedRoboteq device;
 
  private:
@@ -157,21 +184,26 @@ class Rig {
   EndlessPlanner planner_;
   std::optional<ExecutionRecord> last_;
   motor_t motor_{};
+  health_t health_{};
   int64_t seq_ = 0;
   int64_t next_ins_ = 0;
   int64_t next_program_ = 0;
 };
 
-/// A rig that drives, or nothing where LCM has no network.
-std::unique_ptr<Rig> driving() {
-  std::unique_ptr<Rig> rig;
+/// A rig, or nothing where LCM has no network.
+std::unique_ptr<Rig> rigOrSkip(bool key = false, bool our_key = false) {
   try {
-    rig = std::make_unique<Rig>();
+    return std::make_unique<Rig>(key, our_key);
   } catch (const std::runtime_error& error) {
     WARN("skipped: " << error.what());
     return nullptr;
   }
-  REQUIRE(rig->drive());
+}
+
+/// A rig that drives, or nothing where LCM has no network.
+std::unique_ptr<Rig> driving() {
+  std::unique_ptr<Rig> rig = rigOrSkip();
+  if (rig) REQUIRE(rig->drive());
   return rig;
 }
 
@@ -216,4 +248,55 @@ TEST_CASE("SIGSTOP and SIGCONT: stopped by the watchdog, and nothing moves until
   CHECK(rig->device.resumed == 0);
   CHECK(rig->motor().bridge_state == motor_t::STATE_FAULT);
   CHECK(rig->drive());
+}
+
+TEST_CASE("with a key, ARM and PROGRAM of a program without it move nothing") {
+  const std::unique_ptr<Rig> rig = rigOrSkip(true, false);
+  if (!rig) return;
+  // Its own MOTOR is read by everybody, so we know that it runs and has heard us.
+  for (int i = 0; i < 100 && rig->counted("refused: unsealed") < 100; ++i) {
+    rig->say(true);
+    rig->run(100'000);
+    REQUIRE_FALSE(rig->turning());
+  }
+  CHECK(rig->counted("refused: unsealed") >= 100);
+  CHECK(rig->motor().bridge_state == motor_t::STATE_DISARMED);
+  CHECK(rig->device.resumed == 0);
+}
+
+TEST_CASE("with the same key it drives, and a stop without one stops it") {
+  const std::unique_ptr<Rig> rig = rigOrSkip(true, true);
+  if (!rig) return;
+  REQUIRE(rig->drive());
+  CHECK(rig->counted("refused: unsealed") == 0);
+  rig->stopUnsealed();
+  CHECK(rig->timeToZero() <= 20'000 + kSlack);
+  rig->run(100'000);
+  CHECK(rig->motor().bridge_state == motor_t::STATE_ESTOP);
+}
+
+TEST_CASE("with a key that others may read it does not start, and says why in one line") {
+  const tread::samples::OwnFolder folder;
+  const std::string key = folder.path("key");
+  const std::string start = "tread-motor-bridge --lcm-url memq:// --config " TREAD_SOURCE_DIR
+                            "/config/robots/teodor/motor_bridge.yaml ";
+  for (const std::string& how : {"--key " + key, "--check --key " + key}) {
+    const auto absent = tread::samples::called(start + how);
+    CHECK(absent.status == 1);
+    CHECK(absent.isOneLine());
+    CHECK(absent.says("tread-motor-bridge: key " + key + ": cannot be read"));
+  }
+  writeNewKey(key);
+  std::filesystem::permissions(key, std::filesystem::perms(0640));
+  const auto open = tread::samples::called(start + "--key " + key);
+  CHECK(open.status == 1);
+  CHECK(open.isOneLine());
+  CHECK(open.says("others than its owner may use it (mode 0640); chmod 600 " + key));
+  setenv("TREAD_KEY", key.c_str(), 1);
+  const auto by_environment = tread::samples::called(start);
+  unsetenv("TREAD_KEY");
+  CHECK(by_environment.status == 1);
+  CHECK(by_environment.says("mode 0640"));
+  std::filesystem::permissions(key, std::filesystem::perms(0600));
+  CHECK(tread::samples::called(start + "--check --key " + key).status == 0);
 }

@@ -54,6 +54,15 @@ std::string multicastProblem(const LcmAddress& address, const NetworkFacts& fact
   return "";
 }
 
+HostFinding openToOthers(const LcmAddress& address, const std::string& device, bool simulated) {
+  return {!simulated,
+          "LCM's port " + std::to_string(address.port) + " can be reached from outside by " +
+              device + " (ttl is " + std::to_string(address.ttl) +
+              "), and without a key everybody there can arm and drive the robot",
+          "tread-key new FILE, then key: FILE in the launch file; or for one host ttl=0 and " +
+              std::string(kRouteRemedy)};
+}
+
 HostFinding smallBuffer(int64_t granted, int64_t wanted) {
   return {false,
           "net.core.rmem_max is " + std::to_string(granted) + ", so bursts of messages are lost",
@@ -85,7 +94,8 @@ std::vector<HostFinding> checkNetwork(const LcmAddress& address, const NetworkFa
     findings.push_back({!simulated,
                         "LCM's multicast group " + address.group + " is routed to " +
                             facts.route_device +
-                            ", so messages stop with that link, though ttl is 0",
+                            ", so messages stop with that link, though ttl is 0" +
+                            (facts.sealed ? "" : ", and other hosts there can send them"),
                         kRouteRemedy});
   else if (!facts.delivered)
     findings.push_back(
@@ -93,6 +103,8 @@ std::vector<HostFinding> checkNetwork(const LcmAddress& address, const NetworkFa
          "a datagram sent to " + address.group + " by " + facts.route_device + " did not come back",
          std::string("look for a packet filter: nft list ruleset  (as root)") +
              (simulated ? kRemedyWithoutRoot : "")});
+  if (address.ttl > 0 && !facts.sealed && !facts.route_device.empty() && facts.route_device != "lo")
+    findings.push_back(openToOthers(address, facts.route_device, simulated));
   const int64_t wanted = std::max(kWantedBuffer, address.receive_buffer);
   if (facts.receive_buffer < wanted) findings.push_back(smallBuffer(facts.receive_buffer, wanted));
   return findings;

@@ -38,6 +38,7 @@ struct NetworkFacts {
   bool loopback_up = false;
   bool loopback_multicast = false;
   bool delivered = false;      ///< a datagram to the group came back
+  bool sealed = false;         ///< the processes have a key
   int64_t receive_buffer = 0;  ///< the largest one that the kernel grants, net.core.rmem_max [byte]
 };
 
@@ -45,7 +46,8 @@ struct NetworkFacts {
 std::string routeDevice(const std::string& answer);
 
 /// With ttl 0 messages must stay on the loopback device: there they also survive an unplugged
-/// network cable. A simulated launch may go over another device or TCP (tcpq), as in a container.
+/// network cable. Where other hosts can send messages, there must be a key. A simulated launch may
+/// go over another device or TCP (tcpq), as in a container.
 std::vector<HostFinding> checkNetwork(const LcmAddress& address, const NetworkFacts& facts,
                                       bool simulated);
 

@@ -24,6 +24,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "common/seal/key_file.hpp"
+
 namespace tread::launch {
 namespace {
 
@@ -155,9 +157,28 @@ int64_t grantedBuffer(int64_t wanted) {
   return size / 2;
 }
 
+/// What is wrong with the robot's key; nothing if there is none.
+std::vector<HostFinding> checkKey(const std::string& path) {
+  try {
+    if (!path.empty()) readKey(path);
+    return {};
+  } catch (const std::runtime_error& error) {
+    const std::string line = error.what();
+    const size_t end = line.find("; ");
+    return {{true, line.substr(0, end), end == std::string::npos ? "" : line.substr(end + 2)}};
+  }
+}
+
+/// The processes take TREAD_KEY where the launch file names no key.
+std::string keyOf(const LaunchFile& launch) {
+  const char* const named = std::getenv("TREAD_KEY");
+  return launch.key.empty() && named != nullptr ? named : launch.key;
+}
+
 /// Asks this host about multicast; sends one datagram to the group, on a port of its own.
-NetworkFacts networkFacts(const LcmAddress& address) {
+NetworkFacts networkFacts(const LcmAddress& address, bool sealed) {
   NetworkFacts facts;
+  facts.sealed = sealed;
   if (address.provider != "udpm") return facts;
   facts.can_ask = !findProgram("ip", "").empty();
   facts.route_device = routeDevice(runCommand({"ip", "route", "get", address.group}, 5.0).output);
@@ -288,8 +309,10 @@ std::vector<HostFinding> checkHost(const LaunchFile& launch, const LaunchSetting
   if (findProgram("supervisord", "").empty())
     findings.push_back(missingTool("supervisord", "supervisor"));
   if (findProgram("setpriv", "").empty()) findings.push_back(missingTool("setpriv", "util-linux"));
+  const std::string key = keyOf(launch);
+  add(checkKey(key));
   if (const auto address = parseLcmUrl(launch.lcm_url))
-    add(checkNetwork(*address, networkFacts(*address), launch.simulated));
+    add(checkNetwork(*address, networkFacts(*address, !key.empty()), launch.simulated));
   else
     findings.push_back({true, "LCM URL '" + launch.lcm_url + "' cannot be read",
                         "--lcm-url udpm://239.255.76.67:7667?ttl=0"});

@@ -114,6 +114,14 @@ LaunchProcess readProcess(ConfigReader& reader, const Placeholders& placeholders
   return process;
 }
 
+/// An empty path would be a robot that takes messages from everybody, without a word.
+std::string keyPath(const ConfigReader& reader, const std::string& text,
+                    const Placeholders& placeholders, const std::string& folder) {
+  const std::string path = replaced(reader, "key", text, placeholders);
+  if (path.empty()) throw reader.error("key", "is empty; name a file, or leave it out");
+  return absolutePath(path, folder);
+}
+
 }  // namespace
 
 std::string readLaunchName(const std::string& file) {
@@ -136,6 +144,8 @@ LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings) 
   Placeholders placeholders{
       {"run", settings.run}, {"bin", settings.bin}, {"here", folder}, {"lcm_url", launch.lcm_url}};
   readValues(reader, settings, folder, placeholders);
+  reader.text("key", launch.key);
+  if (reader.has("key")) launch.key = keyPath(reader, launch.key, placeholders, folder);
   std::set<std::string> names{"supervisord"};  // whose log is beside theirs
   for (ConfigReader& item : reader.sections("processes", true)) {
     launch.processes.push_back(readProcess(item, placeholders, folder));
@@ -148,7 +158,7 @@ LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings) 
 }
 
 std::vector<std::string> startCommand(const LaunchProcess& process, const std::string& program,
-                                      const std::string& lcm_url) {
+                                      const std::string& lcm_url, const std::string& key) {
   std::vector<std::string> words;
   if (process.external) {
     words = {"setpriv", "--pdeathsig", process.stop_signal, "--", program};
@@ -158,6 +168,7 @@ std::vector<std::string> startCommand(const LaunchProcess& process, const std::s
   words.push_back(program);
   if (!process.config.empty()) words.insert(words.end(), {"--config", process.config});
   words.insert(words.end(), {"--lcm-url", lcm_url, "--with-parent"});
+  if (!key.empty()) words.insert(words.end(), {"--key", key});
   words.insert(words.end(), process.arguments.begin(), process.arguments.end());
   return words;
 }

@@ -29,6 +29,7 @@ struct LaunchProcess {
 struct LaunchFile {
   std::string name;
   std::string lcm_url;
+  std::string key;         ///< absolute path of the robot's key; empty = messages are not sealed
   bool simulated = false;  ///< no robot: what only a robot's network needs is an advice
   std::vector<LaunchProcess> processes;
 };
@@ -46,17 +47,17 @@ struct LaunchSettings {
 std::string readLaunchName(const std::string& file);
 
 /// Reads a launch file; throws ConfigError with file:line.
-/** Keys: name, lcm_url, simulated, values (further placeholders with their defaults) and
+/** Keys: name, lcm_url, key, simulated, values (further placeholders with their defaults) and
  * processes, a list of maps: name, program, config, arguments, external, stop_signal, stop_time.
- * Placeholders in program, config and arguments: {run}, {lcm_url}, {bin}, {here} (the file's
+ * Placeholders in key, program, config and arguments: {run}, {lcm_url}, {bin}, {here} (the file's
  * folder) and those in `values`. Paths are relative to the file's folder. A value that names a file
  * or folder there becomes its absolute path. */
 LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings);
 
-/// The words that start a process: ours get --config, --lcm-url and --with-parent, external ones
-/// run under setpriv, so that neither outlives a killed supervisor.
+/// The words that start a process: ours get --config, --lcm-url, --with-parent and, where there is
+/// one, --key; external ones run under setpriv, so that neither outlives a killed supervisor.
 std::vector<std::string> startCommand(const LaunchProcess& process, const std::string& program,
-                                      const std::string& lcm_url);
+                                      const std::string& lcm_url, const std::string& key = "");
 
 /// The words that make a program of ours check its configuration; empty for external ones.
 std::vector<std::string> checkCommand(const LaunchProcess& process, const std::string& program,

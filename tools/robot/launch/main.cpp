@@ -75,7 +75,7 @@ std::vector<SupervisedProcess> withCommands(const LaunchFile& launch,
   std::vector<SupervisedProcess> supervised;
   for (const LaunchProcess& process : launch.processes) {
     const std::string program = findProgram(process.program, settings.bin);
-    supervised.push_back({process, startCommand(process, program, launch.lcm_url)});
+    supervised.push_back({process, startCommand(process, program, launch.lcm_url, launch.key)});
   }
   return supervised;
 }
@@ -122,7 +122,7 @@ int only(const LaunchFile& launch, const Options& options) {
     if (program.empty()) throw std::runtime_error("there is no program " + process.program);
     std::filesystem::create_directories(RunPaths(options.settings.run).logs);
     std::filesystem::current_path(options.settings.run);
-    become(startCommand(process, program, launch.lcm_url));
+    become(startCommand(process, program, launch.lcm_url, launch.key));
   }
   throw std::runtime_error(options.settings.file + ": has no process '" + options.only + "'");
 }

@@ -19,6 +19,7 @@ namespace {
 struct Options {
   std::string file;
   std::string lcm_url;
+  std::string key;
   int keep = 20;
   int split_mb = 200;
   bool check = false;
@@ -29,6 +30,7 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("FILE", options.file, "log; FILE.0 is the newest, FILE.1 the one before")
       ->required();
   app.add_option("--lcm-url", options.lcm_url, "LCM provider");
+  app.add_option("--key", options.key, "taken as by all, not read: sealed messages stay sealed");
   app.add_option("--keep", options.keep, "files that are kept")->check(CLI::Range(1, 10000));
   app.add_option("--split-mb", options.split_mb, "size of a file [MB]")
       ->check(CLI::Range(1, 100000));

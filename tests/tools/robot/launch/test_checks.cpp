@@ -61,6 +61,7 @@ TEST_CASE("a good host has nothing to mend") {
   wide.route_device = "eth0";
   LcmAddress address;
   address.ttl = 1;
+  wide.sealed = true;
   CHECK(checkNetwork(address, wide, false).empty());
   CHECK(checkProcess({"planner", "tread-planner", true, "p.yaml", true, 0, "", "", true, true})
             .empty());
@@ -80,8 +81,11 @@ TEST_CASE("multicast that is missing, elsewhere, off or filtered gives one line 
   facts.route_device = "eth0";
   CHECK(oneLine(checkNetwork({}, facts, false)) ==
         "robot: LCM's multicast group 239.255.76.67 is routed to eth0, so messages stop with that "
-        "link, though ttl is 0" +
+        "link, though ttl is 0, and other hosts there can send them" +
             remedy);
+  facts.sealed = true;
+  CHECK_THAT(oneLine(checkNetwork({}, facts, false)), Contains("though ttl is 0; fix: "));
+  facts.sealed = false;
   facts = goodNetwork();
   facts.loopback_multicast = false;
   CHECK(oneLine(checkNetwork({}, facts, false)) ==
@@ -96,6 +100,22 @@ TEST_CASE("multicast that is missing, elsewhere, off or filtered gives one line 
   LcmAddress memory;
   memory.provider = "memq";
   CHECK_THAT(oneLine(checkNetwork(memory, facts, false)), Contains("memq does not connect"));
+}
+
+TEST_CASE("a port that other hosts reach needs a key, or the route by the loopback device") {
+  NetworkFacts facts = goodNetwork();
+  LcmAddress address;
+  address.ttl = 1;
+  CHECK(checkNetwork(address, facts, false).empty());  // what is sent stays on lo
+  facts.route_device = "wlan0";
+  CHECK(oneLine(checkNetwork(address, facts, false)) ==
+        "robot: LCM's port 7667 can be reached from outside by wlan0 (ttl is 1), and without a key "
+        "everybody there can arm and drive the robot; fix: tread-key new FILE, then key: FILE in "
+        "the launch file; or for one host ttl=0 and ip link set lo up multicast on; ip route "
+        "replace 224.0.0.0/4 dev lo  (as root)\n");
+  CHECK_FALSE(anyCritical(checkNetwork(address, facts, true)));
+  facts.sealed = true;
+  CHECK(checkNetwork(address, facts, false).empty());
 }
 
 TEST_CASE("a simulated launch goes over what there is") {

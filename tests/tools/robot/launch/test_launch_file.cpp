@@ -117,6 +117,17 @@ TEST_CASE("mistakes in a launch file are named with file and line") {
              Contains("is taken"));
 }
 
+TEST_CASE("the key of a launch file is a path from its folder, and never an empty one") {
+  const std::string processes = "processes: [{name: p, program: p}]";
+  CHECK(read("name: r\n" + processes).key.empty());
+  CHECK(read("name: r\nkey: ../robot.key\n" + processes).key == "/etc/robots/robot.key");
+  CHECK(read("name: r\nkey: \"{run}/key\"\n" + processes).key == "/run/r/key");
+  CHECK_THAT(mistake("name: r\nkey: \"\"\n" + processes),
+             StartsWith("r.yaml:2:") && Contains("is empty; name a file"));
+  CHECK_THAT(mistake("name: r\nvalues: {k: \"\"}\nkey: \"{k}\"\n" + processes),
+             Contains("is empty; name a file"));
+}
+
 TEST_CASE("our programs watch their parent by themselves, external ones with setpriv") {
   LaunchProcess process;
   process.config = "/c.yaml";
@@ -126,8 +137,13 @@ TEST_CASE("our programs watch their parent by themselves, external ones with set
                                                             "--set", "a=b"});
   CHECK(checkCommand(process, "/bin/p", "udpm://") ==
         Words{"/bin/p", "--config", "/c.yaml", "--lcm-url", "udpm://", "--check", "--set", "a=b"});
+  CHECK(startCommand(process, "/bin/p", "udpm://", "/key") ==
+        Words{"/bin/p", "--config", "/c.yaml", "--lcm-url", "udpm://", "--with-parent", "--key",
+              "/key", "--set", "a=b"});
   process.external = true;
   process.config.clear();
+  CHECK(startCommand(process, "/bin/p", "udpm://", "/key") ==
+        startCommand(process, "/bin/p", "udpm://"));
   CHECK(startCommand(process, "/bin/p", "udpm://") ==
         Words{"setpriv", "--pdeathsig", "INT", "--", "/bin/p", "--set", "a=b"});
   CHECK(checkCommand(process, "/bin/p", "udpm://").empty());

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// The bridge of a robot with a key, and somebody on its bus who has none.
+#include <catch2/catch.hpp>
+
+#include "tests/motor_bridge/node_world.hpp"
+
+using namespace tread;
+using namespace tread::motor;
+
+namespace {
+
+/// A world with a key, of which somebody hears everything and says what he likes.
+struct AttackedWorld : NodeWorld {
+  AttackedWorld() : NodeWorld(1, {}, {}, SealKey{}) {
+    bus.setTap([this](int64_t, const char* channel, const uint8_t* bytes, size_t size) {
+      overheard.emplace_back(channel, std::vector<uint8_t>(bytes, bytes + size));
+    });
+  }
+  template <class Message>
+  void forge(const Channel<Message>& channel, const Message& message) {
+    std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
+    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    bus.inject(channel.name, bytes.data(), bytes.size());
+  }
+  void forgeArm(bool armed) {
+    arm_t message{};
+    message.utime = now();
+    message.armed = armed;
+    message.armed_by = "stranger";
+    forge(kArm, message);
+  }
+  void forgeStop(bool engaged) {
+    estop_t message{};
+    message.utime = now();
+    message.engaged = engaged;
+    message.estop_by = "stranger";
+    forge(kEstop, message);
+  }
+  int64_t refused(const std::string& why) const {
+    const auto& counts = bus.statistics("motor_bridge").refused;
+    return counts.count(why) > 0 ? counts.at(why) : 0;
+  }
+  std::vector<std::pair<std::string, std::vector<uint8_t>>> overheard;
+};
+
+}  // namespace
+
+TEST_CASE("with a key it drives as without one, and refuses nothing") {
+  AttackedWorld world;
+  world.drive();
+  CHECK(world.drives());
+  world.run(5'000'000);
+  CHECK(world.drives());
+  CHECK(world.bus.statistics("motor_bridge").refused.empty());
+}
+
+TEST_CASE("a forged ARM and PROGRAM move nothing, and both are counted in HEALTH") {
+  AttackedWorld world;
+  world.bus.kill("planner");
+  world.run(1'000'000);
+  EndlessPlanner planner(77);
+  for (int i = 0; i < 60; ++i) {
+    world.forge(kProgram, toMessage(planner.plan(world.now(), {})));
+    world.forgeArm(true);
+    world.run(50'000);
+  }
+  CHECK(world.moving.empty());
+  CHECK(world.motor.bridge_state == motor_t::STATE_DISARMED);
+  CHECK(world.refused("unsealed") == 120);
+  world.run(1'000'000);
+  CHECK(world.counter("refused: unsealed") == 120);
+}
+
+TEST_CASE("forged programs among true ones do not steer a robot that drives") {
+  AttackedWorld world;
+  world.drive();
+  program_t forged = toMessage(EndlessPlanner(77).plan(world.now(), {}));
+  for (int i = 0; i < 100; ++i) {
+    forged.utime = world.now();
+    forged.seq = 1'000'000 + i;
+    world.forge(kProgram, forged);
+    world.run(10'000);
+    REQUIRE(world.drives());
+    CHECK(world.motor.motor_run_id != 77);
+  }
+  CHECK(world.refused("unsealed") == 100);
+}
+
+TEST_CASE("a stranger's stop stops it, but only the operator clears it and arms again") {
+  AttackedWorld world;
+  world.drive();
+  world.forgeStop(true);
+  CHECK(world.lastMotionWithin(1'000'000) <= 50'000);
+  CHECK(world.motor.bridge_state == motor_t::STATE_ESTOP);
+  world.forgeStop(false);
+  world.forgeArm(true);
+  world.run(500'000);
+  CHECK(world.motor.bridge_state == motor_t::STATE_ESTOP);
+  CHECK(world.refused("unsealed") == 2);
+  world.estop(false);
+  world.run(1'500'000);
+  world.say(true);
+  world.run(300'000);
+  CHECK(world.drives());
+  world.forgeArm(false);
+  CHECK(world.lastMotionWithin(1'000'000) <= 50'000);
+  CHECK(world.motor.bridge_state == motor_t::STATE_DISARMED);
+}
+
+TEST_CASE("what was overheard moves nothing later, neither while it waits nor after a restart") {
+  AttackedWorld world;
+  world.drive();
+  world.run(300'000);
+  const auto recorded = world.overheard;
+  world.bus.kill("planner");
+  world.run(500'000);
+  world.bus.restart("motor_bridge");
+  const size_t moved = world.moving.size();
+  const auto play = [&] {
+    for (const auto& [channel, bytes] : recorded)
+      if (channel == "ARM" || channel == "PROGRAM") {
+        world.bus.inject(channel.c_str(), bytes.data(), bytes.size());
+        world.run(1'000);
+      }
+  };
+  play();
+  CHECK(world.refused("too old") > 5);
+  world.run(3'000'000);
+  play();
+  CHECK(world.moving.size() == moved);
+  CHECK(world.motor.bridge_state == motor_t::STATE_DISARMED);
+}
