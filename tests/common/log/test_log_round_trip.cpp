@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <lcm/lcm-cpp.hpp>
 
+#include "common/seal/seal.hpp"
 #include "log_helpers.hpp"
 
 namespace tread {
@@ -41,6 +42,31 @@ TEST_CASE("what is written is read, with the utime of the message") {
   CHECK_FALSE(reader.next(event));
   CHECK_FALSE(reader.next(event));
   CHECK(reader.problem().empty());
+}
+
+TEST_CASE("the log of a robot with a key is read as if there were no seals") {
+  const TemporaryFile file;
+  Sealer robot(SealKey{}, 1, 2);
+  goal_t goal{};
+  goal.utime = 5;
+  goal.goal_id = 7;
+  const std::vector<uint8_t> plain = encoded(goal);
+  std::vector<uint8_t> sealed = plain;
+  REQUIRE(robot.seal(kGoal.name, sealed, goal.utime));
+  {
+    LogWriter writer(file.path);
+    writer.write(5, kGoal.name, sealed.data(), sealed.size());
+    writer.write(5, kGoal.name, plain.data(), plain.size());
+  }
+  LogReader reader(file.path);
+  LogEvent event;
+  for (int i = 0; i < 2; ++i) {
+    REQUIRE(reader.next(event));
+    CHECK(event.bytes == plain);
+    goal_t read{};
+    REQUIRE(decode(event, kGoal, read));
+    CHECK(read.goal_id == 7);
+  }
 }
 
 TEST_CASE("LCM's own reader, that of lcm-logplayer, reads our logs") {

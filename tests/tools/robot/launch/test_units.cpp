@@ -87,6 +87,18 @@ TEST_CASE(
                  Catch::Contains("--only motor-bridge\n"));
 }
 
+TEST_CASE("no unit talks to another host, and LCM's datagrams come from an address that may") {
+  const Installed installed;
+  for (const char* unit :
+       {"tread@.service", "tread-motor-bridge.service", "tread-logger.service"}) {
+    CAPTURE(unit);
+    CHECK_THAT(contentOf(installed.units / unit),
+               Catch::Contains("\nIPAddressDeny=any\nIPAddressAllow=localhost 239.255.76.67\n"));
+  }
+  CHECK_THAT(contentOf(installed.units / "tread-route.service"),
+             Catch::Contains("route replace 224.0.0.0/4 dev lo src 127.0.0.1\n"));
+}
+
 TEST_CASE("a misspelt key, a wrong value and a missing program in a unit are caught") {
   const Installed installed;
   SECTION("key") {

@@ -6,10 +6,12 @@
 #include <iterator>
 
 #include <catch2/catch.hpp>
+#include <lcm/lcm-cpp.hpp>
 
 #include "common/bus/host_clock.hpp"
 #include "common/bus/lcm_bus.hpp"
 #include "common/log/event_log.hpp"
+#include "common/seal/key_file.hpp"
 #include "tests/tools/robot/launch/launched.hpp"
 #include "tools/robot/logger/recorder.hpp"
 
@@ -43,7 +45,8 @@ std::vector<int64_t> marksOf(const std::string& path) {
 /// Publishes MARK messages, one each millisecond.
 class Speaker {
  public:
-  explicit Speaker(const std::string& url) : bus_(url, TimeSource::kHost) {}
+  explicit Speaker(const std::string& url, const std::string& key = "")
+      : bus_(BusAccess{url, hostSealer(key)}, TimeSource::kHost) {}
   void say(int count, size_t size = 20) {
     for (int i = 0; i < count; ++i) {
       mark_t mark{};
@@ -93,6 +96,26 @@ TEST_CASE("a recorder that gets no processor for half a second has lost nothing 
   CHECK(marks.front() <= from);
   CHECK(marks.back() == speaker.said - 1);
   for (size_t i = 1; i < marks.size(); ++i) REQUIRE(marks[i] == marks[i - 1] + 1);
+}
+
+TEST_CASE("a recorder without the key keeps sealed messages as they were sent, and they are read") {
+  const Folder folder;
+  const std::string url = ownLcmUrl() + "&recv_buf_size=2097152";
+  const std::string file = folder.path + "/robot.lcmlog";
+  writeNewKey(folder.path + "/key");
+  Process recorder("tread-logger", {file, "--lcm-url", url, "--key", "/no/key"});
+  Speaker speaker(url, folder.path + "/key");
+  meet(speaker, file + ".0");
+  recorder.signal(SIGINT);
+  REQUIRE(recorder.waitFor(5.0));
+  CHECK_FALSE(marksOf(file + ".0").empty());
+  lcm::LogFile log(file + ".0", "r");
+  const lcm::LogEvent* event = log.readNextEvent();
+  while (event != nullptr && event->channel != kMark.name) event = log.readNextEvent();
+  REQUIRE(event != nullptr);
+  const auto* const bytes = static_cast<const uint8_t*>(event->data);
+  const auto size = static_cast<size_t>(event->datalen);
+  CHECK(sizeWithoutSeal(bytes, size) == size - kSealBytes);
 }
 
 TEST_CASE("a full file moves up and the next one goes on without a gap") {

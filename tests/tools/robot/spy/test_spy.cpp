@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "common/bus/lcm_bus.hpp"
+#include "common/seal/key_file.hpp"
 #include "tests/system/process.hpp"
 
 using namespace tread;
@@ -73,7 +74,8 @@ class Display {
 /// INS at 50 Hz.
 class Publisher {
  public:
-  explicit Publisher(const std::string& url) : bus_(url, TimeSource::kHost) {
+  explicit Publisher(const std::string& url, const std::string& key = "")
+      : bus_(BusAccess{url, hostSealer(key)}, TimeSource::kHost) {
     thread_ = std::thread([this] {
       ins_t ins{};
       while (!stop_) {
@@ -124,12 +126,14 @@ std::string classPath(const Folder& folder) {
 
 }  // namespace
 
-TEST_CASE("lcm-spy shows INS decoded, with its rate, from the class path of tread-spy") {
+TEST_CASE(
+    "lcm-spy shows INS decoded, with its rate, from the class path of tread-spy, sealed or not") {
   if (!possible()) return;
   const Folder folder;
   const Display display(folder);
   const std::string url = ownLcmUrl();
-  const Publisher publisher(url);
+  writeNewKey(folder.file("key"));
+  const Publisher publisher(url, GENERATE(false, true) ? folder.file("key") : "");
   Process spy(TREAD_JAVA,
               {"-Djava.net.preferIPv4Stack=true", "-cp", classPath(folder),
                TREAD_SOURCE_DIR "/tests/tools/robot/spy/SpySees.java", url, "INS", "ins_t", "40"},
