@@ -32,6 +32,25 @@ void readTimes(ConfigReader& reader, BridgeConfig& bridge) {
   bridge.gate.slot.step_us = bridge.step_us;
 }
 
+/// What the robot's description says of motion, and what the section adds.
+MotionLimits readMotion(ConfigReader section, const RobotDescription& robot) {
+  MotionLimits motion;
+  const bool power = robot.drive.kind == CommandKind::kPower;
+  motion.gauge = robot.gauge;
+  motion.full_speed = robot.drive.full_speed;
+  motion.speed_per_command = power ? robot.drive.full_speed : 1.0;
+  motion.dead_band = power ? 0.15 : 0.05;
+  section.number("dead_band", motion.dead_band, {0.0, 0.4}, "of full_speed");
+  section.number("delay", motion.delay, {0.05, 0.6}, "s");
+  section.number("lag", motion.lag, {0.05, 1.0}, "s");
+  section.number("acceleration", motion.acceleration, {0.5, 20.0}, "m/s2");
+  section.number("least_travel", motion.least_travel, {0.2, 0.9}, "1");
+  section.number("least_turn", motion.least_turn, {0.1, 0.9}, "1");
+  section.number("pull", motion.pull, {0.05, 0.5}, "1");
+  section.number("time_error", motion.time_error, {0.01, 0.3}, "s");
+  return motion;
+}
+
 /// Keeps MOTOR and EXECUTION below their size limits, whatever an operator wrote as his reason.
 constexpr size_t kMaxReason = 120;
 
@@ -107,6 +126,7 @@ MotorBridgeConfig readMotorBridgeConfig(ConfigReader& reader) {
   const RobotDescription robot = readRobot(reader);
   const DriveDescription& drive = robot.drive;
   config.bridge.operators = robot.operators;
+  config.bridge.motion = readMotion(reader.section("motion_monitor"), robot);
   config.bridge.gate.slot.kind = drive.kind;
   config.bridge.gate.slot.max_command = drive.max_command;
   config.make_controller = readMotorController(reader, drive);
@@ -130,7 +150,13 @@ InsNotice fromMessage(const ins_t& message) {
   const int32_t blind = ins_t::STATUS_NO_POSITION | ins_t::STATUS_NO_HEADING;
   const bool finite = std::isfinite(message.position[0]) && std::isfinite(message.position[1]) &&
                       std::isfinite(message.orientation[0]);
-  return {message.utime, (message.ins_status & blind) == 0 && finite, message.seq};
+  const auto& q = message.orientation;
+  const Eigen::Quaterniond R_map_body(q[0], q[1], q[2], q[3]);
+  const InsMotion motion{message.utime,       message.position[0],
+                         message.position[1], yawPitchRoll(R_map_body.normalized()).yaw,
+                         message.velocity[0], message.velocity[1],
+                         message.rate[2],     message.position_std[0]};
+  return {message.utime, (message.ins_status & blind) == 0 && finite, motion, message.seq};
 }
 
 execution_record_t toMessage(const ExecutionRecord& record) {
@@ -232,6 +258,7 @@ void MotorBridgeNode::readLink(int64_t utime) {
 }
 
 void MotorBridgeNode::drive(int64_t utime) {
+  bridge_.receive(controller_->telemetry());
   output_ = bridge_.step(utime, controller_->report(utime));
   controller_->holdStop(output_.hold_device_stop);
   if (output_.release_device_stop) controller_->releaseStop(utime);

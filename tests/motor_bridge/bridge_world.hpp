@@ -33,7 +33,7 @@ struct BridgeWorld {
   void step() {
     now += kStep;
     if (ins_alive && now % 20'000 == 0)
-      bridge.receive(InsNotice{now - 5'000, true, ins_seq++}, now);
+      bridge.receive(InsNotice{now - 5'000, true, {}, ins_seq++}, now);
     if (planner_alive && now % 50'000 == 0)
       bridge.receive(planner.plan(now - 1'000, newest(bridge.executions())), now);
     if (operator_alive && now % 200'000 == 0)

@@ -29,6 +29,8 @@ class EndlessPlanner {
   }
   int commands = 8;     ///< of the slots from now on, of 50 ms each
   bool endless = true;  ///< false: never names a next slot
+  double least_power = 0.2;
+  double right = -1.0;  ///< power of the right track, as a share of the left one's
 
  private:
   void follow(const ExecutionRecord& last) {
@@ -41,8 +43,8 @@ class EndlessPlanner {
   }
   ProgramSlot fresh() {
     ++id_;
-    const double power = 0.2 + 0.01 * static_cast<double>(id_ % 50);
-    return makeSlot(id_, commands, power, -power);
+    const double power = least_power + 0.01 * static_cast<double>(id_ % 50);
+    return makeSlot(id_, commands, power, right * power);
   }
 
   int64_t run_id_;

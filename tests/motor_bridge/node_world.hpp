@@ -12,6 +12,7 @@
 #include "common/messages/operator_beacon.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
+#include "tests/motor_bridge/driven_robot.hpp"
 #include "tests/motor_bridge/endless_planner.hpp"
 #include "tests/motor_bridge/messages.hpp"
 #include "tests/motor_bridge/scripted_roboteq.hpp"
@@ -41,12 +42,13 @@ class PlannerNode : public Node {
 /// An INS at 50 Hz with 8 ms latency.
 class InsNode : public Node {
  public:
-  explicit InsNode(Bus& bus) : bus_(bus) {}
+  InsNode(Bus& bus, DrivenRobot& robot) : bus_(bus), robot_(robot) {}
   int64_t period() const override { return 20'000; }
-  void step(int64_t utime) override { bus_.publish(kIns, makeIns(utime - 8'000, seq_++)); }
+  void step(int64_t utime) override { bus_.publish(kIns, robot_.measured(utime - 8'000, seq_++)); }
 
  private:
   Bus& bus_;
+  DrivenRobot& robot_;
   int64_t seq_ = 0;
 };
 
@@ -66,8 +68,9 @@ class OperatorNode : public Node {
 /// The controller on the other end of the line, looked at every millisecond.
 class ControllerNode : public Node {
  public:
-  ControllerNode(ScriptedRoboteq& device, Link& link, std::vector<int64_t>& moving)
-      : device_(device), link_(link), moving_(moving) {}
+  ControllerNode(ScriptedRoboteq& device, Link& link, std::vector<int64_t>& moving,
+                 DrivenRobot& robot)
+      : device_(device), link_(link), moving_(moving), robot_(robot) {}
   int64_t period() const override { return 1'000; }
   void step(int64_t utime) override {
     uint8_t buffer[512];
@@ -82,18 +85,21 @@ class ControllerNode : public Node {
     const std::string said = device_.read();
     if (!said.empty()) link_.write(reinterpret_cast<const uint8_t*>(said.data()), said.size());
     if (!device_.stands(utime)) moving_.push_back(utime);
+    robot_.follow(device_.motor1(utime), device_.motor2(utime), utime);
   }
 
  private:
   ScriptedRoboteq& device_;
   Link& link_;
   std::vector<int64_t>& moving_;
+  DrivenRobot& robot_;
 };
 
 /// Everything that motor_bridge meets, on the virtual bus.
 struct NodeWorld {
   ScriptedRoboteq device;
   std::vector<int64_t> moving;  ///< milliseconds in which the motors turned [us]
+  DrivenRobot robot;
   std::pair<std::unique_ptr<Link>, std::unique_ptr<Link>> pipe = makePipe();
   VirtualBus bus;
   motor_t motor{};
@@ -109,7 +115,7 @@ struct NodeWorld {
       : bus(seed, faults) {
     if (key) bus.useKey(*key);
     bus.addNode("controller", [this](Bus&) {
-      return std::make_unique<ControllerNode>(device, *pipe.second, moving);
+      return std::make_unique<ControllerNode>(device, *pipe.second, moving, robot);
     });
     bus.addNode(
         "motor_bridge",
@@ -123,7 +129,7 @@ struct NodeWorld {
         timing);
     bus.addNode("planner", [](Bus& end) { return std::make_unique<PlannerNode>(end); },
                 {3'000, 1'000});
-    bus.addNode("ins", [](Bus& end) { return std::make_unique<InsNode>(end); });
+    bus.addNode("ins", [this](Bus& end) { return std::make_unique<InsNode>(end, robot); });
     bus.addNode("operator", [](Bus& end) { return std::make_unique<OperatorNode>(end); });
     watch();
   }

@@ -17,6 +17,7 @@
 #include "common/bus/lcm_bus.hpp"
 #include "common/messages/operator_beacon.hpp"
 #include "common/seal/key_file.hpp"
+#include "tests/motor_bridge/driven_robot.hpp"
 #include "tests/motor_bridge/endless_planner.hpp"
 #include "tests/motor_bridge/messages.hpp"
 #include "tests/motor_bridge/scripted_roboteq.hpp"
@@ -166,7 +167,8 @@ class Rig {
     terminal_.write(device.read());
     beacon_->step(now);
     if (now >= next_ins_) {
-      bus_->publish(kIns, makeIns(now, seq_++));
+      robot_.follow(device.motor1(now), device.motor2(now), now);
+      bus_->publish(kIns, robot_.measured(now, seq_++));
       next_ins_ = now + 20'000;
     }
     if (now >= next_program_) {
@@ -182,6 +184,7 @@ class Rig {
   std::unique_ptr<OperatorBeacon> beacon_;
   std::unique_ptr<Process> process_;
   EndlessPlanner planner_;
+  DrivenRobot robot_;
   std::optional<ExecutionRecord> last_;
   motor_t motor_{};
   health_t health_{};

@@ -31,7 +31,11 @@ bool isOf(const std::string& signature, const std::string& holder) {
 }  // namespace
 
 Bridge::Bridge(const BridgeConfig& config)
-    : config_(config), gate_(config.gate), ins_(config.ins), operator_(config.operators.lease_us) {}
+    : config_(config),
+      gate_(config.gate),
+      ins_(config.ins),
+      motion_(config.motion),
+      operator_(config.operators.lease_us) {}
 
 void Bridge::receive(const Program& program, int64_t now) {
   const ProgramGate::Admission admission = gate_.admit(program, now, !isArmed(failsafe_.state()));
@@ -111,6 +115,8 @@ void Bridge::receive(const OperatorNotice& notice, int64_t now) {
 
 void Bridge::receive(const InsNotice& notice, int64_t now) {
   ins_.receive(notice, now);
+  const bool future = notice.utime > now + config_.ins.max_future_us;
+  if (notice.usable && !future) motion_.receive(notice.motion);
 }
 
 BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
@@ -124,6 +130,7 @@ BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
       !requests_.estop() && (since_.estop_cleared || (in.arm && device.stop_latched));
   command(now, out);
   schedule(now, out);
+  motion_.command(out.command, now);
   player_.dropCandidate();
   since_ = Since{};
   last_step_ = now;
@@ -184,6 +191,7 @@ FailsafeInputs Bridge::look(int64_t now, const DeviceReport& device) {
   lookForOperator(now, in);
   in.lease_fault = leaseFault(now);
   in.ins_fault = ins_.fault(now);
+  in.motion_fault = motion_.fault(now);
   in.playing = player_.playing();
   in.start_wanted = player_.startable();
   in.arm = since_.arm && !since_.disarm;

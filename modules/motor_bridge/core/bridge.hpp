@@ -10,6 +10,7 @@
 #include "common/execution/operator_lease.hpp"
 #include "common/vehicle/robot_description.hpp"
 #include "modules/motor_bridge/core/failsafe.hpp"
+#include "modules/motor_bridge/core/motion_monitor.hpp"
 #include "modules/motor_bridge/core/motor_controller.hpp"
 #include "modules/motor_bridge/core/program.hpp"
 #include "modules/motor_bridge/core/series_player.hpp"
@@ -25,6 +26,7 @@ struct BridgeConfig {
   GateLimits gate;
   InsLimits ins;
   OperatorRules operators;
+  MotionLimits motion;
 };
 
 /// What a step decided.
@@ -52,6 +54,7 @@ class Bridge {
   void receive(const EstopRequest& request, int64_t now);
   void receive(const InsNotice& notice, int64_t now);
   void receive(const OperatorNotice& notice, int64_t now);
+  void receive(const MotorTelemetry& motors) { motion_.receive(motors); }
 
   /// Decides what the motors do from now [us] on.
   BridgeOutput step(int64_t now, const DeviceReport& device);
@@ -86,6 +89,7 @@ class Bridge {
   ProgramGate gate_;
   SeriesPlayer player_;
   InsWatch ins_;
+  MotionMonitor motion_;
   OperatorRequests requests_;
   OperatorLease operator_;
   std::optional<int64_t> operator_lost_;  ///< [us] since when

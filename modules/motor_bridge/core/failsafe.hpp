@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "modules/motor_bridge/core/motion_track.hpp"
+
 namespace tread::motor {
 
 /// When the INS counts as lost.
@@ -23,6 +25,7 @@ struct InsLimits {
 struct InsNotice {
   int64_t utime = 0;   ///< [us] of the measurement
   bool usable = true;  ///< position and heading are known
+  InsMotion motion{};  ///< NaN where it is not known
   int64_t seq = 0;     ///< counts up from the start of the INS driver
 };
 
@@ -118,6 +121,7 @@ struct FailsafeInputs {
   std::string operator_fault;  ///< the operator is lost
   std::string lease_fault;     ///< no program within the lease
   std::string ins_fault;       ///< no usable INS within its limit
+  std::string motion_fault;    ///< the robot moves otherwise than its commands explain
   bool playing = false;        ///< a series is being played and goes on
   bool start_wanted = false;   ///< a series is offered to a standing robot
   std::string series_end;      ///< why the series ended, if it did in this step
@@ -142,10 +146,10 @@ struct FailsafeOutputs {
 };
 
 /// The ranked state machine that decides whether the motors may turn. Pure: time is an input.
-/** Ranks, worst first: E-stop, link, device, bridge, program, operator, lease, INS. A series can
-    only start from a state that gave zero in the step before, and only while an operator is there.
-    Everything but the normal end of a series needs ARM, and ARM needs an operator and inputs that
-    were good for a second. */
+/** Ranks, worst first: E-stop, link, device, bridge, program, operator, lease, INS, motion. A
+   series can only start from a state that gave zero in the step before, and only while an operator
+   is there. Everything but the normal end of a series needs ARM, and ARM needs an operator and
+   inputs that were good for a second. */
 class Failsafe {
  public:
   FailsafeOutputs update(const FailsafeInputs& in);

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/motor_bridge/core/motion_monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+namespace tread::motor {
+namespace {
+
+constexpr double kWindows[] = {1.0, 3.0};  // [s]: the long one for what is slow
+constexpr int64_t kSuspicion = 100'000;    // [us] for which a window must stay suspicious
+constexpr int64_t kStands = 1'300'000;     // [us] for which a verdict stands
+constexpr double kRepeats = 0.4;           // [s] of the same pose, bit by bit
+constexpr double kRepeatedMotion = 0.05;   // [m], [rad] that must have changed it
+constexpr double kPositionSlack = 0.15;    // [m] of a window
+constexpr double kYawSlack = 0.12;         // [rad] of a window
+constexpr double kPositionJump = 0.3;      // [m] of a step
+constexpr double kYawJump = 0.25;          // [rad] of a step
+constexpr double kVelocityError = 0.12;    // [1] of the INS's velocity, latency included
+constexpr double kRateError = 0.12;        // [1] of its rate
+constexpr double kSideways = 0.25;         // [1] of the travel: sideslip
+constexpr double kSwing = 0.5;             // [m/rad] sideways by turning about another point
+constexpr double kStandingTrack = 0.1;     // [1] of the commanded speed: blocked
+
+[[gnu::format(printf, 1, 2)]] std::string words(const char* format, ...) {
+  char text[160];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+/// What lies outside of [min, max], with its sign; 0 inside.
+double beyond(double value, double min, double max) {
+  return value < min ? value - min : std::max(0.0, value - max);
+}
+
+/// Nearest to zero of what the commands explain.
+double leastOf(double min, double max) {
+  return min > 0.0 ? min : std::min(0.0, max);
+}
+
+/// One window and what it takes to judge it.
+struct Judge {
+  const MotionSums& sums;
+  const MotorTelemetry& motors;
+  const MotionLimits& limits;
+  double slack;      ///< [m] of a position's change
+  double yaw_slack;  ///< [rad] of a heading's
+  bool stands;       ///< commanded to zero all the time
+
+  std::string verdict() const {
+    std::string verdict = ownRate();
+    if (verdict.empty()) verdict = ownVelocity();
+    if (verdict.empty()) verdict = travel();
+    if (verdict.empty()) verdict = turn();
+    if (verdict.empty()) verdict = sideways();
+    return verdict;
+  }
+
+ private:
+  /// What a wrong time makes of a path that is driven unevenly [rad].
+  double lateRate(double path) const { return 2.0 * limits.time_error * path / sums.seconds(); }
+  double degrees(double angle) const { return angle * 57.29577951308232; }
+
+  std::string ownRate() const {
+    if (sums.no_rate > 0.2 * sums.seconds()) return "";
+    if (std::abs(sums.turned - sums.gyro) <=
+        kYawSlack + lateRate(sums.gyro_path) + kRateError * sums.gyro_path)
+      return "";
+    return words("heading and gyro differ: %.0f and %.0f deg in %.1f s; check the INS, then ARM",
+                 degrees(sums.turned), degrees(sums.gyro), sums.seconds());
+  }
+  std::string ownVelocity() const {
+    if (sums.no_velocity > 0.2 * sums.seconds()) return "";
+    const double off = (sums.position - sums.ins_way).norm();
+    if (off <= slack + kVelocityError * sums.ins_path) return "";
+    return words(
+        "position and INS velocity differ by %.2f m in %.1f s (%.2f m driven); check the "
+        "INS, then ARM",
+        off, sums.seconds(), sums.ins_path);
+  }
+  std::string travel() const {
+    const double off = beyond(sums.forward, sums.travel_min - slack, sums.travel_max + slack);
+    if (off == 0.0) return "";
+    if (stands) return uncommanded();
+    const double expected = leastOf(sums.travel_min, sums.travel_max);
+    if (off * expected < 0.0)
+      return sums.forward * expected < 0.0 && std::abs(sums.forward) > slack ? backwards(expected)
+                                                                             : tooLittle(expected);
+    return words(
+        "travels %.2f m in %.1f s, commands explain %.2f to %.2f; check INS and tracks, "
+        "then ARM",
+        sums.forward, sums.seconds(), sums.travel_min, sums.travel_max);
+  }
+  std::string uncommanded() const {
+    return words(
+        "moves %.2f m, %.0f deg in %.1f s though zero is commanded: slides or rolls, or "
+        "the INS drifts",
+        sums.position.norm(), degrees(sums.turned), sums.seconds());
+  }
+  std::string backwards(double expected) const {
+    return words(
+        "travels %+.2f m in %.1f s where %+.2f is the least: check heading and motor "
+        "wiring, then ARM",
+        sums.forward, sums.seconds(), expected);
+  }
+  /// Commanded and not done: what the motors say names it.
+  std::string tooLittle(double expected) const {
+    const double left = std::abs(motors.speed_left), right = std::abs(motors.speed_right);
+    const double asked = std::abs(sums.travel) / sums.seconds();
+    const std::string told =
+        words("%.2f m in %.1f s, at least %.2f expected", sums.forward, sums.seconds(), expected);
+    if (std::max(left, right) < kStandingTrack * asked)
+      return "tracks blocked: " + told + "; free the robot, then ARM";
+    if (std::min(left, right) > 0.5 * asked)
+      return "tracks spin or pose is frozen: " + told + "; free the robot, then ARM";
+    const double current = std::max(std::abs(motors.current_left), std::abs(motors.current_right));
+    if (std::isfinite(current))
+      return words("stuck: %s at %.0f and %.0f A; free the robot or check the INS, then ARM",
+                   told.c_str(), motors.current_left, motors.current_right);
+    return "stuck or pose frozen: " + told + "; look, then ARM";
+  }
+  std::string turn() const {
+    const double off = beyond(sums.turned, sums.turn_min - yaw_slack, sums.turn_max + yaw_slack);
+    if (off == 0.0) return "";
+    if (stands) return uncommanded();
+    const std::string told =
+        words("turns %+.0f deg in %.1f s, commands explain %+.0f to %+.0f", degrees(sums.turned),
+              sums.seconds(), degrees(sums.turn_min), degrees(sums.turn_max));
+    if (sums.turned * sums.turn < 0.0 && std::abs(sums.turned) > 0.3 * std::abs(sums.turn))
+      return told + ": the wrong way; check heading and tracks";
+    if (std::abs(sums.turned) < std::abs(sums.turn))
+      return told + "; is the heading frozen, a track stuck?";
+    const bool left = off * (sums.travel < 0.0 ? -1.0 : 1.0) > 0.0;
+    return told + (left ? ": left" : ": right") + " track dead or blocked?";
+  }
+  std::string sideways() const {
+    const double allowed =
+        slack + kSideways * std::abs(sums.forward) +
+        kSwing * std::abs(sums.turned) * (1.0 + std::max(std::abs(sums.forward), 0.5 * sums.reach));
+    if (std::abs(sums.left) <= allowed) return "";
+    if (stands) return uncommanded();
+    return words(
+        "moves %.2f m sideways in %.1f s, %.2f explained: slides, or the heading is off; "
+        "check, then ARM",
+        sums.left, sums.seconds(), allowed);
+  }
+};
+
+}  // namespace
+
+void MotionMonitor::receive(const InsMotion& ins) {
+  if (!track_.add(ins)) return;
+  position_std_ = std::isfinite(ins.position_std) ? ins.position_std : 0.0;
+  if (track_.empty()) return;
+  const std::string sure = surelyWrong();
+  if (!sure.empty()) return tell(sure, ins.utime);
+  const std::string suspected = suspicion();
+  if (suspected.empty()) {
+    suspected_since_ = -1;
+  } else if (suspected_since_ < 0) {
+    suspected_since_ = ins.utime;
+  } else if (ins.utime - suspected_since_ >= kSuspicion) {
+    tell(suspected, ins.utime);
+  }
+}
+
+void MotionMonitor::tell(const std::string& verdict, int64_t utime) {
+  verdict_ = verdict;
+  told_ = utime;
+  suspected_since_ = -1;
+  track_.forget();
+}
+
+std::string MotionMonitor::fault(int64_t now) const {
+  return now - told_ <= kStands ? verdict_ : "";
+}
+
+std::string MotionMonitor::surelyWrong() const {
+  const MotionSums same = track_.repeats();
+  const double travel = leastOf(same.travel_min, same.travel_max);
+  const double turn = leastOf(same.turn_min, same.turn_max);
+  const double must = std::max({std::abs(travel), std::abs(turn), same.ins_path, same.gyro_path});
+  if (same.seconds() >= kRepeats && must > kRepeatedMotion)
+    return words(
+        "pose frozen: the same for %.1f s, at least %.2f m, %.2f rad expected; check the "
+        "INS, then ARM",
+        same.seconds(), travel, turn);
+  const MotionSums step = track_.step();
+  const double late = track_.limits().time_error / step.seconds();
+  const double far = kPositionJump + position_std_ + (1.3 + late) * step.reach;
+  if (step.position.norm() > far)
+    return words("pose jumps %.2f m in %.2f s, %.2f m explained; check the INS, then ARM",
+                 step.position.norm(), step.seconds(), far);
+  const double much = kYawJump + late * step.turn_reach;
+  if (beyond(step.turned, step.turn_min - much, step.turn_max + much) != 0.0)
+    return words("heading jumps %.0f deg in %.2f s; check the INS, then ARM",
+                 step.turned * 57.29577951308232, step.seconds());
+  return "";
+}
+
+std::string MotionMonitor::suspicion() const {
+  for (const double seconds : kWindows) {
+    const std::optional<MotionSums> window = track_.window(seconds);
+    if (!window) return "";
+    const double late = track_.limits().time_error / window->seconds();
+    const Judge judge{*window,
+                      motors_,
+                      track_.limits(),
+                      kPositionSlack + 0.1 * position_std_ + late * window->reach,
+                      kYawSlack + late * window->turn_reach,
+                      track_.zeroFor() >= seconds};
+    const std::string verdict = judge.verdict();
+    if (!verdict.empty()) return verdict;
+  }
+  return "";
+}
+
+}  // namespace tread::motor

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "modules/motor_bridge/core/motion_track.hpp"
+#include "modules/motor_bridge/core/motor_controller.hpp"
+
+namespace tread::motor {
+
+/// Compares commanded with measured motion, and what the INS says of one motion in two ways.
+/** For each measurement:
+    1. MotionTrack sums up what was measured and what the commands explain, slip included;
+    2. one step, and windows of 1 and 3 s, are checked: pose against the INS's own rate and
+       velocity, travel, turn and sideways motion against the commands;
+    3. what fails is named by what the motors tell beside it.
+    It knows no pattern: any series of commands will do, driven by whomever. A drift slower than
+    slip cannot be told from slip by commands: only the INS's own velocity shows it. */
+class MotionMonitor {
+ public:
+  explicit MotionMonitor(const MotionLimits& limits) : track_(limits) {}
+
+  /// The command that holds from now [us] on, in the unit of the drive.
+  void command(const TrackCommand& command, int64_t now) { track_.command(command, now); }
+  /// What the controller tells of the motors.
+  void receive(const MotorTelemetry& motors) { motors_ = motors; }
+  /// A measurement; one that is not newer than the last, or has no pose, is passed over.
+  void receive(const InsMotion& ins);
+
+  /// What the commands cannot explain at now [us], in one line; empty = nothing.
+  /** A verdict stands a little longer than its windows need to fill again: what goes on is told
+   * without a break. */
+  std::string fault(int64_t now) const;
+
+ private:
+  std::string surelyWrong() const;
+  std::string suspicion() const;
+  void tell(const std::string& verdict, int64_t utime);
+
+  MotionTrack track_;
+  MotorTelemetry motors_;
+  double position_std_ = 0.0;     ///< [m] of the last measurement
+  int64_t suspected_since_ = -1;  ///< [us] measurements since then are suspicious; -1 = none
+  std::string verdict_;
+  int64_t told_ = 0;  ///< [us] time of the measurement that the verdict was given on
+};
+
+}  // namespace tread::motor

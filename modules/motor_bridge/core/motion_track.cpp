@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/motor_bridge/core/motion_track.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/geometry/se2.hpp"
+
+namespace tread::motor {
+namespace {
+
+constexpr int64_t kKept = 3'500'000;      // [us] of history: longer than the longest window
+constexpr int64_t kPiece = 20'000;        // [us] in which the bands are moved
+constexpr int64_t kMaxGap = 300'000;      // [us] beyond which windows begin anew
+constexpr int64_t kSettling = 3'000'000;  // [us] in which the bands forget what was before
+constexpr double kMostTravel = 1.25;      // [1] of the commanded: slopes, tyres, calibration
+constexpr double kMostTurn = 1.4;         // [1]
+constexpr double kTurnToTravel = 0.25;    // [1] travel that turning explains, of half the gauge
+
+int64_t toMicroseconds(double seconds) {
+  return static_cast<int64_t>(std::llround(seconds * 1e6));
+}
+
+/// The least of what a speed may become if a share of it or `most` of it arrives.
+double least(double speed, double share, double most) {
+  return speed > 0.0 ? share * speed : most * speed;
+}
+
+}  // namespace
+
+void TrackBand::follow(double least, double most, const MotionLimits& limits, double dt) {
+  const double share = 1.0 - std::exp(-dt / limits.lag);
+  const double step = limits.acceleration * dt;
+  low_ = std::min(least, low_ + std::min(share * (least - low_), step));
+  high_ = std::max(most, high_ + std::max(share * (most - high_), -step));
+}
+
+MotionSums MotionSums::operator-(const MotionSums& start) const {
+  MotionSums out;
+  out.utime = utime - start.utime;
+  out.forward = forward - start.forward;
+  out.left = left - start.left;
+  out.position = position - start.position;
+  out.turned = turned - start.turned;
+  out.travel_min = travel_min - start.travel_min;
+  out.travel_max = travel_max - start.travel_max;
+  out.turn_min = turn_min - start.turn_min;
+  out.turn_max = turn_max - start.turn_max;
+  out.travel = travel - start.travel;
+  out.turn = turn - start.turn;
+  out.reach = reach - start.reach;
+  out.turn_reach = turn_reach - start.turn_reach;
+  out.ins_way = ins_way - start.ins_way;
+  out.ins_path = ins_path - start.ins_path;
+  out.gyro = gyro - start.gyro;
+  out.gyro_path = gyro_path - start.gyro_path;
+  out.no_velocity = no_velocity - start.no_velocity;
+  out.no_rate = no_rate - start.no_rate;
+  return out;
+}
+
+void MotionTrack::command(const TrackCommand& command, int64_t now) {
+  const Eigen::Array2d speed =
+      (Eigen::Array2d(command.left, command.right) * limits_.speed_per_command)
+          .cwiseMax(-limits_.full_speed)
+          .cwiseMin(limits_.full_speed);
+  if ((given_.back().speed == speed).all() || now < given_.back().utime) return;
+  given_.push_back({now, speed});
+}
+
+bool MotionTrack::add(const InsMotion& ins) {
+  const bool known = std::isfinite(ins.x) && std::isfinite(ins.y) && std::isfinite(ins.yaw);
+  if (!known || ins.utime <= last_.utime) return false;
+  MotionSums sums;
+  if (history_.empty() || ins.utime - last_.utime > kMaxGap) {
+    history_.clear();
+    repeats_.reset();
+    follow(sums, std::max(last_.utime, ins.utime - kSettling), ins.utime);
+    sums = MotionSums{};
+  } else {
+    sums = history_.back();
+    follow(sums, last_.utime, ins.utime);
+    measure(sums, ins, 1e-6 * static_cast<double>(ins.utime - last_.utime));
+  }
+  sums.utime = ins.utime;
+  sums.position = {ins.x, ins.y};
+  const bool same = ins.x == last_.x && ins.y == last_.y && ins.yaw == last_.yaw;
+  if (!same || !repeats_) repeats_ = sums;
+  history_.push_back(sums);
+  last_ = ins;
+  while (history_[1 % history_.size()].utime < ins.utime - kKept) history_.pop_front();
+  const int64_t needed = ins.utime - kSettling - toMicroseconds(limits_.delay);
+  while (given_.size() > 1 && given_[1].utime < needed) given_.pop_front();
+  return true;
+}
+
+void MotionTrack::follow(MotionSums& sums, int64_t from, int64_t until) {
+  for (int64_t t = from; t < until; t += kPiece) followPiece(sums, t, std::min(t + kPiece, until));
+}
+
+void MotionTrack::followPiece(MotionSums& sums, int64_t from, int64_t until) {
+  const double dt = 1e-6 * static_cast<double>(until - from);
+  const double dead = limits_.dead_band * limits_.full_speed;
+  const int64_t oldest = until - toMicroseconds(limits_.delay);
+  Eigen::Array2d low = Eigen::Array2d::Constant(limits_.full_speed);
+  Eigen::Array2d high = -low;
+  Eigen::Array2d newest = Eigen::Array2d::Zero();
+  for (size_t i = 0; i < given_.size(); ++i) {
+    if (given_[i].utime >= until) break;
+    newest = given_[i].speed;
+    if (i + 1 < given_.size() && given_[i + 1].utime <= oldest) continue;
+    low = low.min((newest > 0.0).select((newest - dead).max(0.0), newest));
+    high = high.max((newest < 0.0).select((newest + dead).min(0.0), newest));
+  }
+  for (int i = 0; i < 2; ++i) bands_[i].follow(low[i], high[i], limits_, dt);
+  const double v_low = 0.5 * (bands_[0].low() + bands_[1].low());
+  const double v_high = 0.5 * (bands_[0].high() + bands_[1].high());
+  const double w_low = (bands_[1].low() - bands_[0].high()) / limits_.gauge;
+  const double w_high = (bands_[1].high() - bands_[0].low()) / limits_.gauge;
+  const double v_most = std::max(std::abs(v_low), std::abs(v_high));
+  const double w_most = std::max(std::abs(w_low), std::abs(w_high));
+  const double swing = kTurnToTravel * w_most * 0.5 * limits_.gauge;
+  const double pull = limits_.pull * v_most / limits_.gauge;
+  sums.travel_min += dt * (least(v_low, limits_.least_travel, kMostTravel) - swing);
+  sums.travel_max += dt * (-least(-v_high, limits_.least_travel, kMostTravel) + swing);
+  sums.turn_min += dt * (least(w_low, limits_.least_turn, kMostTurn) - pull);
+  sums.turn_max += dt * (-least(-w_high, limits_.least_turn, kMostTurn) + pull);
+  sums.travel += dt * newest.mean();
+  sums.turn += dt * (newest[1] - newest[0]) / limits_.gauge;
+  sums.reach += dt * std::max(v_most, 0.5 * limits_.gauge * w_most);
+  sums.turn_reach += dt * w_most;
+}
+
+void MotionTrack::measure(MotionSums& sums, const InsMotion& ins, double dt) const {
+  const double turned = wrapAngle(ins.yaw - last_.yaw);
+  const double middle = last_.yaw + 0.5 * turned;
+  const Eigen::Vector2d ahead(std::cos(middle), std::sin(middle));
+  const Eigen::Vector2d aside(-ahead.y(), ahead.x());
+  const Eigen::Vector2d moved(ins.x - last_.x, ins.y - last_.y);
+  sums.forward += moved.dot(ahead);
+  sums.left += moved.dot(aside);
+  sums.turned += turned;
+  const double forward = 0.5 * (ins.v_forward + last_.v_forward);
+  const double left = 0.5 * (ins.v_left + last_.v_left);
+  if (std::isfinite(forward) && std::isfinite(left)) {
+    sums.ins_way += dt * (forward * ahead + left * aside);
+    sums.ins_path += dt * std::hypot(forward, left);
+  } else {
+    sums.no_velocity += dt;
+  }
+  const double rate = 0.5 * (ins.yaw_rate + last_.yaw_rate);
+  if (std::isfinite(rate)) {
+    sums.gyro += dt * rate;
+    sums.gyro_path += dt * std::abs(rate);
+  } else {
+    sums.no_rate += dt;
+  }
+}
+
+MotionSums MotionTrack::step() const {
+  return history_.back() - history_[history_.size() - 2];
+}
+
+std::optional<MotionSums> MotionTrack::window(double seconds) const {
+  const int64_t begin = history_.back().utime - toMicroseconds(seconds);
+  const auto later =
+      std::partition_point(history_.begin(), history_.end(),
+                           [begin](const MotionSums& sums) { return sums.utime <= begin; });
+  if (later == history_.begin()) return std::nullopt;
+  return history_.back() - *std::prev(later);
+}
+
+MotionSums MotionTrack::repeats() const {
+  return history_.back() - *repeats_;
+}
+
+double MotionTrack::zeroFor() const {
+  const int64_t now = history_.back().utime;
+  for (auto it = given_.rbegin(); it != given_.rend(); ++it) {
+    if (it->utime >= now) continue;
+    return (it->speed == 0.0).all() ? 1e-6 * static_cast<double>(now - it->utime) : 0.0;
+  }
+  return 0.0;
+}
+
+}  // namespace tread::motor

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "common/pattern/pattern.hpp"
+
+namespace tread::motor {
+
+/// One INS measurement as far as motion in the plane goes; NaN = not measured.
+struct InsMotion {
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+  int64_t utime = 0;               ///< [us] of the measurement
+  double x = kUnknown;             ///< [m] of the body in map
+  double y = kUnknown;             ///< [m]
+  double yaw = kUnknown;           ///< [rad] + counter-clockwise
+  double v_forward = kUnknown;     ///< [m/s] body velocity, the INS's own
+  double v_left = kUnknown;        ///< [m/s]
+  double yaw_rate = kUnknown;      ///< [rad/s] gyro
+  double position_std = kUnknown;  ///< [m] of an axis
+};
+
+/// What a robot makes of its commands, at least and at most.
+/** The defaults hold for recordings of a 470 kg skid-steer (tests/motor_bridge). A robot that slips
+ * more or answers later needs wider ones: that makes the monitor slower, nothing ends it. */
+struct MotionLimits {
+  double gauge = 0.6;              ///< [m] between the middles of the tracks
+  double full_speed = 1.1;         ///< [m/s] of a track: no command makes it faster
+  double speed_per_command = 1.1;  ///< [m/s] of a track at command 1
+  double dead_band = 0.15;         ///< [1] share of full_speed that need not move anything
+  double delay = 0.25;             ///< [s] longest time from a command to its first effect
+  double lag = 0.45;               ///< [s] slowest time constant of the tracks
+  double acceleration = 2.0;       ///< [m/s2] of a track that is commanded far off, at least
+  double least_travel = 0.4;       ///< [1] of the commanded travel that is made at least
+  double least_turn = 0.2;         ///< [1] of the commanded turn that is made at least
+  double pull = 0.25;        ///< [1] turn that uneven ground explains, as a share of speed / gauge
+  double time_error = 0.05;  ///< [s] of the INS's measurement times, position against rates, too
+};
+
+/// The speeds of a track [m/s] that its commands explain.
+/** It may answer at once, or after the whole delay and lag: the band holds both. */
+class TrackBand {
+ public:
+  /// Follows for dt [s] commands that lay between `least` and `most` [m/s] within the delay.
+  void follow(double least, double most, const MotionLimits& limits, double dt);
+  double low() const { return low_; }
+  double high() const { return high_; }
+
+ private:
+  double low_ = 0.0;
+  double high_ = 0.0;
+};
+
+/// Sums since the first measurement, or over a window: what was measured, and what the commands
+/// explain.
+struct MotionSums {
+  int64_t utime = 0;                                   ///< [us]
+  double forward = 0.0, left = 0.0;                    ///< [m] steps of the pose, body's frame
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [m] in map
+  double turned = 0.0;                                 ///< [rad] of the heading
+  double travel_min = 0.0, travel_max = 0.0;           ///< [m] explained, slip included
+  double turn_min = 0.0, turn_max = 0.0;               ///< [rad]
+  double travel = 0.0, turn = 0.0;  ///< [m, rad] of ideal tracks that answer at once
+  double reach = 0.0;               ///< [m] of the faster track, at most
+  double turn_reach = 0.0;          ///< [rad] at most, without slip
+  Eigen::Vector2d ins_way = Eigen::Vector2d::Zero();  ///< [m] in map, by the INS's velocity
+  double ins_path = 0.0;                              ///< [m] length of that
+  double gyro = 0.0, gyro_path = 0.0;                 ///< [rad] by the INS's yaw rate
+  double no_velocity = 0.0, no_rate = 0.0;            ///< [s] in which it was not measured
+
+  double seconds() const { return 1e-6 * static_cast<double>(utime); }
+  MotionSums operator-(const MotionSums& start) const;
+};
+
+/// Brings commands and measurements together in time.
+class MotionTrack {
+ public:
+  explicit MotionTrack(const MotionLimits& limits) : limits_(limits), given_(1) {}
+
+  /// The command that holds from now [us] on, in the unit of the drive.
+  void command(const TrackCommand& command, int64_t now);
+  /// Adds a measurement with a pose; false if it is not newer than the last one.
+  bool add(const InsMotion& ins);
+  /// Forgets the windows; the next measurement begins them anew.
+  void forget() { history_.clear(); }
+
+  bool empty() const { return history_.size() < 2; }
+  /// From the last measurement but one to the last.
+  MotionSums step() const;
+  /// The last window at least this long [s]; nothing while the history is shorter.
+  std::optional<MotionSums> window(double seconds) const;
+  /// From the first measurement with the last pose, the same bit by bit.
+  MotionSums repeats() const;
+  /// Commanded to zero for so long [s] at the last measurement.
+  double zeroFor() const;
+  const MotionLimits& limits() const { return limits_; }
+
+ private:
+  struct Given {
+    int64_t utime = std::numeric_limits<int64_t>::min() / 2;
+    Eigen::Array2d speed = Eigen::Array2d::Zero();  ///< [m/s] left, right
+  };
+
+  void follow(MotionSums& sums, int64_t from, int64_t until);
+  void followPiece(MotionSums& sums, int64_t from, int64_t until);
+  void measure(MotionSums& sums, const InsMotion& ins, double dt) const;
+
+  MotionLimits limits_;
+  std::deque<Given> given_;  ///< oldest first; it begins with zero
+  TrackBand bands_[2];       ///< left, right
+  std::deque<MotionSums> history_;
+  std::optional<MotionSums> repeats_;
+  InsMotion last_;
+};
+
+}  // namespace tread::motor

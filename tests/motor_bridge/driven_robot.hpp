@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include <tread/ins_t.hpp>
+
+#include "common/geometry/se2.hpp"
+#include "tests/motor_bridge/messages.hpp"
+
+namespace tread::motor {
+
+/// What two motors make of a robot, and what its INS says: tracks with a lag of 0.1 s, half of a
+/// turn lost to slip.
+class DrivenRobot {
+ public:
+  /// What is wrong with the INS.
+  bool frozen = false;    ///< it repeats its last measurement with new times
+  Pose2 offset;           ///< added to what it measures, in map
+  double yaw_sign = 1.0;  ///< -1: it counts turns the wrong way
+  double grip = 1.0;      ///< [1] of the tracks' travel that the ground takes
+
+  /// Powers [1/1000] up to utime [us].
+  void follow(int left, int right, int64_t utime) {
+    const double dt = utime_ == 0 ? 0.0 : 1e-6 * static_cast<double>(utime - utime_);
+    utime_ = utime;
+    const double share = 1.0 - std::exp(-dt / 0.1);
+    left_ += share * (kFullSpeed * left / 1000.0 - left_);
+    right_ += share * (kFullSpeed * right / 1000.0 - right_);
+    v_ = 0.5 * grip * (left_ + right_);
+    omega_ = 0.5 * grip * (right_ - left_) / kGauge;
+    truth_ = truth_ * Pose2{v_ * dt, 0.0, omega_ * dt};
+  }
+  const Pose2& truth() const { return truth_; }
+
+  ins_t measured(int64_t utime, int64_t seq) {
+    if (!frozen) {
+      last_ = makeIns(utime, seq);
+      const double yaw = yaw_sign * truth_.yaw + offset.yaw;
+      last_.position[0] = truth_.x + offset.x;
+      last_.position[1] = truth_.y + offset.y;
+      last_.orientation[0] = std::cos(0.5 * yaw);
+      last_.orientation[3] = std::sin(0.5 * yaw);
+      last_.velocity[0] = v_;
+      last_.rate[2] = yaw_sign * omega_;
+    }
+    last_.utime = utime;
+    last_.seq = seq;
+    return last_;
+  }
+
+ private:
+  static constexpr double kGauge = 0.6;
+  static constexpr double kFullSpeed = 1.1;
+
+  int64_t utime_ = 0;
+  double left_ = 0.0, right_ = 0.0;  ///< [m/s]
+  double v_ = 0.0, omega_ = 0.0;
+  Pose2 truth_;
+  ins_t last_{};
+};
+
+}  // namespace tread::motor
