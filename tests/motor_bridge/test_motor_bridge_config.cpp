@@ -104,3 +104,19 @@ TEST_CASE("no safeguard can be switched off, and every refusal is one line with 
     CHECK(line.find('\n') == std::string::npos);
   }
 }
+
+TEST_CASE("the motion monitor takes the robot's description, and no value ends it") {
+  const MotionLimits usual = read("{}").bridge.motion;
+  CHECK(usual.gauge == 0.6);
+  CHECK(usual.full_speed == 1.1);
+  CHECK(usual.speed_per_command == 1.1);
+  const MotionLimits ours = read("motion_monitor: {delay: 0.4, least_travel: 0.3}").bridge.motion;
+  CHECK(ours.delay == 0.4);
+  CHECK(ours.least_travel == 0.3);
+  for (const char* wide : {"delay: 5", "lag: 10", "acceleration: 0", "least_travel: 0",
+                           "least_turn: 0", "pull: 5", "dead_band: 1", "time_error: 2"}) {
+    INFO(wide);
+    CHECK(refusal("motion_monitor: {" + std::string(wide) + "}").find("bridge.yaml:1") !=
+          std::string::npos);
+  }
+}

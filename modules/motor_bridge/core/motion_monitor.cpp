@@ -17,12 +17,17 @@ constexpr double kRepeats = 0.4;           // [s] of the same pose, bit by bit
 constexpr double kRepeatedMotion = 0.05;   // [m], [rad] that must have changed it
 constexpr double kPositionSlack = 0.15;    // [m] of a window
 constexpr double kYawSlack = 0.12;         // [rad] of a window
+constexpr double kCreep = 0.25;            // [rad] that it turns back once zero is commanded
+constexpr double kWander = 0.2;            // [1] of the INS's standard deviation in a window
+constexpr double kStill = 0.04;            // [m], [rad] within which a robot stands
+constexpr double kStillTracks = 0.12;      // [m] of the tracks that must have moved it
 constexpr double kPositionJump = 0.3;      // [m] of a step
 constexpr double kYawJump = 0.25;          // [rad] of a step
 constexpr double kVelocityError = 0.12;    // [1] of the INS's velocity, latency included
 constexpr double kRateError = 0.12;        // [1] of its rate
 constexpr double kSideways = 0.25;         // [1] of the travel: sideslip
 constexpr double kSwing = 0.5;             // [m/rad] sideways by turning about another point
+constexpr int64_t kTrackStands = 700'000;  // [us] against its command
 constexpr double kStandingTrack = 0.1;     // [1] of the commanded speed: blocked
 
 [[gnu::format(printf, 1, 2)]] std::string words(const char* format, ...) {
@@ -47,8 +52,10 @@ double leastOf(double min, double max) {
 /// One window and what it takes to judge it.
 struct Judge {
   const MotionSums& sums;
+  const MotionSums& half;  ///< its newer half: in which direction it goes now
   const MotorTelemetry& motors;
   const MotionLimits& limits;
+  double wander;     ///< [m] of a standing position
   double slack;      ///< [m] of a position's change
   double yaw_slack;  ///< [rad] of a heading's
   bool stands;       ///< commanded to zero all the time
@@ -56,6 +63,7 @@ struct Judge {
   std::string verdict() const {
     std::string verdict = ownRate();
     if (verdict.empty()) verdict = ownVelocity();
+    if (verdict.empty()) verdict = still();
     if (verdict.empty()) verdict = travel();
     if (verdict.empty()) verdict = turn();
     if (verdict.empty()) verdict = sideways();
@@ -84,14 +92,21 @@ struct Judge {
         "INS, then ARM",
         off, sums.seconds(), sums.ins_path);
   }
+  /// Slip makes less of a command, but not nothing.
+  std::string still() const {
+    const bool still = std::max(sums.position.norm(), half.position.norm()) < kStill + wander &&
+                       std::max(std::abs(sums.turned), std::abs(half.turned)) < kStill;
+    return still && sums.tracks_min > kStillTracks ? tooLittle(sums.tracks_min) : "";
+  }
   std::string travel() const {
     const double off = beyond(sums.forward, sums.travel_min - slack, sums.travel_max + slack);
     if (off == 0.0) return "";
     if (stands) return uncommanded();
     const double expected = leastOf(sums.travel_min, sums.travel_max);
     if (off * expected < 0.0)
-      return sums.forward * expected < 0.0 && std::abs(sums.forward) > slack ? backwards(expected)
-                                                                             : tooLittle(expected);
+      return half.forward * expected < 0.0 && std::abs(half.forward) > kPositionSlack
+                 ? backwards()
+                 : tooLittle(std::abs(expected));
     return words(
         "travels %.2f m in %.1f s, commands explain %.2f to %.2f; check INS and tracks, "
         "then ARM",
@@ -103,26 +118,24 @@ struct Judge {
         "the INS drifts",
         sums.position.norm(), degrees(sums.turned), sums.seconds());
   }
-  std::string backwards(double expected) const {
+  std::string backwards() const {
     return words(
         "travels %+.2f m in %.1f s where %+.2f is the least: check heading and motor "
         "wiring, then ARM",
-        sums.forward, sums.seconds(), expected);
+        half.forward, half.seconds(), leastOf(half.travel_min, half.travel_max));
   }
   /// Commanded and not done: what the motors say names it.
-  std::string tooLittle(double expected) const {
+  std::string tooLittle(double least) const {
     const double left = std::abs(motors.speed_left), right = std::abs(motors.speed_right);
-    const double asked = std::abs(sums.travel) / sums.seconds();
+    const double asked = least / sums.seconds();
     const std::string told =
-        words("%.2f m in %.1f s, at least %.2f expected", sums.forward, sums.seconds(), expected);
-    if (std::max(left, right) < kStandingTrack * asked)
-      return "tracks blocked: " + told + "; free the robot, then ARM";
+        words("%.2f m, %.0f deg in %.1f s where tracks make %.2f m at least", sums.position.norm(),
+              degrees(sums.turned), sums.seconds(), least);
     if (std::min(left, right) > 0.5 * asked)
-      return "tracks spin or pose is frozen: " + told + "; free the robot, then ARM";
-    const double current = std::max(std::abs(motors.current_left), std::abs(motors.current_right));
-    if (std::isfinite(current))
-      return words("stuck: %s at %.0f and %.0f A; free the robot or check the INS, then ARM",
-                   told.c_str(), motors.current_left, motors.current_right);
+      return "tracks spin or pose frozen: " + told + "; look, then ARM";
+    if (std::isfinite(motors.current_left) && std::isfinite(motors.current_right))
+      return words("stuck or pose frozen: %s (%.0f, %.0f A); look, then ARM", told.c_str(),
+                   motors.current_left, motors.current_right);
     return "stuck or pose frozen: " + told + "; look, then ARM";
   }
   std::string turn() const {
@@ -158,6 +171,7 @@ void MotionMonitor::receive(const InsMotion& ins) {
   if (!track_.add(ins)) return;
   position_std_ = std::isfinite(ins.position_std) ? ins.position_std : 0.0;
   if (track_.empty()) return;
+  watchTracks(ins.utime);
   const std::string sure = surelyWrong();
   if (!sure.empty()) return tell(sure, ins.utime);
   const std::string suspected = suspicion();
@@ -181,6 +195,28 @@ std::string MotionMonitor::fault(int64_t now) const {
   return now - told_ <= kStands ? verdict_ : "";
 }
 
+void MotionMonitor::watchTracks(int64_t utime) {
+  const double speeds[] = {motors_.speed_left, motors_.speed_right};
+  for (int i = 0; i < 2; ++i) {
+    const double least = track_.least(i);
+    const double along = least < 0.0 ? -speeds[i] : speeds[i];
+    const bool stands = std::abs(least) > kStandingTrack * track_.limits().full_speed &&
+                        along < kStandingTrack * std::abs(least);
+    if (!stands) track_stands_since_[i] = utime;
+  }
+}
+
+std::string MotionMonitor::standingTrack(int64_t utime) const {
+  const bool left = utime - track_stands_since_[0] >= kTrackStands;
+  const bool right = utime - track_stands_since_[1] >= kTrackStands;
+  if (!left && !right) return "";
+  return words("%s: %.2f and %.2f m/s where %.2f and %.2f are the least; free or mend it, then ARM",
+               left && right ? "both tracks blocked"
+               : left        ? "left track dead"
+                             : "right track dead",
+               motors_.speed_left, motors_.speed_right, track_.least(0), track_.least(1));
+}
+
 std::string MotionMonitor::surelyWrong() const {
   const MotionSums same = track_.repeats();
   const double travel = leastOf(same.travel_min, same.travel_max);
@@ -201,19 +237,24 @@ std::string MotionMonitor::surelyWrong() const {
   if (beyond(step.turned, step.turn_min - much, step.turn_max + much) != 0.0)
     return words("heading jumps %.0f deg in %.2f s; check the INS, then ARM",
                  step.turned * 57.29577951308232, step.seconds());
-  return "";
+  return standingTrack(track_.utime());
 }
 
 std::string MotionMonitor::suspicion() const {
+  const double wander = kWander * position_std_;
   for (const double seconds : kWindows) {
     const std::optional<MotionSums> window = track_.window(seconds);
     if (!window) return "";
     const double late = track_.limits().time_error / window->seconds();
+    const double creep = track_.zeroFor() > 0.5 ? kCreep : 0.0;
+    const MotionSums half = *track_.window(0.5 * seconds);
     const Judge judge{*window,
+                      half,
                       motors_,
                       track_.limits(),
-                      kPositionSlack + 0.1 * position_std_ + late * window->reach,
-                      kYawSlack + late * window->turn_reach,
+                      wander,
+                      kPositionSlack + wander + late * window->reach,
+                      kYawSlack + creep + late * window->turn_reach,
                       track_.zeroFor() >= seconds};
     const std::string verdict = judge.verdict();
     if (!verdict.empty()) return verdict;

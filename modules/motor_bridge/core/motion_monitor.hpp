@@ -36,13 +36,16 @@ class MotionMonitor {
   std::string fault(int64_t now) const;
 
  private:
+  void watchTracks(int64_t utime);
+  std::string standingTrack(int64_t utime) const;
   std::string surelyWrong() const;
   std::string suspicion() const;
   void tell(const std::string& verdict, int64_t utime);
 
   MotionTrack track_;
   MotorTelemetry motors_;
-  double position_std_ = 0.0;     ///< [m] of the last measurement
+  double position_std_ = 0.0;               ///< [m] of the last measurement
+  int64_t track_stands_since_[2] = {0, 0};  ///< [us] left, right: against its command
   int64_t suspected_since_ = -1;  ///< [us] measurements since then are suspicious; -1 = none
   std::string verdict_;
   int64_t told_ = 0;  ///< [us] time of the measurement that the verdict was given on

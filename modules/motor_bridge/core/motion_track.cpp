@@ -22,9 +22,9 @@ int64_t toMicroseconds(double seconds) {
   return static_cast<int64_t>(std::llround(seconds * 1e6));
 }
 
-/// The least of what a speed may become if a share of it or `most` of it arrives.
-double least(double speed, double share, double most) {
-  return speed > 0.0 ? share * speed : most * speed;
+/// The least of what a speed may become if a share of it beyond `dead`, or `most` of it, arrives.
+double atLeast(double speed, double dead, double share, double most) {
+  return speed > 0.0 ? share * std::max(0.0, speed - dead) : most * speed;
 }
 
 }  // namespace
@@ -49,6 +49,7 @@ MotionSums MotionSums::operator-(const MotionSums& start) const {
   out.turn_max = turn_max - start.turn_max;
   out.travel = travel - start.travel;
   out.turn = turn - start.turn;
+  out.tracks_min = tracks_min - start.tracks_min;
   out.reach = reach - start.reach;
   out.turn_reach = turn_reach - start.turn_reach;
   out.ins_way = ins_way - start.ins_way;
@@ -101,7 +102,6 @@ void MotionTrack::follow(MotionSums& sums, int64_t from, int64_t until) {
 
 void MotionTrack::followPiece(MotionSums& sums, int64_t from, int64_t until) {
   const double dt = 1e-6 * static_cast<double>(until - from);
-  const double dead = limits_.dead_band * limits_.full_speed;
   const int64_t oldest = until - toMicroseconds(limits_.delay);
   Eigen::Array2d low = Eigen::Array2d::Constant(limits_.full_speed);
   Eigen::Array2d high = -low;
@@ -110,8 +110,8 @@ void MotionTrack::followPiece(MotionSums& sums, int64_t from, int64_t until) {
     if (given_[i].utime >= until) break;
     newest = given_[i].speed;
     if (i + 1 < given_.size() && given_[i + 1].utime <= oldest) continue;
-    low = low.min((newest > 0.0).select((newest - dead).max(0.0), newest));
-    high = high.max((newest < 0.0).select((newest + dead).min(0.0), newest));
+    low = low.min(newest);
+    high = high.max(newest);
   }
   for (int i = 0; i < 2; ++i) bands_[i].follow(low[i], high[i], limits_, dt);
   const double v_low = 0.5 * (bands_[0].low() + bands_[1].low());
@@ -122,12 +122,16 @@ void MotionTrack::followPiece(MotionSums& sums, int64_t from, int64_t until) {
   const double w_most = std::max(std::abs(w_low), std::abs(w_high));
   const double swing = kTurnToTravel * w_most * 0.5 * limits_.gauge;
   const double pull = limits_.pull * v_most / limits_.gauge;
-  sums.travel_min += dt * (least(v_low, limits_.least_travel, kMostTravel) - swing);
-  sums.travel_max += dt * (-least(-v_high, limits_.least_travel, kMostTravel) + swing);
-  sums.turn_min += dt * (least(w_low, limits_.least_turn, kMostTurn) - pull);
-  sums.turn_max += dt * (-least(-w_high, limits_.least_turn, kMostTurn) + pull);
+  const double dead = limits_.dead_band * limits_.full_speed;
+  const double dead_turn = 2.0 * dead / limits_.gauge;
+  const double travel = limits_.least_travel, turn = limits_.least_turn;
+  sums.travel_min += dt * (atLeast(v_low, dead, travel, kMostTravel) - swing);
+  sums.travel_max += dt * (-atLeast(-v_high, dead, travel, kMostTravel) + swing);
+  sums.turn_min += dt * (atLeast(w_low, dead_turn, turn, kMostTurn) - pull);
+  sums.turn_max += dt * (-atLeast(-w_high, dead_turn, turn, kMostTurn) + pull);
   sums.travel += dt * newest.mean();
   sums.turn += dt * (newest[1] - newest[0]) / limits_.gauge;
+  sums.tracks_min += dt * 0.5 * (std::abs(least(0)) + std::abs(least(1)));
   sums.reach += dt * std::max(v_most, 0.5 * limits_.gauge * w_most);
   sums.turn_reach += dt * w_most;
 }
@@ -156,6 +160,12 @@ void MotionTrack::measure(MotionSums& sums, const InsMotion& ins, double dt) con
   } else {
     sums.no_rate += dt;
   }
+}
+
+double MotionTrack::least(int track) const {
+  const double dead = limits_.dead_band * limits_.full_speed;
+  const TrackBand& band = bands_[track];
+  return std::max(0.0, band.low() - dead) + std::min(0.0, band.high() + dead);
 }
 
 MotionSums MotionTrack::step() const {

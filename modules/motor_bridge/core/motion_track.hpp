@@ -68,6 +68,7 @@ struct MotionSums {
   double travel_min = 0.0, travel_max = 0.0;           ///< [m] explained, slip included
   double turn_min = 0.0, turn_max = 0.0;               ///< [rad]
   double travel = 0.0, turn = 0.0;  ///< [m, rad] of ideal tracks that answer at once
+  double tracks_min = 0.0;          ///< [m] mean way of both tracks, at least, slip left out
   double reach = 0.0;               ///< [m] of the faster track, at most
   double turn_reach = 0.0;          ///< [rad] at most, without slip
   Eigen::Vector2d ins_way = Eigen::Vector2d::Zero();  ///< [m] in map, by the INS's velocity
@@ -100,6 +101,9 @@ class MotionTrack {
   MotionSums repeats() const;
   /// Commanded to zero for so long [s] at the last measurement.
   double zeroFor() const;
+  /// The slowest speed [m/s] that the commands explain, of the left (0) or right (1) track.
+  double least(int track) const;
+  int64_t utime() const { return last_.utime; }
   const MotionLimits& limits() const { return limits_; }
 
  private:

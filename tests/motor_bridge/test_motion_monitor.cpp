@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include "common/geometry/se2.hpp"
+#include "modules/motor_bridge/core/motion_monitor.hpp"
+
+using namespace tread;
+using namespace tread::motor;
+
+namespace {
+
+/// A robot on tracks with a good INS at 50 Hz, in front of a monitor. Each part may be spoiled.
+struct Drive {
+  explicit Drive(const MotionLimits& limits = {}) : monitor(limits) {}
+
+  MotionMonitor monitor;
+  TrackCommand command;
+  MotorTelemetry motors;
+  double slip_left = 0.85, slip_right = 0.85;  ///< [1] of the commanded speed that becomes motion
+  double turn_slip = 0.6;
+  Twist2 shove;  ///< [m/s, rad/s] real motion that nobody commanded
+  Pose2 offset;  ///< of what the INS reports
+  Twist2 drift;  ///< of that offset, in map, per second
+  double noise = 1.0;
+  bool velocity = true, gyro = true;
+  std::function<void(InsMotion&)> spoil = [](InsMotion&) {};
+
+  /// Drives for a time [s]; the verdict, if there was one, and when, counted from now [s].
+  std::pair<double, std::string> run(double seconds) {
+    for (int i = 0; i < static_cast<int>(50.0 * seconds + 0.5); ++i) {
+      const std::string verdict = step();
+      if (!verdict.empty()) return {0.02 * (i + 1), verdict};
+    }
+    return {99.0, ""};
+  }
+  /// Drives for a time [s], whatever is said.
+  void settle(double seconds) {
+    for (double t = 0.0; t < seconds; t += 0.02) run(0.02);
+  }
+  /// The same, after good driving, of which the verdict must be nothing.
+  void good(double left, double right, double seconds = 4.0) {
+    command = {left, right};
+    CHECK(run(seconds).second.empty());
+  }
+
+ private:
+  double gauss(double sigma) { return noise * sigma * normal_(random_); }
+  std::string step() {
+    constexpr double kInterval = 0.02;
+    utime_ += 20'000;
+    monitor.command(command, utime_ - 15'000);
+    monitor.receive(motors);
+    const double share = 1.0 - std::exp(-kInterval / 0.2);
+    left_ += share * (1.1 * slip_left * command.left - left_);
+    right_ += share * (1.1 * slip_right * command.right - right_);
+    const Twist2 v{0.5 * (left_ + right_) + shove.v_x, shove.v_y,
+                   turn_slip * (right_ - left_) / 0.6 + shove.omega};
+    truth_ = truth_ * Pose2{v.v_x * kInterval, v.v_y * kInterval, v.omega * kInterval};
+    offset.x += drift.v_x * kInterval;
+    offset.y += drift.v_y * kInterval;
+    offset.yaw += drift.omega * kInterval;
+    monitor.receive(measured(v));
+    return monitor.fault(utime_);
+  }
+  InsMotion measured(const Twist2& v) {
+    InsMotion ins;
+    ins.utime = utime_;
+    ins.x = truth_.x + offset.x + gauss(0.003);
+    ins.y = truth_.y + offset.y + gauss(0.003);
+    ins.yaw = wrapAngle(truth_.yaw + offset.yaw + gauss(0.001));
+    ins.position_std = 0.02;
+    if (velocity) {
+      ins.v_forward = v.v_x + gauss(0.01);
+      ins.v_left = v.v_y + gauss(0.01);
+    }
+    if (gyro) ins.yaw_rate = v.omega + gauss(0.002);
+    spoil(ins);
+    return ins;
+  }
+
+  std::mt19937_64 random_{7};
+  std::normal_distribution<double> normal_;
+  int64_t utime_ = 10'000'000;
+  double left_ = 0.0, right_ = 0.0;
+  Pose2 truth_;
+};
+
+/// It was told in time, in one short line that begins like this.
+void checkTold(const std::pair<double, std::string>& told, const std::string& begin,
+               double limit = 1.5) {
+  INFO(told.first << " s: " << told.second);
+  CHECK(told.first <= limit);
+  CHECK(told.second.find(begin) == 0);
+  CHECK(told.second.size() <= 120);
+  CHECK(told.second.find('\n') == std::string::npos);
+}
+
+}  // namespace
+
+TEST_CASE("motion: every way of driving well is explained") {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> power(-1.0, 1.0);
+  for (const double slip : {0.6, 0.85, 1.05}) {
+    Drive drive;
+    drive.slip_left = drive.slip_right = slip;
+    for (int i = 0; i < 200; ++i)
+      drive.good(power(random), power(random), 0.2 + 2.0 * std::abs(power(random)));
+    drive.good(0.0, 0.0, 5.0);
+  }
+}
+
+TEST_CASE(
+    "motion: a pose that repeats itself is told, with the INS's rates alive, at 0 or unknown") {
+  for (const int rates : {0, 1, 2}) {
+    Drive drive;
+    drive.good(0.8, 0.7);
+    std::optional<InsMotion> held;
+    drive.spoil = [&](InsMotion& ins) {
+      if (!held) held = ins;
+      InsMotion repeated = *held;
+      repeated.utime = ins.utime;
+      repeated.v_forward = rates == 0 ? ins.v_forward : rates == 1 ? 0.0 : InsMotion::kUnknown;
+      repeated.v_left = rates == 0 ? ins.v_left : rates == 1 ? 0.0 : InsMotion::kUnknown;
+      repeated.yaw_rate = rates == 0 ? ins.yaw_rate : rates == 1 ? 0.0 : InsMotion::kUnknown;
+      ins = repeated;
+    };
+    checkTold(drive.run(3.0), "pose frozen", 1.0);
+  }
+}
+
+TEST_CASE("motion: a position that stands while heading and noise live is told") {
+  Drive drive;
+  drive.velocity = false;
+  drive.good(0.8, 0.8);
+  drive.spoil = [n = 0](InsMotion& ins) mutable { ins.x = ins.y = 0.001 * (++n % 7); };
+  checkTold(drive.run(3.0), "pose jumps");
+  checkTold(drive.run(3.0), "pose jumps");
+}
+
+TEST_CASE("motion: a jump of 3 m and a heading off by 20 deg are told at once") {
+  for (const bool rates : {true, false}) {
+    Drive drive;
+    drive.velocity = drive.gyro = rates;
+    drive.good(0.8, 0.8);
+    drive.offset.x = 3.0;
+    checkTold(drive.run(1.0), "pose jumps 3.0", 0.02);
+    drive.settle(3.0);
+    drive.good(0.8, 0.8);
+    drive.offset.yaw = 0.35;
+    checkTold(drive.run(1.0), "heading jumps 20 deg", 0.02);
+  }
+}
+
+TEST_CASE("motion: a heading that was off by 20 deg from the start is told after 1.5 m") {
+  Drive drive;
+  drive.velocity = false;
+  drive.good(0.0, 0.0, 2.0);
+  drive.offset.yaw = 0.35;
+  drive.settle(4.0);
+  drive.command = {1.0, 1.0};
+  const auto told = drive.run(6.0);
+  INFO(told.first << " " << told.second);
+  CHECK(told.first < 4.5);
+  CHECK(told.second.find("sideways") != std::string::npos);
+}
+
+TEST_CASE("motion: a heading that drifts away from its gyro is told") {
+  Drive drive;
+  drive.good(0.8, 0.8);
+  drive.drift.omega = 0.2;
+  checkTold(drive.run(3.0), "heading and gyro differ");
+}
+
+TEST_CASE("motion: a position that drifts away from its velocity is told") {
+  Drive drive;
+  drive.good(0.8, 0.8);
+  drive.drift.v_y = 0.4;
+  checkTold(drive.run(3.0), "position and INS velocity differ");
+}
+
+TEST_CASE("motion: turns and travel of the wrong sign are told") {
+  Drive turning;
+  turning.good(0.2, 1.0);
+  turning.turn_slip = -0.6;
+  checkTold(turning.run(3.0), "turns");
+  Drive backwards;
+  backwards.good(0.8, 0.8);
+  std::optional<double> begin;
+  backwards.spoil = [&begin](InsMotion& ins) {
+    if (!begin) begin = ins.x;
+    ins.x = 2.0 * *begin - ins.x;
+    ins.v_forward *= -1.0;
+  };
+  checkTold(backwards.run(3.0), "travels");
+}
+
+TEST_CASE("motion: spinning and blocked tracks are told apart by what the motors say") {
+  Drive bare;
+  bare.good(0.8, 0.8);
+  bare.slip_left = bare.slip_right = 0.0;
+  checkTold(bare.run(3.0), "stuck or pose frozen");
+
+  Drive spinning;
+  spinning.motors.speed_left = spinning.motors.speed_right = 0.8;
+  spinning.good(0.8, 0.8);
+  spinning.slip_left = spinning.slip_right = 0.0;
+  checkTold(spinning.run(3.0), "tracks spin or pose frozen");
+
+  Drive blocked;
+  blocked.motors.speed_left = blocked.motors.speed_right = 0.8;
+  blocked.good(0.8, 0.8);
+  blocked.motors.speed_left = blocked.motors.speed_right = 0.0;
+  checkTold(blocked.run(3.0), "both tracks blocked", 0.8);
+
+  Drive bellied;
+  bellied.motors.current_left = 41.0;
+  bellied.motors.current_right = 38.0;
+  bellied.good(0.0, 0.0);
+  bellied.slip_left = bellied.slip_right = 0.0;
+  bellied.command = {0.8, 0.8};
+  const auto told = bellied.run(3.0);
+  checkTold(told, "stuck or pose frozen");
+  CHECK(told.second.find("41, 38 A") != std::string::npos);
+}
+
+TEST_CASE("motion: a dead track is told by the turn towards it, or by its own speed") {
+  for (const double way : {1.0, -1.0}) {
+    Drive drive;
+    drive.good(0.9 * way, 0.9 * way);
+    drive.slip_left = 0.0;
+    const auto told = drive.run(3.0);
+    checkTold(told, "turns");
+    CHECK(told.second.find("left track dead") != std::string::npos);
+  }
+  Drive known;
+  known.motors.speed_left = known.motors.speed_right = 0.9;
+  known.good(0.9, 0.9);
+  known.motors.speed_right = 0.0;
+  checkTold(known.run(3.0), "right track dead", 0.8);
+}
+
+TEST_CASE("motion: sliding and rolling without a command are told, standing is not") {
+  Drive drive;
+  drive.good(0.8, 0.8);
+  drive.good(0.0, 0.0, 20.0);
+  drive.shove.v_x = 0.3;
+  checkTold(drive.run(3.0), "moves");
+  Drive sideways;
+  sideways.good(0.0, 0.0, 4.0);
+  sideways.shove.v_y = 0.3;
+  checkTold(sideways.run(3.0), "moves");
+}
+
+TEST_CASE("motion: a verdict stands for as long as its cause, and ends after it") {
+  Drive drive;
+  drive.good(0.0, 0.0, 4.0);
+  drive.shove.v_x = 0.3;
+  REQUIRE(drive.run(3.0).first < 1.5);
+  for (int i = 0; i < 200; ++i) CHECK(drive.run(0.02).first < 0.03);
+  drive.shove.v_x = 0.0;
+  double longest = 0.0;
+  for (double t = 0.0; t < 6.0; t += 0.02)
+    if (drive.run(0.02).first < 0.03) longest = t;
+  CHECK(longest < 3.5);
+}
+
+TEST_CASE("motion: what is not known is not judged") {
+  Drive drive;
+  drive.spoil = [](InsMotion& ins) { ins.x = InsMotion::kUnknown; };
+  drive.good(1.0, 1.0, 10.0);
+  Drive coarse;
+  coarse.good(0.0, 0.0, 2.0);
+  coarse.velocity = coarse.gyro = false;
+  coarse.spoil = [](InsMotion& ins) {
+    ins.position_std = 2.5;
+    ins.x += 0.25 * std::sin(1e-6 * static_cast<double>(ins.utime));
+  };
+  coarse.run(0.1);
+  coarse.good(0.0, 0.0, 60.0);
+}
+
+namespace {
+
+/// Smallest drift of a kind that is told within a time [s], in steps of a tenth.
+double smallestTold(double within, const std::function<void(Drive&, double)>& spoil) {
+  for (double size = 0.01; size < 5.0; size *= 1.1) {
+    Drive drive;
+    drive.command = {0.9, 0.9};
+    drive.run(5.0);
+    spoil(drive, size);
+    if (drive.run(within).first <= within) return size;
+  }
+  return 5.0;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "motion: the smallest drifts that are told at 0.84 m/s, by rates of the INS and without") {
+  const auto ahead = [](Drive& drive, double size) { drive.drift.v_x = size; };
+  const auto aside = [](Drive& drive, double size) { drive.drift.v_y = size; };
+  const auto turn = [](Drive& drive, double size) { drive.drift.omega = size; };
+  const auto blind = [](const auto& spoil) {
+    return [spoil](Drive& drive, double size) {
+      drive.velocity = drive.gyro = false;
+      drive.run(3.0);
+      spoil(drive, size);
+    };
+  };
+  for (const double within : {1.5, 4.0}) {
+    const double known[] = {smallestTold(within, ahead), smallestTold(within, aside),
+                            smallestTold(within, turn)};
+    const double unknown[] = {smallestTold(within, blind(ahead)),
+                              smallestTold(within, blind(aside)),
+                              smallestTold(within, blind(turn))};
+    CAPTURE(within, known[0], known[1], known[2], unknown[0], unknown[1], unknown[2]);
+    CHECK(known[0] < 0.35);
+    CHECK(known[1] < 0.35);
+    CHECK(known[2] < 0.25);
+    CHECK(unknown[0] < 1.0);
+    CHECK(unknown[1] < 0.5);
+    CHECK(unknown[2] < 0.8);
+  }
+}
