@@ -284,6 +284,18 @@ TEST_CASE("motion: what is not known is not judged") {
   coarse.good(0.0, 0.0, 60.0);
 }
 
+TEST_CASE("motion: a fix that becomes better may move by the error that it had") {
+  Drive drive;
+  drive.velocity = false;
+  drive.good(0.0, 0.0, 2.0);
+  double std = 0.4;
+  drive.spoil = [&std](InsMotion& ins) { ins.position_std = std; };
+  drive.good(0.8, 0.8);
+  std = 0.02;
+  drive.offset.y = 0.4;
+  drive.good(0.8, 0.8);
+}
+
 namespace {
 
 /// Smallest drift of a kind that is told within a time [s], in steps of a tenth.

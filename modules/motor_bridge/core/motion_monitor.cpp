@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
+#include <initializer_list>
+#include <string_view>
 
 namespace tread::motor {
 namespace {
@@ -19,6 +19,7 @@ constexpr double kPositionSlack = 0.15;    // [m] of a window
 constexpr double kYawSlack = 0.12;         // [rad] of a window
 constexpr double kCreep = 0.25;            // [rad] that it turns back once zero is commanded
 constexpr double kWander = 0.2;            // [1] of the INS's standard deviation in a window
+constexpr double kFade = 0.99;             // [1] of the last standard deviation, per measurement
 constexpr double kStill = 0.04;            // [m], [rad] within which a robot stands
 constexpr double kStillTracks = 0.12;      // [m] of the tracks that must have moved it
 constexpr double kPositionJump = 0.3;      // [m] of a step
@@ -30,12 +31,21 @@ constexpr double kSwing = 0.5;             // [m/rad] sideways by turning about 
 constexpr int64_t kTrackStands = 700'000;  // [us] against its command
 constexpr double kStandingTrack = 0.1;     // [1] of the commanded speed: blocked
 
-[[gnu::format(printf, 1, 2)]] std::string words(const char* format, ...) {
-  char text[160];
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
+/// The pattern with %0, %1, %2 replaced by the values, rounded to that many decimals.
+std::string words(std::string_view pattern, std::initializer_list<double> values) {
+  std::string text;
+  auto value = values.begin();
+  for (size_t i = 0; i < pattern.size(); ++i) {
+    if (pattern[i] != '%') {
+      text += pattern[i];
+      continue;
+    }
+    const int decimals = pattern[++i] - '0';
+    const double scale = std::pow(10.0, decimals);
+    const std::string number = std::to_string(std::round(*value * scale) / scale + 0.0);
+    const size_t length = number.find('.') + static_cast<size_t>(decimals + (decimals > 0));
+    text += std::isfinite(*value++) ? number.substr(0, length) : "?";
+  }
   return text;
 }
 
@@ -80,17 +90,17 @@ struct Judge {
     if (std::abs(sums.turned - sums.gyro) <=
         kYawSlack + lateRate(sums.gyro_path) + kRateError * sums.gyro_path)
       return "";
-    return words("heading and gyro differ: %.0f and %.0f deg in %.1f s; check the INS, then ARM",
-                 degrees(sums.turned), degrees(sums.gyro), sums.seconds());
+    return words("heading and gyro differ: %0 and %0 deg in %1 s; check the INS, then ARM",
+                 {degrees(sums.turned), degrees(sums.gyro), sums.seconds()});
   }
   std::string ownVelocity() const {
     if (sums.no_velocity > 0.2 * sums.seconds()) return "";
     const double off = (sums.position - sums.ins_way).norm();
     if (off <= slack + kVelocityError * sums.ins_path) return "";
     return words(
-        "position and INS velocity differ by %.2f m in %.1f s (%.2f m driven); check the "
+        "position and INS velocity differ by %2 m in %1 s (%2 m driven); check the "
         "INS, then ARM",
-        off, sums.seconds(), sums.ins_path);
+        {off, sums.seconds(), sums.ins_path});
   }
   /// Slip makes less of a command, but not nothing.
   std::string still() const {
@@ -108,43 +118,43 @@ struct Judge {
                  ? backwards()
                  : tooLittle(std::abs(expected));
     return words(
-        "travels %.2f m in %.1f s, commands explain %.2f to %.2f; check INS and tracks, "
+        "travels %2 m in %1 s, commands explain %2 to %2; check INS and tracks, "
         "then ARM",
-        sums.forward, sums.seconds(), sums.travel_min, sums.travel_max);
+        {sums.forward, sums.seconds(), sums.travel_min, sums.travel_max});
   }
   std::string uncommanded() const {
     return words(
-        "moves %.2f m, %.0f deg in %.1f s though zero is commanded: slides or rolls, or "
+        "moves %2 m, %0 deg in %1 s though zero is commanded: slides or rolls, or "
         "the INS drifts",
-        sums.position.norm(), degrees(sums.turned), sums.seconds());
+        {sums.position.norm(), degrees(sums.turned), sums.seconds()});
   }
   std::string backwards() const {
     return words(
-        "travels %+.2f m in %.1f s where %+.2f is the least: check heading and motor "
+        "travels %2 m in %1 s where %2 is the least: check heading and motor "
         "wiring, then ARM",
-        half.forward, half.seconds(), leastOf(half.travel_min, half.travel_max));
+        {half.forward, half.seconds(), leastOf(half.travel_min, half.travel_max)});
   }
   /// Commanded and not done: what the motors say names it.
   std::string tooLittle(double least) const {
     const double left = std::abs(motors.speed_left), right = std::abs(motors.speed_right);
     const double asked = least / sums.seconds();
     const std::string told =
-        words("%.2f m, %.0f deg in %.1f s where tracks make %.2f m at least", sums.position.norm(),
-              degrees(sums.turned), sums.seconds(), least);
+        words("%2 m, %0 deg in %1 s where tracks make %2 m at least",
+              {sums.position.norm(), degrees(sums.turned), sums.seconds(), least});
     if (std::min(left, right) > 0.5 * asked)
       return "tracks spin or pose frozen: " + told + "; look, then ARM";
     if (std::isfinite(motors.current_left) && std::isfinite(motors.current_right))
-      return words("stuck or pose frozen: %s (%.0f, %.0f A); look, then ARM", told.c_str(),
-                   motors.current_left, motors.current_right);
+      return "stuck or pose frozen: " + told +
+             words(" (%0, %0 A); look, then ARM", {motors.current_left, motors.current_right});
     return "stuck or pose frozen: " + told + "; look, then ARM";
   }
   std::string turn() const {
     const double off = beyond(sums.turned, sums.turn_min - yaw_slack, sums.turn_max + yaw_slack);
     if (off == 0.0) return "";
     if (stands) return uncommanded();
-    const std::string told =
-        words("turns %+.0f deg in %.1f s, commands explain %+.0f to %+.0f", degrees(sums.turned),
-              sums.seconds(), degrees(sums.turn_min), degrees(sums.turn_max));
+    const std::string told = words(
+        "turns %0 deg in %1 s, commands explain %0 to %0",
+        {degrees(sums.turned), sums.seconds(), degrees(sums.turn_min), degrees(sums.turn_max)});
     if (sums.turned * sums.turn < 0.0 && std::abs(sums.turned) > 0.3 * std::abs(sums.turn))
       return told + ": the wrong way; check heading and tracks";
     if (std::abs(sums.turned) < std::abs(sums.turn))
@@ -159,9 +169,9 @@ struct Judge {
     if (std::abs(sums.left) <= allowed) return "";
     if (stands) return uncommanded();
     return words(
-        "moves %.2f m sideways in %.1f s, %.2f explained: slides, or the heading is off; "
+        "moves %2 m sideways in %1 s, %2 explained: slides, or the heading is off; "
         "check, then ARM",
-        sums.left, sums.seconds(), allowed);
+        {sums.left, sums.seconds(), allowed});
   }
 };
 
@@ -169,7 +179,9 @@ struct Judge {
 
 void MotionMonitor::receive(const InsMotion& ins) {
   if (!track_.add(ins)) return;
-  position_std_ = std::isfinite(ins.position_std) ? ins.position_std : 0.0;
+  // A fix that becomes better moves by the error that it had before.
+  const double position_std = std::isfinite(ins.position_std) ? ins.position_std : 0.0;
+  position_std_ = std::max(position_std, kFade * position_std_);
   if (track_.empty()) return;
   watchTracks(ins.utime);
   const std::string sure = surelyWrong();
@@ -210,11 +222,11 @@ std::string MotionMonitor::standingTrack(int64_t utime) const {
   const bool left = utime - track_stands_since_[0] >= kTrackStands;
   const bool right = utime - track_stands_since_[1] >= kTrackStands;
   if (!left && !right) return "";
-  return words("%s: %.2f and %.2f m/s where %.2f and %.2f are the least; free or mend it, then ARM",
-               left && right ? "both tracks blocked"
-               : left        ? "left track dead"
-                             : "right track dead",
-               motors_.speed_left, motors_.speed_right, track_.least(0), track_.least(1));
+  return std::string(left && right ? "both tracks blocked"
+                     : left        ? "left track dead"
+                                   : "right track dead") +
+         words(": %2 and %2 m/s where %2 and %2 are the least; free or mend it, then ARM",
+               {motors_.speed_left, motors_.speed_right, track_.least(0), track_.least(1)});
 }
 
 std::string MotionMonitor::surelyWrong() const {
@@ -224,19 +236,19 @@ std::string MotionMonitor::surelyWrong() const {
   const double must = std::max({std::abs(travel), std::abs(turn), same.ins_path, same.gyro_path});
   if (same.seconds() >= kRepeats && must > kRepeatedMotion)
     return words(
-        "pose frozen: the same for %.1f s, at least %.2f m, %.2f rad expected; check the "
+        "pose frozen: the same for %1 s, at least %2 m, %2 rad expected; check the "
         "INS, then ARM",
-        same.seconds(), travel, turn);
+        {same.seconds(), travel, turn});
   const MotionSums step = track_.step();
   const double late = track_.limits().time_error / step.seconds();
   const double far = kPositionJump + position_std_ + (1.3 + late) * step.reach;
   if (step.position.norm() > far)
-    return words("pose jumps %.2f m in %.2f s, %.2f m explained; check the INS, then ARM",
-                 step.position.norm(), step.seconds(), far);
+    return words("pose jumps %2 m in %2 s, %2 m explained; check the INS, then ARM",
+                 {step.position.norm(), step.seconds(), far});
   const double much = kYawJump + late * step.turn_reach;
   if (beyond(step.turned, step.turn_min - much, step.turn_max + much) != 0.0)
-    return words("heading jumps %.0f deg in %.2f s; check the INS, then ARM",
-                 step.turned * 57.29577951308232, step.seconds());
+    return words("heading jumps %0 deg in %2 s; check the INS, then ARM",
+                 {step.turned * 57.29577951308232, step.seconds()});
   return standingTrack(track_.utime());
 }
 
