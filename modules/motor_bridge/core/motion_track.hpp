@@ -28,8 +28,9 @@ struct InsMotion {
 };
 
 /// What a robot makes of its commands, at least and at most.
-/** The defaults hold for recordings of a 470 kg skid-steer (tests/motor_bridge). A robot that slips
- * more or answers later needs wider ones: that makes the monitor slower, nothing ends it. */
+/** Shares of slip were chosen on recordings of a 470 kg skid-steer (tests/motor_bridge); its delay
+ * and acceleration are its own. A robot that slips more or answers later needs wider limits: that
+ * makes the monitor slower, nothing ends it. */
 struct MotionLimits {
   double gauge = 0.6;              ///< [m] between the middles of the tracks
   double full_speed = 1.1;         ///< [m/s] of a track: no command makes it faster
