@@ -94,7 +94,7 @@ TEST_CASE("`finish` has an end: a planner that never stops is stopped") {
 }
 
 TEST_CASE(
-    "an operator who lets go stops the robot; it stays armed, and is disarmed after a while") {
+    "an operator who lets go stops the robot, which stays armed and is disarmed after a while") {
   BridgeWorld world;
   world.drive();
   world.run(1'000'000);

@@ -47,7 +47,7 @@ TEST_CASE("what was not seen, or long ago, holds nothing: no time of any size do
   }
 }
 
-TEST_CASE("the first operator holds the robot; another one needs it handed over") {
+TEST_CASE("the first operator holds the robot, another one needs it handed over") {
   OperatorLease lease(kSecond);
   lease.receive(from(1, "ada", kStart), kStart);
   CHECK(lease.receive(from(2, "bob", kStart), kStart) == Heard::kOfAnother);
@@ -81,7 +81,7 @@ TEST_CASE("who lets go keeps the robot from others as long as it is armed, who i
   }
 }
 
-TEST_CASE("of two programs of one operator one may fall silent; its goal is not stood for") {
+TEST_CASE("of two programs of one operator one may fall silent, but its goal is not stood for") {
   OperatorLease lease(kSecond);
   OperatorNotice with_goal = from(1, "ada", kStart);
   with_goal.goal_id = 7;
