@@ -24,6 +24,8 @@ constexpr double kStill = 0.04;            // [m], [rad] within which a robot st
 constexpr double kStillTracks = 0.12;      // [m] of the tracks that must have moved it
 constexpr double kPositionJump = 0.3;      // [m] of a step
 constexpr double kYawJump = 0.25;          // [rad] of a step
+constexpr double kDoubts = 1.5;            // [1] unreachable poses that are one too many
+constexpr double kForgiven = 0.05;         // [1] of them by each good one
 constexpr double kVelocityError = 0.12;    // [1] of the INS's velocity, latency included
 constexpr double kRateError = 0.12;        // [1] of its rate
 constexpr double kSideways = 0.25;         // [1] of the travel: sideslip
@@ -178,6 +180,10 @@ struct Judge {
 }  // namespace
 
 void MotionMonitor::receive(const InsMotion& ins) {
+  // One broken message among good ones does not stop the robot; two do, or one of a few.
+  const bool good = track_.reachable(ins, kPositionJump + position_std_, kYawJump);
+  doubts_ = good ? std::max(0.0, doubts_ - kForgiven) : doubts_ + 1.0;
+  if (!good && doubts_ < kDoubts) return;
   if (!track_.add(ins)) return;
   // A fix that becomes better moves by the error that it had before.
   const double position_std = std::isfinite(ins.position_std) ? ins.position_std : 0.0;

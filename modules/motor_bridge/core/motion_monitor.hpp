@@ -44,6 +44,7 @@ class MotionMonitor {
 
   MotionTrack track_;
   MotorTelemetry motors_;
+  double doubts_ = 0.0;                     ///< [1] unreachable poses lately
   double position_std_ = 0.0;               ///< [m] of the last measurements
   int64_t track_stands_since_[2] = {0, 0};  ///< [us] left, right: against its command
   int64_t suspected_since_ = -1;  ///< [us] measurements since then are suspicious; -1 = none

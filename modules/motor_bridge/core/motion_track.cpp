@@ -14,6 +14,7 @@ constexpr int64_t kKept = 3'500'000;      // [us] of history: longer than the lo
 constexpr int64_t kPiece = 20'000;        // [us] in which the bands are moved
 constexpr int64_t kMaxGap = 300'000;      // [us] beyond which windows begin anew
 constexpr int64_t kSettling = 3'000'000;  // [us] in which the bands forget what was before
+constexpr double kBrokenSpeed = 10.0;     // [1] of full speed: not a measurement
 constexpr double kMostTravel = 1.25;      // [1] of the commanded: slopes, tyres, calibration
 constexpr double kMostTurn = 1.4;         // [1]
 constexpr double kTurnToTravel = 0.25;    // [1] travel that turning explains, of half the gauge
@@ -68,6 +69,16 @@ void MotionTrack::command(const TrackCommand& command, int64_t now) {
           .cwiseMin(limits_.full_speed);
   if ((given_.back().speed == speed).all() || now < given_.back().utime) return;
   given_.push_back({now, speed});
+}
+
+bool MotionTrack::reachable(const InsMotion& ins, double slack, double yaw_slack) const {
+  const int64_t passed = ins.utime - last_.utime;
+  if (history_.empty() || passed > kMaxGap) return true;
+  const double time = 1e-6 * static_cast<double>(passed) + limits_.time_error;
+  const double far = slack + kMostTravel * limits_.full_speed * time;
+  const double turn = yaw_slack + kMostTurn * 2.0 * limits_.full_speed / limits_.gauge * time;
+  const bool too_far = std::hypot(ins.x - last_.x, ins.y - last_.y) > far;
+  return !too_far && !(std::abs(wrapAngle(ins.yaw - last_.yaw)) > turn);
 }
 
 bool MotionTrack::add(const InsMotion& ins) {
@@ -147,14 +158,14 @@ void MotionTrack::measure(MotionSums& sums, const InsMotion& ins, double dt) con
   sums.turned += turned;
   const double forward = 0.5 * (ins.v_forward + last_.v_forward);
   const double left = 0.5 * (ins.v_left + last_.v_left);
-  if (std::isfinite(forward) && std::isfinite(left)) {
+  if (std::hypot(forward, left) < kBrokenSpeed * limits_.full_speed) {
     sums.ins_way += dt * (forward * ahead + left * aside);
     sums.ins_path += dt * std::hypot(forward, left);
   } else {
     sums.no_velocity += dt;
   }
   const double rate = 0.5 * (ins.yaw_rate + last_.yaw_rate);
-  if (std::isfinite(rate)) {
+  if (std::abs(rate) * limits_.gauge < kBrokenSpeed * limits_.full_speed) {
     sums.gyro += dt * rate;
     sums.gyro_path += dt * std::abs(rate);
   } else {

@@ -88,6 +88,9 @@ class MotionTrack {
 
   /// The command that holds from now [us] on, in the unit of the drive.
   void command(const TrackCommand& command, int64_t now);
+  /// Whether a robot in full drive could be at a pose after the last one, with `slack` [m] and
+  /// `yaw_slack` [rad]; true where there is none to compare with.
+  bool reachable(const InsMotion& ins, double slack, double yaw_slack) const;
   /// Adds a measurement with a pose; false if it is not newer than the last one.
   bool add(const InsMotion& ins);
   /// Forgets the windows; the next measurement begins them anew.
