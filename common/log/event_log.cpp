@@ -260,6 +260,7 @@ bool LogReader::next(LogEvent& event) {
   event.channel.assign(reinterpret_cast<const char*>(name), channel_size);
   const uint8_t* const message = name + channel_size;
   event.bytes.assign(message, message + sizeWithoutSeal(message, message_size));
+  event.sealed = event.bytes.size() < message_size;
   file_->position += kLogHeaderSize + channel_size + message_size;
   ++file_->events;
   return true;

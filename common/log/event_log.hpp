@@ -18,6 +18,8 @@ struct LogEvent {
   int64_t utime = 0;  ///< [us] when it was recorded
   std::string channel;
   std::vector<uint8_t> bytes;
+  bool sealed =
+      false;  ///< in the log a seal stood behind the bytes; whether a good one, nobody asks
 };
 
 /// A message as it goes over the bus.

@@ -79,6 +79,19 @@ void noteSeq(const LogEvent& event, int64_t seq, std::map<std::string, int64_t>&
   known->second = seq;
 }
 
+/// Leaves out what a robot with a key has not taken: unsealed messages that do not stop.
+void removeUnsealed(std::vector<LogEvent>& events) {
+  bool robot_has_key = false;
+  const auto refused = [&](const LogEvent& event) {
+    if (event.channel == kMotor.name) robot_has_key = event.sealed;
+    bool is_stop = false;
+    dispatch(
+        event, [&](const auto& message) { is_stop = stops(message); }, kEstop, kArm, kGoal);
+    return robot_has_key && !event.sealed && !is_stop;
+  };
+  events.erase(std::remove_if(events.begin(), events.end(), refused), events.end());
+}
+
 bool inVirtualTime(const std::vector<LogEvent>& events) {
   for (const LogEvent& event : events) {
     health_t health;
@@ -224,6 +237,7 @@ std::vector<Snapshot> fromReplayable(const RobotLog& log, std::vector<Snapshot> 
 RobotLog toRobotLog(const std::string& name, std::vector<LogEvent> events) {
   RobotLog log;
   log.name = name;
+  removeUnsealed(events);
   log.virtual_time = inVirtualTime(events);
   Clock clock;
   std::map<std::string, int64_t> last;

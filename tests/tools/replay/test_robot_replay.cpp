@@ -249,6 +249,24 @@ TEST_CASE("a robot's log through the planner gives the programs and plans of the
   REQUIRE(check.equal());
 }
 
+TEST_CASE("what a robot with a key did not take is not replayed, a stop is") {
+  std::vector<LogEvent> events = plainDrive();
+  for (LogEvent& event : events) event.sealed = true;
+  goal_t forged{};
+  forged.goal_id = 4711;
+  forged.goal_pose[0] = -5.0;
+  forged.utime = events[events.size() / 2].utime;
+  events.insert(events.begin() + static_cast<std::ptrdiff_t>(events.size() / 2),
+                eventOf(kGoal, forged));
+  estop_t stop{};
+  stop.engaged = true;
+  stop.utime = events.back().utime;
+  events.push_back(eventOf(kEstop, stop));
+  const size_t all = events.size();
+  CHECK(toRobotLog("drive", events).events.size() == all - 1);
+  CHECK(plannerCheck(std::move(events)).equal());
+}
+
 TEST_CASE(
     "a message that was recorded on the other side of a step counts where the planner heard it") {
   std::vector<LogEvent> events = plainDrive();
