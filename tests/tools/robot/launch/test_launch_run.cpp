@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include "common/seal/key_file.hpp"
 #include "tests/tools/robot/launch/launched.hpp"
 #include "tools/robot/launch/host.hpp"
 
@@ -44,6 +45,28 @@ TEST_CASE("processes start, one that is killed comes back, and all are gone afte
   CHECK_THAT(contentOf(launched.run() / "log/p0.log"), Contains("ends by signal 2"));
   const std::string log = contentOf(launched.run() / "log/supervisord.log");
   CHECK(log.find("stopped: p1 (exit status 0)") < log.find("stopped: p0 (exit status 0)"));
+}
+
+TEST_CASE("the key goes to every process of ours and to no other, and a bad one starts nothing") {
+  const Launched launched({"good"}, TREAD_STAND_IN, "simulated: true\nkey: robot.key\n");
+  const std::string key = (launched.folder / "robot.key").string();
+  const CommandOutcome absent = call(launched, {});
+  CHECK(absent.code == 1);
+  REQUIRE(withoutAdvice(absent.output).size() == 1);
+  CHECK(withoutAdvice(absent.output).front() ==
+        "trial: key " + key +
+            ": cannot be read (No such file or directory); fix: check the path, "
+            "or make one with tread-key new");
+  tread::writeNewKey(key);
+  std::filesystem::permissions(key, std::filesystem::perms(0644));
+  CHECK_THAT(call(launched, {"--check"}).output, Contains("(mode 0644); fix: chmod 600 " + key));
+  std::filesystem::permissions(key, std::filesystem::perms(0600));
+  Process launch("tread-launch", launched.arguments(), launched.output());
+  REQUIRE(launched.says("trial: all 2 processes run after"));
+  CHECK(within(10, [&] {
+    return contentOf(launched.run() / "log/p0.log").find("--key " + key) != std::string::npos;
+  }));
+  CHECK(launched.pidOf(key) == launched.pidOf("p0.txt"));
 }
 
 TEST_CASE("a second launch in the same folder is refused with one line, and the first goes on") {
