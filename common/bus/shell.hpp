@@ -11,7 +11,7 @@
 #include "common/bus/lcm_bus.hpp"
 #include "common/config/config_reader.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): that of CLI11
 class App;
 }
 

@@ -17,9 +17,7 @@ constexpr const char* kFooter =
     "the\n"
     "operator. It is read once, at the start of each process.";
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app{"Makes and checks the key that a robot and its operators share.", "tread-key"};
   app.footer(kFooter);
   app.require_subcommand(1);
@@ -33,14 +31,18 @@ int main(int argc, char** argv) {
   const CLI::App* show = addCommand("show", "Prints the key's fingerprint, never the key itself.");
   addCommand("check", "Says whether the robot's processes would take this file.");
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
-  return tread::runProgram("tread-key", [&] {
-    if (make->parsed()) tread::writeNewKey(path);
-    const std::string fingerprint = tread::fingerprint(tread::readKey(path));
-    if (show->parsed())
-      std::cout << fingerprint << std::endl;
-    else
-      std::cout << path << ": " << (make->parsed() ? "made" : "good") << ", fingerprint "
-                << fingerprint << std::endl;
-    return 0;
-  });
+  if (make->parsed()) tread::writeNewKey(path);
+  const std::string fingerprint = tread::fingerprint(tread::readKey(path));
+  if (show->parsed())
+    std::cout << fingerprint << std::endl;
+  else
+    std::cout << path << ": " << (make->parsed() ? "made" : "good") << ", fingerprint "
+              << fingerprint << std::endl;
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return tread::runProgram("tread-key", [&] { return run(argc, argv); });
 }
