@@ -9,6 +9,7 @@
 #include <iostream>
 #include <vector>
 
+#include "common/bus/key_option.hpp"
 #include "common/config/command_line.hpp"
 #include "common/seal/key_file.hpp"
 
@@ -44,15 +45,6 @@ void describe(CLI::App& app, Arguments& arguments) {
 }
 
 }  // namespace
-
-void addKeyOption(CLI::App& app, std::string& path) {
-  app.add_option("--key", path,
-                 "key of the robot (tread-key new FILE): messages are sealed, and others refused")
-      ->envname("TREAD_KEY")
-      ->check([](const std::string& given) {
-        return given.empty() ? std::string("--key: a file is missing") : std::string();
-      });
-}
 
 const std::atomic<bool>& stopRequest(pid_t parent) {
   std::signal(SIGINT, requestStop);

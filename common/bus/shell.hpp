@@ -11,14 +11,7 @@
 #include "common/bus/lcm_bus.hpp"
 #include "common/config/config_reader.hpp"
 
-namespace CLI {  // NOLINT(readability-identifier-naming): that of CLI11
-class App;
-}
-
 namespace tread {
-
-/// Adds --key FILE, with the environment variable TREAD_KEY as its default, for hostSealer().
-void addKeyOption(CLI::App& app, std::string& path);
 
 /// What a process does once its configuration is read: runs on this bus until `stop`.
 using ShellBody = std::function<void(BusAccess access, const std::atomic<bool>& stop)>;

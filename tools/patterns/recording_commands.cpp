@@ -9,6 +9,7 @@
 #include <system_error>
 #include <vector>
 
+#include "common/bus/key_option.hpp"
 #include "common/bus/shell.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/pattern/pattern.hpp"

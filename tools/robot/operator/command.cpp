@@ -5,7 +5,8 @@
 #include <csignal>
 #include <iostream>
 
-#include "common/bus/shell.hpp"
+#include "common/bus/key_option.hpp"
+#include "common/bus/lcm_bus.hpp"
 #include "common/config/command_line.hpp"
 #include "common/seal/key_file.hpp"
 #include "tools/robot/launch/running_robots.hpp"

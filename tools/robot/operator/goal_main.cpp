@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/bus/shell.hpp"
+#include "common/bus/key_option.hpp"
 #include "common/config/command_line.hpp"
 #include "modules/simulator/simulator_files.hpp"
 #include "tools/robot/operator/calls.hpp"
