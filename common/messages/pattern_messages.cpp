@@ -185,6 +185,7 @@ std::optional<PatternSet> PatternSetAssembler::add(const pattern_set_part_t& par
   refusal_.clear();
   const Problem problem = partProblem(part);
   if (!problem.empty()) return refuse(about(part) + problem);
+  if (part.set_version < last_version_) ++older_;
   if (part.set_version <= last_version_) return std::nullopt;
   Pending& pending = pendingOf(part.set_version);
   const bool fits = pending.parts.empty() || sameSet(pending.parts.begin()->second, part);

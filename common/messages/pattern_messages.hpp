@@ -38,6 +38,8 @@ class PatternSetAssembler {
   /// Why the last part or set was refused, in one line; empty if it was not.
   const std::string& refusal() const { return refusal_; }
   int64_t refused() const { return refused_; }
+  /// Parts of versions before the one in use: a second learner, or one that has lost its state.
+  int64_t older() const { return older_; }
 
  private:
   /// A version that is not complete yet.
@@ -55,6 +57,7 @@ class PatternSetAssembler {
   int64_t last_version_ = 0;
   std::string refusal_;
   int64_t refused_ = 0;
+  int64_t older_ = 0;
 };
 
 BridgeReading readingFrom(const motor_t& message);

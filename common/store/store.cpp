@@ -12,6 +12,7 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 namespace tread {
@@ -142,8 +143,18 @@ FileStore::FileStore(std::string folder) : folder_(std::move(folder)) {
     throw std::runtime_error("store: cannot use the folder " + folder_ + " (" +
                              (failure ? failure.message() : std::strerror(errno)) +
                              "); give one that may be written to");
+  lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ < 0 || ::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+    ::close(lock_);
+    throw std::runtime_error("store: the folder " + folder_ +
+                             " is in use by another process; end that one first");
+  }
   for (const auto& file : fs::directory_iterator(folder_, failure))
     if (isLeftover(file.path().filename().string())) ::unlink(file.path().c_str());
+}
+
+FileStore::~FileStore() {
+  ::close(lock_);
 }
 
 std::optional<std::string> FileStore::read(const std::string& name) const {

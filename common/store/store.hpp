@@ -29,8 +29,12 @@ class Store {
 /// Entries are files of a folder: written to a temporary file, flushed to disk, renamed.
 class FileStore : public Store {
  public:
-  /// Creates the folder if needed; throws std::runtime_error if that fails.
+  /// Creates the folder if needed; throws std::runtime_error if that fails, or where another
+  /// process uses it.
   explicit FileStore(std::string folder);
+  ~FileStore() override;
+  FileStore(const FileStore&) = delete;
+  FileStore& operator=(const FileStore&) = delete;
 
   std::optional<std::string> read(const std::string& name) const override;
   std::optional<std::string> write(const std::string& name, const std::string& content) override;
@@ -39,6 +43,7 @@ class FileStore : public Store {
 
  private:
   std::string folder_;
+  int lock_ = -1;  ///< the folder, locked
 };
 
 /// Entries in memory; for virtual time. Outlives the nodes that use it.

@@ -304,6 +304,8 @@ void MotorBridgeNode::reportHealth() {
     health_.setState(health_t::HEALTH_DEGRADED, failsafe.standing_fault);
   } else if (failsafe.state == State::kFault || failsafe.state == State::kEstopped) {
     health_.setState(health_t::HEALTH_DEGRADED, failsafe.reason);
+  } else if (const std::string line = controller_->lineProblem(); !line.empty()) {
+    health_.setState(health_t::HEALTH_DEGRADED, link_.address() + ": " + line);
   } else {
     health_.setState(health_t::HEALTH_OK, "");
   }

@@ -65,10 +65,12 @@ void readAges(ConfigReader reader, bool logged, AgeLimits& ages) {
 constexpr double kFarthest = 1e6;  // [m] a goal can be from the origin of map
 constexpr int kMaxTileCells = 512;
 
-constexpr int64_t kMapForgotten = 3'000'000;  // [us] without a tile, until another map may come
-constexpr int64_t kPlanRepeat = 200'000;      // [us]
-constexpr int64_t kTreeRepeat = 1'000'000;    // [us]
-constexpr size_t kTreeNodes = 600;            // drawn at most: 15 kB
+constexpr int64_t kMapForgotten = 3'000'000;    // [us] without a tile, until another map may come
+constexpr int64_t kOlderForgotten = 5'000'000;  // [us] without an older set
+constexpr int64_t kOlderLate = 1'000'000;       // [us] a message may be late
+constexpr int64_t kPlanRepeat = 200'000;        // [us]
+constexpr int64_t kTreeRepeat = 1'000'000;      // [us]
+constexpr size_t kTreeNodes = 600;              // drawn at most: 15 kB
 
 /// Nothing for an invalid message, as the next.
 std::optional<Goal> goalFrom(const goal_t& message) {
@@ -219,15 +221,34 @@ void PlannerNode::watchGoal(int64_t utime) {
 
 void PlannerNode::take(const pattern_set_part_t& message) {
   const int64_t refused = sets_.refused();
+  const int64_t older = sets_.older();
   const std::optional<PatternSet> set = sets_.add(message);
   if (sets_.refused() > refused) return health_.addToCounter("PATTERN_SET refused");
   inputs_.set_received = bus_.now();
+  if (sets_.older() > older) return noteOlderSet(message.set_version);
   if (!set) return;
   const int64_t started = bus_.now();
   const bool taken = supervisor_.takeSet(*set);
   if (!taken) health_.addToCounter("PATTERN_SET refused: it waits");
   longest_swap_ = std::max(longest_swap_, bus_.now() - started);
   health_.setCounter("longest swap of a set [us]", longest_swap_);
+}
+
+/// One may be late; a learner that goes on with lower versions is a second one.
+void PlannerNode::noteOlderSet(int64_t version) {
+  const int64_t now = bus_.now();
+  if (now - older_heard_ > kOlderForgotten) older_since_ = now;
+  older_heard_ = now;
+  older_version_ = version;
+  health_.addToCounter("PATTERN_SET ignored: older than the set in use");
+}
+
+std::string PlannerNode::secondLearner(int64_t utime) const {
+  const bool goes_on = older_heard_ > 0 && utime - older_heard_ < kOlderForgotten &&
+                       older_heard_ - older_since_ > kOlderLate;
+  if (!goes_on) return "";
+  return "PATTERN_SET of version " + std::to_string(older_version_) +
+         " is published beside the newer one in use: does a second learner run? end it";
 }
 
 void PlannerNode::step(int64_t utime) {
@@ -276,7 +297,8 @@ void PlannerNode::publishTree(const PlanReport& report) {
 
 void PlannerNode::publishHealth(int64_t utime, const PlanReport& report) {
   const bool waits = report.status == PlanStatus::kWaiting;
-  const std::string problem = waits ? report.reason : supervisor_.setRefusal();
+  std::string problem = waits ? report.reason : supervisor_.setRefusal();
+  if (problem.empty()) problem = secondLearner(utime);
   health_.setState(problem.empty() ? health_t::HEALTH_OK : health_t::HEALTH_DEGRADED, problem);
   health_.setCounter("pattern set version", report.set_version);
   for (const auto& [name, value] : supervisor_.counters()) health_.setCounter(name, value);

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 // Against the emulated controller, which was written from the protocol's documents by somebody
 // else.
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -28,6 +29,8 @@ struct EmulatedRig {
   int64_t last_motion = 0;
   bool planner_alive = true;
   bool bridge_alive = true;
+  double lost_bytes = 0.0;  ///< share, both ways
+  std::mt19937 random{1};
 
   explicit EmulatedRig(const RoboteqConfig& config = {}, const sim::RoboteqSettings& settings = {})
       : connection(config), device(settings) {
@@ -47,12 +50,19 @@ struct EmulatedRig {
       bridge.receive(planner.plan(now - 1'000, last), now);
     }
     if (now % 200'000 == 0) bridge.receive(OperatorNotice{1, "operator", true, now, 0, ""}, now);
-    connection.receive(device.transmit(now), now);
+    connection.receive(thinned(device.transmit(now)), now);
     out = bridge.step(now, connection.report(now));
     connection.holdStop(out.hold_device_stop);
     if (out.release_device_stop) connection.releaseStop(now);
     if (out.send) connection.command(out.command, now);
-    device.receive(connection.poll(now), now);
+    device.receive(thinned(connection.poll(now)), now);
+  }
+  std::string thinned(std::string bytes) {
+    std::uniform_real_distribution<double> share(0.0, 1.0);
+    bytes.erase(std::remove_if(bytes.begin(), bytes.end(),
+                               [&](char) { return share(random) < lost_bytes; }),
+                bytes.end());
+    return bytes;
   }
   void run(int64_t us) {
     for (const int64_t end = now + us; now < end;) step();
@@ -146,6 +156,44 @@ TEST_CASE("emulated controller: planner dead, bridge dead, controller silent: ze
     rig.drive();
     CHECK(rig.state() == State::kDriving);
   }
+}
+
+TEST_CASE(
+    "emulated controller: an undervoltage is told within a tenth of a second, at any moment") {
+  EmulatedRig rig;
+  rig.planner.commands = 200;
+  rig.drive();
+  int64_t longest = 0;
+  for (int i = 0; i < 40; ++i) {
+    rig.run(1'300'000 + 10'000 * i);
+    rig.bridge.receive(ArmRequest{rig.now, true, "operator", "go"}, rig.now);
+    rig.run(300'000);
+    REQUIRE(rig.state() == State::kDriving);
+    const int64_t low = rig.now;
+    rig.device.setBrownOut(true);
+    while (rig.state() != State::kFault && rig.now - low < 1'000'000) rig.step();
+    longest = std::max(longest, rig.now - low);
+    rig.device.setBrownOut(false);
+  }
+  CHECK(longest <= 100'000);
+}
+
+TEST_CASE("a line that loses a tenth of its bytes is told, a sound one is not") {
+  EmulatedRig rig;
+  rig.drive();
+  rig.run(10'000'000);
+  CHECK(rig.connection.lineProblem().empty());
+  rig.lost_bytes = 0.1;
+  std::string told;
+  for (int i = 0; i < 1'000 && told.empty(); ++i) {
+    rig.step();
+    told = rig.connection.lineProblem();
+  }
+  CHECK_THAT(told, Catch::Contains("% of the exchanges with the controller failed") &&
+                       Catch::Contains("check cable, plugs and earthing"));
+  rig.lost_bytes = 0.0;
+  rig.run(12'000'000);
+  CHECK(rig.connection.lineProblem().empty());
 }
 
 TEST_CASE("emulated controller: reboot and brown-out stop, afterwards it drives only after ARM") {

@@ -370,3 +370,18 @@ TEST_CASE("A goal out of a log moves nothing, and takes nothing from the goal of
     CHECK(yard.robot().aborted() == 0);
   }
 }
+
+TEST_CASE("A second learner is told: its older versions are ignored, and the planner drives on") {
+  Yard yard;
+  yard.run(1.5);
+  yard.sendGoal(10.0);
+  yard.arm();
+  yard.run(2.0);
+  for (pattern_set_part_t& part : toMessages(samplePatterns(101)))
+    yard.bus.outside().publish(kPatternSet, part);
+  yard.run(5.0);
+  CHECK(yard.plan.set_version == 101);
+  CHECK(yard.health.health_state == health_t::HEALTH_DEGRADED);
+  CHECK_THAT(yard.health.health_reason, Catch::Contains("does a second learner run?"));
+  CHECK(yard.robot().speed() > 0.3);
+}

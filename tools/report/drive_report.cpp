@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <stdexcept>
 
 #include "common/config/config_reader.hpp"
 #include "common/log/drive_log.hpp"
@@ -105,6 +106,7 @@ class Reader {
   void take(const LogEvent& event) {
     ++drive_.events;
     drive_.latencies.add(event);
+    drive_.chronicle.take(event);
     dispatch(
         event, [&](const auto& message) { hear(message); }, kIns, kGoal, kPlan, kPlanTree, kMap,
         kLearning, kExecution, kMotor, kConfig);
@@ -254,6 +256,8 @@ DriveRecord readDrive(const std::vector<std::string>& logs) {
     while (log.next(event)) reader.take(event);
     if (drive.problem.empty()) drive.problem = log.problem();
   }
+  // A file of another kind has nothing to tell.
+  if (drive.events == 0 && !drive.problem.empty()) throw std::runtime_error(drive.problem);
   return drive;
 }
 
@@ -273,7 +277,7 @@ std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth) {
 
 std::string reportOf(const DriveRecord& drive, const SimulationTruth& truth,
                      const RuleErrors& by_rule) {
-  std::string words = resultLine(drive, truth) + "\n";
+  std::string words = resultLine(drive, truth) + "\n" + drive.chronicle.words();
   words += formatted("prediction error at a pattern's end: mean %.3f m, %.2f deg over %zu measured",
                      mean(drive, &PatternError::position),
                      mean(drive, &PatternError::yaw) * 180.0 / kPi, drive.errors.size());

@@ -16,6 +16,7 @@
 #include "modules/simulator/core/world.hpp"
 #include "modules/simulator/simulator_files.hpp"
 #include "tools/replay/shadow_learners.hpp"
+#include "tools/report/chronicle.hpp"
 
 namespace tread {
 class plan_tree_t;
@@ -161,6 +162,7 @@ struct DriveRecord {
   std::unique_ptr<TileMap> map;
   std::optional<FootprintSize> outline;  ///< of the robot; none = the log does not say
   Latencies latencies;
+  Chronicle chronicle;  ///< of the whole log
 
   double seconds() const { return static_cast<double>(ended - begun) * 1e-6; }
   /// Length of the track [m].

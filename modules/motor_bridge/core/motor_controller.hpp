@@ -60,6 +60,8 @@ class MotorController {
   virtual bool ready() const = 0;
   /// Unknown unless ready.
   virtual MotorTelemetry telemetry() const = 0;
+  /// What is wrong with a line that still works, one line; empty = it is sound.
+  virtual std::string lineProblem() const { return ""; }
   /// What was counted, by its name in words.
   virtual std::map<std::string, int64_t> counters() const = 0;
 };

@@ -7,6 +7,10 @@
 namespace tread::motor {
 namespace {
 
+constexpr int64_t kLineSpan = 5'000'000;  // [us] over which a line is judged
+constexpr int64_t kFewExchanges = 50;
+constexpr int64_t kWorstPercent = 5;  // of exchanges may fail on a sound line
+
 /// Fault flags older than this are unknown [us]; they are read about ten times a second.
 constexpr int64_t kFlagsMaxAge = 1'000'000;
 
@@ -99,6 +103,7 @@ std::string RoboteqConnection::poll(int64_t now) {
   if (phase_ == Phase::kBackoff && now >= retry_at_) enter(Phase::kEcho);
   if (phase_ == Phase::kReady) {
     output_ += session_.poll(now);
+    watchLine(now);
     if (!session_.problem().empty()) fail(session_.problem(), now);
   } else if (phase_ == Phase::kBackoff && now - zero_at_ >= config_.stop_interval_us) {
     sendZero(now);
@@ -108,6 +113,32 @@ std::string RoboteqConnection::poll(int64_t now) {
   std::string output;
   output.swap(output_);
   return output;
+}
+
+RoboteqConnection::Exchanges RoboteqConnection::exchanges(int64_t now) const {
+  Exchanges sum{now, 0, 0};
+  for (const auto& [name, count] : counters()) {
+    if (name == "commands sent" || name == "queries sent") sum.all += count;
+    for (const char* failure : {"replies missing", "commands refused", "queries refused"})
+      if (name == failure) sum.failed += count;
+  }
+  return sum;
+}
+
+void RoboteqConnection::watchLine(int64_t now) {
+  if (!line_.empty() && now - line_.back().utime < kLineSpan / 10) return;
+  line_.push_back(exchanges(now));
+  while (line_.size() > 2 && now - line_.front().utime > kLineSpan) line_.pop_front();
+}
+
+std::string RoboteqConnection::lineProblem() const {
+  if (line_.empty() || !ready()) return "";
+  const int64_t all = line_.back().all - line_.front().all;
+  const int64_t failed = line_.back().failed - line_.front().failed;
+  if (all < kFewExchanges || 100 * failed < kWorstPercent * all) return "";
+  return std::to_string(100 * failed / all) + " % of the exchanges with the controller failed in " +
+         "the last " + std::to_string(kLineSpan / 1'000'000) +
+         " s; check cable, plugs and earthing";
 }
 
 std::string RoboteqConnection::request() const {

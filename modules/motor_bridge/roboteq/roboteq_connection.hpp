@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <string>
 #include <string_view>
@@ -38,13 +39,22 @@ class RoboteqConnection : public MotorController {
   bool ready() const override { return phase_ == Phase::kReady; }
   MotorTelemetry telemetry() const override { return known(); }
   const std::string& firmware() const { return firmware_; }
+  std::string lineProblem() const override;
   std::map<std::string, int64_t> counters() const override;
 
  private:
+  /// How many exchanges there were until a time, and how many of them failed.
+  struct Exchanges {
+    int64_t utime = 0;  ///< [us]
+    int64_t all = 0;
+    int64_t failed = 0;
+  };
   enum class Phase { kClosed, kEcho, kWatchdog, kReadBack, kZero, kIdentify, kReady, kBackoff };
 
   RoboteqTelemetry known() const { return ready() ? session_.telemetry() : RoboteqTelemetry{}; }
   void enter(Phase phase);
+  Exchanges exchanges(int64_t now) const;
+  void watchLine(int64_t now);
   void fail(const std::string& problem, int64_t now, const std::string& detail = "");
   void send(const std::string& line) { output_ += line + "\r"; }
   void sendZero(int64_t now);
@@ -62,8 +72,9 @@ class RoboteqConnection : public MotorController {
   std::string output_;
   std::string firmware_;
   std::map<std::string, int64_t> counters_;
-  int tries_ = 0;         ///< of the present request
-  int64_t asked_at_ = 0;  ///< when the present request was sent
+  std::deque<Exchanges> line_;  ///< of the last seconds
+  int tries_ = 0;               ///< of the present request
+  int64_t asked_at_ = 0;        ///< when the present request was sent
   int64_t backoff_us_ = 0;
   int64_t retry_at_ = 0;
   int64_t zero_at_ = 0;  ///< last zero sent outside of a session

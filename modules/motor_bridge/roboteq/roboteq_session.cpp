@@ -183,8 +183,9 @@ bool RoboteqTelemetry::take(const RoboteqReply& reply, const RoboteqLayout& layo
 }
 
 RoboteqSession::RoboteqSession(const RoboteqConfig& config)
-    : config_(config), queries_{"FF", "A", "FS", "V"} {
-  if (config_.layout.rpm_per_mps > 0.0) queries_.emplace_back("S");
+    : config_(config), queries_{"FF", "A", "FF", "FS", "FF", "V"} {
+  // Every second query asks for faults: they stop the robot.
+  if (config_.layout.rpm_per_mps > 0.0) queries_.insert(queries_.end(), {"FF", "S"});
 }
 
 void RoboteqSession::begin(int64_t now) {
@@ -224,6 +225,7 @@ void RoboteqSession::sendCommand(const std::string& line, int64_t now) {
 void RoboteqSession::ask(const std::string& query, const std::string& key, int64_t now) {
   output_ += query + "\r";
   pending_.push_back({key, now});
+  ++counters_["queries sent"];
   queried_at_ = now;
 }
 

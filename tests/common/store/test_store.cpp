@@ -85,6 +85,15 @@ TEST_CASE("entries are found again by a new store of the folder") {
   CHECK(FileStore(folder.path).read("set") == std::string(300000, 'x'));
 }
 
+TEST_CASE("a second process on the folder of another is refused in one line, until that one ends") {
+  const Folder folder;
+  {
+    const FileStore first(folder.path);
+    CHECK_THROWS_WITH(FileStore(folder.path), Contains("is in use by another process"));
+  }
+  CHECK_NOTHROW(FileStore(folder.path));
+}
+
 TEST_CASE("leftovers of a crash are no entries and are cleaned at the next start") {
   const Folder folder;
   FileStore(folder.path).write("set", "whole");
@@ -150,10 +159,10 @@ TEST_CASE("a process killed while writing leaves the old or the new, whole") {
     ::usleep(static_cast<useconds_t>(2000 + 3100 * round));
     ::kill(writer, SIGKILL);
     ::waitpid(writer, nullptr, 0);
-    const auto content = FileStore(folder.path).read("set");
+    const auto content = store.read("set");
     REQUIRE(content);
     CHECK((*content == a || *content == b));
-    CHECK(FileStore(folder.path).names() == std::vector<std::string>{"set"});
+    CHECK(store.names() == std::vector<std::string>{"set"});
   }
 }
 

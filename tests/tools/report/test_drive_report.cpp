@@ -94,6 +94,57 @@ TEST_CASE("of two arrivals in one log the first ends the drive") {
   CHECK(drive.disarmed == 0);
 }
 
+TEST_CASE("beyond the first arrival: goals, stops, faults and E-stops of the whole log are told") {
+  std::vector<LogEvent> events = arrivingDrive();
+  const auto plan = [&](double seconds, int64_t goal, int16_t status, const std::string& reason) {
+    plan_t message = planAt(seconds, status, reason);
+    message.goal_id = goal;
+    events.push_back(eventOf(kPlan, message));
+  };
+  const auto motor = [&](double seconds, int16_t state, const std::string& reason) {
+    motor_t message = motorAt(seconds, state);
+    message.state_reason = reason;
+    events.push_back(eventOf(kMotor, message));
+  };
+  motor(15.3, motor_t::STATE_DRIVING, "playing");
+  plan(16.0, 2, plan_t::PLAN_DRIVING, "");
+  motor(16.5, motor_t::STATE_ESTOP, "E-stop: dog (ada)");
+  plan(16.6, 2, plan_t::PLAN_STOPPED, "E-stop is engaged");
+  motor(17.0, motor_t::STATE_DRIVING, "playing");
+  plan(17.0, 3, plan_t::PLAN_DRIVING, "");
+  plan(18.0, 3, plan_t::PLAN_ARRIVED, "");
+  plan(19.0, 4, plan_t::PLAN_DRIVING, "");
+  motor(19.5, motor_t::STATE_DISARMED, "INS is stale");
+  plan(19.6, 4, plan_t::PLAN_STOPPED, "motor_bridge: INS is stale");
+  const DriveRecord drive = driveOf(events);
+  CHECK(drive.chronicle.goals().size() == 4);
+  CHECK(drive.chronicle.incidents().size() == 2);
+  const std::string report = reportOf(drive, {}, {});
+  INFO(report);
+  CHECK(contains(report,
+                 "the whole log: 2 of 4 goals reached; disarmed 1 times, 0 faults, 1 E-stops"));
+  CHECK(contains(report, "goal 2: NOT reached in 0.6 s: E-stop is engaged"));
+  CHECK(contains(report, "goal 3: arrived after 1.0 s"));
+  CHECK(contains(report, "E-stop: E-stop: dog (ada)"));
+  CHECK(contains(report, "disarmed: INS is stale"));
+}
+
+TEST_CASE("holes in a log are told with their channels, one line where all fell silent together") {
+  std::vector<LogEvent> events;
+  for (int i = 0; i <= 200; ++i) {
+    const double time = 5.0 + 0.05 * i;
+    const bool hole = time > 8.0 && time < 10.0;
+    if (!hole) events.push_back(eventOf(kMotor, motorAt(time, motor_t::STATE_ARMED)));
+    if (!hole && (time < 12.0 || time > 12.9)) events.push_back(eventOf(kIns, insAt(time, 0.0)));
+  }
+  const std::vector<Hole> holes = driveOf(events).chronicle.holes();
+  REQUIRE(holes.size() == 2);
+  CHECK(holes[0].begin == Approx(3.0));
+  CHECK(holes[0].length == Approx(2.0));
+  CHECK(holes[0].channels.size() == 2);
+  CHECK(holes[1].channels == std::vector<std::string>{"INS"});
+}
+
 TEST_CASE("a goal that is moved on the way does not begin the drive anew") {
   std::vector<LogEvent> events = tenMetres();
   events.push_back(eventOf(kGoal, goalAt(15.0, 12.0, 2)));
@@ -283,6 +334,7 @@ TEST_CASE("tread-report says in one line what it cannot read or does not know") 
   const std::string log = writeLog(folder.path("good.lcmlog"), arrivingDrive());
   const std::string csv = folder.write("truth.csv", "a,b\n1,2\n");
   const std::vector<std::pair<std::string, std::string>> refused{
+      {csv, "is this an LCM log?"},
       {"/no/such.lcmlog", "/no/such.lcmlog"},
       {log + " --rules none --world /no/world.yaml", "/no/world.yaml"},
       {log + " --rules none --truth " + csv, "is no record of a simulation's truth"}};

@@ -22,6 +22,7 @@ struct Options {
   std::string key;
   int keep = 20;
   int split_mb = 200;
+  int quota_mb = 0;
   bool check = false;
   bool with_parent = false;
 };
@@ -34,6 +35,9 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--keep", options.keep, "files that are kept")->check(CLI::Range(1, 10000));
   app.add_option("--split-mb", options.split_mb, "size of a file [MB]")
       ->check(CLI::Range(1, 100000));
+  app.add_option("--quota-mb", options.quota_mb,
+                 "of all files together [MB]: the oldest are removed; 0 = no limit")
+      ->check(CLI::Range(0, 100'000'000));
   app.add_flag("--check", options.check, "only read the command line");
   app.add_flag("--with-parent", options.with_parent, "end when the starting process is gone");
 }
@@ -48,12 +52,14 @@ int run(int argc, char** argv) {
   if (options.check) return 0;
   const std::atomic<bool>& stop = tread::stopRequest(options.with_parent ? parent : 0);
   const auto folder = std::filesystem::path(options.file).parent_path();
-  if (!folder.empty()) std::filesystem::create_directories(folder);
+  if (!folder.empty() && std::filesystem::create_directories(folder))
+    std::printf("tread-logger: made the folder %s\n", folder.c_str());
   tread::launch::RecorderSettings settings;
   settings.file = options.file;
   settings.lcm_url = options.lcm_url;
   settings.keep = options.keep;
   settings.split = 1'000'000LL * options.split_mb;
+  settings.quota = 1'000'000LL * options.quota_mb;
   tread::launch::Recorder recorder(settings);
   recorder.run(stop);
   return 0;

@@ -19,6 +19,7 @@ constexpr int64_t kMaintenancePeriod = 250'000;  // [us] between flushes
 constexpr int kWaitMs = 100;
 constexpr int64_t kRetry = 1'000'000;     // [us] between attempts after the disk was full
 constexpr int64_t kReserve = 10'000'000;  // [bytes] that must be free to begin again
+constexpr int64_t kScarce = 500'000'000;  // [bytes] free, of which people are warned
 constexpr int kMostFailures = 10;         // of LCM in a row
 constexpr int64_t kOverhead = 60;         // [bytes] of an event beside its message, about
 
@@ -41,8 +42,23 @@ void makeRoomForLog(const std::string& file, int keep) {
   }
 }
 
+void keepWithin(const std::string& file, int64_t bytes) {
+  int64_t sum = 0;
+  for (int i = 1; fs::exists(numbered(file, i)); ++i) {
+    sum += static_cast<int64_t>(fs::file_size(numbered(file, i)));
+    if (sum > bytes) fs::remove(numbered(file, i));
+  }
+}
+
 Recorder::Recorder(const RecorderSettings& settings)
-    : settings_(settings), lcm_(std::make_unique<lcm::LCM>(settings.lcm_url)) {
+    : settings_(settings),
+      lcm_(std::make_unique<lcm::LCM>(settings.lcm_url)),
+      bus_(BusAccess{settings.lcm_url, {}}, TimeSource::kHost),
+      health_(bus_, "logger",
+              "file: " + settings.file + "\nkeep: " + std::to_string(settings.keep) +
+                  "\nsplit: " + std::to_string(settings.split) +
+                  "\nquota: " + std::to_string(settings.quota) + "\n") {
+  if (settings_.quota > 0) settings_.split = std::min(settings_.split, settings_.quota / 4);
   if (!openForMulticastOnly(*lcm_, settings.lcm_url))
     throw std::runtime_error("LCM cannot be used" +
                              (settings.lcm_url.empty() ? "" : " at " + settings.lcm_url) +
@@ -62,14 +78,43 @@ Recorder::~Recorder() = default;
 
 void Recorder::begin() {
   makeRoomForLog(settings_.file, settings_.keep);
+  if (settings_.quota > 0) keepWithin(settings_.file, settings_.quota - settings_.split);
   writer_ = std::make_unique<LogWriter>(settings_.file + ".0");
   written_ = 0;
 }
 
 void Recorder::giveUp(const std::string& why) {
   std::fprintf(stderr, "tread-logger: %s; recording goes on when there is room\n", why.c_str());
+  trouble_ = why;
   writer_.reset();
   next_try_ = hostNow() + kRetry;
+}
+
+int64_t Recorder::freeBytes() const {
+  std::error_code none;
+  return static_cast<int64_t>(
+      fs::space(fs::absolute(settings_.file).parent_path(), none).available);
+}
+
+void Recorder::reportHealth(int64_t now) {
+  const int64_t free_mb = freeBytes() / 1'000'000;
+  const std::string lost = std::to_string(lost_) + " messages are lost";
+  if (!writer_) {
+    health_.setState(health_t::HEALTH_FAILED,
+                     "nothing is recorded, " + lost + ": " + trouble_ + "; make room");
+  } else if (lost_ > 0) {
+    health_.setState(health_t::HEALTH_DEGRADED, lost + ": the log has a hole (" + trouble_ + ")");
+  } else if (free_mb < kScarce / 1'000'000) {
+    health_.setState(health_t::HEALTH_DEGRADED,
+                     "only " + std::to_string(free_mb) + " MB are free for " + settings_.file +
+                         "; remove old logs, or limit them with --quota-mb");
+  } else {
+    health_.setState(health_t::HEALTH_OK, "");
+  }
+  health_.setCounter("recorded messages", recorded_);
+  health_.setCounter("lost messages", lost_);
+  health_.setCounter("free space [MB]", free_mb);
+  health_.step(now);
 }
 
 void Recorder::record(const std::string& channel, const uint8_t* bytes, size_t size) {
@@ -80,6 +125,7 @@ void Recorder::record(const std::string& channel, const uint8_t* bytes, size_t s
   try {
     writer_->write(hostUtc(), channel, bytes, size);
     written_ += kOverhead + static_cast<int64_t>(size);
+    ++recorded_;
   } catch (const std::exception& error) {
     ++lost_;
     giveUp(error.what());
@@ -93,10 +139,8 @@ void Recorder::maintain(int64_t now) {
       writer_->flush();
       if (written_ >= settings_.split) begin();
     } else if (now >= next_try_) {
-      const auto folder = fs::absolute(settings_.file).parent_path();
-      const auto room = static_cast<int64_t>(fs::space(folder).available);
       next_try_ = now + kRetry;
-      if (room < kReserve) return;
+      if (freeBytes() < kReserve) return;
       begin();
       std::fprintf(stderr, "tread-logger: recording again; %lld messages are lost\n",
                    static_cast<long long>(lost_));
@@ -119,7 +163,10 @@ void Recorder::run(const std::atomic<bool>& stop) {
     if (failures >= kMostFailures)
       throw std::runtime_error(
           "LCM fails again and again, so nothing more can be recorded; start again");
-    if (const int64_t now = hostNow(); now >= next_maintenance_) maintain(now);
+    if (const int64_t now = hostNow(); now >= next_maintenance_) {
+      maintain(now);
+      reportHealth(now);
+    }
   }
   for (int i = 0; i < kQueue && lcm_->handleTimeout(0) > 0; ++i) {
   }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "common/bus/lcm_bus.hpp"
 #include "common/log/event_log.hpp"
 
 namespace lcm {
@@ -19,18 +20,22 @@ namespace tread::launch {
 /// what would become FILE.<keep> is removed. Throws std::filesystem::filesystem_error.
 void makeRoomForLog(const std::string& file, int keep);
 
+/// Removes the oldest of FILE.1, FILE.2 and so on until they have at most so many bytes together.
+void keepWithin(const std::string& file, int64_t bytes);
+
 /// Where a recorder writes, and how much it keeps.
 struct RecorderSettings {
   std::string file;  ///< FILE.0 is the newest, FILE.1 the one before
   std::string lcm_url;
   int keep = 20;                ///< files
   int64_t split = 200'000'000;  ///< [bytes] of a file
+  int64_t quota = 0;            ///< [bytes] of all files together; 0 = no limit but `keep`
 };
 
 /// Records every message of a bus as LCM event logs, rotated.
 /** lcm-logger 1.3.1 keeps 30 messages while it waits for a busy host's processor and loses the rest
- * without a word; here a hundred thousand wait. A full disk ends no recording: it is told once, and
- * a new file begins when there is room. */
+ * without a word; here a hundred thousand wait. A full disk ends no recording: HEALTH tells it and
+ * what is lost, and a new file begins when there is room. */
 class Recorder {
  public:
   /// Throws std::runtime_error with one clear line if LCM or the file cannot be used.
@@ -47,6 +52,8 @@ class Recorder {
   void begin();
   void maintain(int64_t now);
   void giveUp(const std::string& why);
+  void reportHealth(int64_t now);
+  int64_t freeBytes() const;
 
   RecorderSettings settings_;
   std::unique_ptr<lcm::LCM> lcm_;
@@ -55,6 +62,10 @@ class Recorder {
   int64_t next_maintenance_ = 0;       ///< [us]
   int64_t next_try_ = 0;               ///< [us]
   int64_t lost_ = 0;
+  int64_t recorded_ = 0;
+  std::string trouble_;  ///< why nothing is recorded now
+  LcmBus bus_;           ///< for HEALTH alone
+  HealthReporter health_;
 };
 
 }  // namespace tread::launch

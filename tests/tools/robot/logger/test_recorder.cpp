@@ -3,10 +3,13 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 
 #include <catch2/catch.hpp>
 #include <lcm/lcm-cpp.hpp>
+
+#include <sys/mount.h>
 
 #include "common/bus/host_clock.hpp"
 #include "common/bus/lcm_bus.hpp"
@@ -191,6 +194,57 @@ TEST_CASE("a new log moves the earlier ones up and removes the oldest") {
   makeRoomForLog(log, 3);
   CHECK(contentOf(log + ".2") == "second");
   makeRoomForLog((folder / "none/x").string(), 3);
+}
+
+TEST_CASE("a full disk is told by HEALTH with what is lost, and recording goes on with room") {
+  const Folder folder;
+  const std::string disk = folder.path + "/disk";
+  fs::create_directories(disk);
+  if (::mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=14m") != 0) {
+    WARN("no disk can be mounted here: not tested");
+    return;
+  }
+  const std::string url = ownLcmUrl() + "&recv_buf_size=2097152";
+  const std::string file = disk + "/robot.lcmlog";
+  LcmBus listener(url, TimeSource::kHost);
+  const Latest<health_t> health(listener, kHealth);
+  const auto until = [&](const std::function<bool()>& done) {
+    for (int i = 0; i < 400 && !done(); ++i) listener.handle(50);
+    return done();
+  };
+  Process recorder("tread-logger", {file, "--lcm-url", url});
+  Speaker speaker(url);
+  meet(speaker, file + ".0");
+  CHECK(until([&] { return health.any() && health.message().process == "logger"; }));
+  CHECK_THAT(health.message().health_reason, Catch::Contains("MB are free"));
+  std::ofstream(disk + "/other") << std::string(13'500'000, 'x');
+  const bool failed = until([&] {
+    speaker.say(100, 900);
+    return health.message().health_state == health_t::HEALTH_FAILED;
+  });
+  CHECK(failed);
+  CHECK_THAT(health.message().health_reason,
+             Catch::Contains("nothing is recorded") && Catch::Contains("make room"));
+  fs::remove(disk + "/other");
+  CHECK(until([&] {
+    speaker.say(20, 900);
+    return health.message().health_state == health_t::HEALTH_DEGRADED;
+  }));
+  CHECK_THAT(health.message().health_reason, Catch::Contains("the log has a hole"));
+  recorder.signal(SIGINT);
+  CHECK(recorder.waitFor(5.0));
+  ::umount2(disk.c_str(), MNT_DETACH);
+}
+
+TEST_CASE("a quota removes the oldest files, and never the newest") {
+  const Folder own;
+  const std::string log = own.path + "/x";
+  for (int i = 0; i < 5; ++i) std::ofstream(log + "." + std::to_string(i)) << std::string(100, 'x');
+  launch::keepWithin(log, 250);
+  CHECK(fs::exists(log + ".0"));
+  CHECK(fs::exists(log + ".2"));
+  CHECK_FALSE(fs::exists(log + ".3"));
+  CHECK_FALSE(fs::exists(log + ".4"));
 }
 
 }  // namespace tread::testing
