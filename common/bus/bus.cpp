@@ -59,7 +59,11 @@ void Bus::receive(const std::string& channel, const uint8_t* bytes, size_t size)
 std::optional<size_t> Bus::unseal(const std::string& channel, const Subscribed& subscribed,
                                   const uint8_t* bytes, size_t size) {
   trusted_ = true;
-  if (!sealer_) return sizeWithoutSeal(bytes, size);
+  if (!sealer_) {
+    const size_t without = sizeWithoutSeal(bytes, size);
+    statistics_.sealed_unread |= without != size;
+    return without;
+  }
   const OpenedSeal opened = sealer_->open(channel, bytes, size, sealClock());
   if (opened.verdict == SealVerdict::kGood) return opened.size;
   trusted_ = false;

@@ -25,14 +25,15 @@ struct Receipt {
 
 /// What a bus endpoint counted since its start. Every refusal is here; none is silent.
 struct BusStatistics {
-  int64_t received = 0;     ///< messages that reached a handler
-  Receipt newest;           ///< the newest of them, in the order of receipt
-  int64_t undecodable = 0;  ///< of another or broken type
-  int64_t lost = 0;         ///< missing by seq
-  int64_t late = 0;         ///< older than their channel's maximum age on receipt
-  int64_t jumps = 0;        ///< their utime was too far ahead to be followed
-  int64_t failed = 0;       ///< handler threw
-  int64_t oversized = 0;    ///< own messages above the channel's max_bytes: not sent
+  int64_t received = 0;        ///< messages that reached a handler
+  Receipt newest;              ///< the newest of them, in the order of receipt
+  int64_t undecodable = 0;     ///< of another or broken type
+  int64_t lost = 0;            ///< missing by seq
+  int64_t late = 0;            ///< older than their channel's maximum age on receipt
+  int64_t jumps = 0;           ///< their utime was too far ahead to be followed
+  int64_t failed = 0;          ///< handler threw
+  int64_t oversized = 0;       ///< own messages above the channel's max_bytes: not sent
+  bool sealed_unread = false;  ///< without a key: others have one, and refuse what comes from here
   /// with a key: messages that were not taken, by why: "unsealed", "replayed"
   std::map<std::string, int64_t> refused;
   std::string last_refusal;  ///< the newest refusal in one line: channel, what, size

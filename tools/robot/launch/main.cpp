@@ -110,7 +110,7 @@ int start(const LaunchFile& launch, const LaunchSettings& settings) {
     stop_time = std::max(stop_time, process.stop_time);
   std::cout << launch.name << ": starting " << launch.processes.size() << " processes; logs in "
             << paths.logs << std::endl;
-  const Announcement announcement({launch.name, launch.lcm_url});
+  const Announcement announcement({launch.name, launch.lcm_url, launch.key});
   return supervise(launch.name, launch.processes.size(), paths, lock,
                    static_cast<double>(stop_time));
 }

@@ -53,7 +53,10 @@ Announcement::Announcement(const RunningRobot& robot) {
   path_ = folder + "/" + std::to_string(::getpid());
   file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   if (file_ < 0 || ::flock(file_, LOCK_EX | LOCK_NB) != 0) return;
-  std::ofstream(path_) << network() << "\n" << robot.name << "\n" << robot.lcm_url << "\n";
+  std::ofstream(path_) << network() << "\n"
+                       << robot.name << "\n"
+                       << robot.lcm_url << "\n"
+                       << robot.key << "\n";
 }
 
 Announcement::~Announcement() {
@@ -76,17 +79,20 @@ std::vector<RunningRobot> runningRobots() {
     std::string where;
     RunningRobot robot;
     if (std::getline(file, where) && std::getline(file, robot.name) &&
-        std::getline(file, robot.lcm_url) && where == network())
+        std::getline(file, robot.lcm_url) && std::getline(file, robot.key) && where == network())
       robots.push_back(robot);
   }
   return robots;
 }
 
-std::string findLcmUrl(const std::string& given) {
-  if (!given.empty() || std::getenv("LCM_DEFAULT_URL") != nullptr) return given;
-  const std::vector<RunningRobot> robots = runningRobots();
-  if (robots.empty()) return given;
-  if (robots.size() == 1) return robots.front().lcm_url;
+RunningRobot findRobot(const std::string& lcm_url, const std::string& key) {
+  if (!lcm_url.empty() || std::getenv("LCM_DEFAULT_URL") != nullptr) return {"", lcm_url, key};
+  std::vector<RunningRobot> robots = runningRobots();
+  if (robots.empty()) return {"", lcm_url, key};
+  if (robots.size() == 1) {
+    if (!key.empty()) robots.front().key = key;
+    return robots.front();
+  }
   std::string choice;
   for (const RunningRobot& robot : robots)
     choice += "\n  " + robot.name + ": --lcm-url '" + robot.lcm_url + "'";

@@ -11,6 +11,7 @@ namespace tread::launch {
 struct RunningRobot {
   std::string name;  ///< of the launch
   std::string lcm_url;
+  std::string key;  ///< file; empty = messages are not sealed
 };
 
 /// Tells the operator's programs of this user about a robot as long as the object lives.
@@ -30,8 +31,9 @@ class Announcement {
 /// The robots that were announced by this user in this network, and still run.
 std::vector<RunningRobot> runningRobots();
 
-/// The URL of the robot to speak to: what was given, else LCM_DEFAULT_URL, else that of the only
-/// robot that runs here, else empty, LCM's own. Throws std::runtime_error if several run.
-std::string findLcmUrl(const std::string& given);
+/// The robot to speak to, and its key: what was given, else LCM_DEFAULT_URL and TREAD_KEY, else
+/// what the only robot that runs here was started with. An empty URL is LCM's own. Throws
+/// std::runtime_error if several robots run.
+RunningRobot findRobot(const std::string& lcm_url, const std::string& key);
 
 }  // namespace tread::launch

@@ -27,6 +27,11 @@ constexpr int64_t kDisarmedPatience = 2'000'000;
 /// The planner shows a goal soon, and what it has ended does not come back [us].
 constexpr int64_t kGoalPatience = 1'500'000;
 
+/// Where the robot has a key and this program none, nothing that it says is taken.
+std::string keyWords(const Bus& bus) {
+  return bus.statistics().sealed_unread ? "; the robot has a key: give it with --key" : "";
+}
+
 bool isStuck(int16_t status) {
   return status == plan_t::PLAN_BLOCKED || status == plan_t::PLAN_UNREACHABLE;
 }
@@ -35,7 +40,8 @@ bool isStuck(int16_t status) {
 
 PermissionCall::PermissionCall(Bus& bus, const std::string& operator_name, double patience,
                                Request request)
-    : beacon_(bus, operator_name),
+    : bus_(bus),
+      beacon_(bus, operator_name),
       request_(std::move(request)),
       patience_(static_cast<int64_t>(patience * 1e6)),
       motor_(bus, kMotor) {}
@@ -57,7 +63,7 @@ CallResult PermissionCall::step(int64_t utime) {
 
 std::string PermissionCall::describe(int64_t utime) const {
   if (shown(utime)) return request_.text_if_served;
-  const std::string words = request_.text_if_not + "; ";
+  const std::string words = request_.text_if_not + keyWords(bus_) + "; ";
   if (!motor_.any())
     return words + "no MOTOR message came: is tread-motor-bridge running on this LCM URL?";
   if (motor_.age(utime) > kAnswerAge)
@@ -89,7 +95,6 @@ ArmCall::ArmCall(Bus& bus, const Requester& requester, const ArmRequest& request
            [arm = request.arm](int16_t bridge_state) { return mayDrive(bridge_state) == arm; },
            request.arm ? "armed" : "disarmed", request.arm ? "not armed" : "not disarmed",
            kArmRepeat, request.arm}),
-      bus_(bus),
       requester_(requester),
       request_(request) {
   beacon_.handOverTo(request.hand_over_to);
@@ -266,7 +271,7 @@ std::string GoalCall::describe(int64_t utime) const {
              motor_.message().state_reason + "): tread-arm, then again";
   else if (lost_since_)
     words += was_goal_ ? "; the planner follows this goal no more: give it again"
-                       : "; the planner does not take this goal";
+                       : "; the planner does not take this goal" + keyWords(bus_);
   return words;
 }
 

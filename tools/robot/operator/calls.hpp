@@ -72,6 +72,7 @@ class PermissionCall : public Call {
   /// What the bridge says of its state.
   const std::string& bridgeReason() const { return motor_.message().state_reason; }
 
+  Bus& bus_;
   OperatorBeacon beacon_;
 
  private:
@@ -102,7 +103,6 @@ class ArmCall : public PermissionCall {
   void letGo(int64_t utime) override { beacon_.letGo(utime); }
 
  private:
-  Bus& bus_;
   Requester requester_;
   ArmRequest request_;
   std::optional<int64_t> armed_;        ///< [us] since when

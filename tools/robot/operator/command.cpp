@@ -58,8 +58,8 @@ int runCall(const std::string& name, const CommandOptions& options,
   std::signal(SIGINT, noteSignal);
   std::signal(SIGTERM, noteSignal);
   try {
-    LcmBus bus(BusAccess{launch::findLcmUrl(options.lcm_url), hostSealer(options.key)},
-               TimeSource::kHost);
+    const launch::RunningRobot robot = launch::findRobot(options.lcm_url, options.key);
+    LcmBus bus(BusAccess{robot.lcm_url, hostSealer(robot.key)}, TimeSource::kHost);
     const std::unique_ptr<Call> call = make(bus);
     return run(name, options, bus, *call, [&bus](int ms) { bus.handle(ms); });
   } catch (const std::exception& error) {

@@ -23,7 +23,7 @@ inline constexpr const char* kOperatorHelp =
 
 /// How a command runs its call.
 struct CommandOptions {
-  std::string lcm_url;    ///< empty = found, see launch::findLcmUrl()
+  std::string lcm_url;    ///< empty = found, see launch::findRobot()
   std::string key;        ///< file of the robot's key; empty = messages are not sealed
   double timeout = 0.0;   ///< [s] after which the call is cancelled; 0 = never
   double progress = 0.0;  ///< [s] between lines of progress; 0 = none

@@ -38,32 +38,34 @@ class OwnFolder {
 
 TEST_CASE("the only robot that runs is found, and an address that is given goes before it") {
   const OwnFolder folder;
-  CHECK(findLcmUrl("").empty());
+  CHECK(findRobot("", "").lcm_url.empty());
   std::optional<Announcement> robot;
-  robot.emplace(RunningRobot{"simulated", "udpm://239.255.76.67:7668?ttl=0"});
-  CHECK(findLcmUrl("") == "udpm://239.255.76.67:7668?ttl=0");
-  CHECK(findLcmUrl("memq://") == "memq://");
+  robot.emplace(RunningRobot{"simulated", "udpm://239.255.76.67:7668?ttl=0", "/run/key"});
+  CHECK(findRobot("", "").key == "/run/key");
+  CHECK(findRobot("", "/my/key").key == "/my/key");
+  CHECK(findRobot("", "").lcm_url == "udpm://239.255.76.67:7668?ttl=0");
+  CHECK(findRobot("memq://", "").lcm_url == "memq://");
   setenv("LCM_DEFAULT_URL", "memq://", 1);
-  CHECK(findLcmUrl("").empty());
+  CHECK(findRobot("", "").lcm_url.empty());
   unsetenv("LCM_DEFAULT_URL");
   robot.reset();
-  CHECK(findLcmUrl("").empty());
+  CHECK(findRobot("", "").lcm_url.empty());
 }
 
 TEST_CASE("of two robots neither is guessed, and a killed launch is no robot") {
   const OwnFolder folder;
-  const Announcement here({"one", "udpm://239.255.76.67:7001"});
+  const Announcement here({"one", "udpm://239.255.76.67:7001", ""});
   const pid_t child = fork();
   if (child == 0) {
-    const Announcement there({"two", "udpm://239.255.76.67:7002"});
+    const Announcement there({"two", "udpm://239.255.76.67:7002", ""});
     pause();
     _exit(0);
   }
   for (int i = 0; i < 500 && runningRobots().size() < 2; ++i) usleep(10'000);
-  CHECK_THROWS_WITH(findLcmUrl(""),
+  CHECK_THROWS_WITH(findRobot("", ""),
                     Catch::Contains("several robots run here") &&
                         Catch::Contains("two: --lcm-url 'udpm://239.255.76.67:7002'"));
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
-  CHECK(findLcmUrl("") == "udpm://239.255.76.67:7001");
+  CHECK(findRobot("", "").lcm_url == "udpm://239.255.76.67:7001");
 }
