@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -14,6 +15,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/bus/host_clock.hpp"
+#include "common/bus/lcm_bus.hpp"
 #include "common/bus/tcp_relay.hpp"
 #include "common/config/command_line.hpp"
 #include "tools/robot/launch/host.hpp"
@@ -127,11 +130,33 @@ int only(const LaunchFile& launch, const Options& options) {
   throw std::runtime_error(options.settings.file + ": has no process '" + options.only + "'");
 }
 
+/// What the processes say of themselves in HEALTH within a little more than its period; those that
+/// are well say nothing.
+std::map<std::string, std::string> troubles(const std::string& lcm_url) {
+  constexpr int64_t kListen = 1'200'000;  // [us]
+  std::map<std::string, std::string> lines;
+  try {
+    LcmBus bus(lcm_url, TimeSource::kHost);
+    bus.subscribe<health_t>(kHealth, [&](const health_t& health) {
+      const bool failed = health.health_state == health_t::HEALTH_FAILED;
+      lines.erase(health.process);
+      if (health.health_state != health_t::HEALTH_OK)
+        lines[health.process] = (failed ? " FAILED: " : " DEGRADED: ") + health.health_reason;
+    });
+    for (const int64_t end = hostNow() + kListen; hostNow() < end;) bus.handle(50);
+  } catch (const std::exception& error) {
+    lines["HEALTH"] = std::string(" cannot be heard: ") + error.what();
+  }
+  return lines;
+}
+
 int status(const LaunchFile& launch, const RunPaths& paths) {
   if (!RunLock::isHeld(paths.lock)) {
     std::cout << launch.name << ": nothing runs in " << paths.folder << std::endl;
     return 3;  // as systemctl and supervisorctl do
   }
+  for (const auto& [process, trouble] : troubles(launch.lcm_url))
+    std::cout << process << trouble << std::endl;
   become({"supervisorctl", "--configuration", paths.config, "status"});
 }
 

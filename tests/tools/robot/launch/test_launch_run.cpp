@@ -88,6 +88,24 @@ TEST_CASE("a second launch in the same folder is refused with one line, and the 
   CHECK_THAT(call(launched, {"--stop"}).output, Contains("nothing runs"));
 }
 
+TEST_CASE("the status tells which process is not well, and why") {
+  const Launched launched({"good"}, TREAD_STAND_IN);
+  Process launch("tread-launch", launched.arguments(), launched.output());
+  REQUIRE(launched.says("processes run after"));
+  const std::string logger = std::string(TREAD_BIN_DIR) + "/tread-logger";
+  std::string url = contentOf(launched.folder / "trial.yaml");
+  url = url.substr(url.find("lcm_url: ") + 9);
+  url = url.substr(0, url.find('\n'));
+  // A recorder whose file may not grow loses messages: its own HEALTH.
+  Process recorder("/bin/sh", {"-c", "ulimit -f 1; exec \"$0\" \"$@\"", logger,
+                               (launched.folder / "x.lcmlog").string(), "--lcm-url", url});
+  CHECK(within(20.0, [&] {
+    const CommandOutcome status = call(launched, {"--status"});
+    return status.output.find("logger DEGRADED: the log has a hole: ") != std::string::npos &&
+           status.output.find("p0") != std::string::npos;
+  }));
+}
+
 TEST_CASE("two runs in one folder, one after another") {
   const Launched launched({"good"}, TREAD_STAND_IN);
   for (int i = 0; i < 2; ++i) {
