@@ -53,6 +53,8 @@ const std::atomic<bool>& stopRequest(pid_t parent) {
   if (std::signal(SIGHUP, requestStop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   // A device that goes away while it is written to must not end the process.
   std::signal(SIGPIPE, SIG_IGN);
+  // Nor may a limit of the size of files: writing fails, and is told.
+  std::signal(SIGXFSZ, SIG_IGN);
   if (parent != 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGINT);
     // It may be gone already.
