@@ -120,9 +120,10 @@ std::string Chronicle::words() const {
   if (goals_.size() <= 1 && incidents_.empty() && holes.empty()) return "";
   const auto reached = std::count_if(goals_.begin(), goals_.end(),
                                      [](const GoalStory& goal) { return goal.arrived; });
-  std::string words = formatted("the whole log: %d of %zu goals reached; disarmed %d times, ",
-                                static_cast<int>(reached), goals_.size(), count("disarmed"));
-  words += formatted("%d faults, %d E-stops; %zu holes\n", count("fault"), count("E-stop"),
+  std::string words =
+      formatted("the whole log: %d of %zu goals reached; %zu stops that needed arming ",
+                static_cast<int>(reached), goals_.size(), incidents_.size());
+  words += formatted("(%d faults, %d E-stops); %zu holes\n", count("fault"), count("E-stop"),
                      holes.size());
   words += linesOf(goals_, lineOf);
   words += linesOf(incidents_, [](const Incident& incident) {

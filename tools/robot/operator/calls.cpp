@@ -271,7 +271,8 @@ std::string GoalCall::describe(int64_t utime) const {
              motor_.message().state_reason + "): tread-arm, then again";
   else if (lost_since_)
     words += was_goal_ ? "; the planner follows this goal no more: give it again"
-                       : "; the planner does not take this goal" + keyWords(bus_);
+                       : "; the planner does not take this goal; the motor bridge says: " +
+                             motor_.message().state_reason + keyWords(bus_);
   return words;
 }
 
