@@ -155,6 +155,11 @@ void VirtualBus::restart(const std::string& name) {
   start(participant(name));
 }
 
+void VirtualBus::hang(const std::string& name, int64_t duration) {
+  Participant& hung = participant(name);
+  hung.busy_until = std::max(hung.busy_until, now_ + duration);
+}
+
 Node* VirtualBus::node(const std::string& name) {
   return participant(name).node.get();
 }
@@ -254,7 +259,12 @@ void VirtualBus::route(const Packet& packet, Participant& receiver) {
 
 void VirtualBus::arrive(Participant& receiver, uint64_t life, const Packet& packet) {
   if (life != receiver.life) return;
-  if (receiver.busy_until <= now_) return receiver.endpoint->arrive(packet);
+  if (receiver.busy_until <= now_) {
+    if (arrival_tap_)
+      arrival_tap_(now_, receiver.name, packet.channel.c_str(), packet.bytes->data(),
+                   packet.bytes->size());
+    return receiver.endpoint->arrive(packet);
+  }
   schedule(receiver.busy_until,
            [this, &receiver, life, packet] { arrive(receiver, life, packet); });
 }

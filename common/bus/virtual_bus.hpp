@@ -57,6 +57,9 @@ class VirtualBus {
   /// Hears each message when it leaves its publisher: a recorder.
   using Tap =
       std::function<void(int64_t utime, const char* channel, const uint8_t* bytes, size_t size)>;
+  /// Hears each message when it is handed to a node, as the node gets it.
+  using ArrivalTap = std::function<void(int64_t utime, const std::string& receiver,
+                                        const char* channel, const uint8_t* bytes, size_t size)>;
 
   explicit VirtualBus(uint64_t seed, FaultPlan faults = {}, int64_t start_utime = 1'000'000);
   ~VirtualBus();
@@ -68,6 +71,8 @@ class VirtualBus {
   /// Ends a node as SIGKILL does: no shutdown, its subscriptions and unsent messages are gone.
   void kill(const std::string& name);
   void restart(const std::string& name);
+  /// A node does nothing for a while [us]; what is sent to it waits meanwhile.
+  void hang(const std::string& name, int64_t duration);
   /// The running node of that name or nullptr; for tests that look inside.
   Node* node(const std::string& name);
   const BusStatistics& statistics(const std::string& name) const;
@@ -78,6 +83,7 @@ class VirtualBus {
   /// An endpoint for the tool or test itself: hears and says without delay and without faults.
   Bus& outside();
   void setTap(Tap tap) { tap_ = std::move(tap); }
+  void setArrivalTap(ArrivalTap tap) { arrival_tap_ = std::move(tap); }
 
   /// Puts raw bytes on a channel, as another program would.
   void inject(const char* channel, const uint8_t* bytes, size_t size);
@@ -107,6 +113,7 @@ class VirtualBus {
   std::optional<SealKey> key_;
   uint64_t sealers_ = 0;  ///< made so far
   Tap tap_;
+  ArrivalTap arrival_tap_;
   std::unique_ptr<MessageFaults> faults_;
   std::vector<std::unique_ptr<Participant>> participants_;  ///< the first is outside()
   /// What happens, by time; what is due at the same time in the order in which it was scheduled.

@@ -115,7 +115,9 @@ NodeFault readNodeFault(ConfigReader& reader) {
 /// What stands behind the range finder's library in virtual time.
 class RobotSystem::SimulatedScans : public lidar::ScanSource {
  public:
-  explicit SimulatedScans(sim::SimulatedDevices& devices) : devices_(devices) {}
+  SimulatedScans(sim::SimulatedDevices& devices,
+                 const std::function<void(lidar::RangeScan&)>& disturb)
+      : devices_(devices), disturb_(disturb) {}
 
   std::vector<lidar::RangeScan> take(int64_t /*utime*/) override {
     std::vector<lidar::RangeScan> scans;
@@ -129,6 +131,7 @@ class RobotSystem::SimulatedScans : public lidar::ScanSource {
       scan.range_min = laser.range_min;
       scan.range_max = laser.range_max;
       scan.ranges = std::move(measured.ranges);
+      if (disturb_) disturb_(scan);
       scans.push_back(std::move(scan));
     }
     return scans;
@@ -137,6 +140,7 @@ class RobotSystem::SimulatedScans : public lidar::ScanSource {
 
  private:
   sim::SimulatedDevices& devices_;
+  const std::function<void(lidar::RangeScan&)>& disturb_;
 };
 
 const std::vector<std::string>& robotNodes() {
@@ -160,7 +164,8 @@ RobotConfig readRobot(const std::string& folder, const std::vector<std::string>&
 
 RobotSystem::RobotSystem(const RobotConfig& config, const sim::WorldDescription& world,
                          const Pose2& T_map_start, uint64_t seed, const std::string& rule,
-                         const FaultPlan& faults, const TruePatterns* true_patterns)
+                         const FaultPlan& faults, const TruePatterns* true_patterns,
+                         sim::RobotParts parts)
     : config_(config),
       true_patterns_(true_patterns),
       bus_(std::make_unique<VirtualBus>(seed, onTheRobot(faults))) {
@@ -172,9 +177,9 @@ RobotSystem::RobotSystem(const RobotConfig& config, const sim::WorldDescription&
   settings.robot.start = T_map_start;
   settings.robot.start_utime = bus_->now();
   settings.robot.seed = seed;
-  devices_ =
-      std::make_unique<sim::SimulatedDevices>(std::make_shared<const sim::World>(world), settings);
-  scans_ = std::make_unique<SimulatedScans>(*devices_);
+  devices_ = std::make_unique<sim::SimulatedDevices>(std::make_shared<const sim::World>(world),
+                                                     settings, std::move(parts));
+  scans_ = std::make_unique<SimulatedScans>(*devices_, disturb_scan_);
   bus_->addNode("simulator", [this](Bus& bus) {
     return std::make_unique<sim::SimulatorNode>(*devices_, bus,
                                                 sim::DeviceLines{*ins_device_, *motor_device_});

@@ -104,7 +104,8 @@ class RobotSystem {
   /// publishes them in the learner's place; they must outlive the system.
   RobotSystem(const RobotConfig& config, const sim::WorldDescription& world,
               const Pose2& T_map_start, uint64_t seed, const std::string& rule,
-              const FaultPlan& faults, const TruePatterns* true_patterns = nullptr);
+              const FaultPlan& faults, const TruePatterns* true_patterns = nullptr,
+              sim::RobotParts parts = {});
   ~RobotSystem();
 
   VirtualBus& bus() { return *bus_; }
@@ -112,6 +113,10 @@ class RobotSystem {
   sim::SimulatedDevices& devices() { return *devices_; }
   /// Cuts or mends a device's line: "ins" or "motor".
   void connect(const std::string& device, bool connected);
+  /// Changes each scan on its way to the range finder's driver.
+  void disturbScans(std::function<void(lidar::RangeScan&)> disturb) {
+    disturb_scan_ = std::move(disturb);
+  }
   const PatternSet& patterns() const { return config_.learner.shipped; }
   const learner::LearnerNodeConfig& learnerConfig() const { return config_.learner; }
   const planner::PlannerConfig& planner() const { return config_.planner; }
@@ -127,6 +132,7 @@ class RobotSystem {
   std::unique_ptr<Link> ins_line_, ins_device_;      ///< both ends of the INS line
   std::unique_ptr<Link> motor_line_, motor_device_;  ///< both ends of the motor controller's line
   std::unique_ptr<sim::SimulatedDevices> devices_;
+  std::function<void(lidar::RangeScan&)> disturb_scan_;
   std::unique_ptr<SimulatedScans> scans_;
   MemoryStore ins_store_;
   MemoryStore learner_store_;

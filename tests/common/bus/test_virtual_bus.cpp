@@ -103,6 +103,34 @@ TEST_CASE("a node's compute time delays what it publishes and lets its missed st
   REQUIRE(clock->steps.size() <= 67);
 }
 
+TEST_CASE("a hung node does nothing for a while, then hears what was sent to it meanwhile") {
+  VirtualBus bus(1);
+  bus.addNode("clock", [](Bus& end) { return std::make_unique<Clock>(end, 10'000); });
+  bus.addNode("listener", [](Bus& end) { return std::make_unique<Listener>(end); });
+  std::vector<std::string> receivers;
+  bus.setArrivalTap([&](int64_t, const std::string& receiver, const char*, const uint8_t*, size_t) {
+    receivers.push_back(receiver);
+  });
+  const auto* clock = static_cast<Clock*>(bus.node("clock"));
+  const auto* listener = static_cast<Listener*>(bus.node("listener"));
+  bus.runUntil(bus.now() + 100'000);
+  const size_t steps = clock->steps.size(), heard = listener->heard.size();
+  REQUIRE(heard > 0);
+  CHECK(receivers == std::vector<std::string>(heard, "listener"));
+  bus.hang("listener", 300'000);
+  bus.runUntil(bus.now() + 200'000);
+  CHECK(listener->heard.size() == heard);
+  CHECK(clock->steps.size() == steps + 20);
+  bus.runUntil(bus.now() + 110'000);
+  CHECK(listener->heard.size() >= heard + 30);
+  bus.hang("clock", 300'000);
+  const size_t before = clock->steps.size();
+  bus.runUntil(bus.now() + 299'000);
+  CHECK(clock->steps.size() == before);
+  bus.runUntil(bus.now() + 20'000);
+  CHECK(clock->steps.size() > before);
+}
+
 TEST_CASE("a killed node is silent, its unsent messages are lost, and a restart builds it anew") {
   FaultPlan faults;
   faults.nodes.push_back({"clock", 2'000'000, 1'000'000});
