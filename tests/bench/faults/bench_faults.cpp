@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// Missions of the whole robot in virtual time under seeded faults; the rules are looked at from
+// outside.
+#include <cstdio>
+#include <map>
+
+#include <CLI/CLI.hpp>
+
+#include "common/config/command_line.hpp"
+#include "tests/bench/faults/fault_run.hpp"
+
+namespace {
+
+using namespace tread;
+using namespace tread::faults;
+
+struct Arguments {
+  int missions = 100;
+  uint64_t seed = 1;
+  bool only = false;
+  double duration = 16.0;
+};
+
+void printSeed(uint64_t seed, const FaultSchedule& schedule, const FaultyRun& run) {
+  std::printf("seed %llu, %s\n", static_cast<unsigned long long>(seed),
+              schedule.keyed ? "with a key" : "without a key");
+  for (const Fault& fault : schedule.faults) std::printf("  %s\n", describe(fault).c_str());
+  if (run.violation)
+    std::printf(
+        "  BROKEN at utime %lld, %.3f s: %s\n", static_cast<long long>(run.violation->utime),
+        static_cast<double>(run.violation->utime - 1'000'000) * 1e-6, run.violation->what.c_str());
+  std::fflush(stdout);
+}
+
+int drive(const Arguments& arguments) {
+  const missions::RobotConfig robot = missions::readRobot(TREAD_CONFIG_DIR "/robots/teodor");
+  RunOptions options;
+  options.duration = arguments.duration;
+  int broken = 0, drove = 0, again = 0, arrived = 0, collided = 0;
+  int64_t paths = 0, faults = 0;
+  const int missions = arguments.only ? 1 : arguments.missions;
+  for (int i = 0; i < missions; ++i) {
+    const uint64_t seed = arguments.seed + static_cast<uint64_t>(i);
+    const FaultSchedule schedule = scheduleOf(seed, options.duration);
+    const FaultyRun run = runFaulty(robot, schedule, options);
+    if (run.violation || arguments.only) printSeed(seed, schedule, run);
+    broken += run.violation ? 1 : 0;
+    drove += run.drove ? 1 : 0;
+    again += run.drove_after || run.arrived ? 1 : 0;
+    arrived += run.arrived ? 1 : 0;
+    collided += run.collisions > 0 ? 1 : 0;
+    paths += run.paths_judged;
+    faults += static_cast<int64_t>(schedule.faults.size());
+  }
+  std::printf(
+      "%d missions, %lld faults: %d broke a rule; %d drove, %d drove or had arrived after the last "
+      "fault, %d arrived within %.0f s, %d touched something; %lld patterns judged\n",
+      missions, static_cast<long long>(faults), broken, drove, again, arrived, options.duration,
+      collided, static_cast<long long>(paths));
+  return broken == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Drives seeded missions under seeded faults and looks at the rules from outside.",
+               "bench-faults"};
+  Arguments arguments;
+  app.add_option("--missions", arguments.missions, "how many")->check(CLI::Range(1, 1000000));
+  app.add_option("--seed", arguments.seed, "seed of the first one; the others count up from it");
+  app.add_flag("--only", arguments.only, "that seed alone, with its faults in words");
+  app.add_option("--seconds", arguments.duration, "of each mission")->check(CLI::Range(8.0, 600.0));
+  if (const auto code = parseCommandLine(app, argc, argv)) return *code;
+  return runProgram("bench-faults", [&] { return drive(arguments); });
+}

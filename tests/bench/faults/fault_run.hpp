@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "tests/bench/faults/fault_schedule.hpp"
+#include "tools/missions/robot_system.hpp"
+
+namespace tread::faults {
+
+/// The first rule that was broken.
+struct Violation {
+  int64_t utime = 0;  ///< [us]
+  std::string what;
+};
+
+/// What came of a mission.
+struct FaultyRun {
+  std::optional<Violation> violation;
+  bool drove = false;        ///< the motors turned at all
+  bool drove_after = false;  ///< and after the last fault
+  bool arrived = false;      ///< the planner says so
+  int collisions = 0;
+  int64_t paths_judged = 0;
+};
+
+struct RunOptions {
+  double duration = 16.0;                 ///< [s]
+  int64_t operator_lease_us = 1'000'000;  ///< that the rules count with
+};
+
+/// Drives a mission of this seed under its faults, and looks at the rules at each message and every
+/// 5 ms; ends at the first that is broken.
+FaultyRun runFaulty(const missions::RobotConfig& robot, const FaultSchedule& schedule,
+                    const RunOptions& options = {});
+/// The faults of a seed, in a mission of this duration [s].
+FaultSchedule scheduleOf(uint64_t seed, double duration);
+
+}  // namespace tread::faults
