@@ -130,7 +130,8 @@ void PathRule::take(int64_t now, const map_tile_t& tile) {
   known.utime = tile.utime;
   for (size_t i = 0; i < tile.cells.size(); ++i) {
     if (tile.cells[i] == kUnknown) continue;
-    if (isFree(tile.cells[i]) != isFree(known.cells[i])) known.since[i] = now;
+    if (isFree(tile.cells[i]) != isFree(known.cells[i]) || known.cells[i] == kUnknown)
+      known.since[i] = now;
     known.cells[i] = tile.cells[i];
   }
 }
@@ -139,7 +140,7 @@ void PathRule::take(int64_t now, const map_tile_t& tile) {
 void PathRule::standOn(const Pose2& T_map_body) {
   if (cell_ == 0.0) return;
   const Grid lattice(cell_, {}, 0, 0);
-  for (const CellIndex& cell : footprint_.cells(lattice, T_map_body)) {
+  for (const CellIndex& cell : bare_.cells(lattice, T_map_body)) {
     const auto found = tiles_.find({floorDivide(cell.x, side_), floorDivide(cell.y, side_)});
     if (found == tiles_.end()) continue;
     const int x = cell.x - found->first.first * side_, y = cell.y - found->first.second * side_;
@@ -148,9 +149,10 @@ void PathRule::standOn(const Pose2& T_map_body) {
   }
 }
 
-PathRule::Blocked PathRule::under(const Pose2& T_map_body, int64_t before) const {
+PathRule::Blocked PathRule::under(const Footprint& footprint, const Pose2& T_map_body,
+                                  int64_t before) const {
   Blocked blocked;
-  for (const CellIndex& cell : footprint_.cells(Grid(cell_, {}, 0, 0), T_map_body)) {
+  for (const CellIndex& cell : footprint.cells(Grid(cell_, {}, 0, 0), T_map_body)) {
     const auto found = tiles_.find({floorDivide(cell.x, side_), floorDivide(cell.y, side_)});
     if (found == tiles_.end()) {
       ++blocked.all;
@@ -190,9 +192,9 @@ std::string PathRule::checkStep(int64_t now, const plan_t& plan, size_t i) {
   ++judged_;
   const Pose2 T_map_end{plan.pose[i][0], plan.pose[i][1], plan.pose[i][2]};
   const Pose2 T_map_start = T_map_end * inverse(pattern->end());
-  const Blocked at_start = under(T_map_start, INT64_MAX);
+  const Blocked at_start = under(bare_, T_map_start, INT64_MAX);
   for (const Pose2& pose : pattern->trajectory) {
-    const Blocked here = under(T_map_start * pose, now - kDelay);
+    const Blocked here = under(footprint_, T_map_start * pose, now - kDelay);
     if (here.obstacles <= at_start.obstacles && here.all <= at_start.all) continue;
     return "execution " + std::to_string(id) + " (" + pattern->name + ") from " + at(T_map_start) +
            " meets " + std::to_string(here.obstacles) + " obstacle cells and " +

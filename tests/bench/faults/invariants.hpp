@@ -79,7 +79,8 @@ class MotorRule {
 /// No pattern is handed over whose footprint meets what the planner's newest map has long had.
 class PathRule {
  public:
-  explicit PathRule(const FootprintSize& footprint) : footprint_(footprint, -kTolerance) {}
+  explicit PathRule(const FootprintSize& footprint)
+      : bare_(footprint, 0.0), footprint_(footprint, -kTolerance) {}
 
   void receive(const Received& received);
   void start();
@@ -105,10 +106,11 @@ class PathRule {
 
   void take(int64_t now, const map_tile_t& tile);
   void standOn(const Pose2& T_map_body);
-  Blocked under(const Pose2& T_map_body, int64_t before) const;
+  Blocked under(const Footprint& footprint, const Pose2& T_map_body, int64_t before) const;
   std::string checkStep(int64_t now, const plan_t& plan, size_t i);
 
-  Footprint footprint_;
+  Footprint bare_;
+  Footprint footprint_;  ///< a little smaller
   double cell_ = 0.0;
   int side_ = 0;
   std::map<std::pair<int, int>, KnownTile> tiles_;

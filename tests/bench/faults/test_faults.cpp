@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// The whole robot in virtual time under seeded faults, and that the rules can fail.
+#include <catch2/catch.hpp>
+
+#include "tests/bench/faults/fault_run.hpp"
+#include "tests/bench/faults/invariants.hpp"
+#include "tests/helpers.hpp"
+#include "tests/tools/missions/shipped_robot.hpp"
+
+using namespace tread;
+using namespace tread::faults;
+using missions::teodor;
+
+namespace {
+
+Fault faultOf(FaultKind kind, double from, double until, const std::string& channel = "*",
+              const std::string& node = "*", double strength = 1.0) {
+  return {
+      kind,    static_cast<int64_t>(from * 1e6), static_cast<int64_t>(until * 1e6), channel, node,
+      strength};
+}
+
+/// What broke in mission 3 under one fault; empty if nothing did.
+std::string brokenBy(const missions::RobotConfig& robot, const Fault& fault, bool keyed = true) {
+  FaultSchedule schedule;
+  schedule.seed = 3;
+  schedule.keyed = keyed;
+  schedule.faults = {fault};
+  const FaultyRun run = runFaulty(robot, schedule);
+  REQUIRE(run.drove);
+  REQUIRE(run.paths_judged > 5);
+  return run.violation ? run.violation->what : "";
+}
+
+}  // namespace
+
+TEST_CASE("under seeded faults no rule is broken: the first eighty seeds") {
+  for (uint64_t seed = 1; seed <= static_cast<uint64_t>(tread::testing::effort(80)); ++seed) {
+    CAPTURE(seed);
+    const FaultyRun run = runFaulty(teodor(), scheduleOf(seed, 16.0));
+    CHECK((run.violation ? run.violation->what : "") == "");
+  }
+}
+
+TEST_CASE("a faulty mission replays to the same step") {
+  missions::RobotConfig loose = teodor();
+  loose.motor_bridge.bridge.operators.lease_us = 60'000'000;
+  FaultSchedule schedule = scheduleOf(7, 16.0);
+  schedule.faults.push_back(faultOf(FaultKind::kOperatorLost, 7.0, 14.0));
+  const FaultyRun first = runFaulty(loose, schedule), second = runFaulty(loose, schedule);
+  REQUIRE(first.violation);
+  REQUIRE(second.violation);
+  CHECK(first.violation->utime == second.violation->utime);
+  CHECK(first.violation->what == second.violation->what);
+}
+
+TEST_CASE("the rules see a bridge that does not look at the operator's lease") {
+  missions::RobotConfig loose = teodor();
+  const Fault lost = faultOf(FaultKind::kOperatorLost, 7.0, 12.0);
+  CHECK(brokenBy(loose, lost).empty());
+  loose.motor_bridge.bridge.operators.lease_us = 60'000'000;
+  loose.planner.operators.lease_us = 60'000'000;
+  CHECK(brokenBy(loose, lost).find("no operator within the lease") != std::string::npos);
+}
+
+TEST_CASE("the rules see a bridge that does not look at the program's lease") {
+  missions::RobotConfig loose = teodor();
+  const Fault dead = faultOf(FaultKind::kKill, 7.0, 12.0, "*", "planner");
+  CHECK(brokenBy(loose, dead).empty());
+  loose.motor_bridge.bridge.gate.lease_us = 60'000'000;
+  loose.planner.lease = 60'000'000;
+  CHECK(brokenBy(loose, dead).find("no PROGRAM") != std::string::npos);
+}
+
+TEST_CASE("the rules see a bridge that does not look at the INS") {
+  missions::RobotConfig loose = teodor();
+  const Fault silent = faultOf(FaultKind::kDrop, 7.0, 12.0, "INS", "motor_bridge");
+  CHECK(brokenBy(loose, silent).empty());
+  loose.motor_bridge.bridge.ins.period_us = 20'000'000;
+  CHECK(brokenBy(loose, silent).find("no INS") != std::string::npos);
+}
+
+TEST_CASE("the rules see a pattern through an obstacle, and through what was never seen") {
+  PathRule rule(teodor().planner.map.footprint);
+  const PatternSet& set = teodor().learner.shipped;
+  const MotionPattern& pattern = set.patterns().front();
+  const auto receive = [&](const auto& channel, const auto& message, int64_t now) {
+    std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
+    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    rule.receive({now, channel.name, bytes});
+  };
+  for (const pattern_set_part_t& part : toMessages(set)) receive(kPatternSet, part, 1);
+  map_tile_t tile{};
+  tile.tile_cells = 200;
+  tile.cell_size = 0.1;
+  tile.num_cells = 200 * 200;
+  tile.cells.assign(40'000, 0);
+  const auto tell = [&](Cell cell, int64_t now) {
+    tile.utime = now;
+    tile.cells[100 * 200 + 100] = cell;
+    receive(kMap, tile, now);
+  };
+  int64_t id = 0;
+  const auto plan = [&](double x, int64_t now) {
+    const Pose2 T_map_end = Pose2{x, 10.0, 0.0} * pattern.end();
+    program_t program{};
+    program.next.execution_id = ++id;
+    program.next.slot_set_version = set.version();
+    rule.sent(program);
+    plan_t message{};
+    message.num_patterns = 1;
+    message.execution_id = {id};
+    message.pattern_id = {pattern.id};
+    message.pose = {{T_map_end.x, T_map_end.y, T_map_end.yaw}};
+    return rule.check(now, message);
+  };
+  const double before = 10.0 - 0.7 - pattern.end().x;  // its end overlaps the cell, its start not
+  tell(kFree, 1'000'000);
+  CHECK(plan(before, 2'000'000).empty());
+  tell(kObstacle, 3'000'000);
+  CHECK(plan(before, 3'100'000).empty());  // it cannot know yet
+  CHECK(plan(before, 3'300'000).find("1 obstacle cells") != std::string::npos);
+  CHECK(plan(5.0, 3'300'000).empty());
+  CHECK(plan(19.0 - pattern.end().x, 3'300'000).find("unknown ones") != std::string::npos);
+  CHECK(rule.judged() == 5);
+}
+
+TEST_CASE("the rules see what a node hides of its refusals, and a version that goes back") {
+  FaultSchedule schedule;
+  schedule.seed = 3;
+  schedule.keyed = true;
+  schedule.faults = {faultOf(FaultKind::kForge, 4.0, 8.0, "PROGRAM")};
+  CHECK_FALSE(runFaulty(teodor(), schedule).violation);
+  CountRule counts(true);
+  const std::vector<uint8_t> unsealed(30, 0);
+  counts.sent("PROGRAM", unsealed);
+  health_t health{};
+  health.process = "planner";
+  counts.receive("planner", "PROGRAM", unsealed);
+  CHECK(counts.check(health).empty());
+  CHECK_FALSE(counts.check(health).empty());
+}
