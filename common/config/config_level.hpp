@@ -5,6 +5,7 @@
 // Inner part of config_reader.cpp, which alone includes it: yaml-cpp stays out of other headers.
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 

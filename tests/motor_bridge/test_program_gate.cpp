@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <limits>
+#include <set>
 
 #include <catch2/catch.hpp>
 
@@ -163,4 +164,66 @@ TEST_CASE("the smallest utime of all is old, not new: no difference overflows") 
   OperatorRequests requests({});
   CHECK(requests.classify({kBeginning, true, "operator", "go"}, kNow, kBeginning) ==
         OperatorRequests::Effect::kUntimely);
+}
+
+namespace {
+
+/// What an INS watch says at `now` of one measurement, received at kNow.
+std::string faultOf(int64_t utime, int64_t now = kNow) {
+  InsWatch watch({});
+  watch.receive({utime, true}, kNow);
+  return watch.fault(now);
+}
+
+}  // namespace
+
+TEST_CASE("an INS measurement counts up to 300 ms behind and 50 ms ahead of the clock") {
+  CHECK(faultOf(kNow - 300'000).empty());
+  CHECK(faultOf(kNow - 300'001) == "no INS yet");
+  CHECK(faultOf(kNow + 50'000).empty());
+  CHECK(faultOf(kNow + 50'001) == "no INS yet");
+}
+
+TEST_CASE("an INS is stale 100 ms after its last message, and 300 ms after its measurement") {
+  CHECK(faultOf(kNow, kNow + 100'000).empty());
+  CHECK(faultOf(kNow, kNow + 100'001) == "INS is stale: nothing new within 100 ms");
+  CHECK(faultOf(kNow - 250'000, kNow + 50'000).empty());
+  CHECK(faultOf(kNow - 250'000, kNow + 50'001) ==
+        "INS is stale: its newest measurement is too old");
+}
+
+TEST_CASE("an INS driver that begins to count anew is a fault for 100 ms") {
+  InsWatch watch({});
+  watch.receive({kNow, true, {}, 7}, kNow);
+  watch.receive({kNow + 1, true, {}, 7}, kNow + 1);
+  CHECK(watch.fault(kNow + 1).empty());
+  watch.receive({kNow + 2, true, {}, 0}, kNow + 2);
+  CHECK(watch.fault(kNow + 2) == "the INS driver has been restarted");
+  watch.receive({kNow + 90'000, true, {}, 1}, kNow + 90'000);
+  CHECK(watch.fault(kNow + 100'001) == "the INS driver has been restarted");
+  CHECK(watch.fault(kNow + 100'002).empty());
+}
+
+TEST_CASE("a permission counts up to 1.5 s behind and 50 ms ahead of the clock") {
+  CHECK(OperatorRequests::timely(kNow - 1'500'000, kNow));
+  CHECK_FALSE(OperatorRequests::timely(kNow - 1'500'001, kNow));
+  CHECK(OperatorRequests::timely(kNow + 50'000, kNow));
+  CHECK_FALSE(OperatorRequests::timely(kNow + 50'001, kNow));
+}
+
+TEST_CASE("an E-stop is always taken, however often it is repeated") {
+  OperatorRequests requests;
+  CHECK(requests.receive({kNow, true, "operator", "person"}, kNow));
+  CHECK(requests.receive({kNow, true, "operator", "person"}, kNow));
+}
+
+TEST_CASE("each refusal and each fault of a slot has its own words") {
+  std::set<std::string> words;
+  for (int i = 0; i <= static_cast<int>(SlotFault::kOutOfRange); ++i)
+    words.insert(describe(static_cast<SlotFault>(i)));
+  for (int i = 0; i <= static_cast<int>(ProgramRefusal::kBadSlot); ++i)
+    words.insert(describe(static_cast<ProgramRefusal>(i)));
+  CHECK(words.size() == 15);
+  CHECK(describe(static_cast<SlotFault>(99)) == std::string("an unknown fault"));
+  CHECK(describe(static_cast<ProgramRefusal>(99)) == std::string("unknown"));
 }

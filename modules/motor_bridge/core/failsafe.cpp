@@ -81,24 +81,6 @@ bool OperatorRequests::receive(const EstopRequest& request, int64_t now) {
   return true;
 }
 
-const char* describe(State state) {
-  switch (state) {
-    case State::kDriving:
-      return "driving";
-    case State::kArmed:
-      return "armed";
-    case State::kStopping:
-      return "stopping";
-    case State::kDisarmed:
-      return "disarmed";
-    case State::kFault:
-      return "fault";
-    case State::kEstopped:
-      return "E-stop";
-  }
-  return "unknown";
-}
-
 FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
   const State state_before = state_;
   const std::string reason_before = reason_;

@@ -102,8 +102,6 @@ enum class State : int {
   kEstopped = 5,  ///< until the E-stop is cleared; then disarmed
 };
 
-/// The state as a word.
-const char* describe(State state);
 /// True for the states in which a series may be started without ARM.
 inline bool isArmed(State state) {
   return state <= State::kStopping;

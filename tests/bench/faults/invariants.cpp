@@ -192,7 +192,10 @@ std::string PathRule::checkStep(int64_t now, const plan_t& plan, size_t i) {
   ++judged_;
   const Pose2 T_map_end{plan.pose[i][0], plan.pose[i][1], plan.pose[i][2]};
   const Pose2 T_map_start = T_map_end * inverse(pattern->end());
-  const Blocked at_start = under(bare_, T_map_start, INT64_MAX);
+  Blocked at_start = under(wide_, T_map_start, INT64_MAX);
+  // Leaving a place that is not free it looks at poses some way apart: a cell more between them.
+  if (at_start.obstacles > 0) ++at_start.obstacles;
+  if (at_start.all > 0) ++at_start.all;
   for (const Pose2& pose : pattern->trajectory) {
     const Blocked here = under(footprint_, T_map_start * pose, now - kDelay);
     if (here.obstacles <= at_start.obstacles && here.all <= at_start.all) continue;

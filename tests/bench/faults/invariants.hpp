@@ -80,7 +80,7 @@ class MotorRule {
 class PathRule {
  public:
   explicit PathRule(const FootprintSize& footprint)
-      : bare_(footprint, 0.0), footprint_(footprint, -kTolerance) {}
+      : bare_(footprint, 0.0), wide_(footprint, kTolerance), footprint_(footprint, -kTolerance) {}
 
   void receive(const Received& received);
   void start();
@@ -110,6 +110,7 @@ class PathRule {
   std::string checkStep(int64_t now, const plan_t& plan, size_t i);
 
   Footprint bare_;
+  Footprint wide_;       ///< a little larger: around where a pattern begins
   Footprint footprint_;  ///< a little smaller
   double cell_ = 0.0;
   int side_ = 0;
