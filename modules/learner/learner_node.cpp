@@ -32,7 +32,6 @@ void readGates(ConfigReader& reader, MeasurementLimits& limits) {
   gates.number("max_slope", limits.max_slope, {0.0, 1.6}, "rad");
 }
 
-constexpr double kUnknown = Measurement::kUnknown;
 /// A higher version than ours is believed when this many messages named it: one may be a broken
 /// one.
 constexpr int kBelievedAfter = 3;

@@ -253,3 +253,66 @@ TEST_CASE("any sequence of inputs keeps the promises (ten hours of random scenar
     REQUIRE((!rig.in.estop || after == State::kEstopped));
   }
 }
+
+TEST_CASE("inputs that were good for a second to the microsecond are enough to arm") {
+  FailsafeInputs in;
+  in.now = 1'000'000;
+  in.leased = true;
+  for (const int64_t early : {1, 0}) {
+    Failsafe failsafe;
+    in.now = 1'000'000;
+    failsafe.update(in);
+    in.now = 2'000'000 - early;
+    in.arm = true;
+    CHECK(failsafe.update(in).arm_refused == (early > 0));
+    CHECK(isArmed(failsafe.state()) == (early == 0));
+    in.arm = false;
+  }
+}
+
+TEST_CASE("each change of state, of its reason or of a refusal is told, and nothing else") {
+  Rig rig;
+  rig.step();
+  CHECK_FALSE(rig.out.changed);
+  rig.in.arm = true;
+  rig.step();
+  CHECK(rig.out.arm_refused);
+  CHECK(rig.out.changed);  // only the refusal is new
+  rig.step();
+  CHECK_FALSE(rig.out.arm_refused);
+  CHECK_FALSE(rig.out.changed);
+  rig.arm();
+  CHECK_FALSE(rig.out.arm_refused);
+  CHECK(rig.out.changed);
+  rig.in.playing = rig.in.start_wanted = true;
+  rig.step();
+  REQUIRE(rig.out.state == State::kDriving);
+  rig.in.playing = rig.in.start_wanted = false;
+  rig.step();
+  REQUIRE(rig.out.state == State::kStopping);
+  const std::string reason = rig.out.reason;
+  while (rig.out.state == State::kStopping) {
+    rig.step();
+    CHECK(rig.out.changed == (rig.out.state == State::kArmed));
+  }
+  CHECK(rig.out.reason == reason);  // only the state is new
+}
+
+TEST_CASE("disarming a robot in fault leaves the fault to be seen, and when it stopped") {
+  Rig rig;
+  rig.arm();
+  rig.in.link_fault = "the line is down";
+  rig.step();
+  const int64_t stopped = rig.failsafe.disarmedAt();
+  CHECK(stopped == rig.in.now);
+  rig.in.link_fault.clear();
+  rig.run(100'000);
+  rig.in.disarm = true;
+  rig.step();
+  CHECK(rig.out.state == State::kFault);
+  CHECK(rig.out.reason == "the line is down");
+  CHECK(rig.failsafe.disarmedAt() == stopped);
+  rig.arm();
+  REQUIRE(isArmed(rig.out.state));
+  CHECK(rig.failsafe.disarmedAt() == stopped);
+}

@@ -217,6 +217,15 @@ TEST_CASE("an E-stop is always taken, however often it is repeated") {
   CHECK(requests.receive({kNow, true, "operator", "person"}, kNow));
 }
 
+TEST_CASE("clearing counts where an E-stop is engaged, from its own time on, and forgets why") {
+  OperatorRequests requests;
+  CHECK_FALSE(requests.receive({kNow, false, "operator", "clear"}, kNow));
+  requests.receive({kNow, true, "operator", "person"}, kNow);
+  CHECK_FALSE(requests.receive({kNow - 1, false, "operator", "clear"}, kNow));
+  CHECK(requests.receive({kNow, false, "operator", "clear"}, kNow));
+  CHECK(requests.estopReason().empty());
+}
+
 TEST_CASE("each refusal and each fault of a slot has its own words") {
   std::set<std::string> words;
   for (int i = 0; i <= static_cast<int>(SlotFault::kOutOfRange); ++i)

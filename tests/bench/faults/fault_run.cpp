@@ -317,6 +317,8 @@ class Run {
   void applyToNode(const Fault& fault, bool active) {
     if (fault.kind == FaultKind::kHang && active) bus_.hang(fault.node, fault.until - fault.from);
     if (fault.kind == FaultKind::kOperatorLost) operator_lost_ = active;
+    if (fault.kind == FaultKind::kEstop) sayEstop(active);
+    if (fault.kind == FaultKind::kDisarm && active) sayDisarm();
     if (fault.kind == FaultKind::kWrongSet && active) publishWrongSet(fault.strength);
     if (fault.kind != FaultKind::kKill) return;
     active ? bus_.kill(fault.node) : bus_.restart(fault.node);
@@ -326,6 +328,22 @@ class Run {
     if (fault.node != "planner") return;
     path_.start();
     version_ = 0;
+  }
+
+  void sayEstop(bool engaged) {
+    auto message = blank<estop_t>();
+    message.utime = bus_.now();
+    message.engaged = engaged;
+    message.estop_by = "bystander";
+    message.estop_reason = "a person in the way";
+    bus_.outside().publish(kEstop, message);
+  }
+  void sayDisarm() {
+    auto message = blank<arm_t>();
+    message.utime = bus_.now();
+    message.armed = false;
+    message.armed_by = "mission operator";
+    bus_.outside().publish(kArm, message);
   }
 
   void publishWrongSet(double strength) {

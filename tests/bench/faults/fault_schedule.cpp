@@ -31,7 +31,9 @@ const char* nameOf(FaultKind kind) {
                                     "battery sag",
                                     "motor line",
                                     "wrong pattern set",
-                                    "operator lost"};
+                                    "operator lost",
+                                    "E-stop",
+                                    "disarmed"};
   static_assert(std::size(kNames) == static_cast<size_t>(FaultKind::kCount));
   return kNames[static_cast<size_t>(kind)];
 }

@@ -31,6 +31,8 @@ enum class FaultKind {
   kMotorLine,
   kWrongSet,
   kOperatorLost,
+  kEstop,
+  kDisarm,
   kCount
 };
 

@@ -141,3 +141,91 @@ TEST_CASE("the rules see what a node hides of its refusals, and a version that g
   CHECK(counts.check(health).empty());
   CHECK_FALSE(counts.check(health).empty());
 }
+
+namespace {
+
+/// A bridge that was told everything it needs to drive, again every 10 ms, but for what is left
+/// out.
+struct ToldBridge {
+  MotorRule rule{1'000'000};
+  int64_t now = 1'000'000;
+
+  template <class Message>
+  void tell(const Channel<Message>& channel, Message message) {
+    std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
+    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    rule.receive({now, channel.name, bytes});
+  }
+  void tellAllBut(const std::string& left_out) {
+    operator_t notice{};
+    notice.allowed = operator_t::ALLOW_DRIVING;
+    notice.seen_utime = now;
+    if (left_out != "OPERATOR") tell(kOperator, notice);
+    program_t program{};
+    program.utime = now;
+    program.lease = 200'000;
+    program.running.execution_id = left_out == "motion" ? 0 : 1;
+    if (left_out != "PROGRAM") tell(kProgram, program);
+    ins_t ins{};
+    ins.utime = now;
+    ins.orientation[0] = 1.0;
+    if (left_out != "INS") tell(kIns, ins);
+  }
+  /// Milliseconds of power until the rule objects; -1 if it does not within 3 s.
+  int64_t drive(const std::string& left_out) {
+    const int64_t start = now;
+    for (; now < start + 3'000'000; now += 10'000) {
+      tellAllBut(left_out);
+      if (!rule.check(now, {1.0, 1.0}).empty()) return (now - start) / 1000;
+    }
+    return -1;
+  }
+  void arm() {
+    tellAllBut("");
+    rule.check(now, {0.0, 0.0});
+    now += 10'000;
+    arm_t message{};
+    message.armed = 1;
+    tell(kArm, message);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the motors' rule objects 250 ms after each cause, and wants arming again") {
+  ToldBridge bridge;
+  CHECK(bridge.drive("") == 260);  // never armed
+  bridge.arm();
+  CHECK(bridge.drive("") == -1);
+  const std::map<std::string, int64_t> limits{
+      {"OPERATOR", 1250}, {"PROGRAM", 450}, {"INS", 350}, {"motion", 450}};
+  for (const auto& [left_out, limit] : limits) {
+    CAPTURE(left_out);
+    ToldBridge told;
+    told.arm();
+    REQUIRE(told.drive("") == -1);
+    const int64_t objects = told.drive(left_out);
+    CHECK(objects > limit - 20);
+    CHECK(objects <= limit + 20);
+    told.rule.check(told.now, {0.0, 0.0});
+    told.tellAllBut("");
+    if (left_out != "motion") CHECK(told.drive("") >= 0);  // nobody has armed it
+    told.arm();
+    CHECK(told.drive("") == -1);
+  }
+  estop_t stop{};
+  stop.engaged = 1;
+  bridge.tell(kEstop, stop);
+  CHECK(bridge.drive("") == 260);
+  stop.engaged = 0;
+  bridge.tell(kEstop, stop);
+  CHECK(bridge.drive("") >= 0);
+  bridge.arm();
+  CHECK(bridge.drive("") == -1);
+  bridge.tell(kArm, arm_t{});
+  CHECK(bridge.drive("") == 260);
+  bridge.arm();
+  CHECK(bridge.drive("") == -1);
+  bridge.rule.end(bridge.now);
+  CHECK(bridge.drive("") == 290);
+}

@@ -63,8 +63,6 @@ double clamped(double value, double low, double high) {
 using Index = TwistCorrection::Index;
 constexpr double kKernelRange = 0.6;  // [1] of the largest |v|, |w|
 constexpr double kNear = 0.1, kMirrored = 0.7, kAlone = 0.2;
-/// A pattern must turn and drive this much to tell of noise [rad, m].
-constexpr double kLeastTurn = 0.1, kLeastLength = 0.2;
 
 double squared(double value) {
   return value * value;
