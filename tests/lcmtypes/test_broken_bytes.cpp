@@ -49,6 +49,26 @@ TEST_CASE("a broken byte anywhere costs neither memory nor time") {
   CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));
 }
 
+TEST_CASE("what was read with a zero anywhere can be sent on") {
+  testing::forEachType([](const auto& sample) {
+    using Message = std::decay_t<decltype(sample)>;
+    const auto whole = testing::encode(sample);
+    for (size_t at = 0; at < whole.size(); ++at) {
+      auto bytes = whole;
+      bytes[at] = 0;
+      Message message{};
+      if (testing::decode(bytes, message)) CHECK_FALSE(testing::encode(message).empty());
+    }
+  });
+  mark_t cut{};
+  cut.mark_kind = "surface";
+  auto bytes = testing::encode(cut);
+  bytes[std::string(bytes.begin(), bytes.end()).find("face")] = 0;
+  mark_t read{};
+  REQUIRE(testing::decode(bytes, read));
+  CHECK(read.mark_kind == "sur");
+}
+
 TEST_CASE("no length, wherever it stands, makes a decoder throw or read beyond the message") {
   testing::forEachType([](const auto& sample) {
     using Message = std::decay_t<decltype(sample)>;

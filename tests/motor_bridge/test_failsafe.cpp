@@ -291,11 +291,14 @@ TEST_CASE("each change of state, of its reason or of a refusal is told, and noth
   rig.step();
   REQUIRE(rig.out.state == State::kStopping);
   const std::string reason = rig.out.reason;
+  CHECK(reason == "series ended");  // nobody has told why
+  const int64_t stopped = rig.in.now;
   while (rig.out.state == State::kStopping) {
     rig.step();
     CHECK(rig.out.changed == (rig.out.state == State::kArmed));
   }
   CHECK(rig.out.reason == reason);  // only the state is new
+  CHECK(rig.in.now - stopped == 1'000'000);
 }
 
 TEST_CASE("disarming a robot in fault leaves the fault to be seen, and when it stopped") {

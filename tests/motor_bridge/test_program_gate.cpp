@@ -236,3 +236,49 @@ TEST_CASE("each refusal and each fault of a slot has its own words") {
   CHECK(describe(static_cast<SlotFault>(99)) == std::string("an unknown fault"));
   CHECK(describe(static_cast<ProgramRefusal>(99)) == std::string("unknown"));
 }
+
+TEST_CASE("what is just within the limits of a slot is let in, what is just beyond is not") {
+  const SlotLimits limits;
+  ProgramSlot slot = makeSlot(1, 1200);
+  CHECK(slot.durationUs() == limits.max_duration_us);
+  CHECK(checkSlot(slot, limits) == SlotFault::kNone);
+  slot = makeSlot(1, 4);
+  slot.period_us = limits.max_period_us;
+  CHECK(checkSlot(slot, limits) == SlotFault::kNone);
+  CHECK(checkSlot(makeSlot(1, 4, 1.0 + 1e-6, 1.0), limits) == SlotFault::kNone);
+  CHECK(checkSlot(makeSlot(1, 4, 1.0, 1.0 + 1e-6), limits) == SlotFault::kNone);
+  CHECK(checkSlot(makeSlot(1, 4, 1.0000011, 0.0), limits) == SlotFault::kOutOfRange);
+  CHECK(checkSlot(makeSlot(1, 4, 0.0, -1.0000011), limits) == SlotFault::kOutOfRange);
+  SlotLimits none;
+  none.kind = kNoCommand;
+  slot = makeSlot(1, 4);
+  slot.kind = kNoCommand;
+  CHECK(checkSlot(slot, none) == SlotFault::kUnknownKind);
+}
+
+TEST_CASE("a program that names a long lease is not let in for longer") {
+  ProgramGate gate({});
+  Program program = makeProgram(kNow - 200'001, makeSlot(1, 4));
+  program.lease_us = 10'000'000;
+  CHECK(admit(gate, program) == ProgramRefusal::kTooOld);
+}
+
+TEST_CASE("of programs sent in the same microsecond the next in number counts, or another run's") {
+  ProgramGate gate({});
+  Program program = makeProgram(kNow, makeSlot(1, 4));
+  CHECK(admit(gate, program) == ProgramRefusal::kNone);
+  program.seq += 1;
+  CHECK(admit(gate, program) == ProgramRefusal::kNone);
+  CHECK(admit(gate, program) == ProgramRefusal::kOutOfOrder);
+  program.seq = 0;
+  CHECK(admit(gate, program) == ProgramRefusal::kOutOfOrder);
+  program.run_id = 2;
+  CHECK(admit(gate, program) == ProgramRefusal::kNone);
+}
+
+TEST_CASE("the first program counts although everything in it is zero") {
+  ProgramGate gate({});
+  Program program = makeProgram(0, makeSlot(1, 4));
+  program.run_id = 0;
+  CHECK(admit(gate, program, 100'000) == ProgramRefusal::kNone);
+}
