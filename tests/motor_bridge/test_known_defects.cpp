@@ -126,3 +126,23 @@ TEST_CASE("it goes on sending zero when all its inputs are silent") {
   CHECK(zeros >= 99);
   CHECK(world.motors - motors >= 200);
 }
+
+TEST_CASE("a zero within the reason of an E-stop does not keep the bridge from telling its state") {
+  // Ours, found by fuzzing: MOTOR with such a reason could not be encoded, and was not sent.
+  NodeWorld world;
+  world.drive();
+  estop_t message{};
+  message.utime = world.now();
+  message.engaged = 1;
+  message.estop_by = "bystander";
+  message.estop_reason = "a person";
+  std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  bytes[bytes.size() - 4] = 0;
+  world.bus.inject(kEstop.name, bytes.data(), bytes.size());
+  world.run(100'000);
+  const int64_t told = world.motors;
+  world.run(1'000'000);
+  CHECK(world.motor.bridge_state == motor_t::STATE_ESTOP);
+  CHECK(world.motors >= told + 19);
+}
