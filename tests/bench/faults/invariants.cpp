@@ -116,9 +116,12 @@ void PathRule::take(int64_t now, const map_tile_t& tile) {
   const int side = tile.tile_cells;
   const bool possible = tile.utime > 0 && tile.utime <= now + 100'000 && side > 0 &&
                         tile.num_cells == side * side && tile.cell_size > 0.0;
-  // What is of another size would be refused, or begin a new map: not judged.
-  if (!possible || (side_ != 0 && (side != side_ || (cell_ != 0.0 && tile.cell_size != cell_))))
-    return;
+  if (!possible) return;
+  // A map of another size is refused while the one in use goes on, and replaces it later.
+  const bool other = side != side_ || tile.cell_size != cell_;
+  if (other && cell_ != 0.0 && now - taken_ < kForgotten) return;
+  if (other) tiles_.clear();
+  taken_ = now;
   cell_ = tile.cell_size;
   side_ = side;
   KnownTile& known = tiles_[{tile.tile_x, tile.tile_y}];

@@ -112,6 +112,8 @@ class PathRule {
   Footprint bare_;
   Footprint wide_;       ///< a little larger: around where a pattern begins
   Footprint footprint_;  ///< a little smaller
+  static constexpr int64_t kForgotten = 3'000'000;  ///< [us] without a tile
+  int64_t taken_ = 0;                               ///< [us] the last tile
   double cell_ = 0.0;
   int side_ = 0;
   std::map<std::pair<int, int>, KnownTile> tiles_;
