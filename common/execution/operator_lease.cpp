@@ -60,6 +60,13 @@ OperatorLease::State OperatorLease::state(int64_t now) const {
   return silent ? State::kLost : State::kNone;
 }
 
+std::optional<int64_t> OperatorLease::newestSeen() const {
+  std::optional<int64_t> newest;
+  for (const auto& [station, program] : programs_)
+    if (program.name == holder_) newest = std::max(newest.value_or(0), program.seen_utime);
+  return newest;
+}
+
 bool OperatorLease::standsFor(int64_t goal_id, int64_t now) const {
   return std::any_of(programs_.begin(), programs_.end(), [&](const auto& program) {
     return program.second.name == holder_ && program.second.goal_id == goal_id &&

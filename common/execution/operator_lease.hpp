@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace tread {
@@ -43,6 +44,8 @@ class OperatorLease {
 
   State state(int64_t now) const;
   bool valid(int64_t now) const { return state(now) == State::kValid; }
+  /// [us] the newest that a program of the holder has seen of the robot; nothing if there is none.
+  std::optional<int64_t> newestSeen() const;
   /// Whether a live program of the holder stands for this goal.
   bool standsFor(int64_t goal_id, int64_t now) const;
   /// Empty = nobody.

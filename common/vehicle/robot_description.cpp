@@ -36,9 +36,11 @@ OperatorRules readOperators(ConfigReader reader) {
   OperatorRules rules;
   std::string lost = "stop";
   reader.seconds("lease", rules.lease_us, {0.5, 5.0});
-  reader.choice("lost", lost, {"stop", "finish"});
+  reader.choice("lost", lost, {"stop", "finish", "go_back"});
+  reader.seconds("return", rules.return_us, {5.0, 3600.0});
   reader.seconds("wait", rules.wait_us, {1.0, 600.0});
-  rules.lost = lost == "finish" ? OperatorLost::kFinish : OperatorLost::kStop;
+  if (lost == "finish") rules.lost = OperatorLost::kFinish;
+  if (lost == "go_back") rules.lost = OperatorLost::kGoBack;
   return rules;
 }
 

@@ -32,12 +32,14 @@ struct DriveDescription {
 enum class OperatorLost {
   kStop,    ///< at once
   kFinish,  ///< ends what runs, then stops
+  kGoBack   ///< stops, then returns to where the link was good
 };
 
 /// How the robot depends on its operator.
 struct OperatorRules {
   int64_t lease_us = 1'000'000;  ///< [us] for which it counts what the operator has seen
   OperatorLost lost = OperatorLost::kStop;
+  int64_t return_us = 180'000'000;  ///< [us] with kGoBack: the return ends so long after the loss
   /// [us] after which an armed robot that stands is disarmed if no operator's program runs.
   int64_t wait_us = 30'000'000;
 };

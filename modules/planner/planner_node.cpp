@@ -177,6 +177,9 @@ PlannerNode::PlannerNode(const PlannerConfig& config, Bus& bus)
       robot_(bus, health_, config.operators.lease_us),
       supervisor_(config, bus.bootId()) {
   subscribe();
+  robot_.on_ins = [this](const ins_t& message) {
+    position_std_ = std::hypot(message.position_std[0], message.position_std[1]);
+  };
 }
 
 void PlannerNode::subscribe() {
@@ -217,6 +220,22 @@ void PlannerNode::watchGoal(int64_t utime) {
   });
   inputs_.goal = goal_.goal();
   inputs_.goal_lost = goal_.lost();
+  if (config_.operators.lost == OperatorLost::kGoBack) watchLink(utime);
+}
+
+/// With no operator there is no goal, and the way back may have one.
+void PlannerNode::watchLink(int64_t utime) {
+  const OperatorLease& lease = robot_.operatorLease();
+  LinkReading link;
+  link.now = utime;
+  if (inputs_.pose) link.T_map_body = inputs_.pose->T_map_body;
+  link.position_std = position_std_;
+  link.good = lease.valid(utime) && utime - *lease.newestSeen() < lease.leaseUs() / 2;
+  link.lost = lease.state(utime) == OperatorLease::State::kLost;
+  link.armed = inputs_.armed_by_operator && inputs_.bridge && inputs_.bridge->armed();
+  const std::optional<Goal> goal = way_back_.update(link);
+  if (goal) inputs_.goal = goal;
+  if (!way_back_.state().empty()) inputs_.goal_lost = way_back_.state();
 }
 
 void PlannerNode::take(const pattern_set_part_t& message) {
@@ -261,6 +280,8 @@ void PlannerNode::step(int64_t utime) {
   });
   if (!decision.halted.empty() && config_.operators.lease_us > 0)
     goal_.lose("stopped: " + decision.halted + "; look, then give the goal again");
+  // The loss itself stops the robot, too.
+  if (!decision.halted.empty() && inputs_.goal) way_back_.giveUp(decision.halted);
   publishProgram(utime, supervisor_.program());
   publishPlan(utime, decision, bus_.now() - started);
   publishHealth(utime, decision.report);
@@ -279,6 +300,8 @@ void PlannerNode::publishPlan(int64_t utime, const Decision& decision, int64_t s
   next_plan_ = utime + kPlanRepeat;
   plan_t message = toMessage(decision.report);
   message.seq = seq_plan_++;
+  if (decision.report.goal_id < 0)
+    message.reason = way_back_.state() + (message.reason.empty() ? "" : "; " + message.reason);
   message.search_time = static_cast<int32_t>(search_time);
   bus_.publish(kPlan, message);
   if (!decision.planned || utime < next_tree_) return;
@@ -299,6 +322,7 @@ void PlannerNode::publishHealth(int64_t utime, const PlanReport& report) {
   const bool waits = report.status == PlanStatus::kWaiting;
   std::string problem = waits ? report.reason : supervisor_.setRefusal();
   if (problem.empty()) problem = secondLearner(utime);
+  if (problem.empty()) problem = way_back_.state();
   health_.setState(problem.empty() ? health_t::HEALTH_OK : health_t::HEALTH_DEGRADED, problem);
   health_.setCounter("pattern set version", report.set_version);
   for (const auto& [name, value] : supervisor_.counters()) health_.setCounter(name, value);

@@ -8,6 +8,7 @@
 #include "common/messages/robot_inputs.hpp"
 #include "modules/planner/core/execution/goal_watch.hpp"
 #include "modules/planner/core/execution/supervisor.hpp"
+#include "modules/planner/core/execution/way_back.hpp"
 
 namespace tread::planner {
 
@@ -43,6 +44,7 @@ class PlannerNode : public Node {
   void take(const goal_t& message);
   void take(const pattern_set_part_t& message);
   void watchGoal(int64_t utime);
+  void watchLink(int64_t utime);
   void noteOlderSet(int64_t version);
   std::string secondLearner(int64_t utime) const;
   void publishProgram(int64_t utime, const ExecutionTracker& program);
@@ -55,6 +57,8 @@ class PlannerNode : public Node {
   HealthReporter health_;
   RobotInputs robot_;
   GoalWatch goal_;
+  WayBack way_back_;
+  double position_std_ = 0.0;  ///< [m] of the newest INS; NaN unknown
   Supervisor supervisor_;
   PatternSetAssembler sets_;
   PlannerInputs inputs_;

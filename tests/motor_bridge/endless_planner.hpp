@@ -18,17 +18,19 @@ class EndlessPlanner {
 
   /// Program of now [us], from the newest execution the bridge reported.
   Program plan(int64_t now, const std::optional<ExecutionRecord>& last) {
-    if (running_.empty()) {
+    if (running_.empty() && !stands) {
       running_ = fresh();
       next_ = fresh();
     }
     if (last && last->run_id == run_id_) follow(*last);
+    if (stands) running_ = next_ = ProgramSlot{};
     Program program = makeProgram(now, running_, endless ? next_ : ProgramSlot{});
     program.run_id = run_id_;
     return program;
   }
   int commands = 8;     ///< of the slots from now on, of 50 ms each
   bool endless = true;  ///< false: never names a next slot
+  bool stands = false;  ///< true: its programs are empty
   double least_power = 0.2;
   double right = -1.0;  ///< power of the right track, as a share of the left one's
 

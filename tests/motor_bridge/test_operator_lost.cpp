@@ -67,6 +67,37 @@ TEST_CASE("operator killed, frozen or cut off: zero within the lease, armed agai
   }
 }
 
+TEST_CASE("`go_back`: programs count for as long as a return may last, but nothing is armed") {
+  BridgeConfig config;
+  config.operators.lost = OperatorLost::kGoBack;
+  config.operators.return_us = 60'000'000;
+  BridgeWorld world;
+  world.bridge = Bridge(config);
+  world.drive();
+  world.run(3'000'000);
+  world.operator_alive = false;
+  world.run(59'000'000);
+  CHECK(world.state() == State::kDriving);
+  world.run(2'100'000);
+  CHECK(world.state() == State::kDisarmed);
+  CHECK(isZero(world.out.command));
+  world.arm();
+  world.run(3'000'000);
+  CHECK(world.state() == State::kDisarmed);
+}
+
+TEST_CASE("`go_back`: standing for its waiting time with nobody there, it is disarmed") {
+  BridgeWorld world = worldThat(OperatorLost::kGoBack);
+  world.drive();
+  world.run(3'000'000);
+  world.operator_alive = false;
+  world.planner.stands = true;
+  world.run(29'000'000);
+  CHECK(isArmed(world.state()));
+  world.run(5'000'000);
+  CHECK(world.state() == State::kDisarmed);
+}
+
 TEST_CASE("`finish`: what runs ends, nothing begins, and the robot is disarmed") {
   BridgeWorld world = worldThat(OperatorLost::kFinish);
   world.drive();

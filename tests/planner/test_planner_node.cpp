@@ -339,6 +339,39 @@ TEST_CASE("The sender of a goal is killed: the goal ends with its lease, and sta
   CHECK(yard.robot().program().running.execution_id != 0);
 }
 
+TEST_CASE(
+    "`go_back`: with its operator lost the robot returns, and obeys when the operator is back") {
+  PlannerConfig config = usualPlanner();
+  config.operators.lost = OperatorLost::kGoBack;
+  Yard yard({}, config);
+  yard.run(3.0);
+  yard.sendGoal(10.0);
+  yard.arm();
+  yard.run(6.0);
+  REQUIRE(yard.robot().speed() > 0.5);
+  yard.operator_there = false;
+  yard.run(1.3);
+  CHECK(yard.robot().program().running.execution_id == 0);
+  yard.run(1.5);
+  const double lost_at = yard.robot().pose().x;
+  yard.run(2.0);
+  CHECK(yard.plan.goal_id < 0);
+  CHECK(yard.plan.reason.rfind("the operator is lost: returning to where the link was good", 0) ==
+        0);
+  CHECK(yard.health.health_state == health_t::HEALTH_DEGRADED);
+  yard.run(10.0);
+  CHECK(yard.robot().pose().x < lost_at - 2.0);
+  yard.operator_there = true;
+  yard.renewGoal();
+  yard.sendGoal(10.0);
+  yard.run(1.0);
+  CHECK(yard.plan.goal_id == yard.goal_id);
+  yard.run(3.0);
+  const double turned_at = yard.robot().pose().x;
+  yard.run(3.0);
+  CHECK(yard.robot().pose().x > turned_at);
+}
+
 TEST_CASE("A goal out of a log moves nothing, and takes nothing from the goal of today") {
   Yard yard;
   yard.run(1.0);

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/motor_bridge/core/bridge.hpp"
 
+#include <algorithm>
+
 namespace tread::motor {
 namespace {
 
@@ -142,6 +144,19 @@ std::string Bridge::stallFault(int64_t now) const {
   return "motor_bridge was held up for " + std::to_string((now - *last_step_) / 1000) + " ms";
 }
 
+/// Whether the robot may move although its operator has been lost for `silent` [us].
+bool Bridge::mayGoOn(int64_t silent) const {
+  switch (config_.operators.lost) {
+    case OperatorLost::kFinish:
+      return player_.playing() && silent < kLongestFinish;
+    case OperatorLost::kGoBack:
+      return isArmed(failsafe_.state()) && silent < config_.operators.return_us;
+    case OperatorLost::kStop:
+      break;
+  }
+  return false;
+}
+
 void Bridge::lookForOperator(int64_t now, FailsafeInputs& in) {
   operator_.update(now, isArmed(failsafe_.state()));
   const OperatorLease::State state = operator_.state(now);
@@ -149,16 +164,14 @@ void Bridge::lookForOperator(int64_t now, FailsafeInputs& in) {
   if (state != OperatorLease::State::kLost) operator_lost_.reset();
   if (in.leased) return;
   const std::string& who = operator_.holder();
-  in.unattended = now - operator_.lastValid() > config_.operators.wait_us;
+  in.unattended = now - std::max(operator_.lastValid(), moved_at_) > config_.operators.wait_us;
   in.unleased = who.empty() ? "no operator's program is heard (OPERATOR)" : who + " has let go";
   if (state != OperatorLease::State::kLost) return;
   operator_lost_ = operator_lost_.value_or(now);
   in.unleased = "the operator is lost: " + who + " has not seen the robot for " +
                 tenths(config_.operators.lease_us);
-  const bool may_finish = config_.operators.lost == OperatorLost::kFinish && player_.playing() &&
-                          now - *operator_lost_ < kLongestFinish;
-  in.leased = may_finish;
-  if (!may_finish) in.operator_fault = in.unleased;
+  in.leased = mayGoOn(now - *operator_lost_);
+  if (!in.leased) in.operator_fault = in.unleased;
 }
 
 std::string Bridge::leaseFault(int64_t now) const {
@@ -218,6 +231,7 @@ void Bridge::schedule(int64_t now, BridgeOutput& out) {
   const bool fast = out.failsafe.may_drive || out.failsafe.zero_fast;
   const int64_t interval = fast ? config_.command_interval_us : config_.idle_interval_us;
   out.send = !last_sent_ || out.command != sent_ || now - *last_sent_ >= interval;
+  if (!isZero(out.command)) moved_at_ = now;
   if (out.send) {
     last_sent_ = now;
     sent_ = out.command;

@@ -79,6 +79,7 @@ class Bridge {
   void take(const Program& program, int64_t now);
   std::string stallFault(int64_t now) const;
   std::string leaseFault(int64_t now) const;
+  bool mayGoOn(int64_t silent) const;
   void lookForOperator(int64_t now, FailsafeInputs& in);
   std::string moveSchedule(int64_t now, bool stalled);
   FailsafeInputs look(int64_t now, const DeviceReport& device);
@@ -98,6 +99,7 @@ class Bridge {
   std::optional<int64_t> last_step_;
   std::optional<int64_t> last_sent_;
   TrackCommand sent_;
+  int64_t moved_at_ = 0;  ///< [us] of the newest command that is not zero
   std::map<std::string, int64_t> counters_;
 };
 

@@ -9,6 +9,7 @@
 
 #include "common/config/command_line.hpp"
 #include "tests/bench/faults/fault_run.hpp"
+#include "tests/bench/faults/return_run.hpp"
 
 namespace {
 
@@ -19,6 +20,7 @@ struct Arguments {
   int missions = 100;
   uint64_t seed = 1;
   bool only = false;
+  bool go_back = false;
   double duration = 16.0;
 };
 
@@ -61,6 +63,37 @@ int drive(const Arguments& arguments) {
   return broken == 0 ? 0 : 1;
 }
 
+/// Missions whose operator falls silent for good: does the robot come back?
+int goBack(const Arguments& arguments) {
+  const missions::RobotConfig robot = missions::readRobot(TREAD_CONFIG_DIR "/robots/teodor");
+  int lost = 0, at_link = 0, at_start = 0, collided = 0, moving = 0;
+  double away = 0.0;
+  for (int i = 0; i < arguments.missions; ++i) {
+    const uint64_t seed = arguments.seed + static_cast<uint64_t>(i);
+    const ReturnRun run = runReturn(robot, seed);
+    if (!run.lost) continue;
+    ++lost;
+    away += run.away;
+    at_link += run.missed_link < 1.0 ? 1 : 0;
+    at_start += run.returned_after > 0.0 ? 1 : 0;
+    collided += run.collisions > 0 ? 1 : 0;
+    moving += run.moved_at_end ? 1 : 0;
+    const bool good = run.missed_link < 1.0 && run.returned_after > 0.0 && run.collisions == 0;
+    if (good && !arguments.only) continue;
+    std::printf(
+        "seed %llu: lost %.1f m away, came within %.2f m of the last link, ended %.2f m from its "
+        "start, %d contacts: %s\n",
+        static_cast<unsigned long long>(seed), run.away, run.missed_link, run.missed_start,
+        run.collisions, run.state.c_str());
+    std::fflush(stdout);
+  }
+  std::printf(
+      "%d returns from %.1f m away on average: %d came within 1 m of the last good link, %d on to "
+      "within 1 m of where their way began, %d touched something, %d moved at the end\n",
+      lost, lost > 0 ? away / lost : 0.0, at_link, at_start, collided, moving);
+  return collided == 0 && moving == 0 ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -70,7 +103,10 @@ int main(int argc, char** argv) {
   app.add_option("--missions", arguments.missions, "how many")->check(CLI::Range(1, 1000000));
   app.add_option("--seed", arguments.seed, "seed of the first one; the others count up from it");
   app.add_flag("--only", arguments.only, "that seed alone, with its faults in words");
+  app.add_flag("--go-back", arguments.go_back,
+               "instead: the operator falls silent for good, and the robot shall return");
   app.add_option("--seconds", arguments.duration, "of each mission")->check(CLI::Range(8.0, 600.0));
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
-  return runProgram("bench-faults", [&] { return drive(arguments); });
+  return runProgram("bench-faults",
+                    [&] { return arguments.go_back ? goBack(arguments) : drive(arguments); });
 }

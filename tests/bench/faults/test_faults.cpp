@@ -5,6 +5,7 @@
 
 #include "tests/bench/faults/fault_run.hpp"
 #include "tests/bench/faults/invariants.hpp"
+#include "tests/bench/faults/return_run.hpp"
 #include "tests/helpers.hpp"
 #include "tests/tools/missions/shipped_robot.hpp"
 
@@ -41,6 +42,21 @@ TEST_CASE("under seeded faults no rule is broken: the first seventy seeds") {
     const FaultyRun run = runFaulty(teodor(), scheduleOf(seed, 16.0));
     CHECK((run.violation ? run.violation->what : "") == "");
   }
+}
+
+TEST_CASE("an operator lost for good: with `go_back` the robot returns to where its way began") {
+  int lost = 0, back = 0;
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
+    const ReturnRun run = runReturn(teodor(), seed);
+    CAPTURE(seed, run.away, run.missed_start, run.state);
+    CHECK(run.collisions == 0);
+    CHECK_FALSE(run.moved_at_end);
+    if (!run.lost) continue;
+    ++lost;
+    back += run.returned_after > 0.0 ? 1 : 0;
+  }
+  CHECK(lost >= 4);
+  CHECK(back >= lost - 1);
 }
 
 TEST_CASE("a faulty mission replays to the same step") {

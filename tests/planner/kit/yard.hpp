@@ -16,12 +16,12 @@ namespace tread::planner::testkit {
 
 /// The planner node and a toy robot on a virtual bus, and somebody who listens.
 struct Yard {
-  explicit Yard(FaultPlan faults = {})
+  explicit Yard(FaultPlan faults = {}, const PlannerConfig& config = usualPlanner())
       : bus(7, std::move(faults)), start(bus.now()), beacon(bus.outside(), "test") {
     beacon.standFor(goal_id);
     bus.addNode("robot", [](Bus& end) { return std::make_unique<ToyRobot>(end); });
     bus.addNode("planner",
-                [](Bus& end) { return std::make_unique<PlannerNode>(usualPlanner(), end); },
+                [config](Bus& end) { return std::make_unique<PlannerNode>(config, end); },
                 {8'000, 3'000});
     bus.outside().subscribe<plan_t>(kPlan, [this](const plan_t& message) {
       plan = message;

@@ -35,7 +35,7 @@ Preconditions checkSensors(const PlannerInputs& s, const MapAndSet& supplies,
 /// What lets the vehicle finish its pattern and stop.
 Preconditions checkSupplies(const PlannerInputs& s, const MapAndSet& supplies,
                             const AgeLimits& limits, OperatorLost lost) {
-  const bool at_once = !s.goal_lost.empty() && lost == OperatorLost::kStop;
+  const bool at_once = !s.goal_lost.empty() && lost != OperatorLost::kFinish;
   if (!s.goal) return {at_once ? Level::kStop : Level::kFinish, PlanStatus::kIdle, s.goal_lost};
   if (s.now - supplies.map_utime > limits.map_slow)
     return waiting(Level::kFinish, oldAs("MAP", s.now - supplies.map_utime));

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/planner/core/execution/way_back.hpp"
+
+#include <cmath>
+
+namespace tread::planner {
+namespace {
+
+constexpr int64_t kSteady = 2'000'000;  // [us] a link must have been good
+constexpr int64_t kPause = 3'000'000;   // [us] before it sets off: whoever stands near must notice
+constexpr int64_t kListen = 3'000'000;  // [us] at a place before it goes on
+constexpr double kSpacing = 0.5;        // [m] between remembered places
+constexpr double kStep = 3.0;           // [m] to the next place if nobody is heard
+constexpr double kReached = 0.5;        // [m]
+constexpr double kThere = 0.7;          // [m] as it coasts on where it was to stop
+constexpr double kMoreStd = 1.0;        // [m] by which the pose may have become more uncertain
+constexpr size_t kMostPlaces = 4000;    // 2 km
+
+}  // namespace
+
+std::optional<Goal> WayBack::update(const LinkReading& link) {
+  if (!link.good) good_since_.reset();
+  if (!link.lost || !link.armed) {
+    lost_since_.reset();
+    there_since_.reset();
+    given_up_ = false;
+    state_.clear();
+    remember(link);
+    return std::nullopt;
+  }
+  if (!lost_since_) {
+    lost_since_ = link.now;
+    --goal_id_;
+  }
+  if (given_up_) return std::nullopt;
+  return follow(link);
+}
+
+void WayBack::giveUp(const std::string& why) {
+  if (!lost_since_ || given_up_) return;
+  given_up_ = true;
+  state_ = "the operator is lost, and the return has ended: " + why;
+}
+
+void WayBack::remember(const LinkReading& link) {
+  if (!link.good || !link.T_map_body) return;
+  good_since_ = good_since_.value_or(link.now);
+  if (link.now - *good_since_ < kSteady) return;
+  const Eigen::Vector2d p_map = link.T_map_body->position();
+  if (!places_.empty() && (p_map - places_.back().p_map).norm() < kSpacing) return;
+  places_.push_back({p_map, link.position_std});
+  if (places_.size() > kMostPlaces) places_.pop_front();
+}
+
+/// An INS that does not tell is taken at its word: it knows a position, or there is no pose.
+bool WayBack::uncertain(const LinkReading& link) const {
+  return link.position_std > places_.back().std + kMoreStd;
+}
+
+void WayBack::stepBack() {
+  const Eigen::Vector2d p_map = places_.back().p_map;
+  while (places_.size() > 1 && (places_.back().p_map - p_map).norm() < kStep) places_.pop_back();
+  there_since_.reset();
+  --goal_id_;
+}
+
+std::optional<Goal> WayBack::follow(const LinkReading& link) {
+  state_ = "the operator is lost";
+  if (link.now - *lost_since_ < kPause || !link.T_map_body) return std::nullopt;
+  if (places_.empty()) {
+    giveUp("the link was never good");
+    return std::nullopt;
+  }
+  if (uncertain(link)) {
+    giveUp("the position has become too uncertain");
+    return std::nullopt;
+  }
+  const bool there = (link.T_map_body->position() - places_.back().p_map).norm() < kThere;
+  if (there) there_since_ = there_since_.value_or(link.now);
+  if (there_since_ && link.now - *there_since_ > kListen) {
+    if (places_.size() == 1) {
+      giveUp("it is where its way began, and nobody is heard");
+      return std::nullopt;
+    }
+    stepBack();
+  }
+  state_ = "the operator is lost: returning to where the link was good";
+  Goal goal;
+  goal.id = goal_id_;
+  goal.T_map_goal = {places_.back().p_map.x(), places_.back().p_map.y(), 0.0};
+  goal.position_tolerance = kReached;
+  goal.yaw_tolerance = kPi;
+  return goal;
+}
+
+}  // namespace tread::planner
