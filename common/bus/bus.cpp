@@ -37,7 +37,8 @@ std::string remedyFor(SealVerdict verdict) {
 
 void Bus::setSealer(std::optional<Sealer> sealer) {
   sealer_ = std::move(sealer);
-  if (sealer_ && sealer_->session()) sealer_->refuseBefore(sealClock());
+  foreign_ = sealer_ && !sealer_->session();
+  if (sealer_ && !foreign_) sealer_->refuseBefore(sealClock());
 }
 
 std::vector<std::string> Bus::heard() const {
@@ -64,7 +65,10 @@ std::optional<size_t> Bus::unseal(const std::string& channel, const Subscribed& 
     statistics_.sealed_unread |= without != size;
     return without;
   }
-  const OpenedSeal opened = sealer_->open(channel, bytes, size, sealClock());
+  const OpenedSeal opened = sealer_->open(channel, bytes, size, sealTime());
+  // Whoever repeats old seals cannot move it: the newest time counts.
+  if (foreign_ && opened.sent > 0 && opened.verdict != SealVerdict::kOtherSession)
+    seal_clock_.observe(opened.sent, sealClock());
   if (opened.verdict == SealVerdict::kGood) return opened.size;
   trusted_ = false;
   if (subscribed.stops != nullptr && subscribed.stops(bytes, opened.size)) return opened.size;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/bus/channels.hpp"
+#include "common/bus/robot_clock.hpp"
 #include "common/seal/seal.hpp"
 
 namespace tread {
@@ -76,7 +77,7 @@ class Bus {
     if (size < 0 || size > channel.max_bytes) return refuseOversized(channel, size);
     buffer_.resize(static_cast<size_t>(size));
     if (message.encode(buffer_.data(), 0, size) != size) return refuseOversized(channel, size);
-    if (sealer_) sealer_->seal(channel.name, buffer_, sealClock());
+    if (sealer_) sealer_->seal(channel.name, buffer_, sealTime());
     return send(channel.name, buffer_.data(), buffer_.size());
   }
 
@@ -142,6 +143,8 @@ class Bus {
     bool (*stops)(const uint8_t* bytes, size_t size) = nullptr;  ///< null: nothing here stops
   };
 
+  /// What the others' seals say now [us].
+  int64_t sealTime() const { return sealClock() + seal_clock_.offset().value_or(0); }
   /// The message's size without its seal, or nothing if it is not taken.
   std::optional<size_t> unseal(const std::string& channel, const Subscribed& subscribed,
                                const uint8_t* bytes, size_t size);
@@ -167,7 +170,9 @@ class Bus {
 
   std::map<std::string, Subscribed> subscribed_;
   std::optional<Sealer> sealer_;
-  bool trusted_ = true;  ///< whether the message that is handled was sealed, where it must be
+  bool foreign_ = false;   ///< the sealer came without a session: from another host, perhaps
+  RobotClock seal_clock_;  ///< how far their seals are ahead of ours, where foreign
+  bool trusted_ = true;    ///< whether the message that is handled was sealed, where it must be
   BusStatistics statistics_;
   int64_t stations_ = 0;
   /// The newest message of a channel, to count what is missing.

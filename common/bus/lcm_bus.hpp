@@ -54,7 +54,7 @@ enum class TimeSource {
 /// How a process reaches the others.
 struct BusAccess {
   std::string url;               ///< LCM provider; empty = LCM_DEFAULT_URL or LCM's own default
-  std::optional<Sealer> sealer;  ///< for the host's CLOCK_MONOTONIC, see hostSealer()
+  std::optional<Sealer> sealer;  ///< see hostSealer() and stationSealer()
 };
 
 /// Bus over real LCM.

@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/messages/operator_beacon.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
@@ -25,19 +24,6 @@ std::optional<OperatorNotice> noticeFrom(const operator_t& message) {
   return OperatorNotice{
       message.station,    message.operator_name, message.allowed == operator_t::ALLOW_DRIVING,
       message.seen_utime, message.stands_for,    message.hand_over_to};
-}
-
-void RobotClock::observe(int64_t utime, int64_t host) {
-  if (now_ && host - span_began_ > kSpan) {
-    before_ = now_;
-    now_.reset();
-  }
-  if (!now_) span_began_ = host;
-  now_ = std::max(now_.value_or(INT64_MIN), utime - host);
-}
-
-std::optional<int64_t> RobotClock::offset() const {
-  return now_ && before_ ? std::max(*now_, *before_) : now_;
 }
 
 OperatorBeacon::OperatorBeacon(Bus& bus, std::string name)

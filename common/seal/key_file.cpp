@@ -173,4 +173,9 @@ std::optional<Sealer> hostSealer(const std::string& path) {
   return Sealer(readKey(path), newSender(), hostSession());
 }
 
+std::optional<Sealer> stationSealer(const std::string& path) {
+  if (path.empty()) return std::nullopt;
+  return Sealer(readKey(path), newSender(), std::nullopt);
+}
+
 }  // namespace tread

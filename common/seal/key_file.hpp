@@ -25,4 +25,8 @@ std::string fingerprint(const SealKey& key);
 /// empty. Throws as readKey() does.
 std::optional<Sealer> hostSealer(const std::string& path);
 
+/// The same for a program that may run on another host: it takes over session and clock of the
+/// first message that it hears, and until then seals nothing.
+std::optional<Sealer> stationSealer(const std::string& path);
+
 }  // namespace tread

@@ -204,6 +204,60 @@ TEST_CASE("without a key sealed messages are read as if there were no seal") {
   CHECK(marks == 1);
 }
 
+namespace {
+
+/// A program on another host, whose clock began at another time.
+class DistantBus : public Bus {
+ public:
+  DistantBus(SealedBus& robot, int64_t ahead) : robot_(robot), ahead_(ahead) {
+    SealKey key;
+    key.bytes.fill(9);
+    setSealer(Sealer(key, 4711, std::nullopt));
+    subscribe<health_t>(kHealth, [this](const health_t&) { ++heard; });
+  }
+  int64_t now() const override { return robot_.bus.now() + ahead_; }
+  int64_t bootId() const override { return 1; }
+  void hear(const Wire& wire) { receive(wire.channel, wire.bytes.data(), wire.bytes.size()); }
+  int heard = 0;
+
+ protected:
+  bool send(const char* channel, const uint8_t* bytes, size_t size) override {
+    robot_.inject({channel, {bytes, bytes + size}});
+    return true;
+  }
+  void listen(const char* /*channel*/) override {}
+
+ private:
+  SealedBus& robot_;
+  int64_t ahead_;
+};
+
+}  // namespace
+
+TEST_CASE("an operator at another host takes over session and clock, and is taken at its word") {
+  for (const int64_t ahead : {-900'000'000LL, 0LL, 3'600'000'000LL}) {
+    SealedBus robot;
+    DistantBus station(robot, ahead);
+    mark_t mark{};
+    CHECK(station.publish(kMark, mark));
+    CHECK(robot.refused("unsealed") == 1);
+    robot.run(1'000'000);
+    const Wire held_up = robot.last("HEALTH");
+    robot.run(1'300'000);
+    // The first that it hears was on its way for long, and is repeated by somebody later.
+    station.hear(held_up);
+    station.hear(robot.last("HEALTH"));
+    station.hear(held_up);
+    robot.run(1'000'000);
+    station.hear(robot.last("HEALTH"));
+    CHECK(station.heard == 2);
+    for (int i = 0; i < 3; ++i) station.publish(kMark, mark);
+    CHECK(robot.node().marks == 3);
+    robot.inject(robot.last("MARK"));
+    CHECK(robot.node().marks == 3);
+  }
+}
+
 TEST_CASE("a message as large as its channel allows is sealed, and fits into a datagram") {
   for (const ChannelSpec& channel : kChannels)
     CHECK(static_cast<size_t>(channel.max_bytes) + kSealBytes + sizeof "LEARNER_STATE" <= 65499);

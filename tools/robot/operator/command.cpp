@@ -59,7 +59,7 @@ int runCall(const std::string& name, const CommandOptions& options,
   std::signal(SIGTERM, noteSignal);
   try {
     const launch::RunningRobot robot = launch::findRobot(options.lcm_url, options.key);
-    LcmBus bus(BusAccess{robot.lcm_url, hostSealer(robot.key)}, TimeSource::kHost);
+    LcmBus bus(BusAccess{robot.lcm_url, stationSealer(robot.key)}, TimeSource::kHost);
     const std::unique_ptr<Call> call = make(bus);
     return run(name, options, bus, *call, [&bus](int ms) { bus.handle(ms); });
   } catch (const std::exception& error) {
