@@ -138,6 +138,13 @@ bool Bus::refuseOversized(const ChannelSpec& spec, int size) {
   return false;
 }
 
+std::string inWords(const health_t& health) {
+  const std::string state = health.health_state == health_t::HEALTH_OK         ? "OK"
+                            : health.health_state == health_t::HEALTH_DEGRADED ? "DEGRADED"
+                                                                               : "FAILED";
+  return health.health_reason.empty() ? state : state + ": " + health.health_reason;
+}
+
 HealthReporter::HealthReporter(Bus& bus, std::string process, std::string effective_config)
     : bus_(bus),
       process_(std::move(process)),
@@ -200,6 +207,7 @@ void HealthReporter::publishHealth(int64_t utime) {
   health.cycle_mean = cycles.mean_us;
   health.cycle_max = cycles.max_us;
   bus_.publish(kHealth, health);
+  bus_.tellStarter(inWords(health));
 }
 
 void HealthReporter::publishConfig(int64_t utime) {

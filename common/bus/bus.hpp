@@ -69,6 +69,8 @@ class Bus {
   virtual int64_t utc() const { return -1; }
   /// How long the node's steps took since the last call; zero in virtual time.
   virtual CycleTimes takeCycleTimes() { return {}; }
+  /// How the process is, in one line, for who started it.
+  virtual void tellStarter(const std::string& /*line*/) {}
 
   /// Encodes and sends. Returns false if it could not be sent (oversized, no network).
   template <class Message>
@@ -227,6 +229,9 @@ class Node {
   /// when it is killed.
   virtual void shutdown(int64_t /*utime*/) {}
 };
+
+/// State and reason in one line: "DEGRADED: no PROGRAM for 3 s".
+std::string inWords(const health_t& health);
 
 /// Publishes HEALTH at 1 Hz and CONFIG at the start and every 10 s for a node.
 class HealthReporter {

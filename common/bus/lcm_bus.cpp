@@ -133,9 +133,11 @@ void LcmBus::run(Node& node, const std::atomic<bool>& stop) {
   try {
     runSteps(node, stop);
   } catch (...) {
+    life_.stopping();
     node.shutdown(now());
     throw;
   }
+  life_.stopping();
   node.shutdown(now());
 }
 
@@ -150,6 +152,7 @@ void LcmBus::runSteps(Node& node, const std::atomic<bool>& stop) {
     if (started < next_step) continue;
     node.step(now());
     noteCycle(hostNow() - started);
+    life_.beat(hostNow());
     // A step that came too late is not made up for: stay on the grid.
     next_step += period * std::max<int64_t>(1, (hostNow() - next_step) / period + 1);
   }

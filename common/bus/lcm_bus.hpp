@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "common/bus/bus.hpp"
+#include "common/bus/life_sign.hpp"
 
 namespace lcm {
 class LCM;
@@ -76,12 +77,15 @@ class LcmBus : public Bus {
   int64_t bootId() const override { return boot_id_; }
   int64_t utc() const override;
   CycleTimes takeCycleTimes() override;
+  void tellStarter(const std::string& line) override { life_.tell(line); }
 
   /// Runs the node until `stop` becomes true: messages as they come, step() at its period; then
   /// shutdown(), also where a step throws, which then goes on to the caller.
   void run(Node& node, const std::atomic<bool>& stop);
   /// Waits for a message up to the timeout [ms] and handles it and those behind it; for tools.
   void handle(int timeout_ms);
+  /// run() uses it by itself; for a process with a loop of its own.
+  LifeSign& lifeSign() { return life_; }
 
  protected:
   bool send(const char* channel, const uint8_t* bytes, size_t size) override;
@@ -100,6 +104,7 @@ class LcmBus : public Bus {
   TimeSource time_source_;
   int64_t boot_id_;
   FollowedTime followed_;
+  LifeSign life_;
   int64_t cycles_ = 0;
   int64_t cycle_sum_ = 0;
   int64_t cycle_max_ = 0;

@@ -40,6 +40,7 @@ class RobotRun {
   void signal(const std::string& name, int number);
   bool running(const std::string& name);
   pid_t pid(const std::string& name) const { return processes_.at(name)->pid(); }
+  Process& process(const std::string& name) { return *processes_.at(name); }
   /// Ends a process by a signal and returns its exit code; -1 if it does not end within 5 s.
   int end(const std::string& name, int number = SIGINT);
   void endAll();

@@ -138,10 +138,8 @@ std::map<std::string, std::string> troubles(const std::string& lcm_url) {
   try {
     LcmBus bus(lcm_url, TimeSource::kHost);
     bus.subscribe<health_t>(kHealth, [&](const health_t& health) {
-      const bool failed = health.health_state == health_t::HEALTH_FAILED;
       lines.erase(health.process);
-      if (health.health_state != health_t::HEALTH_OK)
-        lines[health.process] = (failed ? " FAILED: " : " DEGRADED: ") + health.health_reason;
+      if (health.health_state != health_t::HEALTH_OK) lines[health.process] = " " + inWords(health);
     });
     for (const int64_t end = hostNow() + kListen; hostNow() < end;) bus.handle(50);
   } catch (const std::exception& error) {

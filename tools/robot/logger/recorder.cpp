@@ -167,7 +167,9 @@ void Recorder::run(const std::atomic<bool>& stop) {
       maintain(now);
       reportHealth(now);
     }
+    bus_.lifeSign().beat(hostNow());
   }
+  bus_.lifeSign().stopping();
   for (int i = 0; i < kQueue && lcm_->handleTimeout(0) > 0; ++i) {
   }
   maintain(hostNow());

@@ -64,7 +64,7 @@ class Recorder {
   int64_t lost_ = 0;
   int64_t recorded_ = 0;
   std::string trouble_;  ///< why nothing is recorded now
-  LcmBus bus_;           ///< for HEALTH alone
+  LcmBus bus_;           ///< for HEALTH and life signs alone
   HealthReporter health_;
 };
 

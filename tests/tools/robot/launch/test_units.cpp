@@ -87,6 +87,22 @@ TEST_CASE(
                  Catch::Contains("--only motor-bridge\n"));
 }
 
+TEST_CASE("a process that hangs is aborted, leaves a core, and is started again however often") {
+  const Installed installed;
+  for (const auto& [unit, seconds] :
+       std::map<std::string, std::string>{{"tread@.service", "2"},
+                                          {"tread-motor-bridge.service", "2"},
+                                          {"tread-logger.service", "10"}}) {
+    CAPTURE(unit);
+    CHECK_THAT(contentOf(installed.units / unit),
+               Catch::Contains("\nType=notify\n") &&
+                   Catch::Contains("\nWatchdogSec=" + seconds + "\nWatchdogSignal=SIGABRT\n") &&
+                   Catch::Contains("\nLimitCORE=infinity\n") &&
+                   Catch::Contains("\nTimeoutStartSec=30\nRestart=always\n") &&
+                   Catch::Contains("\nStartLimitIntervalSec=0\n"));
+  }
+}
+
 TEST_CASE("no unit talks to another host, and LCM's datagrams come from an address that may") {
   const Installed installed;
   for (const char* unit :
