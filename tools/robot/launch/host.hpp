@@ -60,11 +60,11 @@ class RunLock {
 
 /// Runs supervisord on the written configuration until it ends; tells on standard output what
 /// happens. Returns the exit code of tread-launch.
-/** SIGINT, SIGTERM and SIGHUP stop everything in order. If the supervisor dies, its processes
- * become our children (PR_SET_CHILD_SUBREAPER): they are asked to end, and killed after
- * `stop_time` seconds. If we die, the supervisor gets SIGTERM and stops everything in order. */
-int supervise(const std::string& name, size_t processes, const RunPaths& paths, const RunLock& lock,
-              double stop_time);
+/** Where `watch` is set, processes that hang are aborted, and told there and in the file
+ * paths.hung. SIGINT, SIGTERM and SIGHUP stop everything in order. If the supervisor dies, its
+ * processes become our children (PR_SET_CHILD_SUBREAPER): they are asked to end, and killed after
+ * the longest stop_time. If we die, the supervisor gets SIGTERM and stops everything in order. */
+int supervise(const LaunchFile& launch, const RunPaths& paths, const RunLock& lock, bool watch);
 
 /// Asks the tread-launch that runs in this folder to stop, and waits for it.
 int stopRun(const std::string& name, const RunPaths& paths);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "common/report/text.hpp"
+
 namespace tread::launch {
 namespace {
 
@@ -14,6 +16,9 @@ using Placeholders = std::map<std::string, std::string>;
 
 /// LCM's own group and port; the buffer holds a burst of maps (net.core.rmem_max allowing).
 constexpr const char* kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=2097152";
+
+/// A sign of life comes every 0.25 s, on a busy host later.
+constexpr double kShortestWatchdog = 1.0;
 
 bool isName(const std::string& text) {
   const auto allowed = [](char c) {
@@ -101,8 +106,16 @@ LaunchProcess readProcess(ConfigReader& reader, const Placeholders& placeholders
   reader.flag("external", process.external);
   reader.choice("stop_signal", process.stop_signal, {"INT", "TERM", "HUP", "QUIT"});
   reader.integer("stop_time", process.stop_time, {1, 60}, "s");
+  reader.number("start_time", process.start_time, {1, 600}, "s");
+  reader.number("watchdog", process.watchdog, {0, 600}, "s");
   if (process.external && !process.config.empty())
     throw reader.error("config", "is for programs of Tread; an external one takes it in arguments");
+  for (const char* key : {"start_time", "watchdog"})
+    if (process.external && reader.has(key))
+      throw reader.error(key, "is for programs of Tread; an external one gives no signs of life");
+  if (process.watchdog > 0.0 && process.watchdog < kShortestWatchdog)
+    throw reader.error("watchdog", formatted("is %g s; allowed 0 (not watched) or from %g s on",
+                                             process.watchdog, kShortestWatchdog));
   process.program = replaced(reader, "program", process.program, placeholders);
   if (process.program.empty()) throw reader.error("program", "is empty; name a program");
   if (process.program.find('/') != std::string::npos)

@@ -23,6 +23,8 @@ struct LaunchProcess {
   bool external = false;
   std::string stop_signal = "INT";  ///< asks it to end
   int64_t stop_time = 5;            ///< s until it is killed
+  double start_time = 30.0;         ///< s until it must be ready
+  double watchdog = 2.0;  ///< s without a sign of life after which it is ended; 0 = not watched
 };
 
 /// A launch file: what runs together, in the order of starting; stopped in the reverse order.
@@ -48,7 +50,8 @@ std::string readLaunchName(const std::string& file);
 
 /// Reads a launch file; throws ConfigError with file:line.
 /** Keys: name, lcm_url, key, simulated, values (further placeholders with their defaults) and
- * processes, a list of maps: name, program, config, arguments, external, stop_signal, stop_time.
+ * processes, a list of maps: name, program, config, arguments, external, stop_signal, stop_time,
+ * start_time, watchdog.
  * Placeholders in key, program, config and arguments: {run}, {lcm_url}, {bin}, {here} (the file's
  * folder) and those in `values`. Paths are relative to the file's folder. A value that names a file
  * or folder there becomes its absolute path. */
@@ -71,6 +74,8 @@ struct RunPaths {
   std::string lock;    ///< held while something runs here
   std::string config;  ///< for supervisord
   std::string socket;  ///< for supervisorctl
+  std::string life;    ///< socket for signs of life
+  std::string hung;    ///< which processes have hung since the start, one a line; may be absent
   std::string pid;     ///< of supervisord
   std::string logs;    ///< folder with one NAME.log a process
   std::string supervisor_log;
@@ -93,6 +98,15 @@ std::string supervisorConfig(const std::string& name,
 
 /// Words as one line that supervisor takes apart into the same words.
 std::string supervisorCommand(const std::vector<std::string>& words);
+
+/// A process that supervisord has started.
+struct Spawned {
+  std::string process;
+  int pid;
+};
+/// What a line of supervisord's log (version 4.2) says: that one was started, or has ended.
+std::optional<Spawned> spawnedIn(const std::string& log_line);
+std::optional<std::string> endedIn(const std::string& log_line);
 
 /// Turns supervisord's log (version 4.2) into a few lines for people: that all processes run, which
 /// one ended and how, that it runs again.

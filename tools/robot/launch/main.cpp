@@ -34,6 +34,7 @@ struct Options {
   bool check = false;
   bool status = false;
   bool stop = false;
+  bool no_watchdog = false;
 };
 
 void declare(CLI::App& app, Options& options) {
@@ -53,6 +54,8 @@ void declare(CLI::App& app, Options& options) {
   auto* stop = app.add_flag("--stop", options.stop, "stops what runs in the run folder");
   auto* only = app.add_option("--only", options.only,
                               "becomes this one process, without a supervisor (for systemd)");
+  app.add_flag("--no-watchdog", options.no_watchdog,
+               "ends no process that gives no sign of life: for a debugger, which halts it");
   check->excludes(status)->excludes(stop)->excludes(only);
   status->excludes(stop)->excludes(only);
   stop->excludes(only);
@@ -96,7 +99,7 @@ bool checksPass(const LaunchFile& launch, const LaunchSettings& settings) {
   return !anyCritical(findings);
 }
 
-int start(const LaunchFile& launch, const LaunchSettings& settings) {
+int start(const LaunchFile& launch, const LaunchSettings& settings, bool watch) {
   if (!checksPass(launch, settings)) return 1;
   const RunPaths paths(settings.run);
   std::filesystem::create_directories(paths.logs);
@@ -108,14 +111,10 @@ int start(const LaunchFile& launch, const LaunchSettings& settings) {
   file << supervisorConfig(launch.name, withCommands(launch, settings), paths, geteuid() == 0);
   file.close();
   if (!file) throw std::runtime_error(paths.config + ": cannot be written");
-  int64_t stop_time = 0;
-  for (const LaunchProcess& process : launch.processes)
-    stop_time = std::max(stop_time, process.stop_time);
   std::cout << launch.name << ": starting " << launch.processes.size() << " processes; logs in "
             << paths.logs << std::endl;
   const Announcement announcement({launch.name, launch.lcm_url, launch.key});
-  return supervise(launch.name, launch.processes.size(), paths, lock,
-                   static_cast<double>(stop_time));
+  return supervise(launch, paths, lock, watch);
 }
 
 int only(const LaunchFile& launch, const Options& options) {
@@ -155,6 +154,8 @@ int status(const LaunchFile& launch, const RunPaths& paths) {
   }
   for (const auto& [process, trouble] : troubles(launch.lcm_url))
     std::cout << process << trouble << std::endl;
+  std::ifstream hung(paths.hung);
+  for (std::string line; std::getline(hung, line);) std::cout << line << std::endl;
   become({"supervisorctl", "--configuration", paths.config, "status"});
 }
 
@@ -170,7 +171,7 @@ int run(int argc, char** argv) {
   if (options.stop) return stopRun(launch.name, paths);
   if (options.status) return status(launch, paths);
   if (!options.only.empty()) return only(launch, options);
-  if (!options.check) return start(launch, options.settings);
+  if (!options.check) return start(launch, options.settings, !options.no_watchdog);
   if (!checksPass(launch, options.settings)) return 1;
   std::cout << launch.name << ": ready to start" << std::endl;
   return 0;

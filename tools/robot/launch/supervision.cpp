@@ -7,13 +7,18 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <map>
+#include <optional>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <fcntl.h>
@@ -24,8 +29,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "common/bus/life_sign.hpp"
 #include "common/report/text.hpp"
 #include "tools/robot/launch/launch_file.hpp"
+#include "tools/robot/launch/liveness.hpp"
 
 namespace tread::launch {
 namespace {
@@ -35,10 +42,20 @@ using Clock = std::chrono::steady_clock;
 constexpr timespec kPatience{0, 50'000'000};
 constexpr int kCallsAtStart = 60;  // one each 50 ms
 constexpr int kCallsAfterEnd = 3;
+constexpr int kCallsAfterAbort = 20;
+constexpr double kLongestLook = 0.25;   // s that may pass between two looks at signs of life
 constexpr double kLongestStop = 120.0;  // s
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::string utcNow() {
+  const time_t now = std::time(nullptr);
+  tm parts{};
+  char text[32];
+  std::strftime(text, sizeof text, "%F %T UTC", gmtime_r(&now, &parts));
+  return text;
 }
 
 /// Supervisord looks at its processes once a second, or when somebody calls: a call that says
@@ -114,14 +131,18 @@ pid_t parentIn(const std::string& stat) {
   return parent;
 }
 
+/// 0 if there is no such process.
+pid_t parentOf(const std::string& pid) {
+  std::ifstream file("/proc/" + pid + "/stat");
+  return parentIn({std::istreambuf_iterator<char>(file), {}});
+}
+
 std::vector<pid_t> children() {
   std::vector<pid_t> pids;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
     const std::string name = entry.path().filename().string();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-    std::ifstream file(entry.path() / "stat");
-    const std::string stat{std::istreambuf_iterator<char>(file), {}};
-    if (parentIn(stat) == getpid()) pids.push_back(std::stoi(name));
+    if (parentOf(name) == getpid()) pids.push_back(std::stoi(name));
   }
   return pids;
 }
@@ -152,12 +173,17 @@ bool ignoresHangup() {
 /// One run of supervisord.
 class Run {
  public:
-  Run(const std::string& name, size_t processes, const RunPaths& paths)
-      : name_(name),
+  Run(const LaunchFile& launch, const RunPaths& paths, bool watch)
+      : name_(launch.name),
         paths_(paths),
         log_(paths.supervisor_log),
-        progress_(name, processes),
-        start_(Clock::now()) {}
+        progress_(launch.name, launch.processes.size()),
+        liveness_(launch.processes),
+        start_(Clock::now()) {
+    std::error_code none;
+    std::filesystem::remove(paths_.hung, none);
+    if (watch) life_.emplace(paths_.life);
+  }
 
   void begin(const RunLock& lock);
   /// Waits for the end of supervisord.
@@ -170,12 +196,18 @@ class Run {
   void stop();
   void reap();
   void tell();
+  void watch();
+  void end(const Liveness::Hung& hung);
 
   std::string name_;
   RunPaths paths_;
   LogFollower log_;
   LaunchProgress progress_;
+  Liveness liveness_;
+  std::optional<LifeSignListener> life_;                     ///< null: who hangs is left alone
+  std::map<std::string, std::pair<int, std::string>> hung_;  ///< how often, and the last time
   Clock::time_point start_;
+  Clock::time_point looked_ = start_;
   Clock::time_point stop_{};
   sigset_t waited_{};
   pid_t supervisor_ = -1;
@@ -209,6 +241,11 @@ void Run::becomeSupervisor(int lock, const sigset_t& mask, pid_t parent) const {
     dup2(lock, 3);
   else
     fcntl(lock, F_SETFD, 0);
+  // Its processes inherit it.
+  if (life_)
+    setenv("NOTIFY_SOCKET", paths_.life.c_str(), 1);
+  else
+    unsetenv("NOTIFY_SOCKET");
   std::signal(SIGPIPE, SIG_DFL);
   sigprocmask(SIG_SETMASK, &mask, nullptr);
   execlp("supervisord", "supervisord", "--configuration", paths_.config.c_str(), nullptr);
@@ -222,6 +259,7 @@ void Run::wait() {
     if (number > 0 && number != SIGCHLD) stop();
     reap();
     tell();
+    if (life_) watch();
     if (stopping_ || calls_left_ > 0) call(paths_.socket);
     if (calls_left_ > 0) --calls_left_;
   }
@@ -247,10 +285,36 @@ void Run::reap() {
 
 void Run::tell() {
   for (const std::string& line : log_.newLines()) {
+    liveness_.readLog(line);
     if (LaunchProgress::isEnd(line)) calls_left_ = std::max(calls_left_, kCallsAfterEnd);
     if (const auto told = progress_.lineFor(line, secondsSince(start_)))
       std::cout << *told << std::endl;
   }
+}
+
+void Run::watch() {
+  while (const auto word = life_->take()) liveness_.hear(word->pid, word->lines);
+  // While we did not listen ourselves (a busy host, Ctrl-Z), nobody was silent.
+  const double passed = std::min(secondsSince(looked_), kLongestLook);
+  looked_ = Clock::now();
+  if (stopping_) return;  // the supervisor ends them all
+  for (const Liveness::Hung& hung : liveness_.pass(passed)) end(hung);
+}
+
+void Run::end(const Liveness::Hung& hung) {
+  if (parentOf(std::to_string(hung.pid)) != supervisor_) return;  // it has ended by itself
+  std::cout << name_ << ": " << hung.line << std::endl;
+  kill(hung.pid, hung.kill ? SIGKILL : SIGABRT);
+  kill(hung.pid, SIGCONT);  // a halted one takes the signal then, before it does anything else
+  calls_left_ = std::max(calls_left_, kCallsAfterAbort);
+  if (hung.kill) return;
+  auto& [times, line] = hung_[hung.process];
+  ++times;
+  line = utcNow() + ": " + hung.line;
+  std::ofstream file(paths_.hung, std::ios::trunc);
+  for (const auto& [process, what] : hung_)
+    file << process << " hung " << what.first << (what.first == 1 ? " time" : " times")
+         << " since the start, last " << what.second << "\n";
 }
 
 int Run::conclude() const {
@@ -269,12 +333,14 @@ int Run::conclude() const {
 
 }  // namespace
 
-int supervise(const std::string& name, size_t processes, const RunPaths& paths, const RunLock& lock,
-              double stop_time) {
-  Run run(name, processes, paths);
+int supervise(const LaunchFile& launch, const RunPaths& paths, const RunLock& lock, bool watch) {
+  int64_t stop_time = 0;
+  for (const LaunchProcess& process : launch.processes)
+    stop_time = std::max(stop_time, process.stop_time);
+  Run run(launch, paths, watch);
   run.begin(lock);
   run.wait();
-  endChildren(stop_time);
+  endChildren(static_cast<double>(stop_time));
   std::error_code none;
   std::filesystem::remove(paths.socket, none);
   return run.conclude();

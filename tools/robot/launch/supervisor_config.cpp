@@ -115,6 +115,8 @@ RunPaths::RunPaths(const std::string& run)
       lock(run + "/lock"),
       config(run + "/supervisord.conf"),
       socket(run + "/supervisor.sock"),
+      life(run + "/life.sock"),
+      hung(run + "/hung"),
       pid(run + "/supervisord.pid"),
       logs(run + "/log"),
       supervisor_log(run + "/log/supervisord.log") {}
@@ -133,6 +135,19 @@ std::string supervisorConfig(const std::string& name,
   writeCommon(out, name, paths, as_root);
   for (size_t i = 0; i < processes.size(); ++i) writeProcess(out, processes[i], i, paths);
   return out.str();
+}
+
+std::optional<Spawned> spawnedIn(const std::string& log_line) {
+  const auto rest = after(log_line, " spawned: ");
+  const auto pid = rest ? after(*rest, "' with pid ") : std::nullopt;
+  if (!pid) return std::nullopt;
+  return Spawned{between(*rest, '\'', '\''), std::stoi(*pid)};
+}
+
+std::optional<std::string> endedIn(const std::string& log_line) {
+  for (const char* mark : {kExited, " stopped: "})
+    if (const auto rest = after(log_line, mark)) return firstWord(*rest);
+  return std::nullopt;
 }
 
 LaunchProgress::LaunchProgress(std::string name, size_t processes)

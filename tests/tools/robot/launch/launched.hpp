@@ -45,7 +45,8 @@ inline std::vector<std::string> withoutAdvice(const std::string& output) {
 /// A launch file with stand-ins in a folder of its own, and what tread-launch makes of it.
 class Launched {
  public:
-  /// `natures` are those of the stand-ins p0, p1, ...: good, deaf, brief, wrong. The last process
+  /// `natures` are those of the stand-ins p0, p1, ...: good, deaf, brief, wrong, see
+  /// there; what stands behind a nature are further keys. The last process
   /// is an external one, which knows nothing of its parent. `more` are further lines of the file.
   explicit Launched(const std::vector<std::string>& natures, const std::string& stand_in,
                     const std::string& more = "simulated: true\n")
@@ -57,9 +58,11 @@ class Launched {
     file << "name: trial\nlcm_url: " << launchedLcmUrl() << "\n" << more << "processes:\n";
     for (size_t i = 0; i < natures.size(); ++i) {
       const std::string name = "p" + std::to_string(i);
-      std::ofstream(folder / (name + ".txt")) << natures[i];
+      const size_t end = natures[i].find(' ');
+      std::ofstream(folder / (name + ".txt")) << natures[i].substr(0, end);
       file << "  - {name: " << name << ", program: " << stand_in << ", config: " << name
-           << ".txt, arguments: [\"{run}\"], stop_time: 2}\n";
+           << ".txt, arguments: [\"{run}\"], stop_time: 2"
+           << (end == std::string::npos ? "" : "," + natures[i].substr(end)) << "}\n";
     }
     file << "  - {name: other, program: sleep, arguments: [\"1000\"], external: true, "
             "stop_time: 2}\n";

@@ -2,7 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 // Stands in for a process of the robot: takes the same options, does nothing, and ends as told.
 // With a configuration of one word: "good", "wrong" (its --check fails), "deaf" (never ends by
-// itself), "brief" (ends at once).
+// itself), "brief" (ends at once), "mute" (gives no sign of life), "hangs" (gives none after 1.5
+// s), "stubborn" (the same, and no signal but SIGKILL ends it), "slow" (takes 1.5 s to end).
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -12,6 +13,9 @@
 
 #include <sys/prctl.h>
 #include <unistd.h>
+
+#include "common/bus/host_clock.hpp"
+#include "common/bus/life_sign.hpp"
 
 int main(int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
@@ -28,6 +32,8 @@ int main(int argc, char** argv) {
     return nature == "wrong" ? 1 : 0;
   }
   if (nature == "brief") return 4;
+  const bool hangs = nature == "hangs" || nature == "stubborn";
+  if (nature == "stubborn") std::signal(SIGABRT, SIG_IGN);
   if (with_parent) prctl(PR_SET_PDEATHSIG, SIGINT);
   sigset_t waited;
   sigemptyset(&waited);
@@ -37,9 +43,17 @@ int main(int argc, char** argv) {
   for (const std::string& word : words) std::printf("%s ", word.c_str());
   std::printf("\nruns as %d in %s\n", getpid(), getcwd(nullptr, 0));
   std::fflush(stdout);
-  int number = 0;
-  do sigwait(&waited, &number);
-  while (nature == "deaf");
+  tread::LifeSign life;
+  const timespec patience{0, 50'000'000};
+  const int64_t start = tread::hostNow();
+  int number = -1;
+  while (number < 0 || nature == "deaf") {
+    const int64_t now = tread::hostNow();
+    if (nature != "mute" && !(hangs && now > start + 1'500'000)) life.beat(now);
+    number = sigtimedwait(&waited, nullptr, &patience);
+  }
+  life.stopping();
+  if (nature == "slow") usleep(1'500'000);
   std::printf("ends by signal %d\n", number);
   return 0;
 }

@@ -148,3 +148,21 @@ TEST_CASE("our programs watch their parent by themselves, external ones with set
         Words{"setpriv", "--pdeathsig", "INT", "--", "/bin/p", "--set", "a=b"});
   CHECK(checkCommand(process, "/bin/p", "udpm://").empty());
 }
+
+TEST_CASE("a process's start time and watchdog are read, and what makes no sense is refused") {
+  const auto one = [](const std::string& keys) {
+    return "name: r\nprocesses: [{name: p, program: p, " + keys + "}]";
+  };
+  const LaunchProcess usual = read(one("stop_time: 5")).processes[0];
+  CHECK(usual.start_time == 30.0);
+  CHECK(usual.watchdog == 2.0);
+  const LaunchProcess own = read(one("start_time: 60, watchdog: 0")).processes[0];
+  CHECK(own.start_time == 60.0);
+  CHECK(own.watchdog == 0.0);
+  CHECK_THAT(mistake(one("watchdog: 0.3")),
+             Contains("watchdog: is 0.3 s; allowed 0 (not watched) or from 1 s on"));
+  CHECK_THAT(mistake(one("start_time: 0")), Contains("start_time"));
+  CHECK_THAT(mistake(one("watchdog: 5, external: true")),
+             Contains("an external one gives no signs of life"));
+  CHECK_THAT(mistake(one("watch_dog: 5")), Contains("watch_dog"));
+}

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// The simulated robot under tread-launch, of which one process after another hangs while it drives.
+#include <catch2/catch.hpp>
+
+#include <cstdio>
+#include <set>
+
+#include "tests/helpers.hpp"
+#include "tests/system/robot_run.hpp"
+#include "tests/system/worlds.hpp"
+
+using namespace tread;
+using namespace tread::testing;
+
+namespace {
+
+/// A robot that tread-launch has started, and `run`, which operates it.
+class LaunchedRobot {
+ public:
+  LaunchedRobot()
+      : launch_("tread-launch",
+                {TREAD_SOURCE_DIR "/config/launch/simulated.yaml", "--run", folder(), "--lcm-url",
+                 run.url(), "--set", "laser_port=" + std::to_string(30000 + (getpid() * 7) % 20000),
+                 "--set", "record=" + run.folder() + "/truth.csv"},
+                output()) {}
+  ~LaunchedRobot() {
+    launch_.signal(SIGINT);
+    launch_.waitFor(20.0);
+  }
+  LaunchedRobot(const LaunchedRobot&) = delete;
+  LaunchedRobot& operator=(const LaunchedRobot&) = delete;
+
+  bool says(const std::string& text, double seconds) {
+    return run.until(seconds, [&] { return contentOf(output()).find(text) != std::string::npos; });
+  }
+  /// By supervisord's log: the last one that was started under this name.
+  int pidOf(const std::string& process) const {
+    const std::string log = contentOf(folder() + "/log/supervisord.log");
+    const std::string mark = "spawned: '" + process + "' with pid ";
+    const size_t at = log.rfind(mark);
+    return at == std::string::npos ? 0 : std::stoi(log.substr(at + mark.size()));
+  }
+
+  RobotRun run{kYard, "[0, 0, 0]"};  // its processes are not started
+
+ private:
+  std::string folder() const { return run.folder() + "/run"; }
+  std::string output() const { return run.folder() + "/launch.txt"; }
+  Process launch_;
+};
+
+double seconds(int64_t from, int64_t to) {
+  return 1e-6 * static_cast<double>(to - from);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a process that hangs while the robot drives is named, ended and back, and nothing moves "
+    "unasked") {
+  LaunchedRobot robot;
+  RobotRun& run = robot.run;
+  REQUIRE(robot.says("all 8 processes run after", 30.0));
+  // Without learner and logger the robot drives on.
+  const std::set<std::string> needed{"planner", "mapping", "ins-driver", "motor-bridge"};
+  double x = 3.0;
+  for (const std::string process :
+       {"planner", "learner", "mapping", "logger", "ins-driver", "motor-bridge"}) {
+    INFO(process);
+    x = 15.0 - x;
+    run.setGoal(x, 3.0);
+    REQUIRE(run.arm(20.0));
+    REQUIRE(run.untilDriving(30.0, [&] { return run.driving(); }));
+    const int first = robot.pidOf(process);
+    REQUIRE(first > 0);
+    const int64_t halted = run.now();
+    kill(first, SIGSTOP);
+    CHECK(robot.says(process + " hangs: no sign of life for ", 15.0));
+    const int64_t named = run.now();
+    CHECK(run.until(10.0, [&] { return robot.pidOf(process) != first; }));
+    const int64_t back = run.now();
+    std::printf("%s: named after %.2f s, started again after %.2f s", process.c_str(),
+                seconds(halted, named), seconds(halted, back));
+    CHECK(seconds(halted, back) < (process == "logger" ? 13.0 : 5.0));
+    run.wait(2.0);
+    const auto zero = zeroAfter(run.truth(), halted, 1'000'000);
+    CHECK(zero.has_value() == (needed.count(process) > 0));
+    if (zero) {
+      std::printf(", motors at zero after %.2f s", seconds(halted, *zero));
+      CHECK(seconds(halted, *zero) < 1.0);
+      for (const sim::TruthRow& row : run.truth()) CHECK((row.utime < *zero || row.motorsAtZero()));
+      // What only looks is back without a person, but wants another goal.
+      CHECK(run.armed() == (process == "mapping"));
+    }
+    std::printf("\n");
+  }
+}
