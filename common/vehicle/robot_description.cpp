@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/vehicle/robot_description.hpp"
 
+#include <algorithm>
+
 #include "common/config/config_reader.hpp"
 
 namespace tread {
@@ -44,6 +46,30 @@ OperatorRules readOperators(ConfigReader reader) {
   return rules;
 }
 
+constexpr double kDegree = kPi / 180.0;
+
+/// People think of slopes in degrees.
+void readDegrees(ConfigReader& reader, const std::string& key, double& angle, Range range,
+                 const std::string& unit, bool required) {
+  double degrees = angle / kDegree;
+  reader.number(key, degrees, range, unit, required);
+  angle = degrees * kDegree;
+}
+
+void readTilt(ConfigReader& limits, RobotDescription& robot) {
+  if (limits.has("roll") || limits.has("pitch")) {
+    TiltLimits& tilt = robot.tilt.emplace();
+    readDegrees(limits, "roll", tilt.roll, {5.0, 60.0}, "deg", true);
+    readDegrees(limits, "pitch", tilt.pitch, {5.0, 60.0}, "deg", true);
+    readDegrees(limits, "roll_rate", tilt.roll_rate, {10.0, 180.0}, "deg/s", false);
+    readDegrees(limits, "pitch_rate", tilt.pitch_rate, {10.0, 180.0}, "deg/s", false);
+  }
+  if (!limits.has("slope")) return;
+  readDegrees(limits, "slope", robot.max_slope.emplace(), {2.0, 45.0}, "deg", false);
+  if (robot.tilt && *robot.max_slope >= std::min(robot.tilt->roll, robot.tilt->pitch))
+    throw limits.error("slope", "must be below roll and pitch, at which the robot is stopped");
+}
+
 RobotDescription readDescription(ConfigReader& reader) {
   RobotDescription robot;
   reader.text("name", robot.name, true);
@@ -62,6 +88,7 @@ RobotDescription readDescription(ConfigReader& reader) {
   double tilt = std::numeric_limits<double>::quiet_NaN();
   limits.number("tilt", tilt, {0.0, 1.6}, "rad");
   if (std::isfinite(tilt)) robot.max_tilt = tilt;
+  readTilt(limits, robot);
   robot.operators = readOperators(reader.section("operator"));
   return robot;
 }

@@ -44,6 +44,14 @@ struct OperatorRules {
   int64_t wait_us = 30'000'000;
 };
 
+/// What tips the robot over, or comes near it: hard limits, at which the motor bridge stops.
+struct TiltLimits {
+  double roll = 0.0;        ///< [rad] to either side
+  double pitch = 0.0;       ///< [rad] nose up or down
+  double roll_rate = 1.0;   ///< [rad/s]
+  double pitch_rate = 1.0;  ///< [rad/s]
+};
+
 /// One robot: all that more than one process or tool has to know of it. Nothing has a default that
 /// would fit any robot.
 struct RobotDescription {
@@ -55,8 +63,10 @@ struct RobotDescription {
   DriveDescription drive;
   Mounting ins;  ///< p_body: the point whose position the INS reports
   Mounting range_finder;
-  double max_speed = 0.0;          ///< [m/s] it is never faster: what is, is an error of the INS
-  std::optional<double> max_tilt;  ///< [rad] what it drives on a steeper slope teaches nothing
+  double max_speed = 0.0;           ///< [m/s] it is never faster: what is, is an error of the INS
+  std::optional<double> max_tilt;   ///< [rad] what it drives on a steeper slope teaches nothing
+  std::optional<TiltLimits> tilt;   ///< nothing: not watched, for an INS without attitude
+  std::optional<double> max_slope;  ///< [rad] plans keep off steeper ground; nothing: no such rule
   OperatorRules operators;
 };
 

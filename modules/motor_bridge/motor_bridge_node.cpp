@@ -126,6 +126,7 @@ MotorBridgeConfig readMotorBridgeConfig(ConfigReader& reader) {
   const RobotDescription robot = readRobot(reader);
   const DriveDescription& drive = robot.drive;
   config.bridge.operators = robot.operators;
+  config.bridge.tilt = robot.tilt;
   config.bridge.motion = readMotion(reader.section("motion_monitor"), robot);
   config.bridge.gate.slot.kind = drive.kind;
   config.bridge.gate.slot.max_command = drive.max_command;
@@ -146,17 +147,33 @@ Program fromMessage(const program_t& message) {
   return program;
 }
 
+namespace {
+
+InsTilt tiltOf(const ins_t& message, const YawPitchRoll& attitude) {
+  InsTilt tilt;
+  tilt.utime = message.utime;
+  if ((message.ins_status & ins_t::STATUS_NO_ATTITUDE) != 0) return tilt;
+  tilt.roll = attitude.roll;
+  tilt.pitch = attitude.pitch;
+  tilt.roll_rate = message.rate[0];
+  tilt.pitch_rate = message.rate[1];
+  return tilt;
+}
+
+}  // namespace
+
 InsNotice fromMessage(const ins_t& message) {
   const int32_t blind = ins_t::STATUS_NO_POSITION | ins_t::STATUS_NO_HEADING;
   const bool finite = std::isfinite(message.position[0]) && std::isfinite(message.position[1]) &&
                       std::isfinite(message.orientation[0]);
   const auto& q = message.orientation;
   const Eigen::Quaterniond R_map_body(q[0], q[1], q[2], q[3]);
-  const InsMotion motion{message.utime,       message.position[0],
-                         message.position[1], yawPitchRoll(R_map_body.normalized()).yaw,
-                         message.velocity[0], message.velocity[1],
-                         message.rate[2],     message.position_std[0]};
-  return {message.utime, (message.ins_status & blind) == 0 && finite, motion, message.seq};
+  const YawPitchRoll attitude = yawPitchRoll(R_map_body.normalized());
+  const InsMotion motion{message.utime,   message.position[0],    message.position[1],
+                         attitude.yaw,    message.velocity[0],    message.velocity[1],
+                         message.rate[2], message.position_std[0]};
+  return {message.utime, (message.ins_status & blind) == 0 && finite, motion, message.seq,
+          tiltOf(message, attitude)};
 }
 
 execution_record_t toMessage(const ExecutionRecord& record) {

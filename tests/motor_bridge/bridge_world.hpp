@@ -27,13 +27,16 @@ struct BridgeWorld {
   bool operator_alive = true;
   int64_t ins_seq = 0;
   int64_t view_age = 10'000;  ///< [us] age of what the operator sees
+  InsMotion motion;           ///< as the INS says
+  InsTilt tilt;
 
   static constexpr int64_t kStep = 10'000;
 
   void step() {
     now += kStep;
+    motion.utime = tilt.utime = now - 5'000;
     if (ins_alive && now % 20'000 == 0)
-      bridge.receive(InsNotice{now - 5'000, true, {}, ins_seq++}, now);
+      bridge.receive(InsNotice{now - 5'000, true, motion, ins_seq++, tilt}, now);
     if (planner_alive && now % 50'000 == 0)
       bridge.receive(planner.plan(now - 1'000, newest(bridge.executions())), now);
     if (operator_alive && now % 200'000 == 0)

@@ -20,6 +20,8 @@ class DrivenRobot {
   bool frozen = false;    ///< it repeats its last measurement with new times
   Pose2 offset;           ///< added to what it measures, in map
   double yaw_sign = 1.0;  ///< -1: it counts turns the wrong way
+  double roll = 0.0;      ///< [rad] of the ground it stands on
+  bool attitude = true;   ///< roll and pitch are measured
   double grip = 1.0;      ///< [1] of the tracks' travel that the ground takes
 
   /// Powers [1/1000] up to utime [us].
@@ -41,8 +43,11 @@ class DrivenRobot {
       const double yaw = yaw_sign * truth_.yaw + offset.yaw;
       last_.position[0] = truth_.x + offset.x;
       last_.position[1] = truth_.y + offset.y;
-      last_.orientation[0] = std::cos(0.5 * yaw);
-      last_.orientation[3] = std::sin(0.5 * yaw);
+      last_.orientation[0] = std::cos(0.5 * yaw) * std::cos(0.5 * roll);
+      last_.orientation[1] = std::cos(0.5 * yaw) * std::sin(0.5 * roll);
+      last_.orientation[2] = std::sin(0.5 * yaw) * std::sin(0.5 * roll);
+      last_.orientation[3] = std::sin(0.5 * yaw) * std::cos(0.5 * roll);
+      if (!attitude) last_.ins_status |= ins_t::STATUS_NO_ATTITUDE;
       last_.velocity[0] = v_;
       last_.rate[2] = yaw_sign * omega_;
     }

@@ -121,6 +121,7 @@ struct NodeWorld {
         "motor_bridge",
         [this](Bus& end) {
           MotorBridgeConfig usual;
+          usual.bridge.tilt = TiltLimits{0.5, 0.5};
           usual.make_controller = [] {
             return std::make_unique<RoboteqConnection>(RoboteqConfig{});
           };

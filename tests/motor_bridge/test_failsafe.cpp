@@ -64,6 +64,7 @@ const std::vector<Cause> kCauses = {
     {&FailsafeInputs::operator_fault, State::kDisarmed},
     {&FailsafeInputs::lease_fault, State::kDisarmed},
     {&FailsafeInputs::ins_fault, State::kDisarmed},
+    {&FailsafeInputs::tilt_fault, State::kDisarmed},
     {&FailsafeInputs::motion_fault, State::kDisarmed},
 };
 

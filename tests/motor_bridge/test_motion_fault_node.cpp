@@ -26,6 +26,21 @@ struct StraightWorld : NodeWorld {
 
 }  // namespace
 
+TEST_CASE("a robot that rolls beyond its limit stands within 250 ms, and the reason says it") {
+  StraightWorld world;
+  world.robot.roll = 0.6;
+  CHECK(world.lastMotionWithin(3'000'000) <= 250'000);
+  CHECK(world.motor.bridge_state == motor_t::STATE_DISARMED);
+  CHECK(world.motor.state_reason.rfind("rolled 34 deg, limit 29", 0) == 0);
+}
+
+TEST_CASE("a robot with limits of tilt whose INS says that it measures no attitude stands") {
+  StraightWorld world;
+  world.robot.attitude = false;
+  CHECK(world.lastMotionWithin(3'000'000) <= 250'000);
+  CHECK(world.motor.state_reason.rfind("INS measures no roll and pitch", 0) == 0);
+}
+
 TEST_CASE("a pose that repeats itself with new times stops the robot within 1.5 s") {
   StraightWorld world;
   world.robot.frozen = true;

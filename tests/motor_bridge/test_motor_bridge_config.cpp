@@ -61,13 +61,17 @@ robot:
   drive: {kind: track_speed, full_speed: 2.5, max_command: 2, left_channel: 2, invert_left: true}
   ins: {antenna: [0, 0, 0]}
   range_finder: {position: [0, 0, 0]}
-  limits: {speed: 9}
+  limits: {speed: 9, roll: 40, pitch: 20, pitch_rate: 90}
 )");
   CHECK(config.bridge.gate.slot.step_us == 5'000);
   CHECK(config.bridge.command_interval_us == 25'000);
   CHECK(config.bridge.gate.slot.kind == CommandKind::kTrackSpeed);
   CHECK(config.bridge.gate.slot.max_command == 2.0);
   CHECK(config.make_controller());
+  REQUIRE(config.bridge.tilt);
+  CHECK(config.bridge.tilt->roll == Approx(40 * kPi / 180));
+  CHECK(config.bridge.tilt->pitch == Approx(20 * kPi / 180));
+  CHECK(config.bridge.tilt->pitch_rate == Approx(kPi / 2));
 }
 
 TEST_CASE("a Roboteq controller is wired as its robot is") {

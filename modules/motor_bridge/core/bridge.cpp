@@ -37,6 +37,7 @@ Bridge::Bridge(const BridgeConfig& config)
       gate_(config.gate),
       ins_(config.ins),
       motion_(config.motion),
+      tilt_(config.tilt),
       operator_(config.operators.lease_us) {}
 
 void Bridge::receive(const Program& program, int64_t now) {
@@ -118,6 +119,7 @@ void Bridge::receive(const OperatorNotice& notice, int64_t now) {
 void Bridge::receive(const InsNotice& notice, int64_t now) {
   ins_.receive(notice, now);
   const bool future = notice.utime > now + config_.ins.max_future_us;
+  if (!future) tilt_.receive(notice.tilt);
   if (notice.usable && !future) motion_.receive(notice.motion);
 }
 
@@ -204,8 +206,10 @@ FailsafeInputs Bridge::look(int64_t now, const DeviceReport& device) {
   lookForOperator(now, in);
   in.lease_fault = leaseFault(now);
   in.ins_fault = ins_.fault(now);
+  in.tilt_fault = tilt_.fault(now);
   in.motion_fault = motion_.fault(now);
   in.playing = player_.playing();
+  in.program_bar = tilt_.beyond();
   in.start_wanted = player_.startable();
   in.arm = since_.arm && !since_.disarm;
   in.disarm = since_.disarm;

@@ -27,6 +27,7 @@ struct BridgeConfig {
   InsLimits ins;
   OperatorRules operators;
   MotionLimits motion;
+  std::optional<TiltLimits> tilt;  ///< nothing: not watched
 };
 
 /// What a step decided.
@@ -91,6 +92,7 @@ class Bridge {
   SeriesPlayer player_;
   InsWatch ins_;
   MotionMonitor motion_;
+  TiltWatch tilt_;
   OperatorRequests requests_;
   OperatorLease operator_;
   std::optional<int64_t> operator_lost_;  ///< [us] since when

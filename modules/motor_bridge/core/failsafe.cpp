@@ -22,7 +22,8 @@ std::optional<Fault> worstFault(const FailsafeInputs& in) {
       {State::kFault, in.link_fault},        {State::kFault, in.device_fault},
       {State::kFault, in.bridge_fault},      {State::kDisarmed, in.program_fault},
       {State::kDisarmed, in.operator_fault}, {State::kDisarmed, in.lease_fault},
-      {State::kDisarmed, in.ins_fault},      {State::kDisarmed, in.motion_fault}};
+      {State::kDisarmed, in.ins_fault},      {State::kDisarmed, in.tilt_fault},
+      {State::kDisarmed, in.motion_fault}};
   for (const Fault& fault : ranked) {
     if (!fault.reason.empty()) return fault;
   }
@@ -98,6 +99,9 @@ FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
   out.zero_fast = in.now - *zero_since_ < kFastZero;
   out.arm_refused = in.arm && !refusal_.empty();
   out.reason = refusal_.empty() || isArmed(state_) ? reason_ : reason_ + "; " + refusal_;
+  const bool barred =
+      !in.program_bar.empty() && out.reason.find(in.program_bar) == std::string::npos;
+  if (barred) out.reason += "; programs refused: " + in.program_bar;
   if (const std::optional<Fault> fault = worstFault(in)) out.standing_fault = fault->reason;
   out.changed = state_ != state_before || reason_ != reason_before || refusal_ != refusal_before;
   return out;
@@ -158,7 +162,7 @@ void Failsafe::serveSeries(const FailsafeInputs& in) {
     enter(State::kStopping, in.unleased, in.now);
   } else if (stands && in.unattended) {
     enter(State::kDisarmed, in.unleased, in.now);
-  } else if (stands && in.start_wanted && in.leased) {
+  } else if (stands && in.start_wanted && in.leased && in.program_bar.empty()) {
     enter(State::kDriving, "playing", in.now);
   } else if (state_ == State::kStopping && in.now - *zero_since_ >= kFastZero) {
     enter(State::kArmed, reason_, in.now);

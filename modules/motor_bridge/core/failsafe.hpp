@@ -8,6 +8,7 @@
 #include <string>
 
 #include "modules/motor_bridge/core/motion_track.hpp"
+#include "modules/motor_bridge/core/tilt_watch.hpp"
 
 namespace tread::motor {
 
@@ -27,6 +28,7 @@ struct InsNotice {
   bool usable = true;  ///< position and heading are known
   InsMotion motion{};  ///< NaN where it is not known
   int64_t seq = 0;     ///< counts up from the start of the INS driver
+  InsTilt tilt{};
 };
 
 /// Watches that the INS goes on telling where the robot is.
@@ -119,9 +121,11 @@ struct FailsafeInputs {
   std::string operator_fault;  ///< the operator is lost
   std::string lease_fault;     ///< no program within the lease
   std::string ins_fault;       ///< no usable INS within its limit
+  std::string tilt_fault;      ///< a limit of roll, pitch or their rates was passed
   std::string motion_fault;    ///< the robot moves otherwise than its commands explain
   bool playing = false;        ///< a series is being played and goes on
   bool start_wanted = false;   ///< a series is offered to a standing robot
+  std::string program_bar;     ///< why no series may start, though a person may drive by hand
   std::string series_end;      ///< why the series ended, if it did in this step
   bool leased = false;         ///< an operator is there; without one nothing moves
   std::string unleased;        ///< why not
@@ -144,10 +148,10 @@ struct FailsafeOutputs {
 };
 
 /// The ranked state machine that decides whether the motors may turn. Pure: time is an input.
-/** Ranks, worst first: E-stop, link, device, bridge, program, operator, lease, INS, motion. A
-   series can only start from a state that gave zero in the step before, and only while an operator
-   is there. Everything but the normal end of a series needs ARM, and ARM needs an operator and
-   inputs that were good for a second. */
+/** Ranks, worst first: E-stop, link, device, bridge, program, operator, lease, INS, tilt,
+   motion. A series can only start from a state that gave zero in the step before, and only while an
+   operator is there and nothing bars programs. Everything but the normal end of a series needs ARM,
+   and ARM needs an operator and inputs that were good for a second. */
 class Failsafe {
  public:
   FailsafeOutputs update(const FailsafeInputs& in);

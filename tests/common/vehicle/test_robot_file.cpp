@@ -88,3 +88,25 @@ TEST_CASE("what is missing or wrong in a robot is told with its key and file") {
   CHECK_THAT(refusalOf(smallWith("drive:", "drive: {kind: torque}"), "p.yaml"),
              Contains("power, track_speed"));
 }
+
+TEST_CASE("limits of tilt stand in degrees, and a robot without any is not watched") {
+  const RobotDescription robot = robotOf("{}", kSmall + "x.yaml");
+  REQUIRE(robot.tilt);
+  CHECK(robot.tilt->roll == Approx(25 * kPi / 180));
+  CHECK(robot.tilt->pitch == Approx(20 * kPi / 180));
+  CHECK(robot.tilt->roll_rate == 1.0);
+  CHECK(*robot.max_slope == Approx(12 * kPi / 180));
+  const RobotDescription without = robotOf(smallWith("limits:", "limits: {speed: 8}"), "p.yaml");
+  CHECK_FALSE(without.tilt);
+  CHECK_FALSE(without.max_slope);
+}
+
+TEST_CASE("half a limit of tilt, one in radians, or one below the planner's slope is refused") {
+  const auto refusal = [](const std::string& limits) {
+    return refusalOf(smallWith("limits:", "limits: {speed: 8, " + limits + "}"), "p.yaml");
+  };
+  CHECK_THAT(refusal("roll: 25"), Contains("required key robot.limits.pitch is missing"));
+  CHECK_THAT(refusal("roll: 0.5, pitch: 0.5"), Contains("robot.limits.roll") && Contains("deg"));
+  CHECK_THAT(refusal("roll: 25, pitch: 10, slope: 12"),
+             Contains("slope") && Contains("must be below roll and pitch"));
+}

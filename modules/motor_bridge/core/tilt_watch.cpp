@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/motor_bridge/core/tilt_watch.hpp"
+
+#include <cmath>
+
+namespace tread::motor {
+namespace {
+
+constexpr int64_t kBump = 100'000;           // [us] for which a limit may be passed
+constexpr int kBumpMeasurements = 3;         // at least so many must say it
+constexpr int64_t kWithin = 500'000;         // [us] of good measurements that end it
+constexpr double kRelief = 0.05;             // [rad, rad/s] below the limit that counts as good
+constexpr int64_t kFaultStands = 1'000'000;  // [us]
+constexpr double kDegrees = 57.29577951308232;
+
+std::string whole(double angle) {
+  return std::to_string(std::lround(angle * kDegrees));
+}
+
+}  // namespace
+
+std::array<TiltWatch::Check, 4> TiltWatch::checks(const InsTilt& tilt) const {
+  return {{{"rolled", " deg", tilt.roll, limits_->roll},
+           {"pitched", " deg", tilt.pitch, limits_->pitch},
+           {"rolling", " deg/s", tilt.roll_rate, limits_->roll_rate},
+           {"pitching", " deg/s", tilt.pitch_rate, limits_->pitch_rate}}};
+}
+
+std::string TiltWatch::worst(const InsTilt& tilt, double relief) const {
+  if (!std::isfinite(tilt.roll) || !std::isfinite(tilt.pitch))
+    return "INS measures no roll and pitch: their limits cannot be kept";
+  for (const Check& check : checks(tilt)) {
+    if (std::abs(check.value) > check.limit - relief)
+      return std::string(check.what) + " " + whole(std::abs(check.value)) + check.unit +
+             ", limit " + whole(check.limit);
+  }
+  return "";
+}
+
+void TiltWatch::receive(const InsTilt& tilt) {
+  if (!limits_ || tilt.utime <= newest_) return;
+  newest_ = tilt.utime;
+  const std::string worst_now = worst(tilt, beyond_.empty() ? 0.0 : kRelief);
+  if (worst_now.empty()) {
+    bad_ = {};
+    good_since_ = good_since_.value_or(tilt.utime);
+    if (tilt.utime - *good_since_ >= kWithin) beyond_.clear();
+    return;
+  }
+  good_since_.reset();
+  bad_.utime = bad_.utime.value_or(tilt.utime);
+  ++bad_.count;
+  if (!beyond_.empty()) {
+    // Just below the limit it stays said by how much it was passed.
+    const std::string passed = worst(tilt, 0.0);
+    if (!passed.empty()) beyond_ = passed;
+  } else if (bad_.count >= kBumpMeasurements && tilt.utime - *bad_.utime >= kBump) {
+    beyond_ = worst_now;
+    began_ = tilt.utime;
+  }
+}
+
+std::string TiltWatch::fault(int64_t now) const {
+  return !beyond_.empty() && now - began_ <= kFaultStands ? beyond_ : "";
+}
+
+}  // namespace tread::motor

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include "common/geometry/se2.hpp"
+#include "tests/motor_bridge/bridge_world.hpp"
+
+using namespace tread;
+using namespace tread::motor;
+using Catch::Contains;
+
+namespace {
+
+constexpr double kDeg = kPi / 180.0;
+const TiltLimits kLimits{30 * kDeg, 25 * kDeg, 60 * kDeg, 60 * kDeg};
+
+BridgeConfig watched() {
+  BridgeConfig config;
+  config.tilt = kLimits;
+  return config;
+}
+
+InsTilt level() {
+  return {0, 0.0, 0.0, 0.0, 0.0};
+}
+
+/// A driving robot whose tilt the test sets.
+struct TiltWorld : BridgeWorld {
+  TiltWorld() {
+    bridge = Bridge(watched());
+    tilt = level();
+    drive();
+    REQUIRE(state() == State::kDriving);
+  }
+  /// How long it takes to a zero [us].
+  int64_t timeToZero() {
+    const int64_t from = now;
+    while (!isZero(out.command) && now - from < 5'000'000) step();
+    return now - from;
+  }
+};
+
+}  // namespace
+
+TEST_CASE(
+    "rolled or pitched beyond its limit it is at zero within 250 ms, and the reason says it") {
+  const struct {
+    InsTilt tilt;
+    std::string reason;
+  } cases[] = {{{0, 31 * kDeg, 0, 0, 0}, "rolled 31 deg, limit 30"},
+               {{0, -31 * kDeg, 0, 0, 0}, "rolled 31 deg, limit 30"},
+               {{0, 0, -26 * kDeg, 0, 0}, "pitched 26 deg, limit 25"},
+               {{0, 0, 26 * kDeg, 0, 0}, "pitched 26 deg, limit 25"},
+               {{0, 0, 0, 61 * kDeg, 0}, "rolling 61 deg/s, limit 60"},
+               {{0, 0, 0, 0, -61 * kDeg}, "pitching 61 deg/s, limit 60"}};
+  for (const auto& [tilt, reason] : cases) {
+    TiltWorld world;
+    world.tilt = tilt;
+    CHECK(world.timeToZero() <= 250'000);
+    CHECK(world.state() == State::kDisarmed);
+    CHECK(world.reason() == reason);
+    CHECK(world.last().reason == reason);
+  }
+}
+
+TEST_CASE("just below its limits it drives on, and a bump of 80 ms does not stop it") {
+  TiltWorld world;
+  world.tilt = {0, 29 * kDeg, -24 * kDeg, 59 * kDeg, 59 * kDeg};
+  world.run(5'000'000);
+  CHECK(world.state() == State::kDriving);
+  for (int bump = 0; bump < 20; ++bump) {
+    world.tilt.roll = 40 * kDeg;
+    world.run(80'000);
+    world.tilt.roll = 0.0;
+    world.run(40'000);
+  }
+  CHECK(world.state() == State::kDriving);
+}
+
+TEST_CASE("a slow INS is waited for: two measurements are no proof, however far apart") {
+  TiltWatch watch(kLimits);
+  watch.receive({100'000, 40 * kDeg, 0, 0, 0});
+  watch.receive({200'000, 40 * kDeg, 0, 0, 0});
+  CHECK(watch.fault(200'000).empty());
+  watch.receive({200'000, 40 * kDeg, 0, 0, 0});  // the same again
+  CHECK(watch.fault(200'000).empty());
+  watch.receive({300'000, 40 * kDeg, 0, 0, 0});
+  CHECK_FALSE(watch.fault(300'000).empty());
+}
+
+TEST_CASE(
+    "still beyond the limit it can be armed by hand but takes no program, and says why, until it "
+    "has been level for half a second") {
+  TiltWorld world;
+  world.tilt.roll = 35 * kDeg;
+  world.run(3'000'000);
+  CHECK(world.state() == State::kDisarmed);
+  world.arm();
+  world.run(1'000'000);
+  CHECK(world.state() == State::kArmed);
+  CHECK(isZero(world.out.command));
+  CHECK_THAT(world.reason(), Contains("programs refused: rolled 35 deg, limit 30"));
+  world.tilt.roll = 28 * kDeg;  // below, but not by enough
+  world.run(2'000'000);
+  CHECK(world.state() == State::kArmed);
+  CHECK_THAT(world.reason(), Contains("programs refused: rolled 35 deg, limit 30"));
+  world.tilt.roll = 20 * kDeg;
+  world.run(400'000);
+  CHECK(world.state() == State::kArmed);
+  world.tilt.roll = 35 * kDeg;  // a swing back begins the half second anew
+  world.run(40'000);
+  world.tilt.roll = 20 * kDeg;
+  world.run(400'000);
+  CHECK(world.state() == State::kArmed);
+  world.run(200'000);
+  CHECK(world.state() == State::kDriving);
+}
+
+TEST_CASE("it does not arm while it has just tipped, and never by itself") {
+  TiltWorld world;
+  world.tilt.pitch = 35 * kDeg;
+  world.timeToZero();
+  world.run(300'000);
+  world.arm();
+  world.run(100'000);
+  CHECK(world.state() == State::kDisarmed);
+  world.tilt = level();
+  world.run(10'000'000);
+  CHECK(world.state() == State::kDisarmed);
+}
+
+TEST_CASE("attitude that is not measured stops a robot whose description has limits of tilt") {
+  TiltWorld world;
+  world.tilt = InsTilt{};
+  CHECK(world.timeToZero() <= 250'000);
+  CHECK(world.reason() == "INS measures no roll and pitch: their limits cannot be kept");
+  TiltWatch unwatched(std::nullopt);
+  for (int64_t t = 0; t < 1'000'000; t += 20'000) unwatched.receive({t, kPi, 0, 0, 0});
+  CHECK(unwatched.fault(1'000'000).empty());
+}
+
+TEST_CASE("rates that are not measured are passed over") {
+  TiltWorld world;
+  world.tilt.roll_rate = world.tilt.pitch_rate = InsTilt::kUnknown;
+  world.run(2'000'000);
+  CHECK(world.state() == State::kDriving);
+}
