@@ -13,6 +13,7 @@
 #include <tread/ins_t.hpp>
 #include <tread/learner_state_t.hpp>
 #include <tread/learning_t.hpp>
+#include <tread/manual_t.hpp>
 #include <tread/map_tile_t.hpp>
 #include <tread/mark_t.hpp>
 #include <tread/motor_t.hpp>
@@ -60,6 +61,7 @@ inline constexpr Channel<health_t> kHealth{{"HEALTH", "health_t", "every process
 inline constexpr Channel<arm_t> kArm{{"ARM", "arm_t", "tread-arm", 0, 1000, 1000}};
 inline constexpr Channel<operator_t> kOperator{
     {"OPERATOR", "operator_t", "every operator program", 5, 1000, 400}};
+inline constexpr Channel<manual_t> kManual{{"MANUAL", "manual_t", "tread-drive", 50, 200, 200}};
 inline constexpr Channel<estop_t> kEstop{{"ESTOP", "estop_t", "anyone", 0, 0, 1000}};
 inline constexpr Channel<mark_t> kMark{{"MARK", "mark_t", "anyone", 0, 0, 1000}};
 inline constexpr Channel<config_t> kConfig{{"CONFIG", "config_t", "every process", 0.1, 0, 60000}};
@@ -77,8 +79,9 @@ inline bool stops(const goal_t& message) {
 }
 
 /// The whole table, for README, health checks and tests.
-inline constexpr std::array<ChannelSpec, 18> kChannels{
-    kIns,        kScan,         kMap,      kGoal,   kPlan, kPlanTree, kProgram, kMotor, kExecution,
-    kPatternSet, kLearnerState, kLearning, kHealth, kArm,  kOperator, kEstop,   kMark,  kConfig};
+inline constexpr std::array<ChannelSpec, 19> kChannels{
+    kIns,      kScan,      kMap,        kGoal,         kPlan,     kPlanTree, kProgram,
+    kMotor,    kExecution, kPatternSet, kLearnerState, kLearning, kHealth,   kArm,
+    kOperator, kEstop,     kMark,       kConfig,       kManual};
 
 }  // namespace tread

@@ -26,7 +26,7 @@ struct PoseReading {
 
 /// What the motor bridge says it does.
 struct BridgeReading {
-  enum class State { kDisarmed, kArmed, kDriving, kStopping, kFault, kEstopped };
+  enum class State { kDisarmed, kArmed, kDriving, kStopping, kFault, kEstopped, kManual };
   int64_t utime = 0;  ///< [us] when it gave its last command
   State state = State::kDisarmed;
   std::string reason;
@@ -36,7 +36,8 @@ struct BridgeReading {
 
   /// It may drive without being armed anew.
   bool armed() const {
-    return state == State::kArmed || state == State::kDriving || state == State::kStopping;
+    return state == State::kArmed || state == State::kDriving || state == State::kStopping ||
+           state == State::kManual;
   }
 };
 

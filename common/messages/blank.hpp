@@ -52,6 +52,9 @@ inline void markUnknown(learning_t& m) {
                 m.measured_end, m.predicted_end, m.path_length, m.scaling, m.measured_entry,
                 m.ground_changed, m.surface_probability, m.slope);
 }
+inline void markUnknown(manual_t& m) {
+  setAllUnknown(m.hand_left, m.hand_right);
+}
 inline void markUnknown(map_tile_t& m) {
   setUnknown(m.cell_size);
 }

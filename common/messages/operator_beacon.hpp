@@ -37,6 +37,9 @@ class OperatorBeacon {
   void letGo(int64_t utime);
 
   const std::string& name() const { return name_; }
+  int64_t station() const { return station_; }
+  /// utime of the newest MOTOR heard [us]; 0 = none.
+  int64_t seenUtime() const { return seen_utime_; }
   bool hearsRobot() const { return clock_.offset().has_value(); }
   /// The robot's time [us] at the bus's time; the same before the robot was heard.
   int64_t robotTime(int64_t utime) const { return utime + clock_.offset().value_or(0); }

@@ -51,6 +51,16 @@ MotionLimits readMotion(ConfigReader section, const RobotDescription& robot) {
   return motion;
 }
 
+ManualLimits readManual(ConfigReader section, const DriveDescription& drive) {
+  ManualLimits manual;
+  manual.max_command = 0.5 * drive.max_command;
+  manual.slew = drive.max_command;
+  section.seconds("lease", manual.lease_us, {0.05, 0.2});
+  section.number("max_command", manual.max_command, {0.0, drive.max_command}, "of the drive");
+  section.number("slew", manual.slew, {0.05 * drive.max_command, 5.0 * drive.max_command}, "per s");
+  return manual;
+}
+
 /// Keeps MOTOR and EXECUTION below their size limits, whatever an operator wrote as his reason.
 constexpr size_t kMaxReason = 120;
 
@@ -71,6 +81,8 @@ int16_t toMessage(State state) {
   switch (state) {
     case State::kDriving:
       return motor_t::STATE_DRIVING;
+    case State::kManual:
+      return motor_t::STATE_MANUAL;
     case State::kArmed:
       return motor_t::STATE_ARMED;
     case State::kStopping:
@@ -128,6 +140,7 @@ MotorBridgeConfig readMotorBridgeConfig(ConfigReader& reader) {
   config.bridge.operators = robot.operators;
   config.bridge.tilt = robot.tilt;
   config.bridge.motion = readMotion(reader.section("motion_monitor"), robot);
+  config.bridge.manual = readManual(reader.section("manual"), drive);
   config.bridge.gate.slot.kind = drive.kind;
   config.bridge.gate.slot.max_command = drive.max_command;
   config.make_controller = readMotorController(reader, drive);
@@ -174,6 +187,11 @@ InsNotice fromMessage(const ins_t& message) {
                          message.rate[2], message.position_std[0]};
   return {message.utime, (message.ins_status & blind) == 0 && finite, motion, message.seq,
           tiltOf(message, attitude)};
+}
+
+ManualNotice fromMessage(const manual_t& message) {
+  return {message.station,   message.operator_name,  message.seq,       message.seen_utime,
+          message.hold != 0, message.give_back != 0, message.hand_left, message.hand_right};
 }
 
 execution_record_t toMessage(const ExecutionRecord& record) {
@@ -227,6 +245,9 @@ void MotorBridgeNode::listen() {
   bus_.subscribe<ins_t>(
       kIns, [this](const ins_t& message) { bridge_.receive(fromMessage(message), bus_.now()); });
   bus_.subscribe<operator_t>(kOperator, [this](const operator_t& message) { take(message); });
+  bus_.subscribe<manual_t>(kManual, [this](const manual_t& message) {
+    bridge_.receive(fromMessage(message), bus_.now());
+  });
   bus_.subscribe<arm_t>(kArm, [this](const arm_t& message) {
     bridge_.receive(
         ArmRequest{message.utime, message.armed != 0, message.armed_by, message.arm_reason},

@@ -8,6 +8,7 @@
 
 #include <tread/execution_record_t.hpp>
 #include <tread/ins_t.hpp>
+#include <tread/manual_t.hpp>
 #include <tread/motor_t.hpp>
 #include <tread/operator_t.hpp>
 #include <tread/program_t.hpp>
@@ -42,13 +43,14 @@ MotorBridgeConfig readMotorBridgeConfig(ConfigReader& reader);
 /// The core's words for a message. Nothing is checked here: that is the gate's work.
 Program fromMessage(const program_t& message);
 InsNotice fromMessage(const ins_t& message);
+ManualNotice fromMessage(const manual_t& message);
 
 /// One record of EXECUTION.
 execution_record_t toMessage(const ExecutionRecord& record);
 /// MOTOR, without utime and seq.
 motor_t toMessage(const BridgeOutput& output, const MotorTelemetry& telemetry);
 
-/// The motor_bridge process. PROGRAM, OPERATOR, ARM, ESTOP, INS in; the controller, MOTOR,
+/// The motor_bridge process. PROGRAM, OPERATOR, MANUAL, ARM, ESTOP, INS in; the controller, MOTOR,
 /// EXECUTION, HEALTH, CONFIG out.
 /** The only process that may make the motors turn, and the only one that compares utime with the
     host clock: give it a bus whose now() is CLOCK_MONOTONIC. It steps every 10 ms, so that series

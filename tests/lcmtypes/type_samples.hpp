@@ -234,6 +234,21 @@ inline motor_t sampleOf<motor_t>() {
 }
 
 template <>
+inline manual_t sampleOf<manual_t>() {
+  manual_t m{};
+  m.utime = 1'000'018;
+  m.seq = 18;
+  m.station = 777;
+  m.operator_name = "ada@station";
+  m.seen_utime = 1'000'015;
+  m.hold = true;
+  m.give_back = false;
+  m.hand_left = 0.5F;
+  m.hand_right = -0.25F;
+  return m;
+}
+
+template <>
 inline operator_t sampleOf<operator_t>() {
   operator_t m{};
   m.utime = 1'000'017;
@@ -370,9 +385,9 @@ void forEachType(Visitor&& visit) {
            sampleOf<execution_record_t>(), sampleOf<execution_t>(), sampleOf<goal_t>(),
            sampleOf<health_t>(), sampleOf<ins_t>(), sampleOf<learner_state_t>(),
            sampleOf<learning_t>(), sampleOf<map_tile_t>(), sampleOf<mark_t>(), sampleOf<motor_t>(),
-           sampleOf<operator_t>(), sampleOf<pattern_set_part_t>(), sampleOf<plan_t>(),
-           sampleOf<plan_tree_t>(), sampleOf<program_slot_t>(), sampleOf<program_t>(),
-           sampleOf<scan_t>());
+           sampleOf<operator_t>(), sampleOf<manual_t>(), sampleOf<pattern_set_part_t>(),
+           sampleOf<plan_t>(), sampleOf<plan_tree_t>(), sampleOf<program_slot_t>(),
+           sampleOf<program_t>(), sampleOf<scan_t>());
 }
 
 /// Calls `visit` with each typed channel and a sample of its type.
@@ -397,6 +412,7 @@ void forEachChannel(Visitor&& visit) {
   visitOne(kEstop, sampleOf<estop_t>());
   visitOne(kMark, sampleOf<mark_t>());
   visitOne(kConfig, sampleOf<config_t>());
+  visitOne(kManual, sampleOf<manual_t>());
 }
 
 template <class Message>

@@ -124,3 +124,16 @@ TEST_CASE("the motion monitor takes the robot's description, and no value ends i
           std::string::npos);
   }
 }
+
+TEST_CASE("what may be done by hand follows the drive, and can be made no larger than it") {
+  const ManualLimits usual = read("{}").bridge.manual;
+  CHECK(usual.max_command == 0.5);
+  CHECK(usual.slew == 1.0);
+  CHECK(usual.lease_us == 200'000);
+  CHECK(read("manual: {max_command: 0.3, slew: 2}").bridge.manual.max_command == 0.3);
+  for (const char* wide : {"max_command: 1.1", "slew: 100", "lease: 0.3"}) {
+    INFO(wide);
+    CHECK(refusal("manual: {" + std::string(wide) + "}").find("bridge.yaml:1") !=
+          std::string::npos);
+  }
+}

@@ -72,7 +72,8 @@ void checkKinds(const SortedLog& log, Diagnostics& notes) {
   size_t speed = 0;
   size_t invalid = 0;
   for (const motor_t& motor : log.motor) {
-    if (motor.bridge_state != motor_t::STATE_DRIVING) continue;
+    const bool by_hand = motor.bridge_state == motor_t::STATE_MANUAL;
+    if (motor.bridge_state != motor_t::STATE_DRIVING && !by_hand) continue;
     power += motor.motor_command_kind == static_cast<int16_t>(CommandKind::kPower) ? 1 : 0;
     speed += motor.motor_command_kind == static_cast<int16_t>(CommandKind::kTrackSpeed) ? 1 : 0;
     invalid += obeyed(motor) ? 0 : 1;

@@ -24,7 +24,8 @@ constexpr double kManyBroken = 0.2;  // of the segments
 CommandKind kindOf(const SortedLog& log) {
   std::map<int16_t, size_t> counts;
   for (const motor_t& motor : log.motor)
-    if (motor.bridge_state == motor_t::STATE_DRIVING) ++counts[motor.motor_command_kind];
+    if (motor.bridge_state == motor_t::STATE_DRIVING || motor.bridge_state == motor_t::STATE_MANUAL)
+      ++counts[motor.motor_command_kind];
   const auto power = static_cast<int16_t>(CommandKind::kPower);
   const auto speed = static_cast<int16_t>(CommandKind::kTrackSpeed);
   return counts[speed] > counts[power] ? CommandKind::kTrackSpeed : CommandKind::kPower;

@@ -151,7 +151,8 @@ SortedLog::SortedLog(const DriveLog& drive_log)
 
 std::optional<TrackCommand> obeyed(const motor_t& motor) {
   switch (motor.bridge_state) {
-    case motor_t::STATE_DRIVING: {
+    case motor_t::STATE_DRIVING:
+    case motor_t::STATE_MANUAL: {
       const TrackCommand command{static_cast<double>(motor.command_left),
                                  static_cast<double>(motor.command_right)};
       if (!std::isfinite(command.left) || !std::isfinite(command.right)) return std::nullopt;

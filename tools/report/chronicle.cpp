@@ -17,8 +17,8 @@ constexpr double kTogether = 0.3;    // [s] between beginnings, and ends, of the
 constexpr size_t kMostLines = 30;    // of a kind
 
 bool isContinuous(const std::string& channel) {
-  // OPERATOR comes while an operator's program runs.
-  if (channel == kOperator.name) return false;
+  // These come while an operator's program runs.
+  if (channel == kOperator.name || channel == kManual.name) return false;
   return std::any_of(kChannels.begin(), kChannels.end(), [&](const ChannelSpec& spec) {
     return channel == spec.name && spec.rate_hz >= kContinuous;
   });

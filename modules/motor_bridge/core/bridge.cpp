@@ -38,7 +38,8 @@ Bridge::Bridge(const BridgeConfig& config)
       ins_(config.ins),
       motion_(config.motion),
       tilt_(config.tilt),
-      operator_(config.operators.lease_us) {}
+      operator_(config.operators.lease_us),
+      manual_(config.manual) {}
 
 void Bridge::receive(const Program& program, int64_t now) {
   const ProgramGate::Admission admission = gate_.admit(program, now, !isArmed(failsafe_.state()));
@@ -63,6 +64,10 @@ void Bridge::receive(const Program& program, int64_t now) {
 }
 
 void Bridge::take(const Program& program, int64_t now) {
+  if (failsafe_.state() == State::kManual) {
+    if (!program.running.empty()) count("PROGRAM refused: the robot is driven by hand");
+    return gate_.renew(program, now);
+  }
   const Offer offer = player_.offer(program, now);
   if (!agrees(offer)) {
     count(std::string("PROGRAM refused: ") + describe(offer));
@@ -114,6 +119,14 @@ void Bridge::receive(const OperatorNotice& notice, int64_t now) {
   const OperatorLease::Receipt receipt = operator_.receive(notice, now);
   if (receipt != OperatorLease::Receipt::kTaken)
     count(std::string("OPERATOR ignored: ") + describe(receipt));
+  if (receipt == OperatorLease::Receipt::kTaken && !notice.drives) manual_.letGo(notice.station);
+}
+
+void Bridge::receive(const ManualNotice& notice, int64_t now) {
+  const bool holds = operator_.valid(now) && notice.name == operator_.holder();
+  const std::string refusal =
+      holds ? manual_.receive(notice, now) : "its sender does not hold the robot";
+  if (!refusal.empty()) count("MANUAL ignored: " + refusal);
 }
 
 void Bridge::receive(const InsNotice& notice, int64_t now) {
@@ -176,6 +189,14 @@ void Bridge::lookForOperator(int64_t now, FailsafeInputs& in) {
   if (!in.leased) in.operator_fault = in.unleased;
 }
 
+void Bridge::lookForHand(int64_t now, FailsafeInputs& in) {
+  const bool has = failsafe_.state() == State::kManual;
+  manual_.update(now, has);
+  const bool wants = isArmed(failsafe_.state()) ? manual_.takes() : manual_.ready();
+  in.hand = operator_.valid(now) && (has ? !manual_.givenBack() : wants);
+  in.hand_words = manual_.words();
+}
+
 std::string Bridge::leaseFault(int64_t now) const {
   if (gate_.leaseValid(now)) return "";
   return gate_.leaseAge(now) ? "no good PROGRAM within its lease" : "no PROGRAM yet";
@@ -204,6 +225,7 @@ FailsafeInputs Bridge::look(int64_t now, const DeviceReport& device) {
   in.device_fault = device.device_fault;
   in.program_fault = since_.program_fault;
   lookForOperator(now, in);
+  lookForHand(now, in);
   in.lease_fault = leaseFault(now);
   in.ins_fault = ins_.fault(now);
   in.tilt_fault = tilt_.fault(now);
@@ -221,6 +243,9 @@ FailsafeInputs Bridge::look(int64_t now, const DeviceReport& device) {
 void Bridge::command(int64_t now, BridgeOutput& out) {
   if (!out.failsafe.may_drive) {
     player_.abort(now, out.failsafe.reason);
+    if (out.failsafe.state != State::kManual) return;
+    out.command = manual_.command(now);
+    out.kind = config_.gate.slot.kind;
     return;
   }
   if (!player_.playing()) player_.start(now);
@@ -232,7 +257,8 @@ void Bridge::command(int64_t now, BridgeOutput& out) {
 }
 
 void Bridge::schedule(int64_t now, BridgeOutput& out) {
-  const bool fast = out.failsafe.may_drive || out.failsafe.zero_fast;
+  const bool moves = out.failsafe.may_drive || out.failsafe.state == State::kManual;
+  const bool fast = moves || out.failsafe.zero_fast;
   const int64_t interval = fast ? config_.command_interval_us : config_.idle_interval_us;
   out.send = !last_sent_ || out.command != sent_ || now - *last_sent_ >= interval;
   if (!isZero(out.command)) moved_at_ = now;

@@ -10,6 +10,7 @@
 #include "common/execution/operator_lease.hpp"
 #include "common/vehicle/robot_description.hpp"
 #include "modules/motor_bridge/core/failsafe.hpp"
+#include "modules/motor_bridge/core/manual_control.hpp"
 #include "modules/motor_bridge/core/motion_monitor.hpp"
 #include "modules/motor_bridge/core/motor_controller.hpp"
 #include "modules/motor_bridge/core/program.hpp"
@@ -28,6 +29,7 @@ struct BridgeConfig {
   OperatorRules operators;
   MotionLimits motion;
   std::optional<TiltLimits> tilt;  ///< nothing: not watched
+  ManualLimits manual;
 };
 
 /// What a step decided.
@@ -35,7 +37,7 @@ struct BridgeOutput {
   FailsafeOutputs failsafe;
   TrackCommand command;              ///< zero unless driving
   bool send = false;                 ///< the command is to be given to the controller now
-  CommandKind kind = kNoCommand;     ///< of the series played
+  CommandKind kind = kNoCommand;     ///< of the series played, or of what is driven by hand
   int64_t run_id = 0;                ///< of the series played; 0 = none
   int64_t execution_id = 0;          ///< being played; 0 = none
   int32_t command_index = -1;        ///< in the series; -1 = none
@@ -55,6 +57,7 @@ class Bridge {
   void receive(const EstopRequest& request, int64_t now);
   void receive(const InsNotice& notice, int64_t now);
   void receive(const OperatorNotice& notice, int64_t now);
+  void receive(const ManualNotice& notice, int64_t now);
   void receive(const MotorTelemetry& motors) { motion_.receive(motors); }
 
   /// Decides what the motors do from now [us] on.
@@ -82,6 +85,7 @@ class Bridge {
   std::string leaseFault(int64_t now) const;
   bool mayGoOn(int64_t silent) const;
   void lookForOperator(int64_t now, FailsafeInputs& in);
+  void lookForHand(int64_t now, FailsafeInputs& in);
   std::string moveSchedule(int64_t now, bool stalled);
   FailsafeInputs look(int64_t now, const DeviceReport& device);
   void command(int64_t now, BridgeOutput& out);
@@ -95,6 +99,7 @@ class Bridge {
   TiltWatch tilt_;
   OperatorRequests requests_;
   OperatorLease operator_;
+  ManualControl manual_;
   std::optional<int64_t> operator_lost_;  ///< [us] since when
   Failsafe failsafe_;
   Since since_;

@@ -30,6 +30,16 @@ std::optional<Fault> worstFault(const FailsafeInputs& in) {
   return std::nullopt;
 }
 
+/// Worst fault that stops what is driven now: a person sees where the robot is and what it does.
+std::optional<Fault> worstStop(const FailsafeInputs& in) {
+  if (!in.hand) return worstFault(in);
+  FailsafeInputs by_hand = in;
+  for (std::string* seen :
+       {&by_hand.program_fault, &by_hand.lease_fault, &by_hand.ins_fault, &by_hand.motion_fault})
+    seen->clear();
+  return worstFault(by_hand);
+}
+
 }  // namespace
 
 void InsWatch::receive(const InsNotice& notice, int64_t now) {
@@ -92,7 +102,7 @@ FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
   if (state_ == State::kEstopped && !in.estop) enter(State::kDisarmed, "E-stop cleared", in.now);
   // A fault or a request leaves nothing to decide: the next series waits for the next step, so that
   // at least one zero lies between.
-  if (!stopOnFault(in) && !serveRequest(in)) serveSeries(in);
+  if (!stopOnFault(in) && !serveRequest(in) && !serveHand(in)) serveSeries(in);
   FailsafeOutputs out;
   out.state = state_;
   out.may_drive = state_ == State::kDriving;
@@ -108,7 +118,8 @@ FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
 }
 
 void Failsafe::enter(State state, const std::string& reason, int64_t now) {
-  if (state_ == State::kDriving || !isArmed(state)) zero_since_ = now;
+  const bool moved = state_ == State::kDriving || state_ == State::kManual;
+  if (moved || !isArmed(state)) zero_since_ = now;
   if (!isArmed(state)) disarmed_at_ = now;
   state_ = state;
   reason_ = reason;
@@ -116,7 +127,7 @@ void Failsafe::enter(State state, const std::string& reason, int64_t now) {
 }
 
 void Failsafe::watchHealth(const FailsafeInputs& in) {
-  if (worstFault(in)) {
+  if (worstStop(in)) {
     healthy_since_.reset();
   } else if (!healthy_since_) {
     healthy_since_ = in.now;
@@ -124,7 +135,7 @@ void Failsafe::watchHealth(const FailsafeInputs& in) {
 }
 
 bool Failsafe::stopOnFault(const FailsafeInputs& in) {
-  const std::optional<Fault> fault = worstFault(in);
+  const std::optional<Fault> fault = worstStop(in);
   if (!fault) return false;
   const bool worse = fault->state == State::kEstopped && state_ != State::kEstopped;
   if (isArmed(state_) || worse) enter(fault->state, fault->reason, in.now);
@@ -150,7 +161,20 @@ bool Failsafe::serveRequest(const FailsafeInputs& in) {
   if (!in.arm || isArmed(state_)) return false;
   const std::string why_not = whyNotArm(in);
   refusal_ = why_not.empty() ? "" : "ARM refused: " + why_not;
-  if (refusal_.empty()) enter(State::kArmed, "armed by " + in.requested_by, in.now);
+  if (!refusal_.empty()) return true;
+  enter(in.hand ? State::kManual : State::kArmed,
+        in.hand ? in.hand_words : "armed by " + in.requested_by, in.now);
+  return true;
+}
+
+bool Failsafe::serveHand(const FailsafeInputs& in) {
+  if (in.hand && isArmed(state_)) {
+    if (state_ != State::kManual || reason_ != in.hand_words)
+      enter(State::kManual, in.hand_words, in.now);
+    return true;
+  }
+  if (state_ != State::kManual) return false;
+  enter(State::kStopping, in.leased ? "given back by hand" : in.unleased, in.now);
   return true;
 }
 

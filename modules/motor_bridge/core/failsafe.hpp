@@ -97,11 +97,12 @@ class OperatorRequests {
 /// States by rank: a worse input always wins over a better one.
 enum class State : int {
   kDriving = 0,   ///< armed, a series is played
-  kArmed = 1,     ///< may drive, standing
-  kStopping = 2,  ///< armed; a series ended normally, zero is repeated at the command rate
-  kDisarmed = 3,  ///< needs ARM: not armed yet, disarmed, or stopped by the failsafe
-  kFault = 4,     ///< needs ARM: stopped by a fault of the controller or of the link to it
-  kEstopped = 5,  ///< until the E-stop is cleared; then disarmed
+  kManual = 1,    ///< armed, in a person's hand: no series is played
+  kArmed = 2,     ///< may drive, standing
+  kStopping = 3,  ///< armed; a series ended normally, zero is repeated at the command rate
+  kDisarmed = 4,  ///< needs ARM: not armed yet, disarmed, or stopped by the failsafe
+  kFault = 5,     ///< needs ARM: stopped by a fault of the controller or of the link to it
+  kEstopped = 6,  ///< until the E-stop is cleared; then disarmed
 };
 
 /// True for the states in which a series may be started without ARM.
@@ -123,17 +124,19 @@ struct FailsafeInputs {
   std::string ins_fault;       ///< no usable INS within its limit
   std::string tilt_fault;      ///< a limit of roll, pitch or their rates was passed
   std::string motion_fault;    ///< the robot moves otherwise than its commands explain
-  bool playing = false;        ///< a series is being played and goes on
-  bool start_wanted = false;   ///< a series is offered to a standing robot
-  std::string program_bar;     ///< why no series may start, though a person may drive by hand
-  std::string series_end;      ///< why the series ended, if it did in this step
-  bool leased = false;         ///< an operator is there; without one nothing moves
-  std::string unleased;        ///< why not
-  bool unattended = false;     ///< no operator was there for longer than an armed robot waits
-  bool arm = false;            ///< a new request to arm arrived in this step
-  bool disarm = false;         ///< a request to disarm arrived in this step
-  std::string requested_by;    ///< who sent the request
-  std::string refusal;         ///< why a request counts for nothing, where people must know it
+  bool hand = false;          ///< a person takes or keeps the robot, or wants it armed for the hand
+  std::string hand_words;     ///< who does, and why it stands, if it does
+  bool playing = false;       ///< a series is being played and goes on
+  bool start_wanted = false;  ///< a series is offered to a standing robot
+  std::string program_bar;    ///< why no series may start, though a person may drive by hand
+  std::string series_end;     ///< why the series ended, if it did in this step
+  bool leased = false;        ///< an operator is there; without one nothing moves
+  std::string unleased;       ///< why not
+  bool unattended = false;    ///< no operator was there for longer than an armed robot waits
+  bool arm = false;           ///< a new request to arm arrived in this step
+  bool disarm = false;        ///< a request to disarm arrived in this step
+  std::string requested_by;   ///< who sent the request
+  std::string refusal;        ///< why a request counts for nothing, where people must know it
 };
 
 /// What the bridge has to do.
@@ -148,6 +151,8 @@ struct FailsafeOutputs {
 };
 
 /// The ranked state machine that decides whether the motors may turn. Pure: time is an input.
+bool hand = false;       ///< a person takes or keeps the robot, or wants it armed for the hand
+std::string hand_words;  ///< who does, and why it stands, if it does
 /** Ranks, worst first: E-stop, link, device, bridge, program, operator, lease, INS, tilt,
    motion. A series can only start from a state that gave zero in the step before, and only while an
    operator is there and nothing bars programs. Everything but the normal end of a series needs ARM,
@@ -167,6 +172,7 @@ class Failsafe {
   void watchHealth(const FailsafeInputs& in);
   bool stopOnFault(const FailsafeInputs& in);
   bool serveRequest(const FailsafeInputs& in);
+  bool serveHand(const FailsafeInputs& in);
   void serveSeries(const FailsafeInputs& in);
   std::string whyNotArm(const FailsafeInputs& in) const;
 

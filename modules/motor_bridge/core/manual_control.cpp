@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/motor_bridge/core/manual_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tread::motor {
+namespace {
+
+/// Stopping is never delayed: what is nearer to zero is given at once, and what grows, grows from
+/// there.
+double limited(double wanted, double given, double growth) {
+  const double from = wanted * given > 0.0 ? std::abs(given) : 0.0;
+  return std::copysign(std::min(std::abs(wanted), from + growth), wanted);
+}
+
+}  // namespace
+
+std::string ManualControl::receive(const ManualNotice& notice, int64_t now) {
+  // NaN fails both comparisons.
+  const bool valid = std::abs(notice.left) <= 1.0 && std::abs(notice.right) <= 1.0;
+  if (!valid) return "a command that is no share of the largest, -1 to 1";
+  const bool same = notice.station == last_.station;
+  if (same && notice.seq <= last_.seq) return "overtaken on its way";
+  const OperatorNotice seen{
+      notice.station, std::to_string(notice.station), true, notice.seen_utime, 0, ""};
+  switch (lease_.receive(seen, now)) {
+    case OperatorLease::Receipt::kTaken:
+      break;
+    case OperatorLease::Receipt::kOfAnother:
+      return "another program drives by hand";
+    default:
+      return "its program has not seen the robot within " +
+             std::to_string(limits_.lease_us / 1000) + " ms";
+  }
+  if (!same) must_rest_ = true;
+  last_ = notice;
+  if (!notice.hold || !moved()) must_rest_ = false;
+  return "";
+}
+
+void ManualControl::letGo(int64_t station) {
+  if (station == last_.station) last_.give_back = true;
+}
+
+void ManualControl::update(int64_t now, bool has) {
+  lease_.update(now, false);
+  fresh_ = lease_.valid(now);
+  live_ = fresh_ && last_.hold && !last_.give_back;
+  if (has && !fresh_) must_rest_ = true;
+  if (has) return;
+  command_ = TrackCommand{};
+  commanded_.reset();
+}
+
+std::string ManualControl::words() const {
+  if (!fresh_) return "in the hand of " + last_.name + ", who is silent";
+  if (!last_.hold) return "in the hand of " + last_.name + ", dead-man's button released";
+  if (must_rest_) return "in the hand of " + last_.name + ": let the stick go once";
+  return "driven by hand by " + last_.name;
+}
+
+TrackCommand ManualControl::command(int64_t now) {
+  if (!live_ || must_rest_) return command_ = TrackCommand{};
+  if (commanded_ && now - *commanded_ < kInterval) return command_;
+  const double growth =
+      commanded_
+          ? limits_.slew * static_cast<double>(std::min(now - *commanded_, 2 * kInterval)) * 1e-6
+          : 0.0;
+  command_.left = limited(last_.left * limits_.max_command, command_.left, growth);
+  command_.right = limited(last_.right * limits_.max_command, command_.right, growth);
+  commanded_ = now;
+  return command_;
+}
+
+}  // namespace tread::motor

@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <limits>
+
+#include <catch2/catch.hpp>
+
+#include "tests/motor_bridge/bridge_world.hpp"
+
+using namespace tread;
+using namespace tread::motor;
+
+namespace {
+
+constexpr int64_t kBridgeStep = BridgeWorld::kStep;
+
+/// A bridge in its world, and a person's program that sends MANUAL at 50 Hz.
+struct HandWorld : BridgeWorld {
+  ManualNotice wish{7, "operator", 0, 0, true, false, 0.0, 0.0};
+  bool hand_alive = true;
+  bool loop_closed = true;  ///< the program hears MOTOR
+  int64_t seen = 0;         ///< [us]
+
+  void tell() {
+    if (loop_closed) seen = now - 10'000;
+    wish.seen_utime = seen;
+    ++wish.seq;
+    bridge.receive(wish, now);
+  }
+  void step() {
+    if (hand_alive && now % 20'000 == 0) tell();
+    BridgeWorld::step();
+  }
+  void run(int64_t us) {
+    for (const int64_t end = now + us; now < end;) step();
+  }
+  void stick(double left, double right) {
+    wish.left = left;
+    wish.right = right;
+  }
+  /// Runs until the planner drives, a person's hand at the resting stick.
+  void drive() {
+    wish.hold = false;
+    run(1'200'000);
+    arm();
+    run(200'000);
+    wish.hold = true;
+    run(100'000);
+    REQUIRE(state() == State::kDriving);
+  }
+  /// Runs until a person drives at full stick.
+  void driveByHand() {
+    drive();
+    stick(1.0, 1.0);
+    run(1'000'000);
+    REQUIRE(state() == State::kManual);
+    REQUIRE(out.command == TrackCommand{0.5, 0.5});
+  }
+  /// Steps until `done`; returns how long it took [us].
+  template <class Done>
+  int64_t until(Done&& done) {
+    const int64_t from = now;
+    while (!done() && now - from < 5'000'000) step();
+    return now - from;
+  }
+  bool stands() const { return isZero(out.command); }
+};
+
+}  // namespace
+
+TEST_CASE("a moved stick takes over within 100 ms of its message, and the program is gone") {
+  HandWorld world;
+  world.drive();
+  const int64_t execution = world.out.execution_id;
+  world.stick(0.6, 0.4);
+  world.tell();
+  CHECK(world.until([&] { return world.state() == State::kManual; }) <= kBridgeStep);
+  CHECK(world.stands());  // what the pattern gave is gone before the hand's command grows
+  CHECK(world.until([&] { return world.out.command.left > 0.0; }) <= 100'000 - kBridgeStep);
+  CHECK(world.reason() == "driven by hand by operator");
+  CHECK(world.last().execution_id == execution);
+  CHECK(world.last().outcome == ExecutionOutcome::kAborted);
+  CHECK(world.last().reason == "driven by hand by operator");
+  CHECK(world.out.execution_id == 0);
+  CHECK(world.out.run_id == 0);
+  CHECK(world.out.command_index == -1);
+  CHECK(world.out.kind == CommandKind::kPower);
+  world.run(5'000'000);
+  CHECK(world.state() == State::kManual);
+  CHECK(world.last().execution_id == execution);
+  CHECK(world.bridge.counters().at("PROGRAM refused: the robot is driven by hand") > 50);
+}
+
+TEST_CASE("by hand power has a limit and grows at a limited rate, less of it comes at once") {
+  HandWorld world;
+  world.drive();
+  world.stick(1.0, -1.0);
+  world.run(50'000);
+  double before = world.out.command.left;
+  for (int i = 0; i < 200; ++i) {
+    world.step();
+    REQUIRE(world.out.command.left - before <= 0.02 + 1e-9);
+    REQUIRE(std::abs(world.out.command.right) <= 0.5);
+    before = world.out.command.left;
+  }
+  CHECK(world.out.command == TrackCommand{0.5, -0.5});
+  world.stick(0.2, 0.0);
+  world.tell();
+  world.run(2 * kBridgeStep);
+  CHECK(world.out.command.left == Approx(0.1));
+  CHECK(world.out.command.right == 0.0);
+  world.stick(-1.0, 0.0);
+  world.tell();
+  world.run(2 * kBridgeStep);
+  CHECK(world.out.command.left <= 0.0);
+  CHECK(world.out.command.left >= -0.02 - 1e-9);
+}
+
+TEST_CASE("a released dead-man's button: zero in the next step, armed, in the hand") {
+  HandWorld world;
+  world.driveByHand();
+  world.wish.hold = false;
+  world.tell();
+  CHECK(world.until([&] { return world.stands(); }) == kBridgeStep);
+  CHECK(world.state() == State::kManual);
+  CHECK(world.reason() == "in the hand of operator, dead-man's button released");
+  world.run(3'000'000);
+  CHECK(world.state() == State::kManual);
+  CHECK(world.stands());
+  world.wish.hold = true;
+  CHECK(world.until([&] { return !world.stands(); }) <= 60'000);
+}
+
+TEST_CASE(
+    "a silent hand: zero within its lease and a step of what it saw last, and it stays zero") {
+  HandWorld world;
+  world.driveByHand();
+  SECTION("its program is gone") {
+    world.hand_alive = false;
+  }
+  SECTION("its program hears nothing of the robot") {
+    world.loop_closed = false;
+  }
+  world.until([&] { return world.stands(); });
+  CHECK(world.now - world.seen <= 200'000 + kBridgeStep);
+  CHECK(world.now - world.seen > 200'000);
+  CHECK(world.state() == State::kManual);
+  CHECK(world.reason() == "in the hand of operator, who is silent");
+  world.run(2'000'000);
+  CHECK(world.stands());
+  world.hand_alive = world.loop_closed = true;
+  world.run(1'000'000);
+  CHECK(world.stands());  // nobody has touched the stick since
+  CHECK(world.reason() == "in the hand of operator: let the stick go once");
+  world.stick(0.0, 0.0);
+  world.run(50'000);
+  world.stick(0.5, 0.5);
+  CHECK(world.until([&] { return !world.stands(); }) <= 60'000);
+}
+
+TEST_CASE("given back: zero, then the planner's next program, and what was taken is not resumed") {
+  HandWorld world;
+  world.driveByHand();
+  const int64_t execution = world.last().execution_id;
+  world.wish.give_back = true;
+  world.tell();
+  world.step();
+  CHECK(world.stands());
+  CHECK(world.state() == State::kStopping);
+  CHECK(world.reason() == "given back by hand");
+  world.run(300'000);
+  CHECK(world.state() == State::kDriving);
+  CHECK(world.last().execution_id > execution);
+  world.wish.give_back = false;
+  world.stick(0.0, 0.0);
+  world.run(1'000'000);
+  CHECK(world.state() == State::kDriving);
+}
+
+TEST_CASE("letting go gives back, falling silent does not, and who starts anew may give back") {
+  HandWorld world;
+  world.driveByHand();
+  world.hand_alive = false;
+  SECTION("the hand's program lets go in good order, another one of the operator goes on") {
+    world.bridge.receive(OperatorNotice{7, "operator", true, world.now, 0, ""}, world.now);
+    world.bridge.receive(OperatorNotice{7, "operator", false, world.now, 0, ""}, world.now);
+    world.run(300'000);
+    CHECK(world.state() == State::kDriving);
+  }
+  SECTION("another program lets go") {
+    world.bridge.receive(OperatorNotice{8, "operator", true, world.now, 0, ""}, world.now);
+    world.bridge.receive(OperatorNotice{8, "operator", false, world.now, 0, ""}, world.now);
+    world.run(1'000'000);
+    CHECK(world.state() == State::kManual);
+  }
+  SECTION("started anew with the stick held: nothing moves before it was let go") {
+    world.run(500'000);
+    world.wish.station = 9;
+    world.wish.seq = 0;
+    world.hand_alive = true;
+    world.run(1'000'000);
+    CHECK(world.stands());
+    world.wish.give_back = true;
+    world.run(300'000);
+    CHECK(world.state() == State::kDriving);
+  }
+}
+
+TEST_CASE("what stops a program stops the hand: zero in the next step, and ARM is needed") {
+  HandWorld world;
+  world.driveByHand();
+  SECTION("E-stop") {
+    world.bridge.receive(EstopRequest{world.now, true, "operator", "person"}, world.now);
+  }
+  SECTION("link") {
+    world.device.link_fault = "no answer";
+  }
+  SECTION("controller, its undervoltage among others") {
+    world.device.device_fault = "undervoltage";
+  }
+  SECTION("disarmed") {
+    world.bridge.receive(ArmRequest{world.now, false, "operator", ""}, world.now);
+  }
+  SECTION("the bridge was held up") {
+    world.now += 200'000;
+  }
+  world.BridgeWorld::step();
+  CHECK(world.stands());
+  CHECK(!isArmed(world.state()));
+  world.device = DeviceReport{};
+  world.run(3'000'000);
+  CHECK(world.stands());
+  CHECK(!isArmed(world.state()));
+}
+
+TEST_CASE("a lost operator stops the hand, and so does one who lets go with all programs") {
+  HandWorld world;
+  world.driveByHand();
+  world.operator_alive = false;
+  SECTION("silent") {
+    world.hand_alive = false;
+    world.run(1'300'000);
+    CHECK(world.state() == State::kDisarmed);
+    CHECK(world.reason().find("the operator is lost") != std::string::npos);
+  }
+  SECTION("let go") {
+    world.bridge.receive(OperatorNotice{1, "operator", false, world.now, 0, ""}, world.now);
+    world.step();
+    CHECK(world.stands());
+    CHECK(world.state() == State::kStopping);
+    CHECK(world.reason() == "operator has let go");
+  }
+}
+
+TEST_CASE(
+    "a person sees the robot: neither INS nor planner nor what it makes of its commands stop "
+    "the hand, but they are told, and count again when it is given back") {
+  HandWorld world;
+  world.driveByHand();
+  SECTION("INS") {
+    world.ins_alive = false;
+  }
+  SECTION("planner") {
+    world.planner_alive = false;
+  }
+  world.run(1'000'000);
+  CHECK(world.state() == State::kManual);
+  CHECK(world.out.command == TrackCommand{0.5, 0.5});
+  CHECK_FALSE(world.out.failsafe.standing_fault.empty());
+  world.wish.give_back = true;
+  world.run(50'000);
+  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.stands());
+}
+
+TEST_CASE("the hand needs the dead-man's button, the lease and valid numbers to take over") {
+  HandWorld world;
+  world.drive();
+  SECTION("no button") {
+    world.wish.hold = false;
+  }
+  SECTION("another operator") {
+    world.wish.name = "eve";
+  }
+  SECTION("an old view") {
+    world.loop_closed = false;
+    world.seen = world.now - 250'000;
+  }
+  SECTION("a played-back message") {
+    world.hand_alive = false;
+  }
+  SECTION("a button that gives back") {
+    world.wish.give_back = true;
+  }
+  SECTION("no number") {
+    world.stick(std::numeric_limits<double>::quiet_NaN(), 0.5);
+    world.run(1'000'000);
+    world.stick(0.5, std::numeric_limits<double>::infinity());
+    world.run(1'000'000);
+    world.stick(0.5, -1.5);
+    world.run(1'000'000);
+    CHECK(world.state() == State::kDriving);
+    world.wish.hold = false;
+  }
+  world.stick(1.0, 1.0);
+  if (!world.hand_alive) world.bridge.receive(world.wish, world.now);  // seq and view as before
+  world.run(1'000'000);
+  CHECK(world.state() == State::kDriving);
+}
+
+TEST_CASE("a second hand of the same operator is refused while the first is there") {
+  HandWorld world;
+  world.driveByHand();
+  ManualNotice second = world.wish;
+  second.station = 8;
+  second.left = second.right = -1.0;
+  for (int i = 0; i < 20; ++i) {
+    second.seen_utime = world.now - 10'000;
+    ++second.seq;
+    world.bridge.receive(second, world.now);
+    world.step();
+    REQUIRE(world.out.command == TrackCommand{0.5, 0.5});
+  }
+  CHECK(world.bridge.counters().at("MANUAL ignored: another program drives by hand") == 20);
+}
+
+TEST_CASE(
+    "a disarmed robot is not moved by hand, and arming moves nothing before the stick rests") {
+  HandWorld world;
+  world.stick(1.0, 1.0);
+  world.run(2'000'000);
+  CHECK(world.state() == State::kDisarmed);
+  world.planner_alive = false;  // nothing else may begin
+  world.arm();
+  world.run(1'000'000);
+  CHECK(world.stands());
+  CHECK(world.state() == State::kDisarmed);
+}
+
+TEST_CASE(
+    "with the button held and the stick at rest, ARM arms for the hand, without INS and "
+    "planner") {
+  HandWorld world;
+  world.planner_alive = world.ins_alive = false;
+  world.run(1'300'000);
+  world.arm();
+  world.run(50'000);
+  CHECK(world.state() == State::kManual);
+  CHECK(world.stands());
+  world.stick(1.0, 1.0);
+  world.run(1'000'000);
+  CHECK(world.out.command == TrackCommand{0.5, 0.5});
+}
+
+TEST_CASE("without the button ARM needs what a program needs") {
+  HandWorld world;
+  world.wish.hold = false;
+  world.ins_alive = false;
+  world.run(1'300'000);
+  world.arm();
+  world.run(50'000);
+  CHECK(world.state() == State::kDisarmed);
+}
+
+TEST_CASE("an overtaken message of the hand counts for nothing") {
+  HandWorld world;
+  world.driveByHand();
+  ManualNotice old = world.wish;
+  world.wish.hold = false;
+  world.tell();
+  world.bridge.receive(old, world.now);
+  world.step();
+  CHECK(world.stands());
+}
