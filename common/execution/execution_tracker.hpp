@@ -26,7 +26,7 @@ struct PoseReading {
 
 /// What the motor bridge says it does.
 struct BridgeReading {
-  enum class State { kDisarmed, kArmed, kDriving, kStopping, kFault, kEstopped, kManual };
+  enum class State { kDisarmed, kArmed, kDriving, kStopping, kFault, kEstopped, kByHand };
   int64_t utime = 0;  ///< [us] when it gave its last command
   State state = State::kDisarmed;
   std::string reason;
@@ -37,7 +37,7 @@ struct BridgeReading {
   /// It may drive without being armed anew.
   bool armed() const {
     return state == State::kArmed || state == State::kDriving || state == State::kStopping ||
-           state == State::kManual;
+           state == State::kByHand;
   }
 };
 

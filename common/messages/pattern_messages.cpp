@@ -138,7 +138,7 @@ BridgeReading::State stateFrom(int16_t state) {
   static_assert(static_cast<int16_t>(State::kDriving) == motor_t::STATE_DRIVING);
   static_assert(static_cast<int16_t>(State::kStopping) == motor_t::STATE_STOPPING);
   static_assert(static_cast<int16_t>(State::kEstopped) == motor_t::STATE_ESTOP);
-  static_assert(static_cast<int16_t>(State::kManual) == motor_t::STATE_MANUAL);
+  static_assert(static_cast<int16_t>(State::kByHand) == motor_t::STATE_MANUAL);
   const bool known = state >= motor_t::STATE_DISARMED && state <= motor_t::STATE_MANUAL;
   return known ? static_cast<State>(state) : State::kDisarmed;
 }

@@ -27,16 +27,16 @@ constexpr int64_t kDisarmedPatience = 2'000'000;
 /// The planner shows a goal soon, and what it has ended does not come back [us].
 constexpr int64_t kGoalPatience = 1'500'000;
 
-/// Where the robot has a key and this program none, nothing that it says is taken.
-std::string keyWords(const Bus& bus) {
-  return bus.statistics().sealed_unread ? "; the robot has a key: give it with --key" : "";
-}
-
 bool isStuck(int16_t status) {
   return status == plan_t::PLAN_BLOCKED || status == plan_t::PLAN_UNREACHABLE;
 }
 
 }  // namespace
+
+// Where the robot has a key and this program none, nothing that it says is taken.
+std::string keyWords(const Bus& bus) {
+  return bus.statistics().sealed_unread ? "; the robot has a key: give it with --key" : "";
+}
 
 PermissionCall::PermissionCall(Bus& bus, const std::string& operator_name, double patience,
                                Request request)
@@ -72,8 +72,6 @@ std::string PermissionCall::describe(int64_t utime) const {
   return words + "the motor bridge says: " + (reason.empty() ? "nothing" : reason);
 }
 
-namespace {
-
 void sendArm(Bus& bus, const Requester& requester, bool arm, int64_t utime, int64_t seq) {
   auto message = blank<arm_t>();
   message.utime = utime;
@@ -83,8 +81,6 @@ void sendArm(Bus& bus, const Requester& requester, bool arm, int64_t utime, int6
   message.arm_reason = requester.why;
   bus.publish(kArm, message);
 }
-
-}  // namespace
 
 ArmCall::ArmCall(Bus& bus, const Requester& requester, const ArmRequest& request, double patience)
     : PermissionCall(

@@ -48,6 +48,12 @@ struct Requester {
   }
 };
 
+/// "; the robot has a key: ..." where a robot has one and this program none, else empty.
+std::string keyWords(const Bus& bus);
+
+/// One ARM message; 'utime' [us] is the robot's.
+void sendArm(Bus& bus, const Requester& requester, bool arm, int64_t utime, int64_t seq);
+
 /// A request to the motor bridge, repeated until MOTOR shows that it was served.
 class PermissionCall : public Call {
  public:

@@ -5,6 +5,9 @@
 #include <csignal>
 #include <iostream>
 
+#include <sys/ioctl.h>
+#include <unistd.h>
+
 #include "common/bus/key_option.hpp"
 #include "common/bus/lcm_bus.hpp"
 #include "common/config/command_line.hpp"
@@ -23,6 +26,16 @@ void noteSignal(int /*signal*/) {
 
 constexpr int kStepMs = 20;
 
+void show(const CommandOptions& options, const std::string& words) {
+  if (!options.one_line) {
+    std::cout << words << std::endl;
+    return;
+  }
+  winsize size{};
+  const bool known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  std::cout << "\r\x1b[K" << (known ? words.substr(0, size.ws_col - 1U) : words) << std::flush;
+}
+
 int run(const std::string& name, const CommandOptions& options, Bus& bus, Call& call,
         const std::function<void(int)>& wait) {
   const int64_t begun = bus.now();
@@ -35,18 +48,20 @@ int run(const std::string& name, const CommandOptions& options, Bus& bus, Call& 
     if (result != CallResult::kPending || late) {
       if (result != CallResult::kDone) call.cancel(now);
       call.letGo(now);
+      if (options.one_line) std::cout << std::endl;
       (result == CallResult::kDone ? std::cout : std::cerr)
           << name << ": " << (late ? "out of time: " : "") << call.describe(now) << std::endl;
       return result == CallResult::kDone ? 0 : 1;
     }
     if (options.progress > 0.0 && now >= next_line) {
-      std::cout << call.describe(now) << std::endl;
+      show(options, call.describe(now));
       next_line = now + static_cast<int64_t>(options.progress * 1e6);
     }
     wait(kStepMs);
   }
   call.cancel(bus.now());
   call.letGo(bus.now());
+  if (options.one_line) std::cout << std::endl;
   std::cerr << name << ": interrupted" << std::endl;
   return 130;
 }
@@ -55,8 +70,10 @@ int run(const std::string& name, const CommandOptions& options, Bus& bus, Call& 
 
 int runCall(const std::string& name, const CommandOptions& options,
             const std::function<std::unique_ptr<Call>(Bus&)>& make) {
-  std::signal(SIGINT, noteSignal);
-  std::signal(SIGTERM, noteSignal);
+  for (const int number : {SIGINT, SIGTERM}) std::signal(number, noteSignal);
+  // What was started to outlive its terminal does.
+  for (const int number : {SIGHUP, SIGQUIT})
+    if (std::signal(number, noteSignal) == SIG_IGN) std::signal(number, SIG_IGN);
   try {
     const launch::RunningRobot robot = launch::findRobot(options.lcm_url, options.key);
     LcmBus bus(BusAccess{robot.lcm_url, stationSealer(robot.key)}, TimeSource::kHost);

@@ -27,9 +27,10 @@ struct CommandOptions {
   std::string key;        ///< file of the robot's key; empty = messages are not sealed
   double timeout = 0.0;   ///< [s] after which the call is cancelled; 0 = never
   double progress = 0.0;  ///< [s] between lines of progress; 0 = none
+  bool one_line = false;  ///< progress overwrites its line
 };
 
-/// Runs a call over real LCM to its end, SIGINT, SIGTERM or the timeout.
+/// Runs a call over real LCM to its end, the timeout, or a signal that ends it in good order.
 /** Exit code: 0 done, 1 refused, out of time, or one clear line of what is wrong with LCM, 130
  * interrupted. */
 int runCall(const std::string& name, const CommandOptions& options,

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "tools/robot/drive/stick.hpp"
+#include "tools/robot/operator/calls.hpp"
+
+namespace tread::drive {
+
+/// A person at the stick: MANUAL at 50 Hz, OPERATOR, and ARM at the press of a button.
+/** Ends when the stick is gone, or its recording over. A robot that is in the hand then is
+ * disarmed: it moves no more before somebody arms it. */
+class DriveCall : public operators::Call {
+ public:
+  DriveCall(Bus& bus, const operators::Requester& requester, std::unique_ptr<Stick> stick);
+
+  operators::CallResult step(int64_t utime) override;
+  /// One line: state, commands, battery, why.
+  std::string describe(int64_t utime) const override;
+  void letGo(int64_t utime) override;
+
+ private:
+  bool armed() const;
+  void serveButtons(int64_t utime);
+  void tell(int64_t utime);
+  void sendManual(int64_t utime, const Wishes& wishes);
+
+  Bus& bus_;
+  operators::Requester requester_;
+  std::unique_ptr<Stick> stick_;
+  OperatorBeacon beacon_;
+  Latest<motor_t> motor_;
+  Wishes wishes_;
+  Wishes told_;
+  std::string gone_;        ///< why the stick is gone; empty = it is there
+  int64_t arms_until_ = 0;  ///< [us]
+  int64_t gives_back_until_ = 0;
+  int64_t next_arm_ = 0;
+  int64_t next_ = 0;
+  int64_t seq_ = 0;
+  int64_t seq_arm_ = 0;
+};
+
+}  // namespace tread::drive

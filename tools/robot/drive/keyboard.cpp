@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/robot/drive/keyboard.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+#include <termios.h>
+#include <unistd.h>
+
+namespace tread::drive {
+
+void KeyState::take(std::string_view bytes, int64_t now) {
+  for (const char byte : bytes) {
+    if (byte == '\x1b') {
+      escape_ = 1;
+    } else if (escape_ == 1 && (byte == '[' || byte == 'O')) {
+      escape_ = 2;
+    } else if (escape_ == 2) {
+      escape_ = 0;
+      constexpr std::string_view kArrows = "ABDC";  // up, down, left, right
+      const size_t arrow = kArrows.find(byte);
+      if (arrow != std::string_view::npos) press("wsad"[arrow], now);
+    } else {
+      escape_ = 0;
+      press(byte, now);
+    }
+  }
+}
+
+void KeyState::move(double forward, double turn, int64_t now) {
+  forward_ = forward;
+  turn_ = turn;
+  moves_until_ = now + kHeld;
+}
+
+void KeyState::press(char key, int64_t now) {
+  switch (key) {
+    case 'w':
+      return move(1.0, 0.0, now);
+    case 's':
+      return move(-1.0, 0.0, now);
+    case 'a':
+      return move(0.0, 1.0, now);
+    case 'd':
+      return move(0.0, -1.0, now);
+    case 'q':
+      return move(1.0, 0.4, now);
+    case 'e':
+      return move(1.0, -0.4, now);
+    case '\r':
+    case '\n':
+      arms_until_ = now + kHeld;
+      holds_until_ = now + kArming;
+      return;
+    case '\x7f':
+    case '\b':
+      disarms_until_ = now + kHeld;
+      return;
+    case 'g':
+      gives_back_until_ = now + kHeld;
+      return;
+    default:  // the space bar, and every key that means nothing, stops
+      moves_until_ = holds_until_ = now;
+  }
+}
+
+Wishes KeyState::wishes(int64_t now) const {
+  Wishes wishes;
+  const bool moves = now < moves_until_;
+  wishes.forward = moves ? forward_ : 0.0;
+  wishes.turn = moves ? turn_ : 0.0;
+  wishes.hold = moves || now < holds_until_;
+  wishes.arm = now < arms_until_;
+  wishes.disarm = now < disarms_until_;
+  wishes.give_back = now < gives_back_until_;
+  return wishes;
+}
+
+struct Keyboard::Terminal {
+  termios before{};
+};
+
+Keyboard::Keyboard() : terminal_(std::make_unique<Terminal>()) {
+  if (::tcgetattr(STDIN_FILENO, &terminal_->before) != 0)
+    throw std::runtime_error("the keyboard is read from a terminal, and standard input is none");
+  termios raw = terminal_->before;
+  raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+  raw.c_cc[VMIN] = 0;
+  raw.c_cc[VTIME] = 0;
+  // Neither stopped in the background nor dumped: it would leave the terminal as it is now.
+  raw.c_cc[VSUSP] = raw.c_cc[VQUIT] = _POSIX_VDISABLE;
+  if (::tcsetattr(STDIN_FILENO, TCSANOW, &raw) != 0)
+    throw std::runtime_error(std::string("the terminal: ") + std::strerror(errno));
+}
+
+Keyboard::~Keyboard() {
+  ::tcsetattr(STDIN_FILENO, TCSANOW, &terminal_->before);
+}
+
+Wishes Keyboard::read(int64_t now) {
+  char bytes[256];
+  const ssize_t size = ::read(STDIN_FILENO, bytes, sizeof bytes);
+  if (size < 0 && errno != EAGAIN && errno != EINTR)
+    throw std::runtime_error(std::string("the terminal is gone: ") + std::strerror(errno));
+  if (size > 0) state_.take({bytes, static_cast<size_t>(size)}, now);
+  return state_.wishes(now);
+}
+
+std::string Keyboard::keys() const {
+  return "hold an arrow or w a s d, q e for curves; space stops, Enter arms, Backspace disarms, g "
+         "gives back; Ctrl-C ends";
+}
+
+}  // namespace tread::drive

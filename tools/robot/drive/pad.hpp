@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/robot/drive/stick.hpp"
+
+namespace tread::drive {
+
+/// A gamepad's or joystick's state, from the events of Linux's input layer.
+/** Left stick: forward and turn. A shoulder button, or a joystick's trigger, is the dead-man's
+ * button; START arms, SELECT disarms, the upper of the four buttons gives back. */
+class PadState {
+ public:
+  /// Numbers that an axis (ABS_X, ABS_Y) counts from and to.
+  void setRange(int code, int least, int most);
+  void take(int type, int code, int value);
+  Wishes wishes() const;
+
+ private:
+  struct Axis {
+    int least = -32768;
+    int most = 32767;
+    int value = 0;
+  };
+  /// -1..1, and 0 around the middle.
+  static double share(const Axis& axis);
+  bool anyPressed(std::initializer_list<int> buttons) const;
+
+  std::map<int, Axis> axes_;
+  std::map<int, bool> pressed_;
+};
+
+/// A recording of a device by evemu-record, played at its own speed from the first read() on.
+class RecordedPad : public Stick {
+ public:
+  /// Throws std::runtime_error with one clear line, path:line.
+  explicit RecordedPad(const std::string& path);
+
+  Wishes read(int64_t now) override;
+  std::string name() const override { return "recording " + path_; }
+  std::string keys() const override { return "as recorded"; }
+
+ private:
+  struct Event {
+    int64_t time;  ///< [us] since the first
+    int type, code, value;
+  };
+  void takeLine(const std::string& line, const std::string& where);
+
+  std::string path_;
+  PadState state_;
+  std::vector<Event> events_;
+  size_t next_ = 0;
+  int64_t first_ = -1;  ///< [us] as recorded
+  int64_t begun_ = -1;  ///< [us] first read()
+};
+
+/// A device of /dev/input.
+class EvdevPad : public Stick {
+ public:
+  /// An empty path finds the first gamepad or joystick. Throws std::runtime_error with one clear
+  /// line.
+  explicit EvdevPad(const std::string& path);
+  ~EvdevPad() override;
+
+  Wishes read(int64_t now) override;
+  std::string name() const override;
+  std::string keys() const override;
+
+ private:
+  struct Device;
+  /// Null if there is none.
+  static std::unique_ptr<Device> first();
+
+  std::unique_ptr<Device> device_;
+  PadState state_;
+};
+
+/// Whether /dev/input holds a gamepad or joystick that this user may read.
+bool padFound();
+
+}  // namespace tread::drive

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/pattern/pattern.hpp"
+
+namespace tread::drive {
+
+/// What a person wants at one moment.
+struct Wishes {
+  double forward = 0.0;  ///< [1] -1..1
+  double turn = 0.0;     ///< [1] -1..1, + to the left
+  bool hold = false;     ///< the dead-man's button is pressed
+  bool arm = false;      ///< ... and these buttons
+  bool disarm = false;
+  bool give_back = false;
+  bool ended = false;  ///< nothing will come any more, in good order
+};
+
+/// Something that a person moves the robot with.
+class Stick {
+ public:
+  virtual ~Stick() = default;
+  Stick() = default;
+  Stick(const Stick&) = delete;
+  Stick& operator=(const Stick&) = delete;
+
+  /// Takes in what has come by now [us]. Throws std::runtime_error with one clear line when the
+  /// device is gone.
+  virtual Wishes read(int64_t now) = 0;
+  /// "gamepad Xbox, /dev/input/event7".
+  virtual std::string name() const = 0;
+  /// How to drive with it, one line.
+  virtual std::string keys() const = 0;
+};
+
+/// Shares of the largest command for both tracks, -1..1; a turn keeps its radius where one of them
+/// would be larger.
+TrackCommand mixed(double forward, double turn);
+
+}  // namespace tread::drive
