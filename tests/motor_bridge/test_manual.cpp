@@ -371,3 +371,23 @@ TEST_CASE("an overtaken message of the hand counts for nothing") {
   world.step();
   CHECK(world.stands());
 }
+
+TEST_CASE("a hand's command changes every 20 ms, and grows from zero when it takes over again") {
+  HandWorld world;
+  world.driveByHand();
+  world.wish.give_back = true;
+  world.run(100'000);
+  REQUIRE(world.state() == State::kDriving);
+  world.wish.give_back = false;
+  world.tell();
+  world.until([&] { return world.state() == State::kManual; });
+  CHECK(world.stands());
+  std::vector<int64_t> changes;
+  for (TrackCommand before; world.out.command.left < 0.4; before = world.out.command) {
+    world.step();
+    if (!(world.out.command == before)) changes.push_back(world.now);
+    CHECK(world.out.command.left - before.left <= 0.02 + 1e-9);
+  }
+  REQUIRE(changes.size() > 10);
+  for (size_t i = 1; i < changes.size(); ++i) CHECK(changes[i] - changes[i - 1] == 20'000);
+}

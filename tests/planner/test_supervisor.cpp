@@ -259,3 +259,61 @@ TEST_CASE("A vehicle that is pushed off its way is planned for anew at once, fro
   CHECK(decision.planned);
   CHECK(decision.report.steps.front().T_map_end.y == Approx(before + push).margin(0.1));
 }
+
+TEST_CASE(
+    "While a person drives it hands over nothing, and shows what it would do from where the "
+    "robot is") {
+  Rig rig;
+  const auto by_hand = [](PlannerInputs& s) {
+    s.bridge->state = BridgeReading::State::kByHand;
+    s.bridge->reason = "driven by hand by ada";
+    s.bridge->execution_id = 0;
+  };
+  rig.run(2.0);
+  REQUIRE(rig.speed() > 0.5);
+  const int64_t before = rig.supervisor().program().running().execution_id;
+  for (int i = 0; i < 60; ++i) {
+    const Decision decision = rig.run(0.05, by_hand);
+    REQUIRE(rig.supervisor().program().running().empty());
+    REQUIRE(rig.supervisor().program().next().empty());
+    REQUIRE(decision.halted.empty());
+    if (i == 0) continue;
+    REQUIRE(decision.report.status == PlanStatus::kWaiting);
+    REQUIRE(decision.report.reason == "driven by hand by ada");
+    REQUIRE(decision.report.goal_id == 1);
+    REQUIRE(!decision.report.steps.empty());
+    REQUIRE(std::isfinite(decision.report.time_to_go));
+    for (const int64_t id : decision.report.execution_ids) REQUIRE(id == 0);
+  }
+  // Moving it would go on, not begin at rest.
+  const Decision shown = rig.run(0.3, [&](PlannerInputs& seen) {
+    by_hand(seen);
+    seen.pose->twist = Twist2{1.0, 0.0, 0.0};
+  });
+  REQUIRE(!shown.report.steps.empty());
+  const PatternSet set = samplePatterns();
+  const MotionPattern* first = set.find(shown.report.steps.front().pattern_id);
+  REQUIRE(first != nullptr);
+  CHECK(first->entry_class != "rest");
+  // Given back it drives on to the goal by itself.
+  rig.run(2.0);
+  CHECK(rig.speed() > 0.5);
+  CHECK(rig.supervisor().program().running().execution_id > before);
+  CHECK(rig.run(20.0).report.status == PlanStatus::kArrived);
+}
+
+TEST_CASE("What a person drives over without INS or map does not end the goal") {
+  Rig rig;
+  rig.run(2.0);
+  const auto blind = [](PlannerInputs& s) {
+    s.bridge->state = BridgeReading::State::kByHand;
+    s.bridge->reason = "driven by hand by ada";
+    s.pose->utime -= 2'000'000;
+  };
+  for (int i = 0; i < 20; ++i) {
+    const Decision decision = rig.run(0.05, blind);
+    REQUIRE(decision.halted.empty());
+    REQUIRE(decision.report.steps.empty());
+  }
+  CHECK(rig.run(20.0).report.status == PlanStatus::kArrived);
+}

@@ -56,6 +56,11 @@ TEST_CASE("with real processes a recorded stick takes over, gives back, and the 
   INFO("taken over after " << (taken - moved) / 1000 << " ms");
   CHECK(run.until(3.0, [&] { return run.motor().message().command_left > 0.45F; }));
   CHECK(byHand(run));
+  // Meanwhile the planner shows what it would do, and orders nothing.
+  CHECK(run.plan().message().num_patterns > 0);
+  CHECK(run.plan().message().goal_id != 0);
+  CHECK(run.plan().message().reason == "driven by hand by test");
+  CHECK(run.program().message().running.execution_id == 0);
   CHECK(run.until(6.0, [&] { return run.motor().message().command_left == 0.0F; }));
   CHECK(byHand(run));
   CHECK(run.until(10.0, [&] { return run.driving(); }));

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/planner/core/execution/supervisor.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +11,22 @@ namespace {
 
 /// A way that was given up is mentioned for so long [us].
 constexpr int64_t kNoteTime = 5'000'000;
+
+/// A turn of 1 rad/s is as far from another motion as a speed of so much [m/s].
+constexpr double kTurnWeight = 0.5;
+
+/// The motion class that is nearest to a twist.
+int nearestClass(const PatternTable& table, const Twist2& twist) {
+  const std::vector<MotionClass>& classes = table.set().content().classes;
+  const auto distance = [&twist](const MotionClass& motion) {
+    return std::hypot(motion.twist.v_x - twist.v_x,
+                      kTurnWeight * (motion.twist.omega - twist.omega));
+  };
+  const auto nearest = std::min_element(
+      classes.begin(), classes.end(),
+      [&](const MotionClass& a, const MotionClass& b) { return distance(a) < distance(b); });
+  return static_cast<int>(nearest - classes.begin());
+}
 
 }  // namespace
 
@@ -53,7 +70,39 @@ Decision Supervisor::step(const PlannerInputs& s, const StopPredicate& stop) {
   return {state_.status.changed, halted_, report(s)};
 }
 
+/// What it would do from here on, without handing it over.
+void Supervisor::shadow(const PlannerInputs& s, const Preconditions& ready) {
+  state_.tracker.stop();
+  state_.mode = DrivingMode::kSettling;
+  state_.settling_since = s.now;
+  standing_.forgetBlocked();
+  progress_.restart(s.now);
+  if (ready.level != Preconditions::Level::kGo) {
+    state_.plan.steps.clear();
+    return state_.status.say(ready.status, ready.reason);
+  }
+  state_.map.updateCollisionChecker(s.pose->T_map_body, s.now);
+  state_.map.updateDistance(s.pose->T_map_body, *s.goal, s.now);
+  if (!state_.plan.due(s.now, state_.config.policy.plan_period)) return;
+  PlanStep here;
+  here.T_map_end = s.pose->T_map_body;
+  here.exit_class =
+      s.pose->twist ? nearestClass(state_.table(), *s.pose->twist) : state_.table().restClass();
+  state_.planner.side().forget();
+  const SearchResult result = state_.search(s.now, here, state_.config.policy.driving_expansions);
+  state_.plan.steps = result.steps;
+  state_.status.say(PlanStatus::kWaiting,
+                    s.bridge->reason + (result.steps.empty() ? "; no way: " + result.reason : ""));
+}
+
 void Supervisor::act(const PlannerInputs& s, const Preconditions& ready) {
+  const bool was_by_hand = by_hand_;
+  by_hand_ = s.bridge && s.bridge->state == BridgeReading::State::kByHand;
+  if (by_hand_) return shadow(s, ready);
+  if (was_by_hand) {
+    state_.settle(s.now);
+    state_.plan.expire();
+  }
   if (ready.level == Preconditions::Level::kStop) {
     if (state_.mode == DrivingMode::kDriving) {
       state_.halt(s.now, ready.reason);
@@ -154,7 +203,7 @@ PlanReport Supervisor::report(const PlannerInputs& s) const {
   report.utime = s.pose ? s.pose->utime : 0;
   report.goal_id = s.goal ? s.goal->id : 0;
   report.set_version = state_.set.table() ? state_.table().set().version() : 0;
-  report.time_to_go = state_.mode == DrivingMode::kDriving
+  report.time_to_go = state_.mode == DrivingMode::kDriving || by_hand_
                           ? plan.time_to_go
                           : std::numeric_limits<double>::quiet_NaN();
   report.expansions = state_.status.changed ? plan.expansions : 0;

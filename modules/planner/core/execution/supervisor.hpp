@@ -26,7 +26,9 @@ struct Decision {
     4. plans from where the running pattern is expected to end, and hands over the next one; with no
    plan the next one is the one that stops;
     5. standing, plans from where it stands; with no plan waits, tries to get out, and says that it
-   is blocked. */
+   is blocked.
+   While a person drives by hand it goes on planning from where the robot is, and hands over
+   nothing. */
 class Supervisor {
  public:
   Supervisor(const PlannerConfig& config, int64_t run_id);
@@ -56,6 +58,7 @@ class Supervisor {
   void joinedNext();
   void noteNewSet();
   void act(const PlannerInputs& s, const Preconditions& ready);
+  void shadow(const PlannerInputs& s, const Preconditions& ready);
   void watchProgress(const PlannerInputs& s);
   PlanReport report(const PlannerInputs& s) const;
 
@@ -67,6 +70,7 @@ class Supervisor {
   std::optional<int64_t> goal_id_;
   std::string halted_;
   bool was_armed_ = false;
+  bool by_hand_ = false;  ///< a person drives
 };
 
 }  // namespace tread::planner
