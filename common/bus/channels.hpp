@@ -8,6 +8,7 @@
 #include <tread/config_t.hpp>
 #include <tread/estop_t.hpp>
 #include <tread/execution_t.hpp>
+#include <tread/fence_t.hpp>
 #include <tread/goal_t.hpp>
 #include <tread/health_t.hpp>
 #include <tread/ins_t.hpp>
@@ -63,6 +64,7 @@ inline constexpr Channel<operator_t> kOperator{
     {"OPERATOR", "operator_t", "every operator program", 5, 1000, 400}};
 inline constexpr Channel<manual_t> kManual{{"MANUAL", "manual_t", "tread-drive", 50, 200, 200}};
 inline constexpr Channel<estop_t> kEstop{{"ESTOP", "estop_t", "anyone", 0, 0, 1000}};
+inline constexpr Channel<fence_t> kFence{{"FENCE", "fence_t", "tread-fence", 0, 0, 1500}};
 inline constexpr Channel<mark_t> kMark{{"MARK", "mark_t", "anyone", 0, 0, 1000}};
 inline constexpr Channel<config_t> kConfig{{"CONFIG", "config_t", "every process", 0.1, 0, 60000}};
 
@@ -77,11 +79,15 @@ inline bool stops(const arm_t& message) {
 inline bool stops(const goal_t& message) {
   return message.goal_id == 0;
 }
+/// One more fence only narrows.
+inline bool stops(const fence_t& message) {
+  return message.fence_kind != fence_t::FENCE_REMOVED;
+}
 
 /// The whole table, for README, health checks and tests.
-inline constexpr std::array<ChannelSpec, 19> kChannels{
+inline constexpr std::array<ChannelSpec, 20> kChannels{
     kIns,      kScan,      kMap,        kGoal,         kPlan,     kPlanTree, kProgram,
     kMotor,    kExecution, kPatternSet, kLearnerState, kLearning, kHealth,   kArm,
-    kOperator, kEstop,     kMark,       kConfig,       kManual};
+    kOperator, kManual,    kEstop,      kFence,        kMark,     kConfig};
 
 }  // namespace tread

@@ -21,7 +21,8 @@ using ExecutionKey = std::pair<int64_t, int64_t>;
 struct PoseReading {
   int64_t utime = 0;  ///< [us] of the measurement
   Pose2 T_map_body;
-  std::optional<Twist2> twist;  ///< v_body, if it is measured
+  std::optional<Twist2> twist;                                     ///< v_body, if it is measured
+  double position_std = std::numeric_limits<double>::quiet_NaN();  ///< [m] of an axis
 };
 
 /// What the motor bridge says it does.

@@ -74,6 +74,13 @@ bool OperatorLease::standsFor(int64_t goal_id, int64_t now) const {
   });
 }
 
+bool OperatorLease::isHolder(const std::string& signature) const {
+  const std::string suffix = " (" + holder_ + ")";
+  return signature == holder_ ||
+         (signature.size() > suffix.size() &&
+          signature.compare(signature.size() - suffix.size(), suffix.size(), suffix) == 0);
+}
+
 const char* describe(OperatorLease::Receipt receipt) {
   switch (receipt) {
     case OperatorLease::Receipt::kTaken:

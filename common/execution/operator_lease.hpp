@@ -48,6 +48,8 @@ class OperatorLease {
   std::optional<int64_t> newestSeen() const;
   /// Whether a live program of the holder stands for this goal.
   bool standsFor(int64_t goal_id, int64_t now) const;
+  /// Whether a request was signed by the holder: "ada@station" or "ADA (ada@station)".
+  bool isHolder(const std::string& signature) const;
   /// Empty = nobody.
   const std::string& holder() const { return holder_; }
   /// [us] when the holder was last seen to be there; 0 = never.

@@ -99,7 +99,8 @@ void RobotInputs::take(const ins_t& message) {
   if (!pose) return health_.addToCounter("INS without a pose");
   if (readings_.pose && message.utime <= readings_.pose->utime)
     return health_.addToCounter("INS out of order");
-  readings_.pose = PoseReading{message.utime, *pose, planarTwist(message)};
+  readings_.pose = PoseReading{message.utime, *pose, planarTwist(message),
+                               std::max(message.position_std[0], message.position_std[1])};
 }
 
 void RobotInputs::take(const motor_t& message) {

@@ -33,6 +33,23 @@ Mounting readMounting(ConfigReader reader, const std::string& position_key) {
   return {{position[0], position[1], position[2]}, {angles[0], angles[1], angles[2]}};
 }
 
+std::vector<Fence> readFences(ConfigReader& robot) {
+  std::vector<Fence> fences;
+  for (ConfigReader& reader : robot.sections("fences")) {
+    Fence& fence = fences.emplace_back();
+    std::string kind;
+    std::vector<std::vector<double>> corners;
+    reader.text("name", fence.name, true);
+    reader.choice("kind", kind, {"stay_in", "keep_out"}, true);
+    reader.table("corners", corners, 2, {-Fence::kFarthest, Fence::kFarthest}, "m", true);
+    fence.keep_out = kind == "keep_out";
+    for (const auto& corner : corners) fence.corners.emplace_back(corner[0], corner[1]);
+    const std::string fault = faultOf(fence);
+    if (!fault.empty()) throw reader.error("corners", fault);
+  }
+  return fences;
+}
+
 /// Nothing here switches the lease off.
 OperatorRules readOperators(ConfigReader reader) {
   OperatorRules rules;
@@ -89,6 +106,8 @@ RobotDescription readDescription(ConfigReader& reader) {
   limits.number("tilt", tilt, {0.0, 1.6}, "rad");
   if (std::isfinite(tilt)) robot.max_tilt = tilt;
   readTilt(limits, robot);
+  limits.number("stopping", robot.stopping_time, {0.1, 3.0}, "s");
+  robot.fences = readFences(reader);
   robot.operators = readOperators(reader.section("operator"));
   return robot;
 }

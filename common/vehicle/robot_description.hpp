@@ -4,9 +4,11 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
+#include "common/fence/fence.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/geometry/se3.hpp"
 #include "common/pattern/pattern.hpp"
@@ -67,6 +69,8 @@ struct RobotDescription {
   std::optional<double> max_tilt;   ///< [rad] what it drives on a steeper slope teaches nothing
   std::optional<TiltLimits> tilt;   ///< nothing: not watched, for an INS without attitude
   std::optional<double> max_slope;  ///< [rad] plans keep off steeper ground; nothing: no such rule
+  double stopping_time = 0.5;       ///< [s] at its speed that it goes on after a zero command
+  std::vector<Fence> fences;
   OperatorRules operators;
 };
 

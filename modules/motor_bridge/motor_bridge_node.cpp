@@ -139,6 +139,7 @@ MotorBridgeConfig readMotorBridgeConfig(ConfigReader& reader) {
   const DriveDescription& drive = robot.drive;
   config.bridge.operators = robot.operators;
   config.bridge.tilt = robot.tilt;
+  config.bridge.fences = {robot.fences, robot.outline, robot.stopping_time};
   config.bridge.motion = readMotion(reader.section("motion_monitor"), robot);
   config.bridge.manual = readManual(reader.section("manual"), drive);
   config.bridge.gate.slot.kind = drive.kind;
@@ -253,6 +254,9 @@ void MotorBridgeNode::listen() {
         ArmRequest{message.utime, message.armed != 0, message.armed_by, message.arm_reason},
         bus_.now());
   });
+  bus_.subscribe<fence_t>(kFence, [this](const fence_t& message) {
+    bridge_.receive(requestFrom(message), bus_.now());
+  });
   bus_.subscribe<estop_t>(kEstop, [this](const estop_t& message) {
     bridge_.receive(
         EstopRequest{message.utime, message.engaged != 0, message.estop_by, message.estop_reason},
@@ -352,6 +356,7 @@ void MotorBridgeNode::reportHealth() {
 void MotorBridgeNode::reportCounters(int64_t utime) {
   if (utime < next_counters_) return;
   next_counters_ = utime + kCounterPeriod;
+  fences_told_.tell(bridge_.fences(), health_);
   for (const auto& [name, count] : bridge_.counters()) health_.setCounter(name, count);
   for (const auto& [name, count] : controller_->counters()) health_.setCounter(name, count);
 }

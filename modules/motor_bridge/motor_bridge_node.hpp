@@ -16,6 +16,7 @@
 #include "common/bus/bus.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/link/link.hpp"
+#include "common/messages/fence_messages.hpp"
 #include "common/vehicle/robot_description.hpp"
 #include "modules/motor_bridge/core/bridge.hpp"
 #include "modules/motor_bridge/core/motor_controller.hpp"
@@ -83,6 +84,7 @@ class MotorBridgeNode : public Node {
   Bridge bridge_;
   std::unique_ptr<MotorController> controller_;
   HealthReporter health_;
+  FenceReport fences_told_;
   BridgeOutput output_;     ///< of this step
   BridgeOutput published_;  ///< of the last MOTOR
   uint64_t published_revision_ = 0;

@@ -23,6 +23,8 @@ void readRobotInto(ConfigReader& reader, bool logged, PlannerConfig& config) {
   const RobotDescription robot = readRobot(reader);
   config.map.footprint = robot.footprint;
   if (leases) config.operators = robot.operators;
+  config.map.fences = robot.fences;
+  config.map.stopping_distance = robot.drive.full_speed * robot.stopping_time;
 }
 
 void readMargins(ConfigReader reader, Margins& margins) {
@@ -175,6 +177,7 @@ PlannerNode::PlannerNode(const PlannerConfig& config, Bus& bus)
       bus_(bus),
       health_(bus, "planner", config.effective),
       robot_(bus, health_, config.operators.lease_us),
+      fences_(config.map.fences),
       supervisor_(config, bus.bootId()) {
   subscribe();
   robot_.on_ins = [this](const ins_t& message) {
@@ -184,6 +187,7 @@ PlannerNode::PlannerNode(const PlannerConfig& config, Bus& bus)
 
 void PlannerNode::subscribe() {
   bus_.subscribe<map_tile_t>(kMap, [this](const map_tile_t& message) { take(message); });
+  bus_.subscribe<fence_t>(kFence, [this](const fence_t& message) { take(message); });
   bus_.subscribe<goal_t>(kGoal, [this](const goal_t& message) { take(message); });
   bus_.subscribe<pattern_set_part_t>(kPatternSet,
                                      [this](const pattern_set_part_t& message) { take(message); });
@@ -200,6 +204,17 @@ void PlannerNode::take(const map_tile_t& message) {
     return health_.addToCounter("MAP refused: invalid sizes");
   cell_size_ = message.cell_size;
   map_taken_ = bus_.now();
+}
+
+void PlannerNode::take(const fence_t& message) {
+  const FenceRequest request = requestFrom(message);
+  const OperatorLease& lease = robot_.operatorLease();
+  const bool holds = lease.valid(bus_.now()) && lease.isHolder(request.by);
+  const FenceReceipt receipt = fences_.take(request, holds);
+  if (receipt == FenceReceipt::kAdded || receipt == FenceReceipt::kRemoved)
+    return supervisor_.map().setFences(fences_.fences());
+  if (receipt != FenceReceipt::kKnown)
+    health_.addToCounter(std::string("FENCE refused: ") + describe(receipt));
 }
 
 void PlannerNode::take(const goal_t& message) {
@@ -324,6 +339,7 @@ void PlannerNode::publishHealth(int64_t utime, const PlanReport& report) {
   if (problem.empty()) problem = secondLearner(utime);
   if (problem.empty()) problem = way_back_.state();
   health_.setState(problem.empty() ? health_t::HEALTH_OK : health_t::HEALTH_DEGRADED, problem);
+  fences_told_.tell(fences_, health_);
   health_.setCounter("pattern set version", report.set_version);
   for (const auto& [name, value] : supervisor_.counters()) health_.setCounter(name, value);
   health_.step(utime);

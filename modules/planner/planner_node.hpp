@@ -4,6 +4,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/config/config_reader.hpp"
+#include "common/messages/fence_messages.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/messages/robot_inputs.hpp"
 #include "modules/planner/core/execution/goal_watch.hpp"
@@ -41,6 +42,7 @@ class PlannerNode : public Node {
  private:
   void subscribe();
   void take(const map_tile_t& message);
+  void take(const fence_t& message);
   void take(const goal_t& message);
   void take(const pattern_set_part_t& message);
   void watchGoal(int64_t utime);
@@ -56,6 +58,8 @@ class PlannerNode : public Node {
   Bus& bus_;
   HealthReporter health_;
   RobotInputs robot_;
+  FenceBook fences_;
+  FenceReport fences_told_;
   GoalWatch goal_;
   WayBack way_back_;
   double position_std_ = 0.0;  ///< [m] of the newest INS; NaN unknown

@@ -249,6 +249,19 @@ inline manual_t sampleOf<manual_t>() {
 }
 
 template <>
+inline fence_t sampleOf<fence_t>() {
+  fence_t m{};
+  m.utime = 1'000'019;
+  m.seq = 19;
+  m.fence_by = "ada@station";
+  m.fence_name = "yard";
+  m.fence_kind = fence_t::FENCE_KEEP_OUT;
+  m.num_corners = 3;
+  m.corners = {{1.0, -2.0}, {3.5, -2.0}, {3.5, 4.0}};
+  return m;
+}
+
+template <>
 inline operator_t sampleOf<operator_t>() {
   operator_t m{};
   m.utime = 1'000'017;
@@ -382,8 +395,8 @@ template <class Visitor>
 void forEachType(Visitor&& visit) {
   const auto visitAll = [&](const auto&... samples) { (visit(samples), ...); };
   visitAll(sampleOf<arm_t>(), sampleOf<config_t>(), sampleOf<counter_t>(), sampleOf<estop_t>(),
-           sampleOf<execution_record_t>(), sampleOf<execution_t>(), sampleOf<goal_t>(),
-           sampleOf<health_t>(), sampleOf<ins_t>(), sampleOf<learner_state_t>(),
+           sampleOf<execution_record_t>(), sampleOf<execution_t>(), sampleOf<fence_t>(),
+           sampleOf<goal_t>(), sampleOf<health_t>(), sampleOf<ins_t>(), sampleOf<learner_state_t>(),
            sampleOf<learning_t>(), sampleOf<map_tile_t>(), sampleOf<mark_t>(), sampleOf<motor_t>(),
            sampleOf<operator_t>(), sampleOf<manual_t>(), sampleOf<pattern_set_part_t>(),
            sampleOf<plan_t>(), sampleOf<plan_tree_t>(), sampleOf<program_slot_t>(),
@@ -410,6 +423,7 @@ void forEachChannel(Visitor&& visit) {
   visitOne(kArm, sampleOf<arm_t>());
   visitOne(kOperator, sampleOf<operator_t>());
   visitOne(kEstop, sampleOf<estop_t>());
+  visitOne(kFence, sampleOf<fence_t>());
   visitOne(kMark, sampleOf<mark_t>());
   visitOne(kConfig, sampleOf<config_t>());
   visitOne(kManual, sampleOf<manual_t>());

@@ -65,6 +65,7 @@ const std::vector<Cause> kCauses = {
     {&FailsafeInputs::lease_fault, State::kDisarmed},
     {&FailsafeInputs::ins_fault, State::kDisarmed},
     {&FailsafeInputs::tilt_fault, State::kDisarmed},
+    {&FailsafeInputs::fence_fault, State::kDisarmed},
     {&FailsafeInputs::motion_fault, State::kDisarmed},
 };
 

@@ -87,6 +87,31 @@ TEST_CASE("forged programs among true ones do not steer a robot that drives") {
   CHECK(world.refused("unsealed") == 100);
 }
 
+TEST_CASE("a stranger's fence holds it, but only the operator takes a fence away") {
+  AttackedWorld world;
+  world.drive();
+  const FenceRequest fence{
+      "stranger", false, {"trap", false, {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}}}};
+  world.forge(kFence, toMessage(fence));
+  world.run(1'200'000);
+  CHECK(world.drives());
+  CHECK(world.counter("fence trap") == 1);
+  FenceRequest removal{"operator", true, {"trap", false, {}}};
+  world.forge(kFence, toMessage(removal));
+  world.run(1'200'000);
+  CHECK(world.counter("fence trap") == 1);
+  CHECK(world.refused("unsealed") == 1);
+  removal.by = "bob";
+  world.bus.outside().publish(kFence, toMessage(removal));
+  world.run(1'200'000);
+  CHECK(world.counter("fence trap") == 1);
+  removal.by = "operator";
+  world.bus.outside().publish(kFence, toMessage(removal));
+  world.run(1'200'000);
+  CHECK(world.counter("fence trap") == 0);
+  CHECK(world.drives());
+}
+
 TEST_CASE("a stranger's stop stops it, but only the operator clears it and arms again") {
   AttackedWorld world;
   world.drive();

@@ -372,6 +372,30 @@ TEST_CASE(
   CHECK(yard.robot().pose().x > turned_at);
 }
 
+TEST_CASE("A fence from anybody closes the way, and opens it again for who holds the robot") {
+  Yard yard;
+  const auto fence = [&](const std::string& by, bool removes) {
+    const Fence yard_of_6_m{"yard", false, {{-6, -6}, {6, -6}, {6, 6}, {-6, 6}}};
+    yard.bus.outside().publish(kFence, toMessage(FenceRequest{by, removes, yard_of_6_m}));
+    yard.run(1.2);
+    for (const counter_t& counter : yard.health.counters)
+      if (counter.counter_name == fenceCounter("yard")) return counter.counted;
+    return int64_t{-1};
+  };
+  yard.run(1.5);
+  yard.sendGoal(10.0);
+  yard.arm();
+  CHECK(fence("stranger", false) == 1);
+  yard.run(10.0);
+  CHECK(yard.robot().pose().x < 5.0);
+  CHECK(yard.plan.plan_status == plan_t::PLAN_UNREACHABLE);
+  CHECK(yard.plan.reason == "the goal lies outside of what fence yard allows");
+  CHECK(fence("stranger", true) == 1);
+  CHECK(fence("test", true) == 0);
+  yard.run(25.0);
+  CHECK(yard.plan.plan_status == plan_t::PLAN_ARRIVED);
+}
+
 TEST_CASE("A goal out of a log moves nothing, and takes nothing from the goal of today") {
   Yard yard;
   yard.run(1.0);

@@ -86,7 +86,7 @@ void removeUnsealed(std::vector<LogEvent>& events) {
     if (event.channel == kMotor.name) robot_has_key = event.sealed;
     bool is_stop = false;
     dispatch(
-        event, [&](const auto& message) { is_stop = stops(message); }, kEstop, kArm, kGoal);
+        event, [&](const auto& message) { is_stop = stops(message); }, kEstop, kArm, kGoal, kFence);
     return robot_has_key && !event.sealed && !is_stop;
   };
   events.erase(std::remove_if(events.begin(), events.end(), refused), events.end());

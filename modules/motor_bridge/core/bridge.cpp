@@ -22,14 +22,6 @@ std::string untimely(const std::string& what, int64_t utime, int64_t now) {
   return what + " ignored: its time is behind the robot's clock; do the clocks differ?";
 }
 
-/// Whether a request was signed by an operator: "ada@station" or "ADA (ada@station)".
-bool isOf(const std::string& signature, const std::string& holder) {
-  const std::string suffix = " (" + holder + ")";
-  return signature == holder ||
-         (signature.size() > suffix.size() &&
-          signature.compare(signature.size() - suffix.size(), suffix.size(), suffix) == 0);
-}
-
 }  // namespace
 
 Bridge::Bridge(const BridgeConfig& config)
@@ -38,6 +30,7 @@ Bridge::Bridge(const BridgeConfig& config)
       ins_(config.ins),
       motion_(config.motion),
       tilt_(config.tilt),
+      fences_(config.fences, config.motion),
       operator_(config.operators.lease_us),
       manual_(config.manual) {}
 
@@ -82,7 +75,7 @@ void Bridge::take(const Program& program, int64_t now) {
 void Bridge::receive(const ArmRequest& request, int64_t now) {
   switch (requests_.classify(request, now, failsafe_.disarmedAt())) {
     case OperatorRequests::Effect::kArm:
-      if (operator_.valid(now) && !isOf(request.by, operator_.holder())) {
+      if (operator_.valid(now) && !operator_.isHolder(request.by)) {
         since_.refusal = "ARM refused: the robot is held by " + operator_.holder();
         count("ARM refused: of another operator than the one who holds the robot");
         break;
@@ -133,7 +126,18 @@ void Bridge::receive(const InsNotice& notice, int64_t now) {
   ins_.receive(notice, now);
   const bool future = notice.utime > now + config_.ins.max_future_us;
   if (!future) tilt_.receive(notice.tilt);
-  if (notice.usable && !future) motion_.receive(notice.motion);
+  if (!notice.usable || future) return;
+  motion_.receive(notice.motion);
+  fences_.receive(notice.motion);
+}
+
+void Bridge::receive(const FenceRequest& request, int64_t now) {
+  const bool holds = operator_.valid(now) && operator_.isHolder(request.by);
+  const FenceReceipt receipt = fences_.book().take(request, holds);
+  if (receipt == FenceReceipt::kAdded || receipt == FenceReceipt::kRemoved)
+    count(std::string("FENCE ") + describe(receipt));
+  else if (receipt != FenceReceipt::kKnown)
+    count(std::string("FENCE refused: ") + describe(receipt));
 }
 
 BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
@@ -148,6 +152,7 @@ BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
   command(now, out);
   schedule(now, out);
   motion_.command(out.command, now);
+  fences_.command(out.command, now);
   player_.dropCandidate();
   since_ = Since{};
   last_step_ = now;
@@ -229,6 +234,8 @@ FailsafeInputs Bridge::look(int64_t now, const DeviceReport& device) {
   in.lease_fault = leaseFault(now);
   in.ins_fault = ins_.fault(now);
   in.tilt_fault = tilt_.fault(now);
+  if (!isArmed(failsafe_.state())) fences_.restart();
+  in.fence_fault = fences_.fault(now);
   in.motion_fault = motion_.fault(now);
   in.playing = player_.playing();
   in.program_bar = tilt_.beyond();

@@ -10,6 +10,7 @@
 #include "common/execution/operator_lease.hpp"
 #include "common/vehicle/robot_description.hpp"
 #include "modules/motor_bridge/core/failsafe.hpp"
+#include "modules/motor_bridge/core/fence_watch.hpp"
 #include "modules/motor_bridge/core/manual_control.hpp"
 #include "modules/motor_bridge/core/motion_monitor.hpp"
 #include "modules/motor_bridge/core/motor_controller.hpp"
@@ -29,6 +30,7 @@ struct BridgeConfig {
   OperatorRules operators;
   MotionLimits motion;
   std::optional<TiltLimits> tilt;  ///< nothing: not watched
+  FenceLimits fences;
   ManualLimits manual;
 };
 
@@ -57,12 +59,14 @@ class Bridge {
   void receive(const EstopRequest& request, int64_t now);
   void receive(const InsNotice& notice, int64_t now);
   void receive(const OperatorNotice& notice, int64_t now);
+  void receive(const FenceRequest& request, int64_t now);
   void receive(const ManualNotice& notice, int64_t now);
   void receive(const MotorTelemetry& motors) { motion_.receive(motors); }
 
   /// Decides what the motors do from now [us] on.
   BridgeOutput step(int64_t now, const DeviceReport& device);
 
+  const FenceBook& fences() const { return fences_.book(); }
   const ExecutionLog& executions() const { return player_.log(); }
   /// How often something was refused or noted, by its name in words.
   const std::map<std::string, int64_t>& counters() const { return counters_; }
@@ -97,6 +101,7 @@ class Bridge {
   InsWatch ins_;
   MotionMonitor motion_;
   TiltWatch tilt_;
+  FenceWatch fences_;
   OperatorRequests requests_;
   OperatorLease operator_;
   ManualControl manual_;

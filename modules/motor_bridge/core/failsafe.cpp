@@ -23,7 +23,7 @@ std::optional<Fault> worstFault(const FailsafeInputs& in) {
       {State::kFault, in.bridge_fault},      {State::kDisarmed, in.program_fault},
       {State::kDisarmed, in.operator_fault}, {State::kDisarmed, in.lease_fault},
       {State::kDisarmed, in.ins_fault},      {State::kDisarmed, in.tilt_fault},
-      {State::kDisarmed, in.motion_fault}};
+      {State::kDisarmed, in.fence_fault},    {State::kDisarmed, in.motion_fault}};
   for (const Fault& fault : ranked) {
     if (!fault.reason.empty()) return fault;
   }

@@ -123,6 +123,7 @@ struct FailsafeInputs {
   std::string lease_fault;     ///< no program within the lease
   std::string ins_fault;       ///< no usable INS within its limit
   std::string tilt_fault;      ///< a limit of roll, pitch or their rates was passed
+  std::string fence_fault;     ///< only a zero now keeps the outline within a fence
   std::string motion_fault;    ///< the robot moves otherwise than its commands explain
   bool hand = false;          ///< a person takes or keeps the robot, or wants it armed for the hand
   std::string hand_words;     ///< who does, and why it stands, if it does
@@ -154,9 +155,9 @@ struct FailsafeOutputs {
 bool hand = false;       ///< a person takes or keeps the robot, or wants it armed for the hand
 std::string hand_words;  ///< who does, and why it stands, if it does
 /** Ranks, worst first: E-stop, link, device, bridge, program, operator, lease, INS, tilt,
-   motion. A series can only start from a state that gave zero in the step before, and only while an
-   operator is there and nothing bars programs. Everything but the normal end of a series needs ARM,
-   and ARM needs an operator and inputs that were good for a second. */
+   fence, motion. A series can only start from a state that gave zero in the step before, and only
+   while an operator is there and nothing bars programs. Everything but the normal end of a series
+   needs ARM, and ARM needs an operator and inputs that were good for a second. */
 class Failsafe {
  public:
   FailsafeOutputs update(const FailsafeInputs& in);

@@ -110,3 +110,18 @@ TEST_CASE("half a limit of tilt, one in radians, or one below the planner's slop
   CHECK_THAT(refusal("roll: 25, pitch: 10, slope: 12"),
              Contains("slope") && Contains("must be below roll and pitch"));
 }
+
+TEST_CASE("fences stand in the robot's file, and one that is none is told with its fault") {
+  const auto with = [](const std::string& corners) {
+    return smallWith("limits:",
+                     "limits: {speed: 8, stopping: 0.7}\n  fences:\n  - {name: yard, kind: "
+                     "keep_out, corners: " +
+                         corners + "}");
+  };
+  const RobotDescription robot = robotOf(with("[[0, 0], [4, 0], [4, 3]]"), "p.yaml");
+  CHECK(robot.stopping_time == 0.7);
+  REQUIRE(robot.fences.size() == 1);
+  CHECK(robot.fences[0] == Fence{"yard", true, {{0, 0}, {4, 0}, {4, 3}}});
+  CHECK_THAT(refusalOf(with("[[0, 0], [4, 0]]"), "p.yaml"),
+             Contains("corners") && Contains("a fence needs 3 to 64 corners"));
+}

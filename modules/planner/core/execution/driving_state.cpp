@@ -193,9 +193,11 @@ SearchResult DrivingState::search(int64_t now, const PlanStep& start, int expans
 }
 
 bool DrivingState::sayUnreachable() {
-  if (!map.distanceToGoal().unreachable()) return false;
+  const std::string& why =
+      map.fencedGoal().empty() ? map.distanceToGoal().problem() : map.fencedGoal();
+  if (why.empty()) return false;
   plan.time_to_go = std::numeric_limits<double>::quiet_NaN();
-  status.say(PlanStatus::kUnreachable, map.distanceToGoal().problem());
+  status.say(PlanStatus::kUnreachable, why);
   return true;
 }
 

@@ -12,6 +12,8 @@ namespace {
 constexpr double kWindowSlack = 2.0;
 /// The distance field must reach this far around the vehicle [m].
 constexpr double kFieldSlack = 5.0;
+/// Nearer to fences by this than allowed, the distance field still finds its way [m].
+constexpr double kFenceNear = 0.3;
 /// How far down the way to the goal the narrowest place is looked for [m].
 constexpr double kDetourLook = 3.0;
 constexpr double kDetourStep = 0.2;
@@ -47,8 +49,36 @@ void PlanningMap::assumeFreeUnder(const Pose2& T_map_body) {
   map_->assumeFree(bare.cells(Grid(map_->cellSize(), {}, 0, 0), T_map_body));
 }
 
+void PlanningMap::setPositionStd(double std) {
+  constexpr double kSigmas = 2.0;
+  constexpr double kUnknown = 0.2;  // [m]
+  constexpr double kStep = 0.05;    // [m] finer changes are not worth another look at the map
+  const double wanted = std::isfinite(std) ? kSigmas * std : kUnknown;
+  if (wanted <= position_growth_ && wanted > position_growth_ - 2.0 * kStep) return;
+  position_growth_ = kStep * std::ceil(wanted / kStep);
+  fenced_changed_ = true;
+}
+
+void PlanningMap::fenceIn() {
+  if (!fenced_changed_) return;
+  fenced_changed_ = false;
+  if (fences_.empty() && fenced_.empty()) return;
+  fenced_ = FencedGround(fences_, config_.stopping_distance + position_growth_);
+  window_revision_ = field_revision_ = -1;
+}
+
+std::string PlanningMap::whyFenced(const Goal& goal) const {
+  const FenceRoom room = fenced_.room(goal.T_map_goal.position());
+  const double needed = fenced_.growth() + config_.footprint.half_width - goal.position_tolerance;
+  if (fenced_.empty() || room.metres >= needed) return "";
+  if (room.metres < 0.0) return "the goal lies outside of what fence " + room.nearest + " allows";
+  return "the goal is " + withTenths(room.metres) + " m from fence " + room.nearest + ": " +
+         withTenths(needed) + " m are needed to stop before it";
+}
+
 void PlanningMap::updateCollisionChecker(const Pose2& T_map_body, int64_t now) {
   assumeFreeUnder(T_map_body);
+  fenceIn();
   const Eigen::Vector2d p = T_map_body.position();
   const bool moved = (p - p_window_).norm() > kWindowSlack;
   const bool due = window_revision_ < 0 || now - window_time_ >= config_.window_period;
@@ -61,7 +91,7 @@ void PlanningMap::updateCollisionChecker(const Pose2& T_map_body, int64_t now) {
   const CellIndex lower{static_cast<int>(std::floor(p.x() / cell)) - cells / 2,
                         static_cast<int>(std::floor(p.y() / cell)) - cells / 2};
   checker_.emplace(map_->window(lower, cells, cells), config_.footprint, config_.margins,
-                   config_.unknown_blocks);
+                   config_.unknown_blocks, fenced_);
   window_revision_ = map_->revision();
   p_window_ = p;
 }
@@ -78,13 +108,20 @@ void PlanningMap::updateDistance(const Pose2& T_map_body, const Goal& goal, int6
   if (field_goal_ && field_goal_->id != goal.id) forgetDetours();
   const Eigen::Vector2d p = T_map_body.position();
   const bool same = sameGoal(goal);
-  const bool covered =
-      same && distance_to_goal_.covers(p, kFieldSlack) && (p - p_field_).norm() < kFieldSlack;
-  if (covered && now - field_time_ < config_.field_period) return;
+  // Over a fence, or much too near to it, there is no way but back, which the search knows.
+  const bool fenced =
+      !fenced_.empty() &&
+      fenced_.room(p).metres >= fenced_.growth() + config_.field.inflation - kFenceNear;
+  const bool covered = same && fenced == field_fenced_ &&
+                       distance_to_goal_.covers(p, kFieldSlack) &&
+                       (p - p_field_).norm() < kFieldSlack;
+  if (covered && field_revision_ >= 0 && now - field_time_ < config_.field_period) return;
   map_->refresh();
   field_time_ = now;
   if (covered && field_revision_ == map_->clearanceRevision() && !detours_changed_) return;
-  distance_to_goal_.compute(*map_, goal, p, detours_, config_.field);
+  field_fenced_ = fenced;
+  fenced_goal_ = whyFenced(goal);
+  computeDistance(goal, p);
   field_goal_ = goal;
   field_revision_ = map_->clearanceRevision();
   p_field_ = p;
@@ -109,7 +146,12 @@ void PlanningMap::substituteGoal(const Eigen::Vector2d& p_vehicle,
   // Half the width is free there, but the vehicle may not fit in every heading.
   const double arm = checker_->circumscribedRadius() + config_.margins.plan;
   target_.position_tolerance = std::max(target_.position_tolerance, arm);
-  distance_to_goal_.compute(*map_, target_, p_vehicle, detours_, config_.field);
+  computeDistance(target_, p_vehicle);
+}
+
+void PlanningMap::computeDistance(const Goal& goal, const Eigen::Vector2d& p_vehicle) {
+  const FencedClearance fenced(*map_, field_fenced_ ? fenced_ : no_fences_);
+  distance_to_goal_.compute(fenced, goal, p_vehicle, detours_, config_.field);
 }
 
 void PlanningMap::addDetour(const Eigen::Vector2d& p_map) {

@@ -33,13 +33,15 @@ struct PlanningMapConfig {
   int64_t window_period = 100'000;  ///< [us] least time between two cuts of that square
   int64_t field_period = 400'000;   ///< [us] least time between two updates of the distance
   bool unknown_blocks = true;       ///< whether unknown ground may not be driven on
+  double stopping_distance = 0.0;   ///< [m] at full speed, from a zero command on
+  std::vector<Fence> fences;        ///< the robot's own
   bool come_close = false;          ///< to goals that obstacles enclose, instead of standing
 };
 
 /// The received map, and what is derived from it on demand: collision checker and distance to goal.
 class PlanningMap {
  public:
-  explicit PlanningMap(const PlanningMapConfig& config) : config_(config) {}
+  explicit PlanningMap(const PlanningMapConfig& config) : config_(config), fences_(config.fences) {}
 
   /// Takes a tile; a map of another cell size replaces what is there. False if the tile is
   /// malformed.
@@ -47,6 +49,16 @@ class PlanningMap {
   bool empty() const { return !map_ || map_->empty(); }
   /// [us] of the newest scan in the map; 0 if there is none.
   int64_t newestUtime() const { return map_ ? map_->newestUtime() : 0; }
+
+  /// The fences in force, the robot's own included.
+  void setFences(const std::vector<Fence>& fences) {
+    fences_ = fences;
+    fenced_changed_ = true;
+  }
+  /// How well the position is known [m], one standard deviation of an axis; NaN = unmeasured.
+  void setPositionStd(double std);
+  /// Why fences forbid a goal, in words; empty if they do not. Needs updateDistance().
+  const std::string& fencedGoal() const { return fenced_goal_; }
 
   /// Updates the collision checker if the map changed or the vehicle moved on. Needs a map.
   /** Unknown ground under the vehicle becomes free: it stands there. */
@@ -70,6 +82,9 @@ class PlanningMap {
   const PlanningMapConfig& config() const { return config_; }
 
  private:
+  void fenceIn();
+  void computeDistance(const Goal& goal, const Eigen::Vector2d& p_vehicle);
+  std::string whyFenced(const Goal& goal) const;
   void assumeFreeUnder(const Pose2& T_map_body);
   bool sameGoal(const Goal& goal) const;
   void substituteGoal(const Eigen::Vector2d& p_vehicle,
@@ -77,6 +92,13 @@ class PlanningMap {
 
   PlanningMapConfig config_;
   std::optional<ClearanceMap> map_;
+  std::vector<Fence> fences_;
+  double position_growth_ = 0.0;  ///< [m]
+  bool fenced_changed_ = true;
+  FencedGround fenced_;
+  FencedGround no_fences_;
+  std::string fenced_goal_;
+  bool field_fenced_ = false;
   std::optional<CollisionChecker> checker_;
   Eigen::Vector2d p_window_{0.0, 0.0};
   int64_t window_revision_ = -1;

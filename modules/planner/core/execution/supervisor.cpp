@@ -57,6 +57,7 @@ Decision Supervisor::step(const PlannerInputs& s, const StopPredicate& stop) {
   if (s.pose) {
     standstill_.take(*s.pose);
     state_.track.push(s.pose->utime, s.pose->T_map_body);
+    state_.map.setPositionStd(s.pose->position_std);
   }
   followGoal(s);
   followBridge(s);

@@ -21,12 +21,14 @@ TurnedPose alongFrom(const TurnedPose& start, const SweptPose& at) {
 }  // namespace
 
 CollisionChecker::CollisionChecker(Grid grid, const FootprintSize& size, const Margins& margins,
-                                   bool unknown_blocks)
+                                   bool unknown_blocks, FencedGround fenced)
     : grid_(std::move(grid)),
       unknown_blocks_(unknown_blocks),
+      fenced_(std::move(fenced)),
       margins_(margins),
       arm_(Footprint(size, 0.0).circumscribed()) {
   const double most = arm_ + 2.0 * std::max(margins.plan, margins.largest);
+  fenced_.stamp(grid_);
   field_ = ClearanceField(grid_, unknown_blocks, most + kFarthestLook);
   const double check = std::min(margins.check, margins.plan);
   level_margins_ = {0.0, check / 2.0, check, (check + margins.plan) / 2.0};
@@ -138,7 +140,8 @@ bool CollisionChecker::touchesObstacle(const TurnedPose& pose, int level) const 
 Overlap CollisionChecker::overlap(const Pose2& T_map_body) const {
   const Footprint& bare = levels_[kBare];
   return {bare.blockedCells(grid_, T_map_body, false),
-          bare.blockedCells(grid_, T_map_body, unknown_blocks_)};
+          bare.blockedCells(grid_, T_map_body, unknown_blocks_),
+          static_cast<float>(fenced_.depth(T_map_body, bare.size()))};
 }
 
 std::optional<Overlap> CollisionChecker::escape(const Pose2& T_map_start, const Overlap& at_start,

@@ -8,6 +8,7 @@
 
 #include "common/grid/footprint.hpp"
 #include "common/grid/grid.hpp"
+#include "modules/planner/core/map/fenced_ground.hpp"
 #include "modules/planner/core/search/pattern_table.hpp"
 
 namespace tread::planner {
@@ -26,10 +27,15 @@ struct Margins {
 struct Overlap {
   int obstacles = 0;
   int blocked = 0;  ///< obstacles and unknown
+  /// [m] by which it is too near to a fence, or over it: where all is blocked only this tells the
+  /// way back from the way out.
+  float fenced = 0.0F;
 
   bool none() const { return blocked == 0; }
   bool within(const Overlap& other) const {
-    return obstacles <= other.obstacles && blocked <= other.blocked;
+    constexpr float kRounding = 1e-4F;
+    return obstacles <= other.obstacles && blocked <= other.blocked &&
+           fenced <= other.fenced + kRounding;
   }
 };
 
@@ -39,7 +45,7 @@ class CollisionChecker {
  public:
   /// `unknown_blocks`: false lets the vehicle drive where nothing is known.
   CollisionChecker(Grid grid, const FootprintSize& size, const Margins& margins,
-                   bool unknown_blocks = true);
+                   bool unknown_blocks = true, FencedGround fenced = {});
 
   const Grid& grid() const { return grid_; }
   const ClearanceField& field() const { return field_; }
@@ -97,6 +103,7 @@ class CollisionChecker {
 
   Grid grid_;
   bool unknown_blocks_;
+  FencedGround fenced_;
   ClearanceField field_;
   Margins margins_;
   double arm_;  // [m] from the body's origin to its farthest corner

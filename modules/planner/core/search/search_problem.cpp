@@ -120,7 +120,8 @@ bool NodeChecker::admit(const SearchNode& parent, SearchNode& node) const {
 bool NodeChecker::freeFromParent(const SearchNode& parent, SearchNode& node) const {
   const CollisionChecker& around = *problem_->collision_checker;
   if (parent.level < 0) {
-    if (parent.depth >= escape_patterns_) return false;
+    // The way back over a fence may be long.
+    if (parent.depth >= escape_patterns_ && parent.overlap.fenced <= 0.0F) return false;
     const std::optional<Overlap> left = around.escape(parent.plainPose(), parent.overlap, *node.by);
     if (!left) return false;
     node.overlap = *left;

@@ -6,6 +6,7 @@
 
 #include "common/bus/virtual_bus.hpp"
 #include "tools/robot/operator/calls.hpp"
+#include "tools/robot/operator/fence_call.hpp"
 
 namespace tread::operators {
 namespace {
@@ -22,6 +23,7 @@ struct Stand {
       last_stop = message;
     });
     bus.subscribe<operator_t>(kOperator, [this](const operator_t& m) { last_operator = m; });
+    bus.subscribe<fence_t>(kFence, [this](const fence_t& message) { fences.push_back(message); });
     bus.subscribe<goal_t>(kGoal, [this](const goal_t& message) { goals.push_back(message); });
   }
   void motor(int64_t utime, int16_t state, const std::string& reason = "") {
@@ -45,7 +47,16 @@ struct Stand {
   arm_t last_arm{};
   estop_t last_stop{};
   operator_t last_operator{};
+  void health(int64_t utime, const std::string& process, int64_t yards) {
+    health_t message{};
+    message.utime = utime;
+    message.process = process;
+    message.num_counters = 1;
+    message.counters = {{"fence yard", yards}};
+    bus.publish(kHealth, message);
+  }
   std::vector<goal_t> goals;
+  std::vector<fence_t> fences;
 };
 
 /// A node that does nothing by itself.
@@ -210,6 +221,42 @@ TEST_CASE("whatever this machine's clock says, requests bear the robot's time") 
     CHECK(result == CallResult::kDone);
     CHECK_THAT(call.describe(scene.bus.now()), Catch::Contains("taken into account"));
   }
+}
+
+TEST_CASE("a fence is repeated until both the bridge and the planner show it") {
+  for (const bool removes : {false, true}) {
+    Scene scene;
+    FenceCall call(scene.desk, {"me", ""},
+                   {"", removes, fenceFrom("yard", true, {0, 0, 4, 0, 4, 3})}, 5.0);
+    const int64_t after = removes ? 0 : 1;
+    const int64_t begun = scene.bus.now();
+    const auto result = scene.run(call, 4.0, [&](int64_t now) {
+      scene.stand->motor(now, motor_t::STATE_ARMED);
+      scene.stand->health(now, "motor_bridge", after);
+      scene.stand->health(now, "planner", now - begun > 2'000'000 ? after : 1 - after);
+    });
+    CHECK(result == CallResult::kDone);
+    CHECK(scene.bus.now() - begun > 2'000'000);
+    REQUIRE(scene.stand->fences.size() >= 8);
+    const fence_t& sent = scene.stand->fences.back();
+    CHECK(sent.fence_by == "me (operator)");
+    CHECK(sent.fence_kind == (removes ? fence_t::FENCE_REMOVED : fence_t::FENCE_KEEP_OUT));
+    CHECK_THAT(call.describe(scene.bus.now()), Catch::Contains(removes ? "is gone" : "in force"));
+  }
+}
+
+TEST_CASE("a fence that one of the two does not take is told with its name") {
+  Scene scene;
+  FenceCall call(scene.desk, {"me", ""}, {"", false, fenceFrom("yard", false, {0, 0, 4, 0, 4, 3})},
+                 2.0);
+  const auto result = scene.run(call, 4.0, [&](int64_t now) {
+    scene.stand->motor(now, motor_t::STATE_ARMED);
+    scene.stand->health(now, "motor_bridge", 1);
+  });
+  CHECK(result == CallResult::kRefused);
+  CHECK_THAT(call.describe(scene.bus.now()), Catch::Contains("planner does not show fence yard"));
+  CHECK_THROWS_WITH(fenceFrom("a", true, {1, 2, 3}), Catch::Contains("one number is missing"));
+  CHECK_THROWS_WITH(fenceFrom("a", true, {1, 2, 3, 4}), Catch::Contains("3 to 64 corners"));
 }
 
 }  // namespace tread::operators

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/fence/fence.hpp"
+
+namespace tread {
+
+/// A request about fences, as sent: one more fence, or all of a name gone.
+struct FenceRequest {
+  std::string by;
+  bool removes = false;
+  Fence fence;  ///< without corners if it removes
+};
+
+/// What came of a request.
+enum class FenceReceipt {
+  kAdded,
+  kKnown,  ///< is in force already
+  kRemoved,
+  kNotThere,   ///< no fence of that name, or one of the robot's own
+  kForbidden,  ///< its sender does not hold the robot
+  kInvalid,
+  kFull
+};
+/// In words, for counters: "of another operator than the one who holds the robot".
+const char* describe(FenceReceipt receipt);
+
+/// The fences in force: the robot's own, and what operators have added.
+/** One more fence only narrows, and is taken from everybody, as a stop is: fences of one name are
+ * kept side by side. Removing widens: only the operator who holds the robot may do it, and the
+ * robot's own fences stay. Those of operators last as long as the process. */
+class FenceBook {
+ public:
+  static constexpr size_t kMost = 32;
+
+  explicit FenceBook(std::vector<Fence> own = {}) : fences_(std::move(own)), own_(fences_.size()) {}
+
+  /// `holds`: the sender holds the robot.
+  FenceReceipt take(const FenceRequest& request, bool holds);
+
+  const std::vector<Fence>& fences() const { return fences_; }
+  /// Counts up with each change.
+  int64_t revision() const { return revision_; }
+  /// How many fences of this name are in force.
+  int64_t count(const std::string& name) const;
+
+ private:
+  std::vector<Fence> fences_;  ///< the robot's own first
+  size_t own_;
+  int64_t revision_ = 0;
+};
+
+}  // namespace tread

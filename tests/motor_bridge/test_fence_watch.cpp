@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <cmath>
+
+#include <catch2/catch.hpp>
+
+#include "tests/motor_bridge/bridge_world.hpp"
+
+using namespace tread;
+using namespace tread::motor;
+using Catch::Contains;
+
+namespace {
+
+constexpr FootprintSize kBody{0.65, 0.65, 0.34};
+constexpr double kSpeed = 1.1;  // [m/s] of a track at full power
+constexpr double kGauge = 0.6;  // [m]
+constexpr double kLag = 0.2;    // [s] of the tracks
+
+Fence yard() {
+  return {"yard", false, {{-5, -5}, {10, -5}, {10, 5}, {-5, 5}}};
+}
+
+BridgeConfig fenced(std::vector<Fence> own) {
+  BridgeConfig config;
+  config.fences = {std::move(own), kBody, 0.5};
+  return config;
+}
+
+/// A robot that does what it is told, late, and tells its pose.
+struct FencedWorld : BridgeWorld {
+  Pose2 truth;
+  double left = 0.0, right = 0.0;  ///< [m/s]
+  double least_room = 1e9;         ///< [m] of the true outline, to any fence of the bridge
+
+  explicit FencedWorld(std::vector<Fence> own, const Pose2& start = {}) : truth(start) {
+    bridge = Bridge(fenced(std::move(own)));
+    planner.commands = 10;
+    motion.position_std = 0.02;
+    tell();
+  }
+  void tell() {
+    motion.x = truth.x;
+    motion.y = truth.y;
+    motion.yaw = truth.yaw;
+    motion.v_forward = 0.5 * (left + right);
+    motion.v_left = 0.0;
+    motion.yaw_rate = 0.5 * (right - left) / kGauge;
+  }
+  void runFor(int64_t us) {
+    for (const int64_t end = now + us; now < end;) move();
+  }
+  void move() {
+    step();
+    const double dt = 1e-6 * kStep;
+    left += (kSpeed * out.command.left - left) * dt / kLag;
+    right += (kSpeed * out.command.right - right) * dt / kLag;
+    truth = truth * integrate({0.5 * (left + right), 0.0, 0.5 * (right - left) / kGauge}, dt);
+    tell();
+    least_room = std::min(least_room, roomAt(bridge.fences().fences(), truth, kBody).metres);
+  }
+  void start(double power_left, double power_right) {
+    planner.always = TrackCommand{power_left, power_right};
+    runFor(1'300'000);
+    arm();
+    runFor(100'000);
+  }
+  void add(const Fence& fence, const std::string& by = "stranger") {
+    bridge.receive(FenceRequest{by, false, fence}, now);
+  }
+  void remove(const std::string& name, const std::string& by) {
+    bridge.receive(FenceRequest{by, true, {name, false, {}}}, now);
+  }
+};
+
+}  // namespace
+
+TEST_CASE(
+    "at full speed towards a fence the outline stays within, and the reason names the fence") {
+  for (const double yaw : {0.0, 0.7, kPi / 2, 2.0, kPi}) {
+    for (const double power : {1.0, 0.4, -1.0}) {
+      FencedWorld world({yard()}, {0, 0, yaw});
+      world.start(power, power);
+      REQUIRE(world.state() == State::kDriving);
+      world.runFor(30'000'000);
+      CHECK(world.least_room >= 0.0);
+      CHECK(world.least_room < 1.0);
+      CHECK(world.state() == State::kDisarmed);
+      CHECK_THAT(world.reason(), Contains("fence yard") && Contains("less than it takes to stop"));
+    }
+  }
+}
+
+TEST_CASE("a turn beside a fence stops before a corner of the outline crosses it") {
+  for (const double gap : {0.02, 0.05, 0.1, 0.2}) {
+    FencedWorld world({yard()}, {0, 5.0 - 0.34 - gap, 0});
+    world.motion.position_std = 0.0;
+    world.start(-1.0, 1.0);
+    world.runFor(5'000'000);
+    CHECK(world.least_room >= 0.0);
+    CHECK(world.state() == State::kDisarmed);
+  }
+}
+
+TEST_CASE("along a fence, and in the middle of the yard, it drives on") {
+  FencedWorld along({yard()}, {-4, 5.0 - 0.34 - 0.15, 0});
+  along.start(1.0, 1.0);
+  along.runFor(8'000'000);
+  CHECK(along.state() == State::kDriving);
+  FencedWorld turning({yard()});
+  turning.start(-1.0, 1.0);
+  turning.runFor(8'000'000);
+  CHECK(turning.state() == State::kDriving);
+}
+
+TEST_CASE("it keeps out of a polygon from every side, and of one that is smaller than itself") {
+  for (const double side : {4.0, 0.2}) {
+    for (int i = 0; i < 12; ++i) {
+      const double angle = i * kPi / 6;
+      const double h = side / 2;
+      FencedWorld world({{"pond", true, {{-h, -h}, {h, -h}, {h, h}, {-h, h}}}},
+                        {6 * std::cos(angle), 6 * std::sin(angle), angle + kPi});
+      world.start(1.0, 1.0);
+      world.runFor(15'000'000);
+      CHECK(world.least_room >= 0.0);
+      CHECK(world.least_room < 1.0);
+      CHECK(world.state() == State::kDisarmed);
+    }
+  }
+}
+
+TEST_CASE("the worse the position is known, the earlier it stops") {
+  double before = 0.0;
+  for (const double std : {0.0, 0.1, 0.5}) {
+    FencedWorld world({yard()});
+    world.motion.position_std = std;
+    world.start(1.0, 1.0);
+    world.runFor(20'000'000);
+    CHECK(world.least_room >= before);
+    before = world.least_room + 0.1;
+  }
+  FencedWorld unknown({yard()});
+  unknown.motion.position_std = std::nan("");
+  unknown.start(1.0, 1.0);
+  unknown.runFor(20'000'000);
+  CHECK(unknown.least_room > 0.15);
+}
+
+TEST_CASE("what measures no velocity counts as fast as it can be") {
+  struct Blind : BridgeWorld {
+  } world;
+  world.bridge = Bridge(fenced({yard()}));
+  world.motion = InsMotion{0, 9.0, 0.0, 0.0};
+  world.drive();
+  // It would be over the fence within its stopping time.
+  CHECK(world.state() == State::kDisarmed);
+  CHECK_THAT(world.reason(), Contains("fence yard"));
+}
+
+TEST_CASE("over a fence only the way back in is driven") {
+  for (const double x : {10.2, 10.6, 14.0}) {
+    FencedWorld out({yard()}, {x, 0, 0});
+    out.start(1.0, 1.0);
+    out.runFor(2'000'000);
+    CHECK(out.state() == State::kDisarmed);
+    CHECK_THAT(out.reason(), Contains("outside fence yard by") && Contains("only back in"));
+    CHECK(out.truth.x < x + 0.4);
+    FencedWorld back({yard()}, {x, 0, 0});
+    back.start(-1.0, -1.0);
+    back.runFor(9'000'000);
+    CHECK(back.state() == State::kDriving);
+    CHECK(back.truth.x < 9.0);
+  }
+}
+
+TEST_CASE("over a fence it does not go back and forth: half a way back is not given up again") {
+  FencedWorld world({yard()}, {14, 0, 0});
+  world.start(-1.0, -1.0);
+  world.runFor(2'000'000);
+  REQUIRE(world.state() == State::kDriving);
+  const double reached = world.truth.x;
+  world.planner.always = TrackCommand{1.0, 1.0};
+  world.runFor(3'000'000);
+  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.truth.x < reached + 0.1);
+}
+
+TEST_CASE("back over one fence it does not cross another one") {
+  FencedWorld world({yard(), {"pond", true, {{5, -3}, {8, -3}, {8, 3}, {5, 3}}}}, {14, 0, 0});
+  world.start(-1.0, -1.0);
+  world.runFor(15'000'000);
+  CHECK(world.state() == State::kDisarmed);
+  CHECK_THAT(world.reason(), Contains("fence pond"));
+  CHECK(world.truth.x - 0.65 >= 8.0);
+}
+
+TEST_CASE("a fence that comes while it drives stops it, whoever sent it") {
+  FencedWorld world({});
+  world.start(1.0, 1.0);
+  REQUIRE(world.state() == State::kDriving);
+  world.add(yard());
+  world.runFor(20'000'000);
+  CHECK(world.least_room >= 0.0);
+  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.bridge.counters().at("FENCE added") == 1);
+}
+
+TEST_CASE("a fence is removed by the operator who holds the robot, and by nobody else") {
+  FencedWorld world({});
+  world.start(0.0, 0.0);
+  world.add(yard());
+  world.remove("yard", "stranger");
+  CHECK(world.bridge.fences().count("yard") == 1);
+  world.remove("yard", "ADA (operator)");
+  CHECK(world.bridge.fences().count("yard") == 0);
+  world.add(yard());
+  world.operator_alive = false;
+  world.runFor(3'000'000);
+  world.remove("yard", "operator");
+  CHECK(world.bridge.fences().count("yard") == 1);
+}
+
+TEST_CASE("without fences nothing is looked at") {
+  FencedWorld world({});
+  world.start(1.0, 1.0);
+  world.runFor(60'000'000);
+  CHECK(world.state() == State::kDriving);
+  CHECK(world.truth.x > 50.0);
+}

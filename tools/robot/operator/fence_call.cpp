@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/robot/operator/fence_call.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include "common/messages/fence_messages.hpp"
+
+namespace tread::operators {
+namespace {
+
+constexpr int64_t kFenceRepeat = 200'000;  // [us]
+constexpr const char* kTakers[] = {"motor_bridge", "planner"};
+
+}  // namespace
+
+FenceCall::FenceCall(Bus& bus, const Requester& requester, FenceRequest request, double patience)
+    : bus_(bus),
+      beacon_(bus, requester.operator_name),
+      request_(std::move(request)),
+      patience_(static_cast<int64_t>(patience * 1e6)) {
+  request_.by = requester.signature();
+  bus.subscribe<health_t>(kHealth, [this](const health_t& message) {
+    int64_t count = 0;
+    for (const counter_t& counter : message.counters)
+      if (counter.counter_name == fenceCounter(request_.fence.name)) count = counter.counted;
+    // What was said before the call is no answer.
+    if (started_ && message.utime > beacon_.robotTime(*started_)) shown_[message.process] = count;
+  });
+}
+
+bool FenceCall::shownBy(const std::string& process) const {
+  const auto found = shown_.find(process);
+  return found != shown_.end() && (found->second > 0) != request_.removes;
+}
+
+CallResult FenceCall::step(int64_t utime) {
+  if (!started_) started_ = utime;
+  beacon_.step(utime);
+  if (shownBy(kTakers[0]) && shownBy(kTakers[1])) return CallResult::kDone;
+  if (utime - *started_ > patience_) return CallResult::kRefused;
+  if (utime < next_ || (request_.removes && !beacon_.hearsRobot())) return CallResult::kPending;
+  next_ = utime + kFenceRepeat;
+  fence_t message = toMessage(request_);
+  message.utime = beacon_.robotTime(utime);
+  message.seq = seq_++;
+  bus_.publish(kFence, message);
+  return CallResult::kPending;
+}
+
+std::string FenceCall::describe(int64_t /*utime*/) const {
+  const std::string fence = "fence " + request_.fence.name;
+  std::string missing;
+  for (const char* process : kTakers)
+    if (!shownBy(process)) missing += (missing.empty() ? "" : " and ") + std::string(process);
+  if (missing.empty()) return fence + (request_.removes ? " is gone" : " is in force");
+  return missing + (request_.removes ? " still keeps " : " does not show ") + fence +
+         (request_.removes ? ": only who holds the robot may remove a fence, and robot.yaml's stay"
+                           : ": is it running on this LCM URL? HEALTH says what it refused");
+}
+
+Fence fenceFrom(const std::string& name, bool keep_out, const std::vector<double>& numbers) {
+  Fence fence{name, keep_out, {}};
+  if (numbers.size() % 2 != 0)
+    throw std::invalid_argument("corners are pairs of x and y [m]: one number is missing");
+  for (size_t i = 0; i + 1 < numbers.size(); i += 2)
+    fence.corners.emplace_back(numbers[i], numbers[i + 1]);
+  const std::string fault = faultOf(fence);
+  if (!fault.empty()) throw std::invalid_argument("fence " + name + ": " + fault);
+  return fence;
+}
+
+}  // namespace tread::operators

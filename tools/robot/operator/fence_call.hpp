@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/fence/fence_book.hpp"
+#include "tools/robot/operator/calls.hpp"
+
+namespace tread::operators {
+
+/// Adds a fence, or removes all of a name, repeated until motor bridge and planner show it in
+/// HEALTH.
+class FenceCall : public Call {
+ public:
+  /// `patience` [s] for which it is repeated. Signed as the request says, for its operator.
+  FenceCall(Bus& bus, const Requester& requester, FenceRequest request, double patience);
+
+  CallResult step(int64_t utime) override;
+  std::string describe(int64_t utime) const override;
+  void letGo(int64_t utime) override { beacon_.letGo(utime); }
+
+ private:
+  /// Whether a process shows what was asked for.
+  bool shownBy(const std::string& process) const;
+
+  Bus& bus_;
+  OperatorBeacon beacon_;
+  FenceRequest request_;
+  int64_t patience_;                      ///< [us]
+  std::map<std::string, int64_t> shown_;  ///< by process: how many fences of that name
+  std::optional<int64_t> started_;        ///< [us]
+  int64_t next_ = 0;                      ///< [us]
+  int64_t seq_ = 0;
+};
+
+/// A fence from the numbers of a command line: x and y of each corner in turn [m]. Throws
+/// std::invalid_argument with one clear line.
+Fence fenceFrom(const std::string& name, bool keep_out, const std::vector<double>& numbers);
+
+}  // namespace tread::operators

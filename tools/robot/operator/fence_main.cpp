@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/robot/operator/command.hpp"
+#include "tools/robot/operator/fence_call.hpp"
+
+int main(int argc, char** argv) {
+  using namespace tread::operators;
+  tread::FenceRequest request;
+  std::vector<double> stay_in, keep_out;
+  const auto addOptions = [&](CLI::App& app) {
+    app.add_option("name", request.fence.name, "of the fence")->required();
+    auto* in = app.add_option("--stay-in", stay_in,
+                              "X Y of each corner in turn, in map [m]: the robot stays inside");
+    auto* out = app.add_option("--keep-out", keep_out, "the same: the robot stays outside");
+    auto* gone = app.add_flag("--remove", request.removes,
+                              "all fences of this name go, except those of robot.yaml");
+    in->excludes(out)->excludes(gone);
+    out->excludes(gone);
+  };
+  return runPermissionCommand(
+      argc, argv,
+      {"tread-fence",
+       "Adds a fence that the robot stays in or keeps out of, until it is removed or motor bridge "
+       "and planner end. Anybody may add one; who holds the robot may remove it.",
+       "asks", addOptions, [&](tread::Bus& bus, const Requester& requester, double patience) {
+         if (!request.removes)
+           request.fence = fenceFrom(request.fence.name, !keep_out.empty(),
+                                     keep_out.empty() ? stay_in : keep_out);
+         return std::make_unique<FenceCall>(bus, requester, request, patience);
+       }});
+}
