@@ -152,8 +152,6 @@ struct FailsafeOutputs {
 };
 
 /// The ranked state machine that decides whether the motors may turn. Pure: time is an input.
-bool hand = false;       ///< a person takes or keeps the robot, or wants it armed for the hand
-std::string hand_words;  ///< who does, and why it stands, if it does
 /** Ranks, worst first: E-stop, link, device, bridge, program, operator, lease, INS, tilt,
    fence, motion. A series can only start from a state that gave zero in the step before, and only
    while an operator is there and nothing bars programs. Everything but the normal end of a series
