@@ -117,7 +117,7 @@ LearnerNode::LearnerNode(LearnerNodeConfig config, Bus& bus, Store& store)
       health_(bus, "learner", config_.effective()) {
   bus.subscribe<ins_t>(kIns, [this](const ins_t& ins) { ins_.add(ins, bus_.now()); });
   bus.subscribe<execution_t>(kExecution, [this](const execution_t& message) { hear(message); });
-  bus.subscribe<motor_t>(kMotor, [this](const motor_t& motor) { commands_.add(motor); });
+  bus.subscribe<motor_t>(kMotor, [this](const motor_t& motor) { hear(motor); });
   // Not now(): it is not known before the first message.
   start(bus.bootId());
 }
@@ -189,6 +189,31 @@ void LearnerNode::hear(const execution_t& message) {
   if (++unknown_versions_[highest] >= kBelievedAfter) goAbove(highest);
   // Broken messages may name any number; what was named once long ago is of no interest.
   if (unknown_versions_.size() > 16) unknown_versions_.clear();
+}
+
+void LearnerNode::hear(const motor_t& motor) {
+  commands_.add(motor);
+  const bool by_hand = motor.bridge_state == motor_t::STATE_MANUAL;
+  const bool lost = motor.seq != seq_motor_ + 1;
+  seq_motor_ = motor.seq;
+  hand_.add(
+      {motor.utime,
+       {static_cast<double>(motor.command_left), static_cast<double>(motor.command_right)},
+       by_hand && motor.motor_command_kind == static_cast<int16_t>(learner_.set().content().kind)},
+      lost);
+  auto message = blank<execution_t>();
+  for (const HandDrivenPattern& driven : hand_.take(learner_.set())) {
+    auto record = blank<execution_record_t>();
+    record.record_execution_id = driven.started;
+    record.record_pattern_id = driven.pattern_id;
+    record.record_set_version = learner_.set().version();
+    record.started = driven.started;
+    record.ended = driven.ended;
+    record.outcome = execution_record_t::OUTCOME_COMPLETED;
+    message.records.push_back(record);
+    health_.addToCounter("executions by hand");
+  }
+  executions_.add(message, bus_.now());
 }
 
 void LearnerNode::goAbove(int64_t version) {

@@ -14,6 +14,7 @@
 #include "common/messages/pattern_messages.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/store/store.hpp"
+#include "modules/learner/core/hand_watch.hpp"
 #include "modules/learner/core/learner.hpp"
 
 namespace tread::learner {
@@ -119,6 +120,8 @@ void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config);
 /// CONFIG out.
 /** 1. Inputs wait until they are settle_us old and are then taken in the order of (utime, seq).
  *  2. An execution is cut, gated and scored against the set version that its record names.
+ *     What a person drives by hand is an execution, too, where its commands are a pattern's: of run
+ *     0, with the time of its start as id.
  *  3. If the rule changes the set, state and set are written and published under the next version.
  *  Each (run id, execution id) is handled once. Versions only go up: see LearnerMemory. */
 class LearnerNode : public Node {
@@ -144,6 +147,7 @@ class LearnerNode : public Node {
   void start(int64_t boot_time);
   void recallBank();
   void hear(const execution_t& message);
+  void hear(const motor_t& motor);
   void handle(const execution_record_t& record);
   Measurement measureRecord(const execution_record_t& record, const MotionPattern& pattern) const;
   void score(const execution_record_t& record, const Measurement& measurement,
@@ -165,6 +169,8 @@ class LearnerNode : public Node {
   InsQueue ins_;
   ExecutionQueue executions_;
   CommandWatch commands_;
+  HandWatch hand_;
+  int64_t seq_motor_ = -1;  ///< of the last MOTOR; -1 = none yet
   SetPublisher publisher_;
   HealthReporter health_;
   std::map<int64_t, PatternSet> versions_;  ///< the last sets by version

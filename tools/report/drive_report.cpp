@@ -107,6 +107,7 @@ class Reader {
     ++drive_.events;
     drive_.latencies.add(event);
     drive_.chronicle.take(event);
+    drive_.hand.take(event);
     dispatch(
         event, [&](const auto& message) { hear(message); }, kIns, kGoal, kPlan, kPlanTree, kMap,
         kLearning, kExecution, kMotor, kConfig);
@@ -277,7 +278,8 @@ std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth) {
 
 std::string reportOf(const DriveRecord& drive, const SimulationTruth& truth,
                      const RuleErrors& by_rule) {
-  std::string words = resultLine(drive, truth) + "\n" + drive.chronicle.words();
+  std::string words =
+      resultLine(drive, truth) + "\n" + drive.chronicle.words() + drive.hand.words();
   words += formatted("prediction error at a pattern's end: mean %.3f m, %.2f deg over %zu measured",
                      mean(drive, &PatternError::position),
                      mean(drive, &PatternError::yaw) * 180.0 / kPi, drive.errors.size());

@@ -17,6 +17,7 @@
 #include "modules/simulator/simulator_files.hpp"
 #include "tools/replay/shadow_learners.hpp"
 #include "tools/report/chronicle.hpp"
+#include "tools/report/hand_record.hpp"
 
 namespace tread {
 class plan_tree_t;
@@ -163,6 +164,7 @@ struct DriveRecord {
   std::optional<FootprintSize> outline;  ///< of the robot; none = the log does not say
   Latencies latencies;
   Chronicle chronicle;  ///< of the whole log
+  HandRecord hand;      ///< of the whole log
 
   double seconds() const { return static_cast<double>(ended - begun) * 1e-6; }
   /// Length of the track [m].

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "common/pattern/pattern.hpp"
+
+namespace tread::learner {
+
+/// What the motors were given from a time on.
+struct GivenCommand {
+  int64_t utime = 0;  ///< [us]
+  TrackCommand command;
+  bool by_hand = false;
+};
+
+/// A stretch of driving by hand that is an execution of a pattern.
+struct HandDrivenPattern {
+  int pattern_id = 0;
+  int64_t started = 0;  ///< [us] when its first command took effect
+  int64_t ended = 0;    ///< [us] end of its last command's period
+};
+
+/// Finds the patterns in what a person drives by hand.
+/** A rule learns from patterns only: what a person drives teaches where its commands are a
+ * pattern's, one for one, after half a second of the steady command of the pattern's entry class.
+ * The longest pattern counts, and stretches do not overlap. Whether it also moved as the entry
+ * class does is the gates' business. Pure: time comes with the commands. */
+class HandWatch {
+ public:
+  /// Takes the commands in the order of time. `lost`: some before this one are missing.
+  void add(const GivenCommand& given, bool lost);
+  /// The patterns of a set that have ended since the last call, in the order of time.
+  std::vector<HandDrivenPattern> take(const PatternSet& set);
+
+ private:
+  enum class Fit { kNo, kYes, kNotYet };
+  Fit fit(const PatternSet& set, const MotionPattern& pattern, int64_t start) const;
+  std::optional<HandDrivenPattern> longestFrom(int64_t start, const PatternSet& set,
+                                               bool& not_yet) const;
+  bool given(const TrackCommand& command, int64_t utime) const;
+  const GivenCommand* at(int64_t utime) const;
+  int64_t nextStart(int64_t start, int64_t period_us) const;
+
+  std::deque<GivenCommand> given_;  ///< where something changed, oldest first
+  int64_t newest_ = 0;              ///< [us] the last command that was taken
+  int64_t start_ = 0;               ///< [us] where the next pattern may begin
+};
+
+}  // namespace tread::learner
