@@ -38,6 +38,7 @@ struct Person {
     until = utime + static_cast<int64_t>(draw(0.7, 5.0) * 1e6);
   }
   void step(int64_t utime, bool give_back) {
+    if (until == 0) until = utime + 300'000;  // the stick at rest
     if (utime >= until) choose(utime);
     message.utime = utime;
     message.seen_utime = motor.message().utime;

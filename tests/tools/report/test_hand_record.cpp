@@ -63,7 +63,7 @@ TEST_CASE("who drove how long, how often taken over and given back") {
   const HandRecord stopped = tenSeconds(none, motor_t::STATE_ESTOP);
   CHECK(stopped.givenBack() == 0);
   CHECK(stopped.stopped() == 1);
-  CHECK_THAT(stopped.words(), Catch::Contains("by hand: 10.1 s (5.0 s moving, 5.0 m)") &&
+  CHECK_THAT(stopped.words(), Catch::Contains("by hand: 10.0 s (5.0 s moving, 5.0 m)") &&
                                   Catch::Contains("stopped 1 times"));
 }
 
