@@ -2,6 +2,9 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/bus/bus.hpp"
 
+#include <algorithm>
+#include <cstdlib>
+#include <iomanip>
 #include <sstream>
 
 #include "common/messages/blank.hpp"
@@ -14,6 +17,9 @@ constexpr int64_t kLargestSeq = 1'000'000'000'000;
 
 constexpr int64_t kHealthPeriodUs = 1'000'000;
 constexpr int64_t kConfigPeriodUs = 10'000'000;
+/// A process that says nothing for this long is gone.
+constexpr int64_t kNamesakeLife = 3 * kHealthPeriodUs;
+constexpr size_t kMostNamesakes = 8;
 /// CONFIG stays within one datagram.
 constexpr size_t kMaxConfigBytes = 50'000;
 
@@ -49,12 +55,25 @@ std::vector<std::string> Bus::heard() const {
 
 void Bus::receive(const std::string& channel, const uint8_t* bytes, size_t size) {
   const auto found = subscribed_.find(channel);
-  if (found == subscribed_.end()) return;
+  if (found == subscribed_.end()) return receiveBeside(channel, bytes, size);
   const std::optional<size_t> message = unseal(channel, found->second, bytes, size);
   if (!message) return;
   // Index loop: a handler may subscribe.
   for (size_t i = 0; i < found->second.handlers.size(); ++i)
     deliver(found->second.handlers[i], channel, bytes, *message);
+}
+
+/// No node both subscribes to a channel and overhears it.
+void Bus::receiveBeside(const std::string& channel, const uint8_t* bytes, size_t size) {
+  const auto found = overheard_.find(channel);
+  if (found == overheard_.end() || !hasCompany()) return;
+  size_t message = sizeWithoutSeal(bytes, size);
+  if (sealer_) {
+    const OpenedSeal opened = sealer_->open(channel, bytes, size, sealClock());
+    if (opened.verdict != SealVerdict::kGood) return;
+    message = opened.size;
+  }
+  for (const RawHandler& handler : found->second) deliver(handler, channel, bytes, message);
 }
 
 std::optional<size_t> Bus::unseal(const std::string& channel, const Subscribed& subscribed,
@@ -158,6 +177,38 @@ void HealthReporter::setState(int16_t state, const std::string& reason) {
   reason_ = reason;
 }
 
+void HealthReporter::watchNamesakes() {
+  bus_.overhear<health_t>(kHealth, [this](const health_t& health) {
+    if (health.process != process_ || health.boot_id == boot_id_) return;
+    const int64_t now = bus_.now();
+    // Broken messages may name any number.
+    if (namesakes_.size() >= kMostNamesakes && namesakes_.count(health.boot_id) == 0)
+      namesakes_.clear();
+    Namesake& other = namesakes_[health.boot_id];
+    if (std::abs(now - other.heard) > kNamesakeLife) other.count = 0;
+    other = {health.boot_id, now, other.count + 1};
+  });
+}
+
+std::optional<Namesake> HealthReporter::namesake(int64_t now, int heard_at_least) const {
+  for (const auto& [boot_id, other] : namesakes_)
+    if (other.count >= heard_at_least && std::abs(now - other.heard) <= kNamesakeLife) return other;
+  return std::nullopt;
+}
+
+std::string HealthReporter::describe(int64_t utime) const {
+  // A message of another program is no fault of this process, but its line must be seen.
+  std::string words = reason_.empty() ? bus_.statistics().last_refusal : reason_;
+  const std::optional<Namesake> other = namesake(utime);
+  if (!other) return words;
+  std::ostringstream line;
+  line << std::fixed << std::setprecision(1) << "two processes " << process_
+       << " run, this one since " << static_cast<double>(boot_id_) * 1e-6
+       << " s of the host's clock and another since " << static_cast<double>(other->boot_id) * 1e-6
+       << " s; stop one of them";
+  return words.empty() ? line.str() : words + "; " + line.str();
+}
+
 void HealthReporter::setCounter(const std::string& name, int64_t value) {
   counters_[name] = value;
 }
@@ -185,14 +236,13 @@ void HealthReporter::publishHealth(int64_t utime) {
   health.utc = bus_.utc();
   health.process = process_;
   health.boot_id = boot_id_;
-  health.health_state = state_;
-  health.health_reason = reason_;
+  health.health_state =
+      namesake(utime) ? std::max<int16_t>(state_, health_t::HEALTH_DEGRADED) : state_;
+  health.health_reason = describe(utime);
   health.received = statistics.received;
   health.undecodable = statistics.undecodable;
   health.lost = statistics.lost;
   health.late = statistics.late;
-  // A message of another program is no fault of this process, but its line must be seen.
-  if (health.health_reason.empty()) health.health_reason = statistics.last_refusal;
   const auto add = [&health](const std::string& name, int64_t value) {
     auto counter = blank<counter_t>();
     counter.counter_name = name;

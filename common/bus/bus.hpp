@@ -98,9 +98,23 @@ class Bus {
           noteReceipt(spec, message.utime, message.seq);
           handler(message);
         });
-    if (first) listen(channel.name);
+    if (first && !overhears(channel.name)) listen(channel.name);
   }
   bool hears(const std::string& channel) const { return subscribed_.count(channel) > 0; }
+
+  /// The same, but no input of this node: not counted, no measure of time; what is not good is
+  /// passed over.
+  template <class Message>
+  void overhear(const Channel<Message>& channel, std::function<void(const Message&)> handler) {
+    const bool first = !hears(channel.name) && !overhears(channel.name);
+    overheard_[channel.name].push_back(
+        [handler = std::move(handler)](const uint8_t* bytes, size_t size) {
+          Message message{};
+          if (decodes(bytes, size, message)) handler(message);
+        });
+    if (first) listen(channel.name);
+  }
+  bool overhears(const std::string& channel) const { return overheard_.count(channel) > 0; }
   /// The channels subscribed to, sorted.
   std::vector<std::string> heard() const;
 
@@ -115,6 +129,8 @@ class Bus {
   /// A good message with this utime came in, on a channel that promises to be fresh. False if it
   /// cannot be of the present.
   virtual bool onReceipt(int64_t /*utime*/) { return true; }
+  /// False where a log is played back to the node: nobody is beside it to be overheard.
+  virtual bool hasCompany() const { return true; }
 
   /// Seals and opens messages from now on; call it before anything is published or received.
   void setSealer(std::optional<Sealer> sealer);
@@ -132,13 +148,8 @@ class Bus {
   /// Whether these bytes are a message that stops.
   template <class Message>
   static bool isStop(const uint8_t* bytes, size_t size) {
-    try {
-      Message message{};
-      const int expected = static_cast<int>(size);
-      return message.decode(bytes, 0, expected) == expected && stops(message);
-    } catch (const std::exception&) {
-      return false;
-    }
+    Message message{};
+    return decodes(bytes, size, message) && stops(message);
   }
   struct Subscribed {
     std::deque<RawHandler> handlers;  ///< not moved when one subscribes while it runs
@@ -147,6 +158,7 @@ class Bus {
 
   /// What the others' seals say now [us].
   int64_t sealTime() const { return sealClock() + seal_clock_.offset().value_or(0); }
+  void receiveBeside(const std::string& channel, const uint8_t* bytes, size_t size);
   /// The message's size without its seal, or nothing if it is not taken.
   std::optional<size_t> unseal(const std::string& channel, const Subscribed& subscribed,
                                const uint8_t* bytes, size_t size);
@@ -155,15 +167,20 @@ class Bus {
                size_t size);
 
   template <class Message>
-  bool decode(const ChannelSpec& spec, const uint8_t* bytes, size_t size, Message& message) {
+  static bool decodes(const uint8_t* bytes, size_t size, Message& message) {
     // A negative length in a broken message makes the generated code throw std::length_error.
     try {
       const int expected = static_cast<int>(size);
-      if (message.decode(bytes, 0, expected) == expected) return true;
+      return message.decode(bytes, 0, expected) == expected;
     } catch (const std::exception&) {
+      return false;
     }
-    noteUndecodable(spec, size);
-    return false;
+  }
+  template <class Message>
+  bool decode(const ChannelSpec& spec, const uint8_t* bytes, size_t size, Message& message) {
+    const bool good = decodes(bytes, size, message);
+    if (!good) noteUndecodable(spec, size);
+    return good;
   }
   void noteReceipt(const ChannelSpec& spec, int64_t utime, int64_t seq);
   void noteLoss(const ChannelSpec& spec, int64_t utime, int64_t seq);
@@ -171,6 +188,7 @@ class Bus {
   bool refuseOversized(const ChannelSpec& spec, int size);
 
   std::map<std::string, Subscribed> subscribed_;
+  std::map<std::string, std::deque<RawHandler>> overheard_;
   std::optional<Sealer> sealer_;
   bool foreign_ = false;   ///< the sealer came without a session: from another host, perhaps
   RobotClock seal_clock_;  ///< how far their seals are ahead of ours, where foreign
@@ -230,6 +248,13 @@ class Node {
   virtual void shutdown(int64_t /*utime*/) {}
 };
 
+/// Another process of the same name, by its HEALTH.
+struct Namesake {
+  int64_t boot_id = 0;
+  int64_t heard = 0;  ///< [us] when last
+  int count = 0;      ///< how often
+};
+
 /// State and reason in one line: "DEGRADED: no PROGRAM for 3 s".
 std::string inWords(const health_t& health);
 
@@ -238,6 +263,17 @@ class HealthReporter {
  public:
   /// `effective_config` is the whole configuration as YAML with defaults.
   HealthReporter(Bus& bus, std::string process, std::string effective_config);
+  HealthReporter(const HealthReporter&) = delete;  // the bus may call it back
+  HealthReporter& operator=(const HealthReporter&) = delete;
+
+  /// From now on HEALTH is degraded while another process of this name lives: for those of which a
+  /// robot has one.
+  void watchNamesakes();
+  /// One message may be a broken one of our own.
+  static constexpr int kSureAfter = 2;
+  /// The earliest started other process of this name that was heard at least so often and not long
+  /// ago; nothing if there is none.
+  std::optional<Namesake> namesake(int64_t now, int heard_at_least = kSureAfter) const;
 
   /// One clear line: what, where, what to do. Empty reason with kOk.
   void setState(int16_t state, const std::string& reason);
@@ -251,6 +287,8 @@ class HealthReporter {
 
  private:
   void publishHealth(int64_t utime);
+  /// What is wrong: our own state, and that there is another of our name.
+  std::string describe(int64_t utime) const;
   void publishConfig(int64_t utime);
 
   Bus& bus_;
@@ -264,6 +302,7 @@ class HealthReporter {
   int16_t state_ = 0;
   std::string reason_;
   std::map<std::string, int64_t> counters_;
+  std::map<int64_t, Namesake> namesakes_;  ///< by boot id
 };
 
 }  // namespace tread

@@ -115,7 +115,8 @@ class VirtualBus::MessageFaults {
 VirtualBus::VirtualBus(uint64_t seed, FaultPlan faults, int64_t start_utime)
     : start_(start_utime),
       now_(start_utime),
-      faults_(std::make_unique<MessageFaults>(seed, std::move(faults.messages))) {
+      faults_(std::make_unique<MessageFaults>(seed, faults.messages)),
+      faults_beside_(std::make_unique<MessageFaults>(seed, std::move(faults.messages))) {
   participants_.push_back(std::make_unique<Participant>());
   participants_.front()->name = "outside";
   participants_.front()->endpoint = std::make_unique<Endpoint>(*this, *participants_.front());
@@ -241,16 +242,18 @@ void VirtualBus::depart(const Participant& sender, uint64_t life, const Packet& 
   if (tap_) tap_(now_, packet.channel.c_str(), packet.bytes->data(), packet.bytes->size());
   for (size_t i = 0; i < participants_.size(); ++i) {
     Participant& receiver = *participants_[i];
-    if (!receiver.endpoint || !receiver.endpoint->hears(packet.channel)) continue;
+    if (!receiver.endpoint) continue;
+    const bool hears = receiver.endpoint->hears(packet.channel);
+    if (!hears && !receiver.endpoint->overhears(packet.channel)) continue;
     if (i == 0)
       receiver.endpoint->arrive(packet);
     else
-      route(packet, receiver);
+      route(packet, receiver, hears ? *faults_ : *faults_beside_);
   }
 }
 
-void VirtualBus::route(const Packet& packet, Participant& receiver) {
-  const MessageFaults::Passage passage = faults_->pass(packet, receiver.name, now_ - start_);
+void VirtualBus::route(const Packet& packet, Participant& receiver, MessageFaults& faults) {
+  const MessageFaults::Passage passage = faults.pass(packet, receiver.name, now_ - start_);
   for (int copy = 0; copy < passage.copies; ++copy)
     schedule(now_ + passage.delay, [this, &receiver, life = receiver.life, sent = passage.packet] {
       arrive(receiver, life, sent);
@@ -260,7 +263,7 @@ void VirtualBus::route(const Packet& packet, Participant& receiver) {
 void VirtualBus::arrive(Participant& receiver, uint64_t life, const Packet& packet) {
   if (life != receiver.life) return;
   if (receiver.busy_until <= now_) {
-    if (arrival_tap_)
+    if (arrival_tap_ && receiver.endpoint->hears(packet.channel))
       arrival_tap_(now_, receiver.name, packet.channel.c_str(), packet.bytes->data(),
                    packet.bytes->size());
     return receiver.endpoint->arrive(packet);

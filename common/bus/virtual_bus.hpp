@@ -105,7 +105,7 @@ class VirtualBus {
   void publish(Participant& sender, const char* channel, const uint8_t* bytes, size_t size);
   void step(Participant& participant, uint64_t life, int64_t planned);
   void depart(const Participant& sender, uint64_t life, const Packet& packet);
-  void route(const Packet& packet, Participant& receiver);
+  void route(const Packet& packet, Participant& receiver, MessageFaults& faults);
   void arrive(Participant& receiver, uint64_t life, const Packet& packet);
 
   int64_t start_;  ///< [us]
@@ -115,6 +115,8 @@ class VirtualBus {
   Tap tap_;
   ArrivalTap arrival_tap_;
   std::unique_ptr<MessageFaults> faults_;
+  /// For what is overheard: it draws apart, so that seeds keep their missions.
+  std::unique_ptr<MessageFaults> faults_beside_;
   std::vector<std::unique_ptr<Participant>> participants_;  ///< the first is outside()
   /// What happens, by time; what is due at the same time in the order in which it was scheduled.
   std::multimap<int64_t, std::function<void()>> events_;

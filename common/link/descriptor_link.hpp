@@ -16,6 +16,9 @@
 
 namespace tread {
 
+/// Why a device is closed that another program has.
+inline constexpr const char* kInUse = "in use by another program";
+
 /// Spaces attempts to open a link: 100 ms, doubling with each failure up to 1 s.
 /** The first spacing also follows a success, so that a peer that accepts and hangs up at once is
  *  not called without end. */

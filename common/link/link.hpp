@@ -60,6 +60,10 @@ class Link {
  * is not an error: the link is closed and reopen() tries again. */
 std::unique_ptr<Link> makeLink(const std::string& address);
 
+/// Throws std::runtime_error with one clear line if another program has this device now: at the
+/// start, before anybody takes this process for the one that works it.
+void requireFree(const Link& link);
+
 /// Two ends of an in-memory pipe, each direction holding at most `capacity` bytes. For virtual time
 /// and tests.
 std::pair<std::unique_ptr<Link>, std::unique_ptr<Link>> makePipe(size_t capacity = 65536);

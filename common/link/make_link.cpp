@@ -225,6 +225,12 @@ std::unique_ptr<Link> makeLink(const std::string& address) {
   throw std::invalid_argument("link address \"" + address + "\": unknown kind");
 }
 
+void requireFree(const Link& link) {
+  if (link.isOpen() || link.problem().find(kInUse) == std::string::npos) return;
+  throw std::runtime_error(link.address() + ": " + kInUse +
+                           "; stop that one, or name another device in the configuration");
+}
+
 std::pair<std::unique_ptr<Link>, std::unique_ptr<Link>> makePipe(size_t capacity) {
   const auto cable = std::make_shared<Cable>(capacity);
   return {std::make_unique<PipeEnd>(cable, 0, "pipe:0"),

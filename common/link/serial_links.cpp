@@ -66,7 +66,8 @@ class TtyLink final : public DescriptorLink {
       ::tcflush(fd, TCIOFLUSH);
       return fd;
     } else {
-      reason = errno == EWOULDBLOCK ? "in use by another program" : systemReason(errno);
+      // By our lock, or by the mark of exclusive use.
+      reason = errno == EWOULDBLOCK || errno == EBUSY ? kInUse : systemReason(errno);
     }
     if (fd >= 0) ::close(fd);
     return -1;

@@ -145,7 +145,9 @@ InsDriverNode::InsDriverNode(const InsDriverConfig& config, Bus& bus, Link& link
       start_(bus.now()),
       last_bytes_(bus.now()),
       last_position_(bus.now()),
-      last_heading_(bus.now()) {}
+      last_heading_(bus.now()) {
+  health_.watchNamesakes();
+}
 
 void InsDriverNode::step(int64_t utime) {
   const int64_t now = readLink(utime);

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
     return [config](BusAccess access, const std::atomic<bool>& stop) {
       LcmBus bus(std::move(access), TimeSource::kHost);
       const std::unique_ptr<Link> link = makeLink(config.address);
+      requireFree(*link);
       FileStore store(config.store);
       ins::InsDriverNode node(config, bus, *link, store);
       bus.run(node, stop);

@@ -118,6 +118,9 @@ LearnerNode::LearnerNode(LearnerNodeConfig config, Bus& bus, Store& store)
   bus.subscribe<ins_t>(kIns, [this](const ins_t& ins) { ins_.add(ins, bus_.now()); });
   bus.subscribe<execution_t>(kExecution, [this](const execution_t& message) { hear(message); });
   bus.subscribe<motor_t>(kMotor, [this](const motor_t& motor) { hear(motor); });
+  bus.overhear<pattern_set_part_t>(
+      kPatternSet, [this](const pattern_set_part_t& part) { noteVersion(part.set_version); });
+  health_.watchNamesakes();
   // Not now(): it is not known before the first message.
   start(bus.bootId());
 }
@@ -160,6 +163,26 @@ void LearnerNode::resume(LearnerState state, const std::vector<PatternSet>& earl
 void LearnerNode::step(int64_t utime) {
   const int64_t horizon = utime - config_.settle_us;
   ins_.settle(horizon);
+  const bool passive = mustBePassive(utime);
+  if (passive_ && !passive) becomeActive();
+  passive_ = passive;
+  if (passive_) {
+    // They are the other's to learn from.
+    while (executions_.takeEndedBy(horizon)) health_.addToCounter("executions left to the other");
+  } else if (!listensOnly()) {
+    handleEnded(utime);
+    if (utime >= next_repeat_ && publisher_.setsSent()) {
+      publisher_.putSet(learner_.set());
+      next_repeat_ = utime + config_.repeat_us;
+    }
+    publisher_.step(utime);
+  }
+  ++steps_;
+  reportHealth(utime);
+}
+
+void LearnerNode::handleEnded(int64_t utime) {
+  const int64_t horizon = utime - config_.settle_us;
   for (auto end = executions_.nextEnd(); end; end = executions_.nextEnd()) {
     const bool passed = ins_.history().newest() >= *end;
     const bool hopeless = horizon >= *end + config_.give_up_us;
@@ -172,12 +195,24 @@ void LearnerNode::step(int64_t utime) {
       handle(record);
     }
   }
-  if (utime >= next_repeat_ && publisher_.setsSent()) {
-    publisher_.putSet(learner_.set());
-    next_repeat_ = utime + config_.repeat_us;
-  }
-  publisher_.step(utime);
-  reportHealth(utime);
+}
+
+/// By steps and not by time, which jumps when the first message is heard.
+bool LearnerNode::listensOnly() const {
+  return steps_ * config_.period_us < config_.listen_us;
+}
+
+/// Whether a learner lives that was started before this one.
+bool LearnerNode::mustBePassive(int64_t utime) const {
+  // At the start a mistake costs three seconds; later it must not come from one broken message.
+  const bool soon = listensOnly() || passive_;
+  const auto other = health_.namesake(utime, soon ? 1 : HealthReporter::kSureAfter);
+  return other && other->boot_id < health_.bootId();
+}
+
+void LearnerNode::becomeActive() {
+  if (highest_heard_ > learner_.set().version()) goAbove(highest_heard_);
+  next_repeat_ = 0;
 }
 
 void LearnerNode::hear(const execution_t& message) {
@@ -185,10 +220,19 @@ void LearnerNode::hear(const execution_t& message) {
   int64_t highest = 0;
   for (const execution_record_t& record : message.records)
     highest = std::max(highest, record.record_set_version);
-  if (highest <= learner_.set().version() || highest > kHighestVersion) return;
-  if (++unknown_versions_[highest] >= kBelievedAfter) goAbove(highest);
+  noteVersion(highest);
+}
+
+/// Somebody named a version: ours goes above it, unless it is a broken one.
+void LearnerNode::noteVersion(int64_t version) {
+  if (version <= learner_.set().version() || version > kHighestVersion) return;
+  const bool believed = ++unknown_versions_[version] >= kBelievedAfter;
   // Broken messages may name any number; what was named once long ago is of no interest.
   if (unknown_versions_.size() > 16) unknown_versions_.clear();
+  if (!believed) return;
+  highest_heard_ = std::max(highest_heard_, version);
+  // Only one of two learners, or both would climb for ever.
+  if (!passive_ && !mustBePassive(bus_.now())) goAbove(version);
 }
 
 void LearnerNode::hear(const motor_t& motor) {
@@ -347,7 +391,8 @@ void LearnerNode::noteWrite(const std::optional<std::string>& problem) {
 }
 
 void LearnerNode::reportHealth(int64_t utime) {
-  const std::string& problem = write_problem_.empty() ? start_problem_ : write_problem_;
+  std::string problem = write_problem_.empty() ? start_problem_ : write_problem_;
+  if (passive_) problem = "passive, publishes and learns nothing while an earlier learner lives";
   health_.setState(problem.empty() ? health_t::HEALTH_OK : health_t::HEALTH_DEGRADED, problem);
   health_.setCounter("set version", learner_.set().version());
   if (const SurfaceBank* bank = learner_.rule().bank())

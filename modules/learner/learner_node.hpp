@@ -101,7 +101,8 @@ struct LearnerNodeConfig {
       2'000'000;  ///< [us] after its end: an execution is then measured with the INS there is
   int64_t repeat_us = 2'000'000;       ///< [us] between repetitions of the set
   int64_t track_span_us = 60'000'000;  ///< [us] of INS that is kept
-  int64_t remembered_versions = 50;    ///< sets kept to score executions with the version they name
+  int64_t listen_us = 0;  ///< [us] without a set at the start: is there a learner already?
+  int64_t remembered_versions = 50;  ///< sets kept to score executions with the version they name
 
   std::string store = "state/learner";  ///< folder of the state; used by the process
 
@@ -123,7 +124,9 @@ void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config);
  *     What a person drives by hand is an execution, too, where its commands are a pattern's: of run
  *     0, with the time of its start as id.
  *  3. If the rule changes the set, state and set are written and published under the next version.
- *  Each (run id, execution id) is handled once. Versions only go up: see LearnerMemory. */
+ *  Each (run id, execution id) is handled once. Versions only go up: see LearnerMemory. While a
+ *  learner that was started earlier lives, this one publishes and learns nothing; then it goes on
+ *  above the versions of that one. */
 class LearnerNode : public Node {
  public:
   LearnerNode(LearnerNodeConfig config, Bus& bus, Store& store);
@@ -148,6 +151,11 @@ class LearnerNode : public Node {
   void recallBank();
   void hear(const execution_t& message);
   void hear(const motor_t& motor);
+  void noteVersion(int64_t version);
+  bool listensOnly() const;
+  bool mustBePassive(int64_t utime) const;
+  void becomeActive();
+  void handleEnded(int64_t utime);
   void handle(const execution_record_t& record);
   Measurement measureRecord(const execution_record_t& record, const MotionPattern& pattern) const;
   void score(const execution_record_t& record, const Measurement& measurement,
@@ -178,6 +186,9 @@ class LearnerNode : public Node {
       unknown_versions_;  ///< versions above ours that records named, and how often
   std::string start_problem_;
   std::string write_problem_;
+  int64_t highest_heard_ = 0;  ///< version that somebody named and was believed
+  bool passive_ = false;
+  int64_t steps_ = 0;
   int64_t next_repeat_ = 0;
   int64_t seq_learning_ = 0;
 };

@@ -6,7 +6,9 @@
 int main(int argc, char** argv) {
   using namespace tread;
   const auto prepare = [](ConfigReader& reader) -> ShellBody {
-    const learner::LearnerNodeConfig config = learner::readLearnerConfig(reader);
+    learner::LearnerNodeConfig config = learner::readLearnerConfig(reader);
+    // A little more than the period of HEALTH.
+    config.listen_us = 1'200'000;
     return [config](BusAccess access, const std::atomic<bool>& stop) {
       LcmBus bus(std::move(access), TimeSource::kFollow);
       FileStore store(config.store);

@@ -37,7 +37,9 @@ LidarDriverNode::LidarDriverNode(const LidarDriverConfig& config, Bus& bus, Scan
       check_(config.limits),
       health_(bus, "lidar_driver", config.effective),
       R_body_sensor_(isometryFrom(config.mounting.p_body, config.mounting.angles).linear()),
-      last_scan_(bus.now()) {}
+      last_scan_(bus.now()) {
+  health_.watchNamesakes();
+}
 
 void LidarDriverNode::step(int64_t utime) {
   for (const RangeScan& raw : source_.take(utime)) {

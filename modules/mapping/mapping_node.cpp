@@ -223,6 +223,7 @@ MappingNode::MappingNode(const MappingConfig& config, Bus& bus)
       last_scan_(bus.now()),
       last_ins_(bus.now()),
       last_taken_(bus.now()) {
+  health_.watchNamesakes();
   bus.subscribe<ins_t>(kIns, [this](const ins_t& message) { hear(message); });
   bus.subscribe<scan_t>(kScan, [this](const scan_t& message) { hear(message); });
 }

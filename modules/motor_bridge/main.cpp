@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
     return [config](BusAccess access, const std::atomic<bool>& stop) {
       LcmBus bus(std::move(access), TimeSource::kHost);
       const std::unique_ptr<Link> link = makeLink(config.address);
+      requireFree(*link);
       MotorBridgeNode node(config, bus, *link);
       bus.run(node, stop);
     };

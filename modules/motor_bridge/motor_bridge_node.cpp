@@ -240,6 +240,7 @@ MotorBridgeNode::MotorBridgeNode(const MotorBridgeConfig& config, Bus& bus, Link
 }
 
 void MotorBridgeNode::listen() {
+  health_.watchNamesakes();
   bus_.subscribe<program_t>(kProgram, [this](const program_t& message) {
     bridge_.receive(fromMessage(message), bus_.now());
   });

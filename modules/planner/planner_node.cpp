@@ -186,6 +186,7 @@ PlannerNode::PlannerNode(const PlannerConfig& config, Bus& bus)
 }
 
 void PlannerNode::subscribe() {
+  health_.watchNamesakes();
   bus_.subscribe<map_tile_t>(kMap, [this](const map_tile_t& message) { take(message); });
   bus_.subscribe<fence_t>(kFence, [this](const fence_t& message) { take(message); });
   bus_.subscribe<goal_t>(kGoal, [this](const goal_t& message) { take(message); });

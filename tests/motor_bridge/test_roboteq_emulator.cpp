@@ -158,8 +158,7 @@ TEST_CASE("emulated controller: planner dead, bridge dead, controller silent: ze
   }
 }
 
-TEST_CASE(
-    "emulated controller: an undervoltage is told within a tenth of a second, at any moment") {
+TEST_CASE("emulated controller: an undervoltage is told within 40 ms, at any moment") {
   EmulatedRig rig;
   rig.planner.commands = 200;
   rig.drive();
@@ -175,7 +174,7 @@ TEST_CASE(
     longest = std::max(longest, rig.now - low);
     rig.device.setBrownOut(false);
   }
-  CHECK(longest <= 100'000);
+  CHECK(longest <= 40'000);
 }
 
 TEST_CASE("a line that loses a tenth of its bytes is told, a sound one is not") {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "common/messages/pattern_messages.hpp"
+#include "common/seal/key_file.hpp"
 
 namespace tread::testing {
 namespace {
@@ -26,12 +27,13 @@ int ownPort() {
 
 }  // namespace
 
-RobotRun::RobotRun(const std::string& world, const std::string& start_pose)
+RobotRun::RobotRun(const std::string& world, const std::string& start_pose, const std::string& key)
     : folder_(ownFolder()),
       url_(ownLcmUrl() + "&recv_buf_size=2097152"),
       laser_port_(ownPort()),
       start_pose_(start_pose),
-      bus_(url_, TimeSource::kHost),
+      key_(key),
+      bus_(BusAccess{url_, hostSealer(key)}, TimeSource::kHost),
       motor_(bus_, kMotor),
       plan_(bus_, kPlan),
       program_(bus_, kProgram),
@@ -59,6 +61,7 @@ const std::vector<std::string>& RobotRun::names() {
 std::vector<std::string> RobotRun::argumentsOf(const std::string& name) const {
   const std::string robot = std::string(TREAD_SOURCE_DIR) + "/config/robots/teodor/";
   std::vector<std::string> words{"--lcm-url", url_, "--with-parent"};
+  if (!key_.empty()) words.insert(words.end(), {"--key", key_});
   const auto set = [&words](const std::string& key, const std::string& value) {
     words.insert(words.end(), {"--set", key + "=" + value});
   };
@@ -170,12 +173,12 @@ void RobotRun::setGoal(double x, double y) {
   renewGoal();
 }
 
-void RobotRun::leaveTo(double x, double y) {
-  processes_["operator"] =
-      std::make_unique<Process>("tread-goal",
-                                std::vector<std::string>{std::to_string(x), std::to_string(y),
-                                                         "--operator", "test", "--lcm-url", url_},
-                                folder_ + "/operator.log");
+void RobotRun::leaveTo(double x, double y, const std::string& url) {
+  processes_["operator"] = std::make_unique<Process>(
+      "tread-goal",
+      std::vector<std::string>{std::to_string(x), std::to_string(y), "--operator", "test",
+                               "--lcm-url", url.empty() ? url_ : url},
+      folder_ + "/operator.log");
   const int64_t before = plan_.message().goal_id;
   until(10.0, [&] { return plan_.message().goal_id != before && plan_.message().goal_id != 0; });
   operates_ = false;

@@ -20,8 +20,8 @@ namespace tread::testing {
 /// simulator at the other end of its lines; and a test that listens and operates.
 class RobotRun {
  public:
-  /// `world` is a world file's text. Nothing is started yet.
-  RobotRun(const std::string& world, const std::string& start_pose);
+  /// `world` is a world file's text, `key` a key file or empty. Nothing is started yet.
+  RobotRun(const std::string& world, const std::string& start_pose, const std::string& key = "");
   ~RobotRun();
   RobotRun(const RobotRun&) = delete;
   RobotRun& operator=(const RobotRun&) = delete;
@@ -55,7 +55,8 @@ class RobotRun {
   /// Sends the goal each second from now on, whatever else is waited for; at once the first time.
   void setGoal(double x, double y);
   /// From now on tread-goal operates, a process of the name "operator", and the test no more.
-  void leaveTo(double x, double y);
+  /// It is on the robot's bus, or on another one that is connected with it.
+  void leaveTo(double x, double y, const std::string& url = "");
   /// The test operates again; the next goal is its own.
   void takeBack();
   int64_t now() const { return bus_.now(); }
@@ -95,6 +96,7 @@ class RobotRun {
   std::string url_;
   int laser_port_;
   std::string start_pose_;
+  std::string key_;
   std::map<std::string, std::vector<std::string>> settings_;  ///< KEY=VALUE by process
   LcmBus bus_;
   Latest<motor_t> motor_;

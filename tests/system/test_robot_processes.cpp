@@ -43,6 +43,31 @@ TEST_CASE("a second simulator on the same lines says so and ends") {
   CHECK_THAT(run.output("second"), Catch::Contains(port) && Catch::Contains("another simulator"));
 }
 
+TEST_CASE(
+    "a second planner stops the robot, HEALTH names both, and without it the robot drives again") {
+  RobotRun run(kField, "[-20, 0, 0]");
+  run.startAll();
+  run.setGoal(20.0, 0.0);
+  REQUIRE(run.arm(20.0));
+  const auto drives = [&] { return run.driving(); };
+  REQUIRE(run.untilDriving(20.0, drives));
+  {
+    Process second("tread-planner", {"--config", kRobot + "planner.yaml", "--lcm-url", run.url()},
+                   run.folder() + "/second.log");
+    REQUIRE(run.until(10.0, [&] { return !run.armed(); }));
+    CHECK_THAT(run.motor().message().state_reason, Catch::Contains("planner"));
+    CHECK(run.until(10.0, [&] {
+      const auto health = run.health().find("planner");
+      return health->second.health_reason.find("two processes planner run") != std::string::npos;
+    }));
+    run.arm(2.0);
+    run.wait(0.5);
+    CHECK_FALSE(run.armed());
+  }
+  REQUIRE(run.arm(20.0));
+  CHECK(run.untilDriving(20.0, drives));
+}
+
 TEST_CASE("started in the wrong order, the robot drives to its goal and touches nothing") {
   RobotRun run(kYard, "[-6, 0, 0]");
   const auto& names = RobotRun::names();

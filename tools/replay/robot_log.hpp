@@ -82,6 +82,7 @@ class LogBus : public Bus {
     return true;
   }
   void listen(const char* /*channel*/) override {}
+  bool hasCompany() const override { return false; }
   bool onReceipt(int64_t utime) override { return knowsTime() || start_->observe(utime, now_); }
 
  private:

@@ -11,7 +11,7 @@ constexpr int64_t kLineSpan = 5'000'000;  // [us] over which a line is judged
 constexpr int64_t kFewExchanges = 50;
 constexpr int64_t kWorstPercent = 5;  // of exchanges may fail on a sound line
 
-/// Fault flags older than this are unknown [us]; they are read about ten times a second.
+/// Fault flags older than this are unknown [us]; they are read about thirty times a second.
 constexpr int64_t kFlagsMaxAge = 1'000'000;
 
 }  // namespace

@@ -183,9 +183,8 @@ bool RoboteqTelemetry::take(const RoboteqReply& reply, const RoboteqLayout& layo
 }
 
 RoboteqSession::RoboteqSession(const RoboteqConfig& config)
-    : config_(config), queries_{"FF", "A", "FF", "FS", "FF", "V"} {
-  // Every second query asks for faults: they stop the robot.
-  if (config_.layout.rpm_per_mps > 0.0) queries_.insert(queries_.end(), {"FF", "S"});
+    : config_(config), queries_{"FS", "A", "FS", "V"} {
+  if (config_.layout.rpm_per_mps > 0.0) queries_.insert(queries_.end(), {"FS", "S"});
 }
 
 void RoboteqSession::begin(int64_t now) {
@@ -271,9 +270,12 @@ void RoboteqSession::pollStop(int64_t now) {
 }
 
 void RoboteqSession::pollQuery(int64_t now) {
-  const bool waiting = std::any_of(pending_.begin(), pending_.end(),
-                                   [](const Pending& asked) { return !asked.key.empty(); });
+  // One that got lost must not hold up the look at the faults until its timeout.
+  const bool waiting = std::any_of(pending_.begin(), pending_.end(), [&](const Pending& asked) {
+    return !asked.key.empty() && now - asked.sent < config_.query_patience_us;
+  });
   if (waiting || now - queried_at_ < config_.query_interval_us) return;
+  ask("?FF", "FF", now);  // faults stop the robot
   if (now - checked_at_ >= config_.check_interval_us || watchdog_mismatches_ > 0) {
     checked_at_ = now;
     ask("~RWD", "RWD", now);

@@ -112,6 +112,7 @@ struct RoboteqConfig {
   int64_t reply_timeout_us = 100'000;     ///< a reply that takes longer is missing [us]
   int64_t silence_limit_us = 250'000;     ///< longest time without an acknowledged command [us]
   int64_t query_interval_us = 20'000;     ///< between two queries [us]
+  int64_t query_patience_us = 50'000;     ///< until the next query does not wait for a reply [us]
   int64_t check_interval_us = 1'000'000;  ///< between two looks at the watchdog's setting [us]
   int64_t stop_interval_us = 50'000;      ///< zero is repeated on a faulty link this often [us]
   int64_t backoff_min_us = 100'000;       ///< before starting up again [us], doubling
@@ -119,8 +120,8 @@ struct RoboteqConfig {
   int startup_tries = 3;  ///< of each request
 };
 
-/// The talk with a controller that was started up: commands as they come, one query at a time
-/// between them.
+/// The talk with a controller that was started up: commands as they come, queries between them: the
+/// fault flags each time, and one of the others in turn.
 /** Replies are matched in the order asked; a value reply shows which acknowledgements before it
     were lost. After any silence zero goes first: a controller whose watchdog expired resumes its
     old speed with the next command (Roboteq manual v1.8 p. 286). */

@@ -284,6 +284,37 @@ TEST_CASE("a mailbox keeps the newest message and knows its age") {
   REQUIRE(mark.age(bus.now()) == 250'000);
 }
 
+TEST_CASE("two processes of one name see each other in HEALTH, and neither counts it as an input") {
+  class Watching : public Node {
+   public:
+    explicit Watching(Bus& bus) : health_(bus, "planner", "") { health_.watchNamesakes(); }
+    int64_t period() const override { return 100'000; }
+    void step(int64_t utime) override { health_.step(utime); }
+
+   private:
+    HealthReporter health_;
+  };
+  VirtualBus bus(1);
+  std::map<int64_t, health_t> health;
+  bus.outside().subscribe<health_t>(kHealth, [&](const health_t& m) { health[m.boot_id] = m; });
+  const auto make = [](Bus& end) { return std::make_unique<Watching>(end); };
+  bus.addNode("one", make);
+  bus.runUntil(bus.now() + 10'000'000);
+  REQUIRE(health.size() == 1);
+  CHECK(health.begin()->second.health_state == health_t::HEALTH_OK);
+  bus.addNode("two", make);
+  bus.runUntil(bus.now() + 3'000'000);
+  REQUIRE(health.size() == 2);
+  for (const auto& [boot_id, message] : health) {
+    CHECK(message.health_state == health_t::HEALTH_DEGRADED);
+    CHECK(message.health_reason.find("two processes planner run") == 0);
+    CHECK(message.received == 0);
+  }
+  bus.kill("two");
+  bus.runUntil(bus.now() + 5'000'000);
+  CHECK(health.begin()->second.health_state == health_t::HEALTH_OK);
+}
+
 TEST_CASE("HEALTH comes at 1 Hz and CONFIG at the start and every 10 s") {
   class Reporting : public Node {
    public:

@@ -152,6 +152,11 @@ TEST_CASE("a second program is kept off the line, also after the first was kille
   REQUIRE(first->isOpen());
   CHECK_FALSE(second->isOpen());
   CHECK_THAT(second->problem(), Catch::Contains("in use by another program"));
+  CHECK_NOTHROW(requireFree(*first));
+  CHECK_THROWS_WITH(requireFree(*second),
+                    device.link() +
+                        ": in use by another program; stop that one, or name another "
+                        "device in the configuration");
   first.reset();
   CHECK(second->reopen(1'000'000));
   ::close(kept_by_emulator);
