@@ -156,3 +156,30 @@ TEST_CASE("what was overheard moves nothing later, neither while it waits nor af
   CHECK(world.moving.size() == moved);
   CHECK(world.motor.bridge_state == motor_t::STATE_DISARMED);
 }
+
+TEST_CASE("with a key nobody takes the robot over by forged or repeated MANUAL") {
+  AttackedWorld world;
+  world.drive();
+  manual_t hand{};
+  hand.station = 7;
+  hand.operator_name = "operator";
+  for (int i = 0; i < 60; ++i) {
+    hand.seen_utime = world.motor.utime;
+    hand.seq = i;
+    hand.hold = i > 10;
+    hand.hand_left = hand.hand_right = i > 10 ? 1.0F : 0.0F;
+    world.forge(kManual, hand);
+    world.run(20'000);
+  }
+  CHECK(world.drives());
+  CHECK(world.refused("unsealed") == 60);
+  world.overheard.clear();
+  hand.hold = false;
+  hand.seq = 100;
+  world.bus.outside().publish(kManual, hand);
+  world.run(20'000);
+  for (const auto& [channel, bytes] : world.overheard)
+    if (channel == kManual.name) world.bus.inject(kManual.name, bytes.data(), bytes.size());
+  world.run(20'000);
+  CHECK(world.refused("replayed") == 1);
+}

@@ -129,7 +129,7 @@ std::string EvdevPad::name() const {
 
 std::string EvdevPad::keys() const {
   return "hold a shoulder button (joystick: trigger) and move the left stick; START arms, SELECT "
-         "disarms, the upper button gives back; Ctrl-C ends";
+         "disarms, the upper or left button gives back; Ctrl-C ends";
 }
 
 }  // namespace tread::drive

@@ -61,7 +61,7 @@ Wishes PadState::wishes() const {
   wishes.hold = anyPressed({BTN_TL, BTN_TR, BTN_TRIGGER});
   wishes.arm = anyPressed({BTN_START, BTN_BASE});
   wishes.disarm = anyPressed({BTN_SELECT, BTN_BASE2});
-  wishes.give_back = anyPressed({BTN_NORTH, BTN_THUMB});
+  wishes.give_back = anyPressed({BTN_NORTH, BTN_WEST, BTN_THUMB});
   return wishes;
 }
 

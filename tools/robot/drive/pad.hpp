@@ -14,7 +14,7 @@ namespace tread::drive {
 
 /// A gamepad's or joystick's state, from the events of Linux's input layer.
 /** Left stick: forward and turn. A shoulder button, or a joystick's trigger, is the dead-man's
- * button; START arms, SELECT disarms, the upper of the four buttons gives back. */
+ * button; START arms, SELECT disarms, the upper or left of the four buttons gives back. */
 class PadState {
  public:
   /// Numbers that an axis (ABS_X, ABS_Y) counts from and to.

@@ -99,11 +99,11 @@ void Supervisor::shadow(const PlannerInputs& s, const Preconditions& ready) {
 void Supervisor::act(const PlannerInputs& s, const Preconditions& ready) {
   const bool was_by_hand = by_hand_;
   by_hand_ = s.bridge && s.bridge->state == BridgeReading::State::kByHand;
-  if (by_hand_) return shadow(s, ready);
-  if (was_by_hand) {
+  if (by_hand_ != was_by_hand) {
     state_.settle(s.now);
     state_.plan.expire();
   }
+  if (by_hand_) return shadow(s, ready);
   if (ready.level == Preconditions::Level::kStop) {
     if (state_.mode == DrivingMode::kDriving) {
       state_.halt(s.now, ready.reason);
