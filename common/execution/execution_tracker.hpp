@@ -23,6 +23,7 @@ struct PoseReading {
   Pose2 T_map_body;
   std::optional<Twist2> twist;                                     ///< v_body, if it is measured
   double position_std = std::numeric_limits<double>::quiet_NaN();  ///< [m] of an axis
+  double slope = std::numeric_limits<double>::quiet_NaN();  ///< [rad] of the ground, by attitude
 };
 
 /// What the motor bridge says it does.

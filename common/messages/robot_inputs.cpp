@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <string>
 
 #include "common/messages/blank.hpp"
@@ -99,8 +100,10 @@ void RobotInputs::take(const ins_t& message) {
   if (!pose) return health_.addToCounter("INS without a pose");
   if (readings_.pose && message.utime <= readings_.pose->utime)
     return health_.addToCounter("INS out of order");
-  readings_.pose = PoseReading{message.utime, *pose, planarTwist(message),
-                               std::max(message.position_std[0], message.position_std[1])};
+  readings_.pose =
+      PoseReading{message.utime, *pose, planarTwist(message),
+                  std::max(message.position_std[0], message.position_std[1]),
+                  inclination(message).value_or(std::numeric_limits<double>::quiet_NaN())};
 }
 
 void RobotInputs::take(const motor_t& message) {

@@ -24,6 +24,7 @@ void readRobotInto(ConfigReader& reader, bool logged, PlannerConfig& config) {
   config.map.footprint = robot.footprint;
   if (leases) config.operators = robot.operators;
   config.map.fences = robot.fences;
+  config.max_slope = robot.max_slope;
   config.map.stopping_distance = robot.drive.full_speed * robot.stopping_time;
 }
 

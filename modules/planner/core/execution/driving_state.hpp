@@ -153,11 +153,12 @@ struct PlannerConfig {
   SideHysteresisConfig side_hysteresis;
   AgeLimits ages;
   SweepResolution sweep;
-  DefaultSigma default_sigma;  ///< errors at the end of a pattern of unknown covariance
-  OperatorRules operators;     ///< lease 0: a log from before there were leases
-  int64_t lease = 200'000;     ///< [us] the motors stop when nothing newer came for this long
-  int64_t deadline = 30'000;   ///< [us] after which a search is cut off on the robot
-  std::string effective;       ///< the whole as YAML, for CONFIG
+  DefaultSigma default_sigma;       ///< errors at the end of a pattern of unknown covariance
+  std::optional<double> max_slope;  ///< [rad] of the ground that plans may use
+  OperatorRules operators;          ///< lease 0: a log from before there were leases
+  int64_t lease = 200'000;          ///< [us] the motors stop when nothing newer came for this long
+  int64_t deadline = 30'000;        ///< [us] after which a search is cut off on the robot
+  std::string effective;            ///< the whole as YAML, for CONFIG
 };
 
 /// The pattern set in use, and a newer one that waits until it fits.

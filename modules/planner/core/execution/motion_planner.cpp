@@ -59,11 +59,20 @@ void PlanningMap::setPositionStd(double std) {
   fenced_changed_ = true;
 }
 
+void PlanningMap::keepOut(const Fence& found) {
+  constexpr size_t kMostFound = 32;
+  if (found_.size() >= kMostFound) found_.erase(found_.begin());
+  found_.push_back(found);
+  fenced_changed_ = true;
+}
+
 void PlanningMap::fenceIn() {
   if (!fenced_changed_) return;
   fenced_changed_ = false;
-  if (fences_.empty() && fenced_.empty()) return;
-  fenced_ = FencedGround(fences_, config_.stopping_distance + position_growth_);
+  if (fences_.empty() && found_.empty() && fenced_.empty()) return;
+  std::vector<Fence> all = fences_;
+  all.insert(all.end(), found_.begin(), found_.end());
+  fenced_ = FencedGround(std::move(all), config_.stopping_distance + position_growth_);
   window_revision_ = field_revision_ = -1;
 }
 

@@ -55,6 +55,8 @@ class PlanningMap {
     fences_ = fences;
     fenced_changed_ = true;
   }
+  /// One more polygon to keep out of, found by driving; the oldest of many is forgotten.
+  void keepOut(const Fence& found);
   /// How well the position is known [m], one standard deviation of an axis; NaN = unmeasured.
   void setPositionStd(double std);
   /// Why fences forbid a goal, in words; empty if they do not. Needs updateDistance().
@@ -93,6 +95,7 @@ class PlanningMap {
   PlanningMapConfig config_;
   std::optional<ClearanceMap> map_;
   std::vector<Fence> fences_;
+  std::vector<Fence> found_;      ///< to keep out of
   double position_growth_ = 0.0;  ///< [m]
   bool fenced_changed_ = true;
   FencedGround fenced_;

@@ -34,7 +34,8 @@ Supervisor::Supervisor(const PlannerConfig& config, int64_t run_id)
     : state_(config, run_id),
       moving_(state_),
       standing_(state_, moving_),
-      progress_(config.policy.patience) {}
+      progress_(config.policy.patience),
+      slopes_(config.max_slope) {}
 
 bool Supervisor::takeSet(const PatternSet& set) {
   if (!state_.set.offer(set, state_.tracker)) return false;
@@ -59,6 +60,7 @@ Decision Supervisor::step(const PlannerInputs& s, const StopPredicate& stop) {
     state_.track.push(s.pose->utime, s.pose->T_map_body);
     state_.map.setPositionStd(s.pose->position_std);
   }
+  keepOffSlopes(s);
   followGoal(s);
   followBridge(s);
   if (state_.set.retry(state_.tracker)) noteNewSet();
@@ -127,6 +129,15 @@ void Supervisor::act(const PlannerInputs& s, const Preconditions& ready) {
   }
   if (state_.mode == DrivingMode::kDriving) moving_.drive(s, ready);
   if (state_.mode == DrivingMode::kStanding) standing_.stand(s, ready, progress_);
+}
+
+void Supervisor::keepOffSlopes(const PlannerInputs& s) {
+  if (!s.pose) return;
+  const std::optional<Fence> steep = slopes_.take(*s.pose);
+  if (!steep) return;
+  state_.map.keepOut(*steep);
+  ++state_.counters["too steep: keeps off"];
+  if (state_.mode == DrivingMode::kDriving) state_.halt(s.now, slopes_.words());
 }
 
 void Supervisor::followGoal(const PlannerInputs& s) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "modules/planner/core/execution/slope_guard.hpp"
 #include "modules/planner/core/execution/standing_control.hpp"
 
 namespace tread::planner {
@@ -53,6 +54,7 @@ class Supervisor {
   const std::map<std::string, int64_t>& counters() const { return state_.counters; }
 
  private:
+  void keepOffSlopes(const PlannerInputs& s);
   void followGoal(const PlannerInputs& s);
   void followBridge(const PlannerInputs& s);
   void joinedNext();
@@ -67,6 +69,7 @@ class Supervisor {
   StandingControl standing_;
   StandstillDetector standstill_;
   ProgressMonitor progress_;
+  SlopeGuard slopes_;
   std::optional<int64_t> goal_id_;
   std::string halted_;
   bool was_armed_ = false;
