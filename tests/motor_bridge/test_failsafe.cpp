@@ -321,3 +321,31 @@ TEST_CASE("disarming a robot in fault leaves the fault to be seen, and when it s
   REQUIRE(isArmed(rig.out.state));
   CHECK(rig.failsafe.disarmedAt() == stopped);
 }
+
+TEST_CASE("armed for the hand it says whose, and a series waits a step after it is given back") {
+  Rig rig;
+  rig.in.hand = true;
+  rig.in.hand_words = "driven by hand by ada";
+  rig.in.ins_fault = "no INS yet";
+  rig.run(1'100'000);
+  rig.in.arm = true;
+  rig.in.requested_by = "ada";
+  rig.step();
+  CHECK(rig.out.state == State::kManual);
+  CHECK(rig.out.reason == "driven by hand by ada");
+  rig.in.ins_fault.clear();
+  rig.in.hand = false;
+  rig.in.start_wanted = true;
+  rig.step();
+  CHECK(rig.out.state == State::kStopping);
+  CHECK(rig.out.reason == "given back by hand");
+  rig.step();
+  CHECK(rig.out.state == State::kDriving);
+}
+
+TEST_CASE("armed with no hand there it says by whom") {
+  Rig rig;
+  rig.in.hand_words = "nobody's hand";
+  rig.arm();
+  CHECK(rig.out.reason == "armed by operator");
+}

@@ -169,8 +169,7 @@ bool Failsafe::serveRequest(const FailsafeInputs& in) {
 
 bool Failsafe::serveHand(const FailsafeInputs& in) {
   if (in.hand && isArmed(state_)) {
-    if (state_ != State::kManual || reason_ != in.hand_words)
-      enter(State::kManual, in.hand_words, in.now);
+    enter(State::kManual, in.hand_words, in.now);
     return true;
   }
   if (state_ != State::kManual) return false;
