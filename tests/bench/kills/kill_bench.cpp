@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "tests/bench/kills/radio.hpp"
 #include "tests/system/robot_run.hpp"
 #include "tests/system/stall_watch.hpp"
 #include "tests/system/worlds.hpp"
@@ -22,6 +23,13 @@ constexpr int64_t kLease = 200'000;            // [us] of a PROGRAM
 constexpr int64_t kOperatorLease = 1'000'000;  // [us]
 constexpr int64_t kHold = 1'000'000;           // [us] for which the motors must stay at zero
 constexpr double kBudget = 0.25;  // [s] from the end of lease or series, or from the kill
+
+/// In the place of a signal: the operator's radio goes, both ways.
+constexpr int kCutOff = 0;
+
+const char* toWords(int signal) {
+  return signal == SIGKILL ? "killed" : signal == SIGSTOP ? "frozen" : "cut off";
+}
 
 /// What came of one kill.
 struct Kill {
@@ -37,7 +45,8 @@ struct Kill {
 /// A robot that drives to and fro on a field while its processes are killed.
 class KillBench {
  public:
-  explicit KillBench(uint64_t seed) : run_(kField, "[-20, 0, 0]"), random_(seed) {
+  explicit KillBench(uint64_t seed)
+      : run_(kField, "[-20, 0, 0]"), radio_(run_.url()), random_(seed) {
     run_.startAll();
     nextGoal();
   }
@@ -50,7 +59,10 @@ class KillBench {
     if (process == "operator") leave();
     const int64_t set = run_.lastSet();
     const StallWatch watch;
-    run_.signal(process, signal);
+    if (signal == kCutOff)
+      radio_.cut(true);
+    else
+      run_.signal(process, signal);
     const int64_t killed = run_.now();
     run_.wait(0.05);  // what it said before is heard now
     const int64_t reference = referenceOf(process, killed);
@@ -66,6 +78,7 @@ class KillBench {
     }
     kill.stall = watch.longest();
     run_.forgetSet();
+    radio_.cut(false);
     if (process == "operator")
       run_.signal(process, SIGCONT);
     else if (signal == SIGKILL)
@@ -113,7 +126,7 @@ class KillBench {
   /// To a program of its own, driving.
   void leave() {
     for (int i = 0; i < 20; ++i) {
-      run_.leaveTo(20.0 * side_, 1.0);
+      run_.leaveTo(20.0 * side_, 1.0, radio_.url());
       run_.wait(0.5);
       if (run_.driving()) return;
       run_.takeBack();
@@ -131,6 +144,7 @@ class KillBench {
   }
 
   RobotRun run_;
+  Radio radio_;
   std::mt19937_64 random_;
   double side_ = -1.0;
 };
@@ -178,8 +192,10 @@ int judge(const std::vector<Kill>& kills) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Kills processes of the driving robot and measures when the motors stand.",
-               "bench-kills"};
+  CLI::App app{
+      "Kills or freezes processes of the driving robot, or cuts its operator off, and measures "
+      "when the motors stand.",
+      "bench-kills"};
   int count = 50;
   uint64_t seed = 1;
   app.add_option("--kills", count, "how many")->check(CLI::Range(1, 10000));
@@ -191,6 +207,7 @@ int main(int argc, char** argv) {
   for (const int signal : {SIGKILL, SIGSTOP})
     for (const char* process : {"planner", "motor_bridge", "ins_driver", "operator"})
       if (only.empty() || only == process) ways.push_back({process, signal});
+  if (only.empty() || only == "operator") ways.push_back({"operator", kCutOff});
   try {
     KillBench bench(seed);
     std::vector<Kill> kills;
@@ -198,10 +215,9 @@ int main(int argc, char** argv) {
       const auto& [process, signal] = ways[static_cast<size_t>(i) % ways.size()];
       kills.push_back(bench.kill(process, signal));
       const Kill& kill = kills.back();
-      std::printf("%3d %-12s %s  %4.0f ms after the kill, machine's stall %.0f ms%s%s\n", i + 1,
-                  process.c_str(), signal == SIGKILL ? "SIGKILL" : "SIGSTOP", 1e3 * kill.from_kill,
-                  1e3 * kill.stall, kill.moved_unasked ? "  MOVED UNASKED" : "",
-                  kill.set_lost ? "  SET LOST" : "");
+      std::printf("%3d %-12s %-7s  %4.0f ms after the kill, machine's stall %.0f ms%s%s\n", i + 1,
+                  process.c_str(), toWords(signal), 1e3 * kill.from_kill, 1e3 * kill.stall,
+                  kill.moved_unasked ? "  MOVED UNASKED" : "", kill.set_lost ? "  SET LOST" : "");
       std::fflush(stdout);
     }
     print(kills);
