@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 // What each real program tells systemd, or whoever else started it.
 #include <csignal>
+#include <filesystem>
 
 #include <catch2/catch.hpp>
 

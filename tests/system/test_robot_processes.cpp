@@ -68,6 +68,35 @@ TEST_CASE(
   CHECK(run.untilDriving(20.0, drives));
 }
 
+TEST_CASE(
+    "beside a second learner no version goes back, and with the first gone the second teaches") {
+  RobotRun run(kField, "[-20, 0, 0]");
+  int64_t newest = 0;
+  int back = 0;
+  run.bus().subscribe<pattern_set_part_t>(kPatternSet, [&](const pattern_set_part_t& part) {
+    back += part.set_version < newest;
+    newest = std::max(newest, part.set_version);
+  });
+  run.startAll();
+  run.setGoal(30.0, 0.0);
+  REQUIRE(run.arm(20.0));
+  REQUIRE(run.untilDriving(20.0, [&] { return run.driving() && newest > 0; }));
+  Process second("tread-learner",
+                 {"--config", kRobot + "learner.yaml", "--set", "store=" + run.state("second"),
+                  "--lcm-url", run.url()},
+                 run.folder() + "/second.log");
+  CHECK(run.untilDriving(10.0, [&] {
+    const auto health = run.health().find("learner");
+    return health->second.health_reason.find("two processes learner run") != std::string::npos;
+  }));
+  run.untilDriving(5.0, [] { return false; });
+  CHECK(run.end("learner") == 0);
+  const int64_t before = newest;
+  CHECK(run.untilDriving(20.0, [&] { return newest > before; }));
+  CHECK(back == 0);
+  CHECK(second.running());
+}
+
 TEST_CASE("started in the wrong order, the robot drives to its goal and touches nothing") {
   RobotRun run(kYard, "[-6, 0, 0]");
   const auto& names = RobotRun::names();
