@@ -148,7 +148,7 @@ void SetPublisher::putState(const PatternSet& set, const std::string& rule,
   }
 }
 
-void SetPublisher::step(int64_t utime) {
+void SetPublisher::step(int64_t utime, bool with_sets) {
   int left = kPortion;
   const auto send = [&](const auto& channel, auto& waiting, int64_t& seq) {
     while (!waiting.empty()) {
@@ -160,8 +160,8 @@ void SetPublisher::step(int64_t utime) {
       left -= size;
     }
   };
-  send(kPatternSet, sets_, seq_set_);
-  if (!sets_.empty()) return;
+  if (with_sets) send(kPatternSet, sets_, seq_set_);
+  if (with_sets && !sets_.empty()) return;
   for (learner_state_t& state : states_) state.utime = utime;
   send(kLearnerState, states_, seq_state_);
 }

@@ -176,6 +176,8 @@ void LearnerNode::step(int64_t utime) {
       next_repeat_ = utime + config_.repeat_us;
     }
     publisher_.step(utime);
+  } else {
+    publisher_.step(utime, false);  // a log is replayed from the first state on
   }
   ++steps_;
   reportHealth(utime);

@@ -78,8 +78,8 @@ class SetPublisher {
   void putState(const PatternSet& set, const std::string& rule, const std::string& text);
 
   bool setsSent() const { return sets_.empty(); }
-  /// Sends one portion.
-  void step(int64_t utime);
+  /// Sends one portion; without sets only states.
+  void step(int64_t utime, bool with_sets = true);
 
  private:
   Bus& bus_;
