@@ -27,9 +27,10 @@ int ownPort() {
 
 }  // namespace
 
-RobotRun::RobotRun(const std::string& world, const std::string& start_pose, const std::string& key)
+RobotRun::RobotRun(const std::string& world, const std::string& start_pose, const std::string& key,
+                   const std::string& url)
     : folder_(ownFolder()),
-      url_(ownLcmUrl() + "&recv_buf_size=2097152"),
+      url_(url.empty() ? ownLcmUrl() + "&recv_buf_size=2097152" : url),
       laser_port_(ownPort()),
       start_pose_(start_pose),
       key_(key),

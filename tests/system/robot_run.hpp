@@ -20,8 +20,10 @@ namespace tread::testing {
 /// simulator at the other end of its lines; and a test that listens and operates.
 class RobotRun {
  public:
-  /// `world` is a world file's text, `key` a key file or empty. Nothing is started yet.
-  RobotRun(const std::string& world, const std::string& start_pose, const std::string& key = "");
+  /// `world` is a world file's text, `key` a key file or empty, `url` that of a bus that is there
+  /// already, or empty. Nothing is started yet.
+  RobotRun(const std::string& world, const std::string& start_pose, const std::string& key = "",
+           const std::string& url = "");
   ~RobotRun();
   RobotRun(const RobotRun&) = delete;
   RobotRun& operator=(const RobotRun&) = delete;

@@ -38,6 +38,8 @@ struct Kill {
   double stands = -1.0;        ///< [s] from the reference to motors at zero; -1 = never
   double from_kill = -1.0;     ///< [s] the same from the kill itself
   double stall = 0.0;          ///< [s] that the machine itself stood still meanwhile
+  double bridge_stall = 0.0;   ///< [s] longest time between two MOTOR messages until then
+  std::string reason;          ///< why it stands, as the bridge says
   bool moved_unasked = false;  ///< before it was armed again
   bool set_lost = false;       ///< the set's version went back
 };
@@ -47,6 +49,10 @@ class KillBench {
  public:
   explicit KillBench(uint64_t seed)
       : run_(kField, "[-20, 0, 0]"), radio_(run_.url()), random_(seed) {
+    run_.bus().subscribe<motor_t>(kMotor, [this](const motor_t& motor) {
+      longest_gap_ = std::max(longest_gap_, seconds(last_motor_, motor.utime));
+      last_motor_ = motor.utime;
+    });
     run_.startAll();
     nextGoal();
   }
@@ -59,6 +65,7 @@ class KillBench {
     if (process == "operator") leave();
     const int64_t set = run_.lastSet();
     const StallWatch watch;
+    longest_gap_ = 0.0;
     if (signal == kCutOff)
       radio_.cut(true);
     else
@@ -77,6 +84,8 @@ class KillBench {
       kill.stands = std::max(0.0, seconds(reference, *zero));
     }
     kill.stall = watch.longest();
+    kill.bridge_stall = longest_gap_;
+    kill.reason = run_.motor().message().state_reason;
     run_.forgetSet();
     radio_.cut(false);
     if (process == "operator")
@@ -147,6 +156,8 @@ class KillBench {
   Radio radio_;
   std::mt19937_64 random_;
   double side_ = -1.0;
+  int64_t last_motor_ = 0;    ///< [us]
+  double longest_gap_ = 0.0;  ///< [s]
 };
 
 void print(const std::vector<Kill>& kills) {
@@ -218,6 +229,9 @@ int main(int argc, char** argv) {
       std::printf("%3d %-12s %-7s  %4.0f ms after the kill, machine's stall %.0f ms%s%s\n", i + 1,
                   process.c_str(), toWords(signal), 1e3 * kill.from_kill, 1e3 * kill.stall,
                   kill.moved_unasked ? "  MOVED UNASKED" : "", kill.set_lost ? "  SET LOST" : "");
+      if (kill.stands < 0.0 || kill.stands > kBudget)
+        std::printf("    late: MOTOR was silent for up to %.0f ms; %s\n", 1e3 * kill.bridge_stall,
+                    kill.reason.c_str());
       std::fflush(stdout);
     }
     print(kills);
