@@ -24,6 +24,7 @@
 #include <tread/plan_tree_t.hpp>
 #include <tread/program_t.hpp>
 #include <tread/scan_t.hpp>
+#include <tread/stopping_t.hpp>
 
 namespace tread {
 
@@ -53,6 +54,8 @@ inline constexpr Channel<program_t> kProgram{{"PROGRAM", "program_t", "planner",
 inline constexpr Channel<motor_t> kMotor{{"MOTOR", "motor_t", "motor_bridge", 20, 150, 400}};
 inline constexpr Channel<execution_t> kExecution{
     {"EXECUTION", "execution_t", "motor_bridge", 5, 1000, 2000}};
+inline constexpr Channel<stopping_t> kStoppingTime{
+    {"STOPPING", "stopping_t", "motor_bridge", 1, 3000, 100}};
 inline constexpr Channel<pattern_set_part_t> kPatternSet{
     {"PATTERN_SET", "pattern_set_part_t", "learner", 0.5, 0, 60000}};
 inline constexpr Channel<learner_state_t> kLearnerState{
@@ -85,9 +88,9 @@ inline bool stops(const fence_t& message) {
 }
 
 /// The whole table, for README, health checks and tests.
-inline constexpr std::array<ChannelSpec, 20> kChannels{
+inline constexpr std::array<ChannelSpec, 21> kChannels{
     kIns,      kScan,      kMap,        kGoal,         kPlan,     kPlanTree, kProgram,
     kMotor,    kExecution, kPatternSet, kLearnerState, kLearning, kHealth,   kArm,
-    kOperator, kManual,    kEstop,      kFence,        kMark,     kConfig};
+    kOperator, kManual,    kEstop,      kStoppingTime, kFence,    kMark,     kConfig};
 
 }  // namespace tread

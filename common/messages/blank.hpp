@@ -72,6 +72,9 @@ inline void markUnknown(plan_t& m) {
 inline void markUnknown(program_t& m) {
   m.newest_input_seq = -1;
 }
+inline void markUnknown(stopping_t& m) {
+  setUnknown(m.stopping_time);
+}
 inline void markUnknown(scan_t& m) {
   setAllUnknown(m.sensor_position, m.sensor_orientation, m.angle_first, m.angle_step, m.range_min,
                 m.range_max);

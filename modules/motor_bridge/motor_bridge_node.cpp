@@ -107,6 +107,7 @@ std::string reasonOf(const FailsafeOutputs& failsafe) {
 constexpr int64_t kMotorPeriod = 50'000;       // 20 Hz, and on every change
 constexpr int64_t kExecutionPeriod = 200'000;  // 5 Hz, and on every change
 constexpr int64_t kCounterPeriod = 500'000;
+constexpr int64_t kStoppingPeriod = 1'000'000;
 /// A line that took no bytes is tried again after this time [us].
 constexpr int64_t kFullLinePause = 100'000;
 /// A device that floods us is cut off here until the next step.
@@ -276,6 +277,7 @@ void MotorBridgeNode::step(int64_t utime) {
   drive(utime);
   publishMotor(utime);
   publishExecutions(utime);
+  publishStopping(utime);
   reportHealth();
   reportCounters(utime);
   health_.step(utime);
@@ -337,6 +339,17 @@ void MotorBridgeNode::publishExecutions(int64_t utime) {
   bus_.publish(kExecution, message);
   published_revision_ = log.revision();
   next_execution_ = utime + kExecutionPeriod;
+}
+
+void MotorBridgeNode::publishStopping(int64_t utime) {
+  if (utime < next_stopping_) return;
+  next_stopping_ = utime + kStoppingPeriod;
+  auto message = blank<stopping_t>();
+  message.utime = utime;
+  message.seq = seq_stopping_++;
+  message.stopping_time = bridge_.stopping().seconds();
+  message.stops = bridge_.stopping().count();
+  bus_.publish(kStoppingTime, message);
 }
 
 void MotorBridgeNode::reportHealth() {

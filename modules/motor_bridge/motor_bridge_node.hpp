@@ -75,6 +75,7 @@ class MotorBridgeNode : public Node {
   void drive(int64_t utime);
   void publishMotor(int64_t utime);
   void publishExecutions(int64_t utime);
+  void publishStopping(int64_t utime);
   void reportHealth();
   void reportCounters(int64_t utime);
 
@@ -92,6 +93,8 @@ class MotorBridgeNode : public Node {
   int64_t seq_execution_ = 0;
   int64_t next_motor_ = 0;
   int64_t next_execution_ = 0;
+  int64_t next_stopping_ = 0;
+  int64_t seq_stopping_ = 0;
   int64_t next_counters_ = 0;
   int64_t next_open_ = 0;
 };

@@ -25,7 +25,8 @@ void readRobotInto(ConfigReader& reader, bool logged, PlannerConfig& config) {
   if (leases) config.operators = robot.operators;
   config.map.fences = robot.fences;
   config.max_slope = robot.max_slope;
-  config.map.stopping_distance = robot.drive.full_speed * robot.stopping_time;
+  config.map.full_speed = robot.drive.full_speed;
+  config.map.stopping_time = robot.stopping_time;
 }
 
 void readMargins(ConfigReader reader, Margins& margins) {
@@ -190,6 +191,11 @@ void PlannerNode::subscribe() {
   health_.watchNamesakes();
   bus_.subscribe<map_tile_t>(kMap, [this](const map_tile_t& message) { take(message); });
   bus_.subscribe<fence_t>(kFence, [this](const fence_t& message) { take(message); });
+  bus_.subscribe<stopping_t>(kStoppingTime, [this](const stopping_t& message) {
+    const bool possible = message.stopping_time >= 0.05 && message.stopping_time <= 5.0;
+    if (!possible) return health_.addToCounter("STOPPING refused: no such time");
+    if (message.stops > 0) supervisor_.setStoppingTime(message.stopping_time);
+  });
   bus_.subscribe<goal_t>(kGoal, [this](const goal_t& message) { take(message); });
   bus_.subscribe<pattern_set_part_t>(kPatternSet,
                                      [this](const pattern_set_part_t& message) { take(message); });

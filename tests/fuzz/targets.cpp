@@ -83,8 +83,9 @@ void message(const uint8_t* bytes, size_t size) {
                                decodeAs<learner_state_t>, decodeAs<learning_t>,
                                decodeAs<health_t>,        decodeAs<arm_t>,
                                decodeAs<operator_t>,      decodeAs<estop_t>,
-                               decodeAs<fence_t>,         decodeAs<mark_t>,
-                               decodeAs<config_t>,        decodeAs<manual_t>};
+                               decodeAs<fence_t>,         decodeAs<stopping_t>,
+                               decodeAs<mark_t>,          decodeAs<config_t>,
+                               decodeAs<manual_t>};
   static_assert(std::size(kTypes) == kChannels.size());
   if (size > 0) kTypes[bytes[0] % std::size(kTypes)](bytes + 1, size - 1);
 }

@@ -262,6 +262,16 @@ inline fence_t sampleOf<fence_t>() {
 }
 
 template <>
+inline stopping_t sampleOf<stopping_t>() {
+  stopping_t m{};
+  m.utime = 1'000'020;
+  m.seq = 20;
+  m.stopping_time = 0.375;
+  m.stops = 7;
+  return m;
+}
+
+template <>
 inline operator_t sampleOf<operator_t>() {
   operator_t m{};
   m.utime = 1'000'017;
@@ -400,7 +410,7 @@ void forEachType(Visitor&& visit) {
            sampleOf<learning_t>(), sampleOf<map_tile_t>(), sampleOf<mark_t>(), sampleOf<motor_t>(),
            sampleOf<operator_t>(), sampleOf<manual_t>(), sampleOf<pattern_set_part_t>(),
            sampleOf<plan_t>(), sampleOf<plan_tree_t>(), sampleOf<program_slot_t>(),
-           sampleOf<program_t>(), sampleOf<scan_t>());
+           sampleOf<program_t>(), sampleOf<scan_t>(), sampleOf<stopping_t>());
 }
 
 /// Calls `visit` with each typed channel and a sample of its type.
@@ -416,6 +426,7 @@ void forEachChannel(Visitor&& visit) {
   visitOne(kProgram, sampleOf<program_t>());
   visitOne(kMotor, sampleOf<motor_t>());
   visitOne(kExecution, sampleOf<execution_t>());
+  visitOne(kStoppingTime, sampleOf<stopping_t>());
   visitOne(kPatternSet, sampleOf<pattern_set_part_t>());
   visitOne(kLearnerState, sampleOf<learner_state_t>());
   visitOne(kLearning, sampleOf<learning_t>());

@@ -15,7 +15,6 @@ namespace {
 constexpr FootprintSize kBody{0.65, 0.65, 0.34};
 constexpr double kSpeed = 1.1;  // [m/s] of a track at full power
 constexpr double kGauge = 0.6;  // [m]
-constexpr double kLag = 0.2;    // [s] of the tracks
 
 Fence yard() {
   return {"yard", false, {{-5, -5}, {10, -5}, {10, 5}, {-5, 5}}};
@@ -31,6 +30,7 @@ BridgeConfig fenced(std::vector<Fence> own) {
 struct FencedWorld : BridgeWorld {
   Pose2 truth;
   double left = 0.0, right = 0.0;  ///< [m/s]
+  double lag = 0.2;                ///< [s] of the tracks
   double least_room = 1e9;         ///< [m] of the true outline, to any fence of the bridge
 
   explicit FencedWorld(std::vector<Fence> own, const Pose2& start = {}) : truth(start) {
@@ -53,8 +53,8 @@ struct FencedWorld : BridgeWorld {
   void move() {
     step();
     const double dt = 1e-6 * kStep;
-    left += (kSpeed * out.command.left - left) * dt / kLag;
-    right += (kSpeed * out.command.right - right) * dt / kLag;
+    left += (kSpeed * out.command.left - left) * dt / lag;
+    right += (kSpeed * out.command.right - right) * dt / lag;
     truth = truth * integrate({0.5 * (left + right), 0.0, 0.5 * (right - left) / kGauge}, dt);
     tell();
     least_room = std::min(least_room, roomAt(bridge.fences().fences(), truth, kBody).metres);
@@ -226,4 +226,23 @@ TEST_CASE("without fences nothing is looked at") {
   world.runFor(60'000'000);
   CHECK(world.state() == State::kDriving);
   CHECK(world.truth.x > 50.0);
+}
+
+TEST_CASE(
+    "on ground on which it takes longer to stop than its file says it learns to stop earlier") {
+  FencedWorld world({});
+  world.lag = 0.9;
+  world.start(1.0, 1.0);
+  world.runFor(4'000'000);
+  world.bridge.receive(ArmRequest{world.now, false, "operator", ""}, world.now);
+  world.runFor(6'000'000);
+  REQUIRE(world.bridge.stopping().count() == 1);
+  CHECK(world.bridge.stopping().seconds() > 0.9);
+  const double near = world.truth.x + 20.0;
+  world.add({"pond", true, {{near, -9}, {near + 9, -9}, {near + 9, 9}, {near, 9}}});
+  world.arm();
+  world.runFor(60'000'000);
+  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.truth.x > near - 5.0);
+  CHECK(world.least_room >= 0.0);
 }

@@ -19,7 +19,8 @@ constexpr double kStopping = 0.4;  // [m]
 PlannerConfig fenced(std::vector<Fence> fences) {
   PlannerConfig config = usualPlanner();
   config.map.fences = std::move(fences);
-  config.map.stopping_distance = kStopping;
+  config.map.full_speed = 1.0;
+  config.map.stopping_time = kStopping;
   return config;
 }
 
@@ -64,6 +65,12 @@ TEST_CASE("The worse its position is known, the more room it keeps") {
   CHECK(least >= kStopping + 0.4);
   Rig unknown(Playground{}, fenced({pond()}));
   CHECK(leastRoom(unknown, {pond()}, 60.0) >= kStopping + 0.2);
+}
+
+TEST_CASE("On ground on which it takes longer to stop it keeps more room") {
+  Rig rig(Playground{}, fenced({pond()}));
+  rig.supervisor().setStoppingTime(0.9);
+  CHECK(leastRoom(rig, {pond()}, 60.0, [](PlannerInputs& s) { knowPosition(s, 0.02); }) >= 0.9);
 }
 
 TEST_CASE("A goal that fences forbid is refused in words, and it does not move") {

@@ -20,7 +20,8 @@ constexpr double kLimit = 0.26;  // [rad]
 PlannerConfig careful() {
   PlannerConfig config = usualPlanner();
   config.max_slope = kLimit;
-  config.map.stopping_distance = 0.4;
+  config.map.full_speed = 1.0;
+  config.map.stopping_time = 0.4;
   return config;
 }
 

@@ -3,6 +3,7 @@
 #include "modules/motor_bridge/core/bridge.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tread::motor {
 namespace {
@@ -31,6 +32,7 @@ Bridge::Bridge(const BridgeConfig& config)
       motion_(config.motion),
       tilt_(config.tilt),
       fences_(config.fences, config.motion),
+      stopping_(config.fences.stopping_time),
       operator_(config.operators.lease_us),
       manual_(config.manual) {}
 
@@ -129,6 +131,10 @@ void Bridge::receive(const InsNotice& notice, int64_t now) {
   if (!notice.usable || future) return;
   motion_.receive(notice.motion);
   fences_.receive(notice.motion);
+  const InsMotion& motion = notice.motion;
+  stopping_.measure(motion.utime, {motion.x, motion.y, motion.yaw},
+                    std::hypot(motion.v_forward, motion.v_left));
+  fences_.setStoppingTime(stopping_.seconds());
 }
 
 void Bridge::receive(const FenceRequest& request, int64_t now) {
@@ -153,6 +159,7 @@ BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
   schedule(now, out);
   motion_.command(out.command, now);
   fences_.command(out.command, now);
+  stopping_.command(isZero(out.command), now);
   player_.dropCandidate();
   since_ = Since{};
   last_step_ = now;

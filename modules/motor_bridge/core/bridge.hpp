@@ -8,6 +8,7 @@
 #include <string>
 
 #include "common/execution/operator_lease.hpp"
+#include "common/execution/stopping_time.hpp"
 #include "common/vehicle/robot_description.hpp"
 #include "modules/motor_bridge/core/failsafe.hpp"
 #include "modules/motor_bridge/core/fence_watch.hpp"
@@ -66,6 +67,7 @@ class Bridge {
   /// Decides what the motors do from now [us] on.
   BridgeOutput step(int64_t now, const DeviceReport& device);
 
+  const StoppingTime& stopping() const { return stopping_; }
   const FenceBook& fences() const { return fences_.book(); }
   const ExecutionLog& executions() const { return player_.log(); }
   /// How often something was refused or noted, by its name in words.
@@ -102,6 +104,7 @@ class Bridge {
   MotionMonitor motion_;
   TiltWatch tilt_;
   FenceWatch fences_;
+  StoppingTime stopping_;
   OperatorRequests requests_;
   OperatorLease operator_;
   ManualControl manual_;

@@ -15,6 +15,7 @@ namespace {
 constexpr int64_t kTick = 5'000;           // [us]
 constexpr int64_t kOperatorTick = 50'000;  // [us]
 constexpr int64_t kGivesUp = 20'000'000;   // [us] of standing without a way
+constexpr double kWellWithin = 0.3;        // [m]
 constexpr double kOutsideSlack = 1e-3;     // [m]
 
 /// A fence that the robot is within, or is to come back over.
@@ -32,7 +33,7 @@ missions::RobotConfig configured(missions::RobotConfig config, const LimitWorld&
     config.motor_bridge.bridge.tilt.reset();
   config.planner.map.fences.clear();
   if (world.planner_knows && options.planner_keeps_off) config.planner.map.fences = world.fences;
-  if (!options.planner_keeps_off) config.planner.map.stopping_distance = 0.0;
+  if (!options.planner_keeps_off) config.planner.map.full_speed = 0.0;
   return config;
 }
 
@@ -105,7 +106,9 @@ class Run {
         std::max(result_.inclination, std::acos(std::min(1.0, truth.body.R_map_body(2, 2))));
     for (Watched& watched : watched_) {
       const double room = roomAt(watched.fence, truth.T_map_body, outline_);
-      if (room >= 0.0) watched.within = true;
+      // Coming in it swings: it is within once it is well within.
+      const bool comes_in = world_.starts_outside && watched.fence.name == "yard";
+      if (room >= (comes_in ? kWellWithin : 0.0)) watched.within = true;
       if (watched.within) {
         result_.least_room = std::min(result_.least_room, room);
       } else {

@@ -59,6 +59,14 @@ void PlanningMap::setPositionStd(double std) {
   fenced_changed_ = true;
 }
 
+void PlanningMap::setStoppingTime(double seconds) {
+  constexpr double kNoticeable = 0.05;  // [s]
+  const double wanted = std::max(seconds, 0.5 * config_.stopping_time);
+  if (std::abs(wanted - stopping_time_) < kNoticeable) return;
+  stopping_time_ = wanted;
+  fenced_changed_ = true;
+}
+
 void PlanningMap::keepOut(const Fence& found) {
   constexpr size_t kMostFound = 32;
   if (found_.size() >= kMostFound) found_.erase(found_.begin());
@@ -72,7 +80,7 @@ void PlanningMap::fenceIn() {
   if (fences_.empty() && found_.empty() && fenced_.empty()) return;
   std::vector<Fence> all = fences_;
   all.insert(all.end(), found_.begin(), found_.end());
-  fenced_ = FencedGround(std::move(all), config_.stopping_distance + position_growth_);
+  fenced_ = FencedGround(std::move(all), config_.full_speed * stopping_time_ + position_growth_);
   window_revision_ = field_revision_ = -1;
 }
 

@@ -33,7 +33,8 @@ struct PlanningMapConfig {
   int64_t window_period = 100'000;  ///< [us] least time between two cuts of that square
   int64_t field_period = 400'000;   ///< [us] least time between two updates of the distance
   bool unknown_blocks = true;       ///< whether unknown ground may not be driven on
-  double stopping_distance = 0.0;   ///< [m] at full speed, from a zero command on
+  double full_speed = 0.0;          ///< [m/s]
+  double stopping_time = 0.5;       ///< [s] at its speed that it goes on after a zero command
   std::vector<Fence> fences;        ///< the robot's own
   bool come_close = false;          ///< to goals that obstacles enclose, instead of standing
 };
@@ -41,7 +42,8 @@ struct PlanningMapConfig {
 /// The received map, and what is derived from it on demand: collision checker and distance to goal.
 class PlanningMap {
  public:
-  explicit PlanningMap(const PlanningMapConfig& config) : config_(config), fences_(config.fences) {}
+  explicit PlanningMap(const PlanningMapConfig& config)
+      : config_(config), fences_(config.fences), stopping_time_(config.stopping_time) {}
 
   /// Takes a tile; a map of another cell size replaces what is there. False if the tile is
   /// malformed.
@@ -57,6 +59,8 @@ class PlanningMap {
   }
   /// One more polygon to keep out of, found by driving; the oldest of many is forgotten.
   void keepOut(const Fence& found);
+  /// [s] learned; no less than half of what is configured.
+  void setStoppingTime(double seconds);
   /// How well the position is known [m], one standard deviation of an axis; NaN = unmeasured.
   void setPositionStd(double std);
   /// Why fences forbid a goal, in words; empty if they do not. Needs updateDistance().
@@ -97,6 +101,7 @@ class PlanningMap {
   std::vector<Fence> fences_;
   std::vector<Fence> found_;      ///< to keep out of
   double position_growth_ = 0.0;  ///< [m]
+  double stopping_time_ = 0.0;    ///< [s]
   bool fenced_changed_ = true;
   FencedGround fenced_;
   FencedGround no_fences_;
