@@ -53,9 +53,23 @@ TEST_CASE("It turns back where the ground falls away, and finds its way around")
     if (decision.report.status == PlanStatus::kArrived) break;
   }
   CHECK(told);
-  CHECK(steepest > kLimit);
-  CHECK(steepest < kLimit + 0.15);
+  CHECK(steepest < kLimit + 0.05);
   CHECK(rig.run(0.05).report.status == PlanStatus::kArrived);
+}
+
+TEST_CASE("The faster it drives on ground that steepens, the earlier it turns back") {
+  double before = 1.0;
+  for (const double speed : {0.0, 0.5, 1.0}) {
+    SlopeGuard guard(kLimit);
+    double told_at = 1.0;
+    int64_t now = 0;
+    for (double x = 0.0; x < 3.0 && told_at == 1.0; x += 0.01)
+      if (guard.take({now += 20'000, {x, 0.0, 0.0}, Twist2{speed, 0.0, 0.0}, 0.0, 0.12 * x}))
+        told_at = 0.12 * x;
+    CHECK(told_at < before);
+    CHECK(told_at + 0.12 * 0.5 * speed > kLimit);
+    before = told_at - 0.01;
+  }
 }
 
 TEST_CASE("Without a limit, or without attitude, it drives on") {

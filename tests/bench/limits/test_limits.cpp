@@ -43,3 +43,15 @@ TEST_CASE(
     crossed += drive(seed, Kind::kFences, blind).least_room < 0.0 ? 1 : 0;
   CHECK(crossed > 0);
 }
+
+TEST_CASE("between hills and pits it never tilts beyond its hard limit") {
+  // The first of these once stopped on a slope, and slid on down into a pit.
+  LimitOptions half_a_minute;
+  half_a_minute.seconds = 30.0;
+  for (const uint64_t seed : {259, 456, 963, 1, 14, 19}) {
+    CAPTURE(seed);
+    const LimitRun run = drive(seed, Kind::kSlopes, half_a_minute);
+    CHECK(run.drove);
+    CHECK(run.tilt < teodor().motor_bridge.bridge.tilt->roll);
+  }
+}

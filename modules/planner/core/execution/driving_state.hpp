@@ -272,6 +272,7 @@ struct DrivingState {
   std::map<std::string, int64_t> counters;  ///< of events, by their name in words
   DrivingMode mode = DrivingMode::kSettling;
   int64_t settling_since = 0;  ///< [us]
+  bool steep = false;          ///< it may slide where it stands: no time to lose
 };
 
 }  // namespace tread::planner

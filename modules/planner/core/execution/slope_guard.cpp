@@ -12,6 +12,9 @@ constexpr double kRelief = 0.035;   // [rad] below the limit it is good again; a
                                     // it is worse
 constexpr double kTrailStep = 0.1;  // [m]
 constexpr size_t kTrail = 40;       // places
+constexpr double kGrowth = 0.5;     // [m] of the trail that tells how the slope grows
+constexpr double kStopTime = 0.5;   // [s] at its speed until it stands
+constexpr double kGentle = 0.5;     // [1] of the limit: on less steep ground nothing is expected
 constexpr double kBack = 0.8;       // [m] back on the trail, over which the slope grew
 constexpr double kBegins = 0.3;     // [m] ahead of the body's origin
 constexpr double kEnds = 2.0;       // [m]
@@ -26,6 +29,20 @@ std::string SlopeGuard::words() const {
   return "tilts " + degrees(slope_) + " deg, plans allow " + degrees(max_slope_.value_or(0.0));
 }
 
+bool SlopeGuard::steep() const {
+  return max_slope_ && slope_ > *max_slope_ - kRelief;
+}
+
+double SlopeGuard::expected(const PoseReading& pose) const {
+  if (!pose.twist || slope_ < kGentle * *max_slope_) return slope_;
+  const double ahead = kStopTime * std::hypot(pose.twist->v_x, pose.twist->v_y);
+  for (auto at = trail_.rbegin(); at != trail_.rend(); ++at) {
+    const double way = (pose.T_map_body.position() - at->p_map).norm();
+    if (way >= kGrowth) return slope_ + ahead * std::max(0.0, slope_ - at->slope) / way;
+  }
+  return slope_;
+}
+
 std::optional<Fence> SlopeGuard::take(const PoseReading& pose) {
   if (!max_slope_ || pose.utime <= newest_ || !std::isfinite(pose.slope)) return std::nullopt;
   newest_ = pose.utime;
@@ -37,7 +54,7 @@ std::optional<Fence> SlopeGuard::take(const PoseReading& pose) {
   if (slope_ < *max_slope_ - kRelief) told_ = 0.0;
   // On its way back it is steep still, and must not be stopped for that.
   const double limit = told_ > 0.0 ? told_ + kRelief : *max_slope_;
-  if (slope_ <= limit) {
+  if ((told_ > 0.0 ? slope_ : expected(pose)) <= limit) {
     steep_since_.reset();
     return std::nullopt;
   }

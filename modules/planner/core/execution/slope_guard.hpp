@@ -13,9 +13,10 @@
 namespace tread::planner {
 
 /// Knows when the robot stands on steeper ground than plans may use, and where that lies.
-/** A level range finder sees what rises before it, not what falls: an edge downwards is felt first.
- * What lies ahead, in the direction in which the slope grew, then becomes ground to keep out of;
- * the way back is the one that it came. */
+/** It counts as too steep where it will be by the time the robot stands, if the slope goes on to
+ * grow as it did on the last half metre. A level range finder sees what rises before it, not what
+ * falls: an edge downwards is felt first. What lies ahead, in the direction in which the slope
+ * grew, then becomes ground to keep out of; the way back is the one that it came. */
 class SlopeGuard {
  public:
   /// `max_slope` [rad]; nothing: no such rule.
@@ -24,6 +25,8 @@ class SlopeGuard {
   /// Takes the newest pose. Returns the ground to keep out of from now on, if it has just become
   /// too steep.
   std::optional<Fence> take(const PoseReading& pose);
+  /// Whether it stands on ground that is too steep, or nearly: there it may slide.
+  bool steep() const;
   /// "tilts 17 deg, plans allow 15"
   std::string words() const;
 
@@ -35,6 +38,7 @@ class SlopeGuard {
     double slope;  ///< [rad]
   };
 
+  double expected(const PoseReading& pose) const;
   Fence aheadOf(const Pose2& T_map_body, double slope) const;
 
   std::optional<double> max_slope_;

@@ -185,7 +185,7 @@ void StandingControl::begin(const PlannerInputs& s, const std::vector<PlanStep>&
 void StandingControl::noPlan(const PlannerInputs& s, const std::string& why) {
   blocked_since_ = blocked_since_.value_or(s.now);
   state_.status.say(PlanStatus::kBlocked, why);
-  if (s.now - *blocked_since_ < state_.config.policy.recovery_wait) return;
+  if (!state_.steep && s.now - *blocked_since_ < state_.config.policy.recovery_wait) return;
   if (recovery_.tries() < state_.config.policy.recoveries) return tryRecovery(s);
   if (static_cast<int>(state_.map.detours()) >= state_.config.policy.detours) return;
   state_.map.addDetourAhead(s.pose->T_map_body.position(), state_.config.policy.detours);

@@ -11,6 +11,8 @@ namespace {
 
 /// A way that was given up is mentioned for so long [us].
 constexpr int64_t kNoteTime = 5'000'000;
+/// On a slope a vehicle may creep for ever, and does not come to a stand [us].
+constexpr int64_t kSettleOnSlope = 600'000;
 
 /// A turn of 1 rad/s is as far from another motion as a speed of so much [m/s].
 constexpr double kTurnWeight = 0.5;
@@ -121,7 +123,8 @@ void Supervisor::act(const PlannerInputs& s, const Preconditions& ready) {
   if (s.goal) state_.map.updateDistance(s.pose->T_map_body, *s.goal, s.now);
   if (s.goal && ready.level == Preconditions::Level::kGo && !standing_.arrived()) watchProgress(s);
   if (state_.mode == DrivingMode::kSettling) {
-    const bool too_long = s.now - state_.settling_since > state_.config.policy.settle_limit;
+    const bool too_long = s.now - state_.settling_since >
+                          (state_.steep ? kSettleOnSlope : state_.config.policy.settle_limit);
     if (standstill_.stands(state_.settling_since) || too_long) {
       state_.mode = DrivingMode::kStanding;
       state_.plan.made.reset();
@@ -134,6 +137,7 @@ void Supervisor::act(const PlannerInputs& s, const Preconditions& ready) {
 void Supervisor::keepOffSlopes(const PlannerInputs& s) {
   if (!s.pose) return;
   const std::optional<Fence> steep = slopes_.take(*s.pose);
+  state_.steep = slopes_.steep();
   if (!steep) return;
   state_.map.keepOut(*steep);
   ++state_.counters["too steep: keeps off"];
