@@ -20,7 +20,8 @@ const std::map<std::string, std::set<std::string>>& inputs() {
       {"learner", {"INS", "MOTOR", "EXECUTION"}},
       {"mapping", {"INS", "SCAN"}},
       {"planner",
-       {"INS", "MAP", "GOAL", "PATTERN_SET", "MOTOR", "EXECUTION", "OPERATOR", "ARM", "ESTOP"}}};
+       {"INS", "MAP", "GOAL", "PATTERN_SET", "MOTOR", "EXECUTION", "OPERATOR", "ARM", "ESTOP",
+        "FENCE", "STOPPING"}}};
   return kInputs;
 }
 

@@ -18,6 +18,7 @@ namespace {
 
 /// Grass without obstacles. Between x = 10 m and 40 m the way runs along a hillside: a hill to the
 /// left, a hollow to the right, up to 0.52 rad across the way; level before and after.
+/// Plans of the shipped robot keep off so steep ground: here that rule is off.
 MissionWorld hillside(uint64_t seed) {
   MissionWorld world;
   world.seed = seed;
@@ -49,7 +50,9 @@ void fillByRule(shadow::ShadowLearners& shadows, MissionResult& result) {
 
 HillsideDrive driveHillside(uint64_t seed) {
   const MissionWorld world = hillside(seed);
-  RobotSystem system(teodor(), world.description, world.T_map_start, seed, "", {});
+  RobotConfig robot = teodor();
+  robot.planner.max_slope.reset();
+  RobotSystem system(robot, world.description, world.T_map_start, seed, "", {});
   learner::LearnerNodeConfig ungated = system.learnerConfig();
   ungated.limits.max_slope = 1.6;
   shadow::ShadowLearners with(system.learnerConfig(), kRules, system.bus().now());
