@@ -28,6 +28,7 @@ void printSeed(uint64_t seed, const FaultSchedule& schedule, const FaultyRun& ru
   std::printf("seed %llu, %s\n", static_cast<unsigned long long>(seed),
               schedule.keyed ? "with a key" : "without a key");
   for (const Fault& fault : schedule.faults) std::printf("  %s\n", describe(fault).c_str());
+  if (run.collisions > 0) std::printf("  touched something %d times\n", run.collisions);
   if (run.violation)
     std::printf(
         "  BROKEN at utime %lld, %.3f s: %s\n", static_cast<long long>(run.violation->utime),
@@ -46,7 +47,7 @@ int drive(const Arguments& arguments) {
     const uint64_t seed = arguments.seed + static_cast<uint64_t>(i);
     const FaultSchedule schedule = scheduleOf(seed, options.duration);
     const FaultyRun run = runFaulty(robot, schedule, options);
-    if (run.violation || arguments.only) printSeed(seed, schedule, run);
+    if (run.violation || run.collisions > 0 || arguments.only) printSeed(seed, schedule, run);
     broken += run.violation ? 1 : 0;
     drove += run.drove ? 1 : 0;
     again += run.drove_after || run.arrived ? 1 : 0;

@@ -234,7 +234,6 @@ class Run {
     const Received message{now, channel, {bytes.begin(), bytes.begin() + size}};
     const bool genuine = !schedule_.keyed || static_cast<size_t>(size) != bytes.size();
     if (!genuine) return;
-    if (const auto program = messageOf(kProgram, message)) path_.sent(*program);
     if (const auto health = messageOf(kHealth, message)) breaks(counts_.check(*health));
     if (const auto plan = messageOf(kPlan, message)) {
       if (plan->set_version < version_)

@@ -96,7 +96,6 @@ std::string MotorRule::check(int64_t now, const std::array<double, 2>& power) {
 void PathRule::start() {
   tiles_.clear();
   by_version_.clear();
-  version_of_.clear();
   judged_at_.clear();
   sets_ = PatternSetAssembler();
   cell_ = 0.0;
@@ -170,11 +169,6 @@ PathRule::Blocked PathRule::under(const Footprint& footprint, const Pose2& T_map
   return blocked;
 }
 
-void PathRule::sent(const program_t& program) {
-  for (const program_slot_t* slot : {&program.running, &program.next})
-    if (slot->execution_id != 0) version_of_[slot->execution_id] = slot->slot_set_version;
-}
-
 std::string PathRule::check(int64_t now, const plan_t& plan) {
   std::string wrong;
   for (size_t i = 0; i < plan.execution_id.size() && wrong.empty(); ++i)
@@ -188,7 +182,8 @@ std::string PathRule::checkStep(int64_t now, const plan_t& plan, size_t i) {
   const bool running = i == 0 && judged_at_.count(id) > 0;
   if (cell_ == 0.0 || running || judged_at_[id] == end) return "";
   judged_at_[id] = end;
-  const auto set = by_version_.find(version_of_[id]);
+  // What was handed over with an older set is predicted anew with the one in use.
+  const auto set = by_version_.find(plan.set_version);
   const MotionPattern* pattern =
       set == by_version_.end() ? nullptr : set->second.find(plan.pattern_id[i]);
   if (pattern == nullptr) return "";

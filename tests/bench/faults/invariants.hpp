@@ -84,8 +84,7 @@ class PathRule {
 
   void receive(const Received& received);
   void start();
-  /// PROGRAM and PLAN as the planner sends them; what is wrong, or empty.
-  void sent(const program_t& program);
+  /// PLAN as the planner sends it; what is wrong, or empty.
   std::string check(int64_t now, const plan_t& plan);
   int64_t judged() const { return judged_; }
 
@@ -119,7 +118,6 @@ class PathRule {
   std::map<std::pair<int, int>, KnownTile> tiles_;
   PatternSetAssembler sets_;
   std::map<int64_t, PatternSet> by_version_;
-  std::map<int64_t, int64_t> version_of_;                   ///< by execution
   std::map<int64_t, std::pair<double, double>> judged_at_;  ///< by execution: its end
   int64_t judged_ = 0;
 };

@@ -120,13 +120,10 @@ TEST_CASE("the rules see a pattern through an obstacle, and through what was nev
   int64_t id = 0;
   const auto plan = [&](double x, int64_t now) {
     const Pose2 T_map_end = Pose2{x, 10.0, 0.0} * pattern.end();
-    program_t program{};
-    program.next.execution_id = ++id;
-    program.next.slot_set_version = set.version();
-    rule.sent(program);
     plan_t message{};
+    message.set_version = set.version();
     message.num_patterns = 1;
-    message.execution_id = {id};
+    message.execution_id = {++id};
     message.pattern_id = {pattern.id};
     message.pose = {{T_map_end.x, T_map_end.y, T_map_end.yaw}};
     return rule.check(now, message);
