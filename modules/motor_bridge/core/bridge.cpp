@@ -168,7 +168,8 @@ BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
 
 std::string Bridge::stallFault(int64_t now) const {
   if (!last_step_ || (now >= *last_step_ && now - *last_step_ <= config_.max_stall_us)) return "";
-  return "motor_bridge was held up for " + std::to_string((now - *last_step_) / 1000) + " ms";
+  return "motor_bridge was held up for " + std::to_string((now - *last_step_) / 1000) +
+         " ms: too much runs on this computer, or it was halted";
 }
 
 /// Whether the robot may move although its operator has been lost for `silent` [us].

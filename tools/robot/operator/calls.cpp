@@ -57,6 +57,7 @@ CallResult PermissionCall::step(int64_t utime) {
   if (utime - *started_ > patience_) return CallResult::kRefused;
   if (utime < next_ || (request_.permits && !beacon_.hearsRobot())) return CallResult::kPending;
   next_ = utime + request_.repeat;
+  if (seq_ == 0) was_so_ = shown(utime);
   request_.send(beacon_.robotTime(utime), seq_++);
   return CallResult::kPending;
 }
@@ -113,7 +114,10 @@ CallResult ArmCall::step(int64_t utime) {
 std::string ArmCall::describe(int64_t utime) const {
   if (!request_.hand_over_to.empty()) return "handed over to " + request_.hand_over_to;
   if (armed_ && !shown(utime)) return "not armed any more: " + bridgeReason();
-  return PermissionCall::describe(utime) + (armed_ ? " and held: Ctrl-C disarms" : "") +
+  // A second operator, whom the bridge refuses, must not believe that the robot is his.
+  const std::string before =
+      shown(utime) && wasSo() ? " since before this call: " + bridgeReason() : "";
+  return PermissionCall::describe(utime) + before + (armed_ ? " and held: Ctrl-C disarms" : "") +
          beacon_.clockWords();
 }
 

@@ -77,6 +77,8 @@ class PermissionCall : public Call {
   bool shown(int64_t utime) const;
   /// What the bridge says of its state.
   const std::string& bridgeReason() const { return motor_.message().state_reason; }
+  /// Whether it was so before this call asked for it.
+  bool wasSo() const { return was_so_; }
 
   Bus& bus_;
   OperatorBeacon beacon_;
@@ -88,6 +90,7 @@ class PermissionCall : public Call {
   std::optional<int64_t> started_;  ///< [us]
   int64_t next_ = 0;                ///< [us]
   int64_t seq_ = 0;
+  bool was_so_ = false;
 };
 
 /// What tread-arm is asked for.

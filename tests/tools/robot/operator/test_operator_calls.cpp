@@ -106,6 +106,16 @@ TEST_CASE("arming is repeated until MOTOR shows it, and an answer from before do
   CHECK(call.describe(scene.bus.now()) == "armed");
 }
 
+TEST_CASE("a robot that was armed before the call is told with the bridge's words") {
+  Scene scene;
+  ArmCall call(scene.desk, {}, {}, 1.0);
+  const auto result = scene.run(call, 3.0, [&](int64_t now) {
+    scene.stand->motor(now, motor_t::STATE_ARMED, "armed by ada");
+  });
+  CHECK(result == CallResult::kDone);
+  CHECK(call.describe(scene.bus.now()) == "armed since before this call: armed by ada");
+}
+
 TEST_CASE("a bridge that does not arm is quoted") {
   Scene scene;
   ArmCall call(scene.desk, {}, {}, 1.0);
