@@ -32,6 +32,11 @@ OperatorLease::Receipt OperatorLease::receive(const OperatorNotice& notice, int6
   return Receipt::kTaken;
 }
 
+void OperatorLease::holdBy(const std::string& signature, int64_t now) {
+  for (const auto& [station, program] : programs_)
+    if (isOf(signature, program.name) && fresh(program, now)) holder_ = program.name;
+}
+
 void OperatorLease::update(int64_t now, bool armed) {
   // One of two programs of the holder may fall silent: the other one still holds the lease.
   if (anyFresh(holder_, now)) dropStale(now);
@@ -74,9 +79,9 @@ bool OperatorLease::standsFor(int64_t goal_id, int64_t now) const {
   });
 }
 
-bool OperatorLease::isHolder(const std::string& signature) const {
-  const std::string suffix = " (" + holder_ + ")";
-  return signature == holder_ ||
+bool OperatorLease::isOf(const std::string& signature, const std::string& name) {
+  const std::string suffix = " (" + name + ")";
+  return signature == name ||
          (signature.size() > suffix.size() &&
           signature.compare(signature.size() - suffix.size(), suffix.size(), suffix) == 0);
 }

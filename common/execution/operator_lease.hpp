@@ -39,6 +39,8 @@ class OperatorLease {
 
   /// A message received at now [us].
   Receipt receive(const OperatorNotice& notice, int64_t now);
+  /// Whoever signed this holds the robot from now on, if a program of his is there.
+  void holdBy(const std::string& signature, int64_t now);
   /// Call in each step. A holder who let go or was lost keeps others out only while `armed`.
   void update(int64_t now, bool armed);
 
@@ -49,7 +51,7 @@ class OperatorLease {
   /// Whether a live program of the holder stands for this goal.
   bool standsFor(int64_t goal_id, int64_t now) const;
   /// Whether a request was signed by the holder: "ada@station" or "ADA (ada@station)".
-  bool isHolder(const std::string& signature) const;
+  bool isHolder(const std::string& signature) const { return isOf(signature, holder_); }
   /// Empty = nobody.
   const std::string& holder() const { return holder_; }
   /// [us] when the holder was last seen to be there; 0 = never.
@@ -69,6 +71,7 @@ class OperatorLease {
     return now - program.seen_utime <= lease_us_;
   }
   bool anyFresh(const std::string& name, int64_t now) const;
+  static bool isOf(const std::string& signature, const std::string& name);
   void dropStale(int64_t now);
 
   int64_t lease_us_;

@@ -55,6 +55,12 @@ std::optional<Twist2> planarTwist(const ins_t& ins) {
   return twist;
 }
 
+double horizontalStd(const ins_t& ins) {
+  const auto& std = ins.position_std;
+  const bool known = std::isfinite(std[0]) && std::isfinite(std[1]);
+  return known ? std::max(std[0], std[1]) : std::numeric_limits<double>::quiet_NaN();
+}
+
 std::optional<double> inclination(const ins_t& ins) {
   const auto R_map_body = orientation(ins);
   if (!R_map_body || (ins.ins_status & ins_t::STATUS_NO_ATTITUDE) != 0) return std::nullopt;

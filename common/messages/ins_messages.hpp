@@ -25,6 +25,10 @@ std::optional<Eigen::Isometry3d> spatialPose(const ins_t& ins);
 /// Body twist in the plane, or nothing if the device does not measure it.
 std::optional<Twist2> planarTwist(const ins_t& ins);
 
+/// Standard deviation of the horizontal position [m], the larger of both axes; NaN if either is
+/// not known.
+double horizontalStd(const ins_t& ins);
+
 /// Inclination of the ground under the robot [rad], from roll and pitch; nothing if attitude is
 /// missing.
 std::optional<double> inclination(const ins_t& ins);

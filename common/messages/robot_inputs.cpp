@@ -21,7 +21,9 @@ void DrivingPermission::revoke(int64_t utime) {
 void DrivingPermission::take(const arm_t& message, int64_t now) {
   if (!message.armed) return revoke(std::min(message.utime, now));
   const bool timely = message.utime <= now + kMaxFuture && message.utime >= now - kMaxAge;
-  if (armed_ || !timely || message.utime <= revoked_ || estopped_) return;
+  if (!timely || message.utime <= revoked_ || estopped_) return;
+  if (!granted()) armed_by_ = message.armed_by;
+  if (armed_) return;
   armed_ = true;
   armed_since_ = now;
 }
@@ -35,8 +37,9 @@ void DrivingPermission::take(const estop_t& message, int64_t now) {
   if (estopped_) revoke(utime);
 }
 
-void DrivingPermission::take(const BridgeReading& bridge) {
+void DrivingPermission::take(const BridgeReading& bridge, int64_t now) {
   if (bridge_armed_ && !bridge.armed()) revoke(bridge.utime);
+  if (!bridge_armed_ && bridge.armed()) armed_since_ = now;
   bridge_armed_ = bridge.armed();
 }
 
@@ -46,8 +49,7 @@ RobotInputs::RobotInputs(Bus& bus, HealthReporter& health, int64_t operator_leas
   bus.subscribe<motor_t>(kMotor, [this](const motor_t& message) { take(message); });
   bus.subscribe<execution_t>(kExecution, [this](const execution_t& message) { take(message); });
   bus.subscribe<operator_t>(kOperator, [this](const operator_t& message) { take(message); });
-  bus.subscribe<arm_t>(kArm,
-                       [this](const arm_t& message) { permission_.take(message, bus_.now()); });
+  bus.subscribe<arm_t>(kArm, [this](const arm_t& message) { take(message); });
   bus.subscribe<estop_t>(kEstop,
                          [this](const estop_t& message) { permission_.take(message, bus_.now()); });
 }
@@ -85,6 +87,18 @@ bool RobotInputs::untimely(int64_t utime, const char* channel) {
   return true;
 }
 
+void RobotInputs::take(const arm_t& message) {
+  const bool before = permission_.granted();
+  permission_.take(message, bus_.now());
+  takeHolder(before);
+}
+
+/// The motor bridge arms for the holder alone: whom it has armed holds the robot, whatever was
+/// heard here. Two processes that start at different times may have heard another operator first.
+void RobotInputs::takeHolder(bool granted_before) {
+  if (!granted_before && permission_.granted()) operator_.holdBy(permission_.armedBy(), bus_.now());
+}
+
 void RobotInputs::take(const operator_t& message) {
   const std::optional<OperatorNotice> notice = noticeFrom(message);
   if (!notice) return health_.addToCounter("OPERATOR ignored: its name is empty or too long");
@@ -101,8 +115,7 @@ void RobotInputs::take(const ins_t& message) {
   if (readings_.pose && message.utime <= readings_.pose->utime)
     return health_.addToCounter("INS out of order");
   readings_.pose =
-      PoseReading{message.utime, *pose, planarTwist(message),
-                  std::max(message.position_std[0], message.position_std[1]),
+      PoseReading{message.utime, *pose, planarTwist(message), horizontalStd(message),
                   inclination(message).value_or(std::numeric_limits<double>::quiet_NaN())};
 }
 
@@ -111,7 +124,9 @@ void RobotInputs::take(const motor_t& message) {
   if (on_motor) on_motor(message);
   if (readings_.bridge && message.utime < readings_.bridge->utime) return;
   readings_.bridge = readingFrom(message);
-  permission_.take(*readings_.bridge);
+  const bool before = permission_.granted();
+  permission_.take(*readings_.bridge, bus_.now());
+  takeHolder(before);
 }
 
 void RobotInputs::take(const execution_t& message) {

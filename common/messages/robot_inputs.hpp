@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include <tread/arm_t.hpp>
 #include <tread/estop_t.hpp>
@@ -28,10 +29,16 @@ class DrivingPermission {
 
   void take(const arm_t& message, int64_t now);
   void take(const estop_t& message, int64_t now);
-  void take(const BridgeReading& bridge);
+  void take(const BridgeReading& bridge, int64_t now);
 
   bool armed() const { return armed_; }
-  int64_t armedSince() const { return armed_since_; }  ///< [us]
+  /// [us] since when the permission holds, and the motor bridge has taken it: an ARM that it
+  /// refuses begins nothing.
+  int64_t armedSince() const { return armed_since_; }
+  /// Whether the motor bridge has taken the permission.
+  bool granted() const { return armed_ && bridge_armed_; }
+  /// Who sent the ARM that it has taken.
+  const std::string& armedBy() const { return armed_by_; }
   bool estopped() const { return estopped_; }
 
  private:
@@ -42,6 +49,7 @@ class DrivingPermission {
   int64_t revoked_;  ///< [us] permissions given before count for nothing
   bool armed_ = false;
   int64_t armed_since_ = 0;
+  std::string armed_by_;
   bool bridge_armed_ = false;
   bool estopped_ = false;
   int64_t estop_utime_ = 0;
@@ -80,6 +88,8 @@ class RobotInputs {
   static constexpr int64_t kMaxAge = 1'500'000;    ///< [us] of what must be of the present
 
   void take(const operator_t& message);
+  void take(const arm_t& message);
+  void takeHolder(bool granted_before);
   void take(const ins_t& message);
   void take(const motor_t& message);
   void take(const execution_t& message);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/messages/blank.hpp"
+#include "common/messages/ins_messages.hpp"
 #include "common/messages/operator_beacon.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
 
@@ -167,7 +168,9 @@ namespace {
 InsTilt tiltOf(const ins_t& message, const YawPitchRoll& attitude) {
   InsTilt tilt;
   tilt.utime = message.utime;
-  if ((message.ins_status & ins_t::STATUS_NO_ATTITUDE) != 0) return tilt;
+  // A quaternion of another length is no attitude: it would seem level.
+  const bool unit = std::abs(Eigen::Vector4d(message.orientation).norm() - 1.0) < 1e-3;
+  if (!unit || (message.ins_status & ins_t::STATUS_NO_ATTITUDE) != 0) return tilt;
   tilt.roll = attitude.roll;
   tilt.pitch = attitude.pitch;
   tilt.roll_rate = message.rate[0];
@@ -178,16 +181,13 @@ InsTilt tiltOf(const ins_t& message, const YawPitchRoll& attitude) {
 }  // namespace
 
 InsNotice fromMessage(const ins_t& message) {
-  const int32_t blind = ins_t::STATUS_NO_POSITION | ins_t::STATUS_NO_HEADING;
-  const bool finite = std::isfinite(message.position[0]) && std::isfinite(message.position[1]) &&
-                      std::isfinite(message.orientation[0]);
   const auto& q = message.orientation;
   const Eigen::Quaterniond R_map_body(q[0], q[1], q[2], q[3]);
   const YawPitchRoll attitude = yawPitchRoll(R_map_body.normalized());
-  const InsMotion motion{message.utime,   message.position[0],    message.position[1],
-                         attitude.yaw,    message.velocity[0],    message.velocity[1],
-                         message.rate[2], message.position_std[0]};
-  return {message.utime, (message.ins_status & blind) == 0 && finite, motion, message.seq,
+  const InsMotion motion{message.utime,   message.position[0],   message.position[1],
+                         attitude.yaw,    message.velocity[0],   message.velocity[1],
+                         message.rate[2], horizontalStd(message)};
+  return {message.utime, planarPose(message).has_value(), motion, message.seq,
           tiltOf(message, attitude)};
 }
 

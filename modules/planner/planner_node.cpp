@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/messages/blank.hpp"
+#include "common/messages/ins_messages.hpp"
 #include "common/vehicle/robot_description.hpp"
 
 namespace tread::planner {
@@ -182,9 +183,7 @@ PlannerNode::PlannerNode(const PlannerConfig& config, Bus& bus)
       fences_(config.map.fences),
       supervisor_(config, bus.bootId()) {
   subscribe();
-  robot_.on_ins = [this](const ins_t& message) {
-    position_std_ = std::hypot(message.position_std[0], message.position_std[1]);
-  };
+  robot_.on_ins = [this](const ins_t& message) { position_std_ = horizontalStd(message); };
 }
 
 void PlannerNode::subscribe() {

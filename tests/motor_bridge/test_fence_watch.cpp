@@ -246,3 +246,17 @@ TEST_CASE(
   CHECK(world.truth.x > near - 5.0);
   CHECK(world.least_room >= 0.0);
 }
+
+TEST_CASE("an INS message that was overtaken puts the robot nowhere else") {
+  FencedWorld world({yard()}, {8.9, 0, 0});
+  world.start(0.0, 0.0);
+  InsMotion far = world.motion;
+  far.x = 0.0;
+  world.planner.always = TrackCommand{0.8, 0.8};
+  for (int i = 0; i < 300; ++i) {
+    world.move();
+    far.utime = world.now - 25'000;
+    world.bridge.receive(InsNotice{far.utime, true, far, world.ins_seq, world.tilt}, world.now);
+  }
+  CHECK(world.least_room >= 0.0);
+}

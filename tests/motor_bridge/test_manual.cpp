@@ -181,7 +181,7 @@ TEST_CASE("given back: zero, then the planner's next program, and what was taken
   CHECK(world.state() == State::kDriving);
 }
 
-TEST_CASE("letting go gives back, falling silent does not, and who starts anew may give back") {
+TEST_CASE("neither ending nor falling silent gives back, and who starts anew may give back") {
   HandWorld world;
   world.driveByHand();
   world.hand_alive = false;
@@ -189,7 +189,8 @@ TEST_CASE("letting go gives back, falling silent does not, and who starts anew m
     world.bridge.receive(OperatorNotice{7, "operator", true, world.now, 0, ""}, world.now);
     world.bridge.receive(OperatorNotice{7, "operator", false, world.now, 0, ""}, world.now);
     world.run(300'000);
-    CHECK(world.state() == State::kDriving);
+    CHECK(world.state() == State::kDisarmed);
+    CHECK(world.reason() == "disarmed by operator, whose program has ended");
   }
   SECTION("another program lets go") {
     world.bridge.receive(OperatorNotice{8, "operator", true, world.now, 0, ""}, world.now);
@@ -341,6 +342,61 @@ TEST_CASE(
   CHECK(world.state() == State::kDisarmed);
 }
 
+TEST_CASE("armed again after a stop with the stick still held, nothing moves before it rests") {
+  HandWorld world;
+  world.driveByHand();
+  SECTION("E-stop, cleared") {
+    world.bridge.receive(EstopRequest{world.now, true, "operator", "person"}, world.now);
+    world.run(1'500'000);
+    world.bridge.receive(EstopRequest{world.now, false, "operator", ""}, world.now);
+  }
+  SECTION("disarmed") {
+    world.bridge.receive(ArmRequest{world.now, false, "operator", ""}, world.now);
+  }
+  world.run(1'500'000);
+  world.planner.stands = true;  // so that only the hand may move it
+  world.arm();
+  for (int i = 0; i < 200; ++i) {
+    world.step();
+    REQUIRE(world.stands());
+  }
+  CHECK(world.state() == State::kArmed);
+  world.stick(0.0, 0.0);
+  world.run(100'000);
+  world.stick(1.0, 1.0);
+  world.run(100'000);
+  CHECK(world.state() == State::kManual);
+  CHECK_FALSE(world.stands());
+}
+
+TEST_CASE("a repeated ARM of a hand that was disarmed at once does not arm it again") {
+  HandWorld world;
+  world.run(1'300'000);
+  const ArmRequest ahead{world.now + 40'000, true, "operator", "go"};
+  world.bridge.receive(ahead, world.now);
+  world.step();
+  REQUIRE(world.state() == State::kManual);
+  world.bridge.receive(ArmRequest{world.now, false, "operator", ""}, world.now);
+  world.step();
+  world.bridge.receive(ahead, world.now);
+  world.run(100'000);
+  CHECK(world.state() == State::kDisarmed);
+}
+
+TEST_CASE("a stick that goes to rest gives zero in the next step") {
+  HandWorld world;
+  world.driveByHand();
+  for (int i = 0; i < 4; ++i) {
+    world.stick(0.0, 0.0);
+    world.tell();
+    world.step();
+    CHECK(world.stands());
+    world.stick(1.0, 1.0);
+    world.run(200'000 + i * kBridgeStep);
+    CHECK_FALSE(world.stands());
+  }
+}
+
 TEST_CASE(
     "with the button held and the stick at rest, ARM arms for the hand, without INS and "
     "planner") {
@@ -395,4 +451,69 @@ TEST_CASE("a hand's command changes every 20 ms, and grows from zero when it tak
   }
   REQUIRE(changes.size() > 10);
   for (size_t i = 1; i < changes.size(); ++i) CHECK(changes[i] - changes[i - 1] == 20'000);
+}
+
+TEST_CASE("where the hand has limits of tilt or fences to keep, a silent INS stops it, once") {
+  HandWorld world;
+  BridgeConfig config;
+  std::string told;
+  SECTION("tilt") {
+    config.tilt = TiltLimits{0.5, 0.5, 1.0, 1.0};
+    told = "INS measures no roll and pitch: their limits cannot be kept";
+  }
+  SECTION("fences") {
+    config.fences.own = {{"yard", false, {{-50, -50}, {50, -50}, {50, 50}, {-50, 50}}}};
+    told = "position unknown: fences cannot be kept";
+  }
+  world.bridge = Bridge(config);
+  world.motion.x = world.motion.y = world.motion.yaw = 0.0;
+  world.tilt = InsTilt{0, 0.0, 0.0, 0.0, 0.0};
+  world.driveByHand();
+  world.ins_alive = false;
+  CHECK(world.until([&] { return world.stands(); }) <= 550'000);
+  CHECK(world.state() == State::kDisarmed);
+  CHECK_THAT(world.reason(), Catch::StartsWith(told));
+  world.stick(0.0, 0.0);
+  world.run(2'500'000);
+  CHECK(world.state() == State::kDisarmed);
+  // Who arms again knows it.
+  world.arm();
+  world.run(50'000);
+  CHECK(world.state() == State::kManual);
+  world.stick(1.0, 1.0);
+  world.run(1'000'000);
+  CHECK(world.out.command == TrackCommand{0.5, 0.5});
+}
+
+TEST_CASE("with fences a position that does not move with the robot stops the hand, too") {
+  HandWorld world;
+  const bool fenced = GENERATE(true, false);
+  BridgeConfig config;
+  if (fenced) config.fences.own = {{"yard", false, {{-50, -50}, {50, -50}, {50, 50}, {-50, 50}}}};
+  world.bridge = Bridge(config);
+  world.motion.x = world.motion.y = world.motion.yaw = 0.0;
+  world.motion.v_forward = world.motion.v_left = world.motion.yaw_rate = 0.0;
+  world.planner.stands = true;
+  world.wish.hold = false;
+  world.run(1'200'000);
+  world.arm();
+  world.run(200'000);
+  world.wish.hold = true;
+  world.stick(1.0, 1.0);
+  world.run(4'000'000);
+  CHECK((world.state() == State::kManual) == !fenced);
+  CHECK(world.stands() == fenced);
+}
+
+TEST_CASE("`go_back` takes a lost person's robot from the hand, and says so") {
+  HandWorld world;
+  BridgeConfig config;
+  config.operators.lost = OperatorLost::kGoBack;
+  world.bridge = Bridge(config);
+  world.driveByHand();
+  world.operator_alive = world.hand_alive = false;
+  CHECK(world.until([&] { return world.stands(); }) <= 200'000 + kBridgeStep);
+  world.until([&] { return world.state() != State::kManual; });
+  CHECK_THAT(world.reason(), Catch::Contains("the operator is lost"));
+  CHECK(isArmed(world.state()));
 }

@@ -82,12 +82,12 @@ TEST_CASE("just below its limits it drives on, and a bump of 80 ms does not stop
 
 TEST_CASE("a slow INS is waited for: two measurements are no proof, however far apart") {
   TiltWatch watch(kLimits);
-  watch.receive({100'000, 40 * kDeg, 0, 0, 0});
-  watch.receive({200'000, 40 * kDeg, 0, 0, 0});
+  watch.receive({100'000, 40 * kDeg, 0, 0, 0}, 100'000);
+  watch.receive({200'000, 40 * kDeg, 0, 0, 0}, 200'000);
   CHECK(watch.fault(200'000).empty());
-  watch.receive({200'000, 40 * kDeg, 0, 0, 0});  // the same again
+  watch.receive({200'000, 40 * kDeg, 0, 0, 0}, 200'000);  // the same again
   CHECK(watch.fault(200'000).empty());
-  watch.receive({300'000, 40 * kDeg, 0, 0, 0});
+  watch.receive({300'000, 40 * kDeg, 0, 0, 0}, 300'000);
   CHECK_FALSE(watch.fault(300'000).empty());
 }
 
@@ -146,7 +146,7 @@ TEST_CASE("attitude that is not measured stops a robot whose description has lim
     CHECK(half.timeToZero() <= 250'000);
   }
   TiltWatch unwatched(std::nullopt);
-  for (int64_t t = 0; t < 1'000'000; t += 20'000) unwatched.receive({t, kPi, 0, 0, 0});
+  for (int64_t t = 0; t < 1'000'000; t += 20'000) unwatched.receive({t, kPi, 0, 0, 0}, t);
   CHECK(unwatched.fault(1'000'000).empty());
 }
 
@@ -155,4 +155,41 @@ TEST_CASE("rates that are not measured are passed over") {
   world.tilt.roll_rate = world.tilt.pitch_rate = InsTilt::kUnknown;
   world.run(2'000'000);
   CHECK(world.state() == State::kDriving);
+}
+
+TEST_CASE("what is told late stops for as long as what is told at once") {
+  TiltWatch watch(kLimits);
+  InsTilt tilted = level();
+  tilted.roll = 0.9;
+  // The INS driver hung for 1.2 s; what it measured meanwhile comes now.
+  const int64_t now = 5'000'000;
+  for (int64_t utime = now - 1'200'000; utime < now - 900'000; utime += 20'000) {
+    tilted.utime = utime;
+    watch.receive(tilted, now);
+  }
+  CHECK_THAT(watch.fault(now), Contains("rolled"));
+  CHECK_THAT(watch.fault(now + 900'000), Contains("rolled"));
+  CHECK(watch.fault(now + 1'100'000).empty());
+}
+
+TEST_CASE("attitude that falls silent counts as beyond, for programs until it is back") {
+  TiltWatch watch(kLimits);
+  int64_t now = 1'000'000;
+  const auto measure = [&](int64_t until) {
+    for (; now < until; now += 20'000) {
+      InsTilt tilt = level();
+      tilt.utime = now;
+      watch.receive(tilt, now);
+      CHECK(watch.fault(now).empty());
+    }
+  };
+  measure(2'000'000);
+  CHECK(watch.fault(now + 250'000).empty());
+  now += 320'000;
+  CHECK_THAT(watch.fault(now), Contains("INS measures no roll and pitch"));
+  CHECK(watch.fault(now + 1'100'000).empty());
+  CHECK_FALSE(watch.beyond().empty());
+  now += 1'200'000;
+  measure(now + 600'000);
+  CHECK(watch.beyond().empty());
 }

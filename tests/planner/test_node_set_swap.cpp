@@ -31,7 +31,7 @@ std::map<std::string, int64_t> counters(const Yard& yard) {
 void drive(Yard& yard) {
   yard.run(1.5);
   yard.sendGoal(14.0);
-  yard.arm();
+  yard.armAndGo();
   yard.run(3.0);
   REQUIRE(yard.robot().speed() > 0.5);
 }

@@ -19,7 +19,7 @@ TEST_CASE(
   Yard yard;
   yard.run(1.5);
   yard.sendGoal(10.0);
-  yard.arm();
+  yard.armAndGo();
   yard.run(3.0);
   CHECK(yard.plan.plan_status == plan_t::PLAN_DRIVING);
   CHECK(yard.robot().speed() > 0.8);
@@ -43,7 +43,7 @@ TEST_CASE("PROGRAM comes at 20 Hz whatever happens, PLAN at 5 Hz, PLAN_TREE with
   CHECK(yard.plans >= 24);
   CHECK(yard.plan.plan_status == plan_t::PLAN_IDLE);
   yard.sendGoal(10.0);
-  yard.arm();
+  yard.armAndGo();
   yard.run(4.0);
   CHECK(yard.longest_silence <= 60'000 + yard.start);
   REQUIRE(yard.tree.num_nodes > 3);
@@ -58,7 +58,7 @@ TEST_CASE("The node comes up disarmed: a permission from before its start counts
   Yard yard;
   yard.run(1.0);
   yard.sendGoal(10.0);
-  yard.arm();
+  yard.armAndGo();
   yard.run(3.0);
   REQUIRE(yard.robot().speed() > 0.5);
   const int64_t old_run = yard.run_id;
@@ -70,11 +70,55 @@ TEST_CASE("The node comes up disarmed: a permission from before its start counts
   CHECK(yard.health.health_state == health_t::HEALTH_DEGRADED);
   CHECK(yard.health.health_reason == "not armed since the planner's start");
   // The toy bridge remembers ids of the old run: only the new run's id matters here.
-  yard.arm();
-  yard.renewGoal();
-  yard.sendGoal(10.0);
+  yard.armAndGo();
   yard.run(0.3);
   CHECK(yard.run_id > old_run);
+}
+
+TEST_CASE("A goal between an ARM that the bridge refuses and one that it takes moves nothing") {
+  Yard yard;
+  yard.run(1.0);
+  yard.robot().takes_arm = false;
+  yard.arm();
+  yard.run(0.5);
+  yard.sendGoal(10.0);
+  yard.run(0.3);
+  yard.robot().takes_arm = true;
+  yard.arm();
+  yard.run(3.0);
+  CHECK(yard.robot().program().running.execution_id == 0);
+  CHECK(yard.plan.reason == "the goal was given before the arming: give it again");
+  yard.renewGoal();
+  yard.sendGoal(10.0);
+  yard.run(1.0);
+  CHECK(yard.robot().program().running.execution_id != 0);
+}
+
+TEST_CASE("Whom the bridge has armed for holds the robot, whoever was heard first") {
+  Yard yard;
+  OperatorBeacon first(yard.bus.outside(), "another");
+  yard.operator_there = false;
+  const auto run = [&](double seconds) {
+    for (double t = 0.0; t < seconds; t += 0.05) {
+      first.step(yard.bus.now());
+      yard.run(0.05);
+    }
+  };
+  run(1.0);  // the planner takes this one for the holder
+  yard.operator_there = true;
+  run(1.0);
+  yard.arm(true, "a test (test)");
+  run(0.2);
+  yard.renewGoal();
+  yard.sendGoal(10.0);
+  run(2.0);
+  CHECK(yard.robot().program().running.execution_id != 0);
+  first.standFor(777);
+  yard.beacon.standFor(1);
+  yard.goal_id = 777;
+  yard.sendGoal(-10.0);
+  run(2.0);
+  CHECK(yard.plan.goal_id != 777);
 }
 
 TEST_CASE("When the time jumps, as at the start of a real process, an earlier permission is void") {
@@ -132,7 +176,7 @@ TEST_CASE("Disarming and an emergency stop empty the program in the next step") 
     Yard yard;
     yard.run(1.0);
     yard.sendGoal(10.0);
-    yard.arm();
+    yard.armAndGo();
     yard.run(3.0);
     REQUIRE(yard.robot().program().running.execution_id != 0);
     if (estop)
@@ -166,7 +210,7 @@ TEST_CASE("Without INS the node empties the program and says how old it is") {
   Yard yard;
   yard.run(1.0);
   yard.sendGoal(10.0);
-  yard.arm();
+  yard.armAndGo();
   yard.run(3.0);
   yard.robot().ins_alive = false;
   yard.run(0.3);
@@ -178,7 +222,7 @@ TEST_CASE("Blind for half a second: the program is emptied, and the view's retur
   Yard yard;
   yard.run(1.0);
   yard.sendGoal(10.0);
-  yard.arm();
+  yard.armAndGo();
   yard.run(3.0);
   REQUIRE(yard.robot().speed() > 0.5);
   yard.robot().map_alive = false;
@@ -198,7 +242,7 @@ TEST_CASE("A tile of another cell size does not empty the map in use") {
   Yard yard;
   yard.run(1.0);
   yard.sendGoal(10.0);
-  yard.arm();
+  yard.armAndGo();
   yard.run(2.0);
   map_tile_t tile{};
   tile.tile_cells = 8;
@@ -231,7 +275,7 @@ TEST_CASE(
   Yard yard(faults);
   yard.run(4.0);
   yard.sendGoal(10.0);
-  yard.arm();
+  yard.armAndGo();
   yard.run(30.0);
   CHECK(yard.plan.plan_status == plan_t::PLAN_ARRIVED);
   CHECK(yard.robot().aborted() == 0);
@@ -313,7 +357,7 @@ TEST_CASE("The sender of a goal is killed: the goal ends with its lease, and sta
   Yard yard;
   yard.run(1.0);
   yard.sendGoal(10.0);
-  yard.arm();
+  yard.armAndGo();
   yard.run(3.0);
   REQUIRE(yard.robot().speed() > 0.5);
   // Somebody else of the same name still holds the robot.
@@ -346,7 +390,7 @@ TEST_CASE(
   Yard yard({}, config);
   yard.run(3.0);
   yard.sendGoal(10.0);
-  yard.arm();
+  yard.armAndGo();
   yard.run(6.0);
   REQUIRE(yard.robot().speed() > 0.5);
   yard.operator_there = false;
@@ -384,7 +428,7 @@ TEST_CASE("A fence from anybody closes the way, and opens it again for who holds
   };
   yard.run(1.5);
   yard.sendGoal(10.0);
-  yard.arm();
+  yard.armAndGo();
   CHECK(fence("stranger", false) == 1);
   yard.run(10.0);
   CHECK(yard.robot().pose().x < 5.0);
@@ -400,7 +444,7 @@ TEST_CASE("A goal out of a log moves nothing, and takes nothing from the goal of
   Yard yard;
   yard.run(1.0);
   yard.sendGoal(10.0);
-  yard.arm();
+  yard.armAndGo();
   yard.run(3.0);
   const int64_t goal = yard.plan.goal_id;
   REQUIRE(yard.robot().speed() > 0.5);
@@ -432,7 +476,7 @@ TEST_CASE("A second learner is told: its older versions are ignored, and the pla
   Yard yard;
   yard.run(1.5);
   yard.sendGoal(10.0);
-  yard.arm();
+  yard.armAndGo();
   yard.run(2.0);
   for (pattern_set_part_t& part : toMessages(samplePatterns(101)))
     yard.bus.outside().publish(kPatternSet, part);

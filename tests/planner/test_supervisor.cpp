@@ -134,6 +134,30 @@ TEST_CASE("A wall that appears close ahead while driving: the running pattern is
   CHECK(rig.pose().x + 0.65 < x);
 }
 
+TEST_CASE("On ground on which it takes longer to stop, a wall ahead stops it earlier") {
+  // How far away a wall that appears still makes it drop what it drives [m].
+  const auto farthest = [](double seconds) {
+    double reach = 0.0;
+    for (double distance = 0.5; distance < 1.5; distance += 0.1) {
+      Rig rig;
+      rig.inputs().goal->T_map_goal.x = 14.0;
+      rig.run(3.2);
+      REQUIRE(rig.speed() > 0.9);
+      rig.supervisor().setStoppingTime(seconds);
+      Playground ground;
+      const double x = rig.pose().x + 0.65 + distance;
+      ground.addWall({x + 0.1, -9.0}, {x + 0.1, 9.0});
+      rig.paint(ground);
+      rig.run(0.1);
+      if (rig.supervisor().program().running().empty()) reach = distance;
+    }
+    return reach;
+  };
+  const double usual = farthest(0.3);
+  CHECK(usual > 0.5);
+  CHECK(farthest(1.2) > usual + 0.15);
+}
+
 TEST_CASE("A wall that only the next pattern would hit replaces the next, the running goes on") {
   Rig rig;
   rig.inputs().goal->T_map_goal.x = 14.0;

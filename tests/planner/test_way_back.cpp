@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <limits>
+
 #include <catch2/catch.hpp>
 
 #include "modules/planner/core/execution/way_back.hpp"
@@ -130,7 +132,7 @@ TEST_CASE("no return without a place, and none on a position that has become unc
   walk.lose();
   walk.stay(4.0);
   REQUIRE(walk.goal);
-  walk.link.position_std = 1.3;
+  walk.link.position_std = GENERATE(1.3, std::numeric_limits<double>::quiet_NaN());
   walk.stay(0.1);
   CHECK_FALSE(walk.goal);
   walk.link.position_std = 0.1;

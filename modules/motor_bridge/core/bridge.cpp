@@ -114,7 +114,11 @@ void Bridge::receive(const OperatorNotice& notice, int64_t now) {
   const OperatorLease::Receipt receipt = operator_.receive(notice, now);
   if (receipt != OperatorLease::Receipt::kTaken)
     count(std::string("OPERATOR ignored: ") + describe(receipt));
-  if (receipt == OperatorLease::Receipt::kTaken && !notice.drives) manual_.letGo(notice.station);
+  const bool ends = receipt == OperatorLease::Receipt::kTaken && !notice.drives;
+  if (!ends || !manual_.letGo(notice.station) || failsafe_.state() != State::kManual) return;
+  // Nobody has given the robot back: it must not go on to a goal by itself.
+  since_.disarm = true;
+  since_.request = ArmRequest{now, false, notice.name + ", whose program has ended", ""};
 }
 
 void Bridge::receive(const ManualNotice& notice, int64_t now) {
@@ -125,10 +129,9 @@ void Bridge::receive(const ManualNotice& notice, int64_t now) {
 }
 
 void Bridge::receive(const InsNotice& notice, int64_t now) {
-  ins_.receive(notice, now);
-  const bool future = notice.utime > now + config_.ins.max_future_us;
-  if (!future) tilt_.receive(notice.tilt);
-  if (!notice.usable || future) return;
+  if (!ins_.receive(notice, now)) return;
+  tilt_.receive(notice.tilt, now);
+  if (!notice.usable) return;
   motion_.receive(notice.motion);
   fences_.receive(notice.motion);
   const InsMotion& motion = notice.motion;
@@ -150,7 +153,7 @@ BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
   const FailsafeInputs in = look(now, device);
   BridgeOutput out;
   out.failsafe = failsafe_.update(in);
-  if (in.arm && out.failsafe.state == State::kArmed) requests_.consume(since_.request);
+  if (in.arm && isArmed(out.failsafe.state)) requests_.consume(since_.request);
   if (out.failsafe.arm_refused) count("ARM refused");
   out.hold_device_stop = requests_.estop();
   out.release_device_stop =
@@ -167,7 +170,8 @@ BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
 }
 
 std::string Bridge::stallFault(int64_t now) const {
-  if (!last_step_ || (now >= *last_step_ && now - *last_step_ <= config_.max_stall_us)) return "";
+  if (last_step_ && now < *last_step_) return "the robot's clock went back";
+  if (!last_step_ || now - *last_step_ <= config_.max_stall_us) return "";
   return "motor_bridge was held up for " + std::to_string((now - *last_step_) / 1000) +
          " ms: too much runs on this computer, or it was halted";
 }
@@ -204,7 +208,7 @@ void Bridge::lookForOperator(int64_t now, FailsafeInputs& in) {
 
 void Bridge::lookForHand(int64_t now, FailsafeInputs& in) {
   const bool has = failsafe_.state() == State::kManual;
-  manual_.update(now, has);
+  manual_.update(now, has, isArmed(failsafe_.state()));
   const bool wants = isArmed(failsafe_.state()) ? manual_.takes() : manual_.ready();
   in.hand = operator_.valid(now) && (has ? !manual_.givenBack() : wants);
   in.hand_words = manual_.words();
@@ -243,6 +247,7 @@ FailsafeInputs Bridge::look(int64_t now, const DeviceReport& device) {
   in.ins_fault = ins_.fault(now);
   in.tilt_fault = tilt_.fault(now);
   if (!isArmed(failsafe_.state())) fences_.restart();
+  in.fenced = !fences_.book().fences().empty();
   in.fence_fault = fences_.fault(now);
   in.motion_fault = motion_.fault(now);
   in.playing = player_.playing();

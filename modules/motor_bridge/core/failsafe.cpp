@@ -30,28 +30,30 @@ std::optional<Fault> worstFault(const FailsafeInputs& in) {
   return std::nullopt;
 }
 
-/// Worst fault that stops what is driven now: a person sees where the robot is and what it does.
+/// Worst fault that stops what is driven now: a person sees where the robot is and what it does. A
+/// fence nobody sees, and with a wrong position it is not kept.
 std::optional<Fault> worstStop(const FailsafeInputs& in) {
   if (!in.hand) return worstFault(in);
   FailsafeInputs by_hand = in;
-  for (std::string* seen :
-       {&by_hand.program_fault, &by_hand.lease_fault, &by_hand.ins_fault, &by_hand.motion_fault})
+  for (std::string* seen : {&by_hand.program_fault, &by_hand.lease_fault, &by_hand.ins_fault})
     seen->clear();
+  if (!in.fenced) by_hand.motion_fault.clear();
   return worstFault(by_hand);
 }
 
 }  // namespace
 
-void InsWatch::receive(const InsNotice& notice, int64_t now) {
+bool InsWatch::receive(const InsNotice& notice, int64_t now) {
   const bool future = notice.utime > now + limits_.max_future_us;
   const bool old = notice.utime < now - limits_.maxAge() - limits_.max_latency_us;
   const bool newer = !received_at_ || notice.utime > utime_;
-  if (future || old || !newer) return;
+  if (future || old || !newer) return false;
   if (received_at_ && notice.seq < seq_) restarted_at_ = now;
   received_at_ = now;
   seq_ = notice.seq;
   utime_ = notice.utime;
   usable_ = notice.usable;
+  return true;
 }
 
 std::string InsWatch::fault(int64_t now) const {
@@ -173,7 +175,7 @@ bool Failsafe::serveHand(const FailsafeInputs& in) {
     return true;
   }
   if (state_ != State::kManual) return false;
-  enter(State::kStopping, in.leased ? "given back by hand" : in.unleased, in.now);
+  enter(State::kStopping, in.unleased.empty() ? "given back by hand" : in.unleased, in.now);
   return true;
 }
 

@@ -38,8 +38,8 @@ class InsWatch {
  public:
   explicit InsWatch(const InsLimits& limits) : limits_(limits) {}
 
-  /// A message received at now [us].
-  void receive(const InsNotice& notice, int64_t now);
+  /// A message received at now [us]. Returns whether it counts.
+  bool receive(const InsNotice& notice, int64_t now);
   /// What is wrong at now [us], in words; empty = nothing.
   std::string fault(int64_t now) const;
 
@@ -125,6 +125,7 @@ struct FailsafeInputs {
   std::string tilt_fault;      ///< a limit of roll, pitch or their rates was passed
   std::string fence_fault;     ///< only a zero now keeps the outline within a fence
   std::string motion_fault;    ///< the robot moves otherwise than its commands explain
+  bool fenced = false;         ///< there are fences to keep
   bool hand = false;          ///< a person takes or keeps the robot, or wants it armed for the hand
   std::string hand_words;     ///< who does, and why it stands, if it does
   bool playing = false;       ///< a series is being played and goes on

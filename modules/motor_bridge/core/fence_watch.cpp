@@ -8,13 +8,14 @@
 namespace tread::motor {
 namespace {
 
-constexpr double kSigmas = 2.0;      // of the position's standard deviation
-constexpr double kUnknownStd = 0.1;  // [m] where the INS tells none
-constexpr double kStep = 0.1;        // [s] between the poses that are looked at
-constexpr double kMuchTurn = 0.7;    // [1] of a commanded turn that is made at most
-constexpr double kSlack = 0.05;      // [m] by which a pose outside may seem farther out
-constexpr double kStill = 0.03;      // [m/s, rad/s] of a standing robot
-constexpr double kMostAge = 0.5;     // [s] of a pose; an older one is a fault of its own
+constexpr double kSigmas = 2.0;              // of the position's standard deviation
+constexpr double kUnknownStd = 0.1;          // [m] where the INS tells none
+constexpr double kStep = 0.1;                // [s] between the poses that are looked at
+constexpr double kMuchTurn = 0.7;            // [1] of a commanded turn that is made at most
+constexpr double kSlack = 0.05;              // [m] by which a pose outside may seem farther out
+constexpr double kStill = 0.03;              // [m/s, rad/s] of a standing robot
+constexpr double kMostAge = 0.5;             // [s] of a pose; an older one is a fault of its own
+constexpr int64_t kBlindStands = 1'000'000;  // [us] for which it is
 
 std::string centimetres(double metres) {
   const auto rounded = std::lround(100.0 * std::abs(metres));
@@ -27,6 +28,13 @@ double effort(const TrackCommand& command) {
 }
 
 }  // namespace
+
+void FenceWatch::receive(const InsMotion& ins) {
+  const double known = ins_.position_std;
+  ins_ = ins;
+  // A device that tells its accuracy no more has not become better.
+  if (!std::isfinite(ins_.position_std)) ins_.position_std = known;
+}
 
 void FenceWatch::command(const TrackCommand& command, int64_t now) {
   if (given_.empty() || given_.back().command != command) given_.push_back({now, command});
@@ -78,9 +86,22 @@ std::string FenceWatch::faultOfFence(const Fence& fence, double& best,
              : "outside fence " + fence.name + " by " + centimetres(room) + ": only back in";
 }
 
+std::string FenceWatch::blindness(int64_t now) {
+  const bool known = std::isfinite(ins_.x + ins_.y + ins_.yaw) &&
+                     1e-6 * static_cast<double>(now - ins_.utime) <= kMostAge;
+  if (known) {
+    blind_since_.reset();
+    return "";
+  }
+  blind_since_ = blind_since_.value_or(now);
+  return now - *blind_since_ <= kBlindStands ? "position unknown: fences cannot be kept" : "";
+}
+
 std::string FenceWatch::fault(int64_t now) {
   const std::vector<Fence>& fences = book_.fences();
-  if (fences.empty() || !std::isfinite(ins_.x + ins_.y + ins_.yaw)) return "";
+  if (fences.empty()) return "";
+  const std::string blind = blindness(now);
+  if (!blind.empty() || !std::isfinite(ins_.x + ins_.y + ins_.yaw)) return blind;
   if (best_revision_ != book_.revision() || best_.size() != fences.size()) {
     best_.assign(fences.size(), -std::numeric_limits<double>::infinity());
     best_revision_ = book_.revision();

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,7 @@ class FenceWatch {
   FenceBook& book() { return book_; }
   const FenceBook& book() const { return book_; }
   /// A measurement with a pose.
-  void receive(const InsMotion& ins) { ins_ = ins; }
+  void receive(const InsMotion& ins);
   /// The command that holds from now [us] on, in the unit of the drive.
   void command(const TrackCommand& command, int64_t now);
   /// A person takes it from here: where it stands now counts.
@@ -51,6 +52,8 @@ class FenceWatch {
     TrackCommand command;
   };
 
+  /// Told for a second: arming is needed then, and a person who drives on without INS knows it.
+  std::string blindness(int64_t now);
   std::vector<Twist2> twists() const;
   std::string faultOfFence(const Fence& fence, double& best, const std::vector<Pose2>& ways) const;
 
@@ -61,6 +64,7 @@ class FenceWatch {
   std::deque<Given> given_;   ///< of the last moments, oldest first
   std::vector<double> best_;  ///< [m] by fence: most room since it was crossed
   int64_t best_revision_ = -1;
+  std::optional<int64_t> blind_since_;  ///< [us]
 };
 
 }  // namespace tread::motor

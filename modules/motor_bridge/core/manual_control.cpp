@@ -40,15 +40,17 @@ std::string ManualControl::receive(const ManualNotice& notice, int64_t now) {
   return "";
 }
 
-void ManualControl::letGo(int64_t station) {
-  if (station == last_.station) last_.give_back = true;
+bool ManualControl::letGo(int64_t station) {
+  if (station != last_.station) return false;
+  return last_.give_back = true;
 }
 
-void ManualControl::update(int64_t now, bool has) {
+void ManualControl::update(int64_t now, bool has, bool armed) {
   lease_.update(now, false);
   fresh_ = lease_.valid(now);
   live_ = fresh_ && last_.hold && !last_.give_back;
-  if (has && !fresh_) must_rest_ = true;
+  // After a stop the stick may still be where it was: arming must not move the robot.
+  if ((has && !fresh_) || (!armed && last_.hold && moved())) must_rest_ = true;
   if (has) return;
   command_ = TrackCommand{};
   commanded_.reset();
@@ -63,13 +65,15 @@ std::string ManualControl::words() const {
 
 TrackCommand ManualControl::command(int64_t now) {
   if (!live_ || must_rest_) return command_ = TrackCommand{};
+  const TrackCommand wanted{last_.left * limits_.max_command, last_.right * limits_.max_command};
+  if (wanted == TrackCommand{}) return command_ = wanted;
   if (commanded_ && now - *commanded_ < kInterval) return command_;
   const double growth =
       commanded_
           ? limits_.slew * static_cast<double>(std::min(now - *commanded_, 2 * kInterval)) * 1e-6
           : 0.0;
-  command_.left = limited(last_.left * limits_.max_command, command_.left, growth);
-  command_.right = limited(last_.right * limits_.max_command, command_.right, growth);
+  command_.left = limited(wanted.left, command_.left, growth);
+  command_.right = limited(wanted.right, command_.right, growth);
   commanded_ = now;
   return command_;
 }

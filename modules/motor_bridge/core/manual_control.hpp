@@ -41,10 +41,11 @@ class ManualControl {
 
   /// A message received at now [us]. Returns why it counts for nothing; empty = it was taken.
   std::string receive(const ManualNotice& notice, int64_t now);
-  /// A program has let go: what it holds is given back.
-  void letGo(int64_t station);
-  /// Call first in each step. `has`: the robot is in the hand since the step before.
-  void update(int64_t now, bool has);
+  /// A program has let go. Returns whether it was this hand's.
+  bool letGo(int64_t station);
+  /// Call first in each step. `has`: the robot is in the hand since the step before; `armed`: it is
+  /// armed.
+  void update(int64_t now, bool has, bool armed);
 
   /// A robot that is armed is to be taken over.
   bool takes() const { return live_ && !must_rest_ && moved(); }

@@ -11,8 +11,11 @@ constexpr int64_t kBump = 100'000;           // [us] for which a limit may be pa
 constexpr int kBumpMeasurements = 3;         // at least so many must say it
 constexpr int64_t kWithin = 500'000;         // [us] of good measurements that end it
 constexpr double kRelief = 0.05;             // [rad, rad/s] below the limit that counts as good
+constexpr int64_t kSilent = 300'000;         // [us] without a measurement
 constexpr int64_t kFaultStands = 1'000'000;  // [us]
 constexpr double kDegrees = 57.29577951308232;
+
+const std::string kUnmeasured = "INS measures no roll and pitch: their limits cannot be kept";
 
 std::string whole(double angle) {
   return std::to_string(std::lround(angle * kDegrees));
@@ -28,8 +31,7 @@ std::array<TiltWatch::Check, 4> TiltWatch::checks(const InsTilt& tilt) const {
 }
 
 std::string TiltWatch::worst(const InsTilt& tilt, double relief) const {
-  if (!std::isfinite(tilt.roll) || !std::isfinite(tilt.pitch))
-    return "INS measures no roll and pitch: their limits cannot be kept";
+  if (!std::isfinite(tilt.roll) || !std::isfinite(tilt.pitch)) return kUnmeasured;
   for (const Check& check : checks(tilt)) {
     if (std::abs(check.value) > check.limit - relief)
       return std::string(check.what) + " " + whole(std::abs(check.value)) + check.unit +
@@ -38,9 +40,10 @@ std::string TiltWatch::worst(const InsTilt& tilt, double relief) const {
   return "";
 }
 
-void TiltWatch::receive(const InsTilt& tilt) {
-  if (!limits_ || tilt.utime <= newest_) return;
+void TiltWatch::receive(const InsTilt& tilt, int64_t now) {
+  if (!limits_ || (newest_ && tilt.utime <= *newest_)) return;
   newest_ = tilt.utime;
+  heard_at_ = now;
   const std::string worst_now = worst(tilt, beyond_.empty() ? 0.0 : kRelief);
   if (worst_now.empty()) {
     bad_ = {};
@@ -56,12 +59,22 @@ void TiltWatch::receive(const InsTilt& tilt) {
     const std::string passed = worst(tilt, 0.0);
     if (!passed.empty()) beyond_ = passed;
   } else if (bad_.count >= kBumpMeasurements && tilt.utime - *bad_.utime >= kBump) {
-    beyond_ = worst_now;
-    began_ = tilt.utime;
+    tell(worst_now, now);
   }
 }
 
-std::string TiltWatch::fault(int64_t now) const {
+void TiltWatch::tell(const std::string& what, int64_t now) {
+  beyond_ = what;
+  began_ = now;
+}
+
+std::string TiltWatch::fault(int64_t now) {
+  heard_at_ = heard_at_.value_or(now);
+  if (limits_ && now - *heard_at_ > kSilent) {
+    bad_ = {};
+    good_since_.reset();
+    if (beyond_.empty()) tell(kUnmeasured, now);
+  }
   return !beyond_.empty() && now - began_ <= kFaultStands ? beyond_ : "";
 }
 

@@ -32,12 +32,12 @@ class TiltWatch {
  public:
   explicit TiltWatch(const std::optional<TiltLimits>& limits) : limits_(limits) {}
 
-  /// A measurement; one that is not newer than the last is passed over.
-  void receive(const InsTilt& tilt);
+  /// A measurement received at now [us]; one that is not newer than the last is passed over.
+  void receive(const InsTilt& tilt, int64_t now);
   /// What stops the robot at now [us]: it has just come beyond a limit. Stands for a second, so
   /// that arming by hand is needed, and is possible, while the robot is still beyond: only a person
-  /// drives it out of there.
-  std::string fault(int64_t now) const;
+  /// drives it out of there. Call it in each step: silence counts as beyond, too.
+  std::string fault(int64_t now);
   /// Why no program may drive: it is beyond a limit still; empty = within.
   const std::string& beyond() const { return beyond_; }
 
@@ -55,9 +55,11 @@ class TiltWatch {
 
   std::array<Check, 4> checks(const InsTilt& tilt) const;
   std::string worst(const InsTilt& tilt, double relief) const;
+  void tell(const std::string& what, int64_t now);
 
   std::optional<TiltLimits> limits_;
-  int64_t newest_ = INT64_MIN;
+  std::optional<int64_t> newest_;    ///< [us]
+  std::optional<int64_t> heard_at_;  ///< [us] of a measurement, or of the first step
   Since bad_;
   std::optional<int64_t> good_since_;  ///< [us]
   std::string beyond_;

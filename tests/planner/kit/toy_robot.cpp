@@ -7,7 +7,7 @@
 namespace tread::planner::testkit {
 
 void ToyRobot::step(int64_t utime) {
-  if (arm_.any() && arm_.message().utime > armed_at_) armed_ = arm_.message().armed;
+  if (takes_arm && arm_.any() && arm_.message().utime > armed_at_) armed_ = arm_.message().armed;
   play(utime);
   state_ = moveOn(state_, command_, 0.01, TrackModel{});
   if (utime % 20'000 == 0) publishMotor(utime);

@@ -29,6 +29,7 @@ class ToyRobot : public Node {
   const program_t& program() const { return program_.message(); }
   bool hasProgram() const { return program_.any(); }
 
+  bool takes_arm = true;
   bool ins_alive = true;
   bool map_alive = true;
   bool learner_alive = true;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "common/bus/virtual_bus.hpp"
@@ -41,6 +42,7 @@ struct Yard {
   }
 
   void sendGoal(double x, double tolerance = 0.5) {
+    goal_ = {x, tolerance};
     goal_t message{};
     message.utime = bus.now();
     message.seq = seq++;
@@ -51,13 +53,20 @@ struct Yard {
     bus.outside().publish(kGoal, message);
   }
 
-  void arm(bool armed = true) {
+  void arm(bool armed = true, const std::string& by = "test") {
     arm_t message{};
     message.utime = bus.now();
     message.seq = seq++;
     message.armed = armed;
-    message.armed_by = "test";
+    message.armed_by = by;
     bus.outside().publish(kArm, message);
+  }
+  /// Arms, and gives the last goal again, as it counts only after the arming.
+  void armAndGo() {
+    arm();
+    run(0.2);
+    renewGoal();
+    sendGoal(goal_.x(), goal_.y());
   }
 
   void estop(bool engaged) {
@@ -84,6 +93,7 @@ struct Yard {
   int64_t start;
   OperatorBeacon beacon;
   int64_t goal_id = 1;
+  Eigen::Vector2d goal_{0.0, 0.5};  ///< [m] last goal's x and tolerance
   bool operator_there = true;
   int64_t seq = 0;
   plan_t plan{};

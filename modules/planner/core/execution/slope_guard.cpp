@@ -13,7 +13,6 @@ constexpr double kRelief = 0.035;   // [rad] below the limit it is good again; a
 constexpr double kTrailStep = 0.1;  // [m]
 constexpr size_t kTrail = 40;       // places
 constexpr double kGrowth = 0.5;     // [m] of the trail that tells how the slope grows
-constexpr double kStopTime = 0.5;   // [s] at its speed until it stands
 constexpr double kGentle = 0.5;     // [1] of the limit: on less steep ground nothing is expected
 constexpr double kBack = 0.8;       // [m] back on the trail, over which the slope grew
 constexpr double kBegins = 0.3;     // [m] ahead of the body's origin
@@ -35,7 +34,7 @@ bool SlopeGuard::steep() const {
 
 double SlopeGuard::expected(const PoseReading& pose) const {
   if (!pose.twist || slope_ < kGentle * *max_slope_) return slope_;
-  const double ahead = kStopTime * std::hypot(pose.twist->v_x, pose.twist->v_y);
+  const double ahead = stop_time_ * std::hypot(pose.twist->v_x, pose.twist->v_y);
   for (auto at = trail_.rbegin(); at != trail_.rend(); ++at) {
     const double way = (pose.T_map_body.position() - at->p_map).norm();
     if (way >= kGrowth) return slope_ + ahead * std::max(0.0, slope_ - at->slope) / way;

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -22,6 +23,8 @@ class SlopeGuard {
   /// `max_slope` [rad]; nothing: no such rule.
   explicit SlopeGuard(std::optional<double> max_slope) : max_slope_(max_slope) {}
 
+  /// [s] at its speed until the robot stands, learned from its stops; never less than at first.
+  void setStoppingTime(double seconds) { stop_time_ = std::max(kStopTime, seconds); }
   /// Takes the newest pose. Returns the ground to keep out of from now on, if it has just become
   /// too steep.
   std::optional<Fence> take(const PoseReading& pose);
@@ -33,6 +36,8 @@ class SlopeGuard {
   static constexpr const char* kName = "steep ground";
 
  private:
+  static constexpr double kStopTime = 0.5;  ///< [s]
+
   struct Place {
     Eigen::Vector2d p_map;
     double slope;  ///< [rad]
@@ -42,6 +47,7 @@ class SlopeGuard {
   Fence aheadOf(const Pose2& T_map_body, double slope) const;
 
   std::optional<double> max_slope_;
+  double stop_time_ = kStopTime;        ///< [s]
   int64_t newest_ = INT64_MIN;          ///< [us]
   std::optional<int64_t> steep_since_;  ///< [us]
   double told_ = 0.0;                   ///< [rad] slope that was told last; 0 = on good ground

@@ -39,6 +39,16 @@ Supervisor::Supervisor(const PlannerConfig& config, int64_t run_id)
       progress_(config.policy.patience),
       slopes_(config.max_slope) {}
 
+void Supervisor::setStoppingTime(double seconds) {
+  // A PROGRAM, its way to the motors, and what the robot does until the next measurement.
+  constexpr int64_t kDelay = 200'000;  // [us]
+  state_.map.setStoppingTime(seconds);
+  state_.config.policy.coast_time = seconds;
+  state_.config.policy.stop_lead =
+      std::max(PolicyConfig{}.stop_lead, static_cast<int64_t>(1e6 * seconds) + kDelay);
+  slopes_.setStoppingTime(seconds);
+}
+
 bool Supervisor::takeSet(const PatternSet& set) {
   if (!state_.set.offer(set, state_.tracker)) return false;
   noteNewSet();

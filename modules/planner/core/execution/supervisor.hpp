@@ -44,10 +44,7 @@ class Supervisor {
   const std::string& setRefusal() const { return state_.set.refusal(); }
   PlanningMap& map() { return state_.map; }
   /// [s] at its speed that the vehicle goes on after a zero command, learned from its stops.
-  void setStoppingTime(double seconds) {
-    state_.map.setStoppingTime(seconds);
-    state_.config.policy.coast_time = seconds;
-  }
+  void setStoppingTime(double seconds);
   const DistanceToGoal& distanceToGoal() const { return state_.map.distanceToGoal(); }
 
   /// `stop` may end a search early (a deadline); the configured expansions end it in any case.

@@ -53,9 +53,11 @@ void WayBack::remember(const LinkReading& link) {
   if (places_.size() > kMostPlaces) places_.pop_front();
 }
 
-/// An INS that does not tell is taken at its word: it knows a position, or there is no pose.
+/// An INS that never tells is taken at its word: it knows a position, or there is no pose. One that
+/// tells no more is not.
 bool WayBack::uncertain(const LinkReading& link) const {
-  return link.position_std > places_.back().std + kMoreStd;
+  const double std = places_.back().std;
+  return std::isfinite(std) && !(link.position_std <= std + kMoreStd);
 }
 
 void WayBack::stepBack() {
