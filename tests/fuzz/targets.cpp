@@ -74,6 +74,7 @@ void decodeAs(const uint8_t* bytes, size_t size) {
 }
 
 /// The first byte chooses the type; its fingerprint stands in front, so that the rest is looked at.
+/// A new type comes last: the inputs in the corpus name theirs by its place here.
 void message(const uint8_t* bytes, size_t size) {
   constexpr Target kTypes[] = {decodeAs<ins_t>,           decodeAs<scan_t>,
                                decodeAs<map_tile_t>,      decodeAs<goal_t>,
@@ -83,9 +84,9 @@ void message(const uint8_t* bytes, size_t size) {
                                decodeAs<learner_state_t>, decodeAs<learning_t>,
                                decodeAs<health_t>,        decodeAs<arm_t>,
                                decodeAs<operator_t>,      decodeAs<estop_t>,
-                               decodeAs<fence_t>,         decodeAs<stopping_t>,
                                decodeAs<mark_t>,          decodeAs<config_t>,
-                               decodeAs<manual_t>};
+                               decodeAs<manual_t>,        decodeAs<fence_t>,
+                               decodeAs<stopping_t>};
   static_assert(std::size(kTypes) == kChannels.size());
   if (size > 0) kTypes[bytes[0] % std::size(kTypes)](bytes + 1, size - 1);
 }

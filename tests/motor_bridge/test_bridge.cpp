@@ -172,6 +172,41 @@ TEST_CASE("clearing an E-stop twice within a step releases the controller's own,
   CHECK_FALSE(world.out.hold_device_stop);
 }
 
+TEST_CASE("an E-stop that the controller has kept over a restart of the bridge must be cleared") {
+  BridgeWorld world;
+  world.device.link_fault = "controller is being started up";
+  world.run(500'000);
+  world.device = DeviceReport{"", "the controller's emergency stop", true};
+  world.run(1'500'000);
+  CHECK(world.state() == State::kEstopped);
+  CHECK(world.reason() ==
+        "E-stop: the controller has held it since before the start (motor_bridge)");
+  world.arm();
+  world.run(200'000);
+  CHECK(world.state() == State::kEstopped);
+  CHECK(world.out.hold_device_stop);
+  world.bridge.receive(EstopRequest{world.now, false, "operator", "clear"}, world.now);
+  world.step();
+  CHECK(world.out.release_device_stop);
+  world.device = DeviceReport{};
+  world.run(1'500'000);
+  CHECK(world.state() == State::kDisarmed);
+  world.arm();
+  world.run(200'000);
+  CHECK(world.state() == State::kDriving);
+}
+
+TEST_CASE("a stop at the controller itself while the bridge runs is released by ARM") {
+  BridgeWorld world;
+  world.drive();
+  world.device = DeviceReport{"", "the controller's emergency stop", true};
+  world.run(500'000);
+  CHECK(world.state() == State::kFault);
+  world.arm();
+  world.step();
+  CHECK(world.out.release_device_stop);
+}
+
 TEST_CASE("one bad slot in one program stops, whichever slot it is") {
   for (const bool in_next : {false, true}) {
     for (int fault = 0; fault < 4; ++fault) {

@@ -149,7 +149,17 @@ void Bridge::receive(const FenceRequest& request, int64_t now) {
     count(std::string("FENCE refused: ") + describe(receipt));
 }
 
+/// An E-stop outlives the process that engaged it: the controller has kept it.
+void Bridge::meetController(int64_t now, const DeviceReport& device) {
+  if (controller_met_ || !device.link_fault.empty()) return;
+  controller_met_ = true;
+  if (!device.stop_latched || requests_.estop()) return;
+  requests_.receive(
+      {now, true, "motor_bridge", "the controller has held it since before the start"}, now);
+}
+
 BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
+  meetController(now, device);
   const FailsafeInputs in = look(now, device);
   BridgeOutput out;
   out.failsafe = failsafe_.update(in);

@@ -87,6 +87,7 @@ class Bridge {
 
   void count(const std::string& what) { ++counters_[what]; }
   void take(const Program& program, int64_t now);
+  void meetController(int64_t now, const DeviceReport& device);
   std::string stallFault(int64_t now) const;
   std::string leaseFault(int64_t now) const;
   bool mayGoOn(int64_t silent) const;
@@ -106,6 +107,7 @@ class Bridge {
   FenceWatch fences_;
   StoppingTime stopping_;
   OperatorRequests requests_;
+  bool controller_met_ = false;  ///< it has answered since the start
   OperatorLease operator_;
   ManualControl manual_;
   std::optional<int64_t> operator_lost_;  ///< [us] since when
