@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "common/geometry/degrees.hpp"
+
 namespace tread::motor {
 namespace {
 
@@ -12,10 +14,9 @@ constexpr int kBumpMeasurements = 3;         // at least so many must say it
 constexpr int64_t kWithin = 500'000;         // [us] of good measurements that end it
 constexpr double kRelief = 0.05;             // [rad, rad/s] below the limit that counts as good
 constexpr int64_t kFaultStands = 1'000'000;  // [us]
-constexpr double kDegrees = 57.29577951308232;
 
 std::string whole(double angle) {
-  return std::to_string(std::lround(angle * kDegrees));
+  return std::to_string(std::lround(toDegrees(angle)));
 }
 
 }  // namespace
