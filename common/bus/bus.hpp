@@ -96,6 +96,7 @@ class Bus {
           Message message{};
           if (!decode(spec, bytes, size, message)) return;
           noteReceipt(spec, message.utime, message.seq);
+          if (!trusted_) forgetSender(message);
           handler(message);
         });
     if (first && !overhears(channel.name)) listen(channel.name);
@@ -280,6 +281,8 @@ class HealthReporter {
   /// Sets a named counter, for instance {"refused: wrong checksum", 3}.
   void setCounter(const std::string& name, int64_t value);
   void addToCounter(const std::string& name, int64_t increment = 1);
+  /// For counters of what comes and goes: HEALTH has its size.
+  void removeCounter(const std::string& name) { counters_.erase(name); }
   /// Call in each step.
   void step(int64_t utime);
 

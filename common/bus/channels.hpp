@@ -87,6 +87,14 @@ inline bool stops(const fence_t& message) {
   return message.fence_kind != fence_t::FENCE_REMOVED;
 }
 
+/// What a message that is taken without its seal claims about its sender counts for nothing.
+template <class Message>
+void forgetSender(Message& /*message*/) {}
+/// Else a stranger's fences would be kept as those of the operator whose name they bear.
+inline void forgetSender(fence_t& message) {
+  message.fence_by.clear();
+}
+
 /// The whole table, for README, health checks and tests.
 inline constexpr std::array<ChannelSpec, 21> kChannels{
     kIns,      kScan,      kMap,        kGoal,         kPlan,     kPlanTree, kProgram,

@@ -38,14 +38,27 @@ struct FenceRoom {
 /// edge.
 double roomAt(const Fence& fence, const Eigen::Vector2d& p_map);
 
-/// The same for an outline at a pose. Where the outline crosses the fence, how far its farthest
-/// corner is over it; where it lies wholly beyond, the distance of the body's origin and the reach
-/// of the outline: coming back always makes it more. Far from the
-/// fence it is a lower bound.
+/// [m] by which an outline at a pose is over a fence; 0 = not at all.
+/** How far its farthest corner is over it, or how deep the fence's border or ground reaches into
+ * the outline, whichever is more. Where the fence cuts the outline in two, as a ditch does that is
+ * narrower than the robot: by how much the body's origin is nearer to it than the reach of the
+ * outline. Where the outline lies wholly beyond: the distance of the origin and that reach. Coming
+ * back, and leaving a ditch to either side, always makes it less. */
+double depthOver(const Fence& fence, const Pose2& T_map_body, const FootprintSize& outline);
+
+/// The room of an outline at a pose: the gap to the fence, or minus depthOver. Far from the fence
+/// it is a lower bound.
 double roomAt(const Fence& fence, const Pose2& T_map_body, const FootprintSize& outline);
 
 /// The least of all fences.
+FenceRoom roomAt(const std::vector<Fence>& fences, const Eigen::Vector2d& p_map);
 FenceRoom roomAt(const std::vector<Fence>& fences, const Pose2& T_map_body,
                  const FootprintSize& outline);
+
+/// [m] from the body's origin to the farthest corner of an outline.
+double reachOf(const FootprintSize& outline);
+
+/// [m] by which a position may be off whose standard deviation is given; NaN = unknown.
+double positionMargin(double std);
 
 }  // namespace tread

@@ -19,9 +19,9 @@ const char* describe(FenceReceipt receipt) {
     case FenceReceipt::kForbidden:
       return "only the operator who holds the robot may remove a fence";
     case FenceReceipt::kInvalid:
-      return "not a polygon of 3 to 64 corners with a name";
+      return "not a polygon of 3 to 64 corners with a name in ASCII";
     case FenceReceipt::kFull:
-      return "too many fences";
+      return "too many fences or corners";
   }
   return "unknown";
 }
@@ -31,20 +31,44 @@ int64_t FenceBook::count(const std::string& name) const {
                        [&](const Fence& fence) { return fence.name == name; });
 }
 
+bool FenceBook::fit(const std::vector<Fence>& fences) {
+  size_t corners = 0;
+  for (const Fence& fence : fences) corners += fence.corners.size();
+  return fences.size() <= kMost && corners <= kMostCorners;
+}
+
 FenceReceipt FenceBook::take(const FenceRequest& request, bool holds) {
-  if (!request.removes) {
-    if (!faultOf(request.fence).empty()) return FenceReceipt::kInvalid;
-    const bool known = std::find(fences_.begin(), fences_.end(), request.fence) != fences_.end();
-    if (known) return FenceReceipt::kKnown;
-    if (fences_.size() >= kMost) return FenceReceipt::kFull;
-    fences_.push_back(request.fence);
-    ++revision_;
-    return FenceReceipt::kAdded;
-  }
+  return request.removes ? remove(request.fence.name, holds) : add(request.fence, holds);
+}
+
+FenceReceipt FenceBook::add(const Fence& fence, bool holds) {
+  if (!faultOf(fence).empty()) return FenceReceipt::kInvalid;
+  std::vector<Fence> fences = fences_;
+  const auto known = std::find(fences.begin(), fences.end(), fence);
+  const bool is_known = known != fences.end();
+  const bool lasts = is_known && static_cast<size_t>(known - fences.begin()) < lasting_;
+  if (lasts || (is_known && !holds)) return FenceReceipt::kKnown;
+  // What a stranger added is the holder's from now on.
+  if (is_known) fences.erase(known);
+  const auto place = static_cast<std::ptrdiff_t>(holds ? lasting_ : fences.size());
+  fences.insert(fences.begin() + place, fence);
+  const auto strangers = place + 1;
+  while (!fit(fences) && strangers < static_cast<std::ptrdiff_t>(fences.size()))
+    fences.erase(fences.begin() + strangers);
+  if (!fit(fences)) return FenceReceipt::kFull;
+  fences_ = std::move(fences);
+  if (holds) ++lasting_;
+  ++revision_;
+  return is_known ? FenceReceipt::kKnown : FenceReceipt::kAdded;
+}
+
+FenceReceipt FenceBook::remove(const std::string& name, bool holds) {
   if (!holds) return FenceReceipt::kForbidden;
-  const auto gone =
-      std::remove_if(fences_.begin() + static_cast<std::ptrdiff_t>(own_), fences_.end(),
-                     [&](const Fence& fence) { return fence.name == request.fence.name; });
+  const auto named = [&](const Fence& fence) { return fence.name == name; };
+  const auto own = fences_.begin() + static_cast<std::ptrdiff_t>(own_);
+  const auto lasting = fences_.begin() + static_cast<std::ptrdiff_t>(lasting_);
+  lasting_ -= static_cast<size_t>(std::count_if(own, lasting, named));
+  const auto gone = std::remove_if(own, fences_.end(), named);
   if (gone == fences_.end()) return FenceReceipt::kNotThere;
   fences_.erase(gone, fences_.end());
   ++revision_;

@@ -33,12 +33,19 @@ const char* describe(FenceReceipt receipt);
 /// The fences in force: the robot's own, and what operators have added.
 /** One more fence only narrows, and is taken from everybody, as a stop is: fences of one name are
  * kept side by side. Removing widens: only the operator who holds the robot may do it, and the
- * robot's own fences stay. Those of operators last as long as the process. */
+ * robot's own fences stay. Those of operators last as long as the process; when the book is full,
+ * strangers' fences make room for one of the operator who holds the robot, the oldest first. */
 class FenceBook {
  public:
   static constexpr size_t kMost = 32;
+  /// Of all fences: the motor bridge looks at all of them in each of its steps.
+  static constexpr size_t kMostCorners = 512;
 
-  explicit FenceBook(std::vector<Fence> own = {}) : fences_(std::move(own)), own_(fences_.size()) {}
+  explicit FenceBook(std::vector<Fence> own = {})
+      : fences_(std::move(own)), own_(fences_.size()), lasting_(own_) {}
+
+  /// Whether a robot can look after so many fences and corners.
+  static bool fit(const std::vector<Fence>& fences);
 
   /// `holds`: the sender holds the robot.
   FenceReceipt take(const FenceRequest& request, bool holds);
@@ -50,8 +57,12 @@ class FenceBook {
   int64_t count(const std::string& name) const;
 
  private:
-  std::vector<Fence> fences_;  ///< the robot's own first
+  FenceReceipt add(const Fence& fence, bool holds);
+  FenceReceipt remove(const std::string& name, bool holds);
+
+  std::vector<Fence> fences_;  ///< the robot's own, then holders', then strangers', oldest first
   size_t own_;
+  size_t lasting_;  ///< how many are not strangers'
   int64_t revision_ = 0;
 };
 

@@ -2,9 +2,53 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/messages/fence_messages.hpp"
 
+#include <cstring>
+
 #include "common/messages/blank.hpp"
 
 namespace tread {
+namespace {
+
+constexpr size_t kHashDigits = 8;
+
+/// FNV-1a of kind and corners.
+uint32_t hashOf(const Fence& fence) {
+  uint32_t hash = 2166136261U;
+  const auto mix = [&hash](double number) {
+    number += 0.0;  // -0.0 is 0.0
+    uint64_t bits = 0;
+    std::memcpy(&bits, &number, sizeof bits);
+    for (int shift = 0; shift < 64; shift += 8) {
+      hash ^= static_cast<uint32_t>((bits >> shift) & 0xFFU);
+      hash *= 16777619U;
+    }
+  };
+  mix(fence.keep_out ? 1.0 : 0.0);
+  for (const Eigen::Vector2d& corner : fence.corners) {
+    mix(corner.x());
+    mix(corner.y());
+  }
+  return hash;
+}
+
+std::string counterPrefix(const std::string& name) {
+  return "fence " + name + " ";
+}
+
+}  // namespace
+
+std::string fenceCounter(const Fence& fence) {
+  std::string counter = counterPrefix(fence.name);
+  const uint32_t hash = hashOf(fence);
+  for (size_t digit = kHashDigits; digit-- > 0;)
+    counter += "0123456789abcdef"[(hash >> (4 * digit)) & 0xFU];
+  return counter;
+}
+
+bool countsFence(const std::string& counter, const std::string& name) {
+  const std::string prefix = counterPrefix(name);
+  return counter.size() == prefix.size() + kHashDigits && counter.rfind(prefix, 0) == 0;
+}
 
 FenceRequest requestFrom(const fence_t& message) {
   FenceRequest request;
@@ -34,9 +78,10 @@ fence_t toMessage(const FenceRequest& request) {
 void FenceReport::tell(const FenceBook& book, HealthReporter& health) {
   if (book.revision() == revision_) return;
   revision_ = book.revision();
-  for (const Fence& fence : book.fences())
-    if (told_.size() < kMost) told_.insert(fence.name);
-  for (const std::string& name : told_) health.setCounter(fenceCounter(name), book.count(name));
+  for (const std::string& counter : told_) health.removeCounter(counter);
+  told_.clear();
+  for (const Fence& fence : book.fences()) told_.insert(fenceCounter(fence));
+  for (const std::string& counter : told_) health.setCounter(counter, 1);
 }
 
 }  // namespace tread

@@ -18,21 +18,21 @@ FenceRequest requestFrom(const fence_t& message);
 /// Without utime and seq.
 fence_t toMessage(const FenceRequest& request);
 
-/// Name of the HEALTH counter that says how many fences of a name are in force.
-inline std::string fenceCounter(const std::string& name) {
-  return "fence " + name;
-}
+/// Name of the HEALTH counter of a fence: with a hash of its kind and corners, since several may
+/// bear its name.
+std::string fenceCounter(const Fence& fence);
+/// Whether a HEALTH counter is that of a fence of this name.
+bool countsFence(const std::string& counter, const std::string& name);
 
-/// Tells in HEALTH which fences are in force, so that tread-fence sees that they were taken.
+/// Tells in HEALTH which fences are in force, so that tread-fence sees that they were taken. There
+/// is no counter of what is not in force.
 class FenceReport {
  public:
   void tell(const FenceBook& book, HealthReporter& health);
 
  private:
-  static constexpr size_t kMost = 64;  ///< names; HEALTH has its size
-
   int64_t revision_ = -1;
-  std::set<std::string> told_;
+  std::set<std::string> told_;  ///< counters
 };
 
 }  // namespace tread

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "common/config/config_reader.hpp"
+#include "common/fence/fence_book.hpp"
+#include "common/geometry/degrees.hpp"
 
 namespace tread {
 namespace {
@@ -46,6 +48,7 @@ std::vector<Fence> readFences(ConfigReader& robot) {
     for (const auto& corner : corners) fence.corners.emplace_back(corner[0], corner[1]);
     const std::string fault = faultOf(fence);
     if (!fault.empty()) throw reader.error("corners", fault);
+    if (!FenceBook::fit(fences)) throw reader.error("corners", "too many fences or corners");
   }
   return fences;
 }
@@ -63,14 +66,12 @@ OperatorRules readOperators(ConfigReader reader) {
   return rules;
 }
 
-constexpr double kDegree = kPi / 180.0;
-
 /// People think of slopes in degrees.
 void readDegrees(ConfigReader& reader, const std::string& key, double& angle, Range range,
                  const std::string& unit, bool required) {
-  double degrees = angle / kDegree;
+  double degrees = toDegrees(angle);
   reader.number(key, degrees, range, unit, required);
-  angle = degrees * kDegree;
+  angle = toRadians(degrees);
 }
 
 void readTilt(ConfigReader& limits, RobotDescription& robot) {

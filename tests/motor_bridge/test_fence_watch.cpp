@@ -31,7 +31,8 @@ struct FencedWorld : BridgeWorld {
   Pose2 truth;
   double left = 0.0, right = 0.0;  ///< [m/s]
   double lag = 0.2;                ///< [s] of the tracks
-  double least_room = 1e9;         ///< [m] of the true outline, to any fence of the bridge
+  bool tells_speed = true, tells_turn = true;
+  double least_room = 1e9;  ///< [m] of the true outline, to any fence of the bridge
 
   explicit FencedWorld(std::vector<Fence> own, const Pose2& start = {}) : truth(start) {
     bridge = Bridge(fenced(std::move(own)));
@@ -43,9 +44,15 @@ struct FencedWorld : BridgeWorld {
     motion.x = truth.x;
     motion.y = truth.y;
     motion.yaw = truth.yaw;
-    motion.v_forward = 0.5 * (left + right);
-    motion.v_left = 0.0;
-    motion.yaw_rate = 0.5 * (right - left) / kGauge;
+    const double unknown = InsMotion::kUnknown;
+    motion.v_forward = tells_speed ? 0.5 * (left + right) : unknown;
+    motion.v_left = tells_speed ? 0.0 : unknown;
+    motion.yaw_rate = tells_turn ? 0.5 * (right - left) / kGauge : unknown;
+  }
+  void blind(bool speed, bool turn) {
+    tells_speed = !speed;
+    tells_turn = !turn;
+    tell();
   }
   void runFor(int64_t us) {
     for (const int64_t end = now + us; now < end;) move();
@@ -64,6 +71,13 @@ struct FencedWorld : BridgeWorld {
     runFor(1'300'000);
     arm();
     runFor(100'000);
+  }
+  /// Forgets what it was about to drive, after a stop.
+  void restart(double power_left, double power_right) {
+    planner.stands = true;
+    runFor(1'000'000);
+    planner.stands = false;
+    start(power_left, power_right);
   }
   void add(const Fence& fence, const std::string& by = "stranger") {
     bridge.receive(FenceRequest{by, false, fence}, now);
@@ -157,6 +171,88 @@ TEST_CASE("what measures no velocity counts as fast as it can be") {
   CHECK_THAT(world.reason(), Contains("fence yard"));
 }
 
+TEST_CASE("blind for its speed it stops at a fence, and is driven away from it and back in") {
+  for (const bool no_turn : {false, true}) {
+    FencedWorld world({yard()}, {9.0, 0, 0});
+    world.blind(true, no_turn);
+    world.start(0.3, 0.3);
+    CHECK(world.state() == State::kDisarmed);
+    CHECK_THAT(world.reason(), Contains("fence yard"));
+    CHECK(world.truth.x < 9.1);
+    world.restart(-1.0, -1.0);
+    world.runFor(3'000'000);
+    CHECK(world.state() == State::kDriving);
+    CHECK(world.truth.x < 7.0);
+    FencedWorld out({yard()}, {14.0, 0, 0});
+    out.blind(true, no_turn);
+    out.start(0.3, 0.3);
+    out.runFor(1'000'000);
+    CHECK(out.state() == State::kDisarmed);
+    CHECK_THAT(out.reason(), Contains("outside fence yard"));
+    CHECK(out.truth.x < 14.2);
+    out.restart(-1.0, -1.0);
+    out.runFor(9'000'000);
+    CHECK(out.state() == State::kDriving);
+    CHECK(out.truth.x < 9.0);
+  }
+}
+
+TEST_CASE("blind for its speed it counts as fast after its last command, and then as standing") {
+  FencedWorld world({yard()}, {4.0, 0, 0});
+  world.blind(true, false);
+  world.start(1.0, 1.0);
+  while (world.state() == State::kDriving) world.runFor(10'000);
+  const int64_t stopped = world.now;
+  // It says why for as long as it may still go on.
+  // It says why for as long as it may still go on.
+  while (world.now < stopped + 700'000) {
+    world.runFor(10'000);
+    REQUIRE_THAT(world.reason(), Contains("fence yard"));
+  }
+  world.restart(-1.0, -1.0);
+  CHECK(world.state() == State::kDriving);
+}
+
+TEST_CASE("a turn that is not measured does not make a known speed unknown") {
+  FencedWorld world({yard()}, {8.5, 0, 0});
+  world.blind(false, true);
+  world.start(0.15, 0.15);
+  world.runFor(20'000'000);
+  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.least_room >= 0.0);
+  CHECK(world.least_room < 0.25);
+}
+
+TEST_CASE("over a ditch it drives out to either side, but not across, and not back again") {
+  const Fence ditch{"ditch", true, {{-0.1, -9}, {0.1, -9}, {0.1, 9}, {-0.1, 9}}};
+  for (const double side : {-1.0, 1.0})
+    for (const double yaw : {0.0, 0.3}) {
+      const Pose2 there{side * 0.3, 0, yaw};
+      FencedWorld out({ditch}, there);
+      out.start(side, side);
+      out.runFor(3'000'000);
+      CHECK(out.state() == State::kDriving);
+      CHECK(side * out.truth.x > 1.0);
+      FencedWorld across({ditch}, there);
+      across.start(-side, -side);
+      across.runFor(3'000'000);
+      CHECK(across.state() == State::kDisarmed);
+      CHECK_THAT(across.reason(), Contains("outside fence ditch") && Contains("only back in"));
+      CHECK(side * across.truth.x > 0.1);
+      // Some of the way out, then back.
+      FencedWorld turns({ditch}, there);
+      turns.start(0.5 * side, 0.5 * side);
+      turns.runFor(300'000);
+      REQUIRE(turns.state() == State::kDriving);
+      const double reached = side * turns.truth.x;
+      REQUIRE(reached < 0.6);
+      turns.planner.always = TrackCommand{-0.5 * side, -0.5 * side};
+      turns.runFor(3'000'000);
+      CHECK(turns.state() == State::kDisarmed);
+      CHECK(side * turns.truth.x > reached - 0.1);
+    }
+}
+
 TEST_CASE("over a fence only the way back in is driven") {
   for (const double x : {10.2, 10.6, 14.0}) {
     FencedWorld out({yard()}, {x, 0, 0});
@@ -203,6 +299,18 @@ TEST_CASE("a fence that comes while it drives stops it, whoever sent it") {
   CHECK(world.least_room >= 0.0);
   CHECK(world.state() == State::kDisarmed);
   CHECK(world.bridge.counters().at("FENCE added") == 1);
+}
+
+TEST_CASE("strangers who fill the book do not keep the operator's fence out") {
+  FencedWorld world({});
+  world.start(0.0, 0.0);
+  for (size_t i = 0; i < FenceBook::kMost; ++i) {
+    const double x = 100.0 + static_cast<double>(i);
+    world.add({"far", true, {{x, 0}, {x + 1, 0}, {x, 1}}});
+  }
+  world.add(yard(), "ADA (operator)");
+  CHECK(world.bridge.fences().count("yard") == 1);
+  CHECK(world.bridge.fences().count("far") == FenceBook::kMost - 1);
 }
 
 TEST_CASE("a fence is removed by the operator who holds the robot, and by nobody else") {

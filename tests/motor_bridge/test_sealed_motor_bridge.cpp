@@ -92,23 +92,41 @@ TEST_CASE("a stranger's fence holds it, but only the operator takes a fence away
   world.drive();
   const FenceRequest fence{
       "stranger", false, {"trap", false, {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}}}};
+  const std::string counter = fenceCounter(fence.fence);
   world.forge(kFence, toMessage(fence));
   world.run(1'200'000);
   CHECK(world.drives());
-  CHECK(world.counter("fence trap") == 1);
+  CHECK(world.counter(counter) == 1);
   FenceRequest removal{"operator", true, {"trap", false, {}}};
   world.forge(kFence, toMessage(removal));
   world.run(1'200'000);
-  CHECK(world.counter("fence trap") == 1);
+  CHECK(world.counter(counter) == 1);
   CHECK(world.refused("unsealed") == 1);
   removal.by = "bob";
   world.bus.outside().publish(kFence, toMessage(removal));
   world.run(1'200'000);
-  CHECK(world.counter("fence trap") == 1);
+  CHECK(world.counter(counter) == 1);
   removal.by = "operator";
   world.bus.outside().publish(kFence, toMessage(removal));
   world.run(1'200'000);
-  CHECK(world.counter("fence trap") == 0);
+  CHECK(world.counter(counter) == 0);
+  CHECK(world.drives());
+}
+
+TEST_CASE("a stranger's fences in the operator's name do not keep the operator's own out") {
+  AttackedWorld world;
+  world.drive();
+  FenceRequest request{"operator", false, {"far", true, {{90, 0}, {91, 0}, {90, 1}}}};
+  for (size_t i = 0; i < FenceBook::kMost; ++i) {
+    request.fence.corners[0].x() += 1e-3;
+    world.forge(kFence, toMessage(request));
+  }
+  world.run(1'200'000);
+  CHECK(world.counter("FENCE added") == FenceBook::kMost);
+  request.fence.name = "people";
+  world.bus.outside().publish(kFence, toMessage(request));
+  world.run(1'200'000);
+  CHECK(world.counter(fenceCounter(request.fence)) == 1);
   CHECK(world.drives());
 }
 

@@ -423,8 +423,8 @@ TEST_CASE("A fence from anybody closes the way, and opens it again for who holds
     yard.bus.outside().publish(kFence, toMessage(FenceRequest{by, removes, yard_of_6_m}));
     yard.run(1.2);
     for (const counter_t& counter : yard.health.counters)
-      if (counter.counter_name == fenceCounter("yard")) return counter.counted;
-    return int64_t{-1};
+      if (counter.counter_name == fenceCounter(yard_of_6_m)) return counter.counted;
+    return int64_t{0};
   };
   yard.run(1.5);
   yard.sendGoal(10.0);

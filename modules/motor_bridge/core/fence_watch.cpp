@@ -8,8 +8,6 @@
 namespace tread::motor {
 namespace {
 
-constexpr double kSigmas = 2.0;              // of the position's standard deviation
-constexpr double kUnknownStd = 0.1;          // [m] where the INS tells none
 constexpr double kStep = 0.1;                // [s] between the poses that are looked at
 constexpr double kMuchTurn = 0.7;            // [1] of a commanded turn that is made at most
 constexpr double kSlack = 0.05;              // [m] by which a pose outside may seem farther out
@@ -27,6 +25,19 @@ double effort(const TrackCommand& command) {
   return std::abs(command.left) + std::abs(command.right);
 }
 
+/// [us]
+int64_t toMicroseconds(double seconds) {
+  return static_cast<int64_t>(1e6 * seconds);
+}
+
+/// Adds what moves and is not there yet.
+void add(const Twist2& twist, std::vector<Twist2>& twists) {
+  if (std::hypot(twist.v_x, twist.v_y) < kStill && std::abs(twist.omega) < kStill) return;
+  for (const Twist2& other : twists)
+    if (other.v_x == twist.v_x && other.v_y == twist.v_y && other.omega == twist.omega) return;
+  twists.push_back(twist);
+}
+
 }  // namespace
 
 void FenceWatch::receive(const InsMotion& ins) {
@@ -39,44 +50,58 @@ void FenceWatch::receive(const InsMotion& ins) {
 void FenceWatch::command(const TrackCommand& command, int64_t now) {
   if (given_.empty() || given_.back().command != command) given_.push_back({now, command});
   // The last one before the window holds in it, too.
-  const int64_t begin = now - static_cast<int64_t>(1e6 * motion_.delay);
+  const int64_t begin = now - toMicroseconds(motion_.delay);
   while (given_.size() > 1 && given_[1].utime <= begin) given_.pop_front();
+  if (command.left > 0.0 || command.right > 0.0) ahead_ = now;
+  if (command.left < 0.0 || command.right < 0.0) back_ = now;
 }
 
-std::vector<Twist2> FenceWatch::twists() const {
+std::vector<double> FenceWatch::speeds(int64_t now) const {
+  if (std::isfinite(ins_.v_forward)) return {ins_.v_forward};
+  // By then what was commanded last has begun and ended: the stopping time is learned on this
+  // ground, lag and braking are in it.
+  const int64_t begin = now - toMicroseconds(motion_.delay + limits_.stopping_time);
+  std::vector<double> speeds;
+  if (ahead_ && *ahead_ > begin) speeds.push_back(motion_.full_speed);
+  if (back_ && *back_ > begin) speeds.push_back(-motion_.full_speed);
+  if (speeds.empty()) speeds.push_back(0.0);
+  return speeds;
+}
+
+std::vector<Twist2> FenceWatch::twists(int64_t now) const {
   std::vector<Twist2> twists;
-  const bool measured =
-      std::isfinite(ins_.v_forward) && std::isfinite(ins_.v_left) && std::isfinite(ins_.yaw_rate);
-  // Unmeasured, it may be as fast as it can.
-  if (measured)
-    twists.push_back({ins_.v_forward, ins_.v_left, ins_.yaw_rate});
-  else
-    twists = {{motion_.full_speed, 0.0, 0.0}, {-motion_.full_speed, 0.0, 0.0}};
-  if (given_.empty()) return twists;
-  const auto fastest = std::max_element(
-      given_.begin(), given_.end(),
-      [](const Given& a, const Given& b) { return effort(a.command) < effort(b.command); });
-  for (const TrackCommand& command : {given_.back().command, fastest->command}) {
-    const double left = motion_.speed_per_command * command.left;
-    const double right = motion_.speed_per_command * command.right;
-    for (const double share : {motion_.least_turn, kMuchTurn})
-      twists.push_back({0.5 * (left + right), 0.0, share * (right - left) / motion_.gauge});
+  std::vector<double> rates;
+  if (std::isfinite(ins_.yaw_rate)) rates.push_back(ins_.yaw_rate);
+  if (!given_.empty()) {
+    const auto fastest = std::max_element(
+        given_.begin(), given_.end(),
+        [](const Given& a, const Given& b) { return effort(a.command) < effort(b.command); });
+    for (const TrackCommand& command : {given_.back().command, fastest->command}) {
+      const double left = motion_.speed_per_command * command.left;
+      const double right = motion_.speed_per_command * command.right;
+      const double turn = (right - left) / motion_.gauge;
+      for (const double share : {motion_.least_turn, kMuchTurn})
+        add({0.5 * (left + right), 0.0, share * turn}, twists);
+      if (!std::isfinite(ins_.yaw_rate)) rates.push_back(kMuchTurn * turn);
+    }
   }
-  const auto stands = [](const Twist2& twist) {
-    return std::hypot(twist.v_x, twist.v_y) < kStill && std::abs(twist.omega) < kStill;
-  };
-  twists.erase(std::remove_if(twists.begin(), twists.end(), stands), twists.end());
+  if (rates.empty()) rates.push_back(0.0);
+  const double v_left = std::isfinite(ins_.v_left) ? ins_.v_left : 0.0;
+  for (const double speed : speeds(now))
+    for (const double rate : rates) add({speed, v_left, rate}, twists);
   return twists;
 }
 
-std::string FenceWatch::faultOfFence(const Fence& fence, double& best,
-                                     const std::vector<Pose2>& ways) const {
-  const double std = std::isfinite(ins_.position_std) ? ins_.position_std : kUnknownStd;
-  const FootprintSize grown = limits_.outline.widened(kSigmas * std);
-  const double room = roomAt(fence, {ins_.x, ins_.y, ins_.yaw}, grown);
+std::string FenceWatch::faultOfFence(const Fence& fence, double& best, const Ways& ways) const {
+  const Pose2 here{ins_.x, ins_.y, ins_.yaw};
+  const FootprintSize grown = limits_.outline.widened(positionMargin(ins_.position_std));
+  // Nothing that lies farther away needs the closer look, which costs a hundred times as much.
+  const bool far = roomAt(fence, here.position()) > reachOf(grown) + ways.farthest;
+  const double room = far ? 0.0 : roomAt(fence, here, grown);
   best = room < 0.0 ? std::max(best, room) : -std::numeric_limits<double>::infinity();
-  double least = room;
-  for (const Pose2& pose : ways) least = std::min(least, roomAt(fence, pose, grown));
+  if (far) return "";
+  double least = std::min(room, 0.0);
+  for (const Pose2& pose : ways.poses) least = std::min(least, -depthOver(fence, pose, grown));
   if (room >= 0.0)
     return least >= 0.0 ? ""
                         : "fence " + fence.name + ": " + centimetres(room) +
@@ -109,11 +134,13 @@ std::string FenceWatch::fault(int64_t now) {
   const double age = std::clamp(1e-6 * static_cast<double>(now - ins_.utime), 0.0, kMostAge);
   const double end = age + limits_.stopping_time;
   const Pose2 here{ins_.x, ins_.y, ins_.yaw};
-  std::vector<Pose2> ways;
-  for (const Twist2& twist : twists()) {
-    for (double t = kStep; t < end; t += kStep) ways.push_back(here * integrate(twist, t));
-    ways.push_back(here * integrate(twist, end));
+  Ways ways;
+  for (const Twist2& twist : twists(now)) {
+    for (double t = kStep; t < end; t += kStep) ways.poses.push_back(here * integrate(twist, t));
+    ways.poses.push_back(here * integrate(twist, end));
   }
+  for (const Pose2& pose : ways.poses)
+    ways.farthest = std::max(ways.farthest, distanceBetween(here, pose));
   std::string worst;
   for (size_t i = 0; i < fences.size(); ++i) {
     const std::string fault = faultOfFence(fences[i], best_[i], ways);

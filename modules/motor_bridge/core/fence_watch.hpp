@@ -24,7 +24,9 @@ struct FenceLimits {
 /// Sees to it that the outline stays within the fences, whoever commands.
 /** For each step: the motions that may be under way (the measured twist, the newest command and the
  * fastest one of the last moments, with little and with much of their turn) go on for the age of
- * the pose and the stopping time. The outline, grown by two standard deviations of the position,
+ * the pose and the stopping time. A speed that is not measured counts as full, but only the way the
+ * tracks were commanded lately, so that the robot can be driven away and back in; a turn that is
+ * not measured is as commanded. The outline, grown by two standard deviations of the position,
  * must not cross a fence on these ways. What is over a fence already may only come back: no way may
  * lead farther out than the farthest in it has been since it was last armed. */
 class FenceWatch {
@@ -52,17 +54,28 @@ class FenceWatch {
     TrackCommand command;
   };
 
+  /// Poses that the motions under way may lead to.
+  struct Ways {
+    std::vector<Pose2> poses;
+    double farthest = 0.0;  ///< [m] from here
+  };
+
   /// Told for a second: arming is needed then, and a person who drives on without INS knows it.
   std::string blindness(int64_t now);
-  std::vector<Twist2> twists() const;
-  std::string faultOfFence(const Fence& fence, double& best, const std::vector<Pose2>& ways) const;
+  /// [m/s] forward, as measured; else the full speed each way in which a track was commanded
+  /// lately.
+  std::vector<double> speeds(int64_t now) const;
+  std::vector<Twist2> twists(int64_t now) const;
+  std::string faultOfFence(const Fence& fence, double& best, const Ways& ways) const;
 
   FenceLimits limits_;
   MotionLimits motion_;
   FenceBook book_;
   InsMotion ins_;
-  std::deque<Given> given_;   ///< of the last moments, oldest first
-  std::vector<double> best_;  ///< [m] by fence: most room since it was crossed
+  std::deque<Given> given_;       ///< of the last moments, oldest first
+  std::optional<int64_t> ahead_;  ///< [us] when a track was last commanded forward
+  std::optional<int64_t> back_;   ///< [us] ... backward
+  std::vector<double> best_;      ///< [m] by fence: most room since it was crossed
   int64_t best_revision_ = -1;
   std::optional<int64_t> blind_since_;  ///< [us]
 };

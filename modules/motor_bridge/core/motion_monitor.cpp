@@ -7,6 +7,8 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "common/geometry/degrees.hpp"
+
 namespace tread::motor {
 namespace {
 
@@ -85,7 +87,6 @@ struct Judge {
  private:
   /// What a wrong time makes of a path that is driven unevenly [rad].
   double lateRate(double path) const { return 2.0 * limits.time_error * path / sums.seconds(); }
-  double degrees(double angle) const { return angle * 57.29577951308232; }
 
   std::string ownRate() const {
     if (sums.no_rate > 0.2 * sums.seconds()) return "";
@@ -93,7 +94,7 @@ struct Judge {
         kYawSlack + lateRate(sums.gyro_path) + kRateError * sums.gyro_path)
       return "";
     return words("heading and gyro differ: %0 and %0 deg in %1 s; check the INS, then ARM",
-                 {degrees(sums.turned), degrees(sums.gyro), sums.seconds()});
+                 {toDegrees(sums.turned), toDegrees(sums.gyro), sums.seconds()});
   }
   std::string ownVelocity() const {
     if (sums.no_velocity > 0.2 * sums.seconds()) return "";
@@ -128,7 +129,7 @@ struct Judge {
     return words(
         "moves %2 m, %0 deg in %1 s though zero is commanded: slides or rolls, or "
         "the INS drifts",
-        {sums.position.norm(), degrees(sums.turned), sums.seconds()});
+        {sums.position.norm(), toDegrees(sums.turned), sums.seconds()});
   }
   std::string backwards() const {
     return words(
@@ -142,7 +143,7 @@ struct Judge {
     const double asked = least / sums.seconds();
     const std::string told =
         words("%2 m, %0 deg in %1 s where tracks make %2 m at least",
-              {sums.position.norm(), degrees(sums.turned), sums.seconds(), least});
+              {sums.position.norm(), toDegrees(sums.turned), sums.seconds(), least});
     if (std::min(left, right) > 0.5 * asked)
       return "tracks spin or pose frozen: " + told + "; look, then ARM";
     if (std::isfinite(motors.current_left) && std::isfinite(motors.current_right))
@@ -154,9 +155,9 @@ struct Judge {
     const double off = beyond(sums.turned, sums.turn_min - yaw_slack, sums.turn_max + yaw_slack);
     if (off == 0.0) return "";
     if (stands) return uncommanded();
-    const std::string told = words(
-        "turns %0 deg in %1 s, commands explain %0 to %0",
-        {degrees(sums.turned), sums.seconds(), degrees(sums.turn_min), degrees(sums.turn_max)});
+    const std::string told = words("turns %0 deg in %1 s, commands explain %0 to %0",
+                                   {toDegrees(sums.turned), sums.seconds(),
+                                    toDegrees(sums.turn_min), toDegrees(sums.turn_max)});
     if (sums.turned * sums.turn < 0.0 && std::abs(sums.turned) > 0.3 * std::abs(sums.turn))
       return told + ": the wrong way; check heading and tracks";
     if (std::abs(sums.turned) < std::abs(sums.turn))
@@ -254,7 +255,7 @@ std::string MotionMonitor::surelyWrong() const {
   const double much = kYawJump + late * step.turn_reach;
   if (beyond(step.turned, step.turn_min - much, step.turn_max + much) != 0.0)
     return words("heading jumps %0 deg in %2 s; check the INS, then ARM",
-                 {step.turned * 57.29577951308232, step.seconds()});
+                 {toDegrees(step.turned), step.seconds()});
   return standingTrack(track_.utime());
 }
 

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "common/geometry/degrees.hpp"
+
 namespace tread::motor {
 namespace {
 
@@ -13,12 +15,11 @@ constexpr int64_t kWithin = 500'000;         // [us] of good measurements that e
 constexpr double kRelief = 0.05;             // [rad, rad/s] below the limit that counts as good
 constexpr int64_t kSilent = 300'000;         // [us] without a measurement
 constexpr int64_t kFaultStands = 1'000'000;  // [us]
-constexpr double kDegrees = 57.29577951308232;
 
 const std::string kUnmeasured = "INS measures no roll and pitch: their limits cannot be kept";
 
 std::string whole(double angle) {
-  return std::to_string(std::lround(angle * kDegrees));
+  return std::to_string(std::lround(toDegrees(angle)));
 }
 
 }  // namespace

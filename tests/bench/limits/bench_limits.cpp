@@ -8,14 +8,13 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
+#include "common/geometry/degrees.hpp"
 #include "tests/bench/limits/limit_run.hpp"
 
 namespace {
 
 using namespace tread;
 using namespace tread::limits;
-
-constexpr double kDegrees = 57.29577951308232;
 
 struct Arguments {
   int missions = 100;
@@ -30,7 +29,7 @@ void print(uint64_t seed, const LimitWorld& world, const LimitRun& run) {
       "seed %llu: %s after %.0f s and %.1f m; room %.3f m, farther out %.3f m, tilt %.1f deg; "
       "stops of the bridge: %d fence, %d tilt%s%s%s; %s\n",
       static_cast<unsigned long long>(seed), run.arrived ? "arrived" : "not arrived", run.seconds,
-      run.distance, run.least_room, run.farther_out, run.tilt * kDegrees, run.fence_stops,
+      run.distance, run.least_room, run.farther_out, toDegrees(run.tilt), run.fence_stops,
       run.tilt_stops, world.planner_knows ? "" : "; planner knows no fence",
       world.starts_outside ? "; starts outside" : "", world.surprise_s ? "; surprise" : "",
       run.last_plan.c_str());
@@ -70,7 +69,7 @@ int drive(const Arguments& arguments) {
       "with 95 %% confidence); %d drove, %d arrived; the bridge stopped %d at a fence and %d by "
       "tilt; least room %.3f m, most tilt %.1f deg; %d started outside, %d of them came in\n",
       arguments.missions, metres, breaches, tilted, 300.0 / arguments.missions, drove, arrived,
-      fence_stops, tilt_stops, least, worst * kDegrees, outside, back_in);
+      fence_stops, tilt_stops, least, toDegrees(worst), outside, back_in);
   return breaches + tilted == 0 ? 0 : 1;
 }
 

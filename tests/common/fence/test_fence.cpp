@@ -19,6 +19,15 @@ const Fence kYard{"yard", false, {{0, 0}, {20, 0}, {20, 10}, {0, 10}}};
 const Fence kPond{"pond", true, {{8, 4}, {12, 4}, {12, 6}, {8, 6}}};
 /// With a corner that reaches into it.
 const Fence kHook{"hook", false, {{0, 0}, {20, 0}, {20, 10}, {10, 5}, {0, 10}}};
+/// Narrower than the robot, one with corners under it.
+const Fence kDitch{"ditch", true, {{-3, 3}, {23, 6}, {23, 6.15}, {-3, 3.15}}};
+const Fence kPath{
+    "path", true, {{2, -3}, {2, 5}, {9, 6}, {18, 13}, {18, 12.7}, {9, 5.7}, {2.3, 4.7}, {2.3, -3}}};
+
+/// Across the way of a robot that drives along x.
+Fence ditchOf(double width) {
+  return {"ditch", true, {{0, -9}, {width, -9}, {width, 9}, {0, 9}}};
+}
 
 /// Whether any point of the outline, finely sampled, lies on forbidden ground.
 bool crossesBySampling(const Fence& fence, const Pose2& pose) {
@@ -75,22 +84,41 @@ TEST_CASE("what has room crosses nothing, and what crosses has none, wherever it
   int crossing = 0;
   for (int i = 0; i < 4000; ++i) {
     const Pose2 pose{x(engine), y(engine), yaw(engine)};
-    for (const Fence& fence : {kYard, kPond, kHook}) {
+    for (const Fence& fence : {kYard, kPond, kHook, kDitch, kPath}) {
       const double room = roomAt(fence, pose, kBody);
       const bool crosses = crossesBySampling(fence, pose);
       crossing += crosses ? 1 : 0;
       INFO(fence.name << " " << pose.x << " " << pose.y << " " << pose.yaw << " room " << room);
       if (crosses) REQUIRE(room < 0.0);
-      if (!crosses) REQUIRE(room > -0.02);  // between the samples
+      // Between the samples some of its edge may cross.
+      if (!crosses) REQUIRE(roomAt(fence, pose, kBody.widened(-0.03)) >= 0.0);
     }
   }
   CHECK(crossing > 1000);
+}
+
+TEST_CASE("over a ditch narrower than itself the room is negative, and grows to both ways out") {
+  for (const double width : {0.02, 0.1, 0.3, 0.6, 0.9, 1.2, 1.31, 3.0})
+    for (const double yaw : {0.0, 0.3, kPi / 4, kPi / 2})
+      for (const double way : {-1.0, 1.0}) {
+        double before = -1e9;
+        for (double x = width / 2; std::abs(x) < 9.0; x += way * 0.01) {
+          const double room = roomAt(ditchOf(width), {x, 0.0, yaw}, kBody);
+          INFO(width << " " << yaw << " at " << x << ": " << room << " after " << before);
+          if (std::abs(x - width / 2) < width / 2 + 0.33) REQUIRE(room < -0.01);
+          REQUIRE(room >= before - 1e-9);
+          before = std::min(room, 0.0);
+        }
+        CHECK(before == 0.0);
+      }
 }
 
 TEST_CASE("the nearest of all fences counts, and without fences there is endless room") {
   const std::vector<Fence> both{kYard, kPond};
   CHECK(roomAt(both, {7.0, 5.0, 0.0}, kBody).nearest == "pond");
   CHECK(roomAt(both, {1.0, 5.0, 0.0}, kBody).nearest == "yard");
+  CHECK(roomAt(both, Vector2d(7.0, 5.0)).nearest == "pond");
+  CHECK(roomAt(both, Vector2d(7.0, 5.0)).metres == Approx(1.0));
   CHECK(roomAt(std::vector<Fence>{}, {7.0, 5.0, 0.0}, kBody).metres ==
         std::numeric_limits<double>::infinity());
 }
@@ -105,5 +133,9 @@ TEST_CASE("what is no polygon is told in words") {
   CHECK(fault({{0, 0}, {4, 3}, {4, 0}, {0, 2}}) == "it crosses itself: give its corners in turn");
   CHECK(fault({{0, 0}, {1, 0}, {std::nan(""), 1}}) == "a corner is no place in map");
   CHECK(fault({{0, 0}, {1, 0}, {1, 1e6}}) == "a corner is no place in map");
-  CHECK(fault({{0, 0}, {1, 0}, {1, 1}}, "") == "its name needs 1 to 32 characters");
+  const std::string name = "its name needs 1 to 32 printable ASCII characters";
+  CHECK(fault({{0, 0}, {1, 0}, {1, 1}}, "People's yard, no. 2 ~").empty());
+  for (const char* odd : {"", "a\nb", "\x1b[2J", "caf\xc3\xa9", "\x7f", "\x9b"})
+    CHECK(fault({{0, 0}, {1, 0}, {1, 1}}, odd) == name);
+  CHECK(fault({{0, 0}, {1, 0}, {1, 1}}, std::string(33, 'a')) == name);
 }

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <cmath>
+#include <memory>
+#include <set>
+
 #include <catch2/catch.hpp>
 
+#include "common/bus/virtual_bus.hpp"
 #include "common/fence/fence_book.hpp"
 #include "common/messages/fence_messages.hpp"
 
@@ -52,6 +57,97 @@ TEST_CASE("what is no fence is refused, and so are more than a robot can look af
     CHECK(book.take({"ada", false, square("f" + std::to_string(i), 9)}, true) ==
           FenceReceipt::kAdded);
   CHECK(book.take({"ada", false, square("more", 9)}, true) == FenceReceipt::kFull);
+}
+
+TEST_CASE("strangers' fences make room for those of who holds the robot, the oldest first") {
+  FenceBook book({square("site", 50)});
+  CHECK(book.take({"ada", false, square("yard", 9)}, true) == FenceReceipt::kAdded);
+  for (size_t i = 2; i < FenceBook::kMost; ++i)
+    CHECK(book.take({"stranger", false, square("s" + std::to_string(i), 99)}, false) ==
+          FenceReceipt::kAdded);
+  CHECK(book.take({"stranger", false, square("more", 9)}, false) == FenceReceipt::kFull);
+  const int64_t revision = book.revision();
+  CHECK(book.take({"ada", false, square("people", 9)}, true) == FenceReceipt::kAdded);
+  CHECK(book.revision() == revision + 1);
+  CHECK(book.fences().size() == FenceBook::kMost);
+  CHECK(book.count("s2") == 0);
+  // What the holder asks for, too, is kept as the holder's.
+  CHECK(book.take({"ada", false, square("s3", 99)}, true) == FenceReceipt::kKnown);
+  for (size_t i = 4; i < FenceBook::kMost; ++i)
+    CHECK(book.take({"ada", false, square("a" + std::to_string(i), 9)}, true) ==
+          FenceReceipt::kAdded);
+  CHECK(book.take({"ada", false, square("last", 9)}, true) == FenceReceipt::kFull);
+  for (const char* kept : {"site", "yard", "people", "s3", "a4"}) CHECK(book.count(kept) == 1);
+  CHECK(book.count("s4") == 0);
+  // One of the holder's gone, and a stranger's there instead: it goes again.
+  CHECK(book.take(removal("yard"), true) == FenceReceipt::kRemoved);
+  CHECK(book.take({"stranger", false, square("more", 9)}, false) == FenceReceipt::kAdded);
+  CHECK(book.take({"ada", false, square("last", 9)}, true) == FenceReceipt::kAdded);
+  CHECK(book.count("more") == 0);
+}
+
+TEST_CASE("so many corners as the motor bridge cannot look at in a step are not taken") {
+  const auto disc = [](double radius) {
+    Fence fence{"disc", true, {}};
+    for (size_t i = 0; i < Fence::kMostCorners; ++i) {
+      const double angle = 2.0 * kPi * static_cast<double>(i) / Fence::kMostCorners;
+      fence.corners.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+    }
+    return fence;
+  };
+  FenceBook book;
+  for (size_t i = 0; i < FenceBook::kMostCorners / Fence::kMostCorners; ++i)
+    CHECK(book.take({"", false, disc(1.0 + static_cast<double>(i))}, false) ==
+          FenceReceipt::kAdded);
+  CHECK(book.take({"", false, square("small", 1)}, false) == FenceReceipt::kFull);
+  CHECK(book.take({"ada", false, square("small", 1)}, true) == FenceReceipt::kAdded);
+}
+
+TEST_CASE("the counter of a fence tells it from others of its name") {
+  const Fence yard = square("yard", 9);
+  Fence other = yard;
+  CHECK(fenceCounter(other) == fenceCounter(yard));
+  other.corners[0].x() = -0.0;
+  CHECK(fenceCounter(other) == fenceCounter(yard));
+  other.keep_out = true;
+  CHECK(fenceCounter(other) != fenceCounter(yard));
+  CHECK(fenceCounter(square("yard", 9.001)) != fenceCounter(yard));
+  CHECK(countsFence(fenceCounter(other), "yard"));
+  CHECK_FALSE(countsFence(fenceCounter(square("yard 2", 9)), "yard"));
+  CHECK_FALSE(countsFence(fenceCounter(square("my yard", 9)), "yard"));
+}
+
+TEST_CASE("HEALTH counts the fences in force and no others, however many have come and gone") {
+  struct Teller : Node {
+    explicit Teller(Bus& bus) : health(bus, "teller", "") {}
+    int64_t period() const override { return 1'000'000; }
+    void step(int64_t utime) override {
+      for (int i = 0; i < 20; ++i) {
+        const std::string name = "f" + std::to_string(count++);
+        if (i > 0) book.take(removal("f" + std::to_string(count - 2)), true);
+        book.take({"ada", false, square(name, 9)}, true);
+        report.tell(book, health);
+      }
+      health.step(utime);
+      book.take(removal("f" + std::to_string(count - 1)), true);
+    }
+    FenceBook book{{square("site", 50)}};
+    FenceReport report;
+    HealthReporter health;
+    int count = 0;
+  };
+  VirtualBus bus{1};
+  std::set<std::string> told;
+  bus.outside().subscribe<health_t>(kHealth, [&](const health_t& message) {
+    told.clear();
+    for (const counter_t& counter : message.counters) told.insert(counter.counter_name);
+  });
+  bus.addNode("teller", [](Bus& end) { return std::make_unique<Teller>(end); });
+  for (int i = 0; i < 10; ++i) {
+    bus.runUntil(bus.now() + 1'000'000);
+    REQUIRE(told.size() == 2);
+    CHECK(told.count(fenceCounter(square("site", 50))) == 1);
+  }
 }
 
 TEST_CASE("a fence goes through its message unchanged, and broken messages make no fence") {

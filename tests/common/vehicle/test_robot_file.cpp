@@ -124,4 +124,9 @@ TEST_CASE("fences stand in the robot's file, and one that is none is told with i
   CHECK(robot.fences[0] == Fence{"yard", true, {{0, 0}, {4, 0}, {4, 3}}});
   CHECK_THAT(refusalOf(with("[[0, 0], [4, 0]]"), "p.yaml"),
              Contains("corners") && Contains("a fence needs 3 to 64 corners"));
+  std::string more = with("[[0, 0], [4, 0], [4, 3]]");
+  for (int i = 0; i < 32; ++i)
+    more.insert(more.find("  - {name: yard"),
+                "  - {name: pond, kind: keep_out, corners: [[0, 0], [4, 0], [4, 3]]}\n");
+  CHECK_THAT(refusalOf(more, "p.yaml"), Contains("too many fences or corners"));
 }

@@ -22,17 +22,19 @@ FenceCall::FenceCall(Bus& bus, const Requester& requester, FenceRequest request,
       patience_(static_cast<int64_t>(patience * 1e6)) {
   request_.by = requester.signature();
   bus.subscribe<health_t>(kHealth, [this](const health_t& message) {
-    int64_t count = 0;
+    bool in_force = false;
     for (const counter_t& counter : message.counters)
-      if (counter.counter_name == fenceCounter(request_.fence.name)) count = counter.counted;
+      in_force |= request_.removes ? countsFence(counter.counter_name, request_.fence.name)
+                                   : counter.counter_name == fenceCounter(request_.fence);
     // What was said before the call is no answer.
-    if (started_ && message.utime > beacon_.robotTime(*started_)) shown_[message.process] = count;
+    if (started_ && message.utime > beacon_.robotTime(*started_))
+      shown_[message.process] = in_force != request_.removes;
   });
 }
 
 bool FenceCall::shownBy(const std::string& process) const {
   const auto found = shown_.find(process);
-  return found != shown_.end() && (found->second > 0) != request_.removes;
+  return found != shown_.end() && found->second;
 }
 
 CallResult FenceCall::step(int64_t utime) {

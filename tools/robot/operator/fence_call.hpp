@@ -30,10 +30,10 @@ class FenceCall : public Call {
   Bus& bus_;
   OperatorBeacon beacon_;
   FenceRequest request_;
-  int64_t patience_;                      ///< [us]
-  std::map<std::string, int64_t> shown_;  ///< by process: how many fences of that name
-  std::optional<int64_t> started_;        ///< [us]
-  int64_t next_ = 0;                      ///< [us]
+  int64_t patience_;                   ///< [us]
+  std::map<std::string, bool> shown_;  ///< by process: what was asked for
+  std::optional<int64_t> started_;     ///< [us]
+  int64_t next_ = 0;                   ///< [us]
   int64_t seq_ = 0;
 };
 

@@ -50,10 +50,8 @@ void PlanningMap::assumeFreeUnder(const Pose2& T_map_body) {
 }
 
 void PlanningMap::setPositionStd(double std) {
-  constexpr double kSigmas = 2.0;
-  constexpr double kUnknown = 0.2;  // [m]
-  constexpr double kStep = 0.05;    // [m] finer changes are not worth another look at the map
-  const double wanted = std::isfinite(std) ? kSigmas * std : kUnknown;
+  constexpr double kStep = 0.05;  // [m] finer changes are not worth another look at the map
+  const double wanted = positionMargin(std);
   if (wanted <= position_growth_ && wanted > position_growth_ - 2.0 * kStep) return;
   position_growth_ = kStep * std::ceil(wanted / kStep);
   fenced_changed_ = true;

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "common/geometry/degrees.hpp"
+
 namespace tread::planner {
 namespace {
 
@@ -22,9 +24,7 @@ constexpr double kHalfWidth = 1.0;  // [m]
 }  // namespace
 
 std::string SlopeGuard::words() const {
-  const auto degrees = [](double angle) {
-    return std::to_string(std::lround(angle * 180.0 / kPi));
-  };
+  const auto degrees = [](double angle) { return std::to_string(std::lround(toDegrees(angle))); };
   return "tilts " + degrees(slope_) + " deg, plans allow " + degrees(max_slope_.value_or(0.0));
 }
 

@@ -3,7 +3,6 @@
 #include "modules/planner/core/map/fenced_ground.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace tread::planner {
 namespace {
@@ -41,15 +40,6 @@ void visitNear(const CellBox& box, double size, double near, double far, const R
 }
 
 }  // namespace
-
-FenceRoom FencedGround::room(const Eigen::Vector2d& p_map) const {
-  FenceRoom least{std::numeric_limits<double>::infinity(), ""};
-  for (const Fence& fence : fences_) {
-    const double room = roomAt(fence, p_map);
-    if (room < least.metres) least = {room, fence.name};
-  }
-  return least;
-}
 
 double FencedGround::depth(const Pose2& T_map_body, const FootprintSize& footprint) const {
   if (fences_.empty()) return 0.0;

@@ -29,7 +29,7 @@ class FencedGround {
   /// [m] by which a footprint comes nearer than the growth; 0 = it does not.
   double depth(const Pose2& T_map_body, const FootprintSize& footprint) const;
   /// From a point; less than the growth, or even negative, is too near.
-  FenceRoom room(const Eigen::Vector2d& p_map) const;
+  FenceRoom room(const Eigen::Vector2d& p_map) const { return roomAt(fences_, p_map); }
 
  private:
   std::vector<Fence> fences_;

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/bus/virtual_bus.hpp"
+#include "common/messages/fence_messages.hpp"
 #include "tools/robot/operator/calls.hpp"
 #include "tools/robot/operator/fence_call.hpp"
 
@@ -47,12 +48,16 @@ struct Stand {
   arm_t last_arm{};
   estop_t last_stop{};
   operator_t last_operator{};
-  void health(int64_t utime, const std::string& process, int64_t yards) {
+  void health(int64_t utime, const std::string& process, const std::vector<Fence>& in_force) {
     health_t message{};
     message.utime = utime;
     message.process = process;
-    message.num_counters = 1;
-    message.counters = {{"fence yard", yards}};
+    for (const Fence& fence : in_force) {
+      message.counters.emplace_back();
+      message.counters.back().counter_name = fenceCounter(fence);
+      message.counters.back().counted = 1;
+    }
+    message.num_counters = static_cast<int32_t>(message.counters.size());
     bus.publish(kHealth, message);
   }
   std::vector<goal_t> goals;
@@ -236,14 +241,15 @@ TEST_CASE("whatever this machine's clock says, requests bear the robot's time") 
 TEST_CASE("a fence is repeated until both the bridge and the planner show it") {
   for (const bool removes : {false, true}) {
     Scene scene;
-    FenceCall call(scene.desk, {"me", ""},
-                   {"", removes, fenceFrom("yard", true, {0, 0, 4, 0, 4, 3})}, 5.0);
-    const int64_t after = removes ? 0 : 1;
+    const Fence yard = fenceFrom("yard", true, {0, 0, 4, 0, 4, 3});
+    FenceCall call(scene.desk, {"me", ""}, {"", removes, yard}, 5.0);
+    const std::vector<Fence> with{yard}, without, &after = removes ? without : with;
+    const std::vector<Fence>& before = removes ? with : without;
     const int64_t begun = scene.bus.now();
     const auto result = scene.run(call, 4.0, [&](int64_t now) {
       scene.stand->motor(now, motor_t::STATE_ARMED);
       scene.stand->health(now, "motor_bridge", after);
-      scene.stand->health(now, "planner", now - begun > 2'000'000 ? after : 1 - after);
+      scene.stand->health(now, "planner", now - begun > 2'000'000 ? after : before);
     });
     CHECK(result == CallResult::kDone);
     CHECK(scene.bus.now() - begun > 2'000'000);
@@ -257,16 +263,31 @@ TEST_CASE("a fence is repeated until both the bridge and the planner show it") {
 
 TEST_CASE("a fence that one of the two does not take is told with its name") {
   Scene scene;
-  FenceCall call(scene.desk, {"me", ""}, {"", false, fenceFrom("yard", false, {0, 0, 4, 0, 4, 3})},
-                 2.0);
+  const Fence yard = fenceFrom("yard", false, {0, 0, 4, 0, 4, 3});
+  FenceCall call(scene.desk, {"me", ""}, {"", false, yard}, 2.0);
   const auto result = scene.run(call, 4.0, [&](int64_t now) {
     scene.stand->motor(now, motor_t::STATE_ARMED);
-    scene.stand->health(now, "motor_bridge", 1);
+    scene.stand->health(now, "motor_bridge", {yard});
   });
   CHECK(result == CallResult::kRefused);
   CHECK_THAT(call.describe(scene.bus.now()), Catch::Contains("planner does not show fence yard"));
   CHECK_THROWS_WITH(fenceFrom("a", true, {1, 2, 3}), Catch::Contains("one number is missing"));
   CHECK_THROWS_WITH(fenceFrom("a", true, {1, 2, 3, 4}), Catch::Contains("3 to 64 corners"));
+}
+
+TEST_CASE("an older fence of the same name is no answer, and keeps the name from being gone") {
+  const Fence yard = fenceFrom("yard", false, {0, 0, 4, 0, 4, 3});
+  const Fence older = fenceFrom("yard", false, {0, 0, 9, 0, 9, 9});
+  for (const bool removes : {false, true}) {
+    Scene scene;
+    FenceCall call(scene.desk, {"me", ""}, {"", removes, yard}, 2.0);
+    const auto result = scene.run(call, 4.0, [&](int64_t now) {
+      scene.stand->motor(now, motor_t::STATE_ARMED);
+      scene.stand->health(now, "motor_bridge", {older});
+      scene.stand->health(now, "planner", {older});
+    });
+    CHECK(result == CallResult::kRefused);
+  }
 }
 
 }  // namespace tread::operators
