@@ -31,7 +31,7 @@ std::string remedyFor(SealVerdict verdict) {
     case SealVerdict::kWrongTag:
       return "its sender has another key, or somebody changed it";
     case SealVerdict::kOtherSession:
-      return "it was sent from another host or before this one's last start";
+      return "it was sent from another host, or recorded before the robot's last start";
     case SealVerdict::kTooManySenders:
       return "stop what starts senders again and again";
     default:
@@ -76,6 +76,29 @@ void Bus::receiveBeside(const std::string& channel, const uint8_t* bytes, size_t
   for (const RawHandler& handler : found->second) deliver(handler, channel, bytes, message);
 }
 
+OpenedSeal Bus::open(const std::string& channel, const uint8_t* bytes, size_t size) {
+  OpenedSeal opened = sealer_->open(channel, bytes, size, sealTime());
+  if (!foreign_ || opened.sent == 0) return opened;
+  const int64_t now = sealClock();
+  if (opened.verdict == SealVerdict::kOtherSession) {
+    other_heard_ = now;
+    if (now - session_heard_ < kSessionSilence) return opened;
+    // The robot was started again, or what was heard first was a recording that is over.
+    sealer_->forgetSession();
+    seal_clock_ = RobotClock();
+    other_heard_.reset();
+    opened = sealer_->open(channel, bytes, size, now);
+  }
+  session_heard_ = now;
+  // Whoever repeats old seals of a session cannot move its clock: the newest time counts.
+  seal_clock_.observe(opened.sent, now);
+  return opened;
+}
+
+bool Bus::hearsTwoSessions() const {
+  return other_heard_ && sealClock() - *other_heard_ < kSessionSilence;
+}
+
 std::optional<size_t> Bus::unseal(const std::string& channel, const Subscribed& subscribed,
                                   const uint8_t* bytes, size_t size) {
   trusted_ = true;
@@ -84,10 +107,7 @@ std::optional<size_t> Bus::unseal(const std::string& channel, const Subscribed& 
     statistics_.sealed_unread |= without != size;
     return without;
   }
-  const OpenedSeal opened = sealer_->open(channel, bytes, size, sealTime());
-  // Whoever repeats old seals cannot move it: the newest time counts.
-  if (foreign_ && opened.sent > 0 && opened.verdict != SealVerdict::kOtherSession)
-    seal_clock_.observe(opened.sent, sealClock());
+  const OpenedSeal opened = open(channel, bytes, size);
   if (opened.verdict == SealVerdict::kGood) return opened.size;
   trusted_ = false;
   if (subscribed.stops != nullptr && subscribed.stops(bytes, opened.size)) return opened.size;

@@ -118,6 +118,9 @@ class Bus {
   bool overhears(const std::string& channel) const { return overheard_.count(channel) > 0; }
   /// The channels subscribed to, sorted.
   std::vector<std::string> heard() const;
+  /// A bus with a key of another host hears the robot in two sessions: one of them is a recording,
+  /// and it cannot tell which. Nothing that it hears is proof then.
+  bool hearsTwoSessions() const;
 
   const BusStatistics& statistics() const { return statistics_; }
 
@@ -152,6 +155,8 @@ class Bus {
     Message message{};
     return decodes(bytes, size, message) && stops(message);
   }
+  /// [us] after which a session that is silent is given up for another one.
+  static constexpr int64_t kSessionSilence = 1'000'000;
   struct Subscribed {
     std::deque<RawHandler> handlers;  ///< not moved when one subscribes while it runs
     bool (*stops)(const uint8_t* bytes, size_t size) = nullptr;  ///< null: nothing here stops
@@ -159,6 +164,7 @@ class Bus {
 
   /// What the others' seals say now [us].
   int64_t sealTime() const { return sealClock() + seal_clock_.offset().value_or(0); }
+  OpenedSeal open(const std::string& channel, const uint8_t* bytes, size_t size);
   void receiveBeside(const std::string& channel, const uint8_t* bytes, size_t size);
   /// The message's size without its seal, or nothing if it is not taken.
   std::optional<size_t> unseal(const std::string& channel, const Subscribed& subscribed,
@@ -191,9 +197,11 @@ class Bus {
   std::map<std::string, Subscribed> subscribed_;
   std::map<std::string, std::deque<RawHandler>> overheard_;
   std::optional<Sealer> sealer_;
-  bool foreign_ = false;   ///< the sealer came without a session: from another host, perhaps
-  RobotClock seal_clock_;  ///< how far their seals are ahead of ours, where foreign
-  bool trusted_ = true;    ///< whether the message that is handled was sealed, where it must be
+  bool foreign_ = false;       ///< the sealer came without a session: from another host, perhaps
+  RobotClock seal_clock_;      ///< how far their seals are ahead of ours, where foreign
+  int64_t session_heard_ = 0;  ///< [us] of sealClock(), where foreign
+  std::optional<int64_t> other_heard_;  ///< [us] the same, of another session
+  bool trusted_ = true;  ///< whether the message that is handled was sealed, where it must be
   BusStatistics statistics_;
   int64_t stations_ = 0;
   /// The newest message of a channel, to count what is missing.

@@ -96,6 +96,12 @@ bool Sealer::seal(const std::string& channel, std::vector<uint8_t>& message, int
   return true;
 }
 
+void Sealer::forgetSession() {
+  session_.reset();
+  newest_.clear();
+  last_sealed_ = INT64_MIN;
+}
+
 OpenedSeal Sealer::open(const std::string& channel, const uint8_t* bytes, size_t size,
                         int64_t now) {
   if (!hasSeal(bytes, size)) return {SealVerdict::kUnsealed, size, 0};

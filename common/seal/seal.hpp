@@ -79,6 +79,8 @@ class Sealer {
   void refuseBefore(int64_t utime) { earliest_ = utime; }
 
   std::optional<uint64_t> session() const { return session_; }
+  /// The next message with a right tag tells the session anew.
+  void forgetSession();
 
  private:
   using Tag = std::array<uint8_t, 16>;

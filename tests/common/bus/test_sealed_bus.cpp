@@ -258,6 +258,43 @@ TEST_CASE("an operator at another host takes over session and clock, and is take
   }
 }
 
+TEST_CASE("a recording from before the robot's last start takes no operator in for long") {
+  SealedBus robot;
+  DistantBus station(robot, 500'000);
+  SealKey key;
+  key.bytes.fill(9);
+  Sealer before_its_start(key, 77, 99);
+  const auto recorded = [&](int64_t utime) {
+    Wire wire = robot.last("HEALTH");
+    wire.bytes.resize(wire.bytes.size() - kSealBytes);
+    before_its_start.seal("HEALTH", wire.bytes, utime);
+    return wire;
+  };
+  robot.run(1'100'000);
+  station.hear(recorded(900'000'000));
+  REQUIRE(station.heard == 1);
+  // While both are heard nobody can tell which one is true.
+  robot.run(700'000);
+  station.hear(robot.last("HEALTH"));
+  CHECK(station.heard == 1);
+  CHECK(station.hearsTwoSessions());
+  robot.run(1'300'000);
+  station.hear(robot.last("HEALTH"));
+  CHECK(station.heard == 2);
+  CHECK_FALSE(station.hearsTwoSessions());
+  mark_t mark{};
+  station.publish(kMark, mark);
+  CHECK(robot.node().marks == 1);
+  // Played again, it takes nobody from the robot that is heard.
+  for (int i = 0; i < 5; ++i) {
+    station.hear(recorded(901'000'000 + i));
+    CHECK(station.hearsTwoSessions());
+    robot.run(1'000'000);
+    station.hear(robot.last("HEALTH"));
+    CHECK(station.heard == 3 + i);
+  }
+}
+
 TEST_CASE("a message as large as its channel allows is sealed, and fits into a datagram") {
   for (const ChannelSpec& channel : kChannels)
     CHECK(static_cast<size_t>(channel.max_bytes) + kSealBytes + sizeof "LEARNER_STATE" <= 65499);

@@ -91,6 +91,7 @@ RunningRobot findRobot(const std::string& lcm_url, const std::string& key) {
   if (robots.empty()) return {"", lcm_url, key};
   if (robots.size() == 1) {
     if (!key.empty()) robots.front().key = key;
+    robots.front().here = true;
     return robots.front();
   }
   std::string choice;

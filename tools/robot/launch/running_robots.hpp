@@ -11,7 +11,8 @@ namespace tread::launch {
 struct RunningRobot {
   std::string name;  ///< of the launch
   std::string lcm_url;
-  std::string key;  ///< file; empty = messages are not sealed
+  std::string key;    ///< file; empty = messages are not sealed
+  bool here = false;  ///< it was found on this machine, whose session and clock are its own
 };
 
 /// Tells the operator's programs of this user about a robot as long as the object lives.

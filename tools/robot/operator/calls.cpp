@@ -35,6 +35,7 @@ bool isStuck(int16_t status) {
 
 // Where the robot has a key and this program none, nothing that it says is taken.
 std::string keyWords(const Bus& bus) {
+  if (bus.hearsTwoSessions()) return "; two robots are heard with this key: one is a recording";
   return bus.statistics().sealed_unread ? "; the robot has a key: give it with --key" : "";
 }
 
@@ -47,7 +48,7 @@ PermissionCall::PermissionCall(Bus& bus, const std::string& operator_name, doubl
       motor_(bus, kMotor) {}
 
 bool PermissionCall::shown(int64_t utime) const {
-  return motor_.any() && motor_.age(utime) < kAnswerAge &&
+  return motor_.any() && motor_.age(utime) < kAnswerAge && !bus_.hearsTwoSessions() &&
          request_.served(motor_.message().bridge_state);
 }
 

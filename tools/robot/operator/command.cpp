@@ -76,7 +76,10 @@ int runCall(const std::string& name, const CommandOptions& options,
     if (std::signal(number, noteSignal) == SIG_IGN) std::signal(number, SIG_IGN);
   try {
     const launch::RunningRobot robot = launch::findRobot(options.lcm_url, options.key);
-    LcmBus bus(BusAccess{robot.lcm_url, stationSealer(robot.key)}, TimeSource::kHost);
+    // On the robot's own host what was recorded is refused by its session and its time.
+    LcmBus bus(
+        BusAccess{robot.lcm_url, robot.here ? hostSealer(robot.key) : stationSealer(robot.key)},
+        TimeSource::kHost);
     const std::unique_ptr<Call> call = make(bus);
     return run(name, options, bus, *call, [&bus](int ms) { bus.handle(ms); });
   } catch (const std::exception& error) {

@@ -40,8 +40,10 @@ TEST_CASE("the only robot that runs is found, and an address that is given goes 
   const OwnFolder folder;
   CHECK(findRobot("", "").lcm_url.empty());
   std::optional<Announcement> robot;
-  robot.emplace(RunningRobot{"simulated", "udpm://239.255.76.67:7668?ttl=0", "/run/key"});
+  robot.emplace(RunningRobot{"simulated", "udpm://239.255.76.67:7668?ttl=0", "/run/key", false});
   CHECK(findRobot("", "").key == "/run/key");
+  CHECK(findRobot("", "").here);
+  CHECK_FALSE(findRobot("memq://", "").here);
   CHECK(findRobot("", "/my/key").key == "/my/key");
   CHECK(findRobot("", "").lcm_url == "udpm://239.255.76.67:7668?ttl=0");
   CHECK(findRobot("memq://", "").lcm_url == "memq://");
@@ -54,10 +56,10 @@ TEST_CASE("the only robot that runs is found, and an address that is given goes 
 
 TEST_CASE("of two robots neither is guessed, and a killed launch is no robot") {
   const OwnFolder folder;
-  const Announcement here({"one", "udpm://239.255.76.67:7001", ""});
+  const Announcement here({"one", "udpm://239.255.76.67:7001", "", false});
   const pid_t child = fork();
   if (child == 0) {
-    const Announcement there({"two", "udpm://239.255.76.67:7002", ""});
+    const Announcement there({"two", "udpm://239.255.76.67:7002", "", false});
     pause();
     _exit(0);
   }
