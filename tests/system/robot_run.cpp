@@ -174,12 +174,16 @@ void RobotRun::setGoal(double x, double y) {
   renewGoal();
 }
 
-void RobotRun::leaveTo(double x, double y, const std::string& url) {
-  processes_["operator"] = std::make_unique<Process>(
-      "tread-goal",
-      std::vector<std::string>{std::to_string(x), std::to_string(y), "--operator", "test",
-                               "--lcm-url", url.empty() ? url_ : url},
-      folder_ + "/operator.log");
+void RobotRun::leaveTo(double x, double y, const std::vector<std::string>& behind) {
+  std::vector<std::string> words = behind;
+  words.push_back(std::string(TREAD_BIN_DIR) + "/tread-goal");
+  for (const std::string& word : {std::to_string(x), std::to_string(y), std::string("--operator"),
+                                  std::string("test"), std::string("--lcm-url"), url_})
+    words.push_back(word);
+  if (!key_.empty()) words.insert(words.end(), {"--key", key_});
+  const std::string program = words.front();
+  words.erase(words.begin());
+  processes_["operator"] = std::make_unique<Process>(program, words, folder_ + "/operator.log");
   const int64_t before = plan_.message().goal_id;
   until(10.0, [&] { return plan_.message().goal_id != before && plan_.message().goal_id != 0; });
   operates_ = false;

@@ -57,8 +57,8 @@ class RobotRun {
   /// Sends the goal each second from now on, whatever else is waited for; at once the first time.
   void setGoal(double x, double y);
   /// From now on tread-goal operates, a process of the name "operator", and the test no more.
-  /// It is on the robot's bus, or on another one that is connected with it.
-  void leaveTo(double x, double y, const std::string& url = "");
+  /// `behind`: words of another command, which must become it (exec).
+  void leaveTo(double x, double y, const std::vector<std::string>& behind = {});
   /// The test operates again; the next goal is its own.
   void takeBack();
   int64_t now() const { return bus_.now(); }

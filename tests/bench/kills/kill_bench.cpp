@@ -9,9 +9,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "tests/bench/kills/radio.hpp"
 #include "tests/system/robot_run.hpp"
 #include "tests/system/stall_watch.hpp"
+#include "tests/system/two_hosts.hpp"
 #include "tests/system/worlds.hpp"
 
 namespace {
@@ -24,7 +24,7 @@ constexpr int64_t kOperatorLease = 1'000'000;  // [us]
 constexpr int64_t kHold = 1'000'000;           // [us] for which the motors must stay at zero
 constexpr double kBudget = 0.25;  // [s] from the end of lease or series, or from the kill
 
-/// In the place of a signal: the operator's radio goes, both ways.
+/// In the place of a signal: the cable to the operator's host is pulled.
 constexpr int kCutOff = 0;
 
 const char* toWords(int signal) {
@@ -47,8 +47,7 @@ struct Kill {
 /// A robot that drives to and fro on a field while its processes are killed.
 class KillBench {
  public:
-  explicit KillBench(uint64_t seed)
-      : run_(kField, "[-20, 0, 0]"), radio_(run_.url()), random_(seed) {
+  explicit KillBench(uint64_t seed) : run_(kField, "[-20, 0, 0]", "", hosts_.url()), random_(seed) {
     run_.bus().subscribe<motor_t>(kMotor, [this](const motor_t& motor) {
       longest_gap_ = std::max(longest_gap_, seconds(last_motor_, motor.utime));
       last_motor_ = motor.utime;
@@ -67,7 +66,7 @@ class KillBench {
     const StallWatch watch;
     longest_gap_ = 0.0;
     if (signal == kCutOff)
-      radio_.cut(true);
+      hosts_.plug(false);
     else
       run_.signal(process, signal);
     const int64_t killed = run_.now();
@@ -87,7 +86,7 @@ class KillBench {
     kill.bridge_stall = longest_gap_;
     kill.reason = run_.motor().message().state_reason;
     run_.forgetSet();
-    radio_.cut(false);
+    if (signal == kCutOff) hosts_.plug(true);
     if (process == "operator")
       run_.signal(process, SIGCONT);
     else if (signal == SIGKILL)
@@ -135,7 +134,7 @@ class KillBench {
   /// To a program of its own, driving.
   void leave() {
     for (int i = 0; i < 20; ++i) {
-      run_.leaveTo(20.0 * side_, 1.0, radio_.url());
+      run_.leaveTo(20.0 * side_, 1.0, hosts_.atStation());
       run_.wait(0.5);
       if (run_.driving()) return;
       run_.takeBack();
@@ -152,8 +151,8 @@ class KillBench {
     return killed;
   }
 
+  TwoHosts hosts_;  ///< first: what follows opens sockets
   RobotRun run_;
-  Radio radio_;
   std::mt19937_64 random_;
   double side_ = -1.0;
   int64_t last_motor_ = 0;    ///< [us]
