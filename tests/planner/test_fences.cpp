@@ -32,13 +32,14 @@ Fence yard(double east) {
   return {"yard", false, {{-6, -6}, {east, -6}, {east, 6}, {-6, 6}}};
 }
 
-/// Runs, and tells the least room of the footprint to any of the fences.
+/// Runs until it arrives, and tells the least room of the footprint to any of the fences.
 double leastRoom(Rig& rig, const std::vector<Fence>& fences, double seconds,
                  const std::function<void(PlannerInputs&)>& tamper = nullptr) {
   double least = 1e9;
   for (double t = 0.0; t < seconds; t += 0.05) {
-    rig.run(0.05, tamper);
+    const Decision decision = rig.run(0.05, tamper);
     least = std::min(least, roomAt(fences, rig.pose(), kVehicle).metres);
+    if (decision.report.status == PlanStatus::kArrived) break;
   }
   return least;
 }

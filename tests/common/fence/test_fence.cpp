@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/fence/fence.hpp"
+#include "tests/helpers.hpp"
 
 using namespace tread;
 using Eigen::Vector2d;
@@ -82,7 +83,7 @@ TEST_CASE("what has room crosses nothing, and what crosses has none, wherever it
   std::mt19937 engine(7);
   std::uniform_real_distribution<double> x(-3.0, 23.0), y(-3.0, 13.0), yaw(-kPi, kPi);
   int crossing = 0;
-  for (int i = 0; i < 4000; ++i) {
+  for (int i = 0; i < testing::effort(4000); ++i) {
     const Pose2 pose{x(engine), y(engine), yaw(engine)};
     for (const Fence& fence : {kYard, kPond, kHook, kDitch, kPath}) {
       const double room = roomAt(fence, pose, kBody);
@@ -94,7 +95,7 @@ TEST_CASE("what has room crosses nothing, and what crosses has none, wherever it
       if (!crosses) REQUIRE(roomAt(fence, pose, kBody.widened(-0.03)) >= 0.0);
     }
   }
-  CHECK(crossing > 1000);
+  CHECK(crossing > testing::effort(1000));
 }
 
 TEST_CASE("over a ditch narrower than itself the room is negative, and grows to both ways out") {
