@@ -86,6 +86,10 @@ void closeToOthers(int descriptor, uint32_t group, const std::string& url) {
                                   BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, group, 0, 1),
                                   BPF_STMT(BPF_RET | BPF_K, kAll), BPF_STMT(BPF_RET | BPF_K, 0)}},
       url);
+  // Only the link that LCM has joined the group on, not those of the host's other programs.
+  const int off = 0;
+  if (setsockopt(descriptor, IPPROTO_IP, IP_MULTICAST_ALL, &off, sizeof off) != 0)
+    refuse(url, "LCM's socket cannot be kept to its own link");
   const int on = 1;
   if (setsockopt(descriptor, SOL_SOCKET, SO_LOCK_FILTER, &on, sizeof on) != 0)
     refuse(url, "the filter of LCM's socket cannot be locked");

@@ -124,6 +124,17 @@ bool isLocked(int descriptor) {
   return locked != 0;
 }
 
+/// Sockets of this process that take only what comes over links that they have joined on.
+int keptToTheirLinks() {
+  int kept = 0;
+  for (int descriptor = 0; descriptor < 256; ++descriptor) {
+    int all = 1;
+    socklen_t size = sizeof all;
+    if (getsockopt(descriptor, IPPROTO_IP, IP_MULTICAST_ALL, &all, &size) == 0 && all == 0) ++kept;
+  }
+  return kept;
+}
+
 }  // namespace
 
 TEST_CASE(
@@ -165,8 +176,10 @@ TEST_CASE("each bus of a process is closed, and no other socket is touched") {
   const int other_port = boundSocket(SOCK_DGRAM, 0);
   const int stream = boundSocket(SOCK_STREAM, port);
   const Sender sender;
+  CHECK(keptToTheirLinks() == 0);
   Hearer first(url);
   Hearer second(url);
+  CHECK(keptToTheirLinks() == 2);
   sender.send("127.0.0.1", port, "unicast");
   CHECK(first.heardUntil(sender, port) == std::vector<std::string>{"last"});
   CHECK(second.heardUntil(sender, port, "more") == std::vector<std::string>{"last", "more"});

@@ -15,13 +15,14 @@ void KeyState::take(std::string_view bytes, int64_t now) {
   for (const char byte : bytes) {
     if (byte == '\x1b') {
       escape_ = 1;
+      escaped_at_ = now;
     } else if (escape_ == 1 && (byte == '[' || byte == 'O')) {
       escape_ = 2;
     } else if (escape_ == 2) {
       escape_ = 0;
       constexpr std::string_view kArrows = "ABDC";  // up, down, left, right
       const size_t arrow = kArrows.find(byte);
-      if (arrow != std::string_view::npos) press("wsad"[arrow], now);
+      press(arrow != std::string_view::npos ? "wsad"[arrow] : ' ', now);
     } else {
       escape_ = 0;
       press(byte, now);
@@ -68,10 +69,12 @@ void KeyState::press(char key, int64_t now) {
 
 Wishes KeyState::wishes(int64_t now) const {
   Wishes wishes;
-  const bool moves = now < moves_until_;
+  // The escape key alone: an arrow's other bytes would have come.
+  const bool escaped = escape_ != 0 && now - escaped_at_ >= kEscape;
+  const bool moves = now < moves_until_ && !escaped;
   wishes.forward = moves ? forward_ : 0.0;
   wishes.turn = moves ? turn_ : 0.0;
-  wishes.hold = moves || now < holds_until_;
+  wishes.hold = moves || (now < holds_until_ && !escaped);
   wishes.arm = now < arms_until_;
   wishes.disarm = now < disarms_until_;
   wishes.give_back = now < gives_back_until_;

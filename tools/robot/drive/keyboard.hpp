@@ -19,10 +19,12 @@ class KeyState {
  private:
   static constexpr int64_t kHeld = 200'000;      ///< [us] without a repetition
   static constexpr int64_t kArming = 2'500'000;  ///< [us] that an arming by hand takes at most
+  static constexpr int64_t kEscape = 50'000;     ///< [us] after which ESC was a key of its own
   void press(char key, int64_t now);
   void move(double forward, double turn, int64_t now);
 
-  int escape_ = 0;  ///< characters of an escape sequence so far
+  int escape_ = 0;          ///< characters of an escape sequence so far
+  int64_t escaped_at_ = 0;  ///< [us] of its first one
   double forward_ = 0.0;
   double turn_ = 0.0;
   int64_t moves_until_ = 0;  ///< [us]

@@ -40,6 +40,7 @@ int main(int argc, char** argv) {
       "in the hand.",
       "tread-drive"};
   operators::CommandOptions options;
+  options.holds = true;
   operators::Requester requester;
   requester.by = requester.operator_name = operatorName();
   requester.why = "driven by hand";

@@ -158,7 +158,10 @@ int64_t grantedBuffer(int64_t wanted) {
 }
 
 /// What is wrong with the robot's key; nothing if there is none.
-std::vector<HostFinding> checkKey(const std::string& path) {
+std::vector<HostFinding> checkKey(const std::string& path, bool simulated) {
+  if (path.empty() && !simulated)
+    return {{false, "without a key every program of this host can arm and drive the robot",
+             "tread-key new FILE, then key: FILE in the launch file"}};
   try {
     if (!path.empty()) readKey(path);
     return {};
@@ -310,7 +313,7 @@ std::vector<HostFinding> checkHost(const LaunchFile& launch, const LaunchSetting
     findings.push_back(missingTool("supervisord", "supervisor"));
   if (findProgram("setpriv", "").empty()) findings.push_back(missingTool("setpriv", "util-linux"));
   const std::string key = keyOf(launch);
-  add(checkKey(key));
+  add(checkKey(key, launch.simulated));
   if (const auto address = parseLcmUrl(launch.lcm_url))
     add(checkNetwork(*address, networkFacts(*address, !key.empty()), launch.simulated));
   else

@@ -3,6 +3,7 @@
 #include "tools/robot/operator/command.hpp"
 
 #include <csignal>
+#include <cstdlib>
 #include <iostream>
 
 #include <sys/ioctl.h>
@@ -81,6 +82,11 @@ int runCall(const std::string& name, const CommandOptions& options,
         BusAccess{robot.lcm_url, robot.here ? hostSealer(robot.key) : stationSealer(robot.key)},
         TimeSource::kHost);
     const std::unique_ptr<Call> call = make(bus);
+    if (options.holds && std::getenv("SSH_CONNECTION") != nullptr)
+      std::cerr << name
+                << ": started over ssh: the robot does not notice when that connection is lost; "
+                   "run it on your own machine, with the robot's key"
+                << std::endl;
     return run(name, options, bus, *call, [&bus](int ms) { bus.handle(ms); });
   } catch (const std::exception& error) {
     std::cerr << name << ": " << error.what() << std::endl;

@@ -28,6 +28,7 @@ struct CommandOptions {
   double timeout = 0.0;   ///< [s] after which the call is cancelled; 0 = never
   double progress = 0.0;  ///< [s] between lines of progress; 0 = none
   bool one_line = false;  ///< progress overwrites its line
+  bool holds = false;     ///< the robot moves for as long as the program runs
 };
 
 /// Runs a call over real LCM to its end, the timeout, or a signal that ends it in good order.

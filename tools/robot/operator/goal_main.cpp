@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
       "goal: the robot stops.",
       "tread-goal"};
   CommandOptions options;
+  options.holds = true;
   GoalRequest request;
   std::string world;
   std::string operator_name = operatorName();

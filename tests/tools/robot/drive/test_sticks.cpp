@@ -122,6 +122,21 @@ TEST_CASE("a key drives while it repeats and 200 ms longer, space stops at once"
   CHECK(keys.wishes(2'150'000).forward == 0.0);
 }
 
+TEST_CASE("the escape key and keys of many bytes stop, too") {
+  KeyState keys;
+  keys.take("w", 1'000'000);
+  keys.take("\x1b", 1'020'000);
+  CHECK(keys.wishes(1'030'000).forward == 1.0);  // it may become an arrow
+  CHECK(keys.wishes(1'080'000).forward == 0.0);
+  CHECK_FALSE(keys.wishes(1'080'000).hold);
+  for (const char* function_key : {"\x1bOP", "\x1b[15~", "\x1b[3~"}) {
+    keys.take("w", 2'000'000);
+    REQUIRE(keys.wishes(2'010'000).hold);
+    keys.take(function_key, 2'010'000);
+    CHECK_FALSE(keys.wishes(2'010'000).hold);
+  }
+}
+
 TEST_CASE("Enter arms with the hand at rest, until it is armed or a key stops it") {
   KeyState keys;
   keys.take("\n", 1'000'000);

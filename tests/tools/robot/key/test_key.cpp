@@ -53,3 +53,23 @@ TEST_CASE("an operator's command with a key that is none sends nothing, and says
     CHECK(called(std::string(command) + " --key ''").status == 2);
   }
 }
+
+TEST_CASE("a TREAD_KEY that names no file starts nothing without a key") {
+  setenv("TREAD_KEY", "", 1);
+  for (const char* command : {"tread-stop --lcm-url memq://", "tread-mapping --check"}) {
+    const auto refused = called(command);
+    CAPTURE(command, refused.printed);
+    CHECK(refused.status == 2);
+    CHECK(refused.isOneLine());
+    CHECK(refused.says("TREAD_KEY"));
+  }
+  unsetenv("TREAD_KEY");
+}
+
+TEST_CASE("what moves the robot as long as it runs warns where it was started over ssh") {
+  setenv("SSH_CONNECTION", "192.0.2.1 50000 192.0.2.2 22", 1);
+  const auto warned = called("tread-goal 1 2 --lcm-url memq:// --timeout 1");
+  CHECK(warned.says("does not notice when that connection is lost"));
+  CHECK_FALSE(called("tread-stop --lcm-url memq:// --timeout 1").says("over ssh"));
+  unsetenv("SSH_CONNECTION");
+}

@@ -65,7 +65,8 @@ TEST_CASE("the shipped launch files pass the start-up checks, absent instruments
   const CommandOutcome simulated = runCommand(words, 60.0);
   INFO(simulated.output);
   CHECK(simulated.code == 0);
-  CHECK_THAT(simulated.output, !Contains("device"));
+  CHECK_THAT(simulated.output, !Contains("device") && !Contains("without a key"));
+  CHECK_THAT(robot.output, Contains("advice: without a key every program of this host can arm"));
 }
 
 TEST_CASE("a mistake in a robot's configuration stops the start with its file and line") {
