@@ -6,6 +6,9 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <lcm/lcm-cpp.hpp>
 
 #include "common/bus/host_clock.hpp"
@@ -21,6 +24,22 @@ constexpr int64_t kAgreementUs = 1'000'000;
 constexpr int64_t kUnopposedUs = 200'000;
 
 constexpr int kQueueCapacity = 1000;
+
+/// For LCM, devices and files. With fewer LCM may neither start nor say so.
+constexpr size_t kDescriptors = 24;
+
+const std::string& requireDescriptors(const std::string& url) {
+  std::vector<int> held;
+  for (int one = 0; one >= 0 && held.size() < kDescriptors;) {
+    one = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    if (one >= 0) held.push_back(one);
+  }
+  for (const int one : held) ::close(one);
+  if (held.size() == kDescriptors) return url;
+  throw std::runtime_error("this process may open only " + std::to_string(held.size()) +
+                           " more files, " + std::to_string(kDescriptors) +
+                           " are needed: ulimit -n 1024, or LimitNOFILE=1024 in its unit");
+}
 
 }  // namespace
 
@@ -74,7 +93,7 @@ struct LcmBus::Subscription {
 };
 
 LcmBus::LcmBus(BusAccess access, TimeSource time_source, int64_t max_jump_us)
-    : lcm_(std::make_unique<lcm::LCM>(access.url)),
+    : lcm_(std::make_unique<lcm::LCM>(requireDescriptors(access.url))),
       time_source_(time_source),
       boot_id_(hostNow()),
       followed_(boot_id_, max_jump_us) {

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "common/messages/blank.hpp"
 #include "tests/system/robot_run.hpp"
 #include "tests/system/stall_watch.hpp"
 #include "tests/system/worlds.hpp"
@@ -190,6 +191,27 @@ TEST_CASE("all lines to the devices closed and opened again: stop, come back, dr
     INFO(name << ": " << run.output(name));
     CHECK(run.running(name));
   }
+}
+
+TEST_CASE("no descriptors left: the robot drives on, and is stopped as ever") {
+  RobotRun run(kField, "[-20, 0, 0]");
+  driveOff(run);
+  for (const std::string& name : RobotRun::names()) {
+    Process limit("/usr/bin/prlimit", {"--pid", std::to_string(run.pid(name)), "--nofile=3:3"});
+    REQUIRE(limit.waitFor(5.0));
+    REQUIRE(limit.exitCode() == 0);
+  }
+  const double from = run.ins().message().position[0];
+  CHECK(run.untilDriving(20.0, [&] { return run.ins().message().position[0] > from + 5.0; }));
+  for (const std::string& name : RobotRun::names()) CHECK(run.running(name));
+  auto stop = blank<estop_t>();
+  stop.utime = run.now();
+  stop.engaged = true;
+  const int64_t stopped = run.now();
+  run.bus().publish(kEstop, stop);
+  const double stands = standsAfter(run, stopped, 5.0);
+  CHECK(stands >= 0.0);
+  CHECK(stands <= 0.25);
 }
 
 TEST_CASE("a full disk stops neither the robot nor its learning, and is told, room again is used") {

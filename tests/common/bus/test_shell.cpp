@@ -29,11 +29,11 @@ struct Ending {
   long lines() const { return std::count(output.begin(), output.end(), '\n'); }
 };
 
-Ending run(const std::vector<std::string>& arguments) {
+Ending run(const std::vector<std::string>& arguments, const std::string& program = kMapping) {
   const std::string file = "shell_" + std::to_string(getpid()) + ".txt";
   Ending ending;
   {
-    Process process(kMapping, arguments, file);
+    Process process(program, arguments, file);
     REQUIRE(process.waitFor(10));
     ending.code = process.exitCode();
   }
@@ -171,6 +171,19 @@ TEST_CASE(
   CHECK(absent.code == 1);
   CHECK(absent.lines() == 1);
   CHECK(absent.output.find(file) != std::string::npos);
+}
+
+TEST_CASE("a process that may open too few files says so in one line, and does not hang") {
+  for (const int most : {5, 9, 20}) {
+    const Ending ending = run({"--nofile=" + std::to_string(most) + ":" + std::to_string(most),
+                               std::string(TREAD_BIN_DIR) + "/" + kMapping, "--config",
+                               kRobot + "mapping.yaml", "--lcm-url", ownLcmUrl()},
+                              "/usr/bin/prlimit");
+    INFO(ending.output);
+    CHECK(ending.code == 1);
+    CHECK(ending.lines() == 1);
+    CHECK(ending.output.find("more files, 24 are needed: ulimit -n 1024") != std::string::npos);
+  }
 }
 
 TEST_CASE("a mistake in --set is one line that names it") {
