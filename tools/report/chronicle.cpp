@@ -81,10 +81,13 @@ void Chronicle::hear(const motor_t& motor, double time) {
   const int16_t state = motor.bridge_state;
   const bool may = mayDrive(state);
   const bool entered = state != state_;
-  if (entered && state == motor_t::STATE_ESTOP)
-    incidents_.push_back({time, "E-stop", motor.state_reason});
-  else if (entered && state == motor_t::STATE_FAULT && may_drive_)
-    incidents_.push_back({time, "fault", motor.state_reason});
+  std::string what;
+  if (entered && state == motor_t::STATE_ESTOP) what = "E-stop";
+  if (entered && state == motor_t::STATE_FAULT && may_drive_) what = "fault";
+  // A fault after an E-stop is no better an end.
+  if (entered && (!what.empty() || state != motor_t::STATE_FAULT)) ends_ = what;
+  if (!what.empty())
+    incidents_.push_back({time, what, motor.state_reason});
   else if (may_drive_ && !may)
     incidents_.push_back({time, "disarmed", motor.state_reason});
   state_ = state;
@@ -115,16 +118,30 @@ int Chronicle::count(const std::string& what) const {
                     [&](const Incident& incident) { return incident.what == what; }));
 }
 
+int Chronicle::reached() const {
+  return static_cast<int>(std::count_if(goals_.begin(), goals_.end(),
+                                        [](const GoalStory& goal) { return goal.arrived; }));
+}
+
+std::string Chronicle::counts() const {
+  return formatted("%d of %zu goals reached; %zu stops that needed arming ", reached(),
+                   goals_.size(), incidents_.size()) +
+         formatted("(%d faults, %d E-stops)", count("fault"), count("E-stop"));
+}
+
+std::string Chronicle::summary(int disarmed) const {
+  if (goals_.size() <= 1 && static_cast<int>(incidents_.size()) <= disarmed && ends_.empty())
+    return "";
+  std::string line = "in the whole log " + counts();
+  if (!goals_.empty() && !goals_.back().arrived) line += ", THE LAST GOAL NOT REACHED";
+  return ends_.empty() ? line
+                       : line + ", IT ENDS WITH " + (ends_ == "fault" ? "A FAULT" : "AN E-STOP");
+}
+
 std::string Chronicle::words() const {
   const std::vector<Hole> holes = this->holes();
   if (goals_.size() <= 1 && incidents_.empty() && holes.empty()) return "";
-  const auto reached = std::count_if(goals_.begin(), goals_.end(),
-                                     [](const GoalStory& goal) { return goal.arrived; });
-  std::string words =
-      formatted("the whole log: %d of %zu goals reached; %zu stops that needed arming ",
-                static_cast<int>(reached), goals_.size(), incidents_.size());
-  words += formatted("(%d faults, %d E-stops); %zu holes\n", count("fault"), count("E-stop"),
-                     holes.size());
+  std::string words = "the whole log: " + counts() + formatted("; %zu holes\n", holes.size());
   words += linesOf(goals_, lineOf);
   words += linesOf(incidents_, [](const Incident& incident) {
     return formatted("%7.1f s  ", incident.time) + incident.what + ": " + incident.reason;

@@ -43,6 +43,11 @@ class Chronicle {
   const std::vector<Incident>& incidents() const { return incidents_; }
   /// In the order of their beginnings; channels that fell silent and came back together are one.
   std::vector<Hole> holes() const;
+  /// Whether the last goal was reached, and no fault or E-stop lasts to the log's end.
+  bool endsWell() const { return !goals_.empty() && goals_.back().arrived && ends_.empty(); }
+  /// What became of it all, for one line; empty where nothing followed the first goal but
+  /// `disarmed` losses of the permission.
+  std::string summary(int disarmed) const;
   /// Some lines; empty for a log with one goal at most, where nothing else happened.
   std::string words() const;
 
@@ -53,6 +58,8 @@ class Chronicle {
   void hear(const plan_t& plan, double time);
   void hear(const motor_t& motor, double time);
   int count(const std::string& what) const;
+  int reached() const;
+  std::string counts() const;
 
   int64_t begun_ = -1;  ///< [us] by the logger
   std::vector<GoalStory> goals_;
@@ -60,6 +67,7 @@ class Chronicle {
   std::map<std::string, double> heard_;  ///< [s] by channel, the last message
   std::vector<Hole> silences_;           ///< of one channel each
   int16_t state_ = 0;
+  std::string ends_;  ///< "fault" or "E-stop" while it lasts
   bool may_drive_ = false;
 };
 

@@ -262,7 +262,10 @@ DriveRecord readDrive(const std::vector<std::string>& logs) {
   return drive;
 }
 
-std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth) {
+namespace {
+
+/// What became of the first drive.
+std::string driveLine(const DriveRecord& drive, const SimulationTruth& truth) {
   if (!drive.has_goal) return "no goal in this log";
   std::string line =
       drive.arrived
@@ -274,6 +277,18 @@ std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth) {
                     drive.aborted, drive.disarmed);
   if (!truth.rows.empty()) line += formatted("; contacts %d", truth.rows.back().contacts);
   return line;
+}
+
+}  // namespace
+
+std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth) {
+  const std::string more = drive.has_goal ? drive.chronicle.summary(drive.disarmed) : "";
+  return driveLine(drive, truth) + (more.empty() ? "" : "; " + more);
+}
+
+bool endedWell(const DriveRecord& drive, const SimulationTruth& truth) {
+  const bool touched = !truth.rows.empty() && truth.rows.back().contacts > 0;
+  return drive.arrived && drive.chronicle.endsWell() && !touched;
 }
 
 std::string reportOf(const DriveRecord& drive, const SimulationTruth& truth,
@@ -299,7 +314,7 @@ std::string reportOf(const DriveRecord& drive, const SimulationTruth& truth,
 DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth,
                    const RuleErrors& by_rule) {
   DriveScene scene;
-  scene.title = resultLine(drive, truth);
+  scene.title = driveLine(drive, truth);
   scene.world = truth.world;
   if (drive.map) scene.map = *drive.map;
   scene.tree = drive.tree;

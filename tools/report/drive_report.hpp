@@ -184,8 +184,11 @@ struct SimulationTruth {
 /// The report as text: the result in one line, errors as driven and by rule, latencies.
 std::string reportOf(const DriveRecord& drive, const SimulationTruth& truth,
                      const RuleErrors& by_rule);
-/// The one line of result alone.
+/// The one line of result alone: of the first drive, and of the whole log where there is more.
 std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth);
+/// Whether the robot arrived, at the last goal, too, and the log ends in no fault or E-stop;
+/// nothing was touched.
+bool endedWell(const DriveRecord& drive, const SimulationTruth& truth);
 /// The drive to be drawn.
 DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth,
                    const RuleErrors& by_rule);

@@ -36,8 +36,7 @@ int run(const Arguments& arguments) {
     drawDrive(arguments.picture, sceneOf(drive, truth, by_rule));
     std::cout << "picture: " << arguments.picture << std::endl;
   }
-  const bool touched = !truth.rows.empty() && truth.rows.back().contacts > 0;
-  return drive.arrived && !touched ? 0 : 1;
+  return endedWell(drive, truth) ? 0 : 1;
 }
 
 }  // namespace
@@ -45,7 +44,8 @@ int run(const Arguments& arguments) {
 int main(int argc, char** argv) {
   CLI::App app{
       "Tells and draws a drive from its LCM log: result, prediction errors, latencies. Exit code 1 "
-      "where the robot did not arrive or touched something.",
+      "where the robot did not arrive, at the last goal, too, where the log ends in a fault or "
+      "E-stop, or where something was touched.",
       "tread-report"};
   Arguments arguments;
   app.add_option("logs", arguments.logs, "LCM log; several are parts of one recording, in order")

@@ -121,13 +121,38 @@ TEST_CASE("beyond the first arrival: goals, stops, faults and E-stops of the who
   CHECK(drive.chronicle.incidents().size() == 2);
   const std::string report = reportOf(drive, {}, {});
   INFO(report);
+  CHECK(contains(resultLine(drive, {}),
+                 "disarmed 0 times; in the whole log 2 of 4 goals reached; 2 stops that needed "
+                 "arming (0 faults, 1 E-stops), THE LAST GOAL NOT REACHED"));
+  CHECK_FALSE(endedWell(drive, {}));
   CHECK(contains(
       report,
-      "the whole log: 2 of 4 goals reached; 2 stops that needed arming (0 faults, 1 E-stops)"));
+      "\nthe whole log: 2 of 4 goals reached; 2 stops that needed arming (0 faults, 1 E-stops)"));
   CHECK(contains(report, "goal 2: NOT reached in 0.6 s: E-stop is engaged"));
   CHECK(contains(report, "goal 3: arrived after 1.0 s"));
   CHECK(contains(report, "E-stop: E-stop: dog (ada)"));
   CHECK(contains(report, "disarmed: INS is stale"));
+}
+
+TEST_CASE("an E-stop or fault that lasts to the log's end is no good end, one that is cleared is") {
+  for (const int16_t state : {motor_t::STATE_ESTOP, motor_t::STATE_FAULT}) {
+    std::vector<LogEvent> events = arrivingDrive();
+    CHECK(endedWell(driveOf(events), {}));
+    events.push_back(eventOf(kMotor, motorAt(16.0, state)));
+    const DriveRecord drive = driveOf(events);
+    CHECK_FALSE(endedWell(drive, {}));
+    CHECK(contains(resultLine(drive, {}), state == motor_t::STATE_ESTOP
+                                              ? "1 E-stops), IT ENDS WITH AN E-STOP"
+                                              : "(1 faults, 0 E-stops), IT ENDS WITH A FAULT"));
+    events.push_back(eventOf(kMotor, motorAt(17.0, motor_t::STATE_DISARMED)));
+    CHECK(endedWell(driveOf(events), {}));
+  }
+}
+
+TEST_CASE("who disarms after the arrival ends the drive well") {
+  std::vector<LogEvent> events = arrivingDrive();
+  events.push_back(eventOf(kMotor, motorAt(16.0, motor_t::STATE_DISARMED)));
+  CHECK(endedWell(driveOf(events), {}));
 }
 
 TEST_CASE("holes in a log are told with their channels, one line where all fell silent together") {
@@ -320,6 +345,10 @@ TEST_CASE("tread-report tells and draws a drive, and ends with 0 only if it arri
   CHECK(arrived.says("picture: " + folder.path("drive.png")));
   CHECK(isPng(folder.text("drive.png")));
   CHECK(called("tread-report " + bad + " --rules none").status == 1);
+  std::vector<LogEvent> stopped = arrivingDrive();
+  stopped.push_back(eventOf(kMotor, motorAt(16.0, motor_t::STATE_ESTOP)));
+  const std::string estop = writeLog(folder.path("estop.lcmlog"), stopped);
+  CHECK(called("tread-report " + estop + " --rules none").status == 1);
   CHECK(called("tread-report " + good).says("prediction error by rule: none, "));
   const std::string header =
       "utime_us,x_m,y_m,yaw_rad,v_mps,left,right,surface,contacts,distance_m\n";
