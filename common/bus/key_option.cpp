@@ -6,18 +6,22 @@
 
 namespace tread {
 
-void addKeyOption(CLI::App& app, std::string& path) {
-  app.add_option("--key", path,
-                 "key of the robot (tread-key new FILE): messages are sealed, and others refused")
-      ->envname("TREAD_KEY")
-      ->check([](const std::string& given) {
-        return given.empty() ? std::string("--key: a file is missing") : std::string();
-      });
-  // CLI11 takes an empty variable for none; whoever set it does not want a robot without a key.
-  app.final_callback([&path] {
+void addKeyOption(CLI::App& app, std::string& path, EmptyKey empty) {
+  const CLI::Option* const option =
+      app.add_option(
+             "--key", path,
+             "key of the robot (tread-key new FILE): messages are sealed, and others refused")
+          ->envname("TREAD_KEY")
+          ->check([](const std::string& given) {
+            return given.empty() ? std::string("--key: a file is missing") : std::string();
+          });
+  if (empty == EmptyKey::kIsNone) return;
+  // CLI11 takes an empty variable for none: a script that lost its path would start unsealed.
+  app.parse_complete_callback([option] {
     const char* const named = std::getenv("TREAD_KEY");
-    if (path.empty() && named != nullptr && *named == '\0')
-      throw CLI::ValidationError("TREAD_KEY", "is set, but names no file; unset it to have no key");
+    if (option->count() == 0 && named != nullptr && *named == '\0')
+      throw CLI::ValidationError("TREAD_KEY",
+                                 "is set but empty; unset it, or name the file of the key");
   });
 }
 

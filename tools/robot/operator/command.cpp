@@ -107,7 +107,7 @@ int runPermissionCommand(int argc, char** argv, const PermissionCommand& command
   command.more(app);
   app.add_option("--timeout", patience, "how long to try [s]")->check(CLI::Range(0.5, 600.0));
   app.add_option("--lcm-url", options.lcm_url, kUrlHelp);
-  addKeyOption(app, options.key);
+  addKeyOption(app, options.key, command.empty_key);
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return runCall(command.name, options,
                  [&](Bus& bus) { return command.make(bus, requester, patience); });

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/bus/bus.hpp"
+#include "common/bus/key_option.hpp"
 #include "tools/robot/operator/calls.hpp"
 
 namespace tread::operators {
@@ -45,6 +46,7 @@ struct PermissionCommand {
   std::function<void(CLI::App&)> more;  ///< adds its own options
   /// `patience` [s].
   std::function<std::unique_ptr<Call>(Bus&, const Requester&, double patience)> make;
+  EmptyKey empty_key = EmptyKey::kIsRefused;
 };
 /// The main function of such a command.
 int runPermissionCommand(int argc, char** argv, const PermissionCommand& command);

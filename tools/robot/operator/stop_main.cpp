@@ -14,5 +14,6 @@ int main(int argc, char** argv) {
        },
        [&](tread::Bus& bus, const Requester& requester, double patience) {
          return std::make_unique<StopCall>(bus, requester, !clear, patience);
-       }});
+       },
+       tread::EmptyKey::kIsNone});
 }

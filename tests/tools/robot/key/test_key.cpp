@@ -56,13 +56,15 @@ TEST_CASE("an operator's command with a key that is none sends nothing, and says
 
 TEST_CASE("a TREAD_KEY that names no file starts nothing without a key") {
   setenv("TREAD_KEY", "", 1);
-  for (const char* command : {"tread-stop --lcm-url memq://", "tread-mapping --check"}) {
+  for (const char* command : {"tread-arm --lcm-url memq://", "tread-mapping --check"}) {
     const auto refused = called(command);
     CAPTURE(command, refused.printed);
     CHECK(refused.status == 2);
     CHECK(refused.isOneLine());
     CHECK(refused.says("TREAD_KEY"));
   }
+  // Stopping needs no key.
+  CHECK(called("tread-stop --lcm-url memq:// --timeout 1").says("NOBODY CONFIRMS THE STOP"));
   unsetenv("TREAD_KEY");
 }
 
