@@ -150,7 +150,7 @@ void Bridge::receive(const FenceRequest& request, int64_t now) {
 }
 
 /// An E-stop outlives the process that engaged it: the controller has kept it.
-void Bridge::meetController(int64_t now, const DeviceReport& device) {
+void Bridge::adoptLatchedStop(int64_t now, const DeviceReport& device) {
   if (controller_met_ || !device.link_fault.empty()) return;
   controller_met_ = true;
   if (!device.stop_latched || requests_.estop()) return;
@@ -159,7 +159,7 @@ void Bridge::meetController(int64_t now, const DeviceReport& device) {
 }
 
 BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
-  meetController(now, device);
+  adoptLatchedStop(now, device);
   const FailsafeInputs in = look(now, device);
   BridgeOutput out;
   out.failsafe = failsafe_.update(in);

@@ -87,7 +87,7 @@ class Bridge {
 
   void count(const std::string& what) { ++counters_[what]; }
   void take(const Program& program, int64_t now);
-  void meetController(int64_t now, const DeviceReport& device);
+  void adoptLatchedStop(int64_t now, const DeviceReport& device);
   std::string stallFault(int64_t now) const;
   std::string leaseFault(int64_t now) const;
   bool mayGoOn(int64_t silent) const;

@@ -12,6 +12,10 @@
 namespace tread::drive {
 
 void KeyState::take(std::string_view bytes, int64_t now) {
+  if (escapedAlone(now)) {
+    escape_ = 0;
+    press(' ', escaped_at_);
+  }
   for (const char byte : bytes) {
     if (byte == '\x1b') {
       escape_ = 1;
@@ -69,8 +73,7 @@ void KeyState::press(char key, int64_t now) {
 
 Wishes KeyState::wishes(int64_t now) const {
   Wishes wishes;
-  // The escape key alone: an arrow's other bytes would have come.
-  const bool escaped = escape_ != 0 && now - escaped_at_ >= kEscape;
+  const bool escaped = escapedAlone(now);
   const bool moves = now < moves_until_ && !escaped;
   wishes.forward = moves ? forward_ : 0.0;
   wishes.turn = moves ? turn_ : 0.0;

@@ -20,6 +20,8 @@ class KeyState {
   static constexpr int64_t kHeld = 200'000;      ///< [us] without a repetition
   static constexpr int64_t kArming = 2'500'000;  ///< [us] that an arming by hand takes at most
   static constexpr int64_t kEscape = 50'000;     ///< [us] after which ESC was a key of its own
+  /// Whether ESC was a key of its own: an arrow's other bytes would have come.
+  bool escapedAlone(int64_t now) const { return escape_ != 0 && now - escaped_at_ >= kEscape; }
   void press(char key, int64_t now);
   void move(double forward, double turn, int64_t now);
 

@@ -129,6 +129,9 @@ TEST_CASE("the escape key and keys of many bytes stop, too") {
   CHECK(keys.wishes(1'030'000).forward == 1.0);  // it may become an arrow
   CHECK(keys.wishes(1'080'000).forward == 0.0);
   CHECK_FALSE(keys.wishes(1'080'000).hold);
+  keys.take("g", 1'100'000);  // what comes next does not take the stop back
+  CHECK(keys.wishes(1'110'000).give_back);
+  CHECK_FALSE(keys.wishes(1'110'000).hold);
   for (const char* function_key : {"\x1bOP", "\x1b[15~", "\x1b[3~"}) {
     keys.take("w", 2'000'000);
     REQUIRE(keys.wishes(2'010'000).hold);
