@@ -13,6 +13,7 @@ namespace tread {
 namespace {
 
 constexpr size_t kLongestName = 64;
+constexpr int64_t kLeaves = 1'000'000;      // [us] of silence
 constexpr int64_t kWorthTelling = 100'000;  // [us]
 
 }  // namespace
@@ -31,6 +32,9 @@ OperatorBeacon::OperatorBeacon(Bus& bus, std::string name)
   bus_.subscribe<motor_t>(kMotor, [this](const motor_t& message) {
     clock_.observe(message.utime, bus_.now());
     seen_utime_ = std::max(seen_utime_, message.utime);
+  });
+  bus_.overhear<operator_t>(kOperator, [this](const operator_t& message) {
+    if (message.operator_name == name_ && message.station != station_) namesake_ = bus_.now();
   });
 }
 
@@ -56,6 +60,12 @@ void OperatorBeacon::send(int64_t utime, int16_t allowed) {
   message.stands_for = goal_id_;
   message.hand_over_to = hand_over_to_;
   bus_.publish(kOperator, message);
+}
+
+std::string OperatorBeacon::namesakeWords(int64_t utime) const {
+  if (!namesake_ || utime - *namesake_ > kLeaves) return "";
+  return "; another program of " + name_ +
+         " holds the robot, too: if it is somebody else's, tell the two of you apart by --operator";
 }
 
 std::string OperatorBeacon::clockWords() const {

@@ -45,6 +45,9 @@ class OperatorBeacon {
   int64_t robotTime(int64_t utime) const { return utime + clock_.offset().value_or(0); }
   /// "; clocks differ by 1.2 s, which is taken into account", or empty if they hardly do.
   std::string clockWords() const;
+  /// That a program of the same operator is heard, which may be another person's of the same
+  /// account; else empty.
+  std::string namesakeWords(int64_t utime) const;
 
  private:
   static constexpr int64_t kPeriod = 200'000;  ///< [us]
@@ -56,6 +59,7 @@ class OperatorBeacon {
   std::string hand_over_to_;
   RobotClock clock_;
   int64_t seen_utime_ = 0;
+  std::optional<int64_t> namesake_;  ///< [us] heard last
   int64_t goal_id_ = 0;
   int64_t next_ = 0;
   int64_t seq_ = 0;

@@ -119,7 +119,7 @@ std::string ArmCall::describe(int64_t utime) const {
   const std::string before =
       shown(utime) && wasSo() ? " since before this call: " + bridgeReason() : "";
   return PermissionCall::describe(utime) + before + (armed_ ? " and held: Ctrl-C disarms" : "") +
-         beacon_.clockWords();
+         beacon_.clockWords() + (request_.arm ? beacon_.namesakeWords(utime) : "");
 }
 
 void ArmCall::cancel(int64_t utime) {

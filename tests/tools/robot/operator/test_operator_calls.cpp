@@ -111,6 +111,22 @@ TEST_CASE("arming is repeated until MOTOR shows it, and an answer from before do
   CHECK(call.describe(scene.bus.now()) == "armed");
 }
 
+TEST_CASE("who arms hears that another program has the same operator's name") {
+  for (const std::string name : {"ada", "bob"}) {
+    Scene scene;
+    ArmCall call(scene.desk, {"ada", "", "ada"}, {}, 5.0);
+    scene.run(call, 6.0, [&](int64_t now) {
+      scene.stand->motor(now, motor_t::STATE_ARMED);
+      operator_t other{};
+      other.station = 99;
+      other.operator_name = name;
+      scene.stand->bus.publish(kOperator, other);
+    });
+    CHECK((call.describe(scene.bus.now()).find("; another program of ada holds the robot, too") !=
+           std::string::npos) == (name == "ada"));
+  }
+}
+
 TEST_CASE("a robot that was armed before the call is told with the bridge's words") {
   Scene scene;
   ArmCall call(scene.desk, {}, {}, 1.0);
