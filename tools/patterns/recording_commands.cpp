@@ -22,6 +22,7 @@
 #include "tools/patterns/commands.hpp"
 #include "tools/patterns/recipe.hpp"
 #include "tools/patterns/set_text.hpp"
+#include "tools/robot/launch/running_robots.hpp"
 
 namespace tread::patterns {
 namespace {
@@ -110,8 +111,9 @@ void record(const RecordOptions& options) {
   if (options.live) {
     pattern_recorder::RecordingConfig how = options.live_how;
     how.executions = options.executions;
+    const launch::RunningRobot robot = launch::findRobot(options.lcm_url, options.key);
     surface.executions =
-        recordLive(set, how, BusAccess{options.lcm_url, hostSealer(options.key)}, part);
+        recordLive(set, how, BusAccess{robot.lcm_url, hostSealer(robot.key)}, part);
   } else {
     ModelRecording how = options.how;
     how.executions = options.executions;
@@ -153,7 +155,9 @@ void addLiveOptions(CLI::App& command, pattern_recorder::RecordingConfig& how, s
   how.operator_name = operatorName();
   command.add_option("--operator", how.operator_name, "with --live: as with tread-arm")
       ->capture_default_str();
-  command.add_option("--lcm-url", lcm_url, "with --live: LCM provider");
+  command.add_option("--lcm-url", lcm_url,
+                     "with --live: LCM provider; else LCM_DEFAULT_URL, else the robot that "
+                     "tread-launch runs here");
   addKeyOption(command, key);
 }
 

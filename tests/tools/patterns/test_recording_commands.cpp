@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <cstdlib>
+
 #include "tests/tools/patterns/patterns_program.hpp"
+#include "tools/robot/launch/running_robots.hpp"
 
 using namespace tread::patterns::kit;
 
@@ -82,6 +85,21 @@ TEST_CASE("Recording and averaging refuse what makes no sense with one line") {
   CHECK(live.says("surface 'a/b': its name is that of its file"));
   CHECK(run(bad + "--live --model " + kGrass).status == 2);
   CHECK(run("record " + kSet + " --live --recordings /proc/none --surface x").status == 2);
+}
+
+TEST_CASE("Recording on the robot finds the one that runs here, and its key") {
+  const Folder folder;
+  const char* const url = std::getenv("LCM_DEFAULT_URL");
+  const std::string url_before = url != nullptr ? url : "";
+  unsetenv("LCM_DEFAULT_URL");
+  setenv("XDG_RUNTIME_DIR", folder.path("").c_str(), 1);
+  const tread::launch::Announcement robot({"one", "memq://", folder.path("no.key")});
+  const Run live =
+      run("record " + kSet + " --live --recordings " + folder.path("b") + " --surface grass");
+  unsetenv("XDG_RUNTIME_DIR");
+  if (url != nullptr) setenv("LCM_DEFAULT_URL", url_before.c_str(), 1);
+  CHECK(live.status == 2);
+  CHECK(live.says("no.key: cannot be read"));
 }
 
 TEST_CASE("Recordings stay those of the patterns that they began with") {
