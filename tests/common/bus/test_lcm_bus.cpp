@@ -178,6 +178,21 @@ TEST_CASE("an unexpected type over LCM is counted and does not reach the handler
   REQUIRE(bus.statistics().undecodable == 1);
 }
 
+TEST_CASE("a message above its channel's limit comes over LCM in vain") {
+  LcmBus bus("memq://", TimeSource::kHost);
+  int heard = 0;
+  bus.subscribe<mark_t>(kMark, [&](const mark_t&) { ++heard; });
+  Channel<mark_t> generous = kMark;
+  generous.max_bytes = 60'000;
+  mark_t mark{};
+  mark.mark_value = std::string(2'000, 'x');
+  REQUIRE(bus.publish(generous, mark));
+  bus.publish(kMark, mark_t{});
+  bus.handle(100);
+  REQUIRE(heard == 1);
+  REQUIRE(bus.statistics().refused.at("too large") == 1);
+}
+
 TEST_CASE("an LCM that cannot be used is one clear line with the command that mends it") {
   REQUIRE_THROWS_WITH(
       LcmBus("nosuchprovider://", TimeSource::kHost),

@@ -225,6 +225,33 @@ TEST_CASE("a message above its channel's limit is not sent and its publisher is 
   REQUIRE(bus.outside().statistics().oversized == 1);
 }
 
+TEST_CASE("a message above its channel's limit is not taken, whoever sends it, and is counted") {
+  VirtualBus bus(1);
+  int heard = 0;
+  int beside = 0;
+  bus.outside().subscribe<arm_t>(kArm, [&](const arm_t&) { ++heard; });
+  bus.outside().overhear<goal_t>(kGoal, [&](const goal_t&) { ++beside; });
+  const auto inject = [&](const auto& channel, const auto& message) {
+    std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
+    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    // The largest one may have a seal behind it.
+    const size_t size = static_cast<size_t>(channel.max_bytes) + kSealBytes + 1;
+    bytes.resize(std::max(bytes.size(), size));
+    bus.inject(channel.name, bytes.data(), bytes.size());
+    bus.runUntil(bus.now() + 1'000);
+  };
+  arm_t arm{};
+  arm.arm_reason = std::string(2'000, 'x');
+  inject(kArm, arm);
+  inject(kGoal, goal_t{});
+  CHECK(heard == 0);
+  CHECK(beside == 0);
+  const BusStatistics& counted = bus.outside().statistics();
+  CHECK(counted.refused.at("too large") == 1);
+  CHECK(counted.undecodable == 0);
+  CHECK_THAT(counted.last_refusal, Catch::StartsWith("ARM: a message refused: too large; 2"));
+}
+
 TEST_CASE("losses are counted by seq, a publisher that starts again is no loss") {
   VirtualBus bus(1);
   bus.outside().subscribe<motor_t>(kMotor, [](const motor_t&) {});
