@@ -96,20 +96,15 @@ std::string RobotRun::output(const std::string& name) const {
   return text.str();
 }
 
-void RobotRun::start(const std::string& name) {
-  std::string program = "tread-" + name;
-  std::replace(program.begin(), program.end(), '_', '-');
-  processes_[name] =
-      std::make_unique<Process>(program, argumentsOf(name), folder_ + "/" + name + ".log");
-}
-
 void RobotRun::startBehind(const std::vector<std::string>& wrapper, const std::string& name) {
-  const std::string program = std::string(TREAD_BIN_DIR) + "/tread-" + name;
-  std::vector<std::string> words(wrapper.begin() + 1, wrapper.end());
+  std::string program = std::string(TREAD_BIN_DIR) + "/tread-" + name;
+  std::replace(program.end() - static_cast<std::ptrdiff_t>(name.size()), program.end(), '_', '-');
+  std::vector<std::string> words = wrapper;
   words.push_back(program);
-  for (std::string& word : argumentsOf(name)) words.push_back(word);
-  processes_[name] =
-      std::make_unique<Process>(wrapper.front(), words, folder_ + "/" + name + ".log");
+  for (const std::string& word : argumentsOf(name)) words.push_back(word);
+  const std::string first = words.front();
+  words.erase(words.begin());
+  processes_[name] = std::make_unique<Process>(first, words, folder_ + "/" + name + ".log");
 }
 
 void RobotRun::startAll() {

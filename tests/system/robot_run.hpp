@@ -30,7 +30,7 @@ class RobotRun {
 
   /// Names of the processes, as they are started by startAll().
   static const std::vector<std::string>& names();
-  void start(const std::string& name);
+  void start(const std::string& name) { startBehind({}, name); }
   /// Another value in a process's configuration, for the next time that it is started.
   void set(const std::string& name, const std::string& key, const std::string& value) {
     settings_[name].push_back(key + "=" + value);

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 
 #include <catch2/catch.hpp>
 
@@ -17,9 +18,9 @@ constexpr int64_t kHold = 1'000'000;  // [us] for which the motors must stay at 
 constexpr double kWorstStall = 0.05;  // [s] of the machine in a measurement that counts
 constexpr int kTrials = 4;
 
-/// Starts the robot and brings it to a steady drive over the field.
+/// Starts the robot, where the test has not, and brings it to a steady drive over the field.
 void driveOff(RobotRun& run) {
-  run.startAll();
+  if (!run.running("planner")) run.startAll();
   run.setGoal(30.0, 0.0);
   REQUIRE(run.arm(20.0));
   const auto drives = [&] { return run.driving() && run.motor().message().command_left > 0.3; };
@@ -37,6 +38,17 @@ double standsAfter(RobotRun& run, int64_t from, double seconds) {
     return zero.has_value();
   });
   return zero ? static_cast<double>(*zero - from) * 1e-6 : -1.0;
+}
+
+void mustObeyEstop(RobotRun& run) {
+  auto stop = blank<estop_t>();
+  stop.utime = run.now();
+  stop.engaged = true;
+  const int64_t stopped = run.now();
+  run.bus().publish(kEstop, stop);
+  const double stands = standsAfter(run, stopped, 5.0);
+  CHECK(stands >= 0.0);
+  CHECK(stands <= 0.25);
 }
 
 /// Nothing moves for some seconds although the goal still comes; after arming it drives again.
@@ -193,6 +205,38 @@ TEST_CASE("all lines to the devices closed and opened again: stop, come back, dr
   }
 }
 
+TEST_CASE("the host's date jumps by an hour and back by two: it drives on and is stopped as ever") {
+  RobotRun run(kField, "[-20, 0, 0]");
+  const std::string file = run.folder() + "/clock";
+  std::ofstream(file) << std::string(sizeof(int), '\0');
+  const auto jumpTo = [&file](int seconds) {
+    // In place: the processes have the file mapped.
+    std::fstream clock(file, std::ios::binary | std::ios::in | std::ios::out);
+    clock.write(reinterpret_cast<const char*>(&seconds), sizeof seconds);
+    REQUIRE(clock.flush());
+  };
+  const std::vector<std::string> jumping{"/usr/bin/env", "LD_PRELOAD=" JUMPING_CLOCK,
+                                         "JUMPING_CLOCK=" + file};
+  for (const std::string& name : RobotRun::names()) run.startBehind(jumping, name);
+  driveOff(run);
+  for (const int seconds : {3600, -3600}) {
+    const double from = run.ins().message().position[0];
+    const int armed_again = run.armedAgain();
+    jumpTo(seconds);
+    Process date("/usr/bin/env", {jumping[1], jumping[2], "/bin/date", "+%s"}, file + ".log");
+    REQUIRE(date.waitFor(5.0));
+    CHECK(run.untilDriving(20.0, [&] { return run.ins().message().position[0] > from + 3.0; }));
+    CHECK(run.armed());
+    CHECK(run.armedAgain() == armed_again);
+    for (const std::string& name : RobotRun::names()) CHECK(run.running(name));
+  }
+  int64_t ahead = 0;
+  int64_t behind = 0;
+  std::ifstream(file + ".log") >> ahead >> behind;
+  CHECK(ahead - behind > 7000);
+  mustObeyEstop(run);
+}
+
 TEST_CASE("no descriptors left: the robot drives on, and is stopped as ever") {
   RobotRun run(kField, "[-20, 0, 0]");
   driveOff(run);
@@ -204,14 +248,7 @@ TEST_CASE("no descriptors left: the robot drives on, and is stopped as ever") {
   const double from = run.ins().message().position[0];
   CHECK(run.untilDriving(20.0, [&] { return run.ins().message().position[0] > from + 5.0; }));
   for (const std::string& name : RobotRun::names()) CHECK(run.running(name));
-  auto stop = blank<estop_t>();
-  stop.utime = run.now();
-  stop.engaged = true;
-  const int64_t stopped = run.now();
-  run.bus().publish(kEstop, stop);
-  const double stands = standsAfter(run, stopped, 5.0);
-  CHECK(stands >= 0.0);
-  CHECK(stands <= 0.25);
+  mustObeyEstop(run);
 }
 
 TEST_CASE("a full disk stops neither the robot nor its learning, and is told, room again is used") {
