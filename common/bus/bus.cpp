@@ -102,6 +102,11 @@ bool Bus::hearsTwoSessions() const {
 std::optional<size_t> Bus::unseal(const std::string& channel, const Subscribed& subscribed,
                                   const uint8_t* bytes, size_t size) {
   trusted_ = true;
+  if (size > subscribed.most) {
+    refuse(channel, "too large",
+           std::to_string(size) + " bytes; no program of Tread sends so many");
+    return std::nullopt;
+  }
   if (!sealer_) {
     const size_t without = sizeWithoutSeal(bytes, size);
     statistics_.sealed_unread |= without != size;
@@ -111,11 +116,13 @@ std::optional<size_t> Bus::unseal(const std::string& channel, const Subscribed& 
   if (opened.verdict == SealVerdict::kGood) return opened.size;
   trusted_ = false;
   if (subscribed.stops != nullptr && subscribed.stops(bytes, opened.size)) return opened.size;
-  const std::string why = toWords(opened.verdict);
-  ++statistics_.refused[why];
-  statistics_.last_refusal =
-      channel + ": a message refused: " + why + "; " + remedyFor(opened.verdict);
+  refuse(channel, toWords(opened.verdict), remedyFor(opened.verdict));
   return std::nullopt;
+}
+
+void Bus::refuse(const std::string& channel, const std::string& why, const std::string& remedy) {
+  ++statistics_.refused[why];
+  statistics_.last_refusal = channel + ": a message refused: " + why + "; " + remedy;
 }
 
 void Bus::deliver(const RawHandler& handler, const std::string& channel, const uint8_t* bytes,

@@ -35,7 +35,7 @@ struct BusStatistics {
   int64_t failed = 0;          ///< handler threw
   int64_t oversized = 0;       ///< own messages above the channel's max_bytes: not sent
   bool sealed_unread = false;  ///< without a key: others have one, and refuse what comes from here
-  /// with a key: messages that were not taken, by why: "unsealed", "replayed"
+  /// messages that were not taken, by why: "too large", and with a key "unsealed", "replayed"
   std::map<std::string, int64_t> refused;
   std::string last_refusal;  ///< the newest refusal in one line: channel, what, size
 };
@@ -90,6 +90,7 @@ class Bus {
     const ChannelSpec spec = channel;
     const bool first = !hears(channel.name);
     Subscribed& subscribed = subscribed_[channel.name];
+    subscribed.most = static_cast<size_t>(channel.max_bytes) + kSealBytes;
     if constexpr (MayStop<Message>::value) subscribed.stops = &isStop<Message>;
     subscribed.handlers.push_back(
         [this, spec, handler = std::move(handler)](const uint8_t* bytes, size_t size) {
@@ -160,12 +161,14 @@ class Bus {
   struct Subscribed {
     std::deque<RawHandler> handlers;  ///< not moved when one subscribes while it runs
     bool (*stops)(const uint8_t* bytes, size_t size) = nullptr;  ///< null: nothing here stops
+    size_t most = 0;  ///< [bytes] of the channel's largest message and its seal
   };
 
   /// What the others' seals say now [us].
   int64_t sealTime() const { return sealClock() + seal_clock_.offset().value_or(0); }
   OpenedSeal open(const std::string& channel, const uint8_t* bytes, size_t size);
   void receiveBeside(const std::string& channel, const uint8_t* bytes, size_t size);
+  void refuse(const std::string& channel, const std::string& why, const std::string& remedy);
   /// The message's size without its seal, or nothing if it is not taken.
   std::optional<size_t> unseal(const std::string& channel, const Subscribed& subscribed,
                                const uint8_t* bytes, size_t size);
