@@ -41,19 +41,26 @@ void KeyState::move(double forward, double turn, int64_t now) {
 }
 
 void KeyState::press(char key, int64_t now) {
+  const double share = key >= 'A' && key <= 'Z' ? 1.0 : 0.5;  // of the full stick
   switch (key) {
     case 'w':
-      return move(1.0, 0.0, now);
+    case 'W':
+      return move(share, 0.0, now);
     case 's':
-      return move(-1.0, 0.0, now);
+    case 'S':
+      return move(-share, 0.0, now);
     case 'a':
-      return move(0.0, 1.0, now);
+    case 'A':
+      return move(0.0, share, now);
     case 'd':
-      return move(0.0, -1.0, now);
+    case 'D':
+      return move(0.0, -share, now);
     case 'q':
-      return move(1.0, 0.4, now);
+    case 'Q':
+      return move(share, 0.4 * share, now);
     case 'e':
-      return move(1.0, -0.4, now);
+    case 'E':
+      return move(share, -0.4 * share, now);
     case '\r':
     case '\n':
       arms_until_ = now + kHeld;
@@ -115,8 +122,8 @@ Wishes Keyboard::read(int64_t now) {
 }
 
 std::string Keyboard::keys() const {
-  return "hold an arrow or w a s d, q e for curves; space stops, Enter arms, Backspace disarms, g "
-         "gives back; Ctrl-C ends";
+  return "hold an arrow or w a s d, q e for curves, with Shift W A S D Q E at full power; space "
+         "stops, Enter arms, Backspace disarms, g gives back; Ctrl-C ends";
 }
 
 }  // namespace tread::drive

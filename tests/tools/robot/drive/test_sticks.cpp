@@ -108,14 +108,16 @@ TEST_CASE("a key drives while it repeats and 200 ms longer, space stops at once"
   CHECK_FALSE(keys.wishes(0).hold);
   keys.take("w", 1'000'000);
   CHECK(keys.wishes(1'190'000).hold);
-  CHECK(keys.wishes(1'190'000).forward == 1.0);
+  CHECK(keys.wishes(1'190'000).forward == 0.5);
   CHECK_FALSE(keys.wishes(1'200'000).hold);
   CHECK(keys.wishes(1'200'000).forward == 0.0);
   keys.take("\x1b[D", 2'000'000);  // an arrow
-  CHECK(keys.wishes(2'000'000).turn == 1.0);
+  CHECK(keys.wishes(2'000'000).turn == 0.5);
+  keys.take("D", 2'050'000);
+  CHECK(keys.wishes(2'050'000).turn == -1.0);
   keys.take("\x1b", 2'100'000);  // cut in two by the terminal
   keys.take("[A", 2'110'000);
-  CHECK(keys.wishes(2'110'000).forward == 1.0);
+  CHECK(keys.wishes(2'110'000).forward == 0.5);
   CHECK(keys.wishes(2'110'000).turn == 0.0);
   keys.take(" ", 2'150'000);
   CHECK_FALSE(keys.wishes(2'150'000).hold);
@@ -126,7 +128,7 @@ TEST_CASE("the escape key and keys of many bytes stop, too") {
   KeyState keys;
   keys.take("w", 1'000'000);
   keys.take("\x1b", 1'020'000);
-  CHECK(keys.wishes(1'030'000).forward == 1.0);  // it may become an arrow
+  CHECK(keys.wishes(1'030'000).forward == 0.5);  // it may become an arrow
   CHECK(keys.wishes(1'080'000).forward == 0.0);
   CHECK_FALSE(keys.wishes(1'080'000).hold);
   keys.take("g", 1'100'000);  // what comes next does not take the stop back
