@@ -26,11 +26,6 @@ const char* describe(FenceReceipt receipt) {
   return "unknown";
 }
 
-int64_t FenceBook::count(const std::string& name) const {
-  return std::count_if(fences_.begin(), fences_.end(),
-                       [&](const Fence& fence) { return fence.name == name; });
-}
-
 bool FenceBook::fit(const std::vector<Fence>& fences) {
   size_t corners = 0;
   for (const Fence& fence : fences) corners += fence.corners.size();

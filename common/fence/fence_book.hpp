@@ -33,8 +33,8 @@ const char* describe(FenceReceipt receipt);
 /// The fences in force: the robot's own, and what operators have added.
 /** One more fence only narrows, and is taken from everybody, as a stop is: fences of one name are
  * kept side by side. Removing widens: only the operator who holds the robot may do it, and the
- * robot's own fences stay. Those of operators last as long as the process; when the book is full,
- * strangers' fences make room for one of the operator who holds the robot, the oldest first. */
+ * robot's own fences stay. When the book is full, strangers' fences make room for one of the
+ * operator who holds the robot, the oldest first. */
 class FenceBook {
  public:
   static constexpr size_t kMost = 32;
@@ -50,11 +50,11 @@ class FenceBook {
   /// `holds`: the sender holds the robot.
   FenceReceipt take(const FenceRequest& request, bool holds);
 
+  /// The robot's own first.
   const std::vector<Fence>& fences() const { return fences_; }
+  size_t own() const { return own_; }
   /// Counts up with each change.
   int64_t revision() const { return revision_; }
-  /// How many fences of this name are in force.
-  int64_t count(const std::string& name) const;
 
  private:
   FenceReceipt add(const Fence& fence, bool holds);

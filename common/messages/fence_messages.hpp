@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 
@@ -24,15 +25,27 @@ std::string fenceCounter(const Fence& fence);
 /// Whether a HEALTH counter is that of a fence of this name.
 bool countsFence(const std::string& counter, const std::string& name);
 
-/// Tells in HEALTH which fences are in force, so that tread-fence sees that they were taken. There
-/// is no counter of what is not in force.
+/// Tells in HEALTH which fences are in force, so that tread-fence sees that they were taken, and
+/// brings those of operators to the other process that keeps fences.
+/** There is no counter of what is not in force. Who is started again has lost the operators'
+ * fences: it gets them back from the other, whose HEALTH and FENCE it hears. */
 class FenceReport {
  public:
+  /// Process names as in HEALTH. The bus must outlive this.
+  FenceReport(Bus& bus, std::string process, std::string other);
+
   void tell(const FenceBook& book, HealthReporter& health);
 
  private:
+  void bring(const Fence& fence);
+
+  Bus& bus_;
+  std::string process_;
+  std::optional<std::set<std::string>> others_;  ///< counters of the other's HEALTH, if new
+  int64_t next_ = 0;                             ///< [us] until then no HEALTH is looked at
   int64_t revision_ = -1;
   std::set<std::string> told_;  ///< counters
+  int64_t seq_ = 0;
 };
 
 }  // namespace tread

@@ -236,7 +236,8 @@ MotorBridgeNode::MotorBridgeNode(const MotorBridgeConfig& config, Bus& bus, Link
       link_(link),
       bridge_(config.bridge),
       controller_(config.make_controller()),
-      health_(bus, "motor_bridge", config.effective) {
+      health_(bus, "motor_bridge", config.effective),
+      fences_told_(bus, "motor_bridge", "planner") {
   listen();
 }
 

@@ -181,6 +181,7 @@ PlannerNode::PlannerNode(const PlannerConfig& config, Bus& bus)
       health_(bus, "planner", config.effective),
       robot_(bus, health_, config.operators.lease_us),
       fences_(config.map.fences),
+      fences_told_(bus, "planner", "motor_bridge"),
       supervisor_(config, bus.bootId()) {
   subscribe();
   robot_.on_ins = [this](const ins_t& message) { position_std_ = horizontalStd(message); };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <set>
 
@@ -18,6 +20,12 @@ Fence square(const std::string& name, double side) {
   return {name, false, {{0, 0}, {side, 0}, {side, side}, {0, side}}};
 }
 
+/// How many fences of this name are in force.
+int64_t countOf(const FenceBook& book, const std::string& name) {
+  return std::count_if(book.fences().begin(), book.fences().end(),
+                       [&](const Fence& fence) { return fence.name == name; });
+}
+
 FenceRequest removal(const std::string& name) {
   return {"ada", true, {name, false, {}}};
 }
@@ -32,7 +40,7 @@ TEST_CASE("one more fence is taken from everybody, and the same again changes no
   // Another one of the same name narrows further: it takes nothing away.
   CHECK(book.take({"stranger", false, square("yard", 99)}, false) == FenceReceipt::kAdded);
   CHECK(book.fences().size() == 2);
-  CHECK(book.count("yard") == 2);
+  CHECK(countOf(book, "yard") == 2);
 }
 
 TEST_CASE("only who holds the robot removes a fence, and nobody removes the robot's own") {
@@ -40,9 +48,9 @@ TEST_CASE("only who holds the robot removes a fence, and nobody removes the robo
   book.take({"ada", false, square("yard", 9)}, true);
   book.take({"ada", false, square("yard", 8)}, true);
   CHECK(book.take(removal("yard"), false) == FenceReceipt::kForbidden);
-  CHECK(book.count("yard") == 2);
+  CHECK(countOf(book, "yard") == 2);
   CHECK(book.take(removal("site"), true) == FenceReceipt::kNotThere);
-  CHECK(book.count("site") == 1);
+  CHECK(countOf(book, "site") == 1);
   CHECK(book.take(removal("yard"), true) == FenceReceipt::kRemoved);
   CHECK(book.take(removal("yard"), true) == FenceReceipt::kNotThere);
   REQUIRE(book.fences().size() == 1);
@@ -70,20 +78,20 @@ TEST_CASE("strangers' fences make room for those of who holds the robot, the old
   CHECK(book.take({"ada", false, square("people", 9)}, true) == FenceReceipt::kAdded);
   CHECK(book.revision() == revision + 1);
   CHECK(book.fences().size() == FenceBook::kMost);
-  CHECK(book.count("s2") == 0);
+  CHECK(countOf(book, "s2") == 0);
   // What the holder asks for, too, is kept as the holder's.
   CHECK(book.take({"ada", false, square("s3", 99)}, true) == FenceReceipt::kKnown);
   for (size_t i = 4; i < FenceBook::kMost; ++i)
     CHECK(book.take({"ada", false, square("a" + std::to_string(i), 9)}, true) ==
           FenceReceipt::kAdded);
   CHECK(book.take({"ada", false, square("last", 9)}, true) == FenceReceipt::kFull);
-  for (const char* kept : {"site", "yard", "people", "s3", "a4"}) CHECK(book.count(kept) == 1);
-  CHECK(book.count("s4") == 0);
+  for (const char* kept : {"site", "yard", "people", "s3", "a4"}) CHECK(countOf(book, kept) == 1);
+  CHECK(countOf(book, "s4") == 0);
   // One of the holder's gone, and a stranger's there instead: it goes again.
   CHECK(book.take(removal("yard"), true) == FenceReceipt::kRemoved);
   CHECK(book.take({"stranger", false, square("more", 9)}, false) == FenceReceipt::kAdded);
   CHECK(book.take({"ada", false, square("last", 9)}, true) == FenceReceipt::kAdded);
-  CHECK(book.count("more") == 0);
+  CHECK(countOf(book, "more") == 0);
 }
 
 TEST_CASE("so many corners as the motor bridge cannot look at in a step are not taken") {
@@ -119,7 +127,7 @@ TEST_CASE("the counter of a fence tells it from others of its name") {
 
 TEST_CASE("HEALTH counts the fences in force and no others, however many have come and gone") {
   struct Teller : Node {
-    explicit Teller(Bus& bus) : health(bus, "teller", "") {}
+    explicit Teller(Bus& bus) : report(bus, "teller", "none"), health(bus, "teller", "") {}
     int64_t period() const override { return 1'000'000; }
     void step(int64_t utime) override {
       for (int i = 0; i < 20; ++i) {
@@ -147,6 +155,59 @@ TEST_CASE("HEALTH counts the fences in force and no others, however many have co
     bus.runUntil(bus.now() + 1'000'000);
     REQUIRE(told.size() == 2);
     CHECK(told.count(fenceCounter(square("site", 50))) == 1);
+  }
+}
+
+TEST_CASE("who is started again gets the operators' fences back, and what is removed stays away") {
+  struct Keeper : Node {
+    Keeper(Bus& bus, const std::string& name, const std::string& other)
+        : report(bus, name, other), health(bus, name, "") {
+      bus.subscribe<fence_t>(kFence, [this](const fence_t& message) {
+        ++requests;
+        book.take(requestFrom(message), message.fence_by == "ada");
+      });
+    }
+    int64_t period() const override { return 10'000; }
+    void step(int64_t utime) override {
+      report.tell(book, health);
+      health.step(utime);
+    }
+    FenceBook book{{square("site", 50)}};
+    FenceReport report;
+    HealthReporter health;
+    int requests = 0;
+  };
+  VirtualBus bus{1};
+  std::map<std::string, Keeper*> keepers;
+  const auto add = [&](const std::string& name, const std::string& other) {
+    bus.addNode(name, [&keepers, name, other](Bus& end) {
+      auto keeper = std::make_unique<Keeper>(end, name, other);
+      keepers[name] = keeper.get();
+      return keeper;
+    });
+  };
+  const auto send = [&](const FenceRequest& request) {
+    fence_t message = toMessage(request);
+    message.utime = bus.now();
+    bus.outside().publish(kFence, message);
+    bus.runUntil(bus.now() + 3'000'000);
+  };
+  add("one", "two");
+  add("two", "one");
+  send({"ada", false, square("yard", 9)});
+  send({"ada", false, square("pond", 3)});
+  for (const std::string name : {"one", "two"}) {
+    bus.kill(name);
+    bus.restart(name);
+    bus.runUntil(bus.now() + 1'200'000);
+    CHECK(keepers[name]->book.fences().size() == 3);
+    bus.runUntil(bus.now() + 3'000'000);
+    CHECK(keepers[name]->requests <= 4);  // and then there is silence
+  }
+  send(removal("yard"));
+  for (const auto& [name, keeper] : keepers) {
+    CHECK(countOf(keeper->book, "yard") == 0);
+    CHECK(countOf(keeper->book, "pond") == 1);
   }
 }
 
