@@ -160,7 +160,7 @@ namespace {
 /// A bridge that was told everything it needs to drive, again every 10 ms, but for what is left
 /// out.
 struct ToldBridge {
-  MotorRule rule{1'000'000};
+  MotorRule rule{MotorLimits{}};
   int64_t now = 1'000'000;
 
   template <class Message>
