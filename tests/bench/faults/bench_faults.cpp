@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 // Missions of the whole robot in virtual time under seeded faults; the rules are looked at from
 // outside.
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 
@@ -43,6 +45,8 @@ int drive(const Arguments& arguments) {
   const missions::RobotConfig robot = missions::readRobot(TREAD_CONFIG_DIR "/robots/teodor");
   const RunOptions& options = arguments.run;
   int broken = 0, drove = 0, again = 0, arrived = 0, collided = 0;
+  int by_hand = 0, returned = 0, tilts = 0, fences = 0, held = 0;
+  double least_room = 1e9;
   int64_t paths = 0, faults = 0;
   const int missions = arguments.only ? 1 : arguments.missions;
   for (int i = 0; i < missions; ++i) {
@@ -56,6 +60,12 @@ int drive(const Arguments& arguments) {
     again += run.drove_after || run.arrived ? 1 : 0;
     arrived += run.arrived ? 1 : 0;
     collided += run.collisions > 0 ? 1 : 0;
+    by_hand += run.by_hand ? 1 : 0;
+    returned += run.returned ? 1 : 0;
+    tilts += run.tilt_stop ? 1 : 0;
+    fences += run.fence_stop ? 1 : 0;
+    held += std::isfinite(run.least_room) ? 1 : 0;
+    least_room = std::min(least_room, run.least_room);
     paths += run.paths_judged;
     faults += static_cast<int64_t>(schedule.faults.size());
   }
@@ -64,6 +74,10 @@ int drive(const Arguments& arguments) {
       "fault, %d arrived within %.0f s, %d touched something; %lld patterns judged\n",
       missions, static_cast<long long>(faults), broken, drove, again, arrived, options.duration,
       collided, static_cast<long long>(paths));
+  std::printf(
+      "%d were driven by hand, %d moved without their operator, %d were stopped for their tilt, %d "
+      "at a fence; %d held to fences, least room %.3f m\n",
+      by_hand, returned, tilts, fences, held, least_room);
   return broken == 0 ? 0 : 1;
 }
 

@@ -108,9 +108,10 @@ class Run {
   missions::RobotConfig configured(missions::RobotConfig robot) const {
     robot.simulated.laser.beams = options_.beams;
     motor::BridgeConfig& bridge = robot.motor_bridge.bridge;
-    if (options_.bridge_keeps_fences) bridge.fences.own = own_fences_;
+    bridge.fences.own.clear();
+    if (options_.keeps_fences) bridge.fences.own = own_fences_;
     robot.planner.map.fences.clear();
-    if (options_.planner_keeps_fences) robot.planner.map.fences = own_fences_;
+    if (schedule_.scenario.planner_knows) robot.planner.map.fences = bridge.fences.own;
     if (schedule_.scenario.go_back)
       bridge.operators.lost = robot.planner.operators.lost = OperatorLost::kGoBack;
     return robot;
@@ -154,6 +155,7 @@ class Run {
     const Received message{now, channel, {bytes.begin(), bytes.begin() + size}};
     const bool genuine = !schedule_.keyed || static_cast<size_t>(size) != bytes.size();
     if (!genuine) return;
+    if (const auto motor = messageOf(kMotor, message)) note(*motor);
     if (const auto health = messageOf(kHealth, message)) breaks(counts_.check(*health));
     if (const auto plan = messageOf(kPlan, message)) {
       if (plan->set_version < version_)
@@ -166,6 +168,19 @@ class Run {
     }
     if (!schedule_.scenario.go_back) return;
     if (const auto program = messageOf(kProgram, message)) breaks(returns_.check(now, *program));
+  }
+
+  /// What happened at all: a rule that nothing ever tries proves nothing.
+  void note(const motor_t& motor) {
+    const bool moves = motor.command_left != 0.0F || motor.command_right != 0.0F;
+    const auto says = [&](const char* words) {
+      return motor.state_reason.find(words) != std::string::npos;
+    };
+    result_.by_hand |= moves && motor.bridge_state == motor_t::STATE_MANUAL;
+    result_.returned |= moves && bus_.now() > operator_until_ + 3'000'000;
+    const bool stopped = motor.bridge_state == motor_t::STATE_DISARMED;
+    result_.tilt_stop |= stopped && (says("rolled") || says("pitched"));
+    result_.fence_stop |= stopped && says("fence ");
   }
 
   void handed(int64_t now, const std::string& node, const std::string& channel,
@@ -207,6 +222,7 @@ class Run {
     bus_.runUntil(bus_.now() + kTick);
     const int64_t now = bus_.now();
     for (size_t i = 0; i < schedule_.faults.size(); ++i) apply(i, now - start_);
+    if (!operator_lost_) operator_until_ = now;
     if ((now - start_) % kOperatorPeriod == 0 && !operator_lost_) person_->step(now);
     if ((now - start_) % kHandPeriod == 0 && !operator_lost_ && hand_) hand_->step(now, now - start_);
     putFence(now - start_);
@@ -392,6 +408,7 @@ class Run {
   std::optional<PersonAtStick> hand_;
   std::optional<FenceRequest> put_;
   bool operator_lost_ = false;
+  int64_t operator_until_ = 0;  ///< [us]
   const Fault* scan_fault_ = nullptr;
   std::map<std::string, std::deque<std::vector<uint8_t>>> kept_;
   bool replaying_ = false;

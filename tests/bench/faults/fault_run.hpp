@@ -25,6 +25,10 @@ struct FaultyRun {
   int collisions = 0;
   int64_t paths_judged = 0;
   double least_room = 0.0;  ///< [m] to a fence that it was held to; infinite if to none
+  bool by_hand = false;     ///< a person drove it
+  bool returned = false;    ///< it moved without its operator
+  bool tilt_stop = false;   ///< the bridge stopped it for its roll or pitch
+  bool fence_stop = false;  ///< ... or at a fence
 };
 
 struct RunOptions {
@@ -32,8 +36,7 @@ struct RunOptions {
   int beams = 181;         ///< of a scan: most of a mission's cost is in casting them
   int64_t operator_lease_us = 1'000'000;    ///< that the rules count with
   double tilt = 30.0 / 180.0 * kPi;         ///< [rad] that the rules count with
-  bool bridge_keeps_fences = true;          ///< false: it does not know those of the file
-  bool planner_keeps_fences = true;
+  bool keeps_fences = true;  ///< false: nobody on the robot knows those of its file
 };
 
 /// Drives a mission of this seed under its faults, and looks at the rules at each message and every

@@ -58,6 +58,7 @@ class Draw {
 /// Kinds that drawSchedule() knows: more would change what each seed means.
 constexpr auto kFirstKinds = static_cast<uint64_t>(FaultKind::kTilt);
 constexpr uint64_t kScenarioStream = 0x5ce9a210;
+constexpr uint64_t kPlannerStream = 0x91a77e2;
 
 const std::vector<std::string> kForged{"ARM",   "GOAL", "PROGRAM", "PATTERN_SET",
                                        "ESTOP", "MAP",  "INS",     "OPERATOR"};
@@ -109,8 +110,8 @@ int64_t moment(Draw& draw, int64_t first, int64_t last, double share) {
 }
 
 std::vector<Fence> drawFences(Draw& draw) {
-  const double west = -between(draw, 1.2, 4.0), east = between(draw, 6.0, 20.0);
-  const double south = -between(draw, 1.5, 8.0), north = between(draw, 1.5, 8.0);
+  const double west = -between(draw, 1.2, 4.0), east = between(draw, 21.0, 26.0);
+  const double south = -between(draw, 3.0, 9.0), north = between(draw, 3.0, 9.0);
   std::vector<Fence> fences{
       {"yard", false, {{west, south}, {east, south}, {east, north}, {west, north}}}};
   if (draw.below(2) == 0) return fences;
@@ -151,6 +152,7 @@ void addScenario(FaultSchedule& schedule, int64_t first, int64_t last) {
   Draw draw(schedule.seed ^ kScenarioStream);
   Scenario& scenario = schedule.scenario;
   if (draw.share() < 0.35) scenario.own_fences = drawFences(draw);
+  scenario.planner_knows = Draw(schedule.seed ^ kPlannerStream).share() < 0.6;
   if (draw.share() < 0.25) {
     scenario.fence_at = moment(draw, first + 1'500'000, last, 1.0);
     scenario.fence_ahead = between(draw, 1.3, 4.0);
@@ -217,7 +219,8 @@ std::string describe(const Fault& fault) {
 
 std::string describe(const Scenario& scenario) {
   std::vector<std::string> words;
-  if (!scenario.own_fences.empty()) words.emplace_back("fences in the file");
+  if (!scenario.own_fences.empty()) words.emplace_back(scenario.planner_knows ? "fences in the file"
+                                              : "fences that only the bridge knows");
   if (scenario.fence_at)
     words.push_back(formatted("the operator's fence at %.2f s, %.1f m ahead, %.1f m wide",
                               static_cast<double>(*scenario.fence_at) * 1e-6, scenario.fence_ahead,

@@ -62,6 +62,7 @@ struct HandStretch {
 /// origin, the goal lies on its x axis.
 struct Scenario {
   std::vector<Fence> own_fences;    ///< of the robot's file
+  bool planner_knows = true;        ///< else only the bridge has them
   std::optional<int64_t> fence_at;  ///< [us] the operator puts a fence before the driving robot
   double fence_ahead = 0.0;         ///< [m] from the body's origin to its near side
   double fence_width = 0.0;         ///< [m]
