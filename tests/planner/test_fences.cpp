@@ -126,6 +126,28 @@ TEST_CASE("Over a fence it drives back in, and never farther out on its way") {
   }
 }
 
+TEST_CASE("On its way out of a fence no obstacle takes the place of forbidden ground") {
+  // It stands before a pond that reaches under its nose, a wall a little behind it.
+  Playground ground;
+  Grid grid = ground.paint(0.1, {-6.4, -6.4}, {6.4, 6.4});
+  const FencedGround pond({{"pond", true, {{0.3, -2}, {3, -2}, {3, 2}, {0.3, 2}}}}, 0.0);
+  const auto checker = [&] { return CollisionChecker(grid, kVehicle, {}, true, pond); };
+  const PatternTable table(samplePatterns(), usualSweep(), {});
+  const auto leaving = [&](const CollisionChecker& around) {
+    int count = 0;
+    for (const TablePattern& pattern : table.patterns())
+      count += pattern.end().pose.x < -0.1 && around.escape({}, around.overlap({}), pattern) ? 1 : 0;
+    return count;
+  };
+  REQUIRE(checker().overlap({}).all > 0);
+  CHECK(leaving(checker()) > 0);
+  for (const Cell behind : {kObstacle, kUnknown}) {
+    for (int y = -8; y <= 8; ++y) grid.set({static_cast<int>(-10.0 * kVehicle.rear) - 2, y}, behind);
+    REQUIRE(checker().overlap({}).blocked == 0);
+    CHECK(leaving(checker()) == 0);
+  }
+}
+
 TEST_CASE("Cells near forbidden ground are obstacles, all of them and no others") {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> draw(-6.0, 6.0);

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 // Missions of the whole robot in virtual time under seeded faults; the rules are looked at from
 // outside.
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 
@@ -21,13 +23,16 @@ struct Arguments {
   uint64_t seed = 1;
   bool only = false;
   bool go_back = false;
-  double duration = 16.0;
+  bool bare = false;
+  RunOptions run;
 };
 
 void printSeed(uint64_t seed, const FaultSchedule& schedule, const FaultyRun& run) {
   std::printf("seed %llu, %s\n", static_cast<unsigned long long>(seed),
               schedule.keyed ? "with a key" : "without a key");
   for (const Fault& fault : schedule.faults) std::printf("  %s\n", describe(fault).c_str());
+  const std::string scenario = describe(schedule.scenario);
+  if (!scenario.empty()) std::printf("  %s\n", scenario.c_str());
   if (run.collisions > 0) std::printf("  touched something %d times\n", run.collisions);
   if (run.violation)
     std::printf(
@@ -38,14 +43,16 @@ void printSeed(uint64_t seed, const FaultSchedule& schedule, const FaultyRun& ru
 
 int drive(const Arguments& arguments) {
   const missions::RobotConfig robot = missions::readRobot(TREAD_CONFIG_DIR "/robots/teodor");
-  RunOptions options;
-  options.duration = arguments.duration;
+  const RunOptions& options = arguments.run;
   int broken = 0, drove = 0, again = 0, arrived = 0, collided = 0;
+  int by_hand = 0, returned = 0, tilts = 0, fences = 0, held = 0;
+  double least_room = 1e9;
   int64_t paths = 0, faults = 0;
   const int missions = arguments.only ? 1 : arguments.missions;
   for (int i = 0; i < missions; ++i) {
     const uint64_t seed = arguments.seed + static_cast<uint64_t>(i);
-    const FaultSchedule schedule = scheduleOf(seed, options.duration);
+    const FaultSchedule schedule = arguments.bare ? bareScheduleOf(seed, options.duration)
+                                                   : scheduleOf(seed, options.duration);
     const FaultyRun run = runFaulty(robot, schedule, options);
     if (run.violation || run.collisions > 0 || arguments.only) printSeed(seed, schedule, run);
     broken += run.violation ? 1 : 0;
@@ -53,6 +60,12 @@ int drive(const Arguments& arguments) {
     again += run.drove_after || run.arrived ? 1 : 0;
     arrived += run.arrived ? 1 : 0;
     collided += run.collisions > 0 ? 1 : 0;
+    by_hand += run.by_hand ? 1 : 0;
+    returned += run.returned ? 1 : 0;
+    tilts += run.tilt_stop ? 1 : 0;
+    fences += run.fence_stop ? 1 : 0;
+    held += std::isfinite(run.least_room) ? 1 : 0;
+    least_room = std::min(least_room, run.least_room);
     paths += run.paths_judged;
     faults += static_cast<int64_t>(schedule.faults.size());
   }
@@ -61,6 +74,10 @@ int drive(const Arguments& arguments) {
       "fault, %d arrived within %.0f s, %d touched something; %lld patterns judged\n",
       missions, static_cast<long long>(faults), broken, drove, again, arrived, options.duration,
       collided, static_cast<long long>(paths));
+  std::printf(
+      "%d were driven by hand, %d moved without their operator, %d were stopped for their tilt, %d "
+      "at a fence; %d held to fences, least room %.3f m\n",
+      by_hand, returned, tilts, fences, held, least_room);
   return broken == 0 ? 0 : 1;
 }
 
@@ -106,7 +123,11 @@ int main(int argc, char** argv) {
   app.add_flag("--only", arguments.only, "that seed alone, with its faults in words");
   app.add_flag("--go-back", arguments.go_back,
                "instead: the operator falls silent for good, and the robot shall return");
-  app.add_option("--seconds", arguments.duration, "of each mission")->check(CLI::Range(8.0, 600.0));
+  app.add_flag("--bare", arguments.bare, "without fences, driving by hand, tilts and returns");
+  app.add_option("--seconds", arguments.run.duration, "of each mission")
+      ->check(CLI::Range(8.0, 600.0));
+  app.add_option("--beams", arguments.run.beams, "of each scan; 541 as the range finder has it")
+      ->check(CLI::Range(91, 1081));
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return runProgram("bench-faults",
                     [&] { return arguments.go_back ? goBack(arguments) : drive(arguments); });

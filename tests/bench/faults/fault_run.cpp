@@ -7,9 +7,13 @@
 #include <deque>
 
 #include "common/messages/blank.hpp"
+#include "common/messages/fence_messages.hpp"
 #include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
 #include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
+#include "tests/bench/faults/forger.hpp"
 #include "tests/bench/faults/invariants.hpp"
+#include "tests/bench/faults/limit_rules.hpp"
+#include "tests/bench/faults/person_at_stick.hpp"
 #include "tools/missions/mission.hpp"
 
 namespace tread::faults {
@@ -17,7 +21,9 @@ namespace {
 
 constexpr int64_t kTick = 5'000;             // [us] between looks at the motors
 constexpr int64_t kOperatorPeriod = 50'000;  // [us]
+constexpr int64_t kHandPeriod = 20'000;      // [us]
 constexpr int64_t kForgePeriod = 40'000;     // [us]
+constexpr int64_t kFirstFault = 2'500'000;   // [us]
 constexpr double kLine = 12.0;               // [m] shortest
 
 SealKey someKey() {
@@ -38,10 +44,12 @@ class DisturbedIns : public sim::InsErrors {
     input.yaw += turn;
     input.body.R_map_body = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
                             input.body.R_map_body;
+    input.body.roll += roll;
+    input.body.R_map_body *= Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()).toRotationMatrix();
     return input;
   }
   bool frozen = false;
-  double jump = 0.0, turn = 0.0, strength = 0.0;
+  double jump = 0.0, turn = 0.0, roll = 0.0, strength = 0.0;
   int64_t drift_since = 0;
 
  private:
@@ -49,126 +57,15 @@ class DisturbedIns : public sim::InsErrors {
   double drift_ = 0.0;
 };
 
-template <class Message>
-std::vector<uint8_t> bytesOf(const Message& message) {
-  std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
+/// From the frame of the way into map.
+std::vector<Fence> fencesOf(const Scenario& scenario, const missions::MissionWorld& world) {
+  const Eigen::Vector2d way = world.T_map_goal.position() - world.T_map_start.position();
+  const Pose2 T_map_way{world.T_map_start.x, world.T_map_start.y, std::atan2(way.y(), way.x())};
+  std::vector<Fence> fences = scenario.own_fences;
+  for (Fence& fence : fences)
+    for (Eigen::Vector2d& corner : fence.corners) corner = T_map_way * corner;
+  return fences;
 }
-
-/// A set whose patterns turn and go otherwise than the vehicle does.
-std::optional<PatternSet> wrongSet(const PatternSet& shipped, double strength, int64_t version) {
-  PatternSetContent content = shipped.content();
-  content.parent_version = content.version;
-  content.version = version;
-  const double turn = 0.4 + 1.2 * strength;
-  for (MotionPattern& pattern : content.patterns)
-    for (Pose2& pose : pattern.trajectory) pose = {pose.x, turn * pose.y, turn * pose.yaw};
-  std::string why;
-  return PatternSet::make(content, why);
-}
-
-/// Messages that a stranger may send.
-class Forger {
- public:
-  Forger(VirtualBus& bus, const Pose2& T_map_goal, const PatternSet& shipped)
-      : bus_(bus), T_map_goal_(T_map_goal), shipped_(shipped) {}
-
-  void send(const std::string& channel, double strength) {
-    ++count_;
-    if (channel == "ARM") return arm();
-    if (channel == "GOAL") return goal(strength);
-    if (channel == "PROGRAM") return program(strength);
-    if (channel == "PATTERN_SET") return patternSet(strength);
-    if (channel == "ESTOP") return clearing();
-    if (channel == "MAP") return map(strength);
-    if (channel == "INS") return ins(strength);
-    notice();
-  }
-
- private:
-  template <class Message>
-  void inject(const Channel<Message>& channel, Message& message, int64_t utime) {
-    message.utime = utime;
-    message.seq = 1'000'000 + count_;
-    const std::vector<uint8_t> bytes = bytesOf(message);
-    bus_.inject(channel.name, bytes.data(), bytes.size());
-  }
-  void arm() {
-    auto message = blank<arm_t>();
-    message.armed = true;
-    message.armed_by = "mission operator";
-    inject(kArm, message, bus_.now());
-  }
-  void goal(double strength) {
-    auto message = blank<goal_t>();
-    message.goal_id = 4711;
-    message.goal_pose[0] = T_map_goal_.x + 10.0 * strength;
-    message.goal_pose[1] = T_map_goal_.y - 10.0;
-    message.goal_pose[2] = 0.0;
-    message.position_tolerance = 0.5;
-    message.yaw_tolerance = 4.0;
-    inject(kGoal, message, bus_.now());
-  }
-  void program(double strength) {
-    auto message = blank<program_t>();
-    message.run_id = 99;
-    message.lease = 200'000;
-    message.running.execution_id = 1;
-    message.running.slot_pattern_id = 1;
-    message.running.slot_set_version = 1;
-    message.running.command_kind = program_slot_t::KIND_POWER;
-    message.running.period = 50'000;
-    message.running.num_commands = 40;
-    message.running.left.assign(40, strength < 0.1 ? 2.0F : 1.0F);
-    message.running.right.assign(40, 1.0F);
-    message.next = blank<program_slot_t>();
-    inject(kProgram, message, bus_.now());
-  }
-  void patternSet(double strength) {
-    const auto set = wrongSet(shipped_, strength, 1'000'000);
-    if (!set) return;
-    for (pattern_set_part_t part : toMessages(*set)) inject(kPatternSet, part, part.utime);
-  }
-  void clearing() {
-    auto message = blank<estop_t>();
-    message.engaged = false;
-    message.estop_by = "stranger";
-    inject(kEstop, message, bus_.now());
-  }
-  void map(double strength) {
-    auto message = blank<map_tile_t>();
-    message.tile_cells = 32;
-    message.cell_size = strength < 0.2 ? 0.05 : 0.1;
-    message.tile_x = static_cast<int32_t>(count_ % 7) - 3;
-    message.tile_y = static_cast<int32_t>(count_ / 7 % 7) - 3;
-    message.num_cells = message.tile_cells * message.tile_cells;
-    message.cells.assign(static_cast<size_t>(message.num_cells), strength < 0.6 ? 0 : 254);
-    inject(kMap, message, bus_.now() + 40'000);
-  }
-  void ins(double strength) {
-    auto message = blank<ins_t>();
-    message.position[0] = 5.0 * strength;
-    message.position[1] = message.position[2] = 0.0;
-    for (double& number : message.orientation) number = 0.0;
-    message.orientation[0] = 1.0;
-    message.ins_status = 0;
-    inject(kIns, message, bus_.now());
-  }
-  void notice() {
-    auto message = blank<operator_t>();
-    message.station = 4712;
-    message.operator_name = count_ % 2 == 0 ? "mission operator" : "stranger";
-    message.allowed = operator_t::ALLOW_DRIVING;
-    message.seen_utime = bus_.now();
-    inject(kOperator, message, bus_.now());
-  }
-
-  VirtualBus& bus_;
-  Pose2 T_map_goal_;
-  const PatternSet& shipped_;
-  int64_t count_ = 0;
-};
 
 /// One mission with its faults and its rules.
 class Run {
@@ -177,17 +74,21 @@ class Run {
       : schedule_(schedule),
         options_(options),
         world_(missions::makeMissionWorld(schedule.seed, robot.simulated.vehicle.outline, kLine)),
-        system_(robot, world_.description, world_.T_map_start, schedule.seed, "", planOf(schedule),
+        own_fences_(fencesOf(schedule.scenario, world_)),
+        system_(configured(robot), world_.description, world_.T_map_start, schedule.seed, "", planOf(schedule),
                 nullptr, parts()),
         bus_(system_.bus()),
         start_(bus_.now()),
         active_(schedule.faults.size(), false),
         forger_(bus_, world_.T_map_goal, system_.patterns()),
-        motors_(options.operator_lease_us),
+        motors_(limitsOf()),
+        fences_(own_fences_, robot.simulated.vehicle.outline),
+        returns_(options.operator_lease_us),
         path_(robot.planner.map.footprint),
         counts_(schedule.keyed) {
     if (schedule.keyed) bus_.useKey(someKey());
     person_.emplace(bus_.outside(), world_.T_map_goal);
+    if (schedule.scenario.hand) hand_.emplace(bus_.outside(), *schedule.scenario.hand);
     watch();
   }
 
@@ -204,6 +105,26 @@ class Run {
   }
 
  private:
+  missions::RobotConfig configured(missions::RobotConfig robot) const {
+    robot.simulated.laser.beams = options_.beams;
+    motor::BridgeConfig& bridge = robot.motor_bridge.bridge;
+    bridge.fences.own.clear();
+    if (options_.keeps_fences) bridge.fences.own = own_fences_;
+    robot.planner.map.fences.clear();
+    if (schedule_.scenario.planner_knows) robot.planner.map.fences = bridge.fences.own;
+    if (schedule_.scenario.go_back)
+      bridge.operators.lost = robot.planner.operators.lost = OperatorLost::kGoBack;
+    return robot;
+  }
+
+  MotorLimits limitsOf() const {
+    MotorLimits limits;
+    limits.operator_lease_us = options_.operator_lease_us;
+    limits.tilt = options_.tilt;
+    limits.go_back = schedule_.scenario.go_back;
+    return limits;
+  }
+
   sim::RobotParts parts() {
     auto errors = std::make_unique<DisturbedIns>();
     ins_ = errors.get();
@@ -234,6 +155,7 @@ class Run {
     const Received message{now, channel, {bytes.begin(), bytes.begin() + size}};
     const bool genuine = !schedule_.keyed || static_cast<size_t>(size) != bytes.size();
     if (!genuine) return;
+    if (const auto motor = messageOf(kMotor, message)) note(*motor);
     if (const auto health = messageOf(kHealth, message)) breaks(counts_.check(*health));
     if (const auto plan = messageOf(kPlan, message)) {
       if (plan->set_version < version_)
@@ -242,7 +164,23 @@ class Run {
       version_ = plan->set_version;
       result_.arrived = result_.arrived || plan->plan_status == plan_t::PLAN_ARRIVED;
       breaks(path_.check(now, *plan));
+      returns_.sent(*plan);
     }
+    if (!schedule_.scenario.go_back) return;
+    if (const auto program = messageOf(kProgram, message)) breaks(returns_.check(now, *program));
+  }
+
+  /// What happened at all: a rule that nothing ever tries proves nothing.
+  void note(const motor_t& motor) {
+    const bool moves = motor.command_left != 0.0F || motor.command_right != 0.0F;
+    const auto says = [&](const char* words) {
+      return motor.state_reason.find(words) != std::string::npos;
+    };
+    result_.by_hand |= moves && motor.bridge_state == motor_t::STATE_MANUAL;
+    result_.returned |= moves && bus_.now() > operator_until_ + 3'000'000;
+    const bool stopped = motor.bridge_state == motor_t::STATE_DISARMED;
+    result_.tilt_stop |= stopped && (says("rolled") || says("pitched"));
+    result_.fence_stop |= stopped && says("fence ");
   }
 
   void handed(int64_t now, const std::string& node, const std::string& channel,
@@ -256,8 +194,13 @@ class Run {
     const bool stop = (channel == "ESTOP" || channel == "ARM") && node == "motor_bridge";
     if (schedule_.keyed && !stop && (!sealed || !handed_[node].insert(bytes).second)) return;
     if (schedule_.keyed && stop && !sealed && !isStopping(message)) return;
-    if (node == "motor_bridge") motors_.receive(message);
-    if (node == "planner") path_.receive(message);
+    if (node == "motor_bridge") {
+      motors_.receive(message);
+      fences_.receive(message);
+    } else {
+      path_.receive(message);
+      returns_.receive(message);
+    }
   }
   static bool isStopping(const Received& message) {
     const auto arm = messageOf(kArm, message);
@@ -279,7 +222,11 @@ class Run {
     bus_.runUntil(bus_.now() + kTick);
     const int64_t now = bus_.now();
     for (size_t i = 0; i < schedule_.faults.size(); ++i) apply(i, now - start_);
+    if (!operator_lost_) operator_until_ = now;
     if ((now - start_) % kOperatorPeriod == 0 && !operator_lost_) person_->step(now);
+    if ((now - start_) % kHandPeriod == 0 && !operator_lost_ && hand_) hand_->step(now, now - start_);
+    putFence(now - start_);
+    judgeFences(now);
     const std::array<double, 2> power = system_.devices().power(now);
     breaks(motors_.check(now, power));
     const bool turns = power[0] != 0.0 || power[1] != 0.0;
@@ -289,6 +236,37 @@ class Run {
       for (const std::string& node : missions::robotNodes())
         if (bus_.statistics(node).failed > 0)
           breaks(node + ": a handler threw: " + bus_.statistics(node).last_refusal);
+  }
+
+  /// The operator's fence before the driving robot, told three times.
+  void putFence(int64_t since) {
+    const Scenario& scenario = schedule_.scenario;
+    if (!scenario.fence_at || since < *scenario.fence_at || operator_lost_) return;
+    const int64_t after = since - *scenario.fence_at;
+    if (after > 1'000'000 || after % 500'000 >= kTick) return;
+    if (!put_) {
+      const Pose2& here = system_.robot().truth().T_map_body;
+      const double near = scenario.fence_ahead, half = scenario.fence_width / 2.0;
+      put_ = FenceRequest{"mission operator", false, {"across", true, {}}};
+      for (const auto& [x, y] : {std::pair(near, -half), std::pair(near + 1.0, -half),
+                                 std::pair(near + 1.0, half), std::pair(near, half)})
+        put_->fence.corners.push_back(here * Eigen::Vector2d(x, y));
+    }
+    bus_.outside().publish(kFence, toMessage(*put_));
+  }
+
+  void judgeFences(int64_t now) {
+    for (size_t i = 0; i < active_.size(); ++i)
+      if (active_[i] && blinds(schedule_.faults[i])) fences_.blind(now);
+    const sim::RobotTruth& truth = system_.robot().truth();
+    breaks(fences_.check(now, truth.T_map_body, truth.v_body.v_x));
+    result_.least_room = fences_.leastRoom();
+  }
+  /// Whether the bridge, or what it says to the motors, is without effect.
+  static bool blinds(const Fault& fault) {
+    const bool ends = fault.kind == FaultKind::kKill || fault.kind == FaultKind::kHang;
+    return fault.kind == FaultKind::kMotorLine || fault.kind == FaultKind::kBattery ||
+           (ends && fault.node == "motor_bridge");
   }
 
   void apply(size_t i, int64_t since) {
@@ -323,9 +301,13 @@ class Run {
     active ? bus_.kill(fault.node) : bus_.restart(fault.node);
     counts_.start(fault.node);
     handed_[fault.node].clear();
-    if (fault.node == "motor_bridge") active ? motors_.end(bus_.now()) : motors_.start(bus_.now());
+    if (fault.node == "motor_bridge") {
+      active ? motors_.end(bus_.now()) : motors_.start(bus_.now());
+      fences_.start();
+    }
     if (fault.node != "planner") return;
     path_.start();
+    returns_.start();
     version_ = 0;
   }
 
@@ -375,6 +357,9 @@ class Run {
         ins_->strength = active ? fault.strength : 0.0;
         ins_->drift_since = active ? bus_.now() : 0;
         return;
+      case FaultKind::kTilt:
+        ins_->roll = active ? 0.2 + 0.8 * fault.strength : 0.0;
+        return;
       case FaultKind::kPhantom:
       case FaultKind::kVanish:
         scan_fault_ = active ? &fault : nullptr;
@@ -407,6 +392,7 @@ class Run {
   FaultSchedule schedule_;
   RunOptions options_;
   missions::MissionWorld world_;
+  std::vector<Fence> own_fences_;
   DisturbedIns* ins_ = nullptr;
   missions::RobotSystem system_;
   VirtualBus& bus_;
@@ -414,10 +400,15 @@ class Run {
   std::vector<bool> active_;
   Forger forger_;
   MotorRule motors_;
+  FenceRule fences_;
+  ReturnRule returns_;
   PathRule path_;
   CountRule counts_;
   std::optional<missions::Operator> person_;
+  std::optional<PersonAtStick> hand_;
+  std::optional<FenceRequest> put_;
   bool operator_lost_ = false;
+  int64_t operator_until_ = 0;  ///< [us]
   const Fault* scan_fault_ = nullptr;
   std::map<std::string, std::deque<std::vector<uint8_t>>> kept_;
   bool replaying_ = false;
@@ -428,8 +419,14 @@ class Run {
 
 }  // namespace
 
+FaultSchedule bareScheduleOf(uint64_t seed, double duration) {
+  return drawSchedule(seed, kFirstFault, std::llround(0.7 * duration * 1e6));
+}
+
 FaultSchedule scheduleOf(uint64_t seed, double duration) {
-  return drawSchedule(seed, 2'500'000, std::llround(0.7 * duration * 1e6));
+  FaultSchedule schedule = bareScheduleOf(seed, duration);
+  addScenario(schedule, kFirstFault, std::llround(0.7 * duration * 1e6));
+  return schedule;
 }
 
 FaultyRun runFaulty(const missions::RobotConfig& robot, const FaultSchedule& schedule,

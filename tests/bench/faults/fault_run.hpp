@@ -24,18 +24,28 @@ struct FaultyRun {
   bool arrived = false;      ///< the planner says so
   int collisions = 0;
   int64_t paths_judged = 0;
+  double least_room = 0.0;  ///< [m] to a fence that it was held to; infinite if to none
+  bool by_hand = false;     ///< a person drove it
+  bool returned = false;    ///< it moved without its operator
+  bool tilt_stop = false;   ///< the bridge stopped it for its roll or pitch
+  bool fence_stop = false;  ///< ... or at a fence
 };
 
 struct RunOptions {
   double duration = 16.0;                 ///< [s]
-  int64_t operator_lease_us = 1'000'000;  ///< that the rules count with
+  int beams = 181;         ///< of a scan: most of a mission's cost is in casting them
+  int64_t operator_lease_us = 1'000'000;    ///< that the rules count with
+  double tilt = 30.0 / 180.0 * kPi;         ///< [rad] that the rules count with
+  bool keeps_fences = true;  ///< false: nobody on the robot knows those of its file
 };
 
 /// Drives a mission of this seed under its faults, and looks at the rules at each message and every
 /// 5 ms; ends at the first that is broken.
 FaultyRun runFaulty(const missions::RobotConfig& robot, const FaultSchedule& schedule,
                     const RunOptions& options = {});
-/// The faults of a seed, in a mission of this duration [s].
+/// The faults of a seed, in a mission of this duration [s], without fences, hands and returns.
+FaultSchedule bareScheduleOf(uint64_t seed, double duration);
+/// The same with them, and with faults of theirs.
 FaultSchedule scheduleOf(uint64_t seed, double duration);
 
 }  // namespace tread::faults

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <random>
 
+#include "common/config/scalars.hpp"
 #include "common/report/text.hpp"
 #include "tools/missions/robot_system.hpp"
 
@@ -33,7 +34,8 @@ const char* nameOf(FaultKind kind) {
                                     "wrong pattern set",
                                     "operator lost",
                                     "E-stop",
-                                    "disarmed"};
+                                    "disarmed",
+                                    "INS tilt"};
   static_assert(std::size(kNames) == static_cast<size_t>(FaultKind::kCount));
   return kNames[static_cast<size_t>(kind)];
 }
@@ -53,11 +55,18 @@ class Draw {
   std::mt19937_64 engine_;
 };
 
+/// Kinds that drawSchedule() knows: more would change what each seed means.
+constexpr auto kFirstKinds = static_cast<uint64_t>(FaultKind::kTilt);
+constexpr uint64_t kScenarioStream = 0x5ce9a210;
+constexpr uint64_t kPlannerStream = 0x91a77e2;
+
 const std::vector<std::string> kForged{"ARM",   "GOAL", "PROGRAM", "PATTERN_SET",
                                        "ESTOP", "MAP",  "INS",     "OPERATOR"};
 const std::vector<std::string> kDisturbed{"*",        "INS",         "SCAN",  "MAP",
                                           "PROGRAM",  "MOTOR",       "ARM",   "GOAL",
                                           "OPERATOR", "PATTERN_SET", "ESTOP", "EXECUTION"};
+const std::vector<std::string> kLater{"MANUAL", "FENCE", "STOPPING"};
+const std::vector<std::string> kLaterReceivers{"motor_bridge", "planner", "*"};
 
 }  // namespace
 
@@ -75,7 +84,7 @@ FaultSchedule drawSchedule(uint64_t seed, int64_t first, int64_t last) {
   const uint64_t count = 1 + draw.below(4);
   for (uint64_t i = 0; i < count; ++i) {
     Fault fault;
-    fault.kind = static_cast<FaultKind>(draw.below(static_cast<uint64_t>(FaultKind::kCount)));
+    fault.kind = static_cast<FaultKind>(draw.below(kFirstKinds));
     const auto span = static_cast<double>(last - first);
     fault.from = first + static_cast<int64_t>(span * draw.share());
     fault.until = fault.from + 50'000 + static_cast<int64_t>(3e6 * draw.share() * draw.share());
@@ -87,6 +96,81 @@ FaultSchedule drawSchedule(uint64_t seed, int64_t first, int64_t last) {
     schedule.faults.push_back(fault);
   }
   return schedule;
+}
+
+namespace {
+
+double between(Draw& draw, double low, double high) {
+  return low + (high - low) * draw.share();
+}
+
+/// A moment from `first` on, late only up to a share of the time.
+int64_t moment(Draw& draw, int64_t first, int64_t last, double share) {
+  return first + static_cast<int64_t>(share * draw.share() * static_cast<double>(last - first));
+}
+
+std::vector<Fence> drawFences(Draw& draw) {
+  const double west = -between(draw, 1.2, 4.0), east = between(draw, 21.0, 26.0);
+  const double south = -between(draw, 3.0, 9.0), north = between(draw, 3.0, 9.0);
+  std::vector<Fence> fences{
+      {"yard", false, {{west, south}, {east, south}, {east, north}, {west, north}}}};
+  if (draw.below(2) == 0) return fences;
+  const double x = between(draw, 2.2, 7.0), y = between(draw, -1.5, 1.5);
+  const double size = between(draw, 0.2, 1.5);
+  fences.push_back({"pond", true, {{x, y - size}, {x + size, y}, {x, y + size}}});
+  return fences;
+}
+
+HandStretch drawHand(Draw& draw, int64_t first, int64_t last) {
+  HandStretch hand;
+  hand.from = moment(draw, first + 1'500'000, last, 0.6);
+  hand.until = hand.from + 1'000'000 + static_cast<int64_t>(4e6 * draw.share());
+  hand.released = draw.share();
+  hand.forward = draw.below(4) == 0 ? -0.6 : between(draw, 0.3, 1.0);
+  if (draw.below(2) == 0) return hand;
+  hand.silent_from = moment(draw, hand.from, hand.until, 1.0);
+  hand.silent_until = hand.silent_from + moment(draw, 100'000, 4'000'000, 1.0);
+  return hand;
+}
+
+Fault drawLater(Draw& draw, int64_t first, int64_t last) {
+  Fault fault;
+  const uint64_t kind = draw.below(10);
+  const bool tilt = kind > static_cast<uint64_t>(FaultKind::kReplay);
+  fault.kind = tilt ? FaultKind::kTilt : static_cast<FaultKind>(kind);
+  fault.from = moment(draw, first, last, 1.0);
+  fault.until = fault.from + 50'000 + static_cast<int64_t>(3e6 * draw.share());
+  fault.channel = draw.oneOf(kLater);
+  fault.node = draw.oneOf(kLaterReceivers);
+  fault.strength = draw.share();
+  return fault;
+}
+
+}  // namespace
+
+void addScenario(FaultSchedule& schedule, int64_t first, int64_t last) {
+  Draw draw(schedule.seed ^ kScenarioStream);
+  Scenario& scenario = schedule.scenario;
+  if (draw.share() < 0.35) scenario.own_fences = drawFences(draw);
+  scenario.planner_knows = Draw(schedule.seed ^ kPlannerStream).share() < 0.6;
+  if (draw.share() < 0.25) {
+    scenario.fence_at = moment(draw, first + 1'500'000, last, 1.0);
+    scenario.fence_ahead = between(draw, 1.3, 4.0);
+    scenario.fence_width = between(draw, 0.5, 4.0);
+  }
+  if (draw.share() < 0.35) scenario.hand = drawHand(draw, first, last);
+  if (draw.share() < 0.5) schedule.faults.push_back(drawLater(draw, first, last));
+  scenario.go_back = draw.share() < 0.25;
+  if (!scenario.go_back) return;
+  // Long enough for a return, or for good.
+  const int64_t from = moment(draw, first + 2'500'000, last, 0.6);
+  const int64_t until = from + 3'500'000 + static_cast<int64_t>(10e6 * draw.share());
+  schedule.faults.push_back({FaultKind::kOperatorLost, from, until, "*", "*", 1.0});
+  const uint64_t stop = draw.below(4);
+  const int64_t stop_from = from + 3'500'000 + static_cast<int64_t>(3e6 * draw.share());
+  if (stop < 2)
+    schedule.faults.push_back({stop == 0 ? FaultKind::kEstop : FaultKind::kDisarm, stop_from,
+                               stop_from + 300'000, "*", "*", 1.0});
 }
 
 FaultPlan planOf(const FaultSchedule& schedule) {
@@ -131,6 +215,24 @@ std::string describe(const Fault& fault) {
   if (fault.kind == FaultKind::kKill || fault.kind == FaultKind::kHang)
     words += " of " + fault.node;
   return words + formatted(", strength %.2f", fault.strength);
+}
+
+std::string describe(const Scenario& scenario) {
+  std::vector<std::string> words;
+  if (!scenario.own_fences.empty()) words.emplace_back(scenario.planner_knows ? "fences in the file"
+                                              : "fences that only the bridge knows");
+  if (scenario.fence_at)
+    words.push_back(formatted("the operator's fence at %.2f s, %.1f m ahead, %.1f m wide",
+                              static_cast<double>(*scenario.fence_at) * 1e-6, scenario.fence_ahead,
+                              scenario.fence_width));
+  if (const auto& hand = scenario.hand)
+    words.push_back(formatted("by hand from %.2f to %.2f s, halted from %.2f to %.2f s",
+                              static_cast<double>(hand->from) * 1e-6,
+                              static_cast<double>(hand->until) * 1e-6,
+                              static_cast<double>(hand->silent_from) * 1e-6,
+                              static_cast<double>(hand->silent_until) * 1e-6));
+  if (scenario.go_back) words.emplace_back("lost: go_back");
+  return joinWords(words);
 }
 
 }  // namespace tread::faults

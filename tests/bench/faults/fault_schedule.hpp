@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/bus/virtual_bus.hpp"
+#include "common/fence/fence.hpp"
 
 namespace tread::faults {
 
@@ -33,6 +35,7 @@ enum class FaultKind {
   kOperatorLost,
   kEstop,
   kDisarm,
+  kTilt,  ///< the INS tells a roll; not drawn by drawSchedule()
   kCount
 };
 
@@ -45,19 +48,47 @@ struct Fault {
   double strength = 0.0;  ///< 0..1
 };
 
+/// For how long a person drives by hand; all times in [us] since the start.
+struct HandStretch {
+  int64_t from = 0;
+  int64_t until = 0;         ///< given back
+  int64_t silent_from = 0;   ///< the person's program is halted
+  int64_t silent_until = 0;  ///< ... and goes on
+  double released = 0.0;     ///< [1] share of the time after which the button is let go for a fifth
+  double forward = 0.0;      ///< [1] of the stick
+};
+
+/// What a mission has beside its faults. Fences are in the frame of the way: the start is its
+/// origin, the goal lies on its x axis.
+struct Scenario {
+  std::vector<Fence> own_fences;    ///< of the robot's file
+  bool planner_knows = true;        ///< else only the bridge has them
+  std::optional<int64_t> fence_at;  ///< [us] the operator puts a fence before the driving robot
+  double fence_ahead = 0.0;         ///< [m] from the body's origin to its near side
+  double fence_width = 0.0;         ///< [m]
+  std::optional<HandStretch> hand;
+  bool go_back = false;  ///< `lost: go_back` in the robot's file
+};
+
 /// What goes wrong in one mission.
 struct FaultSchedule {
   uint64_t seed = 0;
   bool keyed = false;  ///< the robot and its operator have a key
   std::vector<Fault> faults;
+  Scenario scenario;
   int64_t end() const;  ///< [us] of the last fault
 };
 
 /// One to four faults between `first` and `last` [us], the same for the same seed.
 FaultSchedule drawSchedule(uint64_t seed, int64_t first, int64_t last);
+/// Adds fences, a hand, a return, and faults of them, from draws of their own: what
+/// drawSchedule() drew stays as it is.
+void addScenario(FaultSchedule& schedule, int64_t first, int64_t last);
 /// Those of messages, as the bus makes them.
 FaultPlan planOf(const FaultSchedule& schedule);
 /// "4.20 to 6.31 s: drop on MAP to planner, strength 0.52".
 std::string describe(const Fault& fault);
+/// "fences in the file, by hand from 6.20 to 9.81 s"; empty if there is nothing.
+std::string describe(const Scenario& scenario);
 
 }  // namespace tread::faults

@@ -19,6 +19,8 @@ constexpr int64_t kNoticed = 30'000;        // [us] shorter faults may fall betw
 constexpr int64_t kProgramLease = 200'000;  // [us] at most
 constexpr int64_t kInsSilence = 100'000;    // [us]
 constexpr int64_t kInsAge = 300'000;        // [us]
+constexpr int64_t kBump = 100'000;          // [us] for which a tilt may be beyond its limit
+constexpr int64_t kOneStep = 20'000;        // [us] of the bridge, and what delays it
 
 std::string at(const Pose2& pose) {
   return std::to_string(pose.x) + ", " + std::to_string(pose.y);
@@ -29,7 +31,7 @@ std::string at(const Pose2& pose) {
 void MotorRule::receive(const Received& received) {
   const int64_t now = received.utime;
   if (const auto arm = messageOf(kArm, received)) {
-    if (arm->armed != 0) armed_ = now;
+    if (arm->armed != 0) arm_ = now;
     if (arm->armed == 0) needs_arm_ = now;
   } else if (const auto estop = messageOf(kEstop, received)) {
     estop_ = estop->engaged != 0;
@@ -47,11 +49,50 @@ void MotorRule::receive(const Received& received) {
     if (ins->utime <= ins_utime_ || ins->utime > now + 50'000) return;
     ins_utime_ = ins->utime;
     if (planarPose(*ins)) ins_received_ = now;
+    receiveTilt(*ins, now);
+  } else if (const auto manual = messageOf(kManual, received)) {
+    receiveManual(*manual, now);
   }
+  // Both may come in one step of the bridge, in either order.
+  if (present(now) && now - arm_ <= kOneStep) armed_ = std::max(armed_, arm_);
+}
+
+void MotorRule::receiveManual(const manual_t& message, int64_t now) {
+  const bool possible = std::abs(message.hand_left) <= 1.0F &&
+                        std::abs(message.hand_right) <= 1.0F &&
+                        message.seen_utime <= now + 100'000 &&
+                        message.seen_utime >= now - limits_.hand_lease_us;
+  Hand& hand = hands_[message.station];
+  if (!possible || message.seq <= hand.seq) return;
+  hand.seq = message.seq;
+  const bool moves = message.hand_left != 0.0F || message.hand_right != 0.0F;
+  const bool holds = message.hold != 0 && message.give_back == 0;
+  hand.until = holds && moves ? message.seen_utime + limits_.hand_lease_us : now;
+  hand.holds = message.give_back == 0 && (hand.holds || holds);
+}
+
+void MotorRule::receiveTilt(const ins_t& message, int64_t now) {
+  const auto& q = message.orientation;
+  const YawPitchRoll attitude =
+      yawPitchRoll(Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized());
+  const bool known = (message.ins_status & ins_t::STATUS_NO_ATTITUDE) == 0 &&
+                     message.utime >= now - kInsAge;
+  const bool beyond =
+      known && std::max(std::abs(attitude.roll), std::abs(attitude.pitch)) > limits_.tilt;
+  if (!beyond) {
+    tilt_since_.reset();
+    tilts_ = 0;
+    tilted_ = false;
+    return;
+  }
+  tilt_since_ = tilt_since_.value_or(message.utime);
+  const bool confirmed = ++tilts_ >= 3 && message.utime - *tilt_since_ >= kBump;
+  if (confirmed && !tilted_) needs_arm_ = now;
+  tilted_ = confirmed;
 }
 
 void MotorRule::start(int64_t now) {
-  *this = MotorRule(lease_);
+  *this = MotorRule(limits_);
   needs_arm_ = now;
 }
 
@@ -59,14 +100,38 @@ void MotorRule::end(int64_t /*now*/) {
   up_ = false;
 }
 
-std::string MotorRule::stopReason(int64_t now, bool faults) const {
-  if (!up_) return "the bridge is gone";
-  if (estop_) return "the E-stop is engaged";
-  if (now > operator_seen_ + lease_) return "no operator within the lease";
+bool MotorRule::present(int64_t now) const {
+  return now <= operator_seen_ + limits_.operator_lease_us;
+}
+
+bool MotorRule::inHand() const {
+  return std::any_of(hands_.begin(), hands_.end(), [](const auto& hand) {
+    return hand.second.holds;
+  });
+}
+
+bool MotorRule::handMoves(int64_t now) const {
+  return std::any_of(hands_.begin(), hands_.end(), [&](const auto& hand) {
+    return now <= hand.second.until;
+  });
+}
+
+std::string MotorRule::programStopReason(int64_t now, bool faults) const {
   if (now > program_until_) return "no PROGRAM within its lease";
   if (now > ins_received_ + kInsSilence || now > ins_utime_ + kInsAge) return "no INS";
   if (faults) return "";
-  if (now > moving_until_) return "no PROGRAM wants motion";
+  if (tilted_) return "tilted beyond the limit";
+  return now > moving_until_ ? "no PROGRAM wants motion" : "";
+}
+
+std::string MotorRule::stopReason(int64_t now, bool faults) const {
+  if (!up_) return "the bridge is gone";
+  if (estop_) return "the E-stop is engaged";
+  if (!limits_.go_back && !present(now)) return "no operator within the lease";
+  const std::string program = programStopReason(now, faults);
+  if (faults) return inHand() ? "" : program;
+  if (!program.empty() && !(present(now) && handMoves(now)))
+    return inHand() ? "the hand holds no button or is silent" : program;
   return armed_ > needs_arm_ ? "" : "not armed since the last stop";
 }
 
@@ -82,7 +147,8 @@ std::string MotorRule::check(int64_t now, const std::array<double, 2>& power) {
     return "";
   }
   if (!forbidden_since_) {
-    forbidden_since_ = now;
+    // Of the time to stop 100 ms are over when a tilt is no bump.
+    forbidden_since_ = tilted_ ? now - kBump : now;
     why_ = reason;
   }
   const bool turning = std::abs(power[0]) > 1e-9 || std::abs(power[1]) > 1e-9;
@@ -217,7 +283,8 @@ bool isStopOn(const Channel<Message>& channel, const Received& received) {
 bool isStop(const std::string& channel, const std::vector<uint8_t>& bytes) {
   const auto size = static_cast<std::ptrdiff_t>(sizeWithoutSeal(bytes.data(), bytes.size()));
   const Received received{0, channel, {bytes.begin(), bytes.begin() + size}};
-  return isStopOn(kArm, received) || isStopOn(kEstop, received) || isStopOn(kGoal, received);
+  return isStopOn(kArm, received) || isStopOn(kEstop, received) || isStopOn(kGoal, received) ||
+         isStopOn(kFence, received);
 }
 
 constexpr std::ptrdiff_t kFingerprint = 8;  // [bytes] in front of each message

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include <tread/health_t.hpp>
+#include <tread/ins_t.hpp>
+#include <tread/manual_t.hpp>
 #include <tread/map_tile_t.hpp>
 #include <tread/plan_t.hpp>
 #include <tread/program_t.hpp>
@@ -42,13 +44,26 @@ std::optional<Message> messageOf(const Channel<Message>& channel, const Received
   return std::nullopt;
 }
 
+/// What the robot's files say, as far as the motors' rule depends on it.
+struct MotorLimits {
+  int64_t operator_lease_us = 1'000'000;  ///< [us]
+  int64_t hand_lease_us = 200'000;        ///< [us] of MANUAL
+  double tilt = 1e9;                      ///< [rad] hard limit of roll and pitch
+  bool go_back = false;                   ///< without its operator the armed robot may return
+};
+
 /// The motors are at zero unless the bridge was told of an operator, an arming that nothing has
-/// ended since, a program that wants motion and an INS that goes on.
-/** Knows only what the bridge was handed and what power reaches the motors; counts in favour of the
+/// ended since, and either a program that wants motion, an INS that goes on and no tilt beyond its
+/// limit, or a hand that holds the button and sees the robot.
+/** With `go_back` an armed robot may move without its operator, and then the planner's word decides
+ * (ReturnRule); but arming it needs the operator. In the hand neither program nor INS is needed:
+ * what a robot that may be in the hand lost of them asks for no ARM. A tilt beyond the limit in
+ * three measurements and for 100 ms does, and programs wait until a measurement is within. Knows
+ * only what the bridge was handed and what power reaches the motors; counts in favour of the
  * bridge what it cannot tell. */
 class MotorRule {
  public:
-  explicit MotorRule(int64_t operator_lease_us) : lease_(operator_lease_us) {}
+  explicit MotorRule(const MotorLimits& limits) : limits_(limits) {}
 
   void receive(const Received& received);
   /// The bridge was started or ended.
@@ -58,10 +73,23 @@ class MotorRule {
   std::string check(int64_t now, const std::array<double, 2>& power);
 
  private:
+  /// A hand that was told of: which of its messages is the newest, and what it wants.
+  struct Hand {
+    int64_t seq = INT64_MIN;
+    int64_t until = INT64_MIN / 2;  ///< [us] the tracks may move
+    bool holds = false;             ///< the robot may be in this hand
+  };
+
+  void receiveManual(const manual_t& message, int64_t now);
+  void receiveTilt(const ins_t& message, int64_t now);
+  bool present(int64_t now) const;
+  bool inHand() const;
+  bool handMoves(int64_t now) const;
   /// Why nothing may move, or empty. `faults` only: why arming is needed again.
   std::string stopReason(int64_t now, bool faults) const;
+  std::string programStopReason(int64_t now, bool faults) const;
 
-  int64_t lease_;
+  MotorLimits limits_;
   bool up_ = true;
   bool estop_ = false;
   int64_t operator_seen_ = INT64_MIN / 2;   ///< [us] newest MOTOR that an operator has seen
@@ -69,7 +97,12 @@ class MotorRule {
   int64_t moving_until_ = INT64_MIN / 2;    ///< [us] lease of the newest one that wants motion
   int64_t ins_utime_ = INT64_MIN / 2;       ///< [us] of the newest measurement
   int64_t ins_received_ = INT64_MIN / 2;    ///< [us]
-  int64_t armed_ = INT64_MIN / 2;           ///< [us] newest ARM
+  int64_t arm_ = INT64_MIN / 2;             ///< [us] newest ARM
+  int64_t armed_ = INT64_MIN / 2;           ///< [us] newest ARM beside an operator
+  std::map<int64_t, Hand> hands_;           ///< by station
+  std::optional<int64_t> tilt_since_;       ///< [us] of the first measurement beyond the limit
+  int tilts_ = 0;                           ///< measurements beyond it in turn
+  bool tilted_ = false;                     ///< for 100 ms and three of them
   int64_t needs_arm_ = 0;                   ///< [us] an ARM from before counts for nothing
   std::optional<int64_t> fault_since_;      ///< [us]
   std::optional<int64_t> forbidden_since_;  ///< [us]

@@ -3,8 +3,10 @@
 // The whole robot in virtual time under seeded faults, and that the rules can fail.
 #include <catch2/catch.hpp>
 
+#include "common/messages/fence_messages.hpp"
 #include "tests/bench/faults/fault_run.hpp"
 #include "tests/bench/faults/invariants.hpp"
+#include "tests/bench/faults/limit_rules.hpp"
 #include "tests/bench/faults/return_run.hpp"
 #include "tests/helpers.hpp"
 #include "tests/tools/missions/shipped_robot.hpp"
@@ -34,10 +36,43 @@ std::string brokenBy(const missions::RobotConfig& robot, const Fault& fault, boo
   return run.violation ? run.violation->what : "";
 }
 
+/// Seeds from one on, with their fences, hands, tilts and returns, in missions of 12 s.
+void driveSeeds(uint64_t first, int count) {
+  RunOptions options;
+  options.duration = 12.0;
+  for (uint64_t seed = first; seed < first + static_cast<uint64_t>(count); ++seed) {
+    CAPTURE(seed);
+    const FaultyRun run = runFaulty(teodor(), scheduleOf(seed, options.duration), options);
+    CHECK((run.violation ? run.violation->what : "") == "");
+  }
+}
+
 }  // namespace
 
-TEST_CASE("under seeded faults no rule is broken: the first seventy seeds") {
-  for (uint64_t seed = 1; seed <= static_cast<uint64_t>(tread::testing::effort(70)); ++seed) {
+// Three cases: they run beside each other.
+TEST_CASE("under seeded faults no rule is broken, seeds from 1 on") {
+  driveSeeds(1, 80);
+}
+TEST_CASE("under seeded faults no rule is broken, seeds from 1001 on") {
+  driveSeeds(1001, 80);
+}
+TEST_CASE("under seeded faults no rule is broken, seeds from 2001 on") {
+  driveSeeds(2001, 80);
+}
+
+TEST_CASE("seeds that once broke a rule, or touched something") {
+  // By the commits on which they did; what was mended since changed the draws of some: 23, 163,
+  // 178, 254, 302 and 1582 were of an earlier order of faults, and mean others now.
+  RunOptions every_beam;
+  every_beam.beams = 541;
+  for (const uint64_t seed : {20537, 40414, 23, 163, 178, 254, 302, 1582, 50154, 101483, 101880,
+                              103151, 105412, 108137}) {
+    CAPTURE(seed);
+    const FaultyRun run = runFaulty(teodor(), bareScheduleOf(seed, 16.0), every_beam);
+    CHECK((run.violation ? run.violation->what : "") == "");
+  }
+  // Out of a fence, or of ground that the INS said to be steep, through obstacles and the unknown.
+  for (const uint64_t seed : {4, 200006, 200049, 200068, 200091, 200143, 200149}) {
     CAPTURE(seed);
     const FaultyRun run = runFaulty(teodor(), scheduleOf(seed, 16.0));
     CHECK((run.violation ? run.violation->what : "") == "");
@@ -46,8 +81,10 @@ TEST_CASE("under seeded faults no rule is broken: the first seventy seeds") {
 
 TEST_CASE("an operator lost for good: with `go_back` the robot returns to where its way began") {
   int lost = 0, back = 0;
-  for (uint64_t seed = 1; seed <= 6; ++seed) {
-    const ReturnRun run = runReturn(teodor(), seed);
+  missions::RobotConfig robot = teodor();
+  robot.simulated.laser.beams = RunOptions{}.beams;
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
+    const ReturnRun run = runReturn(robot, seed);
     CAPTURE(seed, run.away, run.missed_start, run.state);
     CHECK(run.collisions == 0);
     CHECK_FALSE(run.moved_at_end);
@@ -55,14 +92,14 @@ TEST_CASE("an operator lost for good: with `go_back` the robot returns to where 
     ++lost;
     back += run.returned_after > 0.0 ? 1 : 0;
   }
-  CHECK(lost >= 4);
+  CHECK(lost >= 3);
   CHECK(back >= lost - 1);
 }
 
 TEST_CASE("a faulty mission replays to the same step") {
   missions::RobotConfig loose = teodor();
   loose.motor_bridge.bridge.operators.lease_us = 60'000'000;
-  FaultSchedule schedule = scheduleOf(7, 16.0);
+  FaultSchedule schedule = bareScheduleOf(7, 16.0);
   schedule.faults.push_back(faultOf(FaultKind::kOperatorLost, 7.0, 14.0));
   const FaultyRun first = runFaulty(loose, schedule), second = runFaulty(loose, schedule);
   REQUIRE(first.violation);
@@ -155,13 +192,80 @@ TEST_CASE("the rules see what a node hides of its refusals, and a version that g
   CHECK_FALSE(counts.check(health).empty());
 }
 
+TEST_CASE("the rules see a robot that knows nothing of its fences") {
+  FaultSchedule schedule;
+  schedule.seed = 3;
+  schedule.scenario.own_fences = {{"pond", true, {{2, -4}, {5, -4}, {5, 4}, {2, 4}}}};
+  RunOptions options;
+  CHECK_FALSE(runFaulty(teodor(), schedule, options).violation);
+  options.keeps_fences = false;
+  const FaultyRun run = runFaulty(teodor(), schedule, options);
+  REQUIRE(run.violation);
+  CHECK(run.violation->what.find("over the fence pond") != std::string::npos);
+}
+
+TEST_CASE("the rules see a bridge that does not look at the tilt that it is told") {
+  missions::RobotConfig loose = teodor();
+  const Fault tilt = faultOf(FaultKind::kTilt, 7.0, 10.0, "*", "*", 0.6);
+  CHECK(brokenBy(loose, tilt).empty());
+  loose.motor_bridge.bridge.tilt.reset();
+  loose.planner.max_slope.reset();
+  CHECK(brokenBy(loose, tilt).find("tilted beyond the limit") != std::string::npos);
+}
+
+namespace {
+
+/// What a person may break who drives by hand from 6 to 11 s.
+FaultyRun byHand(const missions::RobotConfig& robot, int64_t silent_from, double released) {
+  FaultSchedule schedule;
+  schedule.seed = 3;
+  schedule.scenario.hand =
+      HandStretch{6'000'000, 11'000'000, silent_from, silent_from + 2'000'000, released, 0.7};
+  const FaultyRun run = runFaulty(robot, schedule);
+  REQUIRE(run.by_hand);
+  return run;
+}
+
+}  // namespace
+
+TEST_CASE("the rules see a bridge that does not look at the lease of a hand") {
+  missions::RobotConfig loose = teodor();
+  CHECK_FALSE(byHand(loose, 8'000'000, 2.0).violation);
+  CHECK_FALSE(byHand(loose, 20'000'000, 0.4).violation);
+  loose.motor_bridge.bridge.manual.lease_us = 60'000'000;
+  const FaultyRun run = byHand(loose, 8'000'000, 2.0);
+  REQUIRE(run.violation);
+  CHECK(run.violation->what.find("the hand holds no button or is silent") != std::string::npos);
+}
+
+TEST_CASE("the rules see a return that is none, and one that a stop has not ended") {
+  FaultSchedule schedule;
+  schedule.seed = 3;
+  schedule.scenario.go_back = true;
+  schedule.faults = {faultOf(FaultKind::kOperatorLost, 8.0, 16.0)};
+  missions::RobotConfig loose = teodor();
+  const FaultyRun returns = runFaulty(loose, schedule);
+  CHECK_FALSE(returns.violation);
+  CHECK(returns.returned);
+  // A planner that does not notice the loss drives on to its goal.
+  loose.planner.operators.lease_us = 60'000'000;
+  const FaultyRun goes_on = runFaulty(loose, schedule);
+  REQUIRE(goes_on.violation);
+  CHECK(goes_on.violation->what.find("no return") != std::string::npos);
+  // An ARM without an operator, after a stop on the way back, counts for nothing.
+  schedule.faults.push_back(faultOf(FaultKind::kEstop, 12.5, 12.6));
+  schedule.faults.push_back(faultOf(FaultKind::kForge, 13.0, 14.5, "ARM"));
+  CHECK_FALSE(runFaulty(teodor(), schedule).violation);
+}
+
 namespace {
 
 /// A bridge that was told everything it needs to drive, again every 10 ms, but for what is left
 /// out.
 struct ToldBridge {
-  MotorRule rule{1'000'000};
+  MotorRule rule{MotorLimits{}};
   int64_t now = 1'000'000;
+  double roll = 0.0;  ///< [rad]
 
   template <class Message>
   void tell(const Channel<Message>& channel, Message message) {
@@ -181,7 +285,8 @@ struct ToldBridge {
     if (left_out != "PROGRAM") tell(kProgram, program);
     ins_t ins{};
     ins.utime = now;
-    ins.orientation[0] = 1.0;
+    ins.orientation[0] = std::cos(roll / 2.0);
+    ins.orientation[1] = std::sin(roll / 2.0);
     if (left_out != "INS") tell(kIns, ins);
   }
   /// Milliseconds of power until the rule objects; -1 if it does not within 3 s.
@@ -204,6 +309,99 @@ struct ToldBridge {
 };
 
 }  // namespace
+
+TEST_CASE("the motors' rule: a hand moves while it holds and sees, and no longer") {
+  const auto drive = [](bool hold, bool give_back) {
+    ToldBridge told;
+    told.arm();
+    REQUIRE(told.drive("") == -1);
+    manual_t manual{};
+    manual.seq = 1;
+    manual.hold = 1;
+    manual.hand_left = 1.0F;
+    manual.seen_utime = told.now;
+    told.tell(kManual, manual);
+    manual.seq = 2;
+    manual.hold = hold;
+    manual.give_back = give_back;
+    told.tell(kManual, manual);
+    return told.drive("motion");
+  };
+  // The program's lease of 200 ms is that of the last one that wanted motion.
+  CHECK(drive(true, false) == 470);
+  CHECK(drive(false, false) == 460);
+  ToldBridge told;
+  told.arm();
+  REQUIRE(told.drive("") == -1);
+  // Without program and INS it may go on, and needs no ARM afterwards.
+  manual_t manual{};
+  manual.hold = 1;
+  manual.hand_left = 0.5F;
+  for (int i = 0; i < 200; ++i, told.now += 10'000) {
+    ++manual.seq;
+    manual.seen_utime = told.now;
+    told.tell(kManual, manual);
+    told.tellAllBut("INS");
+    REQUIRE(told.rule.check(told.now, {0.5, 0.5}).empty());
+  }
+  ++manual.seq;
+  manual.hold = 0;
+  told.tell(kManual, manual);
+  const int64_t released = told.drive("INS");
+  CHECK(released >= 250);
+  CHECK(released <= 270);
+}
+
+TEST_CASE("the motors' rule: beyond the tilt limit zero within 250 ms, and until an ARM") {
+  MotorLimits limits;
+  limits.tilt = 0.5;
+  const auto tilted = [&](double roll) {
+    ToldBridge told{MotorRule(limits)};
+    told.arm();
+    REQUIRE(told.drive("") == -1);
+    told.roll = roll;
+    const int64_t objects = told.drive("");
+    told.roll = 0.0;
+    told.rule.check(told.now, {0.0, 0.0});
+    if (objects >= 0) CHECK(told.drive("") >= 0);  // nobody has armed it
+    told.arm();
+    CHECK(told.drive("") == -1);
+    return objects;
+  };
+  CHECK(tilted(0.45) == -1);
+  const int64_t objects = tilted(0.55);
+  CHECK(objects > 230);
+  CHECK(objects <= 270);
+}
+
+TEST_CASE("the rule of fences holds only where the bridge could keep them") {
+  const FootprintSize outline{0.6, 0.6, 0.3};
+  const Fence pond{"pond", true, {{2, -2}, {4, -2}, {4, 2}, {2, 2}}};
+  const auto crosses = [&](const std::function<void(FenceRule&, int64_t)>& tell, bool own) {
+    FenceRule rule(own ? std::vector<Fence>{pond} : std::vector<Fence>{}, outline);
+    std::string wrong;
+    for (int64_t now = 1'000'000; now < 4'000'000 && wrong.empty(); now += 5'000) {
+      if (tell) tell(rule, now);
+      wrong = rule.check(now, {static_cast<double>(now) * 1e-6 - 1.0, 0.0, 0.0}, 1.0);
+    }
+    return !wrong.empty();
+  };
+  CHECK(crosses(nullptr, true));
+  CHECK_FALSE(crosses(nullptr, false));
+  CHECK_FALSE(crosses([](FenceRule& rule, int64_t now) { rule.blind(now); }, true));
+  const auto hand = [&](const std::string& by, int64_t at) {
+    return [&pond, by, at](FenceRule& rule, int64_t now) {
+      if (now != at) return;
+      const fence_t message = toMessage(FenceRequest{by, false, pond});
+      std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
+      message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+      rule.receive({now, "FENCE", bytes});
+    };
+  };
+  CHECK(crosses(hand("mission operator", 1'100'000), false));
+  CHECK_FALSE(crosses(hand("mission operator", 2'200'000), false));  // too near to stop
+  CHECK_FALSE(crosses(hand("stranger", 1'100'000), false));
+}
 
 TEST_CASE("the motors' rule objects 250 ms after each cause, and wants arming again") {
   ToldBridge bridge;

@@ -28,6 +28,7 @@ CollisionChecker::CollisionChecker(Grid grid, const FootprintSize& size, const M
       margins_(margins),
       arm_(Footprint(size, 0.0).circumscribed()) {
   const double most = arm_ + 2.0 * std::max(margins.plan, margins.largest);
+  if (!fenced_.empty()) map_ = grid_;
   fenced_.stamp(grid_);
   field_ = ClearanceField(grid_, unknown_blocks, most + kFarthestLook);
   const double check = std::min(margins.check, margins.plan);
@@ -139,8 +140,10 @@ bool CollisionChecker::touchesObstacle(const TurnedPose& pose, int level) const 
 
 Overlap CollisionChecker::overlap(const Pose2& T_map_body) const {
   const Footprint& bare = levels_[kBare];
-  return {bare.blockedCells(grid_, T_map_body, false),
-          bare.blockedCells(grid_, T_map_body, unknown_blocks_),
+  const Grid& map = map_ ? *map_ : grid_;
+  const int blocked = bare.blockedCells(map, T_map_body, unknown_blocks_);
+  return {bare.blockedCells(map, T_map_body, false), blocked,
+          map_ ? bare.blockedCells(grid_, T_map_body, unknown_blocks_) : blocked,
           static_cast<float>(fenced_.depth(T_map_body, bare.size()))};
 }
 

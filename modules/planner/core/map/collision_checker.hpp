@@ -25,16 +25,17 @@ struct Margins {
 
 /// Blocked cells under the footprint, without margin.
 struct Overlap {
-  int obstacles = 0;
-  int blocked = 0;  ///< obstacles and unknown
+  int obstacles = 0;  ///< of the map
+  int blocked = 0;    ///< obstacles and unknown, of the map
+  int all = 0;        ///< those, and what fences forbid: no obstacle may take the place of a fence
   /// [m] by which it is too near to a fence, or over it: where all is blocked only this tells the
   /// way back from the way out.
   float fenced = 0.0F;
 
-  bool none() const { return blocked == 0; }
+  bool none() const { return all == 0; }
   bool within(const Overlap& other) const {
     constexpr float kRounding = 1e-4F;
-    return obstacles <= other.obstacles && blocked <= other.blocked &&
+    return obstacles <= other.obstacles && blocked <= other.blocked && all <= other.all &&
            fenced <= other.fenced + kRounding;
   }
 };
@@ -101,7 +102,8 @@ class CollisionChecker {
   bool betweenFree(const TurnedPose& T_map_start, const SweptFootprint& cover,
                    const CheckedPose& way, const Footprint& footprint) const;
 
-  Grid grid_;
+  Grid grid_;                // with fences
+  std::optional<Grid> map_;  // without them, where there are any
   bool unknown_blocks_;
   FencedGround fenced_;
   ClearanceField field_;
