@@ -22,6 +22,7 @@ struct RecordedRun {
   struct Sample {
     int64_t utime = 0;
     TrackCommand command;  ///< [m/s] from then on
+    TrackCommand wheels;   ///< [m/s] measured
     InsMotion ins;         ///< without a pose where there is none
   };
   /// A pose of the lidar.
@@ -143,7 +144,8 @@ class SessionReader {
   }
 
  private:
-  static constexpr double kStart = 100.0;  ///< [s] utime of the first sample
+  static constexpr double kStart = 100.0;      ///< [s] utime of the first sample
+  static constexpr double kStepInterval = 8.0;  ///< [s] 6 in truth: 2 s of speeds before each
 
   static RecordedSession describe(const recordings::CsvTable& table, size_t row) {
     RecordedSession session;
@@ -153,7 +155,7 @@ class SessionReader {
     session.limits.gauge = table.number(row, "baseline_m");
     session.limits.full_speed = session.name.rfind("husky", 0) == 0 ? 1.0 : 5.0;
     session.limits.speed_per_command = 1.0;
-    session.limits.dead_band = 0.1;
+    session.limits.dead_band = 0.05;  // usual for a drive commanded in speeds
     session.limits.delay = 0.45;  // with that of the encoders and of the poses
     session.limits.acceleration = 3.0;
     session.limits.time_error = 0.1;  // what is left of the lidar's
@@ -174,6 +176,7 @@ class SessionReader {
       // Wheel speeds are an effect: what was wanted came earlier.
       const size_t ahead = std::min(row + 6, table.rows() - 1);
       const double v = table.number(row, "cmd_v_m_s"), w = table.number(row, "cmd_w_rad_s");
+      sample.wheels = tracks(table, row, "wheel", session.radius);
       if (table.text(row, "state") == "calib") {
         sample.command = {v - 0.5 * w * session.limits.gauge, v + 0.5 * w * session.limits.gauge};
       } else {
@@ -208,6 +211,7 @@ class SessionReader {
     for (size_t row = 0; row < table.rows(); ++row) {
       const int step = table.integer(row, "step");
       const double t = table.number(row, "t_s");
+      const double time = kStepInterval * step + t;
       if (run.samples.empty() || step != run.step) {
         if (!run.samples.empty()) finish(run, session);
         run = RecordedRun{};
@@ -215,19 +219,19 @@ class SessionReader {
         run.step = step;
         run.sound = sound.count(step) != 0 && sound[step];
         RecordedRun::Sample before;
-        before.utime = before.ins.utime = us(t - 2.0);
+        before.utime = before.ins.utime = us(time - 2.0);
         before.command = tracks(table, row, "wheel", session.radius);
         run.samples.push_back(before);
       }
       RecordedRun::Sample sample;
-      sample.utime = us(t);
+      sample.utime = sample.ins.utime = us(time);
       sample.command = tracks(table, row, "cmd", session.radius);
-      sample.ins.utime = us(t);
+      sample.wheels = tracks(table, row, "wheel", session.radius);
       const auto rate = rates.find({step, std::lround(t * 20.0)});
       if (rate != rates.end()) sample.ins.yaw_rate = rate->second;
       run.samples.push_back(sample);
       run.fixes.push_back(
-          {kStart + t,
+          {kStart + time,
            {table.number(row, "x_m"), table.number(row, "y_m"), table.number(row, "yaw_rad")},
            table.number(row, "pose_gap_s")});
     }

@@ -234,7 +234,7 @@ TEST_CASE("motion: a dead track is told by the turn towards it, or by its own sp
     drive.good(0.9 * way, 0.9 * way);
     drive.slip_left = 0.0;
     const auto told = drive.run(3.0);
-    checkTold(told, "turns");
+    checkTold(told, "turns", 1.1);
     CHECK(told.second.find("left track dead") != std::string::npos);
   }
   Drive known;
@@ -242,6 +242,61 @@ TEST_CASE("motion: a dead track is told by the turn towards it, or by its own sp
   known.good(0.9, 0.9);
   known.motors.speed_right = 0.0;
   checkTold(known.run(3.0), "right track dead", 0.8);
+}
+
+TEST_CASE("motion: after some driving, dead, blocked and mirrored tracks are told within 1.5 s") {
+  // 0.4 of the power is 0.44 m/s, turns on the spot among them.
+  const TrackCommand kCommands[] = {{0.4, 0.4}, {0.9, 0.9}, {-0.5, -0.4}, {0.5, 0.9}, {-0.6, 0.6}};
+  for (const TrackCommand& command : kCommands) {
+    CAPTURE(command.left, command.right);
+    const auto driven = [&command] {
+      Drive drive;
+      for (int i = 0; i < 6; ++i) {
+        drive.good(0.8, 0.5, 2.0);
+        drive.good(-0.5, 0.5, 2.0);
+      }
+      drive.good(command.left, command.right);
+      return drive;
+    };
+    Drive left = driven();
+    left.slip_left = 0.0;
+    checkTold(left.run(3.0), "left track dead");
+    Drive right = driven();
+    right.slip_right = 0.0;
+    checkTold(right.run(3.0), "right track dead");
+    Drive blocked = driven();
+    blocked.slip_left = blocked.slip_right = 0.0;
+    checkTold(blocked.run(3.0), "stuck or pose frozen");
+    Drive mirrored = driven();
+    mirrored.turn_slip *= -1.0;
+    if (std::abs(command.left - command.right) > 0.3) checkTold(mirrored.run(3.0), "turns");
+  }
+}
+
+TEST_CASE("motion: another ground is no fault, however sudden and slippery") {
+  const TrackCommand kCommands[] = {{0.4, 0.4}, {0.9, 0.9}, {0.3, 0.9}, {0.5, 0.9}, {-0.6, 0.6}};
+  struct Ground {
+    double slip, turn_slip;
+  };
+  const Ground kGrounds[] = {{0.95, 0.7}, {0.8, 0.5}, {0.65, 0.4}, {0.55, 0.3}};
+  for (const TrackCommand& command : kCommands) {
+    for (const Ground& from : kGrounds) {
+      for (const Ground& to : kGrounds) {
+        CAPTURE(command.left, command.right, from.slip, to.slip);
+        Drive drive;
+        drive.slip_left = drive.slip_right = from.slip;
+        drive.turn_slip = from.turn_slip;
+        for (int i = 0; i < 4; ++i) {
+          drive.good(0.8, 0.5, 2.0);
+          drive.good(-0.5, 0.5, 2.0);
+        }
+        drive.good(command.left, command.right);
+        drive.slip_left = drive.slip_right = to.slip;
+        drive.turn_slip = to.turn_slip;
+        drive.good(command.left, command.right, 20.0);
+      }
+    }
+  }
 }
 
 TEST_CASE("motion: sliding and rolling without a command are told, standing is not") {

@@ -96,6 +96,12 @@ struct Stop {
   std::string reason;     ///< as published; empty = none
 };
 
+/// The bridge disarmed by itself: nobody else disarms in a mission.
+struct Disarming {
+  double time = 0.0;   ///< [s] since the start of the mission
+  std::string reason;  ///< as published
+};
+
 /// What happened in one mission: one entry of the report, hence so many fields.
 struct MissionResult {
   uint64_t seed = 0;
@@ -118,6 +124,7 @@ struct MissionResult {
   std::vector<TrackPoint> track;            ///< the true poses, for pictures
   std::vector<Contact> contacts;            ///< one per collision
   std::vector<Stop> stops;                  ///< between start and arrival
+  std::vector<Disarming> disarmings;
   std::vector<Flip> flips;
 
   int collisions() const { return static_cast<int>(contacts.size()); }

@@ -107,7 +107,7 @@ Referee::Referee(RobotSystem& system, const MissionWorld& world)
 
 void Referee::listen(Bus& bus) {
   bus.subscribe<plan_t>(kPlan, [this](const plan_t& message) { hear(message); });
-  bus.subscribe<motor_t>(kMotor, [this](const motor_t& message) { motor_ = message; });
+  bus.subscribe<motor_t>(kMotor, [this](const motor_t& message) { hear(message); });
   bus.subscribe<execution_t>(kExecution, [this](const execution_t& message) { hear(message); });
   bus.subscribe<learning_t>(kLearning, [this](const learning_t& message) { hear(message); });
   bus.subscribe<plan_tree_t>(kPlanTree, [this](const plan_tree_t& message) { hear(message); });
@@ -122,6 +122,13 @@ MissionResult Referee::result() const {
   result.begun = stops_.begun() == 0 ? result.time : seconds(stops_.begun());
   result.driven = stops_.driven();
   return result;
+}
+
+void Referee::hear(const motor_t& message) {
+  const bool armed = motor_.utime > 0 && motor_.bridge_state != motor_t::STATE_DISARMED;
+  motor_ = message;
+  if (armed && message.bridge_state == motor_t::STATE_DISARMED)
+    result_.disarmings.push_back({seconds(message.utime), message.state_reason});
 }
 
 void Referee::hear(const pattern_set_part_t& part) {

@@ -135,6 +135,7 @@ class Referee {
  private:
   void listen(Bus& bus);
   void hear(const plan_t& message);
+  void hear(const motor_t& message);
   void hear(const execution_t& message);
   void hear(const pattern_set_part_t& part);
   void hear(const learning_t& message);

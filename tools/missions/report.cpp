@@ -32,6 +32,17 @@ void printShares(std::ostream& out, const MissionBatch& batch) {
   }
 }
 
+/// The most frequent one first.
+void printReasons(std::ostream& out, const std::map<std::string, int>& counts) {
+  std::vector<std::pair<int, std::string>> reasons;
+  for (const auto& [reason, count] : counts) reasons.emplace_back(-count, reason);
+  std::sort(reasons.begin(), reasons.end());
+  for (const auto& [count, reason] : reasons) {
+    out << formatted("          %4d  ", -count)
+        << (reason.empty() ? "(no reason published)" : reason) << '\n';
+  }
+}
+
 void printSteadiness(std::ostream& out, const std::vector<MissionResult>& results) {
   const Steadiness steadiness = steadinessOf(results);
   const auto missions = static_cast<double>(std::max<size_t>(1, results.size()));
@@ -40,13 +51,12 @@ void printSteadiness(std::ostream& out, const std::vector<MissionResult>& result
   out << formatted("stops %d: %.2f per mission, at most %d (seed %llu), %.0f s in all\n",
                    steadiness.stops, steadiness.stops / missions, steadiness.most_stops,
                    static_cast<unsigned long long>(steadiness.most_seed), steadiness.stood);
-  std::vector<std::pair<int, std::string>> reasons;
-  for (const auto& [reason, count] : steadiness.reasons) reasons.emplace_back(-count, reason);
-  std::sort(reasons.begin(), reasons.end());
-  for (const auto& [count, reason] : reasons) {
-    out << formatted("          %4d  ", -count)
-        << (reason.empty() ? "(no reason published)" : reason) << '\n';
-  }
+  printReasons(out, steadiness.reasons);
+  int disarmed = 0;
+  for (const auto& [reason, count] : steadiness.disarmed) disarmed += count;
+  out << formatted("disarmed %d: %.2f per hour driven\n", disarmed,
+                   disarmed / std::max(1e-9, steadiness.driven / 3600.0));
+  printReasons(out, steadiness.disarmed);
 }
 
 void printErrors(std::ostream& out, const MissionBatch& batch, int first, int last) {
@@ -110,12 +120,21 @@ void addSteadiness(Json& json, const MissionBatch& batch) {
       steadiness.stops / static_cast<double>(std::max<size_t>(1, batch.results.size()));
   json["stop_reasons"] = Json::object();
   for (const auto& [reason, count] : steadiness.reasons) json["stop_reasons"][reason] = count;
+  json["disarm_reasons"] = Json::object();
+  for (const auto& [reason, count] : steadiness.disarmed) json["disarm_reasons"][reason] = count;
 }
 
 /// null where nothing was measured.
 void addError(Json& json, const std::string& when, const MeanError& error) {
   json[when + "_m"] = error.count > 0 ? Json(error.position) : Json(nullptr);
   json[when + "_rad"] = error.count > 0 ? Json(error.yaw) : Json(nullptr);
+}
+
+Json disarmingsJson(const MissionResult& result) {
+  Json disarmings = Json::array();
+  for (const Disarming& disarming : result.disarmings)
+    disarmings.push_back({{"time_s", disarming.time}, {"reason", disarming.reason}});
+  return disarmings;
 }
 
 Json runJson(const MissionResult& result) {
@@ -154,6 +173,7 @@ Json runJson(const MissionResult& result) {
           {"flips", flipsJson(result)},
           {"patterns", result.completed},
           {"aborted", result.aborted},
+          {"disarmings", disarmingsJson(result)},
           {"rearmed", result.rearmed},
           {"set_versions", result.set_versions}};
 }
@@ -181,6 +201,8 @@ Steadiness steadinessOf(const std::vector<MissionResult>& results) {
     steadiness.stops += stops;
     if (stops > steadiness.most_stops) steadiness.most_seed = result.seed;
     steadiness.most_stops = std::max(steadiness.most_stops, stops);
+    for (const Disarming& disarming : result.disarmings)
+      ++steadiness.disarmed[withoutNumbers(disarming.reason)];
     for (const Stop& stop : result.stops) {
       steadiness.stood += stop.duration;
       ++steadiness.reasons[withoutNumbers(stop.reason)];

@@ -43,6 +43,7 @@ struct Steadiness {
   double stood = 0.0;      ///< [s] in all stops
   /// How often each reason was given; numbers in it are written as #. Empty = none was published.
   std::map<std::string, int> reasons;
+  std::map<std::string, int> disarmed;  ///< the same of disarmings by the bridge itself
 
   double flipsPerMinute() const { return driven > 0.0 ? 60.0 * flips / driven : 0.0; }
 };

@@ -34,6 +34,9 @@ constexpr double kSideways = 0.25;         // [1] of the travel: sideslip
 constexpr double kSwing = 0.5;             // [m/rad] sideways by turning about another point
 constexpr int64_t kTrackStands = 700'000;  // [us] against its command
 constexpr double kStandingTrack = 0.1;     // [1] of the commanded speed: blocked
+constexpr double kDepartureWindow = 0.7;   // [s] compared with what is usual
+constexpr double kLearnedWindow = 1.0;     // [s]
+constexpr double kLearnedAfter = 1.5;      // [s] by when a fault in it would have been told
 
 /// The pattern with %0, %1, %2 replaced by the values, rounded to that many decimals.
 std::string words(std::string_view pattern, std::initializer_list<double> values) {
@@ -61,6 +64,21 @@ double beyond(double value, double min, double max) {
 /// Nearest to zero of what the commands explain.
 double leastOf(double min, double max) {
   return min > 0.0 ? min : std::min(0.0, max);
+}
+
+/// Commanded and not done: what the motors say names it. `least` [m] of the tracks' way.
+std::string tooLittle(const MotionSums& sums, const MotorTelemetry& motors, double least) {
+  const double left = std::abs(motors.speed_left), right = std::abs(motors.speed_right);
+  const double asked = least / sums.seconds();
+  const std::string told =
+      words("%2 m, %0 deg in %1 s where tracks make %2 m at least",
+            {sums.position.norm(), toDegrees(sums.turned), sums.seconds(), least});
+  if (std::min(left, right) > 0.5 * asked)
+    return "tracks spin or pose frozen: " + told + "; look, then ARM";
+  if (std::isfinite(motors.current_left) && std::isfinite(motors.current_right))
+    return "stuck or pose frozen: " + told +
+           words(" (%0, %0 A); look, then ARM", {motors.current_left, motors.current_right});
+  return "stuck or pose frozen: " + told + "; look, then ARM";
 }
 
 /// One window and what it takes to judge it.
@@ -109,7 +127,7 @@ struct Judge {
   std::string still() const {
     const bool still = std::max(sums.position.norm(), half.position.norm()) < kStill + wander &&
                        std::max(std::abs(sums.turned), std::abs(half.turned)) < kStill;
-    return still && sums.tracks_min > kStillTracks ? tooLittle(sums.tracks_min) : "";
+    return still && sums.tracks_min > kStillTracks ? tooLittle(sums, motors, sums.tracks_min) : "";
   }
   std::string travel() const {
     const double off = beyond(sums.forward, sums.travel_min - slack, sums.travel_max + slack);
@@ -119,7 +137,7 @@ struct Judge {
     if (off * expected < 0.0)
       return half.forward * expected < 0.0 && std::abs(half.forward) > kPositionSlack
                  ? backwards()
-                 : tooLittle(std::abs(expected));
+                 : tooLittle(sums, motors, std::abs(expected));
     return words(
         "travels %2 m in %1 s, commands explain %2 to %2; check INS and tracks, "
         "then ARM",
@@ -136,20 +154,6 @@ struct Judge {
         "travels %2 m in %1 s where %2 is the least: check heading and motor "
         "wiring, then ARM",
         {half.forward, half.seconds(), leastOf(half.travel_min, half.travel_max)});
-  }
-  /// Commanded and not done: what the motors say names it.
-  std::string tooLittle(double least) const {
-    const double left = std::abs(motors.speed_left), right = std::abs(motors.speed_right);
-    const double asked = least / sums.seconds();
-    const std::string told =
-        words("%2 m, %0 deg in %1 s where tracks make %2 m at least",
-              {sums.position.norm(), toDegrees(sums.turned), sums.seconds(), least});
-    if (std::min(left, right) > 0.5 * asked)
-      return "tracks spin or pose frozen: " + told + "; look, then ARM";
-    if (std::isfinite(motors.current_left) && std::isfinite(motors.current_right))
-      return "stuck or pose frozen: " + told +
-             words(" (%0, %0 A); look, then ARM", {motors.current_left, motors.current_right});
-    return "stuck or pose frozen: " + told + "; look, then ARM";
   }
   std::string turn() const {
     const double off = beyond(sums.turned, sums.turn_min - yaw_slack, sums.turn_max + yaw_slack);
@@ -193,9 +197,11 @@ void MotionMonitor::receive(const InsMotion& ins) {
   watchTracks(ins.utime);
   const std::string sure = surelyWrong();
   if (!sure.empty()) return tell(sure, ins.utime);
-  const std::string suspected = suspicion();
+  std::string suspected = suspicion();
+  if (suspected.empty()) suspected = departure();
   if (suspected.empty()) {
     suspected_since_ = -1;
+    learn();
   } else if (suspected_since_ < 0) {
     suspected_since_ = ins.utime;
   } else if (ins.utime - suspected_since_ >= kSuspicion) {
@@ -279,6 +285,32 @@ std::string MotionMonitor::suspicion() const {
     if (!verdict.empty()) return verdict;
   }
   return "";
+}
+
+std::string MotionMonitor::departure() const {
+  using Kind = TrackFault::Kind;
+  const std::optional<MotionSums> window = track_.window(kDepartureWindow);
+  if (!window) return "";
+  const std::optional<TrackFault> fault = response_.fault(*window);
+  if (!fault) return "";
+  // What turns round passes through zero.
+  const MotionSums half = *track_.window(0.5 * kDepartureWindow);
+  const bool backwards = half.forward * fault->travel < 0.0 && std::abs(half.forward) > kStill;
+  const bool mirrored = half.turned * fault->turn < 0.0 && std::abs(half.turned) > kStill;
+  const bool blocked = fault->kind == Kind::kBothBlocked;
+  if (blocked && !backwards && !mirrored) return tooLittle(*window, motors_, window->tracks_min);
+  const std::string name = fault->kind == Kind::kLeftDead    ? "left track dead"
+                           : fault->kind == Kind::kRightDead ? "right track dead"
+                           : blocked && backwards            ? "travels the wrong way"
+                                                             : "turns the wrong way";
+  return name + words(": %2 m, %0 deg in %1 s, usual %2 m, %0 deg; check tracks and INS, then ARM",
+                      {window->forward, toDegrees(window->turned), window->seconds(),
+                       fault->travel, toDegrees(fault->turn)});
+}
+
+void MotionMonitor::learn() {
+  const std::optional<MotionSums> window = track_.window(kLearnedWindow, kLearnedAfter);
+  if (window) response_.learn(*window, track_.step().seconds() / kLearnedWindow);
 }
 
 }  // namespace tread::motor

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "modules/motor_bridge/core/motion_response.hpp"
 #include "modules/motor_bridge/core/motion_track.hpp"
 #include "modules/motor_bridge/core/motor_controller.hpp"
 
@@ -16,12 +17,13 @@ namespace tread::motor {
     1. MotionTrack sums up what was measured and what the commands explain, slip included;
     2. one step, and windows of 1 and 3 s, are checked: pose against the INS's own rate and
        velocity, travel, turn and sideways motion against the commands;
-    3. what fails is named by what the motors tell beside it.
+    3. MotionResponse compares windows of 0.7 s with what the robot lately made of its commands;
+    4. what fails is named by what the motors tell beside it.
     It knows no pattern: any series of commands will do, driven by whomever. A drift slower than
     slip cannot be told from slip by commands: only the INS's own velocity shows it. */
 class MotionMonitor {
  public:
-  explicit MotionMonitor(const MotionLimits& limits) : track_(limits) {}
+  explicit MotionMonitor(const MotionLimits& limits) : track_(limits), response_(limits) {}
 
   /// The command that holds from now [us] on, in the unit of the drive.
   void command(const TrackCommand& command, int64_t now) { track_.command(command, now); }
@@ -40,9 +42,13 @@ class MotionMonitor {
   std::string standingTrack(int64_t utime) const;
   std::string surelyWrong() const;
   std::string suspicion() const;
+  /// From what the robot lately made of its commands.
+  std::string departure() const;
+  void learn();
   void tell(const std::string& verdict, int64_t utime);
 
   MotionTrack track_;
+  MotionResponse response_;
   MotorTelemetry motors_;
   double doubts_ = 0.0;                     ///< [1] unreachable poses lately
   double position_std_ = 0.0;               ///< [m] of the last measurements

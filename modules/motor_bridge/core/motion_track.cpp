@@ -48,6 +48,8 @@ MotionSums MotionSums::operator-(const MotionSums& start) const {
   out.travel_max = travel_max - start.travel_max;
   out.turn_min = turn_min - start.turn_min;
   out.turn_max = turn_max - start.turn_max;
+  out.low = low - start.low;
+  out.high = high - start.high;
   out.travel = travel - start.travel;
   out.turn = turn - start.turn;
   out.tracks_min = tracks_min - start.tracks_min;
@@ -124,7 +126,11 @@ void MotionTrack::followPiece(MotionSums& sums, int64_t from, int64_t until) {
     low = low.min(newest);
     high = high.max(newest);
   }
-  for (int i = 0; i < 2; ++i) bands_[i].follow(low[i], high[i], limits_, dt);
+  for (int i = 0; i < 2; ++i) {
+    bands_[i].follow(low[i], high[i], limits_, dt);
+    sums.low[i] += dt * bands_[i].low();
+    sums.high[i] += dt * bands_[i].high();
+  }
   const double v_low = 0.5 * (bands_[0].low() + bands_[1].low());
   const double v_high = 0.5 * (bands_[0].high() + bands_[1].high());
   const double w_low = (bands_[1].low() - bands_[0].high()) / limits_.gauge;
@@ -183,13 +189,16 @@ MotionSums MotionTrack::step() const {
   return history_.back() - history_[history_.size() - 2];
 }
 
-std::optional<MotionSums> MotionTrack::window(double seconds) const {
-  const int64_t begin = history_.back().utime - toMicroseconds(seconds);
-  const auto later =
-      std::partition_point(history_.begin(), history_.end(),
-                           [begin](const MotionSums& sums) { return sums.utime <= begin; });
-  if (later == history_.begin()) return std::nullopt;
-  return history_.back() - *std::prev(later);
+std::optional<MotionSums> MotionTrack::window(double seconds, double ago) const {
+  const auto after = [this](int64_t utime) {
+    return std::partition_point(history_.begin(), history_.end(),
+                                [utime](const MotionSums& sums) { return sums.utime <= utime; });
+  };
+  const auto end = after(history_.back().utime - toMicroseconds(ago));
+  if (end == history_.begin()) return std::nullopt;
+  const auto begin = after(std::prev(end)->utime - toMicroseconds(seconds));
+  if (begin == history_.begin()) return std::nullopt;
+  return *std::prev(end) - *std::prev(begin);
 }
 
 MotionSums MotionTrack::repeats() const {
