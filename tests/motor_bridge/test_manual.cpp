@@ -521,6 +521,7 @@ TEST_CASE("`go_back` takes a lost person's robot from the hand, and says so") {
 TEST_CASE("a program that is new takes over only after its stick has been at rest") {
   ManualControl hand{ManualLimits{}};
   const auto says = [&](int64_t station, int64_t seq, double stick, int64_t now) {
+    hand.update(now, false, true);
     CHECK(hand.receive({station, "operator", seq, now, true, false, stick, stick}, now).empty());
     hand.update(now, false, true);
   };
