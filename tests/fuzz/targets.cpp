@@ -2,60 +2,42 @@
 // Copyright (c) 2026 The Tread authors
 #include "tests/fuzz/targets.hpp"
 
-#include <cstdlib>
+#include <memory>
 #include <sstream>
 #include <string_view>
 
-#include <sys/mman.h>
-#include <unistd.h>
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
 
-#include "common/config/config_reader.hpp"
+#include "common/bus/lcm_address.hpp"
+#include "common/bus/tcp_relay.hpp"
+#include "common/link/link.hpp"
 #include "common/log/event_log.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/messages/pattern_messages.hpp"
-#include "common/pattern/pattern_file.hpp"
+#include "common/seal/key_file.hpp"
 #include "common/seal/seal.hpp"
+#include "common/store/store.hpp"
 #include "common/vehicle/model_document.hpp"
+#include "modules/ins_driver/ins_driver_node.hpp"
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
 #include "modules/learner/core/learner.hpp"
+#include "modules/learner/core/rules/ground_filter.hpp"
 #include "modules/learner/learner_node.hpp"
+#include "modules/lidar_driver/lidar_driver_node.hpp"
+#include "modules/mapping/mapping_node.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
 #include "modules/planner/planner_node.hpp"
 #include "modules/simulator/emulators/hokuyo/scip_emulator.hpp"
 #include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
 #include "modules/simulator/simulator_files.hpp"
-#ifdef TREAD_WITH_TOOLS
-#include "common/recordings/csv_table.hpp"
-#include "common/recordings/recordings.hpp"
-#endif
+#include "modules/simulator/simulator_node.hpp"
+#include "tests/fuzz/reading.hpp"
 
 namespace tread::fuzz {
 namespace {
-
-std::string textOf(const uint8_t* bytes, size_t size) {
-  return {reinterpret_cast<const char*>(bytes), size};
-}
-
-/// What a broken promise of a reader is told by.
-void require(bool kept) {
-  if (!kept) std::abort();
-}
-
-/// A file of these bytes that is nowhere on a disk.
-class MemoryFile {
- public:
-  MemoryFile(const uint8_t* bytes, size_t size) : descriptor_(memfd_create("fuzz", 0)) {
-    require(descriptor_ >= 0 && write(descriptor_, bytes, size) == static_cast<ssize_t>(size));
-  }
-  ~MemoryFile() { close(descriptor_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
-
- private:
-  int descriptor_;
-};
 
 /// What is taken as a message is the same once more when it is sent.
 template <class Message>
@@ -117,16 +99,6 @@ void patternSetParts(const uint8_t* bytes, size_t size) {
   }
 }
 
-/// What a reader refuses it refuses in one line.
-template <class Read>
-void refusing(Read read) {
-  try {
-    read();
-  } catch (const std::runtime_error& refusal) {
-    require(refusal.what()[0] != '\0');
-  }
-}
-
 void patternFile(const uint8_t* bytes, size_t size) {
   refusing([&] {
     const PatternSet set = parsePatterns(textOf(bytes, size), "set");
@@ -141,33 +113,88 @@ void modelFile(const uint8_t* bytes, size_t size) {
   });
 }
 
-template <class Read>
-void configuration(const uint8_t* bytes, size_t size, Read read) {
-  refusing([&] {
-    ConfigReader reader = ConfigReader::fromText(textOf(bytes, size), "configuration");
-    read(reader);
-    reader.finish();
-  });
-}
-
 /// Each process's own, with the robot in the same text.
 void configurations(const uint8_t* bytes, size_t size) {
   configuration(bytes, size, readRobot);
   configuration(bytes, size, planner::readPlannerConfig);
   configuration(bytes, size, planner::readLoggedPlannerConfig);
   configuration(bytes, size, motor::readMotorBridgeConfig);
+  configuration(bytes, size, ins::readInsDriverConfig);
+  configuration(bytes, size, learner::readLearnerConfig);
+  configuration(bytes, size, lidar::readLidarDriverConfig);
+  configuration(bytes, size, mapping::readMappingConfig);
+  configuration(bytes, size, sim::readSimulatorConfig);
+  refusing([&] { ins::originFrom(textOf(bytes, size)); });
+}
+
+/// Lines, each an address of a device or of a bus.
+void addresses(const uint8_t* bytes, size_t size) {
+  std::istringstream lines(textOf(bytes, size));
+  for (std::string line; std::getline(lines, line);) {
+    parseLcmUrl(line);
+    try {
+      parseLinkAddress(line);
+    } catch (const std::invalid_argument& refusal) {
+      require(refusal.what()[0] != '\0');
+    }
+  }
+}
+
+/// A client of the relay on this host, which must serve the next one after it.
+void relay(const uint8_t* bytes, size_t size) {
+  static const TcpRelay server(0);
+  static const auto port =
+      static_cast<uint16_t>(std::stoi(server.url().substr(server.url().rfind(':') + 1)));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(port);
+  const int client = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  require(connect(client, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0);
+  send(client, bytes, size, MSG_NOSIGNAL);
+  shutdown(client, SHUT_WR);
+  char answer[4096];
+  while (recv(client, answer, sizeof answer, 0) > 0) {
+  }
+  close(client);
+}
+
+/// A key is the owner's alone, which a file in memory is not until it is told.
+void keyFile(const uint8_t* bytes, size_t size) {
+  const MemoryFile file(bytes, size);
+  chmod(file.path().c_str(), 0600);
+  refusing([&] { readKey(file.path()); });
 }
 
 /// With the fingerprint at its end, so that the rest is looked at.
-void learnerState(const uint8_t* bytes, size_t size) {
-  static const PatternSet shipped =
-      readPatternFile(std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor.yaml");
+std::string sealed(const uint8_t* bytes, size_t size) {
   uint64_t hash = 14695981039346656037ULL;
   for (size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 1099511628211ULL;
   std::ostringstream end;
   end << "end " << std::hex << hash << '\n';
+  return textOf(bytes, size) + end.str();
+}
+
+void learnerState(const uint8_t* bytes, size_t size) {
   std::string why;
-  require(learner::parseState(textOf(bytes, size) + end.str(), shipped, why) || !why.empty());
+  require(learner::parseState(sealed(bytes, size), shippedSet(), why) || !why.empty());
+}
+
+/// Also as the number that versions count from.
+void surfaceBank(const uint8_t* bytes, size_t size) {
+  static const auto model =
+      std::make_shared<const learner::GroundModel>(learner::FilterConfig{}, shippedSet());
+  learner::SurfaceBank bank(model);
+  const auto why = learner::parseBank(sealed(bytes, size), shippedSet(), bank);
+  require(!why || (!why->empty() && bank.size() == 0));
+  if (!why) learner::formatBank(bank, shippedSet());
+  MemoryStore store;
+  store.write("learner_versions", textOf(bytes, size));
+  store.write("surface_bank", textOf(bytes, size));
+  learner::LearnerMemory memory(store);
+  require(memory.recall(shippedSet(), 1'700'000'000'000'000).first_version > 0);
+  std::string problem;
+  require(memory.recallBank(shippedSet(), bank, problem) || !problem.empty());
 }
 
 /// Times between pieces are in the bytes, too.
@@ -220,43 +247,41 @@ void world(const uint8_t* bytes, size_t size) {
   refusing([&] { sim::readWorld(file.path()); });
 }
 
-#ifdef TREAD_WITH_TOOLS
-void csv(const uint8_t* bytes, size_t size) {
-  refusing([&] {
-    const recordings::CsvTable table(textOf(bytes, size), "table");
-    for (size_t row = 0; row < table.rows(); ++row) refusing([&] { table.number(row, "x"); });
-  });
+/// What the simulator has written of a drive.
+void truthRecord(const uint8_t* bytes, size_t size) {
+  const MemoryFile file(bytes, size);
+  refusing([&] { sim::readTruthRecord(file.path()); });
 }
-
-void surfaceFile(const uint8_t* bytes, size_t size) {
-  static const PatternSet shipped =
-      readPatternFile(std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor.yaml");
-  refusing([&] { recordings::parseSurface(textOf(bytes, size), "surface", "grass", shipped); });
-}
-#endif
 
 }  // namespace
 
 const std::map<std::string, Target>& targets() {
-  static const std::map<std::string, Target> kTargets{
-      {"message", message},
-      {"seal", seal},
-      {"log", log},
-      {"pattern_set_parts", patternSetParts},
-      {"pattern_file", patternFile},
-      {"model_file", modelFile},
-      {"configurations", configurations},
-      {"learner_state", learnerState},
-      {"nmea", nmea},
-      {"roboteq_reply", roboteqReply},
-      {"roboteq_command", roboteqCommand},
-      {"scip", scip},
-      {"world", world},
+  static const std::map<std::string, Target> kTargets = [] {
+    std::map<std::string, Target> all{
+        {"addresses", addresses},
+        {"configurations", configurations},
+        {"key_file", keyFile},
+        {"learner_state", learnerState},
+        {"log", log},
+        {"message", message},
+        {"model_file", modelFile},
+        {"nmea", nmea},
+        {"pattern_file", patternFile},
+        {"pattern_set_parts", patternSetParts},
+        {"relay", relay},
+        {"roboteq_command", roboteqCommand},
+        {"roboteq_reply", roboteqReply},
+        {"scip", scip},
+        {"seal", seal},
+        {"surface_bank", surfaceBank},
+        {"truth_record", truthRecord},
+        {"world", world},
+    };
 #ifdef TREAD_WITH_TOOLS
-      {"csv", csv},
-      {"surface_file", surfaceFile},
+    addToolTargets(all);
 #endif
-  };
+    return all;
+  }();
   return kTargets;
 }
 

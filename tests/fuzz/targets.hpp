@@ -15,4 +15,7 @@ using Target = void (*)(const uint8_t* bytes, size_t size);
 /// Every decoder and reader by its name.
 const std::map<std::string, Target>& targets();
 
+/// Those of the tools, which are there where tools are built.
+void addToolTargets(std::map<std::string, Target>& all);
+
 }  // namespace tread::fuzz

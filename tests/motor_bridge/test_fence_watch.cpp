@@ -369,3 +369,156 @@ TEST_CASE("an INS message that was overtaken puts the robot nowhere else") {
   }
   CHECK(world.least_room >= 0.0);
 }
+
+namespace {
+
+constexpr int64_t kNow = 10'000'000;  // [us]
+
+/// The watch by itself: a robot within the yard, `room` [m] from its front to the fence ahead.
+struct FenceBench {
+  FenceWatch watch{{{yard()}, kBody, 0.5}, {}};
+  InsMotion ins{kNow, 0, 0, 0, 0.0, 0.0, 0.0, 0.0};
+
+  explicit FenceBench(double room = 5.0) { ins.x = 10.0 - 0.65 - room; }
+  std::string fault(int64_t now = kNow) {
+    watch.receive(ins);
+    return watch.fault(now);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("room is told in centimetres") {
+  const std::pair<double, std::string> cases[] = {{0.05, "0.05 m"}, {0.4, "0.40 m"}};
+  for (const auto& [room, words] : cases) {
+    FenceBench bench(room);
+    bench.ins.v_forward = 1.0;
+    CHECK(bench.fault() ==
+          "fence yard: " + words + " of room, less than it takes to stop; drive away from it");
+  }
+}
+
+TEST_CASE("a pose counts for half a second, and for a second it is told that none does") {
+  FenceBench bench;
+  CHECK(bench.fault(kNow + 500'000).empty());
+  CHECK(bench.fault(kNow + 500'001) == "position unknown: fences cannot be kept");
+  CHECK_FALSE(bench.fault(kNow + 1'500'001).empty());
+  CHECK(bench.fault(kNow + 1'500'002).empty());
+  bench.ins.utime = kNow + 2'000'000;
+  CHECK(bench.fault(kNow + 2'000'000).empty());
+  CHECK_FALSE(bench.fault(kNow + 2'600'000).empty());
+}
+
+TEST_CASE("the age of a pose is driven on, up to half a second") {
+  FenceBench bench(0.7);
+  bench.ins.v_forward = 1.0;
+  CHECK(bench.fault(kNow + 190'000).empty());
+  CHECK_FALSE(bench.fault(kNow + 210'000).empty());
+  FenceBench from_future(0.45);
+  from_future.ins.v_forward = 1.0;
+  CHECK_FALSE(from_future.fault(kNow - 200'000).empty());
+}
+
+TEST_CASE("3 cm/s and 3 crad/s are a motion, less is none") {
+  FenceBench ahead(0.01);
+  ahead.ins.v_forward = 0.03;
+  CHECK_FALSE(ahead.fault().empty());
+  ahead.ins.v_forward = 0.029;
+  CHECK(ahead.fault().empty());
+  FenceBench beside;
+  beside.ins.y = 5.0 - 0.34 - 1e-4;
+  beside.ins.yaw_rate = 0.03;
+  CHECK_FALSE(beside.fault().empty());
+  beside.ins.yaw_rate = 0.029;
+  CHECK(beside.fault().empty());
+}
+
+TEST_CASE("a position that is told without its accuracy is no better known than the one before") {
+  FenceBench bench(0.3);
+  bench.ins.v_forward = 0.2;
+  CHECK(bench.fault().empty());
+  bench.ins.position_std = 0.11;
+  CHECK_FALSE(bench.fault().empty());
+  bench.ins.position_std = InsMotion::kUnknown;
+  bench.watch.restart();
+  bench.ins.x -= 0.005;
+  CHECK_FALSE(bench.fault().empty());
+}
+
+TEST_CASE("over a fence a way may lead 5 cm farther out, for poses are no better known") {
+  FenceBench bench(-0.2);
+  CHECK(bench.fault().empty());
+  bench.ins.v_forward = 0.098;
+  CHECK(bench.fault().empty());
+  bench.ins.v_forward = 0.102;
+  CHECK_THAT(bench.fault(), Contains("outside fence yard by 0.20 m: only back in"));
+}
+
+TEST_CASE("ways are looked at every 0.1 s: a corner that swings out between is seen") {
+  // Where the outline's diagonal points at the fence the corner is farthest out.
+  const double reach = std::hypot(0.65, 0.34);
+  const double diagonal = kPi / 2 - std::atan2(0.34, 0.65);
+  constexpr double kRate = 1.3;  // [rad/s]
+  const auto faultWhenOutAfter = [&](double seconds) {
+    FenceBench bench;
+    bench.ins.yaw_rate = kRate;
+    bench.ins.yaw = diagonal - kRate * seconds;
+    bench.ins.y = 5.0 - reach + 0.001;
+    return bench.fault();
+  };
+  CHECK_FALSE(faultWhenOutAfter(0.1).empty());
+  CHECK_FALSE(faultWhenOutAfter(0.3).empty());
+  CHECK_FALSE(faultWhenOutAfter(0.5).empty());
+  CHECK(faultWhenOutAfter(0.25).empty());  // by 1 mm for 80 ms
+}
+
+TEST_CASE("of a commanded turn 0.7 are made at most, measured or not") {
+  const double turned = 0.7 * (2 * kSpeed * 0.05 / kGauge) * 0.5;  // [rad]
+  const double corner = 0.65 * std::sin(turned) + 0.34 * std::cos(turned);
+  for (const double rate : {0.0, InsMotion::kUnknown}) {
+    FenceBench bench;
+    bench.ins.yaw_rate = rate;
+    bench.watch.command({-0.05, 0.05}, kNow);
+    bench.ins.y = 5.0 - corner + 0.001;
+    CHECK_FALSE(bench.fault().empty());
+    bench.ins.y = 5.0 - corner - 0.001;
+    CHECK(bench.fault().empty());
+  }
+}
+
+TEST_CASE("a measured drift to the side counts beside a command of the same speed") {
+  FenceBench bench;
+  bench.ins.y = 5.0 - 0.34 - 0.1;
+  bench.ins.v_forward = 0.5 * kSpeed;
+  bench.watch.command({0.5, 0.5}, kNow);
+  CHECK(bench.fault().empty());
+  bench.ins.v_left = 0.5;
+  CHECK_FALSE(bench.fault().empty());
+}
+
+TEST_CASE("the fastest command of the last 0.25 s may still be under way, and then no more") {
+  FenceBench bench(0.3);
+  bench.watch.command({0.0, 0.0}, kNow);
+  CHECK(bench.fault().empty());
+  bench.watch.command({1.0, 1.0}, kNow);
+  CHECK_FALSE(bench.fault().empty());
+  bench.watch.command({0.2, 0.1}, kNow + 10'000);
+  bench.watch.command({0.2, 0.1}, kNow + 259'999);
+  CHECK_FALSE(bench.fault(kNow + 10'000).empty());
+  bench.watch.command({0.2, 0.1}, kNow + 260'000);
+  CHECK(bench.fault(kNow + 10'000).empty());
+}
+
+TEST_CASE("blind for its speed, one track backwards may move it backwards") {
+  for (const TrackCommand& command : {TrackCommand{-0.05, 0.05}, TrackCommand{0.05, -0.05}}) {
+    FenceBench behind;
+    behind.ins.x = -5.0 + 0.65 + 0.3;
+    behind.ins.v_forward = InsMotion::kUnknown;
+    behind.watch.command(command, kNow);
+    CHECK_FALSE(behind.fault().empty());
+    FenceBench ahead(0.3);
+    ahead.ins.v_forward = InsMotion::kUnknown;
+    ahead.watch.command(command, kNow);
+    CHECK_FALSE(ahead.fault().empty());
+  }
+}

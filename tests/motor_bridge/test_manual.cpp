@@ -517,3 +517,19 @@ TEST_CASE("`go_back` takes a lost person's robot from the hand, and says so") {
   CHECK_THAT(world.reason(), Catch::Contains("the operator is lost"));
   CHECK(isArmed(world.state()));
 }
+
+TEST_CASE("a program that is new takes over only after its stick has been at rest") {
+  ManualControl hand{ManualLimits{}};
+  const auto says = [&](int64_t station, int64_t seq, double stick, int64_t now) {
+    hand.update(now, false, true);
+    CHECK(hand.receive({station, "operator", seq, now, true, false, stick, stick}, now).empty());
+    hand.update(now, false, true);
+  };
+  says(7, 1, 0.0, 1'000'000);
+  says(8, 1, 0.5, 2'000'000);
+  CHECK_FALSE(hand.takes());
+  CHECK(hand.words() == "in the hand of operator: let the stick go once");
+  says(8, 2, 0.0, 2'020'000);
+  says(8, 3, 0.5, 2'040'000);
+  CHECK(hand.takes());
+}

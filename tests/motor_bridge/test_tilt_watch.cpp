@@ -193,3 +193,48 @@ TEST_CASE("attitude that falls silent counts as beyond, for programs until it is
   measure(now + 600'000);
   CHECK(watch.beyond().empty());
 }
+
+TEST_CASE("each time of the tilt watch is kept to the microsecond") {
+  const auto tilted = [](int64_t utime, double roll) { return InsTilt{utime, roll, 0, 0, 0}; };
+  TiltWatch watch(kLimits);
+  for (const int64_t t : {0, 50'000, 99'999}) watch.receive(tilted(t, 0.9), t);
+  CHECK(watch.fault(99'999).empty());
+  watch.receive(tilted(100'000, 0.9), 100'000);
+  CHECK_FALSE(watch.fault(100'000).empty());
+  // It stands for a second.
+  watch.receive(tilted(1'100'000, 0.9), 1'100'000);
+  CHECK_FALSE(watch.fault(1'100'000).empty());
+  CHECK(watch.fault(1'100'001).empty());
+  CHECK_FALSE(watch.beyond().empty());
+  // Level for half a second.
+  watch.receive(tilted(1'200'000, 0.0), 1'200'000);
+  watch.receive(tilted(1'699'999, 0.0), 1'699'999);
+  CHECK_FALSE(watch.beyond().empty());
+  watch.receive(tilted(1'700'000, 0.0), 1'700'000);
+  CHECK(watch.beyond().empty());
+  // Silent for 300 ms.
+  CHECK(watch.fault(2'000'000).empty());
+  CHECK_FALSE(watch.fault(2'000'001).empty());
+}
+
+TEST_CASE("silence begins the half second of level measurements anew") {
+  TiltWatch watch(kLimits);
+  for (int64_t t = 0; t <= 200'000; t += 20'000) watch.receive({t, 0.9, 0, 0, 0}, t);
+  CHECK_FALSE(watch.fault(200'000).empty());
+  watch.receive({300'000, 0, 0, 0, 0}, 300'000);
+  watch.fault(700'000);
+  watch.receive({900'000, 0, 0, 0, 0}, 900'000);
+  CHECK_FALSE(watch.beyond().empty());
+  watch.receive({1'399'000, 0, 0, 0, 0}, 1'399'000);
+  CHECK_FALSE(watch.beyond().empty());
+  watch.receive({1'400'000, 0, 0, 0, 0}, 1'400'000);
+  CHECK(watch.beyond().empty());
+}
+
+TEST_CASE("a robot that tips on says how far") {
+  TiltWatch watch(kLimits);
+  for (int64_t t = 0; t <= 200'000; t += 20'000) watch.receive({t, 35 * kDeg, 0, 0, 0}, t);
+  CHECK_THAT(watch.beyond(), Contains("rolled 35 deg"));
+  watch.receive({220'000, 50 * kDeg, 0, 0, 0}, 220'000);
+  CHECK_THAT(watch.beyond(), Contains("rolled 50 deg"));
+}

@@ -23,6 +23,7 @@ constexpr int64_t kStartUs = 2'000'000;
 // CARMEN logs.
 constexpr int64_t kInsPeriodUs = 20'000;
 constexpr double kSpeed = 1.0;              // [m/s]
+constexpr double kLongestWay = 1000.0;      // [m] between two poses; such logs have one a metre
 constexpr double kTurnRate = 0.5;           // [rad/s]
 constexpr double kCarmenLaserHeight = 0.3;  // [m] not in the logs
 /// Ranges from here on [m] mean that no echo came back.
@@ -149,11 +150,12 @@ void readCarmenLog(const std::string& path, MappingRecording& recording) {
   for (const std::string& line : linesOf(path, recording.problem)) {
     if (line.compare(0, 7, "FLASER ") != 0) continue;
     const auto laser = parse(line);
-    if (!laser) {
+    const bool first = recording.scans.empty();
+    if (!laser || !(first || distanceBetween(last, laser->T_map_laser) <= kLongestWay)) {
       ++recording.skipped;
       continue;
     }
-    if (recording.scans.empty()) {
+    if (first) {
       recording.poses.push_back(insAt(utime, laser->T_map_laser));
     } else {
       const int64_t end = utime + durationOf(last, laser->T_map_laser);

@@ -225,3 +225,13 @@ TEST_CASE("a fence goes through its message unchanged, and broken messages make 
   odd.corners[1].pop_back();
   CHECK_FALSE(faultOf(requestFrom(odd).fence).empty());
 }
+
+TEST_CASE("each answer to a request for a fence has words of its own") {
+  std::set<std::string> words;
+  for (const FenceReceipt receipt :
+       {FenceReceipt::kAdded, FenceReceipt::kKnown, FenceReceipt::kRemoved, FenceReceipt::kNotThere,
+        FenceReceipt::kForbidden, FenceReceipt::kInvalid, FenceReceipt::kFull,
+        static_cast<FenceReceipt>(99)})
+    words.insert(describe(receipt));
+  CHECK(words.size() == 8);
+}

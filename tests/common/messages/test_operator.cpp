@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <limits>
+#include <set>
+#include <string>
 
 #include <catch2/catch.hpp>
 
@@ -167,3 +169,13 @@ TEST_CASE("an operator without a name, or with a page for one, is nobody") {
 }
 
 }  // namespace tread
+
+TEST_CASE("each answer to a notice has words of its own") {
+  using Receipt = OperatorLease::Receipt;
+  std::set<std::string> words;
+  for (const Receipt receipt :
+       {Receipt::kTaken, Receipt::kOfAnother, Receipt::kStale, Receipt::kFromFuture,
+        Receipt::kTooMany, static_cast<Receipt>(99)})
+    words.insert(describe(receipt));
+  CHECK(words.size() == 6);
+}

@@ -28,7 +28,7 @@ void PadState::setRange(int code, int least, int most) {
   if (most <= least) return;
   axes_[code].least = least;
   axes_[code].most = most;
-  axes_[code].value = least + (most - least) / 2;
+  axes_[code].value = static_cast<int>((int64_t{least} + most) / 2);
 }
 
 void PadState::take(int type, int code, int value) {
@@ -38,7 +38,8 @@ void PadState::take(int type, int code, int value) {
 
 double PadState::share(const Axis& axis) {
   const double half = 0.5 * (static_cast<double>(axis.most) - axis.least);
-  const double way = std::clamp((axis.value - axis.least) / half - 1.0, -1.0, 1.0);
+  const double way =
+      std::clamp((static_cast<double>(axis.value) - axis.least) / half - 1.0, -1.0, 1.0);
   const double beyond = std::max(0.0, std::abs(way) - kDeadZone) / (1.0 - kDeadZone);
   return std::copysign(beyond, way);
 }

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/robot/launch/launch_file.hpp"
 
+#include <charconv>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -140,8 +141,10 @@ std::string supervisorConfig(const std::string& name,
 std::optional<Spawned> spawnedIn(const std::string& log_line) {
   const auto rest = after(log_line, " spawned: ");
   const auto pid = rest ? after(*rest, "' with pid ") : std::nullopt;
-  if (!pid) return std::nullopt;
-  return Spawned{between(*rest, '\'', '\''), std::stoi(*pid)};
+  int number = 0;
+  if (!pid || std::from_chars(pid->data(), pid->data() + pid->size(), number).ec != std::errc())
+    return std::nullopt;
+  return Spawned{between(*rest, '\'', '\''), number};
 }
 
 std::optional<std::string> endedIn(const std::string& log_line) {

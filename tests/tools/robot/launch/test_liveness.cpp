@@ -36,7 +36,8 @@ TEST_CASE("the supervisor's log says which process runs as which pid, and which 
   CHECK(spawned->pid == 4711);
   CHECK(endedIn("2026-11-24 01:00:00,123 INFO exited: a-b (exit status 1; not expected)") == "a-b");
   CHECK(endedIn("2026-11-24 01:00:00,123 INFO stopped: a-b (exit status 0)") == "a-b");
-  for (const char* line : {"INFO supervisord started with pid 12", "INFO success: a entered", ""}) {
+  for (const char* line : {"INFO supervisord started with pid 12", "INFO success: a entered", "",
+                           "INFO spawned: 'a' with pid many"}) {
     CHECK_FALSE(spawnedIn(line));
     CHECK_FALSE(endedIn(line));
   }

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// What the targets share.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "common/config/config_reader.hpp"
+#include "common/pattern/pattern_file.hpp"
+
+namespace tread::fuzz {
+
+inline std::string textOf(const uint8_t* bytes, size_t size) {
+  return {reinterpret_cast<const char*>(bytes), size};
+}
+
+/// What a broken promise of a reader is told by.
+inline void require(bool kept) {
+  if (!kept) std::abort();
+}
+
+/// A file of these bytes that is nowhere on a disk.
+class MemoryFile {
+ public:
+  MemoryFile(const uint8_t* bytes, size_t size) : descriptor_(memfd_create("fuzz", 0)) {
+    require(descriptor_ >= 0 && write(descriptor_, bytes, size) == static_cast<ssize_t>(size));
+  }
+  ~MemoryFile() { close(descriptor_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
+/// A name of one's own for a MemoryFile, for readers that go by the name.
+class NamedFile {
+ public:
+  NamedFile(const uint8_t* bytes, size_t size, const std::string& name)
+      : file_(bytes, size),
+        path_(std::filesystem::temp_directory_path() /
+              ("tread-fuzz-" + std::to_string(getpid()) + name)) {
+    std::filesystem::create_symlink(file_.path(), path_);
+  }
+  ~NamedFile() { unlink(path_.c_str()); }
+  NamedFile(const NamedFile&) = delete;
+  NamedFile& operator=(const NamedFile&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  MemoryFile file_;
+  std::string path_;
+};
+
+/// What a reader refuses it refuses in one line.
+template <class Read>
+void refusing(Read read) {
+  try {
+    read();
+  } catch (const std::runtime_error& refusal) {
+    require(refusal.what()[0] != '\0');
+  }
+}
+
+template <class Read>
+void configuration(const uint8_t* bytes, size_t size, Read read) {
+  refusing([&] {
+    ConfigReader reader = ConfigReader::fromText(textOf(bytes, size), "configuration");
+    read(reader);
+    reader.finish();
+  });
+}
+
+/// The pattern set that other files are read with.
+inline const PatternSet& shippedSet() {
+  static const PatternSet shipped =
+      readPatternFile(std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor.yaml");
+  return shipped;
+}
+
+}  // namespace tread::fuzz

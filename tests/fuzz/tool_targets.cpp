@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "common/log/drive_log.hpp"
+#include "common/recordings/csv_table.hpp"
+#include "common/recordings/drive_recordings.hpp"
+#include "common/recordings/imported_log.hpp"
+#include "common/recordings/recordings.hpp"
+#include "common/vehicle/model_document.hpp"
+#include "tests/fuzz/reading.hpp"
+#include "tests/fuzz/targets.hpp"
+#include "tools/experiment/trials.hpp"
+#include "tools/gap/drive_log.hpp"
+#include "tools/patterns/recipe.hpp"
+#include "tools/plan/plan_files.hpp"
+#include "tools/replay/robot_log.hpp"
+#include "tools/replay/robot_replay.hpp"
+#include "tools/replay/sensor_replay.hpp"
+#include "tools/report/chronicle.hpp"
+#include "tools/report/hand_record.hpp"
+#include "tools/robot/drive/keyboard.hpp"
+#include "tools/robot/drive/pad.hpp"
+#include "tools/robot/launch/checks.hpp"
+#include "tools/robot/launch/launch_file.hpp"
+#include "tools/robot/launch/liveness.hpp"
+
+namespace tread::fuzz {
+namespace {
+
+void csv(const uint8_t* bytes, size_t size) {
+  refusing([&] {
+    const recordings::CsvTable table(textOf(bytes, size), "table");
+    for (size_t row = 0; row < table.rows(); ++row) refusing([&] { table.number(row, "x"); });
+  });
+}
+
+void surfaceFile(const uint8_t* bytes, size_t size) {
+  refusing(
+      [&] { recordings::parseSurface(textOf(bytes, size), "surface", "grass", shippedSet()); });
+}
+
+/// A recorded drive in each of the formats that tread-import takes, through to the log.
+void recordedDrive(const uint8_t* bytes, size_t size) {
+  const MemoryFile file(bytes, size);
+  recordings::Session session;
+  session.wheel_radius = 0.5;
+  session.baseline = 1.0;
+  session.pose_lag = 0.2;
+  session.pose_rate = 10.0;
+  session.absolute_attitude = true;
+  refusing([&] { session.rows = recordings::CsvTable(file.path()).rows(); });
+  for (const std::string format : {"steps", "aligned", "continuous"})
+    refusing([&] {
+      const recordings::RecordedDrive drive =
+          format == "steps"     ? recordings::readSteps(file.path(), session)
+          : format == "aligned" ? recordings::readAligned(file.path(), session)
+                                : recordings::readContinuous(file.path(), session);
+      recordings::LogCounts counts;
+      makeLog(drive, session, format, recordings::ExecutionLayout{}, counts);
+    });
+}
+
+/// The table of sessions that stands beside recorded drives.
+void sessionTable(const uint8_t* bytes, size_t size) {
+  const MemoryFile file(bytes, size);
+  refusing([&] { recordings::readSession(file.path(), "drive"); });
+}
+
+/// Recipes of both kinds: for a model, and for recorded drives.
+void recipe(const uint8_t* bytes, size_t size) {
+  static const ModelDocument model =
+      readModelDocument(std::string(TREAD_SOURCE_DIR) + "/config/models/teodor_tarmac.yaml");
+  const auto read = [&] { return ConfigReader::fromText(textOf(bytes, size), "recipe"); };
+  refusing([&] { patterns::makeSet(read(), model.vehicle); });
+  refusing([&] { recordings::readRecipe(read()); });
+}
+
+void transitionWorld(const uint8_t* bytes, size_t size) {
+  refusing([&] { experiment::parseTransitionWorld(textOf(bytes, size), "world"); });
+}
+
+void mapPicture(const uint8_t* bytes, size_t size) {
+  refusing([&] {
+    const plan::GreyImage image = plan::parsePgm(textOf(bytes, size), "picture");
+    require(image.pixels.size() ==
+            static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
+  });
+}
+
+/// What stands beside such a picture.
+void ros2Map(const uint8_t* bytes, size_t size) {
+  constexpr char kPicture[] = "P2\n3 2\n255\n0 100 205 254 255 30\n";
+  static const NamedFile picture(reinterpret_cast<const uint8_t*>(kPicture), sizeof kPicture - 1,
+                                 ".pgm");
+  std::string text = textOf(bytes, size);
+  const size_t at = text.find("PICTURE");
+  if (at != std::string::npos) text.replace(at, 7, picture.path());
+  const NamedFile file(reinterpret_cast<const uint8_t*>(text.data()), text.size(), ".yaml");
+  refusing([&] { plan::gridForFootprint(plan::readMap(file.path())); });
+}
+
+void sbplMap(const uint8_t* bytes, size_t size) {
+  refusing([&] {
+    const plan::MapFile map = plan::parseSbplEnvironment(textOf(bytes, size), "map");
+    plan::gridForPoint(map);
+  });
+}
+
+void primitives(const uint8_t* bytes, size_t size) {
+  refusing([&] {
+    const plan::PrimitiveFile file = plan::parsePrimitives(textOf(bytes, size), "primitives");
+    plan::onLattice(file, {});
+    plan::headingFree(file, {});
+  });
+}
+
+void queries(const uint8_t* bytes, size_t size) {
+  refusing([&] {
+    const auto read = plan::parseQueries(textOf(bytes, size), "queries");
+    require(plan::parseQueries(plan::formatQueries(read), "again").size() == read.size());
+  });
+}
+
+/// Through to what supervisord is told.
+void launchFile(const uint8_t* bytes, size_t size) {
+  const launch::LaunchSettings settings{"/robot/launch.yaml", "/run/robot", "/bin", "", {}};
+  const MemoryFile file(bytes, size);
+  refusing([&] { launch::readLaunchName(file.path()); });
+  configuration(bytes, size, [&](ConfigReader& reader) {
+    const launch::LaunchFile read = launch::readLaunchFile(reader, settings);
+    std::vector<launch::SupervisedProcess> processes;
+    for (const launch::LaunchProcess& process : read.processes)
+      processes.push_back(
+          {process, launch::startCommand(process, process.program, read.lcm_url, read.key)});
+    try {
+      launch::supervisorConfig(read.name, processes, launch::RunPaths(settings.run), false);
+    } catch (const std::invalid_argument& refusal) {
+      require(refusal.what()[0] != '\0');
+    }
+  });
+}
+
+/// Lines of supervisord's log, signs of life of processes, and what `ip route` answers.
+void supervisorLog(const uint8_t* bytes, size_t size) {
+  launch::routeDevice(textOf(bytes, size));
+  launch::LaunchProcess planner;
+  planner.name = "planner";
+  launch::LaunchProgress progress("robot", 1);
+  launch::Liveness liveness({planner});
+  std::istringstream lines(textOf(bytes, size));
+  for (std::string line; std::getline(lines, line);) {
+    progress.lineFor(line, 1.0);
+    liveness.readLog(line);
+    liveness.hear(1234, line);
+    liveness.pass(0.7);
+  }
+}
+
+bool isShare(const drive::Wishes& wishes) {
+  return std::abs(wishes.forward) <= 1.0 && std::abs(wishes.turn) <= 1.0;
+}
+
+void gamepad(const uint8_t* bytes, size_t size) {
+  const MemoryFile file(bytes, size);
+  refusing([&] {
+    drive::RecordedPad pad(file.path());
+    for (const int64_t now : {1'000'000L, 1'020'000L, 2'000'000L, 2'000'000'000'000'000'000L})
+      require(isShare(pad.read(now)));
+  });
+}
+
+/// Times between pieces are in the bytes, too.
+void keyboard(const uint8_t* bytes, size_t size) {
+  drive::KeyState keys;
+  int64_t now = 1'000'000;
+  for (size_t at = 0; at < size; at += 3) {
+    now += 2000 * bytes[at];
+    keys.take({reinterpret_cast<const char*>(bytes) + at, std::min<size_t>(3, size - at)}, now);
+    require(isShare(keys.wishes(now)));
+  }
+}
+
+/// Recordings that tread-replay maps.
+void carmenLog(const uint8_t* bytes, size_t size) {
+  const NamedFile file(bytes, size, ".clf");
+  refusing([&] { readMappingRecording(file.path()); });
+}
+
+void mbotLog(const uint8_t* bytes, size_t size) {
+  const MemoryFile file(bytes, size);
+  refusing([&] { readMappingRecording(file.path()); });
+}
+
+const char* const kLogged[] = {"INS",         "MOTOR",     "EXECUTION",     "MARK",     "CONFIG",
+                               "PATTERN_SET", "HEALTH",    "LEARNER_STATE", "LEARNING", "PLAN",
+                               "GOAL",        "PLAN_TREE", "SCAN",          "MAP"};
+
+/// Messages in the order of a log: channel, time since the one before [ms], length, bytes.
+std::vector<LogEvent> eventsIn(const uint8_t* bytes, size_t size) {
+  std::vector<LogEvent> events;
+  int64_t now = 1'000'000;
+  for (size_t at = 0; at + 4 <= size;) {
+    const size_t length =
+        std::min<size_t>(size_t{bytes[at + 2]} * 256 + bytes[at + 3], size - at - 4);
+    now += 1000 * bytes[at + 1];
+    const uint8_t* const begin = bytes + at + 4;
+    events.push_back({now, kLogged[bytes[at] % std::size(kLogged)], {begin, begin + length}});
+    at += 4 + length;
+  }
+  return events;
+}
+
+/// All that the tools make of a drive's log.
+void driveLog(const uint8_t* bytes, size_t size) {
+  const std::vector<LogEvent> events = eventsIn(bytes, size);
+  report::Chronicle chronicle;
+  report::HandRecord hand;
+  for (const LogEvent& event : events) {
+    chronicle.take(event);
+    hand.take(event);
+  }
+  chronicle.summary(0);
+  chronicle.words();
+  hand.words();
+  refusing([&] { replay::learnerLives(replay::toRobotLog("log", events), shippedSet()); });
+  refusing([&] { gap::toDrive(toDriveLog("log", events)); });
+}
+
+}  // namespace
+
+void addToolTargets(std::map<std::string, Target>& all) {
+  all.insert({
+      {"carmen_log", carmenLog},
+      {"csv", csv},
+      {"drive_log", driveLog},
+      {"gamepad", gamepad},
+      {"keyboard", keyboard},
+      {"launch_file", launchFile},
+      {"map_picture", mapPicture},
+      {"mbot_log", mbotLog},
+      {"primitives", primitives},
+      {"queries", queries},
+      {"recipe", recipe},
+      {"recorded_drive", recordedDrive},
+      {"ros2_map", ros2Map},
+      {"sbpl_map", sbplMap},
+      {"session_table", sessionTable},
+      {"supervisor_log", supervisorLog},
+      {"surface_file", surfaceFile},
+      {"transition_world", transitionWorld},
+  });
+}
+
+}  // namespace tread::fuzz
