@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <functional>
+#include <string_view>
 
 #include "common/messages/blank.hpp"
 #include "common/messages/fence_messages.hpp"
@@ -155,6 +157,7 @@ class Run {
     const Received message{now, channel, {bytes.begin(), bytes.begin() + size}};
     const bool genuine = !schedule_.keyed || static_cast<size_t>(size) != bytes.size();
     if (!genuine) return;
+    if (schedule_.keyed) sealed_.insert(hashOf(bytes));
     if (const auto motor = messageOf(kMotor, message)) note(*motor);
     if (const auto health = messageOf(kHealth, message)) breaks(counts_.check(*health));
     if (const auto plan = messageOf(kPlan, message)) {
@@ -189,10 +192,12 @@ class Run {
     if (node != "motor_bridge" && node != "planner") return;
     const auto size = static_cast<std::ptrdiff_t>(sizeWithoutSeal(bytes.data(), bytes.size()));
     const Received message{now, channel, {bytes.begin(), bytes.begin() + size}};
-    // With a key what nobody sealed counts for nothing, nor does what comes a second time.
+    // With a key what nobody sealed counts for nothing, nor what was changed or comes again.
     const bool sealed = static_cast<size_t>(size) != bytes.size();
     const bool stop = (channel == "ESTOP" || channel == "ARM") && node == "motor_bridge";
-    if (schedule_.keyed && !stop && (!sealed || !handed_[node].insert(bytes).second)) return;
+    const bool changed = sealed && sealed_.count(hashOf(bytes)) == 0;
+    if (schedule_.keyed && !stop && (!sealed || changed || !handed_[node].insert(bytes).second))
+      return;
     if (schedule_.keyed && stop && !sealed && !isStopping(message)) return;
     if (node == "motor_bridge") {
       motors_.receive(message);
@@ -201,6 +206,10 @@ class Run {
       path_.receive(message);
       returns_.receive(message);
     }
+  }
+  static size_t hashOf(const std::vector<uint8_t>& bytes) {
+    return std::hash<std::string_view>()(
+        {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   }
   static bool isStopping(const Received& message) {
     const auto arm = messageOf(kArm, message);
@@ -413,6 +422,7 @@ class Run {
   std::map<std::string, std::deque<std::vector<uint8_t>>> kept_;
   bool replaying_ = false;
   std::map<std::string, std::set<std::vector<uint8_t>>> handed_;  ///< by node
+  std::set<size_t> sealed_;  ///< hashes of what was sent sealed
   int64_t version_ = 0;
   FaultyRun result_;
 };

@@ -50,14 +50,14 @@ void driveSeeds(uint64_t first, int count) {
 }  // namespace
 
 // Three cases: they run beside each other.
-TEST_CASE("under seeded faults no rule is broken, seeds from 1 on") {
-  driveSeeds(1, 80);
+TEST_CASE("seeds from 1 on break no rule under their faults") {
+  driveSeeds(1, 67);
 }
-TEST_CASE("under seeded faults no rule is broken, seeds from 1001 on") {
-  driveSeeds(1001, 80);
+TEST_CASE("seeds from 1001 on break no rule under their faults") {
+  driveSeeds(1001, 67);
 }
-TEST_CASE("under seeded faults no rule is broken, seeds from 2001 on") {
-  driveSeeds(2001, 80);
+TEST_CASE("seeds from 2001 on break no rule under their faults") {
+  driveSeeds(2001, 67);
 }
 
 TEST_CASE("seeds that once broke a rule, or touched something") {
@@ -71,8 +71,9 @@ TEST_CASE("seeds that once broke a rule, or touched something") {
     const FaultyRun run = runFaulty(teodor(), bareScheduleOf(seed, 16.0), every_beam);
     CHECK((run.violation ? run.violation->what : "") == "");
   }
-  // Out of a fence, or of ground that the INS said to be steep, through obstacles and the unknown.
-  for (const uint64_t seed : {4, 200006, 200049, 200068, 200091, 200143, 200149}) {
+  // Out of a fence, or of ground that the INS said to be steep, through obstacles and the unknown;
+  // the last: a MANUAL whose seal was broken counted for the rule.
+  for (const uint64_t seed : {4, 200006, 200049, 200068, 200091, 200143, 200149, 202133}) {
     CAPTURE(seed);
     const FaultyRun run = runFaulty(teodor(), scheduleOf(seed, 16.0));
     CHECK((run.violation ? run.violation->what : "") == "");
