@@ -33,6 +33,8 @@ constexpr uint32_t kPublish = 1;
 constexpr uint32_t kSubscribe = 2;
 constexpr uint32_t kUnsubscribe = 3;
 constexpr size_t kLongestField = 1'000'000;  // [bytes]; our messages have at most 60 000
+constexpr size_t kLongestChannel = 63;       // [bytes], as in LCM
+constexpr size_t kLongestPattern = 250;      // [bytes] of a subscription
 constexpr size_t kMostUnsent = 4'000'000;    // [bytes] that wait for one receiver
 
 std::string bytesOf(uint32_t number) {
@@ -52,9 +54,9 @@ class Fields {
     return ntohl(value);
   }
   /// Throws std::runtime_error for a length that no message of ours has.
-  std::optional<std::string> text() {
+  std::optional<std::string> text(size_t longest) {
     const auto size = number();
-    if (size && *size > kLongestField) throw std::runtime_error("a field is too long");
+    if (size && *size > longest) throw std::runtime_error("a field is too long");
     if (!size || buffer_.size() - used_ < *size) return std::nullopt;
     used_ += *size;
     return buffer_.substr(used_ - *size, *size);
@@ -155,10 +157,11 @@ class Relay {
       if (!fields.number()) return false;
       client.greeted = true;
     } else {
-      const auto channel = fields.text();
+      // std::regex recurses for each character of either.
+      const auto channel = fields.text(*first == kPublish ? kLongestChannel : kLongestPattern);
       if (!channel) return false;
       if (*first == kPublish) {
-        const auto bytes = fields.text();
+        const auto bytes = fields.text(kLongestField);
         if (!bytes) return false;
         passOn(*channel, *bytes);
       } else {

@@ -15,12 +15,6 @@ namespace {
 
 constexpr size_t kRepeated = 8;  // executions in an EXECUTION message
 
-/// A time that a clock can show; others are broken bytes.
-bool isPossible(int64_t utime) {
-  constexpr int64_t kThreeCenturies = 10'000'000'000'000'000;  // [us]
-  return utime >= 0 && utime < kThreeCenturies;
-}
-
 /// Sorts the events of a log by their meaning.
 class Reader {
  public:
@@ -29,42 +23,32 @@ class Reader {
   void take(const LogEvent& event) {
     const auto is = [&](const ChannelSpec& channel) { return event.channel == channel.name; };
     if (!is(kMotor) && !is(kIns) && !is(kExecution) && !is(kConfig) && !is(kMark)) return;
-    bool valid = true;
     const bool decoded = dispatch(
-        event, [&](const auto& message) { valid = take(message, event.utime); }, kMotor, kIns,
-        kExecution, kConfig, kMark);
-    if (!decoded || !valid) ++log_.invalid;
+        event, [&](const auto& message) { take(message, event.utime); }, kMotor, kIns, kExecution,
+        kConfig, kMark);
+    if (!decoded) ++log_.invalid;
   }
 
  private:
   template <class Message>
-  static bool addTimed(const Message& message, int64_t logged, std::vector<Message>& messages,
+  static void addTimed(const Message& message, int64_t logged, std::vector<Message>& messages,
                        std::vector<Stamp>& stamps) {
-    if (!isPossible(message.utime)) return false;
-    stamps.push_back({isPossible(logged) ? logged : message.utime, message.utime, message.seq});
+    stamps.push_back({isPossibleTime(logged) ? logged : message.utime, message.utime, message.seq});
     messages.push_back(message);
-    return true;
   }
-  bool take(const motor_t& motor, int64_t logged) {
-    return addTimed(motor, logged, log_.motor, log_.motor_stamps);
+  void take(const motor_t& motor, int64_t logged) {
+    addTimed(motor, logged, log_.motor, log_.motor_stamps);
   }
-  bool take(const ins_t& ins, int64_t logged) {
-    return addTimed(ins, logged, log_.ins, log_.ins_stamps);
-  }
-  bool take(const execution_t& message, int64_t) {
+  void take(const ins_t& ins, int64_t logged) { addTimed(ins, logged, log_.ins, log_.ins_stamps); }
+  void take(const execution_t& message, int64_t) {
     for (const execution_record_t& record : message.records)
-      if (record.outcome != execution_record_t::OUTCOME_RUNNING && isPossible(record.started) &&
-          isPossible(record.ended) && ended_.insert(keyOf(record)).second)
+      if (record.outcome != execution_record_t::OUTCOME_RUNNING && isPossibleTime(record.started) &&
+          isPossibleTime(record.ended) && ended_.insert(keyOf(record)).second)
         log_.executions.push_back(record);
-    return true;
   }
-  bool take(const config_t& config, int64_t) {
-    log_.configs.push_back(config);
-    return true;
-  }
-  bool take(const mark_t& mark, int64_t) {
+  void take(const config_t& config, int64_t) { log_.configs.push_back(config); }
+  void take(const mark_t& mark, int64_t) {
     if (mark.mark_kind == "surface") log_.surfaces[mark.utime] = mark.mark_value;
-    return true;
   }
 
   DriveLog& log_;

@@ -22,6 +22,12 @@ struct LogEvent {
       false;  ///< in the log a seal stood behind the bytes; whether a good one, nobody asks
 };
 
+/// A time that a clock can show; others are broken bytes.
+constexpr bool isPossibleTime(int64_t utime) {
+  constexpr int64_t kThreeCenturies = 10'000'000'000'000'000;  // [us]
+  return utime >= 0 && utime < kThreeCenturies;
+}
+
 /// A message as it goes over the bus.
 template <class Message>
 std::vector<uint8_t> encoded(const Message& message) {
@@ -84,14 +90,15 @@ class LogReader {
   std::unique_ptr<File> file_;
 };
 
-/// Decodes an event into a message; false if its channel or type is another or bytes are left over.
+/// Decodes an event into a message; false if its channel or type is another, bytes are left over or
+/// its time is impossible.
 template <class Message>
 bool decode(const LogEvent& event, const Channel<Message>& channel, Message& message) {
   if (event.channel != channel.name) return false;
   message = Message{};
   try {
     const int size = static_cast<int>(event.bytes.size());
-    return message.decode(event.bytes.data(), 0, size) == size;
+    return message.decode(event.bytes.data(), 0, size) == size && isPossibleTime(message.utime);
   } catch (const std::exception&) {
     return false;
   }

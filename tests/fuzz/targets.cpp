@@ -148,8 +148,13 @@ void relay(const uint8_t* bytes, size_t size) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(port);
   const int client = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  // From an address of its own: after some ten thousand clients one would have no port left.
+  static uint32_t clients = 0;
+  sockaddr_in own = address;
+  own.sin_addr.s_addr = htonl(INADDR_LOOPBACK + ++clients / 1000);
+  require(bind(client, reinterpret_cast<sockaddr*>(&own), sizeof own) == 0);
+  address.sin_port = htons(port);
   require(connect(client, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0);
   send(client, bytes, size, MSG_NOSIGNAL);
   shutdown(client, SHUT_WR);

@@ -522,3 +522,111 @@ TEST_CASE("blind for its speed, one track backwards may move it backwards") {
     CHECK_FALSE(ahead.fault().empty());
   }
 }
+
+TEST_CASE("blind for its speed, a command counts for its delay and the stopping time, 0.75 s") {
+  const auto behind = [] {
+    FenceBench bench;
+    bench.ins.x = -5.0 + 0.65 + 0.3;
+    bench.ins.v_forward = InsMotion::kUnknown;
+    return bench;
+  };
+  FenceBench back = behind();
+  back.watch.command({-0.05, -0.05}, kNow - 749'999);
+  back.watch.command({0.0, 0.0}, kNow - 740'000);
+  CHECK_FALSE(back.fault().empty());
+  CHECK(back.fault(kNow + 1).empty());
+  FenceBench ahead(0.3);
+  ahead.ins.v_forward = InsMotion::kUnknown;
+  ahead.watch.command({0.05, 0.05}, kNow - 749'999);
+  ahead.watch.command({0.0, 0.0}, kNow - 740'000);
+  CHECK_FALSE(ahead.fault().empty());
+  CHECK(ahead.fault(kNow + 1).empty());
+  for (const TrackCommand& no_way_back : {TrackCommand{0.05, 0.0}, TrackCommand{0.0, 0.05}}) {
+    FenceBench bench = behind();
+    bench.watch.command(no_way_back, kNow);
+    CHECK(bench.fault().empty());
+  }
+}
+
+TEST_CASE("blind for its speed, a measured turn on the spot counts where nothing was commanded") {
+  FenceBench bench;
+  bench.ins.y = 5.0 - 0.65 - 0.01;
+  bench.ins.yaw = -kPi / 2;  // its rear at the fence
+  bench.ins.v_forward = InsMotion::kUnknown;
+  bench.ins.yaw_rate = 0.3;
+  CHECK_FALSE(bench.fault().empty());
+  bench.watch.command({0.5, 0.5}, kNow);  // away from it
+  CHECK(bench.fault().empty());
+}
+
+TEST_CASE("of two commands as fast the older one counts, too") {
+  FenceBench bench(0.3);
+  bench.watch.command({1.0, 1.0}, kNow);
+  bench.watch.command({-1.0, 1.0}, kNow);
+  CHECK_FALSE(bench.fault().empty());
+}
+
+TEST_CASE("a turn that is not measured is as commanded, a measured one is not") {
+  FenceBench bench;
+  bench.ins.v_forward = 1.0;
+  bench.ins.y = 5.0 - 0.76;  // beyond the swing of a turn on the spot
+  bench.watch.command({-0.5, 0.5}, kNow);
+  CHECK(bench.fault().empty());
+  bench.ins.yaw_rate = InsMotion::kUnknown;
+  CHECK_FALSE(bench.fault().empty());
+}
+
+TEST_CASE("a turn that is neither measured nor commanded is none, a measured one no way ahead") {
+  FenceBench bench(0.4);
+  bench.ins.v_forward = 1.0;
+  bench.ins.yaw_rate = InsMotion::kUnknown;
+  CHECK_FALSE(bench.fault().empty());
+  bench.ins.yaw_rate = 4.0;
+  CHECK(bench.fault().empty());
+}
+
+TEST_CASE("who was within, or just at the fence, may stand where it is found outside") {
+  for (const double room : {0.3, 0.0}) {
+    FenceBench bench;
+    bench.watch = FenceWatch({{yard()}, {0.5, 0.5, 0.25}, 0.5}, {});
+    bench.ins.position_std = 0.0;
+    bench.ins.x = 10.0 - 0.5 - room;
+    CHECK(bench.fault().empty());
+    bench.ins.x = 10.0 - 0.5 + 0.2;
+    CHECK(bench.fault().empty());
+  }
+}
+
+TEST_CASE("outside it may not be farther out than it was, where it stands, either") {
+  FenceBench bench(-0.2);
+  CHECK(bench.fault().empty());
+  bench.ins.x += 0.2;
+  CHECK_THAT(bench.fault(), Contains("only back in"));
+  // Another fence: where it stands counts anew.
+  FenceBook& book = bench.watch.book();
+  const Fence moved{"moved", false, {{-5, -5}, {9, -5}, {9, 5}, {-5, 5}}};
+  FenceWatch watch({{}, kBody, 0.5}, {});
+  REQUIRE(watch.book().take({"operator", false, yard()}, true) == FenceReceipt::kAdded);
+  bench.watch = watch;
+  bench.ins.x = 10.0 - 0.65 + 0.2;
+  CHECK(bench.fault().empty());
+  REQUIRE(book.take({"operator", true, {"yard", false, {}}}, true) == FenceReceipt::kRemoved);
+  REQUIRE(book.take({"operator", false, moved}, true) == FenceReceipt::kAdded);
+  CHECK(bench.fault().empty());
+}
+
+TEST_CASE("at a fence, and 5 cm farther out, to the last bit") {
+  const Fence border{"border", false, {{-9, -9}, {0, -9}, {0, 9}, {-9, 9}}};
+  FenceBench bench;
+  bench.watch = FenceWatch({{border}, {0.5, 0.5, 0.25}, 0.5}, {});
+  bench.ins.x = -0.5;
+  bench.ins.v_forward = 1.0;
+  CHECK_THAT(bench.fault(), Contains("fence border: 0.00 m of room"));
+  bench.ins.v_forward = 0.0;
+  bench.ins.x = -0.25;
+  CHECK(bench.fault().empty());
+  bench.ins.x = -0.2;
+  CHECK(bench.fault().empty());
+  bench.ins.x = -0.199;
+  CHECK_FALSE(bench.fault().empty());
+}

@@ -72,6 +72,7 @@ class Clock {
 
 void noteSeq(const LogEvent& event, int64_t seq, std::map<std::string, int64_t>& last,
              std::map<std::string, int64_t>& missing) {
+  if (seq < 0) return;  // a broken number
   const auto [known, first] = last.try_emplace(event.channel, seq);
   const int64_t gap = seq - known->second - 1;
   // Who starts again counts from the beginning; a gap of thousands is a broken number.

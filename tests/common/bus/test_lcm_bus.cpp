@@ -5,6 +5,9 @@
 #include <chrono>
 #include <thread>
 
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
 #include <lcm/lcm-cpp.hpp>
 
 #include "common/bus/bus.hpp"
@@ -246,6 +249,42 @@ TEST_CASE("who subscribes to no regular expression loses its own connection, not
     listener.handle(20);
   }
   CHECK(heard == 3);
+}
+
+TEST_CASE("a channel or a subscription as long as no name ends its client, not the relay") {
+  const TcpRelay relay(0);
+  LcmBus listener(relay.url(), TimeSource::kHost);
+  int heard = 0;
+  listener.subscribe<mark_t>(kMark, [&](const mark_t&) { ++heard; });
+  for (const uint32_t type : {1U, 2U}) {  // PUBLISH, SUBSCRIBE
+    std::string bytes;
+    const std::string name(900'000, type == 1 ? 'M' : '(');
+    for (const uint32_t number : {0x287617fbU, 0x0100U, type, static_cast<uint32_t>(name.size())}) {
+      const uint32_t big_endian = htonl(number);
+      bytes.append(reinterpret_cast<const char*>(&big_endian), sizeof big_endian);
+    }
+    bytes += name + std::string(4, '\0');
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    address.sin_port = htons(static_cast<uint16_t>(std::stoi(relay.url().substr(17))));
+    const int client = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    REQUIRE(connect(client, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0);
+    static_cast<void>(send(client, bytes.data(), bytes.size(), MSG_NOSIGNAL));
+    char answer[64];
+    while (recv(client, answer, sizeof answer, 0) > 0) {
+    }
+    close(client);
+  }
+  LcmBus speaker(relay.url(), TimeSource::kHost);
+  auto mark = blank<mark_t>();
+  mark.utime = hostNow();
+  for (int i = 0; i < 50 && heard == 0; ++i) {
+    mark.seq = i;
+    REQUIRE(speaker.publish(kMark, mark));
+    listener.handle(20);
+  }
+  CHECK(heard > 0);
 }
 
 TEST_CASE("where no relay runs, that is said") {
