@@ -3,8 +3,56 @@
 #include "common/fence/fence_book.hpp"
 
 #include <algorithm>
+#include <iomanip>
+#include <limits>
+#include <sstream>
 
 namespace tread {
+namespace {
+
+constexpr const char* kStayIn = "stay_in";
+constexpr const char* kKeepOut = "keep_out";
+
+bool readLine(const std::string& line, Fence& fence) {
+  std::istringstream words(line);
+  std::string kind;
+  size_t corners = 0;
+  words >> kind >> corners;
+  if (corners > Fence::kMostCorners || (kind != kStayIn && kind != kKeepOut)) return false;
+  fence.keep_out = kind == kKeepOut;
+  fence.corners.resize(corners);
+  for (Eigen::Vector2d& corner : fence.corners) words >> corner.x() >> corner.y();
+  words.ignore();  // one space
+  std::getline(words, fence.name);
+  return words && faultOf(fence).empty();
+}
+
+}  // namespace
+
+std::string toText(const std::vector<Fence>& fences) {
+  std::ostringstream text;
+  text << std::setprecision(std::numeric_limits<double>::max_digits10);
+  for (const Fence& fence : fences) {
+    text << (fence.keep_out ? kKeepOut : kStayIn) << ' ' << fence.corners.size();
+    for (const Eigen::Vector2d& corner : fence.corners)
+      text << ' ' << corner.x() << ' ' << corner.y();
+    text << ' ' << fence.name << '\n';
+  }
+  return text.str();
+}
+
+std::vector<Fence> fencesFrom(const std::string& text, int& broken) {
+  std::vector<Fence> fences;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    Fence fence;
+    if (readLine(line, fence))
+      fences.push_back(fence);
+    else
+      ++broken;
+  }
+  return fences;
+}
 
 const char* describe(FenceReceipt receipt) {
   switch (receipt) {

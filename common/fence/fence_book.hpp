@@ -66,4 +66,9 @@ class FenceBook {
   int64_t revision_ = 0;
 };
 
+/// One line each: kind, number of corners, all x and y [m], name.
+std::string toText(const std::vector<Fence>& fences);
+/// The fences of such lines, as far as they can be read; `broken` counts the others.
+std::vector<Fence> fencesFrom(const std::string& text, int& broken);
+
 }  // namespace tread

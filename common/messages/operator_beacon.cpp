@@ -13,6 +13,7 @@ namespace tread {
 namespace {
 
 constexpr size_t kLongestName = 64;
+const std::string kHeldBy = "held by ";
 constexpr int64_t kLeaves = 1'000'000;      // [us] of silence
 constexpr int64_t kWorthTelling = 100'000;  // [us]
 
@@ -25,6 +26,21 @@ std::optional<OperatorNotice> noticeFrom(const operator_t& message) {
   return OperatorNotice{
       message.station,    message.operator_name, message.allowed == operator_t::ALLOW_DRIVING,
       message.seen_utime, message.stands_for,    message.hand_over_to};
+}
+
+std::string holderCounter(const std::string& holder) {
+  return kHeldBy + holder;
+}
+
+HolderWatch::HolderWatch(Bus& bus) {
+  bus.subscribe<health_t>(kHealth, [this](const health_t& health) {
+    if (health.process != "motor_bridge") return;
+    told_ = health.utime;
+    name_.clear();
+    for (const counter_t& counter : health.counters)
+      if (counter.counter_name.rfind(kHeldBy, 0) == 0)
+        name_ = counter.counter_name.substr(kHeldBy.size());
+  });
 }
 
 OperatorBeacon::OperatorBeacon(Bus& bus, std::string name)

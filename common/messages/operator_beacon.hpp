@@ -17,6 +17,26 @@ namespace tread {
 /// Nothing for a message without a name, or with one that is too long to be shown.
 std::optional<OperatorNotice> noticeFrom(const operator_t& message);
 
+/// Name of the motor bridge's HEALTH counter that tells who holds the robot.
+std::string holderCounter(const std::string& holder);
+
+/// Who holds the robot, as the motor bridge tells in HEALTH each second.
+class HolderWatch {
+ public:
+  explicit HolderWatch(Bus& bus);
+  HolderWatch(const HolderWatch&) = delete;  // the bus calls it back
+  HolderWatch& operator=(const HolderWatch&) = delete;
+
+  /// Empty = nobody; nothing: not told since `utime` [us] of the robot's time.
+  std::optional<std::string> since(int64_t utime) const {
+    return told_ > utime ? std::optional(name_) : std::nullopt;
+  }
+
+ private:
+  int64_t told_ = 0;  ///< [us]
+  std::string name_;
+};
+
 /// An operator program's sign of life: OPERATOR at 5 Hz, once MOTOR has told the robot's time.
 class OperatorBeacon {
  public:

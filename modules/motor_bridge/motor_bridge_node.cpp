@@ -372,6 +372,11 @@ void MotorBridgeNode::reportCounters(int64_t utime) {
   if (utime < next_counters_) return;
   next_counters_ = utime + kCounterPeriod;
   fences_told_.tell(bridge_.fences(), health_);
+  if (holder_told_ != bridge_.holder()) {
+    health_.removeCounter(holderCounter(holder_told_));
+    holder_told_ = bridge_.holder();
+    if (!holder_told_.empty()) health_.setCounter(holderCounter(holder_told_), 1);
+  }
   for (const auto& [name, count] : bridge_.counters()) health_.setCounter(name, count);
   for (const auto& [name, count] : controller_->counters()) health_.setCounter(name, count);
 }

@@ -86,6 +86,7 @@ class MotorBridgeNode : public Node {
   std::unique_ptr<MotorController> controller_;
   HealthReporter health_;
   FenceReport fences_told_;
+  std::string holder_told_;
   BridgeOutput output_;     ///< of this step
   BridgeOutput published_;  ///< of the last MOTOR
   uint64_t published_revision_ = 0;

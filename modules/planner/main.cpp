@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <optional>
+
 #include "common/bus/shell.hpp"
+#include "common/store/store.hpp"
 #include "modules/planner/planner_node.hpp"
 
 int main(int argc, char** argv) {
@@ -9,7 +12,9 @@ int main(int argc, char** argv) {
     const planner::PlannerConfig config = planner::readPlannerConfig(reader);
     return [config](BusAccess access, const std::atomic<bool>& stop) {
       LcmBus bus(std::move(access), TimeSource::kFollow);
-      planner::PlannerNode node(config, bus);
+      std::optional<FileStore> store;
+      if (!config.store.empty()) store.emplace(config.store);
+      planner::PlannerNode node(config, bus, store ? &*store : nullptr);
       bus.run(node, stop);
     };
   };

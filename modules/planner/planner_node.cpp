@@ -12,6 +12,8 @@
 namespace tread::planner {
 namespace {
 
+constexpr const char* kFencesKept = "fences";  // in the store
+
 /// What plans keep free is the robot's; logs from before robots were described in a file of their
 /// own have it here.
 void readRobotInto(ConfigReader& reader, bool logged, PlannerConfig& config) {
@@ -157,6 +159,7 @@ PlannerConfig readConfig(ConfigReader& reader, bool logged) {
   side.number("gain", config.side_hysteresis.gain, {0.0, 60.0}, "s");
   readAges(reader.section("ages"), logged, config.ages);
   reader.seconds("deadline", config.deadline, {0.005, 0.045});
+  reader.text("store", config.store);
   const Margins& margins = map.margins;
   config.sweep = resolutionFor(map.footprint, std::max(margins.plan, margins.largest), {});
   config.effective = reader.effective();
@@ -175,15 +178,17 @@ PlannerConfig readPlannerConfig(ConfigReader& reader) {
   return config;
 }
 
-PlannerNode::PlannerNode(const PlannerConfig& config, Bus& bus)
+PlannerNode::PlannerNode(const PlannerConfig& config, Bus& bus, Store* store)
     : config_(config),
       bus_(bus),
+      store_(store),
       health_(bus, "planner", config.effective),
       robot_(bus, health_, config.operators.lease_us),
       fences_(config.map.fences),
       fences_told_(bus, "planner", "motor_bridge"),
       supervisor_(config, bus.bootId()) {
   subscribe();
+  recallFences();
   robot_.on_ins = [this](const ins_t& message) { position_std_ = horizontalStd(message); };
 }
 
@@ -199,6 +204,23 @@ void PlannerNode::subscribe() {
   bus_.subscribe<goal_t>(kGoal, [this](const goal_t& message) { take(message); });
   bus_.subscribe<pattern_set_part_t>(kPatternSet,
                                      [this](const pattern_set_part_t& message) { take(message); });
+}
+
+void PlannerNode::recallFences() {
+  const auto text = store_ != nullptr ? store_->read(kFencesKept) : std::nullopt;
+  if (!text) return;
+  int broken = 0;
+  for (const Fence& fence : fencesFrom(*text, broken)) fences_.take({"", false, fence}, false);
+  if (broken > 0) health_.addToCounter("fences of the last run that cannot be read", broken);
+  supervisor_.map().setFences(fences_.fences());
+}
+
+void PlannerNode::keepFences() {
+  if (store_ == nullptr) return;
+  const std::vector<Fence>& all = fences_.fences();
+  const auto own = static_cast<std::ptrdiff_t>(fences_.own());
+  const auto problem = store_->write(kFencesKept, toText({all.begin() + own, all.end()}));
+  if (problem) health_.addToCounter("fences not kept for the next start: " + *problem);
 }
 
 void PlannerNode::take(const map_tile_t& message) {
@@ -219,8 +241,10 @@ void PlannerNode::take(const fence_t& message) {
   const OperatorLease& lease = robot_.operatorLease();
   const bool holds = lease.valid(bus_.now()) && lease.isHolder(request.by);
   const FenceReceipt receipt = fences_.take(request, holds);
-  if (receipt == FenceReceipt::kAdded || receipt == FenceReceipt::kRemoved)
-    return supervisor_.map().setFences(fences_.fences());
+  if (receipt == FenceReceipt::kAdded || receipt == FenceReceipt::kRemoved) {
+    supervisor_.map().setFences(fences_.fences());
+    return keepFences();
+  }
   if (receipt != FenceReceipt::kKnown)
     health_.addToCounter(std::string("FENCE refused: ") + describe(receipt));
 }

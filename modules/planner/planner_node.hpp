@@ -7,6 +7,7 @@
 #include "common/messages/fence_messages.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/messages/robot_inputs.hpp"
+#include "common/store/store.hpp"
 #include "modules/planner/core/execution/goal_watch.hpp"
 #include "modules/planner/core/execution/supervisor.hpp"
 #include "modules/planner/core/execution/way_back.hpp"
@@ -27,7 +28,9 @@ PlannerConfig readLoggedPlannerConfig(ConfigReader& reader);
  * start and MOTOR says armed. */
 class PlannerNode : public Node {
  public:
-  PlannerNode(const PlannerConfig& config, Bus& bus);
+  /// `store` keeps the operators' fences from one start to the next and outlives this; null: they
+  /// end with it.
+  PlannerNode(const PlannerConfig& config, Bus& bus, Store* store = nullptr);
 
   int64_t period() const override { return 50'000; }
   void step(int64_t utime) override;
@@ -41,6 +44,8 @@ class PlannerNode : public Node {
 
  private:
   void subscribe();
+  void recallFences();
+  void keepFences();
   void take(const map_tile_t& message);
   void take(const fence_t& message);
   void take(const goal_t& message);
@@ -56,6 +61,7 @@ class PlannerNode : public Node {
 
   PlannerConfig config_;
   Bus& bus_;
+  Store* store_;
   HealthReporter health_;
   RobotInputs robot_;
   FenceBook fences_;

@@ -440,6 +440,34 @@ TEST_CASE("A fence from anybody closes the way, and opens it again for who holds
   CHECK(yard.plan.plan_status == plan_t::PLAN_ARRIVED);
 }
 
+TEST_CASE("Operators' fences are kept over a restart of the planner, and removed ones are gone") {
+  Yard yard;
+  const auto send = [&](const std::string& name, bool removes) {
+    const Fence fence{name, true, {{4, -60}, {5, -60}, {5, 60}, {4, 60}}};
+    yard.bus.outside().publish(kFence, toMessage(FenceRequest{"test", removes, fence}));
+    yard.run(1.2);
+  };
+  yard.run(1.5);
+  send("first", false);
+  send("second", false);
+  send("first", true);
+  yard.bus.kill("planner");
+  yard.bus.restart("planner");
+  yard.run(1.5);
+  yard.sendGoal(10.0);
+  yard.armAndGo();
+  yard.run(5.0);
+  CHECK(yard.robot().pose().x < 3.5);
+  CHECK_THAT(yard.plan.reason, Catch::Contains("second"));
+  CHECK(std::any_of(yard.health.counters.begin(), yard.health.counters.end(),
+                    [](const auto& one) { return countsFence(one.counter_name, "second"); }));
+  yard.store.failWith("disk full");
+  send("third", false);
+  CHECK(std::any_of(yard.health.counters.begin(), yard.health.counters.end(), [](const auto& one) {
+    return one.counter_name == "fences not kept for the next start: disk full";
+  }));
+}
+
 TEST_CASE("A goal out of a log moves nothing, and takes nothing from the goal of today") {
   Yard yard;
   yard.run(1.0);

@@ -86,7 +86,7 @@ std::vector<std::string> RobotRun::argumentsOf(const std::string& name) const {
   if (name == "ins_driver") set("address", "tty:" + device("ins") + "?baud=460800");
   if (name == "motor_bridge") set("address", "tty:" + device("motor") + "?baud=115200");
   if (name == "lidar_driver") set("address", "tcp:127.0.0.1:" + laser);
-  if (name == "ins_driver" || name == "learner") set("store", state(name));
+  if (name == "ins_driver" || name == "learner" || name == "planner") set("store", state(name));
   return words;
 }
 

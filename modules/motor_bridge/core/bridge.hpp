@@ -68,6 +68,8 @@ class Bridge {
   BridgeOutput step(int64_t now, const DeviceReport& device);
 
   const StoppingTime& stopping() const { return stopping_; }
+  /// Who holds the robot; empty = nobody.
+  const std::string& holder() const { return operator_.holder(); }
   const FenceBook& fences() const { return fences_.book(); }
   const ExecutionLog& executions() const { return player_.log(); }
   /// How often something was refused or noted, by its name in words.

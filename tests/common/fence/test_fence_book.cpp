@@ -211,6 +211,19 @@ TEST_CASE("who is started again gets the operators' fences back, and what is rem
   }
 }
 
+TEST_CASE("fences go through text unchanged, and broken lines make no fence") {
+  const std::vector<Fence> fences{square("the yard", 1.0 / 3.0),
+                                  {"pond", true, {{0, 1}, {2, 3}, {4, -5}}}};
+  int broken = 0;
+  CHECK(fencesFrom(toText(fences), broken) == fences);
+  CHECK(broken == 0);
+  const std::string lines =
+      "stay_in 3 0 0 1 0 1 nan a\nstay_in 4 0 0 1 0 1 1 b\nstay_in 99999999999 0 0 c\n"
+      "elsewhere 3 0 0 1 0 1 1 d\nstay_in 3 0 0 1 0 1 1 \n\nkeep_out 3 0 0 1 0 1 1 e\n";
+  CHECK(fencesFrom(lines, broken).size() == 1);
+  CHECK(broken == 6);
+}
+
 TEST_CASE("a fence goes through its message unchanged, and broken messages make no fence") {
   const FenceRequest request{"ada", false, {"pond", true, {{0, 1}, {2, 3}, {4, -5}}}};
   const FenceRequest again = requestFrom(toMessage(request));

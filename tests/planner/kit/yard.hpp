@@ -21,9 +21,10 @@ struct Yard {
       : bus(7, std::move(faults)), start(bus.now()), beacon(bus.outside(), "test") {
     beacon.standFor(goal_id);
     bus.addNode("robot", [](Bus& end) { return std::make_unique<ToyRobot>(end); });
-    bus.addNode("planner",
-                [config](Bus& end) { return std::make_unique<PlannerNode>(config, end); },
-                {8'000, 3'000});
+    bus.addNode(
+        "planner",
+        [this, config](Bus& end) { return std::make_unique<PlannerNode>(config, end, &store); },
+        {8'000, 3'000});
     bus.outside().subscribe<plan_t>(kPlan, [this](const plan_t& message) {
       plan = message;
       ++plans;
@@ -89,6 +90,7 @@ struct Yard {
   }
   ToyRobot& robot() { return *dynamic_cast<ToyRobot*>(bus.node("robot")); }
 
+  MemoryStore store;  ///< of the planner; outlives it
   VirtualBus bus;
   int64_t start;
   OperatorBeacon beacon;

@@ -78,11 +78,13 @@ CallResult DriveCall::step(int64_t utime) {
 
 void DriveCall::serveButtons(int64_t utime) {
   // What is armed may be stopped again: it is not armed anew by an old press.
-  if (armed() || wishes_.disarm) arms_until_ = 0;
-  const bool asks = wishes_.disarm || utime < arms_until_;
+  const bool by_itself = armed() && motor_.message().bridge_state != motor_t::STATE_MANUAL;
+  const bool disarms = wishes_.disarm || (wishes_.stop && by_itself);
+  if (armed() || disarms) arms_until_ = 0;
+  const bool asks = disarms || utime < arms_until_;
   if (!asks || utime < next_arm_) return;
   next_arm_ = utime + kArmRepeat;
-  operators::sendArm(bus_, requester_, !wishes_.disarm, beacon_.robotTime(utime), seq_arm_++);
+  operators::sendArm(bus_, requester_, !disarms, beacon_.robotTime(utime), seq_arm_++);
 }
 
 void DriveCall::tell(int64_t utime) {

@@ -75,6 +75,7 @@ void KeyState::press(char key, int64_t now) {
       return;
     default:  // the space bar, and every key that means nothing, stops
       moves_until_ = holds_until_ = now;
+      stops_until_ = now + kHeld;
   }
 }
 
@@ -86,6 +87,7 @@ Wishes KeyState::wishes(int64_t now) const {
   wishes.turn = moves ? turn_ : 0.0;
   wishes.hold = moves || (now < holds_until_ && !escaped);
   wishes.arm = now < arms_until_;
+  wishes.stop = now < stops_until_ || escaped;
   wishes.disarm = now < disarms_until_;
   wishes.give_back = now < gives_back_until_;
   return wishes;

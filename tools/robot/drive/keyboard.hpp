@@ -31,6 +31,7 @@ class KeyState {
   double turn_ = 0.0;
   int64_t moves_until_ = 0;  ///< [us]
   int64_t holds_until_ = 0;
+  int64_t stops_until_ = 0;
   int64_t arms_until_ = 0;
   int64_t disarms_until_ = 0;
   int64_t gives_back_until_ = 0;

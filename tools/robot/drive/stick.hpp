@@ -17,6 +17,7 @@ struct Wishes {
   bool arm = false;      ///< ... and these buttons
   bool disarm = false;
   bool give_back = false;
+  bool stop = false;   ///< whoever drives: a robot that drives by itself is disarmed
   bool ended = false;  ///< nothing will come any more, in good order
 };
 

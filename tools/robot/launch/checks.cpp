@@ -72,16 +72,21 @@ HostFinding smallBuffer(int64_t granted, int64_t wanted) {
 
 }  // namespace
 
+std::string urlRemedy(bool simulated) {
+  // A simulated robot has another port than the real one.
+  return "--lcm-url udpm://239.255.76.67:" + std::string(simulated ? "7668" : "7667") + "?ttl=0";
+}
+
 std::vector<HostFinding> checkNetwork(const LcmAddress& address, const NetworkFacts& facts,
                                       bool simulated) {
   if (address.provider == "tcpq" && address.group == "127.0.0.1" && simulated) return {};
   if (address.provider == "tcpq")
     return {{true, "LCM URL with provider tcpq is for simulated launches, on 127.0.0.1",
-             "--lcm-url udpm://239.255.76.67:7667?ttl=0"}};
+             urlRemedy(simulated)}};
   if (address.provider != "udpm")
     return {{true,
              "LCM URL with provider " + address.provider + " does not connect these processes",
-             "--lcm-url udpm://239.255.76.67:7667?ttl=0"}};
+             urlRemedy(simulated)}};
   if (!facts.can_ask && !(simulated && facts.delivered)) return {missingTool("ip", "iproute2")};
   std::vector<HostFinding> findings;
   const std::string problem = multicastProblem(address, facts);

@@ -45,6 +45,9 @@ struct NetworkFacts {
 /// The device of an answer of `ip route get GROUP`; empty if there is no route.
 std::string routeDevice(const std::string& answer);
 
+/// An LCM URL that does, as an option.
+std::string urlRemedy(bool simulated);
+
 /// With ttl 0 messages must stay on the loopback device: there they also survive an unplugged
 /// network cable. Where other hosts can send messages, there must be a key. A simulated launch may
 /// go over another device or TCP (tcpq), as in a container.

@@ -317,8 +317,8 @@ std::vector<HostFinding> checkHost(const LaunchFile& launch, const LaunchSetting
   if (const auto address = parseLcmUrl(launch.lcm_url))
     add(checkNetwork(*address, networkFacts(*address, !key.empty()), launch.simulated));
   else
-    findings.push_back({true, "LCM URL '" + launch.lcm_url + "' cannot be read",
-                        "--lcm-url udpm://239.255.76.67:7667?ttl=0"});
+    findings.push_back(
+        {true, "LCM URL '" + launch.lcm_url + "' cannot be read", urlRemedy(launch.simulated)});
   for (const LaunchProcess& process : launch.processes)
     add(checkProcess(processFacts(process, launch.lcm_url, settings)));
   return findings;

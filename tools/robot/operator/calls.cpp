@@ -14,7 +14,8 @@ namespace {
 
 constexpr int64_t kArmRepeat = 100'000;   // [us]
 constexpr int64_t kStopRepeat = 50'000;   // [us]
-constexpr int64_t kHandOver = 1'000'000;  // [us] for which it is told
+constexpr int64_t kHandOver = 3'000'000;  // [us] for which it is told, at most
+constexpr int64_t kTold = 1'500'000;      // [us] in which HEALTH has told who holds the robot
 constexpr int64_t kAnswerAge = 500'000;   // [us] a MOTOR message older than this shows nothing
 /// An answer counts only after this long: what came before the call is no answer.
 constexpr int64_t kSettle = 200'000;  // [us]
@@ -22,6 +23,7 @@ constexpr int64_t kSettle = 200'000;  // [us]
 constexpr int64_t kFreshAge = 1'000'000;    // [us] of what a goal's progress is told from
 constexpr int64_t kGoalRepeat = 1'000'000;  // [us]
 
+constexpr int64_t kNoRobot = 5'000'000;  // [us] of silence until a goal is given up
 /// A robot that lost its permission on the way does not go on by itself [us].
 constexpr int64_t kDisarmedPatience = 2'000'000;
 /// The planner shows a goal soon, and what it has ended does not come back [us].
@@ -29,6 +31,14 @@ constexpr int64_t kGoalPatience = 1'500'000;
 
 bool isStuck(int16_t status) {
   return status == plan_t::PLAN_BLOCKED || status == plan_t::PLAN_UNREACHABLE;
+}
+
+const char* const kNoMotor =
+    "no MOTOR message came: is tread-motor-bridge running on this LCM URL?";
+
+std::string heldBy(const std::string& holder, const std::string& name) {
+  return holder + " holds the robot (" + holder + " can give it: tread-arm --hand-over " + name +
+         ")";
 }
 
 }  // namespace
@@ -66,8 +76,7 @@ CallResult PermissionCall::step(int64_t utime) {
 std::string PermissionCall::describe(int64_t utime) const {
   if (shown(utime)) return request_.text_if_served;
   const std::string words = request_.text_if_not + keyWords(bus_) + "; ";
-  if (!motor_.any())
-    return words + "no MOTOR message came: is tread-motor-bridge running on this LCM URL?";
+  if (!motor_.any()) return words + kNoMotor;
   if (motor_.age(utime) > kAnswerAge)
     return words + "MOTOR has fallen silent: look at tread-motor-bridge";
   const std::string& reason = motor_.message().state_reason;
@@ -94,18 +103,32 @@ ArmCall::ArmCall(Bus& bus, const Requester& requester, const ArmRequest& request
            request.arm ? "armed" : "disarmed", request.arm ? "not armed" : "not disarmed",
            kArmRepeat, request.arm}),
       requester_(requester),
-      request_(request) {
+      request_(request),
+      holder_(bus) {
   beacon_.handOverTo(request.hand_over_to);
 }
 
+CallResult ArmCall::handOver(int64_t utime) {
+  if (holder_.since(beacon_.robotTime(*began_)) == request_.hand_over_to) return CallResult::kDone;
+  return utime - *began_ > kHandOver ? CallResult::kRefused : CallResult::kPending;
+}
+
+std::string ArmCall::otherHolder() const {
+  const std::string holder = holder_.since(beacon_.robotTime(began_.value_or(0))).value_or("");
+  return holder == beacon_.name() ? "" : holder;
+}
+
 CallResult ArmCall::step(int64_t utime) {
+  began_ = began_.value_or(utime);
   if (request_.arm) beacon_.step(utime);
-  if (!request_.hand_over_to.empty()) {
-    handed_over_ = handed_over_.value_or(utime);
-    return utime - *handed_over_ > kHandOver ? CallResult::kDone : CallResult::kPending;
-  }
+  if (!request_.hand_over_to.empty()) return handOver(utime);
   if (!armed_) {
     const CallResult result = PermissionCall::step(utime);
+    // A second operator, whom the bridge refuses, must not believe that the robot is his.
+    const bool before = request_.arm && result == CallResult::kDone && wasSo();
+    if (before && !otherHolder().empty()) return CallResult::kRefused;
+    const bool told = holder_.since(beacon_.robotTime(*began_)).has_value();
+    if (before && !told && utime - *began_ < kTold) return CallResult::kPending;
     if (result != CallResult::kDone || !request_.hold) return result;
     armed_ = utime;
   }
@@ -113,13 +136,23 @@ CallResult ArmCall::step(int64_t utime) {
 }
 
 std::string ArmCall::describe(int64_t utime) const {
-  if (!request_.hand_over_to.empty()) return "handed over to " + request_.hand_over_to;
+  const std::string other = otherHolder();
+  if (!request_.hand_over_to.empty()) {
+    if (other == request_.hand_over_to) return "handed over to " + other;
+    return "not handed over: " +
+           (!other.empty()
+                ? other + " holds the robot, not " + beacon_.name()
+                : "does " + beacon_.name() + " hold it, and does a program of " +
+                      request_.hand_over_to + " run (tread-arm --hold)?" + keyWords(bus_));
+  }
   if (armed_ && !shown(utime)) return "not armed any more: " + bridgeReason();
-  // A second operator, whom the bridge refuses, must not believe that the robot is his.
+  if (request_.arm && shown(utime) && wasSo() && !other.empty())
+    return "armed, but not for " + beacon_.name() + ": " + heldBy(other, beacon_.name());
   const std::string before =
       shown(utime) && wasSo() ? " since before this call: " + bridgeReason() : "";
   return PermissionCall::describe(utime) + before + (armed_ ? " and held: Ctrl-C disarms" : "") +
-         beacon_.clockWords() + (request_.arm ? beacon_.namesakeWords(utime) : "");
+         (request_.arm && estopped() ? "; tread-stop --clear first" : "") + beacon_.clockWords() +
+         (request_.arm ? beacon_.namesakeWords(utime) : "");
 }
 
 void ArmCall::cancel(int64_t utime) {
@@ -143,7 +176,13 @@ StopCall::StopCall(Bus& bus, const Requester& requester, bool engage, double pat
                       },
                       engage ? "stopped; tread-stop --clear, then tread-arm, to go on"
                              : "emergency stop cleared; tread-arm to go on",
-                      engage ? "NOBODY CONFIRMS THE STOP" : "not cleared", kStopRepeat, !engage}) {}
+                      engage ? "NOBODY CONFIRMS THE STOP" : "not cleared", kStopRepeat, !engage}),
+      engage_(engage) {}
+
+std::string StopCall::describe(int64_t utime) const {
+  return !engage_ && wasSo() && shown(utime) ? "no emergency stop is engaged"
+                                             : PermissionCall::describe(utime);
+}
 
 std::string statusWord(int16_t plan_status) {
   switch (plan_status) {
@@ -174,6 +213,7 @@ std::string GoalCall::patternName(int32_t id) const {
 std::string GoalCall::progress(int64_t utime) const {
   if (!(ins_.any() && plan_.any()) && utime - started_.value_or(0) < kFreshAge)
     return "listening to the robot";
+  if (!beacon_.hearsRobot()) return kNoMotor + keyWords(bus_);
   if (ins_.age(utime) > kFreshAge) return "no INS: is tread-ins-driver running?";
   if (plan_.age(utime) > kFreshAge) return "no PLAN: is tread-planner running?";
   const plan_t& plan = plan_.message();
@@ -201,6 +241,7 @@ GoalCall::GoalCall(Bus& bus, const GoalRequest& request, const std::string& oper
       goal_id_(goal_id),
       surface_names_(std::move(surface_names)),
       beacon_(bus, operator_name),
+      holder_(bus),
       ins_(bus, kIns),
       plan_(bus, kPlan),
       motor_(bus, kMotor),
@@ -232,6 +273,7 @@ CallResult GoalCall::step(int64_t utime) {
     send(utime, goal_id_);
     next_ = utime + kGoalRepeat;
   }
+  if (!beacon_.hearsRobot() && utime - *started_ > kNoRobot) return CallResult::kRefused;
   if (lostPermission(utime) || lostGoal(utime)) return CallResult::kRefused;
   if (!plan_.any() || plan_.message().goal_id != goal_id_) return CallResult::kPending;
   const int16_t status = plan_.message().plan_status;
@@ -267,18 +309,29 @@ std::string GoalCall::describe(int64_t utime) const {
   std::string words = progress(utime);
   if (started_)
     words = formatted("%5.0f s  ", static_cast<double>(utime - *started_) * 1e-6) + words;
-  if (disarmed_since_)
-    words += std::string(was_armed_ ? "; not armed any more (" : "; not armed (") +
-             motor_.message().state_reason + "): tread-arm, then again";
-  else if (lost_since_)
-    words += was_goal_ ? "; the planner follows this goal no more: give it again"
-                       : "; the planner does not take this goal; the motor bridge says: " +
-                             motor_.message().state_reason + keyWords(bus_);
-  return words;
+  return words + lossWords();
+}
+
+std::string GoalCall::lossWords() const {
+  if (disarmed_since_) {
+    const bool estopped = motor_.message().bridge_state == motor_t::STATE_ESTOP;
+    return std::string(was_armed_ ? "; not armed any more (" : "; not armed (") +
+           motor_.message().state_reason +
+           (estopped ? "): tread-stop --clear, tread-arm" : "): tread-arm") + ", then again";
+  }
+  if (!lost_since_) return "";
+  if (was_goal_)
+    return plan_.message().goal_id != 0 ? "; another goal has taken its place"
+                                        : "; the planner follows this goal no more: give it again";
+  const std::string holder = holder_.since(beacon_.robotTime(*started_)).value_or("");
+  return "; the planner does not take this goal; " +
+         (holder.empty() || holder == beacon_.name()
+              ? "the motor bridge says: " + motor_.message().state_reason + keyWords(bus_)
+              : heldBy(holder, beacon_.name()));
 }
 
 void GoalCall::cancel(int64_t utime) {
-  send(utime, 0);
+  if (!plan_.any() || plan_.message().goal_id == goal_id_) send(utime, 0);
 }
 
 }  // namespace tread::operators

@@ -77,6 +77,9 @@ class PermissionCall : public Call {
   bool shown(int64_t utime) const;
   /// What the bridge says of its state.
   const std::string& bridgeReason() const { return motor_.message().state_reason; }
+  bool estopped() const {
+    return motor_.any() && motor_.message().bridge_state == motor_t::STATE_ESTOP;
+  }
   /// Whether it was so before this call asked for it.
   bool wasSo() const { return was_so_; }
 
@@ -112,16 +115,25 @@ class ArmCall : public PermissionCall {
   void letGo(int64_t utime) override { beacon_.letGo(utime); }
 
  private:
+  CallResult handOver(int64_t utime);
+  /// Who holds the robot in the place of this program's operator; empty = nobody else.
+  std::string otherHolder() const;
+
   Requester requester_;
   ArmRequest request_;
-  std::optional<int64_t> armed_;        ///< [us] since when
-  std::optional<int64_t> handed_over_;  ///< [us]
+  HolderWatch holder_;
+  std::optional<int64_t> began_;  ///< [us]
+  std::optional<int64_t> armed_;  ///< [us] since when
 };
 
 /// Engages or clears the emergency stop.
 class StopCall : public PermissionCall {
  public:
   StopCall(Bus& bus, const Requester& requester, bool engage, double patience);
+  std::string describe(int64_t utime) const override;
+
+ private:
+  bool engage_;
 };
 
 /// Name of the ground at a point of the map, where somebody knows it.
@@ -149,7 +161,7 @@ class GoalCall : public Call {
 
   CallResult step(int64_t utime) override;
   std::string describe(int64_t utime) const override;
-  /// Sends goal 0: the planner stops.
+  /// Sends goal 0, unless the planner follows another goal: it stops.
   void cancel(int64_t utime) override;
   void letGo(int64_t utime) override { beacon_.letGo(utime); }
 
@@ -157,6 +169,7 @@ class GoalCall : public Call {
   void send(int64_t utime, int64_t goal_id);
   bool lostPermission(int64_t utime);
   bool lostGoal(int64_t utime);
+  std::string lossWords() const;
   /// "to go 12.3 m  driving  left-soft on gravel  last error 0.04 m 1.2 deg  set 17".
   std::string progress(int64_t utime) const;
   std::string patternName(int32_t id) const;
@@ -166,6 +179,7 @@ class GoalCall : public Call {
   int64_t goal_id_;
   SurfaceNames surface_names_;
   OperatorBeacon beacon_;
+  HolderWatch holder_;
   Latest<ins_t> ins_;
   Latest<plan_t> plan_;
   Latest<motor_t> motor_;

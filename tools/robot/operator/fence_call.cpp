@@ -53,13 +53,19 @@ CallResult FenceCall::step(int64_t utime) {
 
 std::string FenceCall::describe(int64_t /*utime*/) const {
   const std::string fence = "fence " + request_.fence.name;
-  std::string missing;
-  for (const char* process : kTakers)
-    if (!shownBy(process)) missing += (missing.empty() ? "" : " and ") + std::string(process);
-  if (missing.empty()) return fence + (request_.removes ? " is gone" : " is in force");
-  return missing + (request_.removes ? " still keeps " : " does not show ") + fence +
-         (request_.removes ? ": only who holds the robot may remove a fence, and robot.yaml's stay"
-                           : ": is it running on this LCM URL? HEALTH says what it refused");
+  std::string missing, silent;
+  for (const char* process : kTakers) {
+    std::string& list = shown_.count(process) == 0 ? silent : missing;
+    if (!shownBy(process)) list += (list.empty() ? "" : " and ") + std::string(process);
+  }
+  if (!silent.empty())
+    return "no HEALTH came of " + silent + ": running on this LCM URL?" + keyWords(bus_);
+  if (missing.empty())
+    return request_.removes ? "no " + fence + " is in force any more" : fence + " is in force";
+  return fence + (request_.removes ? " is still in force in " : " is not in force in ") + missing +
+         (request_.removes
+              ? ": only who holds the robot removes fences, and never those of robot.yaml"
+              : ": HEALTH says why it was refused");
 }
 
 Fence fenceFrom(const std::string& name, bool keep_out, const std::vector<double>& numbers) {

@@ -158,6 +158,7 @@ struct PlannerConfig {
   OperatorRules operators;          ///< lease 0: a log from before there were leases
   int64_t lease = 200'000;          ///< [us] the motors stop when nothing newer came for this long
   int64_t deadline = 30'000;        ///< [us] after which a search is cut off on the robot
+  std::string store;                ///< folder of what is kept over a restart; empty = none
   std::string effective;            ///< the whole as YAML, for CONFIG
 };
 

@@ -129,6 +129,18 @@ TEST_CASE("a released button is told at once, not with the next period") {
   CHECK_FALSE(pit.told.back().hold);
 }
 
+TEST_CASE("a key that stops disarms a robot that drives by itself, and one in the hand not") {
+  for (const int16_t state : {motor_t::STATE_DRIVING, motor_t::STATE_MANUAL}) {
+    Cockpit pit;
+    pit.state = state;
+    pit.run(500'000);
+    pit.wishes.stop = true;
+    pit.run(200'000);
+    CHECK(pit.arms.empty() == (state == motor_t::STATE_MANUAL));
+    for (const arm_t& arm : pit.arms) CHECK_FALSE(arm.armed);
+  }
+}
+
 TEST_CASE("the arm button asks until the robot is armed, and an old press does not arm it again") {
   Cockpit pit;
   pit.run(500'000);

@@ -34,6 +34,15 @@ struct Stand {
     message.state_reason = reason;
     bus.publish(kMotor, message);
   }
+  void holder(int64_t utime, const std::string& name) {
+    health_t message{};
+    message.utime = utime;
+    message.process = "motor_bridge";
+    message.num_counters = 1;
+    message.counters.emplace_back();
+    message.counters.back().counter_name = holderCounter(name);
+    bus.publish(kHealth, message);
+  }
   void plan(int64_t utime, int64_t goal_id, int16_t status) {
     plan_t message{};
     message.utime = utime;
@@ -125,6 +134,54 @@ TEST_CASE("who arms hears that another program has the same operator's name") {
     CHECK((call.describe(scene.bus.now()).find("; another program of ada holds the robot, too") !=
            std::string::npos) == (name == "ada"));
   }
+}
+
+TEST_CASE("a robot that another operator holds is not armed for this one, and the line names him") {
+  for (const std::string name : {"ada", "bob"}) {
+    Scene scene;
+    ArmCall call(scene.desk, {"bob", "", "bob"}, {}, 5.0);
+    const CallResult result = scene.run(call, 6.0, [&](int64_t now) {
+      scene.stand->motor(now, motor_t::STATE_DRIVING, "playing");
+      if (now % 1'000'000 < 20'000) scene.stand->holder(now, name);
+    });
+    CHECK((result == CallResult::kDone) == (name == "bob"));
+    CHECK((call.describe(scene.bus.now())
+               .find("ada holds the robot (ada can give it: tread-arm "
+                     "--hand-over bob)") != std::string::npos) == (name == "ada"));
+  }
+}
+
+TEST_CASE("a hand-over is done when the bridge names the other one, else it is refused") {
+  for (const bool obeyed : {true, false}) {
+    Scene scene;
+    ArmRequest request;
+    request.hand_over_to = "bob";
+    ArmCall call(scene.desk, {"ada", "", "ada"}, request, 5.0);
+    const int64_t begun = scene.bus.now();
+    const CallResult result = scene.run(call, 6.0, [&](int64_t now) {
+      scene.stand->motor(now, motor_t::STATE_DRIVING, "playing");
+      const bool given = obeyed && now > begun + 1'500'000;
+      if (now % 1'000'000 < 20'000) scene.stand->holder(now, given ? "bob" : "ada");
+    });
+    CHECK(result == (obeyed ? CallResult::kDone : CallResult::kRefused));
+    CHECK_THAT(call.describe(scene.bus.now()),
+               Catch::StartsWith(obeyed ? "handed over to bob" : "not handed over: "));
+  }
+}
+
+TEST_CASE("a goal gives up without a robot, and its end ends no other goal") {
+  Scene scene;
+  GoalCall alone(scene.desk, {}, "me", 5, {});
+  CHECK(scene.run(alone, 10.0, [](int64_t) {}) == CallResult::kRefused);
+  CHECK_THAT(alone.describe(scene.bus.now()), Catch::Contains("no MOTOR message came"));
+  GoalCall refused(scene.desk, {}, "me", 6, {});
+  scene.run(refused, 2.0, [&](int64_t now) {
+    scene.stand->motor(now, motor_t::STATE_DRIVING);
+    scene.stand->plan(now, 7, plan_t::PLAN_DRIVING);
+  });
+  refused.cancel(scene.bus.now());
+  scene.bus.runUntil(scene.bus.now() + 100'000);
+  CHECK(scene.stand->goals.back().goal_id == 6);
 }
 
 TEST_CASE("a robot that was armed before the call is told with the bridge's words") {
