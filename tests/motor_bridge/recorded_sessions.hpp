@@ -144,7 +144,7 @@ class SessionReader {
   }
 
  private:
-  static constexpr double kStart = 100.0;      ///< [s] utime of the first sample
+  static constexpr double kStart = 100.0;       ///< [s] utime of the first sample
   static constexpr double kStepInterval = 8.0;  ///< [s] 6 in truth: 2 s of speeds before each
 
   static RecordedSession describe(const recordings::CsvTable& table, size_t row) {
@@ -155,7 +155,7 @@ class SessionReader {
     session.limits.gauge = table.number(row, "baseline_m");
     session.limits.full_speed = session.name.rfind("husky", 0) == 0 ? 1.0 : 5.0;
     session.limits.speed_per_command = 1.0;
-    session.limits.dead_band = 0.05;  // usual for a drive commanded in speeds
+    session.limits.dead_band = 0.1;
     session.limits.delay = 0.45;  // with that of the encoders and of the poses
     session.limits.acceleration = 3.0;
     session.limits.time_error = 0.1;  // what is left of the lidar's

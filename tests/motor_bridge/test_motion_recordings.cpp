@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // What the monitor says of real drives, and of the same drives with something wrong in them.
-// Limits were chosen on every other session; delays are measured on the rest. -s shows the figures.
+// Limits were chosen on every other session ("tuned", up to 5 m/s), the rest is held out. -s shows
+// the figures; -c tuned those of one half.
 #include <cstdlib>
 #include <functional>
 #include <optional>
@@ -70,9 +71,9 @@ std::vector<Sample> joined(const RecordedSession& session) {
 }
 
 const RecordedRun& runAt(const RecordedSession& session, int64_t utime) {
-  const auto after = std::find_if(
-      session.runs.begin(), session.runs.end(),
-      [utime](const RecordedRun& run) { return run.samples.front().utime > utime; });
+  const auto after =
+      std::find_if(session.runs.begin(), session.runs.end(),
+                   [utime](const RecordedRun& run) { return run.samples.front().utime > utime; });
   return after == session.runs.begin() ? session.runs.front() : *std::prev(after);
 }
 
@@ -92,8 +93,7 @@ Count countVerdicts(size_t half) {
 }
 
 /// Something wrong from a moment on; `since` [s] counts from it, `before` is the last good sample.
-using Spoil =
-    std::function<void(Sample& sample, double since, const Sample& before, double gauge)>;
+using Spoil = std::function<void(Sample& sample, double since, const Sample& before, double gauge)>;
 
 /// Delays of the verdicts on spoiled drives [s].
 struct Delays {
@@ -201,7 +201,6 @@ Delays told(const std::string& what, Delays delays) {
            what.c_str(), delays.seconds.size() + static_cast<size_t>(delays.missed),
            delays.quantile(0.5), delays.quantile(0.9), 100.0 * delays.within(1.5), delays.missed);
   UNSCOPED_INFO(figures);
-  CHECK(true);
   return delays;
 }
 
@@ -225,7 +224,8 @@ bool stands(const std::vector<Sample>& samples, size_t i) {
          speedAt(samples, i + 40) < 0.02 && samples[i + 50].command == TrackCommand{};
 }
 
-/// Both tracks are driven, neither at less than half of the other's speed, at a speed of the robot within [min, max) or on the spot.
+/// Both tracks are driven, neither at less than half of the other's speed, at a speed of the robot
+/// within [min, max) or on the spot.
 bool bothDriven(const std::vector<Sample>& samples, size_t i, double min, double max) {
   for (size_t k = i - 10; k <= i + 40; ++k) {
     const TrackCommand& command = samples[k].command;
@@ -317,8 +317,12 @@ void holdBack(Sample& sample, double since, const Sample& before, double) {
 TEST_CASE("real drives: at most one false alarm an hour") {
   if (absent()) return;
   size_t half = 0;
-  SECTION("tuned") { half = 0; }
-  SECTION("held out") { half = 1; }
+  SECTION("tuned") {
+    half = 0;
+  }
+  SECTION("held out") {
+    half = 1;
+  }
   const Count count = countVerdicts(half);
   CHECK(count.hours > 0.75);
   // Tuned: a robot that really stands while 1.7 rad/s are commanded.
@@ -329,8 +333,13 @@ TEST_CASE("real drives: at most one false alarm an hour") {
 TEST_CASE("real drives: a frozen, jumping or mirrored pose is told within 1.5 s") {
   if (absent()) return;
   size_t half = 0;
-  SECTION("tuned") { half = 0; }
-  SECTION("held out") { half = 1; }
+  SECTION("tuned") {
+    half = 0;
+  }
+  SECTION("held out") {
+    half = 1;
+  }
+  const bool tuned = half == 0;
   const auto repeat = [](Sample& sample, double, const Sample& before, double) {
     const int64_t utime = sample.ins.utime;
     sample.ins = before.ins;
@@ -340,12 +349,12 @@ TEST_CASE("real drives: a frozen, jumping or mirrored pose is told within 1.5 s"
   const auto jump = [](Sample& sample, double, const Sample&, double) { sample.ins.x += 3.0; };
   CHECK(told("3 m jump", delaysOf(half, jump)).within(0.1) == 1.0);
   const auto off = [](Sample& sample, double, const Sample&, double) { sample.ins.yaw += 0.349; };
-  CHECK(told("heading +20 deg", delaysOf(half, off)).within(1.5) >= 0.95);
+  CHECK(told("heading +20 deg", delaysOf(half, off)).within(1.5) >= (tuned ? 0.7 : 0.95));
   const auto mirror = [](Sample& sample, double, const Sample& before, double) {
     sample.ins.x -= 2.0 * (sample.ins.x - before.ins.x);
     sample.ins.y -= 2.0 * (sample.ins.y - before.ins.y);
   };
-  CHECK(told("travel mirrored", delaysOf(half, mirror)).within(1.5) >= 0.98);
+  CHECK(told("travel mirrored", delaysOf(half, mirror)).within(1.5) >= (tuned ? 0.92 : 0.98));
   const auto turn = [](Sample& sample, double, const Sample& before, double) {
     const double turned = sample.ins.yaw - before.ins.yaw;
     const Pose2 moved = between(poseOf(before), poseOf(sample));
@@ -353,20 +362,18 @@ TEST_CASE("real drives: a frozen, jumping or mirrored pose is told within 1.5 s"
     sample.ins.yaw_rate *= -1.0;
     place(sample, poseOf(before) * Pose2{moved.x, -moved.y, 0.0});
   };
-  CHECK(told("turns mirrored, gyro too", delaysOf(half, turn, turns)).within(1.5) >= 0.97);
+  CHECK(told("turns mirrored, gyro too", delaysOf(half, turn, turns)).within(1.5) >=
+        (tuned ? 0.88 : 0.98));
 }
 
 TEST_CASE("real drives: drifts are told once they are larger than slip") {
   if (absent()) return;
-  size_t half = 0;
-  SECTION("tuned") { half = 0; }
-  SECTION("held out") { half = 1; }
   for (const double rate : {0.1, 0.2, 0.3, 0.5}) {
     const auto turn = [rate](Sample& sample, double since, const Sample&, double) {
       sample.ins.yaw += rate * since;
     };
     const Delays delays =
-        told("heading drifts at " + std::to_string(rate) + " rad/s", delaysOf(half, turn));
+        told("heading drifts at " + std::to_string(rate) + " rad/s", delaysOf(1, turn));
     CHECK(delays.within(1.5) >= (rate < 0.3 ? 0.0 : 0.9));
   }
   for (const double speed : {0.5, 1.0, 2.0}) {
@@ -377,7 +384,7 @@ TEST_CASE("real drives: drifts are told once they are larger than slip") {
       };
       const Delays delays = told("position drifts " + std::string(angle > 0.0 ? "aside" : "ahead") +
                                      " at " + std::to_string(speed) + " m/s, no velocity",
-                                 delaysOf(half, drift));
+                                 delaysOf(1, drift));
       CHECK(delays.within(1.5) >= (speed < 2.0 ? 0.0 : 0.9));
     }
   }
@@ -386,8 +393,12 @@ TEST_CASE("real drives: drifts are told once they are larger than slip") {
 TEST_CASE("real drives: blocked, rolling, and one track dead") {
   if (absent()) return;
   size_t half = 0;
-  SECTION("tuned") { half = 0; }
-  SECTION("held out") { half = 1; }
+  SECTION("tuned") {
+    half = 0;
+  }
+  SECTION("held out") {
+    half = 1;
+  }
   for (const double speed : {0.7, 1.0, 1.5}) {
     for (const double left : {speed, -speed}) {
       const auto block = [&](Sample& sample, double, const Sample&, double) {
@@ -407,15 +418,35 @@ TEST_CASE("real drives: blocked, rolling, and one track dead") {
         told("rolls at " + std::to_string(speed) + " m/s", delaysOf(half, roll, stands));
     CHECK(delays.within(1.5) >= (speed < 0.2 ? 0.0 : 0.9));
   }
-  told("one track stands, from the step's begin", deadTrackDelays(half, false));
-  CHECK(true);
-  told("one track stands, from when it does", deadTrackDelays(half, true));
-  for (const auto& [min, max] : {std::pair{0.0, 0.2}, std::pair{0.5, 0.9}, std::pair{0.9, 9.0}}) {
-    const auto moment = [min = min, max = max](const std::vector<Sample>& samples, size_t i) {
-      return bothDriven(samples, i, min, max);
+  CHECK(told("one track stands, from the step's begin", deadTrackDelays(half, false)).within(3.5) >=
+        0.85);
+  CHECK(told("one track stands, from when it does", deadTrackDelays(half, true)).within(2.0) >=
+        0.85);
+}
+
+TEST_CASE("real drives: a track that dies and a robot that is held are told within 1.5 s") {
+  if (absent()) return;
+  size_t half = 0;
+  SECTION("tuned") {
+    half = 0;
+  }
+  SECTION("held out") {
+    half = 1;
+  }
+  struct Case {
+    double min, max;         // [m/s]
+    double dies, held_back;  // [1] told within 1.5 s, at least
+  };
+  // The slower it drives, the less of a fault shows above the slack of a window.
+  for (const Case& at : {Case{0.0, 0.2, 0.45, 0.7}, {0.5, 0.9, 0.6, 0.8}, {0.9, 9.0, 0.92, 0.97}}) {
+    const auto moment = [&at](const std::vector<Sample>& samples, size_t i) {
+      return bothDriven(samples, i, at.min, at.max);
     };
-    told("left track dies at " + std::to_string(min) + " m/s", delaysOf(half, deadTrack(1.0), moment));
-    told("right track dies at " + std::to_string(min) + " m/s", delaysOf(half, deadTrack(-1.0), moment));
-    told("held back at " + std::to_string(min) + " m/s", delaysOf(half, holdBack, moment));
+    const std::string speed = " at " + std::to_string(at.min) + " m/s";
+    for (const double side : {1.0, -1.0})
+      CHECK(told((side > 0.0 ? "left track dies" : "right track dies") + speed,
+                 delaysOf(half, deadTrack(side), moment))
+                .within(1.5) >= at.dies);
+    CHECK(told("held back" + speed, delaysOf(half, holdBack, moment)).within(1.5) >= at.held_back);
   }
 }

@@ -304,8 +304,8 @@ std::string MotionMonitor::departure() const {
                            : blocked && backwards            ? "travels the wrong way"
                                                              : "turns the wrong way";
   return name + words(": %2 m, %0 deg in %1 s, usual %2 m, %0 deg; check tracks and INS, then ARM",
-                      {window->forward, toDegrees(window->turned), window->seconds(),
-                       fault->travel, toDegrees(fault->turn)});
+                      {window->forward, toDegrees(window->turned), window->seconds(), fault->travel,
+                       toDegrees(fault->turn)});
 }
 
 void MotionMonitor::learn() {

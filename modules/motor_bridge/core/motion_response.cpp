@@ -11,12 +11,12 @@ namespace tread::motor {
 namespace {
 
 // Chosen on every other recorded session (tests/motor_bridge/test_motion_recordings.cpp).
-constexpr double kMemory = 15.0;      // [1] windows that are remembered
-constexpr double kLeastReach = 0.15;  // [m] of a window to learn from
-constexpr double kLeastNoise = 0.05;  // [1] standard deviation of a window
-constexpr double kPriorNoise = 0.15;  // [1] the same, before any is known
-constexpr double kPriorWeight = 3.0;  // [1] windows that it counts as
-constexpr double kSigmas = 2.5;       // [1] that are usual
+constexpr double kMemory = 15.0;       // [1] windows that are remembered
+constexpr double kLeastReach = 0.15;   // [m] of a window to learn from
+constexpr double kLeastNoise = 0.05;   // [1] standard deviation of a window
+constexpr double kPriorNoise = 0.15;   // [1] the same, before any is known
+constexpr double kPriorWeight = 3.0;   // [1] windows that it counts as
+constexpr double kSigmas = 2.5;        // [1] that are usual
 constexpr double kTravelSlack = 0.08;  // [m] beside those
 constexpr double kTurnSlack = 0.08;    // [rad]
 constexpr double kBandShare = 0.6;     // [1] middle part of the bands: their ends are rare
@@ -113,8 +113,7 @@ std::optional<TrackFault> MotionResponse::fault(const MotionSums& window) const 
     kind = candidate;
   };
   // What a track does that need not drive tells nothing of it.
-  const double way =
-      std::max(kDriven, limits_.dead_band * limits_.full_speed * window.seconds());
+  const double way = std::max(kDriven, limits_.dead_band * limits_.full_speed * window.seconds());
   if (window.low.max(-window.high).minCoeff() > way) {
     compare(Kind::kLeftDead, expected(window, 0.0, 1.0), kNearer);
     compare(Kind::kRightDead, expected(window, 1.0, 0.0), kNearer);

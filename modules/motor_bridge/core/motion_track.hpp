@@ -68,8 +68,8 @@ struct MotionSums {
   double turned = 0.0;                                 ///< [rad] of the heading
   double travel_min = 0.0, travel_max = 0.0;           ///< [m] explained, slip included
   double turn_min = 0.0, turn_max = 0.0;               ///< [rad]
-  Eigen::Array2d low = Eigen::Array2d::Zero();   ///< [m] left, right track, at least, no slip
-  Eigen::Array2d high = Eigen::Array2d::Zero();  ///< [m] at most
+  Eigen::Array2d low = Eigen::Array2d::Zero();         ///< [m] left, right track, at least, no slip
+  Eigen::Array2d high = Eigen::Array2d::Zero();        ///< [m] at most
   double travel = 0.0, turn = 0.0;  ///< [m, rad] of ideal tracks that answer at once
   double tracks_min = 0.0;          ///< [m] mean way of both tracks, at least, slip left out
   double reach = 0.0;               ///< [m] of the faster track, at most

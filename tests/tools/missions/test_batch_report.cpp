@@ -115,6 +115,7 @@ TEST_CASE("counts of a batch add up to its missions, in text and in JSON") {
   CHECK(contains(text, "flips 1: 0.25 per minute driven (240 s)\n"));
   CHECK(contains(text, "stops 2: 0.33 per mission, at most 2 (seed 3), 2 s in all\n"));
   CHECK(contains(text, "1  (no reason published)\n"));
+  CHECK(contains(text, "disarmed 0: 0.00 per hour driven\n"));
   CHECK(contains(text, "300 s of virtual time in 30 s: 5.0 times real time per core\n"));
   const Json json = batchJson(batch);
   CHECK(json["missions"] == 6);

@@ -162,6 +162,7 @@ TEST_CASE("reasons that differ in their numbers only are counted together") {
   one.driven = 90.0;
   one.stops = {{1.0, 0.5, "in 0.3 s"}, {2.0, 0.5, "in 0.4 s"}, {3.0, 1.0, ""}};
   one.flips = {{1.0, "left", "right"}};
+  one.disarmings = {{1.0, "rolled 31 deg"}, {2.0, "rolled 32 deg"}};
   two.seed = 4;
   two.driven = 30.0;
   const Steadiness steadiness = steadinessOf({two, one});
@@ -170,4 +171,5 @@ TEST_CASE("reasons that differ in their numbers only are counted together") {
   CHECK(steadiness.stood == Approx(2.0));
   CHECK(steadiness.reasons.at("in N s") == 2);
   CHECK(steadiness.reasons.at("") == 1);
+  CHECK(steadiness.disarmed.at("rolled N deg") == 2);
 }
