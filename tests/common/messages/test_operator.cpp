@@ -168,8 +168,6 @@ TEST_CASE("an operator without a name, or with a page for one, is nobody") {
   CHECK(noticeFrom(message));
 }
 
-}  // namespace tread
-
 TEST_CASE("each answer to a notice has words of its own") {
   using Receipt = OperatorLease::Receipt;
   std::set<std::string> words;
@@ -179,3 +177,5 @@ TEST_CASE("each answer to a notice has words of its own") {
     words.insert(describe(receipt));
   CHECK(words.size() == 6);
 }
+
+}  // namespace tread
