@@ -169,11 +169,11 @@ TEST_CASE("an operator without a name, or with a page for one, is nobody") {
 }
 
 TEST_CASE("each answer to a notice has words of its own") {
-  using Receipt = OperatorLease::Receipt;
   std::set<std::string> words;
-  for (const Receipt receipt :
-       {Receipt::kTaken, Receipt::kOfAnother, Receipt::kStale, Receipt::kFromFuture,
-        Receipt::kTooMany, static_cast<Receipt>(99)})
+  for (const OperatorLease::Receipt receipt :
+       {OperatorLease::Receipt::kTaken, OperatorLease::Receipt::kOfAnother,
+        OperatorLease::Receipt::kStale, OperatorLease::Receipt::kFromFuture,
+        OperatorLease::Receipt::kTooMany, static_cast<OperatorLease::Receipt>(99)})
     words.insert(describe(receipt));
   CHECK(words.size() == 6);
 }

@@ -330,20 +330,26 @@ TEST_CASE("a fence is repeated until both the bridge and the planner show it") {
     const fence_t& sent = scene.stand->fences.back();
     CHECK(sent.fence_by == "me (operator)");
     CHECK(sent.fence_kind == (removes ? fence_t::FENCE_REMOVED : fence_t::FENCE_KEEP_OUT));
-    CHECK_THAT(call.describe(scene.bus.now()), Catch::Contains(removes ? "is gone" : "in force"));
+    CHECK_THAT(
+        call.describe(scene.bus.now()),
+        Catch::Contains(removes ? "no fence yard is in force any more" : "fence yard is in force"));
   }
 }
 
 TEST_CASE("a fence that one of the two does not take is told with its name") {
+  const bool planner_there = GENERATE(true, false);
   Scene scene;
   const Fence yard = fenceFrom("yard", false, {0, 0, 4, 0, 4, 3});
   FenceCall call(scene.desk, {"me", ""}, {"", false, yard}, 2.0);
   const auto result = scene.run(call, 4.0, [&](int64_t now) {
     scene.stand->motor(now, motor_t::STATE_ARMED);
     scene.stand->health(now, "motor_bridge", {yard});
+    if (planner_there) scene.stand->health(now, "planner", {});
   });
   CHECK(result == CallResult::kRefused);
-  CHECK_THAT(call.describe(scene.bus.now()), Catch::Contains("planner does not show fence yard"));
+  CHECK_THAT(call.describe(scene.bus.now()),
+             Catch::Contains(planner_there ? "fence yard is not in force in planner"
+                                           : "no HEALTH came of planner"));
   CHECK_THROWS_WITH(fenceFrom("a", true, {1, 2, 3}), Catch::Contains("one number is missing"));
   CHECK_THROWS_WITH(fenceFrom("a", true, {1, 2, 3, 4}), Catch::Contains("3 to 64 corners"));
 }
