@@ -630,3 +630,11 @@ TEST_CASE("at a fence, and 5 cm farther out, to the last bit") {
   bench.ins.x = -0.199;
   CHECK_FALSE(bench.fault().empty());
 }
+
+TEST_CASE("the first of two fences in its way is told, whatever the second one is") {
+  FenceBench bench(0.3);
+  const Fence pond{"pond", true, {{-4, -4}, {-3, -4}, {-3, -3}, {-4, -3}}};
+  bench.watch = FenceWatch({{yard(), pond}, kBody, 0.5}, {});
+  bench.ins.v_forward = 1.0;
+  CHECK_THAT(bench.fault(), Contains("fence yard"));
+}
