@@ -127,7 +127,7 @@ TEST_CASE("without a robot the operator's commands say who is missing") {
   CHECK_THAT(stopped.words, Catch::Contains("NOBODY CONFIRMS THE STOP"));
   const auto sent = desk.call("tread-goal", {"1", "2", "--timeout", "1"});
   CHECK(sent.code == 1);
-  CHECK_THAT(sent.words, Catch::Contains("no INS"));
+  CHECK_THAT(sent.words, Catch::Contains("no MOTOR message"));
   CHECK(desk.type("tread-goal", {"1"}).code == 2);
   CHECK(desk.type("tread-goal", {"1", "2", "--tolerance", "-1"}).code == 2);
 }
