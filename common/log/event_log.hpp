@@ -25,7 +25,7 @@ struct LogEvent {
 /// A time that a clock can show; others are broken bytes.
 constexpr bool isPossibleTime(int64_t utime) {
   constexpr int64_t kThreeCenturies = 10'000'000'000'000'000;  // [us]
-  return utime >= 0 && utime < kThreeCenturies;
+  return utime > -kThreeCenturies && utime < kThreeCenturies;
 }
 
 /// A message as it goes over the bus.

@@ -31,6 +31,7 @@ constexpr double kReach = 120.0;  // [m] of the patches of ground around the sta
 constexpr int kPatches = 60;
 constexpr double kSteepest = 0.18;         // [1] of the ground in half of the worlds
 constexpr int64_t kArmAgain = 2'000'000;   // [us] of standing
+constexpr int kDisarmed = 600;             // one step of 50 ms in so many
 constexpr const char* kName = "somebody";  // the operator
 
 /// Patches of all kinds of ground, in half of the worlds on waves.
@@ -134,12 +135,14 @@ void drive(const missions::RobotConfig& robot, uint64_t seed, Counts& counts) {
   bus.addNode("planner", [&](Bus& end) {
     return std::make_unique<Wanderer>(end, robot.learner.shipped, seed);
   });
+  std::mt19937_64 random(seed);
   OperatorBeacon beacon(bus.outside(), kName);
   motor_t motor{};
   int16_t was = motor_t::STATE_DISARMED;
   int64_t stood_since = bus.now();
   bus.outside().subscribe<motor_t>(kMotor, [&](const motor_t& message) {
-    if (was == motor_t::STATE_DRIVING && message.bridge_state == motor_t::STATE_DISARMED)
+    const bool by_us = message.state_reason.rfind("disarmed by", 0) == 0;
+    if (was == motor_t::STATE_DRIVING && message.bridge_state == motor_t::STATE_DISARMED && !by_us)
       ++counts.stops[message.state_reason];
     was = message.bridge_state;
     motor = message;
@@ -151,10 +154,12 @@ void drive(const missions::RobotConfig& robot, uint64_t seed, Counts& counts) {
     beacon.step(bus.now());
     const bool moves = motor.command_left != 0.0F || motor.command_right != 0.0F;
     if (was != motor_t::STATE_DISARMED) stood_since = bus.now();
-    if (bus.now() - stood_since > kArmAgain) {
+    // In the middle of a pattern, too, and what follows begins at rest.
+    const bool disarms = random() % kDisarmed == 0;
+    if (disarms || bus.now() - stood_since > kArmAgain) {
       arm_t arm{};
       arm.utime = bus.now();
-      arm.armed = true;
+      arm.armed = !disarms;
       arm.armed_by = kName;
       bus.outside().publish(kArm, arm);
     }
