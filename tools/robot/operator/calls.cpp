@@ -126,6 +126,8 @@ CallResult ArmCall::step(int64_t utime) {
     const CallResult result = PermissionCall::step(utime);
     // A second operator, whom the bridge refuses, must not believe that the robot is his.
     const bool before = request_.arm && result == CallResult::kDone && wasSo();
+    waits_ = before && request_.hold && !otherHolder().empty();
+    if (waits_) return CallResult::kPending;
     if (before && !otherHolder().empty()) return CallResult::kRefused;
     const bool told = holder_.since(beacon_.robotTime(*began_)).has_value();
     if (before && !told && utime - *began_ < kTold) return CallResult::kPending;
@@ -133,6 +135,11 @@ CallResult ArmCall::step(int64_t utime) {
     armed_ = utime;
   }
   return shown(utime) ? CallResult::kPending : CallResult::kRefused;
+}
+
+std::string ArmCall::notice() const {
+  if (armed_) return "armed and held: Ctrl-C disarms";
+  return waits_ ? heldBy(otherHolder(), beacon_.name()) + ": waiting" : "";
 }
 
 std::string ArmCall::describe(int64_t utime) const {

@@ -29,6 +29,8 @@ class Call {
   virtual CallResult step(int64_t utime) = 0;
   /// What to tell the operator now; the outcome in words once the call has ended.
   virtual std::string describe(int64_t utime) const = 0;
+  /// Something that the operator is told while the call goes on, when it changes; empty = nothing.
+  virtual std::string notice() const { return ""; }
   /// The operator has lost patience: takes back what must not go on.
   virtual void cancel(int64_t /*utime*/) {}
   /// The program ends in good order, whatever came of the call.
@@ -110,6 +112,7 @@ class ArmCall : public PermissionCall {
 
   CallResult step(int64_t utime) override;
   std::string describe(int64_t utime) const override;
+  std::string notice() const override;
   /// A robot that is held is disarmed.
   void cancel(int64_t utime) override;
   void letGo(int64_t utime) override { beacon_.letGo(utime); }
@@ -123,6 +126,7 @@ class ArmCall : public PermissionCall {
   ArmRequest request_;
   HolderWatch holder_;
   std::optional<int64_t> began_;  ///< [us]
+  bool waits_ = false;            ///< to be handed over a robot that it is to hold
   std::optional<int64_t> armed_;  ///< [us] since when
 };
 

@@ -41,6 +41,7 @@ int run(const std::string& name, const CommandOptions& options, Bus& bus, Call& 
         const std::function<void(int)>& wait) {
   const int64_t begun = bus.now();
   int64_t next_line = begun;
+  std::string told;
   while (g_interrupted == 0) {
     const int64_t now = bus.now();
     const CallResult result = call.step(now);
@@ -53,6 +54,10 @@ int run(const std::string& name, const CommandOptions& options, Bus& bus, Call& 
       (result == CallResult::kDone ? std::cout : std::cerr)
           << name << ": " << (late ? "out of time: " : "") << call.describe(now) << std::endl;
       return result == CallResult::kDone ? 0 : 1;
+    }
+    if (const std::string notice = call.notice(); notice != told) {
+      if (!notice.empty()) std::cout << name << ": " << notice << std::endl;
+      told = notice;
     }
     if (options.progress > 0.0 && now >= next_line) {
       show(options, call.describe(now));

@@ -151,6 +151,22 @@ TEST_CASE("a robot that another operator holds is not armed for this one, and th
   }
 }
 
+TEST_CASE("who is to hold a robot of another's waits until it is handed over") {
+  Scene scene;
+  ArmRequest holding;
+  holding.hold = true;
+  ArmCall call(scene.desk, {"bob", "", "bob"}, holding, 5.0);
+  const int64_t begun = scene.bus.now();
+  const auto drive = [&](int64_t now) {
+    scene.stand->motor(now, motor_t::STATE_DRIVING, "playing");
+    if (now % 1'000'000 < 20'000) scene.stand->holder(now, now - begun > 8'000'000 ? "bob" : "ada");
+  };
+  CHECK(scene.run(call, 7.0, drive) == CallResult::kPending);
+  CHECK_THAT(call.notice(), Catch::StartsWith("ada holds the robot") && Catch::EndsWith("waiting"));
+  CHECK(scene.run(call, 4.0, drive) == CallResult::kPending);
+  CHECK(call.notice() == "armed and held: Ctrl-C disarms");
+}
+
 TEST_CASE("a hand-over is done when the bridge names the other one, else it is refused") {
   for (const bool obeyed : {true, false}) {
     Scene scene;
@@ -290,6 +306,7 @@ TEST_CASE("a robot that is held stays held until the program ends, which disarms
     scene.stand->motor(now, scene.stand->arms > 0 ? motor_t::STATE_ARMED : motor_t::STATE_DISARMED);
   });
   CHECK(result == CallResult::kPending);
+  CHECK(call.notice() == "armed and held: Ctrl-C disarms");
   CHECK_THAT(call.describe(scene.bus.now()), Catch::Contains("armed and held"));
   call.cancel(scene.bus.now());
   call.letGo(scene.bus.now());
