@@ -20,6 +20,7 @@ constexpr int64_t kConfigPeriodUs = 10'000'000;
 /// A process that says nothing for this long is gone.
 constexpr int64_t kNamesakeLife = 3 * kHealthPeriodUs;
 constexpr size_t kMostNamesakes = 8;
+constexpr size_t kMostOfStop = 65'507;  // [bytes] of a datagram
 /// CONFIG stays within one datagram.
 constexpr size_t kMaxConfigBytes = 50'000;
 
@@ -66,14 +67,15 @@ void Bus::receive(const std::string& channel, const uint8_t* bytes, size_t size)
 /// No node both subscribes to a channel and overhears it.
 void Bus::receiveBeside(const std::string& channel, const uint8_t* bytes, size_t size) {
   const auto found = overheard_.find(channel);
-  if (found == overheard_.end() || !hasCompany()) return;
+  if (found == overheard_.end() || !hasCompany() || size > found->second.most) return;
   size_t message = sizeWithoutSeal(bytes, size);
   if (sealer_) {
     const OpenedSeal opened = sealer_->open(channel, bytes, size, sealClock());
     if (opened.verdict != SealVerdict::kGood) return;
     message = opened.size;
   }
-  for (const RawHandler& handler : found->second) deliver(handler, channel, bytes, message);
+  for (const RawHandler& handler : found->second.handlers)
+    deliver(handler, channel, bytes, message);
 }
 
 OpenedSeal Bus::open(const std::string& channel, const uint8_t* bytes, size_t size) {
@@ -103,6 +105,11 @@ std::optional<size_t> Bus::unseal(const std::string& channel, const Subscribed& 
                                   const uint8_t* bytes, size_t size) {
   trusted_ = true;
   if (size > subscribed.most) {
+    // Stopping is open to all, and to those who have much to say.
+    const size_t without = sizeWithoutSeal(bytes, size);
+    trusted_ = false;
+    if (size <= kMostOfStop && subscribed.stops != nullptr && subscribed.stops(bytes, without))
+      return without;
     refuse(channel, "too large",
            std::to_string(size) + " bytes; no program of Tread sends so many");
     return std::nullopt;
@@ -146,7 +153,7 @@ void Bus::noteReceipt(const ChannelSpec& spec, int64_t utime, int64_t seq) {
   }
   // Differences are taken so that the numbers of a broken message cannot overflow.
   if (spec.max_age_ms > 0 && utime < now() - spec.max_age_ms * int64_t{1000}) ++statistics_.late;
-  // Several publishers share HEALTH, CONFIG, ESTOP and MARK, so a gap says nothing there.
+  // Several publishers share HEALTH, CONFIG, ESTOP, FENCE and MARK, so a gap says nothing there.
   const bool one_publisher = std::string(spec.publisher).find("every") == std::string::npos &&
                              std::string(spec.publisher) != "anyone";
   if (one_publisher && seq >= 0 && seq <= kLargestSeq) noteLoss(spec, utime, seq);

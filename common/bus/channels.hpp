@@ -67,7 +67,7 @@ inline constexpr Channel<operator_t> kOperator{
     {"OPERATOR", "operator_t", "every operator program", 5, 1000, 400}};
 inline constexpr Channel<manual_t> kManual{{"MANUAL", "manual_t", "tread-drive", 50, 200, 200}};
 inline constexpr Channel<estop_t> kEstop{{"ESTOP", "estop_t", "anyone", 0, 0, 1000}};
-inline constexpr Channel<fence_t> kFence{{"FENCE", "fence_t", "tread-fence", 0, 0, 1500}};
+inline constexpr Channel<fence_t> kFence{{"FENCE", "fence_t", "anyone", 0, 0, 1500}};
 inline constexpr Channel<mark_t> kMark{{"MARK", "mark_t", "anyone", 0, 0, 1000}};
 inline constexpr Channel<config_t> kConfig{{"CONFIG", "config_t", "every process", 0.1, 0, 60000}};
 

@@ -53,6 +53,8 @@ class FenceBook {
   /// The robot's own first.
   const std::vector<Fence>& fences() const { return fences_; }
   size_t own() const { return own_; }
+  /// The robot's own and those of who held it: how many come before strangers'.
+  size_t lasting() const { return lasting_; }
   /// Counts up with each change.
   int64_t revision() const { return revision_; }
 

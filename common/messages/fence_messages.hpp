@@ -27,8 +27,8 @@ bool countsFence(const std::string& counter, const std::string& name);
 
 /// Tells in HEALTH which fences are in force, so that tread-fence sees that they were taken, and
 /// brings those of operators to the other process that keeps fences.
-/** There is no counter of what is not in force. Who is started again has lost the operators'
- * fences: it gets them back from the other, whose HEALTH and FENCE it hears. */
+/** There is no counter of what is not in force. Whoever was started again and lost the operators'
+ * fences gets them back from the other, whose HEALTH and FENCE it hears. */
 class FenceReport {
  public:
   /// Process names as in HEALTH. The bus must outlive this.

@@ -17,11 +17,18 @@ const std::string kHeldBy = "held by ";
 constexpr int64_t kLeaves = 1'000'000;      // [us] of silence
 constexpr int64_t kWorthTelling = 100'000;  // [us]
 
+/// Names stand in lines on terminals.
+bool canBeShown(const std::string& name) {
+  return name.size() <= kLongestName && std::none_of(name.begin(), name.end(), [](char c) {
+           return static_cast<unsigned char>(c) < ' ' || c == '\x7f';
+         });
+}
+
 }  // namespace
 
 std::optional<OperatorNotice> noticeFrom(const operator_t& message) {
-  if (message.operator_name.empty() || message.operator_name.size() > kLongestName ||
-      message.hand_over_to.size() > kLongestName)
+  if (message.operator_name.empty() || !canBeShown(message.operator_name) ||
+      !canBeShown(message.hand_over_to))
     return std::nullopt;
   return OperatorNotice{
       message.station,    message.operator_name, message.allowed == operator_t::ALLOW_DRIVING,
@@ -50,7 +57,9 @@ OperatorBeacon::OperatorBeacon(Bus& bus, std::string name)
     seen_utime_ = std::max(seen_utime_, message.utime);
   });
   bus_.overhear<operator_t>(kOperator, [this](const operator_t& message) {
-    if (message.operator_name == name_ && message.station != station_) namesake_ = bus_.now();
+    if (message.operator_name != name_ || message.station == station_) return;
+    namesake_ =
+        message.allowed == operator_t::ALLOW_NOTHING ? std::nullopt : std::optional(bus_.now());
   });
 }
 

@@ -14,7 +14,7 @@
 
 namespace tread {
 
-/// Nothing for a message without a name, or with one that is too long to be shown.
+/// Nothing for a message without a name, or with one that cannot be shown in a line.
 std::optional<OperatorNotice> noticeFrom(const operator_t& message);
 
 /// Name of the motor bridge's HEALTH counter that tells who holds the robot.

@@ -269,7 +269,8 @@ void MotorBridgeNode::listen() {
 
 void MotorBridgeNode::take(const operator_t& message) {
   const std::optional<OperatorNotice> notice = noticeFrom(message);
-  if (!notice) return health_.addToCounter("OPERATOR ignored: its name is empty or too long");
+  if (!notice)
+    return health_.addToCounter("OPERATOR ignored: its name is empty, too long or no text");
   bridge_.receive(*notice, bus_.now());
 }
 

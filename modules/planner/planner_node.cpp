@@ -12,7 +12,10 @@
 namespace tread::planner {
 namespace {
 
-constexpr const char* kFencesKept = "fences";  // in the store
+// In the store.
+constexpr const char* kHoldersFences = "fences_of_holders";
+constexpr const char* kOtherFences = "fences_of_others";
+constexpr int64_t kKeepEvery = 1'000'000;  // [us]
 
 /// What plans keep free is the robot's; logs from before robots were described in a file of their
 /// own have it here.
@@ -207,19 +210,30 @@ void PlannerNode::subscribe() {
 }
 
 void PlannerNode::recallFences() {
-  const auto text = store_ != nullptr ? store_->read(kFencesKept) : std::nullopt;
-  if (!text) return;
-  int broken = 0;
-  for (const Fence& fence : fencesFrom(*text, broken)) fences_.take({"", false, fence}, false);
-  if (broken > 0) health_.addToCounter("fences of the last run that cannot be read", broken);
+  if (store_ == nullptr) return;
+  int lost = 0;
+  for (const bool holders : {true, false}) {
+    const auto text = store_->read(holders ? kHoldersFences : kOtherFences);
+    for (const Fence& fence : fencesFrom(text.value_or(""), lost)) {
+      const FenceReceipt receipt = fences_.take({"", false, fence}, holders);
+      lost += receipt != FenceReceipt::kAdded && receipt != FenceReceipt::kKnown ? 1 : 0;
+    }
+  }
+  if (lost > 0) health_.addToCounter("fences of the last run that cannot be kept", lost);
   supervisor_.map().setFences(fences_.fences());
+  fences_kept_ = fences_.revision();
 }
 
-void PlannerNode::keepFences() {
-  if (store_ == nullptr) return;
+/// After PROGRAM was sent, and not often: a slow disk must not stop the robot for want of it.
+void PlannerNode::keepFences(int64_t utime) {
+  if (store_ == nullptr || fences_kept_ == fences_.revision() || utime < next_keep_) return;
+  next_keep_ = utime + kKeepEvery;
+  fences_kept_ = fences_.revision();
   const std::vector<Fence>& all = fences_.fences();
-  const auto own = static_cast<std::ptrdiff_t>(fences_.own());
-  const auto problem = store_->write(kFencesKept, toText({all.begin() + own, all.end()}));
+  const auto holders = all.begin() + static_cast<std::ptrdiff_t>(fences_.own());
+  const auto others = all.begin() + static_cast<std::ptrdiff_t>(fences_.lasting());
+  auto problem = store_->write(kHoldersFences, toText({holders, others}));
+  if (!problem) problem = store_->write(kOtherFences, toText({others, all.end()}));
   if (problem) health_.addToCounter("fences not kept for the next start: " + *problem);
 }
 
@@ -242,8 +256,7 @@ void PlannerNode::take(const fence_t& message) {
   const bool holds = lease.valid(bus_.now()) && lease.isHolder(request.by);
   const FenceReceipt receipt = fences_.take(request, holds);
   if (receipt == FenceReceipt::kAdded || receipt == FenceReceipt::kRemoved) {
-    supervisor_.map().setFences(fences_.fences());
-    return keepFences();
+    return supervisor_.map().setFences(fences_.fences());
   }
   if (receipt != FenceReceipt::kKnown)
     health_.addToCounter(std::string("FENCE refused: ") + describe(receipt));
@@ -330,12 +343,15 @@ void PlannerNode::step(int64_t utime) {
   // The loss itself stops the robot, too.
   if (!decision.halted.empty() && inputs_.goal) way_back_.giveUp(decision.halted);
   publishProgram(utime, supervisor_.program());
+  keepFences(utime);
   publishPlan(utime, decision, bus_.now() - started);
   publishHealth(utime, decision.report);
 }
 
 void PlannerNode::shutdown(int64_t utime) {
   publishProgram(utime, ExecutionTracker(supervisor_.program().runId()));
+  next_keep_ = 0;
+  keepFences(utime);
 }
 
 void PlannerNode::publishProgram(int64_t utime, const ExecutionTracker& program) {

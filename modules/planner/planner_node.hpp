@@ -45,7 +45,7 @@ class PlannerNode : public Node {
  private:
   void subscribe();
   void recallFences();
-  void keepFences();
+  void keepFences(int64_t utime);
   void take(const map_tile_t& message);
   void take(const fence_t& message);
   void take(const goal_t& message);
@@ -66,6 +66,8 @@ class PlannerNode : public Node {
   RobotInputs robot_;
   FenceBook fences_;
   FenceReport fences_told_;
+  int64_t fences_kept_ = 0;  ///< revision that is in the store
+  int64_t next_keep_ = 0;    ///< [us]
   GoalWatch goal_;
   WayBack way_back_;
   double position_std_ = 0.0;  ///< [m] of the newest INS; NaN unknown

@@ -230,7 +230,7 @@ TEST_CASE("a message above its channel's limit is not taken, whoever sends it, a
   int heard = 0;
   int beside = 0;
   bus.outside().subscribe<arm_t>(kArm, [&](const arm_t&) { ++heard; });
-  bus.outside().overhear<goal_t>(kGoal, [&](const goal_t&) { ++beside; });
+  bus.outside().overhear<health_t>(kHealth, [&](const health_t&) { ++beside; });
   const auto inject = [&](const auto& channel, const auto& message) {
     std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
     message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
@@ -241,11 +241,17 @@ TEST_CASE("a message above its channel's limit is not taken, whoever sends it, a
     bus.runUntil(bus.now() + 1'000);
   };
   arm_t arm{};
+  arm.armed = true;
   arm.arm_reason = std::string(2'000, 'x');
   inject(kArm, arm);
-  inject(kGoal, goal_t{});
+  health_t health{};
+  health.process = std::string(9'000, 'x');
+  inject(kHealth, health);
   CHECK(heard == 0);
   CHECK(beside == 0);
+  arm.armed = false;  // stopping is open to all
+  inject(kArm, arm);
+  CHECK(heard == 1);
   const BusStatistics& counted = bus.outside().statistics();
   CHECK(counted.refused.at("too large") == 1);
   CHECK(counted.undecodable == 0);

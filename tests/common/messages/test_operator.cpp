@@ -164,6 +164,8 @@ TEST_CASE("an operator without a name, or with a page for one, is nobody") {
   CHECK_FALSE(noticeFrom(message));
   message.operator_name.assign(65, 'x');
   CHECK_FALSE(noticeFrom(message));
+  message.operator_name = "ada\x1b[2J";
+  CHECK_FALSE(noticeFrom(message));
   message.operator_name = "ada";
   CHECK(noticeFrom(message));
 }

@@ -80,7 +80,7 @@ void DriveCall::serveButtons(int64_t utime) {
   // What is armed may be stopped again: it is not armed anew by an old press.
   const bool by_itself = armed() && motor_.message().bridge_state != motor_t::STATE_MANUAL;
   const bool disarms = wishes_.disarm || (wishes_.stop && by_itself);
-  if (armed() || disarms) arms_until_ = 0;
+  if (armed() || disarms || wishes_.stop) arms_until_ = 0;
   const bool asks = disarms || utime < arms_until_;
   if (!asks || utime < next_arm_) return;
   next_arm_ = utime + kArmRepeat;

@@ -22,6 +22,11 @@ void KeyState::take(std::string_view bytes, int64_t now) {
       escaped_at_ = now;
     } else if (escape_ == 1 && (byte == '[' || byte == 'O')) {
       escape_ = 2;
+    } else if (escape_ >= 2 && byte >= ' ' && byte <= '?') {
+      escape_ = 3;  // Shift, Ctrl or Alt is held, or a function key
+    } else if (escape_ == 3) {
+      escape_ = 0;
+      press(' ', now);
     } else if (escape_ == 2) {
       escape_ = 0;
       constexpr std::string_view kArrows = "ABDC";  // up, down, left, right
@@ -87,7 +92,7 @@ Wishes KeyState::wishes(int64_t now) const {
   wishes.turn = moves ? turn_ : 0.0;
   wishes.hold = moves || (now < holds_until_ && !escaped);
   wishes.arm = now < arms_until_;
-  wishes.stop = now < stops_until_ || escaped;
+  wishes.stop = now < stops_until_ || (escaped && now < escaped_at_ + kEscape + kHeld);
   wishes.disarm = now < disarms_until_;
   wishes.give_back = now < gives_back_until_;
   return wishes;

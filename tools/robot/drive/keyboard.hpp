@@ -25,7 +25,7 @@ class KeyState {
   void press(char key, int64_t now);
   void move(double forward, double turn, int64_t now);
 
-  int escape_ = 0;          ///< characters of an escape sequence so far
+  int escape_ = 0;          ///< characters of an escape sequence so far; 3: more than an arrow has
   int64_t escaped_at_ = 0;  ///< [us] of its first one
   double forward_ = 0.0;
   double turn_ = 0.0;

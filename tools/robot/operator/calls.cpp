@@ -23,7 +23,7 @@ constexpr int64_t kSettle = 200'000;  // [us]
 constexpr int64_t kFreshAge = 1'000'000;    // [us] of what a goal's progress is told from
 constexpr int64_t kGoalRepeat = 1'000'000;  // [us]
 
-constexpr int64_t kNoRobot = 5'000'000;  // [us] of silence until a goal is given up
+constexpr int64_t kNoRobot = 5'000'000;  // [us] without any MOTOR until a goal is given up
 /// A robot that lost its permission on the way does not go on by itself [us].
 constexpr int64_t kDisarmedPatience = 2'000'000;
 /// The planner shows a goal soon, and what it has ended does not come back [us].
@@ -122,6 +122,8 @@ CallResult ArmCall::step(int64_t utime) {
   began_ = began_.value_or(utime);
   if (request_.arm) beacon_.step(utime);
   if (!request_.hand_over_to.empty()) return handOver(utime);
+  // What another has disarmed meanwhile is not armed for one who waits.
+  if (waits_ && !shown(utime)) return CallResult::kRefused;
   if (!armed_) {
     const CallResult result = PermissionCall::step(utime);
     // A second operator, whom the bridge refuses, must not believe that the robot is his.
@@ -338,7 +340,8 @@ std::string GoalCall::lossWords() const {
 }
 
 void GoalCall::cancel(int64_t utime) {
-  if (!plan_.any() || plan_.message().goal_id == goal_id_) send(utime, 0);
+  const int64_t followed = plan_.any() ? plan_.message().goal_id : 0;
+  if (followed == 0 || followed == goal_id_) send(utime, 0);
 }
 
 }  // namespace tread::operators

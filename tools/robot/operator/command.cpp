@@ -26,6 +26,7 @@ void noteSignal(int /*signal*/) {
 }
 
 constexpr int kStepMs = 20;
+constexpr size_t kLongestWhy = 500;  // a stop must not be too long to be sent
 
 void show(const CommandOptions& options, const std::string& words) {
   if (!options.one_line) {
@@ -108,7 +109,9 @@ int runPermissionCommand(int argc, char** argv, const PermissionCommand& command
   app.add_option("--by", requester.by, "who " + command.verb + ", for the log")
       ->capture_default_str();
   app.add_option("--operator", requester.operator_name, kOperatorHelp)->capture_default_str();
-  app.add_option("--why", requester.why, "why, for the log");
+  app.add_option("--why", requester.why, "why, for the log")->check([](const std::string& why) {
+    return why.size() <= kLongestWhy ? std::string() : std::string("--why: at most 500 bytes");
+  });
   command.more(app);
   app.add_option("--timeout", patience, "how long to try [s]")->check(CLI::Range(0.5, 600.0));
   app.add_option("--lcm-url", options.lcm_url, kUrlHelp);

@@ -141,6 +141,21 @@ TEST_CASE("a key that stops disarms a robot that drives by itself, and one in th
   }
 }
 
+TEST_CASE("a key that stops ends the asking, too") {
+  Cockpit pit;
+  pit.run(500'000);
+  pit.wishes.arm = true;
+  pit.run(200'000);
+  REQUIRE(!pit.arms.empty());
+  pit.wishes.arm = false;
+  pit.wishes.stop = true;
+  pit.run(200'000);
+  pit.wishes.stop = false;
+  pit.arms.clear();
+  pit.run(2'000'000);
+  CHECK(pit.arms.empty());
+}
+
 TEST_CASE("the arm button asks until the robot is armed, and an old press does not arm it again") {
   Cockpit pit;
   pit.run(500'000);

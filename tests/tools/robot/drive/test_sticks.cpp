@@ -131,10 +131,13 @@ TEST_CASE("the escape key and keys of many bytes stop, too") {
   CHECK(keys.wishes(1'030'000).forward == 0.5);  // it may become an arrow
   CHECK(keys.wishes(1'080'000).forward == 0.0);
   CHECK_FALSE(keys.wishes(1'080'000).hold);
-  keys.take("g", 1'100'000);  // what comes next does not take the stop back
+  CHECK(keys.wishes(1'080'000).stop);
+  CHECK_FALSE(keys.wishes(9'000'000).stop);  // who is armed later is not disarmed for it
+  keys.take("g", 1'100'000);                 // what comes next does not take the stop back
   CHECK(keys.wishes(1'110'000).give_back);
   CHECK_FALSE(keys.wishes(1'110'000).hold);
-  for (const char* function_key : {"\x1bOP", "\x1b[15~", "\x1b[3~"}) {
+  for (const char* function_key :
+       {"\x1bOP", "\x1b[15~", "\x1b[3~", "\x1b[1;2A", "\x1b[1;2D", "\x1b[1;5A"}) {
     keys.take("w", 2'000'000);
     REQUIRE(keys.wishes(2'010'000).hold);
     keys.take(function_key, 2'010'000);

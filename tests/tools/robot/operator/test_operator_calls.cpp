@@ -128,6 +128,7 @@ TEST_CASE("who arms hears that another program has the same operator's name") {
       scene.stand->motor(now, motor_t::STATE_ARMED);
       operator_t other{};
       other.station = 99;
+      other.allowed = operator_t::ALLOW_DRIVING;
       other.operator_name = name;
       scene.stand->bus.publish(kOperator, other);
     });
