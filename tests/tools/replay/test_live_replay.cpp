@@ -172,8 +172,8 @@ TEST_CASE("a played log gives the running learner the reports of the virtual rep
 
 TEST_CASE("real grass and sand, played at the same time, lose nothing") {
   if (!possible()) return;
-  std::vector<LogEvent> grass = realDrive("warthog_grass_20240920a", 30.0);
-  std::vector<LogEvent> sand = realDrive("warthog_sand_20240925a", 30.0);
+  std::vector<LogEvent> grass = realDrive("warthog_grass_20240920a", 60.0);
+  std::vector<LogEvent> sand = realDrive("warthog_sand_20240925a", 60.0);
   if (grass.empty() || sand.empty()) {
     WARN("skipped: no recordings (TREAD_RECORDINGS)");
     return;
