@@ -71,6 +71,16 @@ const std::vector<Cause> kCauses = {
 
 }  // namespace
 
+TEST_CASE("an INS message counts once, and neither from the future nor from long ago") {
+  InsWatch watch({});
+  constexpr int64_t kNow = 10'000'000;
+  CHECK_FALSE(watch.receive({kNow + 60'000}, kNow));
+  CHECK(watch.receive({kNow - 20'000}, kNow));
+  CHECK_FALSE(watch.receive({kNow - 20'000}, kNow));  // the same again
+  CHECK_FALSE(watch.receive({kNow - 40'000}, kNow));  // overtaken
+  CHECK_FALSE(watch.receive({kNow + 2'000'000 - 600'000}, kNow + 2'000'000));
+}
+
 TEST_CASE("it comes up disarmed and does not arm by itself") {
   Rig rig;
   rig.in.start_wanted = true;

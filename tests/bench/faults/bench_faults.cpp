@@ -52,7 +52,7 @@ int drive(const Arguments& arguments) {
   for (int i = 0; i < missions; ++i) {
     const uint64_t seed = arguments.seed + static_cast<uint64_t>(i);
     const FaultSchedule schedule = arguments.bare ? bareScheduleOf(seed, options.duration)
-                                                   : scheduleOf(seed, options.duration);
+                                                  : scheduleOf(seed, options.duration);
     const FaultyRun run = runFaulty(robot, schedule, options);
     if (run.violation || run.collisions > 0 || arguments.only) printSeed(seed, schedule, run);
     broken += run.violation ? 1 : 0;

@@ -77,8 +77,8 @@ class Run {
         options_(options),
         world_(missions::makeMissionWorld(schedule.seed, robot.simulated.vehicle.outline, kLine)),
         own_fences_(fencesOf(schedule.scenario, world_)),
-        system_(configured(robot), world_.description, world_.T_map_start, schedule.seed, "", planOf(schedule),
-                nullptr, parts()),
+        system_(configured(robot), world_.description, world_.T_map_start, schedule.seed, "",
+                planOf(schedule), nullptr, parts()),
         bus_(system_.bus()),
         start_(bus_.now()),
         active_(schedule.faults.size(), false),
@@ -157,7 +157,7 @@ class Run {
     const Received message{now, channel, {bytes.begin(), bytes.begin() + size}};
     const bool genuine = !schedule_.keyed || static_cast<size_t>(size) != bytes.size();
     if (!genuine) return;
-    if (schedule_.keyed) sealed_.insert(hashOf(bytes));
+    sent_.insert(hashOf(bytes));
     if (const auto motor = messageOf(kMotor, message)) note(*motor);
     if (const auto health = messageOf(kHealth, message)) breaks(counts_.check(*health));
     if (const auto plan = messageOf(kPlan, message)) {
@@ -191,13 +191,13 @@ class Run {
     counts_.receive(node, channel, bytes);
     if (node != "motor_bridge" && node != "planner") return;
     const auto size = static_cast<std::ptrdiff_t>(sizeWithoutSeal(bytes.data(), bytes.size()));
-    const Received message{now, channel, {bytes.begin(), bytes.begin() + size}};
+    Received message{now, channel, {bytes.begin(), bytes.begin() + size}};
+    message.changed = sent_.count(hashOf(bytes)) == 0;
     // With a key what nobody sealed counts for nothing, nor what was changed or comes again.
     const bool sealed = static_cast<size_t>(size) != bytes.size();
     const bool stop = (channel == "ESTOP" || channel == "ARM") && node == "motor_bridge";
-    const bool changed = sealed && sealed_.count(hashOf(bytes)) == 0;
-    if (schedule_.keyed && !stop && (!sealed || changed || !handed_[node].insert(bytes).second))
-      return;
+    const bool counts = sealed && !message.changed;
+    if (schedule_.keyed && !stop && (!counts || !handed_[node].insert(bytes).second)) return;
     if (schedule_.keyed && stop && !sealed && !isStopping(message)) return;
     if (node == "motor_bridge") {
       motors_.receive(message);
@@ -233,7 +233,8 @@ class Run {
     for (size_t i = 0; i < schedule_.faults.size(); ++i) apply(i, now - start_);
     if (!operator_lost_) operator_until_ = now;
     if ((now - start_) % kOperatorPeriod == 0 && !operator_lost_) person_->step(now);
-    if ((now - start_) % kHandPeriod == 0 && !operator_lost_ && hand_) hand_->step(now, now - start_);
+    if ((now - start_) % kHandPeriod == 0 && !operator_lost_ && hand_)
+      hand_->step(now, now - start_);
     putFence(now - start_);
     judgeFences(now);
     const std::array<double, 2> power = system_.devices().power(now);
@@ -422,7 +423,7 @@ class Run {
   std::map<std::string, std::deque<std::vector<uint8_t>>> kept_;
   bool replaying_ = false;
   std::map<std::string, std::set<std::vector<uint8_t>>> handed_;  ///< by node
-  std::set<size_t> sealed_;  ///< hashes of what was sent sealed
+  std::set<size_t> sent_;                                         ///< hashes
   int64_t version_ = 0;
   FaultyRun result_;
 };

@@ -32,11 +32,11 @@ struct FaultyRun {
 };
 
 struct RunOptions {
-  double duration = 16.0;                 ///< [s]
+  double duration = 16.0;  ///< [s]
   int beams = 181;         ///< of a scan: most of a mission's cost is in casting them
-  int64_t operator_lease_us = 1'000'000;    ///< that the rules count with
-  double tilt = 30.0 / 180.0 * kPi;         ///< [rad] that the rules count with
-  bool keeps_fences = true;  ///< false: nobody on the robot knows those of its file
+  int64_t operator_lease_us = 1'000'000;  ///< that the rules count with
+  double tilt = 30.0 / 180.0 * kPi;       ///< [rad] that the rules count with
+  bool keeps_fences = true;               ///< false: nobody on the robot knows those of its file
 };
 
 /// Drives a mission of this seed under its faults, and looks at the rules at each message and every

@@ -219,7 +219,8 @@ std::string describe(const Fault& fault) {
 
 std::string describe(const Scenario& scenario) {
   std::vector<std::string> words;
-  if (!scenario.own_fences.empty()) words.emplace_back(scenario.planner_knows ? "fences in the file"
+  if (!scenario.own_fences.empty())
+    words.emplace_back(scenario.planner_knows ? "fences in the file"
                                               : "fences that only the bridge knows");
   if (scenario.fence_at)
     words.push_back(formatted("the operator's fence at %.2f s, %.1f m ahead, %.1f m wide",

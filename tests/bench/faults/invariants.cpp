@@ -51,23 +51,26 @@ void MotorRule::receive(const Received& received) {
     if (planarPose(*ins)) ins_received_ = now;
     receiveTilt(*ins, now);
   } else if (const auto manual = messageOf(kManual, received)) {
-    receiveManual(*manual, now);
+    receiveManual(*manual, received.changed, now);
   }
   // Both may come in one step of the bridge, in either order.
   if (present(now) && now - arm_ <= kOneStep) armed_ = std::max(armed_, arm_);
 }
 
-void MotorRule::receiveManual(const manual_t& message, int64_t now) {
-  const bool possible = std::abs(message.hand_left) <= 1.0F &&
-                        std::abs(message.hand_right) <= 1.0F &&
-                        message.seen_utime <= now + 100'000 &&
-                        message.seen_utime >= now - limits_.hand_lease_us;
+void MotorRule::receiveManual(const manual_t& message, bool changed, int64_t now) {
+  const bool possible =
+      std::abs(message.hand_left) <= 1.0F && std::abs(message.hand_right) <= 1.0F &&
+      message.seen_utime <= now + 100'000 && message.seen_utime >= now - limits_.hand_lease_us;
   Hand& hand = hands_[message.station];
-  if (!possible || message.seq <= hand.seq) return;
-  hand.seq = message.seq;
   const bool moves = message.hand_left != 0.0F || message.hand_right != 0.0F;
   const bool holds = message.hold != 0 && message.give_back == 0;
-  hand.until = holds && moves ? message.seen_utime + limits_.hand_lease_us : now;
+  const int64_t until = holds && moves ? message.seen_utime + limits_.hand_lease_us : now;
+  // Nobody outside can tell whether the bridge takes what was changed: it may move, and ends
+  // nothing.
+  if (possible && changed && holds) hand.until = std::max(hand.until, until);
+  if (!possible || changed || message.seq <= hand.seq) return;
+  hand.seq = message.seq;
+  hand.until = until;
   hand.holds = message.give_back == 0 && (hand.holds || holds);
 }
 
@@ -75,8 +78,8 @@ void MotorRule::receiveTilt(const ins_t& message, int64_t now) {
   const auto& q = message.orientation;
   const YawPitchRoll attitude =
       yawPitchRoll(Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized());
-  const bool known = (message.ins_status & ins_t::STATUS_NO_ATTITUDE) == 0 &&
-                     message.utime >= now - kInsAge;
+  const bool known =
+      (message.ins_status & ins_t::STATUS_NO_ATTITUDE) == 0 && message.utime >= now - kInsAge;
   const bool beyond =
       known && std::max(std::abs(attitude.roll), std::abs(attitude.pitch)) > limits_.tilt;
   if (!beyond) {
@@ -105,15 +108,13 @@ bool MotorRule::present(int64_t now) const {
 }
 
 bool MotorRule::inHand() const {
-  return std::any_of(hands_.begin(), hands_.end(), [](const auto& hand) {
-    return hand.second.holds;
-  });
+  return std::any_of(hands_.begin(), hands_.end(),
+                     [](const auto& hand) { return hand.second.holds; });
 }
 
 bool MotorRule::handMoves(int64_t now) const {
-  return std::any_of(hands_.begin(), hands_.end(), [&](const auto& hand) {
-    return now <= hand.second.until;
-  });
+  return std::any_of(hands_.begin(), hands_.end(),
+                     [&](const auto& hand) { return now <= hand.second.until; });
 }
 
 std::string MotorRule::programStopReason(int64_t now, bool faults) const {

@@ -29,6 +29,7 @@ struct Received {
   int64_t utime = 0;  ///< [us] of receipt
   std::string channel;
   std::vector<uint8_t> bytes;
+  bool changed = false;  ///< on its way
 };
 
 /// Decodes a message of a channel; nothing if it is of another channel or broken.
@@ -80,7 +81,7 @@ class MotorRule {
     bool holds = false;             ///< the robot may be in this hand
   };
 
-  void receiveManual(const manual_t& message, int64_t now);
+  void receiveManual(const manual_t& message, bool changed, int64_t now);
   void receiveTilt(const ins_t& message, int64_t now);
   bool present(int64_t now) const;
   bool inHand() const;

@@ -65,13 +65,12 @@ void FenceRule::compare(const Received& received) {
   const auto ins = messageOf(kIns, received);
   const auto told = ins ? planarPose(*ins) : std::nullopt;
   if (!told) return;
-  const auto then = std::find_if(places_.rbegin(), places_.rend(), [&](const Place& place) {
-    return place.utime <= ins->utime;
-  });
+  const auto then = std::find_if(places_.rbegin(), places_.rend(),
+                                 [&](const Place& place) { return place.utime <= ins->utime; });
   if (then == places_.rend()) return;
-  misled_ = distanceBetween(*told, then->T_map_body) >
-                kMisplaced + positionMargin(horizontalStd(*ins)) ||
-            std::abs(wrapAngle(told->yaw - then->T_map_body.yaw)) > kMisturned;
+  misled_ =
+      distanceBetween(*told, then->T_map_body) > kMisplaced + positionMargin(horizontalStd(*ins)) ||
+      std::abs(wrapAngle(told->yaw - then->T_map_body.yaw)) > kMisturned;
 }
 
 void FenceRule::excuse() {

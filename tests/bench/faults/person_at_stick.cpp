@@ -7,8 +7,8 @@
 namespace tread::faults {
 namespace {
 
-constexpr int64_t kRests = 200'000;       // [us] with the button held and the stick at rest
-constexpr int64_t kGivesBack = 500'000;   // [us]
+constexpr int64_t kRests = 200'000;      // [us] with the button held and the stick at rest
+constexpr int64_t kGivesBack = 500'000;  // [us]
 
 class ScriptedStick : public drive::Stick {
  public:
