@@ -105,7 +105,7 @@ std::optional<size_t> Bus::unseal(const std::string& channel, const Subscribed& 
                                   const uint8_t* bytes, size_t size) {
   trusted_ = true;
   if (size > subscribed.most) {
-    // Stopping is open to all, and to those who have much to say.
+    // A stop is taken from everybody, however long its reason is.
     const size_t without = sizeWithoutSeal(bytes, size);
     trusted_ = false;
     if (size <= kMostOfStop && subscribed.stops != nullptr && subscribed.stops(bytes, without))

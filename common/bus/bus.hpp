@@ -109,7 +109,7 @@ class Bus {
   template <class Message>
   void overhear(const Channel<Message>& channel, std::function<void(const Message&)> handler) {
     const bool first = !hears(channel.name) && !overhears(channel.name);
-    Overheard& overheard = overheard_[channel.name];
+    Subscribed& overheard = overheard_[channel.name];
     overheard.most = static_cast<size_t>(channel.max_bytes) + kSealBytes;
     overheard.handlers.push_back([handler = std::move(handler)](const uint8_t* bytes, size_t size) {
       Message message{};
@@ -165,11 +165,6 @@ class Bus {
     size_t most = 0;  ///< [bytes] of the channel's largest message and its seal
   };
 
-  struct Overheard {
-    std::deque<RawHandler> handlers;
-    size_t most = 0;  ///< [bytes] as above
-  };
-
   /// What the others' seals say now [us].
   int64_t sealTime() const { return sealClock() + seal_clock_.offset().value_or(0); }
   OpenedSeal open(const std::string& channel, const uint8_t* bytes, size_t size);
@@ -204,7 +199,7 @@ class Bus {
   bool refuseOversized(const ChannelSpec& spec, int size);
 
   std::map<std::string, Subscribed> subscribed_;
-  std::map<std::string, Overheard> overheard_;
+  std::map<std::string, Subscribed> overheard_;
   std::optional<Sealer> sealer_;
   bool foreign_ = false;       ///< the sealer came without a session: from another host, perhaps
   RobotClock seal_clock_;      ///< how far their seals are ahead of ours, where foreign

@@ -11,7 +11,7 @@ namespace tread {
 namespace {
 
 constexpr size_t kHashDigits = 8;
-constexpr int64_t kBringEvery = 500'000;  // [us]
+constexpr int64_t kLookEvery = 500'000;  // [us]
 
 /// FNV-1a of kind and corners.
 uint32_t hashOf(const Fence& fence) {
@@ -77,27 +77,27 @@ fence_t toMessage(const FenceRequest& request) {
   return message;
 }
 
-FenceReport::FenceReport(Bus& bus, std::string process, std::string other)
+FenceExchange::FenceExchange(Bus& bus, std::string process, std::string other)
     : bus_(bus), process_(std::move(process)) {
   bus.overhear<health_t>(kHealth, [this, other = std::move(other)](const health_t& health) {
     if (health.process != other || bus_.now() < next_) return;
-    next_ = bus_.now() + kBringEvery;
-    others_.emplace();
-    for (const counter_t& counter : health.counters) others_->insert(counter.counter_name);
+    next_ = bus_.now() + kLookEvery;
+    others_counters_.emplace();
+    for (const counter_t& counter : health.counters) others_counters_->insert(counter.counter_name);
   });
 }
 
-void FenceReport::bring(const Fence& fence) {
+void FenceExchange::send(const Fence& fence) {
   fence_t message = toMessage({process_, false, fence});
   message.utime = bus_.now();
   message.seq = seq_++;
   bus_.publish(kFence, message);
 }
 
-void FenceReport::tell(const FenceBook& book, HealthReporter& health) {
-  for (size_t i = book.own(); others_ && i < book.fences().size(); ++i)
-    if (others_->count(fenceCounter(book.fences()[i])) == 0) bring(book.fences()[i]);
-  others_.reset();
+void FenceExchange::step(const FenceBook& book, HealthReporter& health) {
+  for (size_t i = book.own(); others_counters_ && i < book.fences().size(); ++i)
+    if (others_counters_->count(fenceCounter(book.fences()[i])) == 0) send(book.fences()[i]);
+  others_counters_.reset();
   if (book.revision() == revision_) return;
   revision_ = book.revision();
   for (const std::string& counter : told_) health.removeCounter(counter);

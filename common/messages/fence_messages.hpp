@@ -29,20 +29,21 @@ bool countsFence(const std::string& counter, const std::string& name);
 /// brings those of operators to the other process that keeps fences.
 /** There is no counter of what is not in force. Whoever was started again and lost the operators'
  * fences gets them back from the other, whose HEALTH and FENCE it hears. */
-class FenceReport {
+class FenceExchange {
  public:
   /// Process names as in HEALTH. The bus must outlive this.
-  FenceReport(Bus& bus, std::string process, std::string other);
+  FenceExchange(Bus& bus, std::string process, std::string other);
 
-  void tell(const FenceBook& book, HealthReporter& health);
+  /// Call it at least twice a second.
+  void step(const FenceBook& book, HealthReporter& health);
 
  private:
-  void bring(const Fence& fence);
+  void send(const Fence& fence);
 
   Bus& bus_;
   std::string process_;
-  std::optional<std::set<std::string>> others_;  ///< counters of the other's HEALTH, if new
-  int64_t next_ = 0;                             ///< [us] until then no HEALTH is looked at
+  std::optional<std::set<std::string>> others_counters_;  ///< of the other's HEALTH, if new
+  int64_t next_ = 0;  ///< [us] until then no HEALTH is looked at
   int64_t revision_ = -1;
   std::set<std::string> told_;  ///< counters
   int64_t seq_ = 0;

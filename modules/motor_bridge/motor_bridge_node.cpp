@@ -237,7 +237,7 @@ MotorBridgeNode::MotorBridgeNode(const MotorBridgeConfig& config, Bus& bus, Link
       bridge_(config.bridge),
       controller_(config.make_controller()),
       health_(bus, "motor_bridge", config.effective),
-      fences_told_(bus, "motor_bridge", "planner") {
+      fence_exchange_(bus, "motor_bridge", "planner") {
   listen();
 }
 
@@ -372,7 +372,7 @@ void MotorBridgeNode::reportHealth() {
 void MotorBridgeNode::reportCounters(int64_t utime) {
   if (utime < next_counters_) return;
   next_counters_ = utime + kCounterPeriod;
-  fences_told_.tell(bridge_.fences(), health_);
+  fence_exchange_.step(bridge_.fences(), health_);
   if (holder_told_ != bridge_.holder()) {
     health_.removeCounter(holderCounter(holder_told_));
     holder_told_ = bridge_.holder();

@@ -85,7 +85,7 @@ class MotorBridgeNode : public Node {
   Bridge bridge_;
   std::unique_ptr<MotorController> controller_;
   HealthReporter health_;
-  FenceReport fences_told_;
+  FenceExchange fence_exchange_;
   std::string holder_told_;
   BridgeOutput output_;     ///< of this step
   BridgeOutput published_;  ///< of the last MOTOR

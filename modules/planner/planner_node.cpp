@@ -188,7 +188,7 @@ PlannerNode::PlannerNode(const PlannerConfig& config, Bus& bus, Store* store)
       health_(bus, "planner", config.effective),
       robot_(bus, health_, config.operators.lease_us),
       fences_(config.map.fences),
-      fences_told_(bus, "planner", "motor_bridge"),
+      fence_exchange_(bus, "planner", "motor_bridge"),
       supervisor_(config, bus.bootId()) {
   subscribe();
   recallFences();
@@ -387,7 +387,7 @@ void PlannerNode::publishHealth(int64_t utime, const PlanReport& report) {
   if (problem.empty()) problem = secondLearner(utime);
   if (problem.empty()) problem = way_back_.state();
   health_.setState(problem.empty() ? health_t::HEALTH_OK : health_t::HEALTH_DEGRADED, problem);
-  fences_told_.tell(fences_, health_);
+  fence_exchange_.step(fences_, health_);
   health_.setCounter("pattern set version", report.set_version);
   for (const auto& [name, value] : supervisor_.counters()) health_.setCounter(name, value);
   health_.step(utime);

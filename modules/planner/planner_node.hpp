@@ -65,7 +65,7 @@ class PlannerNode : public Node {
   HealthReporter health_;
   RobotInputs robot_;
   FenceBook fences_;
-  FenceReport fences_told_;
+  FenceExchange fence_exchange_;
   int64_t fences_kept_ = 0;  ///< revision that is in the store
   int64_t next_keep_ = 0;    ///< [us]
   GoalWatch goal_;

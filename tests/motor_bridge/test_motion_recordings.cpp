@@ -312,10 +312,8 @@ void holdBack(Sample& sample, double since, const Sample& before, double) {
   sample.ins.yaw_rate = 0.0;
 }
 
-}  // namespace
-
-TEST_CASE("real drives: at most one false alarm an hour") {
-  if (absent()) return;
+/// The sections "tuned", 0, and "held out", 1.
+size_t eachHalf() {
   size_t half = 0;
   SECTION("tuned") {
     half = 0;
@@ -323,6 +321,14 @@ TEST_CASE("real drives: at most one false alarm an hour") {
   SECTION("held out") {
     half = 1;
   }
+  return half;
+}
+
+}  // namespace
+
+TEST_CASE("real drives: at most one false alarm an hour") {
+  if (absent()) return;
+  const size_t half = eachHalf();
   const Count count = countVerdicts(half);
   CHECK(count.hours > 0.75);
   // Tuned: a robot that really stands while 1.7 rad/s are commanded.
@@ -332,13 +338,7 @@ TEST_CASE("real drives: at most one false alarm an hour") {
 
 TEST_CASE("real drives: a frozen, jumping or mirrored pose is told within 1.5 s") {
   if (absent()) return;
-  size_t half = 0;
-  SECTION("tuned") {
-    half = 0;
-  }
-  SECTION("held out") {
-    half = 1;
-  }
+  const size_t half = eachHalf();
   const bool tuned = half == 0;
   const auto repeat = [](Sample& sample, double, const Sample& before, double) {
     const int64_t utime = sample.ins.utime;
@@ -392,13 +392,7 @@ TEST_CASE("real drives: drifts are told once they are larger than slip") {
 
 TEST_CASE("real drives: blocked, rolling, and one track dead") {
   if (absent()) return;
-  size_t half = 0;
-  SECTION("tuned") {
-    half = 0;
-  }
-  SECTION("held out") {
-    half = 1;
-  }
+  const size_t half = eachHalf();
   for (const double speed : {0.7, 1.0, 1.5}) {
     for (const double left : {speed, -speed}) {
       const auto block = [&](Sample& sample, double, const Sample&, double) {
@@ -426,13 +420,7 @@ TEST_CASE("real drives: blocked, rolling, and one track dead") {
 
 TEST_CASE("real drives: a track that dies and a robot that is held are told within 1.5 s") {
   if (absent()) return;
-  size_t half = 0;
-  SECTION("tuned") {
-    half = 0;
-  }
-  SECTION("held out") {
-    half = 1;
-  }
+  const size_t half = eachHalf();
   struct Case {
     double min, max;         // [m/s]
     double dies, held_back;  // [1] told within 1.5 s, at least

@@ -127,20 +127,20 @@ TEST_CASE("the counter of a fence tells it from others of its name") {
 
 TEST_CASE("HEALTH counts the fences in force and no others, however many have come and gone") {
   struct Teller : Node {
-    explicit Teller(Bus& bus) : report(bus, "teller", "none"), health(bus, "teller", "") {}
+    explicit Teller(Bus& bus) : exchange(bus, "teller", "none"), health(bus, "teller", "") {}
     int64_t period() const override { return 1'000'000; }
     void step(int64_t utime) override {
       for (int i = 0; i < 20; ++i) {
         const std::string name = "f" + std::to_string(count++);
         if (i > 0) book.take(removal("f" + std::to_string(count - 2)), true);
         book.take({"ada", false, square(name, 9)}, true);
-        report.tell(book, health);
+        exchange.step(book, health);
       }
       health.step(utime);
       book.take(removal("f" + std::to_string(count - 1)), true);
     }
     FenceBook book{{square("site", 50)}};
-    FenceReport report;
+    FenceExchange exchange;
     HealthReporter health;
     int count = 0;
   };
@@ -161,7 +161,7 @@ TEST_CASE("HEALTH counts the fences in force and no others, however many have co
 TEST_CASE("who is started again gets the operators' fences back, and what is removed stays away") {
   struct Keeper : Node {
     Keeper(Bus& bus, const std::string& name, const std::string& other)
-        : report(bus, name, other), health(bus, name, "") {
+        : exchange(bus, name, other), health(bus, name, "") {
       bus.subscribe<fence_t>(kFence, [this](const fence_t& message) {
         ++requests;
         book.take(requestFrom(message), message.fence_by == "ada");
@@ -169,11 +169,11 @@ TEST_CASE("who is started again gets the operators' fences back, and what is rem
     }
     int64_t period() const override { return 10'000; }
     void step(int64_t utime) override {
-      report.tell(book, health);
+      exchange.step(book, health);
       health.step(utime);
     }
     FenceBook book{{square("site", 50)}};
-    FenceReport report;
+    FenceExchange exchange;
     HealthReporter health;
     int requests = 0;
   };

@@ -114,9 +114,7 @@ void DriveCall::sendManual(int64_t utime, const Wishes& wishes) {
 std::string DriveCall::describe(int64_t utime) const {
   if (!gone_.empty()) return gone_ + "; the robot is let go";
   if (wishes_.ended) return "the recording is over; the robot is let go";
-  if (!motor_.any())
-    return "no MOTOR message: is tread-motor-bridge running on this LCM URL?" +
-           operators::keyWords(bus_);
+  if (!motor_.any()) return operators::kNoMotor + operators::keyWords(bus_);
   if (motor_.age(utime) > kSilent) return "MOTOR has fallen silent: look at tread-motor-bridge";
   const motor_t& motor = motor_.message();
   std::string words =

@@ -33,9 +33,6 @@ bool isStuck(int16_t status) {
   return status == plan_t::PLAN_BLOCKED || status == plan_t::PLAN_UNREACHABLE;
 }
 
-const char* const kNoMotor =
-    "no MOTOR message came: is tread-motor-bridge running on this LCM URL?";
-
 std::string heldBy(const std::string& holder, const std::string& name) {
   return holder + " holds the robot (" + holder + " can give it: tread-arm --hand-over " + name +
          ")";

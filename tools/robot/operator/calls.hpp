@@ -50,6 +50,10 @@ struct Requester {
   }
 };
 
+/// Of a robot that is not heard.
+inline const std::string kNoMotor =
+    "no MOTOR message came: is tread-motor-bridge running on this LCM URL?";
+
 /// "; the robot has a key: ..." where a robot has one and this program none, else empty.
 std::string keyWords(const Bus& bus);
 

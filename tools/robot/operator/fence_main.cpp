@@ -21,8 +21,7 @@ int main(int argc, char** argv) {
       argc, argv,
       {"tread-fence",
        "Adds a fence that the robot stays in or keeps out of, until it is removed, also over "
-       "restarts "
-       "in the same run folder. Anybody may add one; who holds the robot may remove it.",
+       "restarts in the same run folder. Anybody may add one; who holds the robot may remove it.",
        "asks", addOptions, [&](tread::Bus& bus, const Requester& requester, double patience) {
          if (!request.removes)
            request.fence = fenceFrom(request.fence.name, !keep_out.empty(),
