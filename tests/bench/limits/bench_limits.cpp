@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 // Missions of the whole robot in virtual time among fences, or between hills and pits.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 
@@ -69,7 +70,7 @@ int drive(const Arguments& arguments) {
       "with 95 %% confidence); %d drove, %d arrived; the bridge stopped %d at a fence and %d by "
       "tilt; least room %.3f m, most tilt %.1f deg; %d started outside, %d of them came in\n",
       arguments.missions, metres, breaches, tilted, 300.0 / arguments.missions, drove, arrived,
-      fence_stops, tilt_stops, least, toDegrees(worst), outside, back_in);
+      fence_stops, tilt_stops, least < 1e8 ? least : NAN, toDegrees(worst), outside, back_in);
   return breaches + tilted == 0 ? 0 : 1;
 }
 
