@@ -13,7 +13,6 @@ namespace {
 
 constexpr const char* kSlots[2] = {"learner_state_1", "learner_state_2"};
 constexpr const char* kVersions = "learner_versions";
-constexpr const char* kBank = "surface_bank";
 /// Versions reserved at a time, and how many must be left before the next are.
 constexpr int64_t kReserve = 100;
 constexpr int64_t kReserveLeft = 50;
@@ -89,37 +88,6 @@ std::optional<std::string> LearnerMemory::reserve(int64_t version) {
 std::optional<std::string> LearnerMemory::save(const std::string& state_text) {
   auto problem = store_.write(kSlots[next_slot_], state_text);
   if (!problem) next_slot_ = 1 - next_slot_;
-  return problem;
-}
-
-bool LearnerMemory::recallBank(const PatternSet& shipped, SurfaceBank& bank, std::string& problem) {
-  const auto content = store_.read(kBank);
-  if (!content) return false;
-  const auto why = parseBank(*content, shipped, bank);
-  if (!why) {
-    bank_text_ = *content;
-    return true;
-  }
-  append(problem, std::string(kBank) + " " + *why);
-  const auto names = store_.names();
-  int number = 1;
-  const auto aside = [&] { return std::string(kBank) + ".aside_" + std::to_string(number); };
-  while (std::find(names.begin(), names.end(), aside()) != names.end()) ++number;
-  if (const auto failure = store_.write(aside(), *content)) {
-    bank_in_danger_ = std::string(kBank) + " could not be set aside and is left as it is";
-    problem += "; " + bank_in_danger_ + ": " + *failure;
-    return false;
-  }
-  store_.remove(kBank);
-  problem += ": set aside as " + aside();
-  return false;
-}
-
-std::optional<std::string> LearnerMemory::saveBank(const std::string& bank_text) {
-  if (bank_text == bank_text_) return std::nullopt;
-  if (!bank_in_danger_.empty()) return bank_in_danger_;
-  auto problem = store_.write(kBank, bank_text);
-  if (!problem) bank_text_ = bank_text;
   return problem;
 }
 

@@ -135,20 +135,9 @@ void LearnerNode::start(int64_t boot_time) {
                      found.state->memory);
     keepVersion();
   }
-  recallBank();
   if (found.first_version > learner_.set().version())
     learner_.renumber(found.first_version, learner_.set().version());
   adoptVersion();
-}
-
-/// The surfaces of the file, if they were met later than those of the state.
-void LearnerNode::recallBank() {
-  if (learner_.rule().bank() == nullptr) return;
-  const SurfaceBank& of_state = *learner_.rule().bank();
-  SurfaceBank stored = of_state;
-  if (memory_.recallBank(config_.shipped, stored, start_problem_) &&
-      stored.newest() > of_state.newest())
-    learner_.adoptBank(stored);
 }
 
 void LearnerNode::resume(LearnerState state, const std::vector<PatternSet>& earlier) {
@@ -378,10 +367,6 @@ void LearnerNode::adoptVersion() {
   auto problem = memory_.reserve(learner_.set().version());
   auto unsaved = memory_.save(text);
   if (!problem) problem = unsaved;
-  if (const SurfaceBank* bank = learner_.rule().bank()) {
-    auto unsaved_bank = memory_.saveBank(formatBank(*bank, learner_.shipped()));
-    if (!problem) problem = unsaved_bank;
-  }
   noteWrite(problem);
   publisher_.putSet(learner_.set());
   publisher_.putState(learner_.set(), config_.rule.rule, text);
@@ -397,8 +382,8 @@ void LearnerNode::reportHealth(int64_t utime) {
   if (passive_) problem = "passive, publishes and learns nothing while an earlier learner lives";
   health_.setState(problem.empty() ? health_t::HEALTH_OK : health_t::HEALTH_DEGRADED, problem);
   health_.setCounter("set version", learner_.set().version());
-  if (const SurfaceBank* bank = learner_.rule().bank())
-    health_.setCounter("surfaces remembered", static_cast<int64_t>(bank->size()));
+  if (learner_.rule().remembered() >= 0)
+    health_.setCounter("surfaces remembered", learner_.rule().remembered());
   health_.setCounter("INS too late", ins_.tooLate());
   health_.setCounter("INS with invalid time", ins_.invalid());
   health_.setCounter("INS without pose", ins_.withoutPose());

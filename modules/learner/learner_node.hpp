@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <map>
 #include <optional>
@@ -27,8 +28,7 @@ struct StoredLearning {
 };
 
 /// The learner's files. Entries: learner_state_1 and _2, written in turn so that the one before is
-/// kept, learner_versions, a number that no published version exceeds, and surface_bank, the
-/// remembered surfaces.
+/// kept, and learner_versions, a number that no published version exceeds.
 /** The rule of versions: learner_versions is written ahead, a hundred at a time, before they are
  * used. A start begins above it, because the last versions may have been published from memory
  * while the disk was full. Without it, above the newest state by a thousand; without that, too, at
@@ -46,14 +46,6 @@ class LearnerMemory {
   /// written.
   std::optional<std::string> save(const std::string& state_text);
 
-  /// Reads the remembered surfaces into `bank`; true if there were any.
-  /** What cannot be read is set aside under another name, never overwritten: `problem` says so, one
-   * clear line. */
-  bool recallBank(const PatternSet& shipped, SurfaceBank& bank, std::string& problem);
-  /// Writes the remembered surfaces if they are others than last time. One clear line if they could
-  /// not be written.
-  std::optional<std::string> saveBank(const std::string& bank_text);
-
  private:
   /// Nothing where it is missing, or damaged, which is added to `problem`.
   std::optional<int64_t> storedReserve(std::string& problem) const;
@@ -61,8 +53,6 @@ class LearnerMemory {
   Store& store_;
   int64_t reserved_ = 0;
   int next_slot_ = 0;
-  std::string bank_text_;       ///< as it is in the store
-  std::string bank_in_danger_;  ///< why it must not be written; empty = it may
 };
 
 /// Sends sets and states in portions: LCM silently loses messages where one
@@ -140,15 +130,12 @@ class LearnerNode : public Node {
 
   const PatternSet& set() const { return learner_.set(); }
   /// How many surfaces the rule remembers.
-  size_t rememberedSurfaces() const {
-    return learner_.rule().bank() == nullptr ? 0 : learner_.rule().bank()->size();
-  }
+  int rememberedSurfaces() const { return std::max(0, learner_.rule().remembered()); }
   /// The state as it is written to disk.
   std::string stateText() const;
 
  private:
   void start(int64_t boot_time);
-  void recallBank();
   void hear(const execution_t& message);
   void hear(const motor_t& motor);
   void noteVersion(int64_t version);

@@ -81,12 +81,6 @@ bool Learner::restore(PatternSet set, ResidualTable residuals, const std::vector
   return false;
 }
 
-void Learner::adoptBank(const SurfaceBank& bank) {
-  rule_->adoptBank(bank);
-  std::string why;
-  if (auto anew = PatternSet::make(predicted(), why)) set_ = *anew;
-}
-
 void Learner::renumber(int64_t version, int64_t parent) {
   PatternSetContent content = set_.content();
   content.version = version;

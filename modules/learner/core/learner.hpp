@@ -12,7 +12,6 @@
 #include "common/execution/execution_tracker.hpp"
 #include "common/pattern/pattern.hpp"
 #include "modules/learner/core/rules/learning_rule.hpp"
-#include "modules/learner/core/rules/surface_bank.hpp"
 
 namespace tread::learner {
 
@@ -72,9 +71,6 @@ class Learner {
   /// What the rule knows beside the set, for the state file.
   std::vector<double> memory() const { return rule_->memory(); }
   const LearningRule& rule() const { return *rule_; }
-  /// Takes over remembered surfaces of this shipped set; the version stays.
-  void adoptBank(const SurfaceBank& bank);
-
   /// The same content under a higher version number, with `parent`.
   void renumber(int64_t version, int64_t parent);
 
@@ -116,14 +112,5 @@ std::string formatState(const LearnerState& state, const PatternSet& shipped,
 /// shipped set.
 std::optional<LearnerState> parseState(const std::string& text, const PatternSet& shipped,
                                        std::string& why);
-
-/// The remembered surfaces of a shipped set as text that people can read; restores bit for bit.
-/** Names the shipped set by its checksum: corrections are relative to its predictions. */
-std::string formatBank(const SurfaceBank& bank, const PatternSet& shipped);
-
-/// Puts the surfaces of a text into `bank`; one clear line if the text is damaged or of another
-/// set, and then the bank is as before.
-std::optional<std::string> parseBank(const std::string& text, const PatternSet& shipped,
-                                     SurfaceBank& bank);
 
 }  // namespace tread::learner

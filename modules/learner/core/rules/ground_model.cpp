@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/learner/core/rules/ground_filter.hpp"
+#include "modules/learner/core/rules/ground_model.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -60,7 +61,6 @@ double clamped(double value, double low, double high) {
   return value < low ? low : (value > high ? high : value);
 }
 
-using Index = TwistCorrection::Index;
 constexpr double kKernelRange = 0.6;  // [1] of the largest |v|, |w|
 constexpr double kNear = 0.1, kMirrored = 0.7, kAlone = 0.2;
 
@@ -74,19 +74,19 @@ struct Kernels {
   Eigen::MatrixXd mirrored;
 };
 
-Kernels kernelsOf(const std::vector<TwistProfile>& profiles) {
+Kernels kernelsOf(const std::vector<PatternPart>& patterns) {
   double v_max = 1e-6;
   double w_max = 1e-6;
-  for (const TwistProfile& profile : profiles) {
-    v_max = std::max(v_max, std::abs(profile.mean()[0]));
-    w_max = std::max(w_max, std::abs(profile.mean()[2]));
+  for (const PatternPart& pattern : patterns) {
+    v_max = std::max(v_max, std::abs(pattern.mean[0]));
+    w_max = std::max(w_max, std::abs(pattern.mean[2]));
   }
-  const auto n = static_cast<Eigen::Index>(profiles.size());
+  const auto n = static_cast<Eigen::Index>(patterns.size());
   Kernels kernels{Eigen::MatrixXd(n, n), Eigen::MatrixXd(n, n)};
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < n; ++j) {
-      const Eigen::Vector3d& a = profiles[static_cast<size_t>(i)].mean();
-      const Eigen::Vector3d& b = profiles[static_cast<size_t>(j)].mean();
+      const Eigen::Vector3d& a = patterns[static_cast<size_t>(i)].mean;
+      const Eigen::Vector3d& b = patterns[static_cast<size_t>(j)].mean;
       const double dv2 = squared((a[0] - b[0]) / (kKernelRange * v_max));
       kernels.near(i, j) = std::exp(-0.5 * (dv2 + squared((a[2] - b[2]) / (kKernelRange * w_max))));
       kernels.mirrored(i, j) =
@@ -109,9 +109,9 @@ Eigen::MatrixXd correlations(const Kernels& kernels, double sign) {
   return result;
 }
 
-/// Covariance of the mean twist that explains the recorded spread of a pattern's end; nothing where
+/// Variances of the mean twist that explain the recorded spread of a pattern's end; nothing where
 /// it is unknown.
-std::optional<Eigen::Matrix3d> recordedNoise(const MotionPattern& pattern,
+std::optional<Eigen::Vector3d> recordedNoise(const MotionPattern& pattern,
                                              const TwistProfile& profile) {
   const PoseCovariance& known = pattern.end_covariance;
   if (!isKnown(known)) return std::nullopt;
@@ -121,27 +121,16 @@ std::optional<Eigen::Matrix3d> recordedNoise(const MotionPattern& pattern,
   const Eigen::FullPivLU<Eigen::Matrix3d> lever(profile.endLever());
   if (!lever.isInvertible()) return std::nullopt;
   const Eigen::Matrix3d inverse = lever.inverse();
-  const Eigen::Matrix3d noise = inverse * covariance * inverse.transpose();
+  const Eigen::Vector3d noise = (inverse * covariance * inverse.transpose()).diagonal();
   // A file may hold any six numbers.
-  if (!noise.allFinite() || noise.llt().info() == Eigen::NumericalIssue) return std::nullopt;
-  return Eigen::Matrix3d(0.5 * (noise + noise.transpose()));
-}
-
-/// What the configuration expects, without the factor.
-Eigen::Matrix3d expectedNoise(const TwistNoise& noise, const TwistProfile& profile) {
-  const double v = profile.meanSpeed();
-  const double w = profile.meanTurn();
-  return Eigen::Vector3d(squared(noise.forward * v) + squared(noise.floor_speed),
-                         squared(noise.lateral * v) + squared(noise.floor_speed),
-                         squared(noise.yaw * w) + squared(noise.floor_yaw))
-      .asDiagonal();
+  if (!noise.allFinite() || noise.minCoeff() < 0.0) return std::nullopt;
+  return noise;
 }
 
 }  // namespace
 
 TwistProfile::TwistProfile(const MotionPattern& shipped, double period) : period_(period) {
   Pose2 last;
-  mean_.setZero();
   for (const Pose2& pose : shipped.trajectory) {
     const Eigen::Vector3d twist = sampleMotion(last, pose) / period;
     forward_.push_back(twist[0]);
@@ -152,34 +141,30 @@ TwistProfile::TwistProfile(const MotionPattern& shipped, double period) : period
   measureResponses();
 }
 
+/// Change of a sample's twist per unit of each correction.
+Eigen::Matrix<double, 3, TwistCorrection::kAll> sampleResponse(double v, double w) {
+  Eigen::Matrix<double, 3, TwistCorrection::kAll> response;
+  response.setZero();
+  response(0, Index::kForward) = response(0, kOwnForward) = v;
+  response(0, Index::kTurnLoss) = -std::abs(w) * v;
+  response(1, Index::kSideslip) = std::abs(v) * w;
+  response(1, Index::kCrab) = response(1, kOwnLateral) = v;
+  response(2, Index::kYaw) = response(2, kOwnYaw) = w;
+  response(2, Index::kYawBySpeed) = std::abs(v) * w;
+  response(2, Index::kYawBias) = v;
+  return response;
+}
+
 void TwistProfile::measureResponses() {
-  const double share = 1.0 / static_cast<double>(forward_.size());
-  mean_response_.setZero();
   end_response_.setZero();
   end_lever_.setZero();
-  const Pose2 end = integrateEnd(Correction10::Zero());
   const Correction10 none = Correction10::Zero();
   std::vector<Pose2> poses;
-  walk(none, [&](size_t, const Pose2& pose) { poses.push_back(pose); });
+  const Pose2 end = walk(none, [&](size_t, const Pose2& pose) { poses.push_back(pose); });
   Pose2 at;
   for (size_t t = 0; t < forward_.size(); ++t) {
-    const double v = forward_[t];
-    const double w = yaw_[t];
-    Eigen::Matrix<double, 3, TwistCorrection::kAll> response;  // of this sample's twist
-    response.setZero();
-    response(0, Index::kForward) = response(0, kOwnForward) = v;
-    response(0, Index::kTurnLoss) = -std::abs(w) * v;
-    response(1, Index::kSideslip) = std::abs(v) * w;
-    response(1, Index::kCrab) = response(1, kOwnLateral) = v;
-    response(2, Index::kYaw) = response(2, kOwnYaw) = w;
-    response(2, Index::kYawBySpeed) = std::abs(v) * w;
-    response(2, Index::kYawBias) = v;
-    mean_ += share * Eigen::Vector3d(v, lateral_[t], w);
-    mean_speed_ += share * std::abs(v);
-    mean_turn_ += share * std::abs(w);
-    mean_response_ += share * response;
     // A change of this sample's twist moves the end: the step itself, and the turn about its place.
-    const double middle = at.yaw + 0.5 * w * period_;
+    const double middle = at.yaw + 0.5 * yaw_[t] * period_;
     const double c = std::cos(middle);
     const double s = std::sin(middle);
     const Pose2& next = poses[t];
@@ -187,10 +172,39 @@ void TwistProfile::measureResponses() {
     const double y_rest = end.y - 0.5 * (at.y + next.y);
     Eigen::Matrix3d lever;
     lever << c, -s, -y_rest, s, c, x_rest, 0.0, 0.0, 1.0;
-    end_response_ += period_ * lever * response;
+    end_response_ += period_ * lever * sampleResponse(forward_[t], yaw_[t]);
     end_lever_ += period_ * lever;
     at = next;
   }
+}
+
+PatternPart TwistProfile::part(Eigen::Index samples) const {
+  PatternPart part;
+  part.samples = samples;
+  part.mean.setZero();
+  Eigen::Matrix<double, 3, TwistCorrection::kAll> response;
+  response.setZero();
+  for (size_t t = 0; t < static_cast<size_t>(samples); ++t) {
+    part.mean += Eigen::Vector3d(forward_[t], lateral_[t], yaw_[t]);
+    response += sampleResponse(forward_[t], yaw_[t]);
+    part.metres += period_ * std::abs(forward_[t]);
+  }
+  const double share = 1.0 / static_cast<double>(samples);
+  part.mean *= share;
+  for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
+    const auto row = static_cast<Eigen::Index>(velocity);
+    part.own[velocity] = share * response(row, TwistCorrection::kCommon + row);
+    for (size_t i = 0; i < static_cast<size_t>(termsOf(velocity).count); ++i)
+      part.common[velocity][i] = share * response(row, termsOf(velocity).common[i]);
+  }
+  return part;
+}
+
+Eigen::Vector2d TwistProfile::meanSpeed(Eigen::Index samples) const {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (size_t t = 0; t < static_cast<size_t>(samples); ++t)
+    sum += Eigen::Vector2d(std::abs(forward_[t]), std::abs(yaw_[t]));
+  return sum / static_cast<double>(samples);
 }
 
 template <typename Put>
@@ -250,96 +264,56 @@ Eigen::Vector3d meanTwist(const ConstTrajectory& trajectory, double period) {
   return sum / (period * static_cast<double>(trajectory.rows()));
 }
 
-Eigen::Matrix3d scaledNoise(const Eigen::Matrix3d& R, const Eigen::Vector3d& factors) {
-  const Eigen::Vector3d root = factors.cwiseSqrt();
-  return root.asDiagonal() * R * root.asDiagonal();
+const VelocityTerms& termsOf(size_t velocity) {
+  static constexpr std::array<VelocityTerms, kVelocities> kTerms{{
+      {{Index::kForward, Index::kTurnLoss, 0}, 2},
+      {{Index::kSideslip, Index::kCrab, 0}, 2},
+      {{Index::kYaw, Index::kYawBySpeed, Index::kYawBias}, 3},
+  }};
+  return kTerms[velocity];
 }
 
-GroundModel::GroundModel(const FilterConfig& config, const PatternSet& shipped)
-    : period_(shipped.periodSeconds()),
-      dimension_(TwistCorrection::kCommon +
-                 3 * static_cast<Eigen::Index>(shipped.patterns().size())) {
-  for (const MotionPattern& pattern : shipped.patterns()) profiles_.emplace_back(pattern, period_);
-  fillChangeCovariance(config);
-  change_information_ = change_.llt().solve(Eigen::MatrixXd::Identity(dimension_, dimension_));
-  fillNoise(config, shipped);
-  for (size_t p = 0; p < profiles_.size(); ++p) {
-    Eigen::Matrix<double, Eigen::Dynamic, 3> QH(dimension_, 3);
-    timesResponse(change_, p, QH);
-    change_response_.push_back(QH);
+GroundModel::GroundModel(const GroundConfig& config, const PatternSet& shipped)
+    : period_(shipped.periodSeconds()), noise_(config.noise) {
+  for (const MotionPattern& pattern : shipped.patterns()) {
+    profiles_.emplace_back(pattern, period_);
+    const auto recorded = recordedNoise(pattern, profiles_.back());
+    recorded_share_.push_back(recorded ? config.recorded : 0.0);
+    recorded_.push_back(recorded.value_or(Eigen::Vector3d::Zero()));
   }
+  for (size_t p = 0; p < profiles_.size(); ++p)
+    whole_.push_back(part(p, profiles_[p].samples()));
+  fillSpread(config);
 }
 
-void GroundModel::fillChangeCovariance(const FilterConfig& config) {
-  change_ = Eigen::MatrixXd::Zero(dimension_, dimension_);
-  for (int i = 0; i < TwistCorrection::kCommon; ++i)
-    change_(i, i) = squared(config.common_factor * config.common[static_cast<size_t>(i)]);
-  const Kernels kernels = kernelsOf(profiles_);
-  const Eigen::MatrixXd even = correlations(kernels, 1.0);
-  const Eigen::MatrixXd odd = correlations(kernels, -1.0);
-  const auto n = static_cast<Eigen::Index>(profiles_.size());
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j < n; ++j) {
-      for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        const double sigma = config.residual[static_cast<size_t>(axis)];
-        change_(TwistCorrection::kCommon + 3 * i + axis, TwistCorrection::kCommon + 3 * j + axis) =
-            squared(sigma) * (axis == 1 ? odd(i, j) : even(i, j));
-      }
-    }
-  }
-}
-
-void GroundModel::fillNoise(const FilterConfig& config, const PatternSet& shipped) {
-  const double factor = squared(config.noise_factor);
-  for (size_t p = 0; p < profiles_.size(); ++p) {
-    Eigen::Matrix3d noise = expectedNoise(config.noise, profiles_[p]);
-    if (const auto recorded = recordedNoise(shipped.patterns()[p], profiles_[p]))
-      noise = (1.0 - config.recorded) * noise + config.recorded * *recorded;
-    const Eigen::Matrix3d& lever = profiles_[p].endLever();
-    noise_.push_back(factor * noise);
-    end_noise_.push_back(lever * noise * lever.transpose());
-  }
-}
-
-Correction10 GroundModel::correctionOf(const Eigen::VectorXd& x, size_t pattern) const {
-  Correction10 correction;
-  correction.head<TwistCorrection::kCommon>() = x.head<TwistCorrection::kCommon>();
-  correction.tail<TwistCorrection::kOwn>() = x.segment<TwistCorrection::kOwn>(ownAt(pattern));
-  return correction;
-}
-
-Eigen::Matrix<double, 10, 10> GroundModel::covarianceOf(const Eigen::MatrixXd& P,
-                                                        size_t pattern) const {
-  constexpr int common = TwistCorrection::kCommon;
-  constexpr int own = TwistCorrection::kOwn;
-  const Eigen::Index at = ownAt(pattern);
-  Eigen::Matrix<double, 10, 10> covariance;
-  covariance.topLeftCorner<common, common>() = P.topLeftCorner<common, common>();
-  covariance.topRightCorner<common, own>() = P.block<common, own>(0, at);
-  covariance.bottomLeftCorner<own, common>() = P.block<own, common>(at, 0);
-  covariance.bottomRightCorner<own, own>() = P.block<own, own>(at, at);
-  return covariance;
-}
-
-Eigen::Vector3d GroundModel::meanTwistUnder(const Eigen::VectorXd& x, size_t pattern) const {
+PatternPart GroundModel::part(size_t pattern, Eigen::Index samples) const {
   const TwistProfile& profile = profiles_[pattern];
-  return profile.mean() + profile.meanResponse() * correctionOf(x, pattern);
+  PatternPart part = profile.part(samples);
+  part.pattern = pattern;
+  const Eigen::Vector2d speed = profile.meanSpeed(samples);
+  const double seconds = period_ * static_cast<double>(samples);
+  const double moved = squared(noise_.position / seconds);
+  const Eigen::Vector3d expected(
+      squared(noise_.forward * speed[0]) + moved, squared(noise_.lateral * speed[0]) + moved,
+      squared(noise_.yaw * speed[1]) + squared(noise_.heading / seconds));
+  const double share = recorded_share_[pattern];
+  part.noise = (1.0 - share) * expected + share * recorded_[pattern];
+  return part;
 }
 
-void GroundModel::timesResponse(const Eigen::MatrixXd& P, size_t pattern,
-                                Eigen::Matrix<double, Eigen::Dynamic, 3>& result) const {
-  const auto& H = profiles_[pattern].meanResponse();
-  result.noalias() = P.leftCols<TwistCorrection::kCommon>().lazyProduct(
-      H.leftCols<TwistCorrection::kCommon>().transpose());
-  result.noalias() += P.middleCols<TwistCorrection::kOwn>(ownAt(pattern))
-                          .lazyProduct(H.rightCols<TwistCorrection::kOwn>().transpose());
-}
-
-Eigen::Matrix3d GroundModel::response(const Eigen::Matrix<double, Eigen::Dynamic, 3>& A,
-                                      size_t pattern) const {
-  const auto& H = profiles_[pattern].meanResponse();
-  return H.leftCols<TwistCorrection::kCommon>() * A.topRows<TwistCorrection::kCommon>() +
-         H.rightCols<TwistCorrection::kOwn>() * A.middleRows<TwistCorrection::kOwn>(ownAt(pattern));
+void GroundModel::fillSpread(const GroundConfig& config) {
+  const Kernels kernels = kernelsOf(whole_);
+  const auto n = static_cast<Eigen::Index>(profiles_.size());
+  for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
+    const VelocityTerms& terms = termsOf(velocity);
+    Eigen::MatrixXd& spread = spread_[velocity];
+    spread = Eigen::MatrixXd::Zero(terms.count + n, terms.count + n);
+    for (Eigen::Index i = 0; i < terms.count; ++i)
+      spread(i, i) = squared(
+          config.common[static_cast<size_t>(terms.common[static_cast<size_t>(i)])]);
+    spread.bottomRightCorner(n, n) =
+        squared(config.residual[velocity]) * correlations(kernels, velocity == 1 ? -1.0 : 1.0);
+  }
 }
 
 }  // namespace tread::learner

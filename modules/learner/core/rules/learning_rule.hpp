@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -17,37 +18,34 @@ namespace tread::learner {
 
 /// Noise of one execution on unchanged ground: standard deviations of its mean body twist.
 struct TwistNoise {
-  double forward = 0.03;      ///< [1] of |v_x|
-  double lateral = 0.03;      ///< [1] of v_y over |v_x|
-  double yaw = 0.08;          ///< [1] of |omega|
-  double floor_speed = 0.01;  ///< [m/s] added to the first two
-  double floor_yaw = 0.01;    ///< [rad/s] added to the third
+  double forward = 0.03;   ///< [1] of |v_x|
+  double lateral = 0.03;   ///< [1] of v_y over |v_x|
+  double yaw = 0.08;       ///< [1] of |omega|
+  double position = 0.01;  ///< [m] of a measured end, added to the first two over the time it took
+  double heading = 0.01;   ///< [rad] the same, added to the third
 };
 
-/// Parameters of the local filter; the header of the rule has the equations.
-struct FilterConfig {
+/// What the multiple-model filter expects of grounds; the headers of the rule have the equations.
+struct GroundConfig {
   TwistNoise noise;           ///< expected where nothing was recorded
   double recorded = 0.3;      ///< [1] share of the recorded spread of ends in the noise
-  double noise_factor = 1.2;  ///< [1] on the noise's standard deviations
-  double caution = 2.1;       ///< [1] the same once more on unknown ground: tails are heavy
-  double hazard = 0.05;       ///< [1] probability of a change of ground before an execution
-  /// Standard deviations of one change: forward gain [1], yaw gain [1], sideslip [s], turn loss
-  /// [s], yaw by speed [s/m], yaw bias [rad/m], crab [1].
-  std::array<double, 7> common{0.10, 0.20, 0.15, 0.15, 0.08, 0.02, 0.02};
+  double noise_prior = 6.0;   ///< [1] executions that the expected noise counts for
+  double most_freedom = 40.0; ///< [1] of Student's t: even a known surface has tails
+  /// Standard deviations from surface to surface: forward gain [1], yaw gain [1], sideslip [s], turn
+  /// loss [s], yaw by speed [s/m], yaw bias [rad/m], crab [1].
+  std::array<double, 7> common{0.06, 0.12, 0.09, 0.09, 0.047, 0.012, 0.012};
   /// Of a pattern's own residual: of v_x, of v_y over v_x, of omega [1].
-  std::array<double, 3> residual{0.08, 0.06, 0.12};
-  double common_factor = 0.7;  ///< [1] on `common`
-  double steady = 1.7;  ///< [1] covariance at the start, and in the long run unobserved, over Q
-  double drift = 0.01;  ///< [1] share by which P tends there before each execution
-};
-
-/// Parameters of the bank of remembered surfaces.
-struct BankConfig {
-  double hazard = 0.32;        ///< [1] probability that the surface changes before an execution
-  double unknown_prior = 0.5;  ///< [1] that the next one is not in the bank
-  int64_t settled_after = 10;  ///< executions without a change that make a block
-  double new_margin = 3.0;     ///< [1] of log density, by which a block must be likelier as new
-  int64_t capacity = 16;       ///< surfaces; the one that was met longest ago makes room
+  std::array<double, 3> residual{0.067, 0.05, 0.10};
+  double shared = 0.5;          ///< [1] share of that variance that all surfaces have in common
+  double shipped_spread = 0.05; ///< [1] the same of the shipped set's own ground, over Q
+  double change_metres = 12.0;  ///< [m] mean way to the next change of ground
+  double fresh = 0.5;           ///< [1] probability that a change leads to ground not met before
+  double ahead = 1.5;           ///< [m] way that predictions look ahead
+  double sure = 0.9;            ///< [1] probability from which on a surface counts as recognized
+  int64_t settled_after = 10;   ///< executions on fresh ground until it is remembered
+  double longest_memory = 100.0;  ///< executions after which the oldest on a surface fade
+  int64_t moments = 5;          ///< recent moments at which the ground may have changed
+  int64_t capacity = 16;        ///< remembered surfaces; that met longest ago makes room
 };
 
 /// Name of a rule of learning: one of ruleNames().
@@ -55,12 +53,11 @@ using Rule = std::string;
 
 /// The rule of learning and its guards.
 struct RuleConfig {
-  Rule rule = "bank";
+  Rule rule = "multi_model";
   double memory = 0.5;  ///< w of equation (2): weight of the OLD prediction, 0 <= w < 1
   ScalingLimits scaling;
   double sign_sigmas = 3.0;  ///< how far beyond the noise M and R must disagree in sign
-  FilterConfig filter;
-  BankConfig bank;
+  GroundConfig ground;
 };
 
 // The keys of learner.yaml, a section for each kind of rule. The reader is a ConfigReader; a core
@@ -81,37 +78,44 @@ void readScaling(Reader& reader, RuleConfig& rule) {
   section.number("sign_sigmas", rule.sign_sigmas, {0.0, 10.0}, "1");
 }
 
-template <class Reader>
-void readFilter(Reader& reader, FilterConfig& filter) {
-  Reader section = reader.section("filter");
-  section.number("forward_noise", filter.noise.forward, {0.001, 1.0}, "1");
-  section.number("lateral_noise", filter.noise.lateral, {0.001, 1.0}, "1");
-  section.number("yaw_noise", filter.noise.yaw, {0.001, 1.0}, "1");
-  section.number("recorded", filter.recorded, {0.0, 1.0}, "1");
-  section.number("caution", filter.caution, {1.0, 10.0}, "1");
-  section.number("hazard", filter.hazard, {0.0, 0.9}, "1");
-  section.number("steady", filter.steady, {0.01, 10.0}, "1");
-  section.number("drift", filter.drift, {0.0, 0.5}, "1");
+template <class Reader, size_t kCount>
+void readDeviations(Reader& section, const char* key, std::array<double, kCount>& deviations,
+                    const char* unit) {
+  std::vector<double> numbers(deviations.begin(), deviations.end());
+  section.numbers(key, numbers, kCount, {1e-4, 10.0}, unit);
+  std::copy(numbers.begin(), numbers.end(), deviations.begin());
 }
 
 template <class Reader>
-void readBank(Reader& reader, BankConfig& bank) {
-  Reader section = reader.section("bank");
-  section.number("hazard", bank.hazard, {0.001, 0.9}, "1");
-  section.number("unknown_prior", bank.unknown_prior, {0.001, 1.0}, "1");
-  section.integer("settled_after", bank.settled_after, {3, 100}, "1");
-  section.number("new_margin", bank.new_margin, {0.0, 100.0}, "1");
-  section.integer("capacity", bank.capacity, {1, 64}, "1");
+void readGround(Reader& reader, GroundConfig& ground) {
+  Reader section = reader.section("ground");
+  section.number("forward_noise", ground.noise.forward, {0.001, 1.0}, "1");
+  section.number("lateral_noise", ground.noise.lateral, {0.001, 1.0}, "1");
+  section.number("yaw_noise", ground.noise.yaw, {0.001, 1.0}, "1");
+  section.number("position_noise", ground.noise.position, {1e-4, 1.0}, "m");
+  section.number("heading_noise", ground.noise.heading, {1e-4, 1.0}, "rad");
+  section.number("recorded", ground.recorded, {0.0, 1.0}, "1");
+  section.number("noise_prior", ground.noise_prior, {3.0, 100.0}, "1");
+  section.number("most_freedom", ground.most_freedom, {4.0, 1000.0}, "1");
+  readDeviations(section, "common", ground.common, "1, 1, s, s, s/m, rad/m, 1");
+  readDeviations(section, "residual", ground.residual, "1");
+  section.number("shared", ground.shared, {0.0, 0.95}, "1");
+  section.number("shipped_spread", ground.shipped_spread, {1e-4, 1.0}, "1");
+  section.number("change_metres", ground.change_metres, {0.1, 1e5}, "m");
+  section.number("fresh", ground.fresh, {0.01, 0.99}, "1");
+  section.number("ahead", ground.ahead, {0.0, 100.0}, "m");
+  section.number("sure", ground.sure, {0.5, 0.999}, "1");
+  section.integer("settled_after", ground.settled_after, {2, 1000}, "1");
+  section.number("longest_memory", ground.longest_memory, {10.0, 1e6}, "1");
+  section.integer("moments", ground.moments, {2, 64}, "1");
+  section.integer("capacity", ground.capacity, {1, 64}, "1");
 }
 
 template <class Reader>
 void readRules(Reader& reader, RuleConfig& rule) {
   readScaling(reader, rule);
-  readFilter(reader, rule.filter);
-  readBank(reader, rule.bank);
+  readGround(reader, rule.ground);
 }
-
-class SurfaceBank;
 
 /// What a rule made of one measurement. Plain numbers, so that learning allocates nothing.
 struct RuleNote {
@@ -123,23 +127,26 @@ struct RuleNote {
   bool moved_back = false;                  ///< guard: net x of M against the prediction's
   bool turned_back = false;                 ///< guard: net yaw of M against the prediction's
   std::array<bool, 3> held{};               ///< guard: axes of the executed pattern that are noise
-  double change_probability = kUnknown;     ///< [1] that the ground changed (filters)
+  double change_probability = kUnknown;     ///< [1] that the ground changed
   int surface = 0;                          ///< likeliest remembered surface, from 1; 0 = unknown
   double surface_probability = kUnknown;    ///< [1] of that, or of "unknown"
-  bool surface_stored = false;              ///< the bank has a new surface
+  bool surface_stored = false;              ///< there is a new one to remember
 };
 
 /// A rule of learning: predictions of all patterns of a set, corrected by measurements.
-/** Patterns are named by their index in the shipped set. Same input, same bits; learn() and the
- * predictions allocate nothing, except that the bank does when it classifies a block of executions.
+/** Patterns are named by their index in the shipped set. Same input, same bits; predictions allocate
+ * nothing.
  * Trajectories hold T x 3 numbers: x, y [m], yaw [rad, unwrapped] in the start frame, one row a
  * sample. */
 class LearningRule {
  public:
   virtual ~LearningRule() = default;
 
-  /// Learns from a measured trajectory M of pattern `executed` (as many rows as its prediction).
+  /// Learns from a measured trajectory M of pattern `executed`: as many rows as its prediction, or
+  /// fewer, at least one, if the rule learns from parts.
   virtual void learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) = 0;
+  /// Whether it learns also from the beginning of a pattern.
+  virtual bool learnsParts() const { return false; }
   /// Whether the set may ever change.
   virtual bool learns() const { return true; }
   /// What the rule took an execution for, in words for LEARNING.
@@ -157,10 +164,8 @@ class LearningRule {
   virtual void assign(const LearningRule& other) = 0;
   virtual std::unique_ptr<LearningRule> clone() const = 0;
 
-  /// The surfaces that the rule remembers, or nullptr if it remembers none by nature.
-  virtual const SurfaceBank* bank() const { return nullptr; }
-  /// Takes over surfaces of the same shipped set; on which of them it stands is not known then.
-  virtual void adoptBank(const SurfaceBank&) {}
+  /// How many surfaces the rule remembers; negative if it remembers none by nature.
+  virtual int remembered() const { return -1; }
 
   /// What the rule knows beside the predictions, for the state file; may be empty.
   virtual std::vector<double> memory() const { return {}; }

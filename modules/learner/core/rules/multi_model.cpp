@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/learner/core/rules/multi_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tread::learner {
+namespace {
+
+/// A pattern that hardly drives may still cross a border [m].
+constexpr double kLeastMetres = 0.05;
+/// The centre of new surfaces is kept to this [1]: its digits stand in the state file.
+constexpr double kCentreStep = 1e-6;
+
+std::string percent(double probability) {
+  return std::to_string(std::lround(100.0 * probability)) + " %";
+}
+
+/// The upper triangle of a symmetric matrix.
+PoseCovariance upperTriangle(const Eigen::Matrix3d& covariance) {
+  return {covariance(0, 0), covariance(0, 1), covariance(0, 2),
+          covariance(1, 1), covariance(1, 2), covariance(2, 2)};
+}
+
+/// J P J', P the covariance of the ten corrections of a pattern.
+Eigen::Matrix3d spreadOfEnd(const Eigen::Matrix<double, 3, TwistCorrection::kAll>& J,
+                            const Surface& surface, size_t pattern) {
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
+    const VelocityTerms& terms = termsOf(velocity);
+    const Eigen::MatrixXd& P = surface.covariance()[velocity];
+    const auto place = [&](Eigen::Index i) {
+      return i < terms.count ? i : terms.count + static_cast<Eigen::Index>(pattern);
+    };
+    const auto column = [&](Eigen::Index i) {
+      return i < terms.count ? terms.common[static_cast<size_t>(i)]
+                             : TwistCorrection::kCommon + static_cast<int>(velocity);
+    };
+    for (Eigen::Index i = 0; i <= terms.count; ++i)
+      for (Eigen::Index j = 0; j <= terms.count; ++j)
+        spread += P(place(i), place(j)) * J.col(column(i)) * J.col(column(j)).transpose();
+  }
+  return spread;
+}
+
+}  // namespace
+
+MultiModel::MultiModel(const RuleConfig& config, const PatternSet& shipped)
+    : config_(config.ground),
+      model_(std::make_shared<GroundModel>(config.ground, shipped)),
+      next_(*model_, config_, priorOfNew()) {
+  SurfacePrior of_shipped = priorOfNew();
+  of_shipped.share = config_.shipped_spread;
+  surfaces_.push_back({Surface(*model_, config_, of_shipped), 1.0 - config_.fresh, 0});
+  fresh_.push_back({next_, config_.fresh, 0});
+  predictMixture();
+}
+
+SurfacePrior MultiModel::priorOfNew() const {
+  SurfacePrior prior;
+  for (size_t velocity = 0; velocity < kVelocities; ++velocity)
+    prior.centre[velocity] = Eigen::VectorXd::Zero(model_->dimension(velocity));
+  double met = 0.0;
+  for (const Hypothesis& known : surfaces_) {
+    // The shipped set's ground counts when the vehicle was really on it.
+    if (known.surface.executions() < static_cast<double>(config_.settled_after)) continue;
+    met += 1.0;
+    for (size_t velocity = 0; velocity < kVelocities; ++velocity)
+      prior.centre[velocity] += known.surface.mean()[velocity];
+  }
+  const double shared = config_.shared;
+  const double share = shared / (1.0 - shared + met * shared);
+  for (Eigen::VectorXd& centre : prior.centre)
+    for (double& number : centre)
+      number = kCentreStep * std::round(share * number / kCentreStep);
+  prior.share = (1.0 - shared) * (1.0 + share);
+  return prior;
+}
+
+double MultiModel::hazard(double metres) const {
+  return 1.0 - std::exp(-std::max(metres, kLeastMetres) / config_.change_metres);
+}
+
+/// w^-, and a fresh hypothesis that begins now.
+void MultiModel::expectChange(double metres) {
+  const double h = hazard(metres);
+  const double known = h * (1.0 - config_.fresh) / static_cast<double>(surfaces_.size());
+  changed_.clear();
+  for (Hypothesis& hypothesis : surfaces_) {
+    hypothesis.weight = (1.0 - h) * hypothesis.weight + known;
+    changed_.push_back(known / hypothesis.weight);
+  }
+  for (Hypothesis& hypothesis : fresh_) {
+    hypothesis.weight *= 1.0 - h;
+    changed_.push_back(0.0);
+  }
+  fresh_.push_back({next_, h * config_.fresh, 0});
+  changed_.push_back(1.0);
+}
+
+/// w, from w^- and the densities of an execution.
+void MultiModel::weigh(const TwistSample& sample) {
+  double highest = -std::numeric_limits<double>::infinity();  // of those that are possible
+  std::vector<double> logs;
+  for (const auto* hypotheses : {&surfaces_, &fresh_})
+    for (const Hypothesis& hypothesis : *hypotheses) {
+      logs.push_back(hypothesis.surface.logDensity(sample));
+      if (hypothesis.weight > 0.0) highest = std::max(highest, logs.back());
+    }
+  double total = 0.0;
+  double changed = 0.0;
+  size_t i = 0;
+  for (auto* hypotheses : {&surfaces_, &fresh_})
+    for (Hypothesis& hypothesis : *hypotheses) {
+      if (hypothesis.weight > 0.0) hypothesis.weight *= std::exp(logs[i] - highest);
+      total += hypothesis.weight;
+      changed += hypothesis.weight * changed_[i++];
+    }
+  scaleWeights(total);
+  change_probability_ = changed / total;
+}
+
+void MultiModel::scaleWeights(double total) {
+  for (auto* hypotheses : {&surfaces_, &fresh_})
+    for (Hypothesis& hypothesis : *hypotheses) hypothesis.weight /= total;
+}
+
+void MultiModel::update(const TwistSample& sample) {
+  for (Hypothesis& hypothesis : fresh_) hypothesis.surface.add(*model_, config_, sample);
+  for (Hypothesis& hypothesis : surfaces_) {
+    if (hypothesis.weight < config_.sure) continue;
+    hypothesis.surface.add(*model_, config_, sample);
+    hypothesis.last_met = clock_;
+  }
+}
+
+void MultiModel::forgetWeakest() {
+  while (static_cast<int64_t>(fresh_.size()) > config_.moments) {
+    // The newest has had no time to prove itself.
+    const auto weakest = std::min_element(
+        fresh_.begin(), fresh_.end() - 1,
+        [](const Hypothesis& a, const Hypothesis& b) { return a.weight < b.weight; });
+    const double left = 1.0 - weakest->weight;
+    fresh_.erase(weakest);
+    scaleWeights(left);
+  }
+}
+
+bool MultiModel::rememberSettled() {
+  const auto settled =
+      std::find_if(fresh_.begin(), fresh_.end(), [this](const Hypothesis& hypothesis) {
+        return hypothesis.weight >= config_.sure &&
+               hypothesis.surface.executions() >= static_cast<double>(config_.settled_after);
+      });
+  if (settled == fresh_.end()) return false;
+  settled->last_met = clock_;
+  if (static_cast<int64_t>(surfaces_.size()) > config_.capacity) {
+    // Never the shipped one.
+    const auto oldest = std::min_element(
+        surfaces_.begin() + 1, surfaces_.end(),
+        [](const Hypothesis& a, const Hypothesis& b) { return a.last_met < b.last_met; });
+    const double left = 1.0 - oldest->weight;
+    *oldest = std::move(*settled);
+    fresh_.erase(settled);
+    scaleWeights(left);
+    return true;
+  }
+  surfaces_.push_back(std::move(*settled));
+  fresh_.erase(settled);
+  return true;
+}
+
+template <class Take>
+void MultiModel::forEachAhead(Take&& take) const {
+  const double h = hazard(config_.ahead);
+  const double known = h * (1.0 - config_.fresh) / static_cast<double>(surfaces_.size());
+  for (const Hypothesis& hypothesis : surfaces_)
+    take((1.0 - h) * hypothesis.weight + known, hypothesis.surface);
+  for (const Hypothesis& hypothesis : fresh_)
+    take((1.0 - h) * hypothesis.weight, hypothesis.surface);
+  take(h * config_.fresh, next_);
+}
+
+void MultiModel::predictMixture() {
+  for (size_t velocity = 0; velocity < kVelocities; ++velocity)
+    mean_[velocity].setZero(model_->dimension(velocity));
+  forEachAhead([this](double weight, const Surface& surface) {
+    for (size_t velocity = 0; velocity < kVelocities; ++velocity)
+      mean_[velocity] += weight * surface.mean()[velocity];
+  });
+}
+
+void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) {
+  const Eigen::Vector3d mean_twist = meanTwist(measured, model_->period());
+  if (!mean_twist.allFinite()) return;  // beyond all numbers
+  const PatternPart& whole = model_->whole(executed);
+  const TwistSample sample{
+      measured.rows() == whole.samples ? whole : model_->part(executed, measured.rows()),
+      plausible(mean_twist)};
+  ++clock_;
+  expectChange(sample.part.metres);
+  weigh(sample);
+  update(sample);
+  forgetWeakest();
+  note.surface_stored = rememberSettled();
+  next_ = Surface(*model_, config_, priorOfNew());
+  predictMixture();
+  note.change_probability = change_probability_;
+  note.surface = 0;
+  note.surface_probability = 0.0;
+  for (const Hypothesis& hypothesis : fresh_) note.surface_probability += hypothesis.weight;
+  for (size_t k = 0; k < surfaces_.size(); ++k) {
+    if (surfaces_[k].weight <= note.surface_probability) continue;
+    note.surface = static_cast<int>(k) + 1;
+    note.surface_probability = surfaces_[k].weight;
+  }
+}
+
+std::string MultiModel::reason(const RuleNote& note) const {
+  const std::string sure = " (" + percent(note.surface_probability) + ")";
+  if (note.surface_stored)
+    return "remembered as surface " + std::to_string(note.surface) + " from now on";
+  if (note.surface == 1) return "as shipped" + sure;
+  return note.surface > 0 ? "as surface " + std::to_string(note.surface) + sure
+                          : "unknown ground" + sure;
+}
+
+Correction10 MultiModel::correctionOf(const ByVelocity<Eigen::VectorXd>& x, size_t pattern) const {
+  Correction10 correction;
+  for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
+    const VelocityTerms& terms = termsOf(velocity);
+    for (Eigen::Index i = 0; i < terms.count; ++i)
+      correction[terms.common[static_cast<size_t>(i)]] = x[velocity][i];
+    correction[TwistCorrection::kCommon + static_cast<Eigen::Index>(velocity)] =
+        x[velocity][terms.count + static_cast<Eigen::Index>(pattern)];
+  }
+  return correction;
+}
+
+void MultiModel::predict(size_t pattern, Trajectory prediction) const {
+  model_->profile(pattern).integrate(correctionOf(mean_, pattern), prediction);
+}
+
+Pose2 MultiModel::predictEnd(size_t pattern) const {
+  return model_->profile(pattern).integrateEnd(correctionOf(mean_, pattern));
+}
+
+std::optional<PoseCovariance> MultiModel::endCovariance(size_t pattern) const {
+  const auto& J = model_->profile(pattern).endResponse();
+  const Eigen::Matrix3d& lever = model_->profile(pattern).endLever();
+  const Correction10 mean = correctionOf(mean_, pattern);
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d execution = Eigen::Vector3d::Zero();
+  forEachAhead([&](double weight, const Surface& surface) {
+    const Eigen::Vector3d moved = J * (correctionOf(surface.mean(), pattern) - mean);
+    covariance += weight * (moved * moved.transpose() + spreadOfEnd(J, surface, pattern));
+    execution += weight * surface.executionNoise(model_->whole(pattern));
+  });
+  covariance += lever * execution.asDiagonal() * lever.transpose();
+  return upperTriangle(0.5 * (covariance + covariance.transpose()));
+}
+
+void MultiModel::assign(const LearningRule& other) {
+  const auto& rule = static_cast<const MultiModel&>(other);
+  surfaces_ = rule.surfaces_;
+  fresh_ = rule.fresh_;
+  next_ = rule.next_;
+  change_probability_ = rule.change_probability_;
+  clock_ = rule.clock_;
+  mean_ = rule.mean_;
+}
+
+// What the rule writes into the state file, and what it takes back from there.
+
+std::vector<double> MultiModel::memory() const {
+  std::vector<double> memory{static_cast<double>(clock_)};
+  for (const auto* hypotheses : {&surfaces_, &fresh_}) {
+    memory.push_back(static_cast<double>(hypotheses->size()));
+    for (const Hypothesis& hypothesis : *hypotheses) {
+      memory.push_back(hypothesis.weight);
+      memory.push_back(static_cast<double>(hypothesis.last_met));
+      hypothesis.surface.save(memory);
+    }
+  }
+  return memory;
+}
+
+bool MultiModel::restoreHypotheses(std::vector<Hypothesis>& hypotheses, size_t most,
+                                   const std::vector<double>& memory, size_t& at) const {
+  if (at >= memory.size() || !isCount(memory[at], static_cast<double>(most))) return false;
+  const auto count = static_cast<size_t>(memory[at++]);
+  hypotheses.clear();
+  for (size_t i = 0; i < count; ++i) {
+    if (memory.size() < at + 2) return false;
+    Hypothesis hypothesis{next_, memory[at]};
+    if (!(hypothesis.weight >= 0.0 && hypothesis.weight <= 1.0 + 1e-9)) return false;
+    if (!isCount(memory[at + 1], static_cast<double>(clock_))) return false;
+    hypothesis.last_met = static_cast<int64_t>(memory[at + 1]);
+    at += 2;
+    if (!hypothesis.surface.restore(*model_, config_, memory, at)) return false;
+    hypotheses.push_back(std::move(hypothesis));
+  }
+  return true;
+}
+
+bool MultiModel::restore(const TrajectoryTable&, const std::vector<double>& memory) {
+  for (const double number : memory)
+    if (!std::isfinite(number)) return false;
+  if (memory.empty() || !isCount(memory[0], kMostExecutions)) return false;
+  MultiModel rule = *this;
+  rule.clock_ = static_cast<int64_t>(memory[0]);
+  size_t at = 1;
+  if (!rule.restoreHypotheses(rule.surfaces_, static_cast<size_t>(config_.capacity) + 1, memory,
+                              at) ||
+      !rule.restoreHypotheses(rule.fresh_, static_cast<size_t>(config_.moments), memory, at) ||
+      at != memory.size() || rule.surfaces_.empty())
+    return false;
+  double total = 0.0;
+  for (const auto* hypotheses : {&rule.surfaces_, &rule.fresh_})
+    for (const Hypothesis& hypothesis : *hypotheses) total += hypothesis.weight;
+  if (std::abs(total - 1.0) > 1e-6) return false;
+  rule.next_ = Surface(*model_, config_, rule.priorOfNew());
+  rule.predictMixture();
+  assign(rule);
+  return true;
+}
+
+}  // namespace tread::learner

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "modules/learner/core/rules/ground_model.hpp"
+#include "modules/learner/core/rules/learning_rule.hpp"
+#include "modules/learner/core/rules/surface.hpp"
+
+namespace tread::learner {
+
+/// A multiple-model filter over surfaces (own work). The default rule.
+/** On which ground is the vehicle? The hypotheses are the surfaces that it remembers, the first of
+ * them the ground of the shipped set, and *fresh* ones: since some moment it is on ground that it
+ * has not met, one hypothesis for each recent moment. Each is a Surface: a regression of what was
+ * measured, with a noise of its own. After d metres and an execution z
+ *    w_i^- = (1 - h) w_i + h pi_i,   h = 1 - exp(-d / change_metres)
+ *    w_i ~ w_i^- p_i(z)
+ * pi: `fresh` for a new hypothesis that begins with this execution, the rest in equal shares for
+ * the remembered surfaces. Every fresh one learns from z; a remembered one only while it is sure,
+ * so that doubtful executions blur none. A fresh one that is sure and settled is remembered from
+ * then on. The weakest fresh ones, and the surface that was met longest ago, make room.
+ * A new surface is expected about a centre that the remembered ones have in common: with
+ * x_k = mu + d_k, mu ~ N(0, shared Q), d_k ~ N(0, (1 - shared) Q), K surfaces met
+ *    E[mu] = shared sum x_k / (1 - shared + K shared),
+ *    Var[x_new] = (1 - shared)(1 + shared / (1 - shared + K shared)) Q.
+ * So what the vehicle does on every ground, unlike its shipped set, is kept where the ground
+ * changes. Predictions are for the next `ahead` metres, on which the ground may change, too: the
+ * shipped profile under sum_i w_i^- E[x_i], the covariance that of the mixture. */
+class MultiModel : public LearningRule {
+ public:
+  MultiModel(const RuleConfig& config, const PatternSet& shipped);
+
+  void learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) override;
+  bool learnsParts() const override { return true; }
+  std::string reason(const RuleNote& note) const override;
+  void predict(size_t pattern, Trajectory prediction) const override;
+  Pose2 predictEnd(size_t pattern) const override;
+  std::optional<PoseCovariance> endCovariance(size_t pattern) const override;
+  int remembered() const override { return static_cast<int>(surfaces_.size()); }
+  void assign(const LearningRule& other) override;
+  std::unique_ptr<LearningRule> clone() const override {
+    return std::make_unique<MultiModel>(*this);
+  }
+  std::vector<double> memory() const override;
+  bool restore(const TrajectoryTable& predictions, const std::vector<double>& memory) override;
+
+  /// A remembered surface; the first is that of the shipped set.
+  const Surface& surface(size_t i) const { return surfaces_[i].surface; }
+
+ private:
+  struct Hypothesis {
+    Surface surface;
+    double weight = 0.0;
+    int64_t last_met = 0;  ///< in executions that the rule has learned from since it began
+  };
+  /// A hypothesis with its weight after some more metres.
+  struct Weighed {
+    double weight;
+    const Surface* surface;
+  };
+
+  SurfacePrior priorOfNew() const;
+  double hazard(double metres) const;
+  double freshShare() const;
+  void expectChange(double metres);
+  void weigh(const TwistSample& sample);
+  void scaleWeights(double total);
+  void update(const TwistSample& sample);
+  void forgetWeakest();
+  bool rememberSettled();
+  void predictMixture();
+  template <class Take>
+  void forEachAhead(Take&& take) const;
+  Correction10 correctionOf(const ByVelocity<Eigen::VectorXd>& x, size_t pattern) const;
+  bool restoreHypotheses(std::vector<Hypothesis>& hypotheses, size_t most,
+                         const std::vector<double>& memory, size_t& at) const;
+
+  GroundConfig config_;
+  std::shared_ptr<const GroundModel> model_;
+  std::vector<Hypothesis> surfaces_;  ///< remembered; [0] of the shipped set
+  std::vector<Hypothesis> fresh_;     ///< by the moment of their change, oldest first
+  Surface next_;                      ///< what a new surface would be
+  std::vector<double> changed_;       ///< share of w_i^- that came by a change, remembered ones first
+  double change_probability_ = 0.0;
+  int64_t clock_ = 0;
+  ByVelocity<Eigen::VectorXd> mean_;  ///< of the mixture
+};
+
+}  // namespace tread::learner
