@@ -55,7 +55,9 @@ void ExecutionTracker::begin(const PatternSet& set, int pattern_id, int64_t now)
 }
 
 void ExecutionTracker::setNext(const PatternSet& set, int pattern_id) {
-  if (!next_.empty() && next_.pattern_id == pattern_id) return;
+  // A plan with a newer set is a newer decision: its prediction is what counts.
+  const bool same_set = !next_.empty() && next_.set->version() == set.version();
+  if (same_set && next_.pattern_id == pattern_id) return;
   clearNext();
   next_ = {++last_id_, pattern_id, set};
 }

@@ -43,6 +43,9 @@ struct BridgeReading {
   }
 };
 
+/// Why an execution was aborted whose program the planner has emptied.
+inline constexpr const char* kStoppedByPlanner = "stopped by the planner";
+
 /// One execution as the motor bridge records it.
 struct ExecutionReading {
   enum class State { kRunning, kCompleted, kAborted };
@@ -89,7 +92,7 @@ class ExecutionTracker {
 
   /// Hands over a pattern to a standing vehicle.
   void begin(const PatternSet& set, int pattern_id, int64_t now);
-  /// Hands over the pattern that follows; the same pattern again keeps its slot.
+  /// Hands over the pattern that follows; the same pattern of the same set again keeps its slot.
   void setNext(const PatternSet& set, int pattern_id);
   void clearNext();
   /// Empties both slots: stop now.

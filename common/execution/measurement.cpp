@@ -28,6 +28,10 @@ double seconds(int64_t us) {
   return static_cast<double>(us) * 1e-6;
 }
 
+std::vector<Pose2> firstOf(const std::vector<Pose2>& poses, size_t count) {
+  return {poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(std::min(count, poses.size()))};
+}
+
 /// Fills a measurement step by step; the first gate that closes stays.
 class Cutter {
  public:
@@ -64,7 +68,11 @@ class Cutter {
   int64_t duration() const { return static_cast<int64_t>(pattern_.trajectory.size()) * period_us_; }
 
   void checkRecord() {
-    if (!cut_.completed) close(Gate::kAborted, "aborted: " + cut_.outcome_reason);
+    if (!cut_.completed && !cut_.beginning)
+      close(Gate::kAborted, "aborted: " + cut_.outcome_reason);
+    if (cut_.beginning && cut_.ended - cut_.started < limits_.shortest_us)
+      close(Gate::kAborted, "only " + fixed(seconds(cut_.ended - cut_.started), 2) +
+                                " s of it were driven, needed " + fixed(seconds(limits_.shortest_us), 2));
     if (!cut_.unexpected_command.empty()) close(Gate::kCommands, cut_.unexpected_command);
     const int64_t took = cut_.ended - cut_.started;
     const double longest = seconds(duration()) / limits_.min_covered;
@@ -89,6 +97,8 @@ class Cutter {
     if (result_.covered > 0) result_.path_length = lengthOfPath(result_.trajectory);
     continueAsPredicted();
   }
+
+  size_t samplesOf(int64_t us) const { return static_cast<size_t>(us / period_us_); }
 
   int64_t sampleTime(size_t t) const {
     return cut_.started + static_cast<int64_t>(t + 1) * period_us_;
@@ -121,10 +131,14 @@ class Cutter {
         close(Gate::kInsGap, "INS silent for " + fixed(seconds(*gap), 3) + " s, allowed " +
                                  fixed(seconds(limits_.max_gap_us), 3) + " s");
     }
-    if (share < limits_.min_covered)
+    const bool enough = cut_.beginning ? result_.covered >= samplesOf(limits_.shortest_us)
+                                       : share >= limits_.min_covered;
+    if (!enough)
       close(Gate::kCoveredTime, "the INS covers " + fixed(100.0 * share, 0) +
                                     " % of the execution, needed " +
-                                    fixed(100.0 * limits_.min_covered, 0) + " %");
+                                    (cut_.beginning
+                                         ? fixed(seconds(limits_.shortest_us), 2) + " s"
+                                         : fixed(100.0 * limits_.min_covered, 0) + " %"));
   }
 
   void checkMotion() {
@@ -136,8 +150,10 @@ class Cutter {
     if (fastest > allowed)
       close(Gate::kSpeed,
             "measured " + fixed(fastest, 2) + " m/s, possible " + fixed(allowed, 2) + " m/s");
-    const Eigen::Array3d moved = boundingBox(result_.trajectory);
-    const Eigen::Array3d expected = boundingBox(pattern_.trajectory);
+    // Of a beginning, what lies behind it is only predicted.
+    const size_t known = cut_.beginning ? result_.covered : pattern_.trajectory.size();
+    const Eigen::Array3d moved = boundingBox(firstOf(result_.trajectory, known));
+    const Eigen::Array3d expected = boundingBox(firstOf(pattern_.trajectory, known));
     const bool should_move = (expected >= kExpectedMotion).any();
     const bool stood = moved[0] < limits_.min_motion && moved[1] < limits_.min_motion &&
                        moved[2] < limits_.min_turn;
@@ -160,7 +176,8 @@ class Cutter {
 
   void checkEntry(const MotionClass& entry_class) {
     const bool any = std::isinf(limits_.entry_speed) && std::isinf(limits_.entry_yaw_rate);
-    if (any) return;
+    // What the ground makes of the right command is what is to be learned.
+    if (any || cut_.steady_before) return;
     if (!std::isfinite(result_.entry.v_x)) {
       close(Gate::kEntryTwist, "the twist before the start was not measured");
       return;

@@ -30,7 +30,7 @@ enum class Gate {
   kNotFinite,       ///< lost poses
   kSpeed,           ///< faster than the vehicle can be
   kNoMotion,        ///< should have moved, did not
-  kEntryTwist,      ///< did not begin in the pattern's entry class
+  kEntryTwist,      ///< neither commands nor twist before it were those of its entry class
   kSlope,           ///< the ground was too steep
 };
 
@@ -41,6 +41,7 @@ const char* gateName(Gate gate);
 struct MeasurementLimits {
   int64_t max_gap_us = 300'000;  ///< [us] between two INS poses
   double min_covered = 0.80;     ///< [1] share of the samples that the INS must cover
+  int64_t shortest_us = 400'000; ///< [us] of a beginning: shorter ones are mostly INS noise
   double max_speed = 0.0;        ///< [m/s] of the vehicle; 0 = the largest in the shipped set
   double speed_margin = 1.5;     ///< [1] poses faster than this times max_speed are jumps
   double min_motion = 0.03;      ///< [m] box below which nothing moved
@@ -58,6 +59,11 @@ struct ExecutionCut {
   int64_t started = 0;  ///< [us] when the first command took effect
   int64_t ended = 0;    ///< [us] end of the last command's period
   bool completed = false;
+  /// Only its beginning, up to `ended`: it still runs, or was stopped before its end.
+  bool beginning = false;
+  /// The entry class's command was given before it for so long that the entry is the class's,
+  /// whatever twist that makes on this ground.
+  bool steady_before = false;
   std::string outcome_reason;  ///< why it was aborted
   /// A command that differed from the pattern's, in words; empty = none seen.
   std::string unexpected_command;

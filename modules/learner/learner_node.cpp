@@ -93,6 +93,7 @@ void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config) {
   reader.seconds("period", config.period_us, {0.02, 0.1});
   reader.seconds("settle", config.settle_us, {0.0, 2.0});
   reader.seconds("give_up", config.give_up_us, {0.1, 30.0});
+  reader.seconds("follow", config.follow_us, {0.0, 60.0});
   reader.seconds("repeat", config.repeat_us, {0.2, 5.0});
   reader.seconds("track_span", config.track_span_us, {5.0, 600.0});
   reader.integer("remembered_versions", config.remembered_versions, {2, 1000}, "1");
@@ -160,6 +161,7 @@ void LearnerNode::step(int64_t utime) {
     while (executions_.takeEndedBy(horizon)) health_.addToCounter("executions left to the other");
   } else if (!listensOnly()) {
     handleEnded(utime);
+    followRunning();
     if (utime >= next_repeat_ && publisher_.setsSent()) {
       publisher_.putSet(learner_.set());
       next_repeat_ = utime + config_.repeat_us;
@@ -188,6 +190,36 @@ void LearnerNode::handleEnded(int64_t utime) {
   }
 }
 
+void LearnerNode::noteRunning(const execution_t& message) {
+  for (const execution_record_t& record : message.records) {
+    if (record.outcome != execution_record_t::OUTCOME_RUNNING || record.started <= followed_until_)
+      continue;
+    if (running_ && keyOf(*running_) == keyOf(record)) continue;
+    running_ = record;
+    followed_until_ = record.started;
+  }
+}
+
+/// What is known of a running execution teaches at once: the next one is being chosen.
+void LearnerNode::followRunning() {
+  if (!running_ || config_.follow_us <= 0 || !learner_.learnsParts()) return;
+  const int64_t newest = ins_.history().newest();
+  const MotionPattern* pattern = learner_.set().find(running_->record_pattern_id);
+  if (pattern == nullptr || running_->started < ins_.begin() || executions_.nextEnd()) return;
+  const int64_t parts = (newest - running_->started) / config_.follow_us;
+  const int64_t until = running_->started + parts * config_.follow_us;
+  const int64_t end = running_->started + learner_.set().content().period_us *
+                                              static_cast<int64_t>(pattern->commands.size());
+  // Its end itself is left to its record.
+  if (until <= followed_until_ || until >= end) return;
+  followed_until_ = until;
+  ExecutionCut cut = cutOf(*running_, *pattern);
+  cut.ended = until;
+  cut.beginning = true;
+  const Measurement measurement = measureCut(cut, *pattern);
+  if (measurement.fair() && learner_.follow(pattern->id, measurement, until)) publishVersion();
+}
+
 /// By steps and not by time, which jumps when the first message is heard.
 bool LearnerNode::listensOnly() const {
   return steps_ * config_.period_us < config_.listen_us;
@@ -208,6 +240,7 @@ void LearnerNode::becomeActive() {
 
 void LearnerNode::hear(const execution_t& message) {
   executions_.add(message, bus_.now());
+  noteRunning(message);
   int64_t highest = 0;
   for (const execution_record_t& record : message.records)
     highest = std::max(highest, record.record_set_version);
@@ -271,7 +304,7 @@ void LearnerNode::handle(const execution_record_t& record) {
         "pattern " + std::to_string(record.record_pattern_id) + " is not in the set";
   } else {
     message.learned_pattern_name = pattern->name;
-    measurement = measureRecord(record, *pattern);
+    measurement = measureCut(cutOf(record, *pattern), *pattern);
     score(record, measurement, message);
   }
   message.accepted = measurement.fair();
@@ -296,11 +329,13 @@ void LearnerNode::handle(const execution_record_t& record) {
     message.result_version = learner_.set().version();
     scoreAfter(measurement, record.record_pattern_id, message);
   }
+  if (running_ && keyOf(*running_) == keyOf(record)) running_.reset();
+  if (!message.changed && learner_.unfollow(record.ended)) publishVersion();
   bus_.publish(kLearning, message);
 }
 
-Measurement LearnerNode::measureRecord(const execution_record_t& record,
-                                       const MotionPattern& pattern) const {
+ExecutionCut LearnerNode::cutOf(const execution_record_t& record,
+                                const MotionPattern& pattern) const {
   ExecutionCut cut;
   cut.started = record.started;
   cut.ended = record.ended;
@@ -308,6 +343,15 @@ Measurement LearnerNode::measureRecord(const execution_record_t& record,
   cut.outcome_reason = record.outcome_reason;
   const PatternSet& set = learner_.set();
   cut.unexpected_command = commands_.unexpectedCommand(keyOf(record), pattern, set.content().kind);
+  // Where a failsafe stops the robot it may have been held: that is no ground.
+  cut.beginning = learner_.learnsParts() && !cut.completed && cut.outcome_reason == kStoppedByPlanner;
+  cut.steady_before = hand_.steadyBefore(set.classNamed(pattern.entry_class).steady, record.started,
+                                         set.content().period_us);
+  return cut;
+}
+
+Measurement LearnerNode::measureCut(const ExecutionCut& cut, const MotionPattern& pattern) const {
+  const PatternSet& set = learner_.set();
   return measure(ins_.history(), cut, pattern, set.classNamed(pattern.entry_class),
                  set.content().period_us, config_.limits);
 }
@@ -358,6 +402,13 @@ std::string LearnerNode::stateText() const {
   const LearnerState state{learner_.set(), learner_.residuals(), learner_.memory(),
                            config_.rule.rule, executions_.handled()};
   return formatState(state, learner_.shipped(), config_.rule);
+}
+
+/// A version that lives until the running execution has ended: it is not written.
+void LearnerNode::publishVersion() {
+  keepVersion();
+  if (const auto problem = memory_.reserve(learner_.set().version())) noteWrite(problem);
+  publisher_.putSet(learner_.set());
 }
 
 /// The newest version becomes the one that everybody uses: on disk first, then on the bus.

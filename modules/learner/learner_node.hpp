@@ -89,6 +89,8 @@ struct LearnerNodeConfig {
       200'000;  ///< [us] what is this old has arrived: INS latency and disorder of the bus
   int64_t give_up_us =
       2'000'000;  ///< [us] after its end: an execution is then measured with the INS there is
+  int64_t follow_us =
+      400'000;  ///< [us] a running execution is learned from as often as this; 0 = at its end only
   int64_t repeat_us = 2'000'000;       ///< [us] between repetitions of the set
   int64_t track_span_us = 60'000'000;  ///< [us] of INS that is kept
   int64_t listen_us = 0;  ///< [us] without a set at the start: is there a learner already?
@@ -114,6 +116,8 @@ void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config);
  *     What a person drives by hand is an execution, too, where its commands are a pattern's: of run
  *     0, with the time of its start as id.
  *  3. If the rule changes the set, state and set are written and published under the next version.
+ *  4. A rule that learns from parts follows a running execution: sets are published as if it had
+ *     ended there, but neither written nor reported. What it teaches in the end replaces them.
  *  Each (run id, execution id) is handled once. Versions only go up: see LearnerMemory. While a
  *  learner that was started earlier lives, this one publishes and learns nothing; then it goes on
  *  above the versions of that one. */
@@ -144,7 +148,10 @@ class LearnerNode : public Node {
   void becomeActive();
   void handleEnded(int64_t utime);
   void handle(const execution_record_t& record);
-  Measurement measureRecord(const execution_record_t& record, const MotionPattern& pattern) const;
+  void noteRunning(const execution_t& message);
+  void followRunning();
+  ExecutionCut cutOf(const execution_record_t& record, const MotionPattern& pattern) const;
+  Measurement measureCut(const ExecutionCut& cut, const MotionPattern& pattern) const;
   void score(const execution_record_t& record, const Measurement& measurement,
              learning_t& message) const;
   void scoreAfter(const Measurement& measurement, int pattern_id, learning_t& message) const;
@@ -154,6 +161,7 @@ class LearnerNode : public Node {
   void keepVersion();
   void goAbove(int64_t version);
   void adoptVersion();
+  void publishVersion();
   void noteWrite(const std::optional<std::string>& problem);
   void reportHealth(int64_t utime);
 
@@ -165,6 +173,8 @@ class LearnerNode : public Node {
   ExecutionQueue executions_;
   CommandWatch commands_;
   HandWatch hand_;
+  std::optional<execution_record_t> running_;  ///< execution that is followed
+  int64_t followed_until_ = 0;                 ///< [us] of its time
   int64_t seq_motor_ = -1;  ///< of the last MOTOR; -1 = none yet
   SetPublisher publisher_;
   HealthReporter health_;

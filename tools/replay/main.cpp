@@ -101,7 +101,7 @@ void addPlanner(CLI::App& app, Arguments& arguments) {
 struct LearnerArguments : Arguments {
   std::string model;
   std::string patterns;
-  std::string rule = "bank";
+  std::string rule = "multi_model";
   std::string write_patterns;
 };
 

@@ -121,10 +121,14 @@ void ShadowLearners::note(const program_slot_t& slot, int64_t run_id, int64_t ut
 }
 
 int64_t ShadowLearners::decisionTime(const ExecutionKey& key) const {
+  // A set that comes in time makes the planner decide anew: 130 ms before an execution it freezes
+  // what it has handed over, and a step and a search come before that.
+  constexpr int64_t kSetInTime = 200'000;
   const auto decided = decisions_.find(key);
-  if (decided != decisions_.end()) return decided->second.since;
   const auto began = began_.find(key);
-  return began == began_.end() ? newest_ : began->second;
+  if (began == began_.end()) return decided == decisions_.end() ? newest_ : decided->second.since;
+  if (decided == decisions_.end()) return began->second;
+  return std::max(decided->second.since, began->second - kSetInTime);
 }
 
 void ShadowLearners::hear(int64_t utime, const LogEvent& event) {

@@ -33,7 +33,8 @@ struct ShadowedExecution {
 /** Each receives INS, EXECUTION and MOTOR, gates and learns as the robot's learner does; its
  * messages are discarded, so every rule sees the same executions. Each begins with the shipped set
  * and no memory. Every rule's score of an execution uses the newest set that the rule had published
- * when the planner decided on the execution (PROGRAM; without that, when it began). */
+ * when the planner decided on the execution, or would have decided with it (PROGRAM; without that,
+ * when it began). */
 class ShadowLearners {
  public:
   ShadowLearners(const learner::LearnerNodeConfig& config, std::vector<learner::Rule> rules,

@@ -18,7 +18,7 @@ struct Arguments {
   std::string world;
   std::string truth;
   std::string picture;
-  std::vector<std::string> rules{"off", "collective", "bank"};
+  std::vector<std::string> rules{"off", "collective", "multi_model"};
 };
 
 int run(const Arguments& arguments) {

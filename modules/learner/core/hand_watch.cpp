@@ -43,12 +43,16 @@ bool HandWatch::given(const TrackCommand& command, int64_t utime) const {
          std::abs(found->command.right - command.right) <= kSameCommand;
 }
 
+bool HandWatch::steadyBefore(const TrackCommand& command, int64_t utime, int64_t period_us) const {
+  for (int64_t before = utime - kSteady; before < utime - kEdge; before += period_us)
+    if (!given(command, before)) return false;
+  return true;
+}
+
 HandWatch::Fit HandWatch::fit(const PatternSet& set, const MotionPattern& pattern,
                               int64_t start) const {
   const int64_t period = set.content().period_us;
-  const TrackCommand& steady = set.classNamed(pattern.entry_class).steady;
-  for (int64_t before = start - kSteady; before < start - kEdge; before += period)
-    if (!given(steady, before)) return Fit::kNo;
+  if (!steadyBefore(set.classNamed(pattern.entry_class).steady, start, period)) return Fit::kNo;
   int64_t begin = start;
   for (const TrackCommand& command : pattern.commands) {
     for (const int64_t utime : {begin + kEdge, begin + period - kEdge}) {

@@ -34,6 +34,8 @@ class HandWatch {
  public:
   /// Takes the commands in the order of time. `lost`: some before this one are missing.
   void add(const GivenCommand& given, bool lost);
+  /// Whether a command, from whomever, was given without a break for half a second before a time.
+  bool steadyBefore(const TrackCommand& command, int64_t utime, int64_t period_us) const;
   /// The patterns of a set that have ended since the last call, in the order of time.
   std::vector<HandDrivenPattern> take(const PatternSet& set);
 

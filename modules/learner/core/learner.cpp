@@ -65,7 +65,7 @@ Learner::Learner(const RuleConfig& config, PatternSet shipped)
     : shipped_(std::move(shipped)),
       set_(shipped_),
       rule_(makeRule(config, shipped_)),
-      before_(rule_->clone()) {
+      settled_(rule_->clone()) {
   for (const MotionPattern& pattern : shipped_.patterns()) {
     index_.emplace(pattern.id, index_.size());
     residuals_[pattern.id] = residualsOf(pattern);
@@ -75,7 +75,10 @@ Learner::Learner(const RuleConfig& config, PatternSet shipped)
 bool Learner::restore(PatternSet set, ResidualTable residuals, const std::vector<double>& memory) {
   set_ = std::move(set);
   residuals_ = std::move(residuals);
-  if (rule_->restore(TrajectoryTable(set_.patterns()), memory)) return true;
+  if (rule_->restore(TrajectoryTable(set_.patterns()), memory)) {
+    settled_->assign(*rule_);
+    return true;
+  }
   std::string why;
   if (auto anew = PatternSet::make(predicted(), why)) set_ = *anew;
   return false;
@@ -103,6 +106,50 @@ PatternSetContent Learner::predicted() const {
   return content;
 }
 
+/// The rule as it was, and this execution.
+RuleNote Learner::update(size_t executed, const Measurement& measurement) {
+  rule_->assign(*settled_);
+  fill(measurement.trajectory, measured_);
+  const auto samples = static_cast<Eigen::Index>(measurement.trajectory.size());
+  const ConstTrajectory whole(measured_.data(), samples, 3);
+  RuleNote note;
+  if (!rule_->learnsParts() || measurement.complete()) {
+    rule_->learn(executed, whole, note);
+    return note;
+  }
+  const Eigen::ArrayX3d beginning = whole.topRows(static_cast<Eigen::Index>(measurement.covered));
+  rule_->learn(executed, ConstTrajectory(beginning.data(), beginning.rows(), 3), note);
+  return note;
+}
+
+bool Learner::adopt(PatternSetContent content, int64_t utime, std::string& why) {
+  content.parent_version = content.version;
+  ++content.version;
+  content.utime = utime;
+  auto next = PatternSet::make(std::move(content), why);
+  if (next) set_ = *next;
+  return next.has_value();
+}
+
+bool Learner::follow(int pattern_id, const Measurement& beginning, int64_t utime) {
+  const MotionPattern* pattern = set_.find(pattern_id);
+  if (!rule_->learnsParts() || pattern == nullptr || !beginning.fair() || beginning.covered == 0)
+    return false;
+  update(index_.at(pattern_id), beginning);
+  std::string why;
+  following_ = adopt(predicted(), utime, why);
+  if (!following_) rule_->assign(*settled_);
+  return following_;
+}
+
+bool Learner::unfollow(int64_t utime) {
+  if (!following_) return false;
+  following_ = false;
+  rule_->assign(*settled_);
+  std::string why;
+  return adopt(predicted(), utime, why);
+}
+
 Correction Learner::learn(int pattern_id, const Measurement& measurement,
                           const std::optional<Pose2>& end_error, int64_t utime) {
   Correction correction;
@@ -110,10 +157,7 @@ Correction Learner::learn(int pattern_id, const Measurement& measurement,
   if (!rule_->learns() || pattern == nullptr || !measurement.fair()) return correction;
   if (measurement.trajectory.size() != pattern->trajectory.size()) return correction;
   const size_t executed = index_.at(pattern_id);
-  before_->assign(*rule_);
-  fill(measurement.trajectory, measured_);
-  const auto samples = static_cast<Eigen::Index>(measurement.trajectory.size());
-  rule_->learn(executed, ConstTrajectory(measured_.data(), samples, 3), correction.note);
+  correction.note = update(executed, measurement);
   correction.guards = guardsOf(correction.note);
 
   EndResiduals residuals = residuals_[pattern_id];
@@ -122,17 +166,14 @@ Correction Learner::learn(int pattern_id, const Measurement& measurement,
   MotionPattern& learned = content.patterns[executed];
   ++learned.times_learned;
   if (!rule_->endCovariance(executed)) learned.end_covariance = covarianceOf(residuals);
-  content.parent_version = content.version;
-  ++content.version;
-  content.utime = utime;
   std::string why;
-  const auto next = PatternSet::make(std::move(content), why);
-  if (!next) {
-    rule_->assign(*before_);
+  if (!adopt(std::move(content), utime, why)) {
+    rule_->assign(*settled_);
     append(correction.guards, "not learned, the set would be wrong: " + why);
     return correction;
   }
-  set_ = *next;
+  settled_->assign(*rule_);
+  following_ = false;
   residuals_[pattern_id] = residuals;
   correction.changed = true;
   correction.reason = rule_->reason(correction.note);

@@ -57,19 +57,30 @@ class Learner {
   Learner(const Learner&) = delete;
   Learner& operator=(const Learner&) = delete;
 
+  /// Whether the rule learns from the beginning of a pattern, too.
+  bool learnsParts() const { return rule_->learnsParts(); }
+
   /// Learns from a fair measurement of the pattern with this id, which must be in the set.
   /** `end_error`: measured relative to the prediction that the planner used, nothing if the end was
    * not measured. `utime` [us] is that of the execution's end. */
   Correction learn(int pattern_id, const Measurement& measurement,
                    const std::optional<Pose2>& end_error, int64_t utime);
 
+  /// Follows an execution that still runs: a new set as if it had ended here.
+  /** The next call of either replaces what was learned, so that an execution counts once. Fair
+   * measurements only, of rules that learn from parts. True if there is a new set. */
+  bool follow(int pattern_id, const Measurement& beginning, int64_t utime);
+  /// Forgets what was followed, should its execution prove to be no fair one. True if there is a
+  /// new set.
+  bool unfollow(int64_t utime);
+
   /// Goes on from a restored set, its residuals and the rule's memory; all of the same shipped set.
   /** A rule that cannot go on from them (they are another rule's) begins anew: the version stays,
    * the predictions are the shipped ones. Returns false then. */
   bool restore(PatternSet set, ResidualTable residuals, const std::vector<double>& memory);
 
-  /// What the rule knows beside the set, for the state file.
-  std::vector<double> memory() const { return rule_->memory(); }
+  /// What the rule knows beside the set, for the state file; without what still runs.
+  std::vector<double> memory() const { return settled_->memory(); }
   const LearningRule& rule() const { return *rule_; }
   /// The same content under a higher version number, with `parent`.
   void renumber(int64_t version, int64_t parent);
@@ -77,12 +88,16 @@ class Learner {
  private:
   /// The newest set with what the rule predicts now, not yet checked.
   PatternSetContent predicted() const;
+  RuleNote update(size_t executed, const Measurement& measurement);
+  /// The predictions as the next version; one clear line in `why` if they are no set.
+  bool adopt(PatternSetContent content, int64_t utime, std::string& why);
 
   PatternSet shipped_;
   PatternSet set_;
   std::map<int, size_t> index_;  ///< by pattern id
   std::unique_ptr<LearningRule> rule_;
-  std::unique_ptr<LearningRule> before_;  ///< to go back to if the new set would be wrong
+  bool following_ = false;                 ///< the set holds what still runs
+  std::unique_ptr<LearningRule> settled_;  ///< without what is learned from a running execution
   ResidualTable residuals_;
   std::vector<double> measured_;
 };

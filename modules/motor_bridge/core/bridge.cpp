@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/execution/execution_tracker.hpp"
+
 namespace tread::motor {
 namespace {
 
@@ -235,8 +237,8 @@ std::string Bridge::moveSchedule(int64_t now, bool stalled) {
   counters_["commands skipped"] += advance.skipped;
   if (advance.ended) return "series ended without a next";
   if (since_.planner_stop) {
-    player_.abort(now, "stopped by the planner");
-    return "stopped by the planner";
+    player_.abort(now, kStoppedByPlanner);
+    return kStoppedByPlanner;
   }
   return "";
 }
