@@ -18,9 +18,10 @@ namespace tread::learner::samples {
 /// A learner and a fake robot on a virtual bus, with ears for all that the learner says.
 struct Bench {
   explicit Bench(Driving driving = {}, Rule rule = "collective", FaultPlan faults = {},
-                 uint64_t seed = 1)
+                 uint64_t seed = 1, int64_t follow_us = 400'000)
       : bus(seed, std::move(faults)), config(smallSet()) {
     config.rule.rule = rule;
+    config.follow_us = follow_us;
     config.rule.memory = 0.3;
     config.limits.entry_yaw_rate = 0.7;
     Bus& ear = bus.outside();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <string>
 #include <vector>
 
 #include "common/bus/bus.hpp"
@@ -19,6 +20,7 @@ struct Driving {
   int64_t set_version = 0;      ///< named in the records; 0 = the newest heard
   int executions = 1'000'000;   ///< then it stands
   int abort_every = 0;          ///< every so many executions one is aborted at its end; 0 = none
+  std::string abort_reason = "lease expired";
   bool wrong_commands = false;  ///< the motors get other commands than the patterns say
 };
 
@@ -85,7 +87,7 @@ class FakeRobot : public Node {
         driving_.abort_every > 0 && record.record_execution_id % driving_.abort_every == 0;
     record.outcome =
         abort ? execution_record_t::OUTCOME_ABORTED : execution_record_t::OUTCOME_COMPLETED;
-    record.outcome_reason = abort ? "lease expired" : "";
+    record.outcome_reason = abort ? driving_.abort_reason : "";
     record.ended = ended;
   }
 

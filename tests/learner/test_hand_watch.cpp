@@ -167,11 +167,30 @@ TEST_CASE("the learner learns from what a person drives, through the same gates"
     CHECK(bench.learned.front().changed);
     CHECK(bench.learned.front().measured_end[0] == Approx(0.9).margin(0.02));
   }
-  SECTION("at another speed the gate refuses it") {
+  SECTION("at another speed, too: that is what the ground makes of the command") {
     drive(4.0, 0.3, 1.0F);
     drive(1.0, 0.0, 0.0F);
     REQUIRE(!bench.learned.empty());
-    for (const learning_t& learned : bench.learned) CHECK_FALSE(learned.accepted);
-    CHECK(bench.learned.front().gate_reason.find("entry") != std::string::npos);
+    for (const learning_t& learned : bench.learned) CHECK(learned.accepted);
   }
+  SECTION("faster than the vehicle can be it is refused") {
+    drive(4.0, 2.5, 1.0F);
+    drive(1.0, 0.0, 0.0F);
+    REQUIRE(!bench.learned.empty());
+    for (const learning_t& learned : bench.learned) CHECK_FALSE(learned.accepted);
+    CHECK(bench.learned.front().gate_reason.find("possible") != std::string::npos);
+  }
+}
+
+TEST_CASE("a command is steady after half a second of it without a break, whoever gave it") {
+  Motors motors;
+  const TrackCommand full{1.0, 1.0};
+  motors.give({0.0, 0.0}, 1.0, false);
+  motors.give(full, 0.45, false);
+  REQUIRE_FALSE(motors.watch.steadyBefore(full, motors.now, 50'000));
+  motors.give(full, 0.05);
+  REQUIRE(motors.watch.steadyBefore(full, motors.now, 50'000));
+  REQUIRE_FALSE(motors.watch.steadyBefore({1.0, 0.9}, motors.now, 50'000));
+  motors.give(full, 0.2, true, true);
+  REQUIRE_FALSE(motors.watch.steadyBefore(full, motors.now, 50'000));
 }

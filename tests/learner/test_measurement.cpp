@@ -242,3 +242,45 @@ TEST_CASE("the largest speed of a set is that of its fastest class, command or s
   content.patterns[0].commands.assign(20, {2.0, 3.0});
   REQUIRE(largestSpeed(checked(content)) == Approx(2.5));
 }
+
+TEST_CASE("the beginning of an execution is measured as far as it was driven") {
+  ExecutionCut cut = completed();
+  cut.completed = false;
+  cut.beginning = true;
+  cut.ended = kStart + 500'000;
+  const Measurement result = measured({}, cut);
+  INFO(result.reason);
+  REQUIRE(result.fair());
+  REQUIRE(result.covered == 10);
+  REQUIRE_FALSE(result.complete());
+  REQUIRE(result.trajectory[9].yaw == Approx(0.25).margin(0.01));
+  REQUIRE(result.path_length == Approx(0.45).epsilon(0.02));
+}
+
+TEST_CASE("a beginning of less than 0.4 s is refused") {
+  ExecutionCut cut = completed();
+  cut.beginning = true;
+  cut.ended = kStart + 350'000;
+  const Measurement result = measured({}, cut);
+  REQUIRE(result.gate == Gate::kAborted);
+  REQUIRE(result.reason == "only 0.35 s of it were driven, needed 0.40");
+}
+
+TEST_CASE("a beginning that the INS has not seen for 0.4 s is refused") {
+  Drive drive;
+  drive.until = kStart + 320'000;
+  ExecutionCut cut = completed();
+  cut.beginning = true;
+  cut.ended = kStart + 500'000;
+  const Measurement result = measured(drive, cut);
+  REQUIRE(result.gate == Gate::kCoveredTime);
+}
+
+TEST_CASE("where the command before an execution was its class's, any twist is the ground's") {
+  Drive drive;
+  drive.cruise = {0.3, 0.0, 0.0};  // ice: the class says 1 m/s
+  ExecutionCut cut = completed();
+  REQUIRE(measured(drive, cut).gate == Gate::kEntryTwist);
+  cut.steady_before = true;
+  REQUIRE(measured(drive, cut).fair());
+}

@@ -59,7 +59,7 @@ ExecutionTracker begun(const PatternSet& set) {
 
 }  // namespace
 
-TEST_CASE("Execution ids count up, and the same next pattern keeps its slot and its version") {
+TEST_CASE("Execution ids count up; the same next pattern keeps its slot until a newer set predicts it") {
   const PatternSet set = samplePatterns(1);
   const PatternSet newer = samplePatterns(2);
   ExecutionTracker tracker(kRun);
@@ -67,11 +67,14 @@ TEST_CASE("Execution ids count up, and the same next pattern keeps its slot and 
   tracker.setNext(set, 1);
   const int64_t first = tracker.next().execution_id;
   CHECK(first > tracker.running().execution_id);
-  tracker.setNext(newer, 1);
+  tracker.setNext(set, 1);
   CHECK(tracker.next().execution_id == first);
-  CHECK(tracker.next().set->version() == 1);
+  tracker.setNext(newer, 1);
+  const int64_t second = tracker.next().execution_id;
+  CHECK(second > first);
+  CHECK(tracker.next().set->version() == 2);
   tracker.setNext(newer, 2);
-  CHECK(tracker.next().execution_id > first);
+  CHECK(tracker.next().execution_id > second);
   CHECK(tracker.next().set->version() == 2);
 }
 
