@@ -297,7 +297,9 @@ PatternPart GroundModel::part(size_t pattern, Eigen::Index samples) const {
       squared(noise_.forward * speed[0]) + moved, squared(noise_.lateral * speed[0]) + moved,
       squared(noise_.yaw * speed[1]) + squared(noise_.heading / seconds));
   const double share = recorded_share_[pattern];
-  part.noise = (1.0 - share) * expected + share * recorded_[pattern];
+  constexpr double kLeast = 0.05;
+  // A recording of nothing is no proof that an execution is exact.
+  part.noise = ((1.0 - share) * expected + share * recorded_[pattern]).cwiseMax(kLeast * expected);
   return part;
 }
 

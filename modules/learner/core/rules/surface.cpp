@@ -169,6 +169,7 @@ bool Surface::restoreMeasured(const GroundModel& model, const std::vector<double
   const double parts = memory[at++];
   if (!isCount(parts, static_cast<double>((memory.size() - at) / kEach))) return false;
   measured_.clear();
+  double executions = 0.0;
   for (size_t i = 0; i < static_cast<size_t>(parts); ++i, at += kEach) {
     if (!isCount(memory[at], static_cast<double>(model.patterns()) - 1.0)) return false;
     const auto pattern = static_cast<size_t>(memory[at]);
@@ -184,9 +185,10 @@ bool Surface::restoreMeasured(const GroundModel& model, const std::vector<double
         measured.squares.minCoeff() < 0.0 ||
         measured.sum.cwiseAbs().maxCoeff() > kLargestTwist * 2.0 * measured.count)
       return false;
+    executions += measured.count;
     measured_.push_back(measured);
   }
-  return true;
+  return std::abs(executions - executions_) <= 1e-6 * (1.0 + executions_);
 }
 
 bool Surface::restore(const GroundModel& model, const GroundConfig& config,
