@@ -77,9 +77,9 @@ class DrawnWorld {
     for (Pose2& pose : driven) {
       const Twist2 twist = twistTo(between(last, pose), model_.period());
       last = pose;
-      at = at * integrate({twist.v_x + chance.v_x, twist.v_y + chance.v_y,
-                           twist.omega + chance.omega},
-                          model_.period());
+      at = at *
+           integrate({twist.v_x + chance.v_x, twist.v_y + chance.v_y, twist.omega + chance.omega},
+                     model_.period());
       pose = at;
     }
     return driven;
@@ -120,7 +120,7 @@ class DrawnWorld {
   GroundModel model_;
 };
 
-inline const MultiModel& multiModel(Pupil& pupil) {
+inline const MultiModel& asMultiModel(Pupil& pupil) {
   return static_cast<const MultiModel&>(pupil.rule());
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Patterns as body twists, their parts, and what is expected of grounds before anything is measured.
+// Patterns as body twists, their parts, and what is expected of grounds before anything is
+// measured.
 #include <catch2/catch.hpp>
 
 #include <Eigen/Cholesky>
@@ -17,10 +18,10 @@ namespace {
 Eigen::Vector3d meanUnder(const TwistProfile& profile, const Correction10& correction,
                           Eigen::Index samples) {
   std::vector<double> numbers(static_cast<size_t>(3 * profile.samples()));
-  const Trajectory all(numbers.data(), profile.samples(), 3);
+  Trajectory all(numbers.data(), profile.samples(), 3);
   profile.integrate(correction, all);
-  // Row-major: its beginning stands in front.
-  return meanTwist(ConstTrajectory(numbers.data(), samples, 3), 0.05);
+  const Eigen::Array<double, Eigen::Dynamic, 3> beginning = all.topRows(samples);
+  return meanTwist(ConstTrajectory(beginning.data(), samples, 3), 0.05);
 }
 
 /// A pattern that changes its twist on the way.
@@ -40,7 +41,8 @@ PatternSet windingSet() {
 }  // namespace
 
 TEST_CASE("a twist profile without a correction is the shipped prediction") {
-  for (const MotionPattern& pattern : windingSet().patterns()) {
+  const PatternSet set = windingSet();
+  for (const MotionPattern& pattern : set.patterns()) {
     const TwistProfile profile(pattern, 0.05);
     std::vector<double> numbers(3 * pattern.trajectory.size());
     const auto samples = static_cast<Eigen::Index>(pattern.trajectory.size());
@@ -55,7 +57,8 @@ TEST_CASE("a twist profile without a correction is the shipped prediction") {
 }
 
 TEST_CASE("a twist profile responds to its corrections as its derivatives say") {
-  for (const MotionPattern& pattern : windingSet().patterns()) {
+  const PatternSet set = windingSet();
+  for (const MotionPattern& pattern : set.patterns()) {
     const TwistProfile profile(pattern, 0.05);
     for (int i = 0; i < TwistCorrection::kAll; ++i) {
       INFO(pattern.name << ", correction " << i);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The remembered surfaces of the learner node: on disk, across restarts, damaged.
+// The remembered surfaces of the learner node: in LEARNING, in its states, across restarts.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -15,45 +15,49 @@ using Catch::Contains;
 
 namespace {
 
-constexpr const char* kBankFile = "surface_bank";
-
-/// A learner with the rule bank that has driven long enough to remember its ground.
+/// A learner that has driven long enough to remember its ground.
 struct SettledBench : Bench {
-  SettledBench() : Bench({}, "bank") { run(16.0); }
-
-  size_t surfaces() { return node().rememberedSurfaces(); }
-  void forgetStates() {
-    store.remove("learner_state_1");
-    store.remove("learner_state_2");
-  }
+  SettledBench() : Bench({}, "multi_model") { run(20.0); }
 };
 
-std::vector<std::string> entriesLike(const Store& store, const std::string& beginning) {
-  std::vector<std::string> found;
-  for (const std::string& name : store.names())
-    if (name.compare(0, beginning.size(), beginning) == 0) found.push_back(name);
-  return found;
+std::vector<double> memoryIn(const std::string& state_text) {
+  std::string why;
+  return parseState(state_text, smallSet(), why)->memory;
 }
 
 }  // namespace
 
-TEST_CASE("the bank begins empty, and LEARNING says when a surface is remembered and known again") {
-  Bench bench({}, "bank");
+TEST_CASE(
+    "LEARNING says when a surface is remembered and known again, the shipped one is from the "
+    "start") {
+  Bench bench({}, "multi_model");
   bench.run(6.0);
-  REQUIRE(bench.node().rememberedSurfaces() == 0);
-  REQUIRE(bench.learned.front().surface == 0);
-  REQUIRE_THAT(bench.learned.front().change_reason, Contains("unknown ground"));
-  bench.run(14.0);
   REQUIRE(bench.node().rememberedSurfaces() == 1);
   REQUIRE(bench.counter("surfaces remembered") == 1);
+  REQUIRE(bench.learned.back().surface == 0);
+  REQUIRE_THAT(bench.learned.back().change_reason, Contains("unknown ground"));
+  bench.run(14.0);
+  REQUIRE(bench.node().rememberedSurfaces() == 2);
+  REQUIRE(bench.counter("surfaces remembered") == 2);
   size_t stored = 0;
   for (const learning_t& learned : bench.learned)
-    if (learned.change_reason == "remembered as surface 1 from now on") ++stored;
+    if (learned.change_reason == "remembered as surface 2 from now on") ++stored;
   REQUIRE(stored == 1);
-  REQUIRE(bench.learned.back().surface == 1);
+  REQUIRE(bench.learned.back().surface == 2);
   REQUIRE(bench.learned.back().surface_probability > 0.9);
   REQUIRE(bench.learned.back().ground_changed < 0.5);
-  REQUIRE_THAT(bench.learned.back().change_reason, Contains("as surface 1"));
+  REQUIRE_THAT(bench.learned.back().change_reason, Contains("as surface 2"));
+}
+
+TEST_CASE("a vehicle that drives as shipped is on the shipped ground") {
+  Driving driving;
+  driving.truth = {
+      {kStraight, {1.0, 0.0, 0.0}}, {kLeft, {0.9, 0.0, 0.5}}, {kRight, {0.9, 0.0, -0.5}}};
+  Bench bench(driving, "multi_model");
+  bench.run(20.0);
+  REQUIRE(bench.node().rememberedSurfaces() == 1);
+  REQUIRE(bench.learned.back().surface == 1);
+  REQUIRE_THAT(bench.learned.back().change_reason, Contains("as shipped"));
 }
 
 TEST_CASE("LEARNING of a rule that remembers nothing says so") {
@@ -62,105 +66,70 @@ TEST_CASE("LEARNING of a rule that remembers nothing says so") {
   REQUIRE(std::isnan(bench.learned.front().surface_probability));
   REQUIRE(std::isnan(bench.learned.front().ground_changed));
   REQUIRE_THAT(bench.learned.front().change_reason, Contains("the others scaled"));
-  REQUIRE_FALSE(bench.store.read(kBankFile));
+  REQUIRE(bench.node().rememberedSurfaces() == 0);
 }
 
-TEST_CASE("a restarted learner goes on with filter and bank to the bit") {
+TEST_CASE("a restarted learner goes on with all surfaces to the bit, from its states alone") {
   SettledBench bench;
   const PatternSet before = bench.node().set();
-  const std::string bank = *bench.store.read(kBankFile);
+  const std::vector<double> memory = memoryIn(bench.node().stateText());
+  REQUIRE(memory.size() > 100);
   bench.bus.restart("learner");
   REQUIRE(samePredictions(bench.node().set(), before));
-  REQUIRE(bench.surfaces() == 1);
-  REQUIRE(*bench.store.read(kBankFile) == bank);
+  REQUIRE(memoryIn(bench.node().stateText()) == memory);
+  REQUIRE(bench.node().rememberedSurfaces() == 2);
+  for (const std::string& name : bench.store.names()) REQUIRE_THAT(name, Contains("learner_"));
   bench.run(5.0);
   REQUIRE(bench.health.health_reason.empty());
-  REQUIRE(bench.learned.back().surface == 1);
+  REQUIRE(bench.learned.back().surface == 2);
 }
 
-TEST_CASE("surfaces outlive the learner's states") {
+TEST_CASE("with the newest state damaged the surfaces of the one before are there") {
+  SettledBench bench;
+  std::string why;
+  const auto version = [&](const std::string& name) {
+    return parseState(*bench.store.read(name), smallSet(), why)->set.version();
+  };
+  const std::string newest = version("learner_state_1") > version("learner_state_2")
+                                 ? "learner_state_1"
+                                 : "learner_state_2";
+  bench.bus.kill("learner");
+  std::string damaged = *bench.store.read(newest);
+  damaged[damaged.size() - 40] = '#';
+  bench.store.write(newest, damaged);
+  bench.bus.restart("learner");
+  REQUIRE(bench.node().rememberedSurfaces() == 2);
+  bench.run(4.5);
+  REQUIRE(bench.learned.back().surface == 2);
+}
+
+TEST_CASE(
+    "with all states lost nothing is remembered but the shipped set, and it is learned anew") {
   SettledBench bench;
   bench.bus.kill("learner");
-  bench.forgetStates();
+  bench.store.remove("learner_state_1");
+  bench.store.remove("learner_state_2");
   bench.bus.restart("learner");
-  REQUIRE(bench.surfaces() == 1);
-  // On which of them it stands it must find out again: nothing is predicted from memory alone.
+  REQUIRE(bench.node().rememberedSurfaces() == 1);
   REQUIRE(bench.node().set().find(kLeft)->end().yaw ==
           Approx(smallSet().find(kLeft)->end().yaw).epsilon(1e-12));
-  bench.run(4.5);
-  REQUIRE(bench.learned.back().surface == 1);
+  bench.run(16.0);
+  REQUIRE(bench.node().rememberedSurfaces() == 2);
 }
 
-TEST_CASE("a damaged bank is set aside under another name and never overwritten") {
+TEST_CASE("a state whose memory is no surfaces' starts anew under the same versions") {
   SettledBench bench;
-  for (int time = 1; time <= 2; ++time) {
-    bench.bus.kill("learner");
-    bench.forgetStates();
-    std::string damaged = *bench.store.read(kBankFile);
-    damaged[damaged.size() / 2] = '#';
-    bench.store.write(kBankFile, damaged);
-    bench.bus.restart("learner");
-    const std::string aside = std::string(kBankFile) + ".aside_" + std::to_string(time);
-    REQUIRE(*bench.store.read(aside) == damaged);
-    REQUIRE(bench.surfaces() == 0);
-    bench.run(0.1);
-    REQUIRE_THAT(bench.health.health_reason,
-                 Contains("surface_bank is damaged: set aside as " + aside));
-    bench.run(16.0);
-    REQUIRE(bench.surfaces() == 1);
-    REQUIRE(*bench.store.read(aside) == damaged);
-  }
-  REQUIRE(entriesLike(bench.store, kBankFile).size() == 3);
-}
-
-TEST_CASE("a cut off bank and one of another shipped set are set aside, too") {
-  SettledBench bench;
-  const std::string whole = *bench.store.read(kBankFile);
-  PatternSetContent content = smallContent();
-  content.name = "other";
-  const PatternSet other = checked(content);
-  SurfaceBank empty(std::make_shared<GroundModel>(FilterConfig{}, other));
-  for (const std::string& wrong : {whole.substr(0, whole.size() / 2), std::string(),
-                                   formatBank(empty, other), std::string("no bank at all\n")}) {
-    bench.bus.kill("learner");
-    bench.store.write(kBankFile, wrong);
-    bench.bus.restart("learner");
-    // The states still hold the surfaces.
-    REQUIRE(bench.surfaces() == 1);
-    REQUIRE(*bench.store.read(kBankFile) == whole);
-  }
-  REQUIRE(entriesLike(bench.store, kBankFile).size() == 5);
-}
-
-TEST_CASE("a damaged bank that cannot be set aside is left as it is") {
-  SettledBench bench;
+  std::string why;
+  auto state = parseState(bench.node().stateText(), smallSet(), why);
+  REQUIRE(state);
+  state->memory.back() = -1.0;  // a sum of squares
+  const int64_t version = state->set.version();
   bench.bus.kill("learner");
-  bench.forgetStates();
-  const std::string damaged = "tread-surface-bank 1\nshipped ";
-  bench.store.write(kBankFile, damaged);
-  bench.store.failWith("disk full");
+  for (const std::string name : {"learner_state_1", "learner_state_2"})
+    bench.store.write(name, formatState(*state, smallSet(), bench.config.rule));
   bench.bus.restart("learner");
-  bench.run(8.0);
-  bench.store.failWith("");
-  bench.run(10.0);
-  REQUIRE(*bench.store.read(kBankFile) == damaged);
-  REQUIRE(bench.surfaces() == 1);
-  REQUIRE_THAT(bench.health.health_reason, Contains("could not be set aside"));
-}
-
-TEST_CASE("a bank restores from its text to the bit, and no changed byte is believed") {
-  SettledBench bench;
-  const std::string text = *bench.store.read(kBankFile);
-  const PatternSet shipped = smallSet();
-  SurfaceBank bank(std::make_shared<GroundModel>(FilterConfig{}, shipped));
-  REQUIRE_FALSE(parseBank(text, shipped, bank));
-  REQUIRE(bank.size() == 1);
-  REQUIRE(formatBank(bank, shipped) == text);
-  for (size_t at = 0; at < text.size(); at += 7) {
-    std::string changed = text;
-    changed[at] = static_cast<char>(changed[at] ^ 1);
-    SurfaceBank untouched(std::make_shared<GroundModel>(FilterConfig{}, shipped));
-    REQUIRE(parseBank(changed, shipped, untouched));
-    REQUIRE(untouched.size() == 0);
-  }
+  REQUIRE(bench.node().rememberedSurfaces() == 1);
+  REQUIRE(bench.node().set().version() > version);
+  REQUIRE(bench.node().set().find(kLeft)->end().yaw ==
+          Approx(smallSet().find(kLeft)->end().yaw).epsilon(1e-12));
 }

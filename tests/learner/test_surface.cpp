@@ -74,8 +74,7 @@ TEST_CASE("a surface is the regression of all that was measured on it, of parts 
     double log_density = 0.0;
     for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
       const auto axis = static_cast<Eigen::Index>(velocity);
-      Eigen::MatrixXd information =
-          (f.prior.share * f.model().spread(velocity)).inverse();
+      Eigen::MatrixXd information = (f.prior.share * f.model().spread(velocity)).inverse();
       Eigen::VectorXd sum = Eigen::VectorXd::Zero(information.rows());
       for (const TwistSample& each : samples) {
         const Eigen::VectorXd h = dense(f.model(), each.part, velocity);
@@ -101,8 +100,7 @@ TEST_CASE("a surface is the regression of all that was measured on it, of parts 
       const Eigen::VectorXd h = dense(f.model(), next.part, velocity);
       const double y = next.mean_twist[axis] - next.part.mean[axis] - h.dot(x);
       const double freedom = std::min(2.0 * a, f.config.most_freedom);
-      log_density +=
-          logStudent(y, h.dot(P * h) + b / a * next.part.noise[axis], freedom);
+      log_density += logStudent(y, h.dot(P * h) + b / a * next.part.noise[axis], freedom);
       // And its variance.
       REQUIRE(surface.executionNoise(next.part)[axis] ==
               Approx(b / a * next.part.noise[axis] * freedom / (freedom - 2.0)));
@@ -138,8 +136,8 @@ TEST_CASE("a surface learns its own noise, calm or rough, each velocity for itse
       Surface surface = f.surface();
       for (int i = 0; i < 100; ++i) {
         TwistSample sample = f.sample(random() % 7, factor, random);
-        sample.mean_twist[1] = sample.part.mean[1] + std::sqrt(sample.part.noise[1]) *
-                                                         chanceOf(random);
+        sample.mean_twist[1] =
+            sample.part.mean[1] + std::sqrt(sample.part.noise[1]) * chanceOf(random);
         surface.add(f.model(), f.config, sample);
       }
       mean += surface.noise() / seeds;

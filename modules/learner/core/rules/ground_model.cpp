@@ -281,8 +281,7 @@ GroundModel::GroundModel(const GroundConfig& config, const PatternSet& shipped)
     recorded_share_.push_back(recorded ? config.recorded : 0.0);
     recorded_.push_back(recorded.value_or(Eigen::Vector3d::Zero()));
   }
-  for (size_t p = 0; p < profiles_.size(); ++p)
-    whole_.push_back(part(p, profiles_[p].samples()));
+  for (size_t p = 0; p < profiles_.size(); ++p) whole_.push_back(part(p, profiles_[p].samples()));
   fillSpread(config);
 }
 
@@ -311,8 +310,8 @@ void GroundModel::fillSpread(const GroundConfig& config) {
     Eigen::MatrixXd& spread = spread_[velocity];
     spread = Eigen::MatrixXd::Zero(terms.count + n, terms.count + n);
     for (Eigen::Index i = 0; i < terms.count; ++i)
-      spread(i, i) = squared(
-          config.common[static_cast<size_t>(terms.common[static_cast<size_t>(i)])]);
+      spread(i, i) =
+          squared(config.common[static_cast<size_t>(terms.common[static_cast<size_t>(i)])]);
     spread.bottomRightCorner(n, n) =
         squared(config.residual[velocity]) * correlations(kernels, velocity == 1 ? -1.0 : 1.0);
   }
