@@ -2,9 +2,11 @@
 // Copyright (c) 2026 The Tread authors
 #include "tests/fuzz/targets.hpp"
 
-#include <memory>
+#include <cmath>
+#include <cstdlib>
 #include <sstream>
 #include <string_view>
+#include <vector>
 
 #include <arpa/inet.h>
 #include <sys/socket.h>
@@ -23,7 +25,7 @@
 #include "modules/ins_driver/ins_driver_node.hpp"
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
 #include "modules/learner/core/learner.hpp"
-#include "modules/learner/core/rules/ground_filter.hpp"
+#include "modules/learner/core/rules/multi_model.hpp"
 #include "modules/learner/learner_node.hpp"
 #include "modules/lidar_driver/lidar_driver_node.hpp"
 #include "modules/mapping/mapping_node.hpp"
@@ -185,21 +187,35 @@ void learnerState(const uint8_t* bytes, size_t size) {
   require(learner::parseState(sealed(bytes, size), shippedSet(), why) || !why.empty());
 }
 
-/// Also as the number that versions count from.
-void surfaceBank(const uint8_t* bytes, size_t size) {
-  static const auto model =
-      std::make_shared<const learner::GroundModel>(learner::FilterConfig{}, shippedSet());
-  learner::SurfaceBank bank(model);
-  const auto why = learner::parseBank(sealed(bytes, size), shippedSet(), bank);
-  require(!why || (!why->empty() && bank.size() == 0));
-  if (!why) learner::formatBank(bank, shippedSet());
+/// Words of numbers as the rule's memory: what is taken is what is written again, and predicts
+/// numbers; what is refused changes nothing.
+void ruleMemory(const uint8_t* bytes, size_t size) {
+  static const learner::MultiModel kFresh(learner::RuleConfig{}, shippedSet());
+  static const learner::TrajectoryTable kPredictions(shippedSet().patterns());
+  std::istringstream words(textOf(bytes, size));
+  std::vector<double> memory;
+  for (std::string word; words >> word;) memory.push_back(std::strtod(word.c_str(), nullptr));
+  learner::MultiModel rule = kFresh;
+  if (!rule.restore(kPredictions, memory)) {
+    require(rule.memory() == kFresh.memory());
+    return;
+  }
+  require(rule.memory() == memory);
+  for (size_t p = 0; p < shippedSet().patterns().size(); ++p) {
+    const Pose2 end = rule.predictEnd(p);
+    require(std::isfinite(end.x + end.y + end.yaw));
+    const PoseCovariance covariance = *rule.endCovariance(p);
+    for (const double number : covariance) require(std::isfinite(number));
+  }
+}
+
+/// As the number that versions count from, and as states that are not sealed.
+void learnerFiles(const uint8_t* bytes, size_t size) {
   MemoryStore store;
-  store.write("learner_versions", textOf(bytes, size));
-  store.write("surface_bank", textOf(bytes, size));
+  for (const char* name : {"learner_versions", "learner_state_1"})
+    store.write(name, textOf(bytes, size));
   learner::LearnerMemory memory(store);
   require(memory.recall(shippedSet(), 1'700'000'000'000'000).first_version > 0);
-  std::string problem;
-  require(memory.recallBank(shippedSet(), bank, problem) || !problem.empty());
 }
 
 /// Times between pieces are in the bytes, too.
@@ -266,6 +282,7 @@ const std::map<std::string, Target>& targets() {
         {"addresses", addresses},
         {"configurations", configurations},
         {"key_file", keyFile},
+        {"learner_files", learnerFiles},
         {"learner_state", learnerState},
         {"log", log},
         {"message", message},
@@ -276,9 +293,9 @@ const std::map<std::string, Target>& targets() {
         {"relay", relay},
         {"roboteq_command", roboteqCommand},
         {"roboteq_reply", roboteqReply},
+        {"rule_memory", ruleMemory},
         {"scip", scip},
         {"seal", seal},
-        {"surface_bank", surfaceBank},
         {"truth_record", truthRecord},
         {"world", world},
     };

@@ -11,7 +11,7 @@
 #include "common/geometry/se2.hpp"
 #include "common/pattern/pattern.hpp"
 #include "modules/learner/core/rules/learning_rule.hpp"
-#include "modules/learner/core/rules/surface_bank.hpp"
+#include "modules/learner/core/rules/multi_model.hpp"
 #include "tests/learner/samples.hpp"
 
 namespace tread::learner::samples {
@@ -85,6 +85,12 @@ struct EffectSpread {
   double yaw = 0.0;
   double crab = 0.0;
 };
+
+// Three grounds, and calm executions.
+inline constexpr EffectSpread kCalm{0.02, 0.05, 0.02};
+inline constexpr GroundEffect kMeadow{1.0, 1.0, 0.0, 0.0};
+inline constexpr GroundEffect kMud{0.85, 1.5, 0.0, 0.0};
+inline constexpr GroundEffect kRoad{1.15, 0.6, 0.1, 0.0};
 
 inline GroundEffect drawn(GroundEffect mean, const EffectSpread& spread, std::mt19937_64& random) {
   std::normal_distribution<double> normal(0.0, 1.0);

@@ -22,7 +22,7 @@ LearnerNodeConfig read(const std::string& text) {
 TEST_CASE("a learner configuration needs only its patterns, the rest has defaults") {
   const LearnerNodeConfig config = read("");
   REQUIRE(config.shipped.content().name == "teodor");
-  REQUIRE(config.rule.rule == "bank");
+  REQUIRE(config.rule.rule == "multi_model");
   REQUIRE(config.rule.memory == 0.5);
   REQUIRE(config.limits.max_gap_us == 300'000);
 }

@@ -187,7 +187,7 @@ TEST_CASE("after absurd measurements a rule comes back to the truth") {
   // Not so the scaling rules: they freeze what absurd measurements made of the patterns' ratios
   // (test_rules_paper.cpp). The learner's gates are there to keep such measurements out.
   const GroundEffect ground{1.05, 1.2, 0.0, 0.0};
-  for (const Rule rule : {"single", "local_filter", "bank"}) {
+  for (const Rule rule : {"single", "multi_model"}) {
     INFO(rule);
     Random random(3);
     Learner learner(ruleConfig(rule, 0.3), richSet());

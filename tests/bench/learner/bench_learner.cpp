@@ -7,11 +7,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <numeric>
 #include <random>
 
 #include "common/vehicle/kernel.hpp"
 #include "modules/learner/core/learner.hpp"
-#include "modules/learner/core/rules/surface_bank.hpp"
 
 namespace {
 
@@ -78,8 +78,9 @@ struct Driven {
   }
 };
 
-/// Executions of all patterns, surface after surface, each for a while.
-std::vector<Driven> drives(const PatternSet& set) {
+/// Executions of all patterns, surface after surface, each for a while; half of them only begun if
+/// so wanted.
+std::vector<Driven> drives(const PatternSet& set, bool parts = false) {
   std::mt19937_64 random(1);
   std::vector<Driven> all;
   for (size_t s = 0; s < kSurfaces; ++s) {
@@ -92,6 +93,8 @@ std::vector<Driven> drives(const PatternSet& set) {
           simulate(model, pattern.commands, kPeriod, steadyEntry(model, {1.0, 1.0}),
                    drawNoise(model.spread, random));
       driven.measurement.covered = pattern.commands.size();
+      if (parts && i % 2 == 1)
+        driven.measurement.trajectory.resize(1 + random() % pattern.commands.size());
       fill(driven.measurement.trajectory, driven.numbers);
       all.push_back(std::move(driven));
     }
@@ -129,10 +132,17 @@ RuleConfig configOf(Rule rule) {
   return config;
 }
 
-/// One execution learned, all patterns predicted anew.
-void update(benchmark::State& state, Rule name, size_t patterns, size_t samples) {
+void putTimes(benchmark::State& state, std::vector<double> times) {
+  std::sort(times.begin(), times.end());
+  state.counters["median_us"] = times[times.size() / 2];
+  state.counters["p95_us"] = times[times.size() * 95 / 100];
+  state.counters["p99_us"] = times[times.size() * 99 / 100];
+}
+
+/// One execution learned, all patterns predicted anew; times of single ones [us].
+void update(benchmark::State& state, Rule name, size_t patterns, size_t samples, bool parts) {
   const PatternSet set = setOf(patterns, samples);
-  const std::vector<Driven> driven = drives(set);
+  const std::vector<Driven> driven = drives(set, parts);
   const double copy = copyTime(set);
   const auto rule = makeRule(configOf(name), set);
   std::vector<double> numbers(3 * samples);
@@ -140,25 +150,29 @@ void update(benchmark::State& state, Rule name, size_t patterns, size_t samples)
   RuleNote note;
   for (int round = 0; round < 3; ++round)
     for (const Driven& one : driven) rule->learn(one.pattern, one.trajectory(), note);
+  std::vector<double> times;
   size_t i = 0;
-  const double begun = now();
   for (auto _ : state) {
     const Driven& one = driven[i++ % driven.size()];
+    const double begun = now();
     rule->learn(one.pattern, one.trajectory(), note);
     for (size_t p = 0; p < patterns; ++p) {
       rule->predict(p, prediction);
       benchmark::DoNotOptimize(numbers.data());
       benchmark::ClobberMemory();
     }
+    times.push_back(1e-3 * (now() - begun));
   }
-  const double each = (now() - begun) / static_cast<double>(state.iterations());
+  const double each =
+      1e3 * std::accumulate(times.begin(), times.end(), 0.0) / static_cast<double>(times.size());
   state.counters["ns/pattern"] = each / static_cast<double>(patterns);
   state.counters["over_copy"] = each / copy;
-  if (rule->bank() != nullptr) state.counters["stored"] = static_cast<double>(rule->bank()->size());
+  putTimes(state, std::move(times));
+  if (rule->remembered() >= 0) state.counters["surfaces"] = rule->remembered();
 }
 
 /// A whole correction: learning, predictions, covariances, the new checked set. Times of single
-/// ones [us]; the bank's longest are those that judge a block of executions.
+/// ones [us].
 void correct(benchmark::State& state, Rule name, size_t patterns, size_t samples) {
   const PatternSet set = setOf(patterns, samples);
   const std::vector<Driven> driven = drives(set);
@@ -177,12 +191,8 @@ void correct(benchmark::State& state, Rule name, size_t patterns, size_t samples
     learn(driven[i++ % driven.size()]);
     times.push_back(1e-3 * (now() - begun));
   }
-  std::sort(times.begin(), times.end());
-  state.counters["median_us"] = times[times.size() / 2];
-  state.counters["p95_us"] = times[times.size() * 95 / 100];
-  state.counters["p99_us"] = times[times.size() * 99 / 100];
-  if (learner.rule().bank() != nullptr)
-    state.counters["stored"] = static_cast<double>(learner.rule().bank()->size());
+  putTimes(state, std::move(times));
+  if (learner.rule().remembered() >= 0) state.counters["surfaces"] = learner.rule().remembered();
 }
 
 void registerAll() {
@@ -192,10 +202,16 @@ void registerAll() {
       benchmark::RegisterBenchmark(
           ("update/" + rule + shape).c_str(),
           [rule, patterns = patterns, samples = samples](benchmark::State& state) {
-            update(state, rule, patterns, samples);
+            update(state, rule, patterns, samples, false);
           })
           ->Unit(benchmark::kMicrosecond);
   }
+  for (const Rule& rule : ruleNames())
+    if (makeRule(configOf(rule), setOf(1, 2))->learnsParts())
+      benchmark::RegisterBenchmark(
+          ("update_parts/" + rule + "/15x100").c_str(),
+          [rule](benchmark::State& state) { update(state, rule, 15, 100, true); })
+          ->Unit(benchmark::kMicrosecond);
   for (const Rule& rule : ruleNames())
     benchmark::RegisterBenchmark(("correct/" + rule + "/15x100").c_str(),
                                  [rule](benchmark::State& state) { correct(state, rule, 15, 100); })

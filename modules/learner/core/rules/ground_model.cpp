@@ -281,8 +281,7 @@ GroundModel::GroundModel(const GroundConfig& config, const PatternSet& shipped)
     recorded_share_.push_back(recorded ? config.recorded : 0.0);
     recorded_.push_back(recorded.value_or(Eigen::Vector3d::Zero()));
   }
-  for (size_t p = 0; p < profiles_.size(); ++p)
-    whole_.push_back(part(p, profiles_[p].samples()));
+  for (size_t p = 0; p < profiles_.size(); ++p) whole_.push_back(part(p, profiles_[p].samples()));
   fillSpread(config);
 }
 
@@ -297,7 +296,9 @@ PatternPart GroundModel::part(size_t pattern, Eigen::Index samples) const {
       squared(noise_.forward * speed[0]) + moved, squared(noise_.lateral * speed[0]) + moved,
       squared(noise_.yaw * speed[1]) + squared(noise_.heading / seconds));
   const double share = recorded_share_[pattern];
-  part.noise = (1.0 - share) * expected + share * recorded_[pattern];
+  constexpr double kLeast = 0.05;
+  // A recording of nothing is no proof that an execution is exact.
+  part.noise = ((1.0 - share) * expected + share * recorded_[pattern]).cwiseMax(kLeast * expected);
   return part;
 }
 
@@ -309,8 +310,8 @@ void GroundModel::fillSpread(const GroundConfig& config) {
     Eigen::MatrixXd& spread = spread_[velocity];
     spread = Eigen::MatrixXd::Zero(terms.count + n, terms.count + n);
     for (Eigen::Index i = 0; i < terms.count; ++i)
-      spread(i, i) = squared(
-          config.common[static_cast<size_t>(terms.common[static_cast<size_t>(i)])]);
+      spread(i, i) =
+          squared(config.common[static_cast<size_t>(terms.common[static_cast<size_t>(i)])]);
     spread.bottomRightCorner(n, n) =
         squared(config.residual[velocity]) * correlations(kernels, velocity == 1 ? -1.0 : 1.0);
   }

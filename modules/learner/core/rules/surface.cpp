@@ -40,8 +40,8 @@ double variance(const PatternPart& part, size_t velocity, const Eigen::MatrixXd&
 /// Logarithm of Student's density of y: centre 0, scale^2, degrees of freedom.
 double logStudent(double y, double scale2, double freedom) {
   const double half = 0.5 * (freedom + 1.0);
-  return std::lgamma(half) - std::lgamma(0.5 * freedom) -
-         0.5 * std::log(freedom * kPi * scale2) - half * std::log1p(y * y / (freedom * scale2));
+  return std::lgamma(half) - std::lgamma(0.5 * freedom) - 0.5 * std::log(freedom * kPi * scale2) -
+         half * std::log1p(y * y / (freedom * scale2));
 }
 
 }  // namespace
@@ -63,8 +63,7 @@ Surface::Measured& Surface::measuredOf(const PatternPart& part) {
   return measured_.back();
 }
 
-void Surface::add(const GroundModel& model, const GroundConfig& config,
-                  const TwistSample& sample) {
+void Surface::add(const GroundModel& model, const GroundConfig& config, const TwistSample& sample) {
   Measured& measured = measuredOf(sample.part);
   const Eigen::Vector3d deviation = sample.mean_twist - sample.part.mean;
   expected_noise_ = noise_;
@@ -118,9 +117,9 @@ void Surface::estimateNoise(const GroundConfig& config) {
     double b = a;
     for (const Measured& measured : measured_) {
       const double moved = response(measured.part, velocity, x_[velocity]);
-      const double expected = measured.squares[axis] - 2.0 * moved * measured.sum[axis] +
-                              measured.count *
-                                  (moved * moved + variance(measured.part, velocity, P_[velocity]));
+      const double expected =
+          measured.squares[axis] - 2.0 * moved * measured.sum[axis] +
+          measured.count * (moved * moved + variance(measured.part, velocity, P_[velocity]));
       a += 0.5 * measured.count;
       b += 0.5 * std::max(0.0, expected) / measured.part.noise[axis];
     }
@@ -135,8 +134,8 @@ double Surface::logDensity(const TwistSample& sample) const {
     const auto axis = static_cast<Eigen::Index>(velocity);
     const double y = sample.mean_twist[axis] - sample.part.mean[axis] -
                      response(sample.part, velocity, x_[velocity]);
-    const double scale2 = variance(sample.part, velocity, P_[velocity]) +
-                          noise_[axis] * sample.part.noise[axis];
+    const double scale2 =
+        variance(sample.part, velocity, P_[velocity]) + noise_[axis] * sample.part.noise[axis];
     log_density += logStudent(y, scale2, 2.0 * certainty_[axis]);
   }
   return log_density;
@@ -169,12 +168,12 @@ bool Surface::restoreMeasured(const GroundModel& model, const std::vector<double
   const double parts = memory[at++];
   if (!isCount(parts, static_cast<double>((memory.size() - at) / kEach))) return false;
   measured_.clear();
+  double executions = 0.0;
   for (size_t i = 0; i < static_cast<size_t>(parts); ++i, at += kEach) {
     if (!isCount(memory[at], static_cast<double>(model.patterns()) - 1.0)) return false;
     const auto pattern = static_cast<size_t>(memory[at]);
     const double samples = memory[at + 1];
-    if (samples < 1.0 ||
-        !isCount(samples, static_cast<double>(model.profile(pattern).samples())))
+    if (samples < 1.0 || !isCount(samples, static_cast<double>(model.profile(pattern).samples())))
       return false;
     Measured measured{model.part(pattern, static_cast<Eigen::Index>(samples))};
     measured.count = memory[at + 2];
@@ -184,16 +183,16 @@ bool Surface::restoreMeasured(const GroundModel& model, const std::vector<double
         measured.squares.minCoeff() < 0.0 ||
         measured.sum.cwiseAbs().maxCoeff() > kLargestTwist * 2.0 * measured.count)
       return false;
+    executions += measured.count;
     measured_.push_back(measured);
   }
-  return true;
+  return std::abs(executions - executions_) <= 1e-6 * (1.0 + executions_);
 }
 
 bool Surface::restore(const GroundModel& model, const GroundConfig& config,
                       const std::vector<double>& memory, size_t& at) {
   size_t numbers = 6;
-  for (const Eigen::VectorXd& centre : prior_.centre)
-    numbers += static_cast<size_t>(centre.size());
+  for (const Eigen::VectorXd& centre : prior_.centre) numbers += static_cast<size_t>(centre.size());
   if (memory.size() < at + numbers) return false;
   prior_.share = memory[at++];
   double largest = 0.0;

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include "modules/learner/core/rules/multi_model.hpp"
+#include "tests/learner/rule_bench.hpp"
+
+namespace tread::learner::samples {
+
+/// A ground as the ground model describes them: corrections and how much executions differ.
+struct DrawnGround {
+  ByVelocity<Eigen::VectorXd> x;
+  double noise = 1.0;  ///< [1] variance of one execution over the expected one
+};
+
+inline double chanceOf(std::mt19937_64& random) {
+  return std::normal_distribution<double>(0.0, 1.0)(random);
+}
+
+/// Grounds drawn from the very distribution that the rule expects, and executions on them.
+class DrawnWorld {
+ public:
+  explicit DrawnWorld(PatternSet set = richSet(), const GroundConfig& config = {})
+      : set_(std::move(set)), model_(config, set_) {}
+
+  const PatternSet& set() const { return set_; }
+  const GroundModel& model() const { return model_; }
+  size_t patterns() const { return model_.patterns(); }
+
+  /// A ground about a centre; `share` of the variance that grounds have.
+  DrawnGround ground(std::mt19937_64& random, double share, const DrawnGround& centre) const {
+    DrawnGround drawn = centre;
+    for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
+      const Eigen::LLT<Eigen::MatrixXd> root(share * model_.spread(velocity));
+      Eigen::VectorXd chance(model_.dimension(velocity));
+      for (double& number : chance) number = chanceOf(random);
+      drawn.x[velocity] += root.matrixL() * chance;
+    }
+    return drawn;
+  }
+  DrawnGround ground(std::mt19937_64& random, double share = 1.0) const {
+    return ground(random, share, shipped());
+  }
+  /// That of the shipped set.
+  DrawnGround shipped() const {
+    DrawnGround ground;
+    for (size_t velocity = 0; velocity < kVelocities; ++velocity)
+      ground.x[velocity] = Eigen::VectorXd::Zero(model_.dimension(velocity));
+    return ground;
+  }
+
+  /// What the ground makes of a pattern without chance.
+  std::vector<Pose2> expected(const DrawnGround& ground, size_t pattern) const {
+    const auto samples = model_.profile(pattern).samples();
+    std::vector<double> numbers(static_cast<size_t>(3 * samples));
+    model_.profile(pattern).integrate(correctionOf(ground, pattern),
+                                      Trajectory(numbers.data(), samples, 3));
+    return posesOf(ConstTrajectory(numbers.data(), samples, 3));
+  }
+  /// One execution: the same, and a twist by chance for all of it.
+  std::vector<Pose2> execution(const DrawnGround& ground, size_t pattern,
+                               std::mt19937_64& random) const {
+    Twist2 chance;
+    const Eigen::Vector3d variance = ground.noise * model_.whole(pattern).noise;
+    chance.v_x = std::sqrt(variance[0]) * chanceOf(random);
+    chance.v_y = std::sqrt(variance[1]) * chanceOf(random);
+    chance.omega = std::sqrt(variance[2]) * chanceOf(random);
+    std::vector<Pose2> driven = expected(ground, pattern);
+    Pose2 at;
+    Pose2 last;
+    for (Pose2& pose : driven) {
+      const Twist2 twist = twistTo(between(last, pose), model_.period());
+      last = pose;
+      at = at *
+           integrate({twist.v_x + chance.v_x, twist.v_y + chance.v_y, twist.omega + chance.omega},
+                     model_.period());
+      pose = at;
+    }
+    return driven;
+  }
+
+  /// Any patterns on a ground; returns the note of the last execution.
+  RuleNote drive(Pupil& pupil, const DrawnGround& ground, int executions,
+                 std::mt19937_64& random) const {
+    RuleNote note;
+    for (int i = 0; i < executions; ++i) {
+      const size_t p = random() % patterns();
+      note = pupil.learn(p, execution(ground, p, random));
+    }
+    return note;
+  }
+  /// Mean distance of predicted ends from those expected on a ground [m].
+  double endError(const Pupil& pupil, const DrawnGround& ground) const {
+    double sum = 0.0;
+    for (size_t p = 0; p < patterns(); ++p)
+      sum += distance(pupil.end(p), expected(ground, p).back());
+    return sum / static_cast<double>(patterns());
+  }
+
+ private:
+  static Correction10 correctionOf(const DrawnGround& ground, size_t pattern) {
+    Correction10 correction;
+    for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
+      const VelocityTerms& terms = termsOf(velocity);
+      for (Eigen::Index i = 0; i < terms.count; ++i)
+        correction[terms.common[static_cast<size_t>(i)]] = ground.x[velocity][i];
+      correction[TwistCorrection::kCommon + static_cast<Eigen::Index>(velocity)] =
+          ground.x[velocity][terms.count + static_cast<Eigen::Index>(pattern)];
+    }
+    return correction;
+  }
+
+  PatternSet set_;
+  GroundModel model_;
+};
+
+inline const MultiModel& asMultiModel(Pupil& pupil) {
+  return static_cast<const MultiModel&>(pupil.rule());
+}
+
+}  // namespace tread::learner::samples

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// What rules write into the state and take back from there, to the bit or not at all.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+#include "tests/helpers.hpp"
+#include "tests/learner/drawn_ground.hpp"
+
+using namespace tread;
+using namespace tread::learner;
+using namespace tread::learner::samples;
+using tread::testing::effort;
+
+namespace {
+
+/// Any patterns, every third only begun if the rule learns from that.
+void driveOn(Pupil& pupil, const GroundEffect& ground, int executions, std::mt19937_64& random) {
+  for (int i = 0; i < executions; ++i) {
+    const size_t p = random() % pupil.patterns();
+    std::vector<Pose2> measured = under(drawn(ground, kCalm, random), pupil.shipped(p));
+    if (pupil.rule().learnsParts() && i % 3 == 2) measured.resize(1 + random() % measured.size());
+    pupil.learn(p, measured);
+  }
+}
+
+/// What the learner has stored beside the memory.
+TrajectoryTable published(const Pupil& pupil) {
+  PatternSetContent content = pupil.set().content();
+  for (size_t p = 0; p < pupil.patterns(); ++p)
+    content.patterns[p].trajectory = pupil.prediction(p);
+  return TrajectoryTable(content.patterns);
+}
+
+/// On its third ground, the second of which it remembers.
+const Pupil& experienced() {
+  static const Pupil kPupil = [] {
+    Pupil pupil(ruleConfig("multi_model"), richSet());
+    std::mt19937_64 random(1);
+    driveOn(pupil, kMeadow, 20, random);
+    driveOn(pupil, kMud, 30, random);
+    driveOn(pupil, kRoad, 6, random);
+    return pupil;
+  }();
+  return kPupil;
+}
+
+/// Whether a rule that knows something else takes a memory; if not it must stay as it was.
+bool restores(const std::vector<double>& memory) {
+  static const Pupil kOther = [] {
+    Pupil pupil(ruleConfig("multi_model"), richSet());
+    std::mt19937_64 random(2);
+    driveOn(pupil, kRoad, 15, random);
+    return pupil;
+  }();
+  static const std::vector<double> kBefore = kOther.everything();
+  Pupil pupil(kOther);
+  const std::vector<double> remembered = pupil.rule().memory();
+  const bool restored = pupil.rule().restore(TrajectoryTable(pupil.set().patterns()), memory);
+  if (!restored) {
+    REQUIRE(pupil.rule().memory() == remembered);
+    REQUIRE(pupil.everything() == kBefore);
+  }
+  return restored;
+}
+
+std::vector<double> memoryOf(const Pupil& pupil) {
+  return Pupil(pupil).rule().memory();
+}
+
+/// Where things stand in the memory of seven patterns.
+enum Place : size_t {
+  kClockAt,
+  kSurfacesAt,
+  kWeightAt,
+  kLastMetAt,
+  kShareAt,
+  kCentreAt,
+  kNoiseAt = kCentreAt + 7 + 3 * 7,
+  kExecutionsAt = kNoiseAt + 3,
+  kPartsAt,
+  kPartAt,  ///< pattern, samples, count, three sums, three of squares
+};
+constexpr size_t kEachPart = 9;
+
+/// Where the next hypothesis, or the number of fresh ones, begins.
+size_t after(const std::vector<double>& memory, size_t weight_at) {
+  const size_t parts_at = weight_at - kWeightAt + kPartsAt;
+  return parts_at + 1 + kEachPart * static_cast<size_t>(memory[parts_at]);
+}
+
+}  // namespace
+
+TEST_CASE("a restored rule goes on to the bit, after any number of executions") {
+  for (const Rule& rule : ruleNames()) {
+    INFO(rule);
+    for (const int learned : {0, 1, 4, 10, 75, 140}) {
+      INFO(learned << " executions");
+      Pupil first(ruleConfig(rule), richSet());
+      std::mt19937_64 random(7);
+      driveOn(first, kMeadow, std::min(learned, 30), random);
+      driveOn(first, kMud, std::clamp(learned - 30, 0, 60), random);
+      driveOn(first, kRoad, std::max(0, learned - 90), random);
+      Pupil second(ruleConfig(rule), richSet());
+      std::mt19937_64 other(learned);
+      driveOn(second, kRoad, learned % 7, other);
+      REQUIRE(second.rule().restore(published(first), first.rule().memory()));
+      REQUIRE(second.rule().remembered() == first.rule().remembered());
+      for (int i = 0; i < 60; ++i) {
+        REQUIRE(second.everything() == first.everything());
+        for (size_t p = 0; p < first.patterns(); ++p)
+          REQUIRE(second.rule().endCovariance(p) == first.rule().endCovariance(p));
+        std::mt19937_64 same = random;
+        const GroundEffect& ground = i < 20 ? kMud : kRoad;
+        driveOn(first, ground, 1, random);
+        driveOn(second, ground, 1, same);
+      }
+      REQUIRE(second.rule().memory() == first.rule().memory());
+    }
+  }
+}
+
+TEST_CASE("a memory that is cut off anywhere, or longer, is refused whole") {
+  const std::vector<double> memory = memoryOf(experienced());
+  REQUIRE(restores(memory));
+  for (size_t length = 0; length < memory.size(); ++length)
+    REQUIRE_FALSE(restores({memory.begin(), memory.begin() + static_cast<std::ptrdiff_t>(length)}));
+  std::vector<double> longer = memory;
+  longer.push_back(0.0);
+  REQUIRE_FALSE(restores(longer));
+}
+
+TEST_CASE("a memory with what is not a number anywhere is refused whole") {
+  const std::vector<double> memory = memoryOf(experienced());
+  for (size_t at = 0; at < memory.size(); ++at)
+    for (const double wrong : {kNan, tread::testing::kInf, -tread::testing::kInf}) {
+      std::vector<double> damaged = memory;
+      damaged[at] = wrong;
+      REQUIRE_FALSE(restores(damaged));
+    }
+}
+
+TEST_CASE("a memory with a number that cannot be is refused whole") {
+  const std::vector<double> memory = memoryOf(experienced());
+  REQUIRE(memory[kClockAt] == 56.0);
+  REQUIRE(memory[kSurfacesAt] == 2.0);
+  const auto refused = [&](size_t at, const std::vector<double>& values) {
+    for (const double value : values) {
+      INFO("number " << at << " is " << value);
+      std::vector<double> damaged = memory;
+      damaged[at] = value;
+      CHECK_FALSE(restores(damaged));
+    }
+  };
+  refused(kClockAt, {-1.0, 0.5, 1.0, 1e300});
+  refused(kSurfacesAt, {-1.0, 0.0, 0.5, 1.0, 3.0, 18.0, 1e9, 1e300});
+  const size_t second = after(memory, kWeightAt);
+  const size_t fresh = after(memory, second);
+  REQUIRE(memory[fresh] >= 1.0);
+  REQUIRE(memory[fresh] <= 5.0);
+  refused(fresh, {-1.0, 0.5, memory[fresh] - 1.0, memory[fresh] + 1.0, 6.0, 1e300});
+  for (const size_t weight : {size_t{kWeightAt}, second, fresh + 1}) {
+    const size_t base = weight - kWeightAt;
+    refused(weight, {-0.5, memory[weight] + 0.01, 2.0, 1e300});
+    refused(base + kLastMetAt, {-1.0, 0.5, 57.0, 1e300});
+    refused(base + kShareAt, {-0.1, 0.0, 1.1, 1e300});
+    refused(base + kCentreAt, {1e300, -1e300});
+    refused(base + kNoiseAt, {0.0, -1.0, 21.0, 1e300});
+    refused(base + kExecutionsAt, {-1.0, memory[base + kExecutionsAt] + 1.0, 1e300});
+    refused(base + kPartsAt, {-1.0, 0.5, memory[base + kPartsAt] + 1.0, 1e9, 1e300});
+    if (memory[base + kPartsAt] < 1.0) continue;
+    const size_t part = base + kPartAt;
+    refused(part, {-1.0, 0.5, 7.0, 1e300});
+    refused(part + 1, {-1.0, 0.0, 0.5, 21.0, 1e300});
+    refused(part + 2, {-1.0, 0.0, memory[part + 2] + 0.5, 1e300});
+    refused(part + 3, {1e300, -1e300});
+    refused(part + 6, {-1e-3});
+  }
+}
+
+TEST_CASE("the memory of another rule or of another set is refused") {
+  Pupil single(ruleConfig("single"), richSet());
+  Pupil knowing(experienced());
+  Pupil small(ruleConfig("multi_model"), smallSet());
+  const TrajectoryTable rich(richSet().patterns());
+  REQUIRE_FALSE(knowing.rule().restore(rich, single.rule().memory()));
+  REQUIRE_FALSE(knowing.rule().restore(rich, small.rule().memory()));
+  REQUIRE_FALSE(small.rule().restore(TrajectoryTable(smallSet().patterns()), memoryOf(knowing)));
+  REQUIRE(memoryOf(knowing) == memoryOf(experienced()));
+  // Rules that know predictions alone go on from any; but they must be of the same shape.
+  REQUIRE(single.rule().restore(rich, knowing.rule().memory()));
+  REQUIRE_FALSE(single.rule().restore(TrajectoryTable(smallSet().patterns()), {}));
+}
+
+TEST_CASE("more surfaces than there is room for now are refused") {
+  RuleConfig config = ruleConfig("multi_model");
+  config.ground.capacity = 1;
+  Pupil roomless(config, richSet());
+  const std::vector<double> memory = memoryOf(experienced());
+  REQUIRE(roomless.rule().restore(TrajectoryTable(richSet().patterns()), memory));
+  Pupil more(experienced());
+  std::mt19937_64 random(3);
+  driveOn(more, kRoad, 40, random);
+  REQUIRE(more.rule().remembered() == 3);
+  Pupil again(config, richSet());
+  REQUIRE_FALSE(again.rule().restore(TrajectoryTable(richSet().patterns()), memoryOf(more)));
+  REQUIRE(again.rule().remembered() == 1);
+}
+
+TEST_CASE("whatever single number of a memory is changed, what is taken predicts numbers") {
+  const std::vector<double> memory = memoryOf(experienced());
+  std::mt19937_64 random(4);
+  for (int i = 0; i < effort(3000); ++i) {
+    std::vector<double> damaged = memory;
+    constexpr double kValues[] = {0.0, 1.0, -1.0, 0.5, 3.0, 1e-300, 1e8, -1e8, 1e15, 1e300};
+    damaged[random() % memory.size()] = kValues[random() % 10];
+    Pupil pupil(ruleConfig("multi_model"), richSet());
+    if (!pupil.rule().restore(TrajectoryTable(richSet().patterns()), damaged)) continue;
+    driveOn(pupil, kMud, 3, random);
+    for (size_t p = 0; p < pupil.patterns(); ++p) {
+      REQUIRE(std::isfinite(pupil.end(p).x + pupil.end(p).y + pupil.end(p).yaw));
+      const PoseCovariance covariance = *pupil.rule().endCovariance(p);
+      for (const double number : covariance) REQUIRE(std::isfinite(number));
+    }
+  }
+}

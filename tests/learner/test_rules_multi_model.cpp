@@ -1,0 +1,718 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// The multiple-model filter: what it remembers, recognises and forgets, what it says of changes and
+// of its own errors, and that it does no harm.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include <Eigen/LU>
+
+#include "tests/helpers.hpp"
+#include "tests/learner/drawn_ground.hpp"
+
+using namespace tread;
+using namespace tread::learner;
+using namespace tread::learner::samples;
+using tread::testing::effort;
+
+namespace {
+
+/// As the configuration expects of one execution, so many times in deviation.
+EffectSpread usual(double times = 1.0) {
+  return {0.03 * times, 0.08 * times, 0.03 * times};
+}
+
+Pupil multiModel(const GroundConfig& ground = {}) {
+  RuleConfig config = ruleConfig("multi_model");
+  config.ground = ground;
+  return {config, richSet()};
+}
+
+/// Any patterns; returns the note of the last execution.
+RuleNote driveOn(Pupil& pupil, const GroundEffect& ground, const EffectSpread& spread,
+                 int executions, std::mt19937_64& random) {
+  RuleNote note;
+  for (int i = 0; i < executions; ++i) {
+    const size_t p = random() % pupil.patterns();
+    note = pupil.learn(p, under(drawn(ground, spread, random), pupil.shipped(p)));
+  }
+  return note;
+}
+
+/// Mean change probability of the next executions.
+double changeSeen(Pupil& pupil, const GroundEffect& ground, int executions,
+                  std::mt19937_64& random) {
+  double sum = 0.0;
+  for (int i = 0; i < executions; ++i)
+    sum += driveOn(pupil, ground, usual(), 1, random).change_probability;
+  return sum / executions;
+}
+
+Eigen::Matrix3d endCovariance(const Pupil& pupil, size_t pattern) {
+  const PoseCovariance c = *Pupil(pupil).rule().endCovariance(pattern);
+  Eigen::Matrix3d matrix;
+  matrix << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
+  return matrix;
+}
+
+/// Area of the standard ellipse of an end.
+double uncertainty(const Pupil& pupil, size_t pattern) {
+  return std::sqrt(endCovariance(pupil, pattern).topLeftCorner<2, 2>().determinant());
+}
+
+double median(std::vector<double> numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  return numbers[numbers.size() / 2];
+}
+
+/// Error of predicted ends against what is driven, over that of `off`.
+double overOff(const Pupil& pupil, const DrawnWorld& world, const DrawnGround& ground,
+               std::mt19937_64& random) {
+  double learned = 0.0;
+  double shipped = 0.0;
+  for (int i = 0; i < 4; ++i)
+    for (size_t p = 0; p < world.patterns(); ++p) {
+      const Pose2 end = world.execution(ground, p, random).back();
+      learned += distance(end, pupil.end(p));
+      shipped += distance(end, pupil.shipped(p).back());
+    }
+  return learned / shipped;
+}
+
+/// What a surface expects of a twist's velocity in a whole pattern, over the shipped one.
+double gainOf(const GroundModel& model, const Surface& surface, size_t pattern, size_t velocity) {
+  const PatternPart& whole = model.whole(pattern);
+  return 1.0 + response(whole, velocity, surface.mean()[velocity]) /
+                   whole.mean[static_cast<Eigen::Index>(velocity)];
+}
+
+}  // namespace
+
+TEST_CASE(
+    "without a measurement the shipped set is predicted, on ground that is the first surface") {
+  Pupil pupil = multiModel();
+  for (size_t p = 0; p < pupil.patterns(); ++p) {
+    const std::vector<Pose2> predicted = pupil.prediction(p);
+    for (size_t t = 0; t < predicted.size(); ++t) {
+      REQUIRE(distance(predicted[t], pupil.shipped(p)[t]) < 1e-12);
+      REQUIRE(predicted[t].yaw == Approx(pupil.shipped(p)[t].yaw).margin(1e-12));
+    }
+  }
+  REQUIRE(pupil.rule().remembered() == 1);
+  std::mt19937_64 random(1);
+  const RuleNote note = driveOn(pupil, kMeadow, usual(), 10, random);
+  REQUIRE(note.surface == 1);
+  REQUIRE(pupil.rule().reason(note).find("as shipped") == 0);
+  REQUIRE(pupil.rule().remembered() == 1);
+}
+
+TEST_CASE("exact measurements of all patterns on changed ground: predictions become the truth") {
+  // The rest is what the next metres may bring: other ground, one chance in eight.
+  GroundConfig config;
+  config.ahead = 0.0;
+  const GroundEffect ground{1.1, 1.3, 0.1, 0.03};
+  Pupil pupil = multiModel(config);
+  const double at_first = meanEndError(pupil, ground);
+  const double yaw_at_first = meanYawError(pupil, ground);
+  const auto round = [&] {
+    for (size_t p = 0; p < pupil.patterns(); ++p) pupil.learn(p, under(ground, pupil.shipped(p)));
+  };
+  round();
+  REQUIRE(meanEndError(pupil, ground) < 0.2 * at_first);
+  REQUIRE(meanYawError(pupil, ground) < 0.2 * yaw_at_first);
+  for (int i = 0; i < 40; ++i) round();
+  REQUIRE(meanEndError(pupil, ground) < 0.01 * at_first);
+  REQUIRE(meanYawError(pupil, ground) < 0.01 * yaw_at_first);
+}
+
+TEST_CASE("the end that a rule states alone is the last pose that it predicts") {
+  for (const Rule& rule : ruleNames()) {
+    Pupil pupil(ruleConfig(rule), richSet());
+    std::mt19937_64 random(8);
+    for (int i = 0; i < 30; ++i) {
+      driveOn(pupil, {1.1, 1.2, 0.1, 0.0}, usual(), 1, random);
+      for (size_t p = 0; p < pupil.patterns(); ++p) {
+        const Pose2 last = pupil.prediction(p).back();
+        REQUIRE(distance(pupil.end(p), last) < 1e-12);
+        REQUIRE(pupil.end(p).yaw == Approx(last.yaw).margin(1e-12));
+      }
+    }
+  }
+}
+
+TEST_CASE("one execution of left corrects right about as much") {
+  for (const GroundEffect& ground :
+       {GroundEffect{1.0, 1.4, 0.0, 0.0}, GroundEffect{0.9, 1.2, 0.1, 0.0},
+        GroundEffect{1.0, 0.7, 0.0, 0.0}, GroundEffect{1.0, 1.0, 0.2, 0.0}}) {
+    Pupil pupil = multiModel();
+    pupil.learn(kTurnLeft, under(ground, pupil.shipped(kTurnLeft)));
+    const auto corrected = [&](size_t p) {
+      const std::vector<Pose2> truth = under(ground, pupil.shipped(p));
+      return 1.0 -
+             distance(pupil.end(p), truth.back()) / distance(pupil.shipped(p).back(), truth.back());
+    };
+    INFO(ground.forward << " " << ground.yaw << " left " << corrected(kTurnLeft) << " right "
+                        << corrected(kTurnRight));
+    // Measured: left by .29 to .44 of its error; whether the ground is another is not sure yet.
+    REQUIRE(corrected(kTurnLeft) > 0.2);
+    REQUIRE(corrected(kTurnRight) > 0.7 * corrected(kTurnLeft));
+    REQUIRE(corrected(kTurnRight) <= corrected(kTurnLeft) + 1e-9);
+  }
+}
+
+TEST_CASE("new ground is remembered after ten executions on it, the shipped one from the start") {
+  Pupil pupil = multiModel();
+  std::mt19937_64 random(1);
+  RuleNote note = driveOn(pupil, kMud, kCalm, 9, random);
+  REQUIRE(pupil.rule().remembered() == 1);
+  REQUIRE(note.surface == 0);
+  REQUIRE(note.surface_probability > 0.9);
+  REQUIRE(pupil.rule().reason(note).find("unknown ground") == 0);
+  int executions = 9;
+  while (!note.surface_stored && executions < 20) {
+    note = driveOn(pupil, kMud, kCalm, 1, random);
+    ++executions;
+  }
+  REQUIRE(executions <= 11);
+  REQUIRE(note.surface == 2);
+  REQUIRE(pupil.rule().reason(note) == "remembered as surface 2 from now on");
+  REQUIRE(pupil.rule().remembered() == 2);
+  note = driveOn(pupil, kMud, kCalm, 1, random);
+  REQUIRE_FALSE(note.surface_stored);
+  REQUIRE(note.surface == 2);
+}
+
+TEST_CASE("surfaces do not collapse: eight grounds stay eight, also after a very rough one") {
+  // Moderate differences, about one deviation of what grounds differ in. Measured over 60 seeds:
+  // 7.6 remembered, 6.6 of 7 told apart when they come back, 2.6 % taken for the rough one. The
+  // rule before: 6.7, 6.0, 9.5 %.
+  const GroundEffect grounds[] = {{1.0, 1.0, 0.0, 0.0},     {1.05, 1.12, 0.03, 0.0},
+                                  {0.95, 0.91, 0.0, 0.012}, {1.0, 1.21, 0.06, 0.0},
+                                  {0.91, 1.06, 0.0, 0.0},   {1.09, 0.88, -0.03, 0.0},
+                                  {0.97, 0.94, 0.09, 0.0},  {0.91, 0.85, -0.06, 0.0}};
+  const double noises[] = {8.0, 1.0, 0.5, 1.0, 0.7, 1.2, 0.6, 1.0};
+  const int seeds = effort(30);
+  double remembered = 0.0;
+  double apart = 0.0;
+  double swallowed = 0.0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    std::mt19937_64 random(static_cast<uint64_t>(seed));
+    Pupil pupil = multiModel();
+    const int rough = driveOn(pupil, grounds[0], usual(noises[0]), 40, random).surface;
+    for (size_t i = 1; i < 8; ++i) driveOn(pupil, grounds[i], usual(noises[i]), 40, random);
+    REQUIRE(pupil.rule().remembered() >= 5);
+    remembered += pupil.rule().remembered();
+    std::set<int> met;
+    for (size_t i = 1; i < 8; ++i) {
+      const int surface = driveOn(pupil, grounds[i], usual(noises[i]), 20, random).surface;
+      met.insert(surface);
+      swallowed += surface == rough ? 1.0 / 7.0 : 0.0;
+    }
+    apart += static_cast<double>(met.size());
+  }
+  REQUIRE(remembered / seeds > 7.0);
+  REQUIRE(apart / seeds > 6.3);
+  REQUIRE(swallowed / seeds < 0.06);
+}
+
+TEST_CASE("executions of two grounds are never blended into one remembered surface") {
+  // The ground changes in the middle of the first ten executions. The rule before predicted, ten
+  // executions later, the mean of both rather than the ground it was on in 34, 39 and 25 of 100.
+  const GroundEffect before{0.9, 1.2, 0.0, 0.0};
+  const GroundEffect behind{1.1, 0.85, 0.05, 0.0};
+  const GroundEffect blend{1.0, 1.025, 0.025, 0.0};
+  const GroundModel model(GroundConfig{}, richSet());
+  int blended = 0;
+  int surfaces = 0;
+  int wrong = 0;
+  const int seeds = effort(100);
+  for (const int change_at : {3, 5, 7})
+    for (int seed = 1; seed <= seeds; ++seed) {
+      std::mt19937_64 random(static_cast<uint64_t>(seed));
+      Pupil pupil = multiModel();
+      driveOn(pupil, before, usual(), change_at, random);
+      driveOn(pupil, behind, usual(), 10, random);
+      blended += meanEndError(pupil, blend) < meanEndError(pupil, behind) ? 1 : 0;
+      driveOn(pupil, behind, usual(), 30, random);
+      for (int k = 1; k < pupil.rule().remembered(); ++k) {
+        const Surface& surface = asMultiModel(pupil).surface(static_cast<size_t>(k));
+        const double yaw = gainOf(model, surface, kHardLeft, 2);
+        const double forward = gainOf(model, surface, kAhead, 0);
+        // In units of the half way from one ground to the other.
+        const double from_behind = std::hypot((yaw - 0.85) / 0.175, (forward - 1.1) / 0.1);
+        const double from_before = std::hypot((yaw - 1.2) / 0.175, (forward - 0.9) / 0.1);
+        const double from_blend = std::hypot((yaw - 1.025) / 0.175, (forward - 1.0) / 0.1);
+        wrong += from_blend < std::min(from_behind, from_before) ? 1 : 0;
+        ++surfaces;
+      }
+    }
+  REQUIRE(surfaces > 2 * seeds);
+  REQUIRE(blended <= 0.03 * 3 * seeds + 1);
+  REQUIRE(wrong <= 0.03 * surfaces + 1);
+}
+
+TEST_CASE("a change of ground is seen in the execution in which it happens") {
+  // Measured over 200 seeds: .80, .73, .77, and .95, .87, .96 when the known ground comes back. The
+  // rule before: .10, .05, .06 at the changes, .05 back.
+  const int seeds = effort(200);
+  for (const GroundEffect& ground :
+       {GroundEffect{0.7, 1.5, 0.0, 0.0}, GroundEffect{0.8, 1.3, 0.0, 0.0},
+        GroundEffect{1.2, 0.6, 0.1, 0.0}}) {
+    double seen = 0.0;
+    double returned = 0.0;
+    for (int seed = 1; seed <= seeds; ++seed) {
+      std::mt19937_64 random(static_cast<uint64_t>(seed));
+      Pupil pupil = multiModel();
+      driveOn(pupil, kMeadow, usual(), 40, random);
+      seen += changeSeen(pupil, ground, 1, random) / seeds;
+      driveOn(pupil, ground, usual(), 40, random);
+      returned += changeSeen(pupil, kMeadow, 1, random) / seeds;
+    }
+    REQUIRE(seen > 0.6);
+    REQUIRE(returned > 0.6);
+  }
+}
+
+TEST_CASE("over unchanged ground no more changes are suspected than are expected beforehand") {
+  const DrawnWorld world;
+  // A change every 12 m is expected: so probable in a pattern.
+  double expected = 0.0;
+  for (size_t p = 0; p < world.patterns(); ++p)
+    expected += (1.0 - std::exp(-std::max(0.05, world.model().whole(p).metres) / 12.0)) / 7.0;
+  REQUIRE(expected == Approx(0.058).margin(0.001));
+  double suspected = 0.0;
+  const int seeds = effort(100);
+  for (int seed = 1; seed <= seeds; ++seed) {
+    std::mt19937_64 random(static_cast<uint64_t>(seed));
+    Pupil pupil = multiModel();
+    driveOn(pupil, kMeadow, usual(), 40, random);
+    suspected += 0.5 / seeds * changeSeen(pupil, kMeadow, 40, random);
+    const DrawnGround ground = world.ground(random);
+    world.drive(pupil, ground, 40, random);
+    for (int i = 0; i < 40; ++i)
+      suspected += 0.5 / seeds / 40 * world.drive(pupil, ground, 1, random).change_probability;
+  }
+  // Measured .040 over 100 seeds, .085 in the worst 40 executions of 200.
+  REQUIRE(suspected < 1.2 * expected);
+}
+
+TEST_CASE("nine in ten executions end within the region that is stated for nine in ten") {
+  // In a world as the rule expects it: a vehicle with something of its own on all ground but the
+  // shipped one, on which it is every other time; the next metres may bring other ground.
+  constexpr double kQuantile = 6.251;  // chi^2, three degrees of freedom
+  const DrawnWorld world;
+  const double change = 1.0 - std::exp(-1.5 / 12.0);
+  int within_all = 0;
+  int all_of_all = 0;
+  for (const int learned : {0, 3, 10}) {
+    int within = 0;
+    int all = 0;
+    for (int seed = 1; seed <= effort(500); ++seed) {
+      std::mt19937_64 random(static_cast<uint64_t>(seed));
+      const DrawnGround vehicle = world.ground(random, 0.5);
+      const DrawnGround shipped = world.ground(random, 0.05);
+      const auto any = [&] {
+        return random() % 2 == 0 ? shipped : world.ground(random, 0.5, vehicle);
+      };
+      DrawnGround ground = any();
+      Pupil pupil = multiModel();
+      world.drive(pupil, ground, learned, random);
+      if (std::uniform_real_distribution<double>(0.0, 1.0)(random) < change) ground = any();
+      for (size_t p = 0; p < world.patterns(); ++p) {
+        const Pose2 end = world.execution(ground, p, random).back();
+        const Pose2 predicted = pupil.end(p);
+        const Eigen::Vector3d apart(end.x - predicted.x, end.y - predicted.y,
+                                    wrapAngle(end.yaw - predicted.yaw));
+        within += apart.dot(endCovariance(pupil, p).inverse() * apart) < kQuantile ? 1 : 0;
+        ++all;
+      }
+    }
+    INFO(learned << " executions: " << within << " of " << all);
+    // Measured .892, .929, .927. The rule before: 1.000 after 0 and 3.
+    REQUIRE(within > 0.86 * all);
+    REQUIRE(within < 0.95 * all);
+    within_all += within;
+    all_of_all += all;
+  }
+  REQUIRE(within_all > 0.87 * all_of_all);
+  REQUIRE(within_all < 0.93 * all_of_all);
+}
+
+TEST_CASE(
+    "the covariance shrinks where the ground is known and grows where a change is suspected") {
+  std::vector<double> settled;
+  std::vector<double> suspected;
+  std::vector<double> sure;
+  for (int seed = 1; seed <= effort(50); ++seed) {
+    std::mt19937_64 random(static_cast<uint64_t>(seed));
+    Pupil pupil = multiModel();
+    const double at_first = uncertainty(pupil, kHardLeft);
+    driveOn(pupil, kMeadow, usual(), 40, random);
+    const double known = uncertainty(pupil, kHardLeft);
+    settled.push_back(known / at_first);
+    pupil.learn(kTurnLeft, under({0.75, 0.7, 0.0, 0.0}, pupil.shipped(kTurnLeft)));
+    suspected.push_back(uncertainty(pupil, kHardLeft) / known);
+    driveOn(pupil, {0.75, 0.7, 0.0, 0.0}, usual(), 30, random);
+    sure.push_back(uncertainty(pupil, kHardLeft) / known);
+  }
+  // Measured: a fifth of what it was, five times that at the change, one and a half after it.
+  REQUIRE(median(settled) < 0.4);
+  REQUIRE(median(suspected) > 2.0);
+  REQUIRE(median(sure) < 0.6 * median(suspected));
+}
+
+TEST_CASE("end covariances are symmetric, positive definite and finite, whatever was learned") {
+  Pupil pupil = multiModel();
+  std::mt19937_64 random(5);
+  for (int i = 0; i < effort(400); ++i) {
+    const EffectSpread wild{0.5, 0.8, 0.5};
+    driveOn(pupil, kMeadow, i % 3 == 0 ? wild : usual(), 1, random);
+    for (size_t p = 0; p < pupil.patterns(); ++p) {
+      const Eigen::Matrix3d covariance = endCovariance(pupil, p);
+      REQUIRE(covariance.allFinite());
+      REQUIRE(covariance.llt().info() == Eigen::Success);
+    }
+  }
+}
+
+TEST_CASE("rules that know no covariance say so") {
+  for (const Rule rule : {"off", "single", "collective", "telescoping"})
+    REQUIRE_FALSE(Pupil(ruleConfig(rule), richSet()).rule().endCovariance(0));
+}
+
+TEST_CASE("the covariance of a remembered rough surface has its own noise") {
+  const auto spread = [](double forward_noise) {
+    GroundConfig config;
+    config.ahead = 0.0;
+    Pupil pupil = multiModel(config);
+    std::mt19937_64 random(6);
+    driveOn(pupil, kMeadow, {forward_noise, 0.05, 0.02}, 200, random);
+    return std::sqrt((*pupil.rule().endCovariance(kAhead))[0]);
+  };
+  // Forward by 3 and 9 % of a metre.
+  REQUIRE(spread(0.03) == Approx(0.03).epsilon(0.3));
+  REQUIRE(spread(0.09) == Approx(0.09).epsilon(0.3));
+}
+
+TEST_CASE("after a change of ground learning does no harm from the second execution on") {
+  // Measured over 200 seeds, of what `off` errs by: 1.33, .98, .85, .76, .72, .69 after 0 to 5. The
+  // rule before: 1.06 after one execution, .94 after two.
+  const DrawnWorld world;
+  std::vector<std::vector<double>> ratios(6);
+  for (int seed = 1; seed <= effort(200); ++seed) {
+    std::mt19937_64 random(static_cast<uint64_t>(seed));
+    Pupil pupil = multiModel();
+    world.drive(pupil, world.ground(random), 30, random);
+    const DrawnGround ground = world.ground(random);
+    for (std::vector<double>& after : ratios) {
+      after.push_back(overOff(pupil, world, ground, random));
+      world.drive(pupil, ground, 1, random);
+    }
+  }
+  REQUIRE(median(ratios[1]) < 1.05);
+  for (size_t n = 2; n < ratios.size(); ++n) {
+    INFO(n << " executions");
+    REQUIRE(median(ratios[n]) < 0.95);
+  }
+  REQUIRE(median(ratios[5]) < 0.75);
+}
+
+TEST_CASE("from the shipped ground to another learning never does harm") {
+  // Measured over 200 seeds: 1.004, .92, .77, .69, .63, .58 after 0 to 5.
+  const DrawnWorld world;
+  std::vector<std::vector<double>> ratios(6);
+  for (int seed = 1; seed <= effort(200); ++seed) {
+    std::mt19937_64 random(static_cast<uint64_t>(seed));
+    Pupil pupil = multiModel();
+    world.drive(pupil, world.shipped(), 30, random);
+    const DrawnGround ground = world.ground(random);
+    for (std::vector<double>& after : ratios) {
+      after.push_back(overOff(pupil, world, ground, random));
+      world.drive(pupil, ground, 1, random);
+    }
+  }
+  REQUIRE(median(ratios[0]) < 1.02);
+  REQUIRE(median(ratios[1]) < 1.0);
+  for (size_t n = 2; n < ratios.size(); ++n) REQUIRE(median(ratios[n]) < 0.9);
+}
+
+TEST_CASE("on unchanged shipped ground the error is within 2 percent of the omniscient one") {
+  // Measured 1.7 %. The rule before: 3.6 %.
+  const DrawnWorld world;
+  double learned = 0.0;
+  double omniscient = 0.0;
+  for (int seed = 1; seed <= effort(100); ++seed) {
+    std::mt19937_64 random(static_cast<uint64_t>(seed));
+    Pupil pupil = multiModel();
+    world.drive(pupil, world.shipped(), 50, random);
+    for (int i = 0; i < 200; ++i) {
+      const size_t p = random() % world.patterns();
+      const std::vector<Pose2> measured = world.execution(world.shipped(), p, random);
+      learned += distance(measured.back(), pupil.end(p));
+      omniscient += distance(measured.back(), pupil.shipped(p).back());
+      pupil.learn(p, measured);
+    }
+  }
+  REQUIRE(learned < 1.02 * omniscient);
+}
+
+TEST_CASE("what a vehicle does on every ground it is expected to do on the next, too") {
+  // Turns by 1.3 of what was shipped, wherever it drives; grounds differ in all else.
+  const GroundEffect grounds[] = {{1.0, 1.3, 0.0, 0.0}, {0.92, 1.3, 0.08, 0.0}};
+  const GroundEffect third{1.25, 1.3, -0.06, 0.0};
+  constexpr size_t kTurns[] = {kTurnLeft, kTurnRight, kHardLeft, kHardRight, kTurning};
+  const auto yaw_over_off = [&](const Pupil& pupil) {
+    double learned = 0.0;
+    double shipped = 0.0;
+    for (const size_t p : kTurns) {
+      const double yaw = under(third, pupil.shipped(p)).back().yaw;
+      learned += std::abs(yaw - pupil.end(p).yaw);
+      shipped += std::abs(yaw - pupil.shipped(p).back().yaw);
+    }
+    return learned / shipped;
+  };
+  std::vector<double> first;
+  std::vector<double> changed;
+  for (int seed = 1; seed <= effort(100); ++seed) {
+    std::mt19937_64 random(static_cast<uint64_t>(seed));
+    Pupil pupil = multiModel();
+    for (const GroundEffect& ground : grounds) driveOn(pupil, ground, usual(), 30, random);
+    first.push_back(yaw_over_off(pupil));
+    // Straight ahead on the third: the ground is another, and of turns nothing is known.
+    RuleNote note;
+    for (int i = 0; i < 2; ++i)
+      note = pupil.learn(kAhead, under(drawn(third, usual(), random), pupil.shipped(kAhead)));
+    REQUIRE(note.surface == 0);
+    changed.push_back(yaw_over_off(pupil));
+  }
+  // Measured .11 and .44 of what `off` errs by.
+  REQUIRE(median(first) < 0.25);
+  REQUIRE(median(changed) < 0.5);
+}
+
+TEST_CASE("a surface that comes back is recognised faster than it was learned") {
+  int recognised = 0;
+  double at_first = 0.0;
+  double again = 0.0;
+  const int seeds = effort(40);
+  for (int seed = 1; seed <= seeds; ++seed) {
+    std::mt19937_64 random(static_cast<uint64_t>(seed));
+    Pupil pupil = multiModel();
+    driveOn(pupil, kMud, usual(), 3, random);
+    at_first += meanEndError(pupil, kMud) / seeds;
+    driveOn(pupil, kMud, usual(), 30, random);
+    driveOn(pupil, kRoad, usual(), 30, random);
+    const RuleNote note = driveOn(pupil, kMud, usual(), 3, random);
+    again += meanEndError(pupil, kMud) / seeds;
+    recognised += note.surface == 2 ? 1 : 0;
+  }
+  // Measured: 35 of 40, and less than half of the error after three executions.
+  REQUIRE(recognised >= 0.75 * seeds);
+  REQUIRE(again < 0.6 * at_first);
+}
+
+TEST_CASE("the first half of a pattern teaches nearly what the whole of it does") {
+  const DrawnWorld world;
+  double halves = 0.0;
+  double wholes = 0.0;
+  int same_way = 0;
+  const int seeds = effort(200);
+  for (int seed = 1; seed <= seeds; ++seed) {
+    std::mt19937_64 random(static_cast<uint64_t>(seed));
+    Pupil pupil = multiModel();
+    if (seed % 2 == 0) world.drive(pupil, world.ground(random), 20, random);
+    const size_t p = random() % world.patterns();
+    const std::vector<Pose2> measured = world.execution(world.ground(random), p, random);
+    Pupil half(pupil);
+    Pupil whole(pupil);
+    half.learn(p, {measured.begin(), measured.begin() + 10});
+    whole.learn(p, measured);
+    const std::vector<double> before = pupil.everything();
+    const std::vector<double> by_half = half.everything();
+    const std::vector<double> by_whole = whole.everything();
+    double along = 0.0;
+    for (size_t i = 0; i < before.size(); ++i) {
+      along += (by_half[i] - before[i]) * (by_whole[i] - before[i]);
+      halves += (by_half[i] - before[i]) * (by_half[i] - before[i]);
+      wholes += (by_whole[i] - before[i]) * (by_whole[i] - before[i]);
+    }
+    same_way += along > 0.0 ? 1 : 0;
+  }
+  // Measured: 200 of 200, .91 as far.
+  REQUIRE(same_way >= 0.98 * seeds);
+  REQUIRE(std::sqrt(halves / wholes) > 0.75);
+  REQUIRE(std::sqrt(halves / wholes) < 1.05);
+}
+
+TEST_CASE("who learns the whole in the place of its beginning has learned the whole alone") {
+  const DrawnWorld world;
+  std::mt19937_64 random(4);
+  Pupil pupil = multiModel();
+  world.drive(pupil, world.ground(random), 15, random);
+  for (int i = 0; i < 20; ++i) {
+    const Pupil before(pupil);
+    const size_t p = random() % world.patterns();
+    const std::vector<Pose2> measured = world.execution(world.ground(random), p, random);
+    for (const std::ptrdiff_t rows : {3, 9, 14})
+      pupil.learn(p, {measured.begin(), measured.begin() + rows});
+    pupil.rule().assign(Pupil(before).rule());
+    REQUIRE(pupil.rule().memory() == Pupil(before).rule().memory());
+    Pupil straight(before);
+    const RuleNote note = pupil.learn(p, measured);
+    REQUIRE(straight.learn(p, measured).change_probability == note.change_probability);
+    REQUIRE(straight.everything() == pupil.everything());
+    REQUIRE(straight.rule().memory() == pupil.rule().memory());
+  }
+}
+
+TEST_CASE("a part that is all of a pattern is the whole pattern") {
+  const DrawnWorld world;
+  std::mt19937_64 random(5);
+  Pupil pupil = multiModel();
+  Pupil fed = multiModel();
+  std::vector<Pose2> measured = world.execution(world.shipped(), kHardLeft, random);
+  pupil.learn(kHardLeft, measured);
+  measured.resize(20);
+  fed.learn(kHardLeft, measured);
+  REQUIRE(fed.rule().memory() == pupil.rule().memory());
+}
+
+TEST_CASE("parts of a single sample do no harm, even many of them") {
+  const DrawnWorld world;
+  double before = 0.0;
+  double behind = 0.0;
+  double on_shipped = 0.0;
+  const int seeds = effort(50);
+  const auto begin = [&](Pupil& pupil, const DrawnGround& ground, int parts,
+                         std::mt19937_64& random) {
+    for (int i = 0; i < parts; ++i) {
+      const size_t p = random() % world.patterns();
+      Pose2 pose = world.execution(ground, p, random).front();
+      // As an INS measures one.
+      pose = {pose.x + 0.005 * chanceOf(random), pose.y + 0.005 * chanceOf(random),
+              pose.yaw + 0.005 * chanceOf(random)};
+      pupil.learn(p, {pose});
+    }
+  };
+  for (int seed = 1; seed <= seeds; ++seed) {
+    std::mt19937_64 random(static_cast<uint64_t>(seed));
+    Pupil pupil = multiModel();
+    const DrawnGround ground = world.ground(random);
+    world.drive(pupil, ground, 40, random);
+    before += world.endError(pupil, ground) / seeds;
+    begin(pupil, ground, 10, random);
+    behind += world.endError(pupil, ground) / seeds;
+    Pupil shipped = multiModel();
+    begin(shipped, world.shipped(), 100, random);
+    on_shipped += world.endError(shipped, world.shipped()) / seeds;
+  }
+  // Measured: .0182 before and .0175 after ten of them; .018 after a hundred on shipped ground.
+  REQUIRE(behind < before + 0.002);
+  REQUIRE(on_shipped < 0.03);
+}
+
+TEST_CASE("the surface that was met longest ago makes room, never that of the shipped set") {
+  GroundConfig config;
+  config.capacity = 2;
+  int right = 0;
+  const int seeds = effort(20);
+  for (int seed = 1; seed <= seeds; ++seed) {
+    Pupil pupil = multiModel(config);
+    std::mt19937_64 random(static_cast<uint64_t>(seed));
+    driveOn(pupil, kMeadow, kCalm, 30, random);
+    driveOn(pupil, kMud, kCalm, 30, random);
+    REQUIRE(pupil.rule().remembered() == 2);
+    driveOn(pupil, {0.7, 0.8, -0.1, 0.0}, kCalm, 30, random);
+    REQUIRE(pupil.rule().remembered() == 3);
+    driveOn(pupil, kMud, kCalm, 30, random);
+    REQUIRE(pupil.rule().remembered() == 3);
+    // The third ground was met longest ago but for the shipped one.
+    const RuleNote road = driveOn(pupil, kRoad, kCalm, 30, random);
+    REQUIRE(pupil.rule().remembered() == 3);
+    const RuleNote mud = driveOn(pupil, kMud, kCalm, 10, random);
+    const RuleNote meadow = driveOn(pupil, kMeadow, kCalm, 10, random);
+    right += road.surface == 3 && mud.surface == 2 && meadow.surface == 1 ? 1 : 0;
+  }
+  REQUIRE(right >= 0.9 * seeds);
+}
+
+TEST_CASE("with room for one surface beside the shipped one it follows the newest") {
+  GroundConfig config;
+  config.capacity = 1;
+  Pupil pupil = multiModel(config);
+  std::mt19937_64 random(4);
+  for (const GroundEffect& ground : {kMud, kRoad, kMud, kRoad}) {
+    driveOn(pupil, ground, kCalm, 40, random);
+    REQUIRE(pupil.rule().remembered() == 2);
+    REQUIRE(meanEndError(pupil, ground) < 0.05);
+  }
+  REQUIRE(driveOn(pupil, kMeadow, kCalm, 10, random).surface == 1);
+}
+
+TEST_CASE("room for no surface, or surfaces of none, or no moment of change is refused") {
+  RuleConfig config = ruleConfig("multi_model");
+  config.ground.capacity = 0;
+  REQUIRE_THROWS_WITH(makeRule(config, richSet()), Catch::Contains("capacity"));
+  config = ruleConfig("multi_model");
+  config.ground.settled_after = 0;
+  REQUIRE_THROWS_WITH(makeRule(config, richSet()), Catch::Contains("settled_after"));
+  config = ruleConfig("multi_model");
+  config.ground.moments = 1;
+  REQUIRE_THROWS_WITH(makeRule(config, richSet()), Catch::Contains("moments"));
+}
+
+TEST_CASE("the ends of all ranges are configurations like others") {
+  using Change = void (*)(GroundConfig&);
+  const Change changes[] = {
+      [](GroundConfig& c) { c.change_metres = 0.1; },
+      [](GroundConfig& c) { c.change_metres = 1e5; },
+      [](GroundConfig& c) { c.fresh = 0.01; },
+      [](GroundConfig& c) { c.fresh = 0.99; },
+      [](GroundConfig& c) { c.ahead = 0.0; },
+      [](GroundConfig& c) { c.ahead = 100.0; },
+      [](GroundConfig& c) { c.sure = 0.5; },
+      [](GroundConfig& c) { c.sure = 0.999; },
+      [](GroundConfig& c) { c.settled_after = 2; },
+      [](GroundConfig& c) { c.moments = 2; },
+      [](GroundConfig& c) { c.moments = 64; },
+      [](GroundConfig& c) { c.shared = 0.0; },
+      [](GroundConfig& c) { c.shared = 0.95; },
+      [](GroundConfig& c) { c.shipped_spread = 1e-4; },
+      [](GroundConfig& c) { c.longest_memory = 10.0; },
+      [](GroundConfig& c) { c.noise_prior = 3.0; },
+      [](GroundConfig& c) { c.most_freedom = 4.0; },
+      [](GroundConfig& c) { c.recorded = 1.0; },
+      [](GroundConfig& c) {
+        c.noise = {0.001, 0.001, 0.001, 1e-4, 1e-4};
+      },
+      [](GroundConfig& c) { c.common.fill(10.0); },
+      [](GroundConfig& c) { c.residual.fill(1e-4); },
+  };
+  for (size_t i = 0; i < std::size(changes); ++i) {
+    INFO("change " << i);
+    GroundConfig config;
+    changes[i](config);
+    Pupil pupil = multiModel(config);
+    std::mt19937_64 random(10);
+    for (const GroundEffect& ground :
+         {kMud, GroundEffect{0.05, 0.1, 0.0, 0.0}, kRoad, kMeadow, kMud}) {
+      for (int n = 0; n < effort(40); ++n) {
+        const RuleNote note = driveOn(pupil, ground, usual(), 1, random);
+        REQUIRE(note.surface_probability >= 0.0);
+        REQUIRE(note.surface_probability <= 1.0 + 1e-9);
+        REQUIRE(note.change_probability >= 0.0);
+        REQUIRE(note.change_probability <= 1.0 + 1e-9);
+        if (note.surface_stored) REQUIRE(note.surface > 0);
+      }
+      for (const double number : pupil.everything()) REQUIRE(std::isfinite(number));
+      for (size_t p = 0; p < pupil.patterns(); ++p)
+        REQUIRE(endCovariance(pupil, p).llt().info() == Eigen::Success);
+    }
+    Pupil second = multiModel(config);
+    REQUIRE(second.rule().restore(TrajectoryTable(pupil.set().patterns()), pupil.rule().memory()));
+    REQUIRE(second.everything() == pupil.everything());
+  }
+}
