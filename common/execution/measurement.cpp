@@ -29,7 +29,8 @@ double seconds(int64_t us) {
 }
 
 std::vector<Pose2> firstOf(const std::vector<Pose2>& poses, size_t count) {
-  return {poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(std::min(count, poses.size()))};
+  return {poses.begin(),
+          poses.begin() + static_cast<std::ptrdiff_t>(std::min(count, poses.size()))};
 }
 
 /// Fills a measurement step by step; the first gate that closes stays.
@@ -72,7 +73,8 @@ class Cutter {
       close(Gate::kAborted, "aborted: " + cut_.outcome_reason);
     if (cut_.beginning && cut_.ended - cut_.started < limits_.shortest_us)
       close(Gate::kAborted, "only " + fixed(seconds(cut_.ended - cut_.started), 2) +
-                                " s of it were driven, needed " + fixed(seconds(limits_.shortest_us), 2));
+                                " s of it were driven, needed " +
+                                fixed(seconds(limits_.shortest_us), 2));
     if (!cut_.unexpected_command.empty()) close(Gate::kCommands, cut_.unexpected_command);
     const int64_t took = cut_.ended - cut_.started;
     const double longest = seconds(duration()) / limits_.min_covered;
@@ -134,11 +136,10 @@ class Cutter {
     const bool enough = cut_.beginning ? result_.covered >= samplesOf(limits_.shortest_us)
                                        : share >= limits_.min_covered;
     if (!enough)
-      close(Gate::kCoveredTime, "the INS covers " + fixed(100.0 * share, 0) +
-                                    " % of the execution, needed " +
-                                    (cut_.beginning
-                                         ? fixed(seconds(limits_.shortest_us), 2) + " s"
-                                         : fixed(100.0 * limits_.min_covered, 0) + " %"));
+      close(Gate::kCoveredTime,
+            "the INS covers " + fixed(100.0 * share, 0) + " % of the execution, needed " +
+                (cut_.beginning ? fixed(seconds(limits_.shortest_us), 2) + " s"
+                                : fixed(100.0 * limits_.min_covered, 0) + " %"));
   }
 
   void checkMotion() {

@@ -39,13 +39,13 @@ const char* gateName(Gate gate);
 
 /// What is still a fair measurement.
 struct MeasurementLimits {
-  int64_t max_gap_us = 300'000;  ///< [us] between two INS poses
-  double min_covered = 0.80;     ///< [1] share of the samples that the INS must cover
-  int64_t shortest_us = 400'000; ///< [us] of a beginning: shorter ones are mostly INS noise
-  double max_speed = 0.0;        ///< [m/s] of the vehicle; 0 = the largest in the shipped set
-  double speed_margin = 1.5;     ///< [1] poses faster than this times max_speed are jumps
-  double min_motion = 0.03;      ///< [m] box below which nothing moved
-  double min_turn = 0.03;        ///< [rad] the same for yaw
+  int64_t max_gap_us = 300'000;   ///< [us] between two INS poses
+  double min_covered = 0.80;      ///< [1] share of the samples that the INS must cover
+  int64_t shortest_us = 400'000;  ///< [us] of a beginning: shorter ones are mostly INS noise
+  double max_speed = 0.0;         ///< [m/s] of the vehicle; 0 = the largest in the shipped set
+  double speed_margin = 1.5;      ///< [1] poses faster than this times max_speed are jumps
+  double min_motion = 0.03;       ///< [m] box below which nothing moved
+  double min_turn = 0.03;         ///< [rad] the same for yaw
   int64_t entry_window_us =
       200'000;  ///< [us] before the start over which the entry twist is measured
   double entry_speed =

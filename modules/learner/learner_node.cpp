@@ -344,7 +344,8 @@ ExecutionCut LearnerNode::cutOf(const execution_record_t& record,
   const PatternSet& set = learner_.set();
   cut.unexpected_command = commands_.unexpectedCommand(keyOf(record), pattern, set.content().kind);
   // Where a failsafe stops the robot it may have been held: that is no ground.
-  cut.beginning = learner_.learnsParts() && !cut.completed && cut.outcome_reason == kStoppedByPlanner;
+  cut.beginning =
+      learner_.learnsParts() && !cut.completed && cut.outcome_reason == kStoppedByPlanner;
   cut.steady_before = hand_.steadyBefore(set.classNamed(pattern.entry_class).steady, record.started,
                                          set.content().period_us);
   return cut;

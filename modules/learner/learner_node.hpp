@@ -175,7 +175,7 @@ class LearnerNode : public Node {
   HandWatch hand_;
   std::optional<execution_record_t> running_;  ///< execution that is followed
   int64_t followed_until_ = 0;                 ///< [us] of its time
-  int64_t seq_motor_ = -1;  ///< of the last MOTOR; -1 = none yet
+  int64_t seq_motor_ = -1;                     ///< of the last MOTOR; -1 = none yet
   SetPublisher publisher_;
   HealthReporter health_;
   std::map<int64_t, PatternSet> versions_;  ///< the last sets by version

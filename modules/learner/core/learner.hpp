@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "common/execution/measurement.hpp"
 #include "common/execution/execution_tracker.hpp"
+#include "common/execution/measurement.hpp"
 #include "common/pattern/pattern.hpp"
 #include "modules/learner/core/rules/learning_rule.hpp"
 

@@ -55,7 +55,7 @@ Eigen::Vector3d sampleMotion(const Pose2& from, const Pose2& to) {
 
 /// A correction beyond these is none that ground makes; predictions stay drivable.
 constexpr double kLargestFactor = 3.0;
-constexpr double kLargestBias = 0.5;  // [rad/m]
+constexpr double kLargestBias = 0.5;  // [rad/m]; [m] of push and shift
 
 double clamped(double value, double low, double high) {
   return value < low ? low : (value > high ? high : value);
@@ -147,6 +147,7 @@ Eigen::Matrix<double, 3, TwistCorrection::kAll> sampleResponse(double v, double 
   response.setZero();
   response(0, Index::kForward) = response(0, kOwnForward) = v;
   response(0, Index::kTurnLoss) = -std::abs(w) * v;
+  response(0, Index::kPush) = response(1, Index::kShift) = w;
   response(1, Index::kSideslip) = std::abs(v) * w;
   response(1, Index::kCrab) = response(1, kOwnLateral) = v;
   response(2, Index::kYaw) = response(2, kOwnYaw) = w;
@@ -158,7 +159,7 @@ Eigen::Matrix<double, 3, TwistCorrection::kAll> sampleResponse(double v, double 
 void TwistProfile::measureResponses() {
   end_response_.setZero();
   end_lever_.setZero();
-  const Correction10 none = Correction10::Zero();
+  const CorrectionVector none = CorrectionVector::Zero();
   std::vector<Pose2> poses;
   const Pose2 end = walk(none, [&](size_t, const Pose2& pose) { poses.push_back(pose); });
   Pose2 at;
@@ -194,8 +195,8 @@ PatternPart TwistProfile::part(Eigen::Index samples) const {
   for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
     const auto row = static_cast<Eigen::Index>(velocity);
     part.own[velocity] = share * response(row, TwistCorrection::kCommon + row);
-    for (size_t i = 0; i < static_cast<size_t>(termsOf(velocity).count); ++i)
-      part.common[velocity][i] = share * response(row, termsOf(velocity).common[i]);
+    for (Eigen::Index i = 0; i < kTerms; ++i)
+      part.common[velocity][static_cast<size_t>(i)] = share * response(row, kTerms * row + i);
   }
   return part;
 }
@@ -208,11 +209,13 @@ Eigen::Vector2d TwistProfile::meanSpeed(Eigen::Index samples) const {
 }
 
 template <typename Put>
-Pose2 TwistProfile::walk(const Correction10& x, Put&& put) const {
+Pose2 TwistProfile::walk(const CorrectionVector& x, Put&& put) const {
   const double gain = 1.0 + x[Index::kForward] + x[kOwnForward];
   const double crab = clamped(x[Index::kCrab] + x[kOwnLateral], -1.0, 1.0);
   const double turn = 1.0 + x[Index::kYaw] + x[kOwnYaw];
   const double bias = clamped(x[Index::kYawBias], -kLargestBias, kLargestBias);
+  const double push = clamped(x[Index::kPush], -kLargestBias, kLargestBias);
+  const double shift = clamped(x[Index::kShift], -kLargestBias, kLargestBias);
   Pose2 at;
   double c_at = 1.0, s_at = 0.0;  // of at.yaw, turned along instead of computed anew
   for (size_t t = 0; t < forward_.size(); ++t) {
@@ -221,8 +224,8 @@ Pose2 TwistProfile::walk(const Correction10& x, Put&& put) const {
     const double forward = clamped(gain - x[Index::kTurnLoss] * std::abs(w), 0.0, kLargestFactor);
     const double yaw = clamped(turn + x[Index::kYawBySpeed] * std::abs(v), 0.0, kLargestFactor);
     const double slip = clamped(x[Index::kSideslip] * w, -1.0, 1.0);
-    const double v_new = forward * v;
-    const double s_new = lateral_[t] + slip * std::abs(v) + crab * v;
+    const double v_new = forward * v + push * w;
+    const double s_new = lateral_[t] + slip * std::abs(v) + crab * v + shift * w;
     const double w_new = yaw * w + bias * v;
     const double half = 0.5 * w_new * period_;
     const HalfTurn turned(half);
@@ -240,7 +243,7 @@ Pose2 TwistProfile::walk(const Correction10& x, Put&& put) const {
   return at;
 }
 
-void TwistProfile::integrate(const Correction10& correction, Trajectory prediction) const {
+void TwistProfile::integrate(const CorrectionVector& correction, Trajectory prediction) const {
   walk(correction, [&](size_t t, const Pose2& pose) {
     const auto row = static_cast<Eigen::Index>(t);
     prediction(row, 0) = pose.x;
@@ -249,7 +252,7 @@ void TwistProfile::integrate(const Correction10& correction, Trajectory predicti
   });
 }
 
-Pose2 TwistProfile::integrateEnd(const Correction10& correction) const {
+Pose2 TwistProfile::integrateEnd(const CorrectionVector& correction) const {
   return walk(correction, [](size_t, const Pose2&) {});
 }
 
@@ -262,15 +265,6 @@ Eigen::Vector3d meanTwist(const ConstTrajectory& trajectory, double period) {
     last = pose;
   }
   return sum / (period * static_cast<double>(trajectory.rows()));
-}
-
-const VelocityTerms& termsOf(size_t velocity) {
-  static constexpr std::array<VelocityTerms, kVelocities> kTerms{{
-      {{Index::kForward, Index::kTurnLoss, 0}, 2},
-      {{Index::kSideslip, Index::kCrab, 0}, 2},
-      {{Index::kYaw, Index::kYawBySpeed, Index::kYawBias}, 3},
-  }};
-  return kTerms[velocity];
 }
 
 GroundModel::GroundModel(const GroundConfig& config, const PatternSet& shipped)
@@ -291,10 +285,15 @@ PatternPart GroundModel::part(size_t pattern, Eigen::Index samples) const {
   part.pattern = pattern;
   const Eigen::Vector2d speed = profile.meanSpeed(samples);
   const double seconds = period_ * static_cast<double>(samples);
-  const double moved = squared(noise_.position / seconds);
+  const double moved = squared(noise_.position / seconds) + squared(noise_.turning * speed[1]);
   const Eigen::Vector3d expected(
       squared(noise_.forward * speed[0]) + moved, squared(noise_.lateral * speed[0]) + moved,
-      squared(noise_.yaw * speed[1]) + squared(noise_.heading / seconds));
+      squared(noise_.yaw * speed[1]) + squared(noise_.wander * speed[0]) +
+          squared(noise_.heading / seconds));
+  // A turn on the spot moves, too: half a metre for a radian.
+  constexpr double kMetresPerRadian = 0.5;
+  part.shape = squared(noise_.shape * (part.metres + kMetresPerRadian * speed[1] * seconds)) +
+               squared(noise_.position);
   const double share = recorded_share_[pattern];
   constexpr double kLeast = 0.05;
   // A recording of nothing is no proof that an execution is exact.
@@ -306,12 +305,11 @@ void GroundModel::fillSpread(const GroundConfig& config) {
   const Kernels kernels = kernelsOf(whole_);
   const auto n = static_cast<Eigen::Index>(profiles_.size());
   for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
-    const VelocityTerms& terms = termsOf(velocity);
     Eigen::MatrixXd& spread = spread_[velocity];
-    spread = Eigen::MatrixXd::Zero(terms.count + n, terms.count + n);
-    for (Eigen::Index i = 0; i < terms.count; ++i)
+    spread = Eigen::MatrixXd::Zero(kTerms + n, kTerms + n);
+    for (Eigen::Index i = 0; i < kTerms; ++i)
       spread(i, i) =
-          squared(config.common[static_cast<size_t>(terms.common[static_cast<size_t>(i)])]);
+          squared(config.common[static_cast<size_t>(kTerms) * velocity + static_cast<size_t>(i)]);
     spread.bottomRightCorner(n, n) =
         squared(config.residual[velocity]) * correlations(kernels, velocity == 1 ? -1.0 : 1.0);
   }

@@ -16,30 +16,39 @@ namespace tread::learner {
 /// What ground may do to the body twist of a pattern: corrections relative to the shipped
 /// prediction.
 /** With v, s, w the shipped forward, lateral and yaw velocity of a sample [m/s, m/s, rad/s]:
- *    forward   v' = v (1 + f + r_x - tau |w|)
- *    lateral   s' = s + kappa |v| w + (c + r_y) v
+ *    forward   v' = v (1 + f + r_x - tau |w|) + e w
+ *    lateral   s' = s + kappa |v| w + (c + r_y) v + o w
  *    yaw       w' = w (1 + g + r_w + eta |v|) + b v
- * f forward gain [1], g yaw gain [1], kappa sideslip [s], tau turn loss [s], eta yaw gain by speed
- * [s/m], b yaw bias [rad/m], c crab [1] are common to all patterns; r_x, r_y, r_w [1] are the
- * pattern's own. Linear in the ten, so that a mean twist is corrected exactly by a matrix; only
- * predictions are kept within what ground can do (factors 0..3, lateral +-|v|, bias +-0.5 rad/m).
- */
+ * f forward gain [1], tau turn loss [s], e push [m] (one track holds better than the other), kappa
+ * sideslip [s], c crab [1], o shift of the point about which it turns [m], g yaw gain [1], eta yaw
+ * gain by speed [s/m], b yaw bias [rad/m] are common to all patterns; r_x, r_y, r_w [1] are the
+ * pattern's own. Linear in the twelve, so that a mean twist is corrected exactly by a matrix; only
+ * predictions are kept within what ground can do (factors 0..3, lateral +-|v|, bias +-0.5 rad/m,
+ * push and shift +-0.5 m). */
 struct TwistCorrection {
-  enum Index { kForward, kYaw, kSideslip, kTurnLoss, kYawBySpeed, kYawBias, kCrab, kCommon };
+  enum Index {
+    kForward,
+    kTurnLoss,
+    kPush,
+    kSideslip,
+    kCrab,
+    kShift,
+    kYaw,
+    kYawBySpeed,
+    kYawBias,
+    kCommon
+  };
   static constexpr int kOwn = 3;               ///< r_x, r_y, r_w, after the common ones
-  static constexpr int kAll = kCommon + kOwn;  ///< ten
+  static constexpr int kAll = kCommon + kOwn;  ///< twelve
 };
-using Correction10 = Eigen::Matrix<double, TwistCorrection::kAll, 1>;
+using CorrectionVector = Eigen::Matrix<double, TwistCorrection::kAll, 1>;
 /// The velocities of a body twist: forward, lateral, yaw.
 inline constexpr size_t kVelocities = 3;
 
-/// Corrections of one velocity: first the common ones that act on it, then r of each pattern.
+/// Of each velocity three common corrections, in the order of TwistCorrection: of velocity i those
+/// from 3 i on. Its state is those three, then its r of each pattern.
 /** No correction acts on two velocities, so that the three are learned apart. */
-struct VelocityTerms {
-  std::array<int, 3> common;  ///< indices of TwistCorrection
-  Eigen::Index count;         ///< of those in use
-};
-const VelocityTerms& termsOf(size_t velocity);
+inline constexpr Eigen::Index kTerms = 3;
 
 /// The beginning of a pattern, or the whole of it, as what one measurement of it tells.
 struct PatternPart {
@@ -48,8 +57,9 @@ struct PatternPart {
   Eigen::Vector3d mean;   ///< shipped mean twist [m/s, m/s, rad/s]
   Eigen::Vector3d noise;  ///< variance of one execution's mean twist on even ground
   double metres = 0.0;    ///< driven, as shipped
+  double shape = 0.0;     ///< [m2] variance of x and of y of its end beyond that of the mean twist
   /// Change of each mean velocity per unit of its common corrections and of the pattern's own.
-  std::array<std::array<double, 3>, kVelocities> common{};
+  std::array<std::array<double, kTerms>, kVelocities> common{};
   std::array<double, kVelocities> own{};
 };
 
@@ -62,9 +72,9 @@ class TwistProfile {
   TwistProfile(const MotionPattern& shipped, double period);
 
   /// R under a correction. Allocates nothing.
-  void integrate(const Correction10& correction, Trajectory prediction) const;
+  void integrate(const CorrectionVector& correction, Trajectory prediction) const;
   /// Its last pose alone.
-  Pose2 integrateEnd(const Correction10& correction) const;
+  Pose2 integrateEnd(const CorrectionVector& correction) const;
 
   /// Mean twist (v, s, w) of the first samples, and its responses; no noise yet.
   PatternPart part(Eigen::Index samples) const;
@@ -80,7 +90,7 @@ class TwistProfile {
 
  private:
   template <typename Put>
-  Pose2 walk(const Correction10& correction, Put&& put) const;
+  Pose2 walk(const CorrectionVector& correction, Put&& put) const;
   void measureResponses();
 
   double period_;
@@ -106,10 +116,8 @@ class GroundModel {
   size_t patterns() const { return profiles_.size(); }
   double period() const { return period_; }
   const TwistProfile& profile(size_t pattern) const { return profiles_[pattern]; }
-  /// Length of a velocity's state.
-  Eigen::Index dimension(size_t velocity) const {
-    return termsOf(velocity).count + static_cast<Eigen::Index>(profiles_.size());
-  }
+  /// Length of each velocity's state.
+  Eigen::Index dimension() const { return kTerms + static_cast<Eigen::Index>(profiles_.size()); }
   /// Q: covariance of a velocity's corrections over the surfaces that there are.
   const Eigen::MatrixXd& spread(size_t velocity) const { return spread_[velocity]; }
   /// The first samples of a pattern; `samples` is at least 1 and at most those of the pattern.
@@ -131,9 +139,8 @@ class GroundModel {
 /// h' x: what corrections of a velocity do to its mean in a part of a pattern.
 template <class Vector>
 double response(const PatternPart& part, size_t velocity, const Vector& x) {
-  const Eigen::Index count = termsOf(velocity).count;
-  double sum = part.own[velocity] * x[count + static_cast<Eigen::Index>(part.pattern)];
-  for (Eigen::Index i = 0; i < count; ++i)
+  double sum = part.own[velocity] * x[kTerms + static_cast<Eigen::Index>(part.pattern)];
+  for (Eigen::Index i = 0; i < kTerms; ++i)
     sum += part.common[velocity][static_cast<size_t>(i)] * x[i];
   return sum;
 }

@@ -21,31 +21,35 @@ struct TwistNoise {
   double forward = 0.03;   ///< [1] of |v_x|
   double lateral = 0.03;   ///< [1] of v_y over |v_x|
   double yaw = 0.08;       ///< [1] of |omega|
+  double turning = 0.05;   ///< [m] of |omega|, added to the first two: where it turns about
+  double wander = 0.005;   ///< [rad/m] of |v_x|, added to the third: the course is not kept
+  double shape = 0.02;     ///< [1] of the way: where it ends apart from what its mean twist says
   double position = 0.01;  ///< [m] of a measured end, added to the first two over the time it took
   double heading = 0.01;   ///< [rad] the same, added to the third
 };
 
 /// What the multiple-model filter expects of grounds; the headers of the rule have the equations.
 struct GroundConfig {
-  TwistNoise noise;           ///< expected where nothing was recorded
-  double recorded = 0.3;      ///< [1] share of the recorded spread of ends in the noise
-  double noise_prior = 6.0;   ///< [1] executions that the expected noise counts for
-  double most_freedom = 40.0; ///< [1] of Student's t: even a known surface has tails
-  /// Standard deviations from surface to surface: forward gain [1], yaw gain [1], sideslip [s], turn
-  /// loss [s], yaw by speed [s/m], yaw bias [rad/m], crab [1].
-  std::array<double, 7> common{0.06, 0.12, 0.09, 0.09, 0.047, 0.012, 0.012};
+  TwistNoise noise;            ///< expected where nothing was recorded
+  double recorded = 0.3;       ///< [1] share of the recorded spread of ends in the noise
+  double noise_prior = 5.0;    ///< [1] executions that the expected noise counts for
+  double most_freedom = 40.0;  ///< [1] of Student's t: even a known surface has tails
+  /// Standard deviations from surface to surface, in the order of TwistCorrection: forward gain
+  /// [1], turn loss [s], push [m], sideslip [s], crab [1], shift [m], yaw gain [1], yaw by speed
+  /// [s/m], yaw bias [rad/m].
+  std::array<double, 9> common{0.06, 0.09, 0.03, 0.09, 0.012, 0.05, 0.12, 0.047, 0.012};
   /// Of a pattern's own residual: of v_x, of v_y over v_x, of omega [1].
   std::array<double, 3> residual{0.067, 0.05, 0.10};
-  double shared = 0.5;          ///< [1] share of that variance that all surfaces have in common
-  double shipped_spread = 0.05; ///< [1] the same of the shipped set's own ground, over Q
-  double change_metres = 12.0;  ///< [m] mean way to the next change of ground
-  double fresh = 0.5;           ///< [1] probability that a change leads to ground not met before
-  double ahead = 1.5;           ///< [m] way that predictions look ahead
-  double sure = 0.9;            ///< [1] probability from which on a surface counts as recognized
-  int64_t settled_after = 10;   ///< executions on fresh ground until it is remembered
+  double shared = 0.5;            ///< [1] share of that variance that all surfaces have in common
+  double shipped_spread = 0.05;   ///< [1] the same of the shipped set's own ground, over Q
+  double change_metres = 12.0;    ///< [m] mean way to the next change of ground
+  double fresh = 0.5;             ///< [1] probability that a change leads to ground not met before
+  double ahead = 1.5;             ///< [m] way that predictions look ahead
+  double sure = 0.9;              ///< [1] probability from which on a surface counts as recognized
+  int64_t settled_after = 10;     ///< executions on fresh ground until it is remembered
   double longest_memory = 100.0;  ///< executions after which the oldest on a surface fade
-  int64_t moments = 5;          ///< recent moments at which the ground may have changed
-  int64_t capacity = 16;        ///< remembered surfaces; that met longest ago makes room
+  int64_t moments = 5;            ///< recent moments at which the ground may have changed
+  int64_t capacity = 16;          ///< remembered surfaces; that met longest ago makes room
 };
 
 /// Name of a rule of learning: one of ruleNames().
@@ -92,12 +96,15 @@ void readGround(Reader& reader, GroundConfig& ground) {
   section.number("forward_noise", ground.noise.forward, {0.001, 1.0}, "1");
   section.number("lateral_noise", ground.noise.lateral, {0.001, 1.0}, "1");
   section.number("yaw_noise", ground.noise.yaw, {0.001, 1.0}, "1");
+  section.number("turning_noise", ground.noise.turning, {0.0, 1.0}, "m");
+  section.number("wander_noise", ground.noise.wander, {0.0, 1.0}, "rad/m");
+  section.number("shape_noise", ground.noise.shape, {1e-4, 1.0}, "1");
   section.number("position_noise", ground.noise.position, {1e-4, 1.0}, "m");
   section.number("heading_noise", ground.noise.heading, {1e-4, 1.0}, "rad");
   section.number("recorded", ground.recorded, {0.0, 1.0}, "1");
   section.number("noise_prior", ground.noise_prior, {3.0, 100.0}, "1");
   section.number("most_freedom", ground.most_freedom, {4.0, 1000.0}, "1");
-  readDeviations(section, "common", ground.common, "1, 1, s, s, s/m, rad/m, 1");
+  readDeviations(section, "common", ground.common, "1, s, m, s, 1, m, 1, s/m, rad/m");
   readDeviations(section, "residual", ground.residual, "1");
   section.number("shared", ground.shared, {0.0, 0.95}, "1");
   section.number("shipped_spread", ground.shipped_spread, {1e-4, 1.0}, "1");
@@ -134,10 +141,9 @@ struct RuleNote {
 };
 
 /// A rule of learning: predictions of all patterns of a set, corrected by measurements.
-/** Patterns are named by their index in the shipped set. Same input, same bits; predictions allocate
- * nothing.
- * Trajectories hold T x 3 numbers: x, y [m], yaw [rad, unwrapped] in the start frame, one row a
- * sample. */
+/** Patterns are named by their index in the shipped set. Same input, same bits; predictions
+ * allocate nothing. Trajectories hold T x 3 numbers: x, y [m], yaw [rad, unwrapped] in the start
+ * frame, one row a sample. */
 class LearningRule {
  public:
   virtual ~LearningRule() = default;

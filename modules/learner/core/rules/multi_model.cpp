@@ -11,8 +11,16 @@ namespace {
 
 /// A pattern that hardly drives may still cross a border [m].
 constexpr double kLeastMetres = 0.05;
-/// The centre of new surfaces is kept to this [1]: its digits stand in the state file.
+/// Centre and scatter of new surfaces are kept to this [1]: their digits stand in the state file.
 constexpr double kCentreStep = 1e-6;
+constexpr double kScatterStep = 1e-3;
+
+/// No execution counts for more than this in the scatter [1].
+constexpr double kMostError = 1e3;
+
+double rounded(double number, double step) {
+  return step * std::round(number / step);
+}
 
 std::string percent(double probability) {
   return std::to_string(std::lround(100.0 * probability)) + " %";
@@ -29,17 +37,17 @@ Eigen::Matrix3d spreadOfEnd(const Eigen::Matrix<double, 3, TwistCorrection::kAll
                             const Surface& surface, size_t pattern) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
-    const VelocityTerms& terms = termsOf(velocity);
     const Eigen::MatrixXd& P = surface.covariance()[velocity];
+    const auto first = kTerms * static_cast<Eigen::Index>(velocity);
     const auto place = [&](Eigen::Index i) {
-      return i < terms.count ? i : terms.count + static_cast<Eigen::Index>(pattern);
+      return i < kTerms ? i : kTerms + static_cast<Eigen::Index>(pattern);
     };
     const auto column = [&](Eigen::Index i) {
-      return i < terms.count ? terms.common[static_cast<size_t>(i)]
-                             : TwistCorrection::kCommon + static_cast<int>(velocity);
+      return i < kTerms ? first + i
+                        : TwistCorrection::kCommon + static_cast<Eigen::Index>(velocity);
     };
-    for (Eigen::Index i = 0; i <= terms.count; ++i)
-      for (Eigen::Index j = 0; j <= terms.count; ++j)
+    for (Eigen::Index i = 0; i <= kTerms; ++i)
+      for (Eigen::Index j = 0; j <= kTerms; ++j)
         spread += P(place(i), place(j)) * J.col(column(i)) * J.col(column(j)).transpose();
   }
   return spread;
@@ -47,9 +55,32 @@ Eigen::Matrix3d spreadOfEnd(const Eigen::Matrix<double, 3, TwistCorrection::kAll
 
 }  // namespace
 
+void Scatter::add(size_t pattern, const Eigen::Vector4d& squared_error, double longest_memory) {
+  auto of_pattern = sums.col(static_cast<Eigen::Index>(pattern));
+  of_pattern[0] += 1.0;
+  of_pattern.tail<kQuantities>() += squared_error;
+  const double count = sums.row(0).sum();
+  if (count > longest_memory) sums *= longest_memory / count;
+}
+
+Scatter::Factors Scatter::expected(double prior) const {
+  const Eigen::VectorXd all = sums.rowwise().sum();
+  const Eigen::Array4d mean = (prior + all.tail<kQuantities>().array()) / (prior + all[0]);
+  Factors factors(kQuantities, sums.cols());
+  for (Eigen::Index p = 0; p < sums.cols(); ++p) {
+    const Eigen::Array4d own =
+        (prior * mean + sums.col(p).tail<kQuantities>().array()) / (prior + sums(0, p));
+    factors.col(p) = own.max(kLeastNoise).min(kMostNoise).unaryExpr([](double factor) {
+      return rounded(factor, kScatterStep);
+    });
+  }
+  return factors;
+}
+
 MultiModel::MultiModel(const RuleConfig& config, const PatternSet& shipped)
     : config_(config.ground),
       model_(std::make_shared<GroundModel>(config.ground, shipped)),
+      scatter_(model_->patterns()),
       next_(*model_, config_, priorOfNew()) {
   SurfacePrior of_shipped = priorOfNew();
   of_shipped.share = config_.shipped_spread;
@@ -61,7 +92,7 @@ MultiModel::MultiModel(const RuleConfig& config, const PatternSet& shipped)
 SurfacePrior MultiModel::priorOfNew() const {
   SurfacePrior prior;
   for (size_t velocity = 0; velocity < kVelocities; ++velocity)
-    prior.centre[velocity] = Eigen::VectorXd::Zero(model_->dimension(velocity));
+    prior.centre[velocity] = Eigen::VectorXd::Zero(model_->dimension());
   double met = 0.0;
   for (const Hypothesis& known : surfaces_) {
     // The shipped set's ground counts when the vehicle was really on it.
@@ -73,9 +104,9 @@ SurfacePrior MultiModel::priorOfNew() const {
   const double shared = config_.shared;
   const double share = shared / (1.0 - shared + met * shared);
   for (Eigen::VectorXd& centre : prior.centre)
-    for (double& number : centre)
-      number = kCentreStep * std::round(share * number / kCentreStep);
+    for (double& number : centre) number = rounded(share * number, kCentreStep);
   prior.share = (1.0 - shared) * (1.0 + share);
+  prior.scatter = scatter_.expected(config_.noise_prior).topRows<3>();
   return prior;
 }
 
@@ -136,6 +167,30 @@ void MultiModel::update(const TwistSample& sample) {
   }
 }
 
+/// What executions scatter about the likeliest ground: new ground is expected to be like that.
+void MultiModel::followScatter(const TwistSample& sample, const Pose2& end) {
+  const PatternPart& part = sample.part;
+  const TwistProfile& profile = model_->profile(part.pattern);
+  if (part.samples < profile.samples()) return;
+  const Hypothesis* likeliest = &surfaces_.front();
+  for (const auto* hypotheses : {&surfaces_, &fresh_})
+    for (const Hypothesis& hypothesis : *hypotheses)
+      if (hypothesis.weight > likeliest->weight) likeliest = &hypothesis;
+  const auto& x = likeliest->surface.mean();
+  // Where this mean twist would end if it were steady beside the profile.
+  Eigen::Vector3d apart = sample.mean_twist - part.mean;
+  for (size_t velocity = 0; velocity < kVelocities; ++velocity)
+    apart[static_cast<Eigen::Index>(velocity)] -= response(part, velocity, x[velocity]);
+  const Eigen::Vector3d moved = profile.endLever() * apart;
+  const Pose2 expected = profile.integrateEnd(correctionOf(x, part.pattern));
+  const double dx = end.x - expected.x - moved[0];
+  const double dy = end.y - expected.y - moved[1];
+  Eigen::Vector4d errors;
+  errors << likeliest->surface.squaredError(sample), 0.5 * (dx * dx + dy * dy) / part.shape;
+  // No number from a wild measurement may stay for ever.
+  scatter_.add(part.pattern, errors.cwiseMin(kMostError), config_.longest_memory);
+}
+
 void MultiModel::forgetWeakest() {
   while (static_cast<int64_t>(fresh_.size()) > config_.moments) {
     // The newest has had no time to prove itself.
@@ -185,7 +240,7 @@ void MultiModel::forEachAhead(Take&& take) const {
 
 void MultiModel::predictMixture() {
   for (size_t velocity = 0; velocity < kVelocities; ++velocity)
-    mean_[velocity].setZero(model_->dimension(velocity));
+    mean_[velocity].setZero(model_->dimension());
   forEachAhead([this](double weight, const Surface& surface) {
     for (size_t velocity = 0; velocity < kVelocities; ++velocity)
       mean_[velocity] += weight * surface.mean()[velocity];
@@ -203,6 +258,8 @@ void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNot
   expectChange(sample.part.metres);
   weigh(sample);
   update(sample);
+  const Eigen::Index last = measured.rows() - 1;
+  followScatter(sample, {measured(last, 0), measured(last, 1), measured(last, 2)});
   forgetWeakest();
   note.surface_stored = rememberSettled();
   next_ = Surface(*model_, config_, priorOfNew());
@@ -227,14 +284,14 @@ std::string MultiModel::reason(const RuleNote& note) const {
                           : "unknown ground" + sure;
 }
 
-Correction10 MultiModel::correctionOf(const ByVelocity<Eigen::VectorXd>& x, size_t pattern) const {
-  Correction10 correction;
+CorrectionVector MultiModel::correctionOf(const ByVelocity<Eigen::VectorXd>& x,
+                                          size_t pattern) const {
+  CorrectionVector correction;
   for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
-    const VelocityTerms& terms = termsOf(velocity);
-    for (Eigen::Index i = 0; i < terms.count; ++i)
-      correction[terms.common[static_cast<size_t>(i)]] = x[velocity][i];
-    correction[TwistCorrection::kCommon + static_cast<Eigen::Index>(velocity)] =
-        x[velocity][terms.count + static_cast<Eigen::Index>(pattern)];
+    const auto axis = static_cast<Eigen::Index>(velocity);
+    correction.segment<kTerms>(kTerms * axis) = x[velocity].head<kTerms>();
+    correction[TwistCorrection::kCommon + axis] =
+        x[velocity][kTerms + static_cast<Eigen::Index>(pattern)];
   }
   return correction;
 }
@@ -250,7 +307,7 @@ Pose2 MultiModel::predictEnd(size_t pattern) const {
 std::optional<PoseCovariance> MultiModel::endCovariance(size_t pattern) const {
   const auto& J = model_->profile(pattern).endResponse();
   const Eigen::Matrix3d& lever = model_->profile(pattern).endLever();
-  const Correction10 mean = correctionOf(mean_, pattern);
+  const CorrectionVector mean = correctionOf(mean_, pattern);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   Eigen::Vector3d execution = Eigen::Vector3d::Zero();
   forEachAhead([&](double weight, const Surface& surface) {
@@ -259,6 +316,9 @@ std::optional<PoseCovariance> MultiModel::endCovariance(size_t pattern) const {
     execution += weight * surface.executionNoise(model_->whole(pattern));
   });
   covariance += lever * execution.asDiagonal() * lever.transpose();
+  const double shape = model_->whole(pattern).shape * scatter_.expected(config_.noise_prior)(
+                                                          3, static_cast<Eigen::Index>(pattern));
+  covariance.diagonal().head<2>().array() += shape;
   return upperTriangle(0.5 * (covariance + covariance.transpose()));
 }
 
@@ -267,6 +327,7 @@ void MultiModel::assign(const LearningRule& other) {
   surfaces_ = rule.surfaces_;
   fresh_ = rule.fresh_;
   next_ = rule.next_;
+  scatter_ = rule.scatter_;
   change_probability_ = rule.change_probability_;
   clock_ = rule.clock_;
   mean_ = rule.mean_;
@@ -276,6 +337,7 @@ void MultiModel::assign(const LearningRule& other) {
 
 std::vector<double> MultiModel::memory() const {
   std::vector<double> memory{static_cast<double>(clock_)};
+  memory.insert(memory.end(), scatter_.sums.data(), scatter_.sums.data() + scatter_.sums.size());
   for (const auto* hypotheses : {&surfaces_, &fresh_}) {
     memory.push_back(static_cast<double>(hypotheses->size()));
     for (const Hypothesis& hypothesis : *hypotheses) {
@@ -308,10 +370,12 @@ bool MultiModel::restoreHypotheses(std::vector<Hypothesis>& hypotheses, size_t m
 bool MultiModel::restore(const TrajectoryTable&, const std::vector<double>& memory) {
   for (const double number : memory)
     if (!std::isfinite(number)) return false;
-  if (memory.empty() || !isCount(memory[0], kMostExecutions)) return false;
+  size_t at = 1 + static_cast<size_t>(scatter_.sums.size());
+  if (memory.size() < at || !isCount(memory[0], kMostExecutions)) return false;
   MultiModel rule = *this;
   rule.clock_ = static_cast<int64_t>(memory[0]);
-  size_t at = 1;
+  std::copy_n(memory.begin() + 1, rule.scatter_.sums.size(), rule.scatter_.sums.data());
+  if (rule.scatter_.sums.minCoeff() < 0.0) return false;
   if (!rule.restoreHypotheses(rule.surfaces_, static_cast<size_t>(config_.capacity) + 1, memory,
                               at) ||
       !rule.restoreHypotheses(rule.fresh_, static_cast<size_t>(config_.moments), memory, at) ||

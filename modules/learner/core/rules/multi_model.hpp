@@ -11,6 +11,25 @@
 
 namespace tread::learner {
 
+/// How far executions of each pattern scatter about what is known of the ground, whatever ground:
+/// v_x, v_y and omega of the mean twist, and the end beyond it (a path that is not steady ends
+/// elsewhere than one of the same mean twist that is).
+struct Scatter {
+  static constexpr Eigen::Index kQuantities = 4;
+  using Factors = Eigen::Matrix<double, kQuantities, Eigen::Dynamic>;
+
+  explicit Scatter(size_t patterns)
+      : sums(Eigen::MatrixXd::Zero(1 + kQuantities, static_cast<Eigen::Index>(patterns))) {}
+
+  /// Squared errors of an execution over the ground model's variances.
+  void add(size_t pattern, const Eigen::Vector4d& squared_error, double longest_memory);
+  /// Expected factors on the variances, a column for each pattern: its mean, drawn by `prior`
+  /// executions towards that of all patterns, which is drawn by as many towards 1.
+  Factors expected(double prior) const;
+
+  Eigen::MatrixXd sums;  ///< a column for each pattern: executions, then their squared errors
+};
+
 /// A multiple-model filter over surfaces (own work). The default rule.
 /** On which ground is the vehicle? The hypotheses are the surfaces that it remembers, the first of
  * them the ground of the shipped set, and *fresh* ones: since some moment it is on ground that it
@@ -27,8 +46,9 @@ namespace tread::learner {
  *    E[mu] = shared sum x_k / (1 - shared + K shared),
  *    Var[x_new] = (1 - shared)(1 + shared / (1 - shared + K shared)) Q.
  * So what the vehicle does on every ground, unlike its shipped set, is kept where the ground
- * changes. Predictions are for the next `ahead` metres, on which the ground may change, too: the
- * shipped profile under sum_i w_i^- E[x_i], the covariance that of the mixture. */
+ * changes. Executions are expected to scatter on it as they have so far (Scatter). Predictions are
+ * for the next `ahead` metres, on which the ground may change, too: the shipped profile under sum_i
+ * w_i^- E[x_i], the covariance that of the mixture. */
 class MultiModel : public LearningRule {
  public:
   MultiModel(const RuleConfig& config, const PatternSet& shipped);
@@ -69,12 +89,13 @@ class MultiModel : public LearningRule {
   void weigh(const TwistSample& sample);
   void scaleWeights(double total);
   void update(const TwistSample& sample);
+  void followScatter(const TwistSample& sample, const Pose2& end);
   void forgetWeakest();
   bool rememberSettled();
   void predictMixture();
   template <class Take>
   void forEachAhead(Take&& take) const;
-  Correction10 correctionOf(const ByVelocity<Eigen::VectorXd>& x, size_t pattern) const;
+  CorrectionVector correctionOf(const ByVelocity<Eigen::VectorXd>& x, size_t pattern) const;
   bool restoreHypotheses(std::vector<Hypothesis>& hypotheses, size_t most,
                          const std::vector<double>& memory, size_t& at) const;
 
@@ -82,8 +103,9 @@ class MultiModel : public LearningRule {
   std::shared_ptr<const GroundModel> model_;
   std::vector<Hypothesis> surfaces_;  ///< remembered; [0] of the shipped set
   std::vector<Hypothesis> fresh_;     ///< by the moment of their change, oldest first
-  Surface next_;                      ///< what a new surface would be
-  std::vector<double> changed_;       ///< share of w_i^- that came by a change, remembered ones first
+  Scatter scatter_;
+  Surface next_;                 ///< what a new surface would be
+  std::vector<double> changed_;  ///< share of w_i^- that came by a change, remembered ones first
   double change_probability_ = 0.0;
   int64_t clock_ = 0;
   ByVelocity<Eigen::VectorXd> mean_;  ///< of the mixture

@@ -8,31 +8,26 @@ namespace tread::learner {
 namespace {
 
 constexpr double kLargestTwist = 100.0;
-/// No surface is that much calmer or rougher than expected [1] of a variance.
-constexpr double kLeastNoise = 0.05;
-constexpr double kMostNoise = 20.0;
 /// No ground's corrections are beyond this, of whatever unit.
 constexpr double kLargestCorrection = 1e9;
 
 /// P h.
 void timesResponse(const PatternPart& part, size_t velocity, const Eigen::MatrixXd& P,
                    Eigen::VectorXd& Ph) {
-  const Eigen::Index count = termsOf(velocity).count;
-  Ph.noalias() = part.own[velocity] * P.col(count + static_cast<Eigen::Index>(part.pattern));
-  for (Eigen::Index i = 0; i < count; ++i)
+  Ph.noalias() = part.own[velocity] * P.col(kTerms + static_cast<Eigen::Index>(part.pattern));
+  for (Eigen::Index i = 0; i < kTerms; ++i)
     Ph.noalias() += part.common[velocity][static_cast<size_t>(i)] * P.col(i);
 }
 
 /// h' P h.
 double variance(const PatternPart& part, size_t velocity, const Eigen::MatrixXd& P) {
-  const Eigen::Index count = termsOf(velocity).count;
-  const Eigen::Index own = count + static_cast<Eigen::Index>(part.pattern);
+  const Eigen::Index own = kTerms + static_cast<Eigen::Index>(part.pattern);
   const auto& common = part.common[velocity];
   double sum = part.own[velocity] * part.own[velocity] * P(own, own);
-  for (Eigen::Index i = 0; i < count; ++i) {
+  for (Eigen::Index i = 0; i < kTerms; ++i) {
     const double h = common[static_cast<size_t>(i)];
     sum += 2.0 * h * part.own[velocity] * P(i, own);
-    for (Eigen::Index j = 0; j < count; ++j) sum += h * common[static_cast<size_t>(j)] * P(i, j);
+    for (Eigen::Index j = 0; j < kTerms; ++j) sum += h * common[static_cast<size_t>(j)] * P(i, j);
   }
   return sum;
 }
@@ -102,7 +97,7 @@ void Surface::regress(const GroundModel& model) {
       const double n = measured.count;
       timesResponse(measured.part, velocity, P, Ph);
       const double S = response(measured.part, velocity, Ph) +
-                       expected_noise_[axis] * measured.part.noise[axis] / n;
+                       expected_noise_[axis] * R(measured.part, axis) / n;
       const double y = measured.sum[axis] / n - response(measured.part, velocity, x);
       x += y / S * Ph;
       for (Eigen::Index j = 0; j < P.cols(); ++j) P.col(j) -= Ph[j] * Ph / S;
@@ -121,11 +116,22 @@ void Surface::estimateNoise(const GroundConfig& config) {
           measured.squares[axis] - 2.0 * moved * measured.sum[axis] +
           measured.count * (moved * moved + variance(measured.part, velocity, P_[velocity]));
       a += 0.5 * measured.count;
-      b += 0.5 * std::max(0.0, expected) / measured.part.noise[axis];
+      b += 0.5 * std::max(0.0, expected) / R(measured.part, axis);
     }
     noise_[axis] = std::clamp(b / a, kLeastNoise, kMostNoise);
     certainty_[axis] = std::min(a, 0.5 * config.most_freedom);
   }
+}
+
+Eigen::Vector3d Surface::squaredError(const TwistSample& sample) const {
+  Eigen::Vector3d error;
+  for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
+    const auto axis = static_cast<Eigen::Index>(velocity);
+    const double y = sample.mean_twist[axis] - sample.part.mean[axis] -
+                     response(sample.part, velocity, x_[velocity]);
+    error[axis] = (y * y + variance(sample.part, velocity, P_[velocity])) / sample.part.noise[axis];
+  }
+  return error;
 }
 
 double Surface::logDensity(const TwistSample& sample) const {
@@ -135,7 +141,7 @@ double Surface::logDensity(const TwistSample& sample) const {
     const double y = sample.mean_twist[axis] - sample.part.mean[axis] -
                      response(sample.part, velocity, x_[velocity]);
     const double scale2 =
-        variance(sample.part, velocity, P_[velocity]) + noise_[axis] * sample.part.noise[axis];
+        variance(sample.part, velocity, P_[velocity]) + noise_[axis] * R(sample.part, axis);
     log_density += logStudent(y, scale2, 2.0 * certainty_[axis]);
   }
   return log_density;
@@ -144,13 +150,15 @@ double Surface::logDensity(const TwistSample& sample) const {
 Eigen::Vector3d Surface::executionNoise(const PatternPart& part) const {
   // The variance of Student's t over its scale^2: freedom / (freedom - 2).
   const Eigen::Array3d a = certainty_.array();
-  return noise_.array() * part.noise.array() * a / (a - 1.0);
+  return noise_.array() * part.noise.array() *
+         prior_.scatter.col(static_cast<Eigen::Index>(part.pattern)).array() * a / (a - 1.0);
 }
 
 void Surface::save(std::vector<double>& memory) const {
   memory.push_back(prior_.share);
   for (const Eigen::VectorXd& centre : prior_.centre)
     memory.insert(memory.end(), centre.data(), centre.data() + centre.size());
+  memory.insert(memory.end(), prior_.scatter.data(), prior_.scatter.data() + prior_.scatter.size());
   memory.insert(memory.end(), expected_noise_.data(), expected_noise_.data() + 3);
   memory.push_back(executions_);
   memory.push_back(static_cast<double>(measured_.size()));
@@ -191,7 +199,7 @@ bool Surface::restoreMeasured(const GroundModel& model, const std::vector<double
 
 bool Surface::restore(const GroundModel& model, const GroundConfig& config,
                       const std::vector<double>& memory, size_t& at) {
-  size_t numbers = 6;
+  size_t numbers = 6 + static_cast<size_t>(prior_.scatter.size());
   for (const Eigen::VectorXd& centre : prior_.centre) numbers += static_cast<size_t>(centre.size());
   if (memory.size() < at + numbers) return false;
   prior_.share = memory[at++];
@@ -201,9 +209,11 @@ bool Surface::restore(const GroundModel& model, const GroundConfig& config,
       number = memory[at++];
       largest = std::max(largest, std::abs(number));
     }
+  for (double& scatter : prior_.scatter.reshaped()) scatter = memory[at++];
   for (double& noise : expected_noise_) noise = memory[at++];
   executions_ = memory[at++];
   if (!(prior_.share > 0.0 && prior_.share <= 1.0) || largest > kLargestCorrection ||
+      prior_.scatter.minCoeff() < kLeastNoise || prior_.scatter.maxCoeff() > kMostNoise ||
       expected_noise_.minCoeff() < kLeastNoise || expected_noise_.maxCoeff() > kMostNoise ||
       !(executions_ >= 0.0 && executions_ <= kMostExecutions) ||
       !restoreMeasured(model, memory, at))

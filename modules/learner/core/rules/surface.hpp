@@ -25,33 +25,43 @@ inline bool isCount(double number, double most) {
   return number >= 0.0 && number <= most && number == std::floor(number);
 }
 
+/// Nothing is that much calmer or rougher than expected: factors on variances [1].
+inline constexpr double kLeastNoise = 0.05;
+inline constexpr double kMostNoise = 50.0;
+
 /// The mean twist of one execution, or of its beginning.
 struct TwistSample {
   PatternPart part;
   Eigen::Vector3d mean_twist;  ///< measured [m/s, m/s, rad/s]
 };
 
-/// What is expected of a surface before anything was measured on it: x ~ N(centre, share Q).
+/// What is expected of a surface before anything was measured on it: x ~ N(centre, share Q), and
+/// how executions scatter.
 struct SurfacePrior {
   ByVelocity<Eigen::VectorXd> centre;
   double share = 1.0;
+  /// Variances of v_x, v_y and omega over the ground model's, a column for each pattern [1].
+  Eigen::Matrix3Xd scatter;
 };
 
 /// One surface: all that was measured on it, and what follows from that.
 /** Measured: for each pattern (or beginning of one) the number n, sum and sum of squares of the
  * deviations z - m of its mean twist from the shipped one. From that, for each velocity on its own,
- * a linear regression z = m + h' x + e, e ~ N(0, q R), q the surface's own noise [1]:
- *    P = (1 / (share Q) + sum n h h' / (q R))^-1,   x = centre + P sum h sum(z - m - h' centre) / (q R)
- *    q = b / a,   a = a0 + sum n / 2,   b = a0 + sum E[(z - m - h' x)^2] / (2 R)
- * with a0 half the executions that the expected noise counts for; q is that of the step before
- * where P is computed (one step of expectation-maximisation an execution). A next execution is
- * expected from Student's t with 2 a degrees of freedom about m + h' x, scale^2 = h' P h + q R. */
+ * a linear regression z = m + h' x + e, e ~ N(0, q R), R the ground model's noise times what the
+ * prior says of this pattern, q the surface's own factor [1]:
+ *    P = (1 / (share Q) + sum n h h' / (q R))^-1,   x = centre + P sum h sum(z - m - h' centre) /
+ * (q R) q = b / a,   a = a0 + sum n / 2,   b = a0 + sum E[(z - m - h' x)^2] / (2 R) with a0 half
+ * the executions that the expected noise counts for; q is that of the step before where P is
+ * computed (one step of expectation-maximisation an execution). A next execution is expected from
+ * Student's t with 2 a degrees of freedom about m + h' x, scale^2 = h' P h + q R. */
 class Surface {
  public:
   Surface(const GroundModel& model, const GroundConfig& config, const SurfacePrior& prior);
 
   /// Learns from an execution. The oldest fade beyond config.longest_memory executions.
   void add(const GroundModel& model, const GroundConfig& config, const TwistSample& sample);
+  /// E[(z - m - h' x)^2] of an execution that it has learned from, over the ground model's noise.
+  Eigen::Vector3d squaredError(const TwistSample& sample) const;
   /// Logarithm of the density of an execution on this surface.
   double logDensity(const TwistSample& sample) const;
 
@@ -59,7 +69,7 @@ class Surface {
   const ByVelocity<Eigen::MatrixXd>& covariance() const { return P_; }
   /// Variance of the mean twist of one execution: that of the next one, not of its expectation.
   Eigen::Vector3d executionNoise(const PatternPart& part) const;
-  /// q: variance of one execution over the ground model's, for v_x, v_y and omega.
+  /// q: variance of one execution over R, for v_x, v_y and omega.
   const Eigen::Vector3d& noise() const { return noise_; }
   double executions() const { return executions_; }
   const SurfacePrior& prior() const { return prior_; }
@@ -79,6 +89,9 @@ class Surface {
     Eigen::Vector3d squares = Eigen::Vector3d::Zero();  ///< of (z - m)^2
   };
   Measured& measuredOf(const PatternPart& part);
+  double R(const PatternPart& part, Eigen::Index velocity) const {
+    return part.noise[velocity] * prior_.scatter(velocity, static_cast<Eigen::Index>(part.pattern));
+  }
   void follow(const GroundModel& model, const GroundConfig& config);
   void regress(const GroundModel& model);
   void estimateNoise(const GroundConfig& config);
