@@ -11,6 +11,9 @@ namespace {
 
 /// A pattern that hardly drives may still cross a border [m].
 constexpr double kLeastMetres = 0.05;
+/// What the expected number of changes counts for, and the way after which older ones fade [m].
+constexpr double kPriorChanges = 2.0;
+constexpr double kLongestWay = 2000.0;
 /// Centre and scatter of new surfaces are kept to this [1]: their digits stand in the state file.
 constexpr double kCentreStep = 1e-6;
 constexpr double kScatterStep = 1e-3;
@@ -111,7 +114,23 @@ SurfacePrior MultiModel::priorOfNew() const {
 }
 
 double MultiModel::hazard(double metres) const {
-  return 1.0 - std::exp(-std::max(metres, kLeastMetres) / config_.change_metres);
+  const double rate =
+      (kPriorChanges + changes_) / (kPriorChanges * config_.change_metres + metres_);
+  return 1.0 - std::exp(-std::max(metres, kLeastMetres) * rate);
+}
+
+/// A change counts when another hypothesis is sure: single odd executions do not.
+void MultiModel::countChange(double metres) {
+  metres_ += metres;
+  for (const auto* hypotheses : {&surfaces_, &fresh_})
+    for (const Hypothesis& hypothesis : *hypotheses) {
+      if (hypothesis.weight < config_.sure || hypothesis.since == ground_) continue;
+      ground_ = hypothesis.since;
+      changes_ += 1.0;
+    }
+  if (metres_ < kLongestWay) return;
+  changes_ *= kLongestWay / metres_;
+  metres_ = kLongestWay;
 }
 
 /// w^-, and a fresh hypothesis that begins now.
@@ -127,7 +146,7 @@ void MultiModel::expectChange(double metres) {
     hypothesis.weight *= 1.0 - h;
     changed_.push_back(0.0);
   }
-  fresh_.push_back({next_, h * config_.fresh, 0});
+  fresh_.push_back({next_, h * config_.fresh, clock_, clock_});
   changed_.push_back(1.0);
 }
 
@@ -257,6 +276,7 @@ void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNot
   ++clock_;
   expectChange(sample.part.metres);
   weigh(sample);
+  countChange(sample.part.metres);
   update(sample);
   const Eigen::Index last = measured.rows() - 1;
   followScatter(sample, {measured(last, 0), measured(last, 1), measured(last, 2)});
@@ -328,6 +348,9 @@ void MultiModel::assign(const LearningRule& other) {
   fresh_ = rule.fresh_;
   next_ = rule.next_;
   scatter_ = rule.scatter_;
+  changes_ = rule.changes_;
+  metres_ = rule.metres_;
+  ground_ = rule.ground_;
   change_probability_ = rule.change_probability_;
   clock_ = rule.clock_;
   mean_ = rule.mean_;
@@ -336,13 +359,15 @@ void MultiModel::assign(const LearningRule& other) {
 // What the rule writes into the state file, and what it takes back from there.
 
 std::vector<double> MultiModel::memory() const {
-  std::vector<double> memory{static_cast<double>(clock_)};
+  std::vector<double> memory{static_cast<double>(clock_), changes_, metres_,
+                             static_cast<double>(ground_)};
   memory.insert(memory.end(), scatter_.sums.data(), scatter_.sums.data() + scatter_.sums.size());
   for (const auto* hypotheses : {&surfaces_, &fresh_}) {
     memory.push_back(static_cast<double>(hypotheses->size()));
     for (const Hypothesis& hypothesis : *hypotheses) {
       memory.push_back(hypothesis.weight);
       memory.push_back(static_cast<double>(hypothesis.last_met));
+      memory.push_back(static_cast<double>(hypothesis.since));
       hypothesis.surface.save(memory);
     }
   }
@@ -355,12 +380,14 @@ bool MultiModel::restoreHypotheses(std::vector<Hypothesis>& hypotheses, size_t m
   const auto count = static_cast<size_t>(memory[at++]);
   hypotheses.clear();
   for (size_t i = 0; i < count; ++i) {
-    if (memory.size() < at + 2) return false;
+    if (memory.size() < at + 3) return false;
     Hypothesis hypothesis{next_, memory[at]};
     if (!(hypothesis.weight >= 0.0 && hypothesis.weight <= 1.0 + 1e-9)) return false;
     if (!isCount(memory[at + 1], static_cast<double>(clock_))) return false;
+    if (!isCount(memory[at + 2], static_cast<double>(clock_))) return false;
     hypothesis.last_met = static_cast<int64_t>(memory[at + 1]);
-    at += 2;
+    hypothesis.since = static_cast<int64_t>(memory[at + 2]);
+    at += 3;
     if (!hypothesis.surface.restore(*model_, config_, memory, at)) return false;
     hypotheses.push_back(std::move(hypothesis));
   }
@@ -370,11 +397,17 @@ bool MultiModel::restoreHypotheses(std::vector<Hypothesis>& hypotheses, size_t m
 bool MultiModel::restore(const TrajectoryTable&, const std::vector<double>& memory) {
   for (const double number : memory)
     if (!std::isfinite(number)) return false;
-  size_t at = 1 + static_cast<size_t>(scatter_.sums.size());
+  size_t at = 4 + static_cast<size_t>(scatter_.sums.size());
   if (memory.size() < at || !isCount(memory[0], kMostExecutions)) return false;
   MultiModel rule = *this;
   rule.clock_ = static_cast<int64_t>(memory[0]);
-  std::copy_n(memory.begin() + 1, rule.scatter_.sums.size(), rule.scatter_.sums.data());
+  rule.changes_ = memory[1];
+  rule.metres_ = memory[2];
+  if (!(rule.changes_ >= 0.0 && rule.metres_ >= 0.0 && rule.metres_ <= kLongestWay) ||
+      !isCount(memory[3], memory[0]))
+    return false;
+  rule.ground_ = static_cast<int64_t>(memory[3]);
+  std::copy_n(memory.begin() + 4, rule.scatter_.sums.size(), rule.scatter_.sums.data());
   if (rule.scatter_.sums.minCoeff() < 0.0) return false;
   if (!rule.restoreHypotheses(rule.surfaces_, static_cast<size_t>(config_.capacity) + 1, memory,
                               at) ||

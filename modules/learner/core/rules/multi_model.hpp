@@ -35,9 +35,10 @@ struct Scatter {
  * them the ground of the shipped set, and *fresh* ones: since some moment it is on ground that it
  * has not met, one hypothesis for each recent moment. Each is a Surface: a regression of what was
  * measured, with a noise of its own. After d metres and an execution z
- *    w_i^- = (1 - h) w_i + h pi_i,   h = 1 - exp(-d / change_metres)
+ *    w_i^- = (1 - h) w_i + h pi_i,   h = 1 - exp(-d r)
  *    w_i ~ w_i^- p_i(z)
- * pi: `fresh` for a new hypothesis that begins with this execution, the rest in equal shares for
+ * r: changes a metre, learned from those that were sure in the end, beginning with kPriorChanges in
+ * as many times change_metres. pi: `fresh` for a new hypothesis that begins with this execution, the rest in equal shares for
  * the remembered surfaces. Every fresh one learns from z; a remembered one only while it is sure,
  * so that doubtful executions blur none. A fresh one that is sure and settled is remembered from
  * then on. The weakest fresh ones, and the surface that was met longest ago, make room.
@@ -75,6 +76,7 @@ class MultiModel : public LearningRule {
     Surface surface;
     double weight = 0.0;
     int64_t last_met = 0;  ///< in executions that the rule has learned from since it began
+    int64_t since = 0;     ///< the same, when it was first considered
   };
   /// A hypothesis with its weight after some more metres.
   struct Weighed {
@@ -84,6 +86,7 @@ class MultiModel : public LearningRule {
 
   SurfacePrior priorOfNew() const;
   double hazard(double metres) const;
+  void countChange(double metres);
   double freshShare() const;
   void expectChange(double metres);
   void weigh(const TwistSample& sample);
@@ -107,6 +110,9 @@ class MultiModel : public LearningRule {
   Surface next_;                 ///< what a new surface would be
   std::vector<double> changed_;  ///< share of w_i^- that came by a change, remembered ones first
   double change_probability_ = 0.0;
+  double changes_ = 0.0;  ///< of ground that were sure in the end
+  double metres_ = 0.0;   ///< driven meanwhile
+  int64_t ground_ = 0;    ///< `since` of the hypothesis that was sure last
   int64_t clock_ = 0;
   ByVelocity<Eigen::VectorXd> mean_;  ///< of the mixture
 };
