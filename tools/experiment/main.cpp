@@ -67,8 +67,11 @@ void define(CLI::App& command, Arguments& arguments) {
   command.add_option("--memory", request.memory, "w: weight of the old prediction")
       ->check(CLI::Range(0.0, 0.999))
       ->capture_default_str();
-  command.add_option("--set", request.overrides,
-                     "SECTION.KEY=VALUE: another value for a key of learner.yaml");
+  command
+      .add_option("--set", request.overrides,
+                  "SECTION.KEY=VALUE in the place of what learner.yaml would say: ground.fresh=0.3")
+      ->expected(1)
+      ->take_all();
   command.add_option("--seed", request.seed, "of recordings and trials")->capture_default_str();
   tread::addThreads(command, request.threads);
   command.add_option("--sets", request.sets, "world: so many sets of recordings")
