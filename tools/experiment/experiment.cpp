@@ -12,9 +12,8 @@
 namespace tread::experiment {
 namespace {
 
-constexpr int64_t kSideRepetitions = 500;  // of what is not in Tables I and II
+constexpr int64_t kSideRepetitions = 400;  // of what is not in Tables I and II
 constexpr int64_t kLongDrives = 16;        // on each surface
-constexpr int64_t kDriftDrives = 20;       // on each surface
 constexpr size_t kBins = 50;
 constexpr double kBinsReach = 2.5;  // times the mean error without learning
 
@@ -64,13 +63,14 @@ struct RunErrors {
   std::vector<int> remembered;
 };
 
+using Drift = std::vector<std::vector<double>>;  // [method][execution]
+
 /// What followed one excitation run on unchanged ground.
 struct UnchangedErrors {
   Errors random;
   Errors sequences;
+  Drift drift;  ///< empty without a pattern to watch
 };
-
-using Drift = std::vector<std::vector<double>>;  // [method][execution]
 
 /// All trials as tasks, their results in places of their own, put together in order afterwards.
 /// Each excitation run is a task with seeds of its own: threads have no influence on numbers.
@@ -86,7 +86,6 @@ class Schedule {
         if (from != to) transitions_.push_back({from, to, {}});
     for (Transition& transition : transitions_) addTransition(transition);
     unchanged_.resize(grounds.size());
-    drift_.resize(grounds.size());
     for (size_t s = 0; s < grounds.size(); ++s) addUnchanged(s);
   }
 
@@ -118,7 +117,6 @@ class Schedule {
   int64_t runs_, long_runs_;
   std::vector<Transition> transitions_;
   std::vector<std::vector<UnchangedErrors>> unchanged_;  ///< [surface][run]
-  std::vector<Drift> drift_;                             ///< [surface]
   std::vector<std::function<void()>> tasks_;
 };
 
@@ -157,18 +155,14 @@ void Schedule::addUnchanged(size_t surface) {
       Methods all = methods(surface, surface, run);
       const int64_t drives =
           share(std::max(kLongDrives, settings_.repetitions / 300), run, long_runs_);
-      unchanged_[surface][static_cast<size_t>(run)] = {
-          driveLong(all, site(surface, surface, Trial::kLong, run, drives), {}),
-          driveLong(all, site(surface, surface, Trial::kLongSequences, run, drives),
-                    settings_.sequences)};
+      const auto siteOf = [&](Trial trial) { return site(surface, surface, trial, run, drives); };
+      UnchangedErrors& errors = unchanged_[surface][static_cast<size_t>(run)];
+      errors.random = driveLong(all, siteOf(Trial::kLong), {});
+      errors.sequences = driveLong(all, siteOf(Trial::kLongSequences), settings_.sequences);
+      if (const auto watched = neverExecuted(grounds_[surface], settings_.sequences))
+        errors.drift =
+            driveDrift(all, siteOf(Trial::kDrift), settings_.sequences, *watched, settings_.drift);
     });
-  tasks_.push_back([this, surface] {
-    const std::optional<size_t> watched = neverExecuted(grounds_[surface], settings_.sequences);
-    if (!watched) return;
-    Methods all = methods(surface, surface, 0);
-    drift_[surface] = driveDrift(all, site(surface, surface, Trial::kDrift, 0, kDriftDrives),
-                                 settings_.sequences, *watched, settings_.drift);
-  });
 }
 
 /// Adds a run's errors number by number.
@@ -177,16 +171,14 @@ void addRun(const std::vector<Errors>& run, std::vector<Errors>& sums, size_t me
   for (size_t i = 0; i < run.size(); ++i) sums[i].addRun(run[i]);
 }
 
-/// By method and execution, over those surfaces that have a pattern to watch.
-Drift meanDrift(const std::vector<Drift>& surfaces) {
+/// Mean of all, number by number.
+Drift meanDrift(const std::vector<const Drift*>& drifts) {
   Drift mean;
-  double count = 0.0;
-  for (const auto& one : surfaces) count += one.empty() ? 0.0 : 1.0;
-  for (const auto& one : surfaces) {
-    if (one.empty()) continue;
-    if (mean.empty()) mean.assign(one.size(), std::vector<double>(one.front().size(), 0.0));
-    for (size_t i = 0; i < one.size(); ++i)
-      for (size_t j = 0; j < one[i].size(); ++j) mean[i][j] += one[i][j] / count;
+  for (const Drift* one : drifts) {
+    if (mean.empty()) mean.assign(one->size(), std::vector<double>(one->front().size(), 0.0));
+    for (size_t i = 0; i < one->size(); ++i)
+      for (size_t j = 0; j < (*one)[i].size(); ++j)
+        mean[i][j] += (*one)[i][j] / static_cast<double>(drifts.size());
   }
   return mean;
 }
@@ -213,16 +205,18 @@ ExperimentErrors Schedule::errors() const {
     }
     all.transitions.push_back(std::move(sums));
   }
+  std::vector<const Drift*> drifts;
   for (const std::vector<UnchangedErrors>& runs : unchanged_) {
     Errors random(methods), sequences(methods);
     for (const UnchangedErrors& run : runs) {
       random.addRun(run.random);
       sequences.addRun(run.sequences);
+      if (!run.drift.empty()) drifts.push_back(&run.drift);
     }
     all.unchanged.push_back(std::move(random));
     all.unchanged_sequences.push_back(std::move(sequences));
   }
-  all.drift = meanDrift(drift_);
+  all.drift = meanDrift(drifts);
   return all;
 }
 

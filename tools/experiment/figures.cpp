@@ -26,7 +26,7 @@ Style styleOf(const std::string& rule) {
       {"single", report::kBlue},
       {"collective", report::kRed},
       {"telescoping", report::kPink},
-      {"collective_home", report::kOrange},
+      {"collective_home", report::kRed},
       {"multi_model", report::kOrange},
       {"multi_model_home", report::kBlue},
       {"multi_model_unmet", report::kSkyBlue},

@@ -286,10 +286,10 @@ std::vector<std::vector<double>> driveDrift(Methods& methods, const TrialSite& s
       note(j + 1);
     }
   }
-  for (std::vector<double>& widths : sums) {
-    const double shipped = widths.front();
+  const double shipped =
+      static_cast<double>(site.repetitions) * std::abs(site.from.averaged_ends[watched].y);
+  for (std::vector<double>& widths : sums)
     for (double& width : widths) width /= shipped;
-  }
   return sums;
 }
 
