@@ -54,6 +54,7 @@ Ground groundOf(const recordings::PatternRecordings& recorded,
   recordings::averageSet(recorded.patterns, surface, limits, fairness);
   recordings::SurfaceRecordings known{surface.surface, {}};
   std::vector<std::vector<Execution>> tests;
+  size_t fewest = kFew;
   for (size_t p = 0; p < surface.executions.size(); ++p) {
     const AverageNote& note = fairness[p];
     for (const std::string& line : note.rejected)
@@ -63,9 +64,14 @@ Ground groundOf(const recordings::PatternRecordings& recorded,
     for (size_t i = 0; i < surface.executions[p].size(); ++i)
       if (!std::binary_search(note.left_out.begin(), note.left_out.end(), i))
         halves[fair++ / 2 % 2].push_back(surface.executions[p][i]);
+    fewest = std::min(fewest, fair);
     known.executions.push_back(std::move(halves[0]));
     tests.push_back(std::move(halves[1]));
   }
+  if (fewest < kFew)
+    notes.push_back(surface.surface + ": few recordings, " + std::to_string(fewest) +
+                    " of a pattern, half of them for tests; others may give other numbers, which "
+                    "the intervals do not tell");
   limits.max_speed = std::numeric_limits<double>::max();  // all are fair
   limits.min_executions = 1;
   Ground ground{surface.surface,
@@ -82,25 +88,6 @@ Ground groundOf(const recordings::PatternRecordings& recorded,
   return ground;
 }
 
-/// A line if some pattern has few recordings.
-void noteFew(const std::vector<Ground>& grounds, std::vector<std::string>& notes) {
-  const Ground* fewest = nullptr;
-  size_t pattern = 0, least = kFew;
-  for (const Ground& ground : grounds)
-    for (size_t p = 0; p < ground.tests.size(); ++p) {
-      const size_t count = ground.known[p].size() + ground.tests[p].size();
-      if (count >= least) continue;
-      fewest = &ground;
-      pattern = p;
-      least = count;
-    }
-  if (fewest == nullptr) return;
-  notes.push_back("few recordings: " + fewest->surface + ", " +
-                  fewest->averaged.patterns()[pattern].name + " has " + std::to_string(least) +
-                  ", half of them for tests; other recordings may give other numbers, the "
-                  "intervals do not tell");
-}
-
 }  // namespace
 
 std::vector<Ground> groundsOf(const recordings::PatternRecordings& recorded,
@@ -113,7 +100,6 @@ std::vector<Ground> groundsOf(const recordings::PatternRecordings& recorded,
   std::vector<Ground> grounds;
   for (const recordings::SurfaceRecordings& surface : recorded.surfaces)
     grounds.push_back(groundOf(recorded, surface, notes));
-  noteFew(grounds, notes);
   return grounds;
 }
 

@@ -97,7 +97,7 @@ TEST_CASE("few recordings are told, too few are refused") {
   recorded.surfaces[1].executions[2].resize(9);
   groundsOf(recorded, notes);
   REQUIRE(notes.size() == 1);
-  CHECK(notes[0].find("few recordings: road, right has 9") == 0);
+  CHECK(notes[0].find("road: few recordings, 9 of a pattern") == 0);
   recorded.surfaces[1].executions[2].resize(7);
   CHECK_THROWS_WITH(groundsOf(recorded, notes), Catch::Contains("at least 8"));
 }
