@@ -12,7 +12,7 @@
 namespace tread::experiment {
 namespace {
 
-constexpr int64_t kSideRepetitions = 400;  // of what is not in Tables I and II
+constexpr int64_t kSideRepetitions = 240;  // of what is not in Tables I and II
 constexpr int64_t kLongDrives = 16;        // on each surface
 constexpr size_t kBins = 50;
 constexpr double kBinsReach = 2.5;  // times the mean error without learning

@@ -19,7 +19,7 @@ struct ExperimentSettings {
   std::vector<Sequence> sequences;
   int64_t repetitions = 2000;  ///< of a transition; each drives all sequences once
   int64_t excitations = 40;    ///< excitation runs of a transition, which share the repetitions
-  int64_t excitation = 40;     ///< executions on each surface of one
+  int64_t excitation = 200;    ///< executions on each surface of one
   uint64_t seed = 1;
   int threads = 1;  ///< no influence on any number
   bool change_inside = false;
@@ -190,7 +190,7 @@ struct Request {
   std::vector<std::string> rules;
   int64_t repetitions = 2000;
   int64_t excitations = 40;            ///< excitation runs of each transition
-  int64_t excitation = 40;             ///< executions on each surface of one
+  int64_t excitation = 200;            ///< executions on each surface of one
   double memory = 0.5;                 ///< [1] w of equation (2)
   std::vector<std::string> overrides;  ///< of learner.yaml: "ground.fresh=0.3"
   uint64_t seed = 1;

@@ -151,7 +151,7 @@ std::vector<size_t> excitationOrder(History history, size_t surfaces, size_t fro
 
 /// An excitation run: so many executions of random patterns on each of its surfaces.
 struct Excitation {
-  int64_t executions = 40;
+  int64_t executions = 200;
   uint64_t seed = 1;
 };
 

@@ -117,7 +117,8 @@ TEST_CASE("the usual methods with extras: lines are short, variants are told") {
   write(folder / "small.yaml", kSmallWorld);
   const auto [code, printed] =
       run("--world " + (folder / "small.yaml") +
-          " --repetitions 20 --threads 2 --excitations 5 --extras --out " + (folder / "out"));
+          " --repetitions 20 --threads 2 --excitations 5 --excitation 40 --extras --out " +
+          (folder / "out"));
   INFO(printed);
   REQUIRE(code == 0);
   CHECK(printed.find("VARIANT: each command held twice as long") != std::string::npos);
