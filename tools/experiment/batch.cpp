@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "common/config/config_reader.hpp"
 #include "common/config/scalars.hpp"
 #include "common/recordings/drive_recordings.hpp"
 #include "tools/experiment/trials.hpp"
@@ -29,15 +30,22 @@ std::vector<std::string> split(const std::string& words) {
 }
 
 void checkRules(const std::vector<std::string>& rules) {
-  const std::vector<std::string> known = methodNames();
-  if (rules.empty()) throw std::invalid_argument("--rules: none; known are " + joinWords(known));
   for (const std::string& rule : rules) {
-    if (std::find(known.begin(), known.end(), rule) == known.end())
+    if (!methodOf(rule))
       throw std::invalid_argument("--rules: there is no rule '" + rule + "'; known are " +
-                                  joinWords(known));
+                                  joinWords(methodNames()));
     if (std::count(rules.begin(), rules.end(), rule) > 1)
       throw std::invalid_argument("--rules: '" + rule + "' is there twice; each rule once");
   }
+}
+
+learner::RuleConfig ruleConfig(const Request& request) {
+  learner::RuleConfig config;
+  config.memory = request.memory;
+  ConfigReader reader = ConfigReader::fromText("{}", "learner", request.overrides);
+  learner::readRules(reader, config);
+  reader.finish();
+  return config;
 }
 
 PatternRecordings recordingsOfFolder(const Request& request, Batch& batch) {
@@ -86,8 +94,9 @@ class Runner {
     batch_.request = request;
     checkRules(request.rules);
     batch_.settings.rules = batch_.setting.rules = request.rules;
-    batch_.settings.config.memory = request.memory;
+    batch_.settings.config = ruleConfig(request);
     batch_.settings.repetitions = request.repetitions;
+    batch_.settings.excitations = request.excitations;
     batch_.settings.excitation = request.excitation;
     batch_.settings.threads = request.threads;
     batch_.settings.change_inside = request.change_inside;
@@ -155,12 +164,6 @@ class Runner {
     batch_.sets.push_back(tablesOf(errors, batch_.settings, grounds));
     if (number > 0) return;
     for (const Ground& ground : grounds) batch_.setting.surfaces.push_back(ground.surface);
-    const auto& rules = batch_.settings.rules;
-    if (std::find(rules.begin(), rules.end(), "bank") != rules.end())
-      for (size_t home = 0; home < grounds.size(); ++home)
-        batch_.excitation.push_back(excitationOfBank(
-            batch_.settings.config, grounds, {home, grounds.size(), batch_.request.excitation},
-            seedOf({batch_.settings.seed, home})));
     batch_.grounds = std::move(grounds);
     batch_.first = std::move(errors);
   }

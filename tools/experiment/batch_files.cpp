@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
@@ -15,10 +16,11 @@ namespace {
 
 std::string aboutLine(const Batch& batch) {
   const Request& request = batch.request;
-  std::string text =
-      std::to_string(request.repetitions) +
-      " repetitions of each transition, memory w = " + formatted("%g", request.memory) + ", seed " +
-      std::to_string(request.seed);
+  std::string text = std::to_string(request.repetitions) + " repetitions of each transition over " +
+                     std::to_string(std::min(request.excitations, request.repetitions)) +
+                     " excitation runs of " + std::to_string(request.excitation) +
+                     " executions a surface, memory w = " + formatted("%g", request.memory) +
+                     ", seed " + std::to_string(request.seed);
   if (request.sets > 1)
     text += ", means over " + std::to_string(request.sets) + " sets of recordings";
   if (request.length > 1)
@@ -121,8 +123,8 @@ report::Page pageOf(const Batch& batch, const std::string& transition, const std
     page.sections.push_back(
         {"Drift on an unchanged surface",
          {picture(folder + "/drift.png", "drift"), report::Commands{{textOfDrift(batch)}}}});
-  if (!batch.excitation.empty())
-    page.sections.push_back(textSection("What the bank met before", textOfBank(batch)));
+  if (!textOfRemembered(batch).empty())
+    page.sections.push_back(textSection("Remembered surfaces", textOfRemembered(batch)));
   if (!batch.variants.empty())
     page.sections.push_back(textSection("On other terms", textOfVariants(batch)));
   if (!batch.notes.empty())
@@ -132,8 +134,25 @@ report::Page pageOf(const Batch& batch, const std::string& transition, const std
 
 }  // namespace
 
-std::string textOfBank(const Batch& batch) {
-  return textOfExcitation(batch.excitation, batch.grounds.front().averaged);
+std::string textOfRemembered(const Batch& batch) {
+  std::string text;
+  for (size_t i = 0; i < batch.settings.rules.size(); ++i) {
+    std::string line = formatted("\n%-24s", batch.settings.rules[i].c_str());
+    for (const Ground& ground : batch.grounds) {
+      std::vector<double> counts;
+      for (const TransitionErrors& transition : batch.first.transitions)
+        if (batch.grounds[transition.from].surface == ground.surface)
+          counts.push_back(transition.remembered[i]);
+      if (counts.front() >= 0.0) line += formatted("%12.1f", median(counts));
+    }
+    if (line.size() > 25) text += line;
+  }
+  if (text.empty()) return "";
+  std::string head = formatted("%-24s", "from");
+  for (const Ground& ground : batch.grounds) head += formatted("%12s", ground.surface.c_str());
+  return "REMEMBERED surfaces before a transition, that of the shipped set among them; mean over "
+         "excitation runs.\n\n" +
+         head + text + "\n";
 }
 
 std::string watchedPattern(const Batch& batch) {
@@ -149,12 +168,12 @@ std::string textOfDrift(const Batch& batch) {
   std::string text =
       "DRIFT: width of the never executed pattern '" + watched +
       "' over its shipped one while the test sequences are driven\nagain and again on unchanged "
-      "ground, mean over surfaces.\n\nafter          ";
+      "ground, mean over surfaces.\n\nafter                   ";
   const size_t all = batch.settings.drift;
   const size_t shown[] = {all / 10, all / 3, 2 * all / 3, all};
   for (const size_t j : shown) text += formatted("%8zu", j);
   for (size_t i = 0; i < batch.first.drift.size(); ++i) {
-    text += formatted("\n%-15s", batch.settings.rules[i].c_str());
+    text += formatted("\n%-24s", batch.settings.rules[i].c_str());
     for (const size_t j : shown) text += formatted("%8.3f", batch.first.drift[i][j]);
   }
   return text + "\n";
@@ -197,7 +216,6 @@ void writeBatch(const std::string& folder, const Batch& batch) {
   writeText(path("table2.txt"), textOfReductions(tables, batch.setting));
   writeText(path("key_figures.txt"),
             textOfVariants(batch) + textOfKeyFigures(tables, batch.setting, batch.sets));
-  if (!batch.excitation.empty()) writeText(path("bank.txt"), textOfBank(batch));
   writeText(path("report.html"), report::htmlOf(pageOf(batch, words, folder)));
 }
 

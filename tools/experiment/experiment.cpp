@@ -12,10 +12,8 @@
 namespace tread::experiment {
 namespace {
 
-// A fixed number of parts, each with seeds of its own: threads have no influence on numbers.
-constexpr size_t kSequenceParts = 12;
-constexpr size_t kSideParts = 4;
-constexpr int64_t kDriftDrives = 20;  // on each surface
+constexpr int64_t kSideRepetitions = 240;  // of what is not in Tables I and II
+constexpr int64_t kLongDrives = 16;        // on each surface
 constexpr size_t kBins = 50;
 constexpr double kBinsReach = 2.5;  // times the mean error without learning
 
@@ -28,15 +26,9 @@ enum class Trial : uint64_t {
   kDrift
 };
 
-/// Repetitions of what is not in the tables.
-int64_t sideRepetitions(const ExperimentSettings& settings) {
-  return std::max(std::min<int64_t>(settings.repetitions, 500), settings.repetitions / 10);
-}
-
-/// Of the part-th of `parts`.
-int64_t share(int64_t repetitions, size_t part, size_t parts) {
-  const auto p = static_cast<int64_t>(part), n = static_cast<int64_t>(parts);
-  return repetitions * (p + 1) / n - repetitions * p / n;
+/// Of the i-th of `runs`.
+int64_t share(int64_t repetitions, int64_t i, int64_t runs) {
+  return repetitions * (i + 1) / runs - repetitions * i / runs;
 }
 
 /// Bins for the errors of single executions, from those without learning.
@@ -45,7 +37,7 @@ std::pair<Histogram, Histogram> binsFor(const Ground& from, const Ground& to,
   double position = 0.0, orientation = 0.0, metres = 0.0, radians = 0.0;
   for (const Sequence& sequence : sequences)
     for (const size_t pattern : sequence) {
-      const Executions& executions = to.executions[pattern];
+      const Executions& executions = to.tests[pattern];
       for (size_t i = 0; i < executions.size(); ++i) {
         const ExecutionEnd& end = executions.endOf(i);
         const Pose2& predicted = from.averaged_ends[pattern];
@@ -63,146 +55,168 @@ std::pair<Histogram, Histogram> binsFor(const Ground& from, const Ground& to,
   return {bins(position, metres), bins(orientation, radians)};
 }
 
+/// What followed one excitation run from a surface to another one.
+struct RunErrors {
+  SequenceErrors sequences;
+  std::vector<Errors> all_patterns;
+  std::vector<Errors> development;
+  std::vector<int> remembered;
+};
+
+using Drift = std::vector<std::vector<double>>;  // [method][execution]
+
+/// What followed one excitation run on unchanged ground.
+struct UnchangedErrors {
+  Errors random;
+  Errors sequences;
+  Drift drift;  ///< empty without a pattern to watch
+};
+
 /// All trials as tasks, their results in places of their own, put together in order afterwards.
+/// Each excitation run is a task with seeds of its own: threads have no influence on numbers.
 class Schedule {
  public:
   Schedule(const std::vector<Ground>& grounds, const ExperimentSettings& settings)
-      : grounds_(grounds), settings_(settings) {
+      : grounds_(grounds),
+        settings_(settings),
+        runs_(std::min(settings.excitations, settings.repetitions)),
+        long_runs_(std::min(settings.excitations, kLongDrives)) {
     for (size_t from = 0; from < grounds.size(); ++from)
       for (size_t to = 0; to < grounds.size(); ++to)
-        if (from != to) parts_.push_back({from, to, {}, {}, {}});
-    const std::vector<Errors> surfaces(grounds.size());
-    long_parts_.assign(kSideParts, surfaces);
-    sequence_parts_.assign(kSideParts, surfaces);
-    drift_parts_.resize(grounds.size());
-    for (TransitionParts& parts : parts_) addTransition(parts);
-    for (size_t s = 0; s < grounds.size(); ++s) {
-      addLong(s);
-      addDrift(s);
-    }
+        if (from != to) transitions_.push_back({from, to, {}});
+    for (Transition& transition : transitions_) addTransition(transition);
+    unchanged_.resize(grounds.size());
+    for (size_t s = 0; s < grounds.size(); ++s) addUnchanged(s);
   }
 
   const std::vector<std::function<void()>>& tasks() const { return tasks_; }
   ExperimentErrors errors() const;
 
  private:
-  struct TransitionParts {
+  struct Transition {
     size_t from, to;
-    std::vector<std::optional<SequenceErrors>> sequences;
-    std::vector<std::vector<Errors>> all_patterns;
-    std::vector<std::vector<Errors>> development;
+    std::vector<RunErrors> runs;
   };
 
-  Methods methods(size_t from, size_t to, size_t part) const {
-    return Methods(settings_.rules, settings_.config, grounds_, from, to, settings_.excitation,
-                   seedOf({settings_.seed, 1, from, to, part}));
+  Methods methods(size_t from, size_t to, int64_t run) const {
+    return Methods(
+        settings_.rules, settings_.config, grounds_, from, to,
+        {settings_.excitation, seedOf({settings_.seed, 1, from, to, static_cast<uint64_t>(run)})});
   }
-  TrialSite site(size_t from, size_t to, Trial trial, size_t part, int64_t repetitions) const {
+  TrialSite site(size_t from, size_t to, Trial trial, int64_t run, int64_t repetitions) const {
     return {grounds_[from], grounds_[to], settings_.change_inside && from != to, repetitions,
-            seedOf({settings_.seed, 2, from, to, static_cast<uint64_t>(trial), part})};
+            seedOf({settings_.seed, 2, from, to, static_cast<uint64_t>(trial),
+                    static_cast<uint64_t>(run)})};
   }
-  void addTransition(TransitionParts& parts);
-  void addSide(TransitionParts& parts, size_t part);
-  void addLong(size_t surface);
-  void addDrift(size_t surface);
+  void addTransition(Transition& transition);
+  RunErrors driveTransition(size_t from, size_t to, int64_t run) const;
+  void addUnchanged(size_t surface);
 
   const std::vector<Ground>& grounds_;
   const ExperimentSettings& settings_;
-  std::vector<TransitionParts> parts_;
-  std::vector<std::vector<Errors>> long_parts_;                ///< [part][surface]
-  std::vector<std::vector<Errors>> sequence_parts_;            ///< [part][surface]
-  std::vector<std::vector<std::vector<double>>> drift_parts_;  ///< [surface][method][execution]
+  int64_t runs_, long_runs_;
+  std::vector<Transition> transitions_;
+  std::vector<std::vector<UnchangedErrors>> unchanged_;  ///< [surface][run]
   std::vector<std::function<void()>> tasks_;
 };
 
-void Schedule::addTransition(TransitionParts& parts) {
-  parts.sequences.resize(kSequenceParts);
-  parts.all_patterns.resize(kSideParts);
-  parts.development.resize(kSideParts);
-  for (size_t part = 0; part < kSequenceParts; ++part)
-    tasks_.push_back([this, &parts, part] {
-      Methods rules = methods(parts.from, parts.to, part);
-      const auto bins = binsFor(grounds_[parts.from], grounds_[parts.to], settings_.sequences);
-      parts.sequences[part] =
-          driveSequences(rules,
-                         site(parts.from, parts.to, Trial::kSequences, part,
-                              share(settings_.repetitions, part, kSequenceParts)),
-                         settings_.sequences, bins.first, bins.second);
-    });
-  for (size_t part = 0; part < kSideParts; ++part) addSide(parts, part);
-}
-
-void Schedule::addSide(TransitionParts& parts, size_t part) {
-  tasks_.push_back([this, &parts, part] {
-    Methods rules = methods(parts.from, parts.to, part);
-    const int64_t repetitions = share(sideRepetitions(settings_), part, kSideParts);
-    parts.all_patterns[part] =
-        driveAllPatterns(rules, site(parts.from, parts.to, Trial::kAllPatterns, part, repetitions),
-                         settings_.sequences, settings_.all_patterns_after);
-    parts.development[part] =
-        driveDevelopment(rules, site(parts.from, parts.to, Trial::kDevelopment, part, repetitions),
-                         settings_.sequences, settings_.development);
-  });
-}
-
-void Schedule::addLong(size_t surface) {
-  for (size_t part = 0; part < kSideParts; ++part)
-    tasks_.push_back([this, surface, part] {
-      Methods rules = methods(surface, surface, part);
-      const int64_t drives = std::max<int64_t>(8, sideRepetitions(settings_) / 30);
-      const int64_t of_part = share(drives, part, kSideParts);
-      long_parts_[part][surface] =
-          driveLong(rules, site(surface, surface, Trial::kLong, part, of_part), {});
-      sequence_parts_[part][surface] = driveLong(
-          rules, site(surface, surface, Trial::kLongSequences, part, of_part), settings_.sequences);
+void Schedule::addTransition(Transition& transition) {
+  transition.runs.resize(static_cast<size_t>(runs_));
+  for (int64_t run = 0; run < runs_; ++run)
+    tasks_.push_back([this, &transition, run] {
+      transition.runs[static_cast<size_t>(run)] =
+          driveTransition(transition.from, transition.to, run);
     });
 }
 
-void Schedule::addDrift(size_t surface) {
-  tasks_.push_back([this, surface] {
-    const std::optional<size_t> watched = neverExecuted(grounds_[surface], settings_.sequences);
-    if (!watched) return;
-    Methods rules = methods(surface, surface, 0);
-    drift_parts_[surface] =
-        driveDrift(rules, site(surface, surface, Trial::kDrift, 0, kDriftDrives),
-                   settings_.sequences, *watched, settings_.drift);
-  });
+RunErrors Schedule::driveTransition(size_t from, size_t to, int64_t run) const {
+  Methods all = methods(from, to, run);
+  const auto siteOf = [&](Trial trial, int64_t repetitions) {
+    return site(from, to, trial, run, share(repetitions, run, runs_));
+  };
+  const int64_t side =
+      std::max(std::min(settings_.repetitions, kSideRepetitions), settings_.repetitions / 10);
+  const auto bins = binsFor(grounds_[from], grounds_[to], settings_.sequences);
+  RunErrors errors;
+  errors.sequences = driveSequences(all, siteOf(Trial::kSequences, settings_.repetitions),
+                                    settings_.sequences, bins.first, bins.second);
+  errors.all_patterns = driveAllPatterns(all, siteOf(Trial::kAllPatterns, side),
+                                         settings_.sequences, settings_.all_patterns_after);
+  errors.development = driveDevelopment(all, siteOf(Trial::kDevelopment, side), settings_.sequences,
+                                        settings_.development);
+  for (size_t i = 0; i < all.size(); ++i) errors.remembered.push_back(all.remembered(i));
+  return errors;
 }
 
-/// Sums over the parts, number by number.
-std::vector<Errors> sum(const std::vector<std::vector<Errors>>& parts) {
-  std::vector<Errors> sums = parts.front();
-  for (size_t part = 1; part < parts.size(); ++part)
-    for (size_t i = 0; i < sums.size(); ++i) sums[i].add(parts[part][i]);
-  return sums;
+void Schedule::addUnchanged(size_t surface) {
+  unchanged_[surface].resize(static_cast<size_t>(long_runs_));
+  for (int64_t run = 0; run < long_runs_; ++run)
+    tasks_.push_back([this, surface, run] {
+      Methods all = methods(surface, surface, run);
+      const int64_t drives =
+          share(std::max(kLongDrives, settings_.repetitions / 300), run, long_runs_);
+      const auto siteOf = [&](Trial trial) { return site(surface, surface, trial, run, drives); };
+      UnchangedErrors& errors = unchanged_[surface][static_cast<size_t>(run)];
+      errors.random = driveLong(all, siteOf(Trial::kLong), {});
+      errors.sequences = driveLong(all, siteOf(Trial::kLongSequences), settings_.sequences);
+      if (const auto watched = neverExecuted(grounds_[surface], settings_.sequences))
+        errors.drift =
+            driveDrift(all, siteOf(Trial::kDrift), settings_.sequences, *watched, settings_.drift);
+    });
 }
 
-/// By rule and execution, over those surfaces that have a pattern to watch.
-std::vector<std::vector<double>> meanDrift(
-    const std::vector<std::vector<std::vector<double>>>& surfaces) {
-  std::vector<std::vector<double>> mean;
-  double count = 0.0;
-  for (const auto& one : surfaces) count += one.empty() ? 0.0 : 1.0;
-  for (const auto& one : surfaces) {
-    if (one.empty()) continue;
-    if (mean.empty()) mean.assign(one.size(), std::vector<double>(one.front().size(), 0.0));
-    for (size_t i = 0; i < one.size(); ++i)
-      for (size_t j = 0; j < one[i].size(); ++j) mean[i][j] += one[i][j] / count;
+/// Adds a run's errors number by number.
+void addRun(const std::vector<Errors>& run, std::vector<Errors>& sums, size_t methods) {
+  sums.resize(run.size(), Errors(methods));
+  for (size_t i = 0; i < run.size(); ++i) sums[i].addRun(run[i]);
+}
+
+/// Mean of all, number by number.
+Drift meanDrift(const std::vector<const Drift*>& drifts) {
+  Drift mean;
+  for (const Drift* one : drifts) {
+    if (mean.empty()) mean.assign(one->size(), std::vector<double>(one->front().size(), 0.0));
+    for (size_t i = 0; i < one->size(); ++i)
+      for (size_t j = 0; j < (*one)[i].size(); ++j)
+        mean[i][j] += (*one)[i][j] / static_cast<double>(drifts.size());
   }
   return mean;
 }
 
 ExperimentErrors Schedule::errors() const {
+  const size_t methods = settings_.rules.size();
   ExperimentErrors all;
-  for (const TransitionParts& parts : parts_) {
-    SequenceErrors sums = *parts.sequences.front();
-    for (size_t part = 1; part < parts.sequences.size(); ++part) sums.add(*parts.sequences[part]);
-    all.transitions.push_back(
-        {parts.from, parts.to, std::move(sums), sum(parts.all_patterns), sum(parts.development)});
+  for (const Transition& transition : transitions_) {
+    const auto bins =
+        binsFor(grounds_[transition.from], grounds_[transition.to], settings_.sequences);
+    TransitionErrors sums{transition.from,
+                          transition.to,
+                          {Errors(methods), std::vector<Histogram>(methods, bins.first),
+                           std::vector<Histogram>(methods, bins.second)},
+                          {},
+                          {},
+                          std::vector<double>(methods, 0.0)};
+    for (const RunErrors& run : transition.runs) {
+      sums.sequences.addRun(run.sequences);
+      addRun(run.all_patterns, sums.all_patterns, methods);
+      addRun(run.development, sums.development, methods);
+      for (size_t i = 0; i < methods; ++i)
+        sums.remembered[i] += run.remembered[i] / static_cast<double>(transition.runs.size());
+    }
+    all.transitions.push_back(std::move(sums));
   }
-  all.unchanged = sum(long_parts_);
-  all.unchanged_sequences = sum(sequence_parts_);
-  all.drift = meanDrift(drift_parts_);
+  std::vector<const Drift*> drifts;
+  for (const std::vector<UnchangedErrors>& runs : unchanged_) {
+    Errors random(methods), sequences(methods);
+    for (const UnchangedErrors& run : runs) {
+      random.addRun(run.random);
+      sequences.addRun(run.sequences);
+      if (!run.drift.empty()) drifts.push_back(&run.drift);
+    }
+    all.unchanged.push_back(std::move(random));
+    all.unchanged_sequences.push_back(std::move(sequences));
+  }
+  all.drift = meanDrift(drifts);
   return all;
 }
 

@@ -21,15 +21,17 @@ constexpr double kRow = 330.0;  // height of a row of panels with its legend
 constexpr double kLeft = 75.0;  // of each panel, for its numbers
 
 Style styleOf(const std::string& rule) {
-  static const std::map<std::string, report::Colour> colours{{"off", report::kGrey},
-                                                             {"single", report::kBlue},
-                                                             {"collective", report::kRed},
-                                                             {"telescoping", report::kPink},
-                                                             {"local_filter", report::kOrange},
-                                                             {"bank", report::kGreen},
-                                                             {kBankUnseen, report::kSkyBlue},
-                                                             {kBankEmpty, report::kBlue},
-                                                             {kOmniscient, report::kBlack}};
+  static const std::map<std::string, report::Colour> colours{
+      {"off", report::kGrey},
+      {"single", report::kBlue},
+      {"collective", report::kRed},
+      {"telescoping", report::kPink},
+      {"collective_home", report::kRed},
+      {"multi_model", report::kOrange},
+      {"multi_model_home", report::kBlue},
+      {"multi_model_unmet", report::kSkyBlue},
+      {"multi_model_remembered", report::kGreen},
+      {kOmniscient, report::kBlack}};
   const auto colour = colours.find(rule);
   Style style;
   style.colour = colour == colours.end() ? report::kBlack : colour->second;

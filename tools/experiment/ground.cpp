@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <set>
 
@@ -25,34 +26,64 @@ ExecutionEnd executionEnd(const learner::ConstTrajectory& trajectory) {
   return end;
 }
 
-Executions::Executions(const std::vector<recordings::Execution>& executions, size_t samples,
-                       const std::vector<size_t>& left_out)
+Executions::Executions(const std::vector<recordings::Execution>& executions, size_t samples)
     : samples_(samples) {
   numbers_.reserve(executions.size() * samples * 3);
-  for (size_t i = 0; i < executions.size(); ++i) {
-    if (std::binary_search(left_out.begin(), left_out.end(), i)) continue;
-    for (const Pose2& pose : executions[i]) numbers_.push_back(pose.x);
-    for (const Pose2& pose : executions[i]) numbers_.push_back(pose.y);
-    for (const Pose2& pose : executions[i]) numbers_.push_back(pose.yaw);
+  for (const recordings::Execution& execution : executions) {
+    for (const Pose2& pose : execution) numbers_.push_back(pose.x);
+    for (const Pose2& pose : execution) numbers_.push_back(pose.y);
+    for (const Pose2& pose : execution) numbers_.push_back(pose.yaw);
   }
-  for (size_t i = 0; i < numbers_.size() / (3 * samples); ++i) ends_.push_back(executionEnd(of(i)));
+  for (size_t i = 0; i < executions.size(); ++i) ends_.push_back(executionEnd(of(i)));
 }
 
 namespace {
 
+using recordings::AverageLimits;
+using recordings::AverageNote;
+using recordings::Execution;
+
+constexpr int kFewest = 8;  // fair executions of a pattern
+constexpr size_t kFew = 40;
+
 Ground groundOf(const recordings::PatternRecordings& recorded,
                 const recordings::SurfaceRecordings& surface, std::vector<std::string>& notes) {
-  std::vector<recordings::AverageNote> averaging;
-  Ground ground{
-      surface.surface, recordings::averageSet(recorded.patterns, surface, {}, averaging), {}, {}};
-  for (const recordings::AverageNote& note : averaging)
+  AverageLimits limits;
+  limits.min_executions = kFewest;
+  std::vector<AverageNote> fairness, of_half;
+  recordings::averageSet(recorded.patterns, surface, limits, fairness);
+  recordings::SurfaceRecordings known{surface.surface, {}};
+  std::vector<std::vector<Execution>> tests;
+  size_t fewest = kFew;
+  for (size_t p = 0; p < surface.executions.size(); ++p) {
+    const AverageNote& note = fairness[p];
     for (const std::string& line : note.rejected)
       notes.push_back(surface.surface + ", " + note.pattern + ": " + line);
-  for (size_t p = 0; p < surface.executions.size(); ++p) {
+    std::vector<Execution> halves[2];
+    size_t fair = 0;
+    for (size_t i = 0; i < surface.executions[p].size(); ++i)
+      if (!std::binary_search(note.left_out.begin(), note.left_out.end(), i))
+        halves[fair++ / 2 % 2].push_back(surface.executions[p][i]);
+    fewest = std::min(fewest, fair);
+    known.executions.push_back(std::move(halves[0]));
+    tests.push_back(std::move(halves[1]));
+  }
+  if (fewest < kFew)
+    notes.push_back(surface.surface + ": few recordings, " + std::to_string(fewest) +
+                    " of a pattern, half of them for tests; others may give other numbers, which "
+                    "the intervals do not tell");
+  limits.max_speed = std::numeric_limits<double>::max();  // all are fair
+  limits.min_executions = 1;
+  Ground ground{surface.surface,
+                recordings::averageSet(recorded.patterns, known, limits, of_half),
+                {},
+                {},
+                {}};
+  for (size_t p = 0; p < tests.size(); ++p) {
     const MotionPattern& pattern = ground.averaged.patterns()[p];
     ground.averaged_ends.push_back(pattern.end());
-    ground.executions.emplace_back(surface.executions[p], pattern.commands.size(),
-                                   averaging[p].left_out);
+    ground.known.emplace_back(known.executions[p], pattern.commands.size());
+    ground.tests.emplace_back(tests[p], pattern.commands.size());
   }
   return ground;
 }
@@ -187,8 +218,6 @@ TransitionWorld readWorld(ConfigReader reader, const std::string& file) {
   reader.finish();
   return world;
 }
-
-using recordings::Execution;
 
 /// The commands of a pattern, each held `length` times as long.
 std::vector<TrackCommand> heldLonger(const std::vector<TrackCommand>& commands, int length) {

@@ -98,7 +98,7 @@ std::string padded(const std::string& text, size_t width) {
 
 std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
                              const std::vector<Tables>& sets) {
-  constexpr size_t kName = 13, kWidth = 15;
+  constexpr size_t kName = 23, kWidth = 15;
   std::string text =
       "KEY FIGURES. Reductions [%] against single: median over transitions, test sequences, and "
       "over all patterns\nafter 10 executions. Against off [%]: the worst transition, + = worse "

@@ -44,7 +44,10 @@ void define(CLI::App& command, Arguments& arguments) {
   source->require_option(1);
   command.add_option("--robot", request.robot, "drives: part of the robot's name");
   command.add_option("--sessions", request.sessions, "drives: only these sessions")->delimiter(',');
-  command.add_option("--rules", request.rules, "rules to compare")
+  command
+      .add_option("--rules", request.rules,
+                  "methods: RULE, RULE_home, RULE_unmet, "
+                  "RULE_remembered, omniscient")
       ->delimiter(',')
       ->capture_default_str();
   command.add_option("--sequence", request.sequences,
@@ -53,13 +56,22 @@ void define(CLI::App& command, Arguments& arguments) {
       ->check(CLI::Range(2, 100'000'000))
       ->capture_default_str();
   command
-      .add_option("--excitation", request.excitation,
-                  "executions on each surface that the bank drives before a transition")
+      .add_option("--excitations", request.excitations,
+                  "excitation runs of each transition, which share its repetitions")
+      ->check(CLI::Range(2, 1'000'000))
+      ->capture_default_str();
+  command
+      .add_option("--excitation", request.excitation, "executions on each surface of such a run")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   command.add_option("--memory", request.memory, "w: weight of the old prediction")
       ->check(CLI::Range(0.0, 0.999))
       ->capture_default_str();
+  command
+      .add_option("--set", request.overrides,
+                  "SECTION.KEY=VALUE in the place of what learner.yaml would say: ground.fresh=0.3")
+      ->expected(1)
+      ->take_all();
   command.add_option("--seed", request.seed, "of recordings and trials")->capture_default_str();
   tread::addThreads(command, request.threads);
   command.add_option("--sets", request.sets, "world: so many sets of recordings")
@@ -92,7 +104,7 @@ void run(const Arguments& arguments) {
   std::cout << textOfErrors(batch.tables, batch.setting) << '\n'
             << textOfReductions(batch.tables, batch.setting) << '\n'
             << textOfAgreement(batch.tables, batch.setting, batch.sets) << '\n'
-            << textOfBank(batch) << '\n'
+            << textOfRemembered(batch) << '\n'
             << textOfDrift(batch) << '\n'
             << textOfVariants(batch) << textOfKeyFigures(batch.tables, batch.setting, batch.sets)
             << std::flush;
@@ -107,7 +119,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Experiments with rules of learning.", "tread-experiment"};
   app.require_subcommand(1);
   Arguments arguments;
-  arguments.request.rules = tread::experiment::methodNames();
+  arguments.request.rules = tread::experiment::defaultMethods();
   CLI::App* transitions = app.add_subcommand(
       "transitions", "section V of the paper: what rules err after a change of surface");
   define(*transitions, arguments);

@@ -14,11 +14,12 @@ namespace tread::experiment {
 
 /// What to compare, on what, how often.
 struct ExperimentSettings {
-  std::vector<std::string> rules;  ///< names of contestants; "off" and "omniscient" among them
+  std::vector<std::string> rules;  ///< names of methods, see methodOf()
   learner::RuleConfig config;      ///< of all rules
   std::vector<Sequence> sequences;
-  int64_t repetitions = 30'000;  ///< each drives all sequences once
-  int64_t excitation = 200;      ///< executions on each surface that a bank meets before
+  int64_t repetitions = 2000;  ///< of a transition; each drives all sequences once
+  int64_t excitations = 40;    ///< excitation runs of a transition, which share the repetitions
+  int64_t excitation = 200;    ///< executions on each surface of one
   uint64_t seed = 1;
   int threads = 1;  ///< no influence on any number
   bool change_inside = false;
@@ -36,6 +37,7 @@ struct TransitionErrors {
   SequenceErrors sequences;
   std::vector<Errors> all_patterns;  ///< by all_patterns_after
   std::vector<Errors> development;   ///< by execution
+  std::vector<double> remembered;    ///< surfaces before the transition, mean over excitation runs
 };
 
 /// Section V on one set of recordings.
@@ -186,9 +188,11 @@ struct Request {
   std::vector<std::string> sessions;   ///< of it; empty = all that are comparable
   std::vector<std::string> sequences;  ///< "left,left,right"; empty = those of the world
   std::vector<std::string> rules;
-  int64_t repetitions = 30'000;
-  int64_t excitation = 200;  ///< executions on each surface that a bank meets before
-  double memory = 0.5;       ///< [1] w of equation (2)
+  int64_t repetitions = 2000;
+  int64_t excitations = 40;            ///< excitation runs of each transition
+  int64_t excitation = 200;            ///< executions on each surface of one
+  double memory = 0.5;                 ///< [1] w of equation (2)
+  std::vector<std::string> overrides;  ///< of learner.yaml: "ground.fresh=0.3"
   uint64_t seed = 1;
   int threads = 1;
   int sets = 1;    ///< of a world: sets of recordings, from seeds that count up
@@ -212,20 +216,19 @@ struct Batch {
   std::string source;              ///< the world or folder, in words
   std::vector<std::string> notes;  ///< about the recordings
   std::vector<Tables> sets;
-  Tables tables;                          ///< of all sets of recordings together
-  std::vector<Ground> grounds;            ///< of the first set of recordings
-  ExperimentErrors first;                 ///< of it, for the pictures
-  std::vector<ExcitationRun> excitation;  ///< of the rule bank, by surface it comes home to
-  std::vector<Variant> variants;          ///< if the request wants extras
-  double seconds = 0.0;                   ///< of the trials, without recording
+  Tables tables;                  ///< of all sets of recordings together
+  std::vector<Ground> grounds;    ///< of the first set of recordings
+  ExperimentErrors first;         ///< of it, for the pictures
+  std::vector<Variant> variants;  ///< if the request wants extras
+  double seconds = 0.0;           ///< of the trials, without recording
 };
 
 /// Runs everything; throws an exception with one line for what cannot be done. progress(share of
 /// the work that is done, 0..1).
 Batch runBatch(const Request& request, const std::function<void(double)>& progress);
 
-/// What the bank met before the transitions and holds; empty without that rule.
-std::string textOfBank(const Batch& batch);
+/// How many surfaces methods remember after an excitation run; empty if none does by nature.
+std::string textOfRemembered(const Batch& batch);
 
 /// Key figures of the variants.
 std::string textOfVariants(const Batch& batch);

@@ -211,7 +211,8 @@ std::string textOfErrors(const Tables& tables, const Setting& setting) {
 
 std::string textOfReductions(const Tables& tables, const Setting& setting) {
   std::string text = "TABLE II: error reductions in per cent";
-  text += setting.sets > 1 ? " (mean +- deviation from set to set" : " [paired 99 % interval";
+  text += setting.sets > 1 ? " (mean +- deviation from set to set"
+                           : " [paired 99 % interval over excitation runs";
   text += setting.sets > 1 ? ")" : "]";
   if (setting.paper_reference) text += " (the paper's; ? = doubtful)";
   text += "\n";

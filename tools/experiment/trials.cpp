@@ -9,41 +9,43 @@ namespace tread::experiment {
 
 void RatioMoments::add(double covered, const double* errors) {
   repetitions_ += 1.0;
-  sums_[0] += covered;
-  products_[0] += covered * covered;
-  for (size_t j = 1; j < size_; ++j) products_[j] += covered * errors[j - 1];
-  for (size_t i = 1; i < size_; ++i) {
-    sums_[i] += errors[i - 1];
-    double* row = products_.data() + i * size_;
-    for (size_t j = i; j < size_; ++j) row[j] += errors[i - 1] * errors[j - 1];
+  for (size_t i = 0; i < size_; ++i) {
+    const double value = i == 0 ? covered : errors[i - 1];
+    sums_[i] += value;
+    squares_[i] += value * value;
   }
 }
 
-void RatioMoments::add(const RatioMoments& other) {
-  repetitions_ += other.repetitions_;
-  for (size_t i = 0; i < sums_.size(); ++i) sums_[i] += other.sums_[i];
-  for (size_t i = 0; i < products_.size(); ++i) products_[i] += other.products_[i];
+void RatioMoments::addRun(const RatioMoments& run) {
+  repetitions_ += run.repetitions_;
+  ++runs_;
+  for (size_t i = 0; i < size_; ++i) {
+    sums_[i] += run.sums_[i];
+    squares_[i] += run.squares_[i];
+    for (size_t j = i; j < size_; ++j) products_[i * size_ + j] += run.sums_[i] * run.sums_[j];
+  }
 }
 
 Estimate RatioMoments::quotient(size_t above, size_t below) const {
-  // Var(A/B) = sum((a - r b)^2) / (sum b)^2, the delta method.
+  // Var(A/B) = sum((a - r b)^2) / (sum b)^2 n / (n - 1), a and b the sums of each of n runs.
   const double ratio = sums_[above] / sums_[below];
+  if (runs_ < 2) return {ratio};
   const double squares = product(above, above) - 2.0 * ratio * product(above, below) +
                          ratio * ratio * product(below, below);
-  const double n = repetitions_;
-  const double variance =
-      std::max(0.0, squares) / (sums_[below] * sums_[below]) * (n > 1.0 ? n / (n - 1.0) : 1.0);
-  const double half = kNormal99 * std::sqrt(variance);
+  const auto n = static_cast<double>(runs_);
+  const double variance = std::max(0.0, squares) / (sums_[below] * sums_[below]) * n / (n - 1.0);
+  const double half = student99(runs_) * std::sqrt(variance);
   return {ratio, ratio - half, ratio + half};
 }
 
-double RatioMoments::deviation(size_t rule) const {
-  const double mean = sums_[rule + 1] / repetitions_;
-  const double square = product(rule + 1, rule + 1) / repetitions_;
+double RatioMoments::deviation(size_t method) const {
+  const double mean = sums_[method + 1] / repetitions_;
+  const double square = squares_[method + 1] / repetitions_;
   return std::sqrt(std::max(0.0, square - mean * mean)) / (sums_[0] / repetitions_);
 }
 
 double student99(size_t samples) {
+  constexpr double kNormal99 = 2.5758293035489;
   constexpr double kQuantiles[] = {63.657, 9.925, 5.841, 4.604, 4.032, 3.707, 3.499, 3.355,
                                    3.250,  3.169, 3.106, 3.055, 3.012, 2.977, 2.947, 2.921,
                                    2.898,  2.878, 2.861, 2.845, 2.831, 2.819, 2.807, 2.797,
@@ -91,7 +93,7 @@ class Drive {
         random_(site.seed),
         position_(methods.size()),
         orientation_(methods.size()) {
-    for (const Executions& executions : site.to.executions)
+    for (const Executions& executions : site.to.tests)
       joined_.resize(std::max(joined_.size(), 3 * executions.samples()));
   }
 
@@ -108,7 +110,7 @@ class Drive {
   /// One execution on the new surface; each(rule, position error, orientation error, end).
   template <class Each>
   void execute(size_t pattern, bool learn, const Each& each) {
-    const Executions& executions = site_.to.executions[pattern];
+    const Executions& executions = site_.to.tests[pattern];
     const size_t index = drawIndex(random_, executions.size());
     score(pattern, executions.of(index), executions.endOf(index), learn, each);
   }
@@ -117,7 +119,7 @@ class Drive {
   }
 
   /// Any pattern, by chance.
-  size_t any() { return drawIndex(random_, site_.to.executions.size()); }
+  size_t any() { return drawIndex(random_, site_.to.tests.size()); }
 
   /// The first one after the transition.
   template <class Each>
@@ -149,8 +151,8 @@ class Drive {
 
   /// First half of an execution on the old surface, continued by the second half of one on the new.
   ConstTrajectory joinedAt(size_t pattern) {
-    const Executions& before = site_.from.executions[pattern];
-    const Executions& after = site_.to.executions[pattern];
+    const Executions& before = site_.from.tests[pattern];
+    const Executions& after = site_.to.tests[pattern];
     const ConstTrajectory first = before.of(drawIndex(random_, before.size()));
     const ConstTrajectory second = after.of(drawIndex(random_, after.size()));
     const Eigen::Index samples = first.rows(), half = samples / 2;
@@ -223,7 +225,7 @@ std::vector<Errors> driveAllPatterns(Methods& methods, const TrialSite& site,
             drive.execute(pattern, true);
         }
         drive.clear();
-        for (size_t p = 0; p < site.to.executions.size(); ++p) drive.execute(p, false);
+        for (size_t p = 0; p < site.to.tests.size(); ++p) drive.execute(p, false);
         drive.addTo(result[k]);
       }
     }
@@ -284,10 +286,10 @@ std::vector<std::vector<double>> driveDrift(Methods& methods, const TrialSite& s
       note(j + 1);
     }
   }
-  for (std::vector<double>& widths : sums) {
-    const double shipped = widths.front();
+  const double shipped =
+      static_cast<double>(site.repetitions) * std::abs(site.from.averaged_ends[watched].y);
+  for (std::vector<double>& widths : sums)
     for (double& width : widths) width /= shipped;
-  }
   return sums;
 }
 

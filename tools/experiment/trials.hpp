@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -15,7 +16,6 @@
 #include "common/recordings/recordings.hpp"
 #include "common/vehicle/model.hpp"
 #include "modules/learner/core/rules/learning_rule.hpp"
-#include "modules/learner/core/rules/surface_bank.hpp"
 #include "modules/learner/core/scaling.hpp"
 
 namespace tread::experiment {
@@ -30,9 +30,8 @@ struct ExecutionEnd {
 /// All executions of one pattern on one surface (RP_S), one behind the other in memory.
 class Executions {
  public:
-  /// All but those in `left_out`, indices in ascending order; the others have `samples` poses.
-  Executions(const std::vector<recordings::Execution>& executions, size_t samples,
-             const std::vector<size_t>& left_out);
+  /// Each has `samples` poses.
+  Executions(const std::vector<recordings::Execution>& executions, size_t samples);
 
   size_t size() const { return ends_.size(); }
   size_t samples() const { return samples_; }
@@ -47,20 +46,23 @@ class Executions {
   std::vector<ExecutionEnd> ends_;
 };
 
-/// One surface of an experiment.
+/// One surface of an experiment. What is tested was never averaged nor driven before.
 struct Ground {
   std::string surface;
-  PatternSet averaged;               ///< IP_S
+  PatternSet averaged;               ///< IP_S, of one half of the recordings
   std::vector<Pose2> averaged_ends;  ///< of it, by pattern
-  std::vector<Executions> executions;
+  std::vector<Executions> known;     ///< the same half: excitation runs drive these
+  std::vector<Executions> tests;     ///< the other half
 };
 
 ExecutionEnd executionEnd(const learner::ConstTrajectory& trajectory);
 
-/// Averages a set of recordings surface by surface and lays its recordings out for the experiment.
-/** Throws recordings::RecordingError with one line if a pattern has too few executions or there is
- * one surface only. What is no fair execution is neither averaged nor driven; a line for each goes
- * to `notes`. */
+/// Splits the recordings of each pattern in two halves, averages one surface by surface, and lays
+/// both out for the experiment.
+/** Neighbours stay together: recordings made of drives come in pairs, two of one step. Such pairs
+ * have one local mean, so both halves know it. Throws recordings::RecordingError with one line if a
+ * pattern has fewer than eight fair executions or there is one surface only. What is no fair
+ * execution is left out; a line for each goes to `notes`, and one if recordings are few. */
 std::vector<Ground> groundsOf(const recordings::PatternRecordings& recorded,
                               std::vector<std::string>& notes);
 
@@ -117,78 +119,70 @@ inline uint64_t seedOf(std::initializer_list<uint64_t> numbers) {
   return state;
 }
 
-/// What the rule `bank` met on one surface of an excitation run.
-struct ExcitationSegment {
-  std::string surface;
-  int executions = 0;
-  int stored_after = 0;  ///< executions until it was put into the bank; 0 = it was not
+/// What a method has driven before a transition from surface A to surface B.
+enum class History {
+  kNone,        ///< nothing: the rule as it begins, with IP_A (the paper's protocol)
+  kHome,        ///< A
+  kUnmet,       ///< all surfaces but B, A last; on unchanged ground (A = B) all others
+  kRemembered,  ///< all surfaces, A last
 };
 
-/// The drive that fills a bank before a transition, and what the bank holds after it.
-struct ExcitationRun {
-  std::vector<ExcitationSegment> segments;
-  std::vector<learner::RememberedSurface> stored;
-  /// By stored surface: the surfaces whose recordings are likelier on it than on any other stored.
-  std::vector<std::vector<std::string>> explains;
+/// What is compared: a rule with a history. Without a rule it is the omniscient one.
+struct Method {
+  std::string rule;
+  History history = History::kNone;
 };
-
-/// Surfaces of an excitation run: all but `home` and `unseen`, then `home` unless it is `unseen`.
-struct ExcitationPlan {
-  size_t home = 0;
-  size_t unseen = 0;         ///< the number of surfaces = none is left out
-  int64_t executions = 200;  ///< on each surface
-};
-
-/// Drives random patterns of the whole set on each surface, the others in random order.
-std::vector<ExcitationSegment> driveExcitation(learner::LearningRule& rule,
-                                               const std::vector<Ground>& grounds,
-                                               const ExcitationPlan& plan, uint64_t seed);
-/// One run of the rule `bank`, which begins with an empty bank and the home surface's set.
-ExcitationRun excitationOfBank(const learner::RuleConfig& config,
-                               const std::vector<Ground>& grounds, const ExcitationPlan& plan,
-                               uint64_t seed);
-
-/// Segments and stored surfaces of runs, with the corrections by name.
-std::string textOfExcitation(const std::vector<ExcitationRun>& excitation, const PatternSet& set);
 
 /// The right set from the beginning, learning off: column d of the paper's Table I.
 inline constexpr const char* kOmniscient = "omniscient";
-/// Rule `bank` on a surface that it has never met; `bank` itself has met it.
-inline constexpr const char* kBankUnseen = "bank_unseen";
-/// Rule `bank` as it begins: it has met nothing.
-inline constexpr const char* kBankEmpty = "bank_empty";
 
-/// All methods: the learner's rules and the three above.
+/// RULE, RULE_home, RULE_unmet or RULE_remembered, or kOmniscient; `off` learns nothing, so it has
+/// no history. Nothing for other names.
+std::optional<Method> methodOf(const std::string& name);
+/// Names of all methods.
 std::vector<std::string> methodNames();
+/// Those that are compared if nothing else is asked for.
+std::vector<std::string> defaultMethods();
+
+/// Surfaces of an excitation run from A to B, in the order in which it drives them; the others are
+/// shuffled, A is the last one.
+std::vector<size_t> excitationOrder(History history, size_t surfaces, size_t from, size_t to,
+                                    std::mt19937_64& random);
+
+/// An excitation run: so many executions of random patterns on each of its surfaces.
+struct Excitation {
+  int64_t executions = 200;
+  uint64_t seed = 1;
+};
 
 /// The methods that are compared, ready for a transition from surface A to surface B.
-/** Each starts with IP_A; `bank` has driven an excitation run before, over all surfaces
- * (`bank_unseen`: all but B) and back to A. A = B is unchanged ground. */
+/** Each starts with IP_A and drives an excitation run of its history. A = B is unchanged ground. */
 class Methods {
  public:
   Methods(const std::vector<std::string>& names, const learner::RuleConfig& config,
-          const std::vector<Ground>& grounds, size_t from, size_t to, int64_t excitation_executions,
-          uint64_t excitation_seed);
+          const std::vector<Ground>& grounds, size_t from, size_t to, const Excitation& excitation);
 
   size_t size() const { return all_.size(); }
   /// All methods as they were before the transition; allocates nothing.
   void reset();
   Pose2 predictEnd(size_t i, size_t pattern) const {
-    const Method& one = all_[i];
-    return one.fixed != nullptr ? (*one.fixed)[pattern] : one.state->predictEnd(pattern);
+    const State& one = all_[i];
+    return one.fixed != nullptr ? (*one.fixed)[pattern] : one.now->predictEnd(pattern);
   }
   void learn(size_t i, size_t pattern, const learner::ConstTrajectory& measured) {
-    if (all_[i].state) all_[i].state->learn(pattern, measured, note_);
+    if (all_[i].now) all_[i].now->learn(pattern, measured, note_);
   }
+  /// Surfaces that it remembers before the transition; negative = none by nature.
+  int remembered(size_t i) const { return all_[i].start ? all_[i].start->remembered() : -1; }
 
  private:
-  struct Method {
+  struct State {
     const std::vector<Pose2>* fixed = nullptr;  ///< predictions that never change
     std::unique_ptr<learner::LearningRule> start;
-    std::unique_ptr<learner::LearningRule> state;
+    std::unique_ptr<learner::LearningRule> now;
   };
 
-  std::vector<Method> all_;
+  std::vector<State> all_;
   learner::RuleNote note_;
 };
 
@@ -199,25 +193,29 @@ struct Estimate {
   double high = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Sums of what rules erred and of what was covered meanwhile, over repetitions.
-/** All rules see the same recordings, so that products of their errors are kept, too: the interval
- * of a reduction is that of paired trials. */
+/// Sums of what methods erred and of what was covered meanwhile, over repetitions.
+/** Repetitions that share an excitation run are not independent, so intervals are over runs: what
+ * the repetitions of one run sum up to is one sample, and Student's quantile belongs to the number
+ * of runs [cluster-robust delta method]. They are about new runs on the same recordings. All
+ * methods see the same recordings, so that products of their errors are kept, too: the interval of
+ * a reduction is that of paired trials. */
 class RatioMoments {
  public:
-  explicit RatioMoments(size_t rules = 0)
-      : size_(rules + 1), sums_(size_), products_(size_ * size_) {}
+  explicit RatioMoments(size_t methods = 0)
+      : size_(methods + 1), sums_(size_), squares_(size_), products_(size_ * size_) {}
 
-  /// One repetition: metres or radians covered, and the summed error of each rule.
+  /// One repetition: metres or radians covered, and the summed error of each method.
   void add(double covered, const double* errors);
-  void add(const RatioMoments& other);
+  /// All repetitions of a further excitation run.
+  void addRun(const RatioMoments& run);
 
   double repetitions() const { return repetitions_; }
-  /// Sum of errors over sum of what was covered; delta method over repetitions.
-  Estimate error(size_t rule) const { return quotient(rule + 1, 0); }
-  /// Error of a rule over that of another one.
-  Estimate ratio(size_t rule, size_t other) const { return quotient(rule + 1, other + 1); }
+  /// Sum of errors over sum of what was covered.
+  Estimate error(size_t method) const { return quotient(method + 1, 0); }
+  /// Error of a method over that of another one.
+  Estimate ratio(size_t method, size_t other) const { return quotient(method + 1, other + 1); }
   /// Standard deviation of a repetition's error, over the mean of what one covers.
-  double deviation(size_t rule) const;
+  double deviation(size_t method) const;
 
  private:
   Estimate quotient(size_t above, size_t below) const;
@@ -227,8 +225,10 @@ class RatioMoments {
 
   size_t size_;
   double repetitions_ = 0.0;
-  std::vector<double> sums_;      ///< covered, then each rule's errors
-  std::vector<double> products_;  ///< upper triangle of their products
+  size_t runs_ = 0;
+  std::vector<double> sums_;      ///< covered, then each method's errors
+  std::vector<double> squares_;   ///< of repetitions
+  std::vector<double> products_;  ///< of sums of runs, upper triangle
 };
 
 /// How often errors fell into each of some bins of equal width.
@@ -246,8 +246,7 @@ struct Histogram {
   }
 };
 
-/// Standard normal and Student's 99.5 % quantile; the second for means of `samples` values.
-inline constexpr double kNormal99 = 2.5758293035489;
+/// Student's 99.5 % quantile for means of `samples` values.
 double student99(size_t samples);
 
 /// Patterns by index, one after the other.
@@ -256,9 +255,9 @@ using Sequence = std::vector<size_t>;
 /// Errors of all rules: per driven metre and per radian turned.
 struct Errors {
   explicit Errors(size_t rules = 0) : position(rules), orientation(rules) {}
-  void add(const Errors& other) {
-    position.add(other.position);
-    orientation.add(other.orientation);
+  void addRun(const Errors& run) {
+    position.addRun(run.position);
+    orientation.addRun(run.orientation);
   }
   RatioMoments position;     ///< [1] metres over metres of path
   RatioMoments orientation;  ///< [1] radians over radians of net yaw
@@ -279,11 +278,11 @@ struct SequenceErrors {
   std::vector<Histogram> position;     ///< of single executions, per metre of each
   std::vector<Histogram> orientation;  ///< per radian
 
-  void add(const SequenceErrors& other) {
-    errors.add(other.errors);
+  void addRun(const SequenceErrors& run) {
+    errors.addRun(run.errors);
     for (size_t i = 0; i < position.size(); ++i) {
-      position[i].add(other.position[i]);
-      orientation[i].add(other.orientation[i]);
+      position[i].add(run.position[i]);
+      orientation[i].add(run.orientation[i]);
     }
   }
 };

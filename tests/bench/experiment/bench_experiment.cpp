@@ -67,7 +67,7 @@ double copyTime() {
 void transition(benchmark::State& state, const std::string& rule) {
   static const double copy = copyTime();
   const std::vector<Sequence> sequences{{1, 1, 2}, {2, 2, 1}};
-  Methods methods({rule}, {}, grounds(), 0, 1, 200, 1);
+  Methods methods({rule}, {}, grounds(), 0, 1, {});
   const TrialSite site{grounds()[0], grounds()[1], false, kRepetitions, 1};
   const auto begun = std::chrono::steady_clock::now();
   for (auto _ : state) benchmark::DoNotOptimize(driveSequences(methods, site, sequences, {}, {}));

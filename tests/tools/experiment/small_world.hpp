@@ -45,6 +45,7 @@ inline ExperimentSettings smallSettings() {
   settings.rules = {"off", "single", "collective", "telescoping", kOmniscient};
   settings.sequences = {{1, 1, 2}, {2, 2, 1}};
   settings.repetitions = 600;
+  settings.excitation = 40;
   return settings;
 }
 

@@ -19,7 +19,7 @@ Batch paperBatch(const std::string& world) {
   request.world = kWorlds + world;
   request.rules = {"off", "single", "collective", kOmniscient};
   request.repetitions = 2000;
-  request.sets = 3;
+  request.sets = 6;
   request.threads = 2;
   return runBatch(request, {});
 }

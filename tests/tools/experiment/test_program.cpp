@@ -112,24 +112,46 @@ TEST_CASE("several sets of recordings give means with their spread, and the numb
   CHECK(sets.size() == 1 + 3 * (2 * 2 * 4 + 2 * 2 * 3 + 2 * 2 * 4 * 4 + 2 * (2 * 2 * 4)));
 }
 
-TEST_CASE("all rules with extras: the bank is shown, lines are short, variants are told") {
+TEST_CASE("the usual methods with extras: lines are short, variants are told") {
   const Folder folder;
   write(folder / "small.yaml", kSmallWorld);
   const auto [code, printed] =
       run("--world " + (folder / "small.yaml") +
-          " --repetitions 20 --threads 2 --excitation 40 --extras --out " + (folder / "out"));
+          " --repetitions 20 --threads 2 --excitations 5 --excitation 40 --extras --out " +
+          (folder / "out"));
   INFO(printed);
   REQUIRE(code == 0);
   CHECK(printed.find("VARIANT: each command held twice as long") != std::string::npos);
   CHECK(printed.find("VARIANT: the ground changes in the middle") != std::string::npos);
   std::istringstream lines(printed);
   for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 160);
-  const std::string bank = contentOf(folder / "out/bank.txt");
-  CHECK(bank.find("sideslip") != std::string::npos);
-  CHECK(bank.find("40 executions on each of: road (stored after") != std::string::npos);
+  CHECK(printed.find("REMEMBERED surfaces") != std::string::npos);
   const std::string report = contentOf(folder / "out/report.html");
-  for (const char* words : {"What the bank met before", "On other terms", "bank_unseen"})
+  for (const char* words : {"over 5 excitation runs of 40", "On other terms", "multi_model_unmet"})
     CHECK(report.find(words) != std::string::npos);
+  const std::string figures = contentOf(folder / "out/key_figures.txt");
+  for (const std::string& method : defaultMethods())
+    CHECK(figures.find("\n" + method + " ") != std::string::npos);
+}
+
+TEST_CASE("--set replaces keys of the learner's configuration") {
+  const Folder folder;
+  write(folder / "small.yaml", kSmallWorld);
+  const std::string few = "--world " + (folder / "small.yaml") +
+                          " --rules multi_model,collective --repetitions 20 --threads 2 --out " +
+                          (folder / "out");
+  const auto table = [&](const std::string& set) {
+    const auto [code, printed] = run(few + set);
+    INFO(printed);
+    REQUIRE(code == 0);
+    return linesOf(folder / "out/table1.csv");
+  };
+  const auto usual = table(""),
+             other = table(" --set ground.change_metres=1 --set ground.fresh=0.9");
+  CHECK(usual[1] != other[1]);  // multi_model
+  CHECK(usual[2] == other[2]);  // collective
+  refuses(few + " --set ground.change_meters=1", "change_meters");
+  refuses(few + " --set ground.fresh=7", "ground.fresh=7");
 }
 
 TEST_CASE("a folder of recordings gives the same tables as the world that they come from") {
@@ -174,9 +196,9 @@ TEST_CASE("what cannot be done is one clear line") {
   refuses("--recordings " + folder.path.string() + " --sets 2", "--world");
 
   recordings::PatternRecordings recorded = record(parseTransitionWorld(kSmallWorld, "small"), 1);
-  recorded.surfaces[1].executions[1].resize(2);
+  recorded.surfaces[1].executions[1].resize(7);
   recordings::writeRecordings(folder / "few", recorded);
-  refuses("--recordings " + (folder / "few") + kFour, "at least 3");
+  refuses("--recordings " + (folder / "few") + kFour, "at least 8");
   recorded.surfaces.resize(1);
   recordings::writeRecordings(folder / "one", recorded);
   refuses("--recordings " + (folder / "one") + kFour, "two surfaces");

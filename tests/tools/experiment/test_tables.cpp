@@ -15,14 +15,15 @@ namespace {
 
 using namespace testing;
 
-/// Ten repetitions of 2 m in which each rule errs by these shares of it, alternately a bit more and
-/// less.
+/// Ten runs of 2 m in which each rule errs by these shares of it, alternately a bit more and less.
 RatioMoments moments(const std::vector<double>& shares) {
   RatioMoments sums(shares.size());
   for (int i = 0; i < 10; ++i) {
     std::vector<double> errors;
     for (const double share : shares) errors.push_back(2.0 * share * (i % 2 == 0 ? 1.1 : 0.9));
-    sums.add(2.0, errors.data());
+    RatioMoments run(shares.size());
+    run.add(2.0, errors.data());
+    sums.addRun(run);
   }
   return sums;
 }
@@ -120,7 +121,7 @@ TEST_CASE("errors over all patterns are told by the executions before, unchanged
 
 TEST_CASE("without single or the omniscient rule the tables that need them are empty") {
   ExperimentSettings alone = settings();
-  alone.rules = {"collective", "bank"};
+  alone.rules = {"collective", "multi_model"};
   ExperimentErrors errors = knownErrors();
   const Errors two = errorsOf({0.2, 0.1});
   errors.transitions[0].sequences.errors = two;

@@ -25,7 +25,7 @@ double expectedError(const Ground& from, const Ground& to, const std::vector<Seq
   double error = 0.0, metres = 0.0;
   for (const Sequence& sequence : sequences)
     for (const size_t pattern : sequence) {
-      const Executions& executions = to.executions[pattern];
+      const Executions& executions = to.tests[pattern];
       for (size_t i = 0; i < executions.size(); ++i) {
         const ExecutionEnd& end = executions.endOf(i);
         error += (from.averaged_ends[pattern].position() - end.pose.position()).norm();
@@ -64,7 +64,7 @@ TEST_CASE("every rule of the learner takes part, and others do not disturb it") 
   const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
   ExperimentSettings settings = smallSettings();
   settings.repetitions = effort(100);
-  settings.excitation = 40;
+  settings.excitations = 4;
   settings.rules = methodNames();
   const Tables all = tablesOf(runExperiment(grounds, settings, {}), settings, grounds);
   settings.rules = {"collective", "single"};
@@ -88,24 +88,60 @@ TEST_CASE("the interval of a table covers the error that all recordings together
   const int experiments = effort(300);
   int covered = 0;
   for (int i = 0; i < experiments; ++i) {
-    Methods methods(settings.rules, settings.config, grounds, 0, 1, settings.excitation, 0);
-    const TrialSite site{grounds[0], grounds[1], false, 200, static_cast<uint64_t>(i)};
-    const Estimate estimate =
-        driveSequences(methods, site, settings.sequences, {}, {}).errors.position.error(0);
+    Methods methods(settings.rules, settings.config, grounds, 0, 1, {});
+    RatioMoments sum(1);
+    for (uint64_t run = 0; run < 20; ++run) {
+      const TrialSite site{grounds[0], grounds[1], false, 10,
+                           seedOf({static_cast<uint64_t>(i), run})};
+      sum.addRun(driveSequences(methods, site, settings.sequences, {}, {}).errors.position);
+    }
+    const Estimate estimate = sum.error(0);
     if (estimate.low <= truth && truth <= estimate.high) ++covered;
   }
   CHECK(covered >= 0.97 * experiments);
 }
 
-TEST_CASE("repetitions allocate nothing") {
+TEST_CASE("cells of two seeds differ beyond their joint interval as seldom as it promises") {
+  // What an excitation run teaches decides on all repetitions after it: here a short one that may
+  // leave out a pattern, so that repetitions of one run are alike.
+  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
+  ExperimentSettings settings = smallSettings();
+  settings.rules = {"single", "collective_home", "multi_model_home", "multi_model_remembered"};
+  settings.repetitions = 200;
+  settings.excitations = 20;
+  settings.excitation = 6;
+  settings.development = settings.drift = 1;
+  settings.all_patterns_after = {1};
+  const auto cellsOf = [&](uint64_t seed) {
+    settings.seed = seed;
+    const Tables tables = tablesOf(runExperiment(grounds, settings, {}), settings, grounds);
+    std::vector<Row> cells = tables.errors;
+    cells.insert(cells.end(), tables.reductions.begin(), tables.reductions.end());
+    return cells;
+  };
+  size_t all = 0, differ = 0;
+  for (uint64_t seed = 1; seed < static_cast<uint64_t>(effort(24)); seed += 2) {
+    const std::vector<Row> one = cellsOf(seed), other = cellsOf(seed + 1);
+    for (size_t i = 0; i < one.size(); ++i) {
+      const Estimate &a = one[i].estimate, &b = other[i].estimate;
+      const double joint = std::hypot(a.high - a.value, b.high - b.value);
+      ++all;
+      if (std::abs(a.value - b.value) > joint) ++differ;
+    }
+  }
+  INFO(differ << " of " << all);
+  CHECK(all >= 28);
+  CHECK(static_cast<double>(differ) <= 0.03 * static_cast<double>(all));
+}
+
+TEST_CASE("repetitions allocate nothing but the hypotheses of multi_model") {
   const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
   const ExperimentSettings settings = smallSettings();
   for (const std::string& rule : methodNames()) {
-    // They may close a block of executions; see below.
-    if (rule == "bank" || rule == kBankUnseen) continue;
+    if (rule.find("multi_model") == 0) continue;
     for (const bool change_inside : {false, true}) {
       const auto allocationsOf = [&](int64_t repetitions) {
-        Methods methods({rule}, settings.config, grounds, 0, 1, settings.excitation, 0);
+        Methods methods({rule}, settings.config, grounds, 0, 1, {});
         const TrialSite site{grounds[0], grounds[1], change_inside, repetitions, 1};
         const std::size_t before = allocations();
         driveSequences(methods, site, settings.sequences, {}, {});
@@ -115,30 +151,6 @@ TEST_CASE("repetitions allocate nothing") {
       CHECK(allocationsOf(3) == allocationsOf(300));
     }
   }
-}
-
-TEST_CASE("the bank allocates nothing but when it judges a block of executions") {
-  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
-  learner::RuleConfig config;
-  config.rule = "bank";
-  const auto rule = learner::makeRule(config, grounds[0].averaged);
-  driveExcitation(*rule, grounds, {0, grounds.size(), 50}, 1);
-  const int executions = 400;
-  int64_t judged = 0, since = config.bank.settled_after;
-  for (int i = 0; i < executions; ++i) {
-    const auto pattern = static_cast<size_t>(i % 3);
-    const Ground& ground = grounds[static_cast<size_t>(i / 100 % 2)];
-    const auto measured = ground.executions[pattern].of(static_cast<size_t>(i % 40));
-    learner::RuleNote note;
-    const std::size_t before = allocations();
-    rule->learn(pattern, measured, note);
-    ++since;
-    if (allocations() == before) continue;
-    CHECK((judged == 0 || since >= config.bank.settled_after));
-    ++judged;
-    since = 0;
-  }
-  CHECK(judged <= executions / config.bank.settled_after + 1);
 }
 
 TEST_CASE("twice as long commands make patterns twice as long") {
