@@ -142,6 +142,21 @@ inline PatternSet richSet() {
   return checked(richContent());
 }
 
+/// A pattern that changes its twist on the way.
+inline std::vector<Pose2> winding() {
+  std::vector<Pose2> poses = arc({0.9, 0.0, 0.8}, 10);
+  const Pose2 middle = poses.back();
+  for (const Pose2& pose : arc({0.5, 0.02, -0.6}, 15)) poses.push_back(middle * pose);
+  return poses;
+}
+
+/// richSet() and the winding one, last.
+inline PatternSet windingSet() {
+  PatternSetContent content = richContent();
+  content.patterns.push_back(pattern(8, "winding", {0.9, 1.0}, winding()));
+  return checked(content);
+}
+
 /// Mean distance of predicted ends from those that a ground would give without chance [m].
 inline double meanEndError(const Pupil& pupil, const GroundEffect& ground) {
   double sum = 0.0;

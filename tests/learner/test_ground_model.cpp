@@ -24,20 +24,6 @@ Eigen::Vector3d meanUnder(const TwistProfile& profile, const Correction10& corre
   return meanTwist(ConstTrajectory(beginning.data(), samples, 3), 0.05);
 }
 
-/// A pattern that changes its twist on the way.
-std::vector<Pose2> winding() {
-  std::vector<Pose2> poses = arc({0.9, 0.0, 0.8}, 10);
-  const Pose2 middle = poses.back();
-  for (const Pose2& pose : arc({0.5, 0.02, -0.6}, 15)) poses.push_back(middle * pose);
-  return poses;
-}
-
-PatternSet windingSet() {
-  PatternSetContent content = richContent();
-  content.patterns.push_back(pattern(8, "winding", {0.9, 1.0}, winding()));
-  return checked(content);
-}
-
 }  // namespace
 
 TEST_CASE("a twist profile without a correction is the shipped prediction") {

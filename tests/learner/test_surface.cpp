@@ -130,7 +130,7 @@ TEST_CASE("a surface learns its own noise, calm or rough, each velocity for itse
   for (const double factor : {0.25, 1.0, 4.0, 12.0}) {
     INFO("variance " << factor << " times the expected one");
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    const int seeds = effort(40);
+    const int seeds = 40;
     for (int seed = 1; seed <= seeds; ++seed) {
       std::mt19937_64 random(static_cast<uint64_t>(seed));
       Surface surface = f.surface();
