@@ -38,7 +38,7 @@ class DrawnWorld {
     DrawnGround drawn = centre;
     for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
       const Eigen::LLT<Eigen::MatrixXd> root(share * model_.spread(velocity));
-      Eigen::VectorXd chance(model_.dimension(velocity));
+      Eigen::VectorXd chance(model_.dimension());
       for (double& number : chance) number = chanceOf(random);
       drawn.x[velocity] += root.matrixL() * chance;
     }
@@ -51,7 +51,7 @@ class DrawnWorld {
   DrawnGround shipped() const {
     DrawnGround ground;
     for (size_t velocity = 0; velocity < kVelocities; ++velocity)
-      ground.x[velocity] = Eigen::VectorXd::Zero(model_.dimension(velocity));
+      ground.x[velocity] = Eigen::VectorXd::Zero(model_.dimension());
     return ground;
   }
 
@@ -104,14 +104,13 @@ class DrawnWorld {
   }
 
  private:
-  static Correction10 correctionOf(const DrawnGround& ground, size_t pattern) {
-    Correction10 correction;
+  static CorrectionVector correctionOf(const DrawnGround& ground, size_t pattern) {
+    CorrectionVector correction;
     for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
-      const VelocityTerms& terms = termsOf(velocity);
-      for (Eigen::Index i = 0; i < terms.count; ++i)
-        correction[terms.common[static_cast<size_t>(i)]] = ground.x[velocity][i];
+      for (Eigen::Index i = 0; i < kTerms; ++i)
+        correction[kTerms * static_cast<Eigen::Index>(velocity) + i] = ground.x[velocity][i];
       correction[TwistCorrection::kCommon + static_cast<Eigen::Index>(velocity)] =
-          ground.x[velocity][terms.count + static_cast<Eigen::Index>(pattern)];
+          ground.x[velocity][kTerms + static_cast<Eigen::Index>(pattern)];
     }
     return correction;
   }

@@ -72,12 +72,18 @@ std::vector<double> memoryOf(const Pupil& pupil) {
 /// Where things stand in the memory of seven patterns.
 enum Place : size_t {
   kClockAt,
-  kSurfacesAt,
+  kChangesAt,
+  kMetresAt,
+  kGroundAt,
+  kScatterAt,
+  kSurfacesAt = kScatterAt + 5 * 7,
   kWeightAt,
   kLastMetAt,
+  kSinceAt,
   kShareAt,
   kCentreAt,
-  kNoiseAt = kCentreAt + 7 + 3 * 7,
+  kFactorsAt = kCentreAt + 3 * (3 + 7),
+  kNoiseAt = kFactorsAt + 3 * 7,
   kExecutionsAt = kNoiseAt + 3,
   kPartsAt,
   kPartAt,  ///< pattern, samples, count, three sums, three of squares
@@ -154,7 +160,11 @@ TEST_CASE("a memory with a number that cannot be is refused whole") {
     }
   };
   refused(kClockAt, {-1.0, 0.5, 1.0, 1e300});
-  refused(kSurfacesAt, {-1.0, 0.0, 0.5, 1.0, 3.0, 18.0, 1e9, 1e300});
+  refused(kChangesAt, {-1.0});
+  refused(kMetresAt, {-1.0, 1e5});
+  refused(kGroundAt, {-1.0, 0.5, 57.0, 1e300});
+  refused(kScatterAt, {-1.0});
+  refused(kSurfacesAt, {-1.0, 0.0, 0.5, 1.0, 3.0, 66.0, 1e9, 1e300});
   const size_t second = after(memory, kWeightAt);
   const size_t fresh = after(memory, second);
   REQUIRE(memory[fresh] >= 1.0);

@@ -256,15 +256,15 @@ Pose2 TwistProfile::integrateEnd(const CorrectionVector& correction) const {
   return walk(correction, [](size_t, const Pose2&) {});
 }
 
-Eigen::Vector3d meanTwist(const ConstTrajectory& trajectory, double period) {
+Eigen::Vector3d meanTwist(const ConstTrajectory& trajectory, Eigen::Index samples, double period) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Pose2 last;
-  for (Eigen::Index t = 0; t < trajectory.rows(); ++t) {
+  for (Eigen::Index t = 0; t < samples; ++t) {
     const Pose2 pose{trajectory(t, 0), trajectory(t, 1), trajectory(t, 2)};
     sum += sampleMotion(last, pose);
     last = pose;
   }
-  return sum / (period * static_cast<double>(trajectory.rows()));
+  return sum / (period * static_cast<double>(samples));
 }
 
 GroundModel::GroundModel(const GroundConfig& config, const PatternSet& shipped)

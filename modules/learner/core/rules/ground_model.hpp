@@ -99,8 +99,9 @@ class TwistProfile {
   Eigen::Matrix3d end_lever_;
 };
 
-/// Mean body twist of a trajectory that begins in (0, 0, 0); allocates nothing.
-Eigen::Vector3d meanTwist(const ConstTrajectory& trajectory, double period);
+/// Mean body twist of the first samples of a trajectory that begins in (0, 0, 0); allocates
+/// nothing.
+Eigen::Vector3d meanTwist(const ConstTrajectory& trajectory, Eigen::Index samples, double period);
 
 /// What is known before anything is measured: patterns as body twists, how far surfaces lie apart,
 /// and how exact one execution is. Immutable; all hypotheses share it.

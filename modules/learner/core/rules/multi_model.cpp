@@ -11,13 +11,16 @@ namespace {
 
 /// A pattern that hardly drives may still cross a border [m].
 constexpr double kLeastMetres = 0.05;
-/// What the expected number of changes counts for, and the way after which older ones fade [m].
-constexpr double kPriorChanges = 2.0;
+/// Way after which older changes fade [m].
 constexpr double kLongestWay = 2000.0;
 /// Centre and scatter of new surfaces are kept to this [1]: their digits stand in the state file.
 constexpr double kCentreStep = 1e-6;
 constexpr double kScatterStep = 1e-3;
 
+/// Beginnings are cut to multiples of so many samples.
+constexpr Eigen::Index kPartStep = 4;
+/// What weighs less adds nothing to a covariance [1].
+constexpr double kLeastWeight = 1e-6;
 /// No execution counts for more than this in the scatter [1].
 constexpr double kMostError = 1e3;
 
@@ -35,12 +38,12 @@ PoseCovariance upperTriangle(const Eigen::Matrix3d& covariance) {
           covariance(1, 1), covariance(1, 2), covariance(2, 2)};
 }
 
-/// J P J', P the covariance of the ten corrections of a pattern.
+/// J P J', P the covariance of the corrections of a pattern.
 Eigen::Matrix3d spreadOfEnd(const Eigen::Matrix<double, 3, TwistCorrection::kAll>& J,
-                            const Surface& surface, size_t pattern) {
+                            const ByVelocity<Eigen::MatrixXd>& covariance, size_t pattern) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
-    const Eigen::MatrixXd& P = surface.covariance()[velocity];
+    const Eigen::MatrixXd& P = covariance[velocity];
     const auto first = kTerms * static_cast<Eigen::Index>(velocity);
     const auto place = [&](Eigen::Index i) {
       return i < kTerms ? i : kTerms + static_cast<Eigen::Index>(pattern);
@@ -115,7 +118,7 @@ SurfacePrior MultiModel::priorOfNew() const {
 
 double MultiModel::hazard(double metres) const {
   const double rate =
-      (kPriorChanges + changes_) / (kPriorChanges * config_.change_metres + metres_);
+      (config_.change_prior + changes_) / (config_.change_prior * config_.change_metres + metres_);
   return 1.0 - std::exp(-std::max(metres, kLeastMetres) * rate);
 }
 
@@ -257,28 +260,44 @@ void MultiModel::forEachAhead(Take&& take) const {
   take(h * config_.fresh, next_);
 }
 
+/// Mean and covariance of the corrections on the next metres.
 void MultiModel::predictMixture() {
-  for (size_t velocity = 0; velocity < kVelocities; ++velocity)
+  for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
     mean_[velocity].setZero(model_->dimension());
+    covariance_[velocity].setZero(model_->dimension(), model_->dimension());
+  }
   forEachAhead([this](double weight, const Surface& surface) {
     for (size_t velocity = 0; velocity < kVelocities; ++velocity)
       mean_[velocity] += weight * surface.mean()[velocity];
   });
+  forEachAhead([this](double weight, const Surface& surface) {
+    if (weight < kLeastWeight) return;
+    for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
+      const Eigen::VectorXd apart = surface.mean()[velocity] - mean_[velocity];
+      covariance_[velocity] += weight * surface.covariance()[velocity];
+      for (Eigen::Index j = 0; j < apart.size(); ++j)
+        covariance_[velocity].col(j) += weight * apart[j] * apart;
+    }
+  });
 }
 
 void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) {
-  const Eigen::Vector3d mean_twist = meanTwist(measured, model_->period());
-  if (!mean_twist.allFinite()) return;  // beyond all numbers
   const PatternPart& whole = model_->whole(executed);
-  const TwistSample sample{
-      measured.rows() == whole.samples ? whole : model_->part(executed, measured.rows()),
-      plausible(mean_twist)};
+  // Few lengths of beginnings, so that what is measured of them stays together.
+  const Eigen::Index samples =
+      measured.rows() >= whole.samples
+          ? whole.samples
+          : std::max<Eigen::Index>(1, measured.rows() / kPartStep * kPartStep);
+  const Eigen::Vector3d mean_twist = meanTwist(measured, samples, model_->period());
+  if (!mean_twist.allFinite()) return;  // beyond all numbers
+  const TwistSample sample{samples == whole.samples ? whole : model_->part(executed, samples),
+                           plausible(mean_twist)};
   ++clock_;
   expectChange(sample.part.metres);
   weigh(sample);
   countChange(sample.part.metres);
   update(sample);
-  const Eigen::Index last = measured.rows() - 1;
+  const Eigen::Index last = samples - 1;
   followScatter(sample, {measured(last, 0), measured(last, 1), measured(last, 2)});
   forgetWeakest();
   note.surface_stored = rememberSettled();
@@ -325,20 +344,17 @@ Pose2 MultiModel::predictEnd(size_t pattern) const {
 }
 
 std::optional<PoseCovariance> MultiModel::endCovariance(size_t pattern) const {
-  const auto& J = model_->profile(pattern).endResponse();
-  const Eigen::Matrix3d& lever = model_->profile(pattern).endLever();
-  const CorrectionVector mean = correctionOf(mean_, pattern);
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  const TwistProfile& profile = model_->profile(pattern);
   Eigen::Vector3d execution = Eigen::Vector3d::Zero();
   forEachAhead([&](double weight, const Surface& surface) {
-    const Eigen::Vector3d moved = J * (correctionOf(surface.mean(), pattern) - mean);
-    covariance += weight * (moved * moved.transpose() + spreadOfEnd(J, surface, pattern));
     execution += weight * surface.executionNoise(model_->whole(pattern));
   });
-  covariance += lever * execution.asDiagonal() * lever.transpose();
-  const double shape = model_->whole(pattern).shape * scatter_.expected(config_.noise_prior)(
-                                                          3, static_cast<Eigen::Index>(pattern));
-  covariance.diagonal().head<2>().array() += shape;
+  Eigen::Matrix3d covariance =
+      spreadOfEnd(profile.endResponse(), covariance_, pattern) +
+      profile.endLever() * execution.asDiagonal() * profile.endLever().transpose();
+  covariance.diagonal().head<2>().array() +=
+      model_->whole(pattern).shape *
+      scatter_.expected(config_.noise_prior)(3, static_cast<Eigen::Index>(pattern));
   return upperTriangle(0.5 * (covariance + covariance.transpose()));
 }
 
@@ -354,6 +370,7 @@ void MultiModel::assign(const LearningRule& other) {
   change_probability_ = rule.change_probability_;
   clock_ = rule.clock_;
   mean_ = rule.mean_;
+  covariance_ = rule.covariance_;
 }
 
 // What the rule writes into the state file, and what it takes back from there.
@@ -409,8 +426,7 @@ bool MultiModel::restore(const TrajectoryTable&, const std::vector<double>& memo
   rule.ground_ = static_cast<int64_t>(memory[3]);
   std::copy_n(memory.begin() + 4, rule.scatter_.sums.size(), rule.scatter_.sums.data());
   if (rule.scatter_.sums.minCoeff() < 0.0) return false;
-  if (!rule.restoreHypotheses(rule.surfaces_, static_cast<size_t>(config_.capacity) + 1, memory,
-                              at) ||
+  if (!rule.restoreHypotheses(rule.surfaces_, GroundConfig::kMostSurfaces + 1, memory, at) ||
       !rule.restoreHypotheses(rule.fresh_, static_cast<size_t>(config_.moments), memory, at) ||
       at != memory.size() || rule.surfaces_.empty())
     return false;

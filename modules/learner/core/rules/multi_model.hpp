@@ -37,19 +37,18 @@ struct Scatter {
  * measured, with a noise of its own. After d metres and an execution z
  *    w_i^- = (1 - h) w_i + h pi_i,   h = 1 - exp(-d r)
  *    w_i ~ w_i^- p_i(z)
- * r: changes a metre, learned from those that were sure in the end, beginning with kPriorChanges in
- * as many times change_metres. pi: `fresh` for a new hypothesis that begins with this execution, the rest in equal shares for
- * the remembered surfaces. Every fresh one learns from z; a remembered one only while it is sure,
- * so that doubtful executions blur none. A fresh one that is sure and settled is remembered from
- * then on. The weakest fresh ones, and the surface that was met longest ago, make room.
- * A new surface is expected about a centre that the remembered ones have in common: with
- * x_k = mu + d_k, mu ~ N(0, shared Q), d_k ~ N(0, (1 - shared) Q), K surfaces met
- *    E[mu] = shared sum x_k / (1 - shared + K shared),
- *    Var[x_new] = (1 - shared)(1 + shared / (1 - shared + K shared)) Q.
- * So what the vehicle does on every ground, unlike its shipped set, is kept where the ground
- * changes. Executions are expected to scatter on it as they have so far (Scatter). Predictions are
- * for the next `ahead` metres, on which the ground may change, too: the shipped profile under sum_i
- * w_i^- E[x_i], the covariance that of the mixture. */
+ * r: changes a metre, learned from those that were sure in the end, beginning with change_prior in
+ * as many times change_metres. pi: `fresh` for a new hypothesis that begins with this execution,
+ * the rest in equal shares for the remembered surfaces. Every fresh one learns from z; a remembered
+ * one only while it is sure, so that doubtful executions blur none. A fresh one that is sure and
+ * settled is remembered from then on. The weakest fresh ones, and the surface that was met longest
+ * ago, make room. A new surface is expected about a centre that the remembered ones have in common:
+ * with x_k = mu + d_k, mu ~ N(0, shared Q), d_k ~ N(0, (1 - shared) Q), K surfaces met E[mu] =
+ * shared sum x_k / (1 - shared + K shared), Var[x_new] = (1 - shared)(1 + shared / (1 - shared + K
+ * shared)) Q. So what the vehicle does on every ground, unlike its shipped set, is kept where the
+ * ground changes. Executions are expected to scatter on it as they have so far (Scatter).
+ * Predictions are for the next `ahead` metres, on which the ground may change, too: the shipped
+ * profile under sum_i w_i^- E[x_i], the covariance that of the mixture. */
 class MultiModel : public LearningRule {
  public:
   MultiModel(const RuleConfig& config, const PatternSet& shipped);
@@ -114,7 +113,8 @@ class MultiModel : public LearningRule {
   double metres_ = 0.0;   ///< driven meanwhile
   int64_t ground_ = 0;    ///< `since` of the hypothesis that was sure last
   int64_t clock_ = 0;
-  ByVelocity<Eigen::VectorXd> mean_;  ///< of the mixture
+  ByVelocity<Eigen::VectorXd> mean_;        ///< of the mixture ahead
+  ByVelocity<Eigen::MatrixXd> covariance_;  ///< the same
 };
 
 }  // namespace tread::learner
