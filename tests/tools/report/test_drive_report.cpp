@@ -293,7 +293,7 @@ TEST_CASE("contacts of the truth stand in the result and in the picture, one pla
 TEST_CASE("errors by rule are told before, just after and long after a change of ground") {
   RuleErrors errors;
   errors.driven = "off";
-  errors.rules = {"off", "bank"};
+  errors.rules = {"off", "multi_model"};
   for (int i = 0; i < 30; ++i) {
     shadow::ShadowedExecution execution;
     execution.began = i * kSecond;

@@ -20,7 +20,7 @@ const std::string kConfigFolder = TREAD_SOURCE_DIR "/config";
 }  // namespace
 
 TEST_CASE("a log tells what each rule would have predicted, as shadows of the drive do") {
-  const std::vector<learner::Rule> rules{"off", "collective", "bank"};
+  const std::vector<learner::Rule> rules{"off", "collective", "multi_model"};
   const std::string path = "test_rule_errors_" + std::to_string(getpid()) + ".lcmlog";
   missions::MissionRun run;
   {
