@@ -44,7 +44,7 @@ class Folder {
 /// A learner of this pattern file with the gates that fit a log without a learner.
 std::string learnerYaml(const std::string& patterns) {
   return "patterns: \"" + patterns +
-         "\"\nstore: state/x\nrule: bank\ngates:\n  max_gap: 0.3\n  any_entry: true\n";
+         "\"\nstore: state/x\nrule: multi_model\ngates:\n  max_gap: 0.3\n  any_entry: true\n";
 }
 
 /// A running learner that hears a played log; all that it says is kept.

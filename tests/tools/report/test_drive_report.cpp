@@ -299,7 +299,7 @@ TEST_CASE("errors by rule are told before, just after and long after a change of
     execution.began = i * kSecond;
     execution.ended = execution.began + 900'000;
     execution.measured = true;
-    // Both know the old ground; off never learns the new one, bank does after three.
+    // Both know the old ground; off never learns the new one, multi_model does after three.
     const bool old = i < 15;
     execution.by_rule = {{old ? 0.1 : 0.5, 0.0}, {old || i >= 18 ? 0.1 : 0.5, 0.0}};
     errors.executions.push_back(execution);
@@ -310,7 +310,7 @@ TEST_CASE("errors by rule are told before, just after and long after a change of
                  "  off             0.300 m  0.00 deg    0.100 m  0.00 deg    "
                  "0.500 m  0.00 deg    0.500 m  0.00 deg\n"));
   CHECK(contains(words,
-                 "  bank            0.140 m  0.00 deg    0.100 m  0.00 deg    "
+                 "  multi_model     0.140 m  0.00 deg    0.100 m  0.00 deg    "
                  "0.500 m  0.00 deg    0.100 m  0.00 deg\n"));
 }
 

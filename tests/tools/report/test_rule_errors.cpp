@@ -51,7 +51,7 @@ TEST_CASE("a log tells what each rule would have predicted, as shadows of the dr
   CHECK(equal >= compared - 6);  // a log's clock may give a set a step earlier or later
 
   const std::string words = report::reportOf(errors, {errors.executions[10].ended});
-  for (const char* word : {"off ", "collective ", "bank ", "1..3 after it", "driven: collective"})
+  for (const char* word : {"off ", "collective ", "multi_model ", "1..3 after it", "driven: collective"})
     CHECK(words.find(word) != std::string::npos);
   CHECK(report::reportOf(errors, {}).find("1..3 after it") == std::string::npos);
 }
