@@ -18,6 +18,7 @@ using namespace tread::missions;
 struct Arguments {
   int missions = 1;
   uint64_t seed = 1;
+  std::string world = "usual";
   std::string rule;                ///< empty = as the robot's configuration says
   std::vector<std::string> rules;  ///< to compare; empty = one rule
   double length = kShortestLine;
@@ -35,6 +36,8 @@ struct Arguments {
 void define(CLI::App& app, Arguments& arguments) {
   app.add_option("--missions", arguments.missions, "how many")->check(CLI::Range(1, 100000));
   app.add_option("--seed", arguments.seed, "seed of the first one; the others count up from it");
+  app.add_option("--world", arguments.world, "kind of world (see tools/missions/README.md)")
+      ->check(CLI::IsMember(worldKinds()));
   CLI::Option* one =
       app.add_option("--rule", arguments.rule, "rule of learning (default: as in learner.yaml)")
           ->check(CLI::IsMember(learner::ruleNames()));
@@ -100,12 +103,16 @@ MissionBatch driveLearning(const Arguments& arguments, const RobotConfig& robot)
 }
 
 void compareOmniscient(const Arguments& arguments, const RobotConfig& robot) {
+  if (robot.world.changesOnTheWay())
+    throw std::invalid_argument("--compare-omniscient: in the world " + robot.world.name +
+                                " the vehicle changes on its way; there is no one truth of it");
   OmniscientComparison comparison;
   std::cout << "learning" << std::endl;
   comparison.learning = driveLearning(arguments, robot);
   printSummary(std::cout, comparison.learning);
   std::cout << "omniscient" << std::endl;
-  const TruePatterns true_patterns(robot.learner.shipped, robot.simulated.vehicle);
+  const TruePatterns true_patterns(robot.learner.shipped, robot.simulated.vehicle,
+                                   robot.world.surfaces);
   BatchOrder order = orderOf(arguments, "omniscient", false);
   order.options.true_patterns = &true_patterns;
   comparison.omniscient = runBatch(robot, order);
@@ -142,7 +149,8 @@ void drive(const Arguments& arguments) {
   protectInputs(arguments);
   if (!showsOneOfThem(arguments))
     throw std::invalid_argument("--show: the seed is not among those of --seed and --missions");
-  const RobotConfig robot = readRobot(arguments.robot, arguments.overrides);
+  RobotConfig robot = readRobot(arguments.robot, arguments.overrides);
+  enterWorld(robot, arguments.world);
   if (!arguments.rules.empty()) return compareRules(arguments, robot);
   if (arguments.compare_omniscient) return compareOmniscient(arguments, robot);
   const MissionBatch batch = driveLearning(arguments, robot);

@@ -96,9 +96,11 @@ class BatchRun {
 MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOptions& options) {
   const double cpu_start = threadSeconds();
   MissionRun run;
-  run.scene.world = makeMissionWorld(seed, robot.simulated.vehicle.outline, options.shortest_line);
+  run.scene.world =
+      makeMissionWorld(seed, robot.simulated.vehicle.outline, options.shortest_line, robot.world);
   RobotSystem system(robot, run.scene.world.description, run.scene.world.T_map_start, seed,
-                     options.rule, options.faults, options.true_patterns);
+                     options.rule, options.faults, options.true_patterns,
+                     {vehicleOf(robot.world, robot.simulated.vehicle), nullptr});
   shadow::ShadowLearners shadows(system.learnerConfig(), options.shadows, system.bus().now());
   if (options.log != nullptr || !options.shadows.empty())
     system.bus().setTap([&](int64_t utime, const char* channel, const uint8_t* bytes, size_t size) {

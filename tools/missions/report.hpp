@@ -44,6 +44,8 @@ struct Steadiness {
   /// How often each reason was given; numbers in it are written as #. Empty = none was published.
   std::map<std::string, int> reasons;
   std::map<std::string, int> disarmed;  ///< the same of disarmings by the bridge itself
+  int executions = 0;                   ///< scored
+  std::map<std::string, int> refused;   ///< why they were no fair measurement
 
   double flipsPerMinute() const { return driven > 0.0 ? 60.0 * flips / driven : 0.0; }
 };
