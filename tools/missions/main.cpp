@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
+#include "common/report/text.hpp"
 #include "common/store/store.hpp"
 #include "tools/missions/report.hpp"
 
@@ -60,7 +61,8 @@ void define(CLI::App& app, Arguments& arguments) {
   app.add_option("--threads", arguments.threads, "missions at the same time")
       ->check(CLI::Range(1, 64));
   app.add_option("--json", arguments.json, "write the report to this file");
-  app.add_option("--show", arguments.show, "draw the mission with this seed");
+  app.add_option("--show", arguments.show,
+                 "draw the mission with this seed; with --rules, how each drives it, side by side");
   app.add_option("--picture", arguments.picture, "file of that picture (PNG)");
   app.add_option("--log", arguments.log,
                  "record the mission with seed --seed as an LCM log (first rule)");
@@ -78,7 +80,7 @@ bool showsOneOfThem(const Arguments& arguments) {
           *arguments.show - arguments.seed < static_cast<uint64_t>(arguments.missions));
 }
 
-/// Only the first batch is drawn and recorded.
+/// Only the first batch is recorded.
 BatchOrder orderOf(const Arguments& arguments, const std::string& name, bool first = true) {
   BatchOrder order;
   order.missions = arguments.missions;
@@ -88,11 +90,29 @@ BatchOrder orderOf(const Arguments& arguments, const std::string& name, bool fir
   order.overrides = arguments.overrides;
   order.options.shortest_line = arguments.length;
   if (!arguments.fault_file.empty()) order.options.faults = readFaultFile(arguments.fault_file);
-  if (!first) return order;
   order.show = arguments.show;
-  order.picture = arguments.picture;
-  order.log = arguments.log;
+  if (first) order.log = arguments.log;
   return order;
+}
+
+/// One drive in full, several side by side.
+void draw(const Arguments& arguments, const std::vector<const MissionBatch*>& batches) {
+  if (!arguments.show) return;
+  if (batches.size() == 1) {
+    report::drawDrive(arguments.picture, *batches.front()->shown);
+  } else {
+    std::vector<report::DriveScene> scenes;
+    std::string title = formatted("World %s, mission %llu", arguments.world.c_str(),
+                                  static_cast<unsigned long long>(*arguments.show));
+    for (const MissionBatch* batch : batches) {
+      scenes.push_back(*batch->shown);
+      scenes.back().title = resultOf(*batch, *arguments.show);
+      title += (scenes.size() == 1 ? ": " : "; ") + scenes.back().title;
+    }
+    report::drawSideBySide(arguments.picture, title, scenes);
+    std::cout << title << '\n';
+  }
+  std::cout << "picture: " << arguments.picture << std::endl;
 }
 
 MissionBatch driveLearning(const Arguments& arguments, const RobotConfig& robot) {
@@ -118,6 +138,7 @@ void compareOmniscient(const Arguments& arguments, const RobotConfig& robot) {
   comparison.omniscient = runBatch(robot, order);
   printSummary(std::cout, comparison.omniscient);
   printOmniscient(std::cout, comparison);
+  draw(arguments, {&comparison.learning, &comparison.omniscient});
   if (!arguments.json.empty()) writeOmniscient(arguments.json, comparison);
 }
 
@@ -133,6 +154,9 @@ void compareRules(const Arguments& arguments, const RobotConfig& robot) {
     comparison.batches.push_back(runBatch(robot, order));
   }
   printComparison(std::cout, comparison);
+  std::vector<const MissionBatch*> batches;
+  for (const MissionBatch& batch : comparison.batches) batches.push_back(&batch);
+  draw(arguments, batches);
   if (!arguments.json.empty()) writeComparison(arguments.json, comparison);
 }
 
@@ -155,6 +179,7 @@ void drive(const Arguments& arguments) {
   if (arguments.compare_omniscient) return compareOmniscient(arguments, robot);
   const MissionBatch batch = driveLearning(arguments, robot);
   printSummary(std::cout, batch);
+  draw(arguments, {&batch});
   if (!arguments.json.empty()) writeJson(arguments.json, batch);
 }
 

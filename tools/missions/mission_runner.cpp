@@ -78,9 +78,9 @@ class BatchRun {
     MissionRun run = runMission(robot_, seed, options);
     if (log) log->flush();
     if (order_.show == seed) {
-      report::drawDrive(order_.picture, driveSceneOf(run.result, run.scene));
       const std::lock_guard<std::mutex> lock(mutex_);
-      std::cout << "picture: " << order_.picture << std::endl;
+      batch_.shown = driveSceneOf(run.result, run.scene);
+      batch_.shown->name = order_.name;
     }
     return run;
   }
@@ -138,6 +138,12 @@ report::DriveScene driveSceneOf(const MissionResult& result, const MissionScene&
   drive.T_map_goal = scene.world.T_map_goal;
   for (const Contact& contact : result.contacts)
     drive.contacts.push_back(contact.T_map_body.position());
+  for (const Stop& stop : result.stops)
+    for (const TrackPoint& point : result.track) {
+      if (point.time < stop.time) continue;
+      drive.stops.push_back(point.T_map_body.position());
+      break;
+    }
   for (const ScoredExecution& execution : result.executions)
     if (execution.measured)
       drive.errors.push_back({execution.time, execution.error_position, execution.error_yaw});

@@ -234,6 +234,15 @@ int collisionsOf(const MissionBatch& batch) {
   return collisions;
 }
 
+std::string resultOf(const MissionBatch& batch, uint64_t seed) {
+  const MissionResult& result = batch.results.at(seed - batch.seed);
+  const auto counted = [](size_t count, const char* what) {
+    return formatted("%zu %s%s", count, what, count == 1 ? "" : "s");
+  };
+  return batch.rule + " " + nameOf(result.outcome) + formatted(" after %.0f s, ", result.time) +
+         counted(result.stops.size(), "stop") + ", " + counted(result.contacts.size(), "contact");
+}
+
 std::string lineOf(const MissionResult& result) {
   return formatted(
       "seed %-6llu %-8s %5.1f s  %5.1f m  detour %4.2f  patterns %3d  crossings %zu of %d  "
