@@ -239,8 +239,11 @@ std::string resultOf(const MissionBatch& batch, uint64_t seed) {
   const auto counted = [](size_t count, const char* what) {
     return formatted("%zu %s%s", count, what, count == 1 ? "" : "s");
   };
-  return batch.rule + " " + nameOf(result.outcome) + formatted(" after %.0f s, ", result.time) +
-         counted(result.stops.size(), "stop") + ", " + counted(result.contacts.size(), "contact");
+  std::string words = batch.rule + " " + nameOf(result.outcome) +
+                      formatted(" after %.0f s, ", result.time) +
+                      counted(result.stops.size(), "stop");
+  if (!result.contacts.empty()) words += ", " + counted(result.contacts.size(), "contact");
+  return words;
 }
 
 std::string lineOf(const MissionResult& result) {

@@ -56,7 +56,8 @@ Steadiness steadinessOf(const std::vector<MissionResult>& results);
 /// A reason with N in the place of each number, so that equal ones can be counted.
 std::string withoutNumbers(const std::string& reason);
 
-/// How one of its missions went, in words for a title: rule, result, time, stops, contacts.
+/// How one of its missions went, in words for a title: rule, result, time, stops and, if any,
+/// contacts.
 std::string resultOf(const MissionBatch& batch, uint64_t seed);
 
 /// One line per mission.
