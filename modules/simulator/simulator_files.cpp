@@ -31,27 +31,6 @@ Eigen::Vector2d readPoint(ConfigReader& reader, const std::string& key) {
   return {values[0], values[1]};
 }
 
-SurfaceParameters readSurface(ConfigReader& reader) {
-  std::vector<std::string> known;
-  for (const SurfaceParameters& surface : builtInSurfaces()) known.push_back(surface.name);
-  std::string name, like = "grass";
-  reader.text("name", name, true);
-  reader.choice("like", like, known);
-  SurfaceParameters surface = *builtInSurface(like);
-  surface.name = name;
-  reader.number("friction", surface.friction, {0.01, 2.0}, "");
-  reader.number("shear_displacement", surface.shear_displacement, {0.004, 0.5}, "m");
-  reader.number("lateral_displacement", surface.lateral_displacement, {0.004, 0.5}, "m");
-  reader.number("resistance_constant", surface.resistance_constant, {0.0, 0.3}, "");
-  reader.number("resistance_viscous", surface.resistance_viscous, {0.0, 1.0}, "s/m");
-  reader.number("scrub_resistance", surface.scrub_resistance, {0.0, 5.0}, "s/m");
-  reader.number("pressure_offset", surface.pressure_offset, {-0.1, 0.1}, "m");
-  reader.number("spread_forward", surface.spread.forward, {0.0, 0.3}, "");
-  reader.number("spread_yaw", surface.spread.yaw, {0.0, 0.5}, "");
-  reader.number("spread_heading", surface.spread.heading, {0.0, 0.3}, "rad");
-  return surface;
-}
-
 SurfaceRegion readRegion(ConfigReader& reader) {
   SurfaceRegion region;
   reader.text("surface", region.surface, true);
@@ -137,6 +116,7 @@ void readBody(ConfigReader& reader, VehicleParameters& vehicle, bool required) {
   reader.number("contact_length", vehicle.contact_length, {0.2, 3.0}, "m", required);
   reader.number("centre", vehicle.centre, {-0.5, 0.5}, "m", required);
   reader.number("mass_height", vehicle.mass_height, {0.0, 2.0}, "m", required);
+  reader.number("mass_ahead", vehicle.mass_ahead, {-0.15, 0.15}, "m");
 }
 
 void readDrive(ConfigReader& reader, DriveParameters& drive, bool required) {
@@ -171,6 +151,27 @@ constexpr int64_t kFlushEvery = 500'000;  // [us]
 
 }  // namespace
 
+SurfaceParameters readSurface(ConfigReader& reader) {
+  std::vector<std::string> known;
+  for (const SurfaceParameters& surface : builtInSurfaces()) known.push_back(surface.name);
+  std::string name, like = "grass";
+  reader.text("name", name, true);
+  reader.choice("like", like, known);
+  SurfaceParameters surface = *builtInSurface(like);
+  surface.name = name;
+  reader.number("friction", surface.friction, {0.01, 2.0}, "");
+  reader.number("shear_displacement", surface.shear_displacement, {0.004, 0.5}, "m");
+  reader.number("lateral_displacement", surface.lateral_displacement, {0.004, 0.5}, "m");
+  reader.number("resistance_constant", surface.resistance_constant, {0.0, 0.3}, "");
+  reader.number("resistance_viscous", surface.resistance_viscous, {0.0, 1.0}, "s/m");
+  reader.number("scrub_resistance", surface.scrub_resistance, {0.0, 5.0}, "s/m");
+  reader.number("pressure_offset", surface.pressure_offset, {-0.1, 0.1}, "m");
+  reader.number("spread_forward", surface.spread.forward, {0.0, 0.3}, "");
+  reader.number("spread_yaw", surface.spread.yaw, {0.0, 0.5}, "");
+  reader.number("spread_heading", surface.spread.heading, {0.0, 0.3}, "rad");
+  return surface;
+}
+
 WorldDescription readWorld(const std::string& path) {
   return readWorld(ConfigReader::fromFile(path));
 }
@@ -183,6 +184,8 @@ void readVehicle(ConfigReader reader, VehicleParameters& vehicle, bool whole) {
   readBody(reader, vehicle, whole);
   reader.number("left_power", vehicle.left_power, {0.0, 1.5}, "");
   reader.number("right_power", vehicle.right_power, {0.0, 1.5}, "");
+  reader.number("left_drag", vehicle.left_drag, {0.0, 2000.0}, "N");
+  reader.number("right_drag", vehicle.right_drag, {0.0, 2000.0}, "N");
   readDrive(reader, vehicle.drive, whole);
   readBattery(reader, vehicle);
 }

@@ -14,6 +14,9 @@
 
 namespace tread::sim {
 
+/// Reads a kind of ground: what it differs in from a built-in one (key `like`).
+SurfaceParameters readSurface(ConfigReader& reader);
+
 /// Reads a world file (config/worlds); throws ConfigError with file:line.
 WorldDescription readWorld(const std::string& path);
 /// The same from text; `name` stands for the file in messages.

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
+#include "common/report/text.hpp"
 #include "common/store/store.hpp"
 #include "tools/missions/report.hpp"
 
@@ -18,6 +19,7 @@ using namespace tread::missions;
 struct Arguments {
   int missions = 1;
   uint64_t seed = 1;
+  std::string world = "usual";
   std::string rule;                ///< empty = as the robot's configuration says
   std::vector<std::string> rules;  ///< to compare; empty = one rule
   double length = kShortestLine;
@@ -35,6 +37,8 @@ struct Arguments {
 void define(CLI::App& app, Arguments& arguments) {
   app.add_option("--missions", arguments.missions, "how many")->check(CLI::Range(1, 100000));
   app.add_option("--seed", arguments.seed, "seed of the first one; the others count up from it");
+  app.add_option("--world", arguments.world, "kind of world (see tools/missions/README.md)")
+      ->check(CLI::IsMember(worldKinds()));
   CLI::Option* one =
       app.add_option("--rule", arguments.rule, "rule of learning (default: as in learner.yaml)")
           ->check(CLI::IsMember(learner::ruleNames()));
@@ -57,7 +61,8 @@ void define(CLI::App& app, Arguments& arguments) {
   app.add_option("--threads", arguments.threads, "missions at the same time")
       ->check(CLI::Range(1, 64));
   app.add_option("--json", arguments.json, "write the report to this file");
-  app.add_option("--show", arguments.show, "draw the mission with this seed");
+  app.add_option("--show", arguments.show,
+                 "draw the mission with this seed; with --rules, how each drives it, side by side");
   app.add_option("--picture", arguments.picture, "file of that picture (PNG)");
   app.add_option("--log", arguments.log,
                  "record the mission with seed --seed as an LCM log (first rule)");
@@ -75,7 +80,7 @@ bool showsOneOfThem(const Arguments& arguments) {
           *arguments.show - arguments.seed < static_cast<uint64_t>(arguments.missions));
 }
 
-/// Only the first batch is drawn and recorded.
+/// Only the first batch is recorded.
 BatchOrder orderOf(const Arguments& arguments, const std::string& name, bool first = true) {
   BatchOrder order;
   order.missions = arguments.missions;
@@ -85,11 +90,29 @@ BatchOrder orderOf(const Arguments& arguments, const std::string& name, bool fir
   order.overrides = arguments.overrides;
   order.options.shortest_line = arguments.length;
   if (!arguments.fault_file.empty()) order.options.faults = readFaultFile(arguments.fault_file);
-  if (!first) return order;
   order.show = arguments.show;
-  order.picture = arguments.picture;
-  order.log = arguments.log;
+  if (first) order.log = arguments.log;
   return order;
+}
+
+/// One drive in full, several side by side.
+void draw(const Arguments& arguments, const std::vector<const MissionBatch*>& batches) {
+  if (!arguments.show) return;
+  if (batches.size() == 1) {
+    report::drawDrive(arguments.picture, *batches.front()->shown);
+  } else {
+    std::vector<report::DriveScene> scenes;
+    std::string title = formatted("World %s, mission %llu", arguments.world.c_str(),
+                                  static_cast<unsigned long long>(*arguments.show));
+    for (const MissionBatch* batch : batches) {
+      scenes.push_back(*batch->shown);
+      scenes.back().title = resultOf(*batch, *arguments.show);
+      title += (scenes.size() == 1 ? ": " : "; ") + scenes.back().title;
+    }
+    report::drawSideBySide(arguments.picture, title, scenes);
+    std::cout << title << '\n';
+  }
+  std::cout << "picture: " << arguments.picture << std::endl;
 }
 
 MissionBatch driveLearning(const Arguments& arguments, const RobotConfig& robot) {
@@ -100,17 +123,22 @@ MissionBatch driveLearning(const Arguments& arguments, const RobotConfig& robot)
 }
 
 void compareOmniscient(const Arguments& arguments, const RobotConfig& robot) {
+  if (robot.world.changesOnTheWay())
+    throw std::invalid_argument("--compare-omniscient: in the world " + robot.world.name +
+                                " the vehicle changes on its way; there is no one truth of it");
   OmniscientComparison comparison;
   std::cout << "learning" << std::endl;
   comparison.learning = driveLearning(arguments, robot);
   printSummary(std::cout, comparison.learning);
   std::cout << "omniscient" << std::endl;
-  const TruePatterns true_patterns(robot.learner.shipped, robot.simulated.vehicle);
+  const TruePatterns true_patterns(robot.learner.shipped, robot.simulated.vehicle,
+                                   robot.world.surfaces);
   BatchOrder order = orderOf(arguments, "omniscient", false);
   order.options.true_patterns = &true_patterns;
   comparison.omniscient = runBatch(robot, order);
   printSummary(std::cout, comparison.omniscient);
   printOmniscient(std::cout, comparison);
+  draw(arguments, {&comparison.learning, &comparison.omniscient});
   if (!arguments.json.empty()) writeOmniscient(arguments.json, comparison);
 }
 
@@ -126,6 +154,9 @@ void compareRules(const Arguments& arguments, const RobotConfig& robot) {
     comparison.batches.push_back(runBatch(robot, order));
   }
   printComparison(std::cout, comparison);
+  std::vector<const MissionBatch*> batches;
+  for (const MissionBatch& batch : comparison.batches) batches.push_back(&batch);
+  draw(arguments, batches);
   if (!arguments.json.empty()) writeComparison(arguments.json, comparison);
 }
 
@@ -142,11 +173,13 @@ void drive(const Arguments& arguments) {
   protectInputs(arguments);
   if (!showsOneOfThem(arguments))
     throw std::invalid_argument("--show: the seed is not among those of --seed and --missions");
-  const RobotConfig robot = readRobot(arguments.robot, arguments.overrides);
+  RobotConfig robot = readRobot(arguments.robot, arguments.overrides);
+  enterWorld(robot, arguments.world);
   if (!arguments.rules.empty()) return compareRules(arguments, robot);
   if (arguments.compare_omniscient) return compareOmniscient(arguments, robot);
   const MissionBatch batch = driveLearning(arguments, robot);
   printSummary(std::cout, batch);
+  draw(arguments, {&batch});
   if (!arguments.json.empty()) writeJson(arguments.json, batch);
 }
 

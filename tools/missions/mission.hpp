@@ -8,6 +8,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "modules/simulator/core/world.hpp"
+#include "tools/missions/world_kind.hpp"
 #include "tools/replay/shadow_learners.hpp"
 #include "tools/report/drive_report.hpp"
 
@@ -24,16 +25,18 @@ struct MissionWorld {
   Pose2 T_map_goal;
   double straight_line = 0.0;  ///< [m]
   bool line_blocked = false;   ///< the footprint cannot drive the straight line
-  int surface_changes = 0;     ///< borders between surfaces that the straight line crosses: 1 to 3
+  int surface_changes = 0;     ///< borders between surfaces that the straight line crosses: 1 to 3,
+                               ///< twice as many with stretches between them
   sim::WorldDescription description;
 };
 
 /// Shortest straight line from start to goal [m].
 inline constexpr double kShortestLine = 25.0;
 
-/** `shortest` [m]: with longer lines each surface is driven for longer. */
+/** `shortest` [m]: with longer lines each surface is driven for longer. Of `kind` only the ground
+ * counts here: stretches on the borders, the rest of a seed's world stays as it is. */
 MissionWorld makeMissionWorld(uint64_t seed, const FootprintSize& robot,
-                              double shortest = kShortestLine);
+                              double shortest = kShortestLine, const WorldKind& kind = {});
 
 /// Narrowest gap between obstacles that a mission may hold [m].
 constexpr double narrowestGap(const FootprintSize& robot) {

@@ -78,9 +78,9 @@ class BatchRun {
     MissionRun run = runMission(robot_, seed, options);
     if (log) log->flush();
     if (order_.show == seed) {
-      report::drawDrive(order_.picture, driveSceneOf(run.result, run.scene));
       const std::lock_guard<std::mutex> lock(mutex_);
-      std::cout << "picture: " << order_.picture << std::endl;
+      batch_.shown = driveSceneOf(run.result, run.scene);
+      batch_.shown->name = order_.name;
     }
     return run;
   }
@@ -96,9 +96,11 @@ class BatchRun {
 MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOptions& options) {
   const double cpu_start = threadSeconds();
   MissionRun run;
-  run.scene.world = makeMissionWorld(seed, robot.simulated.vehicle.outline, options.shortest_line);
+  run.scene.world =
+      makeMissionWorld(seed, robot.simulated.vehicle.outline, options.shortest_line, robot.world);
   RobotSystem system(robot, run.scene.world.description, run.scene.world.T_map_start, seed,
-                     options.rule, options.faults, options.true_patterns);
+                     options.rule, options.faults, options.true_patterns,
+                     {vehicleOf(robot.world, robot.simulated.vehicle), nullptr});
   shadow::ShadowLearners shadows(system.learnerConfig(), options.shadows, system.bus().now());
   if (options.log != nullptr || !options.shadows.empty())
     system.bus().setTap([&](int64_t utime, const char* channel, const uint8_t* bytes, size_t size) {
@@ -136,6 +138,12 @@ report::DriveScene driveSceneOf(const MissionResult& result, const MissionScene&
   drive.T_map_goal = scene.world.T_map_goal;
   for (const Contact& contact : result.contacts)
     drive.contacts.push_back(contact.T_map_body.position());
+  for (const Stop& stop : result.stops)
+    for (const TrackPoint& point : result.track) {
+      if (point.time < stop.time) continue;
+      drive.stops.push_back(point.T_map_body.position());
+      break;
+    }
   for (const ScoredExecution& execution : result.executions)
     if (execution.measured)
       drive.errors.push_back({execution.time, execution.error_position, execution.error_yaw});

@@ -220,6 +220,19 @@ void addSurfaces(MissionWorld& world, Rng& rng, double length, const Pose2& T_ma
   }
 }
 
+/// Covers each border with a stretch; on the straight line no two meet.
+void addStretches(MissionWorld& world, Rng& rng, const WorldKind& kind) {
+  world.description.surfaces = kind.surfaces;
+  if (kind.between.empty()) return;
+  const double share = world.straight_line / (world.surface_changes + 1);
+  for (size_t i = 0, borders = world.description.regions.size(); i < borders; ++i) {
+    const std::vector<Vector2d>& behind = world.description.regions[i].corners;
+    world.description.regions.push_back(sim::stripRegion(
+        kind.between, behind.front(), behind.back(), share * rng.between(0.4, 0.65)));
+  }
+  world.surface_changes *= 2;
+}
+
 void addTerrain(MissionWorld& world, Rng& rng) {
   const int waves = 1 + rng.below(3);
   for (int i = 0; i < waves; ++i) {
@@ -243,7 +256,8 @@ sim::Obstacle moved(const sim::Obstacle& obstacle, const Pose2& T_map_way) {
 
 }  // namespace
 
-MissionWorld makeMissionWorld(uint64_t seed, const FootprintSize& robot, double shortest) {
+MissionWorld makeMissionWorld(uint64_t seed, const FootprintSize& robot, double shortest,
+                              const WorldKind& kind) {
   // Neighbouring seeds must not give similar engines: spread them first (Weyl constant).
   Rng rng(seed * 0x9e3779b97f4a7c15ull + 1);
   MissionWorld world;
@@ -266,6 +280,7 @@ MissionWorld makeMissionWorld(uint64_t seed, const FootprintSize& robot, double 
     world.description.obstacles.push_back(moved(obstacle, T_map_way));
   addSurfaces(world, rng, layout.length, T_map_way);
   addTerrain(world, rng);
+  addStretches(world, rng, kind);
   return world;
 }
 

@@ -57,6 +57,11 @@ void printSteadiness(std::ostream& out, const std::vector<MissionResult>& result
   out << formatted("disarmed %d: %.2f per hour driven\n", disarmed,
                    disarmed / std::max(1e-9, steadiness.driven / 3600.0));
   printReasons(out, steadiness.disarmed);
+  int refused = 0;
+  for (const auto& [reason, count] : steadiness.refused) refused += count;
+  out << formatted("executions %d, of which nothing was learned from %d\n", steadiness.executions,
+                   refused);
+  printReasons(out, steadiness.refused);
 }
 
 void printErrors(std::ostream& out, const MissionBatch& batch, int first, int last) {
@@ -122,6 +127,9 @@ void addSteadiness(Json& json, const MissionBatch& batch) {
   for (const auto& [reason, count] : steadiness.reasons) json["stop_reasons"][reason] = count;
   json["disarm_reasons"] = Json::object();
   for (const auto& [reason, count] : steadiness.disarmed) json["disarm_reasons"][reason] = count;
+  json["executions"] = steadiness.executions;
+  json["refusals"] = Json::object();
+  for (const auto& [reason, count] : steadiness.refused) json["refusals"][reason] = count;
 }
 
 /// null where nothing was measured.
@@ -203,6 +211,9 @@ Steadiness steadinessOf(const std::vector<MissionResult>& results) {
     steadiness.most_stops = std::max(steadiness.most_stops, stops);
     for (const Disarming& disarming : result.disarmings)
       ++steadiness.disarmed[withoutNumbers(disarming.reason)];
+    steadiness.executions += static_cast<int>(result.executions.size());
+    for (const ScoredExecution& execution : result.executions)
+      if (!execution.measured) ++steadiness.refused[withoutNumbers(execution.refusal)];
     for (const Stop& stop : result.stops) {
       steadiness.stood += stop.duration;
       ++steadiness.reasons[withoutNumbers(stop.reason)];
@@ -221,6 +232,18 @@ int collisionsOf(const MissionBatch& batch) {
   int collisions = 0;
   for (const MissionResult& result : batch.results) collisions += result.collisions();
   return collisions;
+}
+
+std::string resultOf(const MissionBatch& batch, uint64_t seed) {
+  const MissionResult& result = batch.results.at(seed - batch.seed);
+  const auto counted = [](size_t count, const char* what) {
+    return formatted("%zu %s%s", count, what, count == 1 ? "" : "s");
+  };
+  std::string words = batch.rule + " " + nameOf(result.outcome) +
+                      formatted(" after %.0f s, ", result.time) +
+                      counted(result.stops.size(), "stop");
+  if (!result.contacts.empty()) words += ", " + counted(result.contacts.size(), "contact");
+  return words;
 }
 
 std::string lineOf(const MissionResult& result) {

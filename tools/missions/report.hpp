@@ -27,6 +27,7 @@ struct MissionBatch {
   double wall_time = 0.0;              ///< [s] from the first start to the last end
   double cpu_time = 0.0;               ///< [s] sum over the missions of what each took of a core
   std::vector<MissionResult> results;
+  std::optional<report::DriveScene> shown;  ///< the mission that was to be drawn
 };
 
 int countOf(const MissionBatch& batch, MissionOutcome outcome);
@@ -44,6 +45,8 @@ struct Steadiness {
   /// How often each reason was given; numbers in it are written as #. Empty = none was published.
   std::map<std::string, int> reasons;
   std::map<std::string, int> disarmed;  ///< the same of disarmings by the bridge itself
+  int executions = 0;                   ///< scored
+  std::map<std::string, int> refused;   ///< why they were no fair measurement
 
   double flipsPerMinute() const { return driven > 0.0 ? 60.0 * flips / driven : 0.0; }
 };
@@ -52,6 +55,10 @@ Steadiness steadinessOf(const std::vector<MissionResult>& results);
 
 /// A reason with N in the place of each number, so that equal ones can be counted.
 std::string withoutNumbers(const std::string& reason);
+
+/// How one of its missions went, in words for a title: rule, result, time, stops and, if any,
+/// contacts.
+std::string resultOf(const MissionBatch& batch, uint64_t seed);
 
 /// One line per mission.
 std::string lineOf(const MissionResult& result);
@@ -164,8 +171,7 @@ struct BatchOrder {
   std::string name;                    ///< of the batch: its rule, or that it is omniscient
   std::vector<std::string> overrides;  ///< of the configuration, for the report
   MissionOptions options;              ///< of each mission; its log is set here
-  std::optional<uint64_t> show;        ///< seed of the mission to draw
-  std::string picture;                 ///< the file of that
+  std::optional<uint64_t> show;        ///< seed of the mission whose scene is kept
   std::string log;                     ///< of the first mission; empty = none
 };
 

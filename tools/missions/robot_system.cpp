@@ -162,6 +162,13 @@ RobotConfig readRobot(const std::string& folder, const std::vector<std::string>&
   return config;
 }
 
+void enterWorld(RobotConfig& robot, const std::string& kind) {
+  robot.world = readWorldKind(kind, robot.simulated.vehicle);
+  if (robot.world.shipped) robot.learner.shipped = *robot.world.shipped;
+  if (robot.world.vehicle && !robot.world.changesOnTheWay())
+    robot.simulated.vehicle = *robot.world.vehicle;
+}
+
 RobotSystem::RobotSystem(const RobotConfig& config, const sim::WorldDescription& world,
                          const Pose2& T_map_start, uint64_t seed, const std::string& rule,
                          const FaultPlan& faults, const TruePatterns* true_patterns,

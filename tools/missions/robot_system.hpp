@@ -22,6 +22,7 @@
 #include "modules/planner/planner_node.hpp"
 #include "modules/simulator/core/robot.hpp"
 #include "modules/simulator/emulators/simulated_devices.hpp"
+#include "tools/missions/world_kind.hpp"
 
 namespace tread::missions {
 
@@ -32,11 +33,12 @@ namespace tread::missions {
  * What even this robot does not know: slopes, and where within a pattern the surface changes. */
 class TruePatterns {
  public:
-  /// For all built-in surfaces.
-  TruePatterns(const PatternSet& shipped, const sim::VehicleParameters& vehicle);
+  /// For all built-in surfaces and some more.
+  TruePatterns(const PatternSet& shipped, const sim::VehicleParameters& vehicle,
+               const std::vector<sim::SurfaceParameters>& more = {});
 
   /// The set of a surface under a version; throws std::out_of_range for a surface that is not
-  /// built in.
+  /// known.
   PatternSet on(const std::string& surface, int64_t version) const;
 
  private:
@@ -77,6 +79,7 @@ struct RobotConfig {
   motor::MotorBridgeConfig motor_bridge;
   sim::RobotSettings simulated;              ///< what the simulator drives in its place
   std::map<std::string, NodeTiming> timing;  ///< how long each node computes, as a model
+  WorldKind world;                           ///< that its missions take place in
 };
 
 /// Names of the robot's processes on the bus.
@@ -87,6 +90,9 @@ const std::vector<std::string>& robotNodes();
 /** An override is "process.key=value" or "process.section.key=value": it replaces what the file of
  * that process says. */
 RobotConfig readRobot(const std::string& folder, const std::vector<std::string>& overrides = {});
+
+/// Puts the robot into a kind of world; throws ConfigError with one clear line.
+void enterWorld(RobotConfig& robot, const std::string& kind);
 
 /// Reads a fault file: `messages` (channel, receiver, drop, duplicate, corrupt, reorder, reorder_s,
 /// delay_s, from_s, until_s) and `nodes` (node, kill_at_s, restart_after_s). Throws ConfigError

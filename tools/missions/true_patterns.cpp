@@ -101,9 +101,11 @@ PatternSetContent trueSet(const PatternSet& shipped, const sim::VehicleParameter
 
 }  // namespace
 
-TruePatterns::TruePatterns(const PatternSet& shipped, const sim::VehicleParameters& vehicle) {
-  for (const sim::SurfaceParameters& surface : sim::builtInSurfaces())
-    by_surface_.emplace(surface.name, trueSet(shipped, vehicle, surface));
+TruePatterns::TruePatterns(const PatternSet& shipped, const sim::VehicleParameters& vehicle,
+                           const std::vector<sim::SurfaceParameters>& more) {
+  for (const auto* surfaces : {&sim::builtInSurfaces(), &more})
+    for (const sim::SurfaceParameters& surface : *surfaces)
+      by_surface_.insert_or_assign(surface.name, trueSet(shipped, vehicle, surface));
 }
 
 PatternSet TruePatterns::on(const std::string& surface, int64_t version) const {

@@ -20,10 +20,10 @@ struct NamedColour {
   const char* surface;
   Colour colour;
 };
-constexpr NamedColour kSurfaces[] = {{"cinder", {0.93, 0.80, 0.72}},
-                                     {"tarmac", {0.84, 0.86, 0.90}},
-                                     {"grass", {0.80, 0.92, 0.76}},
-                                     {"gravel", {0.95, 0.92, 0.76}}};
+constexpr NamedColour kSurfaces[] = {{"cinder", {0.93, 0.80, 0.72}}, {"tarmac", {0.84, 0.86, 0.90}},
+                                     {"grass", {0.80, 0.92, 0.76}},  {"gravel", {0.95, 0.92, 0.76}},
+                                     {"ice", {0.72, 0.90, 0.97}},    {"mud", {0.76, 0.66, 0.55}},
+                                     {"sand", {0.97, 0.87, 0.55}}};
 
 Colour surfaceColour(const std::string& surface) {
   for (const NamedColour& known : kSurfaces)
@@ -96,16 +96,17 @@ void drawTree(Panel& panel, const std::vector<TreeEdge>& tree) {
     if (edge.chosen) panel.line({edge.from, edge.to}, {kOrange, 2.5, false, ""});
 }
 
-void drawTrack(Panel& panel, const DriveScene& scene) {
+void drawTrack(Panel& panel, const DriveScene& scene, Colour colour = kBlue) {
   std::vector<Vector2d> points;
   double next_outline = 0.0;
   for (const TrackPoint& point : scene.track) {
     points.push_back(point.T_map_body.position());
     if (!scene.outline || point.time < next_outline) continue;
-    panel.polygon(outlineAt(*scene.outline, point.T_map_body), {0.0, 0.45, 0.70, 0.13});
+    panel.polygon(outlineAt(*scene.outline, point.T_map_body),
+                  {colour.red, colour.green, colour.blue, 0.13});
     next_outline = point.time + 2.0;
   }
-  panel.line(points, {kBlue, 2.2, false, "driven"});
+  panel.line(points, {colour, 2.2, false, "driven"});
 }
 
 void drawWay(Picture& picture, const DriveScene& scene) {
@@ -181,12 +182,18 @@ void drawErrors(Picture& picture, Box box, const std::string& title, const std::
   panel.finish();
 }
 
-void drawSurfaceLegend(Picture& picture, const DriveScene& scene) {
+bool hasSurface(const sim::WorldDescription& world, const std::string& surface) {
+  return world.base_surface == surface ||
+         std::any_of(world.regions.begin(), world.regions.end(),
+                     [&](const sim::SurfaceRegion& region) { return region.surface == surface; });
+}
+
+void drawSurfaceLegend(Picture& picture, const DriveScene& scene, double x, double y) {
   if (!scene.world) return;
-  double x = 900;
   for (const NamedColour& known : kSurfaces) {
-    picture.fill({x, 648, 16, 16}, known.colour);
-    picture.text(x + 22, 661, known.surface, 12.0);
+    if (!hasSurface(*scene.world, known.surface)) continue;
+    picture.fill({x, y, 16, 16}, known.colour);
+    picture.text(x + 22, y + 13, known.surface, 12.0);
     x += 95;
   }
 }
@@ -203,7 +210,73 @@ void drawRuleLegend(Picture& picture, const DriveScene& scene) {
   }
 }
 
+constexpr Colour kSideColours[] = {kRed, kBlue, kGreen, kPink, kBlack, kOrange};
+
+Colour sideColour(size_t i) {
+  return kSideColours[i % std::size(kSideColours)];
+}
+
+/// The way alone: ground, obstacles, where it drove, stopped and touched.
+void drawSide(Picture& picture, Box box, const DriveScene& scene, const Bounds& bounds,
+              Colour colour) {
+  Panel panel(picture, box,
+              {scene.title, "x [m]", "y [m]", bounds.low.x(), bounds.high.x(), bounds.low.y(),
+               bounds.high.y(), true});
+  drawSurfaces(panel, scene, bounds);
+  drawObstacles(panel, scene);
+  drawTrack(panel, scene, colour);
+  for (const Vector2d& stop : scene.stops) panel.dot(stop, kBlack, 4.0);
+  for (const Vector2d& contact : scene.contacts) panel.dot(contact, kPink, 6.0);
+  panel.dot(scene.T_map_start.position(), kGreen, 7.0);
+  panel.dot(scene.T_map_goal.position(), kOrange, 7.0);
+  panel.legendEntry({kGreen, 6.0, false, "start"});
+  panel.legendEntry({kOrange, 6.0, false, "goal"});
+  panel.legendEntry({kBlack, 4.0, false, "stop"});
+  if (!scene.contacts.empty()) panel.legendEntry({kPink, 6.0, false, "contact"});
+  panel.finish();
+}
+
+void drawSideErrors(Picture& picture, Box box, const std::string& title, const std::string& unit,
+                    const std::vector<DriveScene>& scenes, double PatternError::*error) {
+  double longest = 1.0, largest = 0.02;
+  for (const DriveScene& scene : scenes) {
+    longest = std::max(longest, scene.duration);
+    for (const PatternError& at : scene.errors) largest = std::max(largest, std::abs(at.*error));
+  }
+  Panel panel(picture, box, {title, "time [s]", unit, 0.0, longest, 0.0, 1.1 * largest});
+  for (size_t i = 0; i < scenes.size(); ++i) {
+    for (const PatternError& at : scenes[i].errors)
+      panel.dot({at.time, std::abs(at.*error)}, sideColour(i), 2.0);
+    panel.line(runningMeans(scenes[i].errors, error), {sideColour(i), 2.5, false, scenes[i].name});
+    panel.verticalLine(scenes[i].duration, {sideColour(i), 1.2, true, ""});
+  }
+  panel.finish();
+}
+
 }  // namespace
+
+void drawSideBySide(const std::string& path, const std::string& title,
+                    const std::vector<DriveScene>& scenes) {
+  constexpr double kColumn = 640.0;
+  const double width = kColumn * static_cast<double>(scenes.size());
+  Picture picture(static_cast<int>(width) + 20, 930, title);
+  Bounds bounds;
+  for (const DriveScene& scene : scenes) {
+    bounds.add(boundsOf(scene).low, 0.0);
+    bounds.add(boundsOf(scene).high, 0.0);
+  }
+  for (size_t i = 0; i < scenes.size(); ++i)
+    drawSide(picture, {60.0 + kColumn * static_cast<double>(i), 70, kColumn - 80.0, 500}, scenes[i],
+             bounds, sideColour(i));
+  drawSurfaceLegend(picture, scenes.front(), 60, 615);
+  const double half = width / 2.0;
+  drawSideErrors(picture, {60, 680, half - 80.0, 190},
+                 "prediction error of each pattern and mean of the last five: position", "[m]",
+                 scenes, &PatternError::position);
+  drawSideErrors(picture, {60 + half, 680, half - 80.0, 190}, "the same: yaw", "[rad]", scenes,
+                 &PatternError::yaw);
+  picture.save(path);
+}
 
 void drawDrive(const std::string& path, const DriveScene& scene) {
   Picture picture(1300, 760, scene.title);
@@ -212,7 +285,7 @@ void drawDrive(const std::string& path, const DriveScene& scene) {
              scene, &PatternError::position);
   drawErrors(picture, {900, 365, 370, 210}, "prediction error of each pattern: yaw", "[rad]", scene,
              &PatternError::yaw);
-  drawSurfaceLegend(picture, scene);
+  drawSurfaceLegend(picture, scene, 900, 648);
   drawRuleLegend(picture, scene);
   picture.save(path);
 }

@@ -61,6 +61,7 @@ struct Crossing {
 /// All that a picture of a drive shows. What is empty is left out.
 struct DriveScene {
   std::string title;
+  std::string name;                            ///< in a picture of several; may be empty
   std::optional<sim::WorldDescription> world;  ///< true ground and obstacles, if they are known
   TileMap map{0.1, 32};                        ///< what mapping published
   std::vector<TreeEdge> tree;
@@ -69,6 +70,7 @@ struct DriveScene {
   Pose2 T_map_start;
   Pose2 T_map_goal;
   std::vector<Eigen::Vector2d> contacts;  ///< p_map [m]
+  std::vector<Eigen::Vector2d> stops;     ///< where it came to rest on its way, p_map [m]
   std::vector<PatternError> errors;       ///< as driven
   std::vector<RuleSeries> by_rule;        ///< drawn as running means
   std::vector<Crossing> crossings;
@@ -78,6 +80,12 @@ struct DriveScene {
 /// Draws ground, map, obstacles, track and tree beside the prediction error of each pattern.
 /** Throws std::runtime_error with one clear line if the file cannot be written. */
 void drawDrive(const std::string& path, const DriveScene& scene);
+
+/// Draws drives through the same world side by side, each under its title, and the prediction
+/// errors of all over time below.
+/** Throws std::runtime_error with one clear line if the file cannot be written. */
+void drawSideBySide(const std::string& path, const std::string& title,
+                    const std::vector<DriveScene>& scenes);
 
 /// The branches of a tree as it is published.
 std::vector<TreeEdge> edgesOf(const plan_tree_t& message);

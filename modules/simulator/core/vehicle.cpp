@@ -41,7 +41,7 @@ Loads loadsOn(const VehicleParameters& vehicle, const Ground& ground) {
   const double normal = vehicle.mass * kGravity / std::sqrt(1.0 + steepness);
   const double shift =
       std::clamp(vehicle.mass_height * ground.slope_across / vehicle.gauge, -0.5, 0.5);
-  const double offset = -vehicle.mass_height * ground.slope_along;
+  const double offset = vehicle.mass_ahead - vehicle.mass_height * ground.slope_along;
   return {{normal * (0.5 - shift), offset}, {normal * (0.5 + shift), offset}};
 }
 
@@ -172,9 +172,10 @@ void TrackedVehicle::step(const MotorPower& power, const Ground& ground, double 
       right_contact_.step(right_track, ground.right, v_centre_, right_.speed, loads.right, dt);
   moveBody(left, right, ground, dt);
   stepTrack(parameters_.drive, parameters_.left_power * std::clamp(power.left, -1.0, 1.0),
-            battery_.voltage, {-left.along, left.dry_friction}, dt, left_);
+            battery_.voltage, {-left.along, left.dry_friction + parameters_.left_drag}, dt, left_);
   stepTrack(parameters_.drive, parameters_.right_power * std::clamp(power.right, -1.0, 1.0),
-            battery_.voltage, {-right.along, right.dry_friction}, dt, right_);
+            battery_.voltage, {-right.along, right.dry_friction + parameters_.right_drag}, dt,
+            right_);
   stepBattery(parameters_.drive, left_, right_, dt, battery_);
 }
 
@@ -185,13 +186,17 @@ void TrackedVehicle::moveBody(const TrackForce& left, const TrackForce& right, c
   const double weight = parameters_.mass * kGravity / std::sqrt(1.0 + steepness);
   const double force_x = left.along + left.resistance + right.along + right.resistance -
                          weight * ground.slope_along + outside_.along;
-  const double force_y =
-      left.across + right.across - weight * ground.slope_across + outside_.across;
-  const double moment = left.moment + right.moment + outside_.moment;
-  const double v_x = v_centre_.v_x;
-  v_centre_.v_x += dt * (force_x / parameters_.mass + v_centre_.omega * v_centre_.v_y);
-  v_centre_.v_y += dt * (force_y / parameters_.mass - v_centre_.omega * v_x);
-  v_centre_.omega += dt * moment / parameters_.yaw_inertia;
+  const double from_ground = left.across + right.across;
+  const double force_y = from_ground - weight * ground.slope_across + outside_.across;
+  // About the centre of mass; what moves is the middle of the patches.
+  const double ahead = parameters_.mass_ahead;
+  const double moment = left.moment + right.moment - ahead * from_ground + outside_.moment;
+  const double turned = dt * moment / parameters_.yaw_inertia;
+  const double v_x = v_centre_.v_x, omega = v_centre_.omega;
+  v_centre_.v_x +=
+      dt * (force_x / parameters_.mass + omega * v_centre_.v_y + omega * omega * ahead);
+  v_centre_.v_y += dt * (force_y / parameters_.mass - omega * v_x) - turned * ahead;
+  v_centre_.omega += turned;
 }
 
 }  // namespace tread::sim

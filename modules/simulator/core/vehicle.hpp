@@ -160,11 +160,14 @@ struct VehicleParameters {
   double yaw_inertia = 0.0;     ///< about the centre of mass, tracks included [kg m^2]
   double gauge = 0.0;           ///< effective, between the middles of the tracks [m]
   double contact_length = 0.0;  ///< of each track on the ground [m]
-  double centre = 0.0;          ///< x_body of the middle of the contact patches and of the mass [m]
+  double centre = 0.0;          ///< x_body of the middle of the contact patches [m]
   double mass_height = 0.0;     ///< of the centre of mass above the ground [m]
+  double mass_ahead = 0.0;      ///< of the middle of the contact patches: the centre of mass [m]
   FootprintSize outline;        ///< what obstacles stop
   double left_power = 1.0;      ///< what the left drive gives of the power that it is told to [1]
   double right_power = 1.0;     ///< the same on the right [1]
+  double left_drag = 0.0;       ///< dry friction that holds the left track, a jammed brake [N]
+  double right_drag = 0.0;      ///< the same on the right [N]
   double charge = 1.0;          ///< of the battery at the beginning, 1 = full
   DriveParameters drive;
 };
@@ -215,7 +218,7 @@ class TrackedVehicle final : public Plant {
   TrackDrive right_;
   Battery battery_;
   OutsideForce outside_;
-  Twist2 v_centre_;  ///< of the centre of mass, axes of the body
+  Twist2 v_centre_;  ///< of the middle of the contact patches, axes of the body
 };
 
 }  // namespace tread::sim

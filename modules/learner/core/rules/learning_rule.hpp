@@ -39,7 +39,7 @@ struct GroundConfig {
   /// Standard deviations from surface to surface, in the order of TwistCorrection: forward gain
   /// [1], turn loss [s], push [m], sideslip [s], crab [1], shift [m], yaw gain [1], yaw by speed
   /// [s/m], yaw bias [rad/m].
-  std::array<double, 9> common{0.06, 0.09, 0.03, 0.09, 0.012, 0.05, 0.16, 0.047, 0.012};
+  std::array<double, 9> common{0.06, 0.09, 0.03, 0.09, 0.012, 0.05, 0.16, 0.047, 0.03};
   /// Of a pattern's own residual: of v_x, of v_y over v_x, of omega [1].
   std::array<double, 3> residual{0.067, 0.05, 0.10};
   double shared = 0.5;            ///< [1] share of that variance that all surfaces have in common
