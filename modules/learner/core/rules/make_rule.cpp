@@ -213,9 +213,9 @@ std::vector<std::string> ruleNames() {
 std::unique_ptr<LearningRule> makeRule(const RuleConfig& config, const PatternSet& shipped) {
   if (!(config.memory >= 0.0 && config.memory < 1.0))
     throw std::invalid_argument("learner: memory must be in 0 <= memory < 1");
-  if (config.ground.settled_after < 1 || config.ground.capacity < 1 || config.ground.moments < 2)
+  if (config.ground.settled_after < 1 || config.ground.capacity < 1 || config.ground.moments < 3)
     throw std::invalid_argument(
-        "learner: settled_after and capacity must be 1 or more, moments 2 or more");
+        "learner: settled_after and capacity must be 1 or more, moments 3 or more");
   for (const NamedRule& rule : kRules)
     if (config.rule == rule.name) return rule.make(config, shipped);
   throw std::invalid_argument("learner: unknown rule '" + config.rule + "'");

@@ -87,33 +87,59 @@ MultiModel::MultiModel(const RuleConfig& config, const PatternSet& shipped)
     : config_(config.ground),
       model_(std::make_shared<GroundModel>(config.ground, shipped)),
       scatter_(model_->patterns()),
-      next_(*model_, config_, priorOfNew()) {
-  SurfacePrior of_shipped = priorOfNew();
-  of_shipped.share = config_.shipped_spread;
+      near_(*model_, config_, priorOfNew(Distance::kNear)),
+      far_(*model_, config_, priorOfNew(Distance::kFar)) {
+  SurfacePrior of_shipped = priorOfNew(Distance::kNear);
+  of_shipped.residual = config_.shipped_spread;
+  for (size_t term = 0; term < config_.common.size(); ++term)
+    of_shipped.common.data()[term] =
+        config_.shipped_spread * config_.common[term] * config_.common[term];
   surfaces_.push_back({Surface(*model_, config_, of_shipped), 1.0 - config_.fresh, 0});
-  fresh_.push_back({next_, config_.fresh, 0});
+  fresh_.push_back({near_, config_.fresh * (1.0 - config_.far), 0});
+  fresh_.push_back({far_, config_.fresh * config_.far, 0});
   predictMixture();
 }
 
-SurfacePrior MultiModel::priorOfNew() const {
-  SurfacePrior prior;
-  for (size_t velocity = 0; velocity < kVelocities; ++velocity)
-    prior.centre[velocity] = Eigen::VectorXd::Zero(model_->dimension());
-  double met = 0.0;
-  for (const Hypothesis& known : surfaces_) {
+SurfacePrior MultiModel::priorOfNew(Distance distance) const {
+  std::vector<const Surface*> met;
+  for (const Hypothesis& known : surfaces_)
     // The shipped set's ground counts when the vehicle was really on it.
-    if (known.surface.executions() < static_cast<double>(config_.settled_after)) continue;
-    met += 1.0;
-    for (size_t velocity = 0; velocity < kVelocities; ++velocity)
-      prior.centre[velocity] += known.surface.mean()[velocity];
+    if (known.surface.executions() >= static_cast<double>(config_.settled_after))
+      met.push_back(&known.surface);
+  const auto K = static_cast<double>(met.size());
+  const double share = config_.shared / (1.0 - config_.shared + K * config_.shared);
+  SurfacePrior prior;
+  prior.residual = (1.0 - config_.shared) * (1.0 + share);
+  for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
+    Eigen::VectorXd& centre = prior.centre[velocity];
+    centre.setZero(model_->dimension());
+    for (const Surface* surface : met) centre += share * surface->mean()[velocity];
+    for (Eigen::Index i = 0; i < kTerms; ++i) {
+      const size_t term = 3 * velocity + static_cast<size_t>(i);
+      const double all = config_.common[term] * config_.common[term];
+      const double vehicle = config_.vehicle[term] * config_.vehicle[term];
+      const bool near = distance == Distance::kNear;
+      const double of_mean = near ? config_.shared * all : vehicle;
+      const double of_ground = near ? (1.0 - config_.shared) * all : all;
+      const double g = of_mean / (of_ground + K * of_mean);
+      double variance = of_ground * (1.0 + g);
+      centre[i] = 0.0;
+      for (const Surface* surface : met) {
+        centre[i] += g * surface->mean()[velocity][i];
+        variance += g * g * surface->covariance()[velocity](i, i);
+      }
+      prior.common(i, static_cast<Eigen::Index>(velocity)) =
+          rounded(variance, kCentreStep) + kCentreStep;
+    }
+    for (double& number : centre) number = rounded(number, kCentreStep);
   }
-  const double shared = config_.shared;
-  const double share = shared / (1.0 - shared + met * shared);
-  for (Eigen::VectorXd& centre : prior.centre)
-    for (double& number : centre) number = rounded(share * number, kCentreStep);
-  prior.share = (1.0 - shared) * (1.0 + share);
   prior.scatter = scatter_.expected(config_.noise_prior).topRows<3>();
   return prior;
+}
+
+void MultiModel::expectNew() {
+  near_ = Surface(*model_, config_, priorOfNew(Distance::kNear));
+  far_ = Surface(*model_, config_, priorOfNew(Distance::kFar));
 }
 
 double MultiModel::hazard(double metres) const {
@@ -149,8 +175,9 @@ void MultiModel::expectChange(double metres) {
     hypothesis.weight *= 1.0 - h;
     changed_.push_back(0.0);
   }
-  fresh_.push_back({next_, h * config_.fresh, clock_, clock_});
-  changed_.push_back(1.0);
+  fresh_.push_back({near_, h * config_.fresh * (1.0 - config_.far), clock_, clock_});
+  fresh_.push_back({far_, h * config_.fresh * config_.far, clock_, clock_});
+  changed_.insert(changed_.end(), {1.0, 1.0});
 }
 
 /// w, from w^- and the densities of an execution.
@@ -215,9 +242,9 @@ void MultiModel::followScatter(const TwistSample& sample, const Pose2& end) {
 
 void MultiModel::forgetWeakest() {
   while (static_cast<int64_t>(fresh_.size()) > config_.moments) {
-    // The newest has had no time to prove itself.
+    // The newest two have had no time to prove themselves.
     const auto weakest = std::min_element(
-        fresh_.begin(), fresh_.end() - 1,
+        fresh_.begin(), fresh_.end() - 2,
         [](const Hypothesis& a, const Hypothesis& b) { return a.weight < b.weight; });
     const double left = 1.0 - weakest->weight;
     fresh_.erase(weakest);
@@ -257,7 +284,8 @@ void MultiModel::forEachAhead(Take&& take) const {
     take((1.0 - h) * hypothesis.weight + known, hypothesis.surface);
   for (const Hypothesis& hypothesis : fresh_)
     take((1.0 - h) * hypothesis.weight, hypothesis.surface);
-  take(h * config_.fresh, next_);
+  take(h * config_.fresh * (1.0 - config_.far), near_);
+  take(h * config_.fresh * config_.far, far_);
 }
 
 /// Mean and covariance of the corrections on the next metres.
@@ -301,7 +329,7 @@ void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNot
   followScatter(sample, {measured(last, 0), measured(last, 1), measured(last, 2)});
   forgetWeakest();
   note.surface_stored = rememberSettled();
-  next_ = Surface(*model_, config_, priorOfNew());
+  expectNew();
   predictMixture();
   note.change_probability = change_probability_;
   note.surface = 0;
@@ -362,7 +390,8 @@ void MultiModel::assign(const LearningRule& other) {
   const auto& rule = static_cast<const MultiModel&>(other);
   surfaces_ = rule.surfaces_;
   fresh_ = rule.fresh_;
-  next_ = rule.next_;
+  near_ = rule.near_;
+  far_ = rule.far_;
   scatter_ = rule.scatter_;
   changes_ = rule.changes_;
   metres_ = rule.metres_;
@@ -398,7 +427,7 @@ bool MultiModel::restoreHypotheses(std::vector<Hypothesis>& hypotheses, size_t m
   hypotheses.clear();
   for (size_t i = 0; i < count; ++i) {
     if (memory.size() < at + 3) return false;
-    Hypothesis hypothesis{next_, memory[at]};
+    Hypothesis hypothesis{near_, memory[at]};
     if (!(hypothesis.weight >= 0.0 && hypothesis.weight <= 1.0 + 1e-9)) return false;
     if (!isCount(memory[at + 1], static_cast<double>(clock_))) return false;
     if (!isCount(memory[at + 2], static_cast<double>(clock_))) return false;
@@ -434,7 +463,7 @@ bool MultiModel::restore(const TrajectoryTable&, const std::vector<double>& memo
   for (const auto* hypotheses : {&rule.surfaces_, &rule.fresh_})
     for (const Hypothesis& hypothesis : *hypotheses) total += hypothesis.weight;
   if (std::abs(total - 1.0) > 1e-6) return false;
-  rule.next_ = Surface(*model_, config_, rule.priorOfNew());
+  rule.expectNew();
   rule.predictMixture();
   assign(rule);
   return true;

@@ -33,20 +33,24 @@ struct Scatter {
 /// A multiple-model filter over surfaces (own work). The default rule.
 /** On which ground is the vehicle? The hypotheses are the surfaces that it remembers, the first of
  * them the ground of the shipped set, and *fresh* ones: since some moment it is on ground that it
- * has not met, one hypothesis for each recent moment. Each is a Surface: a regression of what was
- * measured, with a noise of its own. After d metres and an execution z
- *    w_i^- = (1 - h) w_i + h pi_i,   h = 1 - exp(-d r)
- *    w_i ~ w_i^- p_i(z)
- * r: changes a metre, learned from those that were sure in the end, beginning with change_prior in
- * as many times change_metres. pi: `fresh` for a new hypothesis that begins with this execution,
- * the rest in equal shares for the remembered surfaces. Every fresh one learns from z; a remembered
- * one only while it is sure, so that doubtful executions blur none. A fresh one that is sure and
- * settled is remembered from then on. The weakest fresh ones, and the surface that was met longest
- * ago, make room. A new surface is expected about a centre that the remembered ones have in common:
- * with x_k = mu + d_k, mu ~ N(0, shared Q), d_k ~ N(0, (1 - shared) Q), K surfaces met E[mu] =
- * shared sum x_k / (1 - shared + K shared), Var[x_new] = (1 - shared)(1 + shared / (1 - shared + K
- * shared)) Q. So what the vehicle does on every ground, unlike its shipped set, is kept where the
- * ground changes. Executions are expected to scatter on it as they have so far (Scatter).
+ * has not met, two hypotheses (near, far) for each recent moment. Each is a Surface: a regression
+ * of what was measured, with a noise of its own. After d metres and an execution z w_i^- = (1 - h)
+ * w_i + h pi_i,   h = 1 - exp(-d r), w_i ~ w_i^- p_i(z) r: changes a metre, learned from those that
+ * were sure in the end; what is expected counts for change_prior changes in as many times
+ * change_metres. pi: `fresh` for a new hypothesis that begins with this execution, the rest in
+ * equal shares for the remembered surfaces. Every fresh one learns from z, a remembered one only
+ * while it is sure, so that doubtful executions blur none. A fresh one that is sure and settled is
+ * remembered from then on. The weakest fresh ones and the surface that was met longest ago make
+ * room.
+ *
+ * A new surface is expected about what the K surfaces met so far have in common. Of a correction,
+ * with x_k = mu + d_k, mu ~ N(0, m), d_k ~ N(0, d), and x_k known by P_k,
+ *    g = m / (d + K m),   E[mu] = g sum x_k,   Var[x_new] = d (1 + g) + g^2 sum P_k
+ * Near: m = shared Q, d = (1 - shared) Q, the vehicle is about as its set says. Far: m = vehicle^2,
+ * d = Q for the common corrections: it differs from its set on every ground, which is kept where
+ * the ground changes; or, before anything was met, it may be anything.
+ * Executions are expected to scatter on it as they have so far (Scatter).
+ *
  * Predictions are for the next `ahead` metres, on which the ground may change, too: the shipped
  * profile under sum_i w_i^- E[x_i], the covariance that of the mixture. */
 class MultiModel : public LearningRule {
@@ -83,7 +87,10 @@ class MultiModel : public LearningRule {
     const Surface* surface;
   };
 
-  SurfacePrior priorOfNew() const;
+  /// Of a new surface from the others.
+  enum class Distance { kNear, kFar };
+  SurfacePrior priorOfNew(Distance distance) const;
+  void expectNew();
   double hazard(double metres) const;
   void countChange(double metres);
   double freshShare() const;
@@ -106,7 +113,7 @@ class MultiModel : public LearningRule {
   std::vector<Hypothesis> surfaces_;  ///< remembered; [0] of the shipped set
   std::vector<Hypothesis> fresh_;     ///< by the moment of their change, oldest first
   Scatter scatter_;
-  Surface next_;                 ///< what a new surface would be
+  Surface near_, far_;           ///< what a new surface would be
   std::vector<double> changed_;  ///< share of w_i^- that came by a change, remembered ones first
   double change_probability_ = 0.0;
   double changes_ = 0.0;  ///< of ground that were sure in the end

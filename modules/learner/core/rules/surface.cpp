@@ -10,6 +10,7 @@ namespace {
 constexpr double kLargestTwist = 100.0;
 /// No ground's corrections are beyond this, of whatever unit.
 constexpr double kLargestCorrection = 1e9;
+constexpr double kLargestVariance = 1e3;
 
 /// P h.
 void timesResponse(const PatternPart& part, size_t velocity, const Eigen::MatrixXd& P,
@@ -83,6 +84,13 @@ void Surface::follow(const GroundModel& model, const GroundConfig& config) {
   estimateNoise(config);
 }
 
+Eigen::MatrixXd Surface::priorCovariance(const GroundModel& model, size_t velocity) const {
+  Eigen::MatrixXd Q = prior_.residual * model.spread(velocity);
+  Q.topLeftCorner<kTerms, kTerms>() =
+      prior_.common.col(static_cast<Eigen::Index>(velocity)).asDiagonal();
+  return Q;
+}
+
 void Surface::regress(const GroundModel& model) {
   Eigen::VectorXd Ph;
   for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
@@ -90,7 +98,7 @@ void Surface::regress(const GroundModel& model) {
     Eigen::VectorXd& x = x_[velocity];
     Eigen::MatrixXd& P = P_[velocity];
     x = prior_.centre[velocity];
-    P = prior_.share * model.spread(velocity);
+    P = priorCovariance(model, velocity);
     // All executions of a part at once, part by part: cheaper than an inverse, and P stays
     // symmetric to the bit.
     for (const Measured& measured : measured_) {
@@ -155,7 +163,8 @@ Eigen::Vector3d Surface::executionNoise(const PatternPart& part) const {
 }
 
 void Surface::save(std::vector<double>& memory) const {
-  memory.push_back(prior_.share);
+  memory.push_back(prior_.residual);
+  memory.insert(memory.end(), prior_.common.data(), prior_.common.data() + prior_.common.size());
   for (const Eigen::VectorXd& centre : prior_.centre)
     memory.insert(memory.end(), centre.data(), centre.data() + centre.size());
   memory.insert(memory.end(), prior_.scatter.data(), prior_.scatter.data() + prior_.scatter.size());
@@ -199,10 +208,11 @@ bool Surface::restoreMeasured(const GroundModel& model, const std::vector<double
 
 bool Surface::restore(const GroundModel& model, const GroundConfig& config,
                       const std::vector<double>& memory, size_t& at) {
-  size_t numbers = 6 + static_cast<size_t>(prior_.scatter.size());
+  size_t numbers = 15 + static_cast<size_t>(prior_.scatter.size());
   for (const Eigen::VectorXd& centre : prior_.centre) numbers += static_cast<size_t>(centre.size());
   if (memory.size() < at + numbers) return false;
-  prior_.share = memory[at++];
+  prior_.residual = memory[at++];
+  for (double& variance : prior_.common.reshaped()) variance = memory[at++];
   double largest = 0.0;
   for (Eigen::VectorXd& centre : prior_.centre)
     for (double& number : centre) {
@@ -212,7 +222,8 @@ bool Surface::restore(const GroundModel& model, const GroundConfig& config,
   for (double& scatter : prior_.scatter.reshaped()) scatter = memory[at++];
   for (double& noise : expected_noise_) noise = memory[at++];
   executions_ = memory[at++];
-  if (!(prior_.share > 0.0 && prior_.share <= 1.0) || largest > kLargestCorrection ||
+  if (!(prior_.residual > 0.0 && prior_.residual <= 1.0) || prior_.common.minCoeff() <= 0.0 ||
+      prior_.common.maxCoeff() > kLargestVariance || largest > kLargestCorrection ||
       prior_.scatter.minCoeff() < kLeastNoise || prior_.scatter.maxCoeff() > kMostNoise ||
       expected_noise_.minCoeff() < kLeastNoise || expected_noise_.maxCoeff() > kMostNoise ||
       !(executions_ >= 0.0 && executions_ <= kMostExecutions) ||

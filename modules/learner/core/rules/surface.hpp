@@ -35,11 +35,12 @@ struct TwistSample {
   Eigen::Vector3d mean_twist;  ///< measured [m/s, m/s, rad/s]
 };
 
-/// What is expected of a surface before anything was measured on it: x ~ N(centre, share Q), and
-/// how executions scatter.
+/// What is expected of a surface before anything was measured on it: x ~ N(centre, Q), and how
+/// executions scatter.
 struct SurfacePrior {
   ByVelocity<Eigen::VectorXd> centre;
-  double share = 1.0;
+  Eigen::Matrix3d common;  ///< variances of the common corrections, a column for each velocity
+  double residual = 1.0;   ///< [1] covariance of the residuals over the ground model's
   /// Variances of v_x, v_y and omega over the ground model's, a column for each pattern [1].
   Eigen::Matrix3Xd scatter;
 };
@@ -49,11 +50,12 @@ struct SurfacePrior {
  * deviations z - m of its mean twist from the shipped one. From that, for each velocity on its own,
  * a linear regression z = m + h' x + e, e ~ N(0, q R), R the ground model's noise times what the
  * prior says of this pattern, q the surface's own factor [1]:
- *    P = (1 / (share Q) + sum n h h' / (q R))^-1,   x = centre + P sum h sum(z - m - h' centre) /
- * (q R) q = b / a,   a = a0 + sum n / 2,   b = a0 + sum E[(z - m - h' x)^2] / (2 R) with a0 half
- * the executions that the expected noise counts for; q is that of the step before where P is
- * computed (one step of expectation-maximisation an execution). A next execution is expected from
- * Student's t with 2 a degrees of freedom about m + h' x, scale^2 = h' P h + q R. */
+ *    P = (1 / Q + sum n h h' / (q R))^-1
+ *    x = centre + P sum h sum(z - m - h' centre) / (q R)
+ *    q = b / a,   a = a0 + sum n / 2,   b = a0 + sum E[(z - m - h' x)^2] / (2 R)
+ * with a0 half the executions that the expected noise counts for; where P is computed q is that of
+ * the step before (one step of expectation-maximisation an execution). A next execution is expected
+ * from Student's t with 2 a degrees of freedom about m + h' x, scale^2 = h' P h + q R. */
 class Surface {
  public:
   Surface(const GroundModel& model, const GroundConfig& config, const SurfacePrior& prior);
@@ -93,6 +95,7 @@ class Surface {
     return part.noise[velocity] * prior_.scatter(velocity, static_cast<Eigen::Index>(part.pattern));
   }
   void follow(const GroundModel& model, const GroundConfig& config);
+  Eigen::MatrixXd priorCovariance(const GroundModel& model, size_t velocity) const;
   void regress(const GroundModel& model);
   void estimateNoise(const GroundConfig& config);
   bool restoreMeasured(const GroundModel& model, const std::vector<double>& memory, size_t& at);
