@@ -27,25 +27,25 @@ struct TwistNoise {
 
 /// What the multiple-model filter expects of grounds; the headers of the rule have the equations.
 struct GroundConfig {
-  TwistNoise noise;            ///< expected where nothing was recorded
-  double recorded = 0.3;       ///< [1] share of the recorded spread of ends in the noise
-  double noise_prior = 6.0;    ///< [1] executions that the expected noise counts for
-  double most_freedom = 40.0;  ///< [1] of Student's t: even a known surface has tails
-  /// Standard deviations from surface to surface: forward gain [1], yaw gain [1], sideslip [s],
-  /// turn loss [s], yaw by speed [s/m], yaw bias [rad/m], crab [1].
+  TwistNoise noise;           ///< expected where nothing was recorded
+  double recorded = 0.3;      ///< [1] share of the recorded spread of ends in the noise
+  double noise_prior = 6.0;   ///< [1] executions that the expected noise counts for
+  double most_freedom = 40.0; ///< [1] of Student's t: even a known surface has tails
+  /// Standard deviations from surface to surface: forward gain [1], yaw gain [1], sideslip [s], turn
+  /// loss [s], yaw by speed [s/m], yaw bias [rad/m], crab [1].
   std::array<double, 7> common{0.06, 0.12, 0.09, 0.09, 0.047, 0.03, 0.012};
   /// Of a pattern's own residual: of v_x, of v_y over v_x, of omega [1].
   std::array<double, 3> residual{0.067, 0.05, 0.10};
-  double shared = 0.5;            ///< [1] share of that variance that all surfaces have in common
-  double shipped_spread = 0.05;   ///< [1] the same of the shipped set's own ground, over Q
-  double change_metres = 12.0;    ///< [m] mean way to the next change of ground
-  double fresh = 0.5;             ///< [1] probability that a change leads to ground not met before
-  double ahead = 1.5;             ///< [m] way that predictions look ahead
-  double sure = 0.9;              ///< [1] probability from which on a surface counts as recognized
-  int64_t settled_after = 10;     ///< executions on fresh ground until it is remembered
+  double shared = 0.5;          ///< [1] share of that variance that all surfaces have in common
+  double shipped_spread = 0.05; ///< [1] the same of the shipped set's own ground, over Q
+  double change_metres = 12.0;  ///< [m] mean way to the next change of ground
+  double fresh = 0.5;           ///< [1] probability that a change leads to ground not met before
+  double ahead = 1.5;           ///< [m] way that predictions look ahead
+  double sure = 0.9;            ///< [1] probability from which on a surface counts as recognized
+  int64_t settled_after = 10;   ///< executions on fresh ground until it is remembered
   double longest_memory = 100.0;  ///< executions after which the oldest on a surface fade
-  int64_t moments = 5;            ///< recent moments at which the ground may have changed
-  int64_t capacity = 16;          ///< remembered surfaces; that met longest ago makes room
+  int64_t moments = 5;          ///< recent moments at which the ground may have changed
+  int64_t capacity = 16;        ///< remembered surfaces; that met longest ago makes room
 };
 
 /// Name of a rule of learning: one of ruleNames().
@@ -134,9 +134,10 @@ struct RuleNote {
 };
 
 /// A rule of learning: predictions of all patterns of a set, corrected by measurements.
-/** Patterns are named by their index in the shipped set. Same input, same bits; predictions
- * allocate nothing. Trajectories hold T x 3 numbers: x, y [m], yaw [rad, unwrapped] in the start
- * frame, one row a sample. */
+/** Patterns are named by their index in the shipped set. Same input, same bits; predictions allocate
+ * nothing.
+ * Trajectories hold T x 3 numbers: x, y [m], yaw [rad, unwrapped] in the start frame, one row a
+ * sample. */
 class LearningRule {
  public:
   virtual ~LearningRule() = default;
