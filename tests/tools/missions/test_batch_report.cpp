@@ -269,6 +269,25 @@ TEST_CASE("a comparison of rules counts each rule's missions and those of all to
   CHECK(json["same_worlds"][0]["all"]["count"] == 0);
 }
 
+TEST_CASE("drives stand side by side in one picture, each under what came of it") {
+  const MissionBatch batch = invented();
+  CHECK(resultOf(batch, 2) == "bank arrived after 50 s, 0 stops, 2 contacts");
+  CHECK(resultOf(batch, 3) == "bank arrived after 50 s, 2 stops");
+  std::vector<report::DriveScene> scenes(2);
+  for (report::DriveScene& scene : scenes) {
+    scene.T_map_goal = {20.0, 0.0, 0.0};
+    scene.track = {{0.0, {}}, {10.0, {10.0, 1.0, 0.0}}};
+    scene.errors = {{2.0, 0.1, -0.2}, {4.0, 0.05, 0.1}};
+    scene.stops = {{5.0, 0.5}};
+    scene.duration = 10.0;
+  }
+  const OwnFolder folder;
+  report::drawSideBySide(folder.path("both.png"), "both", scenes);
+  CHECK(isPng(folder.text("both.png")));
+  CHECK_THROWS_WITH(report::drawSideBySide("/nowhere/both.png", "both", scenes),
+                    Catch::Contains("/nowhere/both.png"));
+}
+
 TEST_CASE("missions that only one of the two solves have no ratio of times") {
   OmniscientComparison comparison;
   comparison.learning.results = {mission(1, MissionOutcome::kArrived),

@@ -65,7 +65,7 @@ using tread::testing::contentOf;
 TEST_CASE("a shadow of the driving rule predicts what the drive predicted, others differ") {
   MissionOptions options;
   options.rule = "collective";
-  options.shadows = {"off", "collective", "bank"};
+  options.shadows = {"off", "collective", "multi_model"};
   const MissionRun run = runMission(teodor(), 22, options);
   REQUIRE(run.result.shadow_rules == options.shadows);
   int measured = 0, as_driven = 0, off_differs = 0, bank_differs = 0;

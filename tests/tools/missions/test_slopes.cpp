@@ -39,7 +39,7 @@ struct HillsideDrive {
   MissionResult without_gate;  ///< by_rule of the same executions, learned without the gate
 };
 
-const std::vector<learner::Rule> kRules{"collective", "bank"};
+const std::vector<learner::Rule> kRules{"collective", "multi_model"};
 
 void fillByRule(shadow::ShadowLearners& shadows, MissionResult& result) {
   shadows.finish();
