@@ -39,7 +39,9 @@ struct GroundConfig {
   /// Standard deviations from surface to surface, in the order of TwistCorrection: forward gain
   /// [1], turn loss [s], push [m], sideslip [s], crab [1], shift [m], yaw gain [1], yaw by speed
   /// [s/m], yaw bias [rad/m].
-  std::array<double, 9> common{0.06, 0.09, 0.03, 0.09, 0.012, 0.05, 0.16, 0.047, 0.03};
+  std::array<double, 9> common{0.06, 0.09, 0.03, 0.09, 0.012, 0.05, 0.16, 0.047, 0.012};
+  /// The same of a vehicle that differs from its shipped set, on all grounds alike.
+  std::array<double, 9> vehicle{0.07, 0.07, 0.04, 0.07, 0.02, 0.07, 0.18, 0.07, 0.07};
   /// Of a pattern's own residual: of v_x, of v_y over v_x, of omega [1].
   std::array<double, 3> residual{0.067, 0.05, 0.10};
   double shared = 0.5;            ///< [1] share of that variance that all surfaces have in common
@@ -47,11 +49,12 @@ struct GroundConfig {
   double change_prior = 10.0;     ///< [1] changes that the expected way to the next one counts for
   double change_metres = 12.0;    ///< [m] mean way to the next change of ground
   double fresh = 0.5;             ///< [1] probability that a change leads to ground not met before
+  double far = 0.03;              ///< [1] that such ground is unlike all others
   double ahead = 1.2;             ///< [m] way that predictions look ahead
   double sure = 0.9;              ///< [1] probability from which on a surface counts as recognized
   int64_t settled_after = 10;     ///< executions on fresh ground until it is remembered
   double longest_memory = 100.0;  ///< executions after which the oldest on a surface fade
-  int64_t moments = 5;            ///< recent moments at which the ground may have changed
+  int64_t moments = 8;            ///< hypotheses that the ground has changed lately
   int64_t capacity = 16;          ///< remembered surfaces; that met longest ago makes room
 };
 
@@ -108,17 +111,19 @@ void readGround(Reader& reader, GroundConfig& ground) {
   section.number("noise_prior", ground.noise_prior, {3.0, 100.0}, "1");
   section.number("most_freedom", ground.most_freedom, {4.0, 1000.0}, "1");
   readDeviations(section, "common", ground.common, "1, s, m, s, 1, m, 1, s/m, rad/m");
+  readDeviations(section, "vehicle", ground.vehicle, "1, s, m, s, 1, m, 1, s/m, rad/m");
   readDeviations(section, "residual", ground.residual, "1");
   section.number("shared", ground.shared, {0.0, 0.95}, "1");
   section.number("shipped_spread", ground.shipped_spread, {1e-4, 1.0}, "1");
   section.number("change_prior", ground.change_prior, {0.1, 1e9}, "1");
   section.number("change_metres", ground.change_metres, {0.1, 1e5}, "m");
   section.number("fresh", ground.fresh, {0.01, 0.99}, "1");
+  section.number("far", ground.far, {0.001, 0.999}, "1");
   section.number("ahead", ground.ahead, {0.0, 100.0}, "m");
   section.number("sure", ground.sure, {0.6, 0.999}, "1");
   section.integer("settled_after", ground.settled_after, {2, 1000}, "1");
   section.number("longest_memory", ground.longest_memory, {10.0, 1e6}, "1");
-  section.integer("moments", ground.moments, {2, 64}, "1");
+  section.integer("moments", ground.moments, {3, 64}, "1");
   section.integer("capacity", ground.capacity, {1, GroundConfig::kMostSurfaces}, "1");
 }
 
