@@ -90,7 +90,7 @@ struct LearnerNodeConfig {
   int64_t give_up_us =
       2'000'000;  ///< [us] after its end: an execution is then measured with the INS there is
   int64_t follow_us =
-      400'000;  ///< [us] a running execution is learned from as often as this; 0 = at its end only
+      200'000;  ///< [us] a running execution is learned from as often as this; 0 = at its end only
   int64_t repeat_us = 2'000'000;       ///< [us] between repetitions of the set
   int64_t track_span_us = 60'000'000;  ///< [us] of INS that is kept
   int64_t listen_us = 0;  ///< [us] without a set at the start: is there a learner already?

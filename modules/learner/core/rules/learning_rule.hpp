@@ -47,10 +47,10 @@ struct GroundConfig {
   double shared = 0.5;            ///< [1] share of that variance that all surfaces have in common
   double shipped_spread = 0.05;   ///< [1] the same of the shipped set's own ground, over Q
   double change_prior = 10.0;     ///< [1] changes that the expected way to the next one counts for
-  double change_metres = 12.0;    ///< [m] mean way to the next change of ground
+  double change_metres = 10.0;    ///< [m] mean way to the next change of ground
   double fresh = 0.5;             ///< [1] probability that a change leads to ground not met before
   double far = 0.03;              ///< [1] that such ground is unlike all others
-  double ahead = 1.2;             ///< [m] way that predictions look ahead
+  double ahead = 2.0;             ///< [m] way that predictions look ahead
   double sure = 0.9;              ///< [1] probability from which on a surface counts as recognized
   int64_t settled_after = 10;     ///< executions on fresh ground until it is remembered
   double longest_memory = 100.0;  ///< executions after which the oldest on a surface fade
