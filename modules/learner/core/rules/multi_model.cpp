@@ -90,8 +90,8 @@ MultiModel::MultiModel(const RuleConfig& config, const PatternSet& shipped)
       next_(*model_, config_, priorOfNew()) {
   SurfacePrior of_shipped = priorOfNew();
   of_shipped.share = config_.shipped_spread;
-  surfaces_.push_back({Surface(*model_, config_, of_shipped), 1.0 - config_.fresh, 0});
-  fresh_.push_back({next_, config_.fresh, 0});
+  surfaces_.push_back({Surface(*model_, config_, of_shipped), 1.0 - config_.fresh, 0, 0});
+  fresh_.push_back({next_, config_.fresh, clock_, clock_});
   predictMixture();
 }
 

@@ -112,7 +112,7 @@ class MultiModel : public LearningRule {
   double changes_ = 0.0;  ///< of ground that were sure in the end
   double metres_ = 0.0;   ///< driven meanwhile
   int64_t ground_ = 0;    ///< `since` of the hypothesis that was sure last
-  int64_t clock_ = 0;
+  int64_t clock_ = 1;  ///< 0 is when the shipped set was made
   ByVelocity<Eigen::VectorXd> mean_;        ///< of the mixture ahead
   ByVelocity<Eigen::MatrixXd> covariance_;  ///< the same
 };
