@@ -225,6 +225,20 @@ void MultiModel::forgetWeakest() {
   }
 }
 
+/// Never the shipped one.
+std::vector<MultiModel::Hypothesis>::iterator MultiModel::metLongestAgo() {
+  return std::min_element(
+      surfaces_.begin() + 1, surfaces_.end(),
+      [](const Hypothesis& a, const Hypothesis& b) { return a.last_met < b.last_met; });
+}
+
+void MultiModel::forgetOldest() {
+  const auto oldest = metLongestAgo();
+  const double left = 1.0 - oldest->weight;
+  surfaces_.erase(oldest);
+  scaleWeights(left);
+}
+
 bool MultiModel::rememberSettled() {
   const auto settled =
       std::find_if(fresh_.begin(), fresh_.end(), [this](const Hypothesis& hypothesis) {
@@ -233,11 +247,12 @@ bool MultiModel::rememberSettled() {
       });
   if (settled == fresh_.end()) return false;
   settled->last_met = clock_;
-  if (static_cast<int64_t>(surfaces_.size()) > config_.capacity) {
-    // Never the shipped one.
-    const auto oldest = std::min_element(
-        surfaces_.begin() + 1, surfaces_.end(),
-        [](const Hypothesis& a, const Hypothesis& b) { return a.last_met < b.last_met; });
+  const auto most = static_cast<size_t>(config_.capacity) + 1;
+  // More than there is room for are those of a state from before the capacity was lowered.
+  while (surfaces_.size() > most) forgetOldest();
+  if (surfaces_.size() == most) {
+    // The others keep their numbers.
+    const auto oldest = metLongestAgo();
     const double left = 1.0 - oldest->weight;
     *oldest = std::move(*settled);
     fresh_.erase(settled);

@@ -93,6 +93,8 @@ class MultiModel : public LearningRule {
   void update(const TwistSample& sample);
   void followScatter(const TwistSample& sample, const Pose2& end);
   void forgetWeakest();
+  std::vector<Hypothesis>::iterator metLongestAgo();
+  void forgetOldest();
   bool rememberSettled();
   void predictMixture();
   template <class Take>
