@@ -74,8 +74,9 @@ Scatter::Factors Scatter::expected(double prior) const {
   const Eigen::Array4d mean = (prior + all.tail<kQuantities>().array()) / (prior + all[0]);
   Factors factors(kQuantities, sums.cols());
   for (Eigen::Index p = 0; p < sums.cols(); ++p) {
-    const Eigen::Array4d own =
+    Eigen::Array4d own =
         (prior * mean + sums.col(p).tail<kQuantities>().array()) / (prior + sums(0, p));
+    own.head<3>() /= mean.head<3>().max(1.0);
     factors.col(p) = own.max(kLeastNoise).min(kMostNoise).unaryExpr([](double factor) {
       return rounded(factor, kScatterStep);
     });
@@ -317,6 +318,10 @@ void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNot
   forgetWeakest();
   note.surface_stored = rememberSettled();
   next_ = Surface(*model_, config_, priorOfNew());
+  // Or calm executions on the shipped set's ground were likelier on new ground, known to be calm.
+  Surface& of_shipped = surfaces_.front().surface;
+  if (of_shipped.executions() < static_cast<double>(config_.settled_after))
+    of_shipped.expect(*model_, config_, next_.prior().scatter);
   predictMixture();
   note.change_probability = change_probability_;
   note.surface = 0;

@@ -25,6 +25,9 @@ struct Scatter {
   void add(size_t pattern, const Eigen::Vector4d& squared_error, double longest_memory);
   /// Expected factors on the variances, a column for each pattern: its mean, drawn by `prior`
   /// executions towards that of all patterns, which is drawn by as many towards 1.
+  /** A rough ground tells nothing of the next: where the velocities of all patterns together
+   * scatter more than expected, only how patterns differ counts. The next ground would look like
+   * any, were it expected to be as rough; how rough it is itself is its own q. */
   Factors expected(double prior) const;
 
   Eigen::MatrixXd sums;  ///< a column for each pattern: executions, then their squared errors
@@ -46,7 +49,8 @@ struct Scatter {
  * with x_k = mu + d_k, mu ~ N(0, shared Q), d_k ~ N(0, (1 - shared) Q), K surfaces met E[mu] =
  * shared sum x_k / (1 - shared + K shared), Var[x_new] = (1 - shared)(1 + shared / (1 - shared + K
  * shared)) Q. So what the vehicle does on every ground, unlike its shipped set, is kept where the
- * ground changes. Executions are expected to scatter on it as they have so far (Scatter).
+ * ground changes. Executions are expected to scatter on it as they have so far (Scatter), and also on
+ * the shipped set's ground until the vehicle has settled there.
  * Predictions are for the next `ahead` metres, on which the ground may change, too: the shipped
  * profile under sum_i w_i^- E[x_i], the covariance that of the mixture. */
 class MultiModel : public LearningRule {
