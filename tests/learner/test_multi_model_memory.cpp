@@ -160,10 +160,11 @@ TEST_CASE("a memory with a number that cannot be is refused whole") {
     }
   };
   refused(kClockAt, {-1.0, 0.5, 1.0, 1e300});
-  refused(kChangesAt, {-1.0});
+  refused(kChangesAt, {-1.0, 1e300});
   refused(kMetresAt, {-1.0, 1e5});
   refused(kGroundAt, {-1.0, 0.5, 58.0, 1e300});
-  refused(kScatterAt, {-1.0});
+  refused(kScatterAt, {-1.0, 1e300});
+  refused(kScatterAt + 1, {-1.0, 1e300});
   refused(kSurfacesAt, {-1.0, 0.0, 0.5, 1.0, 3.0, 66.0, 1e9, 1e300});
   const size_t second = after(memory, kWeightAt);
   const size_t fresh = after(memory, second);

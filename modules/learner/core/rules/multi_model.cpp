@@ -440,12 +440,14 @@ bool MultiModel::restore(const TrajectoryTable&, const std::vector<double>& memo
   rule.clock_ = static_cast<int64_t>(memory[0]);
   rule.changes_ = memory[1];
   rule.metres_ = memory[2];
-  if (!(rule.changes_ >= 0.0 && rule.metres_ >= 0.0 && rule.metres_ <= kLongestWay) ||
-      !isCount(memory[3], memory[0]))
+  if (!(rule.changes_ >= 0.0 && rule.changes_ <= kMostExecutions) ||
+      !(rule.metres_ >= 0.0 && rule.metres_ <= kLongestWay) || !isCount(memory[3], memory[0]))
     return false;
   rule.ground_ = static_cast<int64_t>(memory[3]);
   std::copy_n(memory.begin() + 4, rule.scatter_.sums.size(), rule.scatter_.sums.data());
-  if (rule.scatter_.sums.minCoeff() < 0.0) return false;
+  if (rule.scatter_.sums.minCoeff() < 0.0 ||
+      rule.scatter_.sums.maxCoeff() > kMostError * kMostExecutions)
+    return false;
   if (!rule.restoreHypotheses(rule.surfaces_, GroundConfig::kMostSurfaces + 1, memory, at) ||
       !rule.restoreHypotheses(rule.fresh_, static_cast<size_t>(config_.moments), memory, at) ||
       at != memory.size() || rule.surfaces_.empty())

@@ -49,10 +49,10 @@ struct Scatter {
  * with x_k = mu + d_k, mu ~ N(0, shared Q), d_k ~ N(0, (1 - shared) Q), K surfaces met E[mu] =
  * shared sum x_k / (1 - shared + K shared), Var[x_new] = (1 - shared)(1 + shared / (1 - shared + K
  * shared)) Q. So what the vehicle does on every ground, unlike its shipped set, is kept where the
- * ground changes. Executions are expected to scatter on it as they have so far (Scatter), and also on
- * the shipped set's ground until the vehicle has settled there.
- * Predictions are for the next `ahead` metres, on which the ground may change, too: the shipped
- * profile under sum_i w_i^- E[x_i], the covariance that of the mixture. */
+ * ground changes. Executions are expected to scatter on it as they have so far (Scatter), and also
+ * on the shipped set's ground until the vehicle has settled there. Predictions are for the next
+ * `ahead` metres, on which the ground may change, too: the shipped profile under sum_i w_i^-
+ * E[x_i], the covariance that of the mixture. */
 class MultiModel : public LearningRule {
  public:
   MultiModel(const RuleConfig& config, const PatternSet& shipped);
@@ -115,10 +115,10 @@ class MultiModel : public LearningRule {
   Surface next_;                 ///< what a new surface would be
   std::vector<double> changed_;  ///< share of w_i^- that came by a change, remembered ones first
   double change_probability_ = 0.0;
-  double changes_ = 0.0;  ///< of ground that were sure in the end
-  double metres_ = 0.0;   ///< driven meanwhile
-  int64_t ground_ = 0;    ///< `since` of the hypothesis that was sure last
-  int64_t clock_ = 1;  ///< 0 is when the shipped set was made
+  double changes_ = 0.0;                    ///< of ground that were sure in the end
+  double metres_ = 0.0;                     ///< driven meanwhile
+  int64_t ground_ = 0;                      ///< `since` of the hypothesis that was sure last
+  int64_t clock_ = 1;                       ///< 0 is when the shipped set was made
   ByVelocity<Eigen::VectorXd> mean_;        ///< of the mixture ahead
   ByVelocity<Eigen::MatrixXd> covariance_;  ///< the same
 };
