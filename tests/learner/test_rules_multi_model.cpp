@@ -426,8 +426,8 @@ TEST_CASE("the covariance of a remembered rough surface has its own noise") {
 }
 
 TEST_CASE("after a change of ground learning does no harm from the second execution on") {
-  // Measured over 400 seeds, of what `off` errs by: 1.26, 1.01, .91, .87, .83, .78 after 0 to 5; the
-  // chance of the executions themselves, which nothing can predict, is in both.
+  // Measured over 400 seeds, of what `off` errs by: 1.26, 1.01, .91, .87, .83, .78 after 0 to 5;
+  // the chance of the executions themselves, which nothing can predict, is in both.
   const DrawnWorld world;
   std::vector<std::vector<double>> ratios(6);
   for (int seed = 1; seed <= 200; ++seed) {
@@ -754,9 +754,7 @@ TEST_CASE("the ends of all ranges are configurations like others") {
       [](GroundConfig& c) { c.noise_prior = 3.0; },
       [](GroundConfig& c) { c.most_freedom = 4.0; },
       [](GroundConfig& c) { c.recorded = 1.0; },
-      [](GroundConfig& c) {
-        c.noise = {0.001, 0.001, 0.001, 0.0, 0.0, 1e-4, 1e-4, 1e-4};
-      },
+      [](GroundConfig& c) { c.noise = {0.001, 0.001, 0.001, 0.0, 0.0, 1e-4, 1e-4, 1e-4}; },
       [](GroundConfig& c) { c.common.fill(10.0); },
       [](GroundConfig& c) { c.residual.fill(1e-4); },
   };
