@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -18,6 +19,15 @@ namespace tread::fuzz {
 
 inline std::string textOf(const uint8_t* bytes, size_t size) {
   return {reinterpret_cast<const char*>(bytes), size};
+}
+
+/// With the fingerprint at its end, so that the rest is looked at.
+inline std::string sealed(const uint8_t* bytes, size_t size) {
+  uint64_t hash = 14695981039346656037ULL;
+  for (size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 1099511628211ULL;
+  std::ostringstream end;
+  end << "end " << std::hex << hash << '\n';
+  return textOf(bytes, size) + end.str();
 }
 
 /// What a broken promise of a reader is told by.

@@ -173,15 +173,6 @@ void keyFile(const uint8_t* bytes, size_t size) {
   refusing([&] { readKey(file.path()); });
 }
 
-/// With the fingerprint at its end, so that the rest is looked at.
-std::string sealed(const uint8_t* bytes, size_t size) {
-  uint64_t hash = 14695981039346656037ULL;
-  for (size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 1099511628211ULL;
-  std::ostringstream end;
-  end << "end " << std::hex << hash << '\n';
-  return textOf(bytes, size) + end.str();
-}
-
 void learnerState(const uint8_t* bytes, size_t size) {
   std::string why;
   require(learner::parseState(sealed(bytes, size), shippedSet(), why) || !why.empty());

@@ -73,7 +73,7 @@ TEST_CASE("the mean twist of any part of a pattern is corrected exactly, also fa
       REQUIRE((part.mean - meanUnder(profile, CorrectionVector::Zero(), samples)).norm() < 1e-12);
       for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
         INFO(set.patterns()[p].name << ", samples " << samples << ", velocity " << velocity);
-          const Eigen::Index own = kTerms + static_cast<Eigen::Index>(p);
+        const Eigen::Index own = kTerms + static_cast<Eigen::Index>(p);
         for (Eigen::Index i = 0; i <= kTerms; ++i) {
           CorrectionVector step = CorrectionVector::Zero();
           Eigen::VectorXd x = Eigen::VectorXd::Zero(model.dimension());
@@ -157,11 +157,9 @@ TEST_CASE("the spread of grounds is a covariance, with neighbours and mirror ima
     REQUIRE(Q == Q.transpose());
     REQUIRE(Q.llt().info() == Eigen::Success);
     for (Eigen::Index i = 0; i < kTerms; ++i)
-      REQUIRE(std::sqrt(Q(i, i)) ==
-              Approx(config.common[3 * velocity + static_cast<size_t>(i)]));
+      REQUIRE(std::sqrt(Q(i, i)) == Approx(config.common[3 * velocity + static_cast<size_t>(i)]));
     const auto own = [&](size_t p, size_t q) {
-      return Q(kTerms + static_cast<Eigen::Index>(p),
-               kTerms + static_cast<Eigen::Index>(q));
+      return Q(kTerms + static_cast<Eigen::Index>(p), kTerms + static_cast<Eigen::Index>(q));
     };
     REQUIRE(std::sqrt(own(kHardLeft, kHardLeft)) == Approx(config.residual[velocity]));
     // What slips to one side in a left turn slips to the other in a right one.

@@ -149,7 +149,7 @@ TEST_CASE("a memory with what is not a number anywhere is refused whole") {
 
 TEST_CASE("a memory with a number that cannot be is refused whole") {
   const std::vector<double> memory = memoryOf(experienced());
-  REQUIRE(memory[kClockAt] == 56.0);
+  REQUIRE(memory[kClockAt] == 57.0);
   REQUIRE(memory[kSurfacesAt] == 2.0);
   const auto refused = [&](size_t at, const std::vector<double>& values) {
     for (const double value : values) {
@@ -160,10 +160,11 @@ TEST_CASE("a memory with a number that cannot be is refused whole") {
     }
   };
   refused(kClockAt, {-1.0, 0.5, 1.0, 1e300});
-  refused(kChangesAt, {-1.0});
+  refused(kChangesAt, {-1.0, 1e300});
   refused(kMetresAt, {-1.0, 1e5});
-  refused(kGroundAt, {-1.0, 0.5, 57.0, 1e300});
-  refused(kScatterAt, {-1.0});
+  refused(kGroundAt, {-1.0, 0.5, 58.0, 1e300});
+  refused(kScatterAt, {-1.0, 1e300});
+  refused(kScatterAt + 1, {-1.0, 1e300});
   refused(kSurfacesAt, {-1.0, 0.0, 0.5, 1.0, 3.0, 66.0, 1e9, 1e300});
   const size_t second = after(memory, kWeightAt);
   const size_t fresh = after(memory, second);
@@ -173,10 +174,12 @@ TEST_CASE("a memory with a number that cannot be is refused whole") {
   for (const size_t weight : {size_t{kWeightAt}, second, fresh + 1}) {
     const size_t base = weight - kWeightAt;
     refused(weight, {-0.5, memory[weight] + 0.01, 2.0, 1e300});
-    refused(base + kLastMetAt, {-1.0, 0.5, 57.0, 1e300});
+    refused(base + kLastMetAt, {-1.0, 0.5, 58.0, 1e300});
+    refused(base + kSinceAt, {-1.0, 0.5, 58.0, 1e300});
     refused(base + kShareAt, {-0.1, 0.0, 1.1, 1e300});
     refused(base + kCentreAt, {1e300, -1e300});
-    refused(base + kNoiseAt, {0.0, -1.0, 21.0, 1e300});
+    refused(base + kFactorsAt, {0.0, -1.0, 51.0, 1e300});
+    refused(base + kNoiseAt, {0.0, -1.0, 51.0, 1e300});
     refused(base + kExecutionsAt, {-1.0, memory[base + kExecutionsAt] + 1.0, 1e300});
     refused(base + kPartsAt, {-1.0, 0.5, memory[base + kPartsAt] + 1.0, 1e9, 1e300});
     if (memory[base + kPartsAt] < 1.0) continue;
@@ -203,19 +206,42 @@ TEST_CASE("the memory of another rule or of another set is refused") {
   REQUIRE_FALSE(single.rule().restore(TrajectoryTable(smallSet().patterns()), {}));
 }
 
-TEST_CASE("more surfaces than there is room for now are refused") {
+TEST_CASE("more surfaces than there is room for now are kept until the next one makes room") {
   RuleConfig config = ruleConfig("multi_model");
   config.ground.capacity = 1;
-  Pupil roomless(config, richSet());
-  const std::vector<double> memory = memoryOf(experienced());
-  REQUIRE(roomless.rule().restore(TrajectoryTable(richSet().patterns()), memory));
   Pupil more(experienced());
   std::mt19937_64 random(3);
   driveOn(more, kRoad, 40, random);
   REQUIRE(more.rule().remembered() == 3);
-  Pupil again(config, richSet());
-  REQUIRE_FALSE(again.rule().restore(TrajectoryTable(richSet().patterns()), memoryOf(more)));
-  REQUIRE(again.rule().remembered() == 1);
+  Pupil roomless(config, richSet());
+  REQUIRE(roomless.rule().restore(TrajectoryTable(richSet().patterns()), memoryOf(more)));
+  REQUIRE(roomless.rule().remembered() == 3);
+  REQUIRE(memoryOf(roomless) == memoryOf(more));
+  driveOn(roomless, kMud, 20, random);
+  REQUIRE(roomless.rule().remembered() == 3);
+  // A fourth ground: now there is room for one beside the shipped set's.
+  driveOn(roomless, {0.7, 0.8, -0.1, 0.0}, 40, random);
+  REQUIRE(roomless.rule().remembered() == 2);
+}
+
+TEST_CASE("more surfaces than there is room for whatever the configuration are refused") {
+  const std::vector<double> memory = memoryOf(experienced());
+  const size_t second = after(memory, kWeightAt);
+  const size_t fresh = after(memory, second);
+  // The second surface again and again, of no weight.
+  const auto with = [&](int64_t copies) {
+    std::vector<double> more(memory.begin(), memory.begin() + static_cast<std::ptrdiff_t>(fresh));
+    more[kSurfacesAt] += static_cast<double>(copies);
+    for (int64_t i = 0; i < copies; ++i) {
+      more.push_back(0.0);
+      more.insert(more.end(), memory.begin() + static_cast<std::ptrdiff_t>(second) + 1,
+                  memory.begin() + static_cast<std::ptrdiff_t>(fresh));
+    }
+    more.insert(more.end(), memory.begin() + static_cast<std::ptrdiff_t>(fresh), memory.end());
+    return more;
+  };
+  REQUIRE(restores(with(GroundConfig::kMostSurfaces - 1)));
+  REQUIRE_FALSE(restores(with(GroundConfig::kMostSurfaces)));
 }
 
 TEST_CASE("whatever single number of a memory is changed, what is taken predicts numbers") {

@@ -74,8 +74,9 @@ Scatter::Factors Scatter::expected(double prior) const {
   const Eigen::Array4d mean = (prior + all.tail<kQuantities>().array()) / (prior + all[0]);
   Factors factors(kQuantities, sums.cols());
   for (Eigen::Index p = 0; p < sums.cols(); ++p) {
-    const Eigen::Array4d own =
+    Eigen::Array4d own =
         (prior * mean + sums.col(p).tail<kQuantities>().array()) / (prior + sums(0, p));
+    own.head<3>() /= mean.head<3>().max(1.0);
     factors.col(p) = own.max(kLeastNoise).min(kMostNoise).unaryExpr([](double factor) {
       return rounded(factor, kScatterStep);
     });
@@ -94,9 +95,9 @@ MultiModel::MultiModel(const RuleConfig& config, const PatternSet& shipped)
   for (size_t term = 0; term < config_.common.size(); ++term)
     of_shipped.common.data()[term] =
         config_.shipped_spread * config_.common[term] * config_.common[term];
-  surfaces_.push_back({Surface(*model_, config_, of_shipped), 1.0 - config_.fresh, 0});
-  fresh_.push_back({near_, config_.fresh * (1.0 - config_.far), 0});
-  fresh_.push_back({far_, config_.fresh * config_.far, 0});
+  surfaces_.push_back({Surface(*model_, config_, of_shipped), 1.0 - config_.fresh, 0, 0});
+  fresh_.push_back({near_, config_.fresh * (1.0 - config_.far), clock_, clock_});
+  fresh_.push_back({far_, config_.fresh * config_.far, clock_, clock_});
   predictMixture();
 }
 
@@ -252,27 +253,47 @@ void MultiModel::forgetWeakest() {
   }
 }
 
+/// Never the shipped one.
+std::vector<MultiModel::Hypothesis>::iterator MultiModel::metLongestAgo() {
+  return std::min_element(
+      surfaces_.begin() + 1, surfaces_.end(),
+      [](const Hypothesis& a, const Hypothesis& b) { return a.last_met < b.last_met; });
+}
+
+void MultiModel::forgetOldest() {
+  const auto oldest = metLongestAgo();
+  const double left = 1.0 - oldest->weight;
+  surfaces_.erase(oldest);
+  scaleWeights(left);
+}
+
+/// Hypotheses that began about the same time know the same: together they are one surface.
 bool MultiModel::rememberSettled() {
-  const auto settled =
-      std::find_if(fresh_.begin(), fresh_.end(), [this](const Hypothesis& hypothesis) {
-        return hypothesis.weight >= config_.sure &&
-               hypothesis.surface.executions() >= static_cast<double>(config_.settled_after);
+  const auto lighter = [](const Hypothesis& a, const Hypothesis& b) { return a.weight < b.weight; };
+  const auto begin_settled =
+      std::stable_partition(fresh_.begin(), fresh_.end(), [this](const Hypothesis& hypothesis) {
+        return hypothesis.surface.executions() < static_cast<double>(config_.settled_after);
       });
-  if (settled == fresh_.end()) return false;
-  settled->last_met = clock_;
-  if (static_cast<int64_t>(surfaces_.size()) > config_.capacity) {
-    // Never the shipped one.
-    const auto oldest = std::min_element(
-        surfaces_.begin() + 1, surfaces_.end(),
-        [](const Hypothesis& a, const Hypothesis& b) { return a.last_met < b.last_met; });
-    const double left = 1.0 - oldest->weight;
-    *oldest = std::move(*settled);
-    fresh_.erase(settled);
-    scaleWeights(left);
+  double together = 0.0;
+  for (auto settled = begin_settled; settled != fresh_.end(); ++settled)
+    together += settled->weight;
+  if (together < config_.sure) return false;
+  Hypothesis likeliest = std::move(*std::max_element(begin_settled, fresh_.end(), lighter));
+  likeliest.weight = together;
+  likeliest.last_met = clock_;
+  fresh_.erase(begin_settled, fresh_.end());
+  const auto most = static_cast<size_t>(config_.capacity) + 1;
+  // More than there is room for are those of a state from before the capacity was lowered.
+  while (surfaces_.size() > most) forgetOldest();
+  if (surfaces_.size() < most) {
+    surfaces_.push_back(std::move(likeliest));
     return true;
   }
-  surfaces_.push_back(std::move(*settled));
-  fresh_.erase(settled);
+  // The others keep their numbers.
+  const auto oldest = metLongestAgo();
+  const double left = 1.0 - oldest->weight;
+  *oldest = std::move(likeliest);
+  scaleWeights(left);
   return true;
 }
 
@@ -330,6 +351,10 @@ void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNot
   forgetWeakest();
   note.surface_stored = rememberSettled();
   expectNew();
+  // Or calm executions on the shipped set's ground were likelier on new ground, known to be calm.
+  Surface& of_shipped = surfaces_.front().surface;
+  if (of_shipped.executions() < static_cast<double>(config_.settled_after))
+    of_shipped.expect(*model_, config_, near_.prior().scatter);
   predictMixture();
   note.change_probability = change_probability_;
   note.surface = 0;
@@ -449,12 +474,14 @@ bool MultiModel::restore(const TrajectoryTable&, const std::vector<double>& memo
   rule.clock_ = static_cast<int64_t>(memory[0]);
   rule.changes_ = memory[1];
   rule.metres_ = memory[2];
-  if (!(rule.changes_ >= 0.0 && rule.metres_ >= 0.0 && rule.metres_ <= kLongestWay) ||
-      !isCount(memory[3], memory[0]))
+  if (!(rule.changes_ >= 0.0 && rule.changes_ <= kMostExecutions) ||
+      !(rule.metres_ >= 0.0 && rule.metres_ <= kLongestWay) || !isCount(memory[3], memory[0]))
     return false;
   rule.ground_ = static_cast<int64_t>(memory[3]);
   std::copy_n(memory.begin() + 4, rule.scatter_.sums.size(), rule.scatter_.sums.data());
-  if (rule.scatter_.sums.minCoeff() < 0.0) return false;
+  if (rule.scatter_.sums.minCoeff() < 0.0 ||
+      rule.scatter_.sums.maxCoeff() > kMostError * kMostExecutions)
+    return false;
   if (!rule.restoreHypotheses(rule.surfaces_, GroundConfig::kMostSurfaces + 1, memory, at) ||
       !rule.restoreHypotheses(rule.fresh_, static_cast<size_t>(config_.moments), memory, at) ||
       at != memory.size() || rule.surfaces_.empty())

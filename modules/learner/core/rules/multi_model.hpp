@@ -25,6 +25,9 @@ struct Scatter {
   void add(size_t pattern, const Eigen::Vector4d& squared_error, double longest_memory);
   /// Expected factors on the variances, a column for each pattern: its mean, drawn by `prior`
   /// executions towards that of all patterns, which is drawn by as many towards 1.
+  /** A rough ground tells nothing of the next: where the velocities of all patterns together
+   * scatter more than expected, only how patterns differ counts. The next ground would look like
+   * any, were it expected to be as rough; how rough it is itself is its own q. */
   Factors expected(double prior) const;
 
   Eigen::MatrixXd sums;  ///< a column for each pattern: executions, then their squared errors
@@ -34,22 +37,24 @@ struct Scatter {
 /** On which ground is the vehicle? The hypotheses are the surfaces that it remembers, the first of
  * them the ground of the shipped set, and *fresh* ones: since some moment it is on ground that it
  * has not met, two hypotheses (near, far) for each recent moment. Each is a Surface: a regression
- * of what was measured, with a noise of its own. After d metres and an execution z w_i^- = (1 - h)
- * w_i + h pi_i,   h = 1 - exp(-d r), w_i ~ w_i^- p_i(z) r: changes a metre, learned from those that
- * were sure in the end; what is expected counts for change_prior changes in as many times
- * change_metres. pi: `fresh` for a new hypothesis that begins with this execution, the rest in
- * equal shares for the remembered surfaces. Every fresh one learns from z, a remembered one only
- * while it is sure, so that doubtful executions blur none. A fresh one that is sure and settled is
- * remembered from then on. The weakest fresh ones and the surface that was met longest ago make
- * room.
+ * of what was measured, with a noise of its own. After d metres and an execution z
+ *    w_i^- = (1 - h) w_i + h pi_i,   h = 1 - exp(-d r),
+ *    w_i ~ w_i^- p_i(z).
+ * r: changes a metre, learned from those that were sure in the end; what is expected counts for
+ * change_prior changes in as many times change_metres. pi: `fresh` for the new hypotheses that
+ * begin with this execution, the rest in equal shares for the remembered surfaces. Every fresh one
+ * learns from z, a remembered one only while it is sure, so that doubtful executions blur none. Of
+ * the fresh ones that have settled and are sure together the likeliest is remembered. The weakest
+ * fresh ones and the surface that was met longest ago make room.
  *
  * A new surface is expected about what the K surfaces met so far have in common. Of a correction,
  * with x_k = mu + d_k, mu ~ N(0, m), d_k ~ N(0, d), and x_k known by P_k,
- *    g = m / (d + K m),   E[mu] = g sum x_k,   Var[x_new] = d (1 + g) + g^2 sum P_k
+ *    g = m / (d + K m),   E[mu] = g sum x_k,   Var[x_new] = d (1 + g) + g^2 sum P_k.
  * Near: m = shared Q, d = (1 - shared) Q, the vehicle is about as its set says. Far: m = vehicle^2,
  * d = Q for the common corrections: it differs from its set on every ground, which is kept where
- * the ground changes; or, before anything was met, it may be anything.
- * Executions are expected to scatter on it as they have so far (Scatter).
+ * the ground changes; or, before anything was met, it may be anything. Executions are expected to
+ * scatter on it as they have so far (Scatter), and also on the shipped set's ground until the
+ * vehicle has settled there.
  *
  * Predictions are for the next `ahead` metres, on which the ground may change, too: the shipped
  * profile under sum_i w_i^- E[x_i], the covariance that of the mixture. */
@@ -100,6 +105,8 @@ class MultiModel : public LearningRule {
   void update(const TwistSample& sample);
   void followScatter(const TwistSample& sample, const Pose2& end);
   void forgetWeakest();
+  std::vector<Hypothesis>::iterator metLongestAgo();
+  void forgetOldest();
   bool rememberSettled();
   void predictMixture();
   template <class Take>
@@ -116,10 +123,10 @@ class MultiModel : public LearningRule {
   Surface near_, far_;           ///< what a new surface would be
   std::vector<double> changed_;  ///< share of w_i^- that came by a change, remembered ones first
   double change_probability_ = 0.0;
-  double changes_ = 0.0;  ///< of ground that were sure in the end
-  double metres_ = 0.0;   ///< driven meanwhile
-  int64_t ground_ = 0;    ///< `since` of the hypothesis that was sure last
-  int64_t clock_ = 0;
+  double changes_ = 0.0;                    ///< of ground that were sure in the end
+  double metres_ = 0.0;                     ///< driven meanwhile
+  int64_t ground_ = 0;                      ///< `since` of the hypothesis that was sure last
+  int64_t clock_ = 1;                       ///< 0 is when the shipped set was made
   ByVelocity<Eigen::VectorXd> mean_;        ///< of the mixture ahead
   ByVelocity<Eigen::MatrixXd> covariance_;  ///< the same
 };

@@ -79,6 +79,12 @@ void Surface::add(const GroundModel& model, const GroundConfig& config, const Tw
   follow(model, config);
 }
 
+void Surface::expect(const GroundModel& model, const GroundConfig& config,
+                     const Eigen::Matrix3Xd& scatter) {
+  prior_.scatter = scatter;
+  follow(model, config);
+}
+
 void Surface::follow(const GroundModel& model, const GroundConfig& config) {
   regress(model);
   estimateNoise(config);

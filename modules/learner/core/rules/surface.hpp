@@ -62,6 +62,9 @@ class Surface {
 
   /// Learns from an execution. The oldest fade beyond config.longest_memory executions.
   void add(const GroundModel& model, const GroundConfig& config, const TwistSample& sample);
+  /// Executions are expected to scatter otherwise than when it began.
+  void expect(const GroundModel& model, const GroundConfig& config,
+              const Eigen::Matrix3Xd& scatter);
   /// E[(z - m - h' x)^2] of an execution that it has learned from, over the ground model's noise.
   Eigen::Vector3d squaredError(const TwistSample& sample) const;
   /// Logarithm of the density of an execution on this surface.
