@@ -17,9 +17,9 @@ struct Driving {
   std::vector<int> patterns = {kLeft, kStraight, kRight, kLeft};  ///< ids, over and over
   std::map<int, Twist2> truth = {
       {kStraight, {0.9, 0.0, 0.0}}, {kLeft, {0.8, 0.0, 0.6}}, {kRight, {0.8, 0.0, -0.6}}};
-  int64_t set_version = 0;      ///< named in the records; 0 = the newest heard
-  int executions = 1'000'000;   ///< then it stands
-  int abort_every = 0;          ///< every so many executions one is aborted at its end; 0 = none
+  int64_t set_version = 0;     ///< named in the records; 0 = the newest heard
+  int executions = 1'000'000;  ///< then it stands
+  int abort_every = 0;         ///< every so many executions one is aborted at its end; 0 = none
   std::string abort_reason = "lease expired";
   bool wrong_commands = false;  ///< the motors get other commands than the patterns say
 };

@@ -81,7 +81,8 @@ enum Place : size_t {
   kLastMetAt,
   kSinceAt,
   kShareAt,
-  kCentreAt,
+  kVariancesAt,
+  kCentreAt = kVariancesAt + 9,
   kFactorsAt = kCentreAt + 3 * (3 + 7),
   kNoiseAt = kFactorsAt + 3 * 7,
   kExecutionsAt = kNoiseAt + 3,
@@ -169,14 +170,15 @@ TEST_CASE("a memory with a number that cannot be is refused whole") {
   const size_t second = after(memory, kWeightAt);
   const size_t fresh = after(memory, second);
   REQUIRE(memory[fresh] >= 1.0);
-  REQUIRE(memory[fresh] <= 5.0);
-  refused(fresh, {-1.0, 0.5, memory[fresh] - 1.0, memory[fresh] + 1.0, 6.0, 1e300});
+  REQUIRE(memory[fresh] <= 8.0);
+  refused(fresh, {-1.0, 0.5, memory[fresh] - 1.0, memory[fresh] + 1.0, 9.0, 1e300});
   for (const size_t weight : {size_t{kWeightAt}, second, fresh + 1}) {
     const size_t base = weight - kWeightAt;
     refused(weight, {-0.5, memory[weight] + 0.01, 2.0, 1e300});
     refused(base + kLastMetAt, {-1.0, 0.5, 58.0, 1e300});
     refused(base + kSinceAt, {-1.0, 0.5, 58.0, 1e300});
     refused(base + kShareAt, {-0.1, 0.0, 1.1, 1e300});
+    refused(base + kVariancesAt, {-0.1, 0.0, 1e300});
     refused(base + kCentreAt, {1e300, -1e300});
     refused(base + kFactorsAt, {0.0, -1.0, 51.0, 1e300});
     refused(base + kNoiseAt, {0.0, -1.0, 51.0, 1e300});

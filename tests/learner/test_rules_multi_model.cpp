@@ -727,7 +727,7 @@ TEST_CASE("room for no surface, or surfaces of none, or no moment of change is r
   config.ground.settled_after = 0;
   REQUIRE_THROWS_WITH(makeRule(config, richSet()), Catch::Contains("settled_after"));
   config = ruleConfig("multi_model");
-  config.ground.moments = 1;
+  config.ground.moments = 2;
   REQUIRE_THROWS_WITH(makeRule(config, richSet()), Catch::Contains("moments"));
 }
 
@@ -745,7 +745,7 @@ TEST_CASE("the ends of all ranges are configurations like others") {
       [](GroundConfig& c) { c.sure = 0.5; },
       [](GroundConfig& c) { c.sure = 0.999; },
       [](GroundConfig& c) { c.settled_after = 2; },
-      [](GroundConfig& c) { c.moments = 2; },
+      [](GroundConfig& c) { c.moments = 3; },
       [](GroundConfig& c) { c.moments = 64; },
       [](GroundConfig& c) { c.shared = 0.0; },
       [](GroundConfig& c) { c.shared = 0.95; },

@@ -27,7 +27,9 @@ Eigen::VectorXd dense(const GroundModel& model, const PatternPart& part, size_t 
 
 struct Fixture {
   explicit Fixture(const GroundConfig& changed = {}) : config(changed) {
-    prior.share = 0.7;
+    prior.residual = 0.7;
+    for (size_t term = 0; term < config.common.size(); ++term)
+      prior.common.data()[term] = 0.5 * config.common[term] * config.common[term];
     prior.scatter = Eigen::Matrix3Xd::Ones(3, static_cast<Eigen::Index>(world.patterns()));
     prior.scatter.col(kHardLeft) << 2.0, 0.5, 3.0;
     for (size_t velocity = 0; velocity < kVelocities; ++velocity)
@@ -86,7 +88,9 @@ TEST_CASE("a surface is the regression of all that was measured on it, of parts 
     double log_density = 0.0;
     for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
       const auto axis = static_cast<Eigen::Index>(velocity);
-      Eigen::MatrixXd information = (f.prior.share * f.model().spread(velocity)).inverse();
+      Eigen::MatrixXd Q = f.prior.residual * f.model().spread(velocity);
+      Q.topLeftCorner<kTerms, kTerms>() = f.prior.common.col(axis).asDiagonal();
+      Eigen::MatrixXd information = Q.inverse();
       Eigen::VectorXd sum = Eigen::VectorXd::Zero(information.rows());
       for (const TwistSample& each : samples) {
         const Eigen::VectorXd h = dense(f.model(), each.part, velocity);
