@@ -109,6 +109,24 @@ void writeGuards(std::ostream& out, const LearnerRun& run) {
   for (const auto& [guard, count] : guards) out << formatted("  %5d %s\n", count, guard.c_str());
 }
 
+/// How far the vehicle drove and turned against what the set says that learning begins with.
+std::string groundLine(const std::vector<learning_t>& learned) {
+  double way = 0.0, predicted_way = 0.0, turn = 0.0, predicted_turn = 0.0;
+  for (const learning_t& one : learned) {
+    if (!isScored(one)) continue;
+    way += std::hypot(one.measured_end[0], one.measured_end[1]);
+    predicted_way += std::hypot(one.predicted_end[0], one.predicted_end[1]);
+    // Against the prediction's direction.
+    turn += one.predicted_end[2] < 0.0 ? -one.measured_end[2] : one.measured_end[2];
+    predicted_turn += std::abs(one.predicted_end[2]);
+  }
+  if (predicted_way <= 0.0 || predicted_turn <= 0.0) return "";
+  return formatted(
+      "On this ground the vehicle came %.0f %% as far and turned %.0f %% as much as the set "
+      "says that learning begins with.\n",
+      100.0 * way / predicted_way, 100.0 * turn / predicted_turn);
+}
+
 /// The result in one line.
 std::string resultLine(const DriveLog& log, const std::vector<LearnerRun>& runs) {
   std::string result = log.name + ": mean prediction error of " +
@@ -273,7 +291,7 @@ std::string reportOf(const DriveLog& log, const PatternSet& set,
   out << "\n";
   writeComparison(out, runs);
   if (runs.size() > 1) writeGuards(out, runs.back());
-  out << "\n" << resultLine(log, runs);
+  out << "\n" << groundLine(runs.front().learned) << resultLine(log, runs);
   return out.str();
 }
 

@@ -101,7 +101,7 @@ void addPlanner(CLI::App& app, Arguments& arguments) {
 struct LearnerArguments : Arguments {
   std::string model;
   std::string patterns;
-  std::string rule = "multi_model";
+  std::vector<std::string> rules{"multi_model"};
   std::string write_patterns;
 };
 
@@ -138,12 +138,14 @@ void replayLearner(LearnerArguments& arguments) {
   std::vector<replay::LearnerRun> runs;
   config.rule.rule = "off";
   runs.push_back(replay::runLearner(log, config, replay::Commitment::kAhead, "off"));
-  config.rule.rule = arguments.rule;
-  if (config.rule.rule != "off") {
-    runs.push_back(replay::runLearner(log, config, replay::Commitment::kAhead, arguments.rule));
-    runs.push_back(
-        replay::runLearner(log, config, replay::Commitment::kPrompt, arguments.rule + ", prompt"));
+  for (const std::string& rule : arguments.rules) {
+    config.rule.rule = rule;
+    if (rule != "off")
+      runs.push_back(replay::runLearner(log, config, replay::Commitment::kAhead, rule));
   }
+  if (arguments.rules.size() == 1 && runs.size() == 2)
+    runs.push_back(replay::runLearner(log, config, replay::Commitment::kPrompt,
+                                      config.rule.rule + ", prompt"));
   say(notes + "\n" + replay::reportOf(log, set, runs), arguments.output);
   if (!arguments.output.picture.empty())
     replay::drawReport(log, set, runs, arguments.output.picture);
@@ -162,7 +164,8 @@ void addLearner(CLI::App& app, LearnerArguments& arguments) {
                      "vehicle model file: predicts a pattern for each pattern id of the log");
   source->add_option("--patterns", arguments.patterns, "pattern file");
   source->require_option(0, 1);
-  command.add_option("--rule", arguments.rule, "beside 'off'")
+  command.add_option("--rule", arguments.rules, "beside 'off'; several with commas between")
+      ->delimiter(',')
       ->check(CLI::IsMember(learner::ruleNames()))
       ->capture_default_str();
   command.add_option("--write-patterns", arguments.write_patterns,

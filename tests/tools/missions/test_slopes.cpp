@@ -100,10 +100,8 @@ void addTo(MeanError& sum, const MeanError& more) {
 
 }  // namespace
 
-// Measured, means over the first five executions on the level, two seeds (metres, radians):
-//               with the gate     without
-//   collective  0.0949  0.0303    0.1603  0.0821
-//   bank        0.0669  0.0292    0.1302  0.0823
+// A rule that follows each execution is spoiled without the gate. The default one takes a slope for
+// other ground, and comes back from it.
 TEST_CASE("what a slope did is not learned with the gate, and spoils level ground without it") {
   MeanError with[2], without[2];
   int refused = 0;  // and LEARNING says for which slope
@@ -127,7 +125,12 @@ TEST_CASE("what a slope did is not learned with the gate, and spoils level groun
             without[rule].yaw);
     REQUIRE(with[rule].count == 10);
     REQUIRE(without[rule].count == 10);
-    CHECK(without[rule].position > 1.2 * with[rule].position);
-    CHECK(without[rule].yaw > with[rule].yaw);
+    if (kRules[rule] == "collective") {
+      CHECK(without[rule].position > 1.2 * with[rule].position);
+      CHECK(without[rule].yaw > with[rule].yaw);
+    } else {
+      CHECK(without[rule].position < 1.3 * with[rule].position);
+      CHECK(with[rule].position < with[0].position);
+    }
   }
 }
