@@ -14,14 +14,14 @@ namespace {
 constexpr const char* kSlots[2] = {"learner_state_1", "learner_state_2"};
 constexpr const char* kVersions = "learner_versions";
 /// Versions reserved at a time, and how many must be left before the next are.
-constexpr int64_t kReserve = 100;
-constexpr int64_t kReserveLeft = 50;
+constexpr int64_t kReserve = 100 * Learner::kVersions;
+constexpr int64_t kReserveLeft = 50 * Learner::kVersions;
 /// Above a state whose reserve is lost.
-constexpr int64_t kWithoutReserve = 1000;
+constexpr int64_t kWithoutReserve = 1000 * Learner::kVersions;
 /// No version is higher: a larger number is not one of ours.
 constexpr int64_t kHighestReserve = 1'000'000'000'000;
 /// Robot time for one version where nothing is known [us].
-constexpr int64_t kTimePerVersionUs = 100'000;
+constexpr int64_t kTimePerVersionUs = 20'000;
 
 void append(std::string& problem, const std::string& another) {
   problem += (problem.empty() ? "" : "; ") + another;

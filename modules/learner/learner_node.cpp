@@ -161,7 +161,7 @@ void LearnerNode::step(int64_t utime) {
     while (executions_.takeEndedBy(horizon)) health_.addToCounter("executions left to the other");
   } else if (!listensOnly()) {
     handleEnded(utime);
-    followRunning();
+    if (!executions_.nextEnd()) followRunning(ins_.history().newest());
     if (utime >= next_repeat_ && publisher_.setsSent()) {
       publisher_.putSet(learner_.set());
       next_repeat_ = utime + config_.repeat_us;
@@ -185,6 +185,7 @@ void LearnerNode::handleEnded(int64_t utime) {
     if (record.ended < ins_.begin()) {
       health_.addToCounter("executions before the start");
     } else {
+      if (running_ && keyOf(*running_) == keyOf(record)) followRunning(record.ended);
       handle(record);
     }
   }
@@ -200,24 +201,27 @@ void LearnerNode::noteRunning(const execution_t& message) {
   }
 }
 
-/// What is known of a running execution teaches at once: the next one is being chosen.
-void LearnerNode::followRunning() {
+/// What is known of a running execution teaches at once: the next one is being chosen. All parts up
+/// to `until`, so that those who name a set later find it whichever came in time.
+void LearnerNode::followRunning(int64_t until) {
   if (!running_ || config_.follow_us <= 0 || !learner_.learnsParts()) return;
-  const int64_t newest = ins_.history().newest();
   const MotionPattern* pattern = learner_.set().find(running_->record_pattern_id);
-  if (pattern == nullptr || running_->started < ins_.begin() || executions_.nextEnd()) return;
-  const int64_t parts = (newest - running_->started) / config_.follow_us;
-  const int64_t until = running_->started + parts * config_.follow_us;
+  if (pattern == nullptr || running_->started < ins_.begin()) return;
   const int64_t end = running_->started + learner_.set().content().period_us *
                                               static_cast<int64_t>(pattern->commands.size());
   // Its end itself is left to its record.
-  if (until <= followed_until_ || until >= end) return;
-  followed_until_ = until;
-  ExecutionCut cut = cutOf(*running_, *pattern);
-  cut.ended = until;
-  cut.beginning = true;
-  const Measurement measurement = measureCut(cut, *pattern);
-  if (measurement.fair() && learner_.follow(pattern->id, measurement, until)) publishVersion();
+  for (int64_t part = 1 + (followed_until_ - running_->started) / config_.follow_us;; ++part) {
+    const int64_t ended = running_->started + part * config_.follow_us;
+    if (ended > until || ended >= end) return;
+    followed_until_ = ended;
+    ExecutionCut cut = cutOf(*running_, *pattern);
+    cut.ended = ended;
+    cut.beginning = true;
+    const Measurement measurement = measureCut(cut, *pattern);
+    if (measurement.fair() && learner_.follow(pattern->id, measurement, part, ended))
+      publishVersion();
+    pattern = learner_.set().find(running_->record_pattern_id);
+  }
 }
 
 /// By steps and not by time, which jumps when the first message is heard.

@@ -29,11 +29,11 @@ struct StoredLearning {
 
 /// The learner's files. Entries: learner_state_1 and _2, written in turn so that the one before is
 /// kept, and learner_versions, a number that no published version exceeds.
-/** The rule of versions: learner_versions is written ahead, a hundred at a time, before they are
- * used. A start begins above it, because the last versions may have been published from memory
- * while the disk was full. Without it, above the newest state by a thousand; without that, too, at
- * ten per second of robot time, which is faster than executions can be learned from. A node that
- * then still hears of a higher version of its own goes above that (LearnerNode). */
+/** The rule of versions: learner_versions is written ahead, for a hundred executions, before they
+ * are used. A start begins above it, because the last versions may have been published from memory
+ * while the disk was full. Without it, above the newest state by those of a thousand; without that,
+ * too, at fifty per second of robot time, which is faster than executions can be learned from. A
+ * node that then still hears of a higher version of its own goes above that (LearnerNode). */
 class LearnerMemory {
  public:
   explicit LearnerMemory(Store& store) : store_(store) {}
@@ -149,7 +149,7 @@ class LearnerNode : public Node {
   void handleEnded(int64_t utime);
   void handle(const execution_record_t& record);
   void noteRunning(const execution_t& message);
-  void followRunning();
+  void followRunning(int64_t until);
   ExecutionCut cutOf(const execution_record_t& record, const MotionPattern& pattern) const;
   Measurement measureCut(const ExecutionCut& cut, const MotionPattern& pattern) const;
   void score(const execution_record_t& record, const Measurement& measurement,

@@ -60,7 +60,8 @@ ExecutionTracker begun(const PatternSet& set) {
 }  // namespace
 
 TEST_CASE(
-    "Execution ids count up; the same next pattern keeps its slot until a newer set predicts it") {
+    "Execution ids count up, and the same next pattern keeps its slot until a newer set predicts "
+    "it") {
   const PatternSet set = samplePatterns(1);
   const PatternSet newer = samplePatterns(2);
   ExecutionTracker tracker(kRun);

@@ -65,6 +65,7 @@ Learner::Learner(const RuleConfig& config, PatternSet shipped)
     : shipped_(std::move(shipped)),
       set_(shipped_),
       rule_(makeRule(config, shipped_)),
+      settled_version_(set_.version()),
       settled_(rule_->clone()) {
   for (const MotionPattern& pattern : shipped_.patterns()) {
     index_.emplace(pattern.id, index_.size());
@@ -74,6 +75,7 @@ Learner::Learner(const RuleConfig& config, PatternSet shipped)
 
 bool Learner::restore(PatternSet set, ResidualTable residuals, const std::vector<double>& memory) {
   set_ = std::move(set);
+  settled_version_ = set_.version();
   residuals_ = std::move(residuals);
   if (rule_->restore(TrajectoryTable(set_.patterns()), memory)) {
     settled_->assign(*rule_);
@@ -90,6 +92,7 @@ void Learner::renumber(int64_t version, int64_t parent) {
   content.parent_version = parent;
   std::string why;
   if (auto renumbered = PatternSet::make(std::move(content), why)) set_ = *renumbered;
+  settled_version_ = set_.version();
 }
 
 PatternSetContent Learner::predicted() const {
@@ -122,22 +125,24 @@ RuleNote Learner::update(size_t executed, const Measurement& measurement) {
   return note;
 }
 
-bool Learner::adopt(PatternSetContent content, int64_t utime, std::string& why) {
+bool Learner::adopt(PatternSetContent content, int64_t version, int64_t utime, std::string& why) {
   content.parent_version = content.version;
-  ++content.version;
+  content.version = version;
   content.utime = utime;
   auto next = PatternSet::make(std::move(content), why);
   if (next) set_ = *next;
   return next.has_value();
 }
 
-bool Learner::follow(int pattern_id, const Measurement& beginning, int64_t utime) {
+bool Learner::follow(int pattern_id, const Measurement& beginning, int64_t part, int64_t utime) {
   const MotionPattern* pattern = set_.find(pattern_id);
   if (!rule_->learnsParts() || pattern == nullptr || !beginning.fair() || beginning.covered == 0)
     return false;
+  const int64_t version = settled_version_ + part;
+  if (part >= kVersions || version <= set_.version()) return false;
   update(index_.at(pattern_id), beginning);
   std::string why;
-  following_ = adopt(predicted(), utime, why);
+  following_ = adopt(predicted(), version, utime, why);
   if (!following_) rule_->assign(*settled_);
   return following_;
 }
@@ -147,7 +152,9 @@ bool Learner::unfollow(int64_t utime) {
   following_ = false;
   rule_->assign(*settled_);
   std::string why;
-  return adopt(predicted(), utime, why);
+  if (!adopt(predicted(), nextVersion(), utime, why)) return false;
+  settled_version_ = set_.version();
+  return true;
 }
 
 Correction Learner::learn(int pattern_id, const Measurement& measurement,
@@ -167,12 +174,13 @@ Correction Learner::learn(int pattern_id, const Measurement& measurement,
   ++learned.times_learned;
   if (!rule_->endCovariance(executed)) learned.end_covariance = covarianceOf(residuals);
   std::string why;
-  if (!adopt(std::move(content), utime, why)) {
+  if (!adopt(std::move(content), nextVersion(), utime, why)) {
     rule_->assign(*settled_);
     append(correction.guards, "not learned, the set would be wrong: " + why);
     return correction;
   }
   settled_->assign(*rule_);
+  settled_version_ = set_.version();
   following_ = false;
   residuals_[pattern_id] = residuals;
   correction.changed = true;

@@ -44,6 +44,8 @@ PoseCovariance covarianceOf(const EndResiduals& residuals);
 using ResidualTable = std::map<int, EndResiduals>;
 
 /// Learns a pattern set from measured executions. Every change makes a new version with its parent.
+/** Where the rule learns from parts, an execution has kVersions: its k-th part makes the k-th of
+ * them and its end the last, so that a version is the same whichever parts were in time. */
 class Learner {
  public:
   Learner(const RuleConfig& config, PatternSet shipped);
@@ -52,6 +54,8 @@ class Learner {
   const PatternSet& set() const { return set_; }
   const PatternSet& shipped() const { return shipped_; }
   const ResidualTable& residuals() const { return residuals_; }
+
+  static constexpr int64_t kVersions = 16;  ///< of an execution whose parts are learned, too
 
   // Pointers to rules are its own.
   Learner(const Learner&) = delete;
@@ -68,8 +72,9 @@ class Learner {
 
   /// Follows an execution that still runs: a new set as if it had ended here.
   /** The next call of either replaces what was learned, so that an execution counts once. Fair
-   * measurements only, of rules that learn from parts. True if there is a new set. */
-  bool follow(int pattern_id, const Measurement& beginning, int64_t utime);
+   * measurements only, of rules that learn from parts. `part` counts up from 1 within an execution.
+   * True if there is a new set. */
+  bool follow(int pattern_id, const Measurement& beginning, int64_t part, int64_t utime);
   /// Forgets what was followed, should its execution prove to be no fair one. True if there is a
   /// new set.
   bool unfollow(int64_t utime);
@@ -89,13 +94,15 @@ class Learner {
   /// The newest set with what the rule predicts now, not yet checked.
   PatternSetContent predicted() const;
   RuleNote update(size_t executed, const Measurement& measurement);
-  /// The predictions as the next version; one clear line in `why` if they are no set.
-  bool adopt(PatternSetContent content, int64_t utime, std::string& why);
+  /// The predictions as a version; one clear line in `why` if they are no set.
+  bool adopt(PatternSetContent content, int64_t version, int64_t utime, std::string& why);
+  int64_t nextVersion() const { return settled_version_ + (rule_->learnsParts() ? kVersions : 1); }
 
   PatternSet shipped_;
   PatternSet set_;
   std::map<int, size_t> index_;  ///< by pattern id
   std::unique_ptr<LearningRule> rule_;
+  int64_t settled_version_ = 0;            ///< of the last execution that has ended
   bool following_ = false;                 ///< the set holds what still runs
   std::unique_ptr<LearningRule> settled_;  ///< without what is learned from a running execution
   ResidualTable residuals_;

@@ -53,7 +53,7 @@ TEST_CASE("the usual world changes nothing, and every kind has a name") {
                                                  "other_machine"});
 }
 
-TEST_CASE("stretches of another ground lie on the borders; the rest of a seed's world stays") {
+TEST_CASE("stretches of another ground lie on the borders, the rest of a seed's world stays") {
   const std::pair<const char*, const char*> kinds[] = {
       {"ice", "ice"}, {"mud", "mud"}, {"deep_sand", "sand"}};
   for (const auto& [name, surface] : kinds) {
