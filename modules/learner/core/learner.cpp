@@ -126,7 +126,7 @@ RuleNote Learner::update(size_t executed, const Measurement& measurement) {
 }
 
 bool Learner::adopt(PatternSetContent content, int64_t version, int64_t utime, std::string& why) {
-  content.parent_version = content.version;
+  content.parent_version = settled_version_;
   content.version = version;
   content.utime = utime;
   auto next = PatternSet::make(std::move(content), why);

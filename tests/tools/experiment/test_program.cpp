@@ -134,7 +134,7 @@ TEST_CASE("the usual methods with extras: lines are short, variants are told") {
     CHECK(figures.find("\n" + method + " ") != std::string::npos);
 }
 
-TEST_CASE("--set replaces keys of the learner's configuration") {
+TEST_CASE("an option replaces keys of the learner's configuration") {
   const Folder folder;
   write(folder / "small.yaml", kSmallWorld);
   const std::string few = "--world " + (folder / "small.yaml") +
