@@ -209,10 +209,10 @@ void LearnerNode::followRunning(int64_t until) {
   if (pattern == nullptr || running_->started < ins_.begin()) return;
   const int64_t end = running_->started + learner_.set().content().period_us *
                                               static_cast<int64_t>(pattern->commands.size());
-  // Its end itself is left to its record.
+  // What would be known no sooner than its end is left to its record.
   for (int64_t part = 1 + (followed_until_ - running_->started) / config_.follow_us;; ++part) {
     const int64_t ended = running_->started + part * config_.follow_us;
-    if (ended > until || ended >= end) return;
+    if (ended > until || ended + config_.settle_us >= end) return;
     followed_until_ = ended;
     ExecutionCut cut = cutOf(*running_, *pattern);
     cut.ended = ended;
