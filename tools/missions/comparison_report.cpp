@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <ostream>
 
@@ -91,6 +92,66 @@ void printTable(std::ostream& out, const std::vector<Row>& rows) {
   for (const auto& [when, part] : parts)
     for (const Row& row : rows) printErrors(out, row.rule, when, row.errors.*part);
   for (const Row& row : rows) printErrors(out, row.rule, "all on one surface", row.all);
+}
+
+/// Difference of a mean error to that of another rule on the same executions; missions are what is
+/// independent, so the interval is over them.
+struct Difference {
+  double position = 0.0, yaw = 0.0;            ///< [m], [rad]; negative is better
+  double half_position = 0.0, half_yaw = 0.0;  ///< half the 95 % interval
+};
+
+using PartOf = std::function<MeanError(const std::vector<MissionResult>&, const ErrorOf&)>;
+
+Difference differenceOf(const std::vector<MissionResult>& results, size_t rule, size_t against,
+                        const PartOf& part) {
+  struct OfMission {
+    double count, position, yaw;
+  };
+  constexpr double kNormal95 = 1.959963984540054;
+  std::vector<OfMission> missions;
+  OfMission all{0.0, 0.0, 0.0};
+  for (const MissionResult& result : results) {
+    const MeanError mine = part({result}, errorByRule(rule));
+    const MeanError other = part({result}, errorByRule(against));
+    const auto n = static_cast<double>(mine.count);
+    missions.push_back({n, n * (mine.position - other.position), n * (mine.yaw - other.yaw)});
+    all.count += n;
+    all.position += missions.back().position;
+    all.yaw += missions.back().yaw;
+  }
+  if (all.count <= 0.0) return {};
+  Difference difference{all.position / all.count, all.yaw / all.count};
+  double position = 0.0, yaw = 0.0;
+  for (const OfMission& one : missions) {
+    position += std::pow(one.position - one.count * difference.position, 2);
+    yaw += std::pow(one.yaw - one.count * difference.yaw, 2);
+  }
+  difference.half_position = kNormal95 * std::sqrt(position) / all.count;
+  difference.half_yaw = kNormal95 * std::sqrt(yaw) / all.count;
+  return difference;
+}
+
+void printDifferences(std::ostream& out, const std::vector<MissionResult>& results) {
+  if (results.empty() || results.front().shadow_rules.size() < 2) return;
+  const std::vector<learner::Rule>& rules = results.front().shadow_rules;
+  out << "  less than " << rules.front()
+      << " on them (negative is better), with the 95 % interval over missions:\n";
+  const auto around = [](MeanError ErrorsAroundChanges::*part) -> PartOf {
+    return [part](const std::vector<MissionResult>& of, const ErrorOf& error) {
+      return errorsAroundChanges(of, error).*part;
+    };
+  };
+  const std::pair<const char*, PartOf> parts[] = {
+      {"1..3 after it", around(&ErrorsAroundChanges::after)},
+      {"5..15 after it", around(&ErrorsAroundChanges::settled)},
+      {"all on one surface", meanErrorOf}};
+  for (const auto& [when, part] : parts)
+    for (size_t rule = 1; rule < rules.size(); ++rule) {
+      const Difference d = differenceOf(results, rule, 0, part);
+      out << formatted("  %-12s %-18s %+8.4f +-%.4f m  %+8.4f +-%.4f rad\n", rules[rule].c_str(),
+                       when, d.position, d.half_position, d.yaw, d.half_yaw);
+    }
 }
 
 std::string countText(double count) {
@@ -203,6 +264,7 @@ void printComparison(std::ostream& out, const RuleComparison& comparison) {
   std::vector<Row> with_best = same;
   with_best.push_back(omniscientRow(driven.results, omniscient));
   printTable(out, with_best);
+  printDifferences(out, driven.results);
   printSettlingTable(out, same);
 }
 
