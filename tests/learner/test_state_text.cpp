@@ -6,6 +6,7 @@
 #include <random>
 
 #include "modules/learner/core/learner.hpp"
+#include "tests/fuzz/reading.hpp"
 #include "tests/learner/samples.hpp"
 
 using namespace tread;
@@ -85,4 +86,14 @@ TEST_CASE("a state of another shipped set is refused with that reason") {
   std::string why;
   REQUIRE_FALSE(parseState(text, checked(other), why));
   REQUIRE(why == "belongs to another shipped pattern set");
+}
+
+TEST_CASE("a state that another release wrote is refused with that reason, not as damaged") {
+  std::string text = formatState(learnedState(), smallSet(), {});
+  text.replace(text.find("state 3"), 7, "state 2");
+  text.resize(text.rfind("end "));
+  std::string why;
+  const auto* bytes = reinterpret_cast<const uint8_t*>(text.data());
+  REQUIRE_FALSE(parseState(fuzz::sealed(bytes, text.size()), smallSet(), why));
+  REQUIRE(why == "was written by another release");
 }

@@ -80,6 +80,7 @@ class Words {
   bool good_ = true;
 };
 
+constexpr const char* kStateKind = "tread-learner-state ";
 constexpr const char* kStateHeader = "tread-learner-state 3";
 /// No state of a thousand patterns has more executions in its list than this.
 constexpr int64_t kMaxHandled = 10'000;
@@ -155,8 +156,12 @@ std::string formatState(const LearnerState& state, const PatternSet& shipped,
 std::optional<LearnerState> parseState(const std::string& text, const PatternSet& shipped,
                                        std::string& why) {
   const auto checked = unsealed(text);
-  if (!checked || checked->compare(0, std::string(kStateHeader).size(), kStateHeader) != 0) {
+  if (!checked || checked->rfind(kStateKind, 0) != 0) {
     why = "is damaged";
+    return std::nullopt;
+  }
+  if (checked->rfind(std::string(kStateHeader) + "\n", 0) != 0) {
+    why = "was written by another release";
     return std::nullopt;
   }
   Words words(checked->substr(std::string(kStateHeader).size()));

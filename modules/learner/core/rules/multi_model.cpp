@@ -88,6 +88,7 @@ MultiModel::MultiModel(const RuleConfig& config, const PatternSet& shipped)
     : config_(config.ground),
       model_(std::make_shared<GroundModel>(config.ground, shipped)),
       scatter_(model_->patterns()),
+      expected_scatter_(scatter_.expected(config_.noise_prior)),
       near_(*model_, config_, priorOfNew(Distance::kNear)),
       far_(*model_, config_, priorOfNew(Distance::kFar)) {
   SurfacePrior of_shipped = priorOfNew(Distance::kNear);
@@ -134,11 +135,12 @@ SurfacePrior MultiModel::priorOfNew(Distance distance) const {
     }
     for (double& number : centre) number = rounded(number, kCentreStep);
   }
-  prior.scatter = scatter_.expected(config_.noise_prior).topRows<3>();
+  prior.scatter = expected_scatter_.topRows<3>();
   return prior;
 }
 
 void MultiModel::expectNew() {
+  expected_scatter_ = scatter_.expected(config_.noise_prior);
   near_ = Surface(*model_, config_, priorOfNew(Distance::kNear));
   far_ = Surface(*model_, config_, priorOfNew(Distance::kFar));
 }
@@ -406,8 +408,7 @@ std::optional<PoseCovariance> MultiModel::endCovariance(size_t pattern) const {
       spreadOfEnd(profile.endResponse(), covariance_, pattern) +
       profile.endLever() * execution.asDiagonal() * profile.endLever().transpose();
   covariance.diagonal().head<2>().array() +=
-      model_->whole(pattern).shape *
-      scatter_.expected(config_.noise_prior)(3, static_cast<Eigen::Index>(pattern));
+      model_->whole(pattern).shape * expected_scatter_(3, static_cast<Eigen::Index>(pattern));
   return upperTriangle(0.5 * (covariance + covariance.transpose()));
 }
 
@@ -418,6 +419,7 @@ void MultiModel::assign(const LearningRule& other) {
   near_ = rule.near_;
   far_ = rule.far_;
   scatter_ = rule.scatter_;
+  expected_scatter_ = rule.expected_scatter_;
   changes_ = rule.changes_;
   metres_ = rule.metres_;
   ground_ = rule.ground_;

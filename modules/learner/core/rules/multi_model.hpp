@@ -118,9 +118,10 @@ class MultiModel : public LearningRule {
   GroundConfig config_;
   std::shared_ptr<const GroundModel> model_;
   std::vector<Hypothesis> surfaces_;  ///< remembered; [0] of the shipped set
-  std::vector<Hypothesis> fresh_;     ///< by the moment of their change, oldest first
+  std::vector<Hypothesis> fresh_;     ///< since some moment; the two that begin now come last
   Scatter scatter_;
-  Surface near_, far_;           ///< what a new surface would be
+  Scatter::Factors expected_scatter_;  ///< of the next execution
+  Surface near_, far_;                 ///< what a new surface would be
   std::vector<double> changed_;  ///< share of w_i^- that came by a change, remembered ones first
   double change_probability_ = 0.0;
   double changes_ = 0.0;                    ///< of ground that were sure in the end
