@@ -186,7 +186,8 @@ TEST_CASE("new ground is remembered after ten executions on it, the shipped one 
   REQUIRE(note.surface == 2);
 }
 
-TEST_CASE("surfaces do not collapse: eight grounds stay eight, also after a very rough one") {
+TEST_CASE("surfaces do not collapse: eight grounds stay eight, also after a very rough one",
+          "[statistics]") {
   // Moderate differences, about one deviation of what grounds differ in. Measured over 100 seeds:
   // 7.6 remembered, 6.6 of 7 told apart when they come back, 3.3 % taken for the rough one. Were
   // new ground expected to be as rough as the first: 4.9, 6.1, 18 %.
@@ -255,10 +256,10 @@ TEST_CASE("executions of two grounds are never blended into one remembered surfa
   REQUIRE(wrong <= 0.03 * surfaces + 1);
 }
 
-TEST_CASE("a change of ground is seen in the execution in which it happens") {
+TEST_CASE("a change of ground is seen in the execution in which it happens", "[statistics]") {
   // Measured over 200 seeds: .80, .73, .77, and .95, .87, .96 when the known ground comes back. The
   // rule before: .10, .05, .06 at the changes, .05 back.
-  const int seeds = effort(200);
+  const int seeds = 200;
   for (const GroundEffect& ground :
        {GroundEffect{0.7, 1.5, 0.0, 0.0}, GroundEffect{0.8, 1.3, 0.0, 0.0},
         GroundEffect{1.2, 0.6, 0.1, 0.0}}) {
@@ -277,7 +278,8 @@ TEST_CASE("a change of ground is seen in the execution in which it happens") {
   }
 }
 
-TEST_CASE("over unchanged ground no more changes are suspected than are expected beforehand") {
+TEST_CASE("over unchanged ground no more changes are suspected than are expected beforehand",
+          "[statistics]") {
   const DrawnWorld world;
   // A change every 12 m is expected: so probable in a pattern.
   double expected = 0.0;
@@ -300,7 +302,8 @@ TEST_CASE("over unchanged ground no more changes are suspected than are expected
   REQUIRE(suspected < 1.2 * expected);
 }
 
-TEST_CASE("nine in ten executions end within the region that is stated for nine in ten") {
+TEST_CASE("nine in ten executions end within the region that is stated for nine in ten",
+          "[statistics]") {
   // In a world as the rule expects it: a vehicle with something of its own on all ground but the
   // shipped one, on which it is every other time; the next metres may bring other ground.
   constexpr double kQuantile = 6.251;  // chi^2, three degrees of freedom
@@ -425,7 +428,8 @@ TEST_CASE("the covariance of a remembered rough surface has its own noise") {
   REQUIRE(spread(0.09) == Approx(0.09).epsilon(0.3));
 }
 
-TEST_CASE("after a change of ground learning does no harm from the second execution on") {
+TEST_CASE("after a change of ground learning does no harm from the second execution on",
+          "[statistics]") {
   // Measured over 400 seeds, of what `off` errs by: 1.26, 1.01, .91, .87, .83, .78 after 0 to 5;
   // the chance of the executions themselves, which nothing can predict, is in both.
   const DrawnWorld world;
@@ -448,7 +452,7 @@ TEST_CASE("after a change of ground learning does no harm from the second execut
   REQUIRE(median(ratios[5]) < 0.85);
 }
 
-TEST_CASE("from the shipped ground to another learning never does harm") {
+TEST_CASE("from the shipped ground to another learning never does harm", "[statistics]") {
   // Measured over 400 seeds: 1.002, .96, .86, .81, .77, .72 after 0 to 5.
   const DrawnWorld world;
   std::vector<std::vector<double>> ratios(6);
@@ -467,7 +471,8 @@ TEST_CASE("from the shipped ground to another learning never does harm") {
   for (size_t n = 2; n < ratios.size(); ++n) REQUIRE(median(ratios[n]) < 0.9);
 }
 
-TEST_CASE("on unchanged shipped ground the error is within 2 percent of the omniscient one") {
+TEST_CASE("on unchanged shipped ground the error is within 2 percent of the omniscient one",
+          "[statistics]") {
   // Measured 1.7 %. The rule before: 3.6 %.
   const DrawnWorld world;
   double learned = 0.0;
@@ -487,7 +492,8 @@ TEST_CASE("on unchanged shipped ground the error is within 2 percent of the omni
   REQUIRE(learned < 1.02 * omniscient);
 }
 
-TEST_CASE("what a vehicle does on every ground it is expected to do on the next, too") {
+TEST_CASE("what a vehicle does on every ground it is expected to do on the next, too",
+          "[statistics]") {
   // Turns by 1.3 of what was shipped, wherever it drives; grounds differ in all else.
   const GroundEffect grounds[] = {{1.0, 1.3, 0.0, 0.0}, {0.92, 1.3, 0.08, 0.0}};
   const GroundEffect third{1.25, 1.3, -0.06, 0.0};
@@ -521,7 +527,7 @@ TEST_CASE("what a vehicle does on every ground it is expected to do on the next,
   REQUIRE(median(changed) < 0.5);
 }
 
-TEST_CASE("a surface that comes back is recognised faster than it was learned") {
+TEST_CASE("a surface that comes back is recognised faster than it was learned", "[statistics]") {
   int recognised = 0;
   double at_first = 0.0;
   double again = 0.0;
@@ -547,7 +553,7 @@ TEST_CASE("the first half of a pattern teaches nearly what the whole of it does"
   double halves = 0.0;
   double wholes = 0.0;
   int same_way = 0;
-  const int seeds = effort(200);
+  const int seeds = 200;
   for (int seed = 1; seed <= seeds; ++seed) {
     std::mt19937_64 random(static_cast<uint64_t>(seed));
     Pupil pupil = multiModel();
@@ -656,7 +662,8 @@ TEST_CASE("parts of a single sample do no harm, even many of them") {
   REQUIRE(on_shipped < 0.03);
 }
 
-TEST_CASE("the surface that was met longest ago makes room, never that of the shipped set") {
+TEST_CASE("the surface that was met longest ago makes room, never that of the shipped set",
+          "[statistics]") {
   GroundConfig config;
   config.capacity = 2;
   int right = 0;
@@ -703,7 +710,8 @@ TEST_CASE("with room for one surface beside the shipped one it follows the newes
   REQUIRE(shipped >= 0.95 * seeds);
 }
 
-TEST_CASE("who begins on other ground counts each change from there to the shipped one and back") {
+TEST_CASE("who begins on other ground counts each change from there to the shipped one and back",
+          "[statistics]") {
   double changes = 0.0;
   const int seeds = 40;
   for (int seed = 1; seed <= seeds; ++seed) {

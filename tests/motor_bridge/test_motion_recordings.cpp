@@ -336,7 +336,7 @@ TEST_CASE("real drives: at most one false alarm an hour") {
   CHECK(count.failed <= 2);
 }
 
-TEST_CASE("real drives: a frozen, jumping or mirrored pose is told within 1.5 s") {
+TEST_CASE("real drives: a frozen, jumping or mirrored pose is told within 1.5 s", "[statistics]") {
   if (absent()) return;
   const size_t half = eachHalf();
   const bool tuned = half == 0;
@@ -366,7 +366,7 @@ TEST_CASE("real drives: a frozen, jumping or mirrored pose is told within 1.5 s"
         (tuned ? 0.88 : 0.98));
 }
 
-TEST_CASE("real drives: drifts are told once they are larger than slip") {
+TEST_CASE("real drives: drifts are told once they are larger than slip", "[statistics]") {
   if (absent()) return;
   for (const double rate : {0.1, 0.2, 0.3, 0.5}) {
     const auto turn = [rate](Sample& sample, double since, const Sample&, double) {
@@ -390,7 +390,7 @@ TEST_CASE("real drives: drifts are told once they are larger than slip") {
   }
 }
 
-TEST_CASE("real drives: blocked, rolling, and one track dead") {
+TEST_CASE("real drives: blocked, rolling, and one track dead", "[statistics]") {
   if (absent()) return;
   const size_t half = eachHalf();
   for (const double speed : {0.7, 1.0, 1.5}) {
@@ -418,7 +418,8 @@ TEST_CASE("real drives: blocked, rolling, and one track dead") {
         0.85);
 }
 
-TEST_CASE("real drives: a track that dies and a robot that is held are told within 1.5 s") {
+TEST_CASE("real drives: a track that dies and a robot that is held are told within 1.5 s",
+          "[statistics]") {
   if (absent()) return;
   const size_t half = eachHalf();
   struct Case {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include "tests/helpers.hpp"
 #include "tests/motor_bridge/node_world.hpp"
 
 using namespace tread;
@@ -194,7 +195,7 @@ TEST_CASE("a clean end gives zero at once and closes the execution") {
 TEST_CASE("dropped, duplicated and reordered programs: it drives on or stops, never otherwise") {
   FaultPlan faults;
   faults.messages.push_back({"PROGRAM", "motor_bridge", 0.2, 0.2, 0.0, 0.2});
-  for (uint64_t seed = 1; seed <= 20; ++seed) {
+  for (uint64_t seed = 1; seed <= static_cast<uint64_t>(testing::effort(20)); ++seed) {
     NodeWorld world(seed, faults);
     int64_t newest_program = 0;
     world.bus.setTap([&](int64_t utime, const char* channel, const uint8_t*, size_t) {

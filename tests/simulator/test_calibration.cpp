@@ -154,7 +154,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("process noise spreads executions of one second as the calibration does") {
+TEST_CASE("process noise spreads executions of one second as the calibration does",
+          "[statistics]") {
   constexpr int kExecutions = 600;
   for (const CalibratedSurface& reference : kSurfaces) {
     const SurfaceParameters surface = *builtInSurface(reference.name);
