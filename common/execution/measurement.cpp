@@ -53,9 +53,9 @@ class Cutter {
     checkCover();
     checkMotion();
     checkEntry(entry_class);
-    if (result_.slope > limits_.max_slope)
+    if (result_.context.tilt.inclination > limits_.max_slope)
       close(Gate::kSlope,
-            "slope " + fixed(result_.slope, 3) + " rad, allowed " + fixed(limits_.max_slope, 3));
+            "slope " + fixed(result_.context.tilt.inclination, 3) + " rad, allowed " + fixed(limits_.max_slope, 3));
     return result_;
   }
 
@@ -121,7 +121,7 @@ class Cutter {
     const auto twist =
         track_->twistBefore(cut_.started, limits_.entry_window_us, limits_.max_gap_us);
     if (twist) result_.entry = *twist;
-    result_.slope = history_.meanInclination(cut_.started, cut_.ended);
+    result_.context.tilt = history_.meanTilt(cut_.started, cut_.ended);
   }
 
   void checkCover() {

@@ -69,6 +69,12 @@ struct ExecutionCut {
   std::string unexpected_command;
 };
 
+/// What may change the motion beside the ground; NaN = unknown.
+struct Context {
+  Tilt tilt;                        ///< mean
+  double voltage = Tilt::kUnknown;  ///< [V] mean, of the battery
+};
+
 /// M and what was measured beside it. Numbers that were not measured are NaN.
 struct Measurement {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -78,8 +84,8 @@ struct Measurement {
   std::vector<Pose2> trajectory;  ///< M at the pattern's sample times; empty if there is none
   size_t covered = 0;  ///< leading samples that are measured; the rest moves on as predicted
   Twist2 entry{kUnknown, kUnknown, kUnknown};  ///< v_body before the start
-  double slope = kUnknown;                     ///< [rad]
-  double path_length = kUnknown;               ///< [m] driven over the covered samples
+  Context context;
+  double path_length = kUnknown;  ///< [m] driven over the covered samples
 
   bool fair() const { return gate == Gate::kNone; }
   /// Whether the end pose itself was measured.

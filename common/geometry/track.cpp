@@ -62,8 +62,7 @@ std::optional<Twist2> PoseTrack::twistBefore(int64_t utime, int64_t window_us,
   return twistTo(between(*first, *last), static_cast<double>(window_us) * 1e-6);
 }
 
-bool TrackHistory::push(int64_t utime, const Pose2& T_map_body, double inclination,
-                        bool new_track) {
+bool TrackHistory::push(int64_t utime, const Pose2& T_map_body, const Tilt& tilt, bool new_track) {
   if (utime <= newest_) return false;
   PoseTrack fresh(span_us_);
   if (!tracks_.empty() && !new_track) {
@@ -73,10 +72,9 @@ bool TrackHistory::push(int64_t utime, const Pose2& T_map_body, double inclinati
     tracks_.push_back(std::move(fresh));
   }
   newest_ = utime;
-  if (std::isfinite(inclination)) inclinations_.push_back({utime, inclination});
+  if (std::isfinite(tilt.inclination)) tilts_.push_back({utime, tilt});
   while (tracks_.front().poses().back().utime < utime - span_us_) tracks_.pop_front();
-  while (!inclinations_.empty() && inclinations_.front().utime < utime - span_us_)
-    inclinations_.pop_front();
+  while (!tilts_.empty() && tilts_.front().utime < utime - span_us_) tilts_.pop_front();
   return true;
 }
 
@@ -86,15 +84,18 @@ const PoseTrack* TrackHistory::covering(int64_t utime) const {
   return nullptr;
 }
 
-double TrackHistory::meanInclination(int64_t from, int64_t to) const {
-  double sum = 0.0;
+Tilt TrackHistory::meanTilt(int64_t from, int64_t to) const {
+  Tilt sum{0.0, 0.0, 0.0};
   int count = 0;
-  for (const Inclination& sample : inclinations_) {
-    if (sample.utime < from || sample.utime > to) continue;
-    sum += sample.angle;
+  for (const auto& [utime, tilt] : tilts_) {
+    if (utime < from || utime > to) continue;
+    sum.inclination += tilt.inclination;
+    sum.ahead += tilt.ahead;
+    sum.left += tilt.left;
     ++count;
   }
-  return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+  if (count == 0) return {};
+  return {sum.inclination / count, sum.ahead / count, sum.left / count};
 }
 
 }  // namespace tread

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <optional>
 
 #include "common/geometry/se2.hpp"
@@ -49,37 +50,43 @@ class PoseTrack {
   std::deque<TimedPose> poses_;
 };
 
-/// What the INS said lately: tracks of poses, broken where the INS jumped, and the inclination
-/// along them.
+/// How the ground under a robot lies; NaN = unknown.
+struct Tilt {
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  double inclination = kUnknown;  ///< [rad] against level ground
+  double ahead = kUnknown;        ///< [1] rise per metre along body x
+  double left = kUnknown;         ///< [1] rise per metre along body y
+};
+
+/// What the INS said lately: tracks of poses, broken where the INS jumped, and the tilt along them.
 class TrackHistory {
  public:
   /// Keeps what is at most `span_us` older than the newest pose.
   explicit TrackHistory(int64_t span_us) : span_us_(span_us) {}
 
-  /// Appends a pose; `inclination` [rad] NaN = unknown; `new_track`: not connected with what came
-  /// before.
+  /// Appends a pose; `new_track`: not connected with what came before.
   /** Returns false if it is not newer than the last pose or not finite. */
-  bool push(int64_t utime, const Pose2& T_map_body, double inclination, bool new_track);
+  bool push(int64_t utime, const Pose2& T_map_body, const Tilt& tilt, bool new_track);
 
   /// The track that was being driven at a time, or nullptr.
   const PoseTrack* covering(int64_t utime) const;
 
-  /// Mean inclination [rad] of the poses in [from, to]; NaN if it is unknown there.
-  double meanInclination(int64_t from, int64_t to) const;
+  /// Mean tilt at the poses in [from, to]; NaN if it is unknown there.
+  Tilt meanTilt(int64_t from, int64_t to) const;
 
   /// Time of the newest pose [us]; INT64_MIN before the first.
   int64_t newest() const { return newest_; }
 
  private:
-  struct Inclination {
+  struct TimedTilt {
     int64_t utime;
-    double angle;
+    Tilt tilt;
   };
 
   int64_t span_us_;
   int64_t newest_ = INT64_MIN;
   std::deque<PoseTrack> tracks_;
-  std::deque<Inclination> inclinations_;
+  std::deque<TimedTilt> tilts_;
 };
 
 }  // namespace tread

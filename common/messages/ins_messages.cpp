@@ -61,11 +61,12 @@ double horizontalStd(const ins_t& ins) {
   return known ? std::max(std[0], std[1]) : std::numeric_limits<double>::quiet_NaN();
 }
 
-std::optional<double> inclination(const ins_t& ins) {
-  const auto R_map_body = orientation(ins);
-  if (!R_map_body || (ins.ins_status & ins_t::STATUS_NO_ATTITUDE) != 0) return std::nullopt;
-  const double up = (*R_map_body * Eigen::Vector3d::UnitZ()).z();
-  return std::acos(std::min(1.0, std::max(-1.0, up)));
+Tilt tilt(const ins_t& ins) {
+  const auto orient = orientation(ins);
+  if (!orient || (ins.ins_status & ins_t::STATUS_NO_ATTITUDE) != 0) return {};
+  const Eigen::Matrix3d R_map_body = orient->toRotationMatrix();
+  return {std::acos(std::min(1.0, std::max(-1.0, R_map_body(2, 2)))), R_map_body(2, 0),
+          R_map_body(2, 1)};
 }
 
 void InsQueue::add(const ins_t& ins, int64_t now) {
@@ -97,8 +98,7 @@ void InsQueue::append(const ins_t& ins) {
     ++without_pose_;
     return;
   }
-  const double slope = inclination(ins).value_or(std::numeric_limits<double>::quiet_NaN());
-  if (history_.push(ins.utime, *T_map_body, slope, jumped_)) jumped_ = false;
+  if (history_.push(ins.utime, *T_map_body, tilt(ins), jumped_)) jumped_ = false;
 }
 
 }  // namespace tread

@@ -29,9 +29,8 @@ std::optional<Twist2> planarTwist(const ins_t& ins);
 /// not known.
 double horizontalStd(const ins_t& ins);
 
-/// Inclination of the ground under the robot [rad], from roll and pitch; nothing if attitude is
-/// missing.
-std::optional<double> inclination(const ins_t& ins);
+/// How the ground under the robot lies, from roll and pitch; unknown if attitude is missing.
+Tilt tilt(const ins_t& ins);
 
 /// Brings INS messages, which may come late, twice or overtaken, into the order of (utime, seq)
 /// before they become a track.

@@ -342,6 +342,10 @@ void ExecutionQueue::noteHandled(const ExecutionKey& key) {
 }
 
 void CommandWatch::add(const motor_t& motor) {
+  if (motor.battery_voltage > 0.0F && std::isfinite(motor.battery_voltage)) {
+    voltages_.push_back({motor.utime, static_cast<double>(motor.battery_voltage)});
+    if (voltages_.size() > kRememberedCommands) voltages_.pop_front();
+  }
   if (motor.execution_id == 0 || motor.command_index < 0) return;
   given_.push_back({{motor.motor_run_id, motor.execution_id},
                     motor.command_index,
@@ -349,6 +353,17 @@ void CommandWatch::add(const motor_t& motor) {
                     static_cast<double>(motor.command_left),
                     static_cast<double>(motor.command_right)});
   if (given_.size() > kRememberedCommands) given_.pop_front();
+}
+
+double CommandWatch::meanVoltage(int64_t from, int64_t to) const {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const Voltage& voltage : voltages_) {
+    if (voltage.utime <= from || voltage.utime > to) continue;
+    sum += voltage.volts;
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::string CommandWatch::unexpectedCommand(const ExecutionKey& execution,

@@ -109,8 +109,14 @@ class CommandWatch {
   /// seen.
   std::string unexpectedCommand(const ExecutionKey& execution, const MotionPattern& pattern,
                                 CommandKind kind) const;
+  /// Mean battery voltage in (from, to] [V]; NaN if none was told.
+  double meanVoltage(int64_t from, int64_t to) const;
 
  private:
+  struct Voltage {
+    int64_t utime;
+    double volts;
+  };
   struct Given {
     ExecutionKey execution;
     int32_t index;
@@ -119,6 +125,7 @@ class CommandWatch {
     double right;
   };
   std::deque<Given> given_;
+  std::deque<Voltage> voltages_;
 };
 
 }  // namespace tread

@@ -116,7 +116,7 @@ void RobotInputs::take(const ins_t& message) {
     return health_.addToCounter("INS out of order");
   readings_.pose =
       PoseReading{message.utime, *pose, planarTwist(message), horizontalStd(message),
-                  inclination(message).value_or(std::numeric_limits<double>::quiet_NaN())};
+                  tilt(message).inclination};
 }
 
 void RobotInputs::take(const motor_t& message) {

@@ -357,8 +357,11 @@ ExecutionCut LearnerNode::cutOf(const execution_record_t& record,
 
 Measurement LearnerNode::measureCut(const ExecutionCut& cut, const MotionPattern& pattern) const {
   const PatternSet& set = learner_.set();
-  return measure(ins_.history(), cut, pattern, set.classNamed(pattern.entry_class),
-                 set.content().period_us, config_.limits);
+  Measurement measurement =
+      measure(ins_.history(), cut, pattern, set.classNamed(pattern.entry_class),
+              set.content().period_us, config_.limits);
+  measurement.context.voltage = commands_.meanVoltage(cut.started, cut.ended);
+  return measurement;
 }
 
 const MotionPattern* LearnerNode::patternOf(int64_t version, int pattern_id) const {
@@ -377,7 +380,7 @@ void LearnerNode::score(const execution_record_t& record, const Measurement& mea
                         learning_t& message) const {
   fill(message.measured_entry,
        {measurement.entry.v_x, measurement.entry.v_y, measurement.entry.omega});
-  message.slope = measurement.slope;
+  message.slope = measurement.context.tilt.inclination;
   message.path_length = measurement.path_length;
   if (measurement.complete()) fill(message.measured_end, measurement.trajectory.back());
   const MotionPattern* named = patternOf(record.record_set_version, record.record_pattern_id);

@@ -38,8 +38,9 @@ class Pupil {
     return set_.patterns()[pattern].trajectory;
   }
 
-  RuleNote learn(size_t executed, const std::vector<Pose2>& measured) {
+  RuleNote learn(size_t executed, const std::vector<Pose2>& measured, const Context& context = {}) {
     RuleNote note;
+    rule_->meet(context);
     fill(measured, numbers_);
     rule_->learn(executed,
                  ConstTrajectory(numbers_.data(), static_cast<Eigen::Index>(measured.size()), 3),

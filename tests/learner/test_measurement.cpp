@@ -39,7 +39,7 @@ struct Drive {
     for (int64_t utime = from; utime <= until; utime += 20'000) {
       Pose2 pose = at(utime);
       pose.yaw = wrapAngle(pose.yaw);
-      if (heard(utime)) made.push(utime, pose, inclination, false);
+      if (heard(utime)) made.push(utime, pose, Tilt{inclination}, false);
     }
     return made;
   }
@@ -80,7 +80,7 @@ TEST_CASE("an execution is cut at its start and interpolated at the pattern's sa
     REQUIRE(result.trajectory[t].yaw == Approx(truth[t].yaw).margin(1e-9));
   }
   REQUIRE(result.entry.v_x == Approx(1.0));
-  REQUIRE(result.slope == Approx(0.02));
+  REQUIRE(result.context.tilt.inclination == Approx(0.02));
   REQUIRE(result.path_length == Approx(0.9).epsilon(1e-3));
 }
 
@@ -162,7 +162,7 @@ TEST_CASE("an INS jump ends the track: the execution across it is not measured")
   TrackHistory history(60 * kSecond);
   const Drive drive;
   for (int64_t utime = drive.from; utime <= drive.until; utime += 20'000)
-    history.push(utime, drive.at(utime), 0.0, utime == kStart + 500'000);
+    history.push(utime, drive.at(utime), Tilt{}, utime == kStart + 500'000);
   const PatternSet set = smallSet();
   const Measurement result =
       measure(history, completed(), *set.find(kLeft), set.classNamed("cruise"), kPeriod, limits());
@@ -179,9 +179,9 @@ TEST_CASE("a speed above one and a half times the maximum is a jump, not motion"
 
 TEST_CASE("poses that are not finite never become part of a track") {
   TrackHistory history(kSecond);
-  REQUIRE(history.push(1, {}, kNan, false));
-  REQUIRE_FALSE(history.push(2, {kNan, 0.0, 0.0}, kNan, false));
-  REQUIRE_FALSE(history.push(3, {0.0, 0.0, kNan}, kNan, true));
+  REQUIRE(history.push(1, {}, Tilt{}, false));
+  REQUIRE_FALSE(history.push(2, {kNan, 0.0, 0.0}, Tilt{}, false));
+  REQUIRE_FALSE(history.push(3, {0.0, 0.0, kNan}, Tilt{}, true));
   REQUIRE(history.newest() == 1);
 }
 
@@ -231,7 +231,7 @@ TEST_CASE("steep ground is refused, ground of unknown slope is not") {
 TEST_CASE("the track keeps its turns where the INS wraps yaw") {
   TrackHistory history(60 * kSecond);
   for (int i = 0; i <= 100; ++i)
-    history.push(i * 20'000 + 1, {0.0, 0.0, wrapAngle(0.1 * i)}, kNan, false);
+    history.push(i * 20'000 + 1, {0.0, 0.0, wrapAngle(0.1 * i)}, Tilt{}, false);
   REQUIRE(history.covering(1)->poses().back().T_map_body.yaw == Approx(10.0));
 }
 

@@ -76,7 +76,8 @@ enum Place : size_t {
   kMetresAt,
   kGroundAt,
   kScatterAt,
-  kSurfacesAt = kScatterAt + 5 * 7,
+  kEffectsAt = kScatterAt + 5 * 7,
+  kSurfacesAt = kEffectsAt + 5 * 6 + 4,
   kWeightAt,
   kLastMetAt,
   kSinceAt,
@@ -166,6 +167,15 @@ TEST_CASE("a memory with a number that cannot be is refused whole") {
   refused(kGroundAt, {-1.0, 0.5, 58.0, 1e300});
   refused(kScatterAt, {-1.0, 1e300});
   refused(kScatterAt + 1, {-1.0, 1e300});
+  refused(kEffectsAt, {-1e4, 1e300});            // an effect
+  refused(kEffectsAt + 6, {-1.0, 0.0, 1e300});   // its variance
+  refused(kEffectsAt + 12, {-1e4, 1e300});       // what it gained
+  refused(kEffectsAt + 18, {-1.0, 0.5, 2.0});    // whether it counts
+  refused(kEffectsAt + 24, {-1e4, 1e300});       // mean of the inputs
+  refused(kEffectsAt + 30, {-1.0, 1e300});       // executions
+  refused(kEffectsAt + 31, {-1.0, 0.5, 1e300});  // ground
+  refused(kEffectsAt + 32, {-1.0, 1e300});       // first voltage
+  refused(kEffectsAt + 33, {-1.0, 1.0, 1e300});  // sag
   refused(kSurfacesAt, {-1.0, 0.0, 0.5, 1.0, 3.0, 66.0, 1e9, 1e300});
   const size_t second = after(memory, kWeightAt);
   const size_t fresh = after(memory, second);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "common/execution/measurement.hpp"
 #include "common/pattern/pattern.hpp"
 #include "modules/learner/core/scaling.hpp"
 
@@ -50,6 +51,9 @@ struct GroundConfig {
   double change_metres = 10.0;    ///< [m] mean way to the next change of ground
   double fresh = 0.5;             ///< [1] probability that a change leads to ground not met before
   double far = 0.03;              ///< [1] that such ground is unlike all others
+  double rise_effect = 1.0;       ///< [1] deviation of a velocity over |v|, per rise of the ground
+  double voltage_effect = 1.0;    ///< [1] the same, relative, per relative change of voltage
+  double context_evidence = 3.0;  ///< [nat] from which on slope or voltage counts; 1000: never
   double ahead = 2.0;             ///< [m] way that predictions look ahead
   double sure = 0.9;              ///< [1] probability from which on a surface counts as recognized
   int64_t settled_after = 10;     ///< executions on fresh ground until it is remembered
@@ -119,6 +123,9 @@ void readGround(Reader& reader, GroundConfig& ground) {
   section.number("change_metres", ground.change_metres, {0.1, 1e5}, "m");
   section.number("fresh", ground.fresh, {0.01, 0.99}, "1");
   section.number("far", ground.far, {0.001, 0.999}, "1");
+  section.number("rise_effect", ground.rise_effect, {1e-3, 10.0}, "1");
+  section.number("voltage_effect", ground.voltage_effect, {1e-3, 10.0}, "1");
+  section.number("context_evidence", ground.context_evidence, {1.0, 1000.0}, "nat");
   section.number("ahead", ground.ahead, {0.0, 100.0}, "m");
   section.number("sure", ground.sure, {0.6, 0.999}, "1");
   section.integer("settled_after", ground.settled_after, {2, 1000}, "1");
@@ -157,6 +164,8 @@ class LearningRule {
  public:
   virtual ~LearningRule() = default;
 
+  /// What was measured beside the execution that is learned from next.
+  virtual void meet(const Context&) {}
   /// Learns from a measured trajectory M of pattern `executed`: as many rows as its prediction, or
   /// fewer, at least one, if the rule learns from parts.
   virtual void learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) = 0;

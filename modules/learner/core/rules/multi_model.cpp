@@ -90,7 +90,8 @@ MultiModel::MultiModel(const RuleConfig& config, const PatternSet& shipped)
       scatter_(model_->patterns()),
       expected_scatter_(scatter_.expected(config_.noise_prior)),
       near_(*model_, config_, priorOfNew(Distance::kNear)),
-      far_(*model_, config_, priorOfNew(Distance::kFar)) {
+      far_(*model_, config_, priorOfNew(Distance::kFar)),
+      effects_(config_) {
   SurfacePrior of_shipped = priorOfNew(Distance::kNear);
   of_shipped.residual = config_.shipped_spread;
   for (size_t term = 0; term < config_.common.size(); ++term)
@@ -219,26 +220,30 @@ void MultiModel::update(const TwistSample& sample) {
   }
 }
 
-/// What executions scatter about the likeliest ground: new ground is expected to be like that.
-void MultiModel::followScatter(const TwistSample& sample, const Pose2& end) {
-  const PatternPart& part = sample.part;
-  const TwistProfile& profile = model_->profile(part.pattern);
-  if (part.samples < profile.samples()) return;
+const MultiModel::Hypothesis& MultiModel::likeliest() const {
   const Hypothesis* likeliest = &surfaces_.front();
   for (const auto* hypotheses : {&surfaces_, &fresh_})
     for (const Hypothesis& hypothesis : *hypotheses)
       if (hypothesis.weight > likeliest->weight) likeliest = &hypothesis;
-  const auto& x = likeliest->surface.mean();
+  return *likeliest;
+}
+
+/// What executions scatter about the likeliest ground: new ground is expected to be like that.
+void MultiModel::followScatter(const TwistSample& sample, const Eigen::Vector3d& effect,
+                               const Pose2& end) {
+  const PatternPart& part = sample.part;
+  const TwistProfile& profile = model_->profile(part.pattern);
+  if (part.samples < profile.samples()) return;
+  const Surface& ground = likeliest().surface;
+  const auto& x = ground.mean();
   // Where this mean twist would end if it were steady beside the profile.
-  Eigen::Vector3d apart = sample.mean_twist - part.mean;
-  for (size_t velocity = 0; velocity < kVelocities; ++velocity)
-    apart[static_cast<Eigen::Index>(velocity)] -= response(part, velocity, x[velocity]);
+  const Eigen::Vector3d apart = sample.mean_twist + effect - part.mean - ground.added(part);
   const Eigen::Vector3d moved = profile.endLever() * apart;
   const Pose2 expected = profile.integrateEnd(correctionOf(x, part.pattern));
   const double dx = end.x - expected.x - moved[0];
   const double dy = end.y - expected.y - moved[1];
   Eigen::Vector4d errors;
-  errors << likeliest->surface.squaredError(sample), 0.5 * (dx * dx + dy * dy) / part.shape;
+  errors << ground.squaredError(sample), 0.5 * (dx * dx + dy * dy) / part.shape;
   // No number from a wild measurement may stay for ever.
   scatter_.add(part.pattern, errors.cwiseMin(kMostError), config_.longest_memory);
 }
@@ -330,6 +335,9 @@ void MultiModel::predictMixture() {
         covariance_[velocity].col(j) += weight * apart[j] * apart;
     }
   });
+  const Eigen::Vector2d gains = effects_.gainsNow();
+  mean_[0][0] += gains[0];
+  mean_[2][0] += gains[1];
 }
 
 void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) {
@@ -341,15 +349,25 @@ void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNot
           : std::max<Eigen::Index>(1, measured.rows() / kPartStep * kPartStep);
   const Eigen::Vector3d mean_twist = meanTwist(measured, samples, model_->period());
   if (!mean_twist.allFinite()) return;  // beyond all numbers
-  const TwistSample sample{samples == whole.samples ? whole : model_->part(executed, samples),
-                           plausible(mean_twist)};
+  TwistSample sample{samples == whole.samples ? whole : model_->part(executed, samples),
+                     mean_twist};
+  const ContextEffects::Inputs inputs =
+      effects_.inputs(sample.part, model_->period() * static_cast<double>(samples), context_);
+  const Eigen::Vector3d effect = effects_.effect(inputs);
+  sample.mean_twist = plausible(mean_twist - effect);
+  const Surface& before = likeliest().surface;
+  const int64_t ground = likeliest().since;
+  const Eigen::Vector3d beyond = sample.mean_twist - sample.part.mean - before.added(sample.part);
+  const Eigen::Vector3d variance = before.doubt(sample.part) + before.executionNoise(sample.part);
   ++clock_;
   expectChange(sample.part.metres);
   weigh(sample);
+  if (likeliest().since == ground) effects_.learn(inputs, beyond, variance, ground);
+  context_ = {};
   countChange(sample.part.metres);
   update(sample);
   const Eigen::Index last = samples - 1;
-  followScatter(sample, {measured(last, 0), measured(last, 1), measured(last, 2)});
+  followScatter(sample, effect, {measured(last, 0), measured(last, 1), measured(last, 2)});
   forgetWeakest();
   note.surface_stored = rememberSettled();
   expectNew();
@@ -419,6 +437,8 @@ void MultiModel::assign(const LearningRule& other) {
   near_ = rule.near_;
   far_ = rule.far_;
   scatter_ = rule.scatter_;
+  context_ = rule.context_;
+  effects_ = rule.effects_;
   expected_scatter_ = rule.expected_scatter_;
   changes_ = rule.changes_;
   metres_ = rule.metres_;
@@ -435,6 +455,7 @@ std::vector<double> MultiModel::memory() const {
   std::vector<double> memory{static_cast<double>(clock_), changes_, metres_,
                              static_cast<double>(ground_)};
   memory.insert(memory.end(), scatter_.sums.data(), scatter_.sums.data() + scatter_.sums.size());
+  effects_.save(memory);
   for (const auto* hypotheses : {&surfaces_, &fresh_}) {
     memory.push_back(static_cast<double>(hypotheses->size()));
     for (const Hypothesis& hypothesis : *hypotheses) {
@@ -484,6 +505,7 @@ bool MultiModel::restore(const TrajectoryTable&, const std::vector<double>& memo
   if (rule.scatter_.sums.minCoeff() < 0.0 ||
       rule.scatter_.sums.maxCoeff() > kMostError * kMostExecutions)
     return false;
+  if (!rule.effects_.restore(memory, at)) return false;
   if (!rule.restoreHypotheses(rule.surfaces_, GroundConfig::kMostSurfaces + 1, memory, at) ||
       !rule.restoreHypotheses(rule.fresh_, static_cast<size_t>(config_.moments), memory, at) ||
       at != memory.size() || rule.surfaces_.empty())

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "modules/learner/core/rules/context_effects.hpp"
 #include "modules/learner/core/rules/ground_model.hpp"
 #include "modules/learner/core/rules/learning_rule.hpp"
 #include "modules/learner/core/rules/surface.hpp"
@@ -56,12 +57,15 @@ struct Scatter {
  * scatter on it as they have so far (Scatter), and also on the shipped set's ground until the
  * vehicle has settled there.
  *
- * Predictions are for the next `ahead` metres, on which the ground may change, too: the shipped
- * profile under sum_i w_i^- E[x_i], the covariance that of the mixture. */
+ * What slope and battery do is taken off each execution first (ContextEffects). Predictions are for
+ * level ground, the voltage of the last execution and the next `ahead` metres, on which the ground
+ * may change, too: the shipped profile under sum_i w_i^- E[x_i], the covariance that of the
+ * mixture. */
 class MultiModel : public LearningRule {
  public:
   MultiModel(const RuleConfig& config, const PatternSet& shipped);
 
+  void meet(const Context& context) override { context_ = context; }
   void learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) override;
   bool learnsParts() const override { return true; }
   std::string reason(const RuleNote& note) const override;
@@ -78,6 +82,7 @@ class MultiModel : public LearningRule {
 
   /// A remembered surface; the first is that of the shipped set.
   const Surface& surface(size_t i) const { return surfaces_[i].surface; }
+  const ContextEffects& effects() const { return effects_; }
 
  private:
   struct Hypothesis {
@@ -103,7 +108,8 @@ class MultiModel : public LearningRule {
   void weigh(const TwistSample& sample);
   void scaleWeights(double total);
   void update(const TwistSample& sample);
-  void followScatter(const TwistSample& sample, const Pose2& end);
+  const Hypothesis& likeliest() const;
+  void followScatter(const TwistSample& sample, const Eigen::Vector3d& effect, const Pose2& end);
   void forgetWeakest();
   std::vector<Hypothesis>::iterator metLongestAgo();
   void forgetOldest();
@@ -122,6 +128,8 @@ class MultiModel : public LearningRule {
   Scatter scatter_;
   Scatter::Factors expected_scatter_;  ///< of the next execution
   Surface near_, far_;                 ///< what a new surface would be
+  Context context_;                    ///< of the execution that comes next
+  ContextEffects effects_;
   std::vector<double> changed_;  ///< share of w_i^- that came by a change, remembered ones first
   double change_probability_ = 0.0;
   double changes_ = 0.0;                    ///< of ground that were sure in the end

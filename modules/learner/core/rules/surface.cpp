@@ -161,6 +161,14 @@ double Surface::logDensity(const TwistSample& sample) const {
   return log_density;
 }
 
+Eigen::Vector3d Surface::added(const PatternPart& part) const {
+  return {response(part, 0, x_[0]), response(part, 1, x_[1]), response(part, 2, x_[2])};
+}
+
+Eigen::Vector3d Surface::doubt(const PatternPart& part) const {
+  return {variance(part, 0, P_[0]), variance(part, 1, P_[1]), variance(part, 2, P_[2])};
+}
+
 Eigen::Vector3d Surface::executionNoise(const PatternPart& part) const {
   // The variance of Student's t over its scale^2: freedom / (freedom - 2).
   const Eigen::Array3d a = certainty_.array();

@@ -72,6 +72,9 @@ class Surface {
 
   const ByVelocity<Eigen::VectorXd>& mean() const { return x_; }
   const ByVelocity<Eigen::MatrixXd>& covariance() const { return P_; }
+  /// What it adds to the mean twist of an execution, and the variance of that.
+  Eigen::Vector3d added(const PatternPart& part) const;
+  Eigen::Vector3d doubt(const PatternPart& part) const;
   /// Variance of the mean twist of one execution: that of the next one, not of its expectation.
   Eigen::Vector3d executionNoise(const PatternPart& part) const;
   /// q: variance of one execution over R, for v_x, v_y and omega.

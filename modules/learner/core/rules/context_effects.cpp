@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/learner/core/rules/context_effects.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "modules/learner/core/rules/surface.hpp"
+
+namespace tread::learner {
+namespace {
+
+/// Executions on a ground before its mean context says anything.
+constexpr double kLeastExecutions = 3.0;
+/// Executions after which the older ones fade in the mean context: the ground follows as fast.
+constexpr double kMemory = 30.0;
+/// Share of the evidence that an execution leaves of the older.
+constexpr double kEvidenceKept = 0.99;
+/// The evidence is kept within this, so that a vehicle that was repaired is believed in time.
+constexpr double kMostEvidence = 20.0;
+/// What is farther off than so many standard deviations is other ground.
+constexpr double kMostSigmas = 4.0;
+/// No slope or battery does more [1] of a velocity.
+constexpr double kMostEffect = 0.5;
+
+double logNormal(double y, double variance) {
+  return -0.5 * (y * y / variance + std::log(variance));
+}
+
+}  // namespace
+
+ContextEffects::ContextEffects(const GroundConfig& config) : evidence_(config.context_evidence) {
+  variance_.col(kRise).setConstant(config.rise_effect * config.rise_effect);
+  variance_.col(kVoltage).setConstant(config.voltage_effect * config.voltage_effect);
+}
+
+ContextEffects::Inputs ContextEffects::inputs(const PatternPart& part, double seconds,
+                                              const Context& context) {
+  Inputs f = Inputs::Zero();
+  if (std::isfinite(context.tilt.ahead) && std::isfinite(context.tilt.left)) {
+    const double speed = part.metres / seconds;
+    f.col(kRise) << speed * context.tilt.ahead, speed * context.tilt.left,
+        speed * context.tilt.left;
+  }
+  if (context.voltage > 0.0 && std::isfinite(context.voltage)) {
+    if (first_voltage_ == 0.0) first_voltage_ = context.voltage;
+    sag_ = std::clamp(context.voltage / first_voltage_ - 1.0, -kMostEffect, kMostEffect);
+  }
+  f(0, kVoltage) = part.mean[0] * sag_;
+  f(2, kVoltage) = part.mean[2] * sag_;
+  return f;
+}
+
+Eigen::Vector3d ContextEffects::effect(const Inputs& f) const {
+  return counts_.cwiseProduct(c_).cwiseProduct(f).rowwise().sum();
+}
+
+Eigen::Vector2d ContextEffects::gainsNow() const {
+  const auto gain = [&](Eigen::Index velocity) {
+    return std::clamp(counts_(velocity, kVoltage) * c_(velocity, kVoltage) * sag_, -kMostEffect,
+                      kMostEffect);
+  };
+  return {gain(0), gain(2)};
+}
+
+void ContextEffects::learn(const Inputs& f, const Eigen::Vector3d& beyond,
+                           const Eigen::Vector3d& variance, int64_t ground) {
+  if (ground != ground_) {
+    ground_ = ground;
+    executions_ = 0.0;
+  }
+  const Inputs g = f - mean_;
+  if (executions_ >= kLeastExecutions) {
+    // The ground has taken in what is steady of an effect: what is left goes with g.
+    const Inputs counted = counts_.cwiseProduct(c_).cwiseProduct(g);
+    forEach([&](Eigen::Index i, Eigen::Index k) {
+      const double y = beyond[i] + counted(i, k);
+      const double expected = c_(i, k) * g(i, k);
+      const double spread = variance[i] + g(i, k) * g(i, k) * variance_(i, k);
+      if (std::abs(y - expected) > kMostSigmas * std::sqrt(spread)) return;
+      gained_(i, k) = std::clamp(kEvidenceKept * gained_(i, k) + logNormal(y - expected, spread) -
+                                     logNormal(y, variance[i]),
+                                 -kMostEvidence, kMostEvidence);
+      const double gain = g(i, k) * variance_(i, k) / spread;
+      c_(i, k) += gain * (y - expected);
+      variance_(i, k) *= variance[i] / spread;
+    });
+    forEach([&](Eigen::Index i, Eigen::Index k) {
+      if (gained_(i, k) > evidence_) counts_(i, k) = 1.0;
+      if (gained_(i, k) < 0.0) counts_(i, k) = 0.0;
+    });
+  }
+  executions_ = std::min(executions_ + 1.0, kMemory);
+  if (executions_ == 1.0) mean_ = f;
+  mean_ += (f - mean_) / executions_;
+}
+
+void ContextEffects::save(std::vector<double>& memory) const {
+  for (const Inputs* numbers : {&c_, &variance_, &gained_, &counts_, &mean_})
+    memory.insert(memory.end(), numbers->data(), numbers->data() + numbers->size());
+  memory.insert(memory.end(),
+                {executions_, static_cast<double>(ground_ + 1), first_voltage_, sag_});
+}
+
+bool ContextEffects::restore(const std::vector<double>& memory, size_t& at) {
+  constexpr double kMostVoltage = 1e5;
+  constexpr double kMostInput = 1e3;
+  if (memory.size() < at + 5 * static_cast<size_t>(c_.size()) + 4) return false;
+  for (Inputs* numbers : {&c_, &variance_, &gained_, &counts_, &mean_})
+    for (double& number : numbers->reshaped()) number = memory[at++];
+  executions_ = memory[at];
+  if (!isCount(memory[at + 1], kMostExecutions)) return false;
+  ground_ = static_cast<int64_t>(memory[at + 1]) - 1;
+  first_voltage_ = memory[at + 2];
+  sag_ = memory[at + 3];
+  at += 4;
+  const bool flags = (counts_.array() == 0.0 || counts_.array() == 1.0).all();
+  return flags && c_.cwiseAbs().maxCoeff() <= kMostInput && variance_.minCoeff() > 0.0 &&
+         variance_.maxCoeff() <= kMostInput && gained_.cwiseAbs().maxCoeff() <= kMostEvidence &&
+         mean_.cwiseAbs().maxCoeff() <= kMostInput && executions_ >= 0.0 &&
+         executions_ <= kMemory && first_voltage_ >= 0.0 && first_voltage_ <= kMostVoltage &&
+         std::abs(sag_) <= kMostEffect;
+}
+
+}  // namespace tread::learner

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/execution/measurement.hpp"
+#include "modules/learner/core/rules/ground_model.hpp"
+
+namespace tread::learner {
+
+/// What slope and battery do to a mean twist, the same on every ground.
+/** Velocity i of an execution is moved by sum_k c_ik f_ik, f of its context:
+ *    rise       f = |v| rise along body x for v_x, along body y for v_y and omega
+ *    voltage    f = v (V / V_0 - 1) for v_x, omega (V / V_0 - 1) for omega
+ * V_0 the first voltage that was measured. What is steady belongs to the ground, so that c is
+ * learned from how f differs from its mean on the same ground, by a Kalman filter for each c. A c
+ * counts only where it predicts better: the log densities of executions with it less those without
+ * it, each before it was learned from, are summed; it counts from `context_evidence` on, until the
+ * sum is negative. */
+class ContextEffects {
+ public:
+  enum Input { kRise, kVoltage, kInputs };
+  using Inputs = Eigen::Matrix<double, static_cast<int>(kVelocities), kInputs>;
+
+  explicit ContextEffects(const GroundConfig& config);
+
+  /// f; 0 where the context is not known. The first voltage becomes V_0.
+  Inputs inputs(const PatternPart& part, double seconds, const Context& context);
+  /// What the effects that count add to each velocity.
+  Eigen::Vector3d effect(const Inputs& f) const;
+  /// What they add to forward and yaw gain at the voltage met last [1].
+  Eigen::Vector2d gainsNow() const;
+  /// Learns from what was measured beyond the ground and effect(f), with its variance. `ground`:
+  /// what the vehicle drives on; the mean of f is that since it was another one.
+  void learn(const Inputs& f, const Eigen::Vector3d& beyond, const Eigen::Vector3d& variance,
+             int64_t ground);
+  bool counts(size_t velocity, Input input) const {
+    return counts_(static_cast<Eigen::Index>(velocity), input) > 0.0;
+  }
+
+  /// Numbers, all of them finite; restore() returns false if they do not fit.
+  void save(std::vector<double>& memory) const;
+  bool restore(const std::vector<double>& memory, size_t& at);
+
+ private:
+  template <class Take>
+  static void forEach(Take&& take) {
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(kVelocities); ++i)
+      for (Eigen::Index k = 0; k < kInputs; ++k)
+        if (i != 1 || k != kVoltage) take(i, k);
+  }
+
+  double evidence_;
+  Inputs c_ = Inputs::Zero();
+  Inputs variance_;                 ///< of c
+  Inputs gained_ = Inputs::Zero();  ///< sum of the differences of log densities
+  Inputs counts_ = Inputs::Zero();  ///< 1 if it counts, 0 if not
+  Inputs mean_ = Inputs::Zero();    ///< of f on this ground
+  double executions_ = 0.0;         ///< that the mean is of
+  int64_t ground_ = -1;
+  double first_voltage_ = 0.0;  ///< V_0 [V]; 0 before one was measured
+  double sag_ = 0.0;            ///< V / V_0 - 1 of the execution learned from last
+};
+
+}  // namespace tread::learner
