@@ -7,11 +7,13 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <random>
 #include <stdexcept>
 
 #include "common/config/scalars.hpp"
 #include "common/parallel/parallel_for.hpp"
 #include "tools/experiment/adaptation/rivals.hpp"
+#include "tools/experiment/trials.hpp"
 
 namespace tread::adaptation {
 namespace {
@@ -19,6 +21,8 @@ namespace {
 constexpr size_t kMostExecutions = kExecutions.back();
 constexpr size_t kChained = (kHorizons.back() + 1) / 2;  // pieces of the longest prediction
 constexpr size_t kLeastTraining = 60;                    // pieces
+constexpr size_t kHistory = 20;                          // pieces
+constexpr const char* kHome = "_home";
 
 /// A learner on the pieces of one walk.
 class Walker {
@@ -29,12 +33,17 @@ class Walker {
   virtual std::vector<Pose2> predict(size_t piece) const = 0;
 };
 
-/// What is known of a left-out session.
+/// A session, and what the reference says of it.
 struct Known {
   const Session& session;
   Predicted reference;
-  NoiseModel noise;
 };
+
+Known knownOf(const Session& session, const Reference& reference, const NoiseModel& noise) {
+  Known known{session, predicted(session, reference)};
+  for (Sample& sample : known.reference.samples) sample.noise = noise.of(sample.meanSpeed());
+  return known;
+}
 
 /// Covariance of the end of a piece whose mean twist scatters as the noise model says.
 PoseCovariance endCovariance(const std::vector<Twist2>& twists, const Eigen::Vector3d& noise) {
@@ -54,51 +63,69 @@ PoseCovariance endCovariance(const std::vector<Twist2>& twists, const Eigen::Vec
   return {P(0, 0), P(0, 1), P(0, 2), P(1, 1), P(1, 2), P(2, 2)};
 }
 
-/// A rule of the learner: the pieces of the walk are the patterns of its set.
+/// A piece of a session, wherever it was driven.
+struct Driven {
+  const Known* known;
+  size_t piece;
+
+  const Piece& measured() const { return known->session.pieces[piece]; }
+};
+
+MotionPattern patternOf(const Driven& driven, int id) {
+  const Piece& piece = driven.measured();
+  const auto begin = driven.known->session.stretches[piece.stretch].commands.begin() +
+                     static_cast<std::ptrdiff_t>(piece.begin);
+  const std::vector<Twist2>& twists = driven.known->reference.twists[driven.piece];
+  MotionPattern pattern;
+  pattern.id = id;
+  pattern.name = "piece" + std::to_string(id);
+  pattern.entry_class = pattern.exit_class = "driving";
+  pattern.commands.assign(begin, begin + kPieceSamples);
+  pattern.trajectory = integrated(twists);
+  pattern.end_covariance =
+      endCovariance(twists, driven.known->reference.samples[driven.piece].noise);
+  return pattern;
+}
+
+/// A rule of the learner. Its set is made of the pieces that it executes, those of its history
+/// first, and of those that it predicts.
 class RuleWalker : public Walker {
  public:
-  RuleWalker(const learner::RuleConfig& config, const Known& known, size_t first, size_t last)
-      : session_(known.session), first_(first) {
+  RuleWalker(const learner::RuleConfig& config, std::vector<Driven> pieces, size_t history,
+             size_t first)
+      : pieces_(std::move(pieces)), history_(history), first_(first) {
     PatternSetContent content;
     content.name = "pieces";
-    content.kind = known.session.kind;
+    content.kind = pieces_.back().known->session.kind;
     content.period_us = std::lround(kPeriod * 1e6);
     content.classes.push_back({"driving", {}, {}});
-    for (size_t i = first; i < last; ++i) {
-      const Piece& piece = known.session.pieces[i];
-      const auto begin = known.session.stretches[piece.stretch].commands.begin() +
-                         static_cast<std::ptrdiff_t>(piece.begin);
-      MotionPattern pattern;
-      pattern.id = static_cast<int>(i - first);
-      pattern.name = "piece" + std::to_string(i);
-      pattern.entry_class = pattern.exit_class = "driving";
-      pattern.commands.assign(begin, begin + kPieceSamples);
-      pattern.trajectory = integrated(known.reference.twists[i]);
-      pattern.end_covariance =
-          endCovariance(known.reference.twists[i], known.reference.samples[i].noise);
-      content.patterns.push_back(std::move(pattern));
-    }
+    for (const Driven& driven : pieces_)
+      content.patterns.push_back(patternOf(driven, static_cast<int>(content.patterns.size())));
     std::string why;
     const std::optional<PatternSet> set = PatternSet::make(std::move(content), why);
-    if (!set) throw std::runtime_error(known.session.name + ": " + why);
+    if (!set) throw std::runtime_error(pieces_.back().known->session.name + ": " + why);
     rule_ = learner::makeRule(config, *set);
+    for (size_t i = 0; i < history_; ++i) execute(i);
   }
 
-  void learn(size_t piece) override {
-    std::vector<double> numbers;
-    learner::fill(session_.pieces[piece].measured, numbers);
-    learner::RuleNote note;
-    rule_->learn(piece - first_, {numbers.data(), kPieceSamples, 3}, note);
-  }
+  void learn(size_t piece) override { execute(history_ + piece - first_); }
   std::vector<Pose2> predict(size_t piece) const override {
     std::vector<double> numbers(3 * kPieceSamples);
-    rule_->predict(piece - first_, {numbers.data(), kPieceSamples, 3});
+    rule_->predict(history_ + piece - first_, {numbers.data(), kPieceSamples, 3});
     return learner::posesOf({numbers.data(), kPieceSamples, 3});
   }
 
  private:
-  const Session& session_;
-  size_t first_;
+  void execute(size_t pattern) {
+    std::vector<double> numbers;
+    learner::fill(pieces_[pattern].measured().measured, numbers);
+    learner::RuleNote note;
+    rule_->learn(pattern, {numbers.data(), kPieceSamples, 3}, note);
+  }
+
+  std::vector<Driven> pieces_;
+  size_t history_;  ///< so many of them come before the session
+  size_t first_;    ///< of the session, behind them
   std::unique_ptr<learner::LearningRule> rule_;
 };
 
@@ -120,9 +147,8 @@ class RivalWalker : public Walker {
 /// Knows the whole session and learns no more.
 class HindsightWalker : public RivalWalker {
  public:
-  HindsightWalker(const Rival& fresh, const Known& known) : RivalWalker(fresh, known) {
-    for (size_t i = 0; i < known.session.pieces.size(); ++i) RivalWalker::learn(i);
-  }
+  explicit HindsightWalker(const Known& known)
+      : RivalWalker(hindsight(known.reference.samples), known) {}
   void learn(size_t) override {}
 };
 
@@ -173,6 +199,7 @@ std::vector<Fold> foldsOf(const std::vector<Session>& sessions, std::vector<std:
 struct Prepared {
   Reference reference;
   NoiseModel noise;
+  std::vector<Known> home;                   ///< training sessions of the same vehicle
   std::vector<std::optional<Rival>> rivals;  ///< by rule; nothing for rules of ours
 };
 
@@ -184,7 +211,7 @@ Prepared prepare(const std::vector<Session>& sessions, const std::vector<TermTab
       if (key == nullptr || keyOf(sessions[i], fold.kind) != *key) some.push_back(&tables[i]);
     return some;
   };
-  Prepared prepared{Reference(tablesWithout(nullptr)), {}, {}};
+  Prepared prepared{Reference(tablesWithout(nullptr)), {}, {}, {}};
   // What rivals expect of new ground is seen on training sessions that a reference does not know.
   TrainingSamples samples;
   for (const size_t i : fold.training) {
@@ -196,12 +223,14 @@ Prepared prepare(const std::vector<Session>& sessions, const std::vector<TermTab
   prepared.noise = noiseOf(samples);
   for (std::vector<Sample>& session : samples)
     for (Sample& sample : session) sample.noise = prepared.noise.of(sample.meanSpeed());
+  for (const size_t i : fold.training)
+    if (fold.kind != LeftOut::kVehicle)
+      prepared.home.push_back(knownOf(sessions[i], prepared.reference, prepared.noise));
   for (const std::string& rule : settings.rules) {
     const auto& names = rivalNames();
-    const std::string rival = rule == kHindsight ? "slip" : rule;
     prepared.rivals.emplace_back();
-    if (std::find(names.begin(), names.end(), rival) != names.end())
-      prepared.rivals.back() = tunedRival(rival, samples, settings.seed);
+    if (std::find(names.begin(), names.end(), rule) != names.end())
+      prepared.rivals.back() = tunedRival(rule, samples, settings.seed);
   }
   return prepared;
 }
@@ -231,20 +260,37 @@ void score(const Session& session, const Walker& walker, size_t piece,
   }
 }
 
+/// A run of pieces of a training session, drawn by chance; none where there is no session.
+std::vector<Driven> drawnHistory(const std::vector<Known>& home, uint64_t seed) {
+  std::vector<Driven> history;
+  if (home.empty()) return history;
+  std::mt19937_64 random(seed);
+  const Known& known = home[experiment::drawIndex(random, home.size())];
+  const size_t pieces = known.session.pieces.size();
+  const size_t length = std::min(kHistory, pieces);
+  const size_t begin = experiment::drawIndex(random, pieces - length + 1);
+  for (size_t i = begin; i < begin + length; ++i) history.push_back({&known, i});
+  return history;
+}
+
 std::unique_ptr<Walker> walkerOf(const Settings& settings, const Prepared& prepared, size_t rule,
                                  const Known& known, size_t first, size_t last) {
-  if (settings.rules[rule] == kHindsight)
-    return std::make_unique<HindsightWalker>(*prepared.rivals[rule], known);
+  const std::string& name = settings.rules[rule];
+  if (name == kHindsight) return std::make_unique<HindsightWalker>(known);
   if (prepared.rivals[rule]) return std::make_unique<RivalWalker>(*prepared.rivals[rule], known);
   learner::RuleConfig config = settings.config;
-  config.rule = settings.rules[rule];
-  return std::make_unique<RuleWalker>(config, known, first, last);
+  config.rule = name.substr(0, name.find(kHome));
+  std::vector<Driven> pieces;
+  if (config.rule != name)
+    pieces = drawnHistory(prepared.home, experiment::seedOf({settings.seed, first}));
+  const size_t history = pieces.size();
+  for (size_t i = first; i < last; ++i) pieces.push_back({&known, i});
+  return std::make_unique<RuleWalker>(config, std::move(pieces), history, first);
 }
 
 SessionErrors testSession(const Session& session, LeftOut kind, const Prepared& prepared,
                           const Settings& settings) {
-  Known known{session, predicted(session, prepared.reference), prepared.noise};
-  for (Sample& sample : known.reference.samples) sample.noise = known.noise.of(sample.meanSpeed());
+  const Known known = knownOf(session, prepared.reference, prepared.noise);
   SessionErrors errors{kind, session.name, session.vehicle, session.surface, {}};
   errors.cells.resize(settings.rules.size());
   const size_t pieces = session.pieces.size();
@@ -289,14 +335,18 @@ void checkRules(const std::vector<std::string>& rules) {
 }  // namespace
 
 std::vector<std::string> knownRules() {
-  std::vector<std::string> names = learner::ruleNames();
+  std::vector<std::string> names;
+  for (const std::string& rule : learner::ruleNames()) {
+    names.push_back(rule);
+    if (rule != kOff) names.push_back(rule + kHome);
+  }
   names.insert(names.end(), rivalNames().begin(), rivalNames().end());
   names.emplace_back(kHindsight);
   return names;
 }
 
 std::vector<std::string> defaultRules() {
-  std::vector<std::string> names{kOff, "single", "collective", kJudged};
+  std::vector<std::string> names{kOff, "collective", kJudged, std::string(kJudged) + kHome};
   names.insert(names.end(), rivalNames().begin(), rivalNames().end());
   names.emplace_back(kHindsight);
   return names;

@@ -138,7 +138,6 @@ void draw(const std::string& path, const std::vector<Group>& groups, const Repor
       std::vector<std::pair<report::Style, std::vector<Eigen::Vector2d>>> curves;
       for (size_t i = 0; i < report.settings.rules.size(); ++i) {
         const std::string& rule = report.settings.rules[i];
-        if (rule == "single") continue;  // no command comes twice: it is no learning
         std::vector<Eigen::Vector2d> points;
         for (size_t k = 0; k < kExecutions.size(); ++k) {
           const Line& line = shown[row]->of(rule, kExecutions[k]);

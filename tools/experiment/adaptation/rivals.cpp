@@ -11,14 +11,26 @@
 #include <Eigen/Cholesky>
 #include <Eigen/SVD>
 
+#include "common/recordings/sessions.hpp"
+
 namespace tread::adaptation {
 namespace {
 
 constexpr size_t kRun = 31;  // pieces of a run that tuning begins with a fresh rival
 constexpr size_t kLeastSessions = 3;
 
-double logGauss(double y, double variance) {
-  return -0.5 * (std::log(2.0 * kPi * variance) + y * y / variance);
+/// Beyond so many standard deviations an innovation counts linearly (Huber): poses jump at times.
+constexpr double kHuber = 2.5;
+
+/// How much more a sample is taken to scatter, its innovation y of variance S being what it is.
+double inflation(double y, double S) {
+  return std::max(1.0, std::abs(y) / (kHuber * std::sqrt(S)));
+}
+
+double logDensity(double y, double S) {
+  const double sigmas = std::abs(y) / std::sqrt(S);
+  const double loss = sigmas <= kHuber ? 0.5 * sigmas * sigmas : kHuber * (sigmas - 0.5 * kHuber);
+  return -0.5 * std::log(2.0 * kPi * S) - loss;
 }
 
 /// A run of samples as rows of functions, so that tuning computes them once.
@@ -46,11 +58,12 @@ double step(const LinearTuning& tuning, const Eigen::VectorXd& h, double residua
   P /= tuning.forgetting;
   if (tuning.walk > 0.0) P.diagonal() += tuning.walk * tuning.deviation.cwiseAbs2();
   const Eigen::VectorXd Ph = P * h;
-  const double S = h.dot(Ph) + tuning.noise * noise;
+  const double expected = h.dot(Ph) + tuning.noise * noise;
   const double y = residual - h.dot(x);
+  const double S = h.dot(Ph) + inflation(y, expected) * tuning.noise * noise;
   x += y / S * Ph;
   P -= Ph * Ph.transpose() / S;
-  return logGauss(y, S);
+  return logDensity(y, expected);
 }
 
 double logLikelihood(const LinearTuning& tuning, const std::vector<Rows>& runs) {
@@ -132,16 +145,19 @@ std::unique_ptr<AxisRival> gainRival(size_t axis, Change change, const TrainingS
                      training);
 }
 
-std::unique_ptr<AxisRival> slipRival(size_t axis, const TrainingSamples& training) {
-  const Functions terms = [axis](const Eigen::Vector2d& speed) -> Eigen::VectorXd {
+Functions slipTerms(size_t axis) {
+  return [axis](const Eigen::Vector2d& speed) -> Eigen::VectorXd {
     const double v = speed[0], w = speed[1];
     if (axis == 0) return Eigen::Vector3d(v, std::abs(w) * v, w);
     if (axis == 1) return Eigen::Vector3d(v * w, v, w);
     return Eigen::Vector3d(w, std::abs(v) * w, v);
   };
+}
+
+std::unique_ptr<AxisRival> slipRival(size_t axis, const TrainingSamples& training) {
   const Eigen::Vector3d deviations[] = {
       {0.06, 0.09, 0.03}, {0.09, 0.012, 0.05}, {0.16, 0.05, 0.012}};
-  return linearRival(axis, terms, deviations[axis], Change::kForget, training);
+  return linearRival(axis, slipTerms(axis), deviations[axis], Change::kForget, training);
 }
 
 /// Mean of |v| and |w| over training samples, at least 0.1: the scale of length.
@@ -276,20 +292,6 @@ double kernel(const KernelTuning& tuning, const Sample& a, const Sample& b) {
   return sum / static_cast<double>(kParts);
 }
 
-/// Covariance of samples and their residuals.
-void covariance(Eigen::Index axis, const KernelTuning& tuning, const Sample* samples, size_t count,
-                Eigen::MatrixXd& K, Eigen::VectorXd& residuals) {
-  const auto n = static_cast<Eigen::Index>(count);
-  K.resize(n, n);
-  residuals.resize(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j <= i; ++j)
-      K(i, j) = K(j, i) = kernel(tuning, samples[i], samples[j]);
-    K(i, i) += tuning.noise * samples[i].noise[axis];
-    residuals[i] = samples[i].residual[axis];
-  }
-}
-
 std::unique_ptr<AxisRival> gpRival(size_t axis, const TrainingSamples& training) {
   KernelTuning tuning;
   tuning.length = 0.6 * largestSpeed(training);
@@ -317,11 +319,12 @@ std::unique_ptr<AxisRival> axisRival(const std::string& name, size_t axis,
 
 }  // namespace
 
-LinearRival::LinearRival(size_t axis, Functions functions, const LinearTuning& tuning)
+LinearRival::LinearRival(size_t axis, Functions functions, const LinearTuning& tuning,
+                         const Eigen::VectorXd& start)
     : axis_(static_cast<Eigen::Index>(axis)),
       functions_(std::move(functions)),
       tuning_(tuning),
-      x_(Eigen::VectorXd::Zero(tuning.deviation.size())),
+      x_(start.size() > 0 ? start : Eigen::VectorXd::Zero(tuning.deviation.size())),
       P_(tuning.deviation.cwiseAbs2().asDiagonal()) {}
 
 Eigen::VectorXd LinearRival::row(const Functions& functions, const Sample& sample) {
@@ -338,12 +341,28 @@ double LinearRival::offset(const Eigen::Vector2d& speed) const {
   return functions_(speed).dot(x_);
 }
 
-void GaussianProcess::learn(const Sample& sample) {
+double GaussianProcess::extend(const Sample& sample) {
+  const auto n = static_cast<Eigen::Index>(samples_.size());
+  Eigen::VectorXd row(n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    row[i] = kernel(tuning_, samples_[static_cast<size_t>(i)], sample);
+  L_.triangularView<Eigen::Lower>().solveInPlace(row);
+  const double own = kernel(tuning_, sample, sample) - row.squaredNorm();
+  const double noise = tuning_.noise * sample.noise[axis_];
+  const double y = sample.residual[axis_] - row.dot(z_);
+  const double S = own + noise * inflation(y, own + noise);
+  L_.conservativeResize(n + 1, n + 1);
+  L_.row(n).head(n) = row;
+  L_(n, n) = std::sqrt(S);
+  z_.conservativeResize(n + 1);
+  z_[n] = y / L_(n, n);
   samples_.push_back(sample);
-  Eigen::MatrixXd K;
-  Eigen::VectorXd residuals;
-  covariance(axis_, tuning_, samples_.data(), samples_.size(), K, residuals);
-  weights_ = K.llt().solve(residuals);
+  return logDensity(y, own + noise);
+}
+
+void GaussianProcess::learn(const Sample& sample) {
+  extend(sample);
+  weights_ = L_.triangularView<Eigen::Lower>().transpose().solve(z_);
 }
 
 double GaussianProcess::offset(const Eigen::Vector2d& speed) const {
@@ -355,13 +374,10 @@ double GaussianProcess::offset(const Eigen::Vector2d& speed) const {
 
 double GaussianProcess::logLikelihood(size_t axis, const KernelTuning& tuning,
                                       const Sample* samples, size_t count) {
-  Eigen::MatrixXd K;
-  Eigen::VectorXd residuals;
-  covariance(static_cast<Eigen::Index>(axis), tuning, samples, count, K, residuals);
-  const Eigen::LLT<Eigen::MatrixXd> factor(K);
-  const Eigen::VectorXd y = factor.matrixL().solve(residuals);
-  return -0.5 * y.squaredNorm() - factor.matrixLLT().diagonal().array().log().sum() -
-         0.5 * static_cast<double>(count) * std::log(2.0 * kPi);
+  GaussianProcess process(axis, tuning);
+  double sum = 0.0;
+  for (size_t i = 0; i < count; ++i) sum += process.extend(samples[i]);
+  return sum;
 }
 
 Rival::Rival(const Rival& other) {
@@ -393,6 +409,26 @@ std::vector<Twist2> Rival::corrected(std::vector<Twist2> twists, const Sample& s
 const std::vector<std::string>& rivalNames() {
   static const std::vector<std::string> names{"constant", "kalman", "slip", "gp", "basis"};
   return names;
+}
+
+Rival hindsight(const std::vector<Sample>& session) {
+  std::array<std::unique_ptr<AxisRival>, kAxes> axes;
+  for (size_t axis = 0; axis < kAxes; ++axis) {
+    const auto n = static_cast<Eigen::Index>(session.size());
+    const Functions terms = slipTerms(axis);
+    Eigen::MatrixXd A(n, 3);
+    Eigen::VectorXd b(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Sample& sample = session[static_cast<size_t>(i)];
+      const double deviation = std::sqrt(sample.noise[static_cast<Eigen::Index>(axis)]);
+      A.row(i) = LinearRival::row(terms, sample) / deviation;
+      b[i] = sample.residual[static_cast<Eigen::Index>(axis)] / deviation;
+    }
+    const Eigen::VectorXd x = recordings::huberFit(A, b, Eigen::VectorXd::Ones(n), {1, 0.05});
+    axes[axis] =
+        std::make_unique<LinearRival>(axis, terms, LinearTuning{Eigen::Vector3d::Zero()}, x);
+  }
+  return Rival(std::move(axes));
 }
 
 Rival tunedRival(const std::string& name, const TrainingSamples& training, uint64_t seed) {

@@ -22,9 +22,11 @@
 //              learned from the training sessions: the directions (SVD) in which their residual
 //              maps over random Fourier features differ (a function encoder by least squares)
 //   gp         a Gaussian process over (v, w), squared exponential kernel with two length scales
-// What each expects beforehand is tuned on the training sessions alone: prior deviations,
-// forgetting, noise and the number of functions by the likelihood of the next execution, the
-// process by its marginal likelihood, over runs of 31 pieces that begin with a fresh rival.
+// All take an innovation beyond 2.5 standard deviations for that much less certain (Huber), as the
+// poses jump at times. What each expects beforehand is tuned on the training sessions alone: prior
+// deviations, forgetting, noise and the number of functions by the likelihood of the next
+// execution, the process by its marginal likelihood, over runs of 31 pieces that begin with a fresh
+// rival.
 namespace tread::adaptation {
 
 /// Samples of each training session, in order of time.
@@ -52,10 +54,13 @@ struct LinearTuning {
 };
 
 /// Recursive least squares, or a Kalman filter on a random walk, in closed form:
-///    P <- P / forgetting + walk P_0,   x <- x + P h (r - h' x) / (h' P h + noise R)
+///    P <- P / forgetting + walk P_0,   x <- x + P h (r - h' x) / (h' P h + noise R),   P <- P - P
+///    h h' P / (..)
 class LinearRival : public AxisRival {
  public:
-  LinearRival(size_t axis, Functions functions, const LinearTuning& tuning);
+  /// Begins with coefficients `start`, zero where there are none.
+  LinearRival(size_t axis, Functions functions, const LinearTuning& tuning,
+              const Eigen::VectorXd& start = {});
 
   void learn(const Sample& sample) override;
   double offset(const Eigen::Vector2d& speed) const override;
@@ -79,6 +84,7 @@ struct KernelTuning {
 };
 
 /// Samples are means over their parts, so that the kernel of two samples is the mean over pairs.
+/** The covariance of all samples is L L', grown by a row with each. */
 class GaussianProcess : public AxisRival {
  public:
   GaussianProcess(size_t axis, const KernelTuning& tuning)
@@ -89,15 +95,20 @@ class GaussianProcess : public AxisRival {
   std::unique_ptr<AxisRival> clone() const override {
     return std::make_unique<GaussianProcess>(*this);
   }
-  /// Logarithm of the density of samples.
+  /// Sum of the logarithms of the densities of samples, each given those before.
   static double logLikelihood(size_t axis, const KernelTuning& tuning, const Sample* samples,
                               size_t count);
 
  private:
   Eigen::Index axis_;
   KernelTuning tuning_;
+  /// Takes a sample; the logarithm of the density that was expected of it.
+  double extend(const Sample& sample);
+
   std::vector<Sample> samples_;
-  Eigen::VectorXd weights_;
+  Eigen::MatrixXd L_;
+  Eigen::VectorXd z_;        ///< L^-1 residuals
+  Eigen::VectorXd weights_;  ///< L'^-1 z
 };
 
 /// A rival for all three velocities.
@@ -118,6 +129,10 @@ class Rival {
 
 /// Names of all rivals, in the order in which reports list them.
 const std::vector<std::string>& rivalNames();
+
+/// Slip regression fitted to a whole session at once (Huber's loss); it learns no more.
+/** No rival, as it knows what is to be predicted: a bound for what its terms can do. */
+Rival hindsight(const std::vector<Sample>& session);
 
 /// A rival that was tuned on training sessions, knowing nothing of the ground it meets.
 /** With fewer than three sessions nothing says how grounds differ: it keeps what is expected in

@@ -12,6 +12,7 @@ namespace tread::adaptation {
 namespace {
 
 constexpr int kResamples = 2000;
+constexpr double kNoDifference = 1e-6;  // [1] of ratios: rounding
 
 double meanOf(const std::vector<double>& values) {
   double sum = 0.0;
@@ -42,9 +43,10 @@ Standing standingOf(const Columns& columns, uint64_t seed) {
   for (const double d : differences) squares += std::pow(d - standing.difference, 2);
   const auto count = static_cast<double>(n);
   standing.standard_error = std::sqrt(squares / (count * (count - 1.0)));
-  standing.judged = standing.difference < -standing.standard_error  ? Verdict::kBetter
-                    : standing.difference > standing.standard_error ? Verdict::kWorse
-                                                                    : Verdict::kLevel;
+  const double margin = standing.standard_error + kNoDifference;
+  standing.judged = standing.difference < -margin  ? Verdict::kBetter
+                    : standing.difference > margin ? Verdict::kWorse
+                                                   : Verdict::kLevel;
   return standing;
 }
 
