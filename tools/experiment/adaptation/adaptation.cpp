@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <mutex>
 #include <optional>
-#include <random>
 #include <stdexcept>
 
 #include "common/config/scalars.hpp"
 #include "common/parallel/parallel_for.hpp"
-#include "tools/experiment/adaptation/rivals.hpp"
+#include "tools/experiment/adaptation/walkers.hpp"
 #include "tools/experiment/trials.hpp"
 
 namespace tread::adaptation {
@@ -21,136 +19,7 @@ namespace {
 constexpr size_t kMostExecutions = kExecutions.back();
 constexpr size_t kChained = (kHorizons.back() + 1) / 2;  // pieces of the longest prediction
 constexpr size_t kLeastTraining = 60;                    // pieces
-constexpr size_t kHistory = 20;                          // pieces
 constexpr const char* kHome = "_home";
-
-/// A learner on the pieces of one walk.
-class Walker {
- public:
-  virtual ~Walker() = default;
-  virtual void learn(size_t piece) = 0;
-  /// Poses after each sample, relative to the piece's start.
-  virtual std::vector<Pose2> predict(size_t piece) const = 0;
-};
-
-/// A session, and what the reference says of it.
-struct Known {
-  const Session& session;
-  Predicted reference;
-};
-
-Known knownOf(const Session& session, const Reference& reference, const NoiseModel& noise) {
-  Known known{session, predicted(session, reference)};
-  for (Sample& sample : known.reference.samples) sample.noise = noise.of(sample.meanSpeed());
-  return known;
-}
-
-/// Covariance of the end of a piece whose mean twist scatters as the noise model says.
-PoseCovariance endCovariance(const std::vector<Twist2>& twists, const Eigen::Vector3d& noise) {
-  Eigen::Matrix3d lever;
-  constexpr double kStep = 1e-4;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const auto end = [&](double change) {
-      std::vector<Twist2> moved = twists;
-      for (Twist2& twist : moved)
-        (axis == 0 ? twist.v_x : axis == 1 ? twist.v_y : twist.omega) += change;
-      const Pose2 pose = integrated(moved).back();
-      return Eigen::Vector3d(pose.x, pose.y, pose.yaw);
-    };
-    lever.col(axis) = (end(kStep) - end(-kStep)) / (2.0 * kStep);
-  }
-  const Eigen::Matrix3d P = lever * noise.asDiagonal() * lever.transpose();
-  return {P(0, 0), P(0, 1), P(0, 2), P(1, 1), P(1, 2), P(2, 2)};
-}
-
-/// A piece of a session, wherever it was driven.
-struct Driven {
-  const Known* known;
-  size_t piece;
-
-  const Piece& measured() const { return known->session.pieces[piece]; }
-};
-
-MotionPattern patternOf(const Driven& driven, int id) {
-  const Piece& piece = driven.measured();
-  const auto begin = driven.known->session.stretches[piece.stretch].commands.begin() +
-                     static_cast<std::ptrdiff_t>(piece.begin);
-  const std::vector<Twist2>& twists = driven.known->reference.twists[driven.piece];
-  MotionPattern pattern;
-  pattern.id = id;
-  pattern.name = "piece" + std::to_string(id);
-  pattern.entry_class = pattern.exit_class = "driving";
-  pattern.commands.assign(begin, begin + kPieceSamples);
-  pattern.trajectory = integrated(twists);
-  pattern.end_covariance =
-      endCovariance(twists, driven.known->reference.samples[driven.piece].noise);
-  return pattern;
-}
-
-/// A rule of the learner. Its set is made of the pieces that it executes, those of its history
-/// first, and of those that it predicts.
-class RuleWalker : public Walker {
- public:
-  RuleWalker(const learner::RuleConfig& config, std::vector<Driven> pieces, size_t history,
-             size_t first)
-      : pieces_(std::move(pieces)), history_(history), first_(first) {
-    PatternSetContent content;
-    content.name = "pieces";
-    content.kind = pieces_.back().known->session.kind;
-    content.period_us = std::lround(kPeriod * 1e6);
-    content.classes.push_back({"driving", {}, {}});
-    for (const Driven& driven : pieces_)
-      content.patterns.push_back(patternOf(driven, static_cast<int>(content.patterns.size())));
-    std::string why;
-    const std::optional<PatternSet> set = PatternSet::make(std::move(content), why);
-    if (!set) throw std::runtime_error(pieces_.back().known->session.name + ": " + why);
-    rule_ = learner::makeRule(config, *set);
-    for (size_t i = 0; i < history_; ++i) execute(i);
-  }
-
-  void learn(size_t piece) override { execute(history_ + piece - first_); }
-  std::vector<Pose2> predict(size_t piece) const override {
-    std::vector<double> numbers(3 * kPieceSamples);
-    rule_->predict(history_ + piece - first_, {numbers.data(), kPieceSamples, 3});
-    return learner::posesOf({numbers.data(), kPieceSamples, 3});
-  }
-
- private:
-  void execute(size_t pattern) {
-    std::vector<double> numbers;
-    learner::fill(pieces_[pattern].measured().measured, numbers);
-    learner::RuleNote note;
-    rule_->learn(pattern, {numbers.data(), kPieceSamples, 3}, note);
-  }
-
-  std::vector<Driven> pieces_;
-  size_t history_;  ///< so many of them come before the session
-  size_t first_;    ///< of the session, behind them
-  std::unique_ptr<learner::LearningRule> rule_;
-};
-
-class RivalWalker : public Walker {
- public:
-  RivalWalker(const Rival& fresh, const Known& known) : rival_(fresh), known_(known) {}
-
-  void learn(size_t piece) override { rival_.learn(known_.reference.samples[piece]); }
-  std::vector<Pose2> predict(size_t piece) const override {
-    return integrated(
-        rival_.corrected(known_.reference.twists[piece], known_.reference.samples[piece]));
-  }
-
- private:
-  Rival rival_;
-  const Known& known_;
-};
-
-/// Knows the whole session and learns no more.
-class HindsightWalker : public RivalWalker {
- public:
-  explicit HindsightWalker(const Known& known)
-      : RivalWalker(hindsight(known.reference.samples), known) {}
-  void learn(size_t) override {}
-};
 
 /// What is left out at once, and what it is tested against.
 struct Fold {
@@ -260,32 +129,17 @@ void score(const Session& session, const Walker& walker, size_t piece,
   }
 }
 
-/// A run of pieces of a training session, drawn by chance; none where there is no session.
-std::vector<Driven> drawnHistory(const std::vector<Known>& home, uint64_t seed) {
-  std::vector<Driven> history;
-  if (home.empty()) return history;
-  std::mt19937_64 random(seed);
-  const Known& known = home[experiment::drawIndex(random, home.size())];
-  const size_t pieces = known.session.pieces.size();
-  const size_t length = std::min(kHistory, pieces);
-  const size_t begin = experiment::drawIndex(random, pieces - length + 1);
-  for (size_t i = begin; i < begin + length; ++i) history.push_back({&known, i});
-  return history;
-}
-
 std::unique_ptr<Walker> walkerOf(const Settings& settings, const Prepared& prepared, size_t rule,
                                  const Known& known, size_t first, size_t last) {
   const std::string& name = settings.rules[rule];
-  if (name == kHindsight) return std::make_unique<HindsightWalker>(known);
-  if (prepared.rivals[rule]) return std::make_unique<RivalWalker>(*prepared.rivals[rule], known);
+  if (name == kHindsight) return hindsightWalker(known);
+  if (prepared.rivals[rule]) return rivalWalker(*prepared.rivals[rule], known);
   learner::RuleConfig config = settings.config;
   config.rule = name.substr(0, name.find(kHome));
-  std::vector<Driven> pieces;
+  History history;
   if (config.rule != name)
-    pieces = drawnHistory(prepared.home, experiment::seedOf({settings.seed, first}));
-  const size_t history = pieces.size();
-  for (size_t i = first; i < last; ++i) pieces.push_back({&known, i});
-  return std::make_unique<RuleWalker>(config, std::move(pieces), history, first);
+    history = drawnHistory(prepared.home, experiment::seedOf({settings.seed, first}));
+  return ruleWalker(config, history, known, first, last);
 }
 
 SessionErrors testSession(const Session& session, LeftOut kind, const Prepared& prepared,

@@ -28,6 +28,40 @@ Eigen::MatrixXd chosen(const Eigen::MatrixXd& all, size_t axis) {
   return some;
 }
 
+/// Non-negative factors whose sums of terms are the expectations of squares.
+/** Each square counts over its expectation so far; what is beyond nine of them (three standard
+ * deviations) is a failure of the poses and counts as nine. */
+Eigen::Vector3d fitted(const std::vector<Eigen::Vector3d>& terms,
+                       const std::vector<double>& squares) {
+  constexpr int kSweeps = 100;
+  constexpr double kLeast = 1e-6, kMost = 9.0;
+  Eigen::Vector3d factors = Eigen::Vector3d::Constant(0.01);
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      double top = 0.0, bottom = 0.0;
+      for (size_t i = 0; i < terms.size(); ++i) {
+        const double expected = factors.dot(terms[i]);
+        const double h = terms[i][k] / (expected * expected);
+        top += h * (std::min(squares[i], kMost * expected) - expected + factors[k] * terms[i][k]);
+        bottom += h * terms[i][k];
+      }
+      factors[k] = std::max(k == 0 ? kLeast : 0.0, top / bottom);
+    }
+  return factors;
+}
+
+/// Whether the commands stay the same from a second before the piece before a piece on.
+bool repeats(const Session& session, size_t piece) {
+  constexpr size_t kSteady = 20;  // samples
+  if (piece == 0 || !session.goesOn(piece - 1)) return false;
+  const Piece& before = session.pieces[piece - 1];
+  const std::vector<TrackCommand>& commands = session.stretches[before.stretch].commands;
+  if (before.begin < kSteady) return false;
+  const auto first = commands.begin() + static_cast<std::ptrdiff_t>(before.begin - kSteady);
+  return std::all_of(first, first + kSteady + 2 * kPieceSamples,
+                     [&](const TrackCommand& command) { return command == *first; });
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector2d> lagged(const Stretch& stretch, double baseline, const Lag& lag) {
@@ -181,6 +215,7 @@ Predicted predicted(const Session& session, const Reference& reference) {
     }
     sample.residual = piece.mean_twist - sum / static_cast<double>(kPieceSamples);
     sample.noise.setOnes();
+    sample.repeats = repeats(session, all.samples.size());
     all.samples.push_back(sample);
   }
   return all;
@@ -197,48 +232,22 @@ std::vector<Pose2> integrated(const std::vector<Twist2>& twists) {
 }
 
 NoiseModel noiseOf(const std::vector<std::vector<Sample>>& sessions) {
-  NoiseModel model;
-  for (size_t axis = 0; axis < kAxes; ++axis) {
-    const auto column = static_cast<Eigen::Index>(axis);
-    std::vector<Eigen::Vector3d> terms;
-    std::vector<double> squares;
-    for (const std::vector<Sample>& session : sessions) {
-      if (session.size() < 10) continue;
-      const auto n = static_cast<Eigen::Index>(session.size());
-      Eigen::MatrixXd A(n, 3);
-      Eigen::VectorXd b(n);
-      for (Eigen::Index i = 0; i < n; ++i) {
-        const Sample& sample = session[static_cast<size_t>(i)];
-        Eigen::RowVector3d row = Eigen::RowVector3d::Zero();
-        for (const Eigen::Vector2d& speed : sample.speeds)
-          row += Eigen::RowVector3d(speed[0], speed[1], std::abs(speed[0]) * speed[1]) / kParts;
-        A.row(i) = row;
-        b[i] = sample.residual[column];
-      }
-      const Eigen::VectorXd x = recordings::huberFit(A, b, Eigen::VectorXd::Ones(n), {1, 0.005});
-      const Eigen::VectorXd rest = A * x - b;
-      const double scale = 1.4826 * recordings::medianOf(rest.cwiseAbs());
-      for (Eigen::Index i = 0; i < n; ++i) {
-        const Eigen::Vector2d speed = session[static_cast<size_t>(i)].meanSpeed();
-        terms.push_back({1.0, speed[0] * speed[0], speed[1] * speed[1]});
-        // Failures of the lidar's poses are none of the ground.
-        squares.push_back(std::pow(std::min(std::abs(rest[i]), 5.0 * scale), 2));
-      }
+  constexpr size_t kLeastPairs = 20;
+  std::vector<Eigen::Vector3d> terms, squares;
+  for (const std::vector<Sample>& session : sessions)
+    for (size_t i = 1; i < session.size(); ++i) {
+      if (!session[i].repeats) continue;
+      const Eigen::Vector2d speed = session[i].meanSpeed();
+      terms.push_back({1.0, speed[0] * speed[0], speed[1] * speed[1]});
+      squares.push_back(0.5 * (session[i].residual - session[i - 1].residual).cwiseAbs2());
     }
-    if (terms.size() < 20) continue;
-    // Non-negative least squares of three factors, each square over its expectation so far.
-    Eigen::Vector3d& factors = model.factors[axis];
-    for (int sweep = 0; sweep < 50; ++sweep)
-      for (Eigen::Index k = 0; k < 3; ++k) {
-        double top = 0.0, bottom = 0.0;
-        for (size_t i = 0; i < terms.size(); ++i) {
-          const double expected = factors.dot(terms[i]);
-          const double h = terms[i][k] / (expected * expected);
-          top += h * (squares[i] - expected + factors[k] * terms[i][k]);
-          bottom += h * terms[i][k];
-        }
-        if (bottom > 0.0) factors[k] = std::max(k == 0 ? 1e-6 : 0.0, top / bottom);
-      }
+  NoiseModel model;
+  if (terms.size() < kLeastPairs) return model;
+  for (size_t axis = 0; axis < kAxes; ++axis) {
+    std::vector<double> of_axis;
+    for (const Eigen::Vector3d& square : squares)
+      of_axis.push_back(square[static_cast<Eigen::Index>(axis)]);
+    model.factors[axis] = fitted(terms, of_axis);
   }
   return model;
 }

@@ -30,8 +30,8 @@ struct Lag {
 /// (v, w) of the commands of a stretch under a lag, a mean for each sample [m/s, rad/s].
 std::vector<Eigen::Vector2d> lagged(const Stretch& stretch, double baseline, const Lag& lag);
 
-/// Variances of a piece's mean twist over what is known of its ground: a + b v^2 + c w^2 of the
-/// mean |v| and |w|, for each velocity.
+/// Variances of a piece's mean twist on the same ground: a + b v^2 + c w^2 of the mean |v| and |w|,
+/// for each velocity. What stands here is expected where too few were recorded.
 struct NoiseModel {
   std::array<Eigen::Vector3d, kAxes> factors{Eigen::Vector3d{0.0025, 0.0025, 0.0025},
                                              Eigen::Vector3d{0.0025, 0.0025, 0.0025},
@@ -45,6 +45,7 @@ struct Sample {
   std::array<Eigen::Vector2d, kParts> speeds;  ///< mean v_x and omega of each part, by reference
   Eigen::Vector3d residual;                    ///< measured mean twist less that of the reference
   Eigen::Vector3d noise;                       ///< its variance
+  bool repeats = false;                        ///< under the steady command of the sample before
 
   /// Mean |v| and |w|.
   Eigen::Vector2d meanSpeed() const;
@@ -98,7 +99,8 @@ Predicted predicted(const Session& session, const Reference& reference);
 /// Poses after each sample of twists that are held for kPeriod.
 std::vector<Pose2> integrated(const std::vector<Twist2>& twists);
 
-/// Scatter of the samples of sessions about a regression of each session of its own.
+/// How executions scatter on the same ground: half the squared difference of two pieces one after
+/// the other under one steady command.
 NoiseModel noiseOf(const std::vector<std::vector<Sample>>& sessions);
 
 }  // namespace tread::adaptation

@@ -65,6 +65,10 @@ class LinearRival : public AxisRival {
   void learn(const Sample& sample) override;
   double offset(const Eigen::Vector2d& speed) const override;
   std::unique_ptr<AxisRival> clone() const override { return std::make_unique<LinearRival>(*this); }
+  /// One step of the filter, h the functions at the sample; the logarithm of the density that was
+  /// expected of the residual.
+  static double step(const LinearTuning& tuning, const Eigen::VectorXd& h, double residual,
+                     double noise, Eigen::VectorXd& x, Eigen::MatrixXd& P);
   /// Mean of the functions over a sample's parts.
   static Eigen::VectorXd row(const Functions& functions, const Sample& sample);
 
