@@ -34,7 +34,7 @@ TEST_CASE("a folder of drives becomes a page, a picture and two tables") {
                                                    {"c", "sand", 16, 0.54},
                                                    {"d", "ice", 16, 0.3}});
   const samples::CalledProgram result =
-      run("--recordings " + folder + " --rules off,multi_model,slip,hindsight --starts 10 --out " +
+      run("--recordings " + folder + " --rules off,multi_model,slip,hindsight --starts 20 --out " +
           out.path("made"));
   INFO(result.printed);
   REQUIRE(result.status == 0);
@@ -46,7 +46,7 @@ TEST_CASE("a folder of drives becomes a page, a picture and two tables") {
   CHECK(samples::isPng(out.text("made/adaptation.png")));
   CHECK(out.text("made/adaptation.csv").find("session,\"drawn robot\",5,slip,10,") !=
         std::string::npos);
-  CHECK(out.text("made/sessions.csv").find("surface,d,\"drawn robot\",\"ice\",2,off,0,10,") !=
+  CHECK(out.text("made/sessions.csv").find("surface,d,\"drawn robot\",\"ice\",2,off,0,20,") !=
         std::string::npos);
 }
 
@@ -69,7 +69,7 @@ TEST_CASE("on real drives the default rule is better than no learning and holds 
   }
   Settings settings;
   settings.rules = {kOff, kJudged, "slip"};
-  settings.starts = 20;
+  settings.starts = 60;
   settings.threads = 2;
   const Recordings found = readRecordings(drive.string());
   const Errors errors = runAdaptation(found.sessions, settings, nullptr);
@@ -79,8 +79,14 @@ TEST_CASE("on real drives the default rule is better than no learning and holds 
     CAPTURE(nameOf(line.kind), line.vehicle, line.rule, line.executions, line.horizon);
     if (line.rule == kJudged) {
       ++judged;
-      CHECK(line.position.ratio.mean < 1.02);
+      // Measured .78 to .93 and .61 to 1.00.
+      CHECK(line.position.ratio.mean < 0.97);
       CHECK(line.yaw.ratio.mean < 1.03);
+    }
+    // Measured: at least .01 and .01 better than slip regression.
+    if (line.rule == "slip" && line.executions == 3) {
+      CHECK(line.position.difference < 0.01);
+      CHECK(line.yaw.difference < 0.01);
     }
   }
   CHECK(judged == 27);  // session, surface, vehicle; 3, 10, 30 executions; 2, 5, 10 s

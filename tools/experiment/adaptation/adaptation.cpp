@@ -19,7 +19,6 @@ namespace {
 constexpr size_t kMostExecutions = kExecutions.back();
 constexpr size_t kChained = (kHorizons.back() + 1) / 2;  // pieces of the longest prediction
 constexpr size_t kLeastTraining = 60;                    // pieces
-constexpr const char* kHome = "_home";
 
 /// What is left out at once, and what it is tested against.
 struct Fold {
@@ -52,6 +51,11 @@ std::vector<Fold> foldsOf(const std::vector<Session>& sessions, std::vector<std:
           pieces += sessions[i].pieces.size();
         }
       }
+      if (pieces >= kLeastTraining && fold.training.size() < kLeastSessions)
+        notes.push_back(session.vehicle + ", " + nameOf(kind) + " " + keyOf(session, kind) +
+                        " left out: " + std::to_string(fold.training.size()) +
+                        " sessions are left, too few to say how grounds differ; rivals expect "
+                        "what is usual, and there is no basis to learn on");
       if (pieces >= kLeastTraining)
         folds.push_back(std::move(fold));
       else

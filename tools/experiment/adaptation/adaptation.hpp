@@ -27,7 +27,7 @@ namespace tread::adaptation {
 inline constexpr std::array<size_t, 5> kExecutions{0, 1, 3, 10, 30};
 inline constexpr std::array<size_t, 3> kHorizons{2, 5, 10};  ///< [s]
 /// A session counts where it was predicted at least so often.
-inline constexpr size_t kLeastStarts = 8;
+inline constexpr size_t kLeastStarts = 12;
 
 /// The rule whose ratio to others is told.
 inline constexpr const char* kJudged = "multi_model";
@@ -36,8 +36,10 @@ inline constexpr const char* kOff = "off";
 /// Slip regression that has seen the whole session: no rule, a bound.
 inline constexpr const char* kHindsight = "hindsight";
 
+/// RULE_home: the rule has executed 20 pieces of a training session of the vehicle before.
+inline constexpr const char* kHome = "_home";
+
 /// Whatever may be asked to learn: rules of ours, the same as RULE_home, rivals, hindsight.
-/** RULE_home has executed 20 pieces of a training session before, of the same vehicle. */
 std::vector<std::string> knownRules();
 std::vector<std::string> defaultRules();
 
@@ -51,7 +53,7 @@ const char* nameOf(LeftOut what);
 struct Settings {
   std::vector<std::string> rules = defaultRules();
   learner::RuleConfig config;  ///< of our rules
-  size_t starts = 40;          ///< of each session, at most
+  size_t starts = 1000;        ///< of each session, at most
   uint64_t seed = 1;
   int threads = 1;  ///< no influence on any number
 };

@@ -6,38 +6,12 @@
 
 #include "common/geometry/degrees.hpp"
 #include "common/report/page.hpp"
-#include "common/report/plot.hpp"
 #include "common/report/text.hpp"
 #include "common/store/store.hpp"
-#include "tools/experiment/adaptation/adaptation.hpp"
+#include "tools/experiment/adaptation/groups.hpp"
 
 namespace tread::adaptation {
 namespace {
-
-/// Lines of one group and horizon: what was left out, vehicle, horizon.
-struct Group {
-  LeftOut kind;
-  std::string vehicle;
-  size_t horizon;
-  std::vector<const Line*> lines;
-
-  const Line& of(const std::string& rule, size_t executions) const {
-    return **std::find_if(lines.begin(), lines.end(), [&](const Line* line) {
-      return line->rule == rule && line->executions == executions;
-    });
-  }
-};
-
-std::vector<Group> groupsOf(const Report& report) {
-  std::vector<Group> groups;
-  for (const Line& line : report.lines) {
-    if (groups.empty() || groups.back().kind != line.kind ||
-        groups.back().vehicle != line.vehicle || groups.back().horizon != line.horizon)
-      groups.push_back({line.kind, line.vehicle, line.horizon, {}});
-    groups.back().lines.push_back(&line);
-  }
-  return groups;
-}
 
 std::string titleOf(const Group& group) {
   return std::string(nameOf(group.kind)) + " left out, " + group.vehicle + ", " +
@@ -84,11 +58,10 @@ std::string verdictCell(const Line& line) {
 using CellText = std::string (*)(const Line&);
 
 /// A table: a row for each rule, a column for each number of executions.
-report::Table tableOf(const Group& group, const std::vector<std::string>& rules,
-                      const std::string& corner, CellText cell) {
+report::Table tableOf(const Group& group, const std::string& corner, CellText cell) {
   report::Table table{{corner}, {}, 1};
   for (const size_t k : kExecutions) table.header.push_back("k = " + std::to_string(k));
-  for (const std::string& rule : rules) {
+  for (const std::string& rule : group.rules) {
     table.rows.push_back({rule});
     for (const size_t k : kExecutions) table.rows.back().push_back(cell(group.of(rule, k)));
   }
@@ -114,61 +87,6 @@ std::string sessionsOf(const Group& group) {
   return text;
 }
 
-/// Ratios to no learning over executions, by rule: a row of panels for each group at one horizon.
-void draw(const std::string& path, const std::vector<Group>& groups, const Report& report) {
-  constexpr size_t kShown = 5;  // [s] ahead
-  constexpr double kWidth = 430.0, kHeight = 230.0, kGap = 70.0;
-  std::vector<const Group*> shown;
-  for (const Group& group : groups)
-    if (group.horizon == kShown) shown.push_back(&group);
-  report::Picture picture(
-      static_cast<int>(2.0 * (kWidth + kGap) + 20.0),
-      static_cast<int>(static_cast<double>(shown.size()) * (kHeight + kGap) + 60.0),
-      "Error over that of no learning, " + std::to_string(kShown) + " s ahead, open loop");
-  for (size_t row = 0; row < shown.size(); ++row)
-    for (const bool yaw : {false, true}) {
-      report::Panel::Axes axes;
-      axes.title = std::string(yaw ? "yaw" : "position") + ": " + nameOf(shown[row]->kind) +
-                   " left out, " + shown[row]->vehicle;
-      axes.x_label = "executions before";
-      axes.x_max = static_cast<double>(kExecutions.size()) - 0.5;
-      axes.x_min = -0.5;
-      axes.y_min = 1.0;
-      axes.y_max = 1.0;
-      std::vector<std::pair<report::Style, std::vector<Eigen::Vector2d>>> curves;
-      for (size_t i = 0; i < report.settings.rules.size(); ++i) {
-        const std::string& rule = report.settings.rules[i];
-        std::vector<Eigen::Vector2d> points;
-        for (size_t k = 0; k < kExecutions.size(); ++k) {
-          const Line& line = shown[row]->of(rule, kExecutions[k]);
-          const double value = (yaw ? line.yaw : line.position).ratio.mean;
-          if (!std::isfinite(value)) continue;
-          points.emplace_back(static_cast<double>(k), value);
-          axes.y_min = std::min(axes.y_min, value);
-          axes.y_max = std::max(axes.y_max, value);
-        }
-        const bool plain = rule == kOff || rule == kHindsight;
-        report::Style style{plain ? report::kGrey : report::seriesColour(i),
-                            rule == kJudged ? 3.5 : 1.5, rule == kHindsight, ""};
-        if (row == 0 && yaw) style.label = rule;
-        curves.emplace_back(style, std::move(points));
-      }
-      const double air = 0.1 * std::max(0.1, axes.y_max - axes.y_min);
-      axes.y_min -= air;
-      axes.y_max += (row == 0 && yaw ? 8.0 : 1.0) * air;
-      report::Panel panel(picture,
-                          {60.0 + (yaw ? kWidth + kGap : 0.0),
-                           60.0 + static_cast<double>(row) * (kHeight + kGap), kWidth, kHeight},
-                          axes);
-      std::vector<std::string> names;
-      for (const size_t k : kExecutions) names.push_back(std::to_string(k));
-      panel.xNames(names);
-      for (const auto& [style, points] : curves) panel.line(points, style);
-      panel.finish();
-    }
-  picture.save(path);
-}
-
 /// What one sees first: the judged rule against no learning and the others after 3 executions.
 std::vector<std::string> findings(const std::vector<Group>& groups, const Report& report) {
   constexpr size_t kEarly = 3;
@@ -179,7 +97,7 @@ std::vector<std::string> findings(const std::vector<Group>& groups, const Report
     const Line& judged = group.of(kJudged, kEarly);
     if (judged.sessions == 0) continue;
     std::vector<std::string> lost;
-    for (const std::string& rule : rules) {
+    for (const std::string& rule : group.rules) {
       const Line& line = group.of(rule, kEarly);
       if (rule == kHindsight) continue;
       if (line.position.judged == Verdict::kWorse) lost.push_back(rule + " (position)");
@@ -216,15 +134,13 @@ report::Page pageOf(const std::vector<Group>& groups, const Report& report,
                         "executions\" src=\"data:image/png;base64," +
                         base64(readText(png)) + "\">"},
                        "hindsight has seen the whole session: a bound, no rule"}};
-  const auto& rules = report.settings.rules;
   for (const Group& group : groups)
-    page.sections.push_back({titleOf(group),
-                             {report::Paragraph{sessionsOf(group) + ". Position / yaw."},
-                              tableOf(group, rules, "error [m] / [deg]", errorCell),
-                              tableOf(group, rules, "ratio to off", ratioCell),
-                              tableOf(group, rules, "95 % interval", intervalCell),
-                              tableOf(group, rules, "worst session", worstCell),
-                              tableOf(group, rules, std::string(kJudged) + " is", verdictCell)}});
+    page.sections.push_back(
+        {titleOf(group),
+         {report::Paragraph{sessionsOf(group) + ". Position / yaw."},
+          tableOf(group, "error [m] / [deg]", errorCell), tableOf(group, "ratio to off", ratioCell),
+          tableOf(group, "95 % interval", intervalCell), tableOf(group, "worst session", worstCell),
+          tableOf(group, std::string(kJudged) + " is", verdictCell)}});
   if (!report.notes.empty())
     page.sections.push_back({"About the recordings", {report::Points{report.notes}}});
   return page;
@@ -245,15 +161,36 @@ std::string standingCsv(const Standing& standing) {
 
 }  // namespace
 
+const Line& Group::of(const std::string& rule, size_t executions) const {
+  return **std::find_if(lines.begin(), lines.end(), [&](const Line* line) {
+    return line->rule == rule && line->executions == executions;
+  });
+}
+
+std::vector<Group> groupsOf(const Report& report) {
+  std::vector<Group> groups;
+  for (const Line& line : report.lines) {
+    if (groups.empty() || groups.back().kind != line.kind ||
+        groups.back().vehicle != line.vehicle || groups.back().horizon != line.horizon)
+      groups.push_back({line.kind, line.vehicle, line.horizon, {}, {}});
+    Group& group = groups.back();
+    group.lines.push_back(&line);
+    // Another vehicle has no history with this one: it would be the same row twice.
+    const bool home = line.rule.find(kHome) != std::string::npos;
+    if (group.rules.empty() || group.rules.back() != line.rule)
+      if (!home || group.kind != LeftOut::kVehicle) group.rules.push_back(line.rule);
+  }
+  return groups;
+}
+
 std::string textOf(const Report& report) {
   std::string text;
   for (const Group& group : groupsOf(report)) {
     text += "\n" + titleOf(group) + ". " + sessionsOf(group) + "\n";
-    const auto& rules = report.settings.rules;
-    text += textOf(tableOf(group, {kOff}, "error m / deg", errorCell));
-    text += textOf(tableOf(group, rules, "ratio to off", ratioCell));
-    text += textOf(tableOf(group, rules, "worst session", worstCell));
-    text += textOf(tableOf(group, rules, std::string(kJudged) + " is", verdictCell));
+    text += textOf(tableOf(group, "error m / deg", errorCell));
+    text += textOf(tableOf(group, "ratio to off", ratioCell));
+    text += textOf(tableOf(group, "worst session", worstCell));
+    text += textOf(tableOf(group, std::string(kJudged) + " is", verdictCell));
   }
   for (const std::string& note : report.notes) text += "Note: " + note + "\n";
   return text;
@@ -299,7 +236,7 @@ void writeReport(const std::string& folder, const Report& report) {
   writeText(path("adaptation.csv"), csvOfLines(report));
   writeText(path("sessions.csv"), csvOfSessions(report));
   const std::vector<Group> groups = groupsOf(report);
-  draw(path("adaptation.png"), groups, report);
+  drawRatios(path("adaptation.png"), groups);
   writeText(path("adaptation.html"),
             report::htmlOf(pageOf(groups, report, path("adaptation.png"))));
 }

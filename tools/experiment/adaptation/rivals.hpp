@@ -138,9 +138,12 @@ const std::vector<std::string>& rivalNames();
 /** No rival, as it knows what is to be predicted: a bound for what its terms can do. */
 Rival hindsight(const std::vector<Sample>& session);
 
+/// Fewer sessions do not say how grounds differ.
+inline constexpr size_t kLeastSessions = 3;
+
 /// A rival that was tuned on training sessions, knowing nothing of the ground it meets.
-/** With fewer than three sessions nothing says how grounds differ: it keeps what is expected in
- * general. `seed` draws the random features. */
+/** With fewer than kLeastSessions it keeps what is expected in general; there is no basis then.
+ * `seed` draws the random features. */
 Rival tunedRival(const std::string& name, const TrainingSamples& training, uint64_t seed);
 
 }  // namespace tread::adaptation

@@ -16,7 +16,6 @@ namespace tread::adaptation {
 namespace {
 
 constexpr size_t kRun = 31;  // pieces of a run that tuning begins with a fresh rival
-constexpr size_t kLeastSessions = 3;
 
 /// A run of samples as rows of functions, so that tuning computes them once.
 struct Rows {
