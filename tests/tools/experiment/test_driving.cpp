@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "common/log/event_log.hpp"
+#include "common/recordings/imported_log.hpp"
 #include "tests/helpers.hpp"
 #include "tests/tools/experiment/drawn_driving.hpp"
 
@@ -84,6 +86,34 @@ TEST_CASE("steps that were recorded apart are joined where one went on into the 
   CHECK(parts.stretches[0].commands.size() == 4 * 121);
   CHECK(std::isnan(parts.stretches[0].poses[2 * 121 + 60].x));
   CHECK(std::isfinite(parts.stretches[0].poses[3 * 121 + 60].x));
+}
+
+TEST_CASE("a folder of LCM logs is read, too, each log a session") {
+  const samples::Folder drives("drives"), logs("logs");
+  const std::string folder = writeDriving(drives, {{"one", "gravel", 6}, {"two", "sand", 6}});
+  for (const char* name : {"one", "two"}) {
+    const recordings::Session session = recordings::readSession(folder + "/sessions.csv", name);
+    recordings::LogCounts counts;
+    LogWriter writer(logs.file(std::string(name) + ".lcmlog"));
+    for (const LogEvent& event :
+         recordings::makeLog(recordings::readSteps(folder + "/steps/" + name + ".csv", session),
+                             session, "steps", {}, counts))
+      writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
+    writer.flush();
+  }
+  const Recordings found = readRecordings(logs.file(""));
+  REQUIRE(found.sessions.size() == 2);
+  const Session& two = found.sessions[1];
+  CHECK(two.name == "two");
+  CHECK(two.vehicle == "drawn robot");
+  CHECK(two.surface == "sand");
+  CHECK(two.kind == CommandKind::kTrackSpeed);
+  CHECK(two.baseline == Approx(1.0));
+  // Six steps apart from each other; the first two seconds of each are its lead-in.
+  REQUIRE(two.pieces.size() == 6);
+  const recordings::BodyCommand command = drawnCommands(6, 2)[two.pieces[3].stretch];
+  CHECK(two.pieces[3].mean_twist[0] == Approx(0.95 * command.v).margin(0.01));
+  CHECK(two.pieces[3].mean_twist[2] == Approx(0.5 * command.w).margin(0.01));
 }
 
 TEST_CASE("a folder without recordings is refused, a session without driving is told") {

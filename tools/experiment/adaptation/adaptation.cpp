@@ -46,16 +46,17 @@ std::vector<Fold> foldsOf(const std::vector<Session>& sessions, std::vector<std:
         const bool same_vehicle = sessions[i].vehicle == session.vehicle;
         if (same_vehicle && keyOf(sessions[i], kind) == keyOf(session, kind)) {
           fold.tested.push_back(i);
-        } else if (same_vehicle || kind == LeftOut::kVehicle) {
+        } else if ((same_vehicle || kind == LeftOut::kVehicle) &&
+                   sessions[i].kind == session.kind) {
           fold.training.push_back(i);
           pieces += sessions[i].pieces.size();
         }
       }
       if (pieces >= kLeastTraining && fold.training.size() < kLeastSessions)
         notes.push_back(session.vehicle + ", " + nameOf(kind) + " " + keyOf(session, kind) +
-                        " left out: " + std::to_string(fold.training.size()) +
+                        " left out: fewer than " + std::to_string(kLeastSessions) +
                         " sessions are left, too few to say how grounds differ; rivals expect "
-                        "what is usual, and there is no basis to learn on");
+                        "what is usual, and basis has learned no functions");
       if (pieces >= kLeastTraining)
         folds.push_back(std::move(fold));
       else
