@@ -113,8 +113,8 @@ void define(CLI::App& command, AdaptationArguments& arguments) {
       ->required();
   command
       .add_option("--rules", arguments.settings.rules,
-                  "off, rules of learner.yaml, rivals (constant, kalman, slip, gp, basis), and "
-                  "hindsight: slip regression that has seen the whole session")
+                  "off, rules of learner.yaml or RULE_home, rivals (constant, kalman, slip, gp, "
+                  "basis), hindsight: slip regression that has seen the whole session")
       ->delimiter(',')
       ->capture_default_str();
   command

@@ -185,13 +185,13 @@ std::vector<Group> groupsOf(const Report& report) {
 
 std::string textOf(const Report& report) {
   std::string text;
-  for (const Group& group : groupsOf(report)) {
-    text += "\n" + titleOf(group) + ". " + sessionsOf(group) + "\n";
-    text += textOf(tableOf(group, "error m / deg", errorCell));
+  const std::vector<Group> groups = groupsOf(report);
+  for (const Group& group : groups) {
+    text += titleOf(group) + ". " + sessionsOf(group) + "\n";
     text += textOf(tableOf(group, "ratio to off", ratioCell));
-    text += textOf(tableOf(group, "worst session", worstCell));
-    text += textOf(tableOf(group, std::string(kJudged) + " is", verdictCell));
+    text += textOf(tableOf(group, std::string(kJudged) + " is", verdictCell)) + "\n";
   }
+  for (const std::string& finding : findings(groups, report)) text += finding + "\n";
   for (const std::string& note : report.notes) text += "Note: " + note + "\n";
   return text;
 }
