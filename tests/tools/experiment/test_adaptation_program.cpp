@@ -79,11 +79,11 @@ TEST_CASE("on real drives the default rule is better than no learning and holds 
     CAPTURE(nameOf(line.kind), line.vehicle, line.rule, line.executions, line.horizon);
     if (line.rule == kJudged) {
       ++judged;
-      // Measured .78 to .93 and .61 to 1.00.
+      // Measured .77 to .93 and .60 to 1.00.
       CHECK(line.position.ratio.mean < 0.97);
       CHECK(line.yaw.ratio.mean < 1.03);
     }
-    // Measured: at least .01 and .01 better than slip regression.
+    // Over all starts it is .00 to .12 better than slip regression, .04 to .10 in yaw.
     if (line.rule == "slip" && line.executions == 3) {
       CHECK(line.position.difference < 0.01);
       CHECK(line.yaw.difference < 0.01);
