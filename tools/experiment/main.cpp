@@ -11,6 +11,8 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
+#include "common/config/config_reader.hpp"
+#include "tools/experiment/adaptation/adaptation.hpp"
 #include "tools/experiment/tables.hpp"
 
 namespace {
@@ -96,6 +98,61 @@ void makeFolder(const std::string& folder) {
     throw std::runtime_error(folder + ": cannot be made or written; check --out");
 }
 
+/// The command adaptation.
+struct AdaptationArguments {
+  tread::adaptation::Settings settings;
+  std::string recordings;
+  std::vector<std::string> overrides;
+  std::string out;
+};
+
+void define(CLI::App& command, AdaptationArguments& arguments) {
+  command
+      .add_option("--recordings", arguments.recordings,
+                  "folder of drives (sessions.csv) or of LCM logs of drives (*.lcmlog)")
+      ->required();
+  command
+      .add_option("--rules", arguments.settings.rules,
+                  "off, rules of learner.yaml or RULE_home, rivals (constant, kalman, slip, gp, "
+                  "basis), hindsight: slip regression that has seen the whole session")
+      ->delimiter(',')
+      ->capture_default_str();
+  command
+      .add_option("--starts", arguments.settings.starts,
+                  "of each session, at most: there a learner begins that knows nothing of it")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  command
+      .add_option("--set", arguments.overrides,
+                  "SECTION.KEY=VALUE in the place of what learner.yaml would say: ground.fresh=0.3")
+      ->expected(1)
+      ->take_all();
+  command.add_option("--seed", arguments.settings.seed, "of intervals and random features")
+      ->capture_default_str();
+  tread::addThreads(command, arguments.settings.threads);
+  command.add_option("--out", arguments.out, "folder for adaptation.html, picture and CSV files");
+}
+
+void run(const AdaptationArguments& arguments) {
+  makeFolder(arguments.out);
+  tread::adaptation::Report report;
+  report.settings = arguments.settings;
+  tread::ConfigReader reader = tread::ConfigReader::fromText("{}", "learner", arguments.overrides);
+  tread::learner::readRules(reader, report.settings.config);
+  reader.finish();
+  tread::adaptation::Recordings read = tread::adaptation::readRecordings(arguments.recordings);
+  report.source = std::filesystem::path(arguments.recordings).filename().string();
+  report.errors =
+      tread::adaptation::runAdaptation(read.sessions, report.settings, [](size_t done, size_t all) {
+        showProgress(static_cast<double>(done) / static_cast<double>(all));
+      });
+  report.notes = std::move(read.notes);
+  report.notes.insert(report.notes.end(), report.errors.notes.begin(), report.errors.notes.end());
+  report.lines = summaryOf(report.errors, report.settings.rules, report.settings.seed);
+  if (!arguments.out.empty()) writeReport(arguments.out, report);
+  std::cout << textOf(report) << std::flush;
+}
+
 void run(const Arguments& arguments) {
   makeFolder(arguments.out);
   const Batch batch = tread::experiment::runBatch(arguments.request, showProgress);
@@ -123,9 +180,17 @@ int main(int argc, char** argv) {
   CLI::App* transitions = app.add_subcommand(
       "transitions", "section V of the paper: what rules err after a change of surface");
   define(*transitions, arguments);
+  AdaptationArguments of_adaptation;
+  CLI::App* adaptation = app.add_subcommand(
+      "adaptation",
+      "open-loop errors after 0 to 30 executions on ground, in a session, with a vehicle not met");
+  define(*adaptation, of_adaptation);
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   return tread::runProgram("tread-experiment", [&] {
-    run(arguments);
+    if (*adaptation)
+      run(of_adaptation);
+    else
+      run(arguments);
     return 0;
   });
 }
