@@ -76,7 +76,7 @@ void SimulatedDevices::advanceTo(int64_t utime) {
   }
   for (const InsSample& sample : robot_.takeInsSamples()) ins_->add(sample);
   for (LaserScan& scan : robot_.takeScans()) {
-    laser_->add(scan);
+    if (!scan.ground) laser_->add(scan);
     scans_.push_back(std::move(scan));
   }
   if (scans_.size() > kMostScans) scans_.erase(scans_.begin(), scans_.end() - kMostScans);
