@@ -139,6 +139,7 @@ OccupancyMap::OccupancyMap(const OccupancyMapConfig& config)
     : config_(config),
       voxels_(config.voxels, config.tile_cells * config.window_tiles),
       ground_(config.ground, config.voxels.cell_size, config.tile_cells * config.window_tiles),
+      roughness_(config.voxels.cell_size, config.tile_cells * config.window_tiles),
       classifier_(config.obstacle, config.voxels.cell_size),
       footprint_(config.robot, 0.0),
       trust_(config.tile_cells * config.window_tiles),
@@ -167,6 +168,7 @@ OccupancyMap::Refusal OccupancyMap::insert(const Scan& scan) {
   voxels_.insert(raysOf(scan));
   for (const size_t offset : voxels_.touched()) tileOf(offset).utime = utime_;
   for (const size_t offset : voxels_.changed()) classify(offset);
+  if (config_.roughness.range_noise > 0.0) learnRoughness();
   standAt(planar(plane->p_map, Eigen::Quaterniond(scan.T_map_body_last.linear())));
   return Refusal::kNone;
 }
@@ -193,6 +195,7 @@ void OccupancyMap::moveWindow(CellIndex lower, int lower_z) {
   const CellIndex lower_cell{lower.x * config_.tile_cells, lower.y * config_.tile_cells};
   voxels_.moveTo(lower_cell, lower_z);
   ground_.moveTo(lower_cell);
+  roughness_.moveTo(lower_cell);
   trust_.moveTo(lower_cell);
   tiles_.moveTo(lower);
   under_robot_.clear();
@@ -213,6 +216,20 @@ void OccupancyMap::learnGround(const GroundPlane& plane, bool window_moved) {
   } else {
     for (const CellIndex patch : changed) classifyPatch(patch);
   }
+}
+
+/// From the returns of the last scan on free ground.
+void OccupancyMap::learnRoughness() {
+  std::vector<GroundPoint> points;
+  for (const Ray& ray : rays_) {
+    const CellIndex cell = grid_.indexOf(ray.to.head<2>());
+    if (!ray.hit || !grid_.contains(cell) || !isFree(grid_.at(cell))) continue;
+    const GroundHeight ground = ground_.at(cell);
+    if (std::abs(ray.to.z() - ground.z) > config_.obstacle.step + ground.doubt) continue;
+    const double down = (ray.to - ray.from).normalized().z() * config_.roughness.range_noise;
+    points.push_back({ray.to, down * down});
+  }
+  for (const CellIndex patch : roughness_.take(points)) classifyPatch(patch);
 }
 
 void OccupancyMap::assumeStartFree(const Eigen::Vector2d& p_map) {
@@ -271,6 +288,7 @@ void OccupancyMap::classify(size_t offset) {
     cell = classifier_.classify(column, voxels_.lowerZ(), ground_.at(trust_.indexOf(offset)));
     if (cell == kUnknown && trust.stood_on) cell = kFree;
   }
+  if (cell == kFree) cell = roughness_.at(trust_.indexOf(offset));
   if (grid_.cells()[offset] == cell) return;
   grid_.cells()[offset] = cell;
   TileState& tile = tileOf(offset);

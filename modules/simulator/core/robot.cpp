@@ -45,8 +45,9 @@ FootprintSize contactOf(const VehicleParameters& vehicle) {
 
 }  // namespace
 
-void Shaking::add(double acceleration, double pitch_rate, double dt) {
+void Shaking::add(double speed, double acceleration, double pitch_rate, double dt) {
   time += dt;
+  distance += speed * dt;
   acceleration_sum += acceleration * acceleration * dt;
   acceleration_peak = std::max(acceleration_peak, std::abs(acceleration));
   pitch_rate_sum += pitch_rate * pitch_rate * dt;
@@ -155,9 +156,10 @@ void SimulatedRobot::noteShaking(double dt) {
   const double acceleration = (rise - rise_before_) / dt;
   height_before_ = frontHeight();
   rise_before_ = rise;
-  if (std::hypot(truth_.v_body.v_x, truth_.v_body.v_y) < kStanding) return;
+  const double speed = std::hypot(truth_.v_body.v_x, truth_.v_body.v_y);
+  if (speed < kStanding) return;
   Shaking& shaking = world_->isRough(truth_.T_map_body.position()) ? truth_.rough : truth_.smooth;
-  shaking.add(acceleration, rate_body_.y(), dt);
+  shaking.add(speed, acceleration, rate_body_.y(), dt);
 }
 
 std::vector<LaserScan> SimulatedRobot::takeScans() {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -53,12 +53,15 @@ struct CollisionEvent {
 /** There the vehicle's rise and its pitching add up: what arms, cameras and range finders feel. */
 struct Shaking {
   double time = 0.0;               ///< [s]
+  double distance = 0.0;           ///< [m] driven in that time
   double acceleration_sum = 0.0;   ///< squared vertical acceleration over that time [m2/s3]
   double acceleration_peak = 0.0;  ///< [m/s2]
   double pitch_rate_sum = 0.0;     ///< squared pitch rate over that time [rad2/s]
   double pitch_rate_peak = 0.0;    ///< [rad/s]
 
-  void add(double acceleration, double pitch_rate, double dt);
+  void add(double speed, double acceleration, double pitch_rate, double dt);
+  /// RMS over the time of a squared quantity's sum; 0 without any time.
+  double rms(double sum) const { return time > 0.0 ? std::sqrt(sum / time) : 0.0; }
 };
 
 /// What is really the case.

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/ground/shock_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace tread {
+namespace {
+
+constexpr double kUnit = 0.01;                          // roughness whose logarithm is 0 [m]
+constexpr double kSmoothest = 0.0005, kRoughest = 0.2;  // [m]
+constexpr double kSlowest = 0.05, kFastest = 20.0;      // [m/s]
+/// The prior of the variance is worth so many pairs.
+constexpr double kPriorPairs = 6.0;
+/// Not more uncertain than that: else one wild guess would forbid all ground [1].
+constexpr double kMostVariance = 1.0;
+
+Eigen::Vector3d inputOf(double roughness, double speed) {
+  return {1.0, std::log(std::clamp(roughness, kSmoothest, kRoughest) / kUnit),
+          std::log(std::clamp(std::abs(speed), kSlowest, kFastest))};
+}
+
+}  // namespace
+
+double ShockModel::logShock(double roughness, double speed) const {
+  return mean.dot(inputOf(roughness, speed));
+}
+
+double ShockModel::meanSquare(double roughness, double speed) const {
+  const Eigen::Vector3d x = inputOf(roughness, speed);
+  const double doubt = std::min(kMostVariance, variance + x.dot(covariance * x));
+  // Of a lognormal variable s: E[s^2] = exp(2 mu + 2 sigma^2).
+  return std::exp(2.0 * mean.dot(x) + 2.0 * doubt);
+}
+
+double ShockModel::roughnessFor(double shock, double speed) const {
+  const Eigen::Vector3d x = inputOf(kUnit, speed);
+  const double power = std::max(0.3, mean[1]);
+  return std::clamp(kUnit * std::exp((std::log(shock) - mean.dot(x)) / power), kSmoothest,
+                    kRoughest);
+}
+
+void ShockRegression::learn(double roughness, double speed, double shock) {
+  if (!(roughness > 0.0 && speed > 0.0 && shock > 0.0) || !std::isfinite(roughness + speed + shock))
+    return;
+  const Eigen::Vector3d x = inputOf(roughness, speed);
+  const double y = std::log(shock);
+  constexpr double kKept = 1.0 - 1.0 / kMemory;
+  inputs_ = kKept * inputs_ + x * x.transpose();
+  products_ = kKept * products_ + y * x;
+  squares_ = kKept * squares_ + y * y;
+  weight_ = kKept * weight_ + 1.0;
+  ++pairs_;
+}
+
+ShockModel ShockRegression::model() const {
+  const ShockModel prior;
+  // Normal-inverse-gamma posterior (Bishop, Pattern Recognition and Machine Learning, 3.3 and
+  // exercise 3.12); precisions are in units of 1 / variance.
+  const Eigen::Matrix3d prior_precision = prior.variance * prior.covariance.inverse();
+  const Eigen::Matrix3d precision = prior_precision + inputs_;
+  const Eigen::LDLT<Eigen::Matrix3d> solver(precision);
+  ShockModel model;
+  model.mean = solver.solve(prior_precision * prior.mean + products_);
+  const double residual = squares_ + prior.mean.dot(prior_precision * prior.mean) -
+                          model.mean.dot(precision * model.mean);
+  model.variance =
+      (kPriorPairs * prior.variance + std::max(0.0, residual)) / (kPriorPairs + weight_);
+  model.covariance = model.variance * solver.solve(Eigen::Matrix3d::Identity());
+  return model;
+}
+
+}  // namespace tread

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/planner/core/map/ground_cost.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tread::planner {
+namespace {
+
+/// A pattern that gets on less than this turns rather than drives [m].
+constexpr double kLeastLength = 0.2;
+
+float rateOf(const ShockCostConfig& config, const ShockModel& model, double roughness,
+             double speed) {
+  const double ratio = model.meanSquare(roughness, speed) / (config.harmless * config.harmless);
+  return static_cast<float>(config.weight * std::max(0.0, ratio - 1.0));
+}
+
+}  // namespace
+
+GroundCost::GroundCost(const ShockCostConfig& config, const ShockKnowledge& shock,
+                       const PatternTable& table)
+    : first_(table.patterns().data()), rates_(table.patterns().size()) {
+  slowness_.fill(std::numeric_limits<float>::infinity());
+  for (size_t i = 0; i < rates_.size(); ++i) {
+    const TablePattern& pattern = table.patterns()[i];
+    const double speed = pattern.length / pattern.duration;
+    for (int cell = 0; cell <= kCostMax; ++cell) {
+      const double roughness = cell > 0 ? roughnessOf(static_cast<Cell>(cell)) : shock.here;
+      float& rate = rates_[i][static_cast<size_t>(cell)];
+      if (pattern.length >= kLeastLength && std::isfinite(roughness))
+        rate = rateOf(config, shock.model, roughness, speed);
+      if (pattern.length < kLeastLength) continue;
+      float& slowness = slowness_[static_cast<size_t>(cell)];
+      slowness = std::min(slowness, (1.0F + rate) * static_cast<float>(table.bestSpeed() / speed));
+    }
+  }
+  // What was felt here says nothing about ground far away.
+  slowness_[kFree] = 1.0F;
+}
+
+double GroundCost::cost(const Grid& grid, const TurnedPose& start,
+                        const TablePattern& pattern) const {
+  const Rates& rates = rates_[static_cast<size_t>(&pattern - first_)];
+  double cost = 0.0, before = 0.0;
+  for (const CheckedPose& pose : pattern.swept_footprint.poses) {
+    const Pose2& at = pose.at.pose;
+    const Cell cell =
+        grid.at(grid.indexOf({start.x + start.cos_yaw * at.x - start.sin_yaw * at.y,
+                              start.y + start.sin_yaw * at.x + start.cos_yaw * at.y}));
+    cost += static_cast<double>(rates[isFree(cell) ? cell : kFree]) * (pose.at.time - before);
+    before = pose.at.time;
+  }
+  return cost;
+}
+
+}  // namespace tread::planner
