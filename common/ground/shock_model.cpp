@@ -24,24 +24,26 @@ Eigen::Vector3d inputOf(double roughness, double speed) {
           std::log(std::clamp(std::abs(speed), kSlowest, kFastest))};
 }
 
-}  // namespace
-
-double ShockModel::logShock(double roughness, double speed) const {
-  return mean.dot(inputOf(roughness, speed));
+/// Of a lognormal variable s: E[s^2] = exp(2 mu + 2 sigma^2).
+double meanSquareOf(double mu, double variance) {
+  return std::exp(2.0 * mu + 2.0 * std::min(kMostVariance, variance));
 }
+
+}  // namespace
 
 double ShockModel::meanSquare(double roughness, double speed) const {
   const Eigen::Vector3d x = inputOf(roughness, speed);
-  const double doubt = std::min(kMostVariance, variance + x.dot(covariance * x));
-  // Of a lognormal variable s: E[s^2] = exp(2 mu + 2 sigma^2).
-  return std::exp(2.0 * mean.dot(x) + 2.0 * doubt);
+  return meanSquareOf(mean.dot(x), variance + x.dot(covariance * x));
 }
 
-double ShockModel::roughnessFor(double shock, double speed) const {
-  const Eigen::Vector3d x = inputOf(kUnit, speed);
-  const double power = std::max(0.3, mean[1]);
-  return std::clamp(kUnit * std::exp((std::log(shock) - mean.dot(x)) / power), kSmoothest,
-                    kRoughest);
+double ShockModel::meanSquareLike(double shock, double speed) const {
+  const double log_speed = inputOf(kUnit, speed)[2];
+  return meanSquareOf(std::log(shock) + mean[2] * log_speed,
+                      variance + covariance(2, 2) * log_speed * log_speed);
+}
+
+double ShockModel::speedFactor(double speed) const {
+  return std::exp(mean[2] * inputOf(kUnit, speed)[2]);
 }
 
 void ShockRegression::learn(double roughness, double speed, double shock) {

@@ -19,13 +19,13 @@ struct ShockModel {
   Eigen::Matrix3d covariance = Eigen::Vector3d(1.0, 0.09, 0.25).asDiagonal();  ///< of those
   double variance = 0.25;  ///< of log shock about the line: of stretches that look the same
 
-  /// Mean of the logarithm of the shock. Roughness [m] and speed [m/s] are clamped to what they can
-  /// be.
-  double logShock(double roughness, double speed) const;
-  /// Expected square of the shock [m2/s4]: what is uncertain counts more.
+  /// Expected square of the shock [m2/s4] on ground of a roughness [m] at a speed [m/s], both
+  /// clamped to what they can be: what is uncertain counts more.
   double meanSquare(double roughness, double speed) const;
-  /// The roughness that would explain a shock at a speed [m].
-  double roughnessFor(double shock, double speed) const;
+  /// The same on ground that gave a shock [m/s2] at 1 m/s: only the change of speed is uncertain.
+  double meanSquareLike(double shock, double speed) const;
+  /// Shock at a speed over that at 1 m/s on the same ground [1].
+  double speedFactor(double speed) const;
 };
 
 /// Learns a shock model from pairs of what was seen and what was felt.

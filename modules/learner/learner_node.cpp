@@ -219,7 +219,7 @@ void LearnerNode::publishShock(int64_t utime) {
   }
   message.shock_variance = model.variance;
   message.shock_pairs = shock_.pairs();
-  message.here_roughness = shock_.here();
+  message.here_shock = shock_.here();
   if (felt_.utime > 0) {
     message.felt_shock = felt_.shock;
     message.felt_peak = felt_.peak;

@@ -112,8 +112,7 @@ std::optional<ShockKnowledge> shockFrom(const shock_t& message) {
                         w[2] < 10.0 && message.shock_variance >= 0.0 && c[0] >= 0.0 &&
                         c[3] >= 0.0 && c[5] >= 0.0;
   if (!possible) return std::nullopt;
-  if (message.here_roughness > 0.0 && message.here_roughness < 1.0)
-    shock.here = message.here_roughness;
+  if (message.here_shock > 0.0 && message.here_shock < 100.0) shock.here = message.here_shock;
   return shock;
 }
 

@@ -270,7 +270,7 @@ inline shock_t sampleOf<shock_t>() {
   for (int i = 0; i < 6; ++i) m.shock_covariance[i] = 0.125 * (i + 1);
   m.shock_variance = 0.25;
   m.shock_pairs = 77;
-  m.here_roughness = 0.015625;
+  m.here_shock = 0.015625;
   m.felt_shock = 0.75;
   m.felt_peak = 2.25;
   m.felt_pitch_rate = 0.1875;

@@ -16,7 +16,7 @@ constexpr int kLeastCount = 2;
 constexpr double kStanding = 0.02;
 /// Share that one bin has in the estimate of the noise.
 constexpr double kNoiseGain = 0.05;
-/// No ground is smoother: a logarithm needs something [m2/s4].
+/// Less cannot be felt, whatever the INS: a logarithm needs something [m2/s4].
 constexpr double kLeastSquare = 1e-4;
 
 }  // namespace
@@ -99,7 +99,7 @@ std::optional<FeltStretch> FeltShock::addToStretch(const BodyMotion& middle, dou
   way_ = 0.0;
   ended.utime = middle.utime;
   ended.speed *= share;
-  ended.shock = std::sqrt(std::max(kLeastSquare, share * ended.shock - noise_));
+  ended.shock = std::sqrt(std::max({kLeastSquare, noise_, share * ended.shock - noise_}));
   ended.pitch_rate = std::sqrt(share * ended.pitch_rate);
   return ended;
 }

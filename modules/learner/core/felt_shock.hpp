@@ -41,7 +41,7 @@ struct FeltStretch {
 class FeltShock {
  public:
   static constexpr int64_t kBin = 100'000;  ///< [us]
-  static constexpr double kStretch = 0.6;   ///< [m] of way
+  static constexpr double kStretch = 1.0;   ///< [m] of way
   static constexpr double kSlowest = 0.1;   ///< [m/s] slower says little about the ground
 
   /// `arm` [m] from the body origin to the front end.

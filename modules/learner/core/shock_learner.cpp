@@ -11,6 +11,8 @@ namespace {
 constexpr double kKeptRadius = 25.0;  // of map [m]
 /// Share that a new stretch has in what the ground here is like, on a logarithmic scale.
 constexpr double kHereGain = 0.6;
+/// Smoother ground shakes nobody, and what was seen of it is mostly the range finder's noise [m].
+constexpr double kLeastSeen = 0.003;
 
 }  // namespace
 
@@ -49,8 +51,8 @@ std::optional<FeltStretch> ShockLearner::take(const BodyMotion& motion) {
   if (!stretch) return stretch;
   // Cells that the robot has come to are not looked at any more: this is what was seen before.
   const double seen = seenAlong(stretch->p_map);
-  if (seen > 0.0) regression_.learn(seen, stretch->speed, stretch->shock);
-  const double felt = model().roughnessFor(stretch->shock, stretch->speed);
+  if (seen >= kLeastSeen) regression_.learn(seen, stretch->speed, stretch->shock);
+  const double felt = stretch->shock / model().speedFactor(stretch->speed);
   here_ = std::isfinite(here_) ? here_ * std::pow(felt / here_, kHereGain) : felt;
   if (map_) map_->forgetBeyond(motion.p_map, kKeptRadius);
   return stretch;

@@ -26,7 +26,8 @@ class ShockLearner {
 
   ShockModel model() const { return regression_.model(); }
   int pairs() const { return regression_.pairs(); }
-  /// Roughness that explains what was felt on the last metres [m]; NaN before the first stretch.
+  /// Shock that the ground of the last metres would give at 1 m/s [m/s2]; NaN before the first
+  /// stretch.
   double here() const { return here_; }
   /// RMS roughness that was seen along a way [m]; 0 where nothing was seen.
   double seenAlong(const std::vector<Eigen::Vector2d>& p_map) const;

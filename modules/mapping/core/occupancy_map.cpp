@@ -146,9 +146,12 @@ OccupancyMap::OccupancyMap(const OccupancyMapConfig& config)
       tiles_(config.window_tiles),
       tile_of_cell_(trust_.size()) {
   if (config.tile_cells < 1 || config.window_tiles < 2 ||
-      config.tile_cells % GroundMap::kPatchCells != 0)
+      config.tile_cells % GroundMap::kPatchCells != 0 ||
+      (config.roughness.range_noise > 0.0 && config.tile_cells % RoughnessMap::kPatchCells != 0))
     throw std::invalid_argument(
-        "occupancy map: tile_cells must be a multiple of 8 and window_tiles 2 or more");
+        "occupancy map: tile_cells must be a multiple of 8 (16 with roughness) and window_tiles 2 "
+        "or "
+        "more");
   for (size_t i = 0; i < tile_of_cell_.size(); ++i) {
     const CellIndex cell = trust_.indexOf(i);
     tile_of_cell_[i] = static_cast<uint32_t>(
@@ -214,7 +217,7 @@ void OccupancyMap::learnGround(const GroundPlane& plane, bool window_moved) {
   if (window_moved) {
     for (size_t i = 0; i < trust_.size(); ++i) classify(i);
   } else {
-    for (const CellIndex patch : changed) classifyPatch(patch);
+    for (const CellIndex patch : changed) classifyPatch(patch, GroundMap::kPatchCells);
   }
 }
 
@@ -229,7 +232,8 @@ void OccupancyMap::learnRoughness() {
     const double down = (ray.to - ray.from).normalized().z() * config_.roughness.range_noise;
     points.push_back({ray.to, down * down});
   }
-  for (const CellIndex patch : roughness_.take(points)) classifyPatch(patch);
+  for (const CellIndex patch : roughness_.take(points))
+    classifyPatch(patch, RoughnessMap::kPatchCells);
 }
 
 void OccupancyMap::assumeStartFree(const Eigen::Vector2d& p_map) {
@@ -296,10 +300,9 @@ void OccupancyMap::classify(size_t offset) {
   tile.utime = utime_;
 }
 
-void OccupancyMap::classifyPatch(CellIndex lower) {
-  for (int y = 0; y < GroundMap::kPatchCells; ++y)
-    for (int x = 0; x < GroundMap::kPatchCells; ++x)
-      classify(trust_.offset({lower.x + x, lower.y + y}));
+void OccupancyMap::classifyPatch(CellIndex lower, int side) {
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) classify(trust_.offset({lower.x + x, lower.y + y}));
 }
 
 OccupancyMap::TileState& OccupancyMap::tileOf(size_t offset) {

@@ -198,7 +198,7 @@ class OccupancyMap {
   const std::vector<Ray>& raysOf(const Scan& scan);
   bool isOwnBody(const Eigen::Vector3d& p_body) const;
   void classify(size_t offset);
-  void classifyPatch(CellIndex lower);
+  void classifyPatch(CellIndex lower, int side);
   TileState& tileOf(size_t offset);
 
   OccupancyMapConfig config_;

@@ -46,7 +46,8 @@ std::vector<CellIndex> RoughnessMap::take(const std::vector<GroundPoint>& points
     takeProfile(points, first, end, patch);
     if (patch.degrees < kEnough) continue;
     const Cell cost = costOf(std::sqrt(std::max(0.0, patch.squares / patch.degrees)));
-    if (std::abs(cost - patch.cost) <= std::max(1.0, kNoticeable * patch.cost)) continue;
+    const bool same = std::abs(cost - patch.cost) <= std::max(1.0, kNoticeable * patch.cost);
+    if (same && patch.cost != kFree) continue;
     patch.cost = cost;
     changed.push_back({index.x * kPatchCells, index.y * kPatchCells});
   }

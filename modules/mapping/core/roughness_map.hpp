@@ -33,7 +33,7 @@ struct GroundPoint {
 class RoughnessMap {
  public:
   /// Cells per side of a patch.
-  static constexpr int kPatchCells = 8;
+  static constexpr int kPatchCells = 16;
 
   RoughnessMap(double cell_size, int side_cells);
 

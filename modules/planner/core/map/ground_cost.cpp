@@ -11,9 +11,12 @@ namespace {
 /// A pattern that gets on less than this turns rather than drives [m].
 constexpr double kLeastLength = 0.2;
 
-float rateOf(const ShockCostConfig& config, const ShockModel& model, double roughness,
-             double speed) {
-  const double ratio = model.meanSquare(roughness, speed) / (config.harmless * config.harmless);
+/// Of a second on a cell; where no roughness was seen the ground is taken to be as it is here.
+float rateOf(const ShockCostConfig& config, const ShockKnowledge& shock, Cell cell, double speed) {
+  if (cell == kFree && !std::isfinite(shock.here)) return 0.0F;
+  const double square = cell == kFree ? shock.model.meanSquareLike(shock.here, speed)
+                                      : shock.model.meanSquare(roughnessOf(cell), speed);
+  const double ratio = square / (config.harmless * config.harmless);
   return static_cast<float>(config.weight * std::max(0.0, ratio - 1.0));
 }
 
@@ -27,11 +30,9 @@ GroundCost::GroundCost(const ShockCostConfig& config, const ShockKnowledge& shoc
     const TablePattern& pattern = table.patterns()[i];
     const double speed = pattern.length / pattern.duration;
     for (int cell = 0; cell <= kCostMax; ++cell) {
-      const double roughness = cell > 0 ? roughnessOf(static_cast<Cell>(cell)) : shock.here;
-      float& rate = rates_[i][static_cast<size_t>(cell)];
-      if (pattern.length >= kLeastLength && std::isfinite(roughness))
-        rate = rateOf(config, shock.model, roughness, speed);
       if (pattern.length < kLeastLength) continue;
+      float& rate = rates_[i][static_cast<size_t>(cell)];
+      rate = rateOf(config, shock, static_cast<Cell>(cell), speed);
       float& slowness = slowness_[static_cast<size_t>(cell)];
       slowness = std::min(slowness, (1.0F + rate) * static_cast<float>(table.bestSpeed() / speed));
     }

@@ -23,7 +23,8 @@ struct ShockCostConfig {
 /// What is known of shock at one moment.
 struct ShockKnowledge {
   ShockModel model;
-  double here = std::numeric_limits<double>::quiet_NaN();  ///< [m] roughness where none was seen
+  double here = std::numeric_limits<double>::quiet_NaN();  ///< [m/s2] shock at 1 m/s where no
+                                                           ///< roughness was seen
 };
 
 /// Prices of the ground: how many seconds a second on it costs, by its roughness and the pattern.
