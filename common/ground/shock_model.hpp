@@ -13,10 +13,11 @@ namespace tread {
  * relation from what is felt where a range finder looked before; here by Bayesian regression with a
  * conjugate prior, so that little experience means little certainty. */
 struct ShockModel {
-  /// Before any experience: doubling the height doubles the shock, doubling the speed quadruples
-  /// it.
-  Eigen::Vector3d mean{-1.0, 1.0, 2.0};                                        ///< of w0, w1, w2
-  Eigen::Matrix3d covariance = Eigen::Vector3d(1.0, 0.09, 0.25).asDiagonal();  ///< of those
+  /// Before any experience: a wave about as long as a small vehicle, 0.9 m, which shakes it most:
+  /// (2 pi / 0.9 m)^2 x 1 cm = 0.5 m/s2. Twice the height is twice the shock, twice the speed four
+  /// times.
+  Eigen::Vector3d mean{-0.7, 1.0, 2.0};                                        ///< of w0, w1, w2
+  Eigen::Matrix3d covariance = Eigen::Vector3d(0.5, 0.09, 0.25).asDiagonal();  ///< of those
   double variance = 0.25;  ///< of log shock about the line: of stretches that look the same
 
   /// Expected square of the shock [m2/s4] on ground of a roughness [m] at a speed [m/s], both
