@@ -115,8 +115,11 @@ void PlanningMap::updateCollisionChecker(const Pose2& T_map_body, int64_t now) {
   const int cells = static_cast<int>(std::ceil(config_.window / cell));
   const CellIndex lower{static_cast<int>(std::floor(p.x() / cell)) - cells / 2,
                         static_cast<int>(std::floor(p.y() / cell)) - cells / 2};
-  checker_.emplace(map_->window(lower, cells, cells), config_.footprint, config_.margins,
-                   config_.unknown_blocks, fenced_);
+  Grid window = map_->window(lower, cells, cells);
+  constexpr double kReach = 5.0;  // [m]
+  if (!config_.field.slowness.empty()) spreadRoughness(window, kReach);
+  checker_.emplace(std::move(window), config_.footprint, config_.margins, config_.unknown_blocks,
+                   fenced_);
   window_revision_ = map_->revision();
   p_window_ = p;
 }

@@ -5,6 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "modules/planner/core/map/ground_cost.hpp"
+
 namespace tread::planner {
 namespace {
 
@@ -159,6 +161,10 @@ void DistanceToGoal::paint(const ClearanceSource& map, const std::vector<Detour>
   window.unknown.assign(window.clearance.size(), 1);
   if (!config.slowness.empty()) window.roughness.assign(window.clearance.size(), kFree);
   map.fill(window);
+  if (!config.slowness.empty()) {
+    constexpr double kReach = 15.0;  // [m]
+    spreadRoughness(window.roughness, window.width, static_cast<int>(kReach / cells_.size));
+  }
   size_t from = 0;
   for (int y = 0; y < cells_.height; ++y) {
     for (int x = 0; x < cells_.width; ++x, ++from) {

@@ -22,6 +22,35 @@ float rateOf(const ShockCostConfig& config, const ShockKnowledge& shock, Cell ce
 
 }  // namespace
 
+void spreadRoughness(std::vector<Cell>& costs, int width, int reach) {
+  const auto columns = static_cast<size_t>(width);
+  std::vector<int> steps(costs.size());
+  for (size_t i = 0; i < costs.size(); ++i) steps[i] = costs[i] == kFree ? reach + 1 : 0;
+  const auto takeFrom = [&](size_t to, size_t from) {
+    if (steps[from] + 1 >= steps[to]) return;
+    steps[to] = steps[from] + 1;
+    costs[to] = costs[from];
+  };
+  // From lower left to upper right, and back.
+  for (size_t i = 0; i < costs.size(); ++i) {
+    if (i % columns > 0) takeFrom(i, i - 1);
+    if (i >= columns) takeFrom(i, i - columns);
+  }
+  for (size_t i = costs.size(); i-- > 0;) {
+    if (i % columns + 1 < columns) takeFrom(i, i + 1);
+    if (i + columns < costs.size()) takeFrom(i, i + columns);
+  }
+}
+
+void spreadRoughness(Grid& grid, double reach) {
+  std::vector<Cell> costs = grid.cells();
+  for (Cell& cell : costs)
+    if (!isFree(cell)) cell = kFree;
+  spreadRoughness(costs, grid.width(), static_cast<int>(reach / grid.cellSize()));
+  for (size_t i = 0; i < costs.size(); ++i)
+    if (grid.cells()[i] == kFree) grid.cells()[i] = costs[i];
+}
+
 GroundCost::GroundCost(const ShockCostConfig& config, const ShockKnowledge& shock,
                        const PatternTable& table)
     : first_(table.patterns().data()), rates_(table.patterns().size()) {

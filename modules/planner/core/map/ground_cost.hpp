@@ -27,6 +27,14 @@ struct ShockKnowledge {
                                                            ///< roughness was seen
 };
 
+/// Ground that nobody saw is as rough as the nearest that somebody did: else it would be cheaper,
+/// and ways would lead there.
+/** Costs of free cells in rows of `width`; kFree, unknown, is replaced by the cost that is the
+ * fewest steps away, at most `reach` of them. */
+void spreadRoughness(std::vector<Cell>& costs, int width, int reach);
+/// The same in a grid; what is not free stays as it is. `reach` in metres.
+void spreadRoughness(Grid& grid, double reach);
+
 /// Prices of the ground: how many seconds a second on it costs, by its roughness and the pattern.
 /** Rate = weight x max(0, E[shock^2] / harmless^2 - 1). The expectation holds what is uncertain, so
  * that unknown ground costs more than known ground of the same looks. */
