@@ -59,6 +59,34 @@ void ShockRegression::learn(double roughness, double speed, double shock) {
   ++pairs_;
 }
 
+std::vector<double> ShockRegression::state() const {
+  std::vector<double> numbers;
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j) numbers.push_back(inputs_(i, j));
+  for (int i = 0; i < 3; ++i) numbers.push_back(products_[i]);
+  numbers.insert(numbers.end(), {squares_, weight_, static_cast<double>(pairs_)});
+  return numbers;
+}
+
+std::optional<ShockRegression> ShockRegression::fromState(const std::vector<double>& numbers) {
+  if (numbers.size() != kNumbers) return std::nullopt;
+  for (const double number : numbers)
+    if (!std::isfinite(number)) return std::nullopt;
+  ShockRegression regression;
+  size_t at = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j) regression.inputs_(i, j) = regression.inputs_(j, i) = numbers[at++];
+  for (int i = 0; i < 3; ++i) regression.products_[i] = numbers[at++];
+  regression.squares_ = numbers[9];
+  regression.weight_ = numbers[10];
+  regression.pairs_ = static_cast<int>(std::clamp(numbers[11], 0.0, 1e9));
+  const bool possible = regression.inputs_.diagonal().minCoeff() >= 0.0 &&
+                        regression.squares_ >= 0.0 &&
+                        std::abs(regression.inputs_(0, 0) - regression.weight_) < 1e-6;
+  if (!possible) return std::nullopt;
+  return regression;
+}
+
 ShockModel ShockRegression::model() const {
   const ShockModel prior;
   // Normal-inverse-gamma posterior (Bishop, Pattern Recognition and Machine Learning, 3.3 and

@@ -2,6 +2,9 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include <Eigen/Core>
 
 namespace tread {
@@ -42,6 +45,12 @@ class ShockRegression {
   /// What is known now.
   ShockModel model() const;
   int pairs() const { return pairs_; }
+
+  /// All that was learned, as kNumbers numbers, for a store.
+  static constexpr size_t kNumbers = 12;
+  std::vector<double> state() const;
+  /// The regression of a state; nothing if the numbers cannot be one.
+  static std::optional<ShockRegression> fromState(const std::vector<double>& numbers);
 
  private:
   // Sums over the pairs: of x x', x y and y^2, with x = (1, log roughness, log speed), y = log

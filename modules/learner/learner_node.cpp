@@ -130,6 +130,8 @@ LearnerNode::LearnerNode(LearnerNodeConfig config, Bus& bus, Store& store)
   bus.subscribe<execution_t>(kExecution, [this](const execution_t& message) { hear(message); });
   bus.subscribe<motor_t>(kMotor, [this](const motor_t& motor) { hear(motor); });
   if (config_.shock) {
+    if (const auto shock = memory_.recallShock()) shock_.resume(*shock);
+    saved_pairs_ = shock_.pairs();
     bus.subscribe<map_tile_t>(kMap, [this](const map_tile_t& tile) {
       if (!shock_.takeTile({tile.tile_x, tile.tile_y, tile.utime, tile.cells}, tile.cell_size,
                            tile.tile_cells))
@@ -227,7 +229,16 @@ void LearnerNode::publishShock(int64_t utime) {
     message.felt_speed = felt_.speed;
   }
   bus_.publish(kShock, message);
+  saveShock();
   health_.setCounter("stretches that shock was learned from", shock_.pairs());
+}
+
+/// Not each pair is worth a write.
+void LearnerNode::saveShock() {
+  constexpr int kEvery = 10;
+  if (shock_.pairs() < saved_pairs_ + kEvery) return;
+  saved_pairs_ = shock_.pairs();
+  if (memory_.saveShock(shock_.regression())) health_.addToCounter("states not written");
 }
 
 void LearnerNode::handleEnded(int64_t utime) {

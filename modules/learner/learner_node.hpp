@@ -29,7 +29,8 @@ struct StoredLearning {
 };
 
 /// The learner's files. Entries: learner_state_1 and _2, written in turn so that the one before is
-/// kept, and learner_versions, a number that no published version exceeds.
+/// kept; learner_versions, a number that no published version exceeds; learner_shock, what was
+/// learned of shock.
 /** The rule of versions: learner_versions is written ahead, for a hundred executions, before they
  * are used. A start begins above it, because the last versions may have been published from memory
  * while the disk was full. Without it, above the newest state by those of a thousand; without that,
@@ -46,6 +47,10 @@ class LearnerMemory {
   /// Writes the state of a version over the older of the two. One clear line if it could not be
   /// written.
   std::optional<std::string> save(const std::string& state_text);
+
+  /// What was learned of shock; nothing where there is none, or it is damaged.
+  std::optional<ShockRegression> recallShock() const;
+  std::optional<std::string> saveShock(const ShockRegression& shock);
 
  private:
   /// Nothing where it is missing, or damaged, which is added to `problem`.
@@ -169,6 +174,7 @@ class LearnerNode : public Node {
   void noteWrite(const std::optional<std::string>& problem);
   void feel(const ins_t& ins);
   void publishShock(int64_t utime);
+  void saveShock();
   void reportHealth(int64_t utime);
 
   LearnerNodeConfig config_;
@@ -183,6 +189,7 @@ class LearnerNode : public Node {
   FeltStretch felt_;  ///< newest
   int64_t seq_shock_ = 0;
   int64_t next_shock_ = 0;
+  int saved_pairs_ = 0;
   std::optional<execution_record_t> running_;  ///< execution that is followed
   int64_t followed_until_ = 0;                 ///< [us] of its time
   int64_t seq_motor_ = -1;                     ///< of the last MOTOR; -1 = none yet

@@ -25,7 +25,7 @@ LidarDriverConfig readLidarDriverConfig(ConfigReader& reader) {
   const RobotDescription robot = readRobot(reader);
   config.mounting = robot.range_finder;
   config.ground_mounting = robot.ground_finder;
-  if (robot.ground_finder) reader.text("ground_address", config.ground_address, true);
+  reader.text("ground_address", config.ground_address, robot.ground_finder.has_value());
   reader.finish();
   config.limits.max_beams = static_cast<int>(max_beams);
   config.limits.beam_stride = static_cast<int>(stride);

@@ -60,8 +60,7 @@ class BumpyDrive : public Node {
   int64_t seq_ = 0;
 };
 
-std::vector<shock_t> shocksOf(bool learn) {
-  MemoryStore store;
+std::vector<shock_t> shocksOf(bool learn, MemoryStore& store) {
   VirtualBus bus(1);
   LearnerNodeConfig config(smallSet());
   config.shock = learn;
@@ -78,7 +77,8 @@ std::vector<shock_t> shocksOf(bool learn) {
 }  // namespace
 
 TEST_CASE("the learner publishes what the ground's looks mean, learned from INS and MAP") {
-  const std::vector<shock_t> said = shocksOf(true);
+  MemoryStore store;
+  const std::vector<shock_t> said = shocksOf(true, store);
   REQUIRE(said.size() >= 55);
   CHECK(said.front().shock_pairs == 0);
   CHECK(std::isnan(said.front().here_shock));
@@ -92,5 +92,17 @@ TEST_CASE("the learner publishes what the ground's looks mean, learned from INS 
 }
 
 TEST_CASE("a learner that is not told to learn shock says nothing of it") {
-  CHECK(shocksOf(false).empty());
+  MemoryStore store;
+  CHECK(shocksOf(false, store).empty());
+}
+
+TEST_CASE("what was learned of shock survives a restart, and a damaged entry counts for nothing") {
+  MemoryStore store;
+  const std::vector<shock_t> first = shocksOf(true, store);
+  const std::vector<shock_t> second = shocksOf(true, store);
+  CHECK(second.front().shock_pairs > 20);
+  CHECK(second.front().shock_pairs <= first.back().shock_pairs);
+  CHECK(second.front().shock_weights[0] == Approx(first.back().shock_weights[0]).margin(0.1));
+  REQUIRE_FALSE(store.write("learner_shock", "1 2 half a line"));
+  CHECK(shocksOf(true, store).front().shock_pairs == 0);
 }

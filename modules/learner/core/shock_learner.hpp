@@ -25,6 +25,8 @@ class ShockLearner {
   void restart();
 
   ShockModel model() const { return regression_.model(); }
+  const ShockRegression& regression() const { return regression_; }
+  void resume(const ShockRegression& regression) { regression_ = regression; }
   int pairs() const { return regression_.pairs(); }
   /// Shock that the ground of the last metres would give at 1 m/s [m/s2]; NaN before the first
   /// stretch.

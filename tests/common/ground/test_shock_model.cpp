@@ -80,6 +80,23 @@ TEST_CASE("a new payload is learned over the old one") {
   CHECK(regression.model().mean[0] == Approx(std::log(3.0)).margin(0.1));
 }
 
+TEST_CASE("what was learned can be kept, and what is no state is refused") {
+  const ShockRegression before = taught(50, 0.3);
+  const auto after = ShockRegression::fromState(before.state());
+  REQUIRE(after);
+  CHECK(after->pairs() == 50);
+  CHECK(after->model().mean == before.model().mean);
+  CHECK(after->model().covariance == before.model().covariance);
+  std::vector<double> numbers = before.state();
+  numbers[3] = std::numeric_limits<double>::quiet_NaN();
+  CHECK_FALSE(ShockRegression::fromState(numbers));
+  numbers[3] = -1.0;
+  CHECK_FALSE(ShockRegression::fromState(numbers));
+  numbers.pop_back();
+  CHECK_FALSE(ShockRegression::fromState(numbers));
+  CHECK_FALSE(ShockRegression::fromState({}));
+}
+
 TEST_CASE("pairs that cannot be are ignored") {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   ShockRegression regression;
