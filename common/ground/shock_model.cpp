@@ -17,7 +17,7 @@ constexpr double kSlowest = 0.05, kFastest = 20.0;      // [m/s]
 /// The prior of the variance is worth so many pairs.
 constexpr double kPriorPairs = 6.0;
 /// Not more uncertain than that: else one wild guess would forbid all ground [1].
-constexpr double kMostVariance = 1.0;
+constexpr double kMostVariance = 0.6;
 
 Eigen::Vector3d inputOf(double roughness, double speed) {
   return {1.0, std::log(std::clamp(roughness, kSmoothest, kRoughest) / kUnit),

@@ -19,8 +19,8 @@ struct ShockModel {
   /// Before any experience: a wave about as long as a small vehicle, 0.9 m, which shakes it most:
   /// (2 pi / 0.9 m)^2 x 1 cm = 0.5 m/s2. Twice the height is twice the shock, twice the speed four
   /// times.
-  Eigen::Vector3d mean{-0.7, 1.0, 2.0};                                        ///< of w0, w1, w2
-  Eigen::Matrix3d covariance = Eigen::Vector3d(0.5, 0.09, 0.25).asDiagonal();  ///< of those
+  Eigen::Vector3d mean{-0.7, 1.0, 2.0};                                         ///< of w0, w1, w2
+  Eigen::Matrix3d covariance = Eigen::Vector3d(0.25, 0.09, 0.25).asDiagonal();  ///< of those
   double variance = 0.25;  ///< of log shock about the line: of stretches that look the same
 
   /// Expected square of the shock [m2/s4] on ground of a roughness [m] at a speed [m/s], both

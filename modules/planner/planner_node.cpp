@@ -59,7 +59,7 @@ void readSearch(ConfigReader reader, SearchConfig& search) {
   reader.number("horizon", search.horizon, {1.0, 60.0}, "s");
   reader.number("reverse_penalty", search.reverse_penalty, {0.0, 20.0}, "1");
   reader.number("near_penalty", search.near_penalty, {0.0, 20.0}, "1");
-  reader.number("shock_weight", search.shock.weight, {0.0, 100.0}, "s/s, 0 = off");
+  reader.number("shock_weight", search.shock.weight, {0.0, 100.0}, "s, 0 = off");
   reader.number("shock_harmless", search.shock.harmless, {0.01, 20.0}, "m/s2");
   reader.number("top_speed", search.top_speed, {0.05, kNoLimit}, "m/s");
 }

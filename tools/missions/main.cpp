@@ -32,7 +32,7 @@ struct Arguments {
   std::string robot = TREAD_CONFIG_DIR "/robots/teodor";
   std::vector<std::string> overrides;
   bool compare_omniscient = false;
-  bool compare_speeds = false;
+  std::vector<std::string> speeds;  ///< ways to choose the speed, to compare; empty = as configured
 };
 
 void define(CLI::App& app, Arguments& arguments) {
@@ -54,9 +54,12 @@ void define(CLI::App& app, Arguments& arguments) {
                "drive all missions, and once more without learning: the planner is given the true "
                "patterns of the ground below it; ratio of times to the goal")
       ->excludes(several);
-  app.add_flag("--compare-speeds", arguments.compare_speeds,
-               "drive all missions always fast, always slow, and by what is seen and felt of the "
-               "ground; shock and time of each")
+  app.add_option(
+         "--speeds", arguments.speeds,
+         "compare speeds: always fast or slow, by what is seen or felt of the ground, or by "
+         "both, learned; each drives all missions")
+      ->delimiter(',')
+      ->check(CLI::IsMember(speedMethods()))
       ->excludes(several);
   app.add_option("--length", arguments.length,
                  "shortest straight line to the goal [m]; longer ones stay longer on each "
@@ -167,7 +170,7 @@ void compareRules(const Arguments& arguments, const RobotConfig& robot) {
 
 void compareSpeeds(const Arguments& arguments, const RobotConfig& robot) {
   SpeedComparison comparison;
-  for (const std::string& method : speedMethods()) {
+  for (const std::string& method : arguments.speeds) {
     std::cout << method << std::endl;
     BatchOrder order = orderOf(arguments, method, comparison.batches.empty());
     order.options.rule = arguments.rule;
@@ -196,7 +199,7 @@ void drive(const Arguments& arguments) {
   RobotConfig robot = readRobot(arguments.robot, arguments.overrides);
   enterWorld(robot, arguments.world);
   if (!arguments.rules.empty()) return compareRules(arguments, robot);
-  if (arguments.compare_speeds) return compareSpeeds(arguments, robot);
+  if (!arguments.speeds.empty()) return compareSpeeds(arguments, robot);
   if (arguments.compare_omniscient) return compareOmniscient(arguments, robot);
   const MissionBatch batch = driveLearning(arguments, robot);
   printSummary(std::cout, batch);

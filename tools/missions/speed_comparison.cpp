@@ -23,15 +23,15 @@ double slowSpeed(const PatternSet& set) {
 }
 
 const std::map<std::string, std::function<void(RobotConfig&)>> kMethods{
-    {"always fast", [](RobotConfig& robot) { robot.planner.search.shock.weight = 0.0; }},
-    {"always slow",
+    {"fast", [](RobotConfig& robot) { robot.planner.search.shock.weight = 0.0; }},
+    {"slow",
      [](RobotConfig& robot) {
        robot.planner.search.shock.weight = 0.0;
        robot.planner.search.top_speed = slowSpeed(robot.learner.shipped);
      }},
-    {"by seen", [](RobotConfig& robot) { robot.learner.shock = false; }},
-    {"by felt", [](RobotConfig& robot) { robot.mapping.map.roughness.range_noise = 0.0; }},
-    {"by both, learned", [](RobotConfig&) {}}};
+    {"seen", [](RobotConfig& robot) { robot.learner.shock = false; }},
+    {"felt", [](RobotConfig& robot) { robot.mapping.map.roughness.range_noise = 0.0; }},
+    {"learned", [](RobotConfig&) {}}};
 
 /// A mean over missions and half of its 95 % interval.
 struct Mean {
@@ -90,8 +90,7 @@ const std::vector<Column>& columns() {
 }  // namespace
 
 const std::vector<std::string>& speedMethods() {
-  static const std::vector<std::string> kNames{"always fast", "always slow", "by seen", "by felt",
-                                               "by both, learned"};
+  static const std::vector<std::string> kNames{"fast", "slow", "seen", "felt", "learned"};
   return kNames;
 }
 
@@ -101,11 +100,11 @@ RobotConfig withSpeedBy(const std::string& method, RobotConfig robot) {
 }
 
 void printSpeeds(std::ostream& out, const SpeedComparison& comparison) {
-  out << formatted("\n%-17s %8s %9s", "speed", "arrived", "contacts");
+  out << formatted("\n%-8s %8s %9s", "speed", "arrived", "contacts");
   for (const Column& column : columns()) out << formatted(" %16s", column.name);
   out << '\n';
   for (const MissionBatch& batch : comparison.batches) {
-    out << formatted("%-17s %4d/%-3zu %9d", batch.rule.c_str(),
+    out << formatted("%-8s %4d/%-3zu %9d", batch.rule.c_str(),
                      countOf(batch, MissionOutcome::kArrived), batch.results.size(),
                      collisionsOf(batch));
     for (const Column& column : columns()) {

@@ -16,7 +16,7 @@ float rateOf(const ShockCostConfig& config, const ShockKnowledge& shock, Cell ce
   if (cell == kFree && !std::isfinite(shock.here)) return 0.0F;
   const double square = cell == kFree ? shock.model.meanSquareLike(shock.here, speed)
                                       : shock.model.meanSquare(roughnessOf(cell), speed);
-  const double ratio = square / (config.harmless * config.harmless);
+  const double ratio = std::sqrt(square) / config.harmless;
   return static_cast<float>(config.weight * std::max(0.0, ratio - 1.0));
 }
 
@@ -62,6 +62,8 @@ GroundCost::GroundCost(const ShockCostConfig& config, const ShockKnowledge& shoc
       if (pattern.length < kLeastLength) continue;
       float& rate = rates_[i][static_cast<size_t>(cell)];
       rate = rateOf(config, shock, static_cast<Cell>(cell), speed);
+      if (pattern.reverses || pattern.entry != pattern.exit || pattern.exit == table.restClass())
+        continue;
       float& slowness = slowness_[static_cast<size_t>(cell)];
       slowness = std::min(slowness, (1.0F + rate) * static_cast<float>(table.bestSpeed() / speed));
     }

@@ -15,8 +15,7 @@ namespace tread::planner {
 
 /// What shock is worth against time.
 struct ShockCostConfig {
-  double weight =
-      0.0;  ///< [s/s] for a second at twice the harmless square; 0 = shock costs nothing
+  double weight = 0.0;    ///< [s] what a second of twice the harmless shock costs more; 0 = nothing
   double harmless = 0.3;  ///< [m/s2] shock (RMS) that costs nothing
 };
 
@@ -36,8 +35,8 @@ void spreadRoughness(std::vector<Cell>& costs, int width, int reach);
 void spreadRoughness(Grid& grid, double reach);
 
 /// Prices of the ground: how many seconds a second on it costs, by its roughness and the pattern.
-/** Rate = weight x max(0, E[shock^2] / harmless^2 - 1). The expectation holds what is uncertain, so
- * that unknown ground costs more than known ground of the same looks. */
+/** Rate = weight x max(0, sqrt(E[shock^2]) / harmless - 1). The expectation holds what is
+ * uncertain, so that unknown ground costs more than known ground of the same looks. */
 class GroundCost {
  public:
   GroundCost(const ShockCostConfig& config, const ShockKnowledge& shock, const PatternTable& table);
@@ -45,8 +44,8 @@ class GroundCost {
   /// Extra cost of a pattern begun at a pose [s]: along its way, on the cells under the body
   /// origin.
   double cost(const Grid& grid, const TurnedPose& T_map_start, const TablePattern& pattern) const;
-  /// Least cost of a metre on a cell of that cost over that on smooth ground, by the best of all
-  /// patterns [1].
+  /// Least cost of a metre on a cell of that cost over that on smooth ground, by the best pattern
+  /// of steady driving ahead [1].
   const std::array<float, kCostMax + 1>& slowness() const { return slowness_; }
 
  private:
