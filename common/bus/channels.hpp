@@ -24,6 +24,7 @@
 #include <tread/plan_tree_t.hpp>
 #include <tread/program_t.hpp>
 #include <tread/scan_t.hpp>
+#include <tread/shock_t.hpp>
 #include <tread/stopping_t.hpp>
 
 namespace tread {
@@ -61,6 +62,7 @@ inline constexpr Channel<pattern_set_part_t> kPatternSet{
 inline constexpr Channel<learner_state_t> kLearnerState{
     {"LEARNER_STATE", "learner_state_t", "learner", 0, 0, 60000}};
 inline constexpr Channel<learning_t> kLearning{{"LEARNING", "learning_t", "learner", 0, 0, 1000}};
+inline constexpr Channel<shock_t> kShock{{"SHOCK", "shock_t", "learner", 1, 3000, 300}};
 inline constexpr Channel<health_t> kHealth{{"HEALTH", "health_t", "every process", 1, 3000, 8000}};
 inline constexpr Channel<arm_t> kArm{{"ARM", "arm_t", "tread-arm", 0, 1000, 1000}};
 inline constexpr Channel<operator_t> kOperator{
@@ -96,9 +98,9 @@ inline void forgetSender(fence_t& message) {
 }
 
 /// The whole table, for README, health checks and tests.
-inline constexpr std::array<ChannelSpec, 21> kChannels{
-    kIns,      kScan,      kMap,        kGoal,         kPlan,     kPlanTree, kProgram,
-    kMotor,    kExecution, kPatternSet, kLearnerState, kLearning, kHealth,   kArm,
-    kOperator, kManual,    kEstop,      kStoppingTime, kFence,    kMark,     kConfig};
+inline constexpr std::array<ChannelSpec, 22> kChannels{
+    kIns,       kScan,       kMap,          kGoal,     kPlan,  kPlanTree, kProgram, kMotor,
+    kExecution, kPatternSet, kLearnerState, kLearning, kShock, kHealth,   kArm,     kOperator,
+    kManual,    kEstop,      kStoppingTime, kFence,    kMark,  kConfig};
 
 }  // namespace tread

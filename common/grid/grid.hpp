@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -12,7 +13,7 @@
 
 namespace tread {
 
-/// Values of a cell: 0..100 free (cost of roughness), the rest below.
+/// Values of a cell: 0..100 free, the rest below. 0: roughness unknown; 1..100: roughness.
 using Cell = uint8_t;
 inline constexpr Cell kFree = 0;
 inline constexpr Cell kCostMax = 100;
@@ -23,6 +24,14 @@ inline constexpr double kFinestCell = 0.02, kCoarsestCell = 0.5;
 
 inline bool isFree(Cell cell) {
   return cell <= kCostMax;
+}
+/// RMS height of the ground about its plane that a free cell's cost stands for [m].
+constexpr double roughnessOf(Cell cost) {
+  return 0.001 * cost;
+}
+/// The cost of such a height; rougher than 10 cm counts as that.
+constexpr Cell costOf(double roughness) {
+  return static_cast<Cell>(std::clamp(1000.0 * roughness + 0.5, 1.0, double{kCostMax}));
 }
 
 /// The whole part of a / b, rounded down; b > 0.

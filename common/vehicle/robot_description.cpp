@@ -101,6 +101,8 @@ RobotDescription readDescription(ConfigReader& reader) {
   robot.drive = readDrive(reader.section("drive", true));
   robot.ins = readMounting(reader.section("ins", true), "antenna");
   robot.range_finder = readMounting(reader.section("range_finder", true), "position");
+  if (reader.has("ground_finder"))
+    robot.ground_finder = readMounting(reader.section("ground_finder"), "position");
   ConfigReader limits = reader.section("limits", true);
   limits.number("speed", robot.max_speed, {0.5, 50.0}, "m/s", true);
   double tilt = std::numeric_limits<double>::quiet_NaN();

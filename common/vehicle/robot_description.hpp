@@ -65,6 +65,7 @@ struct RobotDescription {
   DriveDescription drive;
   Mounting ins;  ///< p_body: the point whose position the INS reports
   Mounting range_finder;
+  std::optional<Mounting> ground_finder;  ///< one more that looks down at the ground ahead
   double max_speed = 0.0;           ///< [m/s] it is never faster: what is, is an error of the INS
   std::optional<double> max_tilt;   ///< [rad] what it drives on a steeper slope teaches nothing
   std::optional<TiltLimits> tilt;   ///< nothing: not watched, for an INS without attitude

@@ -17,6 +17,7 @@
 #include "common/store/store.hpp"
 #include "modules/learner/core/hand_watch.hpp"
 #include "modules/learner/core/learner.hpp"
+#include "modules/learner/core/shock_learner.hpp"
 
 namespace tread::learner {
 
@@ -28,7 +29,8 @@ struct StoredLearning {
 };
 
 /// The learner's files. Entries: learner_state_1 and _2, written in turn so that the one before is
-/// kept, and learner_versions, a number that no published version exceeds.
+/// kept; learner_versions, a number that no published version exceeds; learner_shock, what was
+/// learned of shock.
 /** The rule of versions: learner_versions is written ahead, for a hundred executions, before they
  * are used. A start begins above it, because the last versions may have been published from memory
  * while the disk was full. Without it, above the newest state by those of a thousand; without that,
@@ -45,6 +47,10 @@ class LearnerMemory {
   /// Writes the state of a version over the older of the two. One clear line if it could not be
   /// written.
   std::optional<std::string> save(const std::string& state_text);
+
+  /// What was learned of shock; nothing where there is none, or it is damaged.
+  std::optional<ShockRegression> recallShock() const;
+  std::optional<std::string> saveShock(const ShockRegression& shock);
 
  private:
   /// Nothing where it is missing, or damaged, which is added to `problem`.
@@ -94,6 +100,8 @@ struct LearnerNodeConfig {
   int64_t repeat_us = 2'000'000;       ///< [us] between repetitions of the set
   int64_t track_span_us = 60'000'000;  ///< [us] of INS that is kept
   int64_t listen_us = 0;  ///< [us] without a set at the start: is there a learner already?
+  bool shock = false;     ///< learns how hard ground shakes the robot, and publishes it
+  double front = 0.0;     ///< [m] from the body origin to the front end, where shock is felt
   int64_t remembered_versions = 50;  ///< sets kept to score executions with the version they name
 
   std::string store = "state/learner";  ///< folder of the state; used by the process
@@ -109,8 +117,8 @@ LearnerNodeConfig readLearnerConfig(ConfigReader& reader);
 /// Reads everything but the pattern file, over what `config` holds; does not finish() the reader.
 void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config);
 
-/// The learner process. INS, EXECUTION, MOTOR in; PATTERN_SET, LEARNER_STATE, LEARNING, HEALTH,
-/// CONFIG out.
+/// The learner process. INS, EXECUTION, MOTOR, MAP in; PATTERN_SET, LEARNER_STATE, LEARNING, SHOCK,
+/// HEALTH, CONFIG out.
 /** 1. Inputs wait until they are settle_us old and are then taken in the order of (utime, seq).
  *  2. An execution is cut, gated and scored against the set version that its record names.
  *     What a person drives by hand is an execution, too, where its commands are a pattern's: of run
@@ -118,6 +126,7 @@ void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config);
  *  3. If the rule changes the set, state and set are written and published under the next version.
  *  4. A rule that learns from parts follows a running execution: sets are published as if it had
  *     ended there, but neither written nor reported. What it teaches in the end replaces them.
+ *  5. With `shock` it also learns from INS and MAP how hard ground shakes the robot (ShockLearner).
  *  Each (run id, execution id) is handled once. Versions only go up: see LearnerMemory. While a
  *  learner that was started earlier lives, this one publishes and learns nothing; then it goes on
  *  above the versions of that one. */
@@ -163,6 +172,9 @@ class LearnerNode : public Node {
   void adoptVersion();
   void publishVersion();
   void noteWrite(const std::optional<std::string>& problem);
+  void feel(const ins_t& ins);
+  void publishShock(int64_t utime);
+  void saveShock();
   void reportHealth(int64_t utime);
 
   LearnerNodeConfig config_;
@@ -173,6 +185,11 @@ class LearnerNode : public Node {
   ExecutionQueue executions_;
   CommandWatch commands_;
   HandWatch hand_;
+  ShockLearner shock_;
+  FeltStretch felt_;  ///< newest
+  int64_t seq_shock_ = 0;
+  int64_t next_shock_ = 0;
+  int saved_pairs_ = 0;
   std::optional<execution_record_t> running_;  ///< execution that is followed
   int64_t followed_until_ = 0;                 ///< [us] of its time
   int64_t seq_motor_ = -1;                     ///< of the last MOTOR; -1 = none yet

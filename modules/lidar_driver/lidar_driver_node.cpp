@@ -22,7 +22,10 @@ LidarDriverConfig readLidarDriverConfig(ConfigReader& reader) {
     throw reader.error("range_max", "must be above range_min");
   reader.integer("max_beams", max_beams, {2, 10000}, "beams");
   reader.integer("beam_stride", stride, {1, 20}, "beams");
-  config.mounting = readRobot(reader).range_finder;
+  const RobotDescription robot = readRobot(reader);
+  config.mounting = robot.range_finder;
+  config.ground_mounting = robot.ground_finder;
+  reader.text("ground_address", config.ground_address, robot.ground_finder.has_value());
   reader.finish();
   config.limits.max_beams = static_cast<int>(max_beams);
   config.limits.beam_stride = static_cast<int>(stride);
@@ -34,38 +37,40 @@ LidarDriverNode::LidarDriverNode(const LidarDriverConfig& config, Bus& bus, Scan
     : config_(config),
       bus_(bus),
       source_(source),
-      check_(config.limits),
       health_(bus, "lidar_driver", config.effective),
-      R_body_sensor_(isometryFrom(config.mounting.p_body, config.mounting.angles).linear()),
-      last_scan_(bus.now()) {
+      finders_{{config.address, config.mounting, ScanCheck(config.limits), bus.now()}} {
+  if (config.ground_mounting)
+    finders_.push_back(
+        {config.ground_address, *config.ground_mounting, ScanCheck(config.limits), bus.now()});
   health_.watchNamesakes();
 }
 
 void LidarDriverNode::step(int64_t utime) {
   for (const RangeScan& raw : source_.take(utime)) {
-    const auto scan = check_.accept(raw);
-    last_refusal_ = check_.refusal();
+    Finder& finder = raw.ground ? finders_.back() : finders_.front();
+    const auto scan = finder.check.accept(raw);
+    finder.last_refusal = finder.check.refusal();
     if (scan) {
-      last_scan_ = utime;
-      publish(*scan);
+      finder.last_scan = utime;
+      publish(*scan, finder.mounting);
     } else {
-      health_.addToCounter("refused: " + last_refusal_);
+      health_.addToCounter("refused: " + finder.last_refusal);
     }
   }
   reportHealth(utime);
   health_.step(utime);
 }
 
-void LidarDriverNode::publish(const RangeScan& scan) {
+void LidarDriverNode::publish(const RangeScan& scan, const Mounting& mounting) {
   auto message = blank<scan_t>();
   message.utime = scan.utime;
   message.seq = seq_++;
-  const Eigen::Vector3d& position = config_.mounting.p_body;
-  for (int i = 0; i < 3; ++i) message.sensor_position[i] = position[i];
-  message.sensor_orientation[0] = R_body_sensor_.w();
-  message.sensor_orientation[1] = R_body_sensor_.x();
-  message.sensor_orientation[2] = R_body_sensor_.y();
-  message.sensor_orientation[3] = R_body_sensor_.z();
+  const Eigen::Quaterniond R_body_sensor(isometryFrom(mounting.p_body, mounting.angles).linear());
+  for (int i = 0; i < 3; ++i) message.sensor_position[i] = mounting.p_body[i];
+  message.sensor_orientation[0] = R_body_sensor.w();
+  message.sensor_orientation[1] = R_body_sensor.x();
+  message.sensor_orientation[2] = R_body_sensor.y();
+  message.sensor_orientation[3] = R_body_sensor.z();
   message.duration = static_cast<int32_t>(scan.duration_us);
   message.angle_first = scan.angle_first;
   message.angle_step = scan.angle_step;
@@ -78,21 +83,29 @@ void LidarDriverNode::publish(const RangeScan& scan) {
 }
 
 void LidarDriverNode::reportHealth(int64_t utime) {
-  const double silent = static_cast<double>(utime - last_scan_) * 1e-6;
-  if (silent < config_.silence) return health_.setState(health_t::HEALTH_OK, "");
+  std::string problem;
+  for (const Finder& finder : finders_)
+    if (problem.empty()) problem = silenceOf(finder, utime);
+  health_.setState(problem.empty() ? health_t::HEALTH_OK : health_t::HEALTH_FAILED, problem);
+}
+
+/// Why nothing comes from a range finder, in one line; empty if it does.
+std::string LidarDriverNode::silenceOf(const Finder& finder, int64_t utime) const {
+  const double silent = static_cast<double>(utime - finder.last_scan) * 1e-6;
+  if (silent < config_.silence) return "";
   std::ostringstream line;
-  const bool refused = !last_refusal_.empty();
-  line << config_.address << ": no " << (refused ? "good " : "") << "scan for "
+  const bool refused = !finder.last_refusal.empty();
+  line << finder.address << ": no " << (refused ? "good " : "") << "scan for "
        << static_cast<int64_t>(silent) << " s";
   const std::string problem = source_.problem();
   if (!problem.empty()) {
     line << "; " << problem;
   } else if (refused) {
-    line << "; the last one was refused: " << last_refusal_;
+    line << "; the last one was refused: " << finder.last_refusal;
   } else {
     line << "; is the device powered and scanning?";
   }
-  health_.setState(health_t::HEALTH_FAILED, line.str());
+  return line.str();
 }
 
 }  // namespace tread::lidar

@@ -19,6 +19,8 @@ struct LidarDriverConfig {
   std::string device = "hokuyo";                   ///< one of kScanDevices
   std::string address = "tcp:192.168.0.10:10940";  ///< of the device
   Mounting mounting;                               ///< of the sensor in body
+  std::string ground_address;                      ///< of one more that looks at the ground ahead
+  std::optional<Mounting> ground_mounting;         ///< nothing: there is none
   double latency = 0.002;  ///< [s] from the last beam to the arrival of its bytes
   double silence = 1.0;    ///< [s] without a scan after which the device counts as silent
   ScanLimits limits;
@@ -37,18 +39,25 @@ class LidarDriverNode : public Node {
   void step(int64_t utime) override;
 
  private:
-  void publish(const RangeScan& scan);
+  /// One of the range finders.
+  struct Finder {
+    std::string address;
+    Mounting mounting;
+    ScanCheck check;
+    int64_t last_scan;              ///< [us] when the last good one came
+    std::string last_refusal = {};  ///< of a scan since then; empty if there was none
+  };
+
+  void publish(const RangeScan& scan, const Mounting& mounting);
   void reportHealth(int64_t utime);
+  std::string silenceOf(const Finder& finder, int64_t utime) const;
 
   LidarDriverConfig config_;
   Bus& bus_;
   ScanSource& source_;
-  ScanCheck check_;
   HealthReporter health_;
-  Eigen::Quaterniond R_body_sensor_;
+  std::vector<Finder> finders_;  ///< the second one looks at the ground, if there is one
   int64_t seq_ = 0;
-  int64_t last_scan_;         ///< [us] when the last good one came
-  std::string last_refusal_;  ///< of a scan since then; empty if there was none
 };
 
 }  // namespace tread::lidar

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <algorithm>
 #include <cstdlib>
 #include <functional>
 #include <iostream>
@@ -16,15 +17,15 @@ using namespace tread::lidar;
 
 struct Device {
   std::function<void(const std::string&)> check_address;  ///< throws where it makes no sense
-  std::function<std::unique_ptr<ScanSource>(const LidarDriverConfig&)> make;
+  std::function<std::unique_ptr<ScanSource>(const std::string& address, double latency)> make;
 };
 
 /// A new range finder is one line here, its name in kScanDevices, and a folder of its own.
 Device deviceNamed(const std::string& name) {
   if (name == "hokuyo")
     return {[](const std::string& address) { rangeFinderAddress(address); },
-            [](const LidarDriverConfig& config) {
-              return std::make_unique<HokuyoSource>(config.address, config.latency);
+            [](const std::string& address, double latency) {
+              return std::make_unique<HokuyoSource>(address, latency);
             }};
   throw std::logic_error(name);
 }
@@ -53,6 +54,41 @@ class GuardedSource : public ScanSource {
   bool& stuck_;
 };
 
+/// The range finder that looks around and the one that looks at the ground, as one source.
+class TwoSources : public ScanSource {
+ public:
+  TwoSources(std::unique_ptr<ScanSource> around, std::unique_ptr<ScanSource> ground)
+      : around_(std::move(around)), ground_(std::move(ground)) {}
+  std::vector<RangeScan> take(int64_t utime) override {
+    std::vector<RangeScan> scans = around_->take(utime);
+    for (RangeScan& scan : ground_->take(utime)) {
+      scan.ground = true;
+      scans.push_back(std::move(scan));
+    }
+    return scans;
+  }
+  std::string problem() const override {
+    const std::string around = around_->problem();
+    return around.empty() ? ground_->problem() : around;
+  }
+  double stuckFor() const override { return std::max(around_->stuckFor(), ground_->stuckFor()); }
+  bool end() override {
+    const bool ended = around_->end();
+    return ground_->end() && ended;
+  }
+
+ private:
+  std::unique_ptr<ScanSource> around_;
+  std::unique_ptr<ScanSource> ground_;
+};
+
+std::unique_ptr<ScanSource> sourceOf(const LidarDriverConfig& config, const Device& device) {
+  auto around = device.make(config.address, config.latency);
+  if (!config.ground_mounting) return around;
+  return std::make_unique<TwoSources>(std::move(around),
+                                      device.make(config.ground_address, config.latency));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -61,9 +97,10 @@ int main(int argc, char** argv) {
     const LidarDriverConfig config = readLidarDriverConfig(reader);
     const Device device = deviceNamed(config.device);
     device.check_address(config.address);
+    if (config.ground_mounting) device.check_address(config.ground_address);
     return [config, device, &stuck](BusAccess access, const std::atomic<bool>& stop) {
       LcmBus bus(std::move(access), TimeSource::kHost);
-      GuardedSource source(device.make(config), stuck);
+      GuardedSource source(sourceOf(config, device), stuck);
       LidarDriverNode node(config, bus, source);
       bus.run(node, stop);
     };

@@ -60,6 +60,10 @@ void readMap(ConfigReader& reader, OccupancyMapConfig& map) {
   evidence.number("miss", map.voxels.miss, {0.01, 0.49}, "");
   evidence.number("clamp_min", map.voxels.clamp_min, {0.01, 0.49}, "");
   evidence.number("clamp_max", map.voxels.clamp_max, {0.51, 0.99}, "");
+  ConfigReader roughness = reader.section("roughness");
+  roughness.number("range_noise", map.roughness.range_noise, {0.0, 0.2}, "m, 0 = not looked at");
+  if (map.roughness.range_noise > 0.0 && map.tile_cells % RoughnessMap::kPatchCells != 0)
+    throw reader.error("tile_cells", "must be a multiple of 16 where roughness is looked at");
   ConfigReader ground = reader.section("ground");
   ground.number("height_noise", map.ground.height_noise, {0.001, 1.0}, "m");
   ground.number("slope_noise", map.ground.slope_noise, {0.0, 1.0}, "");

@@ -59,6 +59,9 @@ void readSearch(ConfigReader reader, SearchConfig& search) {
   reader.number("horizon", search.horizon, {1.0, 60.0}, "s");
   reader.number("reverse_penalty", search.reverse_penalty, {0.0, 20.0}, "1");
   reader.number("near_penalty", search.near_penalty, {0.0, 20.0}, "1");
+  reader.number("shock_weight", search.shock.weight, {0.0, 100.0}, "s, 0 = off");
+  reader.number("shock_harmless", search.shock.harmless, {0.01, 20.0}, "m/s2");
+  reader.number("top_speed", search.top_speed, {0.05, kNoLimit}, "m/s");
 }
 
 /// The limits can be made stricter, or a little wider; none can be switched off.
@@ -94,6 +97,23 @@ std::optional<Goal> goalFrom(const goal_t& message) {
               {pose[0], pose[1], pose[2]},
               message.position_tolerance,
               message.yaw_tolerance};
+}
+
+std::optional<ShockKnowledge> shockFrom(const shock_t& message) {
+  ShockKnowledge shock;
+  const double* c = message.shock_covariance;
+  shock.model.mean = Eigen::Map<const Eigen::Vector3d>(message.shock_weights);
+  shock.model.covariance << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
+  shock.model.variance = message.shock_variance;
+  const Eigen::Vector3d& w = shock.model.mean;
+  // Ground that shakes less the rougher it is, or the faster one drives, is a forged one.
+  const bool possible = w.allFinite() && shock.model.covariance.allFinite() &&
+                        std::abs(w[0]) < 10.0 && w[1] >= 0.0 && w[1] < 5.0 && w[2] >= 0.0 &&
+                        w[2] < 10.0 && message.shock_variance >= 0.0 && c[0] >= 0.0 &&
+                        c[3] >= 0.0 && c[5] >= 0.0;
+  if (!possible) return std::nullopt;
+  if (message.here_shock > 0.0 && message.here_shock < 100.0) shock.here = message.here_shock;
+  return shock;
 }
 
 std::optional<Tile> tileFrom(const map_tile_t& message) {
@@ -203,6 +223,11 @@ void PlannerNode::subscribe() {
     const bool possible = message.stopping_time >= 0.05 && message.stopping_time <= 5.0;
     if (!possible) return health_.addToCounter("STOPPING refused: no such time");
     if (message.stops > 0) supervisor_.setStoppingTime(message.stopping_time);
+  });
+  bus_.subscribe<shock_t>(kShock, [this](const shock_t& message) {
+    const std::optional<ShockKnowledge> shock = shockFrom(message);
+    if (!shock) return health_.addToCounter("SHOCK refused: no such ground");
+    supervisor_.setShock(*shock);
   });
   bus_.subscribe<goal_t>(kGoal, [this](const goal_t& message) { take(message); });
   bus_.subscribe<pattern_set_part_t>(kPatternSet,

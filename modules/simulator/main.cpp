@@ -42,11 +42,14 @@ ShellBody prepare(ConfigReader& reader) {
     const std::unique_ptr<Link> motor = makeLink(config.motor);
     const std::unique_ptr<Link> laser = makeLink(config.laser);
     for (const Link* line : {ins.get(), motor.get(), laser.get()}) mustOffer(*line);
+    std::unique_ptr<Link> ground_laser;
+    if (settings.robot.ground_laser) mustOffer(*(ground_laser = makeLink(config.ground_laser)));
     std::ofstream file = openRecord(config.record);
     TruthRecord record(file);
-    SimulatorNode node(
-        devices, bus, DeviceLines{*ins, *motor, laser.get()}, file.is_open() ? &record : nullptr,
-        [](const std::string& line) { std::cerr << "tread-simulator: " << line << std::endl; });
+    SimulatorNode node(devices, bus, DeviceLines{*ins, *motor, laser.get(), ground_laser.get()},
+                       file.is_open() ? &record : nullptr, [](const std::string& line) {
+                         std::cerr << "tread-simulator: " << line << std::endl;
+                       });
     bus.run(node, stop);
   };
 }

@@ -90,6 +90,15 @@ Terrain readTerrain(ConfigReader reader) {
   return terrain;
 }
 
+RoughRegion readRough(ConfigReader& reader) {
+  RoughRegion region;
+  region.corners = readCorners(reader);
+  readBumps(reader, region);
+  const std::string fault = faultOf(region);
+  if (!fault.empty()) throw reader.error("corners", fault);
+  return region;
+}
+
 WorldDescription readWorld(ConfigReader reader) {
   WorldDescription world;
   reader.text("name", world.name);
@@ -102,6 +111,7 @@ WorldDescription readWorld(ConfigReader reader) {
     world.surfaces.push_back(readSurface(item));
   for (ConfigReader& item : reader.sections("regions")) world.regions.push_back(readRegion(item));
   world.terrain = readTerrain(reader.section("terrain"));
+  for (ConfigReader& item : reader.sections("rough")) world.rough.push_back(readRough(item));
   for (ConfigReader& item : reader.sections("obstacles"))
     world.obstacles.push_back(readObstacle(item));
   reader.finish();
@@ -172,6 +182,16 @@ SurfaceParameters readSurface(ConfigReader& reader) {
   return surface;
 }
 
+void readBumps(ConfigReader& reader, RoughRegion& region) {
+  reader.number("rms", region.rms, {0.0, 0.5}, "m");
+  reader.number("shortest", region.shortest, {0.2, 100.0}, "m");
+  reader.number("longest", region.longest, {0.2, 100.0}, "m");
+  auto seed = static_cast<int64_t>(region.seed);
+  reader.integer("seed", seed, {0.0, 1e15}, "1");
+  region.seed = static_cast<uint64_t>(seed);
+  if (region.shortest >= region.longest) throw reader.error("longest", "must be above shortest");
+}
+
 WorldDescription readWorld(const std::string& path) {
   return readWorld(ConfigReader::fromFile(path));
 }
@@ -197,6 +217,7 @@ void readSimulatedRobot(ConfigReader& reader, RobotSettings& settings) {
   settings.vehicle.drive.free_speed = robot.drive.full_speed;
   settings.wiring = {robot.drive.left_channel, robot.drive.invert_left, robot.drive.invert_right};
   settings.laser.mounting = robot.range_finder;
+  if (robot.ground_finder) settings.ground_laser.emplace().mounting = *robot.ground_finder;
   settings.ins.mounting = robot.ins;
   readVehicle(reader.file("dynamics", "dynamics.yaml"), settings.vehicle, true);
 }

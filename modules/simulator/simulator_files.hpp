@@ -17,6 +17,9 @@ namespace tread::sim {
 /// Reads a kind of ground: what it differs in from a built-in one (key `like`).
 SurfaceParameters readSurface(ConfigReader& reader);
 
+/// Reads height, wavelengths and seed of bumps; what is not named stays as it is.
+void readBumps(ConfigReader& reader, RoughRegion& region);
+
 /// Reads a world file (config/worlds); throws ConfigError with file:line.
 WorldDescription readWorld(const std::string& path);
 /// The same from text; `name` stands for the file in messages.

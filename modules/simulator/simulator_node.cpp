@@ -75,6 +75,7 @@ SimulatorConfig readSimulatorConfig(ConfigReader& reader) {
   readAddress(reader, "ins", config.ins);
   readAddress(reader, "motor", config.motor);
   readAddress(reader, "laser", config.laser);
+  readAddress(reader, "ground_laser", config.ground_laser);
   reader.text("record", config.record);
   reader.finish();
   return config;
@@ -94,14 +95,18 @@ void SimulatorNode::step(int64_t utime) {
   devices_.motor().receive(hear(lines_.motor, utime), utime);
   transmit(lines_.ins, devices_.ins().transmit(utime));
   transmit(lines_.motor, devices_.motor().transmit(utime));
-  if (lines_.laser != nullptr) {
-    const bool open = lines_.laser->isOpen();
-    if (open && !laser_connected_) devices_.laser().reconnect();
-    laser_connected_ = open;
-    devices_.laser().receive(hear(*lines_.laser, utime), utime);
-    transmit(*lines_.laser, devices_.laser().transmit(utime));
-  }
+  if (lines_.laser != nullptr) serve(devices_.laser(), *lines_.laser, laser_connected_, utime);
+  if (lines_.ground_laser != nullptr && devices_.groundLaser() != nullptr)
+    serve(*devices_.groundLaser(), *lines_.ground_laser, ground_laser_connected_, utime);
   tellHealth(utime);
+}
+
+void SimulatorNode::serve(LaserEmulator& laser, Link& line, bool& connected, int64_t utime) {
+  const bool open = line.isOpen();
+  if (open && !connected) laser.reconnect();
+  connected = open;
+  laser.receive(hear(line, utime), utime);
+  transmit(line, laser.transmit(utime));
 }
 
 void SimulatorNode::tellHealth(int64_t utime) {

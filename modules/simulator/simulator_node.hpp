@@ -23,7 +23,8 @@ struct SimulatorConfig {
   std::string ins = "pty:devices/ins";
   std::string motor = "pty:devices/motor";
   std::string laser = "tcp-server:127.0.0.1:10940";
-  std::string record = "none";  ///< path of the truth as CSV, or none
+  std::string ground_laser = "tcp-server:127.0.0.1:10941";  ///< of robots that have one
+  std::string record = "none";                              ///< path of the truth as CSV, or none
 };
 
 /// Reads it strictly, the model file, too; throws ConfigError with file:line.
@@ -33,7 +34,8 @@ SimulatorConfig readSimulatorConfig(ConfigReader& reader);
 struct DeviceLines {
   Link& ins;
   Link& motor;
-  Link* laser = nullptr;  ///< SCIP bytes; null where scans are taken with takeScans()
+  Link* laser = nullptr;         ///< SCIP bytes; null where scans are taken with takeScans()
+  Link* ground_laser = nullptr;  ///< the same
 };
 
 /// Steps the simulated robot and carries the devices' bytes over their lines.
@@ -53,6 +55,7 @@ class SimulatorNode : public Node {
  private:
   void advanceTo(int64_t utime);
   void tellHealth(int64_t utime);
+  void serve(LaserEmulator& laser, Link& line, bool& connected, int64_t utime);
   std::string hear(Link& line, int64_t utime);
   void transmit(Link& line, const std::string& bytes);
 
@@ -64,6 +67,7 @@ class SimulatorNode : public Node {
   int64_t next_health_ = 0;
   HealthReporter health_;
   bool laser_connected_ = false;
+  bool ground_laser_connected_ = false;
 };
 
 }  // namespace tread::sim

@@ -70,7 +70,7 @@ void message(const uint8_t* bytes, size_t size) {
                                decodeAs<operator_t>,      decodeAs<estop_t>,
                                decodeAs<mark_t>,          decodeAs<config_t>,
                                decodeAs<manual_t>,        decodeAs<fence_t>,
-                               decodeAs<stopping_t>};
+                               decodeAs<stopping_t>,      decodeAs<shock_t>};
   static_assert(std::size(kTypes) == kChannels.size());
   if (size > 0) kTypes[bytes[0] % std::size(kTypes)](bytes + 1, size - 1);
 }

@@ -128,9 +128,9 @@ TEST_CASE(
   size_t cores = 0;
   for (const std::string& core : pureFolders()) {
     const bool is_core = core.rfind("/core") == core.size() - 5;
-    std::set<std::string> concepts{"common/execution", "common/fence",    "common/geometry",
-                                   "common/grid",      "common/parallel", "common/pattern",
-                                   "common/vehicle"};
+    std::set<std::string> concepts{"common/execution", "common/fence",  "common/geometry",
+                                   "common/grid",      "common/ground", "common/parallel",
+                                   "common/pattern",   "common/vehicle"};
     // A device's folder reads its own section of the configuration.
     if (!is_core) concepts.insert("common/config");
     for (const Include& include : includesUnder(core)) {
@@ -159,8 +159,9 @@ TEST_CASE(
 }
 
 TEST_CASE("concepts link no bus and include no message type") {
-  for (const char* folder : {"common/execution", "common/fence", "common/geometry", "common/grid",
-                             "common/parallel", "common/pattern", "common/vehicle"})
+  for (const char* folder :
+       {"common/execution", "common/fence", "common/geometry", "common/grid", "common/ground",
+        "common/parallel", "common/pattern", "common/vehicle"})
     for (const Include& include : includesUnder(folder)) {
       CAPTURE(include.file, include.target);
       CHECK_FALSE(startsWith(include.target, "lcm/"));

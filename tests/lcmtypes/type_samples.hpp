@@ -262,6 +262,23 @@ inline fence_t sampleOf<fence_t>() {
 }
 
 template <>
+inline shock_t sampleOf<shock_t>() {
+  shock_t m{};
+  m.utime = 1'000'024;
+  m.seq = 24;
+  for (int i = 0; i < 3; ++i) m.shock_weights[i] = -1.0 + 1.5 * i;
+  for (int i = 0; i < 6; ++i) m.shock_covariance[i] = 0.125 * (i + 1);
+  m.shock_variance = 0.25;
+  m.shock_pairs = 77;
+  m.here_shock = 0.015625;
+  m.felt_shock = 0.75;
+  m.felt_peak = 2.25;
+  m.felt_pitch_rate = 0.1875;
+  m.felt_speed = 1.0625;
+  return m;
+}
+
+template <>
 inline stopping_t sampleOf<stopping_t>() {
   stopping_t m{};
   m.utime = 1'000'020;
@@ -410,7 +427,7 @@ void forEachType(Visitor&& visit) {
            sampleOf<learning_t>(), sampleOf<map_tile_t>(), sampleOf<mark_t>(), sampleOf<motor_t>(),
            sampleOf<operator_t>(), sampleOf<manual_t>(), sampleOf<pattern_set_part_t>(),
            sampleOf<plan_t>(), sampleOf<plan_tree_t>(), sampleOf<program_slot_t>(),
-           sampleOf<program_t>(), sampleOf<scan_t>(), sampleOf<stopping_t>());
+           sampleOf<program_t>(), sampleOf<scan_t>(), sampleOf<shock_t>(), sampleOf<stopping_t>());
 }
 
 /// Calls `visit` with each typed channel and a sample of its type.
@@ -426,6 +443,7 @@ void forEachChannel(Visitor&& visit) {
   visitOne(kProgram, sampleOf<program_t>());
   visitOne(kMotor, sampleOf<motor_t>());
   visitOne(kExecution, sampleOf<execution_t>());
+  visitOne(kShock, sampleOf<shock_t>());
   visitOne(kStoppingTime, sampleOf<stopping_t>());
   visitOne(kPatternSet, sampleOf<pattern_set_part_t>());
   visitOne(kLearnerState, sampleOf<learner_state_t>());

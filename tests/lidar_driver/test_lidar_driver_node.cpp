@@ -106,3 +106,36 @@ TEST_CASE("a mistyped key of lidar_driver's configuration is one line with file 
   REQUIRE_THROWS_WITH(readLidarDriverConfig(reader),
                       Catch::Contains("lidar.yaml:2") && Catch::Contains("range_maks"));
 }
+
+TEST_CASE(
+    "a second range finder at the ground has its own pose, its own clock and its own health") {
+  VirtualBus bus(1);
+  ScriptedSource source;
+  LidarDriverConfig config;
+  config.mounting = {{0.25, 0.0, 0.5}, {0.0, 0.0, 0.0}};
+  config.ground_mounting = Mounting{{0.25, 0.0, 0.9}, {0.0, 0.2, 0.0}};
+  config.ground_address = "tcp:192.168.0.11:10940";
+  std::vector<scan_t> scans;
+  health_t health{};
+  bus.outside().subscribe<scan_t>(kScan, [&](const scan_t& scan) { scans.push_back(scan); });
+  bus.outside().subscribe<health_t>(kHealth, [&](const health_t& m) { health = m; });
+  bus.addNode("lidar_driver",
+              [&](Bus& end) { return std::make_unique<LidarDriverNode>(config, end, source); });
+  const int64_t start = bus.now();
+  for (int i = 1; i <= 30; ++i) {
+    source.next = {scanAt(start + i * 100'000 - 80'000)};
+    if (i <= 15) {
+      // Finished later, though it began before the other one.
+      source.next.push_back(scanAt(start + i * 100'000 - 90'000));
+      source.next.back().ground = true;
+    }
+    bus.runUntil(start + i * 100'000);
+  }
+  REQUIRE(scans.size() == 45);
+  CHECK(scans[0].sensor_position[2] == 0.5);
+  CHECK(scans[1].sensor_position[2] == 0.9);
+  CHECK(scans[1].sensor_orientation[2] == Approx(std::sin(0.1)));
+  CHECK(scans[1].seq == 1);
+  CHECK(health.health_state == health_t::HEALTH_FAILED);
+  CHECK(health.health_reason.find("tcp:192.168.0.11:10940: no scan for 1 s") == 0);
+}

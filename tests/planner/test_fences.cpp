@@ -166,7 +166,7 @@ TEST_CASE("Cells near forbidden ground are obstacles, all of them and no others"
     Grid grid(0.1, {-93, -81}, 180, 170);
     std::fill(grid.cells().begin(), grid.cells().end(), kFree);
     ground.stamp(grid);
-    ClearanceWindow window{-47, -40, 90, 80, {}, {}};
+    ClearanceWindow window{-47, -40, 90, 80, {}, {}, {}};
     window.clearance.assign(90 * 80, 1e6F);
     ground.stamp(window, 0.2);
     for (int y = -81; y < 89; ++y)

@@ -124,7 +124,7 @@ TEST_CASE("the robot lies on the ground with the attitude of the slope") {
     const RobotTruth& truth = robot.truth();
     const Eigen::Vector2d p = truth.T_map_body.position();
     CHECK(truth.body.p_map.z() == Approx(world->height(p)).margin(1e-4));
-    const Eigen::Vector2d gradient = world->gradient(p);
+    const Eigen::Vector2d gradient = world->description().terrain.gradient(p);
     const Eigen::Vector2d ahead(std::cos(truth.T_map_body.yaw), std::sin(truth.T_map_body.yaw));
     CHECK(std::tan(-truth.body.pitch) == Approx(gradient.dot(ahead)).margin(2e-3));
     CHECK((truth.body.R_map_body.transpose() * truth.body.R_map_body - Eigen::Matrix3d::Identity())

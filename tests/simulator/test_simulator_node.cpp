@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 
@@ -21,9 +23,11 @@ class Bench {
     std::tie(ins, ins_device_) = makePipe();
     std::tie(motor, motor_device_) = makePipe();
     std::tie(laser, laser_device_) = makePipe();
+    std::tie(ground, ground_device_) = makePipe();
     bus_.addNode("simulator", [this](Bus& bus) {
       return std::make_unique<SimulatorNode>(
-          devices_, bus, DeviceLines{*ins_device_, *motor_device_, laser_device_.get()});
+          devices_, bus,
+          DeviceLines{*ins_device_, *motor_device_, laser_device_.get(), ground_device_.get()});
     });
   }
 
@@ -34,6 +38,7 @@ class Bench {
       hear(*ins, ins_bytes);
       hear(*motor, motor_bytes);
       hear(*laser, laser_bytes);
+      hear(*ground, ground_bytes);
     }
   }
 
@@ -53,6 +58,8 @@ class Bench {
     SimulatorSettings settings;
     settings.robot = shippedRobot();
     settings.robot.seed = seed;
+    settings.robot.ground_laser = LaserParameters{};
+    settings.robot.ground_laser->mounting = {{0.25, 0.0, 0.9}, {0.0, 0.2, 0.0}};
     settings.robot.start_utime = kStart;
     return settings;
   }
@@ -66,16 +73,25 @@ class Bench {
   }
 
  public:
-  std::unique_ptr<Link> ins, motor, laser;
-  std::string ins_bytes, motor_bytes, laser_bytes;
+  std::unique_ptr<Link> ins, motor, laser, ground;
+  std::string ins_bytes, motor_bytes, laser_bytes, ground_bytes;
   VirtualBus& bus() { return bus_; }
   SimulatedDevices& devices() { return devices_; }
 
  private:
-  std::unique_ptr<Link> ins_device_, motor_device_, laser_device_;
+  std::unique_ptr<Link> ins_device_, motor_device_, laser_device_, ground_device_;
   VirtualBus bus_;
   SimulatedDevices devices_;
 };
+
+/// Scans of one of the range finders since the last call.
+std::vector<LaserScan> scansOf(Bench& bench, bool ground) {
+  std::vector<LaserScan> scans = bench.devices().takeScans();
+  scans.erase(std::remove_if(scans.begin(), scans.end(),
+                             [ground](const LaserScan& scan) { return scan.ground != ground; }),
+              scans.end());
+  return scans;
+}
 
 }  // namespace
 
@@ -101,6 +117,18 @@ TEST_CASE("commands on the motor line move the robot, the INS line tells of it")
   CHECK(bench.truth().distance == Approx(stopped).margin(1e-6));
 }
 
+TEST_CASE("a second range finder looks at the ground ahead, on a line of its own") {
+  Bench bench(1);
+  const std::string start = "QT\nBM\nMD0000054001000\n";
+  bench.ground->write(reinterpret_cast<const uint8_t*>(start.data()), start.size());
+  bench.run(1000000);
+  CHECK(bench.ground_bytes.find("99b\n") != std::string::npos);
+  CHECK(bench.laser_bytes.find("99b\n") == std::string::npos);
+  const std::vector<LaserScan> taken = scansOf(bench, true);
+  REQUIRE(taken.size() >= 9);
+  CHECK(taken[0].ranges[270] == Approx(0.9 / std::sin(0.2)).margin(0.05));
+}
+
 TEST_CASE("the laser line streams scans after MD, and scans can be taken behind the library") {
   Bench bench(1);
   const std::string start = "QT\nBM\nMD0000054001000\n";
@@ -110,7 +138,7 @@ TEST_CASE("the laser line streams scans after MD, and scans can be taken behind 
   for (size_t at = 0; (at = bench.laser_bytes.find("99b\n", at)) != std::string::npos; ++at)
     ++scans;
   CHECK(scans == 10);
-  const std::vector<LaserScan> taken = bench.devices().takeScans();
+  const std::vector<LaserScan> taken = scansOf(bench, false);
   REQUIRE(taken.size() == 10);
   CHECK(taken[0].ranges[270] == Approx(5.5).margin(0.05));
   CHECK(bench.devices().takeScans().empty());

@@ -41,6 +41,7 @@ TEST_CASE("a world file describes surfaces, strips, terrain and obstacles") {
       "regions: [{surface: cinder, strip: [0, 0, 4, 0], width: 2}]\n"
       "terrain: {waves: [{amplitude: 0.3, k: [0.1, 0.2]}], bumps: [{centre: [1, 2], height: -0.4, "
       "radius: 1.5}]}\n"
+      "rough: [{corners: [[0, 0], [8, 0], [8, 4]], rms: 0.03, longest: 3, seed: 5}]\n"
       "obstacles: [{box: [1, 1, 0], length: 2, width: 0.4, height: 1.1}, "
       "{disc: [5, 5], radius: 0.4, name: bollard}]\n",
       "w.yaml");
@@ -50,6 +51,11 @@ TEST_CASE("a world file describes surfaces, strips, terrain and obstacles") {
   CHECK(world.regions[0].corners == stripRegion("cinder", {0, 0}, {4, 0}, 2).corners);
   CHECK(world.terrain.waves[0].k == Eigen::Vector2d(0.1, 0.2));
   CHECK(world.terrain.bumps[0].height == -0.4);
+  CHECK(world.rough[0].corners[2] == Eigen::Vector2d(8.0, 4.0));
+  CHECK(world.rough[0].rms == 0.03);
+  CHECK(world.rough[0].longest == 3.0);
+  CHECK(world.rough[0].shortest == RoughRegion().shortest);
+  CHECK(world.rough[0].seed == 5);
   CHECK(world.obstacles[0].corners == boxObstacle({1, 1, 0}, 2.0, 0.4, 1.1).corners);
   CHECK(world.obstacles[1].name == "bollard");
 }
@@ -76,6 +82,10 @@ TEST_CASE("errors in a world file name file, line and what is wrong") {
              Contains("differ"));
   CHECK_THAT(refusalOf("base_surface: jelly\n"), Contains("w.yaml:1") && Contains("'jelly'"));
   CHECK_THAT(refusalOf("surfaces:\n  - {name: wet, like: jelly}\n"), Contains("like"));
+  CHECK_THAT(
+      refusalOf("rough:\n  - {corners: [[0, 0], [8, 0], [8, 4]], shortest: 3, longest: 2}\n"),
+      Contains("longest"));
+  CHECK_THAT(refusalOf("rough:\n  - {corners: [[0, 0], [8, 0]]}\n"), Contains("three corners"));
   CHECK_THAT(refusalOf("terrain:\n  waves:\n    - {amplitude: 1}\n"), Contains("k"));
   CHECK_THROWS_AS(readWorld("/nowhere/world.yaml"), ConfigError);
 }

@@ -32,6 +32,7 @@ struct Arguments {
   std::string robot = TREAD_CONFIG_DIR "/robots/teodor";
   std::vector<std::string> overrides;
   bool compare_omniscient = false;
+  std::vector<std::string> speeds;  ///< ways to choose the speed, to compare; empty = as configured
 };
 
 void define(CLI::App& app, Arguments& arguments) {
@@ -52,6 +53,13 @@ void define(CLI::App& app, Arguments& arguments) {
   app.add_flag("--compare-omniscient", arguments.compare_omniscient,
                "drive all missions, and once more without learning: the planner is given the true "
                "patterns of the ground below it; ratio of times to the goal")
+      ->excludes(several);
+  app.add_option(
+         "--speeds", arguments.speeds,
+         "compare speeds: always fast or slow, by what is seen or felt of the ground, or by "
+         "both, learned; each drives all missions")
+      ->delimiter(',')
+      ->check(CLI::IsMember(speedMethods()))
       ->excludes(several);
   app.add_option("--length", arguments.length,
                  "shortest straight line to the goal [m]; longer ones stay longer on each "
@@ -160,6 +168,21 @@ void compareRules(const Arguments& arguments, const RobotConfig& robot) {
   if (!arguments.json.empty()) writeComparison(arguments.json, comparison);
 }
 
+void compareSpeeds(const Arguments& arguments, const RobotConfig& robot) {
+  SpeedComparison comparison;
+  for (const std::string& method : arguments.speeds) {
+    std::cout << method << std::endl;
+    BatchOrder order = orderOf(arguments, method, comparison.batches.empty());
+    order.options.rule = arguments.rule;
+    comparison.batches.push_back(runBatch(withSpeedBy(method, robot), order));
+  }
+  printSpeeds(std::cout, comparison);
+  std::vector<const MissionBatch*> batches;
+  for (const MissionBatch& batch : comparison.batches) batches.push_back(&batch);
+  draw(arguments, batches);
+  if (!arguments.json.empty()) writeSpeeds(arguments.json, comparison);
+}
+
 /// Batches take long: checks that the outputs can be written before driving.
 void protectInputs(const Arguments& arguments) {
   std::vector<std::string> inputs{arguments.fault_file};
@@ -176,6 +199,7 @@ void drive(const Arguments& arguments) {
   RobotConfig robot = readRobot(arguments.robot, arguments.overrides);
   enterWorld(robot, arguments.world);
   if (!arguments.rules.empty()) return compareRules(arguments, robot);
+  if (!arguments.speeds.empty()) return compareSpeeds(arguments, robot);
   if (arguments.compare_omniscient) return compareOmniscient(arguments, robot);
   const MissionBatch batch = driveLearning(arguments, robot);
   printSummary(std::cout, batch);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/geometry/se2.hpp"
+#include "modules/simulator/core/robot.hpp"
 #include "modules/simulator/core/world.hpp"
 #include "tools/missions/world_kind.hpp"
 #include "tools/replay/shadow_learners.hpp"
@@ -129,6 +130,8 @@ struct MissionResult {
   std::vector<Stop> stops;                  ///< between start and arrival
   std::vector<Disarming> disarmings;
   std::vector<Flip> flips;
+  sim::Shaking smooth;  ///< how the true body was shaken on ground without bumps
+  sim::Shaking rough;   ///< and on ground with them
 
   int collisions() const { return static_cast<int>(contacts.size()); }
   double detour() const { return straight_line > 0.0 ? distance / straight_line : 0.0; }

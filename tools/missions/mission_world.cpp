@@ -233,6 +233,24 @@ void addStretches(MissionWorld& world, Rng& rng, const WorldKind& kind) {
   world.surface_changes *= 2;
 }
 
+/// Two or three stretches with bumps, as wide as the obstacles lie, so that no way leads round
+/// them.
+void addRoughGround(MissionWorld& world, Rng& rng, const WorldKind& kind, const Pose2& T_map_way) {
+  if (!kind.rough) return;
+  const int stretches = 2 + rng.below(2);
+  const double share = world.straight_line / stretches;
+  for (int i = 0; i < stretches; ++i) {
+    const double length = share * kind.rough_share;
+    const double from = share * i + rng.between(0.0, share - length);
+    sim::RoughRegion region = *kind.rough;
+    region.seed = world.seed * 8 + static_cast<uint64_t>(i);
+    for (const Vector2d& corner : {Vector2d(from, -14.0), Vector2d(from + length, -14.0),
+                                   Vector2d(from + length, 14.0), Vector2d(from, 14.0)})
+      region.corners.push_back(T_map_way * corner);
+    world.description.rough.push_back(region);
+  }
+}
+
 void addTerrain(MissionWorld& world, Rng& rng) {
   const int waves = 1 + rng.below(3);
   for (int i = 0; i < waves; ++i) {
@@ -281,6 +299,7 @@ MissionWorld makeMissionWorld(uint64_t seed, const FootprintSize& robot, double 
   addSurfaces(world, rng, layout.length, T_map_way);
   addTerrain(world, rng);
   addStretches(world, rng, kind);
+  addRoughGround(world, rng, kind, T_map_way);
   return world;
 }
 

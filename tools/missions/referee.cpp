@@ -121,6 +121,8 @@ MissionResult Referee::result() const {
   result.stops = stops_.stops(start_, result.outcome == MissionOutcome::kArrived);
   result.begun = stops_.begun() == 0 ? result.time : seconds(stops_.begun());
   result.driven = stops_.driven();
+  result.smooth = system_.robot().truth().smooth;
+  result.rough = system_.robot().truth().rough;
   return result;
 }
 

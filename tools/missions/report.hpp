@@ -130,6 +130,22 @@ void printOmniscient(std::ostream& out, const OmniscientComparison& comparison);
 /// Both batches and all ratios; throws std::runtime_error with one line if it cannot be written.
 void writeOmniscient(const std::string& path, const OmniscientComparison& comparison);
 
+/// The same missions with the speed chosen in several ways: always fast, always slow, by what of
+/// the ground was seen, felt or both.
+struct SpeedComparison {
+  std::vector<MissionBatch> batches;  ///< one per way, named by it
+};
+
+/// A robot's configuration that chooses its speed in a way of speedMethods().
+RobotConfig withSpeedBy(const std::string& method, RobotConfig robot);
+const std::vector<std::string>& speedMethods();
+
+/// Shock, speed and time by ground, a line a way, with 95 % intervals over the missions.
+void printSpeeds(std::ostream& out, const SpeedComparison& comparison);
+
+/// The same with all missions; throws std::runtime_error with one line if it cannot be written.
+void writeSpeeds(const std::string& path, const SpeedComparison& comparison);
+
 /// How missions are run.
 struct MissionOptions {
   std::string rule;                      ///< of learning; empty = the robot's configuration

@@ -131,6 +131,7 @@ class RobotSystem::SimulatedScans : public lidar::ScanSource {
       scan.range_min = laser.range_min;
       scan.range_max = laser.range_max;
       scan.ranges = std::move(measured.ranges);
+      scan.ground = measured.ground;
       if (disturb_) disturb_(scan);
       scans.push_back(std::move(scan));
     }

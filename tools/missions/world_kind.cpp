@@ -65,6 +65,11 @@ WorldKind readWorldKind(const std::string& name, const sim::VehicleParameters& v
   reader.text("between", kind.between);
   for (ConfigReader& surface : reader.sections("surfaces"))
     kind.surfaces.push_back(sim::readSurface(surface));
+  if (reader.has("rough")) {
+    ConfigReader rough = reader.section("rough");
+    sim::readBumps(rough, kind.rough.emplace());
+    rough.number("share", kind.rough_share, {0.0, 1.0}, "1");
+  }
   if (reader.has("vehicle")) {
     reader.number("after", kind.after, {0.0, 1000.0}, "m");
     kind.vehicle = vehicle;

@@ -20,6 +20,8 @@ struct WorldKind {
   std::string name = "usual";
   std::string between;  ///< surface of stretches between the usual ones; empty = none
   std::vector<sim::SurfaceParameters> surfaces;   ///< beside the built-in ones
+  std::optional<sim::RoughRegion> rough;          ///< bumps of stretches across the way
+  double rough_share = 0.5;                       ///< [1] of the way that lies on them
   std::optional<sim::VehicleParameters> vehicle;  ///< in the place of the robot's
   double after = 0.0;                             ///< [m] driven before it is that vehicle
   std::optional<PatternSet> shipped;              ///< the learner begins with it

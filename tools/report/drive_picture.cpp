@@ -63,6 +63,8 @@ void drawSurfaces(Panel& panel, const DriveScene& scene, const Bounds& bounds) {
                 surfaceColour(scene.world->base_surface));
   for (const sim::SurfaceRegion& region : scene.world->regions)
     panel.polygon(region.corners, surfaceColour(region.surface));
+  for (const sim::RoughRegion& rough : scene.world->rough)
+    panel.polygon(rough.corners, {0.35, 0.25, 0.15, 0.18});
 }
 
 /// What mapping published: obstacles dark; free and unknown cells do not hide the world.

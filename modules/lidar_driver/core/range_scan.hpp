@@ -18,6 +18,7 @@ struct RangeScan {
   double range_min = 0.0;     ///< [m] shorter is not a measurement
   double range_max = 0.0;     ///< [m] longer means that nothing was hit
   std::vector<float> ranges;  ///< [m]
+  bool ground = false;        ///< of the range finder that looks at the ground ahead
 };
 
 /// What the check lets through.

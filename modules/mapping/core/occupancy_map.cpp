@@ -139,15 +139,19 @@ OccupancyMap::OccupancyMap(const OccupancyMapConfig& config)
     : config_(config),
       voxels_(config.voxels, config.tile_cells * config.window_tiles),
       ground_(config.ground, config.voxels.cell_size, config.tile_cells * config.window_tiles),
+      roughness_(config.voxels.cell_size, config.tile_cells * config.window_tiles),
       classifier_(config.obstacle, config.voxels.cell_size),
       footprint_(config.robot, 0.0),
       trust_(config.tile_cells * config.window_tiles),
       tiles_(config.window_tiles),
       tile_of_cell_(trust_.size()) {
   if (config.tile_cells < 1 || config.window_tiles < 2 ||
-      config.tile_cells % GroundMap::kPatchCells != 0)
+      config.tile_cells % GroundMap::kPatchCells != 0 ||
+      (config.roughness.range_noise > 0.0 && config.tile_cells % RoughnessMap::kPatchCells != 0))
     throw std::invalid_argument(
-        "occupancy map: tile_cells must be a multiple of 8 and window_tiles 2 or more");
+        "occupancy map: tile_cells must be a multiple of 8 (16 with roughness) and window_tiles 2 "
+        "or "
+        "more");
   for (size_t i = 0; i < tile_of_cell_.size(); ++i) {
     const CellIndex cell = trust_.indexOf(i);
     tile_of_cell_[i] = static_cast<uint32_t>(
@@ -167,6 +171,7 @@ OccupancyMap::Refusal OccupancyMap::insert(const Scan& scan) {
   voxels_.insert(raysOf(scan));
   for (const size_t offset : voxels_.touched()) tileOf(offset).utime = utime_;
   for (const size_t offset : voxels_.changed()) classify(offset);
+  if (config_.roughness.range_noise > 0.0) learnRoughness();
   standAt(planar(plane->p_map, Eigen::Quaterniond(scan.T_map_body_last.linear())));
   return Refusal::kNone;
 }
@@ -193,6 +198,7 @@ void OccupancyMap::moveWindow(CellIndex lower, int lower_z) {
   const CellIndex lower_cell{lower.x * config_.tile_cells, lower.y * config_.tile_cells};
   voxels_.moveTo(lower_cell, lower_z);
   ground_.moveTo(lower_cell);
+  roughness_.moveTo(lower_cell);
   trust_.moveTo(lower_cell);
   tiles_.moveTo(lower);
   under_robot_.clear();
@@ -211,8 +217,23 @@ void OccupancyMap::learnGround(const GroundPlane& plane, bool window_moved) {
   if (window_moved) {
     for (size_t i = 0; i < trust_.size(); ++i) classify(i);
   } else {
-    for (const CellIndex patch : changed) classifyPatch(patch);
+    for (const CellIndex patch : changed) classifyPatch(patch, GroundMap::kPatchCells);
   }
+}
+
+/// From the returns of the last scan on free ground.
+void OccupancyMap::learnRoughness() {
+  std::vector<GroundPoint> points;
+  for (const Ray& ray : rays_) {
+    const CellIndex cell = grid_.indexOf(ray.to.head<2>());
+    if (!ray.hit || !grid_.contains(cell) || !isFree(grid_.at(cell))) continue;
+    const GroundHeight ground = ground_.at(cell);
+    if (std::abs(ray.to.z() - ground.z) > config_.obstacle.step + ground.doubt) continue;
+    const double down = (ray.to - ray.from).normalized().z() * config_.roughness.range_noise;
+    points.push_back({ray.to, down * down});
+  }
+  for (const CellIndex patch : roughness_.take(points))
+    classifyPatch(patch, RoughnessMap::kPatchCells);
 }
 
 void OccupancyMap::assumeStartFree(const Eigen::Vector2d& p_map) {
@@ -271,6 +292,7 @@ void OccupancyMap::classify(size_t offset) {
     cell = classifier_.classify(column, voxels_.lowerZ(), ground_.at(trust_.indexOf(offset)));
     if (cell == kUnknown && trust.stood_on) cell = kFree;
   }
+  if (cell == kFree) cell = roughness_.at(trust_.indexOf(offset));
   if (grid_.cells()[offset] == cell) return;
   grid_.cells()[offset] = cell;
   TileState& tile = tileOf(offset);
@@ -278,10 +300,9 @@ void OccupancyMap::classify(size_t offset) {
   tile.utime = utime_;
 }
 
-void OccupancyMap::classifyPatch(CellIndex lower) {
-  for (int y = 0; y < GroundMap::kPatchCells; ++y)
-    for (int x = 0; x < GroundMap::kPatchCells; ++x)
-      classify(trust_.offset({lower.x + x, lower.y + y}));
+void OccupancyMap::classifyPatch(CellIndex lower, int side) {
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) classify(trust_.offset({lower.x + x, lower.y + y}));
 }
 
 OccupancyMap::TileState& OccupancyMap::tileOf(size_t offset) {

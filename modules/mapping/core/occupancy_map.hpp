@@ -12,6 +12,7 @@
 #include "common/geometry/se2.hpp"
 #include "common/grid/footprint.hpp"
 #include "common/grid/grid.hpp"
+#include "modules/mapping/core/roughness_map.hpp"
 #include "modules/mapping/core/voxel_map.hpp"
 
 namespace tread::mapping {
@@ -133,6 +134,7 @@ struct OccupancyMapConfig {
   VoxelConfig voxels;
   GroundConfig ground;
   ObstacleConfig obstacle;
+  RoughnessConfig roughness;
   FootprintSize robot;             ///< its outline
   int tile_cells = 32;             ///< a multiple of GroundMap::kPatchCells
   int window_tiles = 8;            ///< tiles per side of the window
@@ -145,6 +147,7 @@ struct OccupancyMapConfig {
 /** 1. Each beam becomes a ray in map with the body's pose at that beam's time; returns from the
  *     robot itself are left out.
  *  2. The rays go into the voxels (VoxelMap), the robot's stand into the ground (GroundMap).
+ *     Returns on free ground go into its roughness (RoughnessMap), which is the cost of free cells.
  *  3. Columns are classified again (ColumnClassifier) where their voxels or their ground changed.
  *  Free without having been seen are: the cells under the robot (even if something was marked
  *  there: the robot stands in it); the cells that it stood on before, and, where a map begins, all
@@ -189,17 +192,19 @@ class OccupancyMap {
   bool place(const Eigen::Isometry3d& T_map_body);
   void moveWindow(CellIndex lower, int lower_z);
   void learnGround(const GroundPlane& plane, bool window_moved);
+  void learnRoughness();
   void assumeStartFree(const Eigen::Vector2d& p_map);
   void standAt(const Pose2& T_map_body);
   const std::vector<Ray>& raysOf(const Scan& scan);
   bool isOwnBody(const Eigen::Vector3d& p_body) const;
   void classify(size_t offset);
-  void classifyPatch(CellIndex lower);
+  void classifyPatch(CellIndex lower, int side);
   TileState& tileOf(size_t offset);
 
   OccupancyMapConfig config_;
   VoxelMap voxels_;
   GroundMap ground_;
+  RoughnessMap roughness_;
   ColumnClassifier classifier_;
   Footprint footprint_;
   Grid grid_;

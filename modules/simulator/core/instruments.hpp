@@ -119,6 +119,7 @@ struct LaserScan {
   double angle_min = 0.0;     ///< of the first beam in the sensor's plane, counter-clockwise [rad]
   double angle_step = 0.0;    ///< [rad]
   std::vector<float> ranges;  ///< [m]; +inf = nothing hit up to range_max, NaN = no measurement
+  bool ground = false;        ///< of the one that looks at the ground ahead
 };
 
 /// The laser on a moving body: casts each beam from where the sensor is at that beam's time.

@@ -202,4 +202,15 @@ Crossing ObstacleGrid::clip(const Eigen::Vector2d& start, const Eigen::Vector2d&
   return inside;
 }
 
+bool insidePolygon(const std::vector<Eigen::Vector2d>& corners, const Eigen::Vector2d& p) {
+  bool inside = false;
+  for (size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
+    const Eigen::Vector2d& a = corners[i];
+    const Eigen::Vector2d& b = corners[j];
+    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+    if (p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) inside = !inside;
+  }
+  return inside;
+}
+
 }  // namespace tread::sim

@@ -47,6 +47,9 @@ struct Extent {
 Extent extentOf(const Obstacle& obstacle);
 Extent extentOf(const std::vector<Eigen::Vector2d>& corners);  ///< at least one
 
+/// Whether a point lies in a simple polygon, convex or not (even-odd rule).
+bool insidePolygon(const std::vector<Eigen::Vector2d>& corners, const Eigen::Vector2d& p);
+
 /// The part of a horizontal ray inside a shape, as distances from its start [m].
 struct Crossing {
   double enter = 0.0;

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/simulator/core/robot.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -17,6 +18,9 @@ constexpr int64_t kEncounterUs = 500000;  // without touch this long, the next t
 constexpr uint64_t kMotionStream = 0;
 constexpr uint64_t kLaserStream = 1;
 constexpr uint64_t kInsStream = 2;
+constexpr uint64_t kGroundLaserStream = 3;
+/// Slower than this counts as standing [m/s].
+constexpr double kStanding = 0.05;
 
 double finiteOrZero(double value) {
   return std::isfinite(value) ? value : 0.0;
@@ -33,7 +37,22 @@ TrackContact::Surfaces surfacesBelow(const World& world, const VehicleParameters
   return surfaces;
 }
 
+/// Where the tracks touch the ground.
+FootprintSize contactOf(const VehicleParameters& vehicle) {
+  return {vehicle.contact_length / 2.0 + vehicle.centre,
+          vehicle.contact_length / 2.0 - vehicle.centre, vehicle.gauge / 2.0};
+}
+
 }  // namespace
+
+void Shaking::add(double speed, double acceleration, double pitch_rate, double dt) {
+  time += dt;
+  distance += speed * dt;
+  acceleration_sum += acceleration * acceleration * dt;
+  acceleration_peak = std::max(acceleration_peak, std::abs(acceleration));
+  pitch_rate_sum += pitch_rate * pitch_rate * dt;
+  pitch_rate_peak = std::max(pitch_rate_peak, std::abs(pitch_rate));
+}
 
 SimulatedRobot::SimulatedRobot(std::shared_ptr<const World> world, const RobotSettings& settings,
                                RobotParts parts)
@@ -48,8 +67,13 @@ SimulatedRobot::SimulatedRobot(std::shared_ptr<const World> world, const RobotSe
       T_map_free_(settings.start) {
   truth_.utime = settings.start_utime;
   truth_.T_map_body = settings.start;
+  // Half a period later than the other, as free-running devices are.
+  if (settings.ground_laser)
+    ground_laser_.emplace(*settings.ground_laser, streamSeed(settings.seed, kGroundLaserStream),
+                          settings.start_utime + settings.ground_laser->period_us / 2);
   updateGround();
   settleOnPlane();
+  height_before_ = frontHeight();
   pitch_before_ = truth_.body.pitch;
   roll_before_ = truth_.body.roll;
 }
@@ -65,6 +89,7 @@ void SimulatedRobot::advanceTo(int64_t utime) {
 void SimulatedRobot::step() {
   if (ins_.due(truth_.utime)) measureIns();
   laser_.advanceTo(truth_.utime, *world_, truth_.body);
+  if (ground_laser_) ground_laser_->advanceTo(truth_.utime, *world_, truth_.body);
   vehicle_->step(power_, ground_, kStep);
   moveBody();
   truth_.utime += kStepUs;
@@ -101,8 +126,8 @@ void SimulatedRobot::updateGround() {
   truth_.surface = surface_->name;
   ground_.left = surfacesBelow(*world_, settings_.vehicle, pose, 1.0);
   ground_.right = surfacesBelow(*world_, settings_.vehicle, pose, -1.0);
-  const Eigen::Vector2d gradient = world_->gradient(pose.position());
-  plane_ = {pose.position(), world_->height(pose.position()), gradient};
+  const auto [height, gradient] = world_->bearing(pose, contactOf(settings_.vehicle));
+  plane_ = {pose.position(), height, gradient};
   const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
   ground_.slope_along = gradient.x() * c + gradient.y() * s;
   ground_.slope_across = -gradient.x() * s + gradient.y() * c;
@@ -119,6 +144,34 @@ void SimulatedRobot::updateRates(double dt) {
   rate_body_ = {(roll - roll_before_) / dt, (pitch - pitch_before_) / dt, truth_.v_body.omega};
   pitch_before_ = pitch;
   roll_before_ = roll;
+  noteShaking(dt);
+}
+
+double SimulatedRobot::frontHeight() const {
+  return plane_.height + settings_.vehicle.outline.front * ground_.slope_along;
+}
+
+void SimulatedRobot::noteShaking(double dt) {
+  const double rise = (frontHeight() - height_before_) / dt;
+  const double acceleration = (rise - rise_before_) / dt;
+  height_before_ = frontHeight();
+  rise_before_ = rise;
+  const double speed = std::hypot(truth_.v_body.v_x, truth_.v_body.v_y);
+  if (speed < kStanding) return;
+  Shaking& shaking = world_->isRough(truth_.T_map_body.position()) ? truth_.rough : truth_.smooth;
+  shaking.add(speed, acceleration, rate_body_.y(), dt);
+}
+
+std::vector<LaserScan> SimulatedRobot::takeScans() {
+  std::vector<LaserScan> scans = laser_.takeScans();
+  if (!ground_laser_) return scans;
+  for (LaserScan& scan : ground_laser_->takeScans()) {
+    scan.ground = true;
+    scans.push_back(std::move(scan));
+  }
+  std::sort(scans.begin(), scans.end(),
+            [](const LaserScan& a, const LaserScan& b) { return a.utime < b.utime; });
+  return scans;
 }
 
 void SimulatedRobot::checkCollision() {

@@ -2,8 +2,10 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,7 @@ struct MotorWiring {
 struct RobotSettings {
   VehicleParameters vehicle;
   LaserParameters laser;
+  std::optional<LaserParameters> ground_laser;  ///< one more, which looks at the ground ahead
   InsParameters ins;
   MotorWiring wiring;
   Pose2 start;               ///< T_map_body at the beginning
@@ -46,6 +49,21 @@ struct CollisionEvent {
   double penetration = 0.0;  ///< deepest attempt [m]
 };
 
+/// How the front end of the body was shaken while it moved, looked at every 10 ms.
+/** There the vehicle's rise and its pitching add up: what arms, cameras and range finders feel. */
+struct Shaking {
+  double time = 0.0;               ///< [s]
+  double distance = 0.0;           ///< [m] driven in that time
+  double acceleration_sum = 0.0;   ///< squared vertical acceleration over that time [m2/s3]
+  double acceleration_peak = 0.0;  ///< [m/s2]
+  double pitch_rate_sum = 0.0;     ///< squared pitch rate over that time [rad2/s]
+  double pitch_rate_peak = 0.0;    ///< [rad/s]
+
+  void add(double speed, double acceleration, double pitch_rate, double dt);
+  /// RMS over the time of a squared quantity's sum; 0 without any time.
+  double rms(double sum) const { return time > 0.0 ? std::sqrt(sum / time) : 0.0; }
+};
+
 /// What is really the case.
 struct RobotTruth {
   int64_t utime = 0;                       ///< [us]
@@ -55,6 +73,8 @@ struct RobotTruth {
   std::string surface;                     ///< below the body origin
   double distance = 0.0;                   ///< path length of the body origin so far [m]
   std::vector<CollisionEvent> collisions;  ///< so far
+  Shaking smooth;                          ///< so far, on ground without bumps
+  Shaking rough;                           ///< and on ground with them
 };
 
 /// World, vehicle and instruments, stepped together at 1 ms.
@@ -78,8 +98,8 @@ class SimulatedRobot {
 
   /// INS measurements that came out since the last call.
   std::vector<InsSample> takeInsSamples() { return ins_.takeSamples(truth_.utime); }
-  /// Laser scans finished since the last call.
-  std::vector<LaserScan> takeScans() { return laser_.takeScans(); }
+  /// Laser scans finished since the last call, oldest first.
+  std::vector<LaserScan> takeScans();
 
  private:
   void step();
@@ -89,12 +109,15 @@ class SimulatedRobot {
   void checkCollision();
   void updateGround();
   void updateRates(double dt);
+  double frontHeight() const;
+  void noteShaking(double dt);
 
   std::shared_ptr<const World> world_;
   RobotSettings settings_;
   std::unique_ptr<Plant> vehicle_;
   MotionNoise noise_;
   Laser laser_;
+  std::optional<Laser> ground_laser_;
   Ins ins_;
   std::unique_ptr<InsErrors> ins_errors_;
   MotorPower power_;
@@ -110,7 +133,9 @@ class SimulatedRobot {
   Eigen::Vector3d rate_body_ = Eigen::Vector3d::Zero();
   double pitch_before_ = 0.0;
   double roll_before_ = 0.0;
-  Pose2 T_map_free_;  ///< where the body last stood free
+  double height_before_ = 0.0;  ///< of the front [m]
+  double rise_before_ = 0.0;    ///< [m/s]
+  Pose2 T_map_free_;            ///< where the body last stood free
   int64_t last_touch_ = INT64_MIN;
   int64_t steps_ = 0;
 };

@@ -45,7 +45,8 @@ double Terrain::steepestSlope() const {
   return steepest;
 }
 
-HeightTable::HeightTable(const Terrain& terrain, const Extent& area, double wanted_spacing)
+HeightTable::HeightTable(const std::function<double(const Eigen::Vector2d&)>& height,
+                         const Extent& area, double wanted_spacing)
     : low_(area.low) {
   const double spacing =
       std::max(wanted_spacing, std::sqrt((area.high - area.low).prod() / kMostSamples));
@@ -56,7 +57,7 @@ HeightTable::HeightTable(const Terrain& terrain, const Extent& area, double want
   heights_.reserve(static_cast<size_t>(columns_) * static_cast<size_t>(rows_));
   for (int y = 0; y < rows_; ++y) {
     for (int x = 0; x < columns_; ++x) {
-      heights_.push_back(terrain.height(low_ + spacing * Eigen::Vector2d(x, y)));
+      heights_.push_back(height(low_ + spacing * Eigen::Vector2d(x, y)));
       const double along_x = x > 0 ? std::abs(at(x, y) - at(x - 1, y)) : 0.0;
       const double along_y = y > 0 ? std::abs(at(x, y) - at(x, y - 1)) : 0.0;
       steepest_ = std::max(steepest_, std::max(along_x, along_y) / spacing * std::sqrt(2.0));

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,13 +41,14 @@ struct Terrain {
   double steepestSlope() const;
 };
 
-/// A terrain's heights on a square raster, for the many look-ups of a laser scan.
+/// Heights on a square raster, for the many look-ups of a laser scan.
 class HeightTable {
  public:
   HeightTable() = default;
-  /// Samples the terrain over an area; outside of it the border's height continues. Very large
-  /// areas are sampled more coarsely.
-  HeightTable(const Terrain& terrain, const Extent& area, double spacing);
+  /// Samples heights over an area; outside of it the border's height continues. Very large areas
+  /// are sampled more coarsely.
+  HeightTable(const std::function<double(const Eigen::Vector2d&)>& height, const Extent& area,
+              double spacing);
 
   bool empty() const { return heights_.empty(); }
   /// Height between the samples, bilinear [m].

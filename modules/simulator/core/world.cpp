@@ -16,18 +16,6 @@ constexpr double kHeightMargin = 5.0;    // of the height table around the bound
 constexpr double kGroundStep = 0.05;     // smallest advance of a beam towards the ground [m]
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-/// Even-odd rule.
-bool insidePolygon(const std::vector<Eigen::Vector2d>& corners, const Eigen::Vector2d& p) {
-  bool inside = false;
-  for (size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
-    const Eigen::Vector2d& a = corners[i];
-    const Eigen::Vector2d& b = corners[j];
-    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
-    if (p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) inside = !inside;
-  }
-  return inside;
-}
-
 /// The one of that name, or the end.
 template <class Surfaces>
 auto findNamed(Surfaces& surfaces, const std::string& name) {
@@ -74,6 +62,10 @@ std::optional<std::string> worldFault(const WorldDescription& description) {
       return where + "no surface is called '" + region.surface + "'";
     if (region.corners.size() < 3) return where + "needs at least three corners";
   }
+  for (size_t i = 0; i < description.rough.size(); ++i) {
+    const std::string fault = faultOf(description.rough[i]);
+    if (!fault.empty()) return "rough region " + std::to_string(i + 1) + ": " + fault;
+  }
   for (size_t i = 0; i < description.obstacles.size(); ++i) {
     const auto fault = obstacleFault(description.obstacles[i]);
     if (fault) return "obstacle " + std::to_string(i + 1) + ": " + *fault;
@@ -82,7 +74,9 @@ std::optional<std::string> worldFault(const WorldDescription& description) {
 }
 
 World::World(WorldDescription description)
-    : description_(std::move(description)), surfaces_(surfacesOf(description_)) {
+    : description_(std::move(description)),
+      surfaces_(surfacesOf(description_)),
+      rough_(description_.rough) {
   if (const auto fault = worldFault(description_))
     throw std::invalid_argument("world '" + description_.name + "': " + *fault);
   base_surface_ = surfaceIndex(description_.base_surface);
@@ -96,7 +90,8 @@ World::World(WorldDescription description)
   if (!description_.terrain.flat()) {
     const Eigen::Vector2d margin(kHeightMargin, kHeightMargin);
     const Extent area{description_.bounds.low - margin, description_.bounds.high + margin};
-    heights_ = HeightTable(description_.terrain, area, kHeightSpacing);
+    const Terrain& terrain = description_.terrain;
+    heights_ = HeightTable([&](const auto& p) { return terrain.height(p); }, area, kHeightSpacing);
   }
 }
 
@@ -111,6 +106,14 @@ const SurfaceParameters& World::surface(const Eigen::Vector2d& p_map) const {
       return surfaces_[patches_[i].surface];
   }
   return surfaces_[base_surface_];
+}
+
+Bearing World::bearing(const Pose2& T_map_body, const FootprintSize& contact) const {
+  const Eigen::Vector2d p_map = T_map_body.position();
+  Bearing bearing{description_.terrain.height(p_map), description_.terrain.gradient(p_map)};
+  if (rough_.empty()) return bearing;
+  const Bearing bumps = rough_.bearing(T_map_body, contact);
+  return {bearing.height + bumps.height, bearing.gradient + bumps.gradient};
 }
 
 std::optional<double> World::castRay(const Eigen::Vector3d& start, const Eigen::Vector3d& direction,
@@ -144,13 +147,15 @@ double World::obstacleDistance(const Beam& beam, double range) const {
 }
 
 double World::groundDistance(const Beam& beam, double range) const {
-  if (heights_.empty()) return beam.slope < 0.0 ? beam.z / -beam.slope : kFar;
+  if (heights_.empty() && rough_.empty()) return beam.slope < 0.0 ? beam.z / -beam.slope : kFar;
   // The gap to the ground shrinks no faster than this: the beam may advance by gap / closing.
-  const double closing = heights_.steepestSlope() - beam.slope;
+  const double closing = heights_.steepestSlope() + rough_.steepestSlope() - beam.slope;
   if (closing <= 0.0) return kFar;
   double before = 0.0, gap_before = 0.0;
   for (double s = 0.0; before < range;) {
-    const double gap = beam.z + beam.slope * s - heights_.height(beam.start + s * beam.direction);
+    const Eigen::Vector2d p_map = beam.start + s * beam.direction;
+    const double ground = (heights_.empty() ? 0.0 : heights_.height(p_map)) + rough_.seen(p_map);
+    const double gap = beam.z + beam.slope * s - ground;
     if (gap <= 0.0) return s <= 0.0 ? 0.0 : before + (s - before) * gap_before / (gap_before - gap);
     before = s;
     gap_before = gap;

@@ -8,6 +8,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "modules/simulator/core/obstacle.hpp"
+#include "modules/simulator/core/rough_ground.hpp"
 #include "modules/simulator/core/terrain.hpp"
 
 namespace tread::sim {
@@ -30,6 +31,7 @@ struct WorldDescription {
   std::vector<SurfaceParameters> surfaces;      ///< beside the built-in ones; same name replaces
   std::vector<SurfaceRegion> regions;           ///< later ones lie on top
   Terrain terrain;
+  std::vector<RoughRegion> rough;  ///< bumps on the terrain; where two lie, both count
   std::vector<Obstacle> obstacles;
 };
 
@@ -52,11 +54,14 @@ class World {
   const SurfaceParameters& surface(const Eigen::Vector2d& p_map) const;
 
   /// Height of the ground [m].
-  double height(const Eigen::Vector2d& p_map) const { return description_.terrain.height(p_map); }
-  /// Height gained per metre along x and y of the map [1].
-  Eigen::Vector2d gradient(const Eigen::Vector2d& p_map) const {
-    return description_.terrain.gradient(p_map);
+  double height(const Eigen::Vector2d& p_map) const {
+    return description_.terrain.height(p_map) + rough_.height(p_map);
   }
+  /// The plane on which a rigid vehicle lies: the terrain's at the body origin, and the bumps'
+  /// under the whole contact of both tracks.
+  Bearing bearing(const Pose2& T_map_body, const FootprintSize& contact) const;
+  /// Whether a point lies on ground with bumps.
+  bool isRough(const Eigen::Vector2d& p_map) const { return rough_.covers(p_map); }
 
   /// Distance along a ray (unit direction, map frame) to the first obstacle or ground; nothing
   /// within range.
@@ -92,6 +97,7 @@ class World {
   std::vector<double> tops_;    ///< z_map of each obstacle's top [m]
   ObstacleGrid grid_;
   HeightTable heights_;  ///< empty on flat ground
+  RoughGround rough_;
 };
 
 }  // namespace tread::sim

@@ -17,6 +17,7 @@ constexpr int64_t kStepUs = 1000;
 constexpr uint64_t kInsStream = 10;  // of random numbers, beside those of the robot
 constexpr uint64_t kLaserStream = 11;
 constexpr uint64_t kMotorStream = 12;
+constexpr uint64_t kGroundLaserStream = 13;
 /// Scans kept for a reader that does not come; older ones are dropped.
 constexpr size_t kMostScans = 20;
 
@@ -27,8 +28,8 @@ double drivingCurrent(const TrackDrive& track) {
 
 // A new device is one line in one of these tables and a folder of its own.
 using Settings = SimulatorSettings;
-template <class Kind>
-using Table = std::map<std::string, std::unique_ptr<Kind> (*)(const Settings&, uint64_t seed)>;
+template <class Kind, class From = Settings>
+using Table = std::map<std::string, std::unique_ptr<Kind> (*)(const From&, uint64_t seed)>;
 
 const Table<MotorEmulator> kControllers{
     {"roboteq", [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
@@ -38,13 +39,13 @@ const Table<InsEmulator> kSources{
     {"nmea", [](const Settings& settings, uint64_t seed) -> std::unique_ptr<InsEmulator> {
        return std::make_unique<NmeaInsEmulator>(NmeaInsSettings{settings.ins, {}}, seed);
      }}};
-const Table<LaserEmulator> kRangeFinders{
-    {"hokuyo", [](const Settings& settings, uint64_t seed) -> std::unique_ptr<LaserEmulator> {
-       return std::make_unique<ScipEmulator>(scipSettingsOf(settings.robot.laser), seed);
+const Table<LaserEmulator, LaserParameters> kRangeFinders{
+    {"hokuyo", [](const LaserParameters& laser, uint64_t seed) -> std::unique_ptr<LaserEmulator> {
+       return std::make_unique<ScipEmulator>(scipSettingsOf(laser), seed);
      }}};
 
-template <class Kind>
-std::vector<std::string> namesIn(const Table<Kind>& table) {
+template <class Kind, class From>
+std::vector<std::string> namesIn(const Table<Kind, From>& table) {
   std::vector<std::string> names;
   for (const auto& [name, make] : table) names.push_back(name);
   return names;
@@ -62,8 +63,11 @@ SimulatedDevices::SimulatedDevices(std::shared_ptr<const World> world,
       ins_(kSources.at(settings.source)(settings, streamSeed(settings.robot.seed, kInsStream))),
       motor_(kControllers.at(settings.controller)(settings,
                                                   streamSeed(settings.robot.seed, kMotorStream))),
-      laser_(kRangeFinders.at(settings.device)(settings,
+      laser_(kRangeFinders.at(settings.device)(settings.robot.laser,
                                                streamSeed(settings.robot.seed, kLaserStream))) {
+  if (settings.robot.ground_laser)
+    ground_laser_ = kRangeFinders.at(settings.device)(
+        *settings.robot.ground_laser, streamSeed(settings.robot.seed, kGroundLaserStream));
   measureDrive();
 }
 
@@ -76,7 +80,7 @@ void SimulatedDevices::advanceTo(int64_t utime) {
   }
   for (const InsSample& sample : robot_.takeInsSamples()) ins_->add(sample);
   for (LaserScan& scan : robot_.takeScans()) {
-    laser_->add(scan);
+    (scan.ground ? *ground_laser_ : *laser_).add(scan);
     scans_.push_back(std::move(scan));
   }
   if (scans_.size() > kMostScans) scans_.erase(scans_.begin(), scans_.end() - kMostScans);

@@ -29,7 +29,7 @@ struct EmulatedDevices {
 };
 EmulatedDevices emulatedDevices();
 
-/// The simulated robot with its three devices: bytes in and out are all that a driver sees of it.
+/// The simulated robot with its devices: bytes in and out are all that a driver sees of it.
 /** Pure: no clock, no links. */
 class SimulatedDevices {
  public:
@@ -50,6 +50,8 @@ class SimulatedDevices {
   InsEmulator& ins() { return *ins_; }
   MotorEmulator& motor() { return *motor_; }
   LaserEmulator& laser() { return *laser_; }
+  /// The one that looks at the ground ahead; null if the robot has none.
+  LaserEmulator* groundLaser() { return ground_laser_.get(); }
 
  private:
   void measureDrive();
@@ -58,6 +60,7 @@ class SimulatedDevices {
   std::unique_ptr<InsEmulator> ins_;
   std::unique_ptr<MotorEmulator> motor_;
   std::unique_ptr<LaserEmulator> laser_;
+  std::unique_ptr<LaserEmulator> ground_laser_;
   std::vector<LaserScan> scans_;
 };
 

@@ -152,7 +152,7 @@ bool leadsToRest(const PlannedExecution& slot, const PatternTable& table) {
 }
 
 bool ActiveSet::offer(const PatternSet& set, const ExecutionTracker& tracker) {
-  waiting_ = std::make_shared<const PatternTable>(set, sweep_, sigma_);
+  waiting_ = std::make_shared<const PatternTable>(set, sweep_, sigma_, top_speed_);
   return retry(tracker);
 }
 
@@ -181,8 +181,8 @@ const TablePattern* DrivingState::runningPattern() const {
 
 SearchResult DrivingState::search(int64_t now, const PlanStep& start, int expansions) {
   const bool may_keep_next = runningPattern() != nullptr;
-  SearchResult result =
-      planner.plan({set.table(), map, start, plan.steps, may_keep_next}, expansions, counters);
+  SearchResult result = planner.plan(
+      {set.table(), map, groundCost(), start, plan.steps, may_keep_next}, expansions, counters);
   plan.made = now;
   status.changed = true;
   plan.expansions = result.expansions;
@@ -190,6 +190,16 @@ SearchResult DrivingState::search(int64_t now, const PlanStep& start, int expans
   plan.time_to_go = result.end == SearchEnd::kNothing ? std::numeric_limits<double>::quiet_NaN()
                                                       : result.time_to_go;
   return result;
+}
+
+const GroundCost* DrivingState::groundCost() {
+  if (config.search.shock.weight <= 0.0) return nullptr;
+  if (!ground || ground_table != set.table()) {
+    ground_table = set.table();
+    ground.emplace(config.search.shock, shock, *ground_table);
+    map.setSlowness(ground->slowness());
+  }
+  return &*ground;
 }
 
 bool DrivingState::sayUnreachable() {

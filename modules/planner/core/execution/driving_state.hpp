@@ -165,8 +165,8 @@ struct PlannerConfig {
 /// The pattern set in use, and a newer one that waits until it fits.
 class ActiveSet {
  public:
-  ActiveSet(const SweepResolution& sweep, const DefaultSigma& sigma)
-      : sweep_(sweep), sigma_(sigma) {}
+  ActiveSet(const SweepResolution& sweep, const DefaultSigma& sigma, double top_speed = kNoLimit)
+      : sweep_(sweep), sigma_(sigma), top_speed_(top_speed) {}
 
   /// Offers a set; true if it is in use from now on.
   bool offer(const PatternSet& set, const ExecutionTracker& tracker);
@@ -180,6 +180,7 @@ class ActiveSet {
  private:
   SweepResolution sweep_;
   DefaultSigma sigma_;
+  double top_speed_;  ///< [m/s] of what is used of a set
   std::shared_ptr<const PatternTable> table_;
   std::shared_ptr<const PatternTable> waiting_;
   std::string refusal_;
@@ -241,7 +242,7 @@ struct DrivingState {
   DrivingState(const PlannerConfig& planner_config, int64_t run_id)
       : config(planner_config),
         map(planner_config.map),
-        set(planner_config.sweep, planner_config.default_sigma),
+        set(planner_config.sweep, planner_config.default_sigma, planner_config.search.top_speed),
         planner(planner_config.search, planner_config.side_hysteresis),
         tracker(run_id) {}
 
@@ -250,6 +251,8 @@ struct DrivingState {
   const TablePattern* runningPattern() const;
   /// Plans from `start`, and notes what came of it.
   SearchResult search(int64_t now, const PlanStep& start, int expansions);
+  /// The prices of the ground for the set in use; nullptr where shock costs nothing.
+  const GroundCost* groundCost();
   /// Says so if the goal is unreachable on the known map.
   bool sayUnreachable();
   void sayDriving(int64_t now);
@@ -272,8 +275,11 @@ struct DrivingState {
   StatusLine status;
   std::map<std::string, int64_t> counters;  ///< of events, by their name in words
   DrivingMode mode = DrivingMode::kSettling;
-  int64_t settling_since = 0;  ///< [us]
-  bool steep = false;          ///< it may slide where it stands: no time to lose
+  int64_t settling_since = 0;        ///< [us]
+  ShockKnowledge shock;              ///< newest
+  std::optional<GroundCost> ground;  ///< of that and of ground_table; made anew when either changes
+  std::shared_ptr<const PatternTable> ground_table;
+  bool steep = false;  ///< it may slide where it stands: no time to lose
 };
 
 }  // namespace tread::planner

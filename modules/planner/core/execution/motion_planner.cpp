@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/planner/core/execution/motion_planner.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -57,6 +58,15 @@ void PlanningMap::setPositionStd(double std) {
   fenced_changed_ = true;
 }
 
+void PlanningMap::setSlowness(const std::array<float, kCostMax + 1>& slowness) {
+  constexpr float kSame = 0.1F;  // of itself: less is not worth a new distance to the goal
+  std::vector<float>& used = config_.field.slowness;
+  const auto same = [](float a, float b) { return std::abs(a - b) <= kSame * b; };
+  if (std::equal(slowness.begin(), slowness.end(), used.begin(), used.end(), same)) return;
+  used.assign(slowness.begin(), slowness.end());
+  weights_changed_ = true;
+}
+
 void PlanningMap::setStoppingTime(double seconds) {
   constexpr double kNoticeable = 0.05;  // [s]
   const double wanted = std::max(seconds, 0.5 * config_.stopping_time);
@@ -105,8 +115,11 @@ void PlanningMap::updateCollisionChecker(const Pose2& T_map_body, int64_t now) {
   const int cells = static_cast<int>(std::ceil(config_.window / cell));
   const CellIndex lower{static_cast<int>(std::floor(p.x() / cell)) - cells / 2,
                         static_cast<int>(std::floor(p.y() / cell)) - cells / 2};
-  checker_.emplace(map_->window(lower, cells, cells), config_.footprint, config_.margins,
-                   config_.unknown_blocks, fenced_);
+  Grid window = map_->window(lower, cells, cells);
+  constexpr double kReach = 5.0;  // [m]
+  if (!config_.field.slowness.empty()) spreadRoughness(window, kReach);
+  checker_.emplace(std::move(window), config_.footprint, config_.margins, config_.unknown_blocks,
+                   fenced_);
   window_revision_ = map_->revision();
   p_window_ = p;
 }
@@ -133,14 +146,14 @@ void PlanningMap::updateDistance(const Pose2& T_map_body, const Goal& goal, int6
   if (covered && field_revision_ >= 0 && now - field_time_ < config_.field_period) return;
   map_->refresh();
   field_time_ = now;
-  if (covered && field_revision_ == map_->clearanceRevision() && !detours_changed_) return;
+  if (covered && field_revision_ == map_->clearanceRevision() && !weights_changed_) return;
   field_fenced_ = fenced;
   fenced_goal_ = whyFenced(goal);
   computeDistance(goal, p);
   field_goal_ = goal;
   field_revision_ = map_->clearanceRevision();
   p_field_ = p;
-  detours_changed_ = false;
+  weights_changed_ = false;
   std::optional<Eigen::Vector2d> before;
   if (same && !goal_substitution_reason_.empty()) before = target_.T_map_goal.position();
   target_ = goal;
@@ -171,7 +184,7 @@ void PlanningMap::computeDistance(const Goal& goal, const Eigen::Vector2d& p_veh
 
 void PlanningMap::addDetour(const Eigen::Vector2d& p_map) {
   detours_.push_back({p_map, 0.7});
-  detours_changed_ = true;
+  weights_changed_ = true;
 }
 
 void PlanningMap::addDetourAhead(const Eigen::Vector2d& p_vehicle, int most) {
@@ -189,7 +202,7 @@ void PlanningMap::addDetourAhead(const Eigen::Vector2d& p_vehicle, int most) {
 }
 
 void PlanningMap::forgetDetours() {
-  detours_changed_ = detours_changed_ || !detours_.empty();
+  weights_changed_ = weights_changed_ || !detours_.empty();
   detours_.clear();
 }
 
@@ -242,6 +255,7 @@ SearchResult MotionPlanner::plan(const PlanRequest& request, int expansions, Cou
   problem.patterns = request.table.get();
   problem.collision_checker = &request.map.collisionChecker();
   problem.distance_to_goal = &request.map.distanceToGoal();
+  problem.ground = request.ground;
   problem.goal = request.map.target();
   for (const PlanStep& step : request.last_steps) problem.committed.push_back(step.pattern_id);
   if (searched_table_ != request.table)

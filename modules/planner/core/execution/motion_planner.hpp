@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -61,6 +62,8 @@ class PlanningMap {
   void keepOut(const Fence& found);
   /// [s] learned; no less than half of what is configured.
   void setStoppingTime(double seconds);
+  /// What a metre on ground of each cost counts in the distance to the goal [m].
+  void setSlowness(const std::array<float, kCostMax + 1>& slowness);
   /// How well the position is known [m], one standard deviation of an axis; NaN = unmeasured.
   void setPositionStd(double std);
   /// Why fences forbid a goal, in words; empty if they do not. Needs updateDistance().
@@ -118,7 +121,7 @@ class PlanningMap {
   int64_t field_revision_ = -1;
   Eigen::Vector2d p_field_{0.0, 0.0};
   int64_t field_time_ = 0;
-  bool detours_changed_ = false;
+  bool weights_changed_ = false;
   std::vector<Detour> detours_;
 };
 
@@ -165,6 +168,7 @@ class SideHysteresis {
 struct PlanRequest {
   std::shared_ptr<const PatternTable> table;
   const PlanningMap& map;
+  const GroundCost* ground;                 ///< nullptr = all ground costs the same
   const PlanStep& start;                    ///< the end of the running pattern, or where it stands
   const std::vector<PlanStep>& last_steps;  ///< of the last plan, from there on
   bool may_keep_next;                       ///< a pattern runs: its queued successor may be kept

@@ -45,6 +45,11 @@ class Supervisor {
   PlanningMap& map() { return state_.map; }
   /// [s] at its speed that the vehicle goes on after a zero command, learned from its stops.
   void setStoppingTime(double seconds);
+  /// How hard ground shakes, as the learner knows it by now.
+  void setShock(const ShockKnowledge& shock) {
+    state_.shock = shock;
+    state_.ground.reset();
+  }
   const DistanceToGoal& distanceToGoal() const { return state_.map.distanceToGoal(); }
 
   /// `stop` may end a search early (a deadline); the configured expansions end it in any case.

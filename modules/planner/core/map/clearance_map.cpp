@@ -92,6 +92,7 @@ void ClearanceMap::fill(ClearanceWindow& window) const {
         const size_t from = at(y - bottom, side, x - left);
         window.clearance[window.at(x, y)] = tile.clearance[from];
         window.unknown[window.at(x, y)] = tile.unknown[from];
+        if (!window.roughness.empty()) window.roughness[window.at(x, y)] = tile.roughness[from];
       }
     }
   }
@@ -115,6 +116,7 @@ void ClearanceMap::refreshKnowledge(std::pair<int, int> key) {
     const auto cells = static_cast<size_t>(coarsePerTile() * coarsePerTile());
     coarse_tile.clearance.assign(cells, static_cast<float>(config_.clearance_cap));
     coarse_tile.unknown.assign(cells, 1);
+    coarse_tile.roughness.assign(cells, kFree);
   }
   if (refreshUnknown(tiles_.tiles().at(key), coarse_tile)) ++clearance_revision_;
 }
@@ -140,6 +142,7 @@ void ClearanceMap::refreshClearances(const std::vector<std::pair<int, int>>& key
 bool ClearanceMap::refreshUnknown(const Tile& tile, ClearanceTile& coarse_tile) const {
   const int side = coarsePerTile();
   std::vector<uint8_t> unknown(static_cast<size_t>(side * side), 0);
+  std::vector<Cell> roughness(unknown.size(), kFree);
   std::vector<uint8_t> counts(static_cast<size_t>(side));
   for (int y = 0; y < side; ++y) {
     std::fill(counts.begin(), counts.end(), uint8_t{0});
@@ -147,15 +150,21 @@ bool ClearanceMap::refreshUnknown(const Tile& tile, ClearanceTile& coarse_tile) 
       const Cell* const cells = tile.cells.data() + at(row, tileCells(), 0);
       for (int x = 0; x < side; ++x) {
         int count = counts[static_cast<size_t>(x)];
-        for (int k = 0; k < coarse_; ++k) count += cells[x * coarse_ + k] == kUnknown ? 1 : 0;
+        Cell& rough = roughness[at(y, side, x)];
+        for (int k = 0; k < coarse_; ++k) {
+          const Cell cell = cells[x * coarse_ + k];
+          count += cell == kUnknown ? 1 : 0;
+          if (isFree(cell)) rough = std::max(rough, cell);
+        }
         counts[static_cast<size_t>(x)] = static_cast<uint8_t>(count);
       }
     }
     for (int x = 0; x < side; ++x)
       unknown[at(y, side, x)] = 2 * counts[static_cast<size_t>(x)] >= coarse_ * coarse_ ? 1 : 0;
   }
-  if (unknown == coarse_tile.unknown) return false;
+  if (unknown == coarse_tile.unknown && roughness == coarse_tile.roughness) return false;
   coarse_tile.unknown = std::move(unknown);
+  coarse_tile.roughness = std::move(roughness);
   return true;
 }
 

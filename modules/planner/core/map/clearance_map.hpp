@@ -24,6 +24,7 @@ struct ClearanceMapConfig {
 struct ClearanceTile {
   std::vector<float> clearance;  ///< [m] greatest distance to an obstacle in the cell, capped
   std::vector<uint8_t> unknown;  ///< 1 where at least half of the cell is unknown
+  std::vector<Cell> roughness;   ///< the greatest cost of the free cells in it
 };
 
 /// All tiles seen so far, also those that mapping has forgotten, and the clearance in coarse cells.

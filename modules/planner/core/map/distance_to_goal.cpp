@@ -5,6 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "modules/planner/core/map/ground_cost.hpp"
+
 namespace tread::planner {
 namespace {
 
@@ -153,16 +155,22 @@ void DistanceToGoal::layOut(const RimmedCells& cells) {
 
 void DistanceToGoal::paint(const ClearanceSource& map, const std::vector<Detour>& detours,
                            const DistanceFieldConfig& config) {
-  ClearanceWindow window{cells_.lower_x, cells_.lower_y, cells_.width, cells_.height, {}, {}};
+  ClearanceWindow window{cells_.lower_x, cells_.lower_y, cells_.width, cells_.height, {}, {}, {}};
   window.clearance.assign(static_cast<size_t>(window.width) * static_cast<size_t>(window.height),
                           kOpenGround);
   window.unknown.assign(window.clearance.size(), 1);
+  if (!config.slowness.empty()) window.roughness.assign(window.clearance.size(), kFree);
   map.fill(window);
+  if (!config.slowness.empty()) {
+    constexpr double kReach = 15.0;  // [m]
+    spreadRoughness(window.roughness, window.width, static_cast<int>(kReach / cells_.size));
+  }
   size_t from = 0;
   for (int y = 0; y < cells_.height; ++y) {
     for (int x = 0; x < cells_.width; ++x, ++from) {
       const size_t to = cells_.number(x, y);
       slowness_[to] = slownessOf(window.clearance[from], config);
+      if (!config.slowness.empty()) slowness_[to] *= config.slowness[window.roughness[from]];
       unknown_[to] = window.unknown[from];
     }
   }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/geometry/se2.hpp"
+#include "common/grid/grid.hpp"
 
 namespace tread::planner {
 
@@ -23,6 +24,7 @@ struct ClearanceWindow {
   int height = 0;
   std::vector<float> clearance;  ///< [m] greatest distance to an obstacle in the cell
   std::vector<uint8_t> unknown;  ///< 1 where at least half of the cell is unknown
+  std::vector<Cell> roughness;   ///< greatest cost of the free cells in it; empty = nobody asks
 
   size_t at(int x, int y) const {
     return static_cast<size_t>(y - lower_y) * static_cast<size_t>(width) +
@@ -70,6 +72,8 @@ struct DistanceFieldConfig {
   double max_area = 120.0;      ///< [m] longest side of the area, unless the goal is farther off
   double max_distance = 150.0;  ///< [m] goals farther off are refused
   double reach = 14.0;          ///< [m] around the vehicle that must be filled in
+  /// What a metre on a cell of a cost counts, [m] each; empty = all ground counts the same.
+  std::vector<float> slowness;
 };
 
 /// A spot to go round, because the vehicle did not get through.

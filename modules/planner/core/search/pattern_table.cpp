@@ -68,11 +68,12 @@ std::array<LeastCost, 2> leastCostsOf(const std::vector<const TablePattern*>& pa
   return {by_way, by_turn};
 }
 
-PatternTable::PatternTable(PatternSet set, const SweepResolution& step, const DefaultSigma& sigma)
+PatternTable::PatternTable(PatternSet set, const SweepResolution& step, const DefaultSigma& sigma,
+                           double top_speed)
     : set_(std::move(set)), rest_class_(findRestClass()) {
   for (const MotionPattern& pattern : set_->patterns())
     patterns_.push_back(prepare(pattern, step, sigma));
-  index(set_->content().classes.size());
+  index(set_->content().classes.size(), top_speed);
 }
 
 PatternTable::PatternTable(const std::vector<Primitive>& primitives, const SweepResolution& step)
@@ -84,16 +85,24 @@ PatternTable::PatternTable(const std::vector<Primitive>& primitives, const Sweep
     patterns_.back().duration = primitive.duration;
     patterns_.back().cost = primitive.cost;
   }
-  index(1);
+  index(1, std::numeric_limits<double>::infinity());
 }
 
-void PatternTable::index(size_t classes) {
+bool PatternTable::isTooFast(const TablePattern& pattern, double top_speed) const {
+  if (pattern.length / pattern.duration > top_speed) return true;
+  if (!set_) return false;
+  return std::abs(motionClass(pattern.entry).twist.v_x) > top_speed ||
+         std::abs(motionClass(pattern.exit).twist.v_x) > top_speed;
+}
+
+void PatternTable::index(size_t classes, double top_speed) {
   std::vector<const TablePattern*> all;
   from_.resize(classes);
   stops_.resize(classes);
   for (const TablePattern& entry : patterns_) {
-    from_[static_cast<size_t>(entry.entry)].push_back(&entry);
     if (entry.exit == rest_class_) stops_[static_cast<size_t>(entry.entry)].push_back(&entry);
+    if (isTooFast(entry, top_speed)) continue;
+    from_[static_cast<size_t>(entry.entry)].push_back(&entry);
     best_speed_ = std::max(best_speed_, entry.length / entry.duration);
     all.push_back(&entry);
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -187,7 +188,10 @@ std::array<LeastCost, 2> leastCostsOf(const std::vector<const TablePattern*>& pa
 /** Nothing is assumed about where patterns end: the learner may bend them at will. */
 class PatternTable {
  public:
-  PatternTable(PatternSet set, const SweepResolution& step, const DefaultSigma& sigma);
+  /// `top_speed` [m/s]: faster patterns, and those that enter or leave a faster class, are not
+  /// begun; those that stop the vehicle remain.
+  PatternTable(PatternSet set, const SweepResolution& step, const DefaultSigma& sigma,
+               double top_speed = std::numeric_limits<double>::infinity());
   /// Of primitives; the only class is rest.
   PatternTable(const std::vector<Primitive>& primitives, const SweepResolution& step);
   PatternTable(const PatternTable&) = delete;  // its lists point into itself
@@ -224,7 +228,8 @@ class PatternTable {
   TablePattern prepare(const MotionPattern& pattern, const SweepResolution& step,
                        const DefaultSigma& sigma) const;
   int findRestClass() const;
-  void index(size_t classes);
+  bool isTooFast(const TablePattern& pattern, double top_speed) const;
+  void index(size_t classes, double top_speed);
 
   std::optional<PatternSet> set_;
   std::vector<TablePattern> patterns_;

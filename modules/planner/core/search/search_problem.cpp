@@ -48,6 +48,8 @@ float CostModel::edgeCost(const SearchNode& parent, const TablePattern& pattern,
     weight += config_.near_penalty * around.nearness(end.x, end.y, config_.near_distance);
   if (pattern.reverses) weight += config_.reverse_penalty;
   double cost = pattern.cost * weight;
+  if (problem_->ground != nullptr)
+    cost += problem_->ground->cost(around.grid(), parent.pose(), pattern);
   const int rest = problem_->patterns->restClass();
   if (pattern.exit == rest && pattern.entry != rest) cost += config_.stop_penalty;
   return static_cast<float>(cost);

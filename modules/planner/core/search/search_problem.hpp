@@ -9,10 +9,13 @@
 
 #include "modules/planner/core/map/collision_checker.hpp"
 #include "modules/planner/core/map/distance_to_goal.hpp"
+#include "modules/planner/core/map/ground_cost.hpp"
 #include "modules/planner/core/map/heading_aware_heuristic.hpp"
 #include "modules/planner/core/search/pattern_table.hpp"
 
 namespace tread::planner {
+
+inline constexpr double kNoLimit = 100.0;
 
 /// Resolution, weights and penalties of the search, and when a plan is long enough.
 struct SearchConfig {
@@ -33,6 +36,8 @@ struct SearchConfig {
   double least_progress = 0.3;  ///< [s] of time to go that a plan must gain
   int escape_patterns = 3;      ///< so many patterns may be needed to leave blocked ground
   double goal_share = 0.7;      ///< [1] of the goal's tolerance that is aimed for
+  ShockCostConfig shock;        ///< what being shaken costs
+  double top_speed = kNoLimit;  ///< [m/s] faster patterns are not used, but those that stop
   int improvements = 0;         ///< more searches after the first plan, each for a better one; the
                                 ///< last has weight 1 and ends when there is none
   size_t most_nodes = 6'000'000;  ///< [1] of 112 bytes each; a search that needs more is cut off
@@ -61,7 +66,8 @@ struct SearchProblem {
   /// robot does without: its plans would take 5 to 7 ms more each, where their search takes 0.7 ms,
   /// and it is at the goal no sooner and no more often (tests/bench/RESULTS.md).
   const HeadingAwareHeuristic* heading_heuristic = nullptr;
-  const EdgeRules* rules = nullptr;  ///< if given, in the place of the collision checker
+  const GroundCost* ground = nullptr;  ///< nullptr = all ground costs the same
+  const EdgeRules* rules = nullptr;    ///< if given, in the place of the collision checker
   Goal goal;
   double cell = 0.0;           ///< [m] in the place of SearchConfig::cell; 0 = as configured
   std::vector<int> committed;  ///< ids of the patterns that the plan before wanted from here on
