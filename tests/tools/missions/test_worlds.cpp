@@ -50,7 +50,7 @@ TEST_CASE("the usual world changes nothing, and every kind has a name") {
   CHECK_FALSE(usual.world.changesOnTheWay());
   CHECK(worldKinds() == std::vector<std::string>{"usual", "deep_sand", "dragging_track",
                                                  "dying_battery", "heavy_payload", "ice", "mud",
-                                                 "other_machine"});
+                                                 "other_machine", "rough"});
 }
 
 TEST_CASE("stretches of another ground lie on the borders, the rest of a seed's world stays") {
