@@ -53,7 +53,7 @@ struct GroundConfig {
   double far = 0.03;              ///< [1] that such ground is unlike all others
   double rise_effect = 1.0;       ///< [1] deviation of a velocity over |v|, per rise of the ground
   double voltage_effect = 1.0;    ///< [1] the same, relative, per relative change of voltage
-  double context_evidence = 3.0;  ///< [nat] from which on slope or voltage counts; 1000: never
+  double context_evidence = 5.0;  ///< [nat] from which on slope or voltage counts; 1000: never
   double ahead = 2.0;             ///< [m] way that predictions look ahead
   double sure = 0.9;              ///< [1] probability from which on a surface counts as recognized
   int64_t settled_after = 10;     ///< executions on fresh ground until it is remembered
