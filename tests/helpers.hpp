@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -32,6 +33,13 @@ constexpr int effort(int repetitions) {
 inline std::string contentOf(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Path of a file in the recordings of others, `name` below their folder; empty where it is not.
+inline std::string recorded(const std::string& name) {
+  const char* folder = std::getenv("TREAD_RECORDINGS");
+  const std::string path = std::string(folder == nullptr ? "" : folder) + "/" + name;
+  return std::filesystem::exists(path) ? path : "";
 }
 
 /// The lines of a text, without their ends.

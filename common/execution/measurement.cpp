@@ -54,8 +54,8 @@ class Cutter {
     checkMotion();
     checkEntry(entry_class);
     if (result_.context.tilt.inclination > limits_.max_slope)
-      close(Gate::kSlope,
-            "slope " + fixed(result_.context.tilt.inclination, 3) + " rad, allowed " + fixed(limits_.max_slope, 3));
+      close(Gate::kSlope, "slope " + fixed(result_.context.tilt.inclination, 3) + " rad, allowed " +
+                              fixed(limits_.max_slope, 3));
     return result_;
   }
 

@@ -21,7 +21,7 @@ struct ShockModel {
   /// times.
   Eigen::Vector3d mean{-0.7, 1.0, 2.0};                                         ///< of w0, w1, w2
   Eigen::Matrix3d covariance = Eigen::Vector3d(0.25, 0.09, 0.25).asDiagonal();  ///< of those
-  double variance = 0.25;  ///< of log shock about the line: of stretches that look the same
+  double variance = 0.25;  ///< of log shock about the line: of segments that look the same
 
   /// Expected square of the shock [m2/s4] on ground of a roughness [m] at a speed [m/s], both
   /// clamped to what they can be: what is uncertain counts more.

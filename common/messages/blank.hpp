@@ -73,8 +73,8 @@ inline void markUnknown(program_t& m) {
   m.newest_input_seq = -1;
 }
 inline void markUnknown(shock_t& m) {
-  setAllUnknown(m.shock_weights, m.shock_covariance, m.shock_variance, m.here_shock,
-                m.felt_shock, m.felt_peak, m.felt_pitch_rate, m.felt_speed);
+  setAllUnknown(m.shock_weights, m.shock_covariance, m.shock_variance, m.here_shock, m.felt_shock,
+                m.felt_peak, m.felt_pitch_rate, m.felt_speed);
 }
 inline void markUnknown(stopping_t& m) {
   setUnknown(m.stopping_time);

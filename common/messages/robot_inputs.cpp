@@ -114,9 +114,8 @@ void RobotInputs::take(const ins_t& message) {
   if (!pose) return health_.addToCounter("INS without a pose");
   if (readings_.pose && message.utime <= readings_.pose->utime)
     return health_.addToCounter("INS out of order");
-  readings_.pose =
-      PoseReading{message.utime, *pose, planarTwist(message), horizontalStd(message),
-                  tilt(message).inclination};
+  readings_.pose = PoseReading{message.utime, *pose, planarTwist(message), horizontalStd(message),
+                               tilt(message).inclination};
 }
 
 void RobotInputs::take(const motor_t& message) {

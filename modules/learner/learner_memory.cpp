@@ -13,7 +13,6 @@ namespace {
 
 constexpr const char* kSlots[2] = {"learner_state_1", "learner_state_2"};
 constexpr const char* kVersions = "learner_versions";
-constexpr const char* kShockEntry = "learner_shock";
 /// Versions reserved at a time, and how many must be left before the next are.
 constexpr int64_t kReserve = 100 * Learner::kVersions;
 constexpr int64_t kReserveLeft = 50 * Learner::kVersions;
@@ -90,20 +89,6 @@ std::optional<std::string> LearnerMemory::save(const std::string& state_text) {
   auto problem = store_.write(kSlots[next_slot_], state_text);
   if (!problem) next_slot_ = 1 - next_slot_;
   return problem;
-}
-
-std::optional<ShockRegression> LearnerMemory::recallShock() const {
-  std::istringstream in(store_.read(kShockEntry).value_or(""));
-  std::vector<double> numbers;
-  for (double number = 0.0; in >> number;) numbers.push_back(number);
-  return ShockRegression::fromState(numbers);
-}
-
-std::optional<std::string> LearnerMemory::saveShock(const ShockRegression& shock) {
-  std::ostringstream out;
-  out.precision(17);
-  for (const double number : shock.state()) out << number << '\n';
-  return store_.write(kShockEntry, out.str());
 }
 
 void SetPublisher::putSet(const PatternSet& set) {

@@ -120,24 +120,15 @@ LearnerNode::LearnerNode(LearnerNodeConfig config, Bus& bus, Store& store)
       learner_(config_.rule, config_.shipped),
       memory_(store),
       ins_(config_.track_span_us),
-      shock_(config_.front),
       publisher_(bus),
       health_(bus, "learner", config_.effective()) {
   bus.subscribe<ins_t>(kIns, [this](const ins_t& ins) {
     ins_.add(ins, bus_.now());
-    if (config_.shock) feel(ins);
+    if (shock_) shock_->take(ins);
   });
   bus.subscribe<execution_t>(kExecution, [this](const execution_t& message) { hear(message); });
   bus.subscribe<motor_t>(kMotor, [this](const motor_t& motor) { hear(motor); });
-  if (config_.shock) {
-    if (const auto shock = memory_.recallShock()) shock_.resume(*shock);
-    saved_pairs_ = shock_.pairs();
-    bus.subscribe<map_tile_t>(kMap, [this](const map_tile_t& tile) {
-      if (!shock_.takeTile({tile.tile_x, tile.tile_y, tile.utime, tile.cells}, tile.cell_size,
-                           tile.tile_cells))
-        health_.addToCounter("MAP refused: invalid sizes");
-    });
-  }
+  if (config_.shock) shock_.emplace(config_.front, bus, store, health_);
   bus.overhear<pattern_set_part_t>(
       kPatternSet, [this](const pattern_set_part_t& part) { noteVersion(part.set_version); });
   health_.watchNamesakes();
@@ -189,56 +180,9 @@ void LearnerNode::step(int64_t utime) {
   } else {
     publisher_.step(utime, false);  // a log is replayed from the first state on
   }
-  if (config_.shock && !passive_ && utime >= next_shock_) publishShock(utime);
+  if (shock_ && !passive_) shock_->step(utime);
   ++steps_;
   reportHealth(utime);
-}
-
-void LearnerNode::feel(const ins_t& ins) {
-  constexpr int kBroken = ins_t::STATUS_JUMP | ins_t::STATUS_NO_ATTITUDE;
-  const auto T_map_body = spatialPose(ins);
-  if ((ins.ins_status & ins_t::STATUS_JUMP) != 0) shock_.restart();
-  if (!T_map_body || (ins.ins_status & kBroken) != 0) return;
-  const Eigen::RowVector3d up = T_map_body->linear().row(2);
-  BodyMotion motion{ins.utime, T_map_body->translation().head<2>(), up[0], ins.velocity[0], 0.0};
-  // What the device does not measure is 0: a vehicle moves in its own plane.
-  const double own_up = std::isfinite(ins.velocity[2]) ? ins.velocity[2] : 0.0;
-  motion.climb = up.dot(Eigen::RowVector3d(ins.velocity[0], ins.velocity[1], own_up));
-  if (const auto felt = shock_.take(motion)) felt_ = *felt;
-}
-
-void LearnerNode::publishShock(int64_t utime) {
-  constexpr int64_t kPeriod = 1'000'000;  // [us]
-  next_shock_ = utime + kPeriod;
-  auto message = blank<shock_t>();
-  message.utime = felt_.utime;
-  message.seq = seq_shock_++;
-  const ShockModel model = shock_.model();
-  int at = 0;
-  for (int i = 0; i < 3; ++i) {
-    message.shock_weights[i] = model.mean[i];
-    for (int j = i; j < 3; ++j) message.shock_covariance[at++] = model.covariance(i, j);
-  }
-  message.shock_variance = model.variance;
-  message.shock_pairs = shock_.pairs();
-  message.here_shock = shock_.here();
-  if (felt_.utime > 0) {
-    message.felt_shock = felt_.shock;
-    message.felt_peak = felt_.peak;
-    message.felt_pitch_rate = felt_.pitch_rate;
-    message.felt_speed = felt_.speed;
-  }
-  bus_.publish(kShock, message);
-  saveShock();
-  health_.setCounter("stretches that shock was learned from", shock_.pairs());
-}
-
-/// Not each pair is worth a write.
-void LearnerNode::saveShock() {
-  constexpr int kEvery = 10;
-  if (shock_.pairs() < saved_pairs_ + kEvery) return;
-  saved_pairs_ = shock_.pairs();
-  if (memory_.saveShock(shock_.regression())) health_.addToCounter("states not written");
 }
 
 void LearnerNode::handleEnded(int64_t utime) {

@@ -17,7 +17,7 @@
 #include "common/store/store.hpp"
 #include "modules/learner/core/hand_watch.hpp"
 #include "modules/learner/core/learner.hpp"
-#include "modules/learner/core/shock_learner.hpp"
+#include "modules/learner/shock_publisher.hpp"
 
 namespace tread::learner {
 
@@ -29,8 +29,7 @@ struct StoredLearning {
 };
 
 /// The learner's files. Entries: learner_state_1 and _2, written in turn so that the one before is
-/// kept; learner_versions, a number that no published version exceeds; learner_shock, what was
-/// learned of shock.
+/// kept, and learner_versions, a number that no published version exceeds.
 /** The rule of versions: learner_versions is written ahead, for a hundred executions, before they
  * are used. A start begins above it, because the last versions may have been published from memory
  * while the disk was full. Without it, above the newest state by those of a thousand; without that,
@@ -47,10 +46,6 @@ class LearnerMemory {
   /// Writes the state of a version over the older of the two. One clear line if it could not be
   /// written.
   std::optional<std::string> save(const std::string& state_text);
-
-  /// What was learned of shock; nothing where there is none, or it is damaged.
-  std::optional<ShockRegression> recallShock() const;
-  std::optional<std::string> saveShock(const ShockRegression& shock);
 
  private:
   /// Nothing where it is missing, or damaged, which is added to `problem`.
@@ -126,10 +121,10 @@ void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config);
  *  3. If the rule changes the set, state and set are written and published under the next version.
  *  4. A rule that learns from parts follows a running execution: sets are published as if it had
  *     ended there, but neither written nor reported. What it teaches in the end replaces them.
- *  5. With `shock` it also learns from INS and MAP how hard ground shakes the robot (ShockLearner).
- *  Each (run id, execution id) is handled once. Versions only go up: see LearnerMemory. While a
- *  learner that was started earlier lives, this one publishes and learns nothing; then it goes on
- *  above the versions of that one. */
+ *  5. With `shock` it also learns from INS and MAP how hard ground shakes the robot
+ * (ShockPublisher). Each (run id, execution id) is handled once. Versions only go up: see
+ * LearnerMemory. While a learner that was started earlier lives, this one publishes and learns
+ * nothing; then it goes on above the versions of that one. */
 class LearnerNode : public Node {
  public:
   LearnerNode(LearnerNodeConfig config, Bus& bus, Store& store);
@@ -172,9 +167,6 @@ class LearnerNode : public Node {
   void adoptVersion();
   void publishVersion();
   void noteWrite(const std::optional<std::string>& problem);
-  void feel(const ins_t& ins);
-  void publishShock(int64_t utime);
-  void saveShock();
   void reportHealth(int64_t utime);
 
   LearnerNodeConfig config_;
@@ -185,16 +177,12 @@ class LearnerNode : public Node {
   ExecutionQueue executions_;
   CommandWatch commands_;
   HandWatch hand_;
-  ShockLearner shock_;
-  FeltStretch felt_;  ///< newest
-  int64_t seq_shock_ = 0;
-  int64_t next_shock_ = 0;
-  int saved_pairs_ = 0;
   std::optional<execution_record_t> running_;  ///< execution that is followed
   int64_t followed_until_ = 0;                 ///< [us] of its time
   int64_t seq_motor_ = -1;                     ///< of the last MOTOR; -1 = none yet
   SetPublisher publisher_;
   HealthReporter health_;
+  std::optional<ShockPublisher> shock_;
   std::map<int64_t, PatternSet> versions_;  ///< the last sets by version
   std::map<int64_t, int>
       unknown_versions_;  ///< versions above ours that records named, and how often

@@ -40,7 +40,7 @@ class Pupil {
 
   RuleNote learn(size_t executed, const std::vector<Pose2>& measured, const Context& context = {}) {
     RuleNote note;
-    rule_->meet(context);
+    rule_->setContext(context);
     fill(measured, numbers_);
     rule_->learn(executed,
                  ConstTrajectory(numbers_.data(), static_cast<Eigen::Index>(measured.size()), 3),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What slope and battery do is told from what the ground does, and only where it predicts better.
+// Effects of slope and battery are separated from those of the ground, and used where they predict
+// better.
 #include <catch2/catch.hpp>
 
 #include <functional>
@@ -57,11 +58,11 @@ Context on(double ahead) {
 
 }  // namespace
 
-TEST_CASE("a voltage that sags and recovers is told from the ground, and predicted with") {
+TEST_CASE("the effect of a sagging voltage is separated from the ground, and predicted") {
   double with = 0.0;
   double without = 0.0;
   int found = 0;  // of the forward effect; measured in 14 of 20
-  const int seeds = tread::testing::effort(20);
+  const int seeds = 20;
   for (int seed = 1; seed <= seeds; ++seed) {
     for (const double evidence : {5.0, kNever}) {
       std::mt19937_64 random(static_cast<uint64_t>(seed));
@@ -83,10 +84,10 @@ TEST_CASE("a voltage that sags and recovers is told from the ground, and predict
   REQUIRE(with < 0.6 * without);
 }
 
-TEST_CASE("what a slope did is taken off, so that level ground is known better") {
+TEST_CASE("the effect of a slope is subtracted, so that level ground is known better") {
   double with = 0.0;
   double without = 0.0;
-  const int seeds = tread::testing::effort(20);
+  const int seeds = 20;
   for (int seed = 1; seed <= seeds; ++seed) {
     for (const double evidence : {5.0, kNever}) {
       std::mt19937_64 random(static_cast<uint64_t>(seed));
@@ -107,11 +108,11 @@ TEST_CASE("what a slope did is taken off, so that level ground is known better")
   REQUIRE(with < 0.8 * without);
 }
 
-TEST_CASE("a context that does nothing counts seldom, and costs less than a hundredth") {
+TEST_CASE("a context without effect counts in at most 5 % of cases and costs less than 1 %") {
   double with = 0.0;
   double without = 0.0;
   int counted = 0;
-  const int seeds = tread::testing::effort(40);
+  const int seeds = 40;
   for (int seed = 1; seed <= seeds; ++seed) {
     for (const double evidence : {5.0, kNever}) {
       std::mt19937_64 random(static_cast<uint64_t>(seed));
@@ -128,7 +129,7 @@ TEST_CASE("a context that does nothing counts seldom, and costs less than a hund
       }
       if (evidence == kNever) continue;
       for (size_t velocity = 0; velocity < kVelocities; ++velocity)
-        for (const auto input : {ContextEffects::kRise, ContextEffects::kVoltage})
+        for (const auto input : {ContextEffects::kSlope, ContextEffects::kVoltage})
           counted += effectsOf(pupil).counts(velocity, input) ? 1 : 0;
     }
   }
@@ -137,7 +138,7 @@ TEST_CASE("a context that does nothing counts seldom, and costs less than a hund
   REQUIRE(with < 1.01 * without);
 }
 
-TEST_CASE("a context that nobody measured changes nothing") {
+TEST_CASE("an unknown context changes nothing") {
   Pupil told = pupilOf(5.0);
   Pupil untold = pupilOf(5.0);
   std::mt19937_64 random(3);

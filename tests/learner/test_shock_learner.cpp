@@ -56,20 +56,20 @@ double trueShock(double height, double speed) {
   return std::hypot(origin, pitching) / std::sqrt(2.0);
 }
 
-std::vector<FeltStretch> felt(Driver& driver, double speed, double seconds) {
+std::vector<FeltSegment> felt(Driver& driver, double speed, double seconds) {
   FeltShock shock(kArm);
-  std::vector<FeltStretch> stretches;
+  std::vector<FeltSegment> segments;
   driver.drive(0.0, 4.0, [&](const BodyMotion& m) { shock.take(m); });
   driver.drive(speed, seconds, [&](const BodyMotion& m) {
-    if (const auto stretch = shock.take(m)) stretches.push_back(*stretch);
+    if (const auto segment = shock.take(m)) segments.push_back(*segment);
   });
-  return stretches;
+  return segments;
 }
 
-double meanShock(const std::vector<FeltStretch>& stretches) {
+double meanShock(const std::vector<FeltSegment>& segments) {
   double squares = 0.0;
-  for (const FeltStretch& stretch : stretches) squares += stretch.shock * stretch.shock;
-  return std::sqrt(squares / static_cast<double>(stretches.size()));
+  for (const FeltSegment& segment : segments) squares += segment.shock * segment.shock;
+  return std::sqrt(squares / static_cast<double>(segments.size()));
 }
 
 /// A tile of 32 cells of 10 cm, all of one cost.
@@ -85,36 +85,36 @@ TEST_CASE("felt shock is what the front end's acceleration really is") {
     driver.slope = waves(0.01);
     driver.noise = 0.001;
     driver.with_velocity = with_velocity;
-    const auto stretches = felt(driver, 0.6, 60.0);
-    REQUIRE(stretches.size() > 30);
-    CHECK(meanShock(stretches) == Approx(trueShock(0.01, 0.6)).epsilon(0.15));
-    CHECK(stretches[5].speed == Approx(0.6).epsilon(0.02));
-    CHECK(stretches[5].peak > stretches[5].shock);
-    CHECK(stretches[5].pitch_rate > 0.05);
+    const auto segments = felt(driver, 0.6, 60.0);
+    REQUIRE(segments.size() > 30);
+    CHECK(meanShock(segments) == Approx(trueShock(0.01, 0.6)).epsilon(0.15));
+    CHECK(segments[5].speed == Approx(0.6).epsilon(0.02));
+    CHECK(segments[5].peak > segments[5].shock);
+    CHECK(segments[5].pitch_rate > 0.05);
   }
 }
 
 TEST_CASE("what the INS shows while standing is not felt while driving") {
   Driver driver;
   driver.noise = 0.003;
-  const auto stretches = felt(driver, 1.0, 60.0);
-  REQUIRE(stretches.size() > 40);
+  const auto segments = felt(driver, 1.0, 60.0);
+  REQUIRE(segments.size() > 40);
   // Without that, noise alone would be 0.65 m x sqrt(6 / 5) x 0.003 / (0.1 s)^2 = 0.2 m/s2.
   FeltShock shock(kArm);
   driver.drive(0.0, 20.0, [&](const BodyMotion& m) { shock.take(m); });
   CHECK(std::sqrt(shock.noise()) == Approx(0.21).epsilon(0.25));
-  CHECK(meanShock(stretches) < 1.5 * std::sqrt(shock.noise()));
+  CHECK(meanShock(segments) < 1.5 * std::sqrt(shock.noise()));
 }
 
-TEST_CASE("a gap or a lost attitude ends a stretch without a shock of its own") {
+TEST_CASE("a gap or a lost attitude ends a segment without a shock of its own") {
   FeltShock shock(kArm);
   Driver driver;
   double worst = 0.0;
-  int stretches = 0;
+  int segments = 0;
   const auto take = [&](const BodyMotion& m) {
-    if (const auto stretch = shock.take(m)) {
-      worst = std::max(worst, stretch->shock);
-      ++stretches;
+    if (const auto segment = shock.take(m)) {
+      worst = std::max(worst, segment->shock);
+      ++segments;
     }
   };
   for (int i = 0; i < 20; ++i) {
@@ -125,7 +125,7 @@ TEST_CASE("a gap or a lost attitude ends a stretch without a shock of its own") 
     shock.take({driver.utime, {driver.x, 0.0}, kNan, 1.0, 0.0});
     shock.take({driver.utime - 5'000'000, {driver.x, 0.0}, 0.5, 1.0, 0.0});  // an old one
   }
-  CHECK(stretches >= 20);
+  CHECK(segments >= 20);
   CHECK(worst < 0.02);
 }
 

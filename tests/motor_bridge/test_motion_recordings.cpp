@@ -9,6 +9,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/helpers.hpp"
 #include "tests/motor_bridge/recorded_sessions.hpp"
 
 using namespace tread;
@@ -21,9 +22,8 @@ using Sample = RecordedRun::Sample;
 /// All sessions; none where the recordings are not there.
 const std::vector<RecordedSession>& sessions() {
   static const std::vector<RecordedSession> kSessions = [] {
-    const char* recordings = std::getenv("TREAD_RECORDINGS");
-    const std::string folder = std::string(recordings == nullptr ? "" : recordings) + "/drive";
-    if (!std::filesystem::exists(folder + "/sessions.csv")) return std::vector<RecordedSession>{};
+    const std::string folder = tread::testing::recorded("drive");
+    if (folder.empty()) return std::vector<RecordedSession>{};
     return SessionReader(folder).read();
   }();
   return kSessions;

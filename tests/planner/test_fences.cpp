@@ -136,13 +136,15 @@ TEST_CASE("On its way out of a fence no obstacle takes the place of forbidden gr
   const auto leaving = [&](const CollisionChecker& around) {
     int count = 0;
     for (const TablePattern& pattern : table.patterns())
-      count += pattern.end().pose.x < -0.1 && around.escape({}, around.overlap({}), pattern) ? 1 : 0;
+      count +=
+          pattern.end().pose.x < -0.1 && around.escape({}, around.overlap({}), pattern) ? 1 : 0;
     return count;
   };
   REQUIRE(checker().overlap({}).all > 0);
   CHECK(leaving(checker()) > 0);
   for (const Cell behind : {kObstacle, kUnknown}) {
-    for (int y = -8; y <= 8; ++y) grid.set({static_cast<int>(-10.0 * kVehicle.rear) - 2, y}, behind);
+    for (int y = -8; y <= 8; ++y)
+      grid.set({static_cast<int>(-10.0 * kVehicle.rear) - 2, y}, behind);
     REQUIRE(checker().overlap({}).blocked == 0);
     CHECK(leaving(checker()) == 0);
   }

@@ -24,19 +24,19 @@ constexpr double kLeastSquare = 1e-4;
 void FeltShock::restart() {
   bin_ = {};
   last_.clear();
-  stretch_ = {};
+  segment_ = {};
   way_ = 0.0;
   count_ = 0;
 }
 
-std::optional<FeltStretch> FeltShock::take(const BodyMotion& motion) {
+std::optional<FeltSegment> FeltShock::take(const BodyMotion& motion) {
   if (!motion.p_map.allFinite() || !std::isfinite(motion.rise)) {
     restart();
     return std::nullopt;
   }
   const int64_t number = motion.utime / kBin;
   if (number < bin_.number) return std::nullopt;
-  std::optional<FeltStretch> ended;
+  std::optional<FeltSegment> ended;
   if (number != bin_.number) {
     const Bin full = std::exchange(bin_, {number, 0, {}});
     const bool gap = full.count < kLeastCount || number != full.number + 1;
@@ -57,7 +57,7 @@ std::optional<FeltStretch> FeltShock::take(const BodyMotion& motion) {
   return ended;
 }
 
-std::optional<FeltStretch> FeltShock::close(const BodyMotion& mean) {
+std::optional<FeltSegment> FeltShock::close(const BodyMotion& mean) {
   last_.push_back(mean);
   if (last_.size() < 3) return std::nullopt;
   const BodyMotion first = last_[0], middle = last_[1];
@@ -75,26 +75,26 @@ std::optional<FeltStretch> FeltShock::close(const BodyMotion& mean) {
   if (speed < kStanding && moved < kStanding) {
     noise_ += std::max(kNoiseGain, 1.0 / ++noise_count_) * (acceleration * acceleration - noise_);
   }
-  return addToStretch(middle, speed, acceleration, pitch_rate);
+  return addToSegment(middle, speed, acceleration, pitch_rate);
 }
 
-std::optional<FeltStretch> FeltShock::addToStretch(const BodyMotion& middle, double speed,
+std::optional<FeltSegment> FeltShock::addToSegment(const BodyMotion& middle, double speed,
                                                    double acceleration, double pitch_rate) {
   if (speed < kSlowest) {
-    stretch_ = {};
+    segment_ = {};
     way_ = 0.0;
     count_ = 0;
     return std::nullopt;
   }
   ++count_;
   way_ += speed * kBinSeconds;
-  stretch_.p_map.push_back(middle.p_map);
-  stretch_.speed += speed;
-  stretch_.shock += acceleration * acceleration;
-  stretch_.peak = std::max(stretch_.peak, std::abs(acceleration));
-  stretch_.pitch_rate += pitch_rate * pitch_rate;
-  if (way_ < kStretch) return std::nullopt;
-  FeltStretch ended = std::exchange(stretch_, {});
+  segment_.p_map.push_back(middle.p_map);
+  segment_.speed += speed;
+  segment_.shock += acceleration * acceleration;
+  segment_.peak = std::max(segment_.peak, std::abs(acceleration));
+  segment_.pitch_rate += pitch_rate * pitch_rate;
+  if (way_ < kSegment) return std::nullopt;
+  FeltSegment ended = std::exchange(segment_, {});
   const double share = 1.0 / std::exchange(count_, 0);
   way_ = 0.0;
   ended.utime = middle.utime;

@@ -20,8 +20,8 @@ struct BodyMotion {
   double climb = 0.0;  ///< vertical velocity of the body origin in map [m/s]; NaN: speed x rise
 };
 
-/// How a stretch of ground shook the vehicle.
-struct FeltStretch {
+/// How a segment of ground shook the vehicle.
+struct FeltSegment {
   int64_t utime = 0;                   ///< [us] of its end
   std::vector<Eigen::Vector2d> p_map;  ///< the way of the body origin [m], a point a bin
   double speed = 0.0;                  ///< mean magnitude [m/s]
@@ -30,26 +30,26 @@ struct FeltStretch {
   double pitch_rate = 0.0;             ///< RMS [rad/s]
 };
 
-/// Turns INS measurements into shock, stretch by stretch of the way.
+/// Turns INS measurements into shock, segment by segment of the way.
 /** 1. Measurements are averaged in bins of a tenth of a second: that is the band, up to about 3 Hz.
  *  2. The front end lies `arm` ahead of the body origin; its vertical acceleration is the first
  *     difference of the climb and the second difference of the rise, over three bins in turn.
  * Angles are measured much better than heights, so that heights are not used.
  *  3. What the INS shows while the vehicle stands is its noise; its mean square is taken off.
- * A gap, or a place or attitude that is not finite, begins anew, and the stretch so far is dropped.
+ * A gap, or a place or attitude that is not finite, begins anew, and the segment so far is dropped.
  */
 class FeltShock {
  public:
   static constexpr int64_t kBin = 100'000;  ///< [us]
-  static constexpr double kStretch = 1.0;   ///< [m] of way
+  static constexpr double kSegment = 1.0;   ///< [m] of way
   static constexpr double kSlowest = 0.1;   ///< [m/s] slower says little about the ground
 
   /// `arm` [m] from the body origin to the front end.
   explicit FeltShock(double arm) : arm_(arm) {}
 
-  /// Takes a measurement; returns a stretch when it has just ended. Older ones than the last are
+  /// Takes a measurement; returns a segment when it has just ended. Older ones than the last are
   /// ignored.
-  std::optional<FeltStretch> take(const BodyMotion& motion);
+  std::optional<FeltSegment> take(const BodyMotion& motion);
   /// Begins anew: what comes next has nothing to do with what was.
   void restart();
   /// Mean square of the INS noise, as acceleration [m2/s4].
@@ -63,8 +63,8 @@ class FeltShock {
     BodyMotion sum;
   };
 
-  std::optional<FeltStretch> close(const BodyMotion& mean);
-  std::optional<FeltStretch> addToStretch(const BodyMotion& middle, double speed,
+  std::optional<FeltSegment> close(const BodyMotion& mean);
+  std::optional<FeltSegment> addToSegment(const BodyMotion& middle, double speed,
                                           double acceleration, double pitch_rate);
 
   double arm_;
@@ -72,8 +72,8 @@ class FeltShock {
   int noise_count_ = 0;  ///< bins that it was estimated from
   Bin bin_;
   std::vector<BodyMotion> last_;  ///< means of the last bins without a gap, at most three
-  FeltStretch stretch_;
-  double way_ = 0.0;  ///< [m] of the stretch so far
+  FeltSegment segment_;
+  double way_ = 0.0;  ///< [m] of the segment so far
   int count_ = 0;     ///< bins in it
 };
 

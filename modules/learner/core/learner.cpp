@@ -116,7 +116,7 @@ RuleNote Learner::update(size_t executed, const Measurement& measurement) {
   const auto samples = static_cast<Eigen::Index>(measurement.trajectory.size());
   const ConstTrajectory whole(measured_.data(), samples, 3);
   RuleNote note;
-  rule_->meet(measurement.context);
+  rule_->setContext(measurement.context);
   if (!rule_->learnsParts() || measurement.complete()) {
     rule_->learn(executed, whole, note);
     return note;

@@ -9,7 +9,7 @@ namespace tread::learner {
 namespace {
 
 constexpr double kKeptRadius = 25.0;  // of map [m]
-/// Share that a new stretch has in what the ground here is like, on a logarithmic scale.
+/// Share that a new segment has in what the ground here is like, on a logarithmic scale.
 constexpr double kHereGain = 0.6;
 /// Smoother ground shakes nobody, and what was seen of it is mostly the range finder's noise [m].
 constexpr double kLeastSeen = 0.003;
@@ -46,16 +46,16 @@ double ShockLearner::seenAlong(const std::vector<Eigen::Vector2d>& p_map) const 
   return count > 0 ? std::sqrt(squares / count) : 0.0;
 }
 
-std::optional<FeltStretch> ShockLearner::take(const BodyMotion& motion) {
-  std::optional<FeltStretch> stretch = felt_.take(motion);
-  if (!stretch) return stretch;
+std::optional<FeltSegment> ShockLearner::take(const BodyMotion& motion) {
+  std::optional<FeltSegment> segment = felt_.take(motion);
+  if (!segment) return segment;
   // Cells that the robot has come to are not looked at any more: this is what was seen before.
-  const double seen = seenAlong(stretch->p_map);
-  if (seen >= kLeastSeen) regression_.learn(seen, stretch->speed, stretch->shock);
-  const double felt = stretch->shock / model().speedFactor(stretch->speed);
+  const double seen = seenAlong(segment->p_map);
+  if (seen >= kLeastSeen) regression_.learn(seen, segment->speed, segment->shock);
+  const double felt = segment->shock / model().speedFactor(segment->speed);
   here_ = std::isfinite(here_) ? here_ * std::pow(felt / here_, kHereGain) : felt;
   if (map_) map_->forgetBeyond(motion.p_map, kKeptRadius);
-  return stretch;
+  return segment;
 }
 
 }  // namespace tread::learner

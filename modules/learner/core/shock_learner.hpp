@@ -11,7 +11,7 @@
 
 namespace tread::learner {
 
-/// Learns from what is felt on a stretch what the range finder saw of it before.
+/// Learns from what is felt on a segment what the range finder saw of it before.
 class ShockLearner {
  public:
   /// `arm` [m] from the body origin to the front end.
@@ -19,8 +19,8 @@ class ShockLearner {
 
   /// Takes a tile of the map; false if it is malformed.
   bool takeTile(Tile tile, double cell_size, int tile_cells);
-  /// Takes a measurement; returns the stretch that has just ended, which was learned from.
-  std::optional<FeltStretch> take(const BodyMotion& motion);
+  /// Takes a measurement; returns the segment that has just ended, which was learned from.
+  std::optional<FeltSegment> take(const BodyMotion& motion);
   /// The INS jumped: neither the way so far nor the map is true any more.
   void restart();
 
@@ -29,7 +29,7 @@ class ShockLearner {
   void resume(const ShockRegression& regression) { regression_ = regression; }
   int pairs() const { return regression_.pairs(); }
   /// Shock that the ground of the last metres would give at 1 m/s [m/s2]; NaN before the first
-  /// stretch.
+  /// segment.
   double here() const { return here_; }
   /// RMS roughness that was seen along a way [m]; 0 where nothing was seen.
   double seenAlong(const std::vector<Eigen::Vector2d>& p_map) const;

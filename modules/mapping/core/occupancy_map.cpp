@@ -149,8 +149,7 @@ OccupancyMap::OccupancyMap(const OccupancyMapConfig& config)
       config.tile_cells % GroundMap::kPatchCells != 0 ||
       (config.roughness.range_noise > 0.0 && config.tile_cells % RoughnessMap::kPatchCells != 0))
     throw std::invalid_argument(
-        "occupancy map: tile_cells must be a multiple of 8 (16 with roughness) and window_tiles 2 "
-        "or "
+        "occupancy map: tile_cells must be a multiple of 8 (16 with roughness), window_tiles 2 or "
         "more");
   for (size_t i = 0; i < tile_of_cell_.size(); ++i) {
     const CellIndex cell = trust_.indexOf(i);
@@ -221,12 +220,13 @@ void OccupancyMap::learnGround(const GroundPlane& plane, bool window_moved) {
   }
 }
 
-/// From the returns of the last scan on free ground.
+/// From the returns of the last scan on ground. Ground that is seen for the first time may still be
+/// unknown; where it is bumpy it stays so for a while.
 void OccupancyMap::learnRoughness() {
   std::vector<GroundPoint> points;
   for (const Ray& ray : rays_) {
     const CellIndex cell = grid_.indexOf(ray.to.head<2>());
-    if (!ray.hit || !grid_.contains(cell) || !isFree(grid_.at(cell))) continue;
+    if (!ray.hit || !grid_.contains(cell) || grid_.at(cell) == kObstacle) continue;
     const GroundHeight ground = ground_.at(cell);
     if (std::abs(ray.to.z() - ground.z) > config_.obstacle.step + ground.doubt) continue;
     const double down = (ray.to - ray.from).normalized().z() * config_.roughness.range_noise;

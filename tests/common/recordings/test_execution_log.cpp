@@ -8,6 +8,7 @@
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/recordings.hpp"
 #include "tests/common/recordings/synthetic_drives.hpp"
+#include "tests/helpers.hpp"
 #include "tools/replay/learner_replay.hpp"
 
 using namespace tread;
@@ -136,9 +137,8 @@ TEST_CASE("recordings of another set are refused in one line") {
 }
 
 TEST_CASE("recorded drives: the learner hears a real change of surface") {
-  const char* recordings = std::getenv("TREAD_RECORDINGS");
-  const std::string folder = std::string(recordings == nullptr ? "" : recordings) + "/drive";
-  if (!std::filesystem::exists(folder + "/sessions.csv")) {
+  const std::string folder = tread::testing::recorded("drive");
+  if (folder.empty()) {
     WARN("skipped: the recorded drives are not here (TREAD_RECORDINGS)");
     return;
   }

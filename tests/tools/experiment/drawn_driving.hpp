@@ -32,17 +32,17 @@ inline Session drawnSession(const std::string& name, const std::string& surface,
   session.name = name;
   session.vehicle = "drawn";
   session.surface = surface;
-  Stretch stretch;
-  stretch.entry_known = true;
+  SampledSegment segment;
+  segment.entry_known = true;
   for (const recordings::BodyCommand& command : drawnCommands(steps, seed))
     for (int i = 0; i < 120; ++i)
-      stretch.commands.push_back(recordings::trackCommand(command, session.baseline));
+      segment.commands.push_back(recordings::trackCommand(command, session.baseline));
   samples::Draws draws(seed + 1000);
   Pose2 at;
-  stretch.poses.push_back(at);
+  segment.poses.push_back(at);
   double forward = 1.0, yaw = 1.0;
   size_t t = 0;
-  for (const Eigen::Vector2d& motion : lagged(stretch, session.baseline, {0.2, 0.3})) {
+  for (const Eigen::Vector2d& motion : lagged(segment, session.baseline, {0.2, 0.3})) {
     if (t++ % 20 == 0) {
       forward = 1.0 + noise * draws.next();
       yaw = 1.0 + noise * draws.next();
@@ -50,9 +50,9 @@ inline Session drawnSession(const std::string& name, const std::string& surface,
     const double v = ground.forward * forward * motion[0];
     const double w = ground.yaw * yaw * motion[1];
     at = at * integrate({v, ground.slip * v * w, w}, kPeriod);
-    stretch.poses.push_back(at);
+    segment.poses.push_back(at);
   }
-  session.stretches.push_back(std::move(stretch));
+  session.segments.push_back(std::move(segment));
   cutPieces(session);
   return session;
 }

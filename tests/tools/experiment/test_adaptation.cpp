@@ -90,7 +90,7 @@ TEST_CASE("longer predictions are pieces in a chain, and what was not measured i
   for (size_t i = 0; i < 4; ++i)
     sessions.push_back(drawnSession("s" + std::to_string(i), "grass", {}, 12, 0.0, i + 1));
   const size_t cut = sessions[3].pieces[20].begin + 5;
-  sessions[3].stretches[0].poses[cut].x = testing::kNan;
+  sessions[3].segments[0].poses[cut].x = testing::kNan;
   cutPieces(sessions[3]);
   Settings settings = few();
   settings.rules = {kOff, kJudged};

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // The command as people call it, and the default rule on recordings of real vehicles.
-#include <cstdlib>
 #include <filesystem>
 
 #include <catch2/catch.hpp>
 
+#include "tests/helpers.hpp"
 #include "tests/tools/called_program.hpp"
 #include "tests/tools/experiment/drawn_driving.hpp"
 #include "tools/experiment/adaptation/adaptation.hpp"
@@ -60,18 +60,16 @@ TEST_CASE("what cannot be done is refused in one line") {
 }
 
 TEST_CASE("on real drives the default rule is better than no learning and holds its own") {
-  const char* recordings = std::getenv("TREAD_RECORDINGS");
-  const std::filesystem::path drive =
-      std::filesystem::path(recordings == nullptr ? "" : recordings) / "drive";
-  if (!std::filesystem::exists(drive / "sessions.csv")) {
-    WARN("skipped: no recordings in " << drive.string());
+  const std::string drive = tread::testing::recorded("drive");
+  if (drive.empty()) {
+    WARN("skipped: the recorded drives are not here (TREAD_RECORDINGS)");
     return;
   }
   Settings settings;
   settings.rules = {kOff, kJudged, "slip"};
   settings.starts = 60;
   settings.threads = 2;
-  const Recordings found = readRecordings(drive.string());
+  const Recordings found = readRecordings(drive);
   const Errors errors = runAdaptation(found.sessions, settings, nullptr);
   size_t judged = 0;
   for (const Line& line : summaryOf(errors, settings.rules, 1)) {

@@ -21,21 +21,21 @@ gap::InsSample fix(double time, const Pose2& pose) {
 
 TEST_CASE("poses are interpolated along the arc, and not across a long silence") {
   const Twist2 twist{1.0, 0.0, 1.0};
-  gap::Segment segment;
-  segment.commands = {{0.0, {1.0, 1.0}}, {0.5, {2.0, 2.0}}};
-  segment.end = 2.0;
-  segment.ins = {fix(0.0, {}), fix(0.5, integrate(twist, 0.5)), fix(1.5, integrate(twist, 1.5)),
-                 fix(2.0, integrate(twist, 2.0))};
-  const Stretch stretch = sampled(segment, true);
-  REQUIRE(stretch.commands.size() == 40);
-  REQUIRE(stretch.poses.size() == 41);
-  CHECK(stretch.commands[9] == TrackCommand{1.0, 1.0});
-  CHECK(stretch.commands[10] == TrackCommand{2.0, 2.0});
+  gap::Segment recorded;
+  recorded.commands = {{0.0, {1.0, 1.0}}, {0.5, {2.0, 2.0}}};
+  recorded.end = 2.0;
+  recorded.ins = {fix(0.0, {}), fix(0.5, integrate(twist, 0.5)), fix(1.5, integrate(twist, 1.5)),
+                  fix(2.0, integrate(twist, 2.0))};
+  const SampledSegment segment = sampled(recorded, true);
+  REQUIRE(segment.commands.size() == 40);
+  REQUIRE(segment.poses.size() == 41);
+  CHECK(segment.commands[9] == TrackCommand{1.0, 1.0});
+  CHECK(segment.commands[10] == TrackCommand{2.0, 2.0});
   const Pose2 arc = integrate(twist, 0.25);
-  CHECK(stretch.poses[5].x == Approx(arc.x));
-  CHECK(stretch.poses[5].y == Approx(arc.y));
-  CHECK(std::isnan(stretch.poses[20].x));  // a second without a pose
-  CHECK(std::isfinite(stretch.poses[35].x));
+  CHECK(segment.poses[5].x == Approx(arc.x));
+  CHECK(segment.poses[5].y == Approx(arc.y));
+  CHECK(std::isnan(segment.poses[20].x));  // a second without a pose
+  CHECK(std::isfinite(segment.poses[35].x));
 }
 
 TEST_CASE("pieces follow one another until a pose is missing or jumps") {
@@ -44,18 +44,18 @@ TEST_CASE("pieces follow one another until a pose is missing or jumps") {
   for (size_t i = 0; i + 1 < 12; ++i) CHECK(session.goesOn(i));
   const size_t broken = session.pieces[4].begin + 10;
   Session gap = session, jump = session;
-  gap.stretches[0].poses[broken].x = testing::kNan;
+  gap.segments[0].poses[broken].x = testing::kNan;
   cutPieces(gap);
   CHECK(gap.pieces.size() == 11);
   CHECK_FALSE(gap.goesOn(3));
   CHECK(gap.pieces[4].begin == broken + 1);
-  for (size_t t = broken; t < jump.stretches[0].poses.size(); ++t)
-    jump.stretches[0].poses[t].x += 3.0;
+  for (size_t t = broken; t < jump.segments[0].poses.size(); ++t)
+    jump.segments[0].poses[t].x += 3.0;
   cutPieces(jump);
   CHECK_FALSE(jump.goesOn(3));
   CHECK(jump.pieces[4].begin == broken);
   // Where the motion at the beginning is not known, two seconds are left out.
-  session.stretches[0].entry_known = false;
+  session.segments[0].entry_known = false;
   cutPieces(session);
   CHECK(session.pieces.front().begin == kPieceSamples);
 }
@@ -67,25 +67,24 @@ TEST_CASE("steps that were recorded apart are joined where one went on into the 
   const Recordings found = readRecordings(path);
   REQUIRE(found.sessions.size() == 2);
   const Session& whole = found.sessions[0];
-  REQUIRE(whole.stretches.size() == 1);
+  REQUIRE(whole.segments.size() == 1);
   // The truth over ten seconds, across a join: the same as of what was driven.
   const auto commands = drawnCommands(6, 1);
   const size_t begin = 60;
-  REQUIRE(std::isfinite(whole.stretches[0].poses[begin].x));
+  REQUIRE(std::isfinite(whole.segments[0].poses[begin].x));
   Pose2 truth;
   for (size_t t = begin; t < begin + 200; ++t)
     truth =
         truth * integrate({0.95 * commands[t / 121].v, 0.0, 0.5 * commands[t / 121].w}, kPeriod);
-  const Pose2 said =
-      between(whole.stretches[0].poses[begin], whole.stretches[0].poses[begin + 200]);
+  const Pose2 said = between(whole.segments[0].poses[begin], whole.segments[0].poses[begin + 200]);
   CHECK(distanceBetween(truth, said) < 0.02);
   CHECK(std::abs(truth.yaw - said.yaw) < 0.01);
   // Step 3 is not fit for use, and before step 5 somebody else drove.
   const Session& parts = found.sessions[1];
-  REQUIRE(parts.stretches.size() == 2);
-  CHECK(parts.stretches[0].commands.size() == 4 * 121);
-  CHECK(std::isnan(parts.stretches[0].poses[2 * 121 + 60].x));
-  CHECK(std::isfinite(parts.stretches[0].poses[3 * 121 + 60].x));
+  REQUIRE(parts.segments.size() == 2);
+  CHECK(parts.segments[0].commands.size() == 4 * 121);
+  CHECK(std::isnan(parts.segments[0].poses[2 * 121 + 60].x));
+  CHECK(std::isfinite(parts.segments[0].poses[3 * 121 + 60].x));
 }
 
 TEST_CASE("a folder of LCM logs is read, too, each log a session") {
@@ -111,7 +110,7 @@ TEST_CASE("a folder of LCM logs is read, too, each log a session") {
   CHECK(two.baseline == Approx(1.0));
   // Six steps apart from each other; the first two seconds of each are its lead-in.
   REQUIRE(two.pieces.size() == 6);
-  const recordings::BodyCommand command = drawnCommands(6, 2)[two.pieces[3].stretch];
+  const recordings::BodyCommand command = drawnCommands(6, 2)[two.pieces[3].segment];
   CHECK(two.pieces[3].mean_twist[0] == Approx(0.95 * command.v).margin(0.01));
   CHECK(two.pieces[3].mean_twist[2] == Approx(0.5 * command.w).margin(0.01));
 }

@@ -169,13 +169,12 @@ TEST_CASE("a folder of recordings gives the same tables as the world that they c
 }
 
 TEST_CASE("the real recordings are compared by one command") {
-  const char* recordings = std::getenv("TREAD_RECORDINGS");
-  const fs::path drive = fs::path(recordings == nullptr ? "" : recordings) / "drive";
-  if (!fs::exists(drive / "sessions.csv")) {
-    WARN("no recorded drives here; set TREAD_RECORDINGS");
+  const std::string drive = tread::testing::recorded("drive");
+  if (drive.empty()) {
+    WARN("skipped: the recorded drives are not here (TREAD_RECORDINGS)");
     return;
   }
-  const auto [code, printed] = run("--recordings " + drive.string() + " --robot warthog" + kFour);
+  const auto [code, printed] = run("--recordings " + drive + " --robot warthog" + kFour);
   INFO(printed);
   CHECK(code == 0);
   CHECK(printed.find("asphalt") != std::string::npos);

@@ -3,24 +3,20 @@
 // The default learning rule on recordings of a real vehicle, on ground that it has not met.
 #include <catch2/catch.hpp>
 
-#include <cstdlib>
-#include <filesystem>
-
 #include "modules/learner/core/rules/learning_rule.hpp"
+#include "tests/helpers.hpp"
 #include "tools/experiment/tables.hpp"
 
 using namespace tread::experiment;
 
 TEST_CASE("on real ground not met before the default rule beats no learning, and never does harm") {
-  const char* recordings = std::getenv("TREAD_RECORDINGS");
-  const std::filesystem::path drive =
-      std::filesystem::path(recordings == nullptr ? "" : recordings) / "drive";
-  if (!std::filesystem::exists(drive / "sessions.csv")) {
-    WARN("skipped: no recordings in " << drive.string());
+  const std::string drive = tread::testing::recorded("drive");
+  if (drive.empty()) {
+    WARN("skipped: the recorded drives are not here (TREAD_RECORDINGS)");
     return;
   }
   Request request;
-  request.recordings = drive.string();
+  request.recordings = drive;
   request.robot = "warthog";
   request.rules = {"off", "single", "multi_model", "omniscient"};
   request.repetitions = 600;

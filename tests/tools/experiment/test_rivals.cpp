@@ -106,10 +106,10 @@ TEST_CASE("hindsight is the regression over the whole session, and a jump does n
 }
 
 TEST_CASE("lagged commands follow the step response of a dead time and a first-order lag") {
-  Stretch stretch;
-  stretch.before = {0.0, 0.0};
-  stretch.commands.assign(40, {1.0, 1.0});
-  const auto motion = lagged(stretch, 1.0, {0.1, 0.5});
+  SampledSegment segment;
+  segment.before = {0.0, 0.0};
+  segment.commands.assign(40, {1.0, 1.0});
+  const auto motion = lagged(segment, 1.0, {0.1, 0.5});
   CHECK(motion[1][0] == 0.0);
   // The mean over a sample of 1 - exp(-t / 0.5), from 0.1 s on.
   const auto mean = [](double from) {

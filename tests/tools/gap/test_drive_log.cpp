@@ -3,13 +3,13 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "common/recordings/imported_log.hpp"
 #include "common/report/page.hpp"
 #include "common/store/store.hpp"
+#include "tests/helpers.hpp"
 #include "tests/tools/gap/small_log.hpp"
 #include "tests/tools/import/drive_samples.hpp"
 #include "tools/gap/drive_log.hpp"
@@ -301,10 +301,9 @@ TEST_CASE("the hash of a log is its SHA-256") {
 
 TEST_CASE(
     "real recordings become drives with a segment for every step, and nothing in them is fatal") {
-  const char* recordings = std::getenv("TREAD_RECORDINGS");
-  const std::string folder = std::string(recordings ? recordings : "") + "/drive/";
-  if (!std::filesystem::exists(folder + "sessions.csv")) {
-    WARN("skipped: no recordings in " + folder);
+  const std::string folder = tread::testing::recorded("drive/");
+  if (folder.empty()) {
+    WARN("skipped: the recorded drives are not here (TREAD_RECORDINGS)");
     return;
   }
   struct Expected {

@@ -2,13 +2,13 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <random>
 #include <string>
 
+#include "tests/helpers.hpp"
 #include "tests/tools/called_program.hpp"
 #include "tools/plan/plan_files.hpp"
 
@@ -18,9 +18,7 @@ using Folder = tread::samples::OwnFolder;
 
 /// A file of the planning scenarios of others; empty where they are not.
 inline std::string recorded(const std::string& name) {
-  const char* folder = std::getenv("TREAD_RECORDINGS");
-  const std::string path = std::string(folder == nullptr ? "" : folder) + "/planning/" + name;
-  return std::filesystem::exists(path) ? path : "";
+  return tread::testing::recorded("planning/" + name);
 }
 
 /// A text with a few bytes changed, left out or put in, or its end cut off.

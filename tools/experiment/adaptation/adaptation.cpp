@@ -112,7 +112,7 @@ Prepared prepare(const std::vector<Session>& sessions, const std::vector<TermTab
 /// Adds the errors of predictions that begin at a piece.
 void score(const Session& session, const Walker& walker, size_t piece,
            std::array<Cell, kHorizons.size()>& cells) {
-  const Stretch& stretch = session.stretches[session.pieces[piece].stretch];
+  const SampledSegment& segment = session.segments[session.pieces[piece].segment];
   const size_t begin = session.pieces[piece].begin;
   Pose2 at;
   size_t samples = 0;
@@ -123,7 +123,7 @@ void score(const Session& session, const Walker& walker, size_t piece,
           static_cast<size_t>(std::lround(static_cast<double>(kHorizons[h]) / kPeriod));
       if (wanted <= samples || wanted > samples + kPieceSamples) continue;
       const Pose2 said = at * poses[wanted - samples - 1];
-      const Pose2 was = between(stretch.poses[begin], stretch.poses[begin + wanted]);
+      const Pose2 was = between(segment.poses[begin], segment.poses[begin + wanted]);
       ++cells[h].starts;
       cells[h].position += distanceBetween(said, was);
       cells[h].yaw += std::abs(wrapAngle(said.yaw - was.yaw));

@@ -23,7 +23,7 @@ inline constexpr size_t kParts = 4;          ///< of a piece, for what depends o
 inline constexpr double kLongestGap = 0.6;   ///< [s] of the poses that is interpolated
 
 /// Driving under known commands without a break, sample by sample.
-struct Stretch {
+struct SampledSegment {
   TrackCommand before;                 ///< held before the first command
   bool entry_known = false;            ///< whether it was; else the motion at the beginning is not
   std::vector<TrackCommand> commands;  ///< the t-th acts from pose t to pose t + 1
@@ -32,7 +32,7 @@ struct Stretch {
 
 /// Two seconds of driving: poses at all samples are measured, and something moved.
 struct Piece {
-  size_t stretch = 0;
+  size_t segment = 0;
   size_t begin = 0;             ///< sample
   std::vector<Pose2> measured;  ///< after each command, relative to the start, yaw unwrapped
   Eigen::Vector3d mean_twist;   ///< of it [m/s, m/s, rad/s]
@@ -45,20 +45,20 @@ struct Session {
   std::string surface;
   CommandKind kind = CommandKind::kTrackSpeed;
   double baseline = 1.0;  ///< [m] that turns track commands into (v, w)
-  std::vector<Stretch> stretches;
+  std::vector<SampledSegment> segments;
   std::vector<Piece> pieces;  ///< in order of time
 
   /// Whether piece i + 1 begins where piece i ends.
   bool goesOn(size_t i) const {
-    return i + 1 < pieces.size() && pieces[i + 1].stretch == pieces[i].stretch &&
+    return i + 1 < pieces.size() && pieces[i + 1].segment == pieces[i].segment &&
            pieces[i + 1].begin == pieces[i].begin + kPieceSamples;
   }
 };
 
 /// Samples of a segment of a drive; poses along the arc between fixes at most kLongestGap apart.
-Stretch sampled(const gap::Segment& segment, bool entry_known);
+SampledSegment sampled(const gap::Segment& recorded, bool entry_known);
 
-/// Cuts the stretches of a session into pieces.
+/// Cuts the segments of a session into pieces.
 void cutPieces(Session& session);
 
 /// What was read, and a line for each recording that is of no use.

@@ -172,13 +172,13 @@ Session sessionOf(const fs::path& folder, const recordings::Session& listed, dou
   if (fs::exists(whole)) {
     const RecordedDrive drive = recordings::readContinuous(whole.string(), known);
     for (const gap::Segment& segment : automaticSegments(drive, known))
-      session.stretches.push_back(sampled(segment, false));
+      session.segments.push_back(sampled(segment, false));
     return session;
   }
   const RecordedDrive drive =
       recordings::readSteps((folder / "steps" / (listed.name + ".csv")).string(), known);
   for (const gap::Segment& segment : StepJoiner(drive, known).segments())
-    session.stretches.push_back(sampled(segment, true));
+    session.segments.push_back(sampled(segment, true));
   return session;
 }
 
@@ -207,7 +207,7 @@ void readLogs(const std::vector<fs::path>& logs, Recordings& found) {
     if (drive.imported && drive.imported->baseline > 0.0)
       session.baseline = drive.imported->baseline;
     for (const gap::Segment& segment : drive.segments)
-      session.stretches.push_back(sampled(segment, false));
+      session.segments.push_back(sampled(segment, false));
     found.sessions.push_back(std::move(session));
   }
 }

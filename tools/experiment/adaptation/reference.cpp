@@ -55,7 +55,7 @@ bool repeats(const Session& session, size_t piece) {
   constexpr size_t kSteady = 20;  // samples
   if (piece == 0 || !session.goesOn(piece - 1)) return false;
   const Piece& before = session.pieces[piece - 1];
-  const std::vector<TrackCommand>& commands = session.stretches[before.stretch].commands;
+  const std::vector<TrackCommand>& commands = session.segments[before.segment].commands;
   if (before.begin < kSteady) return false;
   const auto first = commands.begin() + static_cast<std::ptrdiff_t>(before.begin - kSteady);
   return std::all_of(first, first + kSteady + 2 * kPieceSamples,
@@ -64,7 +64,8 @@ bool repeats(const Session& session, size_t piece) {
 
 }  // namespace
 
-std::vector<Eigen::Vector2d> lagged(const Stretch& stretch, double baseline, const Lag& lag) {
+std::vector<Eigen::Vector2d> lagged(const SampledSegment& segment, double baseline,
+                                    const Lag& lag) {
   const auto motionOf = [&](const TrackCommand& command) {
     const recordings::BodyCommand body = recordings::bodyCommand(command, baseline);
     return Eigen::Vector2d(body.v, body.w);
@@ -74,10 +75,10 @@ std::vector<Eigen::Vector2d> lagged(const Stretch& stretch, double baseline, con
   const double ratio = kPeriod / lag.time_constant;
   const double kept = std::exp(-ratio);
   const double mean = (1.0 - kept) / ratio;
-  Eigen::Vector2d state = motionOf(stretch.before);
+  Eigen::Vector2d state = motionOf(segment.before);
   std::vector<Eigen::Vector2d> motion;
-  for (size_t t = 0; t < stretch.commands.size(); ++t) {
-    const Eigen::Vector2d to = motionOf(t < late ? stretch.before : stretch.commands[t - late]);
+  for (size_t t = 0; t < segment.commands.size(); ++t) {
+    const Eigen::Vector2d to = motionOf(t < late ? segment.before : segment.commands[t - late]);
     motion.push_back(to + mean * (state - to));
     state = to + kept * (state - to);
   }
@@ -123,13 +124,13 @@ TermTable::TermTable(const Session& session) {
     twists_.row(i) = session.pieces[static_cast<size_t>(i)].mean_twist;
   for (const Lag& lag : lags()) {
     std::vector<std::vector<Eigen::Vector2d>> motions;
-    for (const Stretch& stretch : session.stretches)
-      motions.push_back(lagged(stretch, session.baseline, lag));
+    for (const SampledSegment& segment : session.segments)
+      motions.push_back(lagged(segment, session.baseline, lag));
     Eigen::MatrixXd means = Eigen::MatrixXd::Zero(pieces, kTerms);
     for (Eigen::Index i = 0; i < pieces; ++i) {
       const Piece& piece = session.pieces[static_cast<size_t>(i)];
       for (size_t t = 0; t < kPieceSamples; ++t)
-        means.row(i) += terms(motions[piece.stretch][piece.begin + t]);
+        means.row(i) += terms(motions[piece.segment][piece.begin + t]);
     }
     means_.push_back(means / static_cast<double>(kPieceSamples));
   }
@@ -180,10 +181,10 @@ Reference::Reference(const std::vector<const TermTable*>& training, const Refere
     fit(training, axis, lag_[axis], error, coefficients_[axis]);
 }
 
-std::vector<Twist2> Reference::twists(const Stretch& stretch, double baseline) const {
+std::vector<Twist2> Reference::twists(const SampledSegment& segment, double baseline) const {
   std::array<std::vector<double>, kAxes> velocities;
   for (size_t axis = 0; axis < kAxes; ++axis)
-    for (const Eigen::Vector2d& motion : lagged(stretch, baseline, lag(axis))) {
+    for (const Eigen::Vector2d& motion : lagged(segment, baseline, lag(axis))) {
       const auto terms = TermTable::terms(motion);
       double sum = 0.0;
       for (size_t i = 0; i < termsOf()[axis].size(); ++i)
@@ -191,18 +192,18 @@ std::vector<Twist2> Reference::twists(const Stretch& stretch, double baseline) c
       velocities[axis].push_back(sum);
     }
   std::vector<Twist2> twists;
-  for (size_t t = 0; t < stretch.commands.size(); ++t)
+  for (size_t t = 0; t < segment.commands.size(); ++t)
     twists.push_back({velocities[0][t], velocities[1][t], velocities[2][t]});
   return twists;
 }
 
 Predicted predicted(const Session& session, const Reference& reference) {
-  std::vector<std::vector<Twist2>> stretches;
-  for (const Stretch& stretch : session.stretches)
-    stretches.push_back(reference.twists(stretch, session.baseline));
+  std::vector<std::vector<Twist2>> segments;
+  for (const SampledSegment& segment : session.segments)
+    segments.push_back(reference.twists(segment, session.baseline));
   Predicted all;
   for (const Piece& piece : session.pieces) {
-    const auto first = stretches[piece.stretch].begin() + static_cast<std::ptrdiff_t>(piece.begin);
+    const auto first = segments[piece.segment].begin() + static_cast<std::ptrdiff_t>(piece.begin);
     all.twists.emplace_back(first, first + kPieceSamples);
     Sample sample;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();

@@ -27,8 +27,8 @@ struct Lag {
   double time_constant = 0.0;
 };
 
-/// (v, w) of the commands of a stretch under a lag, a mean for each sample [m/s, rad/s].
-std::vector<Eigen::Vector2d> lagged(const Stretch& stretch, double baseline, const Lag& lag);
+/// (v, w) of the commands of a segment under a lag, a mean for each sample [m/s, rad/s].
+std::vector<Eigen::Vector2d> lagged(const SampledSegment& segment, double baseline, const Lag& lag);
 
 /// Variances of a piece's mean twist on the same ground: a + b v^2 + c w^2 of the mean |v| and |w|,
 /// for each velocity. What stands here is expected where too few were recorded.
@@ -77,8 +77,8 @@ class Reference {
   /// Fits the coefficients alone, with the lags of another.
   Reference(const std::vector<const TermTable*>& training, const Reference& lags);
 
-  /// Twists of all samples of a stretch.
-  std::vector<Twist2> twists(const Stretch& stretch, double baseline) const;
+  /// Twists of all samples of a segment.
+  std::vector<Twist2> twists(const SampledSegment& segment, double baseline) const;
   const Lag& lag(size_t axis) const { return TermTable::lags()[lag_[axis]]; }
 
  private:

@@ -26,7 +26,7 @@ struct Driven {
 /// The piece as a pattern: predicted by the reference, and as exact as its noise says.
 MotionPattern patternOf(const Driven& driven, int id) {
   const Piece& piece = driven.measured();
-  const auto begin = driven.known->session.stretches[piece.stretch].commands.begin() +
+  const auto begin = driven.known->session.segments[piece.segment].commands.begin() +
                      static_cast<std::ptrdiff_t>(piece.begin);
   MotionPattern pattern;
   pattern.id = id;

@@ -30,7 +30,7 @@ double logNormal(double y, double variance) {
 }  // namespace
 
 ContextEffects::ContextEffects(const GroundConfig& config) : evidence_(config.context_evidence) {
-  variance_.col(kRise).setConstant(config.rise_effect * config.rise_effect);
+  variance_.col(kSlope).setConstant(config.slope_effect * config.slope_effect);
   variance_.col(kVoltage).setConstant(config.voltage_effect * config.voltage_effect);
 }
 
@@ -39,7 +39,7 @@ ContextEffects::Inputs ContextEffects::inputs(const PatternPart& part, double se
   Inputs f = Inputs::Zero();
   if (std::isfinite(context.tilt.ahead) && std::isfinite(context.tilt.left)) {
     const double speed = part.metres / seconds;
-    f.col(kRise) << speed * context.tilt.ahead, speed * context.tilt.left,
+    f.col(kSlope) << speed * context.tilt.ahead, speed * context.tilt.left,
         speed * context.tilt.left;
   }
   if (context.voltage > 0.0 && std::isfinite(context.voltage)) {

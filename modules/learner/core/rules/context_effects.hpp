@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@ namespace tread::learner {
 
 /// What slope and battery do to a mean twist, the same on every ground.
 /** Velocity i of an execution is moved by sum_k c_ik f_ik, f of its context:
- *    rise       f = |v| rise along body x for v_x, along body y for v_y and omega
+ *    slope      f = |v| rise along body x for v_x, along body y for v_y and omega
  *    voltage    f = v (V / V_0 - 1) for v_x, omega (V / V_0 - 1) for omega
  * V_0 the first voltage that was measured. What is steady belongs to the ground, so that c is
  * learned from how f differs from its mean on the same ground, by a Kalman filter for each c. A c
@@ -23,7 +23,7 @@ namespace tread::learner {
  * sum is negative. */
 class ContextEffects {
  public:
-  enum Input { kRise, kVoltage, kInputs };
+  enum Input { kSlope, kVoltage, kInputs };
   using Inputs = Eigen::Matrix<double, static_cast<int>(kVelocities), kInputs>;
 
   explicit ContextEffects(const GroundConfig& config);
@@ -34,8 +34,8 @@ class ContextEffects {
   Eigen::Vector3d effect(const Inputs& f) const;
   /// What they add to forward and yaw gain at the voltage met last [1].
   Eigen::Vector2d gainsNow() const;
-  /// Learns from what was measured beyond the ground and effect(f), with its variance. `ground`:
-  /// what the vehicle drives on; the mean of f is that since it was another one.
+  /// Learns from `beyond`: the measured velocities less those of the ground and effect(f), with
+  /// their variance. A new number of `ground` begins a new mean of f.
   void learn(const Inputs& f, const Eigen::Vector3d& beyond, const Eigen::Vector3d& variance,
              int64_t ground);
   bool counts(size_t velocity, Input input) const {

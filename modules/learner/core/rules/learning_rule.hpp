@@ -51,7 +51,7 @@ struct GroundConfig {
   double change_metres = 10.0;    ///< [m] mean way to the next change of ground
   double fresh = 0.5;             ///< [1] probability that a change leads to ground not met before
   double far = 0.03;              ///< [1] that such ground is unlike all others
-  double rise_effect = 1.0;       ///< [1] deviation of a velocity over |v|, per rise of the ground
+  double slope_effect = 1.0;      ///< [1] deviation of a velocity over |v|, per rise of the ground
   double voltage_effect = 1.0;    ///< [1] the same, relative, per relative change of voltage
   double context_evidence = 5.0;  ///< [nat] from which on slope or voltage counts; 1000: never
   double ahead = 2.0;             ///< [m] way that predictions look ahead
@@ -123,7 +123,7 @@ void readGround(Reader& reader, GroundConfig& ground) {
   section.number("change_metres", ground.change_metres, {0.1, 1e5}, "m");
   section.number("fresh", ground.fresh, {0.01, 0.99}, "1");
   section.number("far", ground.far, {0.001, 0.999}, "1");
-  section.number("rise_effect", ground.rise_effect, {1e-3, 10.0}, "1");
+  section.number("slope_effect", ground.slope_effect, {1e-3, 10.0}, "1");
   section.number("voltage_effect", ground.voltage_effect, {1e-3, 10.0}, "1");
   section.number("context_evidence", ground.context_evidence, {1.0, 1000.0}, "nat");
   section.number("ahead", ground.ahead, {0.0, 100.0}, "m");
@@ -165,7 +165,7 @@ class LearningRule {
   virtual ~LearningRule() = default;
 
   /// What was measured beside the execution that is learned from next.
-  virtual void meet(const Context&) {}
+  virtual void setContext(const Context&) {}
   /// Learns from a measured trajectory M of pattern `executed`: as many rows as its prediction, or
   /// fewer, at least one, if the rule learns from parts.
   virtual void learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) = 0;

@@ -57,15 +57,15 @@ struct Scatter {
  * scatter on it as they have so far (Scatter), and also on the shipped set's ground until the
  * vehicle has settled there.
  *
- * What slope and battery do is taken off each execution first (ContextEffects). Predictions are for
- * level ground, the voltage of the last execution and the next `ahead` metres, on which the ground
- * may change, too: the shipped profile under sum_i w_i^- E[x_i], the covariance that of the
+ * Effects of slope and battery are subtracted from each execution (ContextEffects). Predictions are
+ * for level ground, the voltage of the last execution and the next `ahead` metres, on which the
+ * ground may change, too: the shipped profile under sum_i w_i^- E[x_i], the covariance that of the
  * mixture. */
 class MultiModel : public LearningRule {
  public:
   MultiModel(const RuleConfig& config, const PatternSet& shipped);
 
-  void meet(const Context& context) override { context_ = context; }
+  void setContext(const Context& context) override { context_ = context; }
   void learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) override;
   bool learnsParts() const override { return true; }
   std::string reason(const RuleNote& note) const override;
