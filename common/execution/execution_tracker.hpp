@@ -45,6 +45,8 @@ struct BridgeReading {
 
 /// Why an execution was aborted whose program the planner has emptied.
 inline constexpr const char* kStoppedByPlanner = "stopped by the planner";
+/// Why a pattern that a person drove by hand was not driven to its end.
+inline constexpr const char* kLeftByHand = "the person drove on in another way";
 
 /// One execution as the motor bridge records it.
 struct ExecutionReading {

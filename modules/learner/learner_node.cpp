@@ -286,13 +286,16 @@ void LearnerNode::hear(const motor_t& motor) {
       lost);
   auto message = blank<execution_t>();
   for (const HandDrivenPattern& driven : hand_.take(learner_.set())) {
+    if (!driven.completed && !learner_.learnsParts()) continue;
     auto record = blank<execution_record_t>();
     record.record_execution_id = driven.started;
     record.record_pattern_id = driven.pattern_id;
     record.record_set_version = learner_.set().version();
     record.started = driven.started;
     record.ended = driven.ended;
-    record.outcome = execution_record_t::OUTCOME_COMPLETED;
+    record.outcome = driven.completed ? execution_record_t::OUTCOME_COMPLETED
+                                      : execution_record_t::OUTCOME_ABORTED;
+    if (!driven.completed) record.outcome_reason = kLeftByHand;
     message.records.push_back(record);
     health_.addToCounter("executions by hand");
   }
@@ -359,8 +362,8 @@ ExecutionCut LearnerNode::cutOf(const execution_record_t& record,
   const PatternSet& set = learner_.set();
   cut.unexpected_command = commands_.unexpectedCommand(keyOf(record), pattern, set.content().kind);
   // Where a failsafe stops the robot it may have been held: that is no ground.
-  cut.beginning =
-      learner_.learnsParts() && !cut.completed && cut.outcome_reason == kStoppedByPlanner;
+  cut.beginning = learner_.learnsParts() && !cut.completed &&
+                  (cut.outcome_reason == kStoppedByPlanner || cut.outcome_reason == kLeftByHand);
   cut.steady_before = hand_.steadyBefore(set.classNamed(pattern.entry_class).steady, record.started,
                                          set.content().period_us);
   return cut;

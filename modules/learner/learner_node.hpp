@@ -116,8 +116,8 @@ void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config);
 /// HEALTH, CONFIG out.
 /** 1. Inputs wait until they are settle_us old and are then taken in the order of (utime, seq).
  *  2. An execution is cut, gated and scored against the set version that its record names.
- *     What a person drives by hand is an execution, too, where its commands are a pattern's: of run
- *     0, with the time of its start as id.
+ *     What a person drives by hand is an execution, too, where its commands are a pattern's or
+ *     the beginning of one: of run 0, with the time of its start as id.
  *  3. If the rule changes the set, state and set are written and published under the next version.
  *  4. A rule that learns from parts follows a running execution: sets are published as if it had
  *     ended there, but neither written nor reported. What it teaches in the end replaces them.

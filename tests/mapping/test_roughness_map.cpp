@@ -84,29 +84,6 @@ TEST_CASE("a downward range finder makes the roughness of smooth ground known, w
   CHECK(mapper.at(6.55, -2.4) == kObstacle);
 }
 
-TEST_CASE("bumpy ground is measured on the way, walls stay walls") {
-  OccupancyMapConfig config = usualMap();
-  config.roughness.range_noise = 0.002;
-  Mapper mapper(config);
-  mapper.range_finder.T_body_sensor = isometryFrom({0.25, 0.0, 0.9}, {0.0, 0.25, 0.0});
-  SmallWorld world;
-  world.ground = bumps;
-  world.boxes.push_back({{6.5, -6.0, -1.0}, {7.0, 6.0, 1.5}});
-  mapper.drive(world, {0.0, -0.6}, {4.0, -0.6});
-  int seen = 0;
-  for (double x = 3.8; x < 6.0; x += 0.4)
-    for (double y = -3.0; y < 3.1; y += 0.5) {
-      const Cell cost = mapper.at(x, y);
-      if (!isFree(cost) || cost == kFree) continue;
-      ++seen;
-      CHECK(cost == Approx(10).margin(4));
-    }
-  CHECK(seen >= 60);  // of 78
-  int walls = 0;
-  for (double y = -2.0; y < 2.1; y += 0.1) walls += mapper.at(6.55, y) == kObstacle ? 1 : 0;
-  CHECK(walls >= 25);  // measured 29 of 41: lower than a step it is none
-}
-
 TEST_CASE("where roughness is not looked at, free cells cost nothing") {
   Mapper mapper;
   mapper.range_finder.T_body_sensor = isometryFrom({0.25, 0.0, 0.9}, {0.0, 0.25, 0.0});

@@ -4,15 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tread::learner {
 namespace {
 
-constexpr int64_t kSteady = 500'000;   // [us] of the entry class's command before a pattern
-constexpr int64_t kEdge = 15'000;      // [us] by which a change may be early or late
-constexpr int64_t kSilent = 200'000;   // [us] between two commands: what was given is not known
-constexpr int64_t kKept = 70'000'000;  // [us] longer than any series
-constexpr double kSameCommand = 2e-3;  // MOTOR is single precision, a Roboteq takes thousandths
+constexpr int64_t kSteady = 500'000;    // [us] of the entry class's command before a pattern
+constexpr int64_t kShortest = 400'000;  // [us] of a piece: shorter ones are mostly INS noise
+constexpr int64_t kEdge = 15'000;       // [us] by which a change may be early or late
+constexpr int64_t kSilent = 200'000;    // [us] between two commands: what was given is not known
+constexpr int64_t kKept = 70'000'000;   // [us] longer than any series
+constexpr double kSameCommand = 2e-3;   // MOTOR is single precision, a Roboteq takes thousandths
 
 }  // namespace
 
@@ -49,19 +51,21 @@ bool HandWatch::steadyBefore(const TrackCommand& command, int64_t utime, int64_t
   return true;
 }
 
-HandWatch::Fit HandWatch::fit(const PatternSet& set, const MotionPattern& pattern,
-                              int64_t start) const {
+std::optional<size_t> HandWatch::driven(const PatternSet& set, const MotionPattern& pattern,
+                                        int64_t start) const {
   const int64_t period = set.content().period_us;
-  if (!steadyBefore(set.classNamed(pattern.entry_class).steady, start, period)) return Fit::kNo;
+  if (!steadyBefore(set.classNamed(pattern.entry_class).steady, start, period)) return 0;
   int64_t begin = start;
-  for (const TrackCommand& command : pattern.commands) {
+  for (size_t i = 0; i < pattern.commands.size(); ++i, begin += period) {
     for (const int64_t utime : {begin + kEdge, begin + period - kEdge}) {
-      if (utime > newest_) return Fit::kNotYet;
-      if (!given(command, utime) || !at(utime)->by_hand) return Fit::kNo;
+      if (utime > newest_) return std::nullopt;
+      // Where the bridge took over, the robot may have been held: that is no ground.
+      if (!at(utime)->by_hand) return 0;
+      if (!given(pattern.commands[i], utime)) return i;
     }
-    begin += period;
   }
-  return begin <= newest_ ? Fit::kYes : Fit::kNotYet;
+  if (begin > newest_) return std::nullopt;
+  return pattern.commands.size();
 }
 
 std::optional<HandDrivenPattern> HandWatch::longestFrom(int64_t start, const PatternSet& set,
@@ -69,12 +73,15 @@ std::optional<HandDrivenPattern> HandWatch::longestFrom(int64_t start, const Pat
   std::optional<HandDrivenPattern> longest;
   not_yet = false;
   for (const MotionPattern& pattern : set.patterns()) {
-    const int64_t end =
-        start + set.content().period_us * static_cast<int64_t>(pattern.commands.size());
-    const Fit found = fit(set, pattern, start);
-    not_yet = not_yet || found == Fit::kNotYet;
-    if (found == Fit::kYes && (!longest || end > longest->ended))
-      longest = HandDrivenPattern{pattern.id, start, end};
+    const std::optional<size_t> commands = driven(set, pattern, start);
+    not_yet = not_yet || !commands;
+    const int64_t length = set.content().period_us * static_cast<int64_t>(commands.value_or(0));
+    if (length < kShortest) continue;
+    const HandDrivenPattern found{pattern.id, start, start + length,
+                                  *commands == pattern.commands.size()};
+    if (!longest ||
+        std::pair(found.completed, found.ended) > std::pair(longest->completed, longest->ended))
+      longest = found;
   }
   return longest;
 }

@@ -18,17 +18,19 @@ struct GivenCommand {
   bool by_hand = false;
 };
 
-/// A stretch of driving by hand that is an execution of a pattern.
+/// A piece of driving by hand that is an execution of a pattern, or the beginning of one.
 struct HandDrivenPattern {
   int pattern_id = 0;
   int64_t started = 0;  ///< [us] when its first command took effect
   int64_t ended = 0;    ///< [us] end of its last command's period
+  bool completed = false;
 };
 
 /// Finds the patterns in what a person drives by hand.
 /** A rule learns from patterns only: what a person drives teaches where its commands are a
  * pattern's, one for one, after half a second of the steady command of the pattern's entry class.
- * The longest pattern counts, and stretches do not overlap. Whether it also moved as the entry
+ * The longest pattern counts; where none was driven to its end, the longest beginning of one that
+ * the person went on from in another way. Pieces do not overlap. Whether it also moved as the entry
  * class does is the gates' business. Pure: time comes with the commands. */
 class HandWatch {
  public:
@@ -40,8 +42,10 @@ class HandWatch {
   std::vector<HandDrivenPattern> take(const PatternSet& set);
 
  private:
-  enum class Fit { kNo, kYes, kNotYet };
-  Fit fit(const PatternSet& set, const MotionPattern& pattern, int64_t start) const;
+  /// How many of a pattern's commands were driven by hand from a time on; nothing while it may go
+  /// on, none if a person did not end it.
+  std::optional<size_t> driven(const PatternSet& set, const MotionPattern& pattern,
+                               int64_t start) const;
   std::optional<HandDrivenPattern> longestFrom(int64_t start, const PatternSet& set,
                                                bool& not_yet) const;
   bool given(const TrackCommand& command, int64_t utime) const;

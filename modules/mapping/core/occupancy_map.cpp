@@ -220,13 +220,12 @@ void OccupancyMap::learnGround(const GroundPlane& plane, bool window_moved) {
   }
 }
 
-/// From the returns of the last scan on ground. Ground that is seen for the first time may still be
-/// unknown; where it is bumpy it stays so for a while.
+/// From the returns of the last scan on free ground.
 void OccupancyMap::learnRoughness() {
   std::vector<GroundPoint> points;
   for (const Ray& ray : rays_) {
     const CellIndex cell = grid_.indexOf(ray.to.head<2>());
-    if (!ray.hit || !grid_.contains(cell) || grid_.at(cell) == kObstacle) continue;
+    if (!ray.hit || !grid_.contains(cell) || !isFree(grid_.at(cell))) continue;
     const GroundHeight ground = ground_.at(cell);
     if (std::abs(ray.to.z() - ground.z) > config_.obstacle.step + ground.doubt) continue;
     const double down = (ray.to - ray.from).normalized().z() * config_.roughness.range_noise;

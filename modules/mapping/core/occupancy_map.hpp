@@ -147,7 +147,7 @@ struct OccupancyMapConfig {
 /** 1. Each beam becomes a ray in map with the body's pose at that beam's time; returns from the
  *     robot itself are left out.
  *  2. The rays go into the voxels (VoxelMap), the robot's stand into the ground (GroundMap).
- *     Returns on the ground go into its roughness (RoughnessMap), which is the cost of free cells.
+ *     Returns on free ground go into its roughness (RoughnessMap), which is the cost of free cells.
  *  3. Columns are classified again (ColumnClassifier) where their voxels or their ground changed.
  *  Free without having been seen are: the cells under the robot (even if something was marked
  *  there: the robot stands in it); the cells that it stood on before, and, where a map begins, all

@@ -20,11 +20,12 @@
 namespace tread::samples {
 
 /// The first seconds of a mission, everything on its bus recorded in memory.
-inline std::vector<LogEvent> drivenLog(double seconds, const FaultPlan& faults = {}) {
+inline std::vector<LogEvent> drivenLog(double seconds, const FaultPlan& faults = {},
+                                       const char* rule = "collective") {
   constexpr int64_t kTick = 50'000;
   const missions::MissionWorld world = missions::makeMissionWorld(14, {0.65, 0.65, 0.34});
   missions::RobotSystem system(missions::readRobot(TREAD_SOURCE_DIR "/config/robots/teodor"),
-                               world.description, world.T_map_start, 14, "collective", faults);
+                               world.description, world.T_map_start, 14, rule, faults);
   std::vector<LogEvent> events;
   system.bus().setTap([&](int64_t utime, const char* channel, const uint8_t* bytes, size_t size) {
     if (channel == std::string(kScan.name) || channel == std::string(kPlanTree.name)) return;

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "common/store/store.hpp"
@@ -115,6 +116,46 @@ TEST_CASE("a robot's log through the learner gives the sets of the log, twice") 
   REQUIRE(check.learning.equal >= 10);
   REQUIRE(check.same_twice);
   REQUIRE(check.equal());
+}
+
+TEST_CASE("a set that a newer one of the same execution overtook is no difference, the newest is") {
+  const std::vector<LogEvent> drive = drivenLog(15.0, {}, "multi_model");
+  REQUIRE(learnerCheck(drive).equal());
+  std::map<int64_t, std::vector<int64_t>> versions;  // by parent
+  for (const LogEvent& event : drive) {
+    pattern_set_part_t part;
+    if (!decode(event, kPatternSet, part)) continue;
+    std::vector<int64_t>& siblings = versions[part.parent_version];
+    if (siblings.empty() || siblings.back() < part.set_version)
+      siblings.push_back(part.set_version);
+  }
+  const auto followed =
+      std::find_if(std::next(versions.begin(), static_cast<std::ptrdiff_t>(versions.size() / 2)),
+                   versions.end(), [](const auto& each) { return each.second.size() > 2; });
+  REQUIRE(followed != versions.end());
+  const std::vector<int64_t> siblings = followed->second;
+  const auto without = [&drive](int64_t lost) {
+    std::vector<LogEvent> events = drive;
+    events.erase(std::remove_if(events.begin(), events.end(),
+                                [lost](const LogEvent& event) {
+                                  pattern_set_part_t part;
+                                  return decode(event, kPatternSet, part) &&
+                                         part.set_version == lost;
+                                }),
+                 events.end());
+    int64_t seq = 0;
+    rewrite<pattern_set_part_t>(events, kPatternSet, [&seq](pattern_set_part_t& part) {
+      part.seq = seq++;
+      return true;
+    });
+    return learnerCheck(std::move(events));
+  };
+  const LearnerCheck overtaken = without(siblings.front());
+  REQUIRE(overtaken.versions.only_in_replay == 1);
+  REQUIRE(overtaken.equal());
+  const LearnerCheck lost = without(siblings.back());
+  REQUIRE(lost.versions.only_in_replay == 1);
+  REQUIRE_FALSE(lost.equal());
 }
 
 TEST_CASE("a recorder whose clock is UTC, and is set forward by an hour, changes nothing") {

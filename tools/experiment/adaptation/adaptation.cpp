@@ -8,6 +8,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include <Eigen/Cholesky>
+
 #include "common/config/scalars.hpp"
 #include "common/parallel/parallel_for.hpp"
 #include "tools/experiment/adaptation/walkers.hpp"
@@ -109,6 +111,16 @@ Prepared prepare(const std::vector<Session>& sessions, const std::vector<TermTab
   return prepared;
 }
 
+/// Whether an end lies within the region that a covariance states for nine in ten.
+bool isInside(const Pose2& said, const Pose2& was, const PoseCovariance& stated) {
+  constexpr double kQuantile = 6.251;  // chi^2, three degrees of freedom
+  Eigen::Matrix3d covariance;
+  covariance << stated[0], stated[1], stated[2], stated[1], stated[3], stated[4], stated[2],
+      stated[4], stated[5];
+  const Eigen::Vector3d apart(was.x - said.x, was.y - said.y, wrapAngle(was.yaw - said.yaw));
+  return apart.dot(covariance.ldlt().solve(apart)) < kQuantile;
+}
+
 /// Adds the errors of predictions that begin at a piece.
 void score(const Session& session, const Walker& walker, size_t piece,
            std::array<Cell, kHorizons.size()>& cells) {
@@ -127,6 +139,11 @@ void score(const Session& session, const Walker& walker, size_t piece,
       ++cells[h].starts;
       cells[h].position += distanceBetween(said, was);
       cells[h].yaw += std::abs(wrapAngle(said.yaw - was.yaw));
+      if (i > 0 || wanted != kPieceSamples) continue;
+      if (const auto stated = walker.endCovariance(piece)) {
+        ++cells[h].stated;
+        if (isInside(said, was, *stated)) ++cells[h].inside;
+      }
     }
     at = at * poses.back();
     samples += kPieceSamples;

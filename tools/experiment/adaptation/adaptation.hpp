@@ -63,6 +63,8 @@ struct Cell {
   size_t starts = 0;
   double position = 0.0;  ///< [m] mean; sum while it is computed
   double yaw = 0.0;       ///< [rad]
+  size_t stated = 0;      ///< ends of single pieces whose covariance the rule states
+  size_t inside = 0;      ///< of these within the region that it states for nine in ten
 };
 
 /// One session that was left out.

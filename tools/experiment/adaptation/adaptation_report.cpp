@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "common/geometry/degrees.hpp"
 #include "common/report/page.hpp"
@@ -87,6 +88,37 @@ std::string sessionsOf(const Group& group) {
   return text;
 }
 
+/// How many single pieces end within the 90 % regions of the judged rule from three executions on,
+/// surface by surface; empty where it states none.
+std::string regionsOf(const Report& report) {
+  const auto& rules = report.settings.rules;
+  const auto judged = std::find(rules.begin(), rules.end(), kJudged);
+  if (judged == rules.end()) return "";
+  std::map<std::string, std::pair<size_t, size_t>> surfaces;  // inside, stated
+  for (const SessionErrors& session : report.errors.sessions) {
+    if (session.kind != LeftOut::kSession) continue;
+    const auto& of_rule = session.cells[static_cast<size_t>(judged - rules.begin())];
+    for (size_t k = 0; k < kExecutions.size(); ++k)
+      for (const Cell& cell : of_rule[k]) {
+        if (kExecutions[k] < 3 || cell.stated == 0) continue;
+        for (const std::string& name : {session.surface, std::string("all")}) {
+          surfaces[name].first += cell.inside;
+          surfaces[name].second += cell.stated;
+        }
+      }
+  }
+  std::vector<std::string> shares;
+  for (const auto& [name, count] : surfaces)
+    shares.push_back(
+        name + " " +
+        fixed(100.0 * static_cast<double>(count.first) / static_cast<double>(count.second), 1) +
+        " %");
+  if (shares.empty()) return "";
+  return std::string("90 % regions of ") + kJudged +
+         " that hold the next execution, sessions left out, after 3, 10 and 30 executions: " +
+         joined(shares) + ".";
+}
+
 /// What one sees first: the judged rule against no learning and the others after 3 executions.
 std::vector<std::string> findings(const std::vector<Group>& groups, const Report& report) {
   constexpr size_t kEarly = 3;
@@ -113,6 +145,7 @@ std::vector<std::string> findings(const std::vector<Group>& groups, const Report
                       : lost.empty()      ? "Better than every other rule or level with it."
                                           : "Worse than " + joined(lost) + "."));
   }
+  if (const std::string regions = regionsOf(report); !regions.empty()) points.push_back(regions);
   return points;
 }
 

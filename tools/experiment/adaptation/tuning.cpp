@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 
 #include "common/recordings/sessions.hpp"
 #include "tools/experiment/adaptation/rivals.hpp"
@@ -189,11 +189,14 @@ struct Basis {
 Basis basisOf(const std::vector<Eigen::VectorXd>& maps, Eigen::Index count) {
   Eigen::MatrixXd all(static_cast<Eigen::Index>(maps.size()), RandomFeatures::kCount);
   for (size_t i = 0; i < maps.size(); ++i) all.row(static_cast<Eigen::Index>(i)) = maps[i];
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(all, Eigen::ComputeThinV);
-  count = std::min(count, svd.singularValues().size());
-  return {svd.matrixV().leftCols(count),
-          (svd.singularValues().head(count) / std::sqrt(static_cast<double>(maps.size())))
-              .cwiseMax(1e-4)};
+  // Singular values and right singular vectors, by the few rows.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> squared(all * all.transpose());
+  count = std::min(count, all.rows());
+  const Eigen::VectorXd values =
+      squared.eigenvalues().reverse().head(count).cwiseMax(1e-12).cwiseSqrt();
+  return {all.transpose() * squared.eigenvectors().rowwise().reverse().leftCols(count) *
+              values.cwiseInverse().asDiagonal(),
+          (values / std::sqrt(static_cast<double>(maps.size()))).cwiseMax(1e-4)};
 }
 
 Functions functionsOf(const Functions& features, const Basis& basis) {

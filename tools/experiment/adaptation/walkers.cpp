@@ -66,6 +66,9 @@ class RuleWalker : public Walker {
     rule_->predict(history_ + piece - first_, {numbers.data(), kPieceSamples, 3});
     return learner::posesOf({numbers.data(), kPieceSamples, 3});
   }
+  std::optional<PoseCovariance> endCovariance(size_t piece) const override {
+    return rule_->endCovariance(history_ + piece - first_);
+  }
 
  private:
   void execute(size_t pattern) {

@@ -19,6 +19,10 @@ class Walker {
   virtual void learn(size_t piece) = 0;
   /// Poses after each sample, relative to the piece's start.
   virtual std::vector<Pose2> predict(size_t piece) const = 0;
+  /// Of the last of them; nothing of who does not know it.
+  virtual std::optional<PoseCovariance> endCovariance(size_t /*piece*/) const {
+    return std::nullopt;
+  }
 };
 
 /// A session, and what the reference says of it.

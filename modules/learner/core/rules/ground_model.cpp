@@ -208,6 +208,11 @@ Eigen::Vector2d TwistProfile::meanSpeed(Eigen::Index samples) const {
   return sum / static_cast<double>(samples);
 }
 
+Eigen::Vector3d TwistProfile::change(Eigen::Index samples) const {
+  const auto last = static_cast<size_t>(samples - 1);
+  return {forward_[last] - forward_[0], lateral_[last] - lateral_[0], yaw_[last] - yaw_[0]};
+}
+
 template <typename Put>
 Pose2 TwistProfile::walk(const CorrectionVector& x, Put&& put) const {
   const double gain = 1.0 + x[Index::kForward] + x[kOwnForward];
@@ -286,10 +291,14 @@ PatternPart GroundModel::part(size_t pattern, Eigen::Index samples) const {
   const Eigen::Vector2d speed = profile.meanSpeed(samples);
   const double seconds = period_ * static_cast<double>(samples);
   const double moved = squared(noise_.position / seconds) + squared(noise_.turning * speed[1]);
-  const Eigen::Vector3d expected(
-      squared(noise_.forward * speed[0]) + moved, squared(noise_.lateral * speed[0]) + moved,
-      squared(noise_.yaw * speed[1]) + squared(noise_.wander * speed[0]) +
-          squared(noise_.heading / seconds));
+  // A profile that comes later by dt loses dt of its change: no gain of ground explains that.
+  const Eigen::Vector3d late = noise_.lag / seconds * profile.change(samples);
+  const Eigen::Vector3d expected =
+      Eigen::Vector3d(squared(noise_.forward * speed[0]) + moved,
+                      squared(noise_.lateral * speed[0]) + moved,
+                      squared(noise_.yaw * speed[1]) + squared(noise_.wander * speed[0]) +
+                          squared(noise_.heading / seconds)) +
+      late.cwiseAbs2();
   // A turn on the spot moves, too: half a metre for a radian.
   constexpr double kMetresPerRadian = 0.5;
   part.shape = squared(noise_.shape * (part.metres + kMetresPerRadian * speed[1] * seconds)) +

@@ -87,6 +87,8 @@ class TwistProfile {
   Eigen::Index samples() const { return static_cast<Eigen::Index>(forward_.size()); }
   /// Mean |v| and |w| of the first samples: how large they are, also there and back.
   Eigen::Vector2d meanSpeed(Eigen::Index samples) const;
+  /// Twist (v, s, w) of the last of the first samples less that of the first one.
+  Eigen::Vector3d change(Eigen::Index samples) const;
 
  private:
   template <typename Put>

@@ -24,6 +24,7 @@ struct TwistNoise {
   double yaw = 0.08;       ///< [1] of |omega|
   double turning = 0.05;   ///< [m] of |omega|, added to the first two: where it turns about
   double wander = 0.005;   ///< [rad/m] of |v_x|, added to the third: the course is not kept
+  double lag = 0.10;       ///< [s] of the change of each velocity inside, over the time it took
   double shape = 0.02;     ///< [1] of the way: where it ends apart from what its mean twist says
   double position = 0.01;  ///< [m] of a measured end, added to the first two over the time it took
   double heading = 0.01;   ///< [rad] the same, added to the third
@@ -108,6 +109,7 @@ void readGround(Reader& reader, GroundConfig& ground) {
   section.number("yaw_noise", ground.noise.yaw, {0.001, 1.0}, "1");
   section.number("turning_noise", ground.noise.turning, {0.0, 1.0}, "m");
   section.number("wander_noise", ground.noise.wander, {0.0, 1.0}, "rad/m");
+  section.number("lag_noise", ground.noise.lag, {0.0, 2.0}, "s");
   section.number("shape_noise", ground.noise.shape, {1e-4, 1.0}, "1");
   section.number("position_noise", ground.noise.position, {1e-4, 1.0}, "m");
   section.number("heading_noise", ground.noise.heading, {1e-4, 1.0}, "rad");
