@@ -172,7 +172,7 @@ std::vector<Effect> gripEffects() {
        "The yaw rate is capped only where speed times yaw rate is large; on the spot it is right.",
        "The same yaw rate in a fast wide and in a slow tight turn.",
        "Drive one circle faster and faster until it widens.",
-       {inverseLimit("1", 50.0, 4.0, &V::grip_limit, {1.5, 3.0, 6.0, 12.0}, "friction", "1",
+       {inverseLimit("1", 20.0, 4.0, &V::grip_limit, {1.5, 3.0, 6.0, 12.0}, "friction", "1",
                      LimitedQuantity::kLateralAcceleration)}},
       {"yaw_pull",
        "Yaw pull",

@@ -194,3 +194,38 @@ TEST_CASE(
   }
   CHECK(one.gap->after.yaw.rms == other.gap->after.yaw.rms);
 }
+
+TEST_CASE("a limit that is given higher than the drive goes, and is lower, is what has moved") {
+  ModelDocument model = syntheticVehicle();
+  model.vehicle.effects.speed_saturation = 1.0 / 1.6;
+  for (const uint64_t seed : {11U, 12U, 13U}) {
+    const Finding finding =
+        findOn({{"speed_saturation.inverse_limit", 1.0 / 0.7}}, model, 400.0, seed);
+    CHECK(finding.verdict == GapVerdict::kFound);
+    CHECK(namesIn(finding).empty());
+    for (const ParameterEstimate& estimate : finding.identified.calibrated) {
+      if (estimate.parameter != "speed_saturation.inverse_limit") continue;
+      CHECK(estimate.moved);
+      CHECK(estimate.value == Approx(1.0 / 0.7).epsilon(0.03));
+      CHECK(estimate.before == Approx(1.0 / 1.6));
+    }
+  }
+}
+
+TEST_CASE("a term that the drive does not feel stays as it is and has no interval") {
+  ModelDocument model = syntheticVehicle();
+  model.vehicle.effects.speed_saturation = 1.0 / 3.0;
+  model.vehicle.effects.grip_limit = 1.0 / 2.0;
+  const Finding finding = findOn({}, model, 400.0, 14);
+  CHECK(finding.verdict == GapVerdict::kNoDiscrepancy);
+  int terms = 0;
+  for (const ParameterEstimate& estimate : finding.identified.calibrated) {
+    if (estimate.parameter.find("limit") == std::string::npos) continue;
+    ++terms;
+    CHECK(std::isinf(estimate.low));
+    CHECK(std::isinf(estimate.high));
+    CHECK_FALSE(estimate.moved);
+    CHECK(estimate.value == estimate.before);
+  }
+  CHECK(terms == 2);
+}

@@ -14,6 +14,7 @@ constexpr double kGravity = 9.81;     // [m/s2]
 constexpr double kSmallProbe = 0.25;  // of the typical value: smooth effects are straight there
 constexpr double kVanished = 2e-3;    // of an effect's typical size
 constexpr int kChanges = 15;          // times at which a change is looked for
+constexpr double kElsewhere = 0.1;    // of a given value: nearer ones the slope tells
 constexpr double kEdge = 0.06;        // share of the drive without changes at either end
 
 /// The most that a drive demands of what a limit limits, in the unit of the limit.
@@ -144,18 +145,33 @@ bool isNominalFree(const FitState& state) {
   });
 }
 
-/// Terms that are on, held by what is known of them, may have changed.
-void addHeldTerms(const FitState& state, std::vector<Candidate>& candidates) {
-  for (const FreeParameter& held : state.free) {
-    const size_t dot = held.path.find('.');
-    if (dot == std::string::npos || !std::isfinite(held.deviation)) continue;
-    Candidate release;
-    release.effect = held.path.substr(0, dot);
-    release.parameter = held.path.substr(dot + 1);
-    release.change = held.step;
-    release.value = *findParameter(state.model, held.path) + held.step;
-    release.release = true;
-    candidates.push_back(release);
+Candidate releaseOf(const FreeParameter& term, double from, double to) {
+  const size_t dot = term.path.find('.');
+  Candidate release;
+  release.effect = term.path.substr(0, dot);
+  release.parameter = term.path.substr(dot + 1);
+  release.change = to - from;
+  release.value = to;
+  release.release = true;
+  return release;
+}
+
+/// Terms that are on may have changed: those that are held by what is known of them, by a little,
+/// and limits and thresholds, to where the drive would feel them.
+void addGivenTerms(const FitState& state, const Excitation& most,
+                   std::vector<Candidate>& candidates) {
+  for (const FreeParameter& term : state.free) {
+    const EffectParameter* known = findEffectParameter(term.path);
+    if (known == nullptr) continue;
+    const double value = *findParameter(state.model, term.path);
+    if (std::isfinite(term.deviation))
+      candidates.push_back(releaseOf(term, value, value + term.step));
+    if (!isGiven(term) || known->probes.empty() || known->search_from_slope) continue;
+    for (const double probe : probesOf(*known, most)) {
+      if (std::abs(probe - value) < kElsewhere * std::abs(value)) continue;
+      candidates.push_back(releaseOf(term, value, probe));
+      candidates.back().elsewhere = true;
+    }
   }
 }
 
@@ -209,7 +225,7 @@ std::vector<Candidate> candidatesFor(const ModelDocument& model, const Excitatio
 
 std::vector<Candidate> candidatesFor(const FitState& state, const Excitation& most) {
   std::vector<Candidate> candidates = candidatesFor(state.model, most);
-  addHeldTerms(state, candidates);
+  addGivenTerms(state, most, candidates);
   if (isNominalFree(state)) forgetNominal(candidates);
   return candidates;
 }
@@ -268,8 +284,15 @@ Eigen::MatrixXd directionsOf(const Fitter& fitter, const FitState& state,
 void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candidate, double size) {
   const std::string strength = candidate.path();
   if (candidate.release) {
-    for (FreeParameter& held : state.free)
-      if (held.path == strength) held.deviation = std::numeric_limits<double>::infinity();
+    for (FreeParameter& term : state.free)
+      if (term.path == strength) {
+        term.deviation = std::numeric_limits<double>::infinity();
+        if (candidate.elsewhere) term.expected = 0.0;  // looked for once
+      }
+    if (!candidate.elsewhere) return;
+    *findParameter(state.model, strength) = candidate.value;
+    state.predicted = fitter.data().predict(state.model);
+    fitter.renewJacobian(state);
     return;
   }
   for (const auto& [path, value] : candidate.shapes) *findParameter(state.model, path) = value;

@@ -27,6 +27,16 @@ ParameterEstimate estimateOf(const std::string& path, const ModelDocument& befor
   return {path, unitOf(path), value, value - half, value + half, *findParameter(before, path)};
 }
 
+/// Half of a term's interval, infinite where the drive does not feel it.
+double halfInterval(const FitState& state, size_t index, double half) {
+  const std::string& path = state.free[index].path;
+  const EffectParameter* known = findEffectParameter(path);
+  if (known == nullptr) return half;
+  const double visible =
+      std::max(kInvisible * std::abs(known->typical), std::abs(*findParameter(state.model, path)));
+  return half < visible ? half : std::numeric_limits<double>::infinity();
+}
+
 /// Whether a term of the model has changed, or a number of which it says how sure it is.
 bool hasMoved(const ParameterEstimate& estimate, double error, const ModelDocument& before,
               bool calibrate) {
@@ -179,8 +189,8 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
     const auto at = static_cast<Eigen::Index>(i);
     const double error = std::sqrt(covariance(at, at));
     const std::string effect = effectOf(state.free[i].path);
-    ParameterEstimate estimate =
-        estimateOf(state.free[i].path, before, state.model, quantile * error);
+    ParameterEstimate estimate = estimateOf(state.free[i].path, before, state.model,
+                                            halfInterval(state, i, quantile * error));
     if (contains(result.effects, effect)) {
       of_effect[effect].push_back(estimate);
     } else {

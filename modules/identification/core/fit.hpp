@@ -100,6 +100,11 @@ Normal normalOf(const FitState& state, const Eigen::VectorXd& residuals,
 /// Prior precision of the free parameters (diagonal).
 Eigen::VectorXd priorPrecision(const std::vector<FreeParameter>& free);
 
+/// Whether a parameter is a term that the model already had, and not one that was found.
+inline bool isGiven(const FreeParameter& parameter) {
+  return parameter.expected != 0.0;
+}
+
 /// Whether a parameter stands on one of its bounds.
 bool onBound(const ModelDocument& model, const FreeParameter& parameter);
 

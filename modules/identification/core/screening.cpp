@@ -17,7 +17,11 @@ bool isSame(double a, double b) {
 
 bool isSame(const Candidate& a, const Candidate& b) {
   return a.effect == b.effect && a.parameter == b.parameter && a.change == b.change &&
-         isSame(a.since, b.since) && a.shapes == b.shapes;
+         isSame(a.since, b.since) && a.shapes == b.shapes && a.elsewhere == b.elsewhere;
+}
+
+bool isSimulated(const Candidate& candidate) {
+  return !candidate.release || candidate.elsewhere;
 }
 
 /// Of a term that is fitted: its column of the Jacobian.
@@ -78,13 +82,13 @@ Eigen::MatrixXd SensitivityCache::directions(const Fitter& fitter, const FitStat
                                              const std::vector<Candidate>& candidates) {
   std::vector<Candidate> missing;
   for (const Candidate& candidate : candidates)
-    if (!candidate.release && find(candidate) == nullptr) missing.push_back(candidate);
+    if (isSimulated(candidate) && find(candidate) == nullptr) missing.push_back(candidate);
   renew(fitter, state, missing);
   Eigen::MatrixXd all(state.predicted.size(), static_cast<Eigen::Index>(candidates.size()));
   for (size_t i = 0; i < candidates.size(); ++i)
-    all.col(static_cast<Eigen::Index>(i)) = candidates[i].release
-                                                ? releaseDirection(state, candidates[i])
-                                                : find(candidates[i])->direction;
+    all.col(static_cast<Eigen::Index>(i)) = isSimulated(candidates[i])
+                                                ? find(candidates[i])->direction
+                                                : releaseDirection(state, candidates[i]);
   return all;
 }
 

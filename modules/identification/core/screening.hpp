@@ -117,7 +117,9 @@ double familyWise(const std::vector<double>& largest_by_chance, double score);
 double criticalScore(const std::vector<double>& largest_by_chance, double alpha);
 
 /// One direction in which an effect that is off could act, and where a fit of it begins; or one in
-/// which a held term of the model may have changed (`release`).
+/// which a given term of the model may have changed (`release`): by little, or, where its slope
+/// says nothing because the drive does not reach the given value (limits, thresholds), to another
+/// value altogether (`elsewhere`).
 struct Candidate {
   std::string effect;
   std::string parameter;  ///< of the effect: the strength that is switched on
@@ -129,6 +131,7 @@ struct Candidate {
   std::vector<std::string> free;  ///< paths that a fit of this candidate frees
   std::string change_point;       ///< path of the time of a change; empty = none
   bool release = false;           ///< frees a held term: what was known of it no longer counts
+  bool elsewhere = false;         ///< of a release: begins at `value`, far from what is given
 
   /// Of the strength.
   std::string path() const { return effect + "." + parameter; }

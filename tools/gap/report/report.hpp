@@ -30,6 +30,9 @@ ParameterEstimate naturalEstimate(const ParameterEstimate& estimate);
 /// Unit in which a natural estimate is said.
 std::string saidUnit(const ParameterEstimate& natural);
 
+/// The interval of an estimate, limits as people say them, or that the drive does not show it.
+std::string saidIntervalOf(const ParameterEstimate& estimate);
+
 /// "limit 1.18 rad/s (1.15 to 1.21 rad/s)".
 std::string saidEstimate(const ParameterEstimate& estimate);
 

@@ -35,8 +35,8 @@ void addRow(const Finding& finding, const ParameterEstimate& estimate, const std
   table.rows.push_back({effect, lastPart(natural.parameter), saidBefore(estimate, natural),
                         said(natural.value, saidUnit(natural)) +
                             (isAtLimit(finding, estimate) ? " (at its limit)" : ""),
-                        saidInterval(natural.low, natural.high, saidUnit(natural)),
-                        saidRange(finding, estimate), saidTotal(finding, estimate)});
+                        saidIntervalOf(estimate), saidRange(finding, estimate),
+                        saidTotal(finding, estimate)});
 }
 
 /// Takes away a last column that says nothing.

@@ -122,11 +122,16 @@ std::string saidUnit(const ParameterEstimate& natural) {
   return natural.parameter == "friction" ? "" : natural.unit;
 }
 
+std::string saidIntervalOf(const ParameterEstimate& estimate) {
+  if (std::isinf(estimate.low) && std::isinf(estimate.high)) return "not seen in this drive";
+  const ParameterEstimate natural = naturalEstimate(estimate);
+  return saidInterval(natural.low, natural.high, saidUnit(natural));
+}
+
 std::string saidEstimate(const ParameterEstimate& estimate) {
   const ParameterEstimate natural = naturalEstimate(estimate);
-  const std::string unit = saidUnit(natural);
-  return lastPart(natural.parameter) + " " + said(natural.value, unit) + " (" +
-         saidInterval(natural.low, natural.high, unit) + ")";
+  return lastPart(natural.parameter) + " " + said(natural.value, saidUnit(natural)) + " (" +
+         saidIntervalOf(estimate) + ")";
 }
 
 std::string titleOf(const std::string& effect) {
