@@ -21,13 +21,17 @@ struct Made {
   double gyro_lag = 0.0;    ///< [s]
   double turn_sign = 1.0;   ///< of the motion against the command
   double forward_sign = 1.0;
-  double turning = 1.0;      ///< [rad/s] at most
-  double mirror = 1.0;       ///< of the map's y
-  double jump_time = 1e9;    ///< [s] from when INS times are late
-  double jump = 0.0;         ///< [s] by that much
-  double noise = 0.01;       ///< [m] and half of it [rad]
-  bool stands_first = true;  ///< for 5 s
-  bool alternates = false;   ///< the same turn and speed to and fro
+  double turning = 1.0;                    ///< [rad/s] at most
+  double mirror = 1.0;                     ///< of the map's y
+  double jump_time = 1e9;                  ///< [s] from when INS times are late
+  double jump = 0.0;                       ///< [s] by that much
+  double noise = 0.01;                     ///< [m] and half of it [rad]
+  double from = 1e9, to = 1e9;             ///< [s] between them something is wrong with the INS:
+  bool frozen = false, flipped = false;    ///< it repeats itself, its gyro has the other sign,
+  double turned = 0.0;                     ///< its heading has turned [rad],
+  bool swapped = false, reversed = false;  ///< or left and right, forwards and backwards
+  bool stands_first = true;                ///< for 5 s
+  bool alternates = false;                 ///< the same turn and speed to and fro
 };
 
 /// A command that changes every second and a half; a first-order vehicle that follows it.
@@ -56,8 +60,9 @@ Drive makeDrive(const Made& made) {
     if (i % 75 == 0)
       segment.commands.push_back(
           {time, {v_wanted - 0.5 * omega_wanted, v_wanted + 0.5 * omega_wanted}});
-    v += 0.1 * (made.forward_sign * v_wanted - v);
-    omega += 0.1 * (made.turn_sign * omega_wanted - omega);
+    const bool other = time >= made.from && time < made.to;
+    v += 0.1 * ((other && made.reversed ? -1.0 : 1.0) * made.forward_sign * v_wanted - v);
+    omega += 0.1 * ((other && made.swapped ? -1.0 : 1.0) * made.turn_sign * omega_wanted - omega);
     T_map_body = T_map_body * integrate({v, 0.0, omega}, 0.02);
     past.push_back({time, T_map_body});
     turned.push_back(omega);
@@ -73,6 +78,14 @@ Drive makeDrive(const Made& made) {
     sample.T_map_body = seen;
     sample.omega = made.gyro_scale * turned[turned.size() > old ? turned.size() - 1 - old : 0] +
                    made.gyro_bias;
+    const bool wrong = time >= made.from && time < made.to;
+    if (wrong && made.flipped) sample.omega = -sample.omega;
+    if (wrong) sample.T_map_body.yaw += made.turned;
+    if (wrong && made.frozen) {
+      const double stamp = sample.time;
+      sample = segment.ins.back();
+      sample.time = stamp;
+    }
     segment.ins.push_back(sample);
   }
   segment.end = made.length + std::max(0.0, made.jump);
@@ -351,4 +364,53 @@ TEST_CASE("segments that are taken out take their executions along and no others
   removeSegments({0, 1, 2}, drive);
   CHECK(drive.segments.empty());
   CHECK(drive.executions.empty());
+}
+
+TEST_CASE("what changes its meaning on the way is fatal, with its time") {
+  Made made;
+  made.from = 80.0;
+  made.to = 120.0;
+  const auto refused = [](const Made& changed, const char* what) {
+    const Drive drive = makeDrive(changed);
+    INFO(what << ": " << fatal(drive));
+    return lineWith(drive, what) != "" && fatal(drive) != "";
+  };
+  SECTION("frozen for ten seconds, and to the end") {
+    made.frozen = true;
+    made.to = 90.0;
+    CHECK(refused(made, "the INS is frozen: it says the same 101 times from 79.9 to 89.9 s"));
+    made.to = 200.0;
+    CHECK(refused(made, "the INS is frozen"));
+  }
+  SECTION("the gyro's sign, for a while, and from the middle to the end") {
+    made.flipped = true;
+    CHECK(refused(made, "the gyro turns against the heading, else it does not"));
+    made.from = 100.0;
+    made.to = 200.0;
+    CHECK(refused(made, "flipped sign"));
+  }
+  SECTION("left and right") {
+    made.swapped = true;
+    CHECK(refused(made, "s the heading turns against the commands, else it does not"));
+  }
+  SECTION("forwards and backwards") {
+    made.reversed = true;
+    CHECK(refused(made, "s the robot goes against the commands, else it does not"));
+  }
+  SECTION("the heading turns by a right angle") {
+    made.turned = 1.5708;
+    CHECK(refused(made, "the way does not go along the heading, else it does"));
+  }
+}
+
+TEST_CASE("an INS without noise that stands, and a robot that is held, are not frozen") {
+  Made made;
+  made.noise = 0.0;
+  REQUIRE(fatal(makeDrive(made)) == "");
+  Drive drive = makeDrive({});
+  for (Segment& segment : drive.segments)
+    for (InsSample& sample : segment.ins)
+      if (sample.time > 60.0 && sample.time < 80.0)
+        sample.omega = 1e-4 * std::sin(1e3 * sample.time);
+  REQUIRE(lineWith(drive, "frozen") == "");
 }

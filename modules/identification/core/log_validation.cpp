@@ -268,6 +268,7 @@ std::vector<LogNote> validateLog(const Drive& drive) {
   }
   checkGyro(drive, notes);
   checkCommands(drive, increments, notes);
+  checkMidway(drive, increments, notes);
   checkPoses(drive, increments, notes);
   describeStandstill(drive, notes);
   describeDriving(drive, increments, notes);

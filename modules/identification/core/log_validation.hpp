@@ -125,7 +125,8 @@ inline std::string digits(double value, int decimals = 1) {
 
 /// Whether a drive's measurements belong together, before anything is fitted:
 /// gyro against heading (sign, scale, offset of the clocks), motion against commands (sign, order
-/// in time, clocks that jump), jumps, fixes, noise and bias at standstill, and what was driven.
+/// in time, clocks that jump), what changes on the way (frozen, another sign), jumps, fixes, noise
+/// and bias at standstill, and what was driven.
 /** Fatal are only contradictions that no effect of the catalogue makes. The reader's own notes
  * (Drive::notes) are not repeated. */
 std::vector<LogNote> validateLog(const Drive& drive);
@@ -146,6 +147,9 @@ void removeSegments(const std::vector<size_t>& segments, Drive& drive);
 void checkGyro(const Drive& drive, Diagnostics& notes);
 void checkCommands(const Drive& drive, const std::vector<PoseIncrement>& increments,
                    Diagnostics& notes);
+/// What was sound and is not any more, or not yet: frozen, of another sign, turned.
+void checkMidway(const Drive& drive, const std::vector<PoseIncrement>& increments,
+                 Diagnostics& notes);
 void checkPoses(const Drive& drive, const std::vector<PoseIncrement>& increments,
                 Diagnostics& notes);
 void describeStandstill(const Drive& drive, Diagnostics& notes);
