@@ -41,11 +41,11 @@ Defect jumpClock(Rng& rng, int64_t when, std::vector<LogEvent>& events) {
   return {1.0, at(jump > 0 ? "clock jumps 7 s ahead at" : "clock jumps 7 s back at", when)};
 }
 
-Defect freezeIns(int64_t when, std::vector<LogEvent>& events) {
+Defect freezeIns(int64_t when, int64_t until, std::vector<LogEvent>& events) {
   ins_t frozen{};
   bool cold = false;
   editEach(events, kIns, [&](ins_t& ins) {
-    if (ins.utime < when) return;
+    if (ins.utime < when || ins.utime >= until) return;
     if (!cold) frozen = ins;
     cold = true;
     std::copy_n(frozen.position, 3, ins.position);
@@ -53,6 +53,20 @@ Defect freezeIns(int64_t when, std::vector<LogEvent>& events) {
     std::copy_n(frozen.rate, 3, ins.rate);
   });
   return {1.0, at("INS repeats itself from", when)};
+}
+
+Defect flipGyro(int64_t when, std::vector<LogEvent>& events) {
+  editEach(events, kIns, [when](ins_t& ins) {
+    if (ins.utime >= when) ins.rate[2] = -ins.rate[2];
+  });
+  return {1.0, at("rate[2] of INS has the wrong sign from", when)};
+}
+
+Defect swapTracks(int64_t when, std::vector<LogEvent>& events) {
+  editEach(events, kMotor, [when](motor_t& motor) {
+    if (motor.utime >= when) std::swap(motor.command_left, motor.command_right);
+  });
+  return {1.0, at("left and right of MOTOR are swapped from", when)};
 }
 
 Defect mixRobots(const std::vector<LogEvent>& other, std::vector<LogEvent>& events) {
@@ -82,8 +96,9 @@ Defect mixRobots(const std::vector<LogEvent>& other, std::vector<LogEvent>& even
 }  // namespace
 
 const std::vector<std::string>& defectNames() {
-  static const std::vector<std::string> names{"clock_jump", "frozen_ins", "flipped_gyro",
-                                              "truncated",  "no_motor",   "two_robots"};
+  static const std::vector<std::string> names{
+      "clock_jump", "frozen_ins",         "flipped_gyro",      "truncated",         "no_motor",
+      "two_robots", "frozen_for_seconds", "gyro_flips_midway", "tracks_swap_midway"};
   return names;
 }
 
@@ -94,7 +109,11 @@ Defect spoil(const std::string& defect, uint64_t seed, const std::vector<LogEven
   const auto span = static_cast<double>(events.back().utime - events.front().utime);
   const int64_t when = events.front().utime + static_cast<int64_t>(rng.uniform(0.3, 0.5) * span);
   if (defect == "clock_jump") return jumpClock(rng, when, events);
-  if (defect == "frozen_ins") return freezeIns(when, events);
+  if (defect == "frozen_ins") return freezeIns(when, INT64_MAX, events);
+  if (defect == "frozen_for_seconds")
+    return freezeIns(when, when + static_cast<int64_t>(rng.uniform(10e6, 40e6)), events);
+  if (defect == "gyro_flips_midway") return flipGyro(when, events);
+  if (defect == "tracks_swap_midway") return swapTracks(when, events);
   if (defect == "flipped_gyro") {
     editEach(events, kIns, [](ins_t& ins) { ins.rate[2] = -ins.rate[2]; });
     return {1.0, "rate[2] of all INS messages has the wrong sign"};

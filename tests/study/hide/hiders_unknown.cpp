@@ -89,6 +89,96 @@ Hider hideSteeringHysteresis(double size, double, Rng&) {
   return hider;
 }
 
+/// Power that each track gets from what it was given before.
+template <class EachTrack>
+Hider onTracks(EachTrack left) {
+  Hider hider;
+  hider.stage = Stage::kMotor;
+  hider.drive = [left, right = left](const Moment& now, MotorPower power) mutable {
+    return MotorPower{left(now, power.left, power.right, now.belt_left),
+                      right(now, power.right, power.left, now.belt_right)};
+  };
+  return hider;
+}
+
+Hider hideInnerTrackStall(double size, double, Rng&) {
+  const double least = 0.14 * size;  // of power [1]
+  Hider hider = onTracks([=](const Moment&, double own, double other, double) {
+    const bool inner = std::abs(own) < std::abs(other) - 0.1;
+    return inner && std::abs(own) < least ? 0.0 : own;
+  });
+  hider.levers = {{"inner_track_stalls_below", least, "1", false}};
+  return hider;
+}
+
+Hider hideReversalPause(double size, double, Rng&) {
+  const double pause = 0.12 * size;  // [s] in which relays change over
+  Hider hider =
+      onTracks([=, sense = 0.0, left = 0.0](const Moment& now, double own, double, double) mutable {
+        left -= now.dt;
+        if (std::abs(own) > 0.02) {
+          const double wanted = own > 0.0 ? 1.0 : -1.0;
+          if (wanted * sense < 0.0) left = pause;
+          sense = wanted;
+        }
+        return left > 0.0 ? 0.0 : own;
+      });
+  hider.levers = {{"pause_at_reversal", pause, "s", false}};
+  return hider;
+}
+
+Hider hideSlowToAccelerate(double size, double, Rng&) {
+  const double time = 0.2 * size;  // [s] of a power that grows; it falls at once
+  Hider hider = onTracks([=, given = 0.0](const Moment& now, double own, double, double) mutable {
+    const bool grows = own * given >= 0.0 && std::abs(own) > std::abs(given);
+    given = grows ? given + now.dt / time * (own - given) : own;
+    return given;
+  });
+  hider.levers = {{"time_of_growing_power", time, "s", false}};
+  return hider;
+}
+
+Hider hideSinkageAtRest(double size, double, Rng&) {
+  const double loss = 0.12 * size;  // of power, after it has stood
+  constexpr double kStands = 0.05;  // [m/s]
+  constexpr double kSinking = 0.7;  // [s]
+  constexpr double kOut = 0.35;     // [m] of driving that leads out
+  Hider hider =
+      onTracks([=, sunk = 0.0](const Moment& now, double own, double, double belt) mutable {
+        sunk += std::abs(belt) < kStands ? (1.0 - sunk) * now.dt / kSinking
+                                         : -sunk * std::abs(belt) * now.dt / kOut;
+        return std::copysign(std::max(0.0, std::abs(own) - loss * sunk), own);
+      });
+  hider.levers = {{"power_lost_after_rest", loss, "1", false}, {"way_out", kOut, "m", false}};
+  return hider;
+}
+
+Hider hideSharedCurrentLimit(double size, double, Rng&) {
+  const double most = 1.5 / (1.0 + 0.15 * size);  // of both powers together [1]
+  Hider hider;
+  hider.stage = Stage::kMotor;
+  hider.drive = [=](const Moment&, MotorPower power) {
+    const double sum = std::abs(power.left) + std::abs(power.right);
+    const double share = sum > most ? most / sum : 1.0;
+    return MotorPower{power.left * share, power.right * share};
+  };
+  hider.levers = {{"both_powers_at_most", most, "1", false}};
+  return hider;
+}
+
+Hider hideCastingTail(double size, double, Rng&) {
+  const double k = 0.16 * size;
+  constexpr double kSettling = 0.4;  // [s] of a tail that swings behind
+  Hider hider;
+  hider.push = [=, swung = 0.0](const Moment& now) mutable {
+    swung += now.dt / kSettling * (now.v_body.omega - swung);
+    // A towed weight turns on when the vehicle does not, and holds it back when it begins to.
+    return OutsideForce{0.0, 0.0, yawDamping() * k * (swung - now.v_body.omega)};
+  };
+  hider.levers = {{"tail_over_yaw_damping", k, "1", false}, {"settling", kSettling, "s", false}};
+  return hider;
+}
+
 }  // namespace
 
 std::vector<EffectSpec> unknownEffects() {
@@ -132,6 +222,60 @@ std::vector<EffectSpec> unknownEffects() {
        {},
        {},
        {"previous_turn", "previous_command"}},
+      {"inner_track_stall",
+       K::kOutOfCatalogue,
+       F::kPhysical,
+       S::kOther,
+       hideInnerTrackStall,
+       "an inner track that stands still when it gets little power",
+       {},
+       {},
+       {"command"}},
+      {"reversal_pause",
+       K::kOutOfCatalogue,
+       F::kPhysical,
+       S::kOther,
+       hideReversalPause,
+       "no power for a while after each reversal of a track",
+       {},
+       {},
+       {"previous_command", "time_since_command"}},
+      {"slow_to_accelerate",
+       K::kOutOfCatalogue,
+       F::kPhysical,
+       S::kOther,
+       hideSlowToAccelerate,
+       "power that grows slowly and falls at once",
+       {},
+       {},
+       {"acceleration", "time_since_command"}},
+      {"sinkage_at_rest",
+       K::kOutOfCatalogue,
+       F::kPhysical,
+       S::kOther,
+       hideSinkageAtRest,
+       "power lost on the first half metre after standing",
+       {},
+       {},
+       {"time_since_command", "previous_command"}},
+      {"shared_current_limit",
+       K::kOutOfCatalogue,
+       F::kPhysical,
+       S::kOther,
+       hideSharedCurrentLimit,
+       "the sum of both powers is limited",
+       {},
+       {},
+       {"speed", "command"}},
+      {"casting_tail",
+       K::kOutOfCatalogue,
+       F::kPhysical,
+       S::kOther,
+       hideCastingTail,
+       "a towed weight that swings behind",
+       {},
+       {},
+       {"acceleration", "time_since_command", "previous_command"}},
   };
 }
 

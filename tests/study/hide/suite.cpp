@@ -198,7 +198,7 @@ void addMedium(SuiteMaker& maker) {
   maker.addNulls(10, "mid", kShort);
   maker.addNulls(10, "high", kShort);
   maker.addPairs(20);
-  maker.addUnknown(4);
+  maker.addUnknown(2);
   maker.addDegenerate(1);
   maker.addBad(2);
 }
@@ -212,7 +212,7 @@ void addFull(SuiteMaker& maker) {
   for (const char* noise : {"mid", "high"})
     for (const double share : {kLong, kShort}) maker.addNulls(100, noise, share);
   maker.addPairs(200);
-  maker.addUnknown(24);
+  maker.addUnknown(10);
   maker.addDegenerate(12);
   maker.addBad(8);
 }
