@@ -10,8 +10,7 @@
 
 namespace tread::blind {
 
-/// The ways in which a log can be bad: clock_jump, frozen_ins, flipped_gyro, truncated, no_motor,
-/// two_robots.
+/// The ways in which a log can be bad: all along, or from or between moments midway.
 const std::vector<std::string>& defectNames();
 
 /// What was done to a log.
