@@ -88,9 +88,8 @@ void sayWhere(const std::string& folder, const Finding& finding) {
       (old ? "; " + folder + "/model.yaml is left from an earlier run." : "."));
 }
 
-int find(const FindOptions& options) {
-  tryFolder(options.out);
-  std::vector<InputFile> inputs;
+/// What find and repeat read.
+GapTask taskOf(const FindOptions& options, std::vector<InputFile>& inputs) {
   GapTask task;
   task.model = readModelDocument(options.model);
   task.decisions = decisionsOf({options.accepted, options.rejected, options.by}, task.model);
@@ -110,6 +109,13 @@ int find(const FindOptions& options) {
   task.parallel = onThreads(options.threads);
   task.calibrate = options.calibrate;
   task.keep_small = options.keep_small;
+  return task;
+}
+
+int find(const FindOptions& options) {
+  tryFolder(options.out);
+  std::vector<InputFile> inputs;
+  const GapTask task = taskOf(options, inputs);
   makeFolder(options.out);
   const Finding finding = findGap(task, say);
   writeFinding(options.out, finding, inputs);
@@ -119,6 +125,28 @@ int find(const FindOptions& options) {
 }
 
 constexpr int kSomethingMoved = 10;
+
+int repeat(const FindOptions& options) {
+  tryFolder(options.out);
+  std::vector<InputFile> inputs;
+  const GapTask task = taskOf(options, inputs);
+  makeFolder(options.out);
+  const Repetition repetition = repeatLogs(task, say);
+  writeFinding(options.out, repetition.together, inputs);
+  const std::string text = textOf(repetition);
+  writeText(options.out + "/repeat.txt", text);
+  say("");
+  std::cout << text;
+  sayWhere(options.out, repetition.together);
+  if (repetition.agrees()) return 0;
+  for (size_t i = 0; i < repetition.logs.size(); ++i) {
+    const std::string path =
+        options.out + "/" + std::filesystem::path(repetition.logs[i]).stem().string() + ".yaml";
+    writeText(path, formatModelDocument(repetition.modelOf(i)));
+    say("The same with what is that day's: " + path);
+  }
+  return kSomethingMoved;
+}
 
 struct CompareOptions {
   std::string first;
@@ -177,6 +205,30 @@ void addFind(CLI::App& app, int& status) {
   command->callback([options, &status] { status = find(*options); });
 }
 
+void addRepeat(CLI::App& app, int& status) {
+  const auto options = std::make_shared<FindOptions>();
+  CLI::App* command = app.add_subcommand(
+      "repeat", "do several days of one vehicle say the same, and what is the day's?");
+  command->footer(
+      "Runs find on each log and on all together, and fits what all together show on each log.\n"
+      "Parameters that agree beyond chance's reach are the vehicle's, the others that day's "
+      "(ground,\n"
+      "battery, INS). Into --out: the files of find for all together, repeat.txt, and for each "
+      "log\n"
+      "a model with what is that day's. Exit status: 0 all agree, 10 something differs, 2 bad "
+      "input.");
+  command->add_option("LOGS", options->train, "two or more")->required()->expected(-1);
+  command->add_option("--model", options->model, "model file (YAML)")->required();
+  command->add_option("--out", options->out, "folder; made if needed")->required();
+  command->add_flag("--calibrate", options->calibrate,
+                    "fit lag, delay and gains of the nominal model, too");
+  command->add_option("--seed", options->seed, "of the random draws of the tests")
+      ->capture_default_str()
+      ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));
+  addThreads(*command, options->threads);
+  command->callback([options, &status] { status = repeat(*options); });
+}
+
 void addExplain(CLI::App& app) {
   const auto name = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand(
@@ -222,6 +274,7 @@ int main(int argc, char** argv) {
     tread::gap::addWhatIf(app);
     tread::gap::addPlan(app, status);
     tread::gap::addCompare(app, status);
+    tread::gap::addRepeat(app, status);
     return tread::parseCommandLine(app, argc, argv).value_or(status);
   });
 }

@@ -9,6 +9,7 @@
 #include "common/report/page.hpp"
 #include "common/vehicle/kernel.hpp"
 #include "common/vehicle/model_document.hpp"
+#include "modules/identification/core/discovery.hpp"
 #include "modules/identification/core/drive.hpp"
 #include "modules/identification/core/finding.hpp"
 #include "modules/identification/core/fit.hpp"
@@ -232,5 +233,40 @@ LogChange compareLogs(const ModelDocument& model, const Drive& first, const Driv
 
 /// The answer in words and as a table.
 std::string textOf(const LogChange& change);
+
+/// One parameter of the model of all logs together, fitted on each of them.
+struct RepeatedParameter {
+  std::string parameter;  ///< path as in findParameter()
+  std::string unit;
+  double common = 0.0;         ///< mean with the weights of the errors
+  std::vector<double> values;  ///< by log
+  std::vector<double> errors;  ///< standard errors over blocks of driving
+  double farthest = 0.0;       ///< [standard errors] between two logs, at most
+  bool agrees = true;          ///< no two logs differ beyond chance: it is the vehicle's
+};
+
+/// What several logs of one vehicle say, each alone and all together.
+struct Repetition {
+  std::vector<std::string> logs;
+  std::vector<Finding> alone;
+  Finding together;
+  std::vector<RepeatedParameter> parameters;  ///< none if all together cannot tell
+  double needed = 0.0;                        ///< [standard errors] that no chance explains
+
+  bool agrees() const;
+  /// Effects that are named in any log or in all together.
+  std::vector<std::string> names() const;
+  size_t logsThatName(const std::string& effect) const;
+  /// The model of all together with what is that day's: ground, battery, INS.
+  ModelDocument modelOf(size_t log) const;
+};
+
+/// Looks for the same in each of the task's training logs, in all together, and at the sizes of
+/// what all together show.
+/** Throws std::invalid_argument for fewer than two logs. */
+Repetition repeatLogs(const GapTask& task, const Progress& say);
+
+/// The answer as two tables.
+std::string textOf(const Repetition& repetition);
 
 }  // namespace tread::gap

@@ -58,3 +58,53 @@ TEST_CASE("a log below ten blocks is refused in the words of find") {
                     "synthetic: only 120 s of measured driving, too little to tell chance from "
                     "cause: drive at least 200 s");
 }
+
+TEST_CASE("what several logs share is the vehicle's, what differs is the day's") {
+  GapTask task;
+  task.model = syntheticVehicle();
+  const double slips[] = {0.04, 0.16};
+  for (uint64_t day = 0; day < 2; ++day) {
+    const ModelDocument truth =
+        vehicleWith({{"motor_deadband.speed", 0.1}, {"slip_ratio.slip", slips[day]}});
+    task.train.push_back(syntheticDrive(truth, 400.0, 20 + day));
+    task.train.back().name = "day" + std::to_string(day + 1);
+  }
+  const Repetition repetition = repeatLogs(task, kSilent);
+  CHECK(repetition.logsThatName("motor_deadband") == 2);
+  CHECK_FALSE(repetition.agrees());
+  REQUIRE(!repetition.parameters.empty());
+  bool deadband = false;
+  for (const RepeatedParameter& parameter : repetition.parameters) {
+    CAPTURE(parameter.parameter, parameter.values[0], parameter.values[1], parameter.farthest);
+    if (parameter.parameter != "motor_deadband.speed") continue;
+    deadband = true;
+    CHECK(parameter.agrees);
+    CHECK(parameter.common == Approx(0.1).margin(0.01));
+  }
+  CHECK(deadband);
+  for (size_t day = 0; day < 2; ++day) {
+    const ModelDocument model = repetition.modelOf(day);
+    CHECK(model.vehicle.effects.motor_deadband == Approx(0.1).margin(0.015));
+    const double slip = model.vehicle.effects.slip_ratio;
+    CHECK((1.0 - slip) * model.vehicle.forward_gain ==
+          Approx((1.0 - slips[day]) * task.model.vehicle.forward_gain).epsilon(0.03));
+  }
+  CHECK(textOf(repetition).find("the day's") != std::string::npos);
+  CHECK(textOf(repetition).find("motor_deadband           named in 2 of 2 logs") == 0);
+  task.train.pop_back();
+  CHECK_THROWS_WITH(repeatLogs(task, kSilent), "repeat: one log repeats nothing; give two or more");
+}
+
+TEST_CASE("logs of one vehicle on one ground agree") {
+  const ModelDocument truth = vehicleWith({{"motor_deadband.speed", 0.1}});
+  GapTask task;
+  task.model = syntheticVehicle();
+  for (uint64_t day = 0; day < 3; ++day) {
+    task.train.push_back(syntheticDrive(truth, 300.0, 30 + day));
+    task.train.back().name = "day" + std::to_string(day + 1);
+  }
+  const Repetition repetition = repeatLogs(task, kSilent);
+  INFO(textOf(repetition));
+  CHECK(repetition.agrees());
+  CHECK(repetition.logsThatName("motor_deadband") == 3);
+}
