@@ -211,11 +211,9 @@ void addRepeat(CLI::App& app, int& status) {
       "repeat", "do several days of one vehicle say the same, and what is the day's?");
   command->footer(
       "Runs find on each log and on all together, and fits what all together show on each log.\n"
-      "Parameters that agree beyond chance's reach are the vehicle's, the others that day's "
-      "(ground,\n"
-      "battery, INS). Into --out: the files of find for all together, repeat.txt, and for each "
-      "log\n"
-      "a model with what is that day's. Exit status: 0 all agree, 10 something differs, 2 bad "
+      "Parameters that agree within chance are the vehicle's, the others are the day's (ground,\n"
+      "battery, INS). Into --out: the files of find for all together, repeat.txt, and for each\n"
+      "log a model with what is that day's. Exit status: 0 all agree, 10 something differs, 2 bad\n"
       "input.");
   command->add_option("LOGS", options->train, "two or more")->required()->expected(-1);
   command->add_option("--model", options->model, "model file (YAML)")->required();

@@ -210,3 +210,18 @@ TEST_CASE("of a truncated log the whole events are compared, and what was lost i
 }
 
 }  // namespace tread::gap
+
+TEST_CASE("repeat wants two logs, and refuses what is none in one line") {
+  const Folder folder;
+  writeDrive(folder.path("a.lcmlog"), 40.0);
+  const std::string model =
+      " --model " + kModels + "warthog_asphalt.yaml --out " + folder.path("o");
+  const Run alone = run("repeat " + folder.path("a.lcmlog") + model);
+  INFO(alone.printed);
+  CHECK(alone.status == 2);
+  CHECK(alone.says("repeat: one log repeats nothing; give two or more"));
+  const Run twice =
+      run("repeat " + folder.path("a.lcmlog") + " " + folder.path("a.lcmlog") + model);
+  CHECK(twice.status == 2);
+  CHECK(twice.says("the same file as a.lcmlog; give each log once"));
+}
