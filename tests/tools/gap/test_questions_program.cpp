@@ -209,8 +209,6 @@ TEST_CASE("of a truncated log the whole events are compared, and what was lost i
   CHECK(nothing.says("cut.lcmlog: "));
 }
 
-}  // namespace tread::gap
-
 TEST_CASE("repeat wants two logs, and refuses what is none in one line") {
   const Folder folder;
   writeDrive(folder.path("a.lcmlog"), 40.0);
@@ -225,3 +223,5 @@ TEST_CASE("repeat wants two logs, and refuses what is none in one line") {
   CHECK(twice.status == 2);
   CHECK(twice.says("the same file as a.lcmlog; give each log once"));
 }
+
+}  // namespace tread::gap
