@@ -285,8 +285,7 @@ void LearnerNode::hear(const motor_t& motor) {
        by_hand && motor.motor_command_kind == static_cast<int16_t>(learner_.set().content().kind)},
       lost);
   auto message = blank<execution_t>();
-  for (const HandDrivenPattern& driven : hand_.take(learner_.set())) {
-    if (!driven.completed && !learner_.learnsParts()) continue;
+  for (const HandDrivenPattern& driven : hand_.take(learner_.set(), learner_.learnsParts())) {
     auto record = blank<execution_record_t>();
     record.record_execution_id = driven.started;
     record.record_pattern_id = driven.pattern_id;

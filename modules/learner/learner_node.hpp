@@ -122,9 +122,11 @@ void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config);
  *  4. A rule that learns from parts follows a running execution: sets are published as if it had
  *     ended there, but neither written nor reported. What it teaches in the end replaces them.
  *  5. With `shock` it also learns from INS and MAP how hard ground shakes the robot
- * (ShockPublisher). Each (run id, execution id) is handled once. Versions only go up: see
- * LearnerMemory. While a learner that was started earlier lives, this one publishes and learns
- * nothing; then it goes on above the versions of that one. */
+ *     (ShockPublisher).
+ *
+ * Each (run id, execution id) is handled once. Versions only go up: see LearnerMemory. While a
+ * learner that was started earlier lives, this one publishes and learns nothing; then it goes on
+ * above the versions of that one. */
 class LearnerNode : public Node {
  public:
   LearnerNode(LearnerNodeConfig config, Bus& bus, Store& store);

@@ -203,12 +203,15 @@ TEST_CASE("a limit that is given higher than the drive goes, and is lower, is wh
         findOn({{"speed_saturation.inverse_limit", 1.0 / 0.7}}, model, 400.0, seed);
     CHECK(finding.verdict == GapVerdict::kFound);
     CHECK(namesIn(finding).empty());
+    int limits = 0;
     for (const ParameterEstimate& estimate : finding.identified.calibrated) {
       if (estimate.parameter != "speed_saturation.inverse_limit") continue;
+      ++limits;
       CHECK(estimate.moved);
       CHECK(estimate.value == Approx(1.0 / 0.7).epsilon(0.03));
       CHECK(estimate.before == Approx(1.0 / 1.6));
     }
+    CHECK(limits == 1);
   }
 }
 

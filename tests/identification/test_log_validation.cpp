@@ -384,18 +384,18 @@ TEST_CASE("what changes its meaning on the way is fatal, with its time") {
   }
   SECTION("the gyro's sign, for a while, and from the middle to the end") {
     made.flipped = true;
-    CHECK(refused(made, "the gyro turns against the heading, else it does not"));
+    CHECK(refused(made, "the gyro turns against the heading, elsewhere it does not"));
     made.from = 100.0;
     made.to = 200.0;
     CHECK(refused(made, "flipped sign"));
   }
   SECTION("left and right") {
     made.swapped = true;
-    CHECK(refused(made, "s the heading turns against the commands, else it does not"));
+    CHECK(refused(made, "s the heading turns against the commands, elsewhere it does not"));
   }
   SECTION("forwards and backwards") {
     made.reversed = true;
-    CHECK(refused(made, "s the robot goes against the commands, else it does not"));
+    CHECK(refused(made, "s the robot goes against the commands, elsewhere it does not"));
   }
   SECTION("the heading turns by a right angle") {
     made.turned = 1.5708;
@@ -410,7 +410,52 @@ TEST_CASE("an INS without noise that stands, and a robot that is held, are not f
   Drive drive = makeDrive({});
   for (Segment& segment : drive.segments)
     for (InsSample& sample : segment.ins)
-      if (sample.time > 60.0 && sample.time < 80.0)
+      if (sample.time > 60.0 && sample.time < 80.0) {
+        sample.T_map_body = Pose2{};
         sample.omega = 1e-4 * std::sin(1e3 * sample.time);
+      }
   REQUIRE(lineWith(drive, "frozen") == "");
+}
+
+TEST_CASE("a gyro that says the same while poses go on is not a frozen INS") {
+  Made made;
+  made.noise = 0.0;
+  Drive drive = makeDrive(made);
+  for (InsSample& sample : drive.segments[0].ins) {
+    if (sample.time < 60.0 || sample.time > 64.0) continue;
+    sample.omega = 0.25;
+    if (sample.time < 60.2) sample.T_map_body = {kNotMeasured, kNotMeasured, kNotMeasured};
+  }
+  REQUIRE(lineWith(drive, "the INS is frozen") == "");
+}
+
+TEST_CASE("noise while it stands, and turns on the spot with a lever arm, are no flipped sign") {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  Drive drive = makeDrive({});
+  Segment& segment = drive.segments[0];
+  // Half an hour of standing, the heading's noise independent of the gyro's.
+  segment.commands.push_back({200.0, {}});
+  const Pose2 stand = segment.ins.back().T_map_body;
+  for (double time = 200.0; time < 2000.0; time += 0.5) {
+    InsSample sample = segment.ins.back();
+    sample.time = time;
+    sample.omega = 0.002 * normal(random);
+    sample.T_map_body = {stand.x + 0.01 * normal(random), stand.y + 0.01 * normal(random),
+                         stand.yaw + 0.005 * normal(random)};
+    segment.ins.push_back(sample);
+  }
+  // A minute of turning on the spot, the measured point half a metre ahead.
+  segment.commands.push_back({2000.0, {-0.25, 0.25}});
+  for (double time = 2000.0; time < 2060.0; time += 0.5) {
+    InsSample sample = segment.ins.back();
+    const double yaw = stand.yaw + 0.5 * (time - 2000.0);
+    sample.time = time;
+    sample.omega = 0.5 + 0.002 * normal(random);
+    sample.T_map_body = {stand.x + 0.5 * std::cos(yaw), stand.y + 0.5 * std::sin(yaw), yaw};
+    segment.ins.push_back(sample);
+  }
+  segment.end = 2060.0;
+  REQUIRE(lineWith(drive, "flipped") == "");
+  REQUIRE(lineWith(drive, "turned; cut") == "");
 }

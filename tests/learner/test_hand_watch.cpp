@@ -53,7 +53,7 @@ struct Motors {
     for (const int64_t end = now + static_cast<int64_t>(seconds * 1e6); now < end; now += 50'000) {
       watch.add({now, command, by_hand}, lost);
       lost = false;
-      for (const HandDrivenPattern& one : watch.take(set)) found.push_back(one);
+      for (const HandDrivenPattern& one : watch.take(set, true)) found.push_back(one);
     }
   }
   std::vector<int> ids() const {

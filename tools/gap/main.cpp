@@ -126,6 +126,15 @@ int find(const FindOptions& options) {
 
 constexpr int kSomethingMoved = 10;
 
+/// Files for the models of days: their logs may have one name in several folders.
+std::vector<std::string> dayFiles(const FindOptions& options) {
+  std::vector<std::string> files;
+  for (size_t i = 0; i < options.train.size(); ++i)
+    files.push_back(options.out + "/day" + std::to_string(i + 1) + "_" +
+                    std::filesystem::path(options.train[i]).stem().string() + ".yaml");
+  return files;
+}
+
 int repeat(const FindOptions& options) {
   tryFolder(options.out);
   std::vector<InputFile> inputs;
@@ -135,15 +144,15 @@ int repeat(const FindOptions& options) {
   writeFinding(options.out, repetition.together, inputs);
   const std::string text = textOf(repetition);
   writeText(options.out + "/repeat.txt", text);
-  say("");
-  std::cout << text;
+  std::cout << '\n' << text;
   sayWhere(options.out, repetition.together);
-  if (repetition.agrees()) return 0;
-  for (size_t i = 0; i < repetition.logs.size(); ++i) {
-    const std::string path =
-        options.out + "/" + std::filesystem::path(repetition.logs[i]).stem().string() + ".yaml";
-    writeText(path, formatModelDocument(repetition.modelOf(i)));
-    say("The same with what is that day's: " + path);
+  if (repetition.together.verdict == GapVerdict::kCannotTell)
+    return static_cast<int>(GapVerdict::kCannotTell);
+  if (!repetition.differs()) return 0;
+  const std::vector<std::string> files = dayFiles(options);
+  for (size_t i = 0; i < files.size(); ++i) {
+    writeText(files[i], formatModelDocument(repetition.modelOf(i)));
+    say("The same with what is that day's: " + files[i]);
   }
   return kSomethingMoved;
 }
@@ -168,6 +177,13 @@ int compare(const CompareOptions& options) {
     if (!drive->lost.empty()) std::cout << drive->lost << '\n';
   std::cout << textOf(change) << std::flush;
   return change.anyMoved() ? kSomethingMoved : 0;
+}
+
+void addSeedAndThreads(CLI::App& command, FindOptions& options) {
+  command.add_option("--seed", options.seed, "of the random draws of the tests")
+      ->capture_default_str()
+      ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));
+  addThreads(command, options.threads);
 }
 
 void addFind(CLI::App& app, int& status) {
@@ -198,10 +214,7 @@ void addFind(CLI::App& app, int& status) {
       ->expected(-1);
   command->add_option("--by", options->by,
                       "who accepts or rejects; for the new model's provenance");
-  command->add_option("--seed", options->seed, "of the random draws of the tests")
-      ->capture_default_str()
-      ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));
-  addThreads(*command, options->threads);
+  addSeedAndThreads(*command, *options);
   command->callback([options, &status] { status = find(*options); });
 }
 
@@ -213,17 +226,14 @@ void addRepeat(CLI::App& app, int& status) {
       "Runs find on each log and on all together, and fits what all together show on each log.\n"
       "Parameters that agree within chance are the vehicle's, the others are the day's (ground,\n"
       "battery, INS). Into --out: the files of find for all together, repeat.txt, and for each\n"
-      "log a model with what is that day's. Exit status: 0 all agree, 10 something differs, 2 bad\n"
-      "input.");
+      "log a model with what is that day's. Exit status: 0 nothing differs, 10 something\n"
+      "does, 15 all together cannot tell, 2 bad input.");
   command->add_option("LOGS", options->train, "two or more")->required()->expected(-1);
   command->add_option("--model", options->model, "model file (YAML)")->required();
   command->add_option("--out", options->out, "folder; made if needed")->required();
   command->add_flag("--calibrate", options->calibrate,
                     "fit lag, delay and gains of the nominal model, too");
-  command->add_option("--seed", options->seed, "of the random draws of the tests")
-      ->capture_default_str()
-      ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));
-  addThreads(*command, options->threads);
+  addSeedAndThreads(*command, *options);
   command->callback([options, &status] { status = repeat(*options); });
 }
 

@@ -238,11 +238,12 @@ std::string textOf(const LogChange& change);
 struct RepeatedParameter {
   std::string parameter;  ///< path as in findParameter()
   std::string unit;
-  double common = 0.0;         ///< mean with the weights of the errors
-  std::vector<double> values;  ///< by log
-  std::vector<double> errors;  ///< standard errors over blocks of driving
-  double farthest = 0.0;       ///< [standard errors] between two logs, at most
-  bool agrees = true;          ///< no two logs differ beyond chance: it is the vehicle's
+  double common = kNotMeasured;  ///< mean of the logs that see it, with the weights of the errors
+  std::vector<double> values;    ///< by log
+  std::vector<double> errors;    ///< standard errors over blocks of driving
+  std::vector<bool> seen;        ///< by log: its error is below the parameter or what is typical
+  double farthest = 0.0;         ///< [standard errors] between two logs that see it, at most
+  bool differs = false;          ///< beyond chance: it is the day's
 };
 
 /// What several logs of one vehicle say, each alone and all together.
@@ -253,7 +254,7 @@ struct Repetition {
   std::vector<RepeatedParameter> parameters;  ///< none if all together cannot tell
   double needed = 0.0;                        ///< [standard errors] that no chance explains
 
-  bool agrees() const;
+  bool differs() const;
   /// Effects that are named in any log or in all together.
   std::vector<std::string> names() const;
   size_t logsThatName(const std::string& effect) const;
@@ -263,7 +264,7 @@ struct Repetition {
 
 /// Looks for the same in each of the task's training logs, in all together, and at the sizes of
 /// what all together show.
-/** Throws std::invalid_argument for fewer than two logs. */
+/** Throws std::invalid_argument for fewer than two logs, and for one with too little driving. */
 Repetition repeatLogs(const GapTask& task, const Progress& say);
 
 /// The answer as two tables.

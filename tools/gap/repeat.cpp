@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "modules/identification/core/discovery.hpp"
+#include "modules/identification/core/observations.hpp"
 #include "modules/identification/core/search.hpp"
 #include "tools/gap/questions.hpp"
 #include "tools/gap/report/report.hpp"
@@ -21,16 +22,12 @@ std::vector<std::string> namesOf(const Finding& finding) {
   return names;
 }
 
-/// Mean with the weights of the errors.
-double commonValue(const std::vector<LogFit>& fits, size_t parameter) {
-  double sum = 0.0, weights = 0.0;
-  for (const LogFit& fit : fits) {
-    const double error = fit.errors[parameter];
-    if (!(std::isfinite(error) && error > 0.0)) continue;
-    sum += fit.values[parameter] / (error * error);
-    weights += 1.0 / (error * error);
-  }
-  return weights > 0.0 ? sum / weights : fits.front().values[parameter];
+/// Whether a log says anything of a parameter: its error is less than what is typical, or than it.
+bool isSeen(const LogFit& fit, size_t parameter) {
+  const double error = fit.errors[parameter];
+  const EffectParameter* known = findEffectParameter(fit.parameters[parameter]);
+  const double typical = known != nullptr ? std::abs(known->typical) : 0.0;
+  return error > 0.0 && error < std::max(typical, std::abs(fit.values[parameter]));
 }
 
 RepeatedParameter repeatedParameter(const std::vector<LogFit>& fits, size_t parameter,
@@ -38,27 +35,38 @@ RepeatedParameter repeatedParameter(const std::vector<LogFit>& fits, size_t para
   RepeatedParameter repeated;
   repeated.parameter = fits.front().parameters[parameter];
   repeated.unit = unitOf(repeated.parameter);
-  repeated.common = commonValue(fits, parameter);
+  double sum = 0.0, weights = 0.0;
   for (const LogFit& fit : fits) {
+    const double error = fit.errors[parameter];
     repeated.values.push_back(fit.values[parameter]);
-    repeated.errors.push_back(fit.errors[parameter]);
+    repeated.errors.push_back(error);
+    repeated.seen.push_back(isSeen(fit, parameter));
+    if (!repeated.seen.back()) continue;
+    sum += fit.values[parameter] / (error * error);
+    weights += 1.0 / (error * error);
   }
+  if (weights > 0.0) repeated.common = sum / weights;
   for (size_t i = 0; i < fits.size(); ++i)
     for (size_t j = 0; j < i; ++j) {
+      if (!repeated.seen[i] || !repeated.seen[j]) continue;
       const Movement movement{repeated.parameter, repeated.unit,      repeated.values[j],
                               repeated.errors[j], repeated.values[i], repeated.errors[i]};
       repeated.farthest = std::max(repeated.farthest, std::abs(movement.sigmas()));
     }
-  repeated.agrees = repeated.farthest <= needed;
+  repeated.differs = repeated.farthest > needed;
   return repeated;
 }
 
-/// "1.18 +- 0.02 rad/s", or that the log does not say.
 std::string saidValue(const RepeatedParameter& parameter, size_t log) {
-  const double value = parameter.values[log];
-  const double error = parameter.errors[log];
-  if (!std::isfinite(error) || error > std::max(1.0, 10.0 * std::abs(value))) return "not seen";
-  return threeDigits(value) + " \u00b1 " + threeDigits(error);
+  if (!parameter.seen[log]) return "not seen";
+  return threeDigits(parameter.values[log]) + " \u00b1 " + threeDigits(parameter.errors[log]);
+}
+
+std::string saidOwner(const RepeatedParameter& parameter) {
+  const auto seen = std::count(parameter.seen.begin(), parameter.seen.end(), true);
+  if (parameter.differs) return "the day's, " + threeDigits(parameter.farthest) + " sigma";
+  if (seen > 1) return "the vehicle's";
+  return seen == 1 ? "seen in one log only" : "seen in none";
 }
 
 /// Columns of text, each as wide as its widest cell; plus and minus is one place in two bytes.
@@ -82,9 +90,9 @@ std::string tableText(const std::vector<std::vector<std::string>>& rows) {
 
 }  // namespace
 
-bool Repetition::agrees() const {
-  return std::all_of(parameters.begin(), parameters.end(),
-                     [](const RepeatedParameter& parameter) { return parameter.agrees; });
+bool Repetition::differs() const {
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [](const RepeatedParameter& parameter) { return parameter.differs; });
 }
 
 size_t Repetition::logsThatName(const std::string& effect) const {
@@ -104,25 +112,26 @@ std::vector<std::string> Repetition::names() const {
 ModelDocument Repetition::modelOf(size_t log) const {
   ModelDocument model = together.identified.model;
   for (const RepeatedParameter& parameter : parameters)
-    if (!parameter.agrees) *findParameter(model, parameter.parameter) = parameter.values[log];
+    if (parameter.differs && parameter.seen[log])
+      *findParameter(model, parameter.parameter) = parameter.values[log];
   return model;
 }
 
 Repetition repeatLogs(const GapTask& task, const Progress& say) {
   if (task.train.size() < 2)
     throw std::invalid_argument("repeat: one log repeats nothing; give two or more");
+  for (const Drive& drive : task.train) {
+    // Before an hour of work, not after it.
+    const std::vector<Drive> alone{drive};
+    const std::string problem = tooLittleDriving(Observations(alone, ObservationSettings{}));
+    if (!problem.empty()) throw std::invalid_argument(drive.name + ": " + problem);
+  }
   Repetition repetition;
   const Progress silent = [](const std::string&) {};
-  const auto notesOf = [&task](const Drive& drive) {
-    std::vector<LogNote> notes;
-    std::copy_if(task.log_notes.begin(), task.log_notes.end(), std::back_inserter(notes),
-                 [&drive](const LogNote& note) { return note.log == drive.name; });
-    return notes;
-  };
   GapTask one = task;
   for (const Drive& drive : task.train) {
     one.train = {drive};
-    one.log_notes = notesOf(drive);
+    one.log_notes = drive.notes;
     repetition.logs.push_back(drive.name);
     repetition.alone.push_back(findGap(one, silent));
     const Finding& finding = repetition.alone.back();
@@ -156,16 +165,17 @@ std::string textOf(const Repetition& repetition) {
                       contains(namesOf(repetition.together), name) ? ", and in all together" : "");
   }
   if (repetition.names().empty()) text += "No effect is named in any log.\n";
+  if (repetition.together.verdict == GapVerdict::kCannotTell)
+    return text + "All together cannot tell: " + repetition.together.reason + ".\n";
   if (repetition.parameters.empty()) return text;
   std::vector<std::vector<std::string>> rows{{"parameter", "unit", "all"}};
   for (const std::string& log : repetition.logs) rows[0].push_back(log);
   rows[0].push_back("whose");
   for (const RepeatedParameter& parameter : repetition.parameters) {
-    rows.push_back({parameter.parameter, parameter.unit, threeDigits(parameter.common)});
+    rows.push_back({parameter.parameter, parameter.unit,
+                    std::isfinite(parameter.common) ? threeDigits(parameter.common) : "-"});
     for (size_t i = 0; i < logs; ++i) rows.back().push_back(saidValue(parameter, i));
-    rows.back().push_back(parameter.agrees
-                              ? "the vehicle's"
-                              : "the day's, " + threeDigits(parameter.farthest) + " sigma");
+    rows.back().push_back(saidOwner(parameter));
   }
   return text + "\n" + tableText(rows) + "\nFrom " + threeDigits(repetition.needed) +
          " sigma between two logs on it is no chance, with " +

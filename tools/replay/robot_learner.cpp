@@ -115,8 +115,8 @@ std::string partsDifference(const SetParts& log, const SetParts& replay, double 
   return "";
 }
 
-/// Versions of an execution that was still running which a newer one of the same execution overtook
-/// before they were sent: a busy host's learner has several ready at once.
+/// Versions that a newer one of the same parent overtook before they were sent: while an execution
+/// runs, a busy host's learner has several ready at once.
 std::set<int64_t> overtaken(const Published& in_log, const Published& replay) {
   std::map<int64_t, int64_t> newest;  // by parent
   for (const auto& [version, parts] : in_log.sets)

@@ -27,7 +27,7 @@ ParameterEstimate estimateOf(const std::string& path, const ModelDocument& befor
   return {path, unitOf(path), value, value - half, value + half, *findParameter(before, path)};
 }
 
-/// Half of a term's interval, infinite where the drive does not feel it.
+/// Half of a given term's interval, infinite where the drive does not feel it.
 double halfInterval(const FitState& state, size_t index, double half) {
   const std::string& path = state.free[index].path;
   const EffectParameter* known = findEffectParameter(path);
@@ -189,9 +189,10 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
     const auto at = static_cast<Eigen::Index>(i);
     const double error = std::sqrt(covariance(at, at));
     const std::string effect = effectOf(state.free[i].path);
-    ParameterEstimate estimate = estimateOf(state.free[i].path, before, state.model,
-                                            halfInterval(state, i, quantile * error));
-    if (contains(result.effects, effect)) {
+    const bool found = contains(result.effects, effect);
+    const double half = found ? quantile * error : halfInterval(state, i, quantile * error);
+    ParameterEstimate estimate = estimateOf(state.free[i].path, before, state.model, half);
+    if (found) {
       of_effect[effect].push_back(estimate);
     } else {
       estimate.moved = hasMoved(estimate, error, before, settings.calibrate);
@@ -328,6 +329,23 @@ UnseenErrors errorsOnHalves(const GapTask& task, const Fitter& fitter, const Fou
   return unseen;
 }
 
+/// Widens the intervals of found effects by half of what the two halves of the driving say apart.
+/** Blocks tell how a size scatters as long as its form is right and the effects beside it are the
+ * same; where the halves choose others, or one does without it, that scatters, too. */
+void widenByHalves(const std::vector<Unseen>& halves, IdentifiedModel& identified) {
+  for (FoundEffect& effect : identified.effects)
+    for (ParameterEstimate& estimate : effect.parameters) {
+      if (parameterNamed(effectNamed(effect.name),
+                         estimate.parameter.substr(effect.name.size() + 1))
+              .role == ParameterRole::kShape)
+        continue;
+      const double apart = 0.5 * (*findParameter(halves[0].model, estimate.parameter) -
+                                  *findParameter(halves[1].model, estimate.parameter));
+      estimate.low = estimate.value - std::hypot(estimate.value - estimate.low, apart);
+      estimate.high = estimate.value + std::hypot(estimate.high - estimate.value, apart);
+    }
+}
+
 /// Noise of what a model leaves, channel by channel.
 Noise residualNoise(const Fitter& fitter, const ModelDocument& model) {
   const Observations& data = fitter.data();
@@ -369,6 +387,7 @@ Finding findGap(const GapTask& task, const Progress& say) {
   const ModelDocument& after = finding.identified.model;
   const UnseenErrors unseen = test ? errorsOnTest(task, *test, after)
                                    : errorsOnHalves(task, fitter, result, settings, memory);
+  if (!test) widenByHalves(unseen.parts, finding.identified);
   finding.gap = unseen.gap;
   finding.gap->floor = deadReckoningFloor(task.test.empty() ? task.train : task.test);
   finding.atlas = residualAtlas(data, task.model, after);

@@ -36,7 +36,9 @@ struct ParameterEstimate {
   std::string parameter;  ///< path as in findParameter(): effect.parameter or a nominal number
   std::string unit;
   double value = 0.0;
-  double low = 0.0;   ///< of the 95 % interval
+  /// Of the 95 % interval, over blocks and, of found effects, over halves of the driving if no test
+  /// drives were given.
+  double low = 0.0;
   double high = 0.0;  ///< infinite bounds where the drive does not say
   double before = 0.0;
   /// Of a term that the model has: its value has changed, beyond chance and what the model's own

@@ -146,7 +146,8 @@ std::optional<LagMatch> LagTable::match(size_t lag, size_t first, size_t last) c
   }
   const double scale = std::sqrt(xx * yy);
   if (!(scale > 1e-12) || !std::isfinite(scale)) return std::nullopt;
-  return LagMatch{lags_[lag], xy / scale, xy / xx, y - xy / xx * x, rows};
+  return LagMatch{lags_[lag], xy / scale,        xy / xx,          y - xy / xx * x,
+                  rows,       std::sqrt(yy / n), std::sqrt(xx / n)};
 }
 
 std::optional<LagMatch> LagTable::best(size_t first, size_t last, double sign, double from,

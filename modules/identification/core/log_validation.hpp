@@ -65,6 +65,8 @@ struct LagMatch {
   double slope = 0.0;        ///< of the rate that follows, over the other one
   double offset = 0.0;       ///< of the rate that follows where the other one is 0
   size_t rows = 0;
+  double spread = 0.0;          ///< RMS of the rate that follows about its mean
+  double leading_spread = 0.0;  ///< the same of the other one
 };
 
 /// Rates of increments beside another rate at many lags; increments count that speak at all lags.

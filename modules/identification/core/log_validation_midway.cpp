@@ -9,15 +9,19 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kWindow = 15.0;    // [s] of increments that are judged together
-constexpr double kClear = 0.5;      // |correlation| with which a window has a sign
-constexpr double kVeryClear = 0.8;  // with which it needs no second one
-constexpr double kFrozen = 2.0;     // [s] of the same numbers
-constexpr size_t kFrozenRows = 10;  // messages of the same numbers
-constexpr double kDriving = 0.2;    // of the largest command: more than that moves the robot
-constexpr double kAlong = 0.8;      // share of the way along the heading, squared, that is sound
-constexpr double kAcross = 0.4;     // and one that is not
-constexpr double kGentle = 0.8;     // [rad] of a turn whose way is nearly its chord
+constexpr double kWindow = 15.0;       // [s] of increments that are judged together
+constexpr double kClear = 0.5;         // |correlation| with which a window has a sign
+constexpr double kLeastSpread = 0.05;  // [rad/s] or [m/s] RMS of what follows: else it is noise
+constexpr double kAlike = 3.0;         // times the usual slope, or a part of it
+constexpr double kVeryClear = 0.8;     // with which it needs no second one
+constexpr double kFrozen = 2.0;        // [s] of the same numbers
+constexpr size_t kFrozenRows = 10;     // messages of the same numbers
+constexpr double kTenth = 0.1;         // of the largest command, RMS: else nothing is commanded
+constexpr double kDriving = 0.2;       // of the largest command: more than that moves the robot
+constexpr double kAlong = 0.8;         // share of the way along the heading, squared, that is sound
+constexpr double kAcross = 0.4;        // and one that is not
+constexpr double kLever = 0.8;   // [m] of the measured point from the centre of a turn, at most
+constexpr double kGentle = 0.8;  // [rad] of a turn whose way is nearly its chord
 
 /// Increments [first, last) and when they were.
 struct Window {
@@ -43,51 +47,88 @@ std::string times(const Window& from, const Window& to) {
   return "from " + digits(from.begin) + " to " + digits(to.end) + " s";
 }
 
-/// The windows that are not as most are: the first and the last of them; nothing where too few
-/// speak. `signs`: +1, -1, 0 = does not say; `sure`: one alone is enough.
+/// The longest run of windows that are not as most are, with silent ones in between; nothing where
+/// too few speak. `signs`: +1, -1, 0 = does not say; `sure`: one alone is enough.
 std::optional<std::pair<size_t, size_t>> minority(const std::vector<int>& signs,
                                                   const std::vector<bool>& sure) {
   const auto plus = std::count(signs.begin(), signs.end(), 1);
   const auto minus = std::count(signs.begin(), signs.end(), -1);
+  if (std::max(plus, minus) < 2) return std::nullopt;
   const int other = plus < minus ? 1 : -1;
-  size_t first = signs.size(), last = 0, count = 0;
+  std::optional<std::pair<size_t, size_t>> longest;
+  size_t most = 0, count = 0, first = 0, last = 0;
   bool any_sure = false;
+  const auto end_run = [&] {
+    if (count > most && (count >= 2 || any_sure)) {
+      longest = std::pair(first, last);
+      most = count;
+    }
+    count = 0;
+    any_sure = false;
+  };
   for (size_t i = 0; i < signs.size(); ++i) {
+    if (signs[i] == -other) end_run();
     if (signs[i] != other) continue;
-    first = std::min(first, i);
+    if (count++ == 0) first = i;
     last = i;
     any_sure = any_sure || sure[i];
-    ++count;
   }
-  if (std::max(plus, minus) < 2 || count == 0 || (count < 2 && !any_sure)) return std::nullopt;
-  return std::pair(first, last);
+  end_run();
+  return longest;
 }
 
-/// A rate that follows another one with one sign here and the opposite sign there.
-void checkSign(const LagTable& table, const std::vector<Window>& windows,
-               const std::vector<double>& lags, const std::string& what, Diagnostics& notes) {
-  size_t best = lags.size();
+/// Two rates of which one follows the other, and from when on a window speaks of them.
+struct Followed {
+  const LagTable& table;
+  const std::vector<double>& lags;
+  double least_leading = 0.0;  ///< RMS of the rate that is followed
+  bool one_is_enough = false;  ///< a person or controller may steer against what happens for 15 s
+  const char* what = "";       ///< it means where the sign is the other one
+};
+
+/// The lag at which one rate follows the other best, with whatever sign; lags.size() = none.
+size_t bestLag(const Followed& followed, const std::vector<Window>& windows) {
+  size_t best = followed.lags.size();
   double most = 0.0;
-  for (size_t lag = 0; lag < lags.size(); ++lag) {
+  for (size_t lag = 0; lag < followed.lags.size(); ++lag) {
     double sum = 0.0;
     for (const Window& window : windows)
-      if (const auto match = table.match(lag, window.first, window.last))
+      if (const auto match = followed.table.match(lag, window.first, window.last))
         sum += std::abs(match->correlation);
     if (sum > most) best = lag;
     most = std::max(most, sum);
   }
-  if (best == lags.size()) return;
+  return best;
+}
+
+/// A rate that follows another one with one sign here and the opposite sign there. Windows speak in
+/// which both change enough, and the one by about as much of the other as elsewhere.
+void checkSign(const Followed& followed, const std::vector<Window>& windows, Diagnostics& notes) {
+  const size_t lag = bestLag(followed, windows);
+  if (lag == followed.lags.size()) return;
+  std::vector<std::optional<LagMatch>> matches;
+  std::vector<double> slopes;
+  for (const Window& window : windows) {
+    matches.push_back(followed.table.match(lag, window.first, window.last));
+    std::optional<LagMatch>& match = matches.back();
+    if (match && (std::abs(match->correlation) < kClear || match->spread < kLeastSpread ||
+                  match->leading_spread < followed.least_leading))
+      match.reset();
+    if (match) slopes.push_back(std::abs(match->slope));
+  }
+  if (slopes.empty()) return;
+  const double usual = quantile(slopes);
   std::vector<int> signs;
   std::vector<bool> sure;
-  for (const Window& window : windows) {
-    const auto match = table.match(best, window.first, window.last);
-    const double correlation = match ? match->correlation : 0.0;
-    signs.push_back(std::abs(correlation) < kClear ? 0 : correlation > 0.0 ? 1 : -1);
-    sure.push_back(std::abs(correlation) > kVeryClear);
+  for (const std::optional<LagMatch>& match : matches) {
+    const double slope = match ? std::abs(match->slope) : 0.0;
+    const bool speaks = slope > usual / kAlike && slope < usual * kAlike;
+    signs.push_back(!speaks ? 0 : match->correlation > 0.0 ? 1 : -1);
+    sure.push_back(speaks && followed.one_is_enough && std::abs(match->correlation) > kVeryClear);
   }
   if (const auto found = minority(signs, sure))
     notes.fatal("flipped sign: " + times(windows[found->first], windows[found->second]) + " " +
-                what + ", else it does not; cut the log there");
+                followed.what + ", elsewhere it does not; cut the log there");
 }
 
 /// Position and heading that belong together here and not there.
@@ -102,6 +143,8 @@ void checkCourses(const std::vector<PoseIncrement>& increments, const std::vecto
       const Pose2& step = increments[i].T_begin_end;
       const double way = step.x * step.x + step.y * step.y;
       if (std::abs(step.yaw) > kGentle || way < 0.01) continue;
+      // A turn on the spot moves what is not over its centre.
+      if (way < std::pow(kLever * step.yaw, 2)) continue;
       // Against the heading in the middle of the turn.
       along += way * std::pow(std::cos(std::atan2(step.y, step.x) - 0.5 * step.yaw), 2);
       all += way;
@@ -143,42 +186,54 @@ bool isSame(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
 
-/// An INS that repeats itself while the robot is driven. A gyro's noise does not stand still, not
-/// even where the robot is held.
+/// A run of messages that say the same.
+struct Frozen {
+  const InsSample* first = nullptr;
+  const InsSample* last = nullptr;
+  const InsSample* pose = nullptr;  ///< the first with a pose: they come more seldom than rates
+  size_t rows = 0;
+
+  bool goesOn(const InsSample& sample) const {
+    if (first == nullptr || sample.omega != first->omega || !isSame(sample.roll, first->roll) ||
+        !isSame(sample.pitch, first->pitch))
+      return false;
+    if (!sample.hasPose() || pose == nullptr) return true;
+    const Pose2& a = sample.T_map_body;
+    const Pose2& b = pose->T_map_body;
+    return a.x == b.x && a.y == b.y && a.yaw == b.yaw;
+  }
+  void add(const InsSample& sample) {
+    if (first == nullptr) first = &sample;
+    if (pose == nullptr && sample.hasPose()) pose = &sample;
+    last = &sample;
+    ++rows;
+  }
+};
+
+/// An INS that repeats itself while the robot is driven.
+/** A gyro's noise does not stand still, not even where the robot is held; a gyro that says exactly
+ * 0 may have none. */
 void checkFrozen(const Drive& drive, Diagnostics& notes) {
   const double least = kDriving * largestCommand(drive);
   for (const Segment& segment : drive.segments) {
-    const InsSample* from = nullptr;
-    const InsSample* last = nullptr;
-    size_t rows = 0;
-    const auto judge = [&] {
-      if (from == nullptr || rows < kFrozenRows || last->time - from->time < kFrozen) return false;
-      if (drivenBetween(segment, from->time, last->time, least) < kFrozen) return false;
-      notes.fatal("the INS is frozen: it says the same " + std::to_string(rows) + " times from " +
-                  digits(from->time) + " to " + digits(last->time) +
+    Frozen run;
+    const auto told = [&] {
+      if (run.rows < kFrozenRows || run.pose == nullptr ||
+          drivenBetween(segment, run.first->time, run.last->time, least) < kFrozen)
+        return false;
+      notes.fatal("the INS is frozen: it says the same " + std::to_string(run.rows) +
+                  " times from " + digits(run.first->time) + " to " + digits(run.last->time) +
                   " s while the robot is driven; cut the log there");
       return true;
     };
     for (const InsSample& sample : segment.ins) {
-      const bool speaks = std::isfinite(sample.omega) && sample.omega != 0.0;
-      // Poses come more seldom than rates.
-      const bool same = speaks && from != nullptr && sample.omega == from->omega &&
-                        (!sample.hasPose() || !from->hasPose() ||
-                         (sample.T_map_body.x == from->T_map_body.x &&
-                          sample.T_map_body.y == from->T_map_body.y &&
-                          sample.T_map_body.yaw == from->T_map_body.yaw)) &&
-                        isSame(sample.roll, from->roll) && isSame(sample.pitch, from->pitch);
-      if (same) {
-        ++rows;
-        last = &sample;
-        continue;
+      if (!run.goesOn(sample)) {
+        if (told()) return;
+        run = {};
       }
-      if (judge()) return;
-      from = speaks ? &sample : nullptr;
-      last = from;
-      rows = 1;
+      if (std::isfinite(sample.omega) && sample.omega != 0.0) run.add(sample);
     }
-    if (judge()) return;
+    if (told()) return;
   }
 }
 
@@ -190,14 +245,17 @@ void checkMidway(const Drive& drive, const std::vector<PoseIncrement>& increment
   const std::vector<Window> windows = windowsOf(increments);
   const std::vector<double> omega = ratesOf(increments, &PoseIncrement::omega);
   const std::vector<double> v = ratesOf(increments, &PoseIncrement::v);
+  const double command = kTenth * largestCommand(drive);
   const auto check = [&](const std::vector<double>& rates, const RunningSums& sums, double reach,
-                         const char* what) {
+                         double least_leading, bool one_is_enough, const char* what) {
     const std::vector<double> lags = lagGrid(-0.2, reach, 0.1);
-    checkSign({increments, rates, sums, lags}, windows, lags, what, notes);
+    const LagTable table(increments, rates, sums, lags);
+    checkSign({table, lags, least_leading, one_is_enough, what}, windows, notes);
   };
-  check(omega, gyroSums(drive), 0.8, "the gyro turns against the heading");
-  check(omega, turnCommandSums(drive), 1.5, "the heading turns against the commands");
-  check(v, driveCommandSums(drive), 1.5, "the robot goes against the commands");
+  check(omega, gyroSums(drive), 0.8, kLeastSpread, true, "the gyro turns against the heading");
+  check(omega, turnCommandSums(drive), 1.5, command, false,
+        "the heading turns against the commands");
+  check(v, driveCommandSums(drive), 1.5, command, false, "the robot goes against the commands");
   checkCourses(increments, windows, notes);
 }
 

@@ -130,7 +130,7 @@ struct Candidate {
   std::vector<std::pair<std::string, double>> shapes;
   std::vector<std::string> free;  ///< paths that a fit of this candidate frees
   std::string change_point;       ///< path of the time of a change; empty = none
-  bool release = false;           ///< frees a held term: what was known of it no longer counts
+  bool release = false;           ///< of a given term: what was known of it no longer counts
   bool elsewhere = false;         ///< of a release: begins at `value`, far from what is given
 
   /// Of the strength.

@@ -107,8 +107,9 @@ Conditions conditionsOf(const Observations& data, const Observation& row, double
     conditions.pitch = attitude->pitch;
   }
   if (earlier != nullptr && attitude != nullptr && attitude != earlier) {
-    conditions.roll_change = (attitude->roll - earlier->roll) / kBack;
-    conditions.pitch_change = (attitude->pitch - earlier->pitch) / kBack;
+    const double dt = attitude->time - earlier->time;
+    conditions.roll_change = (attitude->roll - earlier->roll) / dt;
+    conditions.pitch_change = (attitude->pitch - earlier->pitch) / dt;
   }
   conditions.voltage = voltageDrop(drive.voltage, middle);
   conditions.inner = std::abs(now.v_x) - 0.5 * gauge * std::abs(now.omega);

@@ -10,7 +10,7 @@ namespace tread::learner {
 namespace {
 
 constexpr int64_t kSteady = 500'000;    // [us] of the entry class's command before a pattern
-constexpr int64_t kShortest = 400'000;  // [us] of a piece: shorter ones are mostly INS noise
+constexpr int64_t kShortest = 400'000;  // [us] of a beginning: shorter ones are mostly INS noise
 constexpr int64_t kEdge = 15'000;       // [us] by which a change may be early or late
 constexpr int64_t kSilent = 200'000;    // [us] between two commands: what was given is not known
 constexpr int64_t kKept = 70'000'000;   // [us] longer than any series
@@ -69,16 +69,17 @@ std::optional<size_t> HandWatch::driven(const PatternSet& set, const MotionPatte
 }
 
 std::optional<HandDrivenPattern> HandWatch::longestFrom(int64_t start, const PatternSet& set,
-                                                        bool& not_yet) const {
+                                                        bool beginnings, bool& not_yet) const {
   std::optional<HandDrivenPattern> longest;
   not_yet = false;
   for (const MotionPattern& pattern : set.patterns()) {
     const std::optional<size_t> commands = driven(set, pattern, start);
     not_yet = not_yet || !commands;
     const int64_t length = set.content().period_us * static_cast<int64_t>(commands.value_or(0));
-    if (length < kShortest) continue;
-    const HandDrivenPattern found{pattern.id, start, start + length,
-                                  *commands == pattern.commands.size()};
+    if (length == 0) continue;
+    const bool completed = *commands == pattern.commands.size();
+    if (!completed && (!beginnings || length < kShortest)) continue;
+    const HandDrivenPattern found{pattern.id, start, start + length, completed};
     if (!longest ||
         std::pair(found.completed, found.ended) > std::pair(longest->completed, longest->ended))
       longest = found;
@@ -94,11 +95,11 @@ int64_t HandWatch::nextStart(int64_t start, int64_t period_us) const {
   return change == given_.end() ? next : std::min(next, change->utime);
 }
 
-std::vector<HandDrivenPattern> HandWatch::take(const PatternSet& set) {
+std::vector<HandDrivenPattern> HandWatch::take(const PatternSet& set, bool beginnings) {
   std::vector<HandDrivenPattern> found;
   while (start_ < newest_) {
     bool not_yet = false;
-    const std::optional<HandDrivenPattern> longest = longestFrom(start_, set, not_yet);
+    const std::optional<HandDrivenPattern> longest = longestFrom(start_, set, beginnings, not_yet);
     if (not_yet) break;
     if (longest) found.push_back(*longest);
     start_ = longest ? longest->ended : nextStart(start_, set.content().period_us);

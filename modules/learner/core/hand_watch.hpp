@@ -38,16 +38,17 @@ class HandWatch {
   void add(const GivenCommand& given, bool lost);
   /// Whether a command, from whomever, was given without a break for half a second before a time.
   bool steadyBefore(const TrackCommand& command, int64_t utime, int64_t period_us) const;
-  /// The patterns of a set that have ended since the last call, in the order of time.
-  std::vector<HandDrivenPattern> take(const PatternSet& set);
+  /// The patterns of a set that have ended since the last call, in the order of time, with or
+  /// without beginnings.
+  std::vector<HandDrivenPattern> take(const PatternSet& set, bool beginnings);
 
  private:
-  /// How many of a pattern's commands were driven by hand from a time on; nothing while it may go
-  /// on, none if a person did not end it.
+  /// How many of a pattern's commands were driven by hand from a time on; nullopt while it may
+  /// still go on; 0 if the bridge, not the person, ended it.
   std::optional<size_t> driven(const PatternSet& set, const MotionPattern& pattern,
                                int64_t start) const;
   std::optional<HandDrivenPattern> longestFrom(int64_t start, const PatternSet& set,
-                                               bool& not_yet) const;
+                                               bool beginnings, bool& not_yet) const;
   bool given(const TrackCommand& command, int64_t utime) const;
   const GivenCommand* at(int64_t utime) const;
   int64_t nextStart(int64_t start, int64_t period_us) const;

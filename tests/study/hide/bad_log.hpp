@@ -10,7 +10,7 @@
 
 namespace tread::blind {
 
-/// The ways in which a log can be bad: all along, or from or between moments midway.
+/// The ways in which a log can be bad: throughout, from some moment on, or for a while.
 const std::vector<std::string>& defectNames();
 
 /// What was done to a log.

@@ -86,7 +86,8 @@ bool standsFor(const std::string& variable, const std::string& word) {
                      variable == "v |v|" || variable == "sign of v";
   if (word == "speed" || word == "command") return speed || (turning && !has("change"));
   if (word == "acceleration" || word == "time_since_command" || word == "previous_command")
-    return has("change") || has("reversed") || has("set off");
+    return has("change of v") || has("change of |v|") || has("change of yaw rate") ||
+           has("reversed") || has("set off");
   if (word == "voltage") return has("elapsed") || has("voltage");
   if (word == "previous_turn") return turning || has("turns before");
   return false;

@@ -81,7 +81,7 @@ TEST_CASE("on real drives the default rule is better than no learning and holds 
       }
   CHECK(stated > 500);
   INFO(inside << " of " << stated << " within 90 % regions");
-  // Measured 74 %: the reference's own error of a piece is none of the ground.
+  // Measured 74 %: the rule does not model the reference's own error.
   CHECK(static_cast<double>(inside) > 0.70 * static_cast<double>(stated));
   CHECK(static_cast<double>(inside) < 0.95 * static_cast<double>(stated));
   size_t judged = 0;

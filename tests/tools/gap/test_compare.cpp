@@ -71,14 +71,14 @@ TEST_CASE("what several logs share is the vehicle's, what differs is the day's")
   }
   const Repetition repetition = repeatLogs(task, kSilent);
   CHECK(repetition.logsThatName("motor_deadband") == 2);
-  CHECK_FALSE(repetition.agrees());
+  CHECK(repetition.differs());
   REQUIRE(!repetition.parameters.empty());
   bool deadband = false;
   for (const RepeatedParameter& parameter : repetition.parameters) {
     CAPTURE(parameter.parameter, parameter.values[0], parameter.values[1], parameter.farthest);
     if (parameter.parameter != "motor_deadband.speed") continue;
     deadband = true;
-    CHECK(parameter.agrees);
+    CHECK_FALSE(parameter.differs);
     CHECK(parameter.common == Approx(0.1).margin(0.01));
   }
   CHECK(deadband);
@@ -91,8 +91,27 @@ TEST_CASE("what several logs share is the vehicle's, what differs is the day's")
   }
   CHECK(textOf(repetition).find("the day's") != std::string::npos);
   CHECK(textOf(repetition).find("motor_deadband           named in 2 of 2 logs") == 0);
-  task.train.pop_back();
+  task.train.push_back(syntheticDrive(syntheticVehicle(), 120.0, 1));
+  CHECK_THROWS_WITH(repeatLogs(task, kSilent), Catch::StartsWith("synthetic: only 120 s"));
+  task.train.resize(1);
   CHECK_THROWS_WITH(repeatLogs(task, kSilent), "repeat: one log repeats nothing; give two or more");
+}
+
+TEST_CASE("logs of which one is frozen midway repeat nothing, and say which") {
+  GapTask task;
+  task.model = syntheticVehicle();
+  for (uint64_t day = 0; day < 2; ++day) {
+    task.train.push_back(syntheticDrive(task.model, 200.0, 40 + day));
+    task.train.back().name = "day" + std::to_string(day + 1);
+  }
+  task.train[1].notes.push_back({"day2", "the INS is frozen", true});
+  task.log_notes = task.train[1].notes;
+  const Repetition repetition = repeatLogs(task, kSilent);
+  CHECK(repetition.alone[0].verdict == GapVerdict::kNoDiscrepancy);
+  CHECK(repetition.alone[1].verdict == GapVerdict::kCannotTell);
+  CHECK(repetition.together.verdict == GapVerdict::kCannotTell);
+  CHECK(textOf(repetition).find("All together cannot tell: day2: the INS is frozen.") !=
+        std::string::npos);
 }
 
 TEST_CASE("logs of one vehicle on one ground agree") {
@@ -105,6 +124,6 @@ TEST_CASE("logs of one vehicle on one ground agree") {
   }
   const Repetition repetition = repeatLogs(task, kSilent);
   INFO(textOf(repetition));
-  CHECK(repetition.agrees());
+  CHECK_FALSE(repetition.differs());
   CHECK(repetition.logsThatName("motor_deadband") == 3);
 }

@@ -118,7 +118,8 @@ bool isInside(const Pose2& said, const Pose2& was, const PoseCovariance& stated)
   covariance << stated[0], stated[1], stated[2], stated[1], stated[3], stated[4], stated[2],
       stated[4], stated[5];
   const Eigen::Vector3d apart(was.x - said.x, was.y - said.y, wrapAngle(was.yaw - said.yaw));
-  return apart.dot(covariance.ldlt().solve(apart)) < kQuantile;
+  const Eigen::LLT<Eigen::Matrix3d> root(covariance);
+  return root.info() == Eigen::Success && apart.dot(root.solve(apart)) < kQuantile;
 }
 
 /// Adds the errors of predictions that begin at a piece.
