@@ -85,7 +85,7 @@ TEST_CASE("an operator lost for good: with `go_back` the robot returns to where 
   int lost = 0, back = 0;
   missions::RobotConfig robot = teodor();
   robot.simulated.laser.beams = RunOptions{}.beams;
-  for (uint64_t seed = 1; seed <= 4; ++seed) {
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
     const ReturnRun run = runReturn(robot, seed);
     CAPTURE(seed, run.away, run.missed_start, run.state);
     CHECK(run.collisions == 0);
