@@ -3,6 +3,7 @@
 // lcm-logplayer, a process that we did not write, plays imported logs to the real tread-learner.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -74,7 +75,13 @@ class LiveLearner {
         std::vector<std::string>{"--config", folder_.file("learner.yaml"), "--set",
                                  "store=" + folder_.file("state"), "--lcm-url", url_},
         folder_.file("said"));
-    until([this] { return !heard_.empty(); }, 20.0);
+    // What is under way when a HEALTH is sent is in the log before it, but not in its count.
+    REQUIRE(until(
+        [this] {
+          return std::any_of(heard_.begin(), heard_.end(),
+                             [](const LogEvent& event) { return event.channel == kHealth.name; });
+        },
+        20.0));
     player_ = std::make_unique<Process>(
         TREAD_LOGPLAYER,
         std::vector<std::string>{"--lcm-url=" + url_, "-s", speed, "-e", channelFilter("learner"),
