@@ -158,3 +158,60 @@ TEST_CASE("two effects that no single one fits as well stay two") {
   CHECK(result.record.steps.empty());
   CHECK(result.state.loss == loss);
 }
+
+namespace {
+
+double valueOf(const FoundTerms& result, const std::string& path) {
+  return *findParameter(result.state.model, path);
+}
+
+}  // namespace
+
+TEST_CASE("a lag of the drive that was found for two lags, of yaw rate and speed, gives way") {
+  const Rig rig({{"yaw_inertia.lag", 0.8}, {"body_inertia.lag", 0.3}}, 400.0, 5);
+  FoundTerms result = searchedWith(rig, {{"actuator_lag.lag", 0.4}});
+  REQUIRE(chooseLags({rig.fitter, {}, kSilent, result}));
+  CHECK(result.effects == Names{"yaw_inertia", "body_inertia"});
+  CHECK(valueOf(result, "actuator_lag.lag") == 0.0);
+  CHECK(valueOf(result, "yaw_inertia.lag") == Approx(0.8).margin(0.05));
+  CHECK(valueOf(result, "body_inertia.lag") == Approx(0.3).margin(0.05));
+  REQUIRE(result.record.steps.size() == 2);
+  CHECK(result.record.steps[0].remark == "the lags together: in the place of actuator_lag");
+  CHECK_FALSE(chooseLags({rig.fitter, {}, kSilent, result}));
+}
+
+TEST_CASE("two lags, of yaw rate and speed, that are one lag of the drive are told once") {
+  const Rig rig({{"actuator_lag.lag", 0.5}}, 400.0, 6);
+  FoundTerms result = searchedWith(rig, {{"yaw_inertia.lag", 0.5}, {"body_inertia.lag", 0.4}});
+  REQUIRE(chooseLags({rig.fitter, {}, kSilent, result}));
+  CHECK(result.effects == Names{"actuator_lag"});
+  CHECK(valueOf(result, "actuator_lag.lag") == Approx(0.5).margin(0.05));
+}
+
+TEST_CASE("lags that a person or the model decided on are not chosen anew") {
+  const Rig rig({{"yaw_inertia.lag", 0.8}, {"body_inertia.lag", 0.3}}, 300.0, 5);
+  FoundTerms result = searchedWith(rig, {{"actuator_lag.lag", 0.4}});
+  SearchSettings settings;
+  settings.accepted = {"actuator_lag"};
+  CHECK_FALSE(chooseLags({rig.fitter, settings, kSilent, result}));
+  settings.accepted = {};
+  settings.rejected = {"yaw_inertia"};
+  CHECK_FALSE(chooseLags({rig.fitter, settings, kSilent, result}));
+  FoundTerms given = searchedWith(rig, {{"yaw_inertia.lag", 0.5}, {"actuator_lag.lag", 0.4}});
+  given.effects = {"actuator_lag"};
+  CHECK_FALSE(chooseLags({rig.fitter, {}, kSilent, given}));
+}
+
+TEST_CASE("a delay too small to matter by itself stays beside a long lag, whose size it bears") {
+  SearchSettings settings;
+  settings.least_gain = 0.2;
+  const Rig alone({{"command_delay.delay", 0.02}}, 300.0, 7);
+  const FoundTerms small =
+      pruned(alone, searchedWith(alone, {{"command_delay.delay", 0.01}}), settings);
+  CHECK(small.record.negligible == Names{"command_delay"});
+  const Rig beside({{"command_delay.delay", 0.02}, {"actuator_lag.lag", 0.5}}, 300.0, 7);
+  const FoundTerms both = pruned(
+      beside, searchedWith(beside, {{"command_delay.delay", 0.01}, {"actuator_lag.lag", 0.4}}),
+      settings);
+  CHECK(both.effects == Names{"command_delay", "actuator_lag"});
+}

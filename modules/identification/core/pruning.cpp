@@ -16,6 +16,7 @@ constexpr double kNearly = 0.8;      // evidence with which what has passed once
 constexpr double kNearlySure = 2.0;  // if it gains so many standard errors
 constexpr double kNearlyNats = 50.0;
 constexpr double kSureNats = 100.0;  // and its least size: smaller ones may be negligible
+constexpr double kLongLag = 0.1;     // [s]
 
 /// What removing an effect costs.
 struct Removal {
@@ -157,6 +158,17 @@ bool isNearly(const FoundTerms& result, const std::string& effect, const Removal
          removed.gain.value > kNearlySure * removed.gain.error && removed.gain.value > kNearlyNats;
 }
 
+/// Whether an effect is one of the lags between a command and what the INS says, beside a long one.
+/** Without it the long one would take its time over, and with it a size that nobody believes. */
+bool isBesideLag(const FoundTerms& result, const std::string& effect) {
+  if (!contains(lagEffects(), effect)) return false;
+  return std::any_of(result.effects.begin(), result.effects.end(), [&](const std::string& other) {
+    if (other == effect || !contains(lagEffects(), other)) return false;
+    const std::string& strength = effectNamed(other).parameters.front().name;
+    return std::abs(*findParameter(result.state.model, other + "." + strength)) > kLongLag;
+  });
+}
+
 /// Why an effect should go; empty if it should stay.
 std::string reasonAgainst(const SearchState& search, const std::string& effect,
                           const Removal& removed) {
@@ -165,7 +177,7 @@ std::string reasonAgainst(const SearchState& search, const std::string& effect,
       !isNearly(search.result, effect, removed))
     return "chance explains it beside the others";
   if (removed.gain.value <= 0.0) return "does not help on blocks left out";
-  const double least = search.settings.least_gain;
+  const double least = isBesideLag(search.result, effect) ? 0.0 : search.settings.least_gain;
   if (least > 0.0 && improvement(search.fitter, removed.state, search.result.state, effect) < least)
     return "real, but negligible: changes the end error by less than 1 %";
   return "";
@@ -229,6 +241,12 @@ bool removeOne(const SearchState& search, const Needed& needed_of_all) {
 }
 
 }  // namespace
+
+const std::vector<std::string>& lagEffects() {
+  static const std::vector<std::string> lags{"command_delay", "actuator_lag", "yaw_inertia",
+                                             "body_inertia", "ins_latency"};
+  return lags;
+}
 
 FitState switchedOff(const Fitter& fitter, const FitState& state,
                      const std::vector<std::string>& effects) {

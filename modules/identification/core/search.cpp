@@ -39,6 +39,7 @@ class EffectSelection {
         screening = test(memory_.with_nuisance);
       }
       prune(screening);
+      if (addBesideLags()) prune(screening);
       noteDetectable(test(memory_.with_nuisance));
       if (foundNothing()) searchWithoutNuisance(first);
     } else if (!result_.effects.empty()) {
@@ -200,6 +201,20 @@ class EffectSelection {
     return true;
   }
 
+  /// A delay that was superfluous beside the first lags may not be beside the last ones.
+  bool addBesideLags() {
+    const auto isLag = [](const std::string& effect) { return contains(lagEffects(), effect); };
+    if (std::none_of(result_.effects.begin(), result_.effects.end(), isLag)) return false;
+    SensitivityCache cache = memory_.with_nuisance;
+    Screening screening = test(cache);
+    for (size_t i = 0; i < screening.candidates.size(); ++i) {
+      const Candidate& candidate = screening.candidates[i];
+      // Nothing else is looked for: it has had its chance.
+      if (candidate.release || !isLag(candidate.effect)) screening.evidence[i] = 0.0;
+    }
+    return addBest(screening);
+  }
+
   void noteTrials(const Screening& screening, const std::vector<Trial>& trials, const Trial* best) {
     SearchStep step;
     for (const Trial& trial : trials) {
@@ -238,6 +253,7 @@ class EffectSelection {
     const Needed needed{criticalScore(last.chance, settings_.alpha_more), last.overdispersion,
                         false, true};
     pruneEffects(search, needed);
+    if (chooseLags(search)) pruneEffects(search, needed);
     const size_t before = result_.record.steps.size();
     replacePairs(search);
     if (result_.record.steps.size() > before) pruneEffects(search, needed);

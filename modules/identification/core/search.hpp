@@ -103,6 +103,16 @@ void pruneEffects(const SearchState& search, const Needed& needed);
  * tried; the pair goes if it is not better on blocks left out by more than a standard error. */
 void replacePairs(const SearchState& search);
 
+/// Effects that are a lag between a command and what the INS says of it.
+const std::vector<std::string>& lagEffects();
+
+/// Chooses anew which lags there are between command and motion, once the rest is known.
+/** A lag of the drive, of the yaw rate, of the speed: a search that goes step by step takes the
+ * first one that helps, and bends the others to it. The structures are fitted with everything else;
+ * another one takes over if it is better on blocks left out by more than a standard error, and one
+ * lag takes the place of two if it is as good. True if one did. */
+bool chooseLags(const SearchState& search);
+
 /// Rows of every other block: those of `half` (0 or 1) count.
 std::vector<char> halfMask(const Observations& data, int half);
 

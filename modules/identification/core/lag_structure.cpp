@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "modules/identification/core/search.hpp"
+
+namespace tread::gap {
+namespace {
+
+const std::string kDrive = "actuator_lag";
+const std::string kYaw = "yaw_inertia";
+const std::string kBody = "body_inertia";
+constexpr double kLeastLag = 0.03;   // [s] with which a fit of one begins
+constexpr double kLeastNats = 10.0;  // by which another structure must be better
+
+std::string pathOf(const std::string& lag) {
+  return lag + ".lag";
+}
+
+using Lags = std::vector<std::pair<std::string, double>>;  // effect, [s] with which a fit begins
+
+/// A lag of the drive, with one of the yaw rate or of the speed behind it, or these two alone.
+/** `v` and `omega`: how late both are altogether [s]. */
+std::vector<Lags> structuresFor(double v, double omega) {
+  // Where both are equal one of two begins with half of it, so that the fit sees two of them.
+  const bool alike = std::abs(v - omega) < kLeastLag;
+  const double common = std::max(kLeastLag, (alike ? 0.5 : 1.0) * std::min(v, omega));
+  const double rest = std::max(kLeastLag, alike ? 0.5 * v : std::abs(v - omega));
+  return {
+      {{kDrive, 0.5 * (v + omega)}},
+      {{kDrive, common}, {kYaw, rest}},
+      {{kDrive, common}, {kBody, rest}},
+      {{kYaw, std::max(kLeastLag, omega)}, {kBody, std::max(kLeastLag, (alike ? 0.5 : 1.0) * v)}}};
+}
+
+/// A structure that was fitted, and what it gains over that of the result on blocks left out.
+struct Trial {
+  std::vector<std::string> effects;
+  FitState state;
+  Gain gain;
+};
+
+std::optional<Trial> tryOut(const SearchState& search, const Lags& lags,
+                            const Eigen::VectorXd& loss_now) {
+  const Fitter& fitter = search.fitter;
+  Trial trial;
+  trial.state = switchedOff(fitter, search.result.state, {kDrive, kYaw, kBody});
+  for (const auto& [effect, value] : lags) {
+    FreeParameter lag = freeParameter(trial.state.model, pathOf(effect));
+    lag.expected = 0.0;
+    fitter.add(trial.state, lag, value);
+    trial.effects.push_back(effect);
+  }
+  fitter.fit(trial.state);
+  for (const FreeParameter& parameter : trial.state.free)
+    if (contains(trial.effects, effectOf(parameter.path)) && onBound(trial.state.model, parameter))
+      return std::nullopt;
+  trial.gain = gainOf(fitter, loss_now, heldOutLoss(fitter, trial.state));
+  return trial;
+}
+
+}  // namespace
+
+bool chooseLags(const SearchState& search) {
+  FoundTerms& result = search.result;
+  std::vector<std::string> now;
+  for (const std::string& lag : {kDrive, kYaw, kBody}) {
+    const bool found = contains(result.effects, lag);
+    // What the model or a person says stays, and what is a number of the model is not named.
+    const bool closed = (isOn(effectNamed(lag), result.state.model) && !found) ||
+                        search.isAccepted(lag) || contains(search.settings.rejected, lag);
+    if (closed || (lag == kDrive && search.settings.calibrate)) return false;
+    if (found) now.push_back(lag);
+  }
+  if (now.empty()) return false;
+  const auto lagOf = [&](const std::string& lag) {
+    return *findParameter(result.state.model, pathOf(lag));
+  };
+  const Eigen::VectorXd loss_now = heldOutLoss(search.fitter, result.state);
+  std::optional<Trial> best;
+  double most = 0.0;
+  for (const Lags& lags :
+       structuresFor(lagOf(kDrive) + lagOf(kBody), lagOf(kDrive) + lagOf(kYaw))) {
+    const bool is_now = lags.size() == now.size() &&
+                        std::all_of(lags.begin(), lags.end(),
+                                    [&](const auto& lag) { return contains(now, lag.first); });
+    if (is_now) continue;
+    std::optional<Trial> trial = tryOut(search, lags, loss_now);
+    if (!trial) continue;
+    // One lag in the place of two need only be as good.
+    const double needed = lags.size() < now.size() ? -std::min(kLeastNats, trial->gain.error)
+                                                   : std::max(kLeastNats, trial->gain.error);
+    if (trial->gain.value < needed || (best && trial->gain.value - needed <= most)) continue;
+    most = trial->gain.value - needed;
+    best = std::move(trial);
+  }
+  if (!best) return false;
+  std::string remark = "the lags together: in the place of";
+  for (const std::string& lag : now) {
+    remark += " " + lag;
+    result.effects.erase(std::find(result.effects.begin(), result.effects.end(), lag));
+  }
+  for (const std::string& lag : best->effects) {
+    result.effects.push_back(lag);
+    result.record.steps.push_back(
+        {lag, false, 0.0, 1.0, best->gain.value, best->gain.error, {}, remark});
+    search.say("  = " + lag + ": " + remark);
+  }
+  result.state = std::move(best->state);
+  return true;
+}
+
+}  // namespace tread::gap
