@@ -38,11 +38,13 @@ become_apart() {
   TREAD_APART=yes exec setpriv --pdeathsig KILL "${apart[@]}" "tools/$me" "$@"
 }
 
-# Puts into `lcm_url` the bus of a simulated drive: multicast, or TCP through tread-launch where there is none.
+# choose_lcm_url [PORT]: puts into `lcm_url` the bus of a simulated drive, multicast, or TCP through tread-launch where
+# there is none.
 choose_lcm_url() {
-  lcm_url='udpm://239.255.76.67:7668?ttl=0&recv_buf_size=2097152'
+  lcm_port=${1:-7668}
+  lcm_url="udpm://239.255.76.67:$lcm_port?ttl=0&recv_buf_size=2097152"
   if ! ip route get 239.255.76.67 >/dev/null 2>&1; then
-    lcm_url=tcpq://127.0.0.1:7668
+    lcm_url=tcpq://127.0.0.1:$lcm_port
     echo "$me: there is no multicast here, so messages go over $lcm_url"
   fi
 }
@@ -52,7 +54,7 @@ start_launch() {
   setpriv --pdeathsig TERM "$bin/tread-launch" "$@" --lcm-url "$lcm_url" &
   launch=$!
   # Whoever comes before the server of the bus is refused.
-  while [[ $lcm_url == tcpq* ]] && kill -0 $launch 2>/dev/null && ! true 2>/dev/null >/dev/tcp/127.0.0.1/7668; do
+  while [[ $lcm_url == tcpq* ]] && kill -0 $launch 2>/dev/null && ! true 2>/dev/null >"/dev/tcp/127.0.0.1/$lcm_port"; do
     sleep 0.1
   done
 }

@@ -35,6 +35,22 @@ size_t markedIn(const std::vector<AtlasCell>& cells) {
 
 }  // namespace
 
+TEST_CASE("curves of what is unexplained come first, also over variables that are not shown else") {
+  const Rig rig({}, 200.0, 1);
+  const ModelDocument model = syntheticVehicle();
+  const size_t usual = residualAtlas(rig.data, model, model).curves.size();
+  const std::vector<Unexplained> rests{{"along", "sign of v, just reversed", 5.0, 0.001},
+                                       {"lateral", "v", 4.0, 0.005}};
+  const std::vector<AtlasCurve> curves = residualAtlas(rig.data, model, model, rests).curves;
+  REQUIRE(curves.size() == usual + 1);
+  for (size_t i = 0; i < rests.size(); ++i) {
+    CHECK(curves[i].channel == rests[i].channel);
+    CHECK(curves[i].variable == rests[i].variable);
+    CHECK(curves[i].unexplained);
+  }
+  CHECK_FALSE(curves[2].unexplained);
+}
+
 TEST_CASE("the cells of a curve share out all rows of its channel in neighbouring ranges") {
   const Rig rig({}, 200.0, 1);
   const ResidualAtlas atlas = residualAtlas(rig.data, syntheticVehicle(), syntheticVehicle());

@@ -78,4 +78,6 @@ TEST_CASE("what no effect explains is named by its channel and by what it depend
   CHECK(adequacy.unexplained[0].channel == "lateral");
   CHECK(adequacy.unexplained[0].variable.find("yaw rate") != std::string::npos);
   for (const Unexplained& rest : adequacy.unexplained) CHECK(rest.channel == "lateral");
+  // That is how a centrifugal drift looks.
+  CHECK(adequacy.unexplained[0].like == "centrifugal_drift");
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "modules/identification/core/observations.hpp"
@@ -169,15 +170,27 @@ struct AtlasRows {
   Eigen::VectorXd after;
 };
 
+/// Where a channel and variable stand among what is unexplained; at its end if they do not.
+size_t placeAmong(const std::vector<Unexplained>& unexplained, const std::string& channel,
+                  const std::string& variable) {
+  const auto at = std::find_if(unexplained.begin(), unexplained.end(), [&](const Unexplained& one) {
+    return one.channel == channel && one.variable == variable;
+  });
+  return static_cast<size_t>(std::distance(unexplained.begin(), at));
+}
+
 void addCurves(const Observations& data, const AtlasRows& of, Channel channel,
-               const std::vector<size_t>& members, std::vector<AtlasCurve>& curves) {
+               const std::vector<size_t>& members, const std::vector<Unexplained>& unexplained,
+               std::vector<AtlasCurve>& curves) {
   for (const Variable& variable : of.variables) {
-    if (!isShown(variable.name)) continue;
+    const bool is_rest =
+        placeAmong(unexplained, channelName(channel), variable.name) < unexplained.size();
+    if (!isShown(variable.name) && !is_rest) continue;
     const std::vector<double> edges = edgesOf(pick(variable.values, members));
     if (edges.size() < 3) continue;
     curves.push_back({channelName(channel), channelUnit(channel), variable.name, variable.unit,
                       cellsOf(data, members, variable.values, edges, of.before),
-                      cellsOf(data, members, variable.values, edges, of.after)});
+                      cellsOf(data, members, variable.values, edges, of.after), is_rest});
   }
 }
 
@@ -197,31 +210,88 @@ void addMap(const AtlasRows& of, Channel channel, const std::vector<size_t>& mem
   maps.push_back(std::move(map));
 }
 
+constexpr size_t kLikened = 3;     // rests, the strongest ones
+constexpr double kLikeness = 0.5;  // correlation from which one direction is like another
+
+/// Directions in which the effects of the catalogue act or could act, with their names.
+struct EffectDirections {
+  std::vector<std::string> effects;
+  Eigen::MatrixXd columns;  ///< rows x effects
+};
+
+EffectDirections effectDirections(const Fitter& fitter, const FitState& state) {
+  EffectDirections all;
+  const std::vector<Candidate> candidates =
+      candidatesFor(state.model, excitationOf(fitter.data(), state.model));
+  all.columns.resize(state.predicted.size(),
+                     static_cast<Eigen::Index>(candidates.size() + state.free.size()));
+  all.columns.leftCols(static_cast<Eigen::Index>(candidates.size())) =
+      directionsOf(fitter, state, candidates);
+  all.columns.rightCols(static_cast<Eigen::Index>(state.free.size())) = state.jacobian;
+  for (const Candidate& candidate : candidates) all.effects.push_back(candidate.effect);
+  for (const FreeParameter& parameter : state.free)
+    all.effects.push_back(effectOfPath(parameter.path));
+  return all;
+}
+
+/// The effect whose direction is most like another one where that one is not 0; empty if none is.
+std::string mostLike(const EffectDirections& all, const Eigen::VectorXd& direction,
+                     const Eigen::VectorXd& scales) {
+  const Eigen::VectorXd own = direction.cwiseQuotient(scales);
+  std::string like;
+  double most = kLikeness;
+  for (Eigen::Index i = 0; i < all.columns.cols(); ++i) {
+    Eigen::VectorXd other = all.columns.col(i).cwiseQuotient(scales);
+    for (Eigen::Index row = 0; row < own.size(); ++row)
+      if (direction[row] == 0.0) other[row] = 0.0;
+    const double size = own.norm() * other.norm();
+    const double likeness = size > 0.0 ? std::abs(own.dot(other)) / size : 0.0;
+    if (likeness <= most) continue;
+    most = likeness;
+    like = all.effects[static_cast<size_t>(i)];
+  }
+  return like;
+}
+
 }  // namespace
 
 Adequacy testAdequacy(const Fitter& fitter, const FitState& state, double alpha, uint64_t seed) {
   const std::vector<Variable> variables = variablesOf(fitter.data(), state.model);
-  const ScoreTest test(fitter, state, perChannel(fitter.data(), variables));
+  const Eigen::MatrixXd directions = perChannel(fitter.data(), variables);
+  const ScoreTest test(fitter, state, directions);
   const std::vector<double> chance = test.largestByChance(kDraws, seed);
   Adequacy adequacy;
+  std::vector<Eigen::Index> columns;  // of what is unexplained
   for (size_t channel = 0; channel < kChannels; ++channel)
     for (size_t v = 0; v < variables.size(); ++v) {
       const auto at = static_cast<Eigen::Index>(channel * variables.size() + v);
       const double p = familyWise(chance, test.score(at));
       adequacy.p_value = std::min(adequacy.p_value, p);
-      if (p <= alpha)
-        adequacy.unexplained.push_back(
-            {channelName(static_cast<Channel>(channel)), variables[v].name, test.score(at), p});
+      if (p > alpha) continue;
+      columns.push_back(at);
+      adequacy.unexplained.push_back(
+          {channelName(static_cast<Channel>(channel)), variables[v].name, test.score(at), p, ""});
     }
-  std::stable_sort(adequacy.unexplained.begin(), adequacy.unexplained.end(),
-                   [](const Unexplained& a, const Unexplained& b) {
-                     return std::abs(a.score) > std::abs(b.score);
-                   });
+  if (columns.empty()) return adequacy;
+  std::vector<size_t> order(columns.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    return std::abs(adequacy.unexplained[a].score) > std::abs(adequacy.unexplained[b].score);
+  });
+  const EffectDirections effects = effectDirections(fitter, state);
+  std::vector<Unexplained> sorted;
+  for (const size_t i : order) {
+    sorted.push_back(adequacy.unexplained[i]);
+    if (sorted.size() <= kLikened)
+      sorted.back().like = mostLike(effects, directions.col(columns[i]), state.scales);
+  }
+  adequacy.unexplained = std::move(sorted);
   return adequacy;
 }
 
 ResidualAtlas residualAtlas(const Observations& data, const ModelDocument& before,
-                            const ModelDocument& after) {
+                            const ModelDocument& after,
+                            const std::vector<Unexplained>& unexplained) {
   AtlasRows of{variablesOf(data, before), data.residuals(data.predict(before)),
                data.residuals(data.predict(after))};
   of.variables.push_back(elapsedTime(data));
@@ -232,9 +302,14 @@ ResidualAtlas residualAtlas(const Observations& data, const ModelDocument& befor
     for (size_t i = 0; i < data.all().size(); ++i)
       if (data.all()[i].channel == channel) members.push_back(i);
     if (members.empty()) continue;
-    addCurves(data, of, channel, members, atlas.curves);
+    addCurves(data, of, channel, members, unexplained, atlas.curves);
     addMap(of, channel, members, atlas.maps);
   }
+  std::stable_sort(atlas.curves.begin(), atlas.curves.end(),
+                   [&](const AtlasCurve& a, const AtlasCurve& b) {
+                     return placeAmong(unexplained, a.channel, a.variable) <
+                            placeAmong(unexplained, b.channel, b.variable);
+                   });
   return atlas;
 }
 

@@ -24,14 +24,17 @@ struct Variable {
 std::vector<Variable> variablesOf(const Observations& data, const ModelDocument& model);
 
 /// Tests every channel of the residuals for every variable, with the state's free parameters.
+/** Of each rest it says which effect of the catalogue, on or off, it resembles most in its channel:
+ * it is not that effect, whose size was free to explain it. */
 Adequacy testAdequacy(const Fitter& fitter, const FitState& state, double alpha, uint64_t seed);
 
-/// Where the residuals of two models are: curves of every channel over every variable, and maps
-/// over speed and yaw rate.
+/// Where the residuals of two models are: curves of every channel over variables that a person
+/// looks at and over those of what is unexplained, and maps over speed and yaw rate.
 /** The interval of a curve's cell is from the scatter of its blocks' means; cells that exclude 0
  * after correction for the number of cells (Bonferroni, 5 %) are marked. */
 ResidualAtlas residualAtlas(const Observations& observations, const ModelDocument& before,
-                            const ModelDocument& after);
+                            const ModelDocument& after,
+                            const std::vector<Unexplained>& unexplained = {});
 
 /// Blocks of measured driving from which chance and cause can be told apart.
 inline constexpr int kLeastBlocks = 10;

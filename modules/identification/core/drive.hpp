@@ -74,7 +74,8 @@ struct VoltageSample {
   double voltage = 0.0;  ///< [V]
 };
 
-/// Track speeds as encoders say; only for the error floor and for entry speeds, never for the fit.
+/// Track speeds as encoders say: for the error floor, entry speeds and as witnesses of what was
+/// found, never for the fit.
 struct EncoderSample {
   double time = 0.0;  ///< [s]
   TrackCommand speed{};

@@ -236,26 +236,12 @@ ShownExecutions shownExecutions(const std::vector<Unseen>& unseen, const ModelDo
 
 namespace {
 
-constexpr double kStep = 0.05;       // [s] of integration
-constexpr double kEncoderGap = 0.5;  // [s] over which encoders are held
-constexpr double kCertain = 0.5;     // |correlation| that a scale needs
+constexpr double kStep = 0.05;    // [s] of integration
+constexpr double kCertain = 0.5;  // |correlation| that a scale needs
 
 /// Mean of the encoders' track speeds, by segment.
-RunningSums encoderSums(const Drive& drive) {
-  RunningSums sums;
-  for (const Segment& segment : drive.segments) {
-    RunningSum sum;
-    auto sample = std::lower_bound(
-        drive.encoders.begin(), drive.encoders.end(), segment.begin() - kEncoderGap,
-        [](const EncoderSample& encoder, double time) { return encoder.time < time; });
-    for (; sample != drive.encoders.end() && sample->time < segment.end; ++sample) {
-      const auto next = std::next(sample);
-      const bool held = next != drive.encoders.end() && next->time - sample->time <= kEncoderGap;
-      if (held) sum.add(sample->time, next->time, 0.5 * (sample->speed.left + sample->speed.right));
-    }
-    sums.push_back(std::move(sum));
-  }
-  return sums;
+RunningSums meanSpeeds(const Drive& drive) {
+  return encoderSums(drive, [](const TrackCommand& c) { return 0.5 * (c.left + c.right); });
 }
 
 /// A pair of rates, the second one to be explained by the first.
@@ -314,7 +300,7 @@ std::vector<Rates> pairs(const std::vector<PoseIncrement>& increments,
 class Reckoner {
  public:
   Reckoner(const Drive& drive, const Reckoning& fit)
-      : drive_(drive), fit_(fit), speed_(encoderSums(drive)), gyro_(gyroSums(drive)) {}
+      : drive_(drive), fit_(fit), speed_(meanSpeeds(drive)), gyro_(gyroSums(drive)) {}
 
   std::optional<ExecutionError> errorOfReckoning(const Execution& execution) const {
     return errorOf(drive_.segments[execution.segment], execution,
@@ -352,7 +338,7 @@ std::optional<Reckoning> fitReckoning(const Drive& drive) {
   const auto increments = poseIncrements(drive);
   const std::vector<double> v = ratesOf(increments, &PoseIncrement::v);
   const std::vector<double> omega = ratesOf(increments, &PoseIncrement::omega);
-  const RunningSums encoders = encoderSums(drive);
+  const RunningSums encoders = meanSpeeds(drive);
   const RunningSums gyro = gyroSums(drive);
   const auto lags = lagGrid(-0.5, 1.0, 0.02);
   const auto forward = LagTable(increments, v, encoders, lags).best(0, increments.size());

@@ -37,7 +37,7 @@ struct ParameterEstimate {
   std::string unit;
   double value = 0.0;
   /// Of the 95 % interval, over blocks and, of found effects, over halves of the driving if no test
-  /// drives were given.
+  /// drives were given; with what the equation may be off by.
   double low = 0.0;
   double high = 0.0;  ///< infinite bounds where the drive does not say
   double before = 0.0;
@@ -53,6 +53,16 @@ struct RunnerUp {
   double error = 0.0;   ///< [nats] standard error of that difference
 };
 
+/// Share of an effect that the wheel speeds show, with its 95 % interval: 1 = all of it, 0 = none.
+struct WheelWitness {
+  double share = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+
+  bool saysDrive() const { return low > 0.5; }
+  bool saysGround() const { return high < 0.5; }
+};
+
 /// An effect that was found.
 struct FoundEffect {
   std::string name;
@@ -63,7 +73,8 @@ struct FoundEffect {
   double p_value = 1.0;  ///< of the largest T over the whole catalogue
   double gain = 0.0;     ///< [nats] on blocks that were not fitted
   double gain_error = 0.0;
-  bool accepted = false;  ///< by a person: it stands whatever the numbers above say
+  bool accepted = false;                 ///< by a person: it stands whatever the numbers above say
+  std::optional<WheelWitness> wheels{};  ///< nothing where they do not say
 };
 
 /// Probability of chance from which on an accepted effect is not shown by the drive itself.
@@ -138,6 +149,7 @@ struct AtlasCurve {
   std::string variable_unit;
   std::vector<AtlasCell> before;
   std::vector<AtlasCell> after;
+  bool unexplained = false;  ///< the new model's residuals depend on it beyond chance
 };
 
 /// Mean residual of one channel over speed and yaw rate, for a picture.
@@ -157,6 +169,8 @@ struct Unexplained {
   std::string variable;
   double score = 0.0;
   double p_value = 1.0;
+  std::string
+      like{};  ///< the effect that comes nearest to such a rest, but is not it; may be empty
 };
 
 /// One candidate of the first test.
@@ -199,8 +213,8 @@ struct Adequacy {
 
 /// Where the residuals of the old and the new model are.
 struct ResidualAtlas {
-  std::vector<AtlasCurve> curves;
-  std::vector<AtlasMap> maps;  ///< may be empty
+  std::vector<AtlasCurve> curves;  ///< those of what is unexplained first, strongest first
+  std::vector<AtlasMap> maps;      ///< may be empty
 };
 
 /// Executions for pictures, of driving that was not used for the fit.

@@ -8,10 +8,11 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kShortest = 0.4;  // [s] of an increment
-constexpr double kLongest = 1.2;   // [s]
-constexpr double kGyroGap = 0.5;   // [s] over which the gyro is not interpolated
-constexpr size_t kFewest = 12;     // increments of a match
+constexpr double kShortest = 0.4;    // [s] of an increment
+constexpr double kLongest = 1.2;     // [s]
+constexpr double kGyroGap = 0.5;     // [s] over which the gyro is not interpolated
+constexpr double kEncoderGap = 0.5;  // [s] over which encoders are held
+constexpr size_t kFewest = 12;       // increments of a match
 
 template <class Rate>
 RunningSums commandSums(const Drive& drive, Rate rate) {
@@ -93,6 +94,24 @@ RunningSums gyroSums(const Drive& drive) {
       if (last != nullptr && sample.time - last->time <= kGyroGap)
         sum.add(last->time, sample.time, 0.5 * (last->omega + sample.omega));
       last = &sample;
+    }
+    sums.push_back(std::move(sum));
+  }
+  return sums;
+}
+
+RunningSums encoderSums(const Drive& drive,
+                        const std::function<double(const TrackCommand&)>& rate) {
+  RunningSums sums;
+  for (const Segment& segment : drive.segments) {
+    RunningSum sum;
+    auto sample = std::lower_bound(
+        drive.encoders.begin(), drive.encoders.end(), segment.begin() - kEncoderGap,
+        [](const EncoderSample& encoder, double time) { return encoder.time < time; });
+    for (; sample != drive.encoders.end() && sample->time < segment.end; ++sample) {
+      const auto next = std::next(sample);
+      const bool held = next != drive.encoders.end() && next->time - sample->time <= kEncoderGap;
+      if (held) sum.add(sample->time, next->time, rate(sample->speed));
     }
     sums.push_back(std::move(sum));
   }

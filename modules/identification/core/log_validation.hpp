@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <functional>
 #include <iomanip>
 #include <optional>
 #include <sstream>
@@ -54,6 +55,8 @@ class RunningSum {
 using RunningSums = std::vector<RunningSum>;
 /// Of the gyro [rad].
 RunningSums gyroSums(const Drive& drive);
+/// Of a rate of the encoders' track speeds, such as their mean.
+RunningSums encoderSums(const Drive& drive, const std::function<double(const TrackCommand&)>& rate);
 /// Of right minus left command, and of their mean.
 RunningSums turnCommandSums(const Drive& drive);
 RunningSums driveCommandSums(const Drive& drive);

@@ -116,12 +116,13 @@ class Runner {
 
   void find(const HiddenCase& one) {
     fs::create_directories(folder_ / "found" / one.name);
-    const Ended ended = blindtest::run(
-        {{program("tread-gap"), "find", "--threads", "1", "--model", models_.at(one.nominal),
-          "--train", "blind/" + one.name + ".lcm", "--out", "found/" + one.name},
-         batch_.folder,
-         foundFile(one, "log.txt"),
-         kFindLimit});
+    std::vector<std::string> command{program("tread-gap"), "find", "--threads", "1"};
+    if (!study_.rival.empty()) command = {program("tread-rival"), study_.rival};
+    command.insert(command.end(), {"--model", models_.at(one.nominal), "--train",
+                                   "blind/" + one.name + ".lcm", "--out", "found/" + one.name});
+    if (startsWrong(one.nominal)) command.push_back("--calibrate");
+    const Ended ended =
+        blindtest::run({command, batch_.folder, foundFile(one, "log.txt"), kFindLimit});
     const std::lock_guard<std::mutex> guard(mutex_);
     ended_[one.name] = ended;
   }
@@ -138,6 +139,7 @@ class Runner {
   Json recordOf(const HiddenCase& one) const {
     Json record = {{"case", one.name}};
     record["truth"] = readJson(folder_ / "truth" / (one.name + ".json"));
+    if (startsWrong(one.nominal)) record["truth"]["kind"] = "wrong_start";
     Json answer = {{"exit", ended_.at(one.name).status}, {"message", ""}, {"verdict", nullptr}};
     if (hasVerdict(one))
       answer["verdict"] = readJson(folder_ / foundFile(one, "verdict.json"));

@@ -32,9 +32,14 @@ void addOptions(CLI::App& app, Arguments& arguments) {
   Study& study = arguments.study;
   app.footer(kFooter);
   app.add_option("--suite", study.suite, "which cases")
-      ->check(CLI::IsMember({"quick", "small", "medium", "full"}))
+      ->check(CLI::IsMember({"quick", "small", "medium", "full", "wrong_start"}))
       ->capture_default_str();
   app.add_option("--out", study.out, "folder")->required();
+  app.add_option(
+         "--rival", study.rival,
+         "another method answers instead: all (least squares over all parameters) or sparse "
+         "(sequentially thresholded regression on the catalogue's directions, as SINDy)")
+      ->check(CLI::IsMember({"all", "sparse"}));
   app.add_option("--seed", study.seed)->capture_default_str();
   app.add_option("--shard", arguments.shard, "I/N: every N-th case from the I-th");
   app.add_option("--jobs", study.jobs, "logs at a time; no influence on any byte")

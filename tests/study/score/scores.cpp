@@ -14,6 +14,10 @@ void addNullMusts(Scorer& scorer) {
   const Test null = isKind("null");
   scorer.share("false positives: an effect named in a null log", null, flag(&Judgement::alarm),
                Must{0.05, false, {}, 0.08, 400});
+  scorer.share(
+      "false positives: an effect named, all start values wrong", isKind("wrong_start"),
+      [](const JudgedCase& one) { return !one.record.answer.effects.empty(); },
+      Must{0.03, false, {}, {}, 400});
   scorer.share("  any verdict but NO_DISCREPANCY in a null log", null,
                [](const JudgedCase& one) { return one.record.answer.verdict != "NO_DISCREPANCY"; });
 }

@@ -32,6 +32,7 @@ using tread::testing::contentOf;
 Json headerOf(const Study& study, const std::vector<HiddenCase>& cases) {
   return {{"format", "tread-blind cases 1"},
           {"suite", study.suite},
+          {"answered_by", study.rival.empty() ? "tread-gap" : "tread-rival " + study.rival},
           {"seed", study.seed},
           {"minutes", study.minutes},
           {"cases", cases.size()},
@@ -55,7 +56,7 @@ std::vector<HiddenCase> hiddenSuite(const Study& study) {
 void claim(const Study& study, const Json& header) {
   const fs::path note = fs::path(shardFolder(study)) / "study.json";
   Json all = header;
-  for (const char* program : {"tread-hide", "tread-gap"})
+  for (const char* program : {"tread-hide", study.rival.empty() ? "tread-gap" : "tread-rival"})
     all[program] = sha256(readText(study.programs + "/" + program));
   const std::string text = all.dump(2) + "\n";
   if (fs::exists(note) && contentOf(note) != text)
@@ -74,6 +75,7 @@ std::string shardFolder(const Study& study) {
 
 std::vector<HiddenCase> casesOf(const Study& study) {
   if (study.suite == "quick") return quickSuite(study.minutes, study.seed);
+  if (study.suite == "wrong_start") return wrongStartSuite(study.minutes, study.seed);
   std::vector<HiddenCase> cases = hiddenSuite(study);
   // Behind the suite's own, which tread-hide numbers from the first on.
   for (const HiddenCase& one : recordingSuite(study)) cases.push_back(one);

@@ -13,15 +13,18 @@ namespace tread::blindtest {
 /// What may be known of a case before it is opened, and how it is hidden.
 struct HiddenCase {
   std::string name;
-  std::string nominal;  ///< which nominal model is the robot's: low, mid, high, recording-NAME
+  /// Which nominal model is the robot's: low, mid, high, recording-NAME; NAME~N: that one with
+  /// wrong numbers, which tread-gap is then asked to calibrate.
+  std::string nominal;
   std::vector<std::string> arguments;  ///< of tread-hide, for a case of its own; empty: of a suite
 };
 
 /// What a run of the blind test is asked.
 struct Study {
-  std::string suite = "small";  ///< quick, small, medium, full
+  std::string suite = "small";  ///< quick, small, medium, full, wrong_start
   std::string out;
-  std::string programs;         ///< folder of tread-hide and tread-gap
+  std::string programs;         ///< folder of tread-hide, tread-gap and tread-rival
+  std::string rival = {};       ///< method of tread-rival that answers in tread-gap's place
   std::string nominal;          ///< model file to be used instead of calibrating; empty = calibrate
   std::string recordings = {};  ///< folder of logs to hide effects in; see suites.hpp
   double minutes = 10.0;
@@ -35,6 +38,11 @@ struct Study {
 
 /// Name of the shard's folder in `out`.
 std::string shardFolder(const Study& study);
+
+/// Whether a nominal model has wrong numbers.
+inline bool startsWrong(const std::string& nominal) {
+  return nominal.find('~') != std::string::npos;
+}
 
 /// All cases of the suite in order, with what may be known of them.
 std::vector<HiddenCase> casesOf(const Study& study);

@@ -42,6 +42,22 @@ bool isUsable(const Study& study, const Recording& recording) {
   }
 }
 
+constexpr size_t kWrongStarts = 400;
+
+/// Names a case by its place, and adds what every case of its own tells tread-hide.
+void addCase(HiddenCase one, double minutes, uint64_t seed, std::vector<HiddenCase>& cases) {
+  const size_t number = cases.size() + 1;
+  char name[24];
+  std::snprintf(name, sizeof name, "%04zu", number);
+  one.name = name;
+  for (const std::string& word :
+       {std::string("--noise"), one.nominal.substr(0, one.nominal.find('~')),
+        std::string("--minutes"), std::to_string(minutes), std::string("--name"), one.name,
+        std::string("--seed"), std::to_string(seed * 1000 + number)})
+    one.arguments.push_back(word);
+  cases.push_back(one);
+}
+
 }  // namespace
 
 const char* const kBaseModel =
@@ -72,16 +88,16 @@ std::vector<HiddenCase> quickSuite(double minutes, uint64_t seed) {
       {"--effect", "track_asymmetry", "--size", "4"},
   };
   std::vector<HiddenCase> cases;
-  for (size_t i = 0; i < kinds.size(); ++i) {
-    char name[24];
-    std::snprintf(name, sizeof name, "%04zu", i + 1);
-    HiddenCase one{name, "mid", kinds[i]};
-    for (const std::string& word : {std::string("--noise"), one.nominal, std::string("--minutes"),
-                                    std::to_string(minutes), std::string("--name"), one.name,
-                                    std::string("--seed"), std::to_string(seed * 1000 + i + 1)})
-      one.arguments.push_back(word);
-    cases.push_back(one);
-  }
+  for (const std::vector<std::string>& kind : kinds)
+    addCase({"", "mid", kind}, minutes, seed, cases);
+  return cases;
+}
+
+std::vector<HiddenCase> wrongStartSuite(double minutes, uint64_t seed) {
+  std::vector<HiddenCase> cases;
+  for (size_t i = 0; i < kWrongStarts; ++i)
+    addCase({"", std::string(i % 2 == 0 ? "mid" : "high") + "~" + std::to_string(i), {"--null"}},
+            minutes, seed, cases);
   return cases;
 }
 

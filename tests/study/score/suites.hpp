@@ -13,6 +13,9 @@ namespace tread::blindtest {
 /// Twelve cases that are hidden one by one: what must be right whenever the tests run.
 std::vector<HiddenCase> quickSuite(double minutes, uint64_t seed);
 
+/// 400 logs of the plain vehicle, half of each noise, each with a model whose numbers are wrong.
+std::vector<HiddenCase> wrongStartSuite(double minutes, uint64_t seed);
+
 /// The model that calibration begins with: a vehicle of the generator's size, all effects off.
 extern const char* const kBaseModel;
 

@@ -166,7 +166,7 @@ inline Finding finding(GapVerdict verdict) {
   if (verdict == GapVerdict::kAmbiguous) finding.identified.effects = {icrOffset()};
   if (verdict == GapVerdict::kMeasurement) finding.identified.effects = {misalignment()};
   if (verdict == GapVerdict::kPartial || verdict == GapVerdict::kNotInCatalogue)
-    finding.adequacy.unexplained = {{"yaw rate", "speed x yaw rate", 9.1, 0.004}};
+    finding.adequacy.unexplained = {{"yaw rate", "speed x yaw rate", 9.1, 0.004, "yaw_rate_skid"}};
   for (const FoundEffect& effect : finding.identified.effects) {
     finding.search.steps.push_back({effect.name, false, effect.score, effect.p_value, effect.gain,
                                     effect.gain_error, effect.runner_ups, ""});

@@ -113,6 +113,37 @@ TEST_CASE("what remains is told channel by channel") {
                    {"yaw rate", "v", 3.0, 0.01},
                    {"along", "time", 3.0, 0.01}}) ==
         "the along residual depends on speed and time; the yaw rate residual depends on v");
+  CHECK(remainsOf({{"along", "speed", 3.0, 0.01, "slip_ratio"}}) ==
+        "the along residual depends on speed (like longitudinal slip, but not that)");
+}
+
+TEST_CASE("what is left without a name is drawn beside the headline") {
+  Finding finding = samples::finding(GapVerdict::kPartial);
+  CHECK(restPictures(finding).svg.empty());
+  for (size_t i = 0; i < 5; ++i) {
+    finding.atlas.curves.push_back(finding.atlas.curves.front());
+    finding.atlas.curves.back().unexplained = true;
+  }
+  CHECK(restPictures(finding).svg.size() == 3);
+  std::ostringstream html;
+  CHECK(markdownOf(reportPage(finding, {})).find("What is left, over what it depends on") !=
+        std::string::npos);
+}
+
+TEST_CASE("after an effect stands where the wheel speeds say that it is") {
+  Finding finding = samples::finding(GapVerdict::kFound);
+  const auto sentenceWith = [&](const WheelWitness& wheels) {
+    finding.identified.effects[0].wheels = wheels;
+    return sentencesOf(finding).front();
+  };
+  CHECK_THAT(
+      sentenceWith({0.97, 0.9, 1.04}),
+      Catch::EndsWith("The wheel speeds show 97 % of it (90 to 104 %): it is in the drive."));
+  CHECK_THAT(sentenceWith({1.5, 1.4, 1.6}),
+             Catch::Contains("show all of it and more (140 to 160 %): it is in the drive."));
+  CHECK_THAT(sentenceWith({0.1, -0.1, 0.3}),
+             Catch::EndsWith("it is under the wheels, not in the drive."));
+  CHECK_THAT(sentenceWith({0.5, 0.3, 0.7}), Catch::EndsWith("whether it is in the drive."));
 }
 
 TEST_CASE("a report shows where, how, step by step, the parameters and what else it could be") {

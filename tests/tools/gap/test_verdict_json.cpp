@@ -40,6 +40,15 @@ TEST_CASE("an effect in verdict.json has kind, parameters, group and runner-ups"
         Json::array({"lever_arm_x"}));
 }
 
+TEST_CASE("what the wheel speeds show of an effect is in verdict.json where they say something") {
+  Finding finding = samples::finding(GapVerdict::kFound);
+  finding.identified.effects[0].wheels = WheelWitness{0.97, 0.9, 1.04};
+  const Json json = verdictJson(finding, samples::inputs());
+  CHECK(json["effects"][0]["wheel_speeds_show"] ==
+        Json({{"share", 0.97}, {"low", 0.9}, {"high", 1.04}}));
+  CHECK_FALSE(json["effects"][1].contains("wheel_speeds_show"));
+}
+
 TEST_CASE("a limit stands in verdict.json as its reciprocal and as itself") {
   const Json json = verdictJson(samples::finding(GapVerdict::kFound), samples::inputs());
   const Json& parameters = json["effects"][0]["parameters"];
@@ -79,8 +88,9 @@ TEST_CASE(
   const Json json = verdictJson(samples::finding(GapVerdict::kPartial), samples::inputs());
   CHECK(json["calibrated"]["lag"]["value"] == 0.17);
   CHECK(json["calibrated"]["icr_offset.offset"]["unit"] == "m");
-  CHECK(json["unexplained"][0] ==
-        Json({{"channel", "yaw rate"}, {"variable", "speed x yaw rate"}}));
+  CHECK(
+      json["unexplained"][0] ==
+      Json({{"channel", "yaw rate"}, {"variable", "speed x yaw rate"}, {"like", "yaw_rate_skid"}}));
   CHECK(json["not_excited"] == Json::array({"grip_limit", "slope_pitch"}));
   CHECK(json["seed"] == 7);
   CHECK(json["inputs"]["model"]["sha256"] == std::string(64, 'a'));

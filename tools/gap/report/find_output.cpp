@@ -57,13 +57,18 @@ Json effectJson(const FoundEffect& effect) {
   for (const ParameterEstimate& estimate : effect.parameters) add(parameters, "", estimate);
   Json runner_ups = Json::array();
   for (const RunnerUp& runner_up : effect.runner_ups) runner_ups.push_back(runner_up.effect);
-  return {
+  Json json = {
       {"name", effect.name},
       {"kind", effectNamed(effect.name).kind() == EffectKind::kVehicle ? "vehicle" : "measurement"},
       {"parameters", parameters},
       {"group", effect.group},
       {"runner_up", runner_ups},
       {"accepted", effect.accepted}};
+  if (effect.wheels)
+    json["wheel_speeds_show"] = {{"share", number(effect.wheels->share)},
+                                 {"low", number(effect.wheels->low)},
+                                 {"high", number(effect.wheels->high)}};
+  return json;
 }
 
 Json calibratedJson(const std::vector<ParameterEstimate>& calibrated) {
@@ -149,7 +154,9 @@ nlohmann::ordered_json verdictJson(const Finding& finding, const std::vector<Inp
     effects.push_back(effectJson(effect));
   Json unexplained = Json::array();
   for (const Unexplained& rest : finding.adequacy.unexplained)
-    unexplained.push_back(Json{{"channel", rest.channel}, {"variable", rest.variable}});
+    unexplained.push_back(Json{{"channel", rest.channel},
+                               {"variable", rest.variable},
+                               {"like", rest.like.empty() ? Json(nullptr) : Json(rest.like)}});
   return {{"verdict", verdictName(finding.verdict)},
           {"reason", finding.reason},
           {"effects", effects},

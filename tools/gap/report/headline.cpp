@@ -232,8 +232,10 @@ std::vector<Block> firstBlocks(const Finding& finding) {
     blocks.push_back(Paragraph{kNoResult});
   const Points sentences{sentencesOf(finding)};
   if (!sentences.items.empty()) blocks.push_back(sentences);
-  if (!finding.adequacy.unexplained.empty())
+  if (!finding.adequacy.unexplained.empty()) {
     blocks.push_back(Paragraph{"Unexplained: " + remainsOf(finding.adequacy.unexplained) + "."});
+    if (Pictures rest = restPictures(finding); !rest.svg.empty()) blocks.push_back(rest);
+  }
   if (finding.gap) {
     blocks.push_back(Paragraph{gainOf(*finding.gap)});
     const std::string worse = worseOf(*finding.gap);

@@ -78,6 +78,16 @@ std::string atlasPicture(const AtlasCurve& curve) {
   return chart.svg();
 }
 
+Pictures restPictures(const Finding& finding) {
+  constexpr size_t kMost = 3;
+  Pictures rest{{},
+                "What is left, over what it depends on. Orange, dashed: the old model. Blue: "
+                "the new one, which should lie on 0."};
+  for (const AtlasCurve& curve : finding.atlas.curves)
+    if (curve.unexplained && rest.svg.size() < kMost) rest.svg.push_back(atlasPicture(curve));
+  return rest;
+}
+
 double largestResidual(const AtlasMap& map) {
   double largest = 0.0;
   for (const std::vector<double>* values : {&map.before, &map.after})

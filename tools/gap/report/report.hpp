@@ -147,6 +147,9 @@ using report::Chart, report::ChartPoint, report::ChartRange;
 /// A residual over a variable, before and after, with 95 % intervals; filled dots are marked cells.
 std::string atlasPicture(const AtlasCurve& curve);
 
+/// The strongest of what is unexplained, drawn; none where all is explained.
+report::Pictures restPictures(const Finding& finding);
+
 /// The largest |mean| of a map before and after: equal colours need a common scale.
 double largestResidual(const AtlasMap& map);
 

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include "core_rig.hpp"
+#include "modules/identification/core/discovery.hpp"
+#include "modules/identification/core/witness.hpp"
+
+using namespace tread;
+using namespace tread::gap;
+using samples::Rig;
+using samples::Values;
+
+namespace {
+
+/// What encoders say twenty times a second of a drive whose tracks do what a model does.
+std::vector<EncoderSample> encodersOf(const ModelDocument& tracks, const Drive& drive,
+                                      double late = 0.0) {
+  std::vector<EncoderSample> encoders;
+  VehicleKernel kernel(tracks.vehicle, EntryState{});
+  const std::vector<CommandSample>& commands = drive.segments.front().commands;
+  for (size_t i = 0; i < commands.size(); ++i) {
+    // Wheels turn faster than the ground passes, by the slip that the factor stands for.
+    const TrackCommand speed = kernel.trackSpeeds();
+    encoders.push_back({commands[i].time + late, {1.1 * speed.left, 1.1 * speed.right}});
+    kernel.step(commands[i].command, 0.05);
+  }
+  return encoders;
+}
+
+/// The witness about the only effect that is free, whose strength is `hidden` in truth; the drive's
+/// tracks are those of `tracks`.
+std::optional<WheelWitness> witnessOf(const Values& hidden, const Values& tracks,
+                                      double late = 0.0) {
+  Rig rig(hidden, 400.0, 3);
+  rig.drives.front().encoders = encodersOf(samples::vehicleWith(tracks), rig.drives.front(), late);
+  const FitState state = rig.fitted(hidden);
+  return wheelWitness(rig.fitter, state, effectOf(hidden.front().first));
+}
+
+}  // namespace
+
+TEST_CASE("of an effect in the drive the wheel speeds show all, whatever the wheels' scale") {
+  const Values limit{{"speed_saturation.inverse_limit", 1.4}};
+  const auto wheels = witnessOf(limit, limit);
+  REQUIRE(wheels);
+  CHECK(wheels->share == Approx(1.0).margin(0.1));
+  CHECK(wheels->low < wheels->share);
+  CHECK(wheels->high > wheels->share);
+  CHECK(wheels->saysDrive());
+  CHECK_FALSE(wheels->saysGround());
+}
+
+TEST_CASE("of an effect under the wheels they show nothing") {
+  const auto wheels = witnessOf({{"yaw_inertia.lag", 0.8}}, {});
+  REQUIRE(wheels);
+  CHECK(wheels->share == Approx(0.0).margin(0.1));
+  CHECK(wheels->saysGround());
+  CHECK_FALSE(wheels->saysDrive());
+}
+
+TEST_CASE("a lag that the wheels have, too, is in the drive, also where encoders are late") {
+  const Values lag{{"actuator_lag.lag", 0.6}};
+  for (const double late : {0.0, 0.125}) {
+    const auto wheels = witnessOf(lag, lag, late);
+    REQUIRE(wheels);
+    CHECK(wheels->share > 0.9);
+    CHECK(wheels->share < 1.4);
+    CHECK(wheels->saysDrive());
+  }
+}
+
+TEST_CASE(
+    "wheel speeds say nothing of scales, of motion to the side, of the INS, and without any") {
+  CHECK_FALSE(witnessOf({{"slip_ratio.slip", 0.2}}, {}));
+  CHECK_FALSE(witnessOf({{"centrifugal_drift.time", 0.2}}, {}));
+  CHECK_FALSE(witnessOf({{"ins_latency.latency", 0.3}}, {}));
+  const Rig rig({{"yaw_inertia.lag", 0.8}}, 300.0, 3);
+  CHECK_FALSE(wheelWitness(rig.fitter, rig.fitted({{"yaw_inertia.lag", 0.8}}), "yaw_inertia"));
+}
+
+TEST_CASE("a delay that the wheels have is no latency of the INS any more") {
+  const Values delay{{"command_delay.delay", 0.25}};
+  Rig rig(delay, 400.0, 3);
+  const auto found = [&] {
+    FoundTerms result;
+    result.state = rig.fitted(delay);
+    result.effects = {"command_delay"};
+    return identifiedModel(rig.fitter, syntheticVehicle(), {}, result).effects.front();
+  };
+  CHECK(found().group == std::vector<std::string>{"ins_latency"});
+  rig.drives.front().encoders = encodersOf(samples::vehicleWith(delay), rig.drives.front());
+  REQUIRE(found().wheels);
+  CHECK(found().wheels->saysDrive());
+  CHECK(found().group.empty());
+}
