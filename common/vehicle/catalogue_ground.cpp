@@ -103,15 +103,17 @@ std::vector<Effect> turningEffects() {
       {"turn_power_limit",
        "Limit of turning power",
        "w",
-       "The drive cannot turn the vehicle faster than a certain yaw rate on this ground.",
-       "omega -> clip(omega, +-limit); inverse_limit = 1 / limit",
+       "The drive hardly turns the vehicle faster than a certain yaw rate on this ground.",
+       "|omega| -> limit + beyond (|omega| - limit) where |omega| > limit; inverse_limit = 1 / "
+       "limit",
        "The yaw rate is right up to a value and flat beyond it, on the spot and at speed; the "
        "forward speed is right.",
        "Turn on the spot with a growing command; a limit of track speed caps the straight drive, "
        "too, a grip limit does not act on the spot.",
        "Turn on the spot at 60, 80 and 100 % and compare the yaw rates.",
        {inverseLimit("s/rad", 10.0, 0.7, &V::turn_power_limit, {0.25, 0.4, 0.6, 0.9, 1.4}, "limit",
-                     "rad/s", LimitedQuantity::kYawRate)}},
+                     "rad/s", LimitedQuantity::kYawRate),
+        beyond(&V::turn_power_beyond)}},
   };
 }
 
@@ -167,13 +169,15 @@ std::vector<Effect> gripEffects() {
       {"grip_limit",
        "Grip limit, shear failure",
        "w",
-       "The ground gives no more sideways force than its friction; fast curves get wider.",
-       "|v omega| <= friction 9.81 m/s2; inverse_limit = 1 / friction",
+       "The ground gives hardly more sideways force than its friction; fast curves get wider.",
+       "|omega| -> limit + beyond (|omega| - limit) where |omega| > limit = friction 9.81 m/s2 / "
+       "|v|; inverse_limit = 1 / friction",
        "The yaw rate is capped only where speed times yaw rate is large; on the spot it is right.",
        "The same yaw rate in a fast wide and in a slow tight turn.",
        "Drive one circle faster and faster until it widens.",
        {inverseLimit("1", 20.0, 4.0, &V::grip_limit, {1.5, 3.0, 6.0, 12.0}, "friction", "1",
-                     LimitedQuantity::kLateralAcceleration)}},
+                     LimitedQuantity::kLateralAcceleration),
+        beyond(&V::grip_beyond)}},
       {"yaw_pull",
        "Yaw pull",
        "w",

@@ -75,6 +75,11 @@ inline EffectParameter fitted(EffectParameter parameter) {
   return parameter;
 }
 
+/// How hard a limit is: the share of what is asked for beyond it that still comes.
+inline EffectParameter beyond(double EffectValues::*value) {
+  return fitted(shape(strength("beyond", "1", 0.0, 0.6, 0.15, value), {0.1}));
+}
+
 inline EffectParameter searchedFromSlope(EffectParameter parameter) {
   parameter.search_from_slope = true;
   return parameter;

@@ -23,8 +23,8 @@ double supplied(const VehicleModel& model, const DriveContext& context, double a
 }
 
 /// A track that has run in its direction for long has its slack behind it.
-TrackState enteredTrack(const EffectValues& effects, double speed, double heat) {
-  return {speed, speed < 0.0 ? effects.track_backlash : 0.0, heat};
+TrackState enteredTrack(const EffectValues& effects, double speed, double ramp, double heat) {
+  return {speed, ramp, speed < 0.0 ? effects.track_backlash : 0.0, heat};
 }
 
 /// Change of the end pose per standard deviation of one noise.
@@ -59,8 +59,10 @@ VehicleKernel::VehicleKernel(const VehicleModel& model, const EntryState& entry,
                              const ExecutionNoise& noise)
     : model_(model),
       context_(entry.context),
-      left_(enteredTrack(model.effects, entry.track_speeds.left, entry.heat.left)),
-      right_(enteredTrack(model.effects, entry.track_speeds.right, entry.heat.right)),
+      left_(enteredTrack(model.effects, entry.track_speeds.left,
+                         entry.ramps.value_or(entry.track_speeds).left, entry.heat.left)),
+      right_(enteredTrack(model.effects, entry.track_speeds.right,
+                          entry.ramps.value_or(entry.track_speeds).right, entry.heat.right)),
       on_ground_(entry.track_speeds),
       acting_(entry.command) {
   setNoise(noise);
@@ -149,6 +151,7 @@ EntryState VehicleKernel::state() const {
   state.context = context_;
   state.body = body_;
   state.heat = {left_.heat, right_.heat};
+  state.ramps = {left_.ramp, right_.ramp};
   return state;
 }
 

@@ -22,6 +22,8 @@ struct EntryState {
   /// Forward speed and yaw rate of the body, for its inertia; else what the tracks lead to.
   std::optional<PlaneMotion> body = std::nullopt;
   TrackCommand heat{};  ///< [1] low-pass of the duty of each side's motor, see thermal_derating
+  /// [m/s] that the drives are asked for by their ramps, see slew_limit; else their speeds.
+  std::optional<TrackCommand> ramps = std::nullopt;
 };
 
 /// The state that a command leads to when it is held for long (motors cold).

@@ -30,19 +30,6 @@ Followed follow(double value, double target, double lag, double dt) {
   return {target + distance * (1.0 - decay) * lag / dt, target + distance * decay};
 }
 
-Followed follow(double value, double target, double lag, double inverse_limit, double dt) {
-  if (inverse_limit == 0.0) return follow(value, target, lag, dt);
-  const double rate = 1.0 / inverse_limit;
-  const double sign = target < value ? -1.0 : 1.0;
-  const double knee = rate * lag;  // from this distance on the lag is the slower one
-  const double ramp = (std::abs(target - value) - knee) / rate;
-  if (ramp <= 0.0) return follow(value, target, lag, dt);
-  if (ramp >= dt) return {value + sign * rate * dt / 2.0, value + sign * rate * dt};
-  const double turn = target - sign * knee;
-  const Followed rest = follow(turn, target, lag, dt - ramp);
-  return {((value + turn) / 2.0 * ramp + rest.mean * (dt - ramp)) / dt, rest.end};
-}
-
 Followed follow(double value, const MovingTarget& target, double lag, double dt) {
   if (lag <= 0.0) return {target.mean, target.to};
   // With s = t / dt the target is from + slope s + bend s^2; what follows it for good is
@@ -56,6 +43,19 @@ Followed follow(double value, const MovingTarget& target, double lag, double dt)
   const double behind_to = target.to - share * (slope + 2.0 * bend) + bent;
   const double end = behind_to + (value - behind_from) * std::exp(-dt / lag);
   return {target.mean - share * (end - value), end};
+}
+
+Followed followRamp(double value, double& ramp, double target, double inverse_limit, double lag,
+                    double dt) {
+  const double way = target - ramp;
+  const double rising = std::min(dt, std::abs(way) * inverse_limit);
+  const double from = ramp;
+  ramp = rising < dt ? target : from + std::copysign(dt / inverse_limit, way);
+  if (rising <= 0.0) return follow(value, target, lag, dt);
+  const Followed first = follow(value, {from, 0.5 * (from + ramp), ramp}, lag, rising);
+  if (rising >= dt) return first;
+  const Followed rest = follow(first.end, target, lag, dt - rising);
+  return {(first.mean * rising + rest.mean * (dt - rising)) / dt, rest.end};
 }
 
 ExecutionNoise drawNoise(const ExecutionSpread& spread, std::mt19937_64& random) {

@@ -23,7 +23,7 @@ namespace tread {
  *       -> waits: delay + command_delay
  *       -> each track: full_speed, motor_deadband, speed_saturation, battery_sag,
  *          thermal_derating, track_asymmetry
- *       -> the drive follows: lag + actuator_lag (lag_asymmetry when slowing), slew_limit;
+ *       -> the drive follows: slew_limit, then lag + actuator_lag (lag_asymmetry when slowing);
  *          track_backlash
  *     track speeds on the ground
  *       -> slip_ratio, terrain_change (slip), gains and gauge of the nominal model
@@ -64,6 +64,7 @@ struct EffectValues {
   double yaw_rate_skid = 0.0;        ///< [s]
   double yaw_breakaway = 0.0;        ///< [rad/s]
   double turn_power_limit = 0.0;     ///< [s/rad], 1 / greatest yaw rate
+  double turn_power_beyond = 0.0;    ///< [1], shape: share beyond it that still comes
   double speed_understeer = 0.0;     ///< [s2/m2]
   double reverse_yaw_gain = 0.0;     ///< [s/m]
   double payload_yaw = 0.0;          ///< [1]
@@ -71,6 +72,7 @@ struct EffectValues {
   double payload_icr = 0.0;          ///< [m]
   double payload_time = 0.0;         ///< [s], shape
   double grip_limit = 0.0;           ///< [1], 1 / friction
+  double grip_beyond = 0.0;          ///< [1], shape: share beyond it that still comes
   double yaw_pull = 0.0;             ///< [rad/m]
   double yaw_rate_offset = 0.0;      ///< [rad/s]
   double turn_speed_loss = 0.0;      ///< [s]
@@ -154,8 +156,6 @@ struct Followed {
 
 /// First-order lag [s] towards a constant target over dt; exact. Without lag it is there at once.
 Followed follow(double value, double target, double lag, double dt);
-/// The same with a rate of at most 1 / inverse_limit (0 = no limit): a ramp, then the lag; exact.
-Followed follow(double value, double target, double lag, double inverse_limit, double dt);
 
 /// A target that runs from one value to another over a step, with that mean: a parabola.
 struct MovingTarget {
@@ -167,9 +167,15 @@ struct MovingTarget {
 /// First-order lag [s] behind a moving target over dt; exact.
 Followed follow(double value, const MovingTarget& target, double lag, double dt);
 
+/// First-order lag [s] behind a ramp of 1 / inverse_limit (0 = a step) to a target over dt; exact.
+/** `ramp`: where the ramp is, and then where it has come to. */
+Followed followRamp(double value, double& ramp, double target, double inverse_limit, double lag,
+                    double dt);
+
 /// What one track and its motor remember.
 struct TrackState {
   double speed = 0.0;  ///< [m/s] of the drive, after its lag
+  double ramp = 0.0;   ///< [m/s] that the drive is asked for, see slew_limit
   double taken = 0.0;  ///< [m] slack: 0 = taken up forwards, slack = taken up backwards
   double heat = 0.0;   ///< [1] low-pass of the duty, see thermal_derating
 };
@@ -199,6 +205,13 @@ constexpr double kSlopeFullSpeed = 0.05;  // [m/s], slower tracks hold on a slop
 inline double deadZone(double value, double width) {
   const double rest = std::abs(value) - width;
   return rest <= 0.0 ? 0.0 : std::copysign(rest, value);
+}
+
+/// A value up to a limit (held as its reciprocal; 0 = none), and a share of what is beyond it.
+inline double limited(double value, double inverse_limit, double beyond) {
+  if (std::abs(value) * inverse_limit <= 1.0) return value;
+  const double limit = 1.0 / inverse_limit;
+  return std::copysign(limit + beyond * (std::abs(value) - limit), value);
 }
 
 /// `value` over 1 + loss.
@@ -240,8 +253,7 @@ inline double suppliedSpeed(const EffectValues& effects, double asked, double se
                             double drop) {
   double speed = asked;
   if (effects.motor_deadband != 0.0) speed = deadZone(speed, effects.motor_deadband);
-  if (std::abs(speed) * effects.speed_saturation > 1.0)
-    speed = std::copysign(1.0 / effects.speed_saturation, speed);
+  speed = limited(speed, effects.speed_saturation, 0.0);
   if (effects.battery_sag_per_hour != 0.0)
     speed *= std::max(0.0, 1.0 - effects.battery_sag_per_hour * session_time / kHour);
   if (effects.battery_sag_per_drop != 0.0)
@@ -278,7 +290,7 @@ inline double driveTrack(const VehicleModel& model, double supplied, double side
   if (effects.lag_asymmetry != 0.0 &&
       (std::abs(target) < std::abs(track.speed) || target * track.speed < 0.0))
     lag = std::max(0.0, lag + effects.lag_asymmetry);
-  const Followed speed = follow(track.speed, target, lag, effects.slew_limit, dt);
+  const Followed speed = followRamp(track.speed, track.ramp, target, effects.slew_limit, lag, dt);
   track.speed = speed.end;
   if (effects.thermal_derating != 0.0) {
     const double duty = supplied / model.full_speed;
@@ -308,14 +320,11 @@ inline double turned(const EffectValues& effects, const ChangesInForce& changes,
   const double breakaway =
       effects.yaw_breakaway + on(effects.terrain_breakaway_1, effects.terrain_breakaway_2, changes);
   if (breakaway > 0.0) omega = deadZone(omega, breakaway);
-  if (std::abs(omega) * effects.turn_power_limit > 1.0)
-    omega = std::copysign(1.0 / effects.turn_power_limit, omega);
+  omega = limited(omega, effects.turn_power_limit, effects.turn_power_beyond);
   if (effects.speed_understeer != 0.0) omega = lessened(omega, effects.speed_understeer * v * v);
   if (effects.reverse_yaw_gain != 0.0) omega *= 1.0 + effects.reverse_yaw_gain * v;
   if (changes.payload != 0.0) omega *= 1.0 + effects.payload_yaw * changes.payload;
-  if (std::abs(v * omega) * effects.grip_limit > kGravity)
-    omega = std::copysign(kGravity / (effects.grip_limit * std::abs(v)), omega);
-  return omega;
+  return limited(omega, effects.grip_limit * std::abs(v) / kGravity, effects.grip_beyond);
 }
 
 /// Losses of forward speed in a turn of `omega`.

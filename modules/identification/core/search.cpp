@@ -203,14 +203,17 @@ class EffectSelection {
 
   /// A delay that was superfluous beside the first lags may not be beside the last ones.
   bool addBesideLags() {
-    const auto isLag = [](const std::string& effect) { return contains(lagEffects(), effect); };
-    if (std::none_of(result_.effects.begin(), result_.effects.end(), isLag)) return false;
+    if (std::none_of(result_.effects.begin(), result_.effects.end(),
+                     [](const std::string& effect) { return contains(lagEffects(), effect); }))
+      return false;
     SensitivityCache cache = memory_.with_nuisance;
     Screening screening = test(cache);
     for (size_t i = 0; i < screening.candidates.size(); ++i) {
       const Candidate& candidate = screening.candidates[i];
       // Nothing else is looked for: it has had its chance.
-      if (candidate.release || !isLag(candidate.effect)) screening.evidence[i] = 0.0;
+      const bool is_delay =
+          candidate.effect == "command_delay" || candidate.effect == "ins_latency";
+      if (candidate.release || !is_delay) screening.evidence[i] = 0.0;
     }
     return addBest(screening);
   }

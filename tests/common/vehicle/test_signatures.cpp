@@ -157,15 +157,41 @@ TEST_CASE("slew_limit makes ramps whose duration is proportional to the step") {
   CHECK(large[19].v_x == Approx(1.0));
 }
 
-TEST_CASE("slew_limit before a lag is a ramp that ends in the lag, without a jump in rate") {
-  VehicleModel model = with(&EffectValues::slew_limit, 0.5);
+TEST_CASE("slew_limit before a lag is a ramp that the lag follows, however time is cut") {
+  VehicleModel model = with(&EffectValues::slew_limit, 0.5);  // 2 m/s2
   model.delay = 0.0;
-  model.lag = 0.2;  // takes over 0.4 m/s before the target
-  VehicleKernel kernel(model, {});
-  kernel.step({1.0, 1.0}, 0.3);
-  CHECK(kernel.twist().v_x == Approx(0.6));
-  kernel.step({1.0, 1.0}, 0.2);
-  CHECK(kernel.twist().v_x == Approx(1.0 - 0.4 * std::exp(-1.0)));
+  model.lag = 0.2;
+  // Behind a ramp of slope s a lag is s (t - lag (1 - e^(-t / lag))).
+  const double on_ramp = 2.0 * (0.3 - 0.2 * (1.0 - std::exp(-0.3 / 0.2)));
+  const double at_its_end = 2.0 * (0.5 - 0.2 * (1.0 - std::exp(-0.5 / 0.2)));
+  const double after = 1.0 - (1.0 - at_its_end) * std::exp(-0.25 / 0.2);
+  for (const std::vector<double>& steps : {std::vector<double>{0.3, 0.45}, {0.1, 0.2, 0.4, 0.05}}) {
+    VehicleKernel kernel(model, {});
+    double time = 0.0;
+    for (const double step : steps) {
+      kernel.step({1.0, 1.0}, step);
+      time += step;
+      if (std::abs(time - 0.3) < 1e-9) CHECK(kernel.twist().v_x == Approx(on_ramp));
+    }
+    CHECK(kernel.twist().v_x == Approx(after));
+    // Another kernel goes on from where this one is.
+    VehicleKernel other(model, kernel.state());
+    kernel.step({0.0, 0.0}, 0.2);
+    other.step({0.0, 0.0}, 0.2);
+    CHECK(other.twist().v_x == Approx(kernel.twist().v_x));
+  }
+}
+
+TEST_CASE("a soft limit lets a share of what is beyond it through") {
+  VehicleModel model = with(&EffectValues::turn_power_limit, 1.0 / 1.5);
+  const double hard = steadyTwist(model, {-1.0, 1.0}).omega;
+  const double free = steadyTwist(plainVehicle(), {-1.0, 1.0}).omega;
+  REQUIRE(free > 1.6);
+  CHECK(hard == Approx(1.5));
+  model.effects.turn_power_beyond = 0.2;
+  CHECK(steadyTwist(model, {-1.0, 1.0}).omega == Approx(1.5 + 0.2 * (free - 1.5)));
+  CHECK(steadyTwist(model, {1.0, -1.0}).omega == Approx(-1.5 - 0.2 * (free - 1.5)));
+  CHECK(steadyTwist(model, {0.2, 0.3}).omega == steadyTwist(plainVehicle(), {0.2, 0.3}).omega);
 }
 
 TEST_CASE("lag_asymmetry acts when slowing down only") {

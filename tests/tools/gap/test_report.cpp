@@ -93,7 +93,7 @@ TEST_CASE("the headline says the verdict in words, and the first screen the gain
 
 TEST_CASE("a found effect is said with its natural number, interval and direction") {
   CHECK(sentenceOf(samples::turnLimit()) ==
-        "The drive cannot turn the vehicle faster than a certain yaw rate on this ground: limit "
+        "The drive hardly turns the vehicle faster than a certain yaw rate on this ground: limit "
         "1.25 rad/s (1.22 to 1.28 rad/s).");
   CHECK(sentenceOf(samples::asymmetry()) ==
         "One track runs a little faster than the other at the same command: share -2.98 % (-3.40 "
@@ -188,8 +188,10 @@ TEST_CASE("effects that cannot be told apart come with the measurement that tell
 }
 
 TEST_CASE("what remains without a name is told by channel and variable") {
-  CHECK(has(markdown(GapVerdict::kPartial),
-            "Unexplained: the yaw rate residual depends on speed x yaw rate."));
+  CHECK(has(
+      markdown(GapVerdict::kPartial),
+      "Unexplained: the yaw rate residual depends on speed x yaw rate (like skid that grows with "
+      "the yaw rate, but not that)."));
   CHECK(has(markdown(GapVerdict::kNotInCatalogue), "no effect of the catalogue explains it"));
 }
 

@@ -160,7 +160,9 @@ TEST_CASE("what find prints at its end begins with the verdict and tells what re
   CHECK(has(closingLines(samples::finding(GapVerdict::kAmbiguous)).back(),
             "To tell: Measure the lever arm with a tape."));
   CHECK(std::count(lines.begin(), lines.end(),
-                   "  Unexplained: the yaw rate residual depends on speed x yaw rate.") == 1);
+                   "  Unexplained: the yaw rate residual depends on speed x yaw rate (like skid "
+                   "that grows with "
+                   "the yaw rate, but not that).") == 1);
 }
 
 TEST_CASE("a term on top of what the model had shows their total beside") {
@@ -188,7 +190,8 @@ TEST_CASE(
     "each effect is told by its name and in a sentence, in the report and at the end of find") {
   const Finding finding = samples::finding(GapVerdict::kFound);
   const std::string sentence =
-      "Limit of turning power: the drive cannot turn the vehicle faster than a certain yaw rate on "
+      "Limit of turning power: the drive hardly turns the vehicle faster than a certain yaw rate "
+      "on "
       "this ground: limit 1.25 rad/s (1.22 to 1.28 rad/s).";
   CHECK(has(report(finding), "- " + sentence + "\n"));
   CHECK(closingLines(finding)[1] == "  " + sentence);

@@ -41,6 +41,8 @@ std::string withNumbers(const FoundEffect& effect, const std::vector<std::string
   std::vector<std::string> numbers;
   std::string direction;
   for (const ParameterEstimate& estimate : effect.parameters) {
+    // A limit that is hard has nothing beyond it to tell.
+    if (lastPart(estimate.parameter) == "beyond" && estimate.value < 0.005) continue;
     numbers.push_back(saidEstimate(estimate));
     if (direction.empty()) direction = directionOf(estimate);
   }
