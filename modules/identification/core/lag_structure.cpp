@@ -53,7 +53,11 @@ std::optional<Trial> tryOut(const SearchState& search, const Lags& lags,
     fitter.add(trial.state, lag, value);
     trial.effects.push_back(effect);
   }
-  fitter.fit(trial.state);
+  // Far from where they begin: once more with a Jacobian of there.
+  fitter.fitRoughly(trial.state);
+  fitter.renewJacobian(trial.state);
+  fitter.fitRoughly(trial.state);
+  fitter.renewJacobian(trial.state);
   for (const FreeParameter& parameter : trial.state.free)
     if (contains(trial.effects, effectOf(parameter.path)) && onBound(trial.state.model, parameter))
       return std::nullopt;

@@ -174,6 +174,24 @@ class EffectSelection {
     return trial;
   }
 
+  /// What always acts, in the place of what begins at some moment, if it is as good.
+  /** A moment that was searched for is a number more, and any slow change looks like a step. */
+  const Trial* plainerThan(const Trial* best, const std::vector<Trial>& trials,
+                           const Screening& screening) const {
+    const auto isStep = [&screening](const Trial& trial) {
+      return !screening.candidates[trial.candidate].change_point.empty();
+    };
+    if (best == nullptr || !isStep(*best)) return best;
+    const Trial* plain = nullptr;
+    for (const Trial& trial : trials)
+      if (trial.refused.empty() && trial.gain.value > 0.0 && !isStep(trial) &&
+          (plain == nullptr || trial.gain.value > plain->gain.value))
+        plain = &trial;
+    if (plain == nullptr) return best;
+    const Gain behind = gainOf(fitter_, plain->loss, best->loss);
+    return behind.value < behind.error ? plain : best;
+  }
+
   /// Refits the most promising effects and adds the one that helps most on blocks left out; the
   /// next ones if none of them is possible.
   bool addBest(const Screening& screening) {
@@ -190,6 +208,7 @@ class EffectSelection {
             (best == nullptr || trial.gain.value > best->gain.value))
           best = &trial;
     }
+    best = plainerThan(best, trials, screening);
     noteTrials(screening, trials, best);
     if (best == nullptr) return false;
     const Candidate& added = screening.candidates[best->candidate];
@@ -205,6 +224,9 @@ class EffectSelection {
   bool addBesideLags() {
     if (std::none_of(result_.effects.begin(), result_.effects.end(),
                      [](const std::string& effect) { return contains(lagEffects(), effect); }))
+      return false;
+    if (isOn(effectNamed("command_delay"), state().model) &&
+        isOn(effectNamed("ins_latency"), state().model))
       return false;
     SensitivityCache cache = memory_.with_nuisance;
     Screening screening = test(cache);
@@ -268,6 +290,13 @@ class EffectSelection {
       of.p_value = of.evidence >= 1.0 || last_p < known ? last_p : known;
     }
     settle(state());
+    // The last fit may say of a lag that there is none.
+    for (size_t i = result_.effects.size(); i-- > 0;) {
+      const std::string effect = result_.effects[i];
+      if (search.isAccepted(effect) || isOn(effectNamed(effect), state().model)) continue;
+      state() = switchedOff(fitter_, state(), {effect});
+      result_.effects.erase(result_.effects.begin() + static_cast<std::ptrdiff_t>(i));
+    }
   }
 
   const Fitter& fitter_;
