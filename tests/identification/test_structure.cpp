@@ -215,3 +215,16 @@ TEST_CASE("a delay too small to matter by itself stays beside a long lag, whose 
       settings);
   CHECK(both.effects == Names{"command_delay", "actuator_lag"});
 }
+
+TEST_CASE("where the model's own lag is calibrated, it may turn out to be two, too") {
+  const Rig rig({{"lag", 0.0}, {"yaw_inertia.lag", 0.8}, {"body_inertia.lag", 0.3}}, 400.0, 5);
+  FoundTerms result;
+  result.state = rig.fitter.start(syntheticVehicle(), givenParameters(syntheticVehicle(), true));
+  rig.fitter.fit(result.state);
+  REQUIRE(valueOf(result, "lag") > 0.3);
+  REQUIRE(chooseLags({rig.fitter, {}, kSilent, result}));
+  CHECK(result.effects == Names{"yaw_inertia", "body_inertia"});
+  CHECK(valueOf(result, "yaw_inertia.lag") == Approx(0.8).margin(0.1));
+  CHECK(valueOf(result, "body_inertia.lag") == Approx(0.3).margin(0.1));
+  CHECK(valueOf(result, "lag") == Approx(0.0).margin(0.1));
+}

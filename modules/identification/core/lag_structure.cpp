@@ -14,6 +14,7 @@ const std::string kYaw = "yaw_inertia";
 const std::string kBody = "body_inertia";
 constexpr double kLeastLag = 0.03;   // [s] with which a fit of one begins
 constexpr double kLeastNats = 10.0;  // by which another structure must be better
+constexpr double kLongLag = 0.1;     // [s] of a model that may be two
 
 std::string pathOf(const std::string& lag) {
   return lag + ".lag";
@@ -42,22 +43,39 @@ struct Trial {
   Gain gain;
 };
 
+/// Whether the lag of the drive is a number of the nominal model that is free.
+bool isNominalLagFree(const FitState& state) {
+  return std::any_of(state.free.begin(), state.free.end(), [](const FreeParameter& parameter) {
+    return parameter.path == "lag" && std::isinf(parameter.deviation);
+  });
+}
+
 std::optional<Trial> tryOut(const SearchState& search, const Lags& lags,
                             const Eigen::VectorXd& loss_now) {
   const Fitter& fitter = search.fitter;
+  const bool nominal = isNominalLagFree(search.result.state);
   Trial trial;
   trial.state = switchedOff(fitter, search.result.state, {kDrive, kYaw, kBody});
+  if (nominal) *findParameter(trial.state.model, "lag") = kLeastLag;
   for (const auto& [effect, value] : lags) {
+    if (nominal && effect == kDrive)
+      *findParameter(trial.state.model, "lag") = value;
+    else
+      trial.effects.push_back(effect);
+  }
+  trial.state.predicted = fitter.data().predict(trial.state.model);
+  fitter.renewJacobian(trial.state);
+  for (const auto& [effect, value] : lags) {
+    if (!contains(trial.effects, effect)) continue;
     FreeParameter lag = freeParameter(trial.state.model, pathOf(effect));
     lag.expected = 0.0;
     fitter.add(trial.state, lag, value);
-    trial.effects.push_back(effect);
   }
   // Far from where they begin: once more with a Jacobian of there.
-  fitter.fitRoughly(trial.state);
-  fitter.renewJacobian(trial.state);
-  fitter.fitRoughly(trial.state);
-  fitter.renewJacobian(trial.state);
+  for (int round = 0; round < 2; ++round) {
+    fitter.fitRoughly(trial.state);
+    fitter.renewJacobian(trial.state);
+  }
   for (const FreeParameter& parameter : trial.state.free)
     if (contains(trial.effects, effectOf(parameter.path)) && onBound(trial.state.model, parameter))
       return std::nullopt;
@@ -69,42 +87,46 @@ std::optional<Trial> tryOut(const SearchState& search, const Lags& lags,
 
 bool chooseLags(const SearchState& search) {
   FoundTerms& result = search.result;
+  const bool nominal = isNominalLagFree(result.state);
   std::vector<std::string> now;
   for (const std::string& lag : {kDrive, kYaw, kBody}) {
+    if (nominal && lag == kDrive) continue;
     const bool found = contains(result.effects, lag);
-    // What the model or a person says stays, and what is a number of the model is not named.
-    const bool closed = (isOn(effectNamed(lag), result.state.model) && !found) ||
-                        search.isAccepted(lag) || contains(search.settings.rejected, lag);
-    if (closed || (lag == kDrive && search.settings.calibrate)) return false;
+    // What the model or a person says stays.
+    if ((isOn(effectNamed(lag), result.state.model) && !found) || search.isAccepted(lag) ||
+        contains(search.settings.rejected, lag))
+      return false;
     if (found) now.push_back(lag);
   }
-  if (now.empty()) return false;
   const auto lagOf = [&](const std::string& lag) {
-    return *findParameter(result.state.model, pathOf(lag));
+    return *findParameter(result.state.model,
+                          nominal && lag == kDrive ? std::string("lag") : pathOf(lag));
   };
+  if (now.empty() && !(nominal && lagOf(kDrive) > kLongLag)) return false;
   const Eigen::VectorXd loss_now = heldOutLoss(search.fitter, result.state);
   std::optional<Trial> best;
   double most = 0.0;
   for (const Lags& lags :
        structuresFor(lagOf(kDrive) + lagOf(kBody), lagOf(kDrive) + lagOf(kYaw))) {
-    const bool is_now = lags.size() == now.size() &&
-                        std::all_of(lags.begin(), lags.end(),
-                                    [&](const auto& lag) { return contains(now, lag.first); });
-    if (is_now) continue;
+    std::vector<std::string> names;
+    for (const auto& [lag, value] : lags)
+      if (!nominal || lag != kDrive) names.push_back(lag);
+    if (names == now) continue;
     std::optional<Trial> trial = tryOut(search, lags, loss_now);
     if (!trial) continue;
     // One lag in the place of two need only be as good.
-    const double needed = lags.size() < now.size() ? -std::min(kLeastNats, trial->gain.error)
-                                                   : std::max(kLeastNats, trial->gain.error);
+    const double needed = names.size() < now.size() ? -std::min(kLeastNats, trial->gain.error)
+                                                    : std::max(kLeastNats, trial->gain.error);
     if (trial->gain.value < needed || (best && trial->gain.value - needed <= most)) continue;
     most = trial->gain.value - needed;
     best = std::move(trial);
   }
   if (!best) return false;
   std::string remark = "the lags together: in the place of";
-  for (const std::string& lag : now) {
-    remark += " " + lag;
-    result.effects.erase(std::find(result.effects.begin(), result.effects.end(), lag));
+  if (nominal) remark += " the model's lag alone";
+  for (size_t i = 0; i < now.size(); ++i) {
+    remark += (nominal || i > 0 ? " and " : " ") + now[i];
+    result.effects.erase(std::find(result.effects.begin(), result.effects.end(), now[i]));
   }
   for (const std::string& lag : best->effects) {
     result.effects.push_back(lag);
