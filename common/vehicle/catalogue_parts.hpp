@@ -35,6 +35,12 @@ inline EffectSearch secondName() {
   return search;
 }
 
+/// Search settings of an effect that makes something late.
+inline EffectSearch isLate(LateBy late_by, EffectSearch search = {}) {
+  search.late_by = late_by;
+  return search;
+}
+
 /// A strength of a vehicle effect.
 inline EffectParameter strength(std::string name, std::string unit, double min, double max,
                                 double typical, double EffectValues::*value,

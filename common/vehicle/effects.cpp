@@ -58,6 +58,12 @@ std::string effectOfPath(const std::string& path) {
   return path;
 }
 
+const Effect& effectThatIsLate(LateBy late_by) {
+  for (const Effect& effect : effectCatalogue())
+    if (effect.search.late_by == late_by) return effect;
+  throw std::out_of_range("no effect of the catalogue is late by that");
+}
+
 std::vector<const Effect*> nuisanceEffects() {
   std::vector<const Effect*> nuisance;
   for (const Effect& effect : effectCatalogue())

@@ -72,6 +72,9 @@ struct ChangePoint {
   size_t fitted = 0;  ///< so many of them, the first ones, are tested and fitted together
 };
 
+/// Of what lies between a command and what the INS says of it, what an effect makes late.
+enum class LateBy { kNothing, kCommand, kDrive, kYawRate, kSpeed, kPoses };
+
 /// How a search for the effects that a model lacks treats an effect.
 struct EffectSearch {
   /// Numbers of the nominal model that do the same; the first one is fitted in its place.
@@ -82,6 +85,7 @@ struct EffectSearch {
   std::vector<ChangePoint> change_points{};  ///< in order of time
   /// The same motion under a second name: never searched for, only told beside the other one.
   bool second_name = false;
+  LateBy late_by = LateBy::kNothing;
 };
 
 /// A named departure from the nominal two-track model.
@@ -131,6 +135,9 @@ std::string effectOfPath(const std::string& path);
 
 /// Effects that a search fits as nuisance terms, in that order.
 std::vector<const Effect*> nuisanceEffects();
+
+/// The effect that makes something late; its first parameter is by how much.
+const Effect& effectThatIsLate(LateBy late_by);
 
 /// Whether a strength of the effect is not 0.
 bool isOn(const Effect& effect, const EffectValues& vehicle, const MeasurementModel& measurement);

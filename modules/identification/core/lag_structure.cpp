@@ -9,31 +9,37 @@
 namespace tread::gap {
 namespace {
 
-const std::string kDrive = "actuator_lag";
-const std::string kYaw = "yaw_inertia";
-const std::string kBody = "body_inertia";
+/// Names of the effects.
+struct LagNames {
+  const std::string drive = effectThatIsLate(LateBy::kDrive).name;
+  const std::string yaw = effectThatIsLate(LateBy::kYawRate).name;
+  const std::string body = effectThatIsLate(LateBy::kSpeed).name;
+
+  std::vector<std::string> all() const { return {drive, yaw, body}; }
+};
+
 constexpr double kLeastLag = 0.03;   // [s] with which a fit of one begins
 constexpr double kLeastNats = 10.0;  // by which another structure must be better
 constexpr double kLongLag = 0.1;     // [s] of a model that may be two
 
 std::string pathOf(const std::string& lag) {
-  return lag + ".lag";
+  return primaryPath(effectNamed(lag));
 }
 
 using Lags = std::vector<std::pair<std::string, double>>;  // effect, [s] with which a fit begins
 
 /// A lag of the drive, with one of the yaw rate or of the speed behind it, or these two alone.
 /** `v` and `omega`: how late both are altogether [s]. */
-std::vector<Lags> structuresFor(double v, double omega) {
+std::vector<Lags> structuresFor(const LagNames& names, double v, double omega) {
   // Where both are equal one of two begins with half of it, so that the fit sees two of them.
   const bool alike = std::abs(v - omega) < kLeastLag;
   const double common = std::max(kLeastLag, (alike ? 0.5 : 1.0) * std::min(v, omega));
   const double rest = std::max(kLeastLag, alike ? 0.5 * v : std::abs(v - omega));
-  return {
-      {{kDrive, 0.5 * (v + omega)}},
-      {{kDrive, common}, {kYaw, rest}},
-      {{kDrive, common}, {kBody, rest}},
-      {{kYaw, std::max(kLeastLag, omega)}, {kBody, std::max(kLeastLag, (alike ? 0.5 : 1.0) * v)}}};
+  return {{{names.drive, 0.5 * (v + omega)}},
+          {{names.drive, common}, {names.yaw, rest}},
+          {{names.drive, common}, {names.body, rest}},
+          {{names.yaw, std::max(kLeastLag, omega)},
+           {names.body, std::max(kLeastLag, (alike ? 0.5 : 1.0) * v)}}};
 }
 
 /// A structure that was fitted, and what it gains over that of the result on blocks left out.
@@ -54,11 +60,12 @@ std::optional<Trial> tryOut(const SearchState& search, const Lags& lags,
                             const Eigen::VectorXd& loss_now) {
   const Fitter& fitter = search.fitter;
   const bool nominal = isNominalLagFree(search.result.state);
+  const LagNames lag_names;
   Trial trial;
-  trial.state = switchedOff(fitter, search.result.state, {kDrive, kYaw, kBody});
+  trial.state = switchedOff(fitter, search.result.state, lag_names.all());
   if (nominal) *findParameter(trial.state.model, "lag") = kLeastLag;
   for (const auto& [effect, value] : lags) {
-    if (nominal && effect == kDrive)
+    if (nominal && effect == lag_names.drive)
       *findParameter(trial.state.model, "lag") = value;
     else
       trial.effects.push_back(effect);
@@ -88,9 +95,10 @@ std::optional<Trial> tryOut(const SearchState& search, const Lags& lags,
 bool chooseLags(const SearchState& search) {
   FoundTerms& result = search.result;
   const bool nominal = isNominalLagFree(result.state);
+  const LagNames lag_names;
   std::vector<std::string> now;
-  for (const std::string& lag : {kDrive, kYaw, kBody}) {
-    if (nominal && lag == kDrive) continue;
+  for (const std::string& lag : lag_names.all()) {
+    if (nominal && lag == lag_names.drive) continue;
     const bool found = contains(result.effects, lag);
     // What the model or a person says stays.
     if ((isOn(effectNamed(lag), result.state.model) && !found) || search.isAccepted(lag) ||
@@ -100,17 +108,18 @@ bool chooseLags(const SearchState& search) {
   }
   const auto lagOf = [&](const std::string& lag) {
     return *findParameter(result.state.model,
-                          nominal && lag == kDrive ? std::string("lag") : pathOf(lag));
+                          nominal && lag == lag_names.drive ? std::string("lag") : pathOf(lag));
   };
-  if (now.empty() && !(nominal && lagOf(kDrive) > kLongLag)) return false;
+  const double drive = lagOf(lag_names.drive);
+  if (now.empty() && !(nominal && drive > kLongLag)) return false;
   const Eigen::VectorXd loss_now = heldOutLoss(search.fitter, result.state);
   std::optional<Trial> best;
   double most = 0.0;
   for (const Lags& lags :
-       structuresFor(lagOf(kDrive) + lagOf(kBody), lagOf(kDrive) + lagOf(kYaw))) {
+       structuresFor(lag_names, drive + lagOf(lag_names.body), drive + lagOf(lag_names.yaw))) {
     std::vector<std::string> names;
     for (const auto& [lag, value] : lags)
-      if (!nominal || lag != kDrive) names.push_back(lag);
+      if (!nominal || lag != lag_names.drive) names.push_back(lag);
     if (names == now) continue;
     std::optional<Trial> trial = tryOut(search, lags, loss_now);
     if (!trial) continue;

@@ -161,11 +161,10 @@ bool isNearly(const FoundTerms& result, const std::string& effect, const Removal
 /// Whether an effect is one of the lags between a command and what the INS says, beside a long one.
 /** Without it the long one would take its time over, and with it a size that nobody believes. */
 bool isBesideLag(const FoundTerms& result, const std::string& effect) {
-  if (!contains(lagEffects(), effect)) return false;
+  if (!isLag(effectNamed(effect))) return false;
   return std::any_of(result.effects.begin(), result.effects.end(), [&](const std::string& other) {
-    if (other == effect || !contains(lagEffects(), other)) return false;
-    const std::string& strength = effectNamed(other).parameters.front().name;
-    return std::abs(*findParameter(result.state.model, other + "." + strength)) > kLongLag;
+    if (other == effect || !isLag(effectNamed(other))) return false;
+    return std::abs(*findParameter(result.state.model, primaryPath(effectNamed(other)))) > kLongLag;
   });
 }
 
@@ -241,12 +240,6 @@ bool removeOne(const SearchState& search, const Needed& needed_of_all) {
 }
 
 }  // namespace
-
-const std::vector<std::string>& lagEffects() {
-  static const std::vector<std::string> lags{"command_delay", "actuator_lag", "yaw_inertia",
-                                             "body_inertia", "ins_latency"};
-  return lags;
-}
 
 FitState switchedOff(const Fitter& fitter, const FitState& state,
                      const std::vector<std::string>& effects) {

@@ -223,19 +223,22 @@ class EffectSelection {
   /// A delay that was superfluous beside the first lags may not be beside the last ones.
   bool addBesideLags() {
     if (std::none_of(result_.effects.begin(), result_.effects.end(),
-                     [](const std::string& effect) { return contains(lagEffects(), effect); }))
+                     [](const std::string& effect) { return isLag(effectNamed(effect)); }))
       return false;
-    if (isOn(effectNamed("command_delay"), state().model) &&
-        isOn(effectNamed("ins_latency"), state().model))
+    const auto isDelay = [](const Effect& effect) {
+      return effect.search.late_by == LateBy::kCommand || effect.search.late_by == LateBy::kPoses;
+    };
+    const std::vector<Effect>& all = effectCatalogue();
+    if (std::all_of(all.begin(), all.end(), [&](const Effect& effect) {
+          return !isDelay(effect) || isOn(effect, state().model);
+        }))
       return false;
     SensitivityCache cache = memory_.with_nuisance;
     Screening screening = test(cache);
     for (size_t i = 0; i < screening.candidates.size(); ++i) {
       const Candidate& candidate = screening.candidates[i];
       // Nothing else is looked for: it has had its chance.
-      const bool is_delay =
-          candidate.effect == "command_delay" || candidate.effect == "ins_latency";
-      if (candidate.release || !is_delay) screening.evidence[i] = 0.0;
+      if (candidate.release || !isDelay(effectNamed(candidate.effect))) screening.evidence[i] = 0.0;
     }
     return addBest(screening);
   }

@@ -103,8 +103,15 @@ void pruneEffects(const SearchState& search, const Needed& needed);
  * tried; the pair goes if it is not better on blocks left out by more than a standard error. */
 void replacePairs(const SearchState& search);
 
-/// Effects that are a lag between a command and what the INS says of it.
-const std::vector<std::string>& lagEffects();
+/// Whether an effect is a lag between a command and what the INS says of it.
+inline bool isLag(const Effect& effect) {
+  return effect.search.late_by != LateBy::kNothing;
+}
+
+/// Path of the first strength of an effect.
+inline std::string primaryPath(const Effect& effect) {
+  return effect.name + "." + effect.parameters.front().name;
+}
 
 /// Chooses anew which lags there are between command and motion, once the rest is known.
 /** A lag of the drive, of the yaw rate, of the speed: a search that goes step by step takes the
