@@ -106,7 +106,8 @@ std::vector<Effect> turningEffects() {
        "The drive hardly turns the vehicle faster than a certain yaw rate on this ground.",
        "|omega| -> limit + beyond (|omega| - limit) where |omega| > limit; inverse_limit = 1 / "
        "limit",
-       "The yaw rate is right up to a value and flat beyond it, on the spot and at speed; the "
+       "The yaw rate is right up to a value and nearly flat beyond it, on the spot and at speed; "
+       "the "
        "forward speed is right.",
        "Turn on the spot with a growing command; a limit of track speed caps the straight drive, "
        "too, a grip limit does not act on the spot.",
@@ -172,7 +173,7 @@ std::vector<Effect> gripEffects() {
        "The ground gives hardly more sideways force than its friction; fast curves get wider.",
        "|omega| -> limit + beyond (|omega| - limit) where |omega| > limit = friction 9.81 m/s2 / "
        "|v|; inverse_limit = 1 / friction",
-       "The yaw rate is capped only where speed times yaw rate is large; on the spot it is right.",
+       "The yaw rate lacks only where speed times yaw rate is large; on the spot it is right.",
        "The same yaw rate in a fast wide and in a slow tight turn.",
        "Drive one circle faster and faster until it widens.",
        {inverseLimit("1", 20.0, 4.0, &V::grip_limit, {1.5, 3.0, 6.0, 12.0}, "friction", "1",

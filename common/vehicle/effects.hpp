@@ -136,7 +136,8 @@ std::string effectOfPath(const std::string& path);
 /// Effects that a search fits as nuisance terms, in that order.
 std::vector<const Effect*> nuisanceEffects();
 
-/// The effect that makes something late; its first parameter is by how much.
+/// The effect that makes something late, not nothing; its first parameter is by how much.
+/** Throws std::out_of_range if the catalogue has none. */
 const Effect& effectThatIsLate(LateBy late_by);
 
 /// Whether a strength of the effect is not 0.

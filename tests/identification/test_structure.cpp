@@ -175,8 +175,10 @@ TEST_CASE("a lag of the drive that was found for two lags, of yaw rate and speed
   CHECK(valueOf(result, "actuator_lag.lag") == 0.0);
   CHECK(valueOf(result, "yaw_inertia.lag") == Approx(0.8).margin(0.05));
   CHECK(valueOf(result, "body_inertia.lag") == Approx(0.3).margin(0.05));
-  REQUIRE(result.record.steps.size() == 2);
-  CHECK(result.record.steps[0].remark == "the lags together: in the place of actuator_lag");
+  REQUIRE(result.record.steps.size() == 3);
+  CHECK(result.record.steps[0].effect == "actuator_lag");
+  CHECK(result.record.steps[0].removed);
+  CHECK(result.record.steps[1].remark == "the lags together: yaw_inertia and body_inertia");
   CHECK_FALSE(chooseLags({rig.fitter, {}, kSilent, result}));
 }
 
@@ -227,4 +229,15 @@ TEST_CASE("where the model's own lag is calibrated, it may turn out to be two, t
   CHECK(valueOf(result, "yaw_inertia.lag") == Approx(0.8).margin(0.1));
   CHECK(valueOf(result, "body_inertia.lag") == Approx(0.3).margin(0.1));
   CHECK(valueOf(result, "lag") == Approx(0.0).margin(0.1));
+}
+
+TEST_CASE("a lag of the drive that a calibrated model has beside its own stays") {
+  const Rig rig({{"yaw_inertia.lag", 0.8}, {"body_inertia.lag", 0.3}}, 300.0, 5);
+  ModelDocument model = syntheticVehicle();
+  *findParameter(model, "actuator_lag.lag") = 0.2;
+  FoundTerms result;
+  result.state = rig.fitter.start(model, givenParameters(model, true));
+  rig.fitter.fit(result.state);
+  CHECK_FALSE(chooseLags({rig.fitter, {}, kSilent, result}));
+  CHECK(valueOf(result, "actuator_lag.lag") != 0.0);
 }

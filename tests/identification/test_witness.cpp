@@ -28,14 +28,25 @@ std::vector<EncoderSample> encodersOf(const ModelDocument& tracks, const Drive& 
   return encoders;
 }
 
-/// The witness about the only effect that is free, whose strength is `hidden` in truth; the drive's
-/// tracks are those of `tracks`.
-std::optional<WheelWitness> witnessOf(const Values& hidden, const Values& tracks,
-                                      double late = 0.0) {
+/// What wheels whose tracks are those of `tracks` say of the effects hidden in a drive, in order.
+std::vector<std::optional<WheelWitness>> witnessesOf(const Values& hidden, const Values& tracks,
+                                                     double late = 0.0) {
   Rig rig(hidden, 400.0, 3);
   rig.drives.front().encoders = encodersOf(samples::vehicleWith(tracks), rig.drives.front(), late);
-  const FitState state = rig.fitted(hidden);
-  return wheelWitness(rig.fitter, state, effectOf(hidden.front().first));
+  std::vector<std::string> names;
+  for (const auto& [path, value] : hidden) names.push_back(effectOf(path));
+  const auto said = wheelWitnesses(rig.fitter, rig.fitted(hidden), names);
+  std::vector<std::optional<WheelWitness>> witnesses;
+  for (const std::string& name : names) {
+    const auto one = said.find(name);
+    witnesses.push_back(one == said.end() ? std::nullopt : std::optional(one->second));
+  }
+  return witnesses;
+}
+
+std::optional<WheelWitness> witnessOf(const Values& hidden, const Values& tracks,
+                                      double late = 0.0) {
+  return witnessesOf(hidden, tracks, late).front();
 }
 
 }  // namespace
@@ -76,11 +87,12 @@ TEST_CASE(
   CHECK_FALSE(witnessOf({{"centrifugal_drift.time", 0.2}}, {}));
   CHECK_FALSE(witnessOf({{"ins_latency.latency", 0.3}}, {}));
   const Rig rig({{"yaw_inertia.lag", 0.8}}, 300.0, 3);
-  CHECK_FALSE(wheelWitness(rig.fitter, rig.fitted({{"yaw_inertia.lag", 0.8}}), "yaw_inertia"));
+  CHECK(
+      wheelWitnesses(rig.fitter, rig.fitted({{"yaw_inertia.lag", 0.8}}), {"yaw_inertia"}).empty());
 }
 
 TEST_CASE("a delay that the wheels have is no latency of the INS any more") {
-  const Values delay{{"command_delay.delay", 0.25}};
+  const Values delay{{"command_delay.delay", 0.4}};
   Rig rig(delay, 400.0, 3);
   const auto found = [&] {
     FoundTerms result;
@@ -93,4 +105,17 @@ TEST_CASE("a delay that the wheels have is no latency of the INS any more") {
   REQUIRE(found().wheels);
   CHECK(found().wheels->saysDrive());
   CHECK(found().group.empty());
+}
+
+TEST_CASE("encoders that are late themselves do not make a short latency of the INS a delay") {
+  const Values delay{{"command_delay.delay", 0.12}};
+  Rig rig(delay, 400.0, 3);
+  // The tracks have no delay; the encoders are late by as much.
+  rig.drives.front().encoders = encodersOf(samples::vehicleWith({}), rig.drives.front(), 0.12);
+  FoundTerms result;
+  result.state = rig.fitted(delay);
+  result.effects = {"command_delay"};
+  const FoundEffect effect =
+      identifiedModel(rig.fitter, syntheticVehicle(), {}, result).effects.front();
+  CHECK(effect.group == std::vector<std::string>{"ins_latency"});
 }

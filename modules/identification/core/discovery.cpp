@@ -32,6 +32,11 @@ ParameterEstimate estimateOf(const std::string& path, const ModelDocument& befor
   return {path, unitOf(path), value, value - half, value + half, *findParameter(before, path)};
 }
 
+bool isShape(const std::string& path) {
+  const EffectParameter* known = findEffectParameter(path);
+  return known != nullptr && known->role == ParameterRole::kShape;
+}
+
 /// Half of a given term's interval, infinite where the drive does not feel it.
 double halfInterval(const FitState& state, size_t index, double half) {
   const std::string& path = state.free[index].path;
@@ -78,10 +83,14 @@ FoundEffect foundEffect(const std::string& name, const FoundTerms& result,
   return effect;
 }
 
+constexpr double kLateWheels = 0.3;  // [s] by which encoders themselves may be late
+
 /// Takes what the wheel speeds say: what the drive does is no effect of the INS.
-void hearWheels(const std::optional<WheelWitness>& wheels, FoundEffect& effect) {
+/** Of a delay only where it is longer than encoders are late: they show that as one, too. */
+void hearWheels(const WheelWitness& wheels, FoundEffect& effect) {
   effect.wheels = wheels;
-  if (!wheels || !wheels->saysDrive()) return;
+  const bool is_delay = effectNamed(effect.name).search.late_by == LateBy::kCommand;
+  if (!wheels.saysDrive() || (is_delay && effect.parameters.front().low < kLateWheels)) return;
   const auto isOfIns = [](const std::string& other) {
     return effectNamed(other).kind() == EffectKind::kMeasurement;
   };
@@ -210,7 +219,7 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
     const double error = std::sqrt(covariance(at, at));
     const std::string effect = effectOf(state.free[i].path);
     const bool found = contains(result.effects, effect);
-    const bool has_form = found && !isTime(state.free[i]);
+    const bool has_form = found && !isShape(state.free[i].path);
     const double form =
         has_form ? kForm * std::abs(*findParameter(state.model, state.free[i].path)) : 0.0;
     const double half =
@@ -230,9 +239,11 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
     std::tie(estimate.low, estimate.high) = changePointInterval(fitter, state, path, kChangeNats);
     of_effect[effect].push_back(estimate);
   }
+  const std::map<std::string, WheelWitness> wheels = wheelWitnesses(fitter, state, result.effects);
   for (const std::string& name : result.effects) {
     identified.effects.push_back(foundEffect(name, result, settings, of_effect[name]));
-    hearWheels(wheelWitness(fitter, state, name), identified.effects.back());
+    const auto heard = wheels.find(name);
+    if (heard != wheels.end()) hearWheels(heard->second, identified.effects.back());
   }
   for (const CandidateTest& test : result.record.candidates)
     if (!contains(result.effects, test.effect) && !isExcited(test) &&

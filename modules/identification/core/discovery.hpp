@@ -24,8 +24,9 @@ struct Variable {
 std::vector<Variable> variablesOf(const Observations& data, const ModelDocument& model);
 
 /// Tests every channel of the residuals for every variable, with the state's free parameters.
-/** Of each rest it says which effect of the catalogue, on or off, it resembles most in its channel:
- * it is not that effect, whose size was free to explain it. */
+/** Of the strongest rests it says which effect of the catalogue, on or off, they resemble most in
+ * their channel. It is not taken for that effect: its size was free to explain it, or no test, or a
+ * person, took it in. */
 Adequacy testAdequacy(const Fitter& fitter, const FitState& state, double alpha, uint64_t seed);
 
 /// Where the residuals of two models are: curves of every channel over variables that a person

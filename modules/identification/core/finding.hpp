@@ -169,8 +169,7 @@ struct Unexplained {
   std::string variable;
   double score = 0.0;
   double p_value = 1.0;
-  std::string
-      like{};  ///< the effect that comes nearest to such a rest, but is not it; may be empty
+  std::string like{};  ///< the effect that it resembles most, but is not taken for; may be empty
 };
 
 /// One candidate of the first test.

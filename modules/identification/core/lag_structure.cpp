@@ -98,12 +98,13 @@ bool chooseLags(const SearchState& search) {
   const LagNames lag_names;
   std::vector<std::string> now;
   for (const std::string& lag : lag_names.all()) {
-    if (nominal && lag == lag_names.drive) continue;
     const bool found = contains(result.effects, lag);
     // What the model or a person says stays.
     if ((isOn(effectNamed(lag), result.state.model) && !found) || search.isAccepted(lag) ||
         contains(search.settings.rejected, lag))
       return false;
+    // Beside a free lag of the model that of the drive is the same number once more.
+    if (nominal && lag == lag_names.drive && found) return false;
     if (found) now.push_back(lag);
   }
   const auto lagOf = [&](const std::string& lag) {
@@ -131,14 +132,22 @@ bool chooseLags(const SearchState& search) {
     best = std::move(trial);
   }
   if (!best) return false;
-  std::string remark = "the lags together: in the place of";
-  if (nominal) remark += " the model's lag alone";
-  for (size_t i = 0; i < now.size(); ++i) {
-    remark += (nominal || i > 0 ? " and " : " ") + now[i];
-    result.effects.erase(std::find(result.effects.begin(), result.effects.end(), now[i]));
+  std::string taken = nominal ? "the model's lag" : "";
+  for (const std::string& lag : best->effects) taken += (taken.empty() ? "" : " and ") + lag;
+  for (const std::string& lag : now) {
+    if (contains(best->effects, lag)) continue;
+    result.record.steps.push_back(
+        {lag, true, 0.0, 1.0, 0.0, 0.0, {}, "in its place, the lags together: " + taken});
+    search.say("  - " + lag + ": in its place, the lags together: " + taken);
   }
+  for (const std::string& lag : now)
+    result.effects.erase(std::find(result.effects.begin(), result.effects.end(), lag));
   for (const std::string& lag : best->effects) {
     result.effects.push_back(lag);
+    // Chosen, not tested yet: pruning does that, and says so.
+    if (!result.evidence[lag].p_value) result.evidence[lag].p_value = 1.0;
+    if (contains(now, lag)) continue;
+    const std::string remark = "the lags together: " + taken;
     result.record.steps.push_back(
         {lag, false, 0.0, 1.0, best->gain.value, best->gain.error, {}, remark});
     search.say("  = " + lag + ": " + remark);

@@ -214,6 +214,9 @@ class EffectSelection {
     const Candidate& added = screening.candidates[best->candidate];
     state() = best->state;
     settle(state());
+    // What was taken out before, beside other terms, is in again.
+    for (std::vector<std::string>* told : {&result_.record.negligible, &result_.record.at_bound})
+      told->erase(std::remove(told->begin(), told->end(), added.effect), told->end());
     if (added.release) result_.released.push_back(added.effect);
     if (!added.release && !contains(result_.effects, added.effect))
       result_.effects.push_back(added.effect);

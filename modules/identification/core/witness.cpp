@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 
+#include <Eigen/Cholesky>
+
 #include "modules/identification/core/log_validation.hpp"
 #include "modules/identification/core/search.hpp"
 
@@ -16,18 +18,8 @@ namespace {
 constexpr double kUnlike = 0.2;     // of the effect, in directions that are no scale of the motion
 constexpr double kShown = 0.7;      // of the effect, not in the motion to the side
 constexpr double kSharp = 0.25;     // standard error of a share that says anything
-constexpr int kRounds = 30;         // until scales and share agree
+constexpr int kRounds = 60;         // until scales and shares agree
 constexpr size_t kLeastRows = 100;  // with wheel speeds
-
-/// What the wheels say of one row, and what the model says with and without the effect.
-struct WheelRow {
-  size_t kind = 0;  ///< 0 = speed, 1 = yaw rate
-  int block = 0;
-  double wheels = 0.0;   ///< [m/s] or [rad/s] of the tracks, without slip
-  double without = 0.0;  ///< predicted without the effect
-  double effect = 0.0;   ///< what it changes
-  double weight = 0.0;   ///< 1 / scale^2
-};
 
 /// The track speeds of a drive while it moves as a row was measured.
 class WheelSpeeds {
@@ -49,44 +41,99 @@ class WheelSpeeds {
   RunningSums turn_;
 };
 
-std::vector<WheelRow> wheelRows(const Fitter& fitter, const FitState& state,
-                                const Eigen::VectorXd& without) {
+/// What a prediction says of the way along in a row, over its chord: the mean speed.
+/** Of a yaw effect nothing is left in it. The heading's row stands before. */
+double speedOf(const Observation& row, const Eigen::VectorXd& predicted, Eigen::Index at) {
+  const double turned = predicted[at - 1] * (row.end - row.begin);
+  const double chord = std::abs(turned) < 1e-6 ? 1.0 : std::sin(turned) / turned;
+  return std::abs(chord) > 0.3 ? predicted[at] / chord : kNotMeasured;
+}
+
+/// Products of columns over rows: wheels, prediction, and what each effect changes.
+using Gram = Eigen::MatrixXd;
+/// By kind: speed, yaw rate.
+using Grams = std::array<Gram, 2>;
+
+/// Gram matrices of the blocks.
+std::map<int, Grams> gramsOf(const Fitter& fitter, const FitState& state,
+                             const std::vector<Eigen::VectorXd>& without, size_t& rows) {
   const Observations& data = fitter.data();
   const MeasurementModel& ins = state.model.measurement;
+  const auto columns = static_cast<Eigen::Index>(2 + without.size());
   std::vector<WheelSpeeds> wheels;
   for (const Drive& drive : data.drives()) wheels.emplace_back(drive, state.model.vehicle.gauge);
-  std::vector<WheelRow> rows;
+  std::map<int, Grams> blocks;
+  Eigen::VectorXd values(columns);
   for (size_t i = 0; i < data.all().size(); ++i) {
     const Observation& row = data.all()[i];
     const auto at = static_cast<Eigen::Index>(i);
-    WheelRow one;
-    std::optional<double> said;
-    if (row.channel == Channel::kYawRate) {
-      one.kind = 1;
-      said = wheels[row.drive].turn(row, ins.ins_latency_gyro * ins.ins_latency);
-    } else if (row.channel == Channel::kAlong) {
-      said = wheels[row.drive].speed(row, ins.ins_latency);
-      // The way along the heading at the begin is a chord of the turn; its heading row is before.
-      const double turned = state.predicted[at - 1] * (row.end - row.begin);
-      if (said && std::abs(turned) > 1e-6) *said *= std::sin(turned) / turned;
-    }
+    const bool turning = row.channel == Channel::kYawRate;
+    if (!turning && row.channel != Channel::kAlong) continue;
+    const auto said = turning ? wheels[row.drive].turn(row, ins.ins_latency_gyro * ins.ins_latency)
+                              : wheels[row.drive].speed(row, ins.ins_latency);
     if (!said) continue;
-    one.block = row.block;
-    one.wheels = *said;
-    one.without = without[at];
-    one.effect = state.predicted[at] - without[at];
-    one.weight = 1.0 / (state.scales[at] * state.scales[at]);
-    rows.push_back(one);
+    const auto valueOf = [&](const Eigen::VectorXd& predicted) {
+      return turning ? predicted[at] : speedOf(row, predicted, at);
+    };
+    values[0] = *said;
+    values[1] = valueOf(state.predicted);
+    for (size_t e = 0; e < without.size(); ++e)
+      values[static_cast<Eigen::Index>(2 + e)] = values[1] - valueOf(without[e]);
+    if (!values.allFinite()) continue;
+    values /= state.scales[at];
+    Grams& block = blocks
+                       .try_emplace(row.block, Grams{Gram::Zero(columns, columns),
+                                                     Gram::Zero(columns, columns)})
+                       .first->second;
+    block[turning ? 1 : 0] += values * values.transpose();
+    ++rows;
   }
-  return rows;
+  return blocks;
 }
 
-/// How much of the effect is in the rows of which wheels can speak.
+/// Shares of the effects for which wheels = a (prediction - sum (1 - share) effect) holds best, a
+/// by kind.
+Eigen::VectorXd sharesOf(const Grams& grams) {
+  const Eigen::Index effects = grams[0].cols() - 2;
+  Eigen::VectorXd hidden = Eigen::VectorXd::Constant(effects, 0.5);  // 1 - share
+  for (int round = 0; round < kRounds; ++round) {
+    Gram matrix = Gram::Zero(effects, effects);
+    Eigen::VectorXd pull = Eigen::VectorXd::Zero(effects);
+    for (const Gram& of : grams) {
+      Eigen::VectorXd mix = Eigen::VectorXd::Zero(of.cols());
+      mix[1] = 1.0;
+      mix.tail(effects) = -hidden;
+      const double size = mix.dot(of * mix);
+      if (!(size > 0.0)) continue;
+      const double scale = of.row(0).dot(mix) / size;
+      matrix += scale * scale * of.bottomRightCorner(effects, effects);
+      pull += scale * (scale * of.col(1).tail(effects) - of.col(0).tail(effects));
+    }
+    for (Eigen::Index i = 0; i < effects; ++i)
+      if (!(matrix(i, i) > 0.0)) matrix(i, i) = 1.0;
+    hidden = matrix.ldlt().solve(pull);
+  }
+  return Eigen::VectorXd::Ones(effects) - hidden;
+}
+
+/// How much of an effect is no mere scale of the motion: the wheels' own scale is not known.
+double unlikeScale(const Grams& grams, Eigen::Index effect) {
+  double own = 0.0;
+  double all = 0.0;
+  for (const Gram& of : grams) {
+    all += of(effect, effect);
+    if (of(1, 1) > 0.0) own += of(effect, effect) - of(1, effect) * of(1, effect) / of(1, 1);
+  }
+  return all > 0.0 ? own / all : 0.0;
+}
+
+/// How much of an effect is not in the motion to the side.
 double showsIn(const Fitter& fitter, const FitState& state, const Eigen::VectorXd& without) {
   double shown = 0.0;
   double all = 0.0;
   for (Eigen::Index i = 0; i < without.size(); ++i) {
     const Channel channel = fitter.data().all()[static_cast<size_t>(i)].channel;
+    if (channel == Channel::kHeading) continue;
     const double size = std::pow((state.predicted[i] - without[i]) / state.scales[i], 2);
     all += size;
     if (channel != Channel::kAcross) shown += size;
@@ -100,85 +147,48 @@ bool isScale(const Effect& effect) {
          contains(effect.search.nominal, "yaw_gain");
 }
 
-/// Sums of products over rows of one kind and block.
-struct Sums {
-  double ww = 0.0, wp = 0.0, wd = 0.0, pp = 0.0, pd = 0.0, dd = 0.0;
-
-  void add(const WheelRow& row) {
-    ww += row.weight * row.wheels * row.wheels;
-    wp += row.weight * row.wheels * row.without;
-    wd += row.weight * row.wheels * row.effect;
-    pp += row.weight * row.without * row.without;
-    pd += row.weight * row.without * row.effect;
-    dd += row.weight * row.effect * row.effect;
-  }
-  Sums operator-(const Sums& other) const {
-    return {ww - other.ww, wp - other.wp, wd - other.wd,
-            pp - other.pp, pd - other.pd, dd - other.dd};
-  }
-};
-using SumsOfKinds = std::array<Sums, 2>;
-
-/// Share s of the effect for which wheels = a (without + s effect) holds best, a by kind.
-double shareOf(const SumsOfKinds& sums) {
-  double share = 0.5;
-  for (int round = 0; round < kRounds; ++round) {
-    double pull = 0.0;
-    double information = 0.0;
-    for (const Sums& of : sums) {
-      const double model = of.pp + 2.0 * share * of.pd + share * share * of.dd;
-      if (!(model > 0.0)) continue;
-      const double scale = (of.wp + share * of.wd) / model;
-      pull += scale * of.wd - scale * scale * of.pd;
-      information += scale * scale * of.dd;
-    }
-    if (!(information > 0.0)) return kNotMeasured;
-    share = pull / information;
-  }
-  return share;
-}
-
-/// How much of the effect is no mere scale of the motion: the wheels' own scale is not known.
-double unlikeScale(const SumsOfKinds& sums) {
-  double own = 0.0;
-  double all = 0.0;
-  for (const Sums& of : sums) {
-    all += of.dd;
-    own += of.pp > 0.0 ? of.dd - of.pd * of.pd / of.pp : 0.0;
-  }
-  return all > 0.0 ? own / all : 0.0;
-}
-
 }  // namespace
 
-std::optional<WheelWitness> wheelWitness(const Fitter& fitter, const FitState& state,
-                                         const std::string& effect) {
+std::map<std::string, WheelWitness> wheelWitnesses(const Fitter& fitter, const FitState& state,
+                                                   const std::vector<std::string>& effects) {
   const std::vector<Drive>& drives = fitter.data().drives();
-  if (effectNamed(effect).kind() != EffectKind::kVehicle || isScale(effectNamed(effect)) ||
-      std::all_of(drives.begin(), drives.end(),
+  if (std::all_of(drives.begin(), drives.end(),
                   [](const Drive& drive) { return drive.encoders.empty(); }))
-    return std::nullopt;
-  const Eigen::VectorXd without = switchedOff(fitter, state, {effect}).predicted;
-  const std::vector<WheelRow> rows = wheelRows(fitter, state, without);
-  if (rows.size() < kLeastRows) return std::nullopt;
-  std::map<int, SumsOfKinds> blocks;
-  SumsOfKinds all;
-  for (const WheelRow& row : rows) {
-    blocks[row.block][row.kind].add(row);
-    all[row.kind].add(row);
+    return {};
+  std::vector<std::string> asked;
+  std::vector<Eigen::VectorXd> without;
+  for (const std::string& effect : effects) {
+    if (effectNamed(effect).kind() != EffectKind::kVehicle || isScale(effectNamed(effect)))
+      continue;
+    const Eigen::VectorXd predicted = switchedOff(fitter, state, {effect}).predicted;
+    if (showsIn(fitter, state, predicted) < kShown) continue;
+    asked.push_back(effect);
+    without.push_back(predicted);
   }
-  if (showsIn(fitter, state, without) < kShown) return std::nullopt;
-  const double share = shareOf(all);
-  if (!std::isfinite(share) || unlikeScale(all) < kUnlike || blocks.size() < 2) return std::nullopt;
+  size_t rows = 0;
+  const std::map<int, Grams> blocks = gramsOf(fitter, state, without, rows);
+  if (asked.empty() || rows < kLeastRows || blocks.size() < 2) return {};
+  Grams all = blocks.begin()->second;
+  for (auto block = std::next(blocks.begin()); block != blocks.end(); ++block)
+    for (size_t kind = 0; kind < all.size(); ++kind) all[kind] += block->second[kind];
+  const Eigen::VectorXd shares = sharesOf(all);
   // Jackknife over blocks.
-  double sum = 0.0;
-  for (const auto& [block, of] : blocks)
-    sum += std::pow(shareOf({all[0] - of[0], all[1] - of[1]}) - share, 2);
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(shares.size());
+  for (const auto& [number, block] : blocks) {
+    const Grams others{all[0] - block[0], all[1] - block[1]};
+    sums += (sharesOf(others) - shares).cwiseAbs2();
+  }
   const auto count = static_cast<double>(blocks.size());
-  const double error = std::sqrt(sum * (count - 1.0) / count);
-  if (!(error < kSharp)) return std::nullopt;
-  const double half = studentQuantile(count - 1.0) * error;
-  return WheelWitness{share, share - half, share + half};
+  const double quantile = studentQuantile(count - 1.0);
+  std::map<std::string, WheelWitness> witnesses;
+  for (size_t i = 0; i < asked.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const double error = std::sqrt(sums[at] * (count - 1.0) / count);
+    if (!(error < kSharp) || unlikeScale(all, 2 + at) < kUnlike) continue;
+    witnesses[asked[i]] = {shares[at], shares[at] - quantile * error,
+                           shares[at] + quantile * error};
+  }
+  return witnesses;
 }
 
 }  // namespace tread::gap

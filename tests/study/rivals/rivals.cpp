@@ -22,12 +22,17 @@ constexpr double kRidge = 0.01;  // of a column's own size: the library is colli
 bool isTwin(const std::string& effect) {
   const std::vector<const ConfoundedGroup*> groups = confoundedGroupsOf(effect);
   return std::any_of(groups.begin(), groups.end(), [&](const ConfoundedGroup* group) {
-    return group->named_beside && group->members.front() != effect;
+    const auto first =
+        std::find_if(group->members.begin(), group->members.end(), [](const std::string& member) {
+          const Effect* known = findEffect(member);
+          return known != nullptr && !known->search.second_name;
+        });
+    return group->named_beside && group->share == nullptr && *first != effect;
   });
 }
 
-/// Of each effect the candidate that promises most; moments of change are not for these methods,
-/// and of twins each takes the first.
+/// Of each effect the candidate that promises most; moments of change are not for these methods, of
+/// twins each takes the first, and a scale of positions is slip and track width together.
 std::vector<Candidate> oneOfEach(const Fitter& fitter, const FitState& state) {
   std::vector<Candidate> all = candidatesFor(state.model, excitationOf(fitter.data(), state.model));
   all.erase(std::remove_if(all.begin(), all.end(),

@@ -17,9 +17,10 @@ struct Answer {
 };
 
 /// Least squares over all parameters at once, as the identification tools of common simulators do.
-/** Every effect of the catalogue is free, in its likeliest form; the damped fit begins where the
- * given model is. It names what differs from 0 by more than 95 % certainty over all of them
- * (Bonferroni), with errors from the scatter of blocks. */
+/** Every effect of the catalogue is free, in its likeliest form, but for changes at a moment, the
+ * scale of positions and all but one of twins; the damped fit begins where the given model is. It
+ * names what differs from 0 by more than 95 % certainty over all of them (Bonferroni), with errors
+ * from the scatter of blocks. */
 Answer allParameters(const ModelDocument& model, const std::vector<gap::Drive>& drives);
 
 /// Sequentially thresholded least squares (SINDy: Brunton, Proctor, Kutz 2016) on the residuals,

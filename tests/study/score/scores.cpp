@@ -18,6 +18,7 @@ void addNullMusts(Scorer& scorer) {
       "false positives: an effect named, all start values wrong", isKind("wrong_start"),
       [](const JudgedCase& one) { return !one.record.answer.effects.empty(); },
       Must{0.03, false, {}, {}, 400});
+  scorer.share("  CANNOT_TELL or an error there", isKind("wrong_start"), flag(&Judgement::refused));
   scorer.share("  any verdict but NO_DISCREPANCY in a null log", null,
                [](const JudgedCase& one) { return one.record.answer.verdict != "NO_DISCREPANCY"; });
 }

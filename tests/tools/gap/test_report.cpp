@@ -114,7 +114,7 @@ TEST_CASE("what remains is told channel by channel") {
                    {"along", "time", 3.0, 0.01}}) ==
         "the along residual depends on speed and time; the yaw rate residual depends on v");
   CHECK(remainsOf({{"along", "speed", 3.0, 0.01, "slip_ratio"}}) ==
-        "the along residual depends on speed (like longitudinal slip, but not that)");
+        "the along residual depends on speed (like longitudinal slip, but not taken for it)");
 }
 
 TEST_CASE("what is left without a name is drawn beside the headline") {
@@ -191,7 +191,7 @@ TEST_CASE("what remains without a name is told by channel and variable") {
   CHECK(has(
       markdown(GapVerdict::kPartial),
       "Unexplained: the yaw rate residual depends on speed x yaw rate (like skid that grows with "
-      "the yaw rate, but not that)."));
+      "the yaw rate, but not taken for it)."));
   CHECK(has(markdown(GapVerdict::kNotInCatalogue), "no effect of the catalogue explains it"));
 }
 

@@ -162,7 +162,7 @@ TEST_CASE("what find prints at its end begins with the verdict and tells what re
   CHECK(std::count(lines.begin(), lines.end(),
                    "  Unexplained: the yaw rate residual depends on speed x yaw rate (like skid "
                    "that grows with "
-                   "the yaw rate, but not that).") == 1);
+                   "the yaw rate, but not taken for it).") == 1);
 }
 
 TEST_CASE("a term on top of what the model had shows their total beside") {

@@ -309,7 +309,7 @@ std::string remainsOf(const std::vector<Unexplained>& rests) {
     const bool known = !rest.like.empty() && findEffect(rest.like) != nullptr;
     variables[rest.channel].push_back(
         rest.variable +
-        (known ? " (like " + inSentence(shortTitleOf(rest.like)) + ", but not that)" : ""));
+        (known ? " (like " + inSentence(shortTitleOf(rest.like)) + ", but not taken for it)" : ""));
   }
   std::string text;
   for (const std::string& channel : channels)

@@ -17,6 +17,8 @@ namespace {
 constexpr int kQueue = 100'000;                  // messages
 constexpr int64_t kMaintenancePeriod = 250'000;  // [us] between flushes
 constexpr int kWaitMs = 100;
+constexpr int kSilenceMs = 30;            // after which nothing is on its way any more
+constexpr int64_t kLastUs = 100'000;      // [us] after a stop
 constexpr int64_t kRetry = 1'000'000;     // [us] between attempts after the disk was full
 constexpr int64_t kReserve = 10'000'000;  // [bytes] that must be free to begin again
 constexpr int64_t kScarce = 500'000'000;  // [bytes] free, of which people are warned
@@ -170,6 +172,10 @@ void Recorder::run(const std::atomic<bool>& stop) {
     bus_.lifeSign().beat(hostNow());
   }
   bus_.lifeSign().stopping();
+  // What was sent before the stop is still on its way through LCM's own thread; a flood has no end.
+  const int64_t last = hostNow() + kLastUs;
+  while (hostNow() < last && lcm_->handleTimeout(kSilenceMs) != 0) {
+  }
   for (int i = 0; i < kQueue && lcm_->handleTimeout(0) > 0; ++i) {
   }
   maintain(hostNow());
