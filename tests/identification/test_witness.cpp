@@ -81,6 +81,30 @@ TEST_CASE("a lag that the wheels have, too, is in the drive, also where encoders
   }
 }
 
+TEST_CASE("a lag in the drive beside one under the wheels: together they are in neither") {
+  const Values drive{{"actuator_lag.lag", 0.4}};
+  const auto both = witnessesOf({{"actuator_lag.lag", 0.4}, {"yaw_inertia.lag", 0.6}}, drive);
+  for (const auto& wheels : both) {
+    if (!wheels) continue;  // too vague to be told
+    CHECK(wheels->of_lags);
+    CHECK(wheels->share > 0.1);
+    CHECK(wheels->share < 0.9);
+  }
+}
+
+TEST_CASE("an effect in the drive beside one under the wheels: each is told for itself") {
+  const Values limit{{"speed_saturation.inverse_limit", 1.4}};
+  const auto wheels =
+      witnessesOf({{"speed_saturation.inverse_limit", 1.4}, {"yaw_inertia.lag", 0.8}}, limit);
+  REQUIRE(wheels[0]);
+  REQUIRE(wheels[1]);
+  CHECK(wheels[0]->share == Approx(1.0).margin(0.15));
+  CHECK(wheels[0]->saysDrive());
+  CHECK(wheels[1]->share == Approx(0.0).margin(0.15));
+  CHECK(wheels[1]->saysGround());
+  CHECK_FALSE(wheels[1]->of_lags);
+}
+
 TEST_CASE(
     "wheel speeds say nothing of scales, of motion to the side, of the INS, and without any") {
   CHECK_FALSE(witnessOf({{"slip_ratio.slip", 0.2}}, {}));

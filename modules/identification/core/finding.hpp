@@ -58,6 +58,7 @@ struct WheelWitness {
   double share = 0.0;
   double low = 0.0;
   double high = 0.0;
+  bool of_lags = false;  ///< of all lags of the vehicle together
 
   bool saysDrive() const { return low > 0.5; }
   bool saysGround() const { return high < 0.5; }

@@ -155,15 +155,27 @@ std::map<std::string, WheelWitness> wheelWitnesses(const Fitter& fitter, const F
   if (std::all_of(drives.begin(), drives.end(),
                   [](const Drive& drive) { return drive.encoders.empty(); }))
     return {};
-  std::vector<std::string> asked;
-  std::vector<Eigen::VectorXd> without;
+  std::vector<std::vector<std::string>> asked;
+  std::vector<std::string> lags;
   for (const std::string& effect : effects) {
-    if (effectNamed(effect).kind() != EffectKind::kVehicle || isScale(effectNamed(effect)))
+    const Effect& known = effectNamed(effect);
+    if (known.kind() != EffectKind::kVehicle || isScale(known)) continue;
+    if (isLag(known))
+      lags.push_back(effect);
+    else
+      asked.push_back({effect});
+  }
+  // How a delay and two lags share what the wheels are late is more than they tell.
+  if (!lags.empty()) asked.push_back(lags);
+  std::vector<Eigen::VectorXd> without;
+  for (size_t i = 0; i < asked.size();) {
+    const Eigen::VectorXd predicted = switchedOff(fitter, state, asked[i]).predicted;
+    if (showsIn(fitter, state, predicted) < kShown) {
+      asked.erase(asked.begin() + static_cast<std::ptrdiff_t>(i));
       continue;
-    const Eigen::VectorXd predicted = switchedOff(fitter, state, {effect}).predicted;
-    if (showsIn(fitter, state, predicted) < kShown) continue;
-    asked.push_back(effect);
+    }
     without.push_back(predicted);
+    ++i;
   }
   size_t rows = 0;
   const std::map<int, Grams> blocks = gramsOf(fitter, state, without, rows);
@@ -185,8 +197,9 @@ std::map<std::string, WheelWitness> wheelWitnesses(const Fitter& fitter, const F
     const auto at = static_cast<Eigen::Index>(i);
     const double error = std::sqrt(sums[at] * (count - 1.0) / count);
     if (!(error < kSharp) || unlikeScale(all, 2 + at) < kUnlike) continue;
-    witnesses[asked[i]] = {shares[at], shares[at] - quantile * error,
-                           shares[at] + quantile * error};
+    for (const std::string& effect : asked[i])
+      witnesses[effect] = {shares[at], shares[at] - quantile * error, shares[at] + quantile * error,
+                           asked[i].size() > 1};
   }
   return witnesses;
 }

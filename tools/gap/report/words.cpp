@@ -188,10 +188,11 @@ std::string wheelSentence(const FoundEffect& effect) {
   const auto percent = [](double share) {
     return fixed(100.0 * std::clamp(share, -9.99, 9.99), 0);
   };
-  std::string text =
-      " The wheel speeds show " +
-      (wheels.low > 1.0 ? "all of it and more" : percent(wheels.share) + " % of it") + " (" +
-      percent(wheels.low) + " to " + percent(wheels.high) + " %)";
+  const std::string whole = wheels.of_lags ? "the lags together" : "it";
+  std::string text = " The wheel speeds show " +
+                     (wheels.low > 1.0 ? "all of " + whole + " and more"
+                                       : percent(wheels.share) + " % of " + whole) +
+                     " (" + percent(wheels.low) + " to " + percent(wheels.high) + " %)";
   if (wheels.saysDrive()) return text + ": it is in the drive.";
   if (wheels.saysGround()) return text + ": it is under the wheels, not in the drive.";
   return text + ": that does not tell whether it is in the drive.";
