@@ -107,8 +107,7 @@ std::vector<Effect> turningEffects() {
        "|omega| -> limit + beyond (|omega| - limit) where |omega| > limit; inverse_limit = 1 / "
        "limit",
        "The yaw rate is right up to a value and nearly flat beyond it, on the spot and at speed; "
-       "the "
-       "forward speed is right.",
+       "the forward speed is right.",
        "Turn on the spot with a growing command; a limit of track speed caps the straight drive, "
        "too, a grip limit does not act on the spot.",
        "Turn on the spot at 60, 80 and 100 % and compare the yaw rates.",
@@ -173,7 +172,8 @@ std::vector<Effect> gripEffects() {
        "The ground gives hardly more sideways force than its friction; fast curves get wider.",
        "|omega| -> limit + beyond (|omega| - limit) where |omega| > limit = friction 9.81 m/s2 / "
        "|v|; inverse_limit = 1 / friction",
-       "The yaw rate lacks only where speed times yaw rate is large; on the spot it is right.",
+       "The yaw rate falls short only where speed times yaw rate is large; on the spot it is "
+       "right.",
        "The same yaw rate in a fast wide and in a slow tight turn.",
        "Drive one circle faster and faster until it widens.",
        {inverseLimit("1", 20.0, 4.0, &V::grip_limit, {1.5, 3.0, 6.0, 12.0}, "friction", "1",
