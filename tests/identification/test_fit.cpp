@@ -66,14 +66,35 @@ TEST_CASE("every parameter of the catalogue is free within its bounds, or within
 }
 
 TEST_CASE("what is known of a parameter counts with one over its variance, nothing known with 0") {
-  std::vector<FreeParameter> free(3);
-  free[0].deviation = 0.1;
-  free[1].deviation = 4.0;
-  const Eigen::VectorXd precision = priorPrecision(free);
-  CHECK(precision[0] == Approx(100.0));
-  CHECK(precision[1] == Approx(1.0 / 16.0));
-  CHECK(precision[2] == 0.0);
-  CHECK(priorPrecision({}).size() == 0);
+  FitState state;
+  state.free.resize(3);
+  state.free[0].deviation = 0.1;
+  state.free[1].deviation = 4.0;
+  const Eigen::MatrixXd precision = priorPrecision(state);
+  CHECK(precision(0, 0) == Approx(100.0));
+  CHECK(precision(1, 1) == Approx(1.0 / 16.0));
+  CHECK(precision.row(2).isZero());
+  CHECK(precision(0, 1) == 0.0);
+  CHECK(priorPrecision(FitState{}).size() == 0);
+}
+
+TEST_CASE("two numbers that a model knows together are held together, each alone may move more") {
+  FitState state;
+  state.free = {freeParameter(state.model, "delay"), freeParameter(state.model, "lag")};
+  for (FreeParameter& one : state.free) one.deviation = 0.1;
+  state.model.covariance = {{"lag", "delay"}, {{0.01, -0.0099}, {-0.0099, 0.01}}};
+  const Eigen::MatrixXd precision = priorPrecision(state);
+  const auto lossOf = [&](double delay, double lag) {
+    const Eigen::Vector2d off(delay, lag);
+    return off.dot(precision * off);
+  };
+  CHECK(lossOf(0.05, 0.05) > 5.0 * lossOf(0.05, -0.05));
+  CHECK(lossOf(0.05, -0.05) < lossOf(0.05, 0.0));
+
+  // No matrix that a person wrote makes a precision of less than nothing.
+  state.model.covariance.matrix = {{0.01, 0.5}, {0.5, 0.01}};
+  const Eigen::MatrixXd held = priorPrecision(state);
+  CHECK(held(0, 0) * held(1, 1) > held(0, 1) * held(0, 1));
 }
 
 TEST_CASE("a size on its bound ran there, one that is off, a time or a lag taken away did not") {

@@ -18,7 +18,7 @@ namespace tread::gap {
 namespace {
 
 constexpr double kChangeNats = 10.0;  // 2 nats times what correlated ground takes off
-constexpr double kMoved = 4.0;        // standard errors; a few terms are looked at in each log
+constexpr double kMoved = 0.01;       // chance that any given term is said to have changed wrongly
 constexpr double kInvisible = 2.0;    // times its typical size: not excited
 /// Share of a found size that its 95 % interval has at least to either side. No vehicle is made of
 /// the catalogue's equations, and no drive shows by how much their sizes are off for that: 1 to 5 %
@@ -48,15 +48,10 @@ double halfInterval(const FitState& state, size_t index, double half) {
 }
 
 /// Whether a term of the model has changed, or a number of which it says how sure it is.
-bool hasMoved(const ParameterEstimate& estimate, double error, const ModelDocument& before,
-              bool calibrate) {
+bool hasMoved(const ParameterEstimate& estimate, double most_by_chance, bool calibrate) {
   const bool number = estimate.parameter.find('.') == std::string::npos;
   if (number && calibrate) return false;
-  const ParameterCovariance& known = before.covariance;
-  double variance = error * error;
-  for (size_t i = 0; i < known.parameters.size(); ++i)
-    if (known.parameters[i] == estimate.parameter) variance += known.matrix[i][i];
-  return std::abs(estimate.value - estimate.before) > kMoved * std::sqrt(variance);
+  return std::abs(estimate.value - estimate.before) > most_by_chance;
 }
 
 FoundEffect foundEffect(const std::string& name, const FoundTerms& result,
@@ -158,12 +153,20 @@ bool hasInstrumentChanged(const ParameterEstimate& estimate) {
   return std::abs(estimate.value - estimate.before) > kShareOfTypical * std::abs(typical);
 }
 
-/// A change of what the model already has is a discrepancy if the end error falls with it.
+/// A change of what the model already has is a discrepancy if the end error falls with it, or would
+/// fall if the new model were right.
+/** Errors scatter more than a small change lets them fall: two models that are apart by d leave an
+ * error of e and, of the wrong one, of the root of e^2 + d^2. */
 void dropIrrelevantMoves(Finding& finding, double least_gain) {
   const Gap& gap = *finding.gap;
   const double least = 1.0 - least_gain;
-  const bool matters = gap.after.position.median < least * gap.before.position.median ||
-                       gap.after.yaw.median < least * gap.before.yaw.median;
+  const double share = std::sqrt(1.0 / (least * least) - 1.0);
+  const auto falls = [&](const ErrorFigure& before, const ErrorFigure& after,
+                         const ErrorFigure& apart) {
+    return after.median < least * before.median || apart.median > share * after.median;
+  };
+  const bool matters = falls(gap.before.position, gap.after.position, gap.apart.position) ||
+                       falls(gap.before.yaw, gap.after.yaw, gap.apart.yaw);
   for (ParameterEstimate& estimate : finding.identified.calibrated)
     estimate.moved = estimate.moved && (matters || hasInstrumentChanged(estimate));
 }
@@ -211,7 +214,17 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
   const Observations& data = fitter.data();
   const FitState& state = result.state;
   const Eigen::MatrixXd covariance = parameterCovariance(fitter, state);
-  const double quantile = studentQuantile(data.measuredBlocks() - 1);
+  const double freedom = data.measuredBlocks() - 1;
+  const double quantile = studentQuantile(freedom);
+  const auto given = std::count_if(state.free.begin(), state.free.end(),
+                                   [&result](const FreeParameter& parameter) {
+                                     return !contains(result.effects, effectOf(parameter.path));
+                                   });
+  const Eigen::VectorXd most_by_chance =
+      studentQuantile(
+          freedom,
+          normalQuantileOf(kMoved / static_cast<double>(std::max<std::ptrdiff_t>(1, given)))) *
+      moveDeviations(fitter, state);
   IdentifiedModel identified;
   std::map<std::string, std::vector<ParameterEstimate>> of_effect;
   for (size_t i = 0; i < state.free.size(); ++i) {
@@ -228,7 +241,7 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
     if (found) {
       of_effect[effect].push_back(estimate);
     } else {
-      estimate.moved = hasMoved(estimate, error, before, settings.calibrate);
+      estimate.moved = hasMoved(estimate, most_by_chance[at], settings.calibrate);
       identified.calibrated.push_back(estimate);
     }
   }
@@ -426,6 +439,7 @@ Finding findGap(const GapTask& task, const Progress& say) {
                                    : errorsOnHalves(task, fitter, result, settings, memory);
   if (!test) widenByHalves(unseen.parts, finding.identified);
   finding.gap = unseen.gap;
+  finding.gap->apart = apart(test ? *test : data, task.model, after);
   finding.gap->floor = deadReckoningFloor(task.test.empty() ? task.train : task.test);
   finding.atlas = residualAtlas(data, task.model, after, finding.adequacy.unexplained);
   finding.shown = shownExecutions(unseen.parts, task.model, residualNoise(fitter, after));

@@ -139,6 +139,7 @@ std::optional<ExecutionError> errorOf(
   error.execution = execution;
   error.position = scale * (predicted->position() - measured.position()).norm();
   error.yaw = scale * std::abs(predicted->yaw - measured.yaw);
+  error.predicted = *predicted;
   return error;
 }
 
@@ -175,6 +176,17 @@ EndErrors summaryOf(const std::vector<ExecutionError>& errors) {
     yaw.push_back(error.yaw);
   }
   return {figureOf(std::move(position)), figureOf(std::move(yaw)), errors.size()};
+}
+
+EndErrors apart(const Observations& data, const ModelDocument& one, const ModelDocument& other) {
+  std::vector<ExecutionError> errors = endErrors(data, one);
+  const std::vector<ExecutionError> others = endErrors(data, other);
+  errors.resize(std::min(errors.size(), others.size()));
+  for (size_t i = 0; i < errors.size(); ++i) {
+    errors[i].position = (errors[i].predicted.position() - others[i].predicted.position()).norm();
+    errors[i].yaw = std::abs(errors[i].predicted.yaw - others[i].predicted.yaw);
+  }
+  return summaryOf(errors);
 }
 
 OverlayMaker::OverlayMaker(const Observations& data, const ModelDocument& before,

@@ -18,6 +18,7 @@ struct ExecutionError {
   int block = 0;
   double position = 0.0;  ///< [m], scaled to the horizon
   double yaw = 0.0;       ///< [rad], scaled to the horizon, not wrapped
+  Pose2 predicted{};      ///< where it ends, not scaled
 };
 
 /// The horizon over which errors are told [s].
@@ -42,6 +43,9 @@ std::optional<ExecutionError> errorOf(
 
 /// Median and root mean square.
 EndErrors summaryOf(const std::vector<ExecutionError>& errors);
+
+/// How far apart two models predict the ends of the same executions; the measurement plays no part.
+EndErrors apart(const Observations& data, const ModelDocument& one, const ModelDocument& other);
 
 /// Executions as measured and as two models predict them.
 class OverlayMaker {

@@ -127,6 +127,7 @@ struct Gap {
   double horizon = 2.0;  ///< [s]
   EndErrors before;
   EndErrors after;
+  EndErrors apart;                 ///< of the two models from one another
   std::optional<EndErrors> floor;  ///< dead reckoning with encoders and gyro, where those exist
   bool structure_nested = true;    ///< the effects, too, were chosen without these executions
 };

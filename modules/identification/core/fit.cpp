@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 namespace tread::gap {
 namespace {
@@ -35,25 +36,76 @@ FreeParameter nominalNumber(const std::string& path, double value) {
   return {path, 0.02, 5.0, 0.01, value};  // gains and full speed
 }
 
-double priorLoss(const FitState& state) {
-  double sum = 0.0;
-  for (const FreeParameter& parameter : state.free) {
-    const double off =
-        (valueOf(state.model, parameter.path) - parameter.expected) / parameter.deviation;
-    sum += 0.5 * off * off;
+/// Share of a correlation that counts. It was estimated from few blocks: the least of many
+/// combinations comes out smaller than it is.
+constexpr double kCorrelationKept = 0.9;
+constexpr double kLeastShare = 0.02;  // of a variance, in any combination
+
+/// What is known of the free parameters.
+struct Known {
+  std::vector<Eigen::Index> at;  // which of them
+  Eigen::VectorXd deviation;
+  Eigen::VectorXd values;  // of their correlation, and its vectors
+  Eigen::MatrixXd vectors;
+};
+
+Known knownOf(const FitState& state) {
+  Known known;
+  for (size_t i = 0; i < state.free.size(); ++i)
+    if (std::isfinite(state.free[i].deviation)) known.at.push_back(static_cast<Eigen::Index>(i));
+  const auto count = static_cast<Eigen::Index>(known.at.size());
+  const ParameterCovariance& covariance = state.model.covariance;
+  std::vector<size_t> rows;  // of the covariance; its size = not there
+  known.deviation.resize(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const FreeParameter& parameter =
+        state.free[static_cast<size_t>(known.at[static_cast<size_t>(k)])];
+    known.deviation[k] = parameter.deviation;
+    rows.push_back(static_cast<size_t>(std::distance(
+        covariance.parameters.begin(),
+        std::find(covariance.parameters.begin(), covariance.parameters.end(), parameter.path))));
   }
-  return sum;
+  Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(count, count);
+  for (Eigen::Index a = 0; a < count; ++a)
+    for (Eigen::Index b = 0; b < count; ++b) {
+      const size_t i = rows[static_cast<size_t>(a)];
+      const size_t j = rows[static_cast<size_t>(b)];
+      if (a == b || std::max(i, j) >= covariance.parameters.size()) continue;
+      const double size = std::sqrt(covariance.matrix[i][i] * covariance.matrix[j][j]);
+      if (size > 0.0) correlation(a, b) = kCorrelationKept * covariance.matrix[i][j] / size;
+    }
+  if (count == 0) return known;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
+  known.values = eigen.eigenvalues().cwiseMax(kLeastShare);
+  known.vectors = eigen.eigenvectors();
+  return known;
+}
+
+/// A matrix over the known parameters, spread over all of them; 0 elsewhere.
+Eigen::MatrixXd spread(const Known& known, const Eigen::VectorXd& eigenvalues,
+                       const Eigen::VectorXd& units, size_t free) {
+  const Eigen::MatrixXd vectors = units.asDiagonal() * known.vectors;
+  const Eigen::MatrixXd part = vectors * eigenvalues.asDiagonal() * vectors.transpose();
+  Eigen::MatrixXd all =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(free), static_cast<Eigen::Index>(free));
+  for (size_t a = 0; a < known.at.size(); ++a)
+    for (size_t b = 0; b < known.at.size(); ++b)
+      all(known.at[a], known.at[b]) =
+          part(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+  return all;
+}
+
+double priorLoss(const FitState& state) {
+  const Eigen::VectorXd off = offExpected(state);
+  return 0.5 * off.dot(priorPrecision(state) * off);
 }
 
 Normal priorNormal(const FitState& state, const Eigen::VectorXd& residuals,
                    const std::vector<char>& mask) {
   Normal normal = normalOf(state, residuals, mask);
-  const Eigen::VectorXd prior = priorPrecision(state.free);
-  for (Eigen::Index i = 0; i < prior.size(); ++i) {
-    const FreeParameter& parameter = state.free[static_cast<size_t>(i)];
-    normal.matrix(i, i) += prior[i];
-    normal.pull[i] -= prior[i] * (valueOf(state.model, parameter.path) - parameter.expected);
-  }
+  const Eigen::MatrixXd prior = priorPrecision(state);
+  normal.matrix += prior;
+  normal.pull -= prior * offExpected(state);
   return normal;
 }
 
@@ -107,11 +159,32 @@ FreeParameter freeParameter(const ModelDocument& model, const std::string& path)
   return free;
 }
 
-Eigen::VectorXd priorPrecision(const std::vector<FreeParameter>& free) {
-  Eigen::VectorXd precision(static_cast<Eigen::Index>(free.size()));
-  for (size_t i = 0; i < free.size(); ++i)
-    precision[static_cast<Eigen::Index>(i)] = 1.0 / (free[i].deviation * free[i].deviation);
-  return precision;
+Eigen::MatrixXd priorCovariance(const FitState& state) {
+  const Known known = knownOf(state);
+  return spread(known, known.values, known.deviation, state.free.size());
+}
+
+Eigen::MatrixXd priorPrecision(const FitState& state) {
+  const Known known = knownOf(state);
+  return spread(known, known.values.cwiseInverse(), known.deviation.cwiseInverse(),
+                state.free.size());
+}
+
+double knownDeviation(const ModelDocument& model, const std::string& path) {
+  const ParameterCovariance& known = model.covariance;
+  for (size_t i = 0; i < known.parameters.size(); ++i) {
+    const double deviation = known.parameters[i] == path ? std::sqrt(known.matrix[i][i]) : 0.0;
+    if (deviation > 0.0 && std::isfinite(deviation)) return deviation;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+Eigen::VectorXd offExpected(const FitState& state) {
+  Eigen::VectorXd off(static_cast<Eigen::Index>(state.free.size()));
+  for (size_t i = 0; i < state.free.size(); ++i)
+    off[static_cast<Eigen::Index>(i)] =
+        valueOf(state.model, state.free[i].path) - state.free[i].expected;
+  return off;
 }
 
 bool onBound(const ModelDocument& model, const FreeParameter& parameter) {

@@ -97,8 +97,19 @@ struct Normal {
 Normal normalOf(const FitState& state, const Eigen::VectorXd& residuals,
                 const std::vector<char>& mask);
 
-/// Prior precision of the free parameters (diagonal).
-Eigen::VectorXd priorPrecision(const std::vector<FreeParameter>& free);
+/// Prior precision of the free parameters (free x free); zero where nothing is known.
+/** Deviations are the parameters' own, correlations those of the model's covariance: a delay and a
+ * lag may each be vague where their sum is known. */
+Eigen::MatrixXd priorPrecision(const FitState& state);
+
+/// The covariance that it is the inverse of; zero where nothing is known (free x free).
+Eigen::MatrixXd priorCovariance(const FitState& state);
+
+/// Standard deviation of a number by the model's covariance; infinite if it says nothing.
+double knownDeviation(const ModelDocument& model, const std::string& path);
+
+/// How far the free parameters are from what was known of them (free x 1).
+Eigen::VectorXd offExpected(const FitState& state);
 
 /// Whether a parameter is a term that the model already had, and not one that was found.
 inline bool isGiven(const FreeParameter& parameter) {

@@ -130,6 +130,11 @@ Screening screen(const Fitter& fitter, const FitState& state, const SearchSettin
   screening.alpha = first ? settings.alpha : settings.alpha_more;
   screening.candidates = candidatesFor(state, cache.excitation(fitter, state));
   leaveOut(screening.candidates, settings.rejected);
+  if (!settings.release)
+    screening.candidates.erase(
+        std::remove_if(screening.candidates.begin(), screening.candidates.end(),
+                       [](const Candidate& candidate) { return candidate.release; }),
+        screening.candidates.end());
   const ScoreTest test(fitter, state, cache.directions(fitter, state, screening.candidates));
   screening.chance = test.largestByChance(settings.draws, settings.seed);
   screening.overdispersion = test.usualOverdispersion();

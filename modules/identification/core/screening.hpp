@@ -40,12 +40,19 @@ Gain gainOf(const Fitter& fitter, const Eigen::VectorXd& first, const Eigen::Vec
  * (a diagonal of 1e12 times the square of its step). */
 Eigen::MatrixXd parameterCovariance(const Fitter& fitter, const FitState& state);
 
+/// How far each free parameter goes from what the model says of it by chance, where that is right
+/// (free x 1): of blocks that scatter, and of how sure the model is of its numbers.
+/** A number that is held by what is known moves only as far as the rows can pull it. */
+Eigen::VectorXd moveDeviations(const Fitter& fitter, const FitState& state);
+
 /// Whether directions in which a prediction could change would bring it nearer to the measurement.
 /** Each column is freed of what the free parameters explain (orthogonal in the metric of the
  * scales: Neyman), its pull is summed block by block, and T = sum / root of the sum of squares. The
  * distribution of the largest |T| over all columns under "nothing is there" comes from giving each
  * block's pull a random sign (wild bootstrap), the same for all columns, so that correlated columns
- * do not count twice. Blocks, not samples: the ground's noise is correlated. */
+ * do not count twice. Blocks, not samples: the ground's noise is correlated. What was known of the
+ * free parameters counts as one more measurement, with the scatter that it says itself: a direction
+ * that they could follow only against it shows in how far they went. */
 class ScoreTest {
  public:
   /// `directions` rows x candidates.
@@ -82,12 +89,20 @@ class ScoreTest {
   std::vector<double> largestByChance(int draws, uint64_t seed) const;
 
  private:
+  void weighPrior(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& follow,
+                  const Eigen::VectorXd& off);
+  double pullOn(Eigen::Index candidate) const;  ///< of all blocks and of what was known
+  double rootOf(Eigen::Index candidate) const;  ///< of the sum of squares
+  double priorInformation(Eigen::Index candidate) const;
+
   Eigen::MatrixXd own_;     ///< rows x candidates
   Eigen::MatrixXd pulls_;   ///< blocks x candidates
   Eigen::VectorXd scores_;  ///< candidates
   Eigen::VectorXd uniqueness_;
-  Eigen::VectorXd information_;        ///< of a candidate's size
+  Eigen::VectorXd information_;        ///< of a candidate's size, in the rows
   Eigen::MatrixXd block_information_;  ///< blocks x candidates
+  Eigen::VectorXd prior_pulls_;        ///< candidates
+  Eigen::MatrixXd prior_parts_;        ///< what is known x candidates; squares sum to information
 };
 
 /// What a score must reach to count.
@@ -187,6 +202,7 @@ struct SearchSettings {
   size_t tried = 4;          ///< effects that are refitted at a time
   size_t most = 8;           ///< effects that are added at most
   bool calibrate = false;    ///< the numbers of the nominal model are free
+  bool release = true;       ///< given terms may be other than the model says
   double least_gain = 0.01;  ///< of the end error; less is real but negligible; 0 = none is
   /// A person's last word: in from calibration on, whatever tests say.
   std::vector<std::string> accepted;

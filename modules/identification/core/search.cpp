@@ -10,6 +10,8 @@
 namespace tread::gap {
 namespace {
 
+constexpr double kSame = 1.0;    // [nats] within which two terms do the same
+constexpr double kEdge = 0.05;   // share of a drive that lies before and after a change at least
 constexpr size_t kRenewed = 10;  // directions that are simulated again in a screening
 
 bool hasVanished(const ModelDocument& model, const Candidate& candidate) {
@@ -150,15 +152,25 @@ class EffectSelection {
     std::string refused;
   };
 
+  /// Whether hardly any driving lies before a moment, or after it.
+  bool isAtEdge(double time) const {
+    const Excitation& driven = memory_.calibrated.excitation(fitter_, result_.calibrated);
+    const double edge = kEdge * (driven.end - driven.begin);
+    return time < driven.begin + edge || time > driven.end - edge;
+  }
+
   Trial tryOut(const Screening& screening, size_t index, const Eigen::VectorXd& loss_now) const {
     Trial trial;
     trial.candidate = index;
     trial.state = state();
     addCandidate(fitter_, trial.state, screening.candidates[index], screening.sizes[index]);
     fitter_.fitRoughly(trial.state);
-    if (!screening.candidates[index].change_point.empty()) {
-      refineChangePoint(fitter_, trial.state, screening.candidates[index].change_point);
+    const std::string& change = screening.candidates[index].change_point;
+    if (!change.empty()) {
+      refineChangePoint(fitter_, trial.state, change);
       fitter_.fitRoughly(trial.state);
+      if (isAtEdge(*findParameter(trial.state.model, change)))
+        trial.refused = "what it changes is the same nearly all the time";
     }
     if (hasVanished(trial.state.model, screening.candidates[index]))
       trial.refused = "its size vanishes in the fit";
@@ -192,6 +204,17 @@ class EffectSelection {
     return behind.value < behind.error ? plain : best;
   }
 
+  /// A term that the model has, in the place of a new one that does the same.
+  const Trial* givenInstead(const Trial* best, const std::vector<Trial>& trials,
+                            const Screening& screening) const {
+    for (const Trial& trial : trials)
+      if (best != nullptr && trial.refused.empty() && trial.gain.value > 0.0 &&
+          screening.candidates[trial.candidate].release &&
+          gainOf(fitter_, trial.loss, best->loss).value < kSame)
+        return &trial;
+    return best;
+  }
+
   /// Refits the most promising effects and adds the one that helps most on blocks left out; the
   /// next ones if none of them is possible.
   bool addBest(const Screening& screening) {
@@ -208,7 +231,7 @@ class EffectSelection {
             (best == nullptr || trial.gain.value > best->gain.value))
           best = &trial;
     }
-    best = plainerThan(best, trials, screening);
+    best = plainerThan(givenInstead(best, trials, screening), trials, screening);
     noteTrials(screening, trials, best);
     if (best == nullptr) return false;
     const Candidate& added = screening.candidates[best->candidate];
@@ -317,11 +340,7 @@ class EffectSelection {
 /// A parameter held by what the model's covariance says of it, if it does.
 FreeParameter heldParameter(const ModelDocument& model, const std::string& path) {
   FreeParameter parameter = freeParameter(model, path);
-  const ParameterCovariance& known = model.covariance;
-  for (size_t i = 0; i < known.parameters.size(); ++i) {
-    const double deviation = known.parameters[i] == path ? std::sqrt(known.matrix[i][i]) : 0.0;
-    if (deviation > 0.0 && std::isfinite(deviation)) parameter.deviation = deviation;
-  }
+  parameter.deviation = knownDeviation(model, path);
   return parameter;
 }
 
@@ -349,7 +368,18 @@ std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool cali
 
 FoundTerms search(const Fitter& fitter, const ModelDocument& model, const SearchSettings& settings,
                   SearchMemory& memory, const Progress& say) {
-  return EffectSelection(fitter, settings, memory, say).run(model);
+  FoundTerms found = EffectSelection(fitter, settings, memory, say).run(model);
+  if (found.released.empty()) return found;
+  // To take a given term for wrong is easy: it bends to much. Fewer effects may do, with all that
+  // the model says.
+  SearchSettings trusting = settings;
+  trusting.release = false;
+  FoundTerms other = EffectSelection(fitter, trusting, memory, say).run(model);
+  if (other.effects.empty() || other.effects.size() >= found.effects.size() + found.released.size())
+    return found;
+  const Gain behind =
+      gainOf(fitter, heldOutLoss(fitter, other.state), heldOutLoss(fitter, found.state));
+  return behind.value < behind.error ? other : found;
 }
 
 FitState refitted(const Fitter& fitter, const FoundTerms& result) {

@@ -14,6 +14,8 @@ namespace tread::gap {
 namespace {
 
 constexpr double kUnsized = 2.0;  // times its typical size: what the 95 % interval must not exceed
+constexpr double kConfirmed =
+    2.5;  // standard errors of nats, of rows that sizes were not fitted to
 
 /// The candidate that promises most; none that would change anything = candidates.
 size_t mostPromising(const ScoreTest& test) {
@@ -139,16 +141,19 @@ std::optional<Exchange> bestExchange(const SearchState& search) {
   return best;
 }
 
-/// Adds what a state misses on every other block: position, yaw and yaw rate (blocks x 3).
-void addMissed(const Observations& data, const FitState& state, int half, Eigen::MatrixXd& sums) {
+/// Adds what a state misses on every other block: position, yaw, yaw rate and nats (blocks x 4).
+void addMissed(const Observations& data, const FitState& state, const Eigen::VectorXd& scales,
+               int half, Eigen::MatrixXd& sums) {
   for (const ExecutionError& error : endErrors(data, state.model))
     if (error.block % 2 == half)
       sums.row(error.block).head(2) += Eigen::RowVector2d(error.position, error.yaw);
   const Eigen::VectorXd residuals = data.residuals(state.predicted);
   for (size_t i = 0; i < data.all().size(); ++i) {
     const Observation& row = data.all()[i];
-    if (row.channel == Channel::kYawRate && row.block % 2 == half)
-      sums(row.block, 2) += std::abs(residuals[static_cast<Eigen::Index>(i)]);
+    const auto at = static_cast<Eigen::Index>(i);
+    if (row.block % 2 != half) continue;
+    if (row.channel == Channel::kYawRate) sums(row.block, 2) += std::abs(residuals[at]);
+    sums(row.block, 3) += lossOf(residuals[at], scales[at]);
   }
 }
 
@@ -167,12 +172,12 @@ FitState withoutFound(const SearchState& search) {
 bool isConfirmed(const SearchState& search, const FitState& lacking) {
   const Observations& data = search.data();
   const FoundTerms& result = search.result;
-  Eigen::MatrixXd with = Eigen::MatrixXd::Zero(data.blocks(), 3);
+  Eigen::MatrixXd with = Eigen::MatrixXd::Zero(data.blocks(), 4);
   Eigen::MatrixXd without = with;
   for (int half : {0, 1}) {
     const Fitter on_half = search.fitter.onRows(halfMask(data, half));
-    addMissed(data, refitted(on_half, result), 1 - half, with);
-    addMissed(data, lacking, half, without);
+    addMissed(data, refitted(on_half, result), result.state.scales, 1 - half, with);
+    addMissed(data, lacking, result.state.scales, half, without);
   }
   const bool measurement =
       std::all_of(result.effects.begin(), result.effects.end(), [](const std::string& effect) {
@@ -183,7 +188,9 @@ bool isConfirmed(const SearchState& search, const FitState& lacking) {
     const Gain gain = gainOf(without.col(i), with.col(i), every);
     if (gain.value > gain.error) return true;
   }
-  return false;
+  // The ends of executions scatter more than rows do: what is far beyond chance in these is there.
+  const Gain nats = gainOf(without.col(3), with.col(3), every);
+  return nats.value > kConfirmed * nats.error;
 }
 
 }  // namespace

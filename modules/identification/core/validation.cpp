@@ -38,28 +38,20 @@ std::vector<int> foldsOf(const Observations& data, const std::vector<char>& coun
   return folds;
 }
 
-Eigen::VectorXd values(const FitState& state, bool expected) {
-  Eigen::VectorXd all(static_cast<Eigen::Index>(state.free.size()));
-  for (size_t i = 0; i < state.free.size(); ++i)
-    all[static_cast<Eigen::Index>(i)] =
-        expected ? state.free[i].expected : *findParameter(state.model, state.free[i].path);
-  return all;
-}
-
 /// Change of the parameters when only the rows of `train` count, in first order.
 Eigen::VectorXd refitted(const FitState& state, const Eigen::VectorXd& residuals,
                          const std::vector<char>& train) {
-  const Eigen::VectorXd prior = priorPrecision(state.free);
-  const Eigen::VectorXd off = values(state, false) - values(state, true);
-  Eigen::VectorXd change = Eigen::VectorXd::Zero(prior.size());
+  const Eigen::MatrixXd prior = priorPrecision(state);
+  const Eigen::VectorXd off = offExpected(state);
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(off.size());
   Eigen::VectorXd now = residuals;
   for (int n = 0; n < kRefits; ++n) {
     auto [normal, pull] = normalOf(state, now, train);
-    normal.diagonal() += prior;
+    normal += prior;
     normal.diagonal() *= 1.0 + 1e-9;
     for (Eigen::Index i = 0; i < normal.rows(); ++i)
       if (normal(i, i) <= 0.0) normal(i, i) = 1.0;
-    pull -= prior.cwiseProduct(off + change);
+    pull -= prior * (off + change);
     const Eigen::VectorXd step = normal.ldlt().solve(pull);
     change += step;
     now -= state.jacobian * step;
@@ -67,17 +59,17 @@ Eigen::VectorXd refitted(const FitState& state, const Eigen::VectorXd& residuals
   return change;
 }
 
-/// Columns made orthogonal to the free parameters' in the metric of 1 / scale^2.
-Eigen::MatrixXd orthogonal(const FitState& state, const Eigen::MatrixXd& directions,
-                           const Eigen::VectorXd& metric) {
-  if (state.free.empty()) return directions;
+/// By how much the free parameters follow each direction, in the metric of 1 / scale^2 (free x
+/// directions): what is left of a direction is orthogonal to theirs.
+Eigen::MatrixXd followed(const FitState& state, const Eigen::MatrixXd& directions,
+                         const Eigen::VectorXd& metric, const Eigen::MatrixXd& prior) {
+  if (state.free.empty()) return Eigen::MatrixXd(0, directions.cols());
   const Eigen::MatrixXd weighted = metric.asDiagonal() * state.jacobian;
-  Eigen::MatrixXd normal = state.jacobian.transpose() * weighted;
-  normal.diagonal() += priorPrecision(state.free) / kInformation;
+  Eigen::MatrixXd normal = state.jacobian.transpose() * weighted + prior / kInformation;
   // A ridge far below rounding of the data keeps columns apart that are the same.
   normal.diagonal() += 1e-10 * normal.diagonal() +
                        Eigen::VectorXd::Constant(normal.rows(), 1e-12 * normal.trace() + 1e-300);
-  return directions - state.jacobian * normal.ldlt().solve(weighted.transpose() * directions);
+  return normal.ldlt().solve(weighted.transpose() * directions);
 }
 
 }  // namespace
@@ -128,13 +120,21 @@ Gain gainOf(const Fitter& fitter, const Eigen::VectorXd& first, const Eigen::Vec
   return gainOf(first, second, fitter.blocksThatCount());
 }
 
-Eigen::MatrixXd parameterCovariance(const Fitter& fitter, const FitState& state) {
+namespace {
+
+/// What rows say of the free parameters together.
+struct Curvature {
+  Eigen::MatrixXd rows;     ///< information of the rows alone (free x free)
+  Eigen::MatrixXd scatter;  ///< of the blocks' pulls, with its small-sample factor
+  Eigen::MatrixXd inverse;  ///< of information and prior, without directions of neither
+  std::vector<char> lost;   ///< parameters in such directions
+};
+
+Curvature curvatureOf(const Fitter& fitter, const FitState& state, const Eigen::MatrixXd& prior) {
   const Observations& data = fitter.data();
   const auto count = static_cast<Eigen::Index>(state.free.size());
-  if (count == 0) return {};
   const Eigen::VectorXd residuals = data.residuals(state.predicted);
   Eigen::MatrixXd pulls = Eigen::MatrixXd::Zero(data.blocks(), count);
-  Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(count, count);
   Eigen::VectorXd metric = Eigen::VectorXd::Zero(residuals.size());
   for (Eigen::Index i = 0; i < residuals.size(); ++i) {
     if (!fitter.mask()[static_cast<size_t>(i)]) continue;
@@ -142,18 +142,18 @@ Eigen::MatrixXd parameterCovariance(const Fitter& fitter, const FitState& state)
     pulls.row(data.all()[static_cast<size_t>(i)].block) +=
         pullOf(residuals[i], state.scales[i]) * state.jacobian.row(i);
   }
-  curvature = state.jacobian.transpose() * metric.asDiagonal() * state.jacobian;
-  curvature.diagonal() += priorPrecision(state.free);
-  Eigen::MatrixXd scatter = pulls.transpose() * pulls;
-  scatter.diagonal() += priorPrecision(state.free);
+  Curvature of;
+  of.rows = state.jacobian.transpose() * metric.asDiagonal() * state.jacobian;
+  of.scatter = pulls.transpose() * pulls;
   const auto counts = fitter.blocksThatCount();
   const auto blocks = static_cast<double>(std::count(counts.begin(), counts.end(), char{1}));
-  if (blocks > 1.0) scatter *= blocks / (blocks - 1.0);
+  if (blocks > 1.0) of.scatter *= blocks / (blocks - 1.0);
+  const Eigen::MatrixXd all = of.rows + prior;
   // In units of each diagonal, so that metres and seconds compare.
   Eigen::VectorXd unit(count);
   for (Eigen::Index i = 0; i < count; ++i)
-    unit[i] = curvature(i, i) > 0.0 ? 1.0 / std::sqrt(curvature(i, i)) : 1.0;
-  const Eigen::MatrixXd scaled = unit.asDiagonal() * curvature * unit.asDiagonal();
+    unit[i] = all(i, i) > 0.0 ? 1.0 / std::sqrt(all(i, i)) : 1.0;
+  const Eigen::MatrixXd scaled = unit.asDiagonal() * all * unit.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
   Eigen::VectorXd inverse(count);
   Eigen::VectorXd lost = Eigen::VectorXd::Zero(count);
@@ -162,13 +162,35 @@ Eigen::MatrixXd parameterCovariance(const Fitter& fitter, const FitState& state)
     inverse[i] = known ? 1.0 / eigen.eigenvalues()[i] : 0.0;
     if (!known) lost += eigen.eigenvectors().col(i).cwiseAbs2();
   }
-  const Eigen::MatrixXd solved = unit.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
-                                 eigen.eigenvectors().transpose() * unit.asDiagonal();
-  Eigen::MatrixXd covariance = solved * scatter * solved;
-  for (Eigen::Index i = 0; i < count; ++i)
-    if (lost[i] > 1e-3)
-      covariance(i, i) += kUnknownVariance * std::pow(state.free[static_cast<size_t>(i)].step, 2);
+  of.inverse = unit.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
+               eigen.eigenvectors().transpose() * unit.asDiagonal();
+  for (Eigen::Index i = 0; i < count; ++i) of.lost.push_back(lost[i] > 1e-3);
+  return of;
+}
+
+}  // namespace
+
+Eigen::MatrixXd parameterCovariance(const Fitter& fitter, const FitState& state) {
+  if (state.free.empty()) return {};
+  const Eigen::MatrixXd prior = priorPrecision(state);
+  const Curvature of = curvatureOf(fitter, state, prior);
+  Eigen::MatrixXd covariance = of.inverse * (of.scatter + prior) * of.inverse;
+  for (size_t i = 0; i < of.lost.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (of.lost[i]) covariance(at, at) += kUnknownVariance * std::pow(state.free[i].step, 2);
+  }
   return covariance;
+}
+
+Eigen::VectorXd moveDeviations(const Fitter& fitter, const FitState& state) {
+  if (state.free.empty()) return {};
+  const Curvature of = curvatureOf(fitter, state, priorPrecision(state));
+  FitState known = state;
+  for (FreeParameter& parameter : known.free)
+    parameter.deviation = knownDeviation(state.model, parameter.path);
+  // A vehicle as the model says lies so far from its best numbers, and the rows pull towards it.
+  const Eigen::MatrixXd pull = of.scatter + of.rows * priorCovariance(known) * of.rows.transpose();
+  return (of.inverse * pull * of.inverse).diagonal().cwiseMax(0.0).cwiseSqrt();
 }
 
 ScoreTest::ScoreTest(const Fitter& fitter, const FitState& state,
@@ -182,7 +204,9 @@ ScoreTest::ScoreTest(const Fitter& fitter, const FitState& state,
     metric[i] = counts ? 1.0 / (state.scales[i] * state.scales[i]) : 0.0;
     pull[i] = counts ? pullOf(residuals[i], state.scales[i]) : 0.0;
   }
-  own_ = orthogonal(state, directions, metric);
+  const Eigen::MatrixXd prior = priorPrecision(state);
+  const Eigen::MatrixXd follow = followed(state, directions, metric, prior);
+  own_ = state.free.empty() ? directions : directions - state.jacobian * follow;
   const Eigen::Index count = directions.cols();
   pulls_ = Eigen::MatrixXd::Zero(std::max(1, data.blocks()), count);
   block_information_ = pulls_;
@@ -192,6 +216,7 @@ ScoreTest::ScoreTest(const Fitter& fitter, const FitState& state,
       pulls_.row(block) += pull[i] * own_.row(i);
       block_information_.row(block) += kInformation * metric[i] * own_.row(i).cwiseAbs2();
     }
+  weighPrior(prior, follow, offExpected(state));
   scores_ = Eigen::VectorXd::Zero(count);
   uniqueness_ = Eigen::VectorXd::Zero(count);
   information_ = Eigen::VectorXd::Zero(count);
@@ -201,27 +226,57 @@ ScoreTest::ScoreTest(const Fitter& fitter, const FitState& state,
     if (whole <= 0.0 || own <= kLeastUnique * kLeastUnique * whole) {
       pulls_.col(c).setZero();
       block_information_.col(c).setZero();
+      prior_pulls_[c] = 0.0;
+      prior_parts_.col(c).setZero();
       continue;
     }
-    uniqueness_[c] = std::sqrt(own / whole);
+    uniqueness_[c] = std::min(1.0, std::sqrt((own + priorInformation(c) / kInformation) / whole));
     information_[c] = kInformation * own;
-    const double root = pulls_.col(c).norm();
-    if (root > 0.0) scores_[c] = pulls_.col(c).sum() / root;
+    const double root = rootOf(c);
+    if (root > 0.0) scores_[c] = pullOn(c) / root;
   }
 }
 
+void ScoreTest::weighPrior(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& follow,
+                           const Eigen::VectorXd& off) {
+  prior_pulls_ = follow.transpose() * (prior * off);
+  std::vector<Eigen::Index> known;
+  for (Eigen::Index i = 0; i < prior.rows(); ++i)
+    if (prior(i, i) > 0.0) known.push_back(i);
+  prior_parts_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(known.size()), follow.cols());
+  if (known.empty()) return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(prior);
+  // The largest as many: the rest is zero.
+  const Eigen::Index skipped = prior.rows() - prior_parts_.rows();
+  for (Eigen::Index i = 0; i < prior_parts_.rows(); ++i)
+    prior_parts_.row(i) = std::sqrt(std::max(0.0, eigen.eigenvalues()[skipped + i])) *
+                          (eigen.eigenvectors().col(skipped + i).transpose() * follow);
+}
+
+double ScoreTest::pullOn(Eigen::Index candidate) const {
+  return pulls_.col(candidate).sum() + prior_pulls_[candidate];
+}
+
+double ScoreTest::priorInformation(Eigen::Index candidate) const {
+  return prior_parts_.col(candidate).squaredNorm();
+}
+
+double ScoreTest::rootOf(Eigen::Index candidate) const {
+  return std::sqrt(pulls_.col(candidate).squaredNorm() + priorInformation(candidate));
+}
+
 double ScoreTest::size(Eigen::Index candidate) const {
-  return information_[candidate] > 0.0 ? pulls_.col(candidate).sum() / information_[candidate]
-                                       : 0.0;
+  const double information = information_[candidate] + priorInformation(candidate);
+  return information > 0.0 ? pullOn(candidate) / information : 0.0;
 }
 
 double ScoreTest::promise(Eigen::Index candidate) const {
-  return 0.5 * size(candidate) * pulls_.col(candidate).sum();
+  return 0.5 * size(candidate) * pullOn(candidate);
 }
 
 double ScoreTest::sizeError(Eigen::Index candidate) const {
   if (information_[candidate] <= 0.0) return std::numeric_limits<double>::infinity();
-  return pulls_.col(candidate).norm() / information_[candidate];
+  return rootOf(candidate) / (information_[candidate] + priorInformation(candidate));
 }
 
 double ScoreTest::activeBlocks(Eigen::Index candidate) const {
@@ -251,13 +306,15 @@ double ScoreTest::usualOverdispersion() const {
 
 double ScoreTest::sparseScore(Eigen::Index candidate, double usual) const {
   if (information_[candidate] <= 0.0) return 0.0;
-  return pulls_.col(candidate).sum() /
-         std::sqrt(information_[candidate] * std::max(usual, overdispersion(candidate)));
+  const double scatter = information_[candidate] * std::max(usual, overdispersion(candidate));
+  return pullOn(candidate) / std::sqrt(scatter + priorInformation(candidate));
 }
 
 std::vector<double> ScoreTest::largestByChance(int draws, uint64_t seed) const {
   std::mt19937_64 random(seed);
-  Eigen::MatrixXd normalised = pulls_;
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd normalised(pulls_.rows() + prior_parts_.rows(), pulls_.cols());
+  normalised << pulls_, prior_parts_;
   for (Eigen::Index c = 0; c < normalised.cols(); ++c) {
     const double root = normalised.col(c).norm();
     if (root > 0.0) normalised.col(c) /= root;
@@ -266,7 +323,8 @@ std::vector<double> ScoreTest::largestByChance(int draws, uint64_t seed) const {
   largest.reserve(static_cast<size_t>(draws));
   Eigen::RowVectorXd sign(normalised.rows());
   for (int draw = 0; draw < draws; ++draw) {
-    for (Eigen::Index b = 0; b < sign.size(); ++b) sign[b] = (random() >> 63U) != 0U ? 1.0 : -1.0;
+    for (Eigen::Index b = 0; b < pulls_.rows(); ++b) sign[b] = (random() >> 63U) != 0U ? 1.0 : -1.0;
+    for (Eigen::Index i = pulls_.rows(); i < sign.size(); ++i) sign[i] = normal(random);
     largest.push_back(normalised.cols() > 0 ? (sign * normalised).cwiseAbs().maxCoeff() : 0.0);
   }
   std::sort(largest.begin(), largest.end());
