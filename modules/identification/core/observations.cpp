@@ -212,6 +212,13 @@ std::vector<char> Observations::blocksOf(const std::vector<char>& mask) const {
   return counts;
 }
 
+std::vector<char> Observations::segmentsOf(const std::vector<char>& mask) const {
+  std::vector<char> segments(plans_.size(), 0);
+  for (size_t i = 0; i < mask.size(); ++i)
+    if (mask[i]) segments[segmentIndex(all_[i].drive, all_[i].segment)] = 1;
+  return segments;
+}
+
 int Observations::measuredBlocks() const {
   const std::vector<char> counts = blocksOf(std::vector<char>(all_.size(), 1));
   return static_cast<int>(std::count(counts.begin(), counts.end(), char{1}));
@@ -281,16 +288,20 @@ void Observations::addPoses(const Segment& segment, const Observation& like) {
   }
 }
 
-std::vector<std::vector<MotionSample>> Observations::simulate(const VehicleModel& vehicle) const {
-  std::vector<std::vector<MotionSample>> motions;
-  motions.reserve(plans_.size());
-  for (const SegmentPlan& plan : plans_) motions.push_back(plan.simulate(vehicle));
+Motions Observations::simulate(const VehicleModel& vehicle) const {
+  return simulate(vehicle, std::vector<char>(plans_.size(), 1));
+}
+
+Motions Observations::simulate(const VehicleModel& vehicle,
+                               const std::vector<char>& segments) const {
+  Motions motions(plans_.size());
+  for (size_t i = 0; i < plans_.size(); ++i)
+    if (segments[i]) motions[i] = plans_[i].simulate(vehicle);
   return motions;
 }
 
-Eigen::VectorXd Observations::predict(const std::vector<std::vector<MotionSample>>& motions,
-                                      const MeasurementModel& ins) const {
-  Eigen::VectorXd predicted(static_cast<Eigen::Index>(all_.size()));
+Eigen::VectorXd Observations::predict(const Motions& motions, const MeasurementModel& ins) const {
+  Eigen::VectorXd predicted = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(all_.size()));
   const double gyro_latency = ins.ins_latency_gyro * ins.ins_latency;
   Pose2 moved;
   Pose2 from;
@@ -300,6 +311,7 @@ Eigen::VectorXd Observations::predict(const std::vector<std::vector<MotionSample
   for (size_t i = 0; i < all_.size(); ++i) {
     const Observation& row = all_[i];
     const std::vector<MotionSample>& motion = motions[segmentIndex(row.drive, row.segment)];
+    if (motion.empty()) continue;
     const double duration = row.end - row.begin;
     double value = 0.0;
     if (row.channel == Channel::kYawRate) {

@@ -144,7 +144,7 @@ void addMissed(const Observations& data, const FitState& state, int half, Eigen:
   for (const ExecutionError& error : endErrors(data, state.model))
     if (error.block % 2 == half)
       sums.row(error.block).head(2) += Eigen::RowVector2d(error.position, error.yaw);
-  const Eigen::VectorXd residuals = data.residuals(state.predicted);
+  const Eigen::VectorXd residuals = data.residuals(data.predict(state.model));
   for (size_t i = 0; i < data.all().size(); ++i) {
     const Observation& row = data.all()[i];
     if (row.channel == Channel::kYawRate && row.block % 2 == half)
