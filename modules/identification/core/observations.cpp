@@ -78,6 +78,10 @@ double yawAt(const std::vector<MotionSample>& motion, double time, size_t& i) {
          (to.T_map_body.yaw - from.T_map_body.yaw) * (time - from.time) / (to.time - from.time);
 }
 
+Pose2 saidPose(const std::vector<MotionSample>& motion, const MeasurementModel& ins, double time) {
+  return measuredPose(motion, ins, time, poseAt(motion, time - ins.ins_latency));
+}
+
 }  // namespace
 
 std::vector<double> SegmentPlan::endsBetween(double from, double to, double longest,
@@ -320,10 +324,9 @@ Eigen::VectorXd Observations::predict(const Motions& motions, const MeasurementM
     } else {
       // The three rows of an interval follow one another, and intervals share their ends.
       if (row.channel == Channel::kHeading) {
-        const Pose2 start = of == &motion && from_time == row.begin
-                                ? from
-                                : measuredAt(motion, ins, row.begin).T_map_body;
-        from = measuredAt(motion, ins, row.end).T_map_body;
+        const Pose2 start =
+            of == &motion && from_time == row.begin ? from : saidPose(motion, ins, row.begin);
+        from = saidPose(motion, ins, row.end);
         from_time = row.end;
         of = &motion;
         moved = between(start, from);
