@@ -133,7 +133,10 @@ Normal normalOf(const FitState& state, const Eigen::VectorXd& residuals,
   for (Eigen::Index i = 0; i < residuals.size(); ++i)
     weights[i] = mask[static_cast<size_t>(i)] ? weightOf(residuals[i], state.scales[i]) : 0.0;
   const Eigen::MatrixXd weighted = weights.asDiagonal() * state.jacobian;
-  return {state.jacobian.transpose() * weighted, weighted.transpose() * residuals};
+  // It is symmetric: half of it is computed.
+  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(weighted.cols(), weighted.cols());
+  half.triangularView<Eigen::Lower>() += state.jacobian.transpose() * weighted;
+  return {half.selfadjointView<Eigen::Lower>(), weighted.transpose() * residuals};
 }
 
 Fitter Fitter::onRows(std::vector<char> mask) const {
