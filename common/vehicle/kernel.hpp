@@ -52,6 +52,11 @@ class VehicleKernel {
   void step(const TrackCommand& command, double duration);
   /// The same with what is known of this step; its session time is that of the step's beginning.
   void step(const TrackCommand& command, double duration, const DriveContext& context);
+  /// Gives a command; it acts from the model's delay on until the next one does.
+  void give(const TrackCommand& command);
+  /// Goes on for `duration` [s] with what was given, as the last step(): one that holds a command
+  /// through many short times is integrated over each of them at once, whatever the delay.
+  void hold(double duration, const DriveContext& context);
 
   /// The body stands at once, as at a hard obstacle; tracks and waiting commands go on.
   void stopBody() { body_ = {}; }
@@ -73,6 +78,7 @@ class VehicleKernel {
     TrackCommand command;
   };
 
+  void hold(double duration);
   void advance(double duration);
   void integrateStep(const TrackCommand& asked, double dt);
   /// Forward speed and yaw rate of a body that follows the tracks over dt; its mean meanwhile.

@@ -21,6 +21,19 @@ TEST_CASE("what data should be does not depend on the pieces of the simulation")
   CHECK((usual - exact).cwiseAbs().maxCoeff() < 2e-3);
 }
 
+TEST_CASE("a delay is exact, however coarse the pieces of the simulation are") {
+  const std::vector<Drive> drives{syntheticDrive(syntheticVehicle(), 60.0, 1)};
+  ObservationSettings fine;
+  fine.piece = 0.002;
+  for (const double delay : {-0.02, 0.013, 0.22, 0.7}) {
+    const ModelDocument model = vehicleWith({{"command_delay.delay", delay}});
+    const Eigen::VectorXd exact = Observations(drives, fine).predict(model);
+    const Eigen::VectorXd usual = Observations(drives, {}).predict(model);
+    INFO(delay);
+    CHECK((usual - exact).cwiseAbs().maxCoeff() < 5e-3);
+  }
+}
+
 namespace {
 
 /// A vehicle that stands for the commands and of which the INS says what it is told here.

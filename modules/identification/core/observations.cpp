@@ -112,6 +112,7 @@ SegmentPlan::SegmentPlan(const Drive& drive, const Segment& segment, double piec
   for (size_t i = 0; i < segment.commands.size(); ++i) {
     const double from = segment.commands[i].time;
     const double to = i + 1 < segment.commands.size() ? segment.commands[i + 1].time : segment.end;
+    std::optional<TrackCommand> command = segment.commands[i].command;
     const double settled = to - from > 1.5 * kTransient ? from + kTransient : to;
     for (const auto& [begin, end, longest] :
          {std::tuple{from, settled, piece}, std::tuple{settled, to, kSlowly * piece}}) {
@@ -122,7 +123,8 @@ SegmentPlan::SegmentPlan(const Drive& drive, const Segment& segment, double piec
         context.session_time = time;
         levelAt(segment.ins, time + duration / 2.0, ins_next, context);
         context.battery_drop = dropAt(drive.voltage, time, voltage_at);
-        pieces_.push_back({duration, segment.commands[i].command, context});
+        pieces_.push_back({duration, command, context});
+        command.reset();
         longest_ = std::max(longest_, duration);
         time = next;
       }
@@ -145,7 +147,8 @@ std::vector<MotionSample> SegmentPlan::simulate(const VehicleModel& vehicle) con
   double time = begin_;
   motion.push_back({time, kernel.pose()});
   for (const Piece& piece : pieces_) {
-    kernel.step(piece.command, piece.duration, piece.context);
+    if (piece.command) kernel.give(*piece.command);
+    kernel.hold(piece.duration, piece.context);
     time += piece.duration;
     motion.push_back({time, kernel.pose()});
   }

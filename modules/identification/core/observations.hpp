@@ -30,8 +30,8 @@ class SegmentPlan {
 
  private:
   struct Piece {
-    double duration;  ///< [s]
-    TrackCommand command;
+    double duration;                      ///< [s]
+    std::optional<TrackCommand> command;  ///< given at its beginning; none = the last one holds
     DriveContext context;
   };
 
