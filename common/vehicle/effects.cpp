@@ -44,9 +44,11 @@ const EffectParameter& parameterNamed(const Effect& effect, const std::string& p
 }
 
 const EffectParameter* findEffectParameter(const std::string& path) {
-  for (const Effect& effect : effectCatalogue())
-    for (const EffectParameter& parameter : effect.parameters)
-      if (path == effect.name + "." + parameter.name) return &parameter;
+  const size_t dot = path.find('.');
+  const Effect* effect = dot == std::string::npos ? nullptr : findEffect(path.substr(0, dot));
+  if (effect == nullptr) return nullptr;
+  for (const EffectParameter& parameter : effect->parameters)
+    if (path.compare(dot + 1, std::string::npos, parameter.name) == 0) return &parameter;
   return nullptr;
 }
 

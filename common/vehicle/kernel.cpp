@@ -76,8 +76,11 @@ void VehicleKernel::setNoise(const ExecutionNoise& noise) {
   tan_crab_ = std::tan(noise.crab + model_.effects.crab);
 }
 
-void VehicleKernel::step(const TrackCommand& command, double duration) {
+void VehicleKernel::give(const TrackCommand& command) {
   waiting_.push_back({time_ + model_.commandDelay(), command});
+}
+
+void VehicleKernel::hold(double duration) {
   const double end = time_ + duration;
   while (!waiting_.empty() && waiting_.front().until < end - kShortestStep) {
     advance(waiting_.front().until - time_);
@@ -88,10 +91,20 @@ void VehicleKernel::step(const TrackCommand& command, double duration) {
   time_ = end;
 }
 
+void VehicleKernel::hold(double duration, const DriveContext& context) {
+  context_ = context;
+  hold(duration);
+}
+
+void VehicleKernel::step(const TrackCommand& command, double duration) {
+  give(command);
+  hold(duration);
+}
+
 void VehicleKernel::step(const TrackCommand& command, double duration,
                          const DriveContext& context) {
-  context_ = context;
-  step(command, duration);
+  give(command);
+  hold(duration, context);
 }
 
 void VehicleKernel::advance(double duration) {

@@ -52,6 +52,11 @@ class VehicleKernel {
   void step(const TrackCommand& command, double duration);
   /// The same with what is known of this step; its session time is that of the step's beginning.
   void step(const TrackCommand& command, double duration, const DriveContext& context);
+  /// Gives a command; it acts from the model's delay on until the next one does.
+  void give(const TrackCommand& command);
+  /// Goes on for `duration` [s] with what was given, as the last step(): one that holds a command
+  /// through many short times is integrated over each of them at once, whatever the delay.
+  void hold(double duration, const DriveContext& context);
 
   /// The body stands at once, as at a hard obstacle; tracks and waiting commands go on.
   void stopBody() { body_ = {}; }
@@ -73,6 +78,7 @@ class VehicleKernel {
     TrackCommand command;
   };
 
+  void hold(double duration);
   void advance(double duration);
   void integrateStep(const TrackCommand& asked, double dt);
   /// Forward speed and yaw rate of a body that follows the tracks over dt; its mean meanwhile.
@@ -130,7 +136,7 @@ double yawRateAt(const std::vector<MotionSample>& motion, double time);
 
 /// Values of the parameters of all measurement effects: what the INS makes of the true motion.
 /** Units and bounds stand in the catalogue; 0 = off. A new one is a value here, a line of
- * measured() and its entry in the catalogue. */
+ * measuredPose() or measured() and its entry in the catalogue. */
 struct MeasurementModel {
   double ins_latency = 0.0;           ///< [s]
   double ins_latency_gyro = 0.0;      ///< [1], shape: share of it that the yaw rate has, too
@@ -146,16 +152,9 @@ struct MeasurementModel {
 /// Whether the INS says the motion as it is: every measurement effect is off.
 bool isPerfect(const MeasurementModel& measurement);
 
-/// What the INS says at the moment of a sample of a true motion.
-/** With t' = t - ins_latency: the position is (1 + position_scale) (p(t') - R(yaw(t')) lever_arm),
- * the heading yaw(t' - heading_latency) - heading_misalignment + gyro_bias_heading gyro_bias t, the
- * yaw rate omega(t - ins_latency_gyro ins_latency) + gyro_bias. Everything 0 returns the motion bit
- * for bit. */
-inline MotionSample measured(const std::vector<MotionSample>& motion, const MeasurementModel& ins,
-                             const MotionSample& now) {
-  MotionSample said = now;
-  Pose2& pose = said.T_map_body;
-  if (ins.ins_latency != 0.0) pose = poseAt(motion, now.time - ins.ins_latency);
+/// What the INS says of the pose at `time`, `pose` being the true one of ins_latency ago.
+inline Pose2 measuredPose(const std::vector<MotionSample>& motion, const MeasurementModel& ins,
+                          double time, Pose2 pose) {
   if (ins.lever_arm_x != 0.0 || ins.lever_arm_y != 0.0) {
     const Eigen::Vector2d p = pose * Eigen::Vector2d(-ins.lever_arm_x, -ins.lever_arm_y);
     pose.x = p.x();
@@ -164,9 +163,22 @@ inline MotionSample measured(const std::vector<MotionSample>& motion, const Meas
   pose.x *= 1.0 + ins.position_scale;
   pose.y *= 1.0 + ins.position_scale;
   if (ins.heading_latency != 0.0)
-    pose.yaw = poseAt(motion, now.time - ins.ins_latency - ins.heading_latency).yaw;
+    pose.yaw = poseAt(motion, time - ins.ins_latency - ins.heading_latency).yaw;
   pose.yaw -= ins.heading_misalignment;
-  pose.yaw += ins.gyro_bias_heading * ins.gyro_bias * now.time;
+  pose.yaw += ins.gyro_bias_heading * ins.gyro_bias * time;
+  return pose;
+}
+
+/// What the INS says at the moment of a sample of a true motion.
+/** With t' = t - ins_latency: the position is (1 + position_scale) (p(t') - R(yaw(t')) lever_arm),
+ * the heading yaw(t' - heading_latency) - heading_misalignment + gyro_bias_heading gyro_bias t, the
+ * yaw rate omega(t - ins_latency_gyro ins_latency) + gyro_bias. Everything 0 returns the motion bit
+ * for bit. */
+inline MotionSample measured(const std::vector<MotionSample>& motion, const MeasurementModel& ins,
+                             const MotionSample& now) {
+  MotionSample said = now;
+  if (ins.ins_latency != 0.0) said.T_map_body = poseAt(motion, now.time - ins.ins_latency);
+  said.T_map_body = measuredPose(motion, ins, now.time, said.T_map_body);
   const double gyro_latency = ins.ins_latency_gyro * ins.ins_latency;
   if (gyro_latency != 0.0) said.omega = yawRateAt(motion, now.time - gyro_latency);
   said.omega += ins.gyro_bias;

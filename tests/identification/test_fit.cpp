@@ -211,6 +211,26 @@ TEST_CASE(
     for (double change : {-0.005, 0.005}) CHECK(lossAt(i, change) > state.loss - 0.02);
 }
 
+TEST_CASE("the normal equations are weighted sums over the rows that count") {
+  const Rig rig({{"slip_ratio.slip", 0.08}}, 60.0, 3);
+  const FitState state = rig.fitted({{"slip_ratio.slip", 0.0}, {"yaw_pull.pull", 0.0}});
+  const Eigen::VectorXd residuals = rig.data.residuals(state.predicted);
+  std::vector<char> mask;
+  for (const Observation& row : rig.data.all()) mask.push_back(row.block % 2 == 0);
+  Eigen::Matrix2d matrix = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d pull = Eigen::Vector2d::Zero();
+  for (Eigen::Index i = 0; i < residuals.size(); ++i) {
+    if (!mask[static_cast<size_t>(i)]) continue;
+    const double weight = weightOf(residuals[i], state.scales[i]);
+    matrix += weight * state.jacobian.row(i).transpose() * state.jacobian.row(i);
+    pull += weight * residuals[i] * state.jacobian.row(i).transpose();
+  }
+  const Normal normal = normalOf(state, residuals, mask);
+  CHECK((normal.matrix - matrix).norm() < 1e-12 * matrix.norm());
+  CHECK((normal.pull - pull).norm() < 1e-9 * matrix.norm());
+  CHECK(normal.matrix(0, 1) == normal.matrix(1, 0));
+}
+
 TEST_CASE("a fit stays within the bounds, and near what was known with certainty") {
   const Rig rig({{"slip_ratio.slip", 0.1}}, 100.0, 4);
   const auto fittedSlip = [&](double max, double expected, double deviation) {

@@ -21,6 +21,19 @@ TEST_CASE("what data should be does not depend on the pieces of the simulation")
   CHECK((usual - exact).cwiseAbs().maxCoeff() < 2e-3);
 }
 
+TEST_CASE("a delay is exact, however coarse the pieces of the simulation are") {
+  const std::vector<Drive> drives{syntheticDrive(syntheticVehicle(), 60.0, 1)};
+  ObservationSettings fine;
+  fine.piece = 0.002;
+  for (const double delay : {-0.02, 0.013, 0.22, 0.7}) {
+    const ModelDocument model = vehicleWith({{"command_delay.delay", delay}});
+    const Eigen::VectorXd exact = Observations(drives, fine).predict(model);
+    const Eigen::VectorXd usual = Observations(drives, {}).predict(model);
+    INFO(delay);
+    CHECK((usual - exact).cwiseAbs().maxCoeff() < 5e-3);
+  }
+}
+
 namespace {
 
 /// A vehicle that stands for the commands and of which the INS says what it is told here.
@@ -149,6 +162,29 @@ TEST_CASE("a short segment lies in one block as a whole") {
     CHECK((block < 0 || block == row.block));
     block = row.block;
   }
+}
+
+TEST_CASE("segments that are not simulated have rows of 0, and change no bit of the others") {
+  std::vector<Drive> drives(1);
+  for (uint64_t seed : {1U, 2U, 3U})
+    drives[0].segments.push_back(syntheticDrive(syntheticVehicle(), 6.0, seed).segments[0]);
+  const ModelDocument model = vehicleWith({{"ins_latency.latency", 0.2}});
+  const Observations data(drives, {});
+  std::vector<char> mask(data.all().size(), 0);
+  for (size_t i = 0; i < mask.size(); i += 7) mask[i] = data.all()[i].segment != 1;
+  const std::vector<char> segments = data.segmentsOf(mask);
+  CHECK(segments == std::vector<char>{1, 0, 1});
+  const Eigen::VectorXd all = data.predict(model);
+  const Eigen::VectorXd some =
+      data.predict(data.simulate(model.vehicle, segments), model.measurement);
+  double left_out = 0.0;
+  for (size_t i = 0; i < data.all().size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const bool simulated = data.all()[i].segment != 1;
+    CHECK(some[at] == (simulated ? all[at] : 0.0));
+    if (!simulated) left_out += std::abs(all[at]);
+  }
+  CHECK(left_out > 0.1);
 }
 
 TEST_CASE("without noise the model that made a drive predicts its rows") {

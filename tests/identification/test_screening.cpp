@@ -194,6 +194,25 @@ TEST_CASE("the cache serves what it knows until it is renewed") {
   CHECK(cache.directions(rig.fitter, state, {}).cols() == 0);
 }
 
+TEST_CASE(
+    "a direction from the cache holds for all rows, whichever counted when it was simulated") {
+  std::vector<Drive> drives(1);
+  for (uint64_t seed = 1; seed <= 8; ++seed)
+    drives[0].segments.push_back(syntheticDrive(syntheticVehicle(), 10.0, seed).segments[0]);
+  const Observations data(drives, {});
+  const Fitter fitter(data);
+  const Fitter half = fitter.onRows(halfMask(data, 0));
+  const FitState whole = fitter.start(syntheticVehicle(), {});
+  const FitState state = half.start(syntheticVehicle(), {});
+  REQUIRE(state.predicted != whole.predicted);
+  const std::vector<Candidate> candidates =
+      candidatesOf("track_width", whole, excitationOf(data, syntheticVehicle()));
+  SensitivityCache of_half;
+  SensitivityCache of_whole;
+  CHECK(of_half.directions(half, state, candidates) ==
+        of_whole.directions(fitter, whole, candidates));
+}
+
 TEST_CASE("excitation is measured once, with the first state") {
   const Rig rig({}, 60.0, 1);
   const FitState state = rig.fitter.start(syntheticVehicle(), {});

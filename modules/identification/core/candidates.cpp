@@ -291,7 +291,7 @@ void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candid
       }
     if (!candidate.elsewhere) return;
     *findParameter(state.model, strength) = candidate.value;
-    state.predicted = fitter.data().predict(state.model);
+    state.predicted = fitter.predict(state.model);
     fitter.renewJacobian(state);
     return;
   }

@@ -14,8 +14,6 @@ namespace {
 constexpr double kNearest = 0.25;  // [s] a fix may be away from an execution's beginning or end
 constexpr int kOverlayPoints = 21;
 
-using Motions = std::vector<std::vector<MotionSample>>;
-
 const InsSample* nearestFix(const Segment& segment, double time) {
   const InsSample* nearest = nullptr;
   const auto after =

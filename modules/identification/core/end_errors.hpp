@@ -30,8 +30,7 @@ inline constexpr double kHorizon = 2.0;
 std::vector<ExecutionError> endErrors(const Observations& data, const ModelDocument& model);
 /// The same of motions that were simulated otherwise; one for each segment, as
 /// Observations::simulate().
-std::vector<ExecutionError> endErrors(const Observations& data,
-                                      const std::vector<std::vector<MotionSample>>& motions,
+std::vector<ExecutionError> endErrors(const Observations& data, const Motions& motions,
                                       const MeasurementModel& ins);
 
 /// Error of one execution, given the motion predicted between two times of its segment; drive and
@@ -62,8 +61,8 @@ class OverlayMaker {
   MeasurementModel before_;
   MeasurementModel after_;
   /// Of each segment.
-  std::vector<std::vector<MotionSample>> old_motions_;
-  std::vector<std::vector<MotionSample>> new_motions_;
+  Motions old_motions_;
+  Motions new_motions_;
   std::vector<std::vector<MotionSample>> measured_;
 };
 

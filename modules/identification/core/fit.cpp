@@ -135,7 +135,7 @@ double lossAt(const Fitter& fitter, const FitState& state, const std::string& pa
   ModelDocument model = state.model;
   *findParameter(model, path) = time;
   const Observations& data = fitter.data();
-  return totalLoss(data.residuals(data.predict(model)), state.scales, fitter.mask());
+  return totalLoss(data.residuals(fitter.predict(model)), state.scales, fitter.mask());
 }
 
 }  // namespace
@@ -206,12 +206,16 @@ Normal normalOf(const FitState& state, const Eigen::VectorXd& residuals,
   for (Eigen::Index i = 0; i < residuals.size(); ++i)
     weights[i] = mask[static_cast<size_t>(i)] ? weightOf(residuals[i], state.scales[i]) : 0.0;
   const Eigen::MatrixXd weighted = weights.asDiagonal() * state.jacobian;
-  return {state.jacobian.transpose() * weighted, weighted.transpose() * residuals};
+  // It is symmetric: half of it is computed.
+  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(weighted.cols(), weighted.cols());
+  half.triangularView<Eigen::Lower>() += state.jacobian.transpose() * weighted;
+  return {half.selfadjointView<Eigen::Lower>(), weighted.transpose() * residuals};
 }
 
 Fitter Fitter::onRows(std::vector<char> mask) const {
   Fitter other = *this;
   other.mask_ = std::move(mask);
+  other.segments_ = data_.segmentsOf(other.mask_);
   return other;
 }
 
@@ -219,7 +223,7 @@ FitState Fitter::start(const ModelDocument& model, std::vector<FreeParameter> fr
   FitState state;
   state.model = model;
   state.free = std::move(free);
-  state.predicted = data_.predict(model);
+  state.predicted = predict(model);
   renewNoise(state);
   return state;
 }
@@ -235,7 +239,7 @@ void Fitter::add(FitState& state, const FreeParameter& parameter, double value) 
   if (state.jacobian.cols() != static_cast<Eigen::Index>(state.free.size())) renewJacobian(state);
   state.free.push_back(parameter);
   valueOf(state.model, parameter.path) = value;
-  state.predicted = data_.predict(state.model);
+  state.predicted = predict(state.model);
   state.loss = lossOf(state);
   state.jacobian.conservativeResize(state.predicted.size(), state.jacobian.cols() + 1);
   state.jacobian.rightCols(1) = column(state, state.free.size() - 1);
@@ -256,7 +260,7 @@ double Fitter::lossOf(const FitState& state) const {
 
 Eigen::VectorXd Fitter::secant(const FitState& state, const ModelDocument& changed,
                                double change) const {
-  return (data_.predict(changed) - state.predicted) / change;
+  return (predict(changed) - state.predicted) / change;
 }
 
 Eigen::VectorXd Fitter::column(const FitState& state, size_t index) const {
@@ -288,7 +292,7 @@ bool Fitter::stepOnce(FitState& state, double& damping, double& gained) const {
       value = std::clamp(old + step[i], parameter.min, parameter.max);
       taken[i] = value - old;
     }
-    tried.predicted = data_.predict(tried.model);
+    tried.predicted = predict(tried.model);
     tried.loss = lossOf(tried);
     gained = state.loss - tried.loss;
     if (std::isfinite(tried.loss) && gained > 0.0) {
@@ -361,7 +365,7 @@ void refineChangePoint(const Fitter& fitter, FitState& state, const std::string&
     time += later < earlier ? step : -step;
     least = std::min(later, earlier);
   }
-  state.predicted = fitter.data().predict(state.model);
+  state.predicted = fitter.predict(state.model);
   fitter.renewJacobian(state);
 }
 

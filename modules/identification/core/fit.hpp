@@ -38,7 +38,7 @@ FreeParameter freeParameter(const ModelDocument& model, const std::string& path)
 struct FitState {
   ModelDocument model;
   std::vector<FreeParameter> free;
-  Eigen::VectorXd predicted;  ///< rows x 1
+  Eigen::VectorXd predicted;  ///< rows x 1, see Fitter::predict()
   Eigen::VectorXd scales;     ///< rows x 1, held during a fit
   Eigen::MatrixXd jacobian;   ///< rows x free: change of the prediction; may be of earlier values
   double loss = 0.0;          ///< of the rows that count, with what is known beforehand [nats]
@@ -49,11 +49,22 @@ class Fitter {
  public:
   /// To all rows; the rows must outlive it.
   explicit Fitter(const Observations& data, ParallelFor parallel = serialFor)
-      : data_(data), mask_(data.all().size(), 1), parallel_(std::move(parallel)) {}
+      : data_(data),
+        mask_(data.all().size(), 1),
+        segments_(data.segmentsOf(mask_)),
+        parallel_(std::move(parallel)) {}
 
   /// The same with other rows; those whose mask is 0 do not count.
   Fitter onRows(std::vector<char> mask) const;
 
+  /// The same with all rows.
+  Fitter onAllRows() const { return Fitter(data_, parallel_); }
+
+  /// What the rows would be if the vehicle and the INS were the model's (rows x 1); 0 in segments
+  /// of which no row counts, which need no simulation.
+  Eigen::VectorXd predict(const ModelDocument& model) const {
+    return data_.predict(data_.simulate(model.vehicle, segments_), model.measurement);
+  }
   /// A state of a model with its prediction and own noise; nothing is fitted.
   FitState start(const ModelDocument& model, std::vector<FreeParameter> free) const;
   /// Noise and scales of the state's residuals (and its loss with them).
@@ -84,6 +95,7 @@ class Fitter {
 
   const Observations& data_;
   std::vector<char> mask_;
+  std::vector<char> segments_;  ///< those with rows that count
   ParallelFor parallel_;
 };
 

@@ -70,7 +70,7 @@ std::optional<Trial> tryOut(const SearchState& search, const Lags& lags,
     else
       trial.effects.push_back(effect);
   }
-  trial.state.predicted = fitter.data().predict(trial.state.model);
+  trial.state.predicted = fitter.predict(trial.state.model);
   fitter.renewJacobian(trial.state);
   for (const auto& [effect, value] : lags) {
     if (!contains(trial.effects, effect)) continue;

@@ -78,6 +78,10 @@ double yawAt(const std::vector<MotionSample>& motion, double time, size_t& i) {
          (to.T_map_body.yaw - from.T_map_body.yaw) * (time - from.time) / (to.time - from.time);
 }
 
+Pose2 saidPose(const std::vector<MotionSample>& motion, const MeasurementModel& ins, double time) {
+  return measuredPose(motion, ins, time, poseAt(motion, time - ins.ins_latency));
+}
+
 }  // namespace
 
 std::vector<double> SegmentPlan::endsBetween(double from, double to, double longest,
@@ -108,6 +112,7 @@ SegmentPlan::SegmentPlan(const Drive& drive, const Segment& segment, double piec
   for (size_t i = 0; i < segment.commands.size(); ++i) {
     const double from = segment.commands[i].time;
     const double to = i + 1 < segment.commands.size() ? segment.commands[i + 1].time : segment.end;
+    std::optional<TrackCommand> command = segment.commands[i].command;
     const double settled = to - from > 1.5 * kTransient ? from + kTransient : to;
     for (const auto& [begin, end, longest] :
          {std::tuple{from, settled, piece}, std::tuple{settled, to, kSlowly * piece}}) {
@@ -118,7 +123,8 @@ SegmentPlan::SegmentPlan(const Drive& drive, const Segment& segment, double piec
         context.session_time = time;
         levelAt(segment.ins, time + duration / 2.0, ins_next, context);
         context.battery_drop = dropAt(drive.voltage, time, voltage_at);
-        pieces_.push_back({duration, segment.commands[i].command, context});
+        pieces_.push_back({duration, command, context});
+        command.reset();
         longest_ = std::max(longest_, duration);
         time = next;
       }
@@ -141,7 +147,8 @@ std::vector<MotionSample> SegmentPlan::simulate(const VehicleModel& vehicle) con
   double time = begin_;
   motion.push_back({time, kernel.pose()});
   for (const Piece& piece : pieces_) {
-    kernel.step(piece.command, piece.duration, piece.context);
+    if (piece.command) kernel.give(*piece.command);
+    kernel.hold(piece.duration, piece.context);
     time += piece.duration;
     motion.push_back({time, kernel.pose()});
   }
@@ -210,6 +217,13 @@ std::vector<char> Observations::blocksOf(const std::vector<char>& mask) const {
   for (size_t i = 0; i < mask.size(); ++i)
     if (mask[i]) counts[static_cast<size_t>(all_[i].block)] = 1;
   return counts;
+}
+
+std::vector<char> Observations::segmentsOf(const std::vector<char>& mask) const {
+  std::vector<char> segments(plans_.size(), 0);
+  for (size_t i = 0; i < mask.size(); ++i)
+    if (mask[i]) segments[segmentIndex(all_[i].drive, all_[i].segment)] = 1;
+  return segments;
 }
 
 int Observations::measuredBlocks() const {
@@ -281,16 +295,20 @@ void Observations::addPoses(const Segment& segment, const Observation& like) {
   }
 }
 
-std::vector<std::vector<MotionSample>> Observations::simulate(const VehicleModel& vehicle) const {
-  std::vector<std::vector<MotionSample>> motions;
-  motions.reserve(plans_.size());
-  for (const SegmentPlan& plan : plans_) motions.push_back(plan.simulate(vehicle));
+Motions Observations::simulate(const VehicleModel& vehicle) const {
+  return simulate(vehicle, std::vector<char>(plans_.size(), 1));
+}
+
+Motions Observations::simulate(const VehicleModel& vehicle,
+                               const std::vector<char>& segments) const {
+  Motions motions(plans_.size());
+  for (size_t i = 0; i < plans_.size(); ++i)
+    if (segments[i]) motions[i] = plans_[i].simulate(vehicle);
   return motions;
 }
 
-Eigen::VectorXd Observations::predict(const std::vector<std::vector<MotionSample>>& motions,
-                                      const MeasurementModel& ins) const {
-  Eigen::VectorXd predicted(static_cast<Eigen::Index>(all_.size()));
+Eigen::VectorXd Observations::predict(const Motions& motions, const MeasurementModel& ins) const {
+  Eigen::VectorXd predicted = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(all_.size()));
   const double gyro_latency = ins.ins_latency_gyro * ins.ins_latency;
   Pose2 moved;
   Pose2 from;
@@ -300,6 +318,7 @@ Eigen::VectorXd Observations::predict(const std::vector<std::vector<MotionSample
   for (size_t i = 0; i < all_.size(); ++i) {
     const Observation& row = all_[i];
     const std::vector<MotionSample>& motion = motions[segmentIndex(row.drive, row.segment)];
+    if (motion.empty()) continue;
     const double duration = row.end - row.begin;
     double value = 0.0;
     if (row.channel == Channel::kYawRate) {
@@ -308,10 +327,9 @@ Eigen::VectorXd Observations::predict(const std::vector<std::vector<MotionSample
     } else {
       // The three rows of an interval follow one another, and intervals share their ends.
       if (row.channel == Channel::kHeading) {
-        const Pose2 start = of == &motion && from_time == row.begin
-                                ? from
-                                : measuredAt(motion, ins, row.begin).T_map_body;
-        from = measuredAt(motion, ins, row.end).T_map_body;
+        const Pose2 start =
+            of == &motion && from_time == row.begin ? from : saidPose(motion, ins, row.begin);
+        from = saidPose(motion, ins, row.end);
         from_time = row.end;
         of = &motion;
         moved = between(start, from);

@@ -30,8 +30,8 @@ class SegmentPlan {
 
  private:
   struct Piece {
-    double duration;  ///< [s]
-    TrackCommand command;
+    double duration;                      ///< [s]
+    std::optional<TrackCommand> command;  ///< given at its beginning; none = the last one holds
     DriveContext context;
   };
 
@@ -47,6 +47,9 @@ class SegmentPlan {
   std::optional<TrackCommand> entry_speeds_;
   TrackCommand command_before_;
 };
+
+/// True motions of all segments of some drives, drive after drive.
+using Motions = std::vector<std::vector<MotionSample>>;
 
 /// What an observation is: mean rates over an interval, in the body frame of its beginning.
 enum class Channel { kYawRate, kHeading, kAlong, kAcross };
@@ -92,21 +95,24 @@ class Observations {
   int blocks() const { return blocks_; }
   double blockLength() const { return block_length_; }  ///< [s] of driving
 
-  /// True motions of all segments, drive after drive.
-  std::vector<std::vector<MotionSample>> simulate(const VehicleModel& vehicle) const;
+  /// True motions of all segments.
+  Motions simulate(const VehicleModel& vehicle) const;
+  /// The same of those segments alone whose entry is not 0; the others remain empty.
+  Motions simulate(const VehicleModel& vehicle, const std::vector<char>& segments) const;
   /// What the rows would be if the vehicle and the INS were the model's (rows x 1).
   Eigen::VectorXd predict(const ModelDocument& model) const {
     return predict(simulate(model.vehicle), model.measurement);
   }
-  /// The same from simulated motions.
-  Eigen::VectorXd predict(const std::vector<std::vector<MotionSample>>& motions,
-                          const MeasurementModel& ins) const;
+  /// The same from simulated motions; 0 where the segment was not simulated.
+  Eigen::VectorXd predict(const Motions& motions, const MeasurementModel& ins) const;
   /// Measured less predicted (rows x 1).
   Eigen::VectorXd residuals(const Eigen::VectorXd& predicted) const {
     return measured_ - predicted;
   }
   /// Which blocks have rows whose mask is not 0.
   std::vector<char> blocksOf(const std::vector<char>& mask) const;
+  /// Which segments, among all, have rows whose mask is not 0.
+  std::vector<char> segmentsOf(const std::vector<char>& mask) const;
   /// Blocks in which something was measured.
   int measuredBlocks() const;
   /// Block in which a time of a segment lies.

@@ -251,7 +251,7 @@ FitState switchedOff(const Fitter& fitter, const FitState& state,
       if (parameter.role == ParameterRole::kStrength)
         *findParameter(reduced.model, effect + "." + parameter.name) = 0.0;
   }
-  reduced.predicted = fitter.data().predict(reduced.model);
+  reduced.predicted = fitter.predict(reduced.model);
   return reduced;
 }
 

@@ -95,7 +95,11 @@ Eigen::MatrixXd SensitivityCache::directions(const Fitter& fitter, const FitStat
 void SensitivityCache::renew(const Fitter& fitter, const FitState& state,
                              const std::vector<Candidate>& candidates) {
   if (candidates.empty()) return;
-  const Eigen::MatrixXd directions = directionsOf(fitter, state, candidates);
+  // Of all rows: searches over others will ask for the same directions.
+  const Fitter all = fitter.onAllRows();
+  FitState of = state;
+  of.predicted = all.predict(state.model);
+  const Eigen::MatrixXd directions = directionsOf(all, of, candidates);
   for (size_t i = 0; i < candidates.size(); ++i) {
     const Eigen::VectorXd direction = directions.col(static_cast<Eigen::Index>(i));
     if (Entry* known = find(candidates[i]))

@@ -93,6 +93,29 @@ FitState linearlyReplaced(const Fitter& fitter, const FitState& state, const Sin
   return reduced;
 }
 
+/// Losses of a state on every block, with its own parameters and with those of other blocks.
+struct BlockLosses {
+  Eigen::VectorXd fitted;
+  Eigen::VectorXd held_out;
+};
+
+/// Loss of every block with the state's own parameters (blocks x 1) [nats].
+Eigen::VectorXd fittedLoss(const Fitter& fitter, const FitState& state) {
+  const Observations& data = fitter.data();
+  const Eigen::VectorXd residuals = data.residuals(state.predicted);
+  Eigen::VectorXd loss = Eigen::VectorXd::Zero(data.blocks());
+  for (size_t i = 0; i < data.all().size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (fitter.mask()[i]) loss[data.all()[i].block] += lossOf(residuals[at], state.scales[at]);
+  }
+  return loss;
+}
+
+/// Whether a pair is so much better than what is in its place that first order is no excuse.
+bool isHopeless(const Gain& gain, double rounding) {
+  return gain.value > kHopeless * gain.error + rounding;
+}
+
 /// One effect in the place of two.
 struct Exchange {
   std::string single;
@@ -104,13 +127,16 @@ struct Exchange {
 
 /// Keeps the exchange of two effects for a single one if it is bearable and the best so far.
 void tryExchange(const SearchState& search, const Single& imitated_one, const std::string& a,
-                 const std::string& b, const Eigen::VectorXd& loss, std::optional<Exchange>& best) {
+                 const std::string& b, const BlockLosses& loss, std::optional<Exchange>& best) {
   if (search.isAccepted(a) || search.isAccepted(b)) return;
   const Fitter& fitter = search.fitter;
   const FitState& state = search.result.state;
   const FitState nearly = linearlyReplaced(fitter, state, imitated_one, a, b);
-  const Gain first_order = gainOf(fitter, heldOutLoss(fitter, nearly), loss);
-  if (first_order.value > kHopeless * first_order.error + kHopelessNats) return;
+  // What is far worse on the rows that it was fitted to needs no validation to be seen.
+  const Gain fitted = gainOf(fitter, fittedLoss(fitter, nearly), loss.fitted);
+  if (isHopeless(fitted, 2.0 * kHopelessNats)) return;
+  const Gain first_order = gainOf(fitter, heldOutLoss(fitter, nearly), loss.held_out);
+  if (isHopeless(first_order, kHopelessNats)) return;
   const Candidate& single = imitated_one.candidate;
   FitState tried = switchedOff(fitter, state, {a, b});
   const ScoreTest test(fitter, tried, directionsOf(fitter, tried, {single}));
@@ -121,7 +147,7 @@ void tryExchange(const SearchState& search, const Single& imitated_one, const st
   // What does not fit as well needs no validation; that is in first order and may be mistaken.
   if (tried.loss - state.loss > 2.0 * kBearableNats) return;
   if (best && tried.loss >= best->state.loss) return;
-  const Gain pair_gain = gainOf(fitter, heldOutLoss(fitter, tried), loss);
+  const Gain pair_gain = gainOf(fitter, heldOutLoss(fitter, tried), loss.held_out);
   if (pair_gain.value > std::min(pair_gain.error, kBearableNats)) return;
   best = Exchange{single.effect, a, b, std::move(tried), pair_gain};
 }
@@ -132,7 +158,8 @@ std::optional<Exchange> bestExchange(const SearchState& search) {
   if (effects.size() < 2) return std::nullopt;
   const std::vector<Single> singles = imitated(search);
   if (singles.empty()) return std::nullopt;
-  const Eigen::VectorXd loss = heldOutLoss(search.fitter, search.result.state);
+  const FitState& state = search.result.state;
+  const BlockLosses loss{fittedLoss(search.fitter, state), heldOutLoss(search.fitter, state)};
   std::optional<Exchange> best;
   for (const Single& single : singles)
     for (size_t a = 0; a < effects.size(); ++a)
@@ -147,7 +174,7 @@ void addMissed(const Observations& data, const FitState& state, const Eigen::Vec
   for (const ExecutionError& error : endErrors(data, state.model))
     if (error.block % 2 == half)
       sums.row(error.block).head(2) += Eigen::RowVector2d(error.position, error.yaw);
-  const Eigen::VectorXd residuals = data.residuals(state.predicted);
+  const Eigen::VectorXd residuals = data.residuals(data.predict(state.model));
   for (size_t i = 0; i < data.all().size(); ++i) {
     const Observation& row = data.all()[i];
     const auto at = static_cast<Eigen::Index>(i);

@@ -106,6 +106,34 @@ TEST_CASE("Each command of a series keeps its length behind the delay") {
   CHECK(poses[3].x == Approx(2.0 * 0.05));
 }
 
+TEST_CASE("A command that was given once is held, and acts after its delay") {
+  VehicleModel model = plainModel();
+  model.full_speed = 1.0;
+  model.lag = 0.0;
+  model.delay = 0.075;
+  VehicleKernel kernel(model, {});
+  kernel.give({2.0, 2.0});
+  kernel.hold(0.05, {});
+  CHECK(kernel.pose().x == 0.0);
+  kernel.hold(0.05, {});
+  CHECK(kernel.pose().x == Approx(2.0 * 0.025));
+  kernel.give({0.0, 0.0});
+  kernel.hold(0.5, {});
+  CHECK(kernel.pose().x == Approx(2.0 * 0.1));
+}
+
+TEST_CASE("To hold a command is to give it again") {
+  const VehicleModel model = plainModel();
+  VehicleKernel held(model, {});
+  VehicleKernel given(model, {});
+  held.give({0.3, 0.9});
+  for (int i = 0; i < 40; ++i) {
+    held.hold(0.05, {});
+    given.step({0.3, 0.9}, 0.05);
+  }
+  expectSame(held.pose(), given.pose(), 1e-5);
+}
+
 TEST_CASE("Track speed commands are metres per second") {
   VehicleModel model = plainModel();
   model.kind = CommandKind::kTrackSpeed;

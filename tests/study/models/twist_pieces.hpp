@@ -8,8 +8,6 @@
 
 namespace tread::gap {
 
-using Motions = std::vector<std::vector<MotionSample>>;
-
 /// A piece of a simulated segment with its twist.
 struct SimulatedPiece {
   double duration = 0.0;  ///< [s]
