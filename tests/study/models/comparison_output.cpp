@@ -103,7 +103,7 @@ Table nameTable(const std::vector<ComparisonRow>& rows) {
   return table;
 }
 
-/// Sizes that ran away: the drive does not tell them from one another.
+/// Sizes that ran to the ends of what is plausible.
 Table runawayTable(const std::vector<ComparisonRow>& rows) {
   Table table{{"log", "learned from", "model", "ran to the ends of their plausible ranges"}, {}, 4};
   for (const ComparisonRow& row : rows)
@@ -166,7 +166,8 @@ Section sectionOf(const std::string& title, const std::vector<ComparisonRow>& ro
   section.blocks.emplace_back(nameTable(rows));
   if (Table runaway = runawayTable(rows); !runaway.rows.empty()) {
     section.blocks.emplace_back(
-        Paragraph{"Sizes that ran away: this driving does not tell them from the others"});
+        Paragraph{"Sizes that ran away: no vehicle is like that, and another one beside them may "
+                  "make up for it"});
     section.blocks.emplace_back(std::move(runaway));
   }
   if (const auto remarks = remarksOf(rows); !remarks.empty())
