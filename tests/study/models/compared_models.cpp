@@ -7,6 +7,7 @@
 
 #include "modules/identification/core/screening.hpp"
 #include "tests/study/models/twist_dictionary.hpp"
+#include "tests/study/rivals/rivals.hpp"
 
 namespace tread::gap {
 namespace {
@@ -105,10 +106,41 @@ void addCoefficients(RungModel& rung) {
   }
 }
 
+RungModel rivalRung(const rivals::Answer& answer) {
+  RungModel rung;
+  rung.model = answer.model;
+  for (const std::string& path : answer.estimated) {
+    rung.numbers.emplace_back(path, *findParameter(answer.model, path));
+    // Of a limit that is off the data say nothing of how hard it is.
+    const EffectParameter* known = findEffectParameter(path);
+    const bool is_size = known == nullptr || known->role == ParameterRole::kStrength;
+    if (is_size && runsToBound(answer.model, freeParameter(answer.model, path)))
+      rung.at_end.push_back(path);
+  }
+  for (const ParameterEstimate& named : answer.parameters)
+    if (!contains(rung.effects, effectOf(named.parameter)))
+      rung.effects.push_back(effectOf(named.parameter));
+  return rung;
+}
+
+/// Lag, delay and gains of a fit as numbers of the nominal model.
+ModelDocument numbersOf(const ModelDocument& ideal, const FitState& fitted) {
+  const VehicleModel& vehicle = fitted.model.vehicle;
+  ModelDocument model = ideal;
+  model.vehicle.lag = vehicle.driveLag();
+  model.vehicle.delay = vehicle.commandDelay();
+  model.vehicle.forward_gain *= 1.0 - vehicle.effects.slip_ratio;
+  model.vehicle.yaw_gain *=
+      (1.0 - vehicle.effects.slip_ratio) / (1.0 + vehicle.effects.track_width);
+  return model;
+}
+
 constexpr const char* kNames[kRungs] = {"ideal",           "gain + track", "powertrain + ICR",
-                                        "slip regression", "black box",    "discovered"};
-constexpr const char* kKeys[kRungs] = {"ideal",           "gain_track", "powertrain_icr",
-                                       "slip_regression", "black_box",  "discovered"};
+                                        "slip regression", "black box",    "all parameters",
+                                        "sparse",          "discovered"};
+constexpr const char* kKeys[kRungs] = {
+    "ideal",     "gain_track",     "powertrain_icr",    "slip_regression",
+    "black_box", "all_parameters", "sparse_regression", "discovered"};
 
 }  // namespace
 
@@ -127,11 +159,12 @@ RungModels fitRungs(const Fitter& fitter, const ModelDocument& ideal, bool ideal
     models[static_cast<size_t>(rung)] = std::move(model);
   };
   const Climb climb(fitter);
-  if (ideal_known) set(Rung::kIdeal, {ideal, {}, {}, {}});
+  if (ideal_known) set(Rung::kIdeal, {ideal, {}, {}, {}, {}});
   say("  gain, track, powertrain, ICR");
   const FitState gains = climb.gains(ideal);
   set(Rung::kGains, rungOf(gains));
-  const FitState limited = climb.limit(climb.lags(gains));
+  const FitState lagged = climb.lags(gains);
+  const FitState limited = climb.limit(lagged);
   const FitState powertrain = climb.asymmetry(limited);
   set(Rung::kPowertrain, rungOf(powertrain));
   say("  slip regression, black box");
@@ -144,20 +177,16 @@ RungModels fitRungs(const Fitter& fitter, const ModelDocument& ideal, bool ideal
                                           {{std::begin(kRidges), std::end(kRidges)}, true}));
   box.numbers.emplace_back("ridge", box.correction.deviation);
   set(Rung::kBlackBox, std::move(box));
+  say("  all parameters, sparse regression");
+  const ModelDocument numbers = numbersOf(ideal, lagged);
+  set(Rung::kAllParameters, rivalRung(rivals::allParameters(fitter, numbers, true)));
+  set(Rung::kSparse, rivalRung(rivals::sparseRegression(fitter, numbers, true)));
   return models;
 }
 
 ModelDocument calibratedNumbers(const Fitter& fitter, const ModelDocument& ideal) {
   const Climb climb(fitter);
-  const FitState fitted = climb.lags(climb.gains(ideal));
-  const VehicleModel& vehicle = fitted.model.vehicle;
-  ModelDocument model = ideal;
-  model.vehicle.lag = vehicle.driveLag();
-  model.vehicle.delay = vehicle.commandDelay();
-  model.vehicle.forward_gain *= 1.0 - vehicle.effects.slip_ratio;
-  model.vehicle.yaw_gain *=
-      (1.0 - vehicle.effects.slip_ratio) / (1.0 + vehicle.effects.track_width);
-  return model;
+  return numbersOf(ideal, climb.lags(climb.gains(ideal)));
 }
 
 FoundTerms discover(const Fitter& fitter, const ModelDocument& begin, uint64_t seed,

@@ -28,10 +28,23 @@ namespace tread::gap {
  *  kBlackBox       kPowertrain, then held, and ridge regression of all parts of the twist on a
  *                  dictionary of 37 polynomials, thresholds and transients of filtered twist and
  *                  commands; its strength by blocked cross-validation within the training driving.
+ *  kAllParameters  every effect of the catalogue in its likeliest form and the numbers of the
+ *                  nominal model, fitted at once by damped least squares within plausible ranges.
+ *  kSparse         what a sequentially thresholded regression (SINDy) on the directions of the same
+ *                  effects leaves, fitted in the same way.
  *  kDiscovered     what search() finds with the numbers of the nominal model free: find
- * --calibrate. They begin where a fit of lag, delay, gain and track ends. */
-enum class Rung { kIdeal, kGains, kPowertrain, kSlipRegression, kBlackBox, kDiscovered };
-inline constexpr size_t kRungs = 6;
+ * --calibrate. The last three begin where a fit of lag, delay, gain and track ends. */
+enum class Rung {
+  kIdeal,
+  kGains,
+  kPowertrain,
+  kSlipRegression,
+  kBlackBox,
+  kAllParameters,
+  kSparse,
+  kDiscovered
+};
+inline constexpr size_t kRungs = 8;
 inline constexpr auto kFound = static_cast<size_t>(Rung::kDiscovered);
 
 /// "ideal", "gain + track", ... as in tables.
@@ -43,7 +56,8 @@ const char* rungKey(Rung rung);
 struct RungModel {
   ModelDocument model;
   TwistRegression correction;        ///< without terms where the rung has none
-  std::vector<std::string> effects;  ///< that were named; of kDiscovered only
+  std::vector<std::string> effects;  ///< that were named; of the last three rungs
+  std::vector<std::string> at_end;   ///< paths of sizes at the ends of their plausible ranges
   /// What was fitted: paths and values.
   std::vector<std::pair<std::string, double>> numbers;
 };
@@ -51,7 +65,7 @@ struct RungModel {
 /// Models by rung; nothing where a rung cannot be had.
 using RungModels = std::array<std::optional<RungModel>, kRungs>;
 
-/// The rungs up to the black box, from the fitter's rows.
+/// All rungs but what is discovered, from the fitter's rows.
 /** Without kIdeal where the ideal model is not known and only a guess to begin at. */
 RungModels fitRungs(const Fitter& fitter, const ModelDocument& ideal, bool ideal_known,
                     const Progress& say);

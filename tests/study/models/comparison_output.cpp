@@ -14,7 +14,10 @@ using namespace report;
 
 namespace {
 
-constexpr Rung kRivals[] = {Rung::kSlipRegression, Rung::kBlackBox};
+constexpr Rung kRivals[] = {Rung::kSlipRegression, Rung::kBlackBox, Rung::kAllParameters,
+                            Rung::kSparse};
+/// Those that say what they found.
+constexpr Rung kNaming[] = {Rung::kAllParameters, Rung::kSparse, Rung::kDiscovered};
 
 /// What a table tells of end errors and their differences.
 struct Quantity {
@@ -58,33 +61,59 @@ Table errorTable(const std::vector<ComparisonRow>& rows, const Quantity& quantit
   Table table;
   table.header = {"log", "n"};
   for (size_t r = 0; r < kRungs; ++r) table.header.push_back(rungName(static_cast<Rung>(r)));
-  for (Rung rung : kRivals) table.header.push_back(std::string("D - ") + rungName(rung));
   table.header.emplace_back("encoders + gyro");
   for (const ComparisonRow& row : rows) {
     if (executionsOf(row) == 0) continue;  // a remark says why
     std::vector<std::string> cells{nameOf(row), std::to_string(executionsOf(row))};
     for (const auto& errors : row.errors) cells.push_back(cell(errors, quantity));
-    for (Rung rung : kRivals)
-      cells.push_back(cell(row.behind[static_cast<size_t>(rung)], quantity));
     cells.push_back(cell(row.floor, quantity));
     table.rows.push_back(std::move(cells));
   }
   return table;
 }
 
-std::string namesOf(const ComparisonFold& fold) {
-  if (!fold.models[kFound]) return "-";
-  std::string names;
-  for (const std::string& name : fold.models[kFound]->effects)
-    names += (names.empty() ? "" : ", ") + name;
-  return names.empty() ? "nothing" : names;
+/// By how much discovered errs more than each rival.
+Table differenceTable(const std::vector<ComparisonRow>& rows, const Quantity& quantity) {
+  Table table{{"log"}, {}};
+  for (Rung rung : kRivals) table.header.push_back(std::string("less ") + rungName(rung));
+  for (const ComparisonRow& row : rows) {
+    if (executionsOf(row) == 0) continue;
+    std::vector<std::string> cells{nameOf(row)};
+    for (Rung rung : kRivals)
+      cells.push_back(cell(row.behind[static_cast<size_t>(rung)], quantity));
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+std::string joined(const std::vector<std::string>& names, const char* none) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+  return all.empty() ? none : all;
 }
 
 Table nameTable(const std::vector<ComparisonRow>& rows) {
-  Table table{{"log", "learned from", "effects named"}, {}, 3};
+  Table table{{"log", "learned from", "model", "effects named"}, {}, 4};
   for (const ComparisonRow& row : rows)
     for (const ComparisonFold& fold : row.folds)
-      table.rows.push_back({row.log, fold.trained_on, namesOf(fold)});
+      for (Rung rung : kNaming)
+        if (const auto& model = fold.models[static_cast<size_t>(rung)])
+          table.rows.push_back(
+              {row.log, fold.trained_on, rungName(rung), joined(model->effects, "nothing")});
+  return table;
+}
+
+/// Sizes that ran to the ends of what is plausible.
+Table runawayTable(const std::vector<ComparisonRow>& rows) {
+  Table table{{"log", "learned from", "model", "ran to the ends of their plausible ranges"}, {}, 4};
+  for (const ComparisonRow& row : rows)
+    for (const ComparisonFold& fold : row.folds)
+      for (Rung rung : kNaming) {
+        const auto& model = fold.models[static_cast<size_t>(rung)];
+        if (model && !model->at_end.empty())
+          table.rows.push_back(
+              {row.log, fold.trained_on, rungName(rung), joined(model->at_end, "")});
+      }
   return table;
 }
 
@@ -126,14 +155,21 @@ std::vector<std::string> remarksOf(const std::vector<ComparisonRow>& rows) {
 Section sectionOf(const std::string& title, const std::vector<ComparisonRow>& rows) {
   Section section{title, {}};
   for (const Quantity* quantity : {&kYaw, &kPosition}) {
-    section.blocks.emplace_back(
-        Paragraph{std::string(quantity->title) +
-                  ", median / rms; D - another, discovered less another: mean +- standard error "
-                  "over blocks, negative = discovered is better"});
+    section.blocks.emplace_back(Paragraph{std::string(quantity->title) + ", median / rms"});
     section.blocks.emplace_back(errorTable(rows, *quantity));
+    section.blocks.emplace_back(
+        Paragraph{"Discovered less another, mean +- standard error over blocks; negative = "
+                  "discovered is better"});
+    section.blocks.emplace_back(differenceTable(rows, *quantity));
   }
   section.blocks.emplace_back(Paragraph{"Effects named"});
   section.blocks.emplace_back(nameTable(rows));
+  if (Table runaway = runawayTable(rows); !runaway.rows.empty()) {
+    section.blocks.emplace_back(
+        Paragraph{"Sizes that ran away: no vehicle is like that, and another one beside them may "
+                  "make up for it"});
+    section.blocks.emplace_back(std::move(runaway));
+  }
   if (const auto remarks = remarksOf(rows); !remarks.empty())
     section.blocks.emplace_back(Points{remarks});
   return section;
@@ -163,15 +199,22 @@ Json differenceJson(const RungDifference& behind) {
 
 Json foldJson(const ComparisonFold& fold) {
   Json fitted = Json::object();
+  Json named = Json::object();
+  Json at_end = Json::object();
   for (size_t r = 0; r < kRungs; ++r) {
     if (!fold.models[r]) continue;
+    const auto rung = static_cast<Rung>(r);
     Json numbers = Json::object();
     for (const auto& [path, value] : fold.models[r]->numbers) numbers[path] = number(value);
-    fitted[rungKey(static_cast<Rung>(r))] = numbers;
+    fitted[rungKey(rung)] = numbers;
+    if (std::find(std::begin(kNaming), std::end(kNaming), rung) == std::end(kNaming)) continue;
+    named[rungKey(rung)] = fold.models[r]->effects;
+    at_end[rungKey(rung)] = fold.models[r]->at_end;
   }
-  Json effects = nullptr;
-  if (fold.models[kFound]) effects = fold.models[kFound]->effects;
-  return {{"trained_on", fold.trained_on}, {"effects", effects}, {"fitted", fitted}};
+  return {{"trained_on", fold.trained_on},
+          {"named", named},
+          {"at_end_of_range", at_end},
+          {"fitted", fitted}};
 }
 
 Json rowJson(const ComparisonRow& row, const std::string& sha256) {
@@ -239,6 +282,11 @@ Page comparisonPage(const ComparisonReport& report) {
        "slip regression: powertrain, and slip velocities regressed on the twist: forward ~ v, "
        "sideways ~ v omega, turning ~ v omega, v, omega (DRIVE, arXiv 2309.10718)",
        "black box: powertrain + ICR, and ridge regression of the twist on 37 terms for each part",
+       "all parameters: every effect of the catalogue and gains, lag and delay, fitted at once by "
+       "least squares within plausible ranges, as the tools of common simulators do",
+       "sparse: a sequentially thresholded regression on the directions of the same effects "
+       "(SINDy, "
+       "Brunton et al. 2016); what it leaves is fitted in the same way",
        "discovered: what tread-gap find --calibrate finds",
        "encoders + gyro: dead reckoning that has seen the motion"}}};
   page.sections.push_back(

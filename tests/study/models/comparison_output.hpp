@@ -30,8 +30,8 @@ std::string comparisonText(const ComparisonReport& report);
 /// What comparison.json holds; numbers that are not finite are null.
 /** Keys: tool, seed, model, nested and pooled [{log, sha256, blocks, driven_s, remark,
  * structure_nested, rungs {name: {executions, yaw_rad, position_m: {median, rms}}}, floor,
- * discovered_less {rung: {yaw_rad, position_m: {mean, error}}}, folds [{trained_on, effects,
- * fitted {rung: {path: value}}}]}]. */
+ * discovered_less {rung: {yaw_rad, position_m: {mean, error}}}, folds [{trained_on,
+ * named {rung: [effect]}, at_end_of_range {rung: [path]}, fitted {rung: {path: value}}}]}]. */
 nlohmann::ordered_json comparisonJson(const ComparisonReport& report);
 
 /// Writes comparison.md and, last, comparison.json; throws std::runtime_error with one line.

@@ -31,13 +31,13 @@ struct Options {
 
 constexpr const char* kFooter =
     "Rungs: the ideal model; gain and track fitted; powertrain and centre of rotation; the\n"
-    "literature's slip regression; a black box; what find discovers. Each is judged on driving\n"
-    "that it was not fitted to: alternate blocks of the log; with --pool also the log that all\n"
-    "others did not see. Without --model the ideal one is a differential drive with the track\n"
-    "that an imported recording names. Into --out: comparison.json and comparison.md. Exit status "
-    "0,\n"
-    "or 2 for bad input. The same files and the same seed give the same bytes, with any number\n"
-    "of threads.";
+    "literature's slip regression; a black box; least squares over all parameters of the\n"
+    "catalogue; a sparse regression on its effects (SINDy); what find discovers. Each is judged\n"
+    "on driving that it was not fitted to: alternate blocks of the log; with --pool also the\n"
+    "log that all others did not see. Without --model the ideal one is a differential drive\n"
+    "with the track that an imported recording names. Into --out: comparison.json and\n"
+    "comparison.md. Exit status 0, or 2 for bad input. The same files and the same seed give\n"
+    "the same bytes, with any number of threads.";
 
 /// What is on in a model could not be told from what is found.
 ModelDocument readIdeal(const std::string& path) {

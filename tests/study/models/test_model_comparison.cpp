@@ -153,6 +153,12 @@ TEST_CASE("a drift is reached by slip regression and discovery, which is never b
         errorsOf(row, Rung::kPowertrain).position.rms);
   CHECK(errorsOf(row, Rung::kDiscovered).position.rms < 1.1 * least.position.rms);
   CHECK(errorsOf(row, Rung::kDiscovered).yaw.rms < 1.1 * least.yaw.rms);
+  // Few terms cost nothing; forty, most of which are not there, cost a little on other driving.
+  CHECK(errorsOf(row, Rung::kSparse).position.rms < 1.1 * least.position.rms);
+  CHECK(errorsOf(row, Rung::kSparse).yaw.rms < 1.1 * least.yaw.rms);
+  CHECK(errorsOf(row, Rung::kAllParameters).position.rms < 1.5 * least.position.rms);
+  CHECK(errorsOf(row, Rung::kAllParameters).position.rms >
+        errorsOf(row, Rung::kSparse).position.rms);
   for (Rung rung : {Rung::kPowertrain, Rung::kSlipRegression, Rung::kBlackBox}) {
     INFO(rungName(rung));
     const auto& behind = row.behind[static_cast<size_t>(rung)];
@@ -164,6 +170,23 @@ TEST_CASE("a drift is reached by slip regression and discovery, which is never b
     const auto& names = fold.models[static_cast<size_t>(Rung::kDiscovered)]->effects;
     CHECK(std::count(names.begin(), names.end(), "centrifugal_drift") == 1);
   }
+}
+
+TEST_CASE("a size that runs to the end of what is plausible is told beside the errors") {
+  ComparisonTask task;
+  task.logs.push_back(logOf(with(syntheticVehicle(), {{"motor_deadband.speed", 0.15}}), 240.0, 10));
+  task.logs[0].ideal.bounds.push_back({"motor_deadband.speed", 0.0, 0.05});
+  const ComparisonReport report{compareOnLogs(task, kSilent), "", {"a"}};
+  const ComparisonRow& row = report.comparison.nested.at(0);
+  for (const ComparisonFold& fold : row.folds) {
+    const auto& ends = fold.models[static_cast<size_t>(Rung::kAllParameters)]->at_end;
+    CHECK(std::count(ends.begin(), ends.end(), "motor_deadband.speed") == 1);
+  }
+  CHECK(std::isfinite(errorsOf(row, Rung::kAllParameters).position.rms));
+  const std::string text = comparisonText(report);
+  const size_t told = text.find("Sizes that ran away");
+  REQUIRE(told != std::string::npos);
+  CHECK(text.find("motor_deadband.speed", told) != std::string::npos);
 }
 
 TEST_CASE("a black box expresses what neither slip nor powertrain do") {

@@ -84,6 +84,10 @@ TEST_CASE(
   const auto& rungs = json["nested"][0]["rungs"];
   CHECK(rungs["gain_track"]["yaw_rad"]["median"] < rungs["ideal"]["yaw_rad"]["median"]);
   CHECK(rungs.contains("discovered"));
+  for (const char* rival : {"all_parameters", "sparse_regression"}) {
+    CHECK(rungs[rival]["yaw_rad"]["median"] < rungs["ideal"]["yaw_rad"]["median"]);
+    CHECK(json["nested"][0]["folds"][0]["named"].contains(rival));
+  }
   CHECK(run(comparison + " --threads 2 --out " + folder.path("b")).status == 0);
   for (const char* file : {"comparison.json", "comparison.md"})
     CHECK(folder.text(std::string("a/") + file) == folder.text(std::string("b/") + file));

@@ -59,12 +59,15 @@ int run(int argc, char** argv) {
   app.add_option("--model", model_file, "model file (YAML)")->required();
   app.add_option("--train", log, "log to learn from")->required();
   app.add_option("--out", out, "folder for verdict.json")->required();
-  app.add_flag("--calibrate", calibrate, "taken, and of no effect");
+  app.add_flag("--calibrate", calibrate, "fit lag, delay and gains of the nominal model, too");
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   const ModelDocument model = readModelDocument(model_file);
   const std::vector<gap::Drive> drives{gap::readDriveFor(model, log)};
-  const rivals::Answer answer = method == "all" ? rivals::allParameters(model, drives)
-                                                : rivals::sparseRegression(model, drives);
+  const gap::Observations data(drives, {});
+  const gap::Fitter fitter(data);
+  const rivals::Answer answer = method == "all"
+                                    ? rivals::allParameters(fitter, model, calibrate)
+                                    : rivals::sparseRegression(fitter, model, calibrate);
   std::filesystem::create_directories(out);
   std::ofstream(out + "/verdict.json") << verdictOf(answer).dump(2) << "\n";
   return answer.parameters.empty() ? 0 : kFound;

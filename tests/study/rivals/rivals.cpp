@@ -34,11 +34,11 @@ bool isTwin(const std::string& effect) {
 /// Of each effect the candidate that promises most; moments of change are not for these methods, of
 /// twins each takes the first, and a scale of positions is slip and track width together.
 std::vector<Candidate> oneOfEach(const Fitter& fitter, const FitState& state) {
-  std::vector<Candidate> all = candidatesFor(state.model, excitationOf(fitter.data(), state.model));
+  std::vector<Candidate> all = candidatesFor(state, excitationOf(fitter.data(), state.model));
   all.erase(std::remove_if(all.begin(), all.end(),
                            [](const Candidate& one) {
-                             return !one.change_point.empty() || isTwin(one.effect) ||
-                                    one.effect == "position_scale";
+                             return one.release || !one.change_point.empty() ||
+                                    isTwin(one.effect) || one.effect == "position_scale";
                            }),
             all.end());
   const ScoreTest test(fitter, state, directionsOf(fitter, state, all));
@@ -54,11 +54,31 @@ std::vector<Candidate> oneOfEach(const Fitter& fitter, const FitState& state) {
   return chosen;
 }
 
-FitState begin(const Fitter& fitter, const ModelDocument& model) {
-  FitState state = fitter.start(model, givenParameters(model, false));
+FitState begin(const Fitter& fitter, const ModelDocument& model, bool calibrate) {
+  FitState state = fitter.start(model, givenParameters(model, calibrate));
   fitter.fit(state);
   fitter.renewJacobian(state);
   return state;
+}
+
+/// Blocks of measured driving that count.
+int measuredBlocks(const Fitter& fitter) {
+  const std::vector<char> counts = fitter.blocksThatCount();
+  return static_cast<int>(std::count(counts.begin(), counts.end(), char{1}));
+}
+
+/// Fits all that is free, with the noise of a good fit in the end.
+void settle(const Fitter& fitter, FitState& state) {
+  fitter.fit(state);
+  fitter.renewNoise(state);
+  fitter.fit(state);
+}
+
+/// What a state has estimated; it names nothing yet.
+Answer answerOf(const FitState& state) {
+  Answer answer{state.model, {}, {}};
+  for (const FreeParameter& parameter : state.free) answer.estimated.push_back(parameter.path);
+  return answer;
 }
 
 ParameterEstimate estimateOf(const std::string& path, double value, double half) {
@@ -72,9 +92,10 @@ class Regression {
       : columns_(columns.array().colwise() / state.scales.array()),
         rest_(fitter.data().residuals(state.predicted).cwiseQuotient(state.scales)) {
     for (const Observation& row : fitter.data().all()) blocks_.push_back(row.block);
-    // A jump of the INS must not decide.
+    // A jump of the INS must not decide, and rows that do not count have no say.
     for (Eigen::Index i = 0; i < rest_.size(); ++i) {
-      const double weight = std::sqrt(weightOf(rest_[i], 1.0));
+      const bool counts = fitter.mask()[static_cast<size_t>(i)] != 0;
+      const double weight = counts ? std::sqrt(weightOf(rest_[i], 1.0)) : 0.0;
       rest_[i] *= weight;
       columns_.row(i) *= weight;
     }
@@ -142,48 +163,8 @@ class Regression {
   std::vector<int> blocks_;
 };
 
-}  // namespace
-
-Answer allParameters(const ModelDocument& model, const std::vector<Drive>& drives) {
-  const Observations data(drives, {});
-  const Fitter fitter(data);
-  FitState state = begin(fitter, model);
-  const std::vector<Candidate> candidates = oneOfEach(fitter, state);
-  for (const Candidate& candidate : candidates)
-    addCandidate(fitter, state, candidate, 0.1 * candidate.change);
-  fitter.fit(state);
-  fitter.renewNoise(state);
-  fitter.fit(state);
-  const Eigen::MatrixXd covariance = parameterCovariance(fitter, state);
-  const double needed = studentQuantile(
-      data.measuredBlocks() - 1, normalQuantileOf(0.05 / static_cast<double>(candidates.size())));
-  Answer answer{state.model, {}};
-  for (size_t i = 0; i < state.free.size(); ++i) {
-    const std::string& path = state.free[i].path;
-    const bool is_ours =
-        std::any_of(candidates.begin(), candidates.end(),
-                    [&](const Candidate& candidate) { return candidate.path() == path; });
-    const auto at = static_cast<Eigen::Index>(i);
-    const double error = std::sqrt(covariance(at, at));
-    const double value = *findParameter(state.model, path);
-    if (is_ours && std::abs(value) > needed * error && !onBound(state.model, state.free[i]))
-      answer.parameters.push_back(
-          estimateOf(path, value, studentQuantile(data.measuredBlocks() - 1) * error));
-  }
-  return answer;
-}
-
-Answer sparseRegression(const ModelDocument& model, const std::vector<Drive>& drives) {
-  const Observations data(drives, {});
-  const Fitter fitter(data);
-  const FitState state = begin(fitter, model);
-  const std::vector<Candidate> candidates = oneOfEach(fitter, state);
-  // What the model has stays free, and is never dropped.
-  Eigen::MatrixXd columns(state.predicted.size(),
-                          state.jacobian.cols() + static_cast<Eigen::Index>(candidates.size()));
-  columns << state.jacobian, directionsOf(fitter, state, candidates);
-  const auto kept = static_cast<size_t>(state.jacobian.cols());
-  const Regression regression(fitter, state, columns);
+/// The threshold with the least error on blocks left out.
+double bestThreshold(const Regression& regression, size_t kept) {
   double best = 0.0;
   double least = std::numeric_limits<double>::infinity();
   for (double threshold = 0.01; threshold < 0.7; threshold *= 1.6) {
@@ -195,14 +176,61 @@ Answer sparseRegression(const ModelDocument& model, const std::vector<Drive>& dr
     least = error;
     best = threshold;
   }
-  const std::vector<char> chosen = regression.thresholded(best, -1, kept);
+  return best;
+}
+
+}  // namespace
+
+Answer allParameters(const Fitter& fitter, const ModelDocument& model, bool calibrate) {
+  FitState state = begin(fitter, model, calibrate);
+  const std::vector<Candidate> candidates = oneOfEach(fitter, state);
+  for (const Candidate& candidate : candidates)
+    addCandidate(fitter, state, candidate, 0.1 * candidate.change);
+  settle(fitter, state);
+  const Eigen::MatrixXd covariance = parameterCovariance(fitter, state);
+  const int blocks = measuredBlocks(fitter);
+  const double needed =
+      studentQuantile(blocks - 1, normalQuantileOf(0.05 / static_cast<double>(candidates.size())));
+  Answer answer = answerOf(state);
+  for (size_t i = 0; i < state.free.size(); ++i) {
+    const std::string& path = state.free[i].path;
+    const bool is_ours =
+        std::any_of(candidates.begin(), candidates.end(),
+                    [&](const Candidate& candidate) { return candidate.path() == path; });
+    const auto at = static_cast<Eigen::Index>(i);
+    const double error = std::sqrt(covariance(at, at));
+    const double value = *findParameter(state.model, path);
+    if (is_ours && std::abs(value) > needed * error && !onBound(state.model, state.free[i]))
+      answer.parameters.push_back(estimateOf(path, value, studentQuantile(blocks - 1) * error));
+  }
+  return answer;
+}
+
+Answer sparseRegression(const Fitter& fitter, const ModelDocument& model, bool calibrate) {
+  const FitState state = begin(fitter, model, calibrate);
+  const std::vector<Candidate> candidates = oneOfEach(fitter, state);
+  // What the model has stays free, and is never dropped.
+  Eigen::MatrixXd columns(state.predicted.size(),
+                          state.jacobian.cols() + static_cast<Eigen::Index>(candidates.size()));
+  columns << state.jacobian, directionsOf(fitter, state, candidates);
+  const auto kept = static_cast<size_t>(state.jacobian.cols());
+  const Regression regression(fitter, state, columns);
+  const std::vector<char> chosen =
+      regression.thresholded(bestThreshold(regression, kept), -1, kept);
   const Eigen::VectorXd coefficients = regression.solve(chosen, -1);
-  Answer answer{model, {}};
+  // A direction holds near where it was taken: what is left gets its sizes in simulation.
+  FitState fitted = state;
+  for (size_t i = 0; i < candidates.size(); ++i)
+    if (chosen[kept + i] != 0)
+      addCandidate(fitter, fitted, candidates[i],
+                   coefficients[static_cast<Eigen::Index>(kept + i)]);
+  settle(fitter, fitted);
+  Answer answer = answerOf(fitted);
   for (size_t i = 0; i < candidates.size(); ++i) {
-    if (chosen[kept + i] == 0) continue;
-    const double size = coefficients[static_cast<Eigen::Index>(kept + i)];
-    answer.parameters.push_back(estimateOf(
-        candidates[i].path(), candidates[i].value - candidates[i].change + size, kNotMeasured));
+    const std::string path = candidates[i].path();
+    if (chosen[kept + i] != 0)
+      answer.parameters.push_back(
+          estimateOf(path, *findParameter(fitted.model, path), kNotMeasured));
   }
   return answer;
 }

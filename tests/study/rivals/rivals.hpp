@@ -5,14 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "modules/identification/core/drive.hpp"
 #include "modules/identification/core/finding.hpp"
+#include "modules/identification/core/fit.hpp"
 
 namespace tread::rivals {
 
-/// What a rival method names in a drive.
+/// What a rival method makes of a drive.
 struct Answer {
   ModelDocument model;                             ///< with what it has estimated
+  std::vector<std::string> estimated;              ///< paths of all that it has estimated
   std::vector<gap::ParameterEstimate> parameters;  ///< of the effects that it names
 };
 
@@ -20,13 +21,16 @@ struct Answer {
 /** Every effect of the catalogue is free, in its likeliest form, but for changes at a moment, the
  * scale of positions and all but one of twins; the damped fit begins where the given model is. It
  * names what differs from 0 by more than 95 % certainty over all of them (Bonferroni), with errors
- * from the scatter of blocks. */
-Answer allParameters(const ModelDocument& model, const std::vector<gap::Drive>& drives);
+ * from the scatter of blocks. On the fitter's rows; `calibrate`: numbers of the nominal model are
+ * free, too. */
+Answer allParameters(const gap::Fitter& fitter, const ModelDocument& model, bool calibrate);
 
 /// Sequentially thresholded least squares (SINDy: Brunton, Proctor, Kutz 2016) on the residuals,
 /// with the directions of the catalogue's effects as library, in the integral form.
 /** The threshold, as a share of the residual that a term explains, is the one with the least error
- * on blocks left out, among ten. It names what is left. */
-Answer sparseRegression(const ModelDocument& model, const std::vector<gap::Drive>& drives);
+ * on blocks left out, among ten. It names what is left, whose sizes are then fitted in simulation
+ * (as the regression gives them, in first order, they predict far worse). Rows and `calibrate` as
+ * above. */
+Answer sparseRegression(const gap::Fitter& fitter, const ModelDocument& model, bool calibrate);
 
 }  // namespace tread::rivals
