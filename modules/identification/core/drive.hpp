@@ -81,6 +81,15 @@ struct EncoderSample {
   TrackCommand speed{};
 };
 
+/// Motor currents as the controller says them, for witnesses of what was found.
+/** Either positive forwards, or positive where the motor drives (negative or nothing where it
+ * brakes): that is seen from the driving. */
+struct CurrentSample {
+  double time = 0.0;   ///< [s]
+  double left = 0.0;   ///< [A]
+  double right = 0.0;  ///< [A]
+};
+
 /// One line about the state of a log.
 struct LogNote {
   std::string log;
@@ -104,6 +113,7 @@ struct Drive {
   std::vector<Execution> executions;    ///< in order of time; 2 s pieces where the log names none
   std::vector<VoltageSample> voltage;   ///< empty = not measured
   std::vector<EncoderSample> encoders;  ///< empty = there are none
+  std::vector<CurrentSample> currents;  ///< empty = not measured
   std::optional<ImportNote> imported;   ///< nothing where the robot itself wrote the log
   std::string lost;                     ///< what of a damaged file could not be read; empty = whole
   std::vector<LogNote> notes;           ///< what the reader noticed, and validateLog()

@@ -68,6 +68,14 @@ Json effectJson(const FoundEffect& effect) {
     json["wheel_speeds_show"] = {{"share", number(effect.wheels->share)},
                                  {"low", number(effect.wheels->low)},
                                  {"high", number(effect.wheels->high)}};
+  if (effect.currents)
+    json["motor_currents_rise"] = {{"share", number(effect.currents->rise)},
+                                   {"low", number(effect.currents->low)},
+                                   {"high", number(effect.currents->high)}};
+  if (effect.voltage)
+    json["battery_voltage_falls"] = {{"share", number(effect.voltage->share)},
+                                     {"low", number(effect.voltage->low)},
+                                     {"high", number(effect.voltage->high)}};
   return json;
 }
 
