@@ -22,14 +22,15 @@ constexpr size_t kLeastBlocks = 8;  // with voltage
 struct BlockMotion {
   size_t drive = 0;
   double bins = 0.0;
-  double voltage = 0.0;               ///< [V s/s] of all bins
+  double voltage = 0.0;               ///< [V] summed over bins
   double load = 0.0;                  ///< squared speeds of the tracks
   std::array<double, 2> square{};     ///< of the motion without the effect, by kind
   std::array<double, 2> with_lost{};  ///< that motion times what the effect takes
   double lost_square = 0.0;
 
+  double motion() const { return square[0] + square[1]; }
   /// Share of the motion that the effect takes.
-  double factor() const { return (with_lost[0] + with_lost[1]) / (square[0] + square[1]); }
+  double factor() const { return (with_lost[0] + with_lost[1]) / motion(); }
 };
 
 /// The newest voltage at a time; NaN before the first one.
@@ -45,6 +46,7 @@ std::map<int, BlockMotion> blockMotions(const std::vector<MotionBin>& bins,
                                         const std::vector<Drive>& drives, size_t effect) {
   std::map<int, BlockMotion> blocks;
   for (const MotionBin& bin : bins) {
+    if (!isMeasured(drives[bin.drive].voltage)) continue;
     const double voltage = voltageAt(drives[bin.drive].voltage, bin.begin + 0.5 * kBin);
     if (!(voltage > 0.0)) continue;
     BlockMotion& block = blocks[bin.block];
@@ -61,8 +63,7 @@ std::map<int, BlockMotion> blockMotions(const std::vector<MotionBin>& bins,
     }
   }
   for (auto block = blocks.begin(); block != blocks.end();)
-    block = block->second.square[0] + block->second.square[1] > 0.0 ? std::next(block)
-                                                                    : blocks.erase(block);
+    block = block->second.motion() > 0.0 ? std::next(block) : blocks.erase(block);
   return blocks;
 }
 
@@ -75,33 +76,31 @@ bool isFactorOverTime(const std::map<int, BlockMotion>& blocks) {
     for (size_t kind = 0; kind < 2; ++kind)
       if (block.square[kind] > 0.0)
         explained += block.with_lost[kind] * block.with_lost[kind] / block.square[kind];
-    weight += block.square[0] + block.square[1];
+    weight += block.motion();
     sum += block.with_lost[0] + block.with_lost[1];
   }
   double changes = 0.0;
   for (const auto& [number, block] : blocks)
-    changes += (block.square[0] + block.square[1]) * std::pow(block.factor() - sum / weight, 2);
+    changes += block.motion() * std::pow(block.factor() - sum / weight, 2);
   return all > 0.0 && explained > kFactor * all && changes > kChanges * all;
 }
 
 /// Gram matrices of the blocks; columns: fall of the voltage, share of the motion that the effect
 /// takes, load, and one column of ones for each drive.
 BlockGrams voltageGrams(const std::map<int, BlockMotion>& blocks, size_t drives) {
-  std::vector<std::pair<double, double>> means(drives);  // sum of voltages, bins
-  for (const auto& [number, block] : blocks) {
-    means[block.drive].first += block.voltage;
-    means[block.drive].second += block.bins;
-  }
+  std::vector<double> full(drives, 0.0);  // [V], of the block with most
+  for (const auto& [number, block] : blocks)
+    full[block.drive] = std::max(full[block.drive], block.voltage / block.bins);
   const auto columns = static_cast<Eigen::Index>(3 + drives);
   BlockGrams grams;
   for (const auto& [number, block] : blocks) {
-    const double mean = means[block.drive].first / means[block.drive].second;
     Eigen::VectorXd row = Eigen::VectorXd::Zero(columns);
-    row[0] = 1.0 - block.voltage / block.bins / mean;
+    row[0] = 1.0 - block.voltage / block.bins / full[block.drive];
     row[1] = block.factor();
     row[2] = block.load / block.bins;
     row[static_cast<Eigen::Index>(3 + block.drive)] = 1.0;
-    gramsAt(grams, number, columns)[0] += block.bins * row * row.transpose();
+    // A block that hardly moves says nothing of the factor.
+    gramsAt(grams, number, columns)[0] += block.motion() * row * row.transpose();
   }
   return grams;
 }
@@ -122,7 +121,7 @@ std::map<std::string, VoltageWitness> voltageWitnesses(const Fitter& fitter, con
   const std::vector<Drive>& drives = fitter.data().drives();
   const std::vector<std::string> asked = askedOf(effects);
   if (asked.empty() || std::all_of(drives.begin(), drives.end(),
-                                   [](const Drive& drive) { return drive.voltage.empty(); }))
+                                   [](const Drive& drive) { return !isMeasured(drive.voltage); }))
     return {};
   const std::vector<MotionBin> bins = binsOf(fitter, state, asked);
   std::map<std::string, VoltageWitness> witnesses;
