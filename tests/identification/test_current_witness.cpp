@@ -102,12 +102,14 @@ TEST_CASE("where the drive gives less they are what they are at the speed that i
                            {{"battery_sag.per_hour", 2.0}},
                            {{"thermal_derating.loss", 0.3}}};
   for (const Values& hidden : losses) {
-    CAPTURE(hidden.front().first);
-    const auto currents = currentWitnessOf(hidden, {});
-    REQUIRE(currents);
-    CHECK(currents->rise == Approx(0.0).margin(0.4));
-    CHECK(currents->saysNoLoad());
-    CHECK_FALSE(currents->saysLoad());
+    for (const double friction : {0.0, 6.0}) {
+      CAPTURE(hidden.front().first, friction);
+      const auto currents = currentWitnessOf(hidden, {0.0, friction});
+      REQUIRE(currents);
+      CHECK(currents->rise == Approx(0.0).margin(0.4));
+      CHECK(currents->saysNoLoad());
+      CHECK_FALSE(currents->saysLoad());
+    }
   }
 }
 
