@@ -189,6 +189,7 @@ TEST_CASE("a NaN now and then costs that moment alone") {
 TEST_CASE("currents say nothing of scales, of lags, of motion to the side, and of the INS") {
   const Values silent[] = {{{"slip_ratio.slip", 0.2}},
                            {{"yaw_inertia.lag", 0.8}},
+                           {{"lag_asymmetry.slowing", 0.3}},
                            {{"centrifugal_drift.time", 0.2}},
                            {{"ins_latency.latency", 0.3}}};
   for (const Values& hidden : silent) {

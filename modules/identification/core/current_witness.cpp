@@ -16,12 +16,14 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kCreeps = 0.03;    // [m/s] from which on dry friction is whole
-constexpr size_t kLeastBins = 500;  // with currents
-constexpr double kUnlike = 0.05;    // of an effect, in no other column
-constexpr double kVisible = 0.01;   // of the motion, an effect's RMS at least
-constexpr double kVaries = 0.01;    // of a current's square, about the mean of its size
-constexpr double kFollows = 0.5;    // of the currents' variance, explained by the motion
+constexpr double kCreeps = 0.03;      // [m/s] from which on dry friction is whole
+constexpr size_t kLeastBins = 500;    // with currents
+constexpr double kUnlike = 0.05;      // of an effect, in no other column
+constexpr double kVisible = 0.01;     // of the motion, an effect's RMS at least
+constexpr double kSteady = 0.03;      // [m/s] of change from bin to bin
+constexpr double kLeastSteady = 0.2;  // of an effect's square, in steady motion
+constexpr double kVaries = 0.01;      // of a current's square, about the mean of its size
+constexpr double kFollows = 0.5;      // of the currents' variance, explained by the motion
 
 Both togetherOf(const Both& tracks) {
   return {0.5 * (tracks[0] + tracks[1]), 0.5 * (tracks[1] - tracks[0])};
@@ -196,6 +198,21 @@ bool follows(const Grams& all, const CurrentFit& fit) {
   return fit.rest[0] + fit.rest[1] < (1.0 - kFollows) * varies;
 }
 
+/// Whether an effect takes something of steady motion, too: what it takes of changes alone cannot
+/// be told from the currents of inertia.
+bool actsSteadily(const std::vector<MotionBin>& bins, size_t effect) {
+  double all = 0.0;
+  double steady = 0.0;
+  for (const MotionBin& bin : bins)
+    for (size_t kind = 0; kind < 2; ++kind) {
+      const double square = bin.lost[effect][kind] * bin.lost[effect][kind];
+      const double change = std::max(std::abs(bin.before[kind]), std::abs(bin.after[kind]));
+      all += square;
+      if (change < kSteady) steady += square;
+    }
+  return steady > kLeastSteady * all;
+}
+
 /// Whether an effect takes enough of the motion to be looked at.
 bool isVisible(const Grams& all, Eigen::Index effect, Eigen::Index speed) {
   const double taken = all[0](effect, effect) + all[1](effect, effect);
@@ -234,7 +251,8 @@ std::map<std::string, CurrentWitness> currentWitnesses(const Fitter& fitter, con
     const auto at = static_cast<Eigen::Index>(e);
     const double half = rises.quantile * rises.errors[at];
     if (!std::isfinite(half) || !(ordinaryPerSpeed(all, fit, e) > 0.0) ||
-        !isVisible(all, kEffects + at, kSpeed) || unlikeOthers(fit, e) < kUnlike)
+        !isVisible(all, kEffects + at, kSpeed) || !actsSteadily(measured.bins, e) ||
+        unlikeOthers(fit, e) < kUnlike)
       continue;
     witnesses[asked[e]] = {rises.values[at], rises.values[at] - half, rises.values[at] + half};
   }

@@ -28,8 +28,9 @@ std::map<std::string, WheelWitness> wheelWitnesses(const Fitter& fitter, const F
 /** What takes speed by a load draws current; what the drive does not give draws none, and neither
  * do tracks that slip. Only torques count, so `currents` must be those of the motors, not of the
  * battery. Nothing where no drive has currents, or ones that do not follow the motion (stuck, cut
- * off, of another machine), of lags, of the INS, of motion to the side, and of an effect that
- * looks like the ordinary dependence (a factor on all motion, a dry friction). */
+ * off, of another machine), of lags and what else acts on changes alone, of the INS, of motion to
+ * the side, and of an effect that looks like the ordinary dependence (a factor on all motion, a dry
+ * friction). */
 std::map<std::string, CurrentWitness> currentWitnesses(const Fitter& fitter, const FitState& state,
                                                        const std::vector<std::string>& effects);
 
