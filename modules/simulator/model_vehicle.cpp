@@ -12,9 +12,11 @@ constexpr double kMemory = 4.0;  // [s], longer than both latencies together
 constexpr size_t kMostRemembered = 1000;
 
 constexpr int kStepsPerNoise = 10;
-constexpr double kNoiseStep = 0.01;    // [s], of so many steps of the simulator
-constexpr double kFullCurrent = 11.0;  // [A] a motor at full power, see ModelVehicle
-constexpr uint64_t kModelStream = 20;  // of random numbers, beside those of robot and devices
+constexpr double kNoiseStep = 0.01;      // [s], of so many steps of the simulator
+constexpr double kFullCurrent = 11.0;    // [A] a motor at full power, see ModelVehicle
+constexpr double kLoadCurrent = 200.0;   // [A s/m] for each speed that the ground takes: 4000 N s/m
+constexpr double kCurrentLimit = 125.0;  // [A] of the power stage
+constexpr uint64_t kModelStream = 20;    // of random numbers, beside those of robot and devices
 
 }  // namespace
 
@@ -69,7 +71,7 @@ InsInput ModelIns::sensed(int64_t utime, const InsInput& truth) {
 }
 
 ModelVehicle::ModelVehicle(const ModelDocument& document, std::optional<uint64_t> noise_seed)
-    : name_(document.vehicle.name),
+    : model_(document.vehicle),
       kernel_(document.vehicle, EntryState{}),
       mean_(document.vehicle, EntryState{}),
       known_(document.envelope),
@@ -110,13 +112,23 @@ void ModelVehicle::drawCurrent(const MotorPower& power, double dt) {
   left_ = {power.left, speeds.left, kFullCurrent * power.left};
   right_ = {power.right, speeds.right, kFullCurrent * power.right};
   stepBattery(drive_, left_, right_, dt, battery_);
+  // What the tracks do not get onto the ground is load; what the drive does not give is none.
+  const double per_speed = kFullCurrent / model_.full_speed;
+  const double forward = model_.forward_gain * (speeds.left + speeds.right) / 2.0 - v_body_.v_x;
+  const double turning =
+      model_.yaw_gain * (speeds.right - speeds.left) / 2.0 - v_body_.omega * model_.gauge / 2.0;
+  const auto drawn = [&](double speed, double lost) {
+    return std::clamp(per_speed * speed + kLoadCurrent * lost, -kCurrentLimit, kCurrentLimit);
+  };
+  left_.current = drawn(speeds.left, forward - turning);
+  right_.current = drawn(speeds.right, forward + turning);
 }
 
 std::string ModelVehicle::warning() const {
   if (!known_) return {};
   std::string line;
   for (const std::string& warning : warningsOutside(*known_, asked_))
-    line += (line.empty() ? "model " + name_ + ": " : "; ") + warning;
+    line += (line.empty() ? "model " + model_.name + ": " : "; ") + warning;
   return line;
 }
 

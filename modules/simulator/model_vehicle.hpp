@@ -42,7 +42,8 @@ class ModelIns final : public InsErrors {
  * the battery's voltage. The world's surfaces do not touch it: a model file is one ground. Its
  * spread varies along the drive as the dynamic vehicle's does. The battery is the dynamic
  * vehicle's, loaded by the current that this one draws at the same power straight ahead on grass.
- */
+ * The motor currents that it reports are those at the speed that the drive gives, and more for what
+ * the ground takes of it. */
 class ModelVehicle final : public Plant {
  public:
   /// `noise_seed`: of the spread; without it every execution is the mean. The model takes power.
@@ -60,7 +61,7 @@ class ModelVehicle final : public Plant {
     mean_.stopBody();
   }
   bool disturbedByGround() const override { return false; }
-  std::string name() const override { return name_; }
+  std::string name() const override { return model_.name; }
   /// What is asked for outside of the model's envelope, by the mean motion: chance asks nothing.
   std::string warning() const override;
 
@@ -68,7 +69,7 @@ class ModelVehicle final : public Plant {
   void varyNoise();
   void drawCurrent(const MotorPower& power, double dt);
 
-  std::string name_;
+  VehicleModel model_;
   VehicleKernel kernel_;
   VehicleKernel mean_;  ///< the same without noise
   std::optional<Envelope> known_;

@@ -84,9 +84,23 @@ TEST_CASE("candidates are of effects that are off, under their first name, that 
     CHECK((without.count(effect.name) != 0) ==
           (!on && !effect.search.second_name && !needs_voltage));
   }
-  const size_t before = candidatesFor(model, most).size();
-  most.voltage = true;
-  CHECK(candidatesFor(model, most).size() > before);
+}
+
+TEST_CASE("a battery is looked for by its voltage where all drives measure it, else by time") {
+  Rig rig({}, 60.0, 1);
+  const auto batteryBy = [&] {
+    std::set<std::string> parameters;
+    for (const Candidate& candidate :
+         candidatesFor(syntheticVehicle(), excitationOf(rig.data, syntheticVehicle())))
+      if (candidate.effect == "battery_sag") parameters.insert(candidate.parameter);
+    return parameters;
+  };
+  const std::set<std::string> by_time{"per_hour"};
+  CHECK(batteryBy() == by_time);
+  rig.drives.front().voltage = {{0.0, 25.0}, {30.0, 25.0}};  // stuck
+  CHECK(batteryBy() == by_time);
+  rig.drives.front().voltage.back().voltage = 24.9;
+  CHECK(batteryBy() == std::set<std::string>{"per_drop"});
 }
 
 TEST_CASE("a limit is tried below what the drive demands, one that nothing demands not at all") {

@@ -306,4 +306,25 @@ TEST_CASE("a model's vehicle leans with the ground and empties its battery") {
   CHECK(battery.charge < 1.0);
 }
 
+TEST_CASE(
+    "what the ground takes of the speed draws current, what the drive does not give does not") {
+  const auto currentOf = [](const std::string& effects) {
+    ModelVehicle vehicle(parseModelDocument(kPlain + effects, "m.yaml"), std::nullopt);
+    for (int i = 0; i < 3000; ++i) vehicle.step({0.8, 0.8}, {}, 0.001);
+    CHECK(vehicle.left().current == Approx(vehicle.right().current));
+    return vehicle.left().current;
+  };
+  const double sound = currentOf("");
+  CHECK(sound == Approx(0.8 * 11.0).epsilon(0.01));
+  CHECK(currentOf("effects:\n  rolling_resistance: {speed: 0.1}\n") > 2.0 * sound);
+  CHECK(currentOf("effects:\n  speed_saturation: {limit: 0.5}\n") < 0.8 * sound);
+}
+
+TEST_CASE("the track that is held back draws more than the other one") {
+  ModelVehicle vehicle(parseModelDocument(kPlain + "effects:\n  yaw_pull: {pull: 0.2}\n", "m.yaml"),
+                       std::nullopt);
+  for (int i = 0; i < 3000; ++i) vehicle.step({0.8, 0.8}, {}, 0.001);
+  CHECK(vehicle.left().current > vehicle.right().current + 10.0);  // it pulls to the left
+}
+
 }  // namespace tread::sim

@@ -123,6 +123,7 @@ Drive toDrive(const DriveLog& messages) {
     if (auto note = importNoteOf(config)) drive.imported = std::move(note);
   drive.voltage = voltageSamples(log);
   drive.encoders = encoderSamples(log);
+  drive.currents = currentSamples(log);
   drive.segments = segmentsOf(spans, drive.encoders);
   drive.executions = executionsOf(drive.segments, recordsOf(log));
   Diagnostics notes(drive.name);

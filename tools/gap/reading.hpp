@@ -53,6 +53,9 @@ bool standsBetween(const CommandSpan& span, double from, double to);
 /// Track speeds as the encoders say, where they do.
 std::vector<EncoderSample> encoderSamples(const SortedLog& log);
 
+/// Motor currents, where both are measured.
+std::vector<CurrentSample> currentSamples(const SortedLog& log);
+
 /// Voltages of the battery, where they are measured.
 std::vector<VoltageSample> voltageSamples(const SortedLog& log);
 

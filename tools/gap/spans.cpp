@@ -201,6 +201,15 @@ std::vector<EncoderSample> encoderSamples(const SortedLog& log) {
   return samples;
 }
 
+std::vector<CurrentSample> currentSamples(const SortedLog& log) {
+  std::vector<CurrentSample> samples;
+  for (const motor_t& motor : log.motor)
+    if (std::isfinite(motor.current_left) && std::isfinite(motor.current_right))
+      samples.push_back({log.seconds(motor.utime), static_cast<double>(motor.current_left),
+                         static_cast<double>(motor.current_right)});
+  return samples;
+}
+
 std::vector<VoltageSample> voltageSamples(const SortedLog& log) {
   std::vector<VoltageSample> samples;
   for (const motor_t& motor : log.motor) {

@@ -111,7 +111,10 @@ std::vector<std::string> freedWith(const Effect& effect, const std::string& stre
 bool isOpen(const Effect& effect, const EffectParameter& parameter, const ModelDocument& model,
             const Excitation& most) {
   if (parameter.role == ParameterRole::kShape) return false;
-  if (parameter.needs_voltage && !most.voltage) return false;
+  // A battery whose voltage is measured shows by it how empty it is.
+  const bool by_voltage = std::any_of(effect.parameters.begin(), effect.parameters.end(),
+                                      [](const EffectParameter& one) { return one.needs_voltage; });
+  if (by_voltage && parameter.needs_voltage != most.voltage) return false;
   const ChangePoint* change = changePointOf(effect, parameter.name);
   if (change == nullptr) return !isOn(effect, model);
   // The others, a load that only moves its centre for one, look like a constant from early on.
@@ -192,8 +195,9 @@ void forgetNominal(std::vector<Candidate>& candidates) {
 Excitation excitationOf(const Observations& data, const ModelDocument& model) {
   Excitation most;
   most.begin = std::numeric_limits<double>::infinity();
+  most.voltage = !data.drives().empty();
   for (const Drive& drive : data.drives()) {
-    most.voltage = most.voltage || !drive.voltage.empty();
+    most.voltage = most.voltage && isMeasured(drive.voltage);
     for (const Segment& segment : drive.segments) {
       most.begin = std::min(most.begin, segment.begin());
       most.end = std::max(most.end, segment.end);

@@ -97,6 +97,14 @@ void hearWheels(const WheelWitness& wheels, FoundEffect& effect) {
       effect.runner_ups.end());
 }
 
+/// What witnesses say of an effect, if they do.
+template <class Witness>
+std::optional<Witness> witnessOf(const std::map<std::string, Witness>& witnesses,
+                                 const std::string& effect) {
+  const auto said = witnesses.find(effect);
+  return said == witnesses.end() ? std::nullopt : std::optional(said->second);
+}
+
 bool isExcited(const CandidateTest& test) {
   const double typical = parameterNamed(effectNamed(test.effect), test.parameter).typical;
   return test.detectable <= kInvisible * std::abs(typical);
@@ -253,10 +261,14 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
     of_effect[effect].push_back(estimate);
   }
   const std::map<std::string, WheelWitness> wheels = wheelWitnesses(fitter, state, result.effects);
+  const auto currents = currentWitnesses(fitter, state, result.effects);
+  const auto voltages = voltageWitnesses(fitter, state, result.effects);
   for (const std::string& name : result.effects) {
-    identified.effects.push_back(foundEffect(name, result, settings, of_effect[name]));
-    const auto heard = wheels.find(name);
-    if (heard != wheels.end()) hearWheels(heard->second, identified.effects.back());
+    FoundEffect effect = foundEffect(name, result, settings, of_effect[name]);
+    if (const auto heard = witnessOf(wheels, name)) hearWheels(*heard, effect);
+    effect.currents = witnessOf(currents, name);
+    effect.voltage = witnessOf(voltages, name);
+    identified.effects.push_back(std::move(effect));
   }
   for (const CandidateTest& test : result.record.candidates)
     if (!contains(result.effects, test.effect) && !isExcited(test) &&

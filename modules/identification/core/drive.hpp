@@ -74,11 +74,27 @@ struct VoltageSample {
   double voltage = 0.0;  ///< [V]
 };
 
+/// Whether a voltage was measured: there are readings, and they are not all the same.
+inline bool isMeasured(const std::vector<VoltageSample>& voltage) {
+  return std::any_of(voltage.begin(), voltage.end(), [&](const VoltageSample& sample) {
+    return std::isfinite(sample.voltage) && sample.voltage != voltage.front().voltage;
+  });
+}
+
 /// Track speeds as encoders say: for the error floor, entry speeds and as witnesses of what was
 /// found, never for the fit.
 struct EncoderSample {
   double time = 0.0;  ///< [s]
   TrackCommand speed{};
+};
+
+/// Motor currents as the controller says them, for witnesses of what was found.
+/** Either positive forwards, or positive where the motor drives (negative or nothing where it
+ * brakes): that is seen from the driving. */
+struct CurrentSample {
+  double time = 0.0;   ///< [s]
+  double left = 0.0;   ///< [A]
+  double right = 0.0;  ///< [A]
 };
 
 /// One line about the state of a log.
@@ -104,6 +120,7 @@ struct Drive {
   std::vector<Execution> executions;    ///< in order of time; 2 s pieces where the log names none
   std::vector<VoltageSample> voltage;   ///< empty = not measured
   std::vector<EncoderSample> encoders;  ///< empty = there are none
+  std::vector<CurrentSample> currents;  ///< empty = not measured
   std::optional<ImportNote> imported;   ///< nothing where the robot itself wrote the log
   std::string lost;                     ///< what of a damaged file could not be read; empty = whole
   std::vector<LogNote> notes;           ///< what the reader noticed, and validateLog()

@@ -64,6 +64,31 @@ struct WheelWitness {
   bool saysGround() const { return high < 0.5; }
 };
 
+/// By how many percent the motor currents rise per percent of speed that an effect takes, beyond
+/// what they are at the speed that is left; with its 95 % interval. 0 = not at all.
+/** A load takes speed by the current that it draws: more than in proportion, or it would take all.
+ * A drive that gives less draws what is drawn at the lower speed; so do tracks that slip. Between
+ * them lie currents that are made up from the command. */
+struct CurrentWitness {
+  double rise = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+
+  bool saysLoad() const { return low > 1.5; }
+  bool saysNoLoad() const { return high < 0.5; }
+};
+
+/// Share of an effect that comes and goes with time which the battery voltage falls by, too; with
+/// its 95 % interval.
+struct VoltageWitness {
+  double share = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+
+  bool saysBattery() const { return low > 0.5; }
+  bool saysOther() const { return high < 0.5; }
+};
+
 /// An effect that was found.
 struct FoundEffect {
   std::string name;
@@ -74,8 +99,11 @@ struct FoundEffect {
   double p_value = 1.0;  ///< of the largest T over the whole catalogue
   double gain = 0.0;     ///< [nats] on blocks that were not fitted
   double gain_error = 0.0;
-  bool accepted = false;                 ///< by a person: it stands whatever the numbers above say
-  std::optional<WheelWitness> wheels{};  ///< nothing where they do not say
+  bool accepted = false;  ///< by a person: it stands whatever the numbers above say
+  // What else the log says of it; nothing where that does not speak of it.
+  std::optional<WheelWitness> wheels{};
+  std::optional<CurrentWitness> currents{};
+  std::optional<VoltageWitness> voltage{};
 };
 
 /// Probability of chance from which on an accepted effect is not shown by the drive itself.

@@ -11,7 +11,7 @@ namespace {
 constexpr double kShortest = 0.4;    // [s] of an increment
 constexpr double kLongest = 1.2;     // [s]
 constexpr double kGyroGap = 0.5;     // [s] over which the gyro is not interpolated
-constexpr double kEncoderGap = 0.5;  // [s] over which encoders are held
+constexpr double kEncoderGap = 0.5;  // [s] over which encoders and currents are held
 constexpr size_t kFewest = 12;       // increments of a match
 
 template <class Rate>
@@ -23,6 +23,25 @@ RunningSums commandSums(const Drive& drive, Rate rate) {
       const bool last = i + 1 == segment.commands.size();
       sum.add(segment.commands[i].time, last ? segment.end : segment.commands[i + 1].time,
               rate(segment.commands[i].command));
+    }
+    sums.push_back(std::move(sum));
+  }
+  return sums;
+}
+
+/// Running sums of a reading of the motor controller, each held until the next one.
+template <class Sample, class Rate>
+RunningSums heldSums(const Drive& drive, const std::vector<Sample>& samples, const Rate& rate) {
+  RunningSums sums;
+  for (const Segment& segment : drive.segments) {
+    RunningSum sum;
+    auto sample = std::lower_bound(samples.begin(), samples.end(), segment.begin() - kEncoderGap,
+                                   [](const Sample& one, double time) { return one.time < time; });
+    for (; sample != samples.end() && sample->time < segment.end; ++sample) {
+      const auto next = std::next(sample);
+      const bool held = next != samples.end() && next->time - sample->time <= kEncoderGap;
+      const double value = rate(*sample);
+      if (held && std::isfinite(value)) sum.add(sample->time, next->time, value);
     }
     sums.push_back(std::move(sum));
   }
@@ -102,20 +121,13 @@ RunningSums gyroSums(const Drive& drive) {
 
 RunningSums encoderSums(const Drive& drive,
                         const std::function<double(const TrackCommand&)>& rate) {
-  RunningSums sums;
-  for (const Segment& segment : drive.segments) {
-    RunningSum sum;
-    auto sample = std::lower_bound(
-        drive.encoders.begin(), drive.encoders.end(), segment.begin() - kEncoderGap,
-        [](const EncoderSample& encoder, double time) { return encoder.time < time; });
-    for (; sample != drive.encoders.end() && sample->time < segment.end; ++sample) {
-      const auto next = std::next(sample);
-      const bool held = next != drive.encoders.end() && next->time - sample->time <= kEncoderGap;
-      if (held) sum.add(sample->time, next->time, rate(sample->speed));
-    }
-    sums.push_back(std::move(sum));
-  }
-  return sums;
+  return heldSums(drive, drive.encoders,
+                  [&rate](const EncoderSample& sample) { return rate(sample.speed); });
+}
+
+RunningSums currentSums(const Drive& drive, double CurrentSample::*side) {
+  return heldSums(drive, drive.currents,
+                  [side](const CurrentSample& sample) { return sample.*side; });
 }
 
 RunningSums turnCommandSums(const Drive& drive) {

@@ -57,6 +57,8 @@ using RunningSums = std::vector<RunningSum>;
 RunningSums gyroSums(const Drive& drive);
 /// Of a rate of the encoders' track speeds, such as their mean.
 RunningSums encoderSums(const Drive& drive, const std::function<double(const TrackCommand&)>& rate);
+/// Of the motor currents, left or right [A s].
+RunningSums currentSums(const Drive& drive, double CurrentSample::*side);
 /// Of right minus left command, and of their mean.
 RunningSums turnCommandSums(const Drive& drive);
 RunningSums driveCommandSums(const Drive& drive);

@@ -3,14 +3,13 @@
 #include "modules/identification/core/witness.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 
 #include <Eigen/Cholesky>
 
 #include "modules/identification/core/log_validation.hpp"
 #include "modules/identification/core/search.hpp"
+#include "modules/identification/core/witness_blocks.hpp"
 
 namespace tread::gap {
 namespace {
@@ -49,20 +48,15 @@ double speedOf(const Observation& row, const Eigen::VectorXd& predicted, Eigen::
   return std::abs(chord) > 0.3 ? predicted[at] / chord : kNotMeasured;
 }
 
-/// Products of columns over rows: wheels, prediction, and what each effect changes.
-using Gram = Eigen::MatrixXd;
-/// By kind: speed, yaw rate.
-using Grams = std::array<Gram, 2>;
-
-/// Gram matrices of the blocks.
-std::map<int, Grams> gramsOf(const Fitter& fitter, const FitState& state,
-                             const std::vector<Eigen::VectorXd>& without, size_t& rows) {
+/// Gram matrices of the blocks; columns: wheels, prediction, and what each effect changes.
+BlockGrams gramsOf(const Fitter& fitter, const FitState& state,
+                   const std::vector<Eigen::VectorXd>& without, size_t& rows) {
   const Observations& data = fitter.data();
   const MeasurementModel& ins = state.model.measurement;
   const auto columns = static_cast<Eigen::Index>(2 + without.size());
   std::vector<WheelSpeeds> wheels;
   for (const Drive& drive : data.drives()) wheels.emplace_back(drive, state.model.vehicle.gauge);
-  std::map<int, Grams> blocks;
+  BlockGrams blocks;
   Eigen::VectorXd values(columns);
   for (size_t i = 0; i < data.all().size(); ++i) {
     const Observation& row = data.all()[i];
@@ -81,11 +75,7 @@ std::map<int, Grams> gramsOf(const Fitter& fitter, const FitState& state,
       values[static_cast<Eigen::Index>(2 + e)] = values[1] - valueOf(without[e]);
     if (!values.allFinite()) continue;
     values /= state.scales[at];
-    Grams& block = blocks
-                       .try_emplace(row.block, Grams{Gram::Zero(columns, columns),
-                                                     Gram::Zero(columns, columns)})
-                       .first->second;
-    block[turning ? 1 : 0] += values * values.transpose();
+    gramsAt(blocks, row.block, columns)[turning ? 1 : 0] += values * values.transpose();
     ++rows;
   }
   return blocks;
@@ -97,9 +87,9 @@ Eigen::VectorXd sharesOf(const Grams& grams) {
   const Eigen::Index effects = grams[0].cols() - 2;
   Eigen::VectorXd hidden = Eigen::VectorXd::Constant(effects, 0.5);  // 1 - share
   for (int round = 0; round < kRounds; ++round) {
-    Gram matrix = Gram::Zero(effects, effects);
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(effects, effects);
     Eigen::VectorXd pull = Eigen::VectorXd::Zero(effects);
-    for (const Gram& of : grams) {
+    for (const Eigen::MatrixXd& of : grams) {
       Eigen::VectorXd mix = Eigen::VectorXd::Zero(of.cols());
       mix[1] = 1.0;
       mix.tail(effects) = -hidden;
@@ -120,7 +110,7 @@ Eigen::VectorXd sharesOf(const Grams& grams) {
 double unlikeScale(const Grams& grams, Eigen::Index effect) {
   double own = 0.0;
   double all = 0.0;
-  for (const Gram& of : grams) {
+  for (const Eigen::MatrixXd& of : grams) {
     all += of(effect, effect);
     if (of(1, 1) > 0.0) own += of(effect, effect) - of(1, effect) * of(1, effect) / of(1, 1);
   }
@@ -178,27 +168,17 @@ std::map<std::string, WheelWitness> wheelWitnesses(const Fitter& fitter, const F
     ++i;
   }
   size_t rows = 0;
-  const std::map<int, Grams> blocks = gramsOf(fitter, state, without, rows);
+  const BlockGrams blocks = gramsOf(fitter, state, without, rows);
   if (asked.empty() || rows < kLeastRows || blocks.size() < 2) return {};
-  Grams all = blocks.begin()->second;
-  for (auto block = std::next(blocks.begin()); block != blocks.end(); ++block)
-    for (size_t kind = 0; kind < all.size(); ++kind) all[kind] += block->second[kind];
-  const Eigen::VectorXd shares = sharesOf(all);
-  // Jackknife over blocks.
-  Eigen::VectorXd sums = Eigen::VectorXd::Zero(shares.size());
-  for (const auto& [number, block] : blocks) {
-    const Grams others{all[0] - block[0], all[1] - block[1]};
-    sums += (sharesOf(others) - shares).cwiseAbs2();
-  }
-  const auto count = static_cast<double>(blocks.size());
-  const double quantile = studentQuantile(count - 1.0);
+  const BlockEstimate shares = estimateOver(blocks, sharesOf);
   std::map<std::string, WheelWitness> witnesses;
   for (size_t i = 0; i < asked.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    const double error = std::sqrt(sums[at] * (count - 1.0) / count);
-    if (!(error < kSharp) || unlikeScale(all, 2 + at) < kUnlike) continue;
+    const double error = shares.errors[at];
+    if (!(error < kSharp) || unlikeScale(shares.all, 2 + at) < kUnlike) continue;
+    const double half = shares.quantile * error;
     for (const std::string& effect : asked[i])
-      witnesses[effect] = {shares[at], shares[at] - quantile * error, shares[at] + quantile * error,
+      witnesses[effect] = {shares.values[at], shares.values[at] - half, shares.values[at] + half,
                            asked[i].size() > 1};
   }
   return witnesses;

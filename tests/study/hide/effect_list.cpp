@@ -26,4 +26,13 @@ const EffectSpec& effectNamed(const std::string& name) {
   throw std::invalid_argument("effect '" + name + "' is unknown; tread-hide list shows them");
 }
 
+std::string placeOf(const EffectSpec& effect) {
+  if (effect.kind != EffectKind::kVehicle || effect.form != EffectForm::kPhysical) return "";
+  const std::vector<EffectSpec> drive = driveEffects();
+  const bool in_drive = std::any_of(drive.begin(), drive.end(), [&](const EffectSpec& other) {
+    return std::string(other.name) == effect.name;
+  });
+  return in_drive ? "drive" : "ground";
+}
+
 }  // namespace tread::blind

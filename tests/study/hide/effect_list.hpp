@@ -46,6 +46,10 @@ const std::vector<EffectSpec>& effectList();
 /// An effect by name; throws std::invalid_argument naming the unknown one.
 const EffectSpec& effectNamed(const std::string& name);
 
+/// Where a vehicle effect is: "drive" before the track, "ground" where forces resist the motion;
+/// empty for what only changes the motion or what is said of it.
+std::string placeOf(const EffectSpec& effect);
+
 // The hiders by what they act on; a new one is a function and its line in one of these files.
 std::vector<EffectSpec> driveEffects();
 std::vector<EffectSpec> turningEffects();

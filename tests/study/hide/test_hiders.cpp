@@ -190,6 +190,13 @@ TEST_CASE("a single effect on the vehicle leaves programme, ground and instrumen
   CHECK(compared > 100);
 }
 
+TEST_CASE("an effect is in the drive or on the ground, or only in the motion") {
+  CHECK(placeOf(effectNamed("battery_sag")) == "drive");
+  CHECK(placeOf(effectNamed("rolling_resistance")) == "ground");
+  CHECK(placeOf(effectNamed("body_inertia")).empty());
+  CHECK(placeOf(effectNamed("gyro_bias")).empty());
+}
+
 TEST_CASE("the plain vehicle drives as told and hardly shows what is to be hidden") {
   const Twist2 straight = steadyTwist({}, 0.0, {0.5, 0.5});
   CHECK(straight.v_x == Approx(0.61).epsilon(0.02));

@@ -29,6 +29,7 @@ Json effectOf(const HiddenTruth& hidden, double size) {
   effect["kind"] = nameOf(spec.kind);
   effect["form"] = spec.form == EffectForm::kPhysical ? "physical" : "kinematic";
   effect["shape"] = spec.shape == EffectShape::kSame ? "same" : "other";
+  effect["place"] = placeOf(spec);
   effect["how"] = spec.how;
   effect["size"] = size;
   effect["levers"] = listOf(hidden.levers);

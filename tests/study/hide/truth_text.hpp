@@ -42,7 +42,8 @@ struct CaseTruth {
 ///   duration_s, programme, noise {...}, size
 ///   effects [{name, kind vehicle|measurement|out_of_catalogue,
 ///     form physical (changed in the 1 kHz dynamics)|kinematic (in the motion or what is said of
-///     it), shape same|other (as the catalogue's equation in steady motion), how, size, levers
+///     it), shape same|other (as the catalogue's equation in steady motion), place drive|ground|""
+///     (before the track|forces that resist the motion|neither), how, size, levers
 ///     [{name, value, unit, measured}]      what was turned in the generator equivalent [{name,
 ///     value, unit, measured}]  in the catalogue's terms, as a change against the
 ///       plain vehicle; measured: least squares over the patterns' steady halves

@@ -35,6 +35,7 @@ HiddenEffect hiddenOf(const Json& json) {
   effect.kind = json.value("kind", "");
   effect.form = json.value("form", "");
   effect.shape = json.value("shape", "");
+  effect.place = json.value("place", "");
   effect.group = wordsAt(json, "group");
   if (json.contains("together"))
     effect.together = json.at("together").get<std::vector<std::vector<std::string>>>();
@@ -79,6 +80,10 @@ NamedEffect namedOf(const Json& json, const Json& nominal) {
   effect.runner_ups = wordsAt(json, "runner_up");
   for (const auto& [name, value] : json.at("parameters").items())
     effect.parameters.push_back(estimatedOf(effect.name + "." + name, value, nominal));
+  if (json.contains("motor_currents_rise")) {
+    const Json& load = json.at("motor_currents_rise").at("load");
+    if (load.is_boolean()) effect.load = load.get<bool>();
+  }
   return effect;
 }
 

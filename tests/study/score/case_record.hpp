@@ -38,6 +38,7 @@ struct HiddenEffect {
   std::string kind;                ///< vehicle, measurement, out_of_catalogue
   std::string form;                ///< physical, kinematic
   std::string shape;               ///< same, other: as the catalogue's equation or only like it
+  std::string place;               ///< drive, ground; empty = neither
   std::vector<std::string> group;  ///< each of these alone is the same
   std::vector<std::vector<std::string>> together;  ///< these are, where they are all there
   std::vector<std::string> depends_on;
@@ -79,6 +80,8 @@ struct NamedEffect {
   std::vector<std::string> group;
   std::vector<std::string> runner_ups;
   std::vector<Estimated> parameters;
+  /// Whether the motor currents call it a load; nothing where they do not tell.
+  std::optional<bool> load = {};
 };
 
 /// What tread-gap answered.

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "tests/study/score/scores.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -150,6 +151,36 @@ void addPairsAndUnknown(Scorer& scorer) {
   scorer.share("NO_DISCREPANCY", unknown, verdictIs("NO_DISCREPANCY"));
 }
 
+/// Whether the motor currents call something that was named a load, or no load.
+bool isCalled(const JudgedCase& one, bool load) {
+  const std::vector<NamedEffect>& named = one.record.answer.effects;
+  return std::any_of(named.begin(), named.end(),
+                     [load](const NamedEffect& effect) { return effect.load == load; });
+}
+
+/// Single effects of the vehicle in the drive or on the ground where something is named: what the
+/// motor currents say of it.
+void addCurrents(Scorer& scorer) {
+  scorer.in("motor currents");
+  for (const bool load : {false, true}) {
+    const std::string place = load ? "ground" : "drive";
+    const Test among = [place](const JudgedCase& one) {
+      return one.record.truth.kind == "single" && !one.record.answer.effects.empty() &&
+             one.record.truth.effects.front().place == place;
+    };
+    const Test right = [load](const JudgedCase& one) {
+      return isCalled(one, load) && !isCalled(one, !load);
+    };
+    const Test wrong = [load](const JudgedCase& one) { return isCalled(one, !load); };
+    const Test silent = [right, wrong](const JudgedCase& one) {
+      return !right(one) && !wrong(one);
+    };
+    scorer.share(place + ": right", among, right);
+    scorer.share(place + ": wrong", among, wrong);
+    scorer.share(place + ": nothing said", among, silent);
+  }
+}
+
 void addDegenerate(Scorer& scorer) {
   const Test all = isKind("degenerate");
   const Test exact = both(all, fullProgramme);
@@ -251,6 +282,7 @@ std::vector<ScoreLine> scoresOf(const std::vector<JudgedCase>& cases) {
   addNulls(scorer);
   addSingles(scorer);
   addPairsAndUnknown(scorer);
+  addCurrents(scorer);
   addDegenerate(scorer);
   addSemi(scorer);
   addBadLogs(scorer);

@@ -176,6 +176,27 @@ TEST_CASE("shards of another study or with other answers are refused") {
   CHECK_THROWS_WITH(merged({shards.path() + "/none"}), Catch::Contains("neither cases.jsonl"));
 }
 
+TEST_CASE("what the motor currents say is right, wrong or nothing, by where the effect is") {
+  const auto caseOf = [](const char* place, std::vector<std::optional<bool>> loads) {
+    CaseRecord record = answered(hidden({"rolling_resistance"}, "single"),
+                                 std::vector<std::string>(loads.size(), "rolling_resistance"));
+    record.truth.effects.front().place = place;
+    for (size_t i = 0; i < loads.size(); ++i) record.answer.effects[i].load = loads[i];
+    return judged(record);
+  };
+  const std::vector<ScoreLine> lines = scoresOf(
+      {caseOf("ground", {true}), caseOf("ground", {true, std::nullopt}), caseOf("ground", {false}),
+       caseOf("ground", {true, false}), caseOf("ground", {std::nullopt}), caseOf("drive", {false}),
+       caseOf("drive", {}), caseOf("", {true})});
+  const auto hits = [&](const char* what) { return lineOf(lines, "motor currents", what).hits; };
+  CHECK(lineOf(lines, "motor currents", "ground: right").cases == 5);
+  CHECK(hits("ground: right") == 2);
+  CHECK(hits("ground: wrong") == 2);
+  CHECK(hits("ground: nothing said") == 1);
+  CHECK(lineOf(lines, "motor currents", "drive: right").cases == 1);
+  CHECK(hits("drive: right") == 1);
+}
+
 TEST_CASE("a broken line of cases is named") {
   CHECK_THROWS_WITH(scored({kHeader, R"({"case":"0007"})"}), Catch::Contains("case 0007"));
 }

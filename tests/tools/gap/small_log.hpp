@@ -43,7 +43,8 @@ class SmallLog {
     motor_.command_left = static_cast<float>(command.left);
     motor_.command_right = static_cast<float>(command.right);
     motor_.battery_voltage = voltage;
-    motor_.current_left = motor_.current_right = static_cast<float>(kNaN);
+    motor_.current_left = current_left;
+    motor_.current_right = current_right;
     motor_.track_speed_left = static_cast<float>(speed.left);
     motor_.track_speed_right = static_cast<float>(speed.right);
     add(kMotor, motor_);
@@ -91,6 +92,8 @@ class SmallLog {
 
   std::vector<LogEvent> events;
   float voltage = static_cast<float>(kNaN);
+  float current_left = static_cast<float>(kNaN);
+  float current_right = static_cast<float>(kNaN);
 
  private:
   motor_t motor_{};

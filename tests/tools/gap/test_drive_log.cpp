@@ -105,6 +105,21 @@ TEST_CASE(
   REQUIRE(result.segments[1].end == Approx(15.0));
 }
 
+TEST_CASE("motor currents are read where both tracks' are known") {
+  SmallLog log;
+  for (int i = 0; i < 100; ++i) {
+    log.current_left = i < 50 ? 3.5F : static_cast<float>(kNaN);
+    log.current_right = -1.5F;
+    log.motor(0.05 * i, {1.0, 1.0});
+    log.ins(0.05 * i, {0.05 * i, 0.0, 0.0}, 0.0);
+  }
+  const Drive result = toDrive(toDriveLog("a", log.sorted()));
+  REQUIRE(result.currents.size() == 50);
+  REQUIRE(result.currents[49].time == Approx(2.45));
+  REQUIRE(result.currents[49].left == 3.5);
+  REQUIRE(result.currents[49].right == -1.5);
+}
+
 TEST_CASE("a jump or a silence of the INS begins a segment whose commands begin before its poses") {
   SmallLog log;
   for (int i = 0; i < 600; ++i) {

@@ -146,6 +146,48 @@ TEST_CASE("after an effect stands where the wheel speeds say that it is") {
   CHECK_THAT(sentenceWith({0.5, 0.3, 0.7}), Catch::EndsWith("whether it is in the drive."));
 }
 
+TEST_CASE("after it stands whether it is load, as the motor currents say") {
+  FoundEffect effect = samples::turnLimit();
+  CHECK(witnessSentences(effect).empty());
+  effect.currents = CurrentWitness{12.0, 10.0, 14.0};
+  CHECK_THAT(witnessSentences(effect),
+             Catch::Contains("rise by 12.0 % per percent (10.0 to 14.0): it is load"));
+  effect.currents = CurrentWitness{0.9, 0.2, 1.6};
+  CHECK_THAT(witnessSentences(effect), Catch::Contains("do not tell whether it is load"));
+  effect.currents = CurrentWitness{0.1, -0.1, 0.3};
+  CHECK_THAT(witnessSentences(effect),
+             Catch::EndsWith("by 0.1 % per percent (-0.1 to 0.3): the drive gives less, or the "
+                             "tracks slip."));
+}
+
+TEST_CASE("wheel speeds and motor currents together tell the drive, the load and slipping tracks") {
+  FoundEffect effect = samples::turnLimit();
+  const WheelWitness in_wheels{0.97, 0.9, 1.04};
+  const WheelWitness under_wheels{0.1, -0.1, 0.3};
+  effect.currents = CurrentWitness{0.1, -0.1, 0.3};
+  effect.wheels = in_wheels;
+  CHECK_THAT(witnessSentences(effect), Catch::EndsWith("(-0.1 to 0.3): the drive gives less."));
+  effect.wheels = under_wheels;
+  CHECK_THAT(witnessSentences(effect), Catch::EndsWith("(-0.1 to 0.3): the tracks slip."));
+  effect.wheels = in_wheels;
+  effect.currents = CurrentWitness{12.0, 10.0, 14.0};
+  CHECK_THAT(witnessSentences(effect), !Catch::Contains("in the drive"));
+  CHECK_THAT(witnessSentences(effect), Catch::Contains("the wheels turn slower"));
+}
+
+TEST_CASE("after it stands whether it is the battery, as the voltage says") {
+  FoundEffect effect = samples::turnLimit();
+  effect.voltage = VoltageWitness{0.98, 0.9, 1.06};
+  CHECK_THAT(witnessSentences(effect),
+             Catch::EndsWith("falls with it, 98 % as much (90 to 106 %): it may be the battery."));
+  effect.name = "battery_sag";
+  CHECK_THAT(witnessSentences(effect), Catch::EndsWith(": it is the battery."));
+  effect.voltage = VoltageWitness{0.02, 0.0, 0.04};
+  CHECK_THAT(witnessSentences(effect), Catch::EndsWith("(0 to 4 %): it is not the battery."));
+  effect.voltage = VoltageWitness{0.5, 0.2, 0.8};
+  CHECK_THAT(witnessSentences(effect), Catch::EndsWith("tell whether it is the battery."));
+}
+
 TEST_CASE("a report shows where, how, step by step, the parameters and what else it could be") {
   const std::string text = markdown(GapVerdict::kFound);
   for (const char* words : {"Where simulation and measurement disagree",

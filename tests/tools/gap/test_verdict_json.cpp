@@ -49,6 +49,25 @@ TEST_CASE("what the wheel speeds show of an effect is in verdict.json where they
   CHECK_FALSE(json["effects"][1].contains("wheel_speeds_show"));
 }
 
+TEST_CASE("so is what the motor currents and the battery voltage do with it") {
+  Finding finding = samples::finding(GapVerdict::kFound);
+  finding.identified.effects[0].currents = CurrentWitness{12.0, 10.0, 14.0};
+  finding.identified.effects[0].voltage = VoltageWitness{0.02, 0.0, 0.04};
+  const Json json = verdictJson(finding, samples::inputs());
+  const Json& effect = json["effects"][0];
+  CHECK(effect["motor_currents_rise"] ==
+        Json({{"share", 12.0}, {"low", 10.0}, {"high", 14.0}, {"load", true}}));
+  CHECK(effect["battery_voltage_falls"] ==
+        Json({{"share", 0.02}, {"low", 0.0}, {"high", 0.04}, {"battery", false}}));
+  finding.identified.effects[0].currents = CurrentWitness{1.0, 0.2, 1.8};
+  finding.identified.effects[0].voltage = VoltageWitness{0.5, 0.2, 0.8};
+  const Json vague = verdictJson(finding, samples::inputs());
+  CHECK(vague["effects"][0]["motor_currents_rise"]["load"].is_null());
+  CHECK(vague["effects"][0]["battery_voltage_falls"]["battery"].is_null());
+  for (const char* key : {"motor_currents_rise", "battery_voltage_falls"})
+    CHECK_FALSE(json["effects"][1].contains(key));
+}
+
 TEST_CASE("a limit stands in verdict.json as its reciprocal and as itself") {
   const Json json = verdictJson(samples::finding(GapVerdict::kFound), samples::inputs());
   const Json& parameters = json["effects"][0]["parameters"];

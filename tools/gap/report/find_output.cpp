@@ -52,6 +52,11 @@ void add(Json& parameters, const std::string& before_name, const ParameterEstima
     parameters[before_name + natural.parameter] = estimateJson(natural);
 }
 
+/// What a witness says; null where it does not tell.
+Json answerJson(bool yes, bool no) {
+  return yes == no ? Json(nullptr) : Json(yes);
+}
+
 Json effectJson(const FoundEffect& effect) {
   Json parameters = Json::object();
   for (const ParameterEstimate& estimate : effect.parameters) add(parameters, "", estimate);
@@ -68,6 +73,18 @@ Json effectJson(const FoundEffect& effect) {
     json["wheel_speeds_show"] = {{"share", number(effect.wheels->share)},
                                  {"low", number(effect.wheels->low)},
                                  {"high", number(effect.wheels->high)}};
+  if (effect.currents)
+    json["motor_currents_rise"] = {
+        {"share", number(effect.currents->rise)},
+        {"low", number(effect.currents->low)},
+        {"high", number(effect.currents->high)},
+        {"load", answerJson(effect.currents->saysLoad(), effect.currents->saysNoLoad())}};
+  if (effect.voltage)
+    json["battery_voltage_falls"] = {
+        {"share", number(effect.voltage->share)},
+        {"low", number(effect.voltage->low)},
+        {"high", number(effect.voltage->high)},
+        {"battery", answerJson(effect.voltage->saysBattery(), effect.voltage->saysOther())}};
   return json;
 }
 

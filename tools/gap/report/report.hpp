@@ -50,8 +50,12 @@ std::string sentenceOf(const FoundEffect& effect);
 /// The same; of a term that acts on top of what the model had with their sum, too.
 std::string sentenceOf(const FoundEffect& effect, const ModelDocument& model);
 
-/// One such sentence for each effect found, behind its name, and one for each term of the model
-/// that has changed.
+/// What wheel speeds, motor currents and battery voltage say of an effect, each as a sentence with
+/// a space before it; empty where none says anything.
+std::string witnessSentences(const FoundEffect& effect);
+
+/// One such sentence for each effect found, with what its witnesses say, behind its name, and one
+/// for each term of the model that has changed.
 std::vector<std::string> sentencesOf(const Finding& finding);
 
 /// What a term and what it acts on top of make together.

@@ -179,33 +179,12 @@ std::string checkOf(const FoundEffect& effect) {
   return known.negative_check + said(-effect.parameters.front().value, "1") + ". " + known.check;
 }
 
-namespace {
-
-/// What the wheel speeds say of an effect, as a sentence after its own; empty where they do not.
-std::string wheelSentence(const FoundEffect& effect) {
-  if (!effect.wheels) return "";
-  const WheelWitness& wheels = *effect.wheels;
-  const auto percent = [](double share) {
-    return fixed(100.0 * std::clamp(share, -9.99, 9.99), 0);
-  };
-  const std::string whole = wheels.of_lags ? "the lags together" : "it";
-  std::string text = " The wheel speeds show " +
-                     (wheels.low > 1.0 ? "all of " + whole + " and more"
-                                       : percent(wheels.share) + " % of " + whole) +
-                     " (" + percent(wheels.low) + " to " + percent(wheels.high) + " %)";
-  if (wheels.saysDrive()) return text + ": it is in the drive.";
-  if (wheels.saysGround()) return text + ": it is under the wheels, not in the drive.";
-  return text + ": that does not tell whether it is in the drive.";
-}
-
-}  // namespace
-
 std::vector<std::string> sentencesOf(const Finding& finding) {
   std::vector<std::string> sentences;
   for (const FoundEffect& effect : finding.identified.effects)
     sentences.push_back(shortTitleOf(effect.name) + ": " +
                         inSentence(sentenceOf(effect, finding.identified.model)) +
-                        wheelSentence(effect));
+                        witnessSentences(effect));
   for (const ParameterEstimate& estimate : finding.identified.calibrated)
     if (estimate.moved) sentences.push_back(movedSentence(estimate));
   return sentences;
