@@ -49,6 +49,22 @@ TEST_CASE("an effect of the drive lessens the end error where it was not fitted,
   CHECK(result.record.negligible.empty());
 }
 
+TEST_CASE("an effect that rows show far beyond chance stays though no execution tells of it") {
+  Drive drive = syntheticDrive(samples::vehicleWith({{"motor_deadband.speed", 0.1}}), 200.0, 2);
+  drive.executions.clear();
+  const Observations data({drive}, {});
+  const Fitter fitter(data);
+  FoundTerms result;
+  result.calibrated = fitter.start(syntheticVehicle(), {});
+  result.state = result.calibrated;
+  fitter.add(result.state, freeParameter(syntheticVehicle(), "motor_deadband.speed"), 0.05);
+  fitter.fit(result.state);
+  fitter.renewNoise(result.state);
+  result.effects = {"motor_deadband"};
+  dropUnconfirmed({fitter, {}, kSilent, result});
+  CHECK(result.effects == Names{"motor_deadband"});
+}
+
 TEST_CASE("an effect that only bends the model away from the drive goes, and is named") {
   const Rig rig({}, 200.0, 2);
   FoundTerms result = resultOf(rig, {});

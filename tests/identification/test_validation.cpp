@@ -289,3 +289,24 @@ TEST_CASE("a gain of one block has no error, and the other way round it is a los
   CHECK(back.error == both.error);
   CHECK(gap::gainOf(first, second, {0, 0}).value == 0.0);
 }
+
+TEST_CASE("a held number moves by chance as far as the rows can pull it, a free one further") {
+  const Rig rig({}, 200.0, 1);
+  FitState state = rig.stateOf(blockNoise(rig.data, 3), 0.9);
+  state.jacobian = waves(rig.data, 1);
+  state.free.push_back(freeParameter(state.model, "yaw_pull.pull"));
+  const double information = 5.0 / 7.0 * state.jacobian.squaredNorm() / (0.9 * 0.9);
+  const double scatter = parameterCovariance(rig.fitter, state)(0, 0) * information * information;
+  CHECK(moveDeviations(rig.fitter, state)[0] == Approx(std::sqrt(scatter) / information));
+
+  const double deviation = 0.7 / std::sqrt(information);
+  state.model.covariance = {{"yaw_pull.pull"}, {{deviation * deviation}}};
+  const double known = deviation * deviation;
+  CHECK(moveDeviations(rig.fitter, state)[0] ==
+        Approx(std::sqrt(scatter / (information * information) + known)));
+  state.free[0].deviation = deviation;
+  CHECK(
+      moveDeviations(rig.fitter, state)[0] ==
+      Approx(std::sqrt(scatter + information * information * known) / (information + 1.0 / known)));
+  CHECK(moveDeviations(rig.fitter, FitState{}).size() == 0);
+}

@@ -56,6 +56,14 @@ TEST_CASE("a term of the vehicle that moved is a finding if the end error falls 
   CHECK(judged(findingWith({width}, 1.0)) == GapVerdict::kNoDiscrepancy);
 }
 
+TEST_CASE("a term that moved is a finding if the end error would fall were the new model right") {
+  Finding finding = findingWith({moved("track_width.widening", 0.2, 0.4)}, 1.0);
+  finding.gap->apart.yaw.median = 0.1;  // of an error of 1: it would be 1.005
+  CHECK(judged(finding) == GapVerdict::kNoDiscrepancy);
+  finding.gap->apart.yaw.median = 0.2;
+  CHECK(judged(finding) == GapVerdict::kFound);
+}
+
 TEST_CASE("a number of the nominal model that moved is a finding of the vehicle, too") {
   CHECK(judged(findingWith({moved("delay", 0.1, 0.3)}, 0.8)) == GapVerdict::kFound);
 }
