@@ -72,15 +72,21 @@ Eigen::MatrixXd orthogonal(const FitState& state, const Eigen::MatrixXd& directi
                            const Eigen::VectorXd& metric) {
   if (state.free.empty()) return directions;
   const Eigen::MatrixXd weighted = metric.asDiagonal() * state.jacobian;
-  Eigen::MatrixXd normal = state.jacobian.transpose() * weighted;
+  return directions - state.jacobian * imitation(state, metric, weighted.transpose() * directions);
+}
+
+}  // namespace
+
+Eigen::MatrixXd imitation(const FitState& state, const Eigen::VectorXd& metric,
+                          const Eigen::MatrixXd& shared) {
+  if (state.free.empty()) return shared;
+  Eigen::MatrixXd normal = state.jacobian.transpose() * metric.asDiagonal() * state.jacobian;
   normal.diagonal() += priorPrecision(state.free) / kInformation;
   // A ridge far below rounding of the data keeps columns apart that are the same.
   normal.diagonal() += 1e-10 * normal.diagonal() +
                        Eigen::VectorXd::Constant(normal.rows(), 1e-12 * normal.trace() + 1e-300);
-  return directions - state.jacobian * normal.ldlt().solve(weighted.transpose() * directions);
+  return normal.ldlt().solve(shared);
 }
-
-}  // namespace
 
 Eigen::VectorXd heldOutLoss(const Fitter& fitter, const FitState& state) {
   const Observations& data = fitter.data();
