@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 
 #include "modules/identification/core/observations.hpp"
 #include "modules/identification/core/screening.hpp"
+#include "modules/identification/core/smooth_test.hpp"
 
 namespace tread::gap {
 namespace {
 
-constexpr int kDraws = 1999;
+constexpr int kDraws = 1999;  // of the bootstrap over the variables
 
 /// Each variable in the rows of one channel only, for every channel.
 Eigen::MatrixXd perChannel(const Observations& data, const std::vector<Variable>& variables) {
@@ -253,39 +253,73 @@ std::string mostLike(const EffectDirections& all, const Eigen::VectorXd& directi
   return like;
 }
 
-}  // namespace
+/// What is unexplained, and the direction in which it is.
+struct Rest {
+  Unexplained told;
+  Eigen::VectorXd direction;  ///< rows x 1
+};
 
-Adequacy testAdequacy(const Fitter& fitter, const FitState& state, double alpha, uint64_t seed) {
+/// Adds the variables on which residuals depend; returns the least p-value of all.
+double restsOnVariables(const Fitter& fitter, const FitState& state, double alpha, uint64_t seed,
+                        std::vector<Rest>& rests) {
   const std::vector<Variable> variables = variablesOf(fitter.data(), state.model);
   const Eigen::MatrixXd directions = perChannel(fitter.data(), variables);
   const ScoreTest test(fitter, state, directions);
   const std::vector<double> chance = test.largestByChance(kDraws, seed);
-  Adequacy adequacy;
-  std::vector<Eigen::Index> columns;  // of what is unexplained
+  double least = 1.0;
   for (size_t channel = 0; channel < kChannels; ++channel)
     for (size_t v = 0; v < variables.size(); ++v) {
       const auto at = static_cast<Eigen::Index>(channel * variables.size() + v);
       const double p = familyWise(chance, test.score(at));
-      adequacy.p_value = std::min(adequacy.p_value, p);
+      least = std::min(least, p);
       if (p > alpha) continue;
-      columns.push_back(at);
-      adequacy.unexplained.push_back(
-          {channelName(static_cast<Channel>(channel)), variables[v].name, test.score(at), p, ""});
+      rests.push_back(
+          {{channelName(static_cast<Channel>(channel)), variables[v].name, test.score(at), p, ""},
+           directions.col(at)});
     }
-  if (columns.empty()) return adequacy;
-  std::vector<size_t> order(columns.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
-    return std::abs(adequacy.unexplained[a].score) > std::abs(adequacy.unexplained[b].score);
+  return least;
+}
+
+constexpr double kSmoothShare = 0.5;  // of the chance of an error, beside that of the variables
+
+/// Adds channels whose residuals are a function of all conditions together and that no rest is of
+/// so far; returns the least p-value of all, as of a test at `alpha`.
+double restsOnAll(const Fitter& fitter, const FitState& state, double alpha, uint64_t seed,
+                  std::vector<Rest>& rests) {
+  double least = 1.0;
+  for (SmoothRest& rest : smoothRests(fitter, state, inputsOf(fitter.data(), state.model),
+                                      kSmoothShare * alpha, seed)) {
+    const double p = std::min(1.0, rest.p_value / kSmoothShare);
+    least = std::min(least, p);
+    const bool told = std::any_of(rests.begin(), rests.end(), [&rest](const Rest& other) {
+      return std::any_of(rest.channels.begin(), rest.channels.end(), [&other](Channel channel) {
+        return other.told.channel == channelName(channel);
+      });
+    });
+    if (p <= alpha && !told)
+      rests.push_back({{channelName(rest.channels.front()), rest.variable, rest.score, p, ""},
+                       std::move(rest.function)});
+  }
+  return least;
+}
+
+}  // namespace
+
+Adequacy testAdequacy(const Fitter& fitter, const FitState& state, double alpha, uint64_t seed) {
+  std::vector<Rest> rests;
+  Adequacy adequacy;
+  adequacy.p_value = restsOnVariables(fitter, state, alpha, seed, rests);
+  adequacy.p_value = std::min(adequacy.p_value, restsOnAll(fitter, state, alpha, seed, rests));
+  if (rests.empty()) return adequacy;
+  std::stable_sort(rests.begin(), rests.end(), [](const Rest& a, const Rest& b) {
+    return std::abs(a.told.score) > std::abs(b.told.score);
   });
   const EffectDirections effects = effectDirections(fitter, state);
-  std::vector<Unexplained> sorted;
-  for (const size_t i : order) {
-    sorted.push_back(adequacy.unexplained[i]);
-    if (sorted.size() <= kLikened)
-      sorted.back().like = mostLike(effects, directions.col(columns[i]), state.scales);
+  for (Rest& rest : rests) {
+    if (adequacy.unexplained.size() < kLikened)
+      rest.told.like = mostLike(effects, rest.direction, state.scales);
+    adequacy.unexplained.push_back(std::move(rest.told));
   }
-  adequacy.unexplained = std::move(sorted);
   return adequacy;
 }
 
@@ -295,6 +329,10 @@ ResidualAtlas residualAtlas(const Observations& data, const ModelDocument& befor
   AtlasRows of{variablesOf(data, before), data.residuals(data.predict(before)),
                data.residuals(data.predict(after))};
   of.variables.push_back(elapsedTime(data));
+  for (Variable& input : inputsOf(data, before))
+    if (std::none_of(of.variables.begin(), of.variables.end(),
+                     [&input](const Variable& other) { return other.name == input.name; }))
+      of.variables.push_back(std::move(input));
   ResidualAtlas atlas;
   for (size_t c = 0; c < kChannels; ++c) {
     const auto channel = static_cast<Channel>(c);

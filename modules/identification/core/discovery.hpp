@@ -23,10 +23,17 @@ struct Variable {
 /// All such quantities, from the simulated motion, the roll and pitch of the INS and the time.
 std::vector<Variable> variablesOf(const Observations& data, const ModelDocument& model);
 
-/// Tests every channel of the residuals for every variable, with the state's free parameters.
+/// Plain conditions of the motion, the commands and what was before, of which the residuals may be
+/// some function; speed and yaw rate first.
+std::vector<Variable> inputsOf(const Observations& data, const ModelDocument& model);
+
+/// Tests every channel of the residuals for every variable, with the state's free parameters, and
+/// for any smooth function of all conditions together.
 /** Of the strongest rests it says which effect of the catalogue, on or off, they resemble most in
  * their channel. It is not taken for that effect: its size was free to explain it, or no test, or a
- * person, took it in. */
+ * person, took it in. The chance of an error is `alpha` over all variables and half of it more for
+ * the smooth functions, so that these cost the variables no power; they are told where no variable
+ * of their channel is, by the condition that matters most. */
 Adequacy testAdequacy(const Fitter& fitter, const FitState& state, double alpha, uint64_t seed);
 
 /// Where the residuals of two models are: curves of every channel over variables that a person

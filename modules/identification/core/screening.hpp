@@ -45,6 +45,12 @@ Eigen::MatrixXd parameterCovariance(const Fitter& fitter, const FitState& state)
 /** A number that is held by what is known moves only as far as the rows can pull it. */
 Eigen::VectorXd moveDeviations(const Fitter& fitter, const FitState& state);
 
+/// Changes of the free parameters that imitate directions best (free x directions).
+/** `metric`: 1 / scale^2 of the rows that count, 0 of others (rows x 1); `shared`: Jacobian^T
+ * metric directions. */
+Eigen::MatrixXd imitation(const FitState& state, const Eigen::VectorXd& metric,
+                          const Eigen::MatrixXd& shared);
+
 /// Whether directions in which a prediction could change would bring it nearer to the measurement.
 /** Each column is freed of what the free parameters explain (orthogonal in the metric of the
  * scales: Neyman), its pull is summed block by block, and T = sum / root of the sum of squares. The

@@ -59,20 +59,18 @@ Eigen::VectorXd refitted(const FitState& state, const Eigen::VectorXd& residuals
   return change;
 }
 
-/// By how much the free parameters follow each direction, in the metric of 1 / scale^2 (free x
-/// directions): what is left of a direction is orthogonal to theirs.
-Eigen::MatrixXd followed(const FitState& state, const Eigen::MatrixXd& directions,
-                         const Eigen::VectorXd& metric, const Eigen::MatrixXd& prior) {
-  if (state.free.empty()) return Eigen::MatrixXd(0, directions.cols());
-  const Eigen::MatrixXd weighted = metric.asDiagonal() * state.jacobian;
-  Eigen::MatrixXd normal = state.jacobian.transpose() * weighted + prior / kInformation;
+}  // namespace
+
+Eigen::MatrixXd imitation(const FitState& state, const Eigen::VectorXd& metric,
+                          const Eigen::MatrixXd& shared) {
+  if (state.free.empty()) return shared;
+  Eigen::MatrixXd normal = state.jacobian.transpose() * metric.asDiagonal() * state.jacobian +
+                           priorPrecision(state) / kInformation;
   // A ridge far below rounding of the data keeps columns apart that are the same.
   normal.diagonal() += 1e-10 * normal.diagonal() +
                        Eigen::VectorXd::Constant(normal.rows(), 1e-12 * normal.trace() + 1e-300);
-  return normal.ldlt().solve(weighted.transpose() * directions);
+  return normal.ldlt().solve(shared);
 }
-
-}  // namespace
 
 Eigen::VectorXd heldOutLoss(const Fitter& fitter, const FitState& state) {
   const Observations& data = fitter.data();
@@ -204,9 +202,13 @@ ScoreTest::ScoreTest(const Fitter& fitter, const FitState& state,
     metric[i] = counts ? 1.0 / (state.scales[i] * state.scales[i]) : 0.0;
     pull[i] = counts ? pullOf(residuals[i], state.scales[i]) : 0.0;
   }
-  const Eigen::MatrixXd prior = priorPrecision(state);
-  const Eigen::MatrixXd follow = followed(state, directions, metric, prior);
-  own_ = state.free.empty() ? directions : directions - state.jacobian * follow;
+  Eigen::MatrixXd follow(0, directions.cols());
+  own_ = directions;
+  if (!state.free.empty()) {
+    const Eigen::MatrixXd weighted = metric.asDiagonal() * directions;
+    follow = imitation(state, metric, state.jacobian.transpose() * weighted);
+    own_ -= state.jacobian * follow;
+  }
   const Eigen::Index count = directions.cols();
   pulls_ = Eigen::MatrixXd::Zero(std::max(1, data.blocks()), count);
   block_information_ = pulls_;
@@ -216,7 +218,7 @@ ScoreTest::ScoreTest(const Fitter& fitter, const FitState& state,
       pulls_.row(block) += pull[i] * own_.row(i);
       block_information_.row(block) += kInformation * metric[i] * own_.row(i).cwiseAbs2();
     }
-  weighPrior(prior, follow, offExpected(state));
+  weighPrior(priorPrecision(state), follow, offExpected(state));
   scores_ = Eigen::VectorXd::Zero(count);
   uniqueness_ = Eigen::VectorXd::Zero(count);
   information_ = Eigen::VectorXd::Zero(count);

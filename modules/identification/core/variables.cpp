@@ -16,6 +16,8 @@ constexpr double kSlipped = 0.3;     // [m] after which a reversal is forgotten
 constexpr double kArm = 0.4;         // [m] way of a track in a turn on the spot, over its angle
 constexpr double kSettles = 0.5;     // [s] of standing
 constexpr double kStill = 0.02;      // [m/s] below it no direction changes
+constexpr double kBefore = 1.2;      // [s] over which commands count as those before
+constexpr double kLongSince = 3.0;   // [s] after which a command has been there for long
 
 /// What a vehicle has done before a sample of its motion.
 struct Past {
@@ -55,8 +57,11 @@ struct Conditions {
   double roll = 0.0, pitch = 0.0;
   double roll_change = 0.0, pitch_change = 0.0;  // [rad/s]
   double elapsed = 0.0;                          // share of the drive, -1..1
-  double voltage = 0.0;  // below that at the beginning, over it; 0 = not measured
-  double inner = 0.0;    // [m/s] of the inner track in the direction of the outer one
+  double voltage = 0.0;         // below that at the beginning, over it; 0 = not measured
+  double inner = 0.0;           // [m/s] of the inner track in the direction of the outer one
+  TrackCommand command;         // mean during the observation
+  TrackCommand command_before;  // mean over kBefore before it
+  double since_command = 0.0;   // [s] since the command has changed, at most kLongSince
   Past past;
 };
 
@@ -79,6 +84,51 @@ double voltageDrop(const std::vector<VoltageSample>& voltage, double time) {
                        [](double t, const VoltageSample& sample) { return t < sample.time; });
   if (after != voltage.begin()) --after;
   return 1.0 - after->voltage / voltage.front().voltage;
+}
+
+using Commands = std::vector<CommandSample>;
+
+/// The first command after a time.
+Commands::const_iterator commandAfter(const Commands& commands, double time) {
+  return std::upper_bound(commands.begin(), commands.end(), time,
+                          [](double t, const CommandSample& sample) { return t < sample.time; });
+}
+
+TrackCommand meanCommand(const Segment& segment, double from, double to) {
+  auto next = commandAfter(segment.commands, from);
+  TrackCommand now =
+      next == segment.commands.begin() ? segment.command_before : std::prev(next)->command;
+  TrackCommand sum{0.0, 0.0};
+  for (double time = from; time < to;) {
+    const bool changes = next != segment.commands.end() && next->time < to;
+    const double until = changes ? next->time : to;
+    sum.left += now.left * (until - time);
+    sum.right += now.right * (until - time);
+    time = until;
+    if (changes) now = (next++)->command;
+  }
+  return {sum.left / (to - from), sum.right / (to - from)};
+}
+
+double sinceCommand(const Segment& segment, double time) {
+  auto at = commandAfter(segment.commands, time);
+  while (at != segment.commands.begin()) {
+    const CommandSample& sample = *--at;
+    if (time - sample.time >= kLongSince) break;
+    const TrackCommand& before =
+        at == segment.commands.begin() ? segment.command_before : std::prev(at)->command;
+    if (before.left != sample.command.left || before.right != sample.command.right)
+      return time - sample.time;
+  }
+  return kLongSince;
+}
+
+/// Command of the inner track, in the direction of the outer one.
+double innerOf(const TrackCommand& command) {
+  const bool left_is_inner = std::abs(command.left) < std::abs(command.right);
+  const double inner = left_is_inner ? command.left : command.right;
+  const double outer = left_is_inner ? command.right : command.left;
+  return outer < 0.0 ? -inner : inner;
 }
 
 Conditions conditionsOf(const Observations& data, const Observation& row, double gauge,
@@ -113,6 +163,9 @@ Conditions conditionsOf(const Observations& data, const Observation& row, double
   }
   conditions.voltage = voltageDrop(drive.voltage, middle);
   conditions.inner = std::abs(now.v_x) - 0.5 * gauge * std::abs(now.omega);
+  conditions.command = meanCommand(segment, row.begin, row.end);
+  conditions.command_before = meanCommand(segment, row.begin - kBefore, row.begin);
+  conditions.since_command = sinceCommand(segment, row.begin);
   const auto sample =
       std::upper_bound(motion.begin(), motion.end(), row.begin,
                        [](double time, const MotionSample& one) { return time < one.time; });
@@ -192,6 +245,40 @@ const std::vector<Basis>& bases() {
   return all;
 }
 
+double forward(const TrackCommand& command) {
+  return 0.5 * (command.left + command.right);
+}
+
+double turning(const TrackCommand& command) {
+  return 0.5 * (command.right - command.left);
+}
+
+/// What a residual may depend on in a way that nobody has thought of; speed and yaw rate first.
+const std::vector<Basis>& inputs() {
+  static const std::vector<Basis> all{
+      {"v", "m/s", [](const Conditions& m) { return m.v; }},
+      {"yaw rate", "rad/s", [](const Conditions& m) { return m.omega; }},
+      {"change of v", "m/s2", [](const Conditions& m) { return m.v_change; }},
+      {"change of yaw rate", "rad/s2", [](const Conditions& m) { return m.omega_change; }},
+      {"roll", "rad", [](const Conditions& m) { return m.roll; }},
+      {"pitch", "rad", [](const Conditions& m) { return m.pitch; }},
+      {"elapsed time", "1", [](const Conditions& m) { return m.elapsed; }},
+      {"voltage drop", "1", [](const Conditions& m) { return m.voltage; }},
+      {"turns before", "1", [](const Conditions& m) { return m.past.turned; }},
+      {"just reversed", "1", [](const Conditions& m) { return m.past.reversed; }},
+      {"just set off", "1", [](const Conditions& m) { return m.past.rested; }},
+      {"forward command", "1", [](const Conditions& m) { return forward(m.command); }},
+      {"turning command", "1", [](const Conditions& m) { return turning(m.command); }},
+      {"forward command before", "1",
+       [](const Conditions& m) { return forward(m.command_before); }},
+      {"turning command before", "1",
+       [](const Conditions& m) { return turning(m.command_before); }},
+      {"time since the command", "s", [](const Conditions& m) { return m.since_command; }},
+      {"command of the inner track", "1", [](const Conditions& m) { return innerOf(m.command); }},
+      {"speed of the inner track", "m/s", [](const Conditions& m) { return m.inner; }}};
+  return all;
+}
+
 std::vector<Conditions> allConditions(const Observations& data, const ModelDocument& model) {
   const auto motions = data.simulate(model.vehicle);
   std::vector<std::vector<Past>> pasts;
@@ -205,18 +292,27 @@ std::vector<Conditions> allConditions(const Observations& data, const ModelDocum
   return conditions;
 }
 
-}  // namespace
-
-std::vector<Variable> variablesOf(const Observations& data, const ModelDocument& model) {
+std::vector<Variable> valuesOf(const std::vector<Basis>& of, const Observations& data,
+                               const ModelDocument& model) {
   const std::vector<Conditions> conditions = allConditions(data, model);
   std::vector<Variable> variables;
-  for (const Basis& basis : bases()) {
+  for (const Basis& basis : of) {
     Variable variable{basis.name, basis.unit, Eigen::VectorXd(conditions.size())};
     for (size_t i = 0; i < conditions.size(); ++i)
       variable.values[static_cast<Eigen::Index>(i)] = basis.value(conditions[i]);
     variables.push_back(std::move(variable));
   }
   return variables;
+}
+
+}  // namespace
+
+std::vector<Variable> variablesOf(const Observations& data, const ModelDocument& model) {
+  return valuesOf(bases(), data, model);
+}
+
+std::vector<Variable> inputsOf(const Observations& data, const ModelDocument& model) {
+  return valuesOf(inputs(), data, model);
 }
 
 }  // namespace tread::gap

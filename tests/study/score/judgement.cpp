@@ -84,10 +84,12 @@ bool standsFor(const std::string& variable, const std::string& word) {
   const bool turning = has("yaw rate");
   const bool speed = variable == "v" || variable == "|v|" || variable == "v^2" ||
                      variable == "v |v|" || variable == "sign of v";
-  if (word == "speed" || word == "command") return speed || (turning && !has("change"));
+  const bool before = has("command before");
+  const bool command = (has("command") && !before && !has("since")) || has("the inner track");
+  if (word == "speed" || word == "command") return speed || command || (turning && !has("change"));
   if (word == "acceleration" || word == "time_since_command" || word == "previous_command")
     return has("change of v") || has("change of |v|") || has("change of yaw rate") ||
-           has("reversed") || has("set off");
+           has("reversed") || has("set off") || before || has("since the command");
   if (word == "voltage") return has("elapsed") || has("voltage");
   if (word == "previous_turn") return turning || has("turns before");
   return false;

@@ -136,6 +136,22 @@ TEST_CASE(
   CHECK_FALSE(judge(record).right_variable);
 }
 
+TEST_CASE("a command of now and one of before are told apart as variables") {
+  CaseRecord record = hidden({"inner_track_stall"}, "out_of_catalogue");
+  record.answer.verdict = "NOT_IN_CATALOGUE";
+  const auto isRight = [&record](const char* truth, const char* said) {
+    record.truth.effects.front().depends_on = {truth};
+    record.answer.unexplained = {{"yaw rate", said}};
+    return judge(record).right_variable;
+  };
+  CHECK(isRight("command", "command of the inner track"));
+  CHECK(isRight("previous_command", "forward command before"));
+  CHECK(isRight("time_since_command", "time since the command"));
+  CHECK_FALSE(isRight("command", "forward command before"));
+  CHECK_FALSE(isRight("command", "time since the command"));
+  CHECK_FALSE(isRight("voltage", "turning command"));
+}
+
 TEST_CASE("a degenerate case is right where its alternatives are named together") {
   CaseRecord record = answered(hidden({"lever_arm_x"}, "degenerate"), {"icr_offset"});
   record.truth.right_names = {"icr_offset", "lever_arm_x"};
