@@ -126,7 +126,9 @@ std::vector<char> halfMask(const Observations& data, int half);
 /// Takes the effects that were not accepted out of a result unless the end error falls with them,
 /// by more than its standard error over blocks, on halves of the driving that the sizes of the
 /// effects were not fitted to.
-/** Effects of the INS, which may move no pose, may lessen what is left of the yaw rate instead. */
+/** Effects of the INS, which may move no pose, may lessen what is left of the yaw rate instead; and
+ * where rows show an effect by more than 2.5 standard errors, the ends need not. What is without
+ * them is fitted to the same halves. */
 void dropUnconfirmed(const SearchState& search);
 
 }  // namespace tread::gap

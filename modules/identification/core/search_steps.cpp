@@ -203,8 +203,10 @@ bool isConfirmed(const SearchState& search, const FitState& lacking) {
   Eigen::MatrixXd without = with;
   for (int half : {0, 1}) {
     const Fitter on_half = search.fitter.onRows(halfMask(data, half));
+    FitState lacks = lacking;
+    on_half.fit(lacks);
     addMissed(data, refitted(on_half, result), result.state.scales, 1 - half, with);
-    addMissed(data, lacking, result.state.scales, half, without);
+    addMissed(data, lacks, result.state.scales, 1 - half, without);
   }
   const bool measurement =
       std::all_of(result.effects.begin(), result.effects.end(), [](const std::string& effect) {
