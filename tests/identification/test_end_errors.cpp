@@ -7,6 +7,7 @@
 
 using namespace tread;
 using namespace tread::gap;
+using samples::Values;
 
 namespace {
 
@@ -140,4 +141,16 @@ TEST_CASE("an overlay begins where the execution does and ends with both errors"
   CHECK(overlay.error_before == Approx(0.2));
   CHECK(overlay.error_after == Approx(0.2));
   CHECK(maker.middleOf(errors[0]).x() == Approx(1.1));
+}
+
+TEST_CASE("a wrong model errs by what it is apart from the right one, beside what that errs") {
+  const Values pull{{"yaw_pull.pull", 0.1}};
+  const samples::Rig rig(pull, 200.0, 1);
+  const ModelDocument right = samples::vehicleWith(pull);
+  const double wrong = summaryOf(endErrors(rig.data, syntheticVehicle())).yaw.rms;
+  const double least = summaryOf(endErrors(rig.data, right)).yaw.rms;
+  const EndErrors two = apart(rig.data, syntheticVehicle(), right);
+  CHECK(two.yaw.rms > 0.02);
+  CHECK(std::hypot(least, two.yaw.rms) == Approx(wrong).epsilon(0.1));
+  CHECK(apart(rig.data, right, right).position.rms == 0.0);
 }

@@ -310,3 +310,14 @@ TEST_CASE("a held number moves by chance as far as the rows can pull it, a free 
       Approx(std::sqrt(scatter + information * information * known) / (information + 1.0 / known)));
   CHECK(moveDeviations(rig.fitter, FitState{}).size() == 0);
 }
+
+TEST_CASE("two numbers that no drive tells apart move by chance as far as they like") {
+  const Rig rig({}, 200.0, 1);
+  FitState state = rig.stateOf(blockNoise(rig.data, 3), 0.9);
+  state.jacobian.resize(rig.size(), 2);
+  state.jacobian << waves(rig.data, 1), waves(rig.data, 1);
+  state.free = {freeParameter(state.model, "yaw_pull.pull"),
+                freeParameter(state.model, "slip_ratio.slip")};
+  CHECK(std::isinf(moveDeviations(rig.fitter, state)[0]));
+  CHECK(std::isinf(moveDeviations(rig.fitter, state)[1]));
+}

@@ -315,7 +315,7 @@ void judge(Finding& finding, double adequacy_alpha, double least_gain) {
 namespace {
 
 constexpr int kLeastHalf = 10;           // blocks from which effects can be chosen, too
-constexpr double kAdequacyAlpha = 0.01;  // with the tests' 2 %: 3 % false alarms altogether
+constexpr double kAdequacyAlpha = 0.01;  // of the variables; of smooth functions half of it more
 
 /// Why nothing can be concluded; empty if something can.
 std::string reasonNotToTell(const GapTask& task, const Observations& data) {

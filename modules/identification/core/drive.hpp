@@ -74,11 +74,12 @@ struct VoltageSample {
   double voltage = 0.0;  ///< [V]
 };
 
-/// Whether a voltage was measured: there are readings, and they are not all the same.
+/// Whether a voltage was measured: it begins with one, and the readings are not all the same.
 inline bool isMeasured(const std::vector<VoltageSample>& voltage) {
-  return std::any_of(voltage.begin(), voltage.end(), [&](const VoltageSample& sample) {
-    return std::isfinite(sample.voltage) && sample.voltage != voltage.front().voltage;
-  });
+  return !voltage.empty() && voltage.front().voltage > 0.0 &&
+         std::any_of(voltage.begin(), voltage.end(), [&](const VoltageSample& sample) {
+           return std::isfinite(sample.voltage) && sample.voltage != voltage.front().voltage;
+         });
 }
 
 /// Track speeds as encoders say: for the error floor, entry speeds and as witnesses of what was

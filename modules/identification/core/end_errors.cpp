@@ -138,6 +138,7 @@ std::optional<ExecutionError> errorOf(
   error.position = scale * (predicted->position() - measured.position()).norm();
   error.yaw = scale * std::abs(predicted->yaw - measured.yaw);
   error.predicted = *predicted;
+  error.scale = scale;
   return error;
 }
 
@@ -181,8 +182,9 @@ EndErrors apart(const Observations& data, const ModelDocument& one, const ModelD
   const std::vector<ExecutionError> others = endErrors(data, other);
   errors.resize(std::min(errors.size(), others.size()));
   for (size_t i = 0; i < errors.size(); ++i) {
-    errors[i].position = (errors[i].predicted.position() - others[i].predicted.position()).norm();
-    errors[i].yaw = std::abs(errors[i].predicted.yaw - others[i].predicted.yaw);
+    errors[i].position =
+        errors[i].scale * (errors[i].predicted.position() - others[i].predicted.position()).norm();
+    errors[i].yaw = errors[i].scale * std::abs(errors[i].predicted.yaw - others[i].predicted.yaw);
   }
   return summaryOf(errors);
 }

@@ -19,6 +19,7 @@ struct ExecutionError {
   double position = 0.0;  ///< [m], scaled to the horizon
   double yaw = 0.0;       ///< [rad], scaled to the horizon, not wrapped
   Pose2 predicted{};      ///< where it ends, not scaled
+  double scale = 1.0;     ///< the horizon over the time between the fixes
 };
 
 /// The horizon over which errors are told [s].
@@ -43,7 +44,8 @@ std::optional<ExecutionError> errorOf(
 /// Median and root mean square.
 EndErrors summaryOf(const std::vector<ExecutionError>& errors);
 
-/// How far apart two models predict the ends of the same executions; the measurement plays no part.
+/// How far apart two models predict the ends of the same executions, scaled to the horizon; the
+/// measurement plays no part.
 EndErrors apart(const Observations& data, const ModelDocument& one, const ModelDocument& other);
 
 /// Executions as measured and as two models predict them.

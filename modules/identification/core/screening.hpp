@@ -41,7 +41,8 @@ Gain gainOf(const Fitter& fitter, const Eigen::VectorXd& first, const Eigen::Vec
 Eigen::MatrixXd parameterCovariance(const Fitter& fitter, const FitState& state);
 
 /// How far each free parameter goes from what the model says of it by chance, where that is right
-/// (free x 1): of blocks that scatter, and of how sure the model is of its numbers.
+/// (free x 1): of blocks that scatter, and of how sure the model is of its numbers; infinite where
+/// neither says anything.
 /** A number that is held by what is known moves only as far as the rows can pull it. */
 Eigen::VectorXd moveDeviations(const Fitter& fitter, const FitState& state);
 
@@ -165,7 +166,7 @@ struct Excitation {
   double v_omega = 0.0;      ///< [m/s2]
   double begin = 0.0;        ///< [s] first command
   double end = 0.0;          ///< [s] last command
-  bool voltage = false;      ///< the battery was measured
+  bool voltage = false;      ///< the battery was measured in every drive
 };
 Excitation excitationOf(const Observations& data, const ModelDocument& model);
 

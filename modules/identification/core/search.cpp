@@ -154,9 +154,14 @@ class EffectSelection {
 
   /// Whether hardly any driving lies before a moment, or after it.
   bool isAtEdge(double time) const {
-    const Excitation& driven = memory_.calibrated.excitation(fitter_, result_.calibrated);
-    const double edge = kEdge * (driven.end - driven.begin);
-    return time < driven.begin + edge || time > driven.end - edge;
+    double before = 0.0;
+    double all = 0.0;
+    for (const Drive& drive : fitter_.data().drives())
+      for (const Segment& segment : drive.segments) {
+        before += std::clamp(time - segment.begin(), 0.0, segment.end - segment.begin());
+        all += segment.end - segment.begin();
+      }
+    return std::min(before, all - before) < kEdge * all;
   }
 
   Trial tryOut(const Screening& screening, size_t index, const Eigen::VectorXd& loss_now) const {
@@ -207,12 +212,15 @@ class EffectSelection {
   /// A term that the model has, in the place of a new one that does the same.
   const Trial* givenInstead(const Trial* best, const std::vector<Trial>& trials,
                             const Screening& screening) const {
+    if (best == nullptr || screening.candidates[best->candidate].release) return best;
+    const Trial* given = nullptr;
     for (const Trial& trial : trials)
-      if (best != nullptr && trial.refused.empty() && trial.gain.value > 0.0 &&
+      if (trial.refused.empty() && trial.gain.value > 0.0 &&
           screening.candidates[trial.candidate].release &&
-          gainOf(fitter_, trial.loss, best->loss).value < kSame)
-        return &trial;
-    return best;
+          gainOf(fitter_, trial.loss, best->loss).value < kSame &&
+          (given == nullptr || trial.gain.value > given->gain.value))
+        given = &trial;
+    return given == nullptr ? best : given;
   }
 
   /// Refits the most promising effects and adds the one that helps most on blocks left out; the
@@ -240,7 +248,8 @@ class EffectSelection {
     // What was taken out before, beside other terms, is in again.
     for (std::vector<std::string>* told : {&result_.record.negligible, &result_.record.at_bound})
       told->erase(std::remove(told->begin(), told->end(), added.effect), told->end());
-    if (added.release) result_.released.push_back(added.effect);
+    if (added.release && !contains(result_.released, added.effect))
+      result_.released.push_back(added.effect);
     if (!added.release && !contains(result_.effects, added.effect))
       result_.effects.push_back(added.effect);
     return true;
@@ -372,13 +381,21 @@ FoundTerms search(const Fitter& fitter, const ModelDocument& model, const Search
   if (found.released.empty()) return found;
   // To take a given term for wrong is easy: it bends to much. Fewer effects may do, with all that
   // the model says.
+  say("  once more, with all that the model says:");
   SearchSettings trusting = settings;
   trusting.release = false;
-  FoundTerms other = EffectSelection(fitter, trusting, memory, say).run(model);
-  if (other.effects.empty() || other.effects.size() >= found.effects.size() + found.released.size())
+  SearchMemory again;
+  again.calibrated = memory.calibrated;
+  const FoundTerms other = EffectSelection(fitter, trusting, again, say).run(model);
+  const bool has_new =
+      std::any_of(other.effects.begin(), other.effects.end(),
+                  [&](const std::string& effect) { return !contains(settings.accepted, effect); });
+  if (!has_new || other.effects.size() >= found.effects.size() + found.released.size())
     return found;
-  const Gain behind =
-      gainOf(fitter, heldOutLoss(fitter, other.state), heldOutLoss(fitter, found.state));
+  // Each has noise of its own size: losses compare by one.
+  FitState judged = other.state;
+  judged.scales = found.state.scales;
+  const Gain behind = gainOf(fitter, heldOutLoss(fitter, judged), heldOutLoss(fitter, found.state));
   return behind.value < behind.error ? other : found;
 }
 

@@ -201,7 +201,7 @@ double chanceOf(const Eigen::MatrixXd& agreement, uint64_t seed) {
   int larger = 0;
   for (int draw = 0; draw < kDraws; ++draw) {
     for (Eigen::Index b = 0; b < signs.size(); ++b) signs[b] = (random() >> 63U) != 0U ? 1.0 : -1.0;
-    larger += signs.dot(agreement * signs) >= found * (1.0 - 1e-12);
+    larger += !(signs.dot(agreement * signs) < found * (1.0 - 1e-12));
   }
   return (larger + 1.0) / (kDraws + 1.0);
 }

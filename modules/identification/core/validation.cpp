@@ -188,7 +188,10 @@ Eigen::VectorXd moveDeviations(const Fitter& fitter, const FitState& state) {
     parameter.deviation = knownDeviation(state.model, parameter.path);
   // A vehicle as the model says lies so far from its best numbers, and the rows pull towards it.
   const Eigen::MatrixXd pull = of.scatter + of.rows * priorCovariance(known) * of.rows.transpose();
-  return (of.inverse * pull * of.inverse).diagonal().cwiseMax(0.0).cwiseSqrt();
+  Eigen::VectorXd moves = (of.inverse * pull * of.inverse).diagonal().cwiseMax(0.0).cwiseSqrt();
+  for (size_t i = 0; i < of.lost.size(); ++i)
+    if (of.lost[i]) moves[static_cast<Eigen::Index>(i)] = std::numeric_limits<double>::infinity();
+  return moves;
 }
 
 ScoreTest::ScoreTest(const Fitter& fitter, const FitState& state,

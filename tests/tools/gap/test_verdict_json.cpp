@@ -56,7 +56,7 @@ TEST_CASE("so is what the motor currents and the battery voltage do with it") {
   const Json json = verdictJson(finding, samples::inputs());
   const Json& effect = json["effects"][0];
   CHECK(effect["motor_currents_rise"] ==
-        Json({{"share", 12.0}, {"low", 10.0}, {"high", 14.0}, {"load", true}}));
+        Json({{"rise", 12.0}, {"low", 10.0}, {"high", 14.0}, {"load", true}}));
   CHECK(effect["battery_voltage_falls"] ==
         Json({{"share", 0.02}, {"low", 0.0}, {"high", 0.04}, {"battery", false}}));
   finding.identified.effects[0].currents = CurrentWitness{1.0, 0.2, 1.8};

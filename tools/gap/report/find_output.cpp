@@ -75,7 +75,7 @@ Json effectJson(const FoundEffect& effect) {
                                  {"high", number(effect.wheels->high)}};
   if (effect.currents)
     json["motor_currents_rise"] = {
-        {"share", number(effect.currents->rise)},
+        {"rise", number(effect.currents->rise)},
         {"low", number(effect.currents->low)},
         {"high", number(effect.currents->high)},
         {"load", answerJson(effect.currents->saysLoad(), effect.currents->saysNoLoad())}};
