@@ -14,8 +14,7 @@ namespace tread::gap {
 namespace {
 
 constexpr double kUnsized = 2.0;  // times its typical size: what the 95 % interval must not exceed
-constexpr double kConfirmed =
-    2.5;  // standard errors of nats, of rows that sizes were not fitted to
+constexpr double kConfirmed = 2.5;  // standard errors, on rows that sizes were not fitted to
 
 /// The candidate that promises most; none that would change anything = candidates.
 size_t mostPromising(const ScoreTest& test) {
