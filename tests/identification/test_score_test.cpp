@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include <random>
+
 #include "core_rig.hpp"
 #include "modules/identification/core/observations.hpp"
 #include "modules/identification/core/screening.hpp"
@@ -349,4 +351,55 @@ TEST_CASE("the chance of a size is a normal tail times the number of candidates"
   CHECK(chanceOfSize(1.0, 70) == Approx(70.0 * chanceBeyond(3.9)));
   CHECK(chanceOfSize(1.2, 70, true) == Approx(70.0 * chanceBeyond(1.2 * 3.3)));
   CHECK(chanceOfSize(0.0, 1) == 1.0);
+}
+
+namespace {
+
+/// A state with one held number that explains the first wave: it lies `off` from what is known.
+FitState heldState(const Rig& rig, const Eigen::VectorXd& residuals, double off, double deviation) {
+  FitState state = rig.stateOf(residuals, 1.0);
+  state.free.push_back(freeParameter(state.model, "yaw_pull.pull"));
+  state.free[0].expected = 0.0;
+  state.free[0].deviation = deviation;
+  *findParameter(state.model, "yaw_pull.pull") = off;
+  state.jacobian = waves(rig.data, 1);
+  return state;
+}
+
+}  // namespace
+
+TEST_CASE("a direction that a held number imitates shows in how far that number went") {
+  const Rig rig({}, 200.0, 1);
+  const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(rig.size());
+  const Eigen::MatrixXd same = waves(rig.data, 1);
+  // No residual is left: the score is of what was known alone.
+  CHECK(ScoreTest(rig.fitter, heldState(rig, nothing, 0.0, 0.1), same).score(0) == 0.0);
+  const ScoreTest gone(rig.fitter, heldState(rig, nothing, 0.5, 0.1), same);
+  CHECK(gone.score(0) == Approx(2.5));
+  CHECK(gone.size(0) > 0.0);
+  CHECK(ScoreTest(rig.fitter, heldState(rig, nothing, -0.5, 0.1), same).score(0) == Approx(-2.5));
+}
+
+TEST_CASE("a model as wrong as it says of itself is no effect", "[statistics]") {
+  const Rig rig({}, 400.0, 1);
+  const Eigen::MatrixXd wave = waves(rig.data, kCandidates);
+  Eigen::MatrixXd directions = wave;
+  for (Eigen::Index i = 1; i < directions.cols(); ++i) directions.col(i) += 2.0 * wave.col(0);
+  constexpr double kDeviation = 0.1;
+  const double weight = weightOf(0.0, 1.0);
+  const double information = weight * wave.col(0).squaredNorm();
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal(0.0, kDeviation);
+  int false_alarms = 0;
+  for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const Eigen::VectorXd residuals =
+        blockNoise(rig.data, seed, 0.1) + normal(random) * wave.col(0);
+    const double fitted =
+        weight * wave.col(0).dot(residuals) / (information + 1.0 / (kDeviation * kDeviation));
+    const FitState state = heldState(rig, residuals - fitted * wave.col(0), fitted, kDeviation);
+    const ScoreTest test(rig.fitter, state, directions);
+    if (familyWise(test.largestByChance(kDraws, seed), largestScore(test)) <= kLevel)
+      ++false_alarms;
+  }
+  CHECK(false_alarms <= 20);
 }

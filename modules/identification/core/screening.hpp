@@ -57,7 +57,9 @@ Eigen::MatrixXd imitation(const FitState& state, const Eigen::VectorXd& metric,
  * scales: Neyman), its pull is summed block by block, and T = sum / root of the sum of squares. The
  * distribution of the largest |T| over all columns under "nothing is there" comes from giving each
  * block's pull a random sign (wild bootstrap), the same for all columns, so that correlated columns
- * do not count twice. Blocks, not samples: the ground's noise is correlated. */
+ * do not count twice. Blocks, not samples: the ground's noise is correlated. What was known of the
+ * free parameters counts as one more measurement, with twice the scatter that it says: a direction
+ * that they could follow only against it shows in how far they went. */
 class ScoreTest {
  public:
   /// `directions` rows x candidates.
@@ -94,12 +96,20 @@ class ScoreTest {
   std::vector<double> largestByChance(int draws, uint64_t seed) const;
 
  private:
+  void weighPrior(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& follow,
+                  const Eigen::VectorXd& off);
+  double pullOn(Eigen::Index candidate) const;  ///< of all blocks and of what was known
+  double rootOf(Eigen::Index candidate) const;  ///< of the sum of squares
+  double priorInformation(Eigen::Index candidate) const;
+
   Eigen::MatrixXd own_;     ///< rows x candidates
   Eigen::MatrixXd pulls_;   ///< blocks x candidates
   Eigen::VectorXd scores_;  ///< candidates
   Eigen::VectorXd uniqueness_;
-  Eigen::VectorXd information_;        ///< of a candidate's size
+  Eigen::VectorXd information_;        ///< of a candidate's size, in the rows
   Eigen::MatrixXd block_information_;  ///< blocks x candidates
+  Eigen::VectorXd prior_pulls_;        ///< candidates
+  Eigen::MatrixXd prior_parts_;        ///< what is known x candidates; squares sum to information
 };
 
 /// What a score must reach to count.
