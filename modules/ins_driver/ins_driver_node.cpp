@@ -15,7 +15,7 @@ namespace tread::ins {
 namespace {
 
 MakeInsSource nmea(ConfigReader& reader, const RobotDescription& robot) {
-  return nmeaSource(readNmeaConfig(reader, robot));
+  return sourceOf<NmeaIns>(readNmeaConfig(reader, robot));
 }
 
 /// A new INS is one line here and a folder of its own.
@@ -172,6 +172,7 @@ int64_t InsDriverNode::readLink(int64_t utime) {
     if (!size) loseLink();
     if (size.value_or(0) == 0) break;
     last_bytes_ = utime;
+    heard_ = true;
     source_->push({reinterpret_cast<const char*>(buffer.data()), *size}, utime);
     total += *size;
   }
@@ -213,8 +214,9 @@ std::string InsDriverNode::lineProblem(int64_t utime) const {
     return problem.empty() ? address + "closed" : problem;
   }
   if (utime - last_bytes_ > silence_us_) {
-    return address + "no bytes for " + inSeconds(utime - last_bytes_) + "; " +
-           source_->advice().silent;
+    const std::string said = heard_ ? "bytes came before (" + source_->refusals() + "), none for "
+                                    : std::string("no bytes for ");
+    return address + said + inSeconds(utime - last_bytes_) + "; " + source_->advice().silent;
   }
   const int64_t without_message = utime - source_->lastMessage().value_or(start_);
   if (without_message <= silence_us_) return {};
@@ -230,12 +232,12 @@ std::string InsDriverNode::measurementProblem(int64_t utime) const {
              " km from the map's origin; configure another origin or remove the stored " +
              kOriginEntry;
     }
-    return "no position for " + inSeconds(utime - last_position_) + "; " +
-           source_->advice().no_position;
+    return "no position for " + inSeconds(utime - last_position_) + " (" + source_->refusals() +
+           "); " + source_->advice().no_position;
   }
   if (utime - last_heading_ > silence_us_) {
-    return "no heading for " + inSeconds(utime - last_heading_) + "; " +
-           source_->advice().no_heading;
+    return "no heading for " + inSeconds(utime - last_heading_) + " (" + source_->refusals() +
+           "); " + source_->advice().no_heading;
   }
   return origin_problem_;
 }

@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -12,12 +11,9 @@
 #include "common/store/store.hpp"
 #include "common/vehicle/robot_description.hpp"
 #include "modules/ins_driver/core/ins_source.hpp"
+#include "modules/ins_driver/devices/ins_config.hpp"
 
 namespace tread::ins {
-
-/// Makes the source; the origin of the map is given where it is known.
-using MakeInsSource =
-    std::function<std::unique_ptr<InsSource>(const std::optional<GeoOrigin>& origin)>;
 
 /// Reads which INS the robot has (key `source`) and what that one's reader wants to know.
 MakeInsSource readInsSource(ConfigReader& reader, const RobotDescription& robot);
@@ -76,6 +72,7 @@ class InsDriverNode : public Node {
   HealthReporter health_;
   bool origin_kept_;
   bool was_open_ = false;
+  bool heard_ = false;  ///< bytes came since the start
   int64_t link_losses_ = 0;
   int64_t seq_ = 0;
   int64_t too_far_before_ = 0;  ///< refused positions at the time of the last good one

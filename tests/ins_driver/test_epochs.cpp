@@ -4,8 +4,9 @@
 
 #include <random>
 
+#include "modules/ins_driver/core/epoch_collector.hpp"
 #include "modules/ins_driver/core/track_monitor.hpp"
-#include "modules/ins_driver/nmea/epoch_collector.hpp"
+#include "modules/ins_driver/nmea/nmea_epoch.hpp"
 #include "tests/helpers.hpp"
 
 using namespace tread::ins;
@@ -27,7 +28,17 @@ Zda zdaAt(int64_t time_of_day, CivilDate date) {
 /// Feeds a sentence and says when its bytes came.
 bool feed(EpochCollector& collector, const NmeaSentence& sentence, int64_t arrival) {
   collector.noteBytes(arrival);
-  return collector.push(sentence, arrival);
+  if (const auto* zda = std::get_if<Zda>(&sentence)) {
+    const int64_t utc = daysSinceEpoch(*zda->date) * kDayUs + *zda->time_of_day;
+    collector.pushDate(utc, *zda->time_of_day, sentence.index());
+    return true;
+  }
+  return collector.push(partOf(sentence, {}), sentence.index(), timeOfDay(sentence), arrival);
+}
+
+template <class Sentence>
+bool holds(const DeviceEpoch& epoch) {
+  return epoch.holds(NmeaSentence(Sentence{}).index());
 }
 
 }  // namespace
@@ -43,10 +54,10 @@ TEST_CASE("sentences of one time are one epoch, the next time ends it") {
   REQUIRE(epoch);
   CHECK(epoch->arrival == 100);
   CHECK(epoch->device_time == 5 * kSecond);
-  CHECK(epoch->gga);
-  CHECK(epoch->vtg);
-  CHECK(epoch->rmc);
-  CHECK_FALSE(epoch->hdt);
+  CHECK(holds<Gga>(*epoch));
+  CHECK(holds<Vtg>(*epoch));
+  CHECK(holds<Rmc>(*epoch));
+  CHECK_FALSE(holds<Hdt>(*epoch));
   CHECK_FALSE(collector.next(1000200));
 }
 
@@ -61,7 +72,7 @@ TEST_CASE("a quiet line ends the epoch, a slow line does not") {
   CHECK_FALSE(collector.next(189'999));
   const auto epoch = collector.next(190'000);
   REQUIRE(epoch);
-  CHECK(epoch->vtg);
+  CHECK(holds<Vtg>(*epoch));
 }
 
 TEST_CASE("where the last sentence is known, the epoch ends with it") {
@@ -73,8 +84,8 @@ TEST_CASE("where the last sentence is known, the epoch ends with it") {
   feed(collector, last, 300);
   const auto epoch = collector.next(300);
   REQUIRE(epoch);
-  CHECK(epoch->rot);
-  CHECK(epoch->vtg);
+  CHECK(holds<Rot>(*epoch));
+  CHECK(holds<Vtg>(*epoch));
   CHECK_FALSE(feed(collector, Rmc{5 * kSecond, {}, {}, {}, {}}, 400));
 }
 
@@ -91,8 +102,8 @@ TEST_CASE("sentences without a time before the timed one belong to its epoch") {
     const auto epoch = collector.next(1'000'000);
     REQUIRE(epoch);
     CHECK(epoch->device_time == i * 500'000 + kSecond);
-    CHECK(epoch->hdt->yaw == 0.1 * i);
-    CHECK(epoch->vtg->speed == 0.2 * i);
+    CHECK(epoch->headings[1]->yaw == 0.1 * i);
+    CHECK(epoch->velocity->speed == 0.2 * i);
   }
 }
 
@@ -194,4 +205,35 @@ TEST_CASE("a stalled reader does not move the measurement times") {
     filter.add(i * 20'000, 7'000'000 + 200 * 20'000);
     CHECK(filter.hostTime(i * 20'000) == 7'000'000 + i * 20'000);
   }
+}
+
+TEST_CASE("a date told one second ahead neither moves the epochs nor falsifies their UTC") {
+  EpochCollector collector(10'000);
+  for (int i = 0; i < 5; ++i) {
+    const int64_t time_of_day = kDayUs - 2 * kSecond + i * kSecond;
+    const bool tomorrow = time_of_day + kSecond >= kDayUs;
+    feed(collector, zdaAt((time_of_day + kSecond) % kDayUs, {2024, 2, tomorrow ? 29 : 28}),
+         i * kSecond);
+    CHECK(feed(collector, ggaAt(time_of_day % kDayUs), i * kSecond));
+    const auto epoch = collector.next(i * kSecond + 20'000);
+    REQUIRE(epoch);
+    CHECK(epoch->device_utc == 1709164798000000 + i * kSecond);
+  }
+}
+
+TEST_CASE("a week counted modulo 1024 goes on through its roll-over, a set clock does not") {
+  GpsWeeks weeks;
+  const int64_t first = weeks.timeOf(1023, kWeekUs - kSecond);  // 2038-11-20 23:59:59
+  CHECK(first == 3072 * kWeekUs - kSecond);
+  CHECK(weeks.timeOf(0, 0) == 3072 * kWeekUs);
+  CHECK(weeks.timeOf(0, kSecond) == 3072 * kWeekUs + kSecond);
+  CHECK(weeks.rollovers() == 1);
+  CHECK(weeks.timeOf(2100, 0) == 2100 * kWeekUs);
+  CHECK(weeks.timeOf(2100, kSecond) == 2100 * kWeekUs + kSecond);
+  CHECK(weeks.rollovers() == 1);
+  // Once the receiver knows its era, it is the same time.
+  GpsWeeks learns;
+  CHECK(learns.timeOf(300, 0) == 2348 * kWeekUs);
+  CHECK(learns.timeOf(2348, kSecond) == 2348 * kWeekUs + kSecond);
+  CHECK(utcOfGps(2348 * kWeekUs, 18) == 1736035182000000);  // 2025-01-04 23:59:42
 }

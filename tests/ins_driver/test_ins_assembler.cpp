@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <random>
 
-#include "modules/ins_driver/nmea/ins_assembler.hpp"
+#include "modules/ins_driver/nmea/nmea_epoch.hpp"
 #include "tests/ins_driver/ins_bench.hpp"
 
 using namespace tread;

@@ -110,9 +110,9 @@ TEST_CASE("a bad line costs sentences but never makes a wrong pose") {
   const Worst worst = drive(120.0, faults, ins);
   CAPTURE(worst.position, worst.yaw, worst.tilt, worst.velocity);
   CHECK(worst.messages > 5500);
-  CHECK(worst.position < 1e-3);
+  CHECK(worst.position < 2e-3);  // carried straight on for 60 ms while it turns
   CHECK(worst.yaw < 2e-5);   // one carried on by its rate is a little coarser
   CHECK(worst.tilt < 7e-3);  // pitch and roll are held for 60 ms at most, here at 0.1 rad/s
-  CHECK(worst.velocity < 2e-4);
+  CHECK(worst.velocity < 1e-3);
   CHECK(ins.counts().refused.total() > 1000);
 }

@@ -20,22 +20,48 @@ TEST_CASE("a position between two attitudes takes the last one, carried on by it
   CHECK(bench.last().status & kNoHeading);
 }
 
-TEST_CASE(
-    "instants with attitude alone are published when asked for, or when positions stay away") {
+TEST_CASE("25 Hz of attitudes with 10 Hz of positions are 25 poses a second, carried by velocity") {
   for (const bool wanted : {true, false}) {
     InsConfig config = withOrigin();
     config.attitude_epochs = wanted;
     Bench bench(config);
-    for (int i = 0; i < 10; ++i) {
-      const double t = i * 0.04;
-      bench.at(i * 40'000, (i % 5 == 0 ? gga(kNoon + t) : "") + pashr(kNoon + t, 10.0));
+    for (int i = 0; i < 100; ++i) {
+      const double t = i * 0.02;
+      std::string burst;
+      if (i % 5 == 0) burst += gga(kNoon + t, 2.0 * t) + vtg(90.0, 7.2);
+      if (i % 2 == 0) burst += pashr(kNoon + t, 90.0);
+      if (!burst.empty()) bench.at(i * 20'000, burst);
     }
-    CHECK(bench.out.size() == (wanted ? 10 : 2));
-    for (int i = 0; i < 50; ++i)
-      bench.at(2'000'000 + i * 40'000, pashr(kNoon + 2 + i * 0.04, 10.0));
-    CHECK(bench.out.size() == (wanted ? 60 : 52));
-    CHECK(bench.last().status == (kNoPosition | kNoVelocity));
+    // Of 60 instants 20 have a position; the attitudes between them have it carried.
+    CHECK(bench.out.size() == (wanted ? 60 : 20));
+    for (const InsEstimate& ins : bench.out) {
+      CHECK(ins.p_map_body.x() == Approx(2.0 * static_cast<double>(ins.utime) * 1e-6).margin(0.01));
+      CHECK(ins.v_body.x() == Approx(2.0).margin(1e-6));
+      CHECK(ins.status == kGood);
+      const bool carried = ins.utime % 100'000 != 0;
+      CHECK((ins.position_std.x() > 0.0142) == carried);
+    }
   }
+}
+
+TEST_CASE("without a told velocity a position is carried by the last two, but no velocity is told") {
+  Bench bench(withOrigin());
+  for (int i = 0; i < 20; ++i) {
+    const double t = i * 0.04;
+    bench.at(i * 40'000, (i % 5 == 0 ? gga(kNoon + t, t) : "") + pashr(kNoon + t, 90.0));
+  }
+  // The first attitudes have but one position before them; the others have it for 150 ms.
+  CHECK(bench.out.size() == 4 + 3 * 3);
+  CHECK(bench.last().status == kNoVelocity);
+  CHECK(bench.last().p_map_body.x() == Approx(0.72).margin(0.01));
+}
+
+TEST_CASE("instants with attitude alone are published when positions stay away") {
+  Bench bench(withOrigin());
+  bench.at(0, gga(kNoon) + pashr(kNoon, 10.0));
+  for (int i = 0; i < 50; ++i) bench.at(2'000'000 + i * 40'000, pashr(kNoon + 2 + i * 0.04, 10.0));
+  CHECK(bench.out.size() == 51);
+  CHECK(bench.last().status == (kNoPosition | kNoVelocity));
 }
 
 TEST_CASE("more than three periods of silence are a gap, once") {

@@ -68,6 +68,13 @@ TEST_CASE("GGA without a real fix has no position, coordinates or not") {
   CHECK_FALSE(good<Gga>("GPGGA,204132.10,,,,,1,08,1.0,221.9,M,,,3,0138").altitude);
 }
 
+TEST_CASE("GGA without its last field is read where both units stand in their places") {
+  const Gga gga =
+      good<Gga>("GPGGA,064929.00,1726.5842,N,07822.4470,E,1,38,0.4,649.70,M,-76.80,M,");
+  CHECK(gga.altitude == 649.7);
+  CHECK(gga.satellites == 38);
+}
+
 TEST_CASE("RMC is read with course as yaw and speed in metres per second") {
   const Rmc rmc =
       good<Rmc>("GPRMC,204132.00,A,4205.733476,N,08802.041110,W,9.415,21.404,190214,,,D");
@@ -233,6 +240,8 @@ TEST_CASE("what is not of its field's form is refused") {
 
 TEST_CASE("a sentence with a field too many or too few is refused") {
   for (const char* body : {"GPGGA,204132.10,4205.7,N,08802.0,W,2,08,1.0,221.9,M,,,3",
+                           "GPGGA,204132.10,4205.7,N,08802.0,W,2,08,1.0,221.9,M,-33.0,,3",
+                           "GPGGA,204132.10,4205.7,N,08802.0,W,2,08,1.0,221.9,M,-33.0,M",
                            "GPGGA,204132.10,4205.7,N,08802.0,W,2,08,1.0,221.9,M,,,3,0138,",
                            "GPHDT,274.07", "GPHDT,274.07,T,", "GPHDT", "GPROT,1.0",
                            "GPZDA,193913.00,07,09,2018,00", "GPVTG,97.75,T,112.39,M,0.04,N,0.07",

@@ -88,7 +88,7 @@ report::Panel::Axes axesAround(const std::vector<Pose2>& poses) {
 }  // namespace
 
 InsReplay replayIns(const std::string& log, ins::InsDriverConfig config) {
-  if (!config.make_source) config.make_source = ins::nmeaSource({});
+  if (!config.make_source) config.make_source = ins::sourceOf<ins::NmeaIns>({});
   InsReplay replay;
   VirtualBus bus(0);
   MemoryStore store;
@@ -127,10 +127,7 @@ std::string reportOf(const InsReplay& replay) {
     if (counts.empty[i] > 0) out << " (" << counts.empty[i] << " without a value)";
   }
   out << "\nrefused: " << counts.refused.total();
-  for (size_t i = 0; i < ins::kRefusalCount; ++i) {
-    if (counts.refused.of[i] == 0) continue;
-    out << ", " << ins::name(static_cast<ins::SentenceRefusal>(i)) << " " << counts.refused.of[i];
-  }
+  if (!counts.reasons.empty()) out << ", " << ins::listed(counts.reasons);
   out << "\nINS messages: " << replay.track.size() << ", with position and heading " << replay.poses
       << ", gaps " << replay.epochs.gaps << ", jumps " << replay.epochs.jumps << "\n";
   if (!replay.health.empty()) out << "HEALTH at the end: " << replay.health << "\n";

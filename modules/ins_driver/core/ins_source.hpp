@@ -80,7 +80,7 @@ struct InsEstimate {
   int64_t device_utc = -1;  ///< [us] since 1970-01-01; -1 before the device told a date
   Eigen::Vector3d p_map_body = Eigen::Vector3d::Constant(kUnmeasured);  ///< [m]
   Eigen::Quaterniond R_map_body = {kUnmeasured, kUnmeasured, kUnmeasured, kUnmeasured};
-  /// Forward and left: velocity over the level ground; up: never measured by NMEA [m/s].
+  /// Forward and left: velocity over the level ground; up: along the vertical [m/s].
   Eigen::Vector3d v_body = Eigen::Vector3d::Constant(kUnmeasured);
   Eigen::Vector3d rate_body = Eigen::Vector3d::Constant(kUnmeasured);     ///< [rad/s]
   Eigen::Vector3d position_std = Eigen::Vector3d::Constant(kUnmeasured);  ///< along map axes [m]
@@ -90,16 +90,28 @@ struct InsEstimate {
   int satellites = -1;                         ///< -1 unknown
 };
 
+/// What a heading was measured by.
+enum class HeadingSource : uint8_t {
+  kAttitude,     ///< the inertial solution
+  kDualAntenna,  ///< the base line between two antennas, or a heading that the device tells alone
+  kCourse        ///< the direction of motion
+};
+
 /// How the device sits in the vehicle and what it may be believed.
 struct InsConfig {
   /// The point whose position the device reports (antenna or INS reference), in body [m].
   Eigen::Vector3d p_body_antenna = Eigen::Vector3d::Zero();
+  /// The GNSS antenna in body, where the device reports it while its INS has no solution; absent:
+  /// the same point [m].
+  std::optional<Eigen::Vector3d> p_body_gnss;
   /// Rotation of the device's forward-left-up axes in body [rad].
   YawPitchRoll body_device;
   /// The map's place on Earth; absent: the first good fix, x to the east.
   std::optional<GeoOrigin> origin;
   /// A fix with a larger dilution of precision does not become the origin [1].
   double origin_max_hdop = 5.0;
+  /// Nor one whose told standard deviation along a horizontal axis is larger [m].
+  double origin_max_std = 5.0;
   /// Positions further from the origin are refused: the plane no longer fits the Earth (20 km: 31 m
   /// too low) [m].
   double max_distance = 20000.0;
@@ -114,8 +126,8 @@ struct InsConfig {
   int64_t latency_us = 0;
   /// Silence on the line that ends an epoch [us].
   int64_t quiet_us = 10'000;
-  /// Index in NmeaSentence of the type that ends each epoch, so that the silence need not be
-  /// awaited.
+  /// Kind of message that ends each epoch, so that the silence need not be awaited; counted as the
+  /// device's reader does.
   std::optional<size_t> last_type;
   /// Longest time that an attitude is carried to a position measured after it [us].
   int64_t attitude_hold_us = 60'000;
@@ -123,8 +135,30 @@ struct InsConfig {
   int64_t offset_window_us = 10'000'000;
   /// Nominal time between positions, to tell gaps [us]; 0 = learn it.
   int64_t period_us = 0;
-  /// Also publish instants at which only the attitude was measured.
-  bool attitude_epochs = false;
+  /// Also publish instants at which only the attitude was measured, with the position carried there
+  /// by the velocity. Instants to which no position can be carried are left out while positions
+  /// come.
+  bool attitude_epochs = true;
+  /// Longest time that a position is carried [us].
+  int64_t position_hold_us = 150'000;
+  /// Headings that are believed, the best first. The course is not among them unless it is asked
+  /// for: a tracked vehicle drives backwards, and its nose need not point where it goes.
+  std::vector<HeadingSource> headings = {HeadingSource::kAttitude, HeadingSource::kDualAntenna};
+  /// Below this speed the course is no heading [m/s].
+  double course_min_speed = 1.0;
+  /// False: the vehicle has no reverse gear, so that its nose points where it goes. True: which end
+  /// goes first is told by the heading before, see CourseHeading.
+  bool drives_backward = true;
+  /// Direction of the base line from the first to the second antenna, from the device's forward axis
+  /// counter-clockwise [rad].
+  double baseline_yaw = 0.0;
+  /// GPS time minus UTC, for devices that tell only GPS time [s].
+  int64_t leap_seconds = 18;
+  /// Geoid above the ellipsoid, for devices that tell only heights above the ellipsoid; absent: such
+  /// heights are unknown until the device tells it [m].
+  std::optional<double> geoid_separation;
+  /// Samples a second of the IMU whose rates a NovAtel receiver tells per sample; 0 = learn it [Hz].
+  double imu_rate = 0.0;
 };
 
 /// What to look at when a device is silent or says too little; parts of HEALTH's lines.

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "modules/ins_driver/nmea/epoch_collector.hpp"
+#include "modules/ins_driver/core/device_clock.hpp"
 
 namespace tread::ins {
 namespace {

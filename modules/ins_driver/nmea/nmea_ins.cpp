@@ -4,9 +4,8 @@
 
 #include <cmath>
 #include <iterator>
-#include <sstream>
 
-#include "modules/ins_driver/nmea/nmea_parser.hpp"
+#include "modules/ins_driver/nmea/nmea_epoch.hpp"
 
 namespace tread::ins {
 namespace {
@@ -25,27 +24,6 @@ bool isEmpty(const NmeaSentence& sentence) {
   return std::visit(Visitor{}, sentence);
 }
 
-/// "cut short 3, wrong checksum 12".
-std::string listed(const SentenceRefusals& refused) {
-  std::ostringstream text;
-  for (size_t i = 0; i < kRefusalCount; ++i) {
-    if (refused.of[i] == 0) continue;
-    text << (text.tellp() > 0 ? ", " : "") << name(static_cast<SentenceRefusal>(i)) << " "
-         << refused.of[i];
-  }
-  return text.str();
-}
-
-void readTiming(ConfigReader& reader, InsConfig& ins) {
-  reader.seconds("latency", ins.latency_us, {0.0, 1.0});
-  reader.seconds("quiet", ins.quiet_us, {0.001, 0.2});
-  reader.seconds("attitude_hold", ins.attitude_hold_us, {0.0, 0.5});
-  reader.seconds("offset_window", ins.offset_window_us, {1.0, 600.0});
-  double rate = 0.0;
-  reader.number("rate", rate, {0.0, 200.0}, "Hz");
-  ins.period_us = rate > 0.0 ? std::llround(1e6 / rate) : 0;
-}
-
 /// The sentence that ends each epoch; "none" where the order is not known.
 void readLastType(ConfigReader& reader, InsConfig& ins) {
   std::string last = "none";
@@ -60,32 +38,15 @@ void readLastType(ConfigReader& reader, InsConfig& ins) {
 }  // namespace
 
 InsConfig readNmeaConfig(ConfigReader& reader, const RobotDescription& robot) {
-  InsConfig ins;
-  ins.p_body_antenna = robot.ins.p_body;
-  ins.body_device = robot.ins.angles;
-  ins.max_speed = robot.max_speed;
-  readTiming(reader, ins);
+  InsConfig ins = readInsConfig(reader, robot);
   readLastType(reader, ins);
-  reader.number("standstill_speed", ins.standstill_speed, {0.0, 1.0}, "m/s");
-  reader.number("jump_slack", ins.jump_slack, {0.01, 100.0}, "m");
-  reader.flag("attitude_epochs", ins.attitude_epochs);
   reader.number("origin_max_hdop", ins.origin_max_hdop, {0.5, 100.0}, "1");
-  reader.number("max_distance", ins.max_distance, {100.0, 100000.0}, "m");
   return ins;
-}
-
-std::function<std::unique_ptr<InsSource>(const std::optional<GeoOrigin>&)> nmeaSource(
-    const InsConfig& config) {
-  return [config](const std::optional<GeoOrigin>& origin) {
-    InsConfig with_origin = config;
-    if (origin) with_origin.origin = origin;
-    return std::make_unique<NmeaIns>(with_origin);
-  };
 }
 
 void NmeaIns::push(std::string_view bytes, int64_t arrival) {
   arrival_ = arrival;
-  collector_.noteBytes(arrival);
+  pipeline_.collector().noteBytes(arrival);
   counts_.bytes += static_cast<int64_t>(bytes.size());
   for (const char byte : bytes) {
     const std::optional<std::string_view> body = framer_.push(byte);
@@ -94,18 +55,23 @@ void NmeaIns::push(std::string_view bytes, int64_t arrival) {
   }
 }
 
+void NmeaIns::refuse(std::string_view type, SentenceRefusal reason) {
+  counts_.refused.add(reason);
+  const std::string words = name(reason);
+  ++counts_.reasons[type.empty() ? words : std::string(type) + ": " + words];
+}
+
 void NmeaIns::take(std::string_view body) {
   const ParseResult result = parseNmea(body);
+  // Even a sentence that we do not know shows that the device is alive.
+  last_sentence_ = arrival_;
   if (const auto* reason = std::get_if<SentenceRefusal>(&result)) {
-    counts_.refused.add(*reason);
-    // Even a sentence that we do not know shows that the device is alive.
-    last_sentence_ = arrival_;
+    refuse(typeOf(body), *reason);
     return;
   }
   const NmeaSentence& sentence = std::get<NmeaSentence>(result);
-  last_sentence_ = arrival_;
-  if (!collector_.push(sentence, sentence_start_)) {
-    counts_.refused.add(SentenceRefusal::kLate);
+  if (!collect(sentence)) {
+    refuse(typeOf(body), SentenceRefusal::kLate);
     return;
   }
   ++counts_.decoded;
@@ -113,46 +79,45 @@ void NmeaIns::take(std::string_view body) {
   if (isEmpty(sentence)) ++counts_.empty[sentence.index()];
 }
 
-void NmeaIns::observePending() {
-  while (observed_ < pending_.size()) {
-    if (observed_ > 0 && pending_[observed_].clock_was_set) return;
-    assembler_.observe(pending_[observed_++]);
+bool NmeaIns::collect(const NmeaSentence& sentence) {
+  EpochCollector& collector = pipeline_.collector();
+  if (const auto* zda = std::get_if<Zda>(&sentence)) {
+    if (zda->date && zda->time_of_day) {
+      const int64_t utc = daysSinceEpoch(*zda->date) * kDayUs + *zda->time_of_day;
+      collector.pushDate(utc, *zda->time_of_day, sentence.index());
+    }
+    return true;
   }
-}
-
-std::optional<InsEstimate> NmeaIns::next(int64_t now) {
-  while (std::optional<Epoch> epoch = collector_.next(now)) pending_.push_back(*epoch);
-  while (!pending_.empty()) {
-    observePending();
-    std::optional<InsEstimate> estimate = assembler_.solve(pending_.front());
-    pending_.pop_front();
-    --observed_;
-    if (estimate) return estimate;
-  }
-  return std::nullopt;
+  return collector.push(partOf(sentence, config_), sentence.index(), timeOfDay(sentence),
+                        sentence_start_);
 }
 
 void NmeaIns::interrupt() {
   framer_.interrupt();
-  collector_.finish();
+  pipeline_.collector().finish();
 }
 
 NmeaCounts NmeaIns::counts() const {
   NmeaCounts counts = counts_;
   counts.sentences = framer_.sentences();
   counts.stray_bytes = framer_.strayBytes();
-  for (size_t i = 0; i < kRefusalCount; ++i) counts.refused.of[i] += framer_.refusals().of[i];
+  for (size_t i = 0; i < kRefusalCount; ++i) {
+    const int64_t cut_out = framer_.refusals().of[i];
+    counts.refused.of[i] += cut_out;
+    if (cut_out > 0) counts.reasons[name(static_cast<SentenceRefusal>(i))] += cut_out;
+  }
   return counts;
 }
 
 std::string NmeaIns::refusals() const {
   const NmeaCounts line = counts();
-  return "stray bytes " + std::to_string(line.stray_bytes) + ", refused: " + listed(line.refused);
+  return "stray bytes " + std::to_string(line.stray_bytes) + ", refused: " +
+         (line.reasons.empty() ? "none" : listed(line.reasons));
 }
 
 InsAdvice NmeaIns::advice() const {
   return {"is the device powered and set to send NMEA?", "no good sentence",
-          "does the device have a fix, and does it send GGA?",
+          "does the device have a fix, and does it send GGA or RMC?",
           "does the device send HDT or PASHR?"};
 }
 
@@ -167,18 +132,8 @@ std::vector<std::pair<std::string, int64_t>> NmeaIns::counters() const {
     const std::string empty = std::string(kSentenceNames[i]) + " without a value";
     if (line.empty[i] > 0) all.emplace_back(empty, line.empty[i]);
   }
-  for (size_t i = 0; i < kRefusalCount; ++i) {
-    const std::string refused = std::string("refused: ") + name(static_cast<SentenceRefusal>(i));
-    if (line.refused.of[i] > 0) all.emplace_back(refused, line.refused.of[i]);
-  }
-  const AssemblerCounts& epochs = assembler_.counts();
-  all.insert(all.end(), {{"epochs", epochs.epochs},
-                         {"published", epochs.published},
-                         {"gaps", epochs.gaps},
-                         {"jumps", epochs.jumps},
-                         {"device clock set", epochs.clock_steps},
-                         {"refused: time not after the last", epochs.not_newer},
-                         {"refused: far from the origin", epochs.too_far}});
+  for (const auto& [reason, count] : line.reasons) all.emplace_back("refused: " + reason, count);
+  pipeline_.addCounters(all);
   return all;
 }
 

@@ -4,17 +4,14 @@
 
 #include <array>
 #include <cstddef>
-#include <deque>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <string_view>
 
 #include "common/config/config_reader.hpp"
 #include "common/vehicle/robot_description.hpp"
+#include "modules/ins_driver/core/ins_pipeline.hpp"
 #include "modules/ins_driver/core/ins_source.hpp"
-#include "modules/ins_driver/nmea/epoch_collector.hpp"
-#include "modules/ins_driver/nmea/ins_assembler.hpp"
+#include "modules/ins_driver/devices/ins_config.hpp"
 #include "modules/ins_driver/nmea/nmea_framer.hpp"
 
 namespace tread::ins {
@@ -29,45 +26,41 @@ struct NmeaCounts {
   std::array<int64_t, kSentenceTypes>
       empty{};  ///< of those: well-formed, but no measurement in them
   SentenceRefusals refused;
+  /// The same by sentence where its checksum was good ("GGA: field count"), else by the bare reason.
+  ReasonCounts reasons;
 };
 
 /// Reads what an NMEA device adds to the driver's configuration; its mounting is the robot's.
 InsConfig readNmeaConfig(ConfigReader& reader, const RobotDescription& robot);
 
-/// Makes sources of such a device; the origin that is given replaces that of the configuration.
-std::function<std::unique_ptr<InsSource>(const std::optional<GeoOrigin>&)> nmeaSource(
-    const InsConfig& config);
-
 /// From the bytes of an NMEA 0183 device to estimates: framer, parser, epochs, assembler.
 class NmeaIns : public InsSource {
  public:
-  explicit NmeaIns(const InsConfig& config)
-      : collector_(config.quiet_us, config.last_type), assembler_(config) {}
+  explicit NmeaIns(const InsConfig& config) : config_(config), pipeline_(config, kDayUs) {}
 
   void push(std::string_view bytes, int64_t arrival) override;
-  std::optional<InsEstimate> next(int64_t now) override;
+  std::optional<InsEstimate> next(int64_t now) override { return pipeline_.next(now); }
   void interrupt() override;
-  std::optional<GeoOrigin> origin() const override { return assembler_.origin(); }
+  std::optional<GeoOrigin> origin() const override { return assembler().origin(); }
   std::optional<int64_t> lastMessage() const override { return last_sentence_; }
   std::pair<int64_t, double> tooFar() const override {
-    return {assembler_.counts().too_far, assembler_.farDistance()};
+    return {assembler().counts().too_far, assembler().farDistance()};
   }
   std::string refusals() const override;
   InsAdvice advice() const override;
   std::vector<std::pair<std::string, int64_t>> counters() const override;
 
   NmeaCounts counts() const;
-  const InsAssembler& assembler() const { return assembler_; }
+  const InsAssembler& assembler() const { return pipeline_.assembler(); }
 
  private:
   void take(std::string_view body);
-  void observePending();
+  bool collect(const NmeaSentence& sentence);
+  void refuse(std::string_view type, SentenceRefusal reason);
 
+  InsConfig config_;
   NmeaFramer framer_;
-  EpochCollector collector_;
-  InsAssembler assembler_;
-  std::deque<Epoch> pending_;
-  size_t observed_ = 0;  ///< how many of them the assembler has observed
+  InsPipeline pipeline_;
   int64_t sentence_start_ = 0;
   int64_t arrival_ = 0;
   std::optional<int64_t> last_sentence_;

@@ -43,12 +43,6 @@ int digits(std::string_view text) {
   return value;
 }
 
-int daysInMonth(int year, int month) {
-  constexpr int kDays[12] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-  const bool leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
-  return month == 2 && leap ? 29 : kDays[month - 1];
-}
-
 constexpr double kMpsPerKnot = 1852.0 / 3600.0;
 constexpr double kMpsPerKmh = 1.0 / 3.6;
 constexpr double kMaxKnots = 1000.0;              // the limit of civil receivers
@@ -144,6 +138,12 @@ NmeaSentence readZda(NmeaFields& fields) {
   return Zda{fields.timeOfDay(1), fields.date(2)};
 }
 
+/// Some devices leave out the last field, the reference station: certain only while both units stand
+/// where they belong.
+bool endsBeforeStation(const NmeaFields& fields) {
+  return fields.count() == 13 && fields.text(10) == "M" && fields.text(12) == "M";
+}
+
 struct Reader {
   std::string_view type;
   size_t min_fields;
@@ -180,15 +180,6 @@ const Reader* readerFor(const NmeaFields& fields) {
 }
 
 }  // namespace
-
-int64_t daysSinceEpoch(const CivilDate& date) {
-  // Years start in March here, so that the leap day is the last; 719468 days lie between 0000-03-01
-  // and 1970-01-01.
-  const int64_t year = date.month > 2 ? date.year : date.year - 1;
-  const int64_t month = date.month > 2 ? date.month - 3 : date.month + 9;
-  const int64_t day_of_year = (153 * month + 2) / 5 + date.day - 1;
-  return 365 * year + year / 4 - year / 100 + year / 400 + day_of_year - 719468;
-}
 
 NmeaFields::NmeaFields(std::string_view body) {
   size_t index = 0;
@@ -309,10 +300,7 @@ std::optional<double> NmeaFields::yawFromHeading(size_t index) {
 }
 
 std::optional<CivilDate> NmeaFields::checked(const CivilDate& date) {
-  if (date.month >= 1 && date.month <= 12 && date.day >= 1 &&
-      date.day <= daysInMonth(date.year, date.month)) {
-    return date;
-  }
+  if (exists(date)) return date;
   refuse(SentenceRefusal::kOutOfRange);
   return std::nullopt;
 }
@@ -342,7 +330,7 @@ std::optional<int64_t> timeOfDay(const NmeaSentence& sentence) {
       [](const auto& s) -> std::optional<int64_t> {
         using Type = std::decay_t<decltype(s)>;
         if constexpr (std::is_same_v<Type, Vtg> || std::is_same_v<Type, Hdt> ||
-                      std::is_same_v<Type, Rot>) {
+                      std::is_same_v<Type, Rot> || std::is_same_v<Type, Zda>) {
           return std::nullopt;
         } else {
           return s.time_of_day;
@@ -351,12 +339,18 @@ std::optional<int64_t> timeOfDay(const NmeaSentence& sentence) {
       sentence);
 }
 
+std::string_view typeOf(std::string_view body) {
+  const Reader* reader = readerFor(NmeaFields(body));
+  return reader ? reader->type : std::string_view{};
+}
+
 ParseResult parseNmea(std::string_view body) {
   NmeaFields fields(body);
   const Reader* reader = readerFor(fields);
   if (!reader) return SentenceRefusal::kUnknownSentence;
-  if (fields.count() < reader->min_fields || fields.count() > reader->max_fields)
-    return SentenceRefusal::kFieldCount;
+  const bool counted = fields.count() >= reader->min_fields && fields.count() <= reader->max_fields;
+  const bool short_gga = reader->read == readGga && endsBeforeStation(fields);
+  if (!counted && !short_gga) return SentenceRefusal::kFieldCount;
   NmeaSentence sentence = reader->read(fields);
   if (fields.refusal()) return *fields.refusal();
   return sentence;

@@ -9,16 +9,10 @@
 #include <string_view>
 #include <variant>
 
+#include "modules/ins_driver/core/device_clock.hpp"
 #include "modules/ins_driver/core/ins_source.hpp"
 
 namespace tread::ins {
-
-/// A day of the Gregorian calendar.
-struct CivilDate {
-  int year = 1970;
-  int month = 1;
-  int day = 1;
-};
 
 /// Fix quality of GGA (NMEA 0183 v4.11, GGA field 6).
 enum class FixQuality : uint8_t {
@@ -100,7 +94,8 @@ inline constexpr size_t kSentenceTypes = std::variant_size_v<NmeaSentence>;
 inline constexpr const char* kSentenceNames[kSentenceTypes] = {"GGA",   "RMC", "VTG", "HDT",
                                                                "PASHR", "ROT", "ZDA"};
 
-/// UTC time of day of a sentence, where it has one [us].
+/// UTC time of day of the measurement in a sentence, where it tells one [us].
+/** Not of ZDA: it measures nothing, and some devices send it with the time of the next second. */
 std::optional<int64_t> timeOfDay(const NmeaSentence& sentence);
 
 /// Why a sentence was not used.
@@ -189,16 +184,16 @@ class NmeaFields {
   std::optional<SentenceRefusal> refusal_;
 };
 
-/// Days since 1970-01-01 of a Gregorian date.
-int64_t daysSinceEpoch(const CivilDate& date);
-
 /// A sentence in SI units and the house's frames, or why it is none.
 using ParseResult = std::variant<NmeaSentence, SentenceRefusal>;
+
+/// The name in kSentenceNames of what stands between '$' and '*'; empty if it is none of ours.
+std::string_view typeOf(std::string_view body);
 
 /// Reads what stands between '$' and '*' (checksum already verified).
 /** GGA, RMC, VTG, HDT, ROT and ZDA of any two-letter talker, and PASHR (field lists: NMEA 0183
    v4.11; PASHR: manuals of OxTS, NovAtel and Trimble). Empty fields are absent. One malformed or
-   impossible field refuses the sentence. */
+   impossible field refuses the sentence. GGA may lack its last field, the reference station. */
 ParseResult parseNmea(std::string_view body);
 
 }  // namespace tread::ins

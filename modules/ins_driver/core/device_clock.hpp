@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+namespace tread::ins {
+
+inline constexpr int64_t kDayUs = int64_t{86400} * 1000000;
+inline constexpr int64_t kWeekUs = 7 * kDayUs;
+
+/// A day of the Gregorian calendar.
+struct CivilDate {
+  int year = 1970;
+  int month = 1;
+  int day = 1;
+};
+
+/// Days since 1970-01-01 of a Gregorian date.
+int64_t daysSinceEpoch(const CivilDate& date);
+/// True for a date that the calendar has.
+bool exists(const CivilDate& date);
+
+/// Turns the device's times, which start anew every day or week, into one time that runs on, and
+/// into UTC once a date is known.
+/** Device time counts microseconds from the start of the cycle in which the device's first time
+ * lies. The host's clock has no part. */
+class DeviceClock {
+ public:
+  /// A cycle of 0: the device's times never start anew.
+  explicit DeviceClock(int64_t cycle_us = kDayUs) : cycle_us_(cycle_us) {}
+
+  /// Device time of a told time: of all cycles the one nearest to the newest accepted time.
+  int64_t timeOf(int64_t told) const;
+  /// Makes a device time the newest.
+  void accept(int64_t device_time);
+  /// Nothing before the first accepted time.
+  const std::optional<int64_t>& newest() const { return newest_; }
+  /// Learns the UTC [us since 1970-01-01] of a told time; the told time does not become the newest.
+  void learnUtc(int64_t utc, int64_t told);
+  /// Microseconds since 1970-01-01 UTC, or -1 before a date is known.
+  int64_t utc(int64_t device_time) const;
+
+ private:
+  int64_t cycle_us_;
+  std::optional<int64_t> newest_;
+  std::optional<int64_t> utc_minus_device_;
+  std::optional<std::pair<int64_t, int64_t>> pending_;  ///< UTC and told time before the first time
+};
+
+/// Microseconds from 1970-01-01 UTC to the start of GPS time, 1980-01-06.
+inline constexpr int64_t kGpsEpochUs = int64_t{315964800} * 1000000;
+
+/// UTC of a GPS time [both us]; GPS time has no leap seconds.
+constexpr int64_t utcOfGps(int64_t gps_us, int64_t leap_seconds) {
+  return gps_us + kGpsEpochUs - leap_seconds * 1'000'000;
+}
+
+/// Continues GPS weeks that a device counts modulo 1024 (10 bits; IS-GPS-200, 20.3.3.3.1.1).
+class GpsWeeks {
+ public:
+  /// GPS time [us] of a week as told and the time in it.
+  /** A first week below 1024 is taken as one after 2019-04-07, since no such device was built before
+     1999. Later a time that comes 1024 weeks off to within an hour is a roll-over. */
+  int64_t timeOf(int64_t week, int64_t time_of_week);
+  int64_t rollovers() const { return rollovers_; }
+
+ private:
+  std::optional<int64_t> newest_;
+  int64_t shift_ = 0;  ///< added to what the device tells [us]
+  int64_t rollovers_ = 0;
+};
+
+}  // namespace tread::ins

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "modules/ins_driver/core/attitude_memory.hpp"
+#include "modules/ins_driver/core/device_epoch.hpp"
+#include "modules/ins_driver/core/heading_choice.hpp"
+#include "modules/ins_driver/core/ins_source.hpp"
+#include "modules/ins_driver/core/position_memory.hpp"
+#include "modules/ins_driver/core/track_monitor.hpp"
+
+namespace tread::ins {
+
+/// What became of the epochs.
+struct AssemblerCounts {
+  int64_t epochs = 0;         ///< taken
+  int64_t published = 0;      ///< became an estimate
+  int64_t attitude_only = 0;  ///< kept for the next position
+  int64_t carried = 0;        ///< positions with an attitude that was measured shortly before
+  int64_t positions_carried = 0;  ///< attitudes with a position that was measured shortly before
+  int64_t not_newer = 0;          ///< refused: their time is not after the last one
+  int64_t too_far = 0;  ///< positions refused because they are too far from the origin
+  int64_t gaps = 0;
+  int64_t jumps = 0;
+  int64_t clock_steps = 0;  ///< the device's clock was set
+};
+
+/// Makes an estimate of the body in the map from what the device said about one instant.
+class InsAssembler {
+ public:
+  explicit InsAssembler(const InsConfig& config);
+
+  /// Takes note of when an epoch arrived. To be called for all that are there before the first of
+  /// them is solved: after a pause the newest knows best how late the others are. Not beyond one
+  /// before which the device's clock was set.
+  void observe(const DeviceEpoch& epoch);
+  /// The estimate of an observed epoch; nothing if only the attitude was measured and no position
+  /// can be carried to it, or if its time is not after the last one.
+  std::optional<InsEstimate> solve(const DeviceEpoch& epoch);
+  /// Takes the rates of a device that tells them apart from its epochs, about the device's axes
+  /// [rad/s]. They count for epochs within attitude_hold of their device time.
+  void addRate(int64_t device_time, const Eigen::Vector3d& rate_device);
+
+  /// The map's place on Earth once there is one: configured, or the first good fix.
+  std::optional<GeoOrigin> origin() const;
+  const AssemblerCounts& counts() const { return counts_; }
+  const HeadingChoice& headings() const { return headings_; }
+  /// Distance of the last refused position from the origin [m].
+  double farDistance() const { return far_distance_; }
+
+ private:
+  int64_t measurementTime(const DeviceEpoch& epoch) const;
+  bool positionsAreExpected(int64_t utime) const;
+  bool isPublished(const DeviceEpoch& epoch, int64_t utime);
+  void forget();
+  void setRate(const DeviceEpoch& epoch, InsEstimate& estimate) const;
+  void setOrientation(const std::optional<Attitude>& attitude, InsEstimate& estimate) const;
+  /// Measured, or told by the last two headings, else 0 [rad/s].
+  double yawRateOf(const InsEstimate& estimate) const;
+  /// The last told velocity, its course turned on with the vehicle, within position_hold.
+  std::optional<GroundVelocity> velocityAt(const InsEstimate& estimate) const;
+  /// `arm`: the reported point in body [m].
+  void setVelocity(const std::optional<GroundVelocity>& ground, const Eigen::Vector3d& arm,
+                   InsEstimate& estimate) const;
+  /// Of the reported point along map x and y.
+  std::optional<Eigen::Vector2d> velocityInMap(const GroundVelocity& ground) const;
+  void setPosition(const DeviceEpoch& epoch, InsEstimate& estimate);
+  void remember(const DeviceEpoch& epoch, const PointInMap& point, int64_t utime);
+  Eigen::Vector3d armOf(const DeviceEpoch& epoch) const;
+  void place(const PointInMap& point, InsEstimate& estimate) const;
+  std::optional<PointInMap> pointOf(const DeviceEpoch& epoch);
+  void watchTrack(InsEstimate& estimate);
+  void adoptOrigin(const PositionReport& report, int64_t utime);
+
+  struct Rate {
+    int64_t device_time;
+    Eigen::Vector3d rate_device;
+  };
+
+  InsConfig config_;
+  Eigen::Quaterniond R_body_device_;
+  std::optional<LocalFrame> frame_;
+  ArrivalFilter arrival_filter_;
+  HeadingChoice headings_;
+  AttitudeMemory attitudes_;
+  PositionMemory positions_;
+  TrackMonitor monitor_;
+  std::optional<Rate> rate_;
+  std::optional<GroundVelocity> velocity_;  ///< the last told one
+  int64_t velocity_utime_ = 0;
+  std::optional<int64_t> last_position_utime_;
+  std::optional<int64_t> last_utime_;
+  bool new_track_ = false;
+  int incomplete_fixes_ = 0;
+  int64_t first_incomplete_ = 0;  ///< host time of the first of them [us]
+  double far_distance_ = 0.0;
+  AssemblerCounts counts_;
+};
+
+}  // namespace tread::ins
