@@ -10,17 +10,24 @@
 
 #include "common/messages/blank.hpp"
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
+#include "modules/ins_driver/novatel/novatel_ins.hpp"
+#include "modules/ins_driver/ublox/ublox_ins.hpp"
+#include "modules/ins_driver/vectornav/vectornav_ins.hpp"
 
 namespace tread::ins {
 namespace {
 
-MakeInsSource nmea(ConfigReader& reader, const RobotDescription& robot) {
-  return sourceOf<NmeaIns>(readNmeaConfig(reader, robot));
+template <class Source, InsConfig (*readConfig)(ConfigReader&, const RobotDescription&)>
+MakeInsSource device(ConfigReader& reader, const RobotDescription& robot) {
+  return sourceOf<Source>(readConfig(reader, robot));
 }
 
 /// A new INS is one line here and a folder of its own.
 const std::map<std::string, MakeInsSource (*)(ConfigReader&, const RobotDescription&)> kSources{
-    {"nmea", nmea}};
+    {"nmea", device<NmeaIns, readNmeaConfig>},
+    {"novatel", device<NovatelIns, readNovatelConfig>},
+    {"ublox", device<UbloxIns, readUbloxConfig>},
+    {"vectornav", device<VectornavIns, readVectornavConfig>}};
 
 constexpr double kDegPerRad = 180.0 / kPi;
 
@@ -214,9 +221,11 @@ std::string InsDriverNode::lineProblem(int64_t utime) const {
     return problem.empty() ? address + "closed" : problem;
   }
   if (utime - last_bytes_ > silence_us_) {
-    const std::string said = heard_ ? "bytes came before (" + source_->refusals() + "), none for "
-                                    : std::string("no bytes for ");
-    return address + said + inSeconds(utime - last_bytes_) + "; " + source_->advice().silent;
+    const std::string said =
+        heard_ ? std::string("no more bytes for ") : std::string("no bytes for ");
+    const std::string before = heard_ ? " (before: " + source_->refusals() + ")" : "";
+    return address + said + inSeconds(utime - last_bytes_) + before + "; " +
+           source_->advice().silent;
   }
   const int64_t without_message = utime - source_->lastMessage().value_or(start_);
   if (without_message <= silence_us_) return {};

@@ -251,7 +251,7 @@ TEST_CASE("silence is one clear line in health, and its end is heard") {
   rig.drive(2.0);
   rig.wait(3.0);
   CHECK(rig.health.health_state == health_t::HEALTH_FAILED);
-  CHECK(rig.healthSays("no bytes for"));
+  CHECK(rig.healthSays("no more bytes for"));
   CHECK(rig.health.health_reason.find('\n') == std::string::npos);
   const size_t before = rig.track.size();
   rig.drive(2.0);
@@ -290,6 +290,17 @@ TEST_CASE("refusals are counted in health by their reason") {
   CHECK(rig.counter("refused: no checksum") == 1);
   CHECK(rig.counter("refused: unknown sentence") == 1);
   CHECK(rig.health.health_state == health_t::HEALTH_OK);
+}
+
+TEST_CASE("a line that never said anything is told from one that fell silent") {
+  Rig rig;
+  rig.wait(2.0);
+  CHECK(rig.healthSays("no bytes for"));
+  rig.say(line("GPGGA,120000.000,4205.7,N,08802.0,W,4,12,1.0,221,M,,M"));
+  rig.wait(2.0);
+  CHECK_FALSE(rig.healthSays("no bytes for"));
+  CHECK(rig.healthSays("GGA: field count 1"));
+  CHECK(rig.counter("refused: GGA: field count") == 1);
 }
 
 TEST_CASE("a cut line is reopened with back-off and the track goes on as after a gap") {

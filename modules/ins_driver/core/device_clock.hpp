@@ -62,8 +62,8 @@ constexpr int64_t utcOfGps(int64_t gps_us, int64_t leap_seconds) {
 class GpsWeeks {
  public:
   /// GPS time [us] of a week as told and the time in it.
-  /** A first week below 1024 is taken as one after 2019-04-07, since no such device was built before
-     1999. Later a time that comes 1024 weeks off to within an hour is a roll-over. */
+  /** A first week below 1024 is taken as one after 2019-04-07, since no such device was built
+     before 1999. Later a time that comes 1024 weeks off to within an hour is a roll-over. */
   int64_t timeOf(int64_t week, int64_t time_of_week);
   int64_t rollovers() const { return rollovers_; }
 

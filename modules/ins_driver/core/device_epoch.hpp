@@ -14,22 +14,23 @@ namespace tread::ins {
 
 /// What a device says about its position: a fix, or that it has none.
 struct PositionReport {
-  std::optional<GeoPoint> point;   ///< WGS84 [rad]; absent: no fix
-  std::optional<double> altitude;  ///< above mean sea level [m]
+  std::optional<GeoPoint> point;                                 ///< WGS84 [rad]; absent: no fix
+  std::optional<double> altitude;                                ///< above mean sea level [m]
   Eigen::Vector3d std = Eigen::Vector3d::Constant(kUnmeasured);  ///< along east, north, up [m]
-  bool starts_map = true;     ///< precise enough to become the map's origin
-  bool complete = true;       ///< false: a report with the altitude may still come
-  bool at_antenna = false;    ///< of the GNSS antenna, not of the point that the INS reports
-  int rank = 0;               ///< of two reports of one instant the higher counts, else the later
+  bool starts_map = true;   ///< precise enough to become the map's origin
+  bool complete = true;     ///< false: a report with the altitude may still come
+  bool at_antenna = false;  ///< of the GNSS antenna, not of the point that the INS reports
+  int rank = 0;             ///< of two reports of one instant the higher counts, else the later
 };
 
 /// Motion over ground of the point whose position the device reports.
 struct GroundVelocity {
-  double speed = 0.0;            ///< horizontal, never negative [m/s]
-  std::optional<double> course;  ///< direction of motion as a yaw, counter-clockwise from east [rad]
-  double up = kUnmeasured;       ///< [m/s]
-  double std = kUnmeasured;      ///< along each horizontal axis [m/s]
-  int rank = 0;                  ///< as in PositionReport
+  double speed = 0.0;  ///< horizontal, never negative [m/s]
+  std::optional<double>
+      course;                ///< direction of motion as a yaw, counter-clockwise from east [rad]
+  double up = kUnmeasured;   ///< [m/s]
+  double std = kUnmeasured;  ///< along each horizontal axis [m/s]
+  int rank = 0;              ///< as in PositionReport
 };
 
 /// Ground velocity from components along north, east and up [m/s].
@@ -44,7 +45,7 @@ struct Heading {
 /// one message says.
 /** Axes of the device are forward, left, up; pitch is nose down positive, roll right side down. */
 struct DeviceEpoch {
-  int64_t arrival = 0;  ///< host time of the first byte of the first message [us]
+  int64_t arrival = 0;                 ///< host time of the first byte of the first message [us]
   std::optional<int64_t> device_time;  ///< as DeviceClock counts [us]; absent if no message told it
   int64_t device_utc = -1;             ///< [us] since 1970-01-01; -1 before the device told a date
   bool clock_was_set = false;  ///< the device's clock was set, back or forth, before this epoch

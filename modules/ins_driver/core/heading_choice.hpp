@@ -55,8 +55,7 @@ struct HeadingCounts {
    otherwise two sources with different biases would take turns in the track. */
 class HeadingChoice {
  public:
-  explicit HeadingChoice(const InsConfig& config)
-      : order_(config.headings), course_(config) {}
+  explicit HeadingChoice(const InsConfig& config) : order_(config.headings), course_(config) {}
 
   /// `yaw_rate`: measured, about the vertical [rad/s], if there is one.
   std::optional<Attitude> attitudeOf(const DeviceEpoch& epoch, int64_t utime,

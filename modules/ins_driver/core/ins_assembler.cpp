@@ -136,9 +136,8 @@ void InsAssembler::setOrientation(const std::optional<Attitude>& attitude,
     estimate.status |= kNoHeading | kNoAttitude;
     return;
   }
-  const Eigen::Quaterniond R_map_device =
-      rotation({attitude->yaw - yawOf(frame_), attitude->pitch.value_or(0.0),
-                attitude->roll.value_or(0.0)});
+  const Eigen::Quaterniond R_map_device = rotation(
+      {attitude->yaw - yawOf(frame_), attitude->pitch.value_or(0.0), attitude->roll.value_or(0.0)});
   estimate.R_map_body = R_map_device * R_body_device_.conjugate();
   estimate.attitude_std = {attitude->roll_std, attitude->pitch_std, attitude->yaw_std};
   if (!attitude->pitch || !attitude->roll) estimate.status |= kNoAttitude;
@@ -153,8 +152,7 @@ std::optional<GroundVelocity> InsAssembler::velocityAt(const InsEstimate& estima
   const int64_t age_us = estimate.utime - velocity_utime_;
   if (!velocity_ || age_us > config_.position_hold_us) return std::nullopt;
   GroundVelocity velocity = *velocity_;
-  if (velocity.course)
-    *velocity.course += yawRateOf(estimate) * static_cast<double>(age_us) * 1e-6;
+  if (velocity.course) *velocity.course += yawRateOf(estimate) * static_cast<double>(age_us) * 1e-6;
   return velocity;
 }
 

@@ -18,13 +18,13 @@ namespace tread::ins {
 
 /// What became of the epochs.
 struct AssemblerCounts {
-  int64_t epochs = 0;         ///< taken
-  int64_t published = 0;      ///< became an estimate
-  int64_t attitude_only = 0;  ///< kept for the next position
-  int64_t carried = 0;        ///< positions with an attitude that was measured shortly before
+  int64_t epochs = 0;             ///< taken
+  int64_t published = 0;          ///< became an estimate
+  int64_t attitude_only = 0;      ///< kept for the next position
+  int64_t carried = 0;            ///< positions with an attitude that was measured shortly before
   int64_t positions_carried = 0;  ///< attitudes with a position that was measured shortly before
   int64_t not_newer = 0;          ///< refused: their time is not after the last one
-  int64_t too_far = 0;  ///< positions refused because they are too far from the origin
+  int64_t too_far = 0;            ///< positions refused because they are too far from the origin
   int64_t gaps = 0;
   int64_t jumps = 0;
   int64_t clock_steps = 0;  ///< the device's clock was set

@@ -149,15 +149,16 @@ struct InsConfig {
   /// False: the vehicle has no reverse gear, so that its nose points where it goes. True: which end
   /// goes first is told by the heading before, see CourseHeading.
   bool drives_backward = true;
-  /// Direction of the base line from the first to the second antenna, from the device's forward axis
-  /// counter-clockwise [rad].
+  /// Direction of the base line from the first to the second antenna, from the device's forward
+  /// axis counter-clockwise [rad].
   double baseline_yaw = 0.0;
   /// GPS time minus UTC, for devices that tell only GPS time [s].
   int64_t leap_seconds = 18;
-  /// Geoid above the ellipsoid, for devices that tell only heights above the ellipsoid; absent: such
-  /// heights are unknown until the device tells it [m].
+  /// Geoid above the ellipsoid, for devices that tell only heights above the ellipsoid; absent:
+  /// such heights are unknown until the device tells it [m].
   std::optional<double> geoid_separation;
-  /// Samples a second of the IMU whose rates a NovAtel receiver tells per sample; 0 = learn it [Hz].
+  /// Samples a second of the IMU whose rates a NovAtel receiver tells per sample; 0 = learn it
+  /// [Hz].
   double imu_rate = 0.0;
 };
 

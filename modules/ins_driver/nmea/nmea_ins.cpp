@@ -111,8 +111,8 @@ NmeaCounts NmeaIns::counts() const {
 
 std::string NmeaIns::refusals() const {
   const NmeaCounts line = counts();
-  return "stray bytes " + std::to_string(line.stray_bytes) + ", refused: " +
-         (line.reasons.empty() ? "none" : listed(line.reasons));
+  return "stray bytes " + std::to_string(line.stray_bytes) +
+         ", refused: " + (line.reasons.empty() ? "none" : listed(line.reasons));
 }
 
 InsAdvice NmeaIns::advice() const {

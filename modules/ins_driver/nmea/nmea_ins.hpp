@@ -26,7 +26,8 @@ struct NmeaCounts {
   std::array<int64_t, kSentenceTypes>
       empty{};  ///< of those: well-formed, but no measurement in them
   SentenceRefusals refused;
-  /// The same by sentence where its checksum was good ("GGA: field count"), else by the bare reason.
+  /// The same by sentence where its checksum was good ("GGA: field count"), else by the bare
+  /// reason.
   ReasonCounts reasons;
 };
 

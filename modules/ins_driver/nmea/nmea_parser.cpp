@@ -138,8 +138,8 @@ NmeaSentence readZda(NmeaFields& fields) {
   return Zda{fields.timeOfDay(1), fields.date(2)};
 }
 
-/// Some devices leave out the last field, the reference station: certain only while both units stand
-/// where they belong.
+/// Some devices leave out the last field, the reference station: certain only while both units
+/// stand where they belong.
 bool endsBeforeStation(const NmeaFields& fields) {
   return fields.count() == 13 && fields.text(10) == "M" && fields.text(12) == "M";
 }

@@ -8,7 +8,10 @@
 
 #include "modules/simulator/emulators/hokuyo/scip_emulator.hpp"
 #include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
+#include "modules/simulator/emulators/novatel/novatel_emulator.hpp"
 #include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
+#include "modules/simulator/emulators/ublox/ublox_emulator.hpp"
+#include "modules/simulator/emulators/vectornav/vectornav_emulator.hpp"
 
 namespace tread::sim {
 namespace {
@@ -35,7 +38,14 @@ const Table<MotorEmulator> kControllers{
     {"roboteq", [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
        return std::make_unique<RoboteqEmulator>();
      }}};
+template <class Device>
+std::unique_ptr<InsEmulator> binaryIns(const Settings& settings, uint64_t seed) {
+  return std::make_unique<Device>(settings.ins, seed);
+}
 const Table<InsEmulator> kSources{
+    {"novatel", binaryIns<NovatelEmulator>},
+    {"ublox", binaryIns<UbloxEmulator>},
+    {"vectornav", binaryIns<VectornavEmulator>},
     {"nmea", [](const Settings& settings, uint64_t seed) -> std::unique_ptr<InsEmulator> {
        return std::make_unique<NmeaInsEmulator>(NmeaInsSettings{settings.ins, {}}, seed);
      }}};

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "modules/ins_driver/core/binary_framer.hpp"
+#include "modules/ins_driver/core/ins_pipeline.hpp"
+#include "modules/ins_driver/core/ins_source.hpp"
+
+namespace tread::ins {
+
+/// What became of a frame.
+struct Reading {
+  std::string name;          ///< of the message, as its maker calls it
+  const char* refusal = "";  ///< why it was not used; empty if it was
+};
+
+/// From the bytes of a device with binary messages to estimates; what differs is its protocol.
+class BinaryIns : public InsSource {
+ public:
+  void push(std::string_view bytes, int64_t arrival) override;
+  std::optional<InsEstimate> next(int64_t now) override { return pipeline_.next(now); }
+  void interrupt() override;
+  std::optional<GeoOrigin> origin() const override { return assembler().origin(); }
+  std::optional<int64_t> lastMessage() const override { return last_frame_; }
+  std::pair<int64_t, double> tooFar() const override {
+    return {assembler().counts().too_far, assembler().farDistance()};
+  }
+  std::string refusals() const override;
+  NamedCounts counters() const override;
+
+  const InsAssembler& assembler() const { return pipeline_.assembler(); }
+  /// Frames that were decoded, by their name.
+  const std::map<std::string, int64_t>& decoded() const { return decoded_; }
+  /// Bytes that were refused and messages that were not used, by reason.
+  ReasonCounts reasons() const;
+  const BinaryFramer& framer() const { return framer_; }
+  int64_t frames() const { return frames_; }
+
+ protected:
+  BinaryIns(const InsConfig& config, LookForFrame look, int64_t cycle_us)
+      : config_(config), framer_(look), pipeline_(config, cycle_us) {}
+
+  /// Reads a frame with a good checksum and gives the pipeline what it says.
+  virtual Reading read(std::string_view frame, int64_t arrival) = 0;
+
+  const InsConfig config_;
+
+ private:
+  void readFrames();
+
+  BinaryFramer framer_;
+  std::optional<int64_t> last_frame_;
+  int64_t arrival_ = 0;
+  int64_t frames_ = 0;
+  std::map<std::string, int64_t> decoded_;
+  ReasonCounts unused_;
+
+ protected:
+  InsPipeline pipeline_;
+};
+
+}  // namespace tread::ins

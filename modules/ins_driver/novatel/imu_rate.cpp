@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/ins_driver/novatel/imu_rate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/geometry/se2.hpp"
+
+namespace tread::ins {
+namespace {
+
+constexpr double kUsualRates[] = {100.0, 125.0, 200.0, 250.0, 400.0, 500.0, 1000.0, 2000.0};
+constexpr size_t kRatios = 9;
+constexpr double kFit = 0.08;  ///< a median this near to a usual rate is that rate
+constexpr double kLeastTurn =
+    0.02;  ///< below this yaw between two attitudes noise would tell [rad]
+constexpr int64_t kMaxBaseUs = 1'000'000;
+
+}  // namespace
+
+ImuRate::ImuRate(double configured) {
+  if (configured > 0.0) rate_ = configured;
+}
+
+void ImuRate::addSample(int64_t /*time*/, double yaw_per_sample) {
+  sum_per_sample_ += yaw_per_sample;
+  ++samples_;
+}
+
+void ImuRate::addYaw(int64_t time, double yaw) {
+  if (rate_) return;
+  const int64_t base = time - yaw_time_;
+  const bool usable = yaw_ && base > 0 && base <= kMaxBaseUs && samples_ > 0;
+  const double turned = usable ? wrapAngle(yaw - *yaw_) : 0.0;
+  if (usable && std::abs(turned) < kLeastTurn) return;  // wait for more
+  if (usable) {
+    const double per_second = turned / (static_cast<double>(base) * 1e-6);
+    ratios_.push_back(per_second / (sum_per_sample_ / samples_));
+  }
+  yaw_ = yaw;
+  yaw_time_ = time;
+  sum_per_sample_ = 0.0;
+  samples_ = 0;
+  if (ratios_.size() < kRatios) return;
+  std::nth_element(ratios_.begin(), ratios_.begin() + kRatios / 2, ratios_.end());
+  const double median = ratios_[kRatios / 2];
+  ratios_.clear();
+  for (const double usual : kUsualRates) {
+    if (std::abs(median / usual - 1.0) < kFit) rate_ = usual;
+  }
+}
+
+}  // namespace tread::ins

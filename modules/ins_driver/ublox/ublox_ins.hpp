@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "common/config/config_reader.hpp"
+#include "common/vehicle/robot_description.hpp"
+#include "modules/ins_driver/core/binary_ins.hpp"
+
+namespace tread::ins {
+
+/// Judges bytes as a UBX frame: B5 62, class, id, length, payload, Fletcher checksum over class to
+/// payload (u-blox F9 Interface Description, "UBX Protocol").
+FrameLook lookForUbx(std::string_view bytes);
+
+/// Reads what a u-blox receiver adds to the driver's configuration.
+InsConfig readUbloxConfig(ConfigReader& reader, const RobotDescription& robot);
+
+/// The messages that are read, with what they are counted as in InsConfig::last_type.
+enum class UbxKind : uint8_t { kNavPvt, kNavRelposned, kNavAtt, kEsfIns };
+
+/// A u-blox receiver: NAV-PVT, NAV-RELPOSNED (heading of a moving base), NAV-ATT, ESF-INS.
+/** Times are milliseconds of the GPS week; NAV-PVT tells UTC. Axes of the vehicle frame are
+   forward, right, down. A heading of NAV-RELPOSNED counts only with every flag that it needs: fix,
+   relative position valid, moving base, ambiguities fixed, heading valid. */
+class UbloxIns : public BinaryIns {
+ public:
+  explicit UbloxIns(const InsConfig& config);
+
+  InsAdvice advice() const override;
+
+ protected:
+  Reading read(std::string_view frame, int64_t arrival) override;
+
+ private:
+  const char* readPvt(std::string_view payload, DeviceEpoch& part) const;
+  const char* readRelposned(std::string_view payload, DeviceEpoch& part) const;
+};
+
+}  // namespace tread::ins

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "common/config/config_reader.hpp"
+#include "common/vehicle/robot_description.hpp"
+#include "modules/ins_driver/core/binary_ins.hpp"
+#include "modules/ins_driver/vectornav/vectornav_message.hpp"
+
+namespace tread::ins {
+
+/// Reads what a VectorNav adds to the driver's configuration.
+InsConfig readVectornavConfig(ConfigReader& reader, const RobotDescription& robot);
+
+/// A VectorNav VN-200 or VN-300 that sends binary messages (VN-300 User Manual).
+/** Axes are forward, right, down. Each message is one instant. InsStatus is needed: only while the
+   filter tracks do position, velocity and heading count; while it aligns, position and velocity; in
+   a GNSS outage, attitude. Heights are above the ellipsoid: geoid_separation must be configured.
+   Device time is TimeStartup, which no fix sets, else TimeGps. */
+class VectornavIns : public BinaryIns {
+ public:
+  explicit VectornavIns(const InsConfig& config);
+
+  InsAdvice advice() const override;
+
+ protected:
+  Reading read(std::string_view frame, int64_t arrival) override;
+
+ private:
+  const char* readPlace(const VectornavFields& fields, DeviceEpoch& part) const;
+};
+
+}  // namespace tread::ins
