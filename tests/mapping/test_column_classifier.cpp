@@ -17,7 +17,7 @@ uint64_t at(double z) {
 }
 
 Column columnOf(uint64_t free, uint64_t occupied) {
-  return {free | occupied, occupied, 0};
+  return {free | occupied, occupied};
 }
 
 Cell classified(uint64_t free, uint64_t occupied, double ground = 0.0, double doubt = 0.0) {

@@ -188,7 +188,8 @@ bool OccupancyMap::place(const Eigen::Isometry3d& T_map_body) {
     return false;
   const CellIndex lower{static_cast<int>(std::lround(at.x() - half)),
                         static_cast<int>(std::lround(at.y() - half))};
-  moveWindow(lower, static_cast<int>(std::floor(z)) - kColumnHeight / 2);
+  const auto blocks = static_cast<int>(std::lround(z / kBlockSide));
+  moveWindow(lower, blocks * kBlockSide - kColumnHeight / 2);
   if (fresh) assumeStartFree(p_map.head<2>());
   return true;
 }

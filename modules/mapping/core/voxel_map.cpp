@@ -54,6 +54,7 @@ void makeChildless(OcTree& tree, OcTreeNode* node, unsigned depth) {
 bool trim(OcTree& tree, OcTreeNode* node, unsigned depth, const Cube& cube, const KeyBox& box) {
   const Overlap overlap = overlapOf(cube, box);
   if (overlap != Overlap::kPartly) return overlap == Overlap::kInside;
+  if (!tree.nodeHasChildren(node)) tree.expandNode(node);
   bool any_left = false;
   for (unsigned i = 0; i < 8; ++i) {
     if (!tree.nodeChildExists(node, i)) continue;
@@ -65,6 +66,7 @@ bool trim(OcTree& tree, OcTreeNode* node, unsigned depth, const Cube& cube, cons
     makeChildless(tree, child, depth + 1);
     tree.deleteNodeChild(node, i);
   }
+  if (any_left) node->updateOccupancyChildren();
   return any_left;
 }
 
@@ -81,6 +83,17 @@ uint64_t shifted(uint64_t bits, int steps) {
   return steps >= 0 ? bits >> steps : bits << -steps;
 }
 
+/// The eight voxels of a block above each other at x, y (0..7), the lowest one first.
+uint64_t columnOf(const BlockBits& bits, unsigned x, unsigned y) {
+  const unsigned child = (x & 4u) >> 2 | (y & 4u) >> 1;
+  const unsigned cube = (x & 1u) | (y & 1u) << 1 | (x & 2u) << 2 | (y & 2u) << 3;
+  const auto half = [&](uint64_t word) {
+    word >>= cube;
+    return (word & 1u) | (word >> 3 & 2u) | (word >> 30 & 4u) | (word >> 33 & 8u);
+  };
+  return half(bits[child]) | half(bits[child + 4]) << 4;
+}
+
 }  // namespace
 
 void trimTree(OcTree& tree, const KeyBox& box) {
@@ -90,11 +103,15 @@ void trimTree(OcTree& tree, const KeyBox& box) {
 }
 
 VoxelMap::VoxelMap(const VoxelConfig& config, int side_cells)
-    : tree_(config.cell_size), columns_(side_cells), marks_(columns_.size()) {
+    : tree_(config.cell_size),
+      columns_(side_cells),
+      grid_({side_cells, side_cells, kColumnHeight}),
+      listed_(columns_.size()) {
   tree_.setProbHit(config.hit);
   tree_.setProbMiss(config.miss);
   tree_.setClampingThresMin(config.clamp_min);
   tree_.setClampingThresMax(config.clamp_max);
+  moveTo({0, 0}, 0);
 }
 
 octomap::OcTreeKey VoxelMap::keyOf(CellIndex column, int bit) const {
@@ -108,60 +125,47 @@ void VoxelMap::moveTo(CellIndex lower, int lower_z) {
   lower_z_ = lower_z;
   for (size_t i = 0; i < columns_.size(); ++i) {
     Column& column = columns_[i];
-    column = {shifted(column.known, steps), shifted(column.occupied, steps),
-              shifted(column.settled, steps)};
+    column = {shifted(column.known, steps), shifted(column.occupied, steps)};
   }
   const int last = columns_.side() - 1;
   trimTree(tree_, {keyOf(lower, 0), keyOf({lower.x + last, lower.y + last}, kColumnHeight - 1)});
-}
-
-void VoxelMap::mark(const octomap::OcTreeKey& key, uint64_t Marks::*kind) {
-  const CellIndex index{key[0] - kKeyOfZero, key[1] - kKeyOfZero};
-  const int bit = key[2] - kKeyOfZero - lower_z_;
-  if (bit < 0 || bit >= kColumnHeight || !columns_.contains(index)) return;
-  const size_t offset = columns_.offset(index);
-  Marks& marks = marks_[offset];
-  if ((marks.passed | marks.hit) == 0) touched_.push_back(offset);
-  marks.*kind |= uint64_t{1} << bit;
+  grid_.moveTo({lower.x + kKeyOfZero, lower.y + kKeyOfZero, lower_z + kKeyOfZero});
 }
 
 void VoxelMap::insert(const std::vector<Ray>& rays) {
+  for (const size_t offset : touched_) listed_[offset] = {};
   touched_.clear();
   changed_.clear();
-  octomap::OcTreeKey end;
-  for (const Ray& ray : rays) {
-    if (!tree_.computeRayKeys(point(ray.from), point(ray.to), keys_)) continue;
-    for (const octomap::OcTreeKey& key : keys_) mark(key, &Marks::passed);
-    if (ray.hit && tree_.coordToKeyChecked(point(ray.to), end)) mark(end, &Marks::hit);
-  }
-  for (const size_t offset : touched_) apply(offset);
+  for (const Ray& ray : rays) grid_.trace(tree_, point(ray.from), point(ray.to), ray.hit);
+  std::vector<VoxelBlock>& blocks = grid_.takeBlocks();
+  update_(tree_, blocks);
+  for (const VoxelBlock& block : blocks) takeBlock(block);
 }
 
-void VoxelMap::apply(size_t offset) {
+void VoxelMap::takeBlock(const VoxelBlock& block) {
+  const CellIndex lower{block.low[0] - kKeyOfZero, block.low[1] - kKeyOfZero};
+  const auto shift = static_cast<unsigned>(block.low[2] - kKeyOfZero - lower_z_);
+  for (unsigned y = 0; y < kBlockSide; ++y)
+    for (unsigned x = 0; x < kBlockSide; ++x) {
+      const uint64_t seen = columnOf(block.passed, x, y) | columnOf(block.hit, x, y);
+      if (seen == 0) continue;
+      const size_t offset =
+          columns_.offset({lower.x + static_cast<int>(x), lower.y + static_cast<int>(y)});
+      takeColumn(offset, seen << shift, columnOf(block.occupied, x, y) << shift);
+    }
+}
+
+void VoxelMap::takeColumn(size_t offset, uint64_t seen, uint64_t occupied) {
   Column& column = columns_[offset];
-  Marks& marks = marks_[offset];
+  Listed& listed = listed_[offset];
   const Column before = column;
-  update(offset, marks.hit & ~(before.settled & before.occupied), true);
-  update(offset, marks.passed & ~marks.hit & ~(before.settled & before.free()), false);
-  marks = {};
-  if (column.known != before.known || column.occupied != before.occupied)
-    changed_.push_back(offset);
-}
-
-void VoxelMap::update(size_t offset, uint64_t bits, bool hit) {
-  Column& column = columns_[offset];
-  const CellIndex index = columns_.indexOf(offset);
-  for (; bits != 0; bits &= bits - 1) {
-    const uint64_t bit = bits & (~bits + 1);
-    const octomap::OcTreeNode* node = tree_.updateNode(keyOf(index, lowestBit(bits)), hit, true);
-    const bool occupied = tree_.isNodeOccupied(node);
-    const float value = node->getLogOdds();
-    const bool settled = occupied ? value >= tree_.getClampingThresMaxLog()
-                                  : value <= tree_.getClampingThresMinLog();
-    column.known |= bit;
-    column.occupied = occupied ? column.occupied | bit : column.occupied & ~bit;
-    column.settled = settled ? column.settled | bit : column.settled & ~bit;
-  }
+  column.known |= seen;
+  column.occupied = (column.occupied & ~seen) | occupied;
+  if (!listed.touched) touched_.push_back(offset);
+  listed.touched = true;
+  if (column.known == before.known && column.occupied == before.occupied) return;
+  if (!listed.changed) changed_.push_back(offset);
+  listed.changed = true;
 }
 
 }  // namespace tread::mapping

@@ -10,6 +10,8 @@
 #include <octomap/OcTree.h>
 
 #include "common/grid/grid.hpp"
+#include "modules/mapping/core/ray_grid.hpp"
+#include "modules/mapping/core/tree_update.hpp"
 
 namespace tread::mapping {
 
@@ -67,7 +69,7 @@ struct KeyBox {
   octomap::OcTreeKey high;
 };
 
-/// Removes every leaf outside of a box; leafs must be single voxels (nothing pruned).
+/// Removes every leaf outside of a box; the rest is as pruned as before, inner nodes up to date.
 /** Own descent, because the library has none: its deleteNode() aborts as soon as it takes the last
  *  child of an inner node (the node's array of children stays allocated, and its destructor asserts
  *  that there is none). Only pruneNode() frees that array, and only with eight equal children. */
@@ -94,7 +96,6 @@ inline constexpr int kColumnHeight = 64;
 struct Column {
   uint64_t known = 0;     ///< some beam ended in it or passed it
   uint64_t occupied = 0;  ///< more likely occupied than not
-  uint64_t settled = 0;   ///< at the clamp of its state: more of the same changes nothing
 
   uint64_t free() const { return known & ~occupied; }
 };
@@ -108,19 +109,21 @@ struct Ray {
 
 /// Rolling octomap::OcTree with a bit image of its leafs, column by column.
 /** The tree holds the evidence, the image says what it comes to: both always agree, and nothing of
- *  the tree lies outside of the window. Inner nodes are not kept up to date (lazy evaluation). */
+ *  the tree lies outside of the window. The tree is pruned and its inner nodes are up to date. */
 class VoxelMap {
  public:
+  /// `side_cells`: a multiple of kBlockSide.
   VoxelMap(const VoxelConfig& config, int side_cells);
   VoxelMap(const VoxelMap&) = delete;
   VoxelMap& operator=(const VoxelMap&) = delete;
 
-  /// Moves the window: its lower left column and its lowest voxel, as indices fixed in map.
+  /// Moves the window: its lower left column and its lowest voxel, as indices fixed in map, each a
+  /// multiple of kBlockSide.
   void moveTo(CellIndex lower, int lower_z);
 
   /// Takes the rays of one scan; hits win over passing beams, each voxel counts once.
-  /** Same result as octomap::OcTree::insertPointCloud() within the window. This is the one place
-   *  that writes into the tree. */
+  /** Same tree as octomap::OcTree::insertPointCloud() makes within the window, lazy_eval = false.
+   *  This is the one place that writes into the tree. */
   void insert(const std::vector<Ray>& rays);
 
   /// Columns that the last insert() passed or hit.
@@ -133,24 +136,23 @@ class VoxelMap {
   const octomap::OcTree& tree() const { return tree_; }
 
  private:
-  /// What one scan says about a column.
-  struct Marks {
-    uint64_t passed = 0;
-    uint64_t hit = 0;
-  };
-
   octomap::OcTreeKey keyOf(CellIndex column, int bit) const;
-  void mark(const octomap::OcTreeKey& key, uint64_t Marks::*kind);
-  void apply(size_t offset);
-  void update(size_t offset, uint64_t bits, bool hit);
+  void takeBlock(const VoxelBlock& block);
+  void takeColumn(size_t offset, uint64_t seen, uint64_t occupied);
 
   octomap::OcTree tree_;
   Window<Column> columns_;
   int lower_z_ = 0;
-  std::vector<Marks> marks_;
+  RayGrid grid_;
+  TreeUpdate update_;
+  /// Whether a column is among the touched and the changed ones.
+  struct Listed {
+    bool touched = false;
+    bool changed = false;
+  };
+  std::vector<Listed> listed_;  // for each column
   std::vector<size_t> touched_;
   std::vector<size_t> changed_;
-  octomap::KeyRay keys_;
 };
 
 }  // namespace tread::mapping

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// How long a scan takes to go into the tree, in turn with OctoMap's own insertion of the same scan;
+// all of a bench are from other places, and after each both trees are compared byte by byte.
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "modules/mapping/core/voxel_map.hpp"
+#include "tests/mapping/cloud_insertion.hpp"
+
+namespace {
+
+using namespace tread::mapping;
+using octomap::OcTree;
+using octomap::point3d;
+using octomap::Pointcloud;
+
+constexpr double kResolution = 0.1;  // [m]
+constexpr double kMaxRange = 10.0;   // [m]
+
+template <class Action>
+double milliseconds(const Action& action) {
+  const auto start = std::chrono::steady_clock::now();
+  action();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
+}
+
+/// Points of a text file, three numbers each; empty if there is none.
+Pointcloud readCloud(const std::string& path) {
+  Pointcloud cloud;
+  std::ifstream file(path);
+  float x = 0.0F;
+  float y = 0.0F;
+  float z = 0.0F;
+  while (file >> x >> y >> z) cloud.push_back(x, y, z);
+  return cloud;
+}
+
+/// The cloud from a place farther along, turned a little more.
+Pointcloud moved(const Pointcloud& cloud, const octomap::pose6d& T_map_sensor) {
+  Pointcloud moved(cloud);
+  moved.transform(T_map_sensor);
+  return moved;
+}
+
+/// Reports both ways' times and their ratio; stops the bench if the trees differ.
+class Comparison {
+ public:
+  explicit Comparison(benchmark::State& state) : state_(state) {}
+  ~Comparison() {
+    const auto scans = static_cast<double>(scans_);
+    state_.counters["ours_ms"] = ours_ / scans;
+    state_.counters["most_ms"] = most_;
+    state_.counters["octomap_ms"] = theirs_ / scans;
+    state_.counters["ratio"] = theirs_ / ours_;
+  }
+  Comparison(const Comparison&) = delete;
+  Comparison& operator=(const Comparison&) = delete;
+
+  template <class Ours, class Theirs>
+  void add(const Ours& ours, const Theirs& theirs) {
+    const double time = milliseconds(ours);
+    ours_ += time;
+    most_ = std::max(most_, time);
+    theirs_ += milliseconds(theirs);
+    ++scans_;
+    state_.SetIterationTime(1e-3 * time);
+  }
+  void compare(const OcTree& ours, const OcTree& theirs) {
+    if (bytesOf(ours) != bytesOf(theirs)) state_.SkipWithError("the trees differ");
+  }
+
+ private:
+  benchmark::State& state_;
+  int scans_ = 0;
+  double ours_ = 0.0;
+  double most_ = 0.0;
+  double theirs_ = 0.0;
+};
+
+/// A whole cloud: $TREAD_SCAN, three numbers a line.
+void cloud(benchmark::State& state) {
+  const char* const path = std::getenv("TREAD_SCAN");
+  const Pointcloud scan = readCloud(path == nullptr ? "" : path);
+  if (scan.size() == 0) return state.SkipWithError("no points: set TREAD_SCAN to a file of them");
+  Comparison comparison(state);
+  OcTree ours(kResolution);
+  OcTree theirs(kResolution);
+  CloudInsertion insertion(kResolution, kMaxRange);
+  double way = 0.0;
+  for (auto _ : state) {
+    const octomap::pose6d T(static_cast<float>(0.3 * way), static_cast<float>(0.1 * way), 0.0F, 0.0,
+                            0.0, 0.07 * way);
+    const Pointcloud cloud = moved(scan, T);
+    comparison.add([&] { insertion.insert(ours, cloud, T.trans()); },
+                   [&] { theirs.insertPointCloud(cloud, T.trans(), kMaxRange, false, true); });
+    comparison.compare(ours, theirs);
+    way += 1.0;
+  }
+}
+BENCHMARK(cloud)->UseManualTime()->Iterations(25)->Unit(benchmark::kMillisecond);
+
+/// 1081 beams in a hall with pillars, into the map that the process keeps.
+void planeScan(benchmark::State& state) {
+  VoxelMap map(VoxelConfig{}, 256);
+  map.moveTo({-128, -128}, -32);
+  OcTree theirs(kResolution);
+  const VoxelConfig config;
+  theirs.setProbHit(config.hit);
+  theirs.setProbMiss(config.miss);
+  theirs.setClampingThresMin(config.clamp_min);
+  theirs.setClampingThresMax(config.clamp_max);
+  Comparison comparison(state);
+  int scan = 0;
+  for (auto _ : state) {
+    const Eigen::Vector3d from(0.02 * scan, 0.01 * scan, 0.5);
+    std::vector<Ray> rays;
+    Pointcloud cloud;
+    for (int i = 0; i < 1081; ++i) {
+      const double angle = 0.25 * M_PI / 180.0 * (i - 540) + 0.01 * scan;
+      const double range = 6.0 + 3.5 * std::sin(9.0 * angle);
+      const Eigen::Vector3d to =
+          from + range * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.02 * std::sin(angle));
+      rays.push_back({from, to, true});
+      const Eigen::Vector3f point = to.cast<float>();
+      cloud.push_back(point.x(), point.y(), point.z());
+    }
+    const Eigen::Vector3f p = from.cast<float>();
+    comparison.add(
+        [&] { map.insert(rays); },
+        [&] { theirs.insertPointCloud(cloud, point3d(p.x(), p.y(), p.z()), -1.0, false, false); });
+    comparison.compare(map.tree(), theirs);
+    ++scan;
+  }
+}
+BENCHMARK(planeScan)->UseManualTime()->Iterations(100)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();
