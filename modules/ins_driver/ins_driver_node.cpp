@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "common/messages/blank.hpp"
+#include "modules/ins_driver/ins_config.hpp"
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
 #include "modules/ins_driver/novatel/novatel_ins.hpp"
 #include "modules/ins_driver/ublox/ublox_ins.hpp"

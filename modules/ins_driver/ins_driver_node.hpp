@@ -11,7 +11,6 @@
 #include "common/store/store.hpp"
 #include "common/vehicle/robot_description.hpp"
 #include "modules/ins_driver/core/ins_source.hpp"
-#include "modules/ins_driver/devices/ins_config.hpp"
 
 namespace tread::ins {
 

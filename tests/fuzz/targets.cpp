@@ -24,6 +24,9 @@
 #include "common/vehicle/model_document.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
+#include "modules/ins_driver/novatel/novatel_ins.hpp"
+#include "modules/ins_driver/ublox/ublox_ins.hpp"
+#include "modules/ins_driver/vectornav/vectornav_ins.hpp"
 #include "modules/learner/core/learner.hpp"
 #include "modules/learner/core/rules/multi_model.hpp"
 #include "modules/learner/learner_node.hpp"
@@ -210,8 +213,9 @@ void learnerFiles(const uint8_t* bytes, size_t size) {
 }
 
 /// Times between pieces are in the bytes, too.
-void nmea(const uint8_t* bytes, size_t size) {
-  ins::NmeaIns source{ins::InsConfig{}};
+template <class Source>
+void insBytes(const uint8_t* bytes, size_t size) {
+  Source source{ins::InsConfig{}};
   int64_t now = 1'000'000;
   for (size_t at = 0; at < size; at += 37) {
     now += 1000 * (bytes[at] % 64);
@@ -278,7 +282,8 @@ const std::map<std::string, Target>& targets() {
         {"log", log},
         {"message", message},
         {"model_file", modelFile},
-        {"nmea", nmea},
+        {"nmea", insBytes<ins::NmeaIns>},
+        {"novatel", insBytes<ins::NovatelIns>},
         {"pattern_file", patternFile},
         {"pattern_set_parts", patternSetParts},
         {"relay", relay},
@@ -288,6 +293,8 @@ const std::map<std::string, Target>& targets() {
         {"scip", scip},
         {"seal", seal},
         {"truth_record", truthRecord},
+        {"ublox", insBytes<ins::UbloxIns>},
+        {"vectornav", insBytes<ins::VectornavIns>},
         {"world", world},
     };
 #ifdef TREAD_WITH_TOOLS

@@ -44,7 +44,8 @@ TEST_CASE("25 Hz of attitudes with 10 Hz of positions are 25 poses a second, car
   }
 }
 
-TEST_CASE("without a told velocity a position is carried by the last two, but no velocity is told") {
+TEST_CASE(
+    "without a told velocity a position is carried by the last two, but no velocity is told") {
   Bench bench(withOrigin());
   for (int i = 0; i < 20; ++i) {
     const double t = i * 0.04;

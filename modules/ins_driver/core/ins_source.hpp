@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -198,5 +200,19 @@ class InsSource {
   /// What was counted, by its name in words, in the order of HEALTH.
   virtual std::vector<std::pair<std::string, int64_t>> counters() const = 0;
 };
+
+/// Makes the source; the origin of the map is given where it is known.
+using MakeInsSource =
+    std::function<std::unique_ptr<InsSource>(const std::optional<GeoOrigin>& origin)>;
+
+/// Makes sources of a kind; the origin that is given replaces that of the configuration.
+template <class Source>
+MakeInsSource sourceOf(const InsConfig& config) {
+  return [config](const std::optional<GeoOrigin>& origin) {
+    InsConfig with_origin = config;
+    if (origin) with_origin.origin = origin;
+    return std::make_unique<Source>(with_origin);
+  };
+}
 
 }  // namespace tread::ins

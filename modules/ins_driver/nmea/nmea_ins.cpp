@@ -24,25 +24,7 @@ bool isEmpty(const NmeaSentence& sentence) {
   return std::visit(Visitor{}, sentence);
 }
 
-/// The sentence that ends each epoch; "none" where the order is not known.
-void readLastType(ConfigReader& reader, InsConfig& ins) {
-  std::string last = "none";
-  std::vector<std::string> allowed{"none"};
-  allowed.insert(allowed.end(), std::begin(kSentenceNames), std::end(kSentenceNames));
-  reader.choice("last_sentence", last, allowed);
-  for (size_t i = 0; i < kSentenceTypes; ++i) {
-    if (last == kSentenceNames[i]) ins.last_type = i;
-  }
-}
-
 }  // namespace
-
-InsConfig readNmeaConfig(ConfigReader& reader, const RobotDescription& robot) {
-  InsConfig ins = readInsConfig(reader, robot);
-  readLastType(reader, ins);
-  reader.number("origin_max_hdop", ins.origin_max_hdop, {0.5, 100.0}, "1");
-  return ins;
-}
 
 void NmeaIns::push(std::string_view bytes, int64_t arrival) {
   arrival_ = arrival;

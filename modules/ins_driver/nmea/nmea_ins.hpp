@@ -7,11 +7,8 @@
 #include <optional>
 #include <string_view>
 
-#include "common/config/config_reader.hpp"
-#include "common/vehicle/robot_description.hpp"
 #include "modules/ins_driver/core/ins_pipeline.hpp"
 #include "modules/ins_driver/core/ins_source.hpp"
-#include "modules/ins_driver/devices/ins_config.hpp"
 #include "modules/ins_driver/nmea/nmea_framer.hpp"
 
 namespace tread::ins {
@@ -30,9 +27,6 @@ struct NmeaCounts {
   /// reason.
   ReasonCounts reasons;
 };
-
-/// Reads what an NMEA device adds to the driver's configuration; its mounting is the robot's.
-InsConfig readNmeaConfig(ConfigReader& reader, const RobotDescription& robot);
 
 /// From the bytes of an NMEA 0183 device to estimates: framer, parser, epochs, assembler.
 class NmeaIns : public InsSource {

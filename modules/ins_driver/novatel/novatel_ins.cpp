@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "modules/ins_driver/core/bytes.hpp"
-#include "modules/ins_driver/devices/ins_config.hpp"
 
 namespace tread::ins {
 namespace {
@@ -69,26 +68,6 @@ Eigen::Vector3d stdAt(std::string_view body, size_t first, size_t second, size_t
 }
 
 }  // namespace
-
-InsConfig readNovatelConfig(ConfigReader& reader, const RobotDescription& robot) {
-  InsConfig ins = readInsConfig(reader, robot);
-  readBaseline(reader, ins);
-  readGpsConventions(reader, ins);
-  std::string last = "none";
-  std::vector<std::string> allowed{"none"};
-  allowed.insert(allowed.end(), std::begin(kNovatelKindNames), std::end(kNovatelKindNames));
-  reader.choice("last_message", last, allowed);
-  for (size_t i = 0; i < std::size(kNovatelKindNames); ++i) {
-    if (last == kNovatelKindNames[i]) ins.last_type = i;
-  }
-  reader.number("imu_rate", ins.imu_rate, {0.0, 4000.0}, "Hz");
-  std::vector<double> antenna;
-  if (reader.has("antenna")) {
-    reader.numbers("antenna", antenna, 3, {-20.0, 20.0}, "m");
-    ins.p_body_gnss = Eigen::Vector3d(antenna[0], antenna[1], antenna[2]);
-  }
-  return ins;
-}
 
 NovatelIns::NovatelIns(const InsConfig& config)
     : BinaryIns(config, lookForNovatel, 0),

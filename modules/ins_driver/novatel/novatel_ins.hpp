@@ -6,17 +6,12 @@
 #include <optional>
 #include <string_view>
 
-#include "common/config/config_reader.hpp"
-#include "common/vehicle/robot_description.hpp"
 #include "modules/ins_driver/core/binary_ins.hpp"
 #include "modules/ins_driver/core/device_clock.hpp"
 #include "modules/ins_driver/novatel/imu_rate.hpp"
 #include "modules/ins_driver/novatel/novatel_message.hpp"
 
 namespace tread::ins {
-
-/// Reads what a NovAtel receiver adds to the driver's configuration.
-InsConfig readNovatelConfig(ConfigReader& reader, const RobotDescription& robot);
 
 /// A NovAtel OEM receiver, with or without SPAN (OEM7 Commands and Logs Reference Manual).
 /** Axes of SPAN's vehicle frame are right, forward, up. While the inertial solution is good it

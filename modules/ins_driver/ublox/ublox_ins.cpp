@@ -9,7 +9,6 @@
 
 #include "modules/ins_driver/core/bytes.hpp"
 #include "modules/ins_driver/core/device_clock.hpp"
-#include "modules/ins_driver/devices/ins_config.hpp"
 
 namespace tread::ins {
 namespace {
@@ -23,13 +22,13 @@ struct UbxType {
   uint16_t id;  ///< class and id as they stand in the frame, low byte first
   size_t length;
   size_t time_at;  ///< offset of iTOW
-  const char* name;
   UbxKind kind;
+  const char* name() const { return kUbxKindNames[static_cast<size_t>(kind)]; }
 };
-constexpr UbxType kTypes[] = {{0x0701, 92, 0, "NAV-PVT", UbxKind::kNavPvt},
-                              {0x3C01, 64, 4, "NAV-RELPOSNED", UbxKind::kNavRelposned},
-                              {0x0501, 32, 0, "NAV-ATT", UbxKind::kNavAtt},
-                              {0x1510, 36, 8, "ESF-INS", UbxKind::kEsfIns}};
+constexpr UbxType kTypes[] = {{0x0701, 92, 0, UbxKind::kNavPvt},
+                              {0x3C01, 64, 4, UbxKind::kNavRelposned},
+                              {0x0501, 32, 0, UbxKind::kNavAtt},
+                              {0x1510, 36, 8, UbxKind::kEsfIns}};
 
 constexpr const char* kUsed = "";
 constexpr const char* kOutOfRange = "out of range";
@@ -101,19 +100,6 @@ FrameLook lookForUbx(std::string_view bytes) {
   return {Verdict::kFrame, size};
 }
 
-InsConfig readUbloxConfig(ConfigReader& reader, const RobotDescription& robot) {
-  InsConfig ins = readInsConfig(reader, robot);
-  readBaseline(reader, ins);
-  std::string last = "none";
-  std::vector<std::string> allowed{"none"};
-  for (const UbxType& type : kTypes) allowed.emplace_back(type.name);
-  reader.choice("last_message", last, allowed);
-  for (const UbxType& type : kTypes) {
-    if (last == type.name) ins.last_type = static_cast<size_t>(type.kind);
-  }
-  return ins;
-}
-
 UbloxIns::UbloxIns(const InsConfig& config) : BinaryIns(config, lookForUbx, kWeekUs) {}
 
 InsAdvice UbloxIns::advice() const {
@@ -128,9 +114,9 @@ Reading UbloxIns::read(std::string_view frame, int64_t arrival) {
                                   [id](const UbxType& known) { return known.id == id; });
   if (type == std::end(kTypes)) return {"messages", "not known"};
   const std::string_view payload = frame.substr(kHeader, frame.size() - kHeader - kChecksum);
-  if (payload.size() != type->length) return {type->name, "length"};
+  if (payload.size() != type->length) return {type->name(), "length"};
   const int64_t time_of_week = int64_t{numberAt<uint32_t>(payload, type->time_at)} * 1000;
-  if (time_of_week >= kWeekUs) return {type->name, kOutOfRange};
+  if (time_of_week >= kWeekUs) return {type->name(), kOutOfRange};
   DeviceEpoch part;
   const char* refusal = kUsed;
   if (type->kind == UbxKind::kNavPvt) refusal = readPvt(payload, part);
@@ -140,12 +126,12 @@ Reading UbloxIns::read(std::string_view frame, int64_t arrival) {
     refusal = readEsfIns(payload, part);
     const int64_t time = pipeline_.collector().timeOf(time_of_week);
     if (refusal[0] == '\0') pipeline_.assembler().addRate(time, *part.rate_device);
-    return {type->name, refusal};
+    return {type->name(), refusal};
   }
-  if (refusal[0] != '\0') return {type->name, refusal};
+  if (refusal[0] != '\0') return {type->name(), refusal};
   const bool in_time =
       pipeline_.collector().push(part, static_cast<size_t>(type->kind), time_of_week, arrival);
-  return {type->name, in_time ? kUsed : "late"};
+  return {type->name(), in_time ? kUsed : "late"};
 }
 
 const char* UbloxIns::readPvt(std::string_view payload, DeviceEpoch& part) const {

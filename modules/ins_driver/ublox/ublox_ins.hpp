@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <string_view>
 
-#include "common/config/config_reader.hpp"
-#include "common/vehicle/robot_description.hpp"
 #include "modules/ins_driver/core/binary_ins.hpp"
 
 namespace tread::ins {
@@ -15,11 +13,9 @@ namespace tread::ins {
 /// payload (u-blox F9 Interface Description, "UBX Protocol").
 FrameLook lookForUbx(std::string_view bytes);
 
-/// Reads what a u-blox receiver adds to the driver's configuration.
-InsConfig readUbloxConfig(ConfigReader& reader, const RobotDescription& robot);
-
 /// The messages that are read, with what they are counted as in InsConfig::last_type.
 enum class UbxKind : uint8_t { kNavPvt, kNavRelposned, kNavAtt, kEsfIns };
+inline constexpr const char* kUbxKindNames[] = {"NAV-PVT", "NAV-RELPOSNED", "NAV-ATT", "ESF-INS"};
 
 /// A u-blox receiver: NAV-PVT, NAV-RELPOSNED (heading of a moving base), NAV-ATT, ESF-INS.
 /** Times are milliseconds of the GPS week; NAV-PVT tells UTC. Axes of the vehicle frame are

@@ -10,7 +10,6 @@
 #include "common/geometry/se3.hpp"
 #include "modules/ins_driver/core/bytes.hpp"
 #include "modules/ins_driver/core/device_clock.hpp"
-#include "modules/ins_driver/devices/ins_config.hpp"
 
 namespace tread::ins {
 namespace {
@@ -101,14 +100,6 @@ bool setRate(const VectornavFields& fields, DeviceEpoch& part) {
 }
 
 }  // namespace
-
-InsConfig readVectornavConfig(ConfigReader& reader, const RobotDescription& robot) {
-  InsConfig ins = readInsConfig(reader, robot);
-  readGpsConventions(reader, ins);
-  reader.number("origin_max_std", ins.origin_max_std, {0.01, 100.0}, "m");
-  ins.last_type = 0;  // a message is an epoch
-  return ins;
-}
 
 VectornavIns::VectornavIns(const InsConfig& config) : BinaryIns(config, lookForVectornav, 0) {}
 

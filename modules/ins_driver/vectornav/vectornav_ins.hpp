@@ -5,15 +5,10 @@
 #include <cstdint>
 #include <string_view>
 
-#include "common/config/config_reader.hpp"
-#include "common/vehicle/robot_description.hpp"
 #include "modules/ins_driver/core/binary_ins.hpp"
 #include "modules/ins_driver/vectornav/vectornav_message.hpp"
 
 namespace tread::ins {
-
-/// Reads what a VectorNav adds to the driver's configuration.
-InsConfig readVectornavConfig(ConfigReader& reader, const RobotDescription& robot);
 
 /// A VectorNav VN-200 or VN-300 that sends binary messages (VN-300 User Manual).
 /** Axes are forward, right, down. Each message is one instant. InsStatus is needed: only while the

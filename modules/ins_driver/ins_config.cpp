@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/ins_driver/devices/ins_config.hpp"
+#include "modules/ins_driver/ins_config.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <vector>
+
+#include "modules/ins_driver/nmea/nmea_parser.hpp"
+#include "modules/ins_driver/novatel/novatel_message.hpp"
+#include "modules/ins_driver/ublox/ublox_ins.hpp"
 
 namespace tread::ins {
 namespace {
@@ -39,7 +44,22 @@ void readHeadings(ConfigReader& reader, InsConfig& ins) {
   reader.flag("drives_backward", ins.drives_backward);
 }
 
-}  // namespace
+/// The kind of message that ends each epoch; "none" where the order is not known.
+template <size_t count>
+void readLastKind(ConfigReader& reader, const std::string& key, const char* const (&kinds)[count],
+                  InsConfig& ins) {
+  std::string last = "none";
+  std::vector<std::string> allowed{"none"};
+  allowed.insert(allowed.end(), std::begin(kinds), std::end(kinds));
+  reader.choice(key, last, allowed);
+  for (size_t i = 0; i < count; ++i) {
+    if (last == kinds[i]) ins.last_type = i;
+  }
+}
+
+void readOriginStd(ConfigReader& reader, InsConfig& ins) {
+  reader.number("origin_max_std", ins.origin_max_std, {0.01, 100.0}, "m");
+}
 
 InsConfig readInsConfig(ConfigReader& reader, const RobotDescription& robot) {
   InsConfig ins;
@@ -57,7 +77,6 @@ InsConfig readInsConfig(ConfigReader& reader, const RobotDescription& robot) {
 
 void readBaseline(ConfigReader& reader, InsConfig& ins) {
   reader.number("baseline_yaw", ins.baseline_yaw, {-kPi, kPi}, "rad");
-  reader.number("origin_max_std", ins.origin_max_std, {0.01, 100.0}, "m");
 }
 
 void readGpsConventions(ConfigReader& reader, InsConfig& ins) {
@@ -66,6 +85,46 @@ void readGpsConventions(ConfigReader& reader, InsConfig& ins) {
   double separation = 0.0;
   reader.number("geoid_separation", separation, {-120.0, 120.0}, "m");
   ins.geoid_separation = separation;
+}
+
+}  // namespace
+
+InsConfig readNmeaConfig(ConfigReader& reader, const RobotDescription& robot) {
+  InsConfig ins = readInsConfig(reader, robot);
+  readLastKind(reader, "last_sentence", kSentenceNames, ins);
+  reader.number("origin_max_hdop", ins.origin_max_hdop, {0.5, 100.0}, "1");
+  return ins;
+}
+
+InsConfig readNovatelConfig(ConfigReader& reader, const RobotDescription& robot) {
+  InsConfig ins = readInsConfig(reader, robot);
+  readBaseline(reader, ins);
+  readOriginStd(reader, ins);
+  readGpsConventions(reader, ins);
+  readLastKind(reader, "last_message", kNovatelKindNames, ins);
+  reader.number("imu_rate", ins.imu_rate, {0.0, 4000.0}, "Hz");
+  if (reader.has("antenna")) {
+    std::vector<double> antenna;
+    reader.numbers("antenna", antenna, 3, {-20.0, 20.0}, "m");
+    ins.p_body_gnss = Eigen::Vector3d(antenna[0], antenna[1], antenna[2]);
+  }
+  return ins;
+}
+
+InsConfig readUbloxConfig(ConfigReader& reader, const RobotDescription& robot) {
+  InsConfig ins = readInsConfig(reader, robot);
+  readBaseline(reader, ins);
+  readOriginStd(reader, ins);
+  readLastKind(reader, "last_message", kUbxKindNames, ins);
+  return ins;
+}
+
+InsConfig readVectornavConfig(ConfigReader& reader, const RobotDescription& robot) {
+  InsConfig ins = readInsConfig(reader, robot);
+  readOriginStd(reader, ins);
+  readGpsConventions(reader, ins);
+  ins.last_type = 0;  // a message is an epoch
+  return ins;
 }
 
 }  // namespace tread::ins

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include "common/config/config_reader.hpp"
+#include "common/vehicle/robot_description.hpp"
+#include "modules/ins_driver/core/ins_source.hpp"
+
+namespace tread::ins {
+
+/// Read what each kind of device adds to the driver's configuration; its mounting is the robot's.
+InsConfig readNmeaConfig(ConfigReader& reader, const RobotDescription& robot);
+InsConfig readNovatelConfig(ConfigReader& reader, const RobotDescription& robot);
+InsConfig readUbloxConfig(ConfigReader& reader, const RobotDescription& robot);
+InsConfig readVectornavConfig(ConfigReader& reader, const RobotDescription& robot);
+
+}  // namespace tread::ins
