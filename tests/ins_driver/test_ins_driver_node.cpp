@@ -384,6 +384,14 @@ TEST_CASE("the configuration is checked: unknown keys, ranges and wrong types na
   CHECK(problem("source: nmae").find("allowed nmea") != std::string::npos);
   CHECK(problem("origin: {latitude: 42}").find("longitude") != std::string::npos);
   CHECK(problem("{}").empty());
+  CHECK(problem("source: novatel\nimu_rate: 200\nantenna: [0.1, 0, 1]\nlast_message: INSPVAX\n"
+                "baseline_yaw: 1.57\nleap_seconds: 18\ngeoid_separation: 47")
+            .empty());
+  CHECK(problem("source: ublox\nheadings: [dual_antenna, course]\nlast_message: NAV-PVT").empty());
+  CHECK(problem("source: vectornav\norigin_max_std: 2\ndrives_backward: false").empty());
+  CHECK(problem("headings: [attitude, compass]").find("test:1") != std::string::npos);
+  CHECK(problem("headings: [attitude, attitude]").find("twice") != std::string::npos);
+  CHECK(problem("source: vectornav\nimu_rate: 200").find("imu_rate") != std::string::npos);
 }
 
 TEST_CASE("the map's origin survives being written and read to a tenth of a millimetre") {
