@@ -10,6 +10,18 @@
 namespace tread::recordings {
 namespace {
 
+/// A drive is no longer than this, and turns no more often; what is beyond is no pose.
+constexpr double kFarthest = 100'000.0;   // [m]
+constexpr double kMostTurned = 10'000.0;  // [rad]
+
+double metres(const CsvTable& table, size_t row, std::string_view column) {
+  return table.numberWithin(row, column, -kFarthest, kFarthest);
+}
+
+double angle(const CsvTable& table, size_t row, std::string_view column) {
+  return table.numberWithin(row, column, -kMostTurned, kMostTurned);
+}
+
 /// Longest gap that is interpolated as if the INS had been there [s].
 constexpr double kMaxInterpolated = 0.3;
 
@@ -80,8 +92,8 @@ RecordedDrive readByStep(const CsvTable& table, const Session& session, double b
       drive.drive.push_back(sample);
       std::optional<Fix> fix = fixOf(row, rows);
       if (!fix) continue;
-      fix->T_map_body = {table.number(row, "x_m"), table.number(row, "y_m"),
-                         table.number(row, "yaw_rad")};
+      fix->T_map_body = {metres(table, row, "x_m"), metres(table, row, "y_m"),
+                         angle(table, row, "yaw_rad")};
       fix->new_track = new_track;
       new_track = false;
       drive.fixes.push_back(*fix);
@@ -118,11 +130,11 @@ Fix continuousFix(const CsvTable& table, size_t row, double origin, const Sessio
   Fix fix;
   fix.time = origin + table.number(row, "t_s") - session.pose_lag;
   fix.unix_time = table.number(row, "unix_s") - session.pose_lag;
-  fix.T_map_body = {table.number(row, "map_x_m"), table.number(row, "map_y_m"),
-                    table.number(row, "map_yaw_rad")};
-  fix.z = table.number(row, "map_z_m");
-  fix.roll = table.number(row, "map_roll_rad");
-  fix.pitch = table.number(row, "map_pitch_rad");
+  fix.T_map_body = {metres(table, row, "map_x_m"), metres(table, row, "map_y_m"),
+                    angle(table, row, "map_yaw_rad")};
+  fix.z = metres(table, row, "map_z_m");
+  fix.roll = angle(table, row, "map_roll_rad");
+  fix.pitch = angle(table, row, "map_pitch_rad");
   // Rows that can hold the gyro of that time, generously.
   const auto back = static_cast<size_t>((session.pose_lag + 1.0) / kPeriod);
   fix.yaw_rate =
@@ -175,10 +187,10 @@ RecordedDrive readSteps(const std::string& path, const Session& session, Gyro ke
                    const double time = table.number(row, "t_s") - session.pose_lag;
                    Fix fix;
                    fix.time = rows.origin + time;
-                   fix.z = table.number(row, "z_m");
+                   fix.z = metres(table, row, "z_m");
                    if (session.absolute_attitude) {
-                     fix.roll = table.number(row, "roll_rad");
-                     fix.pitch = table.number(row, "pitch_rad");
+                     fix.roll = angle(table, row, "roll_rad");
+                     fix.pitch = angle(table, row, "pitch_rad");
                    }
                    fix.yaw_rate = gyroAt(table, rows.first, rows.last, time, kGyro, 1.0);
                    return fix;

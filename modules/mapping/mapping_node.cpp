@@ -35,9 +35,20 @@ void readGrid(ConfigReader& reader, OccupancyMapConfig& map) {
   map.window_tiles = static_cast<int>(window_tiles);
 }
 
-void takeRobot(const ConfigReader& reader, const RobotDescription& robot, OccupancyMapConfig& map) {
+/// Whole cells within which the robot can turn on the spot, with 0.2 m to spare [m].
+double turningRadius(const OccupancyMapConfig& map) {
+  const double cells = (Footprint(map.robot, 0.0).circumscribed() + 0.2) / map.voxels.cell_size;
+  return std::ceil(cells) * map.voxels.cell_size;
+}
+
+void takeRobot(const RobotDescription& robot, OccupancyMapConfig& map) {
   map.robot = robot.outline;
   map.obstacle.robot_height = robot.height;
+  map.start_free_radius = turningRadius(map);
+}
+
+void checkRobot(const ConfigReader& reader, const RobotDescription& robot,
+                const OccupancyMapConfig& map) {
   if (robot.height <= map.obstacle.step)
     throw reader.error("step",
                        "must be below the robot's height of " + metres(robot.height) + " m");
@@ -53,7 +64,7 @@ void takeRobot(const ConfigReader& reader, const RobotDescription& robot, Occupa
 void readMap(ConfigReader& reader, OccupancyMapConfig& map) {
   reader.number("marking_range", map.marking_range, {0.5, 100.0}, "m");
   reader.number("clearing_range", map.clearing_range, {0.5, 100.0}, "m");
-  reader.number("start_free_radius", map.start_free_radius, {0.0, 5.0}, "m");
+  reader.number("start_free_radius", map.start_free_radius, {0.0, 20.0}, "m");
   reader.number("step", map.obstacle.step, {0.02, 1.0}, "m");
   ConfigReader evidence = reader.section("evidence");
   evidence.number("hit", map.voxels.hit, {0.51, 0.99}, "");
@@ -188,9 +199,10 @@ const char* reasonOf(OccupancyMap::Refusal refusal) {
 MappingConfig readMappingConfig(ConfigReader& reader) {
   MappingConfig config;
   readGrid(reader, config.map);
-  readMap(reader, config.map);
   const RobotDescription robot = readRobot(reader);
-  takeRobot(reader, robot, config.map);
+  takeRobot(robot, config.map);
+  readMap(reader, config.map);
+  checkRobot(reader, robot, config.map);
   config.top_speed = robot.max_speed;
   reader.number("publish_period", config.publish_period, {0.02, 2.0}, "s");
   reader.number("refresh_period", config.refresh_period, {0.2, 60.0}, "s");

@@ -83,6 +83,7 @@ inline OccupancyMapConfig usualMap() {
   OccupancyMapConfig config;
   config.robot = {0.65, 0.65, 0.34};
   config.obstacle.robot_height = 1.2;
+  config.start_free_radius = 1.0;
   return config;
 }
 

@@ -430,3 +430,20 @@ TEST_CASE("the same scans give the same bytes on MAP") {
   REQUIRE(first.size() > 100'000);
   REQUIRE(first == bytesOf(9));
 }
+
+TEST_CASE(
+    "where a map begins as much is free as this robot needs to turn, unless a key says more") {
+  const auto radiusOf = [](const std::string& text) {
+    ConfigReader reader = ConfigReader::fromText(text, kHere);
+    return readMappingConfig(reader).map.start_free_radius;
+  };
+  const std::string small = "robot: ../../../tests/data/robots/small/robot.yaml\n";
+  ConfigReader reader = ConfigReader::fromText(small, kHere);
+  const FootprintSize outline = readMappingConfig(reader).map.robot;
+  const double corner = std::hypot(std::max(outline.front, outline.rear), outline.half_width);
+  REQUIRE(radiusOf(small) > corner + 0.2 - 1e-9);
+  REQUIRE(radiusOf(small) < corner + 0.3 + 1e-9);
+  REQUIRE(radiusOf("cell_size: 0.1\n") == Approx(1.0));  // of a robot 0.73 m from corner to middle
+  REQUIRE(radiusOf(small) < 0.95);
+  REQUIRE(radiusOf("start_free_radius: 3\n" + small) == 3.0);
+}

@@ -140,7 +140,7 @@ struct OccupancyMapConfig {
   int window_tiles = 8;            ///< tiles per side of the window
   double marking_range = 10.0;     ///< [m] returns from farther away mark nothing
   double clearing_range = 10.0;    ///< [m] beams clear no farther
-  double start_free_radius = 1.0;  ///< [m] around the body origin where a map begins
+  double start_free_radius = 0.0;  ///< [m] around the body origin where a map begins
 };
 
 /// A rolling map of the robot's surroundings: free, obstacle or unknown, from scans and poses.

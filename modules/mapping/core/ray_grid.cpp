@@ -120,48 +120,38 @@ void RayGrid::trace(const octomap::OcTree& tree, const octomap::point3d& from,
     walk<false>(step);
 }
 
-/// Inside, a voxel's bit says where it is: three quarters of a scan's time are spent here.
+/// Inside, a voxel's bit says where it is: three quarters of a cloud's time are spent here, so all
+/// of a step is in registers.
 template <bool kInside>
 void RayGrid::walk(Step& step) {
   uint64_t* const passed = passed_.data();
+  const auto [stride_x, stride_y, stride_z] = step.strides;
+  const auto [between_x, between_y, between_z] = step.between;
+  auto [next_x, next_y, next_z] = step.next;
+  const int64_t last_bit = step.last_bit;
   int64_t bit = step.bit;
-  double next_x = step.next[0];
-  double next_y = step.next[1];
-  double next_z = step.next[2];
-  if (kInside || contains(step.key)) passed[bit >> 6] |= uint64_t{1} << (bit & 63);
-  const auto arrives = [&](size_t axis) {
-    bit += step.strides[axis];
-    if constexpr (!kInside) {
-      step.key[axis] += step.direction[axis];
-      return step.key == step.last;
-    }
-    return bit == step.last_bit;
-  };
-  const auto pass = [&] {
-    if (kInside || contains(step.key)) passed[bit >> 6] |= uint64_t{1} << (bit & 63);
-  };
   // The first step is taken whatever the beam's length.
   double most = std::numeric_limits<double>::max();
-  bool first = true;
-  while (true) {
-    if (next_x < next_y ? next_x < next_z : false) {
-      if (next_x > most) return;
-      if (!first) pass();
-      if (arrives(0)) return;
-      next_x += step.between[0];
-    } else if (!(next_x < next_y) && next_y < next_z) {
-      if (next_y > most) return;
-      if (!first) pass();
-      if (arrives(1)) return;
-      next_y += step.between[1];
-    } else {
-      if (next_z > most) return;
-      if (!first) pass();
-      if (arrives(2)) return;
-      next_z += step.between[2];
-    }
-    first = false;
+  // Marks the voxel, leaves it along an axis and says whether the beam goes on.
+  const auto leave = [&](size_t axis, int64_t stride, double& next, double between) {
+    if (next > most) return false;
+    if (kInside || contains(step.key)) passed[bit >> 6] |= uint64_t{1} << (bit & 63);
+    bit += stride;
+    next += between;
     most = step.length;
+    if constexpr (kInside) return bit != last_bit;
+    step.key[axis] += step.direction[axis];
+    return step.key != step.last;
+  };
+  bool goes_on = true;
+  while (goes_on) {
+    if (next_x < next_y) {
+      goes_on = next_x < next_z ? leave(0, stride_x, next_x, between_x)
+                                : leave(2, stride_z, next_z, between_z);
+    } else {
+      goes_on = next_y < next_z ? leave(1, stride_y, next_y, between_y)
+                                : leave(2, stride_z, next_z, between_z);
+    }
   }
 }
 

@@ -241,6 +241,10 @@ TEST_CASE("a bad file is one line with file and line") {
   std::string nan = kStepsHeader + good;
   nan.replace(nan.find("0.1000,0.0"), 6, "nan");
   REQUIRE(complaint(nan) == "drive.csv:4: column x_m is 'nan'; a finite number is needed");
+  std::string far = kStepsHeader + good;
+  far.replace(far.find("0.1000,0.0"), 6, "1e10");
+  REQUIRE(complaint(far) ==
+          "drive.csv:4: column x_m is 1e10; allowed is -100000.000000 to 100000.000000");
   std::string missing = kStepsHeader + good;
   missing.replace(missing.find("pose_new"), 8, "pose_old");
   REQUIRE(complaint(missing) == "drive.csv:1: no column pose_new; is this another --format?");
