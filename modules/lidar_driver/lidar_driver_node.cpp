@@ -7,14 +7,19 @@
 #include "common/messages/blank.hpp"
 
 namespace tread::lidar {
+namespace {
+
+constexpr int64_t kCounterPeriodUs = 200'000;
+
+}  // namespace
 
 LidarDriverConfig readLidarDriverConfig(ConfigReader& reader) {
   LidarDriverConfig config;
   int64_t max_beams = config.limits.max_beams;
   int64_t stride = config.limits.beam_stride;
-  reader.choice("device", config.device, kScanDevices);
   reader.text("address", config.address);
   reader.number("latency", config.latency, {0.0, 0.5}, "s");
+  config.device = readScanDevice(reader, config.latency);
   reader.number("silence", config.silence, {0.1, 60.0}, "s");
   reader.number("range_min", config.limits.range_min, {0.0, 10.0}, "m");
   reader.number("range_max", config.limits.range_max, {0.5, 300.0}, "m");
@@ -33,16 +38,22 @@ LidarDriverConfig readLidarDriverConfig(ConfigReader& reader) {
   return config;
 }
 
-LidarDriverNode::LidarDriverNode(const LidarDriverConfig& config, Bus& bus, ScanSource& source)
+LidarDriverNode::LidarDriverNode(const LidarDriverConfig& config, Bus& bus, ScanSource& source,
+                                 Say say)
     : config_(config),
       bus_(bus),
       source_(source),
+      say_(std::move(say)),
       health_(bus, "lidar_driver", config.effective),
       finders_{{config.address, config.mounting, ScanCheck(config.limits), bus.now()}} {
   if (config.ground_mounting)
     finders_.push_back(
         {config.ground_address, *config.ground_mounting, ScanCheck(config.limits), bus.now()});
   health_.watchNamesakes();
+  const std::string shortcomings = source.shortcomings();
+  if (shortcomings.empty()) return;
+  health_.setCounter("not promised by " + shortcomings, 1);
+  if (say_) say_("not promised by " + shortcomings);
 }
 
 void LidarDriverNode::step(int64_t utime) {
@@ -87,6 +98,17 @@ void LidarDriverNode::reportHealth(int64_t utime) {
   for (const Finder& finder : finders_)
     if (problem.empty()) problem = silenceOf(finder, utime);
   health_.setState(problem.empty() ? health_t::HEALTH_OK : health_t::HEALTH_FAILED, problem);
+  sayOnce(problem);
+  if (utime < next_counters_) return;
+  next_counters_ = utime + kCounterPeriodUs;
+  for (const auto& [name, number] : source_.counters()) health_.setCounter(name, number);
+}
+
+/// The line of a problem grows older by the second: only its begin and its end are said.
+void LidarDriverNode::sayOnce(const std::string& problem) {
+  if (problem.empty() == said_.empty()) return;
+  if (say_) say_(problem.empty() ? "scans again after: " + said_ : problem);
+  said_ = problem;
 }
 
 /// Why nothing comes from a range finder, in one line; empty if it does.

@@ -2,21 +2,21 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <functional>
+
 #include <Eigen/Geometry>
 
 #include "common/bus/bus.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/vehicle/robot_description.hpp"
 #include "modules/lidar_driver/core/range_scan.hpp"
+#include "modules/lidar_driver/scan_devices.hpp"
 
 namespace tread::lidar {
 
-/// Range finders that there is a folder for.
-inline const std::vector<std::string> kScanDevices{"hokuyo"};
-
 /// Configuration of lidar_driver, with its defaults.
 struct LidarDriverConfig {
-  std::string device = "hokuyo";                   ///< one of kScanDevices
+  DeviceChoice device;                             ///< the kind that the configuration names
   std::string address = "tcp:192.168.0.10:10940";  ///< of the device
   Mounting mounting;                               ///< of the sensor in body
   std::string ground_address;                      ///< of one more that looks at the ground ahead
@@ -31,9 +31,12 @@ struct LidarDriverConfig {
 LidarDriverConfig readLidarDriverConfig(ConfigReader& reader);
 
 /// Publishes SCAN from a source of scans, and HEALTH with every refusal and its reason.
+/** What the device cannot promise is a counter in HEALTH and, once, a line for `say`; so is each
+ * change between scanning and not. */
 class LidarDriverNode : public Node {
  public:
-  LidarDriverNode(const LidarDriverConfig& config, Bus& bus, ScanSource& source);
+  using Say = std::function<void(const std::string& line)>;
+  LidarDriverNode(const LidarDriverConfig& config, Bus& bus, ScanSource& source, Say say = {});
 
   int64_t period() const override { return 5'000; }
   void step(int64_t utime) override;
@@ -50,14 +53,18 @@ class LidarDriverNode : public Node {
 
   void publish(const RangeScan& scan, const Mounting& mounting);
   void reportHealth(int64_t utime);
+  void sayOnce(const std::string& problem);
   std::string silenceOf(const Finder& finder, int64_t utime) const;
 
   LidarDriverConfig config_;
   Bus& bus_;
   ScanSource& source_;
+  Say say_;
+  std::string said_;  ///< the problem that was said last; empty: it scans
   HealthReporter health_;
   std::vector<Finder> finders_;  ///< the second one looks at the ground, if there is one
   int64_t seq_ = 0;
+  int64_t next_counters_ = 0;
 };
 
 }  // namespace tread::lidar

@@ -2,33 +2,18 @@
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
 #include <cstdlib>
-#include <functional>
 #include <iostream>
 #include <memory>
 
 #include "common/bus/shell.hpp"
 #include "modules/lidar_driver/hokuyo/hokuyo_source.hpp"
 #include "modules/lidar_driver/lidar_driver_node.hpp"
+#include "modules/lidar_driver/link_source.hpp"
 
 namespace {
 
 using namespace tread;
 using namespace tread::lidar;
-
-struct Device {
-  std::function<void(const std::string&)> check_address;  ///< throws where it makes no sense
-  std::function<std::unique_ptr<ScanSource>(const std::string& address, double latency)> make;
-};
-
-/// A new range finder is one line here, its name in kScanDevices, and a folder of its own.
-Device deviceNamed(const std::string& name) {
-  if (name == "hokuyo")
-    return {[](const std::string& address) { rangeFinderAddress(address); },
-            [](const std::string& address, double latency) {
-              return std::make_unique<HokuyoSource>(address, latency);
-            }};
-  throw std::logic_error(name);
-}
 
 /// Ends the process when the library hangs for good: only a new process helps then. Tells `stuck`
 /// whether it hangs at the end.
@@ -48,6 +33,8 @@ class GuardedSource : public ScanSource {
     return source_->take(utime);
   }
   std::string problem() const override { return source_->problem(); }
+  std::string shortcomings() const override { return source_->shortcomings(); }
+  std::map<std::string, int64_t> counters() const override { return source_->counters(); }
 
  private:
   std::unique_ptr<ScanSource> source_;
@@ -71,6 +58,13 @@ class TwoSources : public ScanSource {
     const std::string around = around_->problem();
     return around.empty() ? ground_->problem() : around;
   }
+  /// Both are of one kind.
+  std::string shortcomings() const override { return around_->shortcomings(); }
+  std::map<std::string, int64_t> counters() const override {
+    std::map<std::string, int64_t> counters = around_->counters();
+    for (const auto& [name, number] : ground_->counters()) counters["ground: " + name] = number;
+    return counters;
+  }
   double stuckFor() const override { return std::max(around_->stuckFor(), ground_->stuckFor()); }
   bool end() override {
     const bool ended = around_->end();
@@ -82,11 +76,19 @@ class TwoSources : public ScanSource {
   std::unique_ptr<ScanSource> ground_;
 };
 
-std::unique_ptr<ScanSource> sourceOf(const LidarDriverConfig& config, const Device& device) {
-  auto around = device.make(config.address, config.latency);
+/// One of the range finders; hokuyo is the one that is reached through a library.
+std::unique_ptr<ScanSource> sourceAt(const std::string& address, const LidarDriverConfig& config) {
+  if (!config.device.make) return std::make_unique<HokuyoSource>(address, config.latency);
+  const auto open = [address] { return makeLink(address); };
+  auto source = std::make_unique<LinkSource>(open, config.device.make());
+  requireFree(source->link());
+  return source;
+}
+
+std::unique_ptr<ScanSource> sourceOf(const LidarDriverConfig& config) {
+  auto around = sourceAt(config.address, config);
   if (!config.ground_mounting) return around;
-  return std::make_unique<TwoSources>(std::move(around),
-                                      device.make(config.ground_address, config.latency));
+  return std::make_unique<TwoSources>(std::move(around), sourceAt(config.ground_address, config));
 }
 
 }  // namespace
@@ -95,13 +97,14 @@ int main(int argc, char** argv) {
   bool stuck = false;
   const auto prepare = [&stuck](ConfigReader& reader) -> ShellBody {
     const LidarDriverConfig config = readLidarDriverConfig(reader);
-    const Device device = deviceNamed(config.device);
-    device.check_address(config.address);
-    if (config.ground_mounting) device.check_address(config.ground_address);
-    return [config, device, &stuck](BusAccess access, const std::atomic<bool>& stop) {
+    checkDeviceAddress(config.device.name, config.address);
+    if (config.ground_mounting) checkDeviceAddress(config.device.name, config.ground_address);
+    return [config, &stuck](BusAccess access, const std::atomic<bool>& stop) {
       LcmBus bus(std::move(access), TimeSource::kHost);
-      GuardedSource source(sourceOf(config, device), stuck);
-      LidarDriverNode node(config, bus, source);
+      GuardedSource source(sourceOf(config), stuck);
+      LidarDriverNode node(config, bus, source, [](const std::string& line) {
+        std::cerr << "tread-lidar-driver: " << line << std::endl;
+      });
       bus.run(node, stop);
     };
   };

@@ -72,17 +72,17 @@ std::vector<std::string> foldersOf(const std::string& folder) {
   return names;
 }
 
-/// Every folder called core wherever it lies, and the devices behind the doors of motor_bridge and
-/// ins_driver: bytes and time are their arguments.
+/// Every folder called core wherever it lies, and the devices behind the doors of motor_bridge,
+/// ins_driver and lidar_driver: bytes and time are their arguments. Hokuyo's is a library.
 std::vector<std::string> pureFolders() {
   std::vector<std::string> folders;
   for (const char* top : {"common", "modules", "tools"})
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(TREAD_SOURCE_DIR) / top))
       if (entry.is_directory() && entry.path().filename() == "core")
         folders.push_back(fs::relative(entry.path(), TREAD_SOURCE_DIR).string());
-  for (const std::string module : {"modules/motor_bridge", "modules/ins_driver"})
+  for (const std::string module : {"modules/motor_bridge", "modules/ins_driver", "modules/lidar_driver"})
     for (const std::string& device : foldersOf(module))
-      if (device != "core") folders.push_back(module + "/" + device);
+      if (device != "core" && device != "hokuyo") folders.push_back(module + "/" + device);
   return folders;
 }
 

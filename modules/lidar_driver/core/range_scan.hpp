@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -57,6 +58,10 @@ class ScanSource {
   virtual std::vector<RangeScan> take(int64_t utime) = 0;
   /// What is wrong with the device, in one line; empty if nothing is known to be.
   virtual std::string problem() const = 0;
+  /// What the device cannot promise, in one line: its clock, checksums, field of view.
+  virtual std::string shortcomings() const { return {}; }
+  /// What was counted, by its name in words.
+  virtual std::map<std::string, int64_t> counters() const { return {}; }
   /// Seconds since the device's library last came back; 0 for sources that cannot hang.
   virtual double stuckFor() const { return 0.0; }
   /// Ends the device's own thread. False if it hangs for good: then the process must end without

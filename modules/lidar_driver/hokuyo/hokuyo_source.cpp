@@ -5,7 +5,6 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
-#include <stdexcept>
 #include <thread>
 
 #include <mrpt/comms/CClientTCPSocket.h>
@@ -53,18 +52,10 @@ class Device : public mrpt::hwdrivers::CHokuyoURG {
 
 }  // namespace
 
-LinkAddress rangeFinderAddress(const std::string& text) {
-  LinkAddress address = parseLinkAddress(text);
-  if (address.kind != LinkAddress::Kind::kTcp)
-    throw std::invalid_argument("'" + text +
-                                "' is not an address of a range finder; write tcp:host:port");
-  return address;
-}
-
 class HokuyoSource::Worker {
  public:
   Worker(const std::string& address, double latency)
-      : address_(rangeFinderAddress(address)),
+      : address_(parseLinkAddress(address)),
         latency_us_(static_cast<int64_t>(latency * 1e6)),
         alive_(hostNow()) {}
 

@@ -42,10 +42,6 @@ struct ScipGeometry {
   }
 };
 
-/// A range finder's address in parts; throws std::invalid_argument with one clear line if it is not
-/// tcp:host:port.
-LinkAddress rangeFinderAddress(const std::string& text);
-
 /// A SCIP 2.0 range finder over TCP, through mrpt::hwdrivers::CHokuyoURG in a thread of its own.
 /** What that class does in 2.5.8 and how it is met:
  *  - its device clock wraps after 4 h 39 min and stamps jump by 49.5 days: switched off, we stamp
@@ -57,7 +53,7 @@ LinkAddress rangeFinderAddress(const std::string& text);
  * its supervisor starts it again. */
 class HokuyoSource : public ScanSource {
  public:
-  /// `address` as for rangeFinderAddress();
+  /// `address`: tcp:host:port, see checkDeviceAddress();
   /// `latency` [s] from the last beam to the arrival of its bytes.
   HokuyoSource(const std::string& address, double latency);
   /// As end().
@@ -65,6 +61,10 @@ class HokuyoSource : public ScanSource {
   bool end() override;  ///< waits for the library to come back, but not for ever
   std::vector<RangeScan> take(int64_t utime) override;
   std::string problem() const override;
+  std::string shortcomings() const override {
+    return "hokuyo: beam times (stamped on arrival), checksums (the library reads none); "
+           "intensities are not read";
+  }
   double stuckFor() const override;
 
  private:
