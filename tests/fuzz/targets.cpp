@@ -297,6 +297,7 @@ const std::map<std::string, Target>& targets() {
         {"vectornav", insBytes<ins::VectornavIns>},
         {"world", world},
     };
+    addRangeFinderTargets(all);
 #ifdef TREAD_WITH_TOOLS
     addToolTargets(all);
 #endif

@@ -18,4 +18,7 @@ const std::map<std::string, Target>& targets();
 /// Those of the tools, which are there where tools are built.
 void addToolTargets(std::map<std::string, Target>& all);
 
+/// Those of the range finders' protocols.
+void addRangeFinderTargets(std::map<std::string, Target>& targets);
+
 }  // namespace tread::fuzz

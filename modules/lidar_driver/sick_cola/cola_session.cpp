@@ -89,13 +89,14 @@ void ColaSession::takeTelegram(const std::string& telegram, int64_t now) {
   count("scans before the start");
 }
 
-/// sXA NAME ... answers sXN NAME; sFA CODE refuses it.
+/// sRA answers sRN, sEA sEN, sAN sMN; sFA CODE refuses whichever it was.
 void ColaSession::takeAnswer(const std::string& telegram, int64_t now) {
   const std::string& name = awaited().name;
   if (name.empty()) return count("telegrams that nobody asked for");
   if (begins(telegram, "sFA")) return refused(name, now);
-  const bool answer = telegram.size() > 4 && telegram[0] == 's' && telegram[2] == 'A' &&
-                      telegram[3] == ' ' && begins(std::string_view(telegram).substr(4), name);
+  const std::string_view kind = std::string_view(telegram).substr(0, 4);
+  const bool answer = (kind == "sRA " || kind == "sEA " || kind == "sAN ") &&
+                      begins(std::string_view(telegram).substr(4), name);
   if (!answer) return count("telegrams that nobody asked for");
   if (name == "DeviceIdent") {
     identity_.clear();

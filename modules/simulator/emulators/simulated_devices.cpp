@@ -10,6 +10,7 @@
 #include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
 #include "modules/simulator/emulators/novatel/novatel_emulator.hpp"
 #include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
+#include "modules/simulator/emulators/sick_cola/cola_emulator.hpp"
 #include "modules/simulator/emulators/ublox/ublox_emulator.hpp"
 #include "modules/simulator/emulators/vectornav/vectornav_emulator.hpp"
 
@@ -50,8 +51,12 @@ const Table<InsEmulator> kSources{
        return std::make_unique<NmeaInsEmulator>(NmeaInsSettings{settings.ins, {}}, seed);
      }}};
 const Table<LaserEmulator, LaserParameters> kRangeFinders{
-    {"hokuyo", [](const LaserParameters& laser, uint64_t seed) -> std::unique_ptr<LaserEmulator> {
+    {"hokuyo",
+     [](const LaserParameters& laser, uint64_t seed) -> std::unique_ptr<LaserEmulator> {
        return std::make_unique<ScipEmulator>(scipSettingsOf(laser), seed);
+     }},
+    {"sick_cola", [](const LaserParameters& laser, uint64_t) -> std::unique_ptr<LaserEmulator> {
+       return std::make_unique<ColaEmulator>(laser);
      }}};
 
 template <class Kind, class From>

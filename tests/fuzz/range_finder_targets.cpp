@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cmath>
+
+#include "modules/lidar_driver/carmen/carmen_player.hpp"
+#include "modules/lidar_driver/sick_cola/cola_session.hpp"
+#include "modules/simulator/emulators/sick_cola/cola_emulator.hpp"
+#include "tests/fuzz/reading.hpp"
+#include "tests/fuzz/targets.hpp"
+
+namespace tread::fuzz {
+namespace {
+
+/// What a session made of bytes: scans that ended before they came.
+void requireScans(lidar::ScanDevice& device, int64_t now) {
+  for (const lidar::RangeScan& scan : device.take(now)) {
+    require(scan.ranges.size() >= 2 && scan.ranges.size() <= 4000 && scan.duration_us >= 0);
+    require(std::isfinite(scan.angle_first) && scan.utime <= now - scan.duration_us);
+  }
+}
+
+/// The first byte chooses the dialect; answers to the start-up come first, so that scans are read.
+void cola(const uint8_t* bytes, size_t size) {
+  if (size == 0) return;
+  lidar::ColaConfig config;
+  config.dialect = bytes[0] % 2 == 0 ? lidar::ColaDialect::kA : lidar::ColaDialect::kB;
+  lidar::ColaSession session(config);
+  int64_t now = 10'000'000;
+  session.open(now);
+  for (const char* answer : {"sEA LMDscandata 0", "sRA DeviceIdent", "sAN SetAccessMode 1",
+                             "sAN LMCstartmeas 0", "sAN Run 1", "sEA LMDscandata 1"}) {
+    session.poll(now);
+    session.receive(lidar::colaFrame(config.dialect, answer), now);
+  }
+  // As one telegram with its checksum, so that its fields are looked at, then as a stream.
+  const std::string telegram = "sSN LMDscandata " + textOf(bytes + 1, size - 1);
+  session.receive(lidar::colaFrame(config.dialect, telegram), now);
+  requireScans(session, now);
+  for (size_t at = 1; at < size; at += 61) {
+    now += 1000 * (bytes[at] % 64);
+    session.receive(textOf(bytes + at, std::min<size_t>(61, size - at)), now);
+    requireScans(session, now);
+    session.poll(now);
+  }
+}
+
+void colaCommand(const uint8_t* bytes, size_t size) {
+  sim::ColaEmulator emulator{sim::LaserParameters{}};
+  emulator.receive(textOf(bytes, size), 1'000'000);
+  sim::LaserScan scan;
+  scan.ranges.assign(541, 2.0F);
+  emulator.add(scan);
+  emulator.transmit(1'100'000);
+}
+
+void carmenPlayer(const uint8_t* bytes, size_t size) {
+  lidar::CarmenPlayer player({});
+  player.open(1'000'000);
+  player.receive(textOf(bytes, size), 1'000'000);
+  requireScans(player, INT64_MAX);
+}
+
+}  // namespace
+
+void addRangeFinderTargets(std::map<std::string, Target>& targets) {
+  targets["carmen_player"] = carmenPlayer;
+  targets["cola"] = cola;
+  targets["cola_command"] = colaCommand;
+}
+
+}  // namespace tread::fuzz
