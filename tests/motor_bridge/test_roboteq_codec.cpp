@@ -38,7 +38,7 @@ TEST_CASE("the last look before the wire: NaN is zero, too much is full scale") 
 }
 
 TEST_CASE("lines are cut at CR, however they arrive, and control bytes are dropped") {
-  RoboteqLines lines;
+  LineCutter lines;
   CHECK(lines.push("A=10").empty());
   CHECK(lines.push("0:20\r\n\r+\r-") == Lines{"A=100:20", "+"});
   CHECK(lines.push("\r") == Lines{"-"});
@@ -47,7 +47,7 @@ TEST_CASE("lines are cut at CR, however they arrive, and control bytes are dropp
 }
 
 TEST_CASE("an endless line is discarded up to its end, and the next one is read") {
-  RoboteqLines lines;
+  LineCutter lines;
   for (int i = 0; i < 100'000; ++i) REQUIRE(lines.push("x").empty());
   CHECK(lines.push("\rV=1:2:3\r") == Lines{"V=1:2:3"});
   CHECK(lines.overlong() == 1);

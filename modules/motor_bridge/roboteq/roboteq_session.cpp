@@ -7,8 +7,6 @@
 #include <cstdlib>
 #include <utility>
 
-#include "modules/motor_bridge/core/program.hpp"
-
 namespace tread::motor {
 namespace {
 
@@ -90,30 +88,6 @@ std::vector<std::string> commandLines(const TrackCommand& command, const Roboteq
   return {"!G 1 " + one, "!G 2 " + two};
 }
 
-std::vector<std::string> RoboteqLines::push(std::string_view bytes) {
-  std::vector<std::string> lines;
-  for (const char byte : bytes) {
-    if (byte == '\r') {
-      if (!line_.empty() && !discarding_) lines.push_back(line_);
-      line_.clear();
-      discarding_ = false;
-    } else if (byte < ' ' || byte > '~') {
-      garbage_ += byte != '\n';
-    } else if (line_.size() == kMaxLine) {
-      overlong_ += !discarding_;
-      discarding_ = true;
-    } else {
-      line_ += byte;
-    }
-  }
-  return lines;
-}
-
-void RoboteqLines::clear() {
-  line_.clear();
-  discarding_ = false;
-}
-
 bool isEcho(const std::string& line) {
   return line.size() > 1 && std::string_view("!?^~%#").find(line[0]) != std::string_view::npos;
 }
@@ -193,7 +167,6 @@ void RoboteqSession::begin(int64_t now) {
   telemetry_ = RoboteqTelemetry{};
   pending_.clear();
   acked_at_ = now;
-  commanded_at_ = now;
   queried_at_ = now;
   checked_at_ = now;
   watchdog_mismatches_ = 0;
@@ -201,30 +174,20 @@ void RoboteqSession::begin(int64_t now) {
   repeat_ = false;
 }
 
-void RoboteqSession::command(const TrackCommand& command, int64_t now) {
-  // A fifth before the watchdog expires, because the line takes time, too.
-  const bool silent = now - commanded_at_ > 800 * config_.watchdog_ms;
-  if (silent && !isZero(command)) ++counters_["zero before resuming"];
-  give(silent ? TrackCommand{} : command, now);
-}
-
 void RoboteqSession::give(const TrackCommand& command, int64_t now) {
   given_ = command;
   repeat_ = false;
-  commanded_at_ = now;
   for (const std::string& line : commandLines(command, config_.layout)) sendCommand(line, now);
 }
 
 void RoboteqSession::sendCommand(const std::string& line, int64_t now) {
   output_ += line + "\r";
-  pending_.push_back({"", now});
-  ++counters_["commands sent"];
+  pending_.commandSent(now);
 }
 
 void RoboteqSession::ask(const std::string& query, const std::string& key, int64_t now) {
   output_ += query + "\r";
-  pending_.push_back({key, now});
-  ++counters_["queries sent"];
+  pending_.querySent(key, now);
   queried_at_ = now;
 }
 
@@ -243,11 +206,9 @@ void RoboteqSession::releaseStop(int64_t now) {
 }
 
 std::string RoboteqSession::poll(int64_t now) {
-  while (!pending_.empty() && now - pending_.front().sent > config_.reply_timeout_us) {
-    pending_.pop_front();
-    ++counters_["replies missing"];
-  }
-  if (now - acked_at_ > config_.silence_limit_us) problem_ = "it does not acknowledge commands";
+  pending_.expire(now, config_.times.reply_timeout_us);
+  if (now - acked_at_ > config_.times.silence_limit_us)
+    problem_ = "it does not acknowledge commands";
   if (repeat_) give(given_, now);
   pollStop(now);
   pollQuery(now);
@@ -271,9 +232,7 @@ void RoboteqSession::pollStop(int64_t now) {
 
 void RoboteqSession::pollQuery(int64_t now) {
   // One that got lost must not hold up the look at the faults until its timeout.
-  const bool waiting = std::any_of(pending_.begin(), pending_.end(), [&](const Pending& asked) {
-    return !asked.key.empty() && now - asked.sent < config_.query_patience_us;
-  });
+  const bool waiting = pending_.waitsForQuery(now, config_.query_patience_us);
   if (waiting || now - queried_at_ < config_.query_interval_us) return;
   ask("?FF", "FF", now);  // faults stop the robot
   if (now - checked_at_ >= config_.check_interval_us || watchdog_mismatches_ > 0) {
@@ -300,44 +259,29 @@ void RoboteqSession::take(const RoboteqReply& reply, int64_t now) {
 }
 
 void RoboteqSession::takeAck(int64_t now) {
-  const auto command = std::find_if(pending_.begin(), pending_.end(),
-                                    [](const Pending& asked) { return asked.key.empty(); });
-  if (command == pending_.end()) {
-    ++counters_["unexpected replies"];
-    return;
-  }
-  counters_["replies missing"] += command - pending_.begin();
-  pending_.erase(pending_.begin(), command + 1);
-  acked_at_ = now;
+  if (pending_.acknowledged()) acked_at_ = now;
 }
 
 void RoboteqSession::takeRefusal(int64_t now) {
-  if (pending_.empty()) {
-    ++counters_["unexpected replies"];
-    return;
-  }
-  const bool command = pending_.front().key.empty();
-  pending_.pop_front();
-  ++counters_[command ? "commands refused" : "queries refused"];
-  repeat_ = repeat_ || command;
+  if (pending_.refused() != PendingReplies::Refused::kCommand) return;
+  repeat_ = true;
   // A controller in emergency stop may refuse to move: that is no fault of the link.
-  if (command && stopLatched()) acked_at_ = now;
+  if (stopLatched()) acked_at_ = now;
 }
 
 void RoboteqSession::takeValue(const RoboteqReply& reply, int64_t now) {
-  const auto asked = std::find_if(pending_.begin(), pending_.end(),
-                                  [&reply](const Pending& p) { return p.key == reply.key; });
-  if (asked == pending_.end()) {
-    ++counters_["unexpected replies"];
-  } else {
-    counters_["replies missing"] += asked - pending_.begin();
-    pending_.erase(pending_.begin(), asked + 1);
-  }
+  pending_.answered(reply.key);
   if (reply.key == "RWD") {
     checkWatchdog(reply);
   } else if (!telemetry_.take(reply, config_.layout, now)) {
-    ++counters_["unreadable replies"];
+    ++unreadable_;
   }
+}
+
+std::map<std::string, int64_t> RoboteqSession::counters() const {
+  std::map<std::string, int64_t> counters = pending_.counters();
+  counters["unreadable replies"] += unreadable_;
+  return counters;
 }
 
 void RoboteqSession::checkWatchdog(const RoboteqReply& reply) {

@@ -3,13 +3,14 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "modules/motor_bridge/core/motor_controller.hpp"
+#include "modules/motor_bridge/core/controller_connection.hpp"
+#include "modules/motor_bridge/core/line_cutter.hpp"
+#include "modules/motor_bridge/core/pending_replies.hpp"
 
 namespace tread::motor {
 
@@ -33,26 +34,6 @@ struct ChannelCommand {
 ChannelCommand toChannels(const TrackCommand& command, const RoboteqLayout& layout);
 /// Lines (each without its CR) that give a command to the controller.
 std::vector<std::string> commandLines(const TrackCommand& command, const RoboteqLayout& layout);
-
-/// Cuts the controller's bytes into lines.
-/** Lines end with CR; other bytes below space and above '~' are dropped; an overlong line is
-    discarded up to its end. */
-class RoboteqLines {
- public:
-  static constexpr size_t kMaxLine = 128;
-
-  /// Complete lines, empty ones left out.
-  std::vector<std::string> push(std::string_view bytes);
-  void clear();
-  int64_t overlong() const { return overlong_; }
-  int64_t garbageBytes() const { return garbage_; }
-
- private:
-  std::string line_;
-  bool discarding_ = false;
-  int64_t overlong_ = 0;
-  int64_t garbage_ = 0;
-};
 
 /// One reply of the controller.
 struct RoboteqReply {
@@ -109,22 +90,16 @@ struct RoboteqTelemetry : MotorTelemetry {
 struct RoboteqConfig {
   RoboteqLayout layout;
   int64_t watchdog_ms = 250;              ///< of the controller, set and read back [ms]
-  int64_t reply_timeout_us = 100'000;     ///< a reply that takes longer is missing [us]
-  int64_t silence_limit_us = 250'000;     ///< longest time without an acknowledged command [us]
+  ConnectionTimes times;                  ///< but for the watchdog
   int64_t query_interval_us = 20'000;     ///< between two queries [us]
   int64_t query_patience_us = 50'000;     ///< until the next query does not wait for a reply [us]
   int64_t check_interval_us = 1'000'000;  ///< between two looks at the watchdog's setting [us]
-  int64_t stop_interval_us = 50'000;      ///< zero is repeated on a faulty link this often [us]
-  int64_t backoff_min_us = 100'000;       ///< before starting up again [us], doubling
-  int64_t backoff_max_us = 1'000'000;
-  int startup_tries = 3;  ///< of each request
 };
 
 /// The talk with a controller that was started up: commands as they come, queries between them: the
 /// fault flags each time, and one of the others in turn.
-/** Replies are matched in the order asked; a value reply shows which acknowledgements before it
-    were lost. After any silence zero goes first: a controller whose watchdog expired resumes its
-    old speed with the next command (Roboteq manual v1.8 p. 286). */
+/** After the watchdog's expiry the controller resumes its old speed with the next command (Roboteq
+    manual v1.8 p. 286), therefore the connection gives zero first. */
 class RoboteqSession {
  public:
   explicit RoboteqSession(const RoboteqConfig& config);
@@ -134,7 +109,7 @@ class RoboteqSession {
   /// A reply received at now [us].
   void take(const RoboteqReply& reply, int64_t now);
   /// A command to be given now [us].
-  void command(const TrackCommand& command, int64_t now);
+  void give(const TrackCommand& command, int64_t now);
   /// Holds the controller's own emergency stop (!EX) as long as true.
   void holdStop(bool hold);
   /// Releases the controller's emergency stop (!MG), repeated for a second while it is seen.
@@ -146,15 +121,9 @@ class RoboteqSession {
   const std::string& problem() const { return problem_; }
   bool stopLatched() const { return (telemetry_.fault_flags & kEmergencyStop) != 0; }
   const RoboteqTelemetry& telemetry() const { return telemetry_; }
-  const std::map<std::string, int64_t>& counters() const { return counters_; }
+  std::map<std::string, int64_t> counters() const;
 
  private:
-  struct Pending {
-    std::string key;  ///< key of the value asked for; empty for a command
-    int64_t sent = 0;
-  };
-
-  void give(const TrackCommand& command, int64_t now);
   void sendCommand(const std::string& line, int64_t now);
   void ask(const std::string& query, const std::string& key, int64_t now);
   void pollStop(int64_t now);
@@ -169,15 +138,14 @@ class RoboteqSession {
   std::string output_;
   std::string problem_;
   RoboteqTelemetry telemetry_;
-  std::map<std::string, int64_t> counters_;
+  int64_t unreadable_ = 0;
 
-  std::deque<Pending> pending_;
+  PendingReplies pending_;
   size_t next_query_ = 0;
   int64_t queried_at_ = 0;
   int64_t checked_at_ = 0;
   int watchdog_mismatches_ = 0;
   int64_t acked_at_ = 0;
-  int64_t commanded_at_ = 0;
   TrackCommand given_;
   bool repeat_ = false;  ///< the last command was refused
   bool hold_stop_ = false;
