@@ -6,7 +6,9 @@
 #include <stdexcept>
 
 #include "modules/lidar_driver/carmen/carmen_player.hpp"
+#include "modules/lidar_driver/rplidar/rplidar_session.hpp"
 #include "modules/lidar_driver/sick_cola/cola_session.hpp"
+#include "modules/lidar_driver/sick_lms2xx/lms_session.hpp"
 
 namespace tread::lidar {
 namespace {
@@ -38,8 +40,16 @@ const std::map<std::string, DeviceKind>& kinds() {
   static const std::map<std::string, DeviceKind> kKinds{
       {"carmen", {{Kind::kFile}, "file:drive.log", carmen}},
       {"hokuyo", {{Kind::kTcp}, "tcp:host:port", [](ConfigReader&, double, DeviceChoice&) {}}},
+      {"rplidar",
+       {{Kind::kTty, Kind::kTcp},
+        "tty:/dev/ttyUSB0?baud=115200",
+        session<RplidarConfig, RplidarSession, readRplidarConfig>}},
       {"sick_cola",
-       {{Kind::kTcp}, "tcp:192.168.0.1:2111", session<ColaConfig, ColaSession, readColaConfig>}}};
+       {{Kind::kTcp}, "tcp:192.168.0.1:2111", session<ColaConfig, ColaSession, readColaConfig>}},
+      {"sick_lms2xx",
+       {{Kind::kTty, Kind::kTcp},
+        "tty:/dev/ttyUSB0?baud=38400",
+        session<LmsConfig, LmsSession, readLmsConfig>}}};
   return kKinds;
 }
 

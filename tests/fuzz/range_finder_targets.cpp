@@ -4,8 +4,12 @@
 #include <cmath>
 
 #include "modules/lidar_driver/carmen/carmen_player.hpp"
+#include "modules/lidar_driver/rplidar/rplidar_session.hpp"
 #include "modules/lidar_driver/sick_cola/cola_session.hpp"
+#include "modules/lidar_driver/sick_lms2xx/lms_session.hpp"
+#include "modules/simulator/emulators/rplidar/rplidar_emulator.hpp"
 #include "modules/simulator/emulators/sick_cola/cola_emulator.hpp"
+#include "modules/simulator/emulators/sick_lms2xx/lms_emulator.hpp"
 #include "tests/fuzz/reading.hpp"
 #include "tests/fuzz/targets.hpp"
 
@@ -54,6 +58,44 @@ void colaCommand(const uint8_t* bytes, size_t size) {
   emulator.transmit(1'100'000);
 }
 
+void lms(const uint8_t* bytes, size_t size) {
+  lidar::LmsSession session({});
+  sim::LmsEmulator emulator{sim::LaserParameters{}};
+  int64_t now = 10'000'000;
+  session.open(now);
+  for (int i = 0; i < 4; ++i) {
+    emulator.receive(session.poll(now), now);
+    session.receive(emulator.transmit(now), now);
+  }
+  for (size_t at = 0; at < size; at += 61) {
+    const std::string piece = textOf(bytes + at, std::min<size_t>(61, size - at));
+    now += 1000 * (bytes[at] % 64);
+    session.receive(piece, now);
+    requireScans(session, now);
+    emulator.receive(piece, now);
+    emulator.transmit(now);
+  }
+}
+
+void rplidar(const uint8_t* bytes, size_t size) {
+  lidar::RplidarSession session({});
+  sim::RplidarEmulator emulator{sim::LaserParameters{}};
+  int64_t now = 10'000'000;
+  session.open(now);
+  for (int i = 0; i < 8; ++i, now += 100'000) {
+    emulator.receive(session.poll(now), now);
+    session.receive(emulator.transmit(now), now);
+  }
+  for (size_t at = 0; at < size; at += 61) {
+    const std::string piece = textOf(bytes + at, std::min<size_t>(61, size - at));
+    now += 1000 * (bytes[at] % 64);
+    session.receive(piece, now);
+    requireScans(session, now);
+    emulator.receive(piece, now);
+    emulator.transmit(now);
+  }
+}
+
 void carmenPlayer(const uint8_t* bytes, size_t size) {
   lidar::CarmenPlayer player({});
   player.open(1'000'000);
@@ -67,6 +109,8 @@ void addRangeFinderTargets(std::map<std::string, Target>& targets) {
   targets["carmen_player"] = carmenPlayer;
   targets["cola"] = cola;
   targets["cola_command"] = colaCommand;
+  targets["lms"] = lms;
+  targets["rplidar"] = rplidar;
 }
 
 }  // namespace tread::fuzz

@@ -10,7 +10,9 @@
 #include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
 #include "modules/simulator/emulators/novatel/novatel_emulator.hpp"
 #include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
+#include "modules/simulator/emulators/rplidar/rplidar_emulator.hpp"
 #include "modules/simulator/emulators/sick_cola/cola_emulator.hpp"
+#include "modules/simulator/emulators/sick_lms2xx/lms_emulator.hpp"
 #include "modules/simulator/emulators/ublox/ublox_emulator.hpp"
 #include "modules/simulator/emulators/vectornav/vectornav_emulator.hpp"
 
@@ -55,8 +57,16 @@ const Table<LaserEmulator, LaserParameters> kRangeFinders{
      [](const LaserParameters& laser, uint64_t seed) -> std::unique_ptr<LaserEmulator> {
        return std::make_unique<ScipEmulator>(scipSettingsOf(laser), seed);
      }},
-    {"sick_cola", [](const LaserParameters& laser, uint64_t) -> std::unique_ptr<LaserEmulator> {
+    {"rplidar",
+     [](const LaserParameters& laser, uint64_t) -> std::unique_ptr<LaserEmulator> {
+       return std::make_unique<RplidarEmulator>(laser);
+     }},
+    {"sick_cola",
+     [](const LaserParameters& laser, uint64_t) -> std::unique_ptr<LaserEmulator> {
        return std::make_unique<ColaEmulator>(laser);
+     }},
+    {"sick_lms2xx", [](const LaserParameters& laser, uint64_t) -> std::unique_ptr<LaserEmulator> {
+       return std::make_unique<LmsEmulator>(laser);
      }}};
 
 template <class Kind, class From>

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// Drivers of scanners on serial lines against their emulators, written apart.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <random>
+
+#include "modules/lidar_driver/rplidar/rplidar_session.hpp"
+#include "modules/lidar_driver/sick_lms2xx/lms_session.hpp"
+#include "modules/simulator/emulators/rplidar/rplidar_emulator.hpp"
+#include "modules/simulator/emulators/sick_lms2xx/lms_emulator.hpp"
+#include "tests/helpers.hpp"
+
+using namespace tread;
+using namespace tread::lidar;
+using namespace tread::testing;
+
+namespace {
+
+/// A scanner on its line, looked at each millisecond, with a sweep each 100 ms.
+template <class Session, class Device>
+struct SerialLine {
+  explicit SerialLine(Session made) : session(std::move(made)) { session.open(now); }
+
+  /// 2 m to the right, 3 m to the left, nothing straight ahead.
+  static sim::LaserScan sweep(int64_t finished) {
+    sim::LaserScan scan;
+    scan.utime = finished - sim::LaserParameters{}.sweep_us;
+    scan.ranges.assign(541, 2.0F);
+    std::fill(scan.ranges.begin() + 270, scan.ranges.end(), 3.0F);
+    scan.ranges[270] = INFINITY;
+    return scan;
+  }
+  std::vector<RangeScan> run(int milliseconds) {
+    std::vector<RangeScan> scans;
+    for (int i = 0; i < milliseconds; ++i) {
+      now += 1000;
+      if (now % 100'000 == 0) device.add(sweep(now));
+      device.receive(session.poll(now), now);
+      session.receive(device.transmit(now), now);
+      for (RangeScan& scan : session.take(now)) scans.push_back(std::move(scan));
+    }
+    return scans;
+  }
+  int64_t counted(const std::string& what) const {
+    const auto found = session.counters().find(what);
+    return found == session.counters().end() ? 0 : found->second;
+  }
+
+  int64_t now = 1'000'000;
+  Session session;
+  Device device{sim::LaserParameters{}};
+};
+
+struct LmsLine : SerialLine<LmsSession, sim::LmsEmulator> {
+  explicit LmsLine(double resolution = 1.0) : SerialLine(LmsSession({resolution, 0.0})) {}
+};
+struct RplidarLine : SerialLine<RplidarSession, sim::RplidarEmulator> {
+  explicit RplidarLine(double step = 1.0) : SerialLine(RplidarSession({step, 12.0, 0.0})) {}
+};
+
+/// Mutated and random bytes between sound ones; returns how many scans came of them.
+template <class Line>
+size_t mistreat(Line& line, int bytes_to_feed, unsigned seed) {
+  std::mt19937 random(seed);
+  size_t scans = 0;
+  for (int fed = 0; fed < bytes_to_feed;) {
+    line.now += 100'000;
+    line.device.add(Line::sweep(line.now - 100'000));
+    line.device.receive(line.session.poll(line.now), line.now);
+    std::string bytes = line.device.transmit(line.now);
+    if (bytes.empty()) bytes.resize(1 + random() % 2000);
+    for (auto i = 2 + random() % 20; i > 0; --i)
+      bytes[random() % bytes.size()] = static_cast<char>(random());
+    if (random() % 8 == 0)
+      for (char& byte : bytes) byte = static_cast<char>(random());
+    fed += static_cast<int>(bytes.size());
+    line.session.receive(bytes, line.now);
+    for (const RangeScan& scan : line.session.take(line.now)) {
+      ++scans;
+      REQUIRE(scan.utime + scan.duration_us <= line.now);
+      REQUIRE(scan.duration_us <= 1'000'000);
+      REQUIRE(std::abs(scan.angle_step) * static_cast<double>(scan.ranges.size() - 1) < 6.2832);
+    }
+    if (line.session.lost()) line.session.open(line.now);
+  }
+  return scans;
+}
+
+}  // namespace
+
+TEST_CASE("LMS telegrams are those of the manual") {
+  CHECK(lmsFrame("\x20\x24") == std::string("\x02\x00\x02\x00\x20\x24\x34\x08", 8));
+  CHECK(lmsFrame("\x20\x25") == std::string("\x02\x00\x02\x00\x20\x25\x35\x08", 8));
+}
+
+TEST_CASE("scans of a LMS 2xx come out with the angles of their variant and the time of arrival") {
+  for (const double resolution : {1.0, 0.5}) {
+    LmsLine line(resolution);
+    const auto scans = line.run(1050);
+    REQUIRE(scans.size() >= 9);
+    const RangeScan& scan = scans.back();
+    const auto middle = static_cast<size_t>(std::lround(90.0 / resolution));
+    REQUIRE(scan.ranges.size() == 2 * middle + 1);
+    CHECK(scan.angle_first == Approx(-M_PI / 2));
+    CHECK(scan.angle_step == Approx(resolution * kDeg));
+    CHECK(scan.ranges.front() == Approx(2.0F));
+    CHECK(std::isnan(scan.ranges[middle]));
+    CHECK(scan.ranges.back() == Approx(3.0F));
+    CHECK(scan.range_max == Approx(8.183).margin(0.001));
+    CHECK(scan.utime + scan.duration_us == line.now - 50'000);
+    CHECK(line.session.problem().empty());
+  }
+}
+
+TEST_CASE("faults of a LMS' line cost the scans that they touch, and a reboot starts it up again") {
+  struct Fault {
+    bool sim::LmsFaults::*kind;
+    const char* counted;
+  };
+  for (const Fault& fault : {Fault{&sim::LmsFaults::bad_checksum, "wrong checksums"},
+                             Fault{&sim::LmsFaults::half_frame, "wrong checksums"},
+                             Fault{&sim::LmsFaults::dropped_byte, "wrong checksums"},
+                             Fault{&sim::LmsFaults::silent, "restarts: no good scan for 1 s"}}) {
+    LmsLine line;
+    REQUIRE(line.run(500).size() >= 3);
+    sim::LmsFaults faults;
+    faults.*fault.kind = true;
+    line.device.setFaults(faults);
+    CAPTURE(fault.counted);
+    CHECK(line.run(1200).empty());
+    CHECK(line.counted(fault.counted) > 0);
+    line.device.setFaults({});
+    CHECK(line.run(3000).size() >= 10);
+    line.device.reboot();
+    CHECK(line.run(3000).size() >= 15);
+  }
+}
+
+TEST_CASE("turns of an RPLIDAR come out whole, clockwise, with their own times") {
+  for (const double step : {1.0, 0.5}) {
+    RplidarLine line(step);
+    const auto scans = line.run(2000);
+    REQUIRE(scans.size() >= 10);
+    const RangeScan& scan = scans.back();
+    REQUIRE(scan.ranges.size() == static_cast<size_t>(360 / step));
+    CHECK(scan.angle_step == Approx(-step * kDeg));
+    // Samples are a degree apart: of two steps of half a degree one may have none.
+    const auto at = [&](double degrees) {
+      const auto beam = static_cast<size_t>(degrees / step);
+      return std::isnan(scan.ranges[beam]) ? scan.ranges[beam + 1] : scan.ranges[beam];
+    };
+    CHECK(at(90.0) == Approx(2.0F));                                  // to the right
+    CHECK(at(270.0) == Approx(3.0F));                                 // to the left
+    CHECK(std::isnan(scan.ranges[static_cast<size_t>(180 / step)]));  // behind: not seen
+    CHECK(scan.duration_us == Approx(100'000 * (1 - step / 360)).margin(2));
+    CHECK(scans[5].utime - scans[4].utime == 100'000);
+    CHECK(line.session.problem().empty());
+  }
+}
+
+TEST_CASE("a turn of an RPLIDAR in which a byte is wrong or missing is not published") {
+  struct Fault {
+    bool sim::RplidarFaults::*kind;
+    const char* counted;
+  };
+  for (const Fault& fault :
+       {Fault{&sim::RplidarFaults::bad_check, "refused: samples with wrong check bits"},
+        Fault{&sim::RplidarFaults::dropped_byte, "refused: samples with wrong check bits"},
+        Fault{&sim::RplidarFaults::half_turn, "refused: turns that are not whole"}}) {
+    RplidarLine line;
+    REQUIRE(line.run(1500).size() >= 5);
+    sim::RplidarFaults faults;
+    faults.*fault.kind = true;
+    line.device.setFaults(faults);
+    line.run(150);  // the last sound turn ends
+    CAPTURE(fault.counted);
+    CHECK(line.run(800).empty());
+    CHECK(line.counted(fault.counted) > 0);
+    line.device.setFaults({});
+    CHECK(line.run(2500).size() >= 10);
+    line.device.reboot();
+    CHECK(line.run(3000).size() >= 8);
+  }
+  RplidarLine ill;
+  sim::RplidarFaults faults;
+  faults.ill = true;
+  ill.device.setFaults(faults);
+  CHECK(ill.run(2000).empty());
+  CHECK(ill.session.lost());
+  CHECK(ill.session.problem().find("its health is error") != std::string::npos);
+}
+
+TEST_CASE("a million random and mutated bytes give no scan that LMS and RPLIDAR cannot vouch for") {
+  LmsLine lms;
+  lms.run(500);
+  CHECK(mistreat(lms, effort(1'100'000), 3) == 0);
+  RplidarLine rplidar;
+  rplidar.run(1500);
+  // Two check bits let single turns through whose other bits were changed.
+  CHECK(mistreat(rplidar, effort(1'100'000), 4) < 50);
+  CHECK(lms.session.counters().size() + rplidar.session.counters().size() < 40);
+}
