@@ -51,7 +51,12 @@ void LinkSource::read(int64_t utime) {
 
 std::string LinkSource::problem() const {
   // A device that was lost tells more than the line that is being opened anew.
-  return was_open_ || link_->problem().empty() ? device_->problem() : link_->problem();
+  if (was_open_ || link_->problem().empty()) return device_->problem();
+  // Whoever asks has the address already.
+  const std::string problem = link_->problem();
+  const std::string address = link_->address() + ": ";
+  return problem.compare(0, address.size(), address) == 0 ? problem.substr(address.size())
+                                                          : problem;
 }
 
 std::map<std::string, int64_t> LinkSource::counters() const {

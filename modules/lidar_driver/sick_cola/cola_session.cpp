@@ -58,12 +58,10 @@ ColaSession::ColaSession(const ColaConfig& config)
     : StartedDevice(startUp(config.dialect), kPatience), config_(config), framer_(config.dialect) {}
 
 std::string ColaSession::shortcomings() const {
-  const std::string checked =
-      config_.dialect == ColaDialect::kA
-          ? "CoLa A has no checksum (telegrams: binary has one, on port 2112)"
-          : "CoLa B has a checksum of 8 bits";
-  return "SICK CoLa: " + checked + "; beam times are good to the way from index to scan (10 ms)" +
-         "; intensities are not read";
+  const std::string sum = config_.dialect == ColaDialect::kA
+                              ? "checksums (telegrams: binary has one, on port 2112)"
+                              : "strong checksums (8 bits)";
+  return "SICK CoLa: " + sum + ", beam times better than 10 ms; intensities are not read";
 }
 
 void ColaSession::forget() {
