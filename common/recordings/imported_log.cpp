@@ -107,12 +107,22 @@ class ImportMaker {
     }
   }
 
-  void addMotor(const std::vector<DriveSample>& drive, const std::vector<Planned>& executions) {
+  void addScans(const std::vector<TimedScan>& scans) {
+    for (const TimedScan& scan : scans) {
+      scan_t message = scan.message;
+      message.utime = utimeOf(scan.time);
+      log_.add(kScan, message);
+      ++counts_.scans;
+    }
+  }
+
+  void addMotor(CommandKind kind, const std::vector<DriveSample>& drive,
+                const std::vector<Planned>& executions) {
     size_t at = 0;
     for (const DriveSample& sample : drive) {
       auto motor = blank<motor_t>();
       motor.utime = utimeOf(sample.time);
-      fill(motor, sample);
+      fill(motor, kind, sample);
       while (at < executions.size() && executions[at].end <= motor.utime + kPeriodUs / 2) ++at;
       if (at < executions.size()) place(motor, executions[at]);
       log_.add(kMotor, motor);
@@ -157,10 +167,10 @@ class ImportMaker {
     if (std::isfinite(fix.unix_time)) ins.device_utc = std::llround(fix.unix_time * 1e6);
   }
 
-  static void fill(motor_t& motor, const DriveSample& sample) {
+  static void fill(motor_t& motor, CommandKind kind, const DriveSample& sample) {
     motor.bridge_state = sample.automatic ? motor_t::STATE_DRIVING : motor_t::STATE_DISARMED;
     motor.state_reason = sample.automatic ? "" : "idle or driven by the operator";
-    if (sample.automatic) motor.motor_command_kind = static_cast<int16_t>(CommandKind::kTrackSpeed);
+    if (sample.automatic) motor.motor_command_kind = static_cast<int16_t>(kind);
     motor.command_left = static_cast<float>(sample.command.left);
     motor.command_right = static_cast<float>(sample.command.right);
     motor.battery_voltage = static_cast<float>(sample.voltage);
@@ -189,15 +199,18 @@ std::vector<LogEvent> makeLog(const RecordedDrive& recording, const Session& ses
                               const std::string& format, const ExecutionLayout& layout,
                               LogCounts& counts) {
   const auto executions = plannedExecutions(recording.runs, layout);
-  double begin = recording.drive.front().time;
+  double begin = std::numeric_limits<double>::max();
+  if (!recording.drive.empty()) begin = recording.drive.front().time;
   if (!recording.fixes.empty()) begin = std::min(begin, recording.fixes.front().time);
+  if (!recording.scans.empty()) begin = std::min(begin, recording.scans.front().time);
   // Steps are interpolated to 20 Hz in the aligned format; elsewhere fixes come at the rate of the
   // ICP.
   const double step = format == "aligned" ? kPeriod : 1.0 / session.pose_rate;
   ImportMaker maker(counts);
   maker.addNotes(session, format, !recording.gyro.empty(), layout, begin);
   maker.addIns(recording.fixes, recording.gyro, 3.0 * step);
-  maker.addMotor(recording.drive, executions);
+  maker.addMotor(recording.kind, recording.drive, executions);
+  maker.addScans(recording.scans);
   maker.addExecutions(executions);
   return maker.sorted();
 }

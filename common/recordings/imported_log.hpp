@@ -69,11 +69,19 @@ enum class Gyro {
   kAll       ///< all of them, beside the fixes
 };
 
+/// What a range finder saw.
+struct TimedScan {
+  double time = 0.0;  ///< [s] of its first beam
+  scan_t message;     ///< without utime and seq
+};
+
 struct RecordedDrive {
-  std::vector<Fix> fixes;          ///< in order of time
-  std::vector<GyroReading> gyro;   ///< in order of time; only where all are kept
-  std::vector<DriveSample> drive;  ///< in order of time
-  std::vector<CommandRun> runs;    ///< in order of time
+  CommandKind kind = CommandKind::kTrackSpeed;  ///< what the commands are
+  std::vector<Fix> fixes;                       ///< in order of time
+  std::vector<GyroReading> gyro;                ///< in order of time; only where all are kept
+  std::vector<DriveSample> drive;               ///< in order of time
+  std::vector<CommandRun> runs;                 ///< in order of time
+  std::vector<TimedScan> scans;                 ///< in order of time
 };
 
 /// Silence between steps that were recorded apart [s].
@@ -102,12 +110,14 @@ struct ExecutionLayout {
 struct LogCounts {
   size_t ins = 0;
   size_t motor = 0;
+  size_t scans = 0;
   size_t completed = 0;
   size_t aborted = 0;
   double duration = 0.0;  ///< [s]
 };
 
-/// The events of the log of a recording in order of time: MARK, CONFIG, INS, MOTOR, EXECUTION.
+/// The events of the log of a recording in order of time: MARK, CONFIG, INS, MOTOR, SCAN,
+/// EXECUTION.
 /// utime 0 is one second before the recording's time 0.
 std::vector<LogEvent> makeLog(const RecordedDrive& recording, const Session& session,
                               const std::string& format, const ExecutionLayout& layout,

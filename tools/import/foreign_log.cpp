@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/import/foreign_log.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/messages/blank.hpp"
+#include "common/recordings/csv_table.hpp"
+#include "tools/import/foreign_types.hpp"
+
+namespace tread::import {
+namespace {
+
+using recordings::CommandRun;
+using recordings::DriveSample;
+using recordings::kPeriod;
+using recordings::RecordedDrive;
+using recordings::RecordingError;
+
+/// A command is as good as gone if none came for so long [s].
+constexpr double kCommandAge = 0.5;
+/// No pose of these robots is farther out [m].
+constexpr double kFarthest = 100'000.0;
+/// Nearer returns are the laser's own housing [m].
+constexpr double kNearestReturn = 0.1;
+constexpr double kLongestScan = 1.0;  // [s]
+
+/// A message with its time.
+struct Timed {
+  double time = 0.0;  // [s] since the log's first one
+  std::string channel;
+  ForeignMessage content;
+};
+
+double of(const Timed& message, const char* field) {
+  return message.content.at(field).at(0);
+}
+
+bool finite(const Timed& message) {
+  for (const auto& [name, numbers] : message.content)
+    for (const double number : numbers)
+      if (!std::isfinite(number)) return false;
+  return true;
+}
+
+class LogContent {
+ public:
+  LogContent(const std::string& path, ForeignDrive& result) : path_(path), result_(result) {
+    LogReader reader(path);
+    LogEvent event;
+    while (reader.next(event)) take(event);
+    if (by_type_.empty())
+      throw RecordingError(path + ": holds no type that tread-import knows; known are " + known());
+  }
+
+  std::vector<Timed>& all(const char* type) { return by_type_[type]; }
+
+  /// The poses of one channel, odometry_t or pose_xyt_t.
+  std::vector<Timed> poses(const std::string& wanted) {
+    std::map<std::string, std::vector<Timed>> channels;
+    for (const char* type : {"pose_xyt_t", "odometry_t"})
+      for (const Timed& pose : all(type)) channels[pose.channel].push_back(pose);
+    if (channels.empty() && wanted.empty()) return {};
+    const auto chosen = wanted.empty() ? channels.begin() : channels.find(wanted);
+    if (chosen == channels.end() || (wanted.empty() && channels.size() > 1))
+      throw RecordingError(path_ + ": poses are on " + namesOf(channels) +
+                           "; choose one with --pose-channel");
+    for (const auto& [name, messages] : channels)
+      if (name != chosen->first) leaveOut(name + ": another --pose-channel", messages.size());
+    result_.pose_channel = chosen->first;
+    return chosen->second;
+  }
+
+  void leaveOut(const std::string& what, size_t count = 1) { result_.left_out[what] += count; }
+
+ private:
+  static std::string namesOf(const std::map<std::string, std::vector<Timed>>& channels) {
+    std::string names;
+    for (const auto& [name, messages] : channels) names += (names.empty() ? "" : ", ") + name;
+    return names.empty() ? "no channel" : names;
+  }
+
+  static std::string known() {
+    std::string names;
+    for (const ForeignType& type : foreignTypes()) names += (names.empty() ? "" : ", ") + type.name;
+    return names;
+  }
+
+  void take(const LogEvent& event) {
+    const ForeignType* const type = foreignTypeOf(event.bytes);
+    if (type == nullptr) return leaveOut(event.channel + ": another type");
+    auto content = decodeForeign(*type, event.bytes);
+    if (!content) return leaveOut(event.channel + ": broken");
+    // Some senders leave the time empty; then the logger's clock is moved to the senders'.
+    const double utime = content->at("utime").at(0);
+    if (utime > 0.0 && !offset_) offset_ = utime - static_cast<double>(event.utime);
+    const double at =
+        utime > 0.0 ? utime : static_cast<double>(event.utime) + offset_.value_or(0.0);
+    if (!begin_) begin_ = at;
+    const double since = (at - *begin_) * 1e-6;
+    Timed message{since, event.channel, std::move(*content)};
+    constexpr double kLongest = 7.0 * 86'400.0;  // [s]
+    if (!finite(message) || std::abs(since) > kLongest)
+      return leaveOut(event.channel + ": numbers or times out of range");
+    by_type_[type->name].push_back(std::move(message));
+  }
+
+  std::string path_;
+  ForeignDrive& result_;
+  std::map<std::string, std::vector<Timed>> by_type_;
+  std::optional<double> offset_;  // [us] of the senders' clock from the logger's
+  std::optional<double> begin_;   // [us] of the first message
+};
+
+void takePoses(const std::string& path, const std::vector<Timed>& poses, RecordedDrive& drive) {
+  double last = -1e9;
+  for (const Timed& pose : poses) {
+    const double x = of(pose, "x");
+    const double y = of(pose, "y");
+    if (std::max(std::abs(x), std::abs(y)) > kFarthest)
+      throw RecordingError(path + ": a pose on " + pose.channel + " is at x " + std::to_string(x) +
+                           ", y " + std::to_string(y) + " m, beyond 100 km; is the log damaged?");
+    if (pose.time <= last) continue;
+    recordings::Fix fix;
+    fix.time = last = pose.time;
+    fix.T_map_body = {x, y, of(pose, "theta")};
+    fix.new_track = drive.fixes.empty();
+    drive.fixes.push_back(fix);
+  }
+}
+
+/// Commands as they came; which of the types there are decides their kind.
+std::vector<DriveSample> commandsOf(const std::string& path, LogContent& log, double baseline,
+                                    CommandKind& kind) {
+  std::vector<DriveSample> samples;
+  const auto add = [&](const Timed& message, const TrackCommand& command) -> DriveSample& {
+    DriveSample& sample = samples.emplace_back();
+    sample.time = message.time;
+    sample.command = command;
+    sample.speed = {recordings::kUnknown, recordings::kUnknown};
+    return sample;
+  };
+  kind = CommandKind::kPower;
+  for (const Timed& m : log.all("mbot_wheel_ctrl_t"))
+    add(m, {of(m, "left_motor_pwm_cmd"), of(m, "right_motor_pwm_cmd")}).speed = {
+        of(m, "left_motor_vel"), of(m, "right_motor_vel")};
+  if (!samples.empty()) return samples;
+  for (const Timed& m : log.all("mbot_motor_pwm_t"))
+    add(m, {of(m, "left_motor_pwm"), of(m, "right_motor_pwm")});
+  for (const Timed& m : log.all("maebot_motor_command_t"))
+    add(m, {of(m, "left_motor_speed") * of(m, "left_motor_enabled"),
+            of(m, "right_motor_speed") * of(m, "right_motor_enabled")});
+  if (!samples.empty()) return samples;
+  const std::vector<Timed>& bodies = log.all("mbot_motor_command_t");
+  if (!bodies.empty() && baseline <= 0.0)
+    throw RecordingError(path +
+                         ": commands are body speeds; give --baseline, the metres between "
+                         "the wheels");
+  kind = CommandKind::kTrackSpeed;
+  for (const Timed& m : bodies)
+    add(m, recordings::trackCommand({of(m, "trans_v"), of(m, "angular_v")}, baseline));
+  return samples;
+}
+
+/// Every 50 ms the newest command, none once it is too old.
+void takeCommands(std::vector<DriveSample> commands, RecordedDrive& drive) {
+  if (commands.empty()) return;
+  std::stable_sort(commands.begin(), commands.end(),
+                   [](const DriveSample& a, const DriveSample& b) { return a.time < b.time; });
+  size_t at = 0;
+  const double begin = commands.front().time;
+  const auto count = static_cast<size_t>((commands.back().time - begin) / kPeriod) + 1;
+  for (size_t i = 0; i < count; ++i) {
+    const double time = begin + kPeriod * static_cast<double>(i);
+    while (at + 1 < commands.size() && commands[at + 1].time <= time) ++at;
+    DriveSample sample = commands[at];
+    sample.automatic = time - sample.time <= kCommandAge;
+    if (!sample.automatic) sample.command = {0.0, 0.0};
+    sample.time = time;
+    drive.drive.push_back(sample);
+  }
+}
+
+bool isSame(const TrackCommand& a, const TrackCommand& b) {
+  return a.left == b.left && a.right == b.right;
+}
+
+/// Runs of one command other than zero; equal commands have equal numbers.
+void findRuns(RecordedDrive& drive) {
+  std::vector<TrackCommand> commands;
+  const std::vector<DriveSample>& samples = drive.drive;
+  for (size_t first = 0; first < samples.size();) {
+    const TrackCommand& command = samples[first].command;
+    size_t end = first + 1;
+    while (end < samples.size() && isSame(samples[end].command, command)) ++end;
+    if (!isSame(command, {0.0, 0.0})) {
+      const auto known = std::find_if(commands.begin(), commands.end(),
+                                      [&](const TrackCommand& c) { return isSame(c, command); });
+      const auto number = static_cast<int>(known - commands.begin()) + 1;
+      if (known == commands.end()) commands.push_back(command);
+      const char* const why = end < samples.size() ? "the command changed" : "the log ended";
+      drive.runs.push_back({number, samples[first].time, samples[end - 1].time + kPeriod, why});
+    }
+    first = end;
+  }
+}
+
+/// One turn of the laser as points; its sender says the time of each beam in us or in ms.
+std::optional<recordings::TimedScan> scanOf(const Timed& laser, double height) {
+  auto scan = blank<scan_t>();
+  scan.sensor_position[0] = scan.sensor_position[1] = 0.0;
+  scan.sensor_position[2] = height;
+  scan.sensor_orientation[0] = 1.0;
+  for (int i = 1; i < 4; ++i) scan.sensor_orientation[i] = 0.0;
+  const std::vector<double>& ranges = laser.content.at("ranges");
+  const std::vector<double>& angles = laser.content.at("thetas");
+  const std::vector<double>& times = laser.content.at("times");
+  for (size_t i = 0; i < ranges.size(); ++i)
+    if (ranges[i] > kNearestReturn)
+      scan.points.push_back({static_cast<float>(ranges[i] * std::cos(angles[i])),
+                             static_cast<float>(-ranges[i] * std::sin(angles[i])), 0.0F});
+  if (scan.points.empty()) return std::nullopt;
+  scan.num_points = static_cast<int32_t>(scan.points.size());
+  // No turn takes less than 2 ms.
+  double turn = times.back() - times.front();
+  if (turn < 2000.0) turn *= 1000.0;
+  scan.duration = static_cast<int32_t>(std::clamp(turn, 0.0, kLongestScan * 1e6));
+  return recordings::TimedScan{laser.time, scan};
+}
+
+}  // namespace
+
+ForeignDrive readForeignLog(const std::string& path, const ForeignRobot& robot) {
+  ForeignDrive result;
+  LogContent log(path, result);
+  RecordedDrive& drive = result.drive;
+  takePoses(path, log.poses(robot.pose_channel), drive);
+  takeCommands(commandsOf(path, log, robot.baseline, drive.kind), drive);
+  findRuns(drive);
+  for (const Timed& laser : log.all("lidar_t")) {
+    if (auto scan = scanOf(laser, robot.lidar_height))
+      drive.scans.push_back(std::move(*scan));
+    else
+      log.leaveOut(laser.channel + ": without returns");
+  }
+  if (drive.fixes.empty() && drive.drive.empty() && drive.scans.empty())
+    throw RecordingError(path + ": holds neither poses nor commands nor scans");
+  return result;
+}
+
+}  // namespace tread::import
