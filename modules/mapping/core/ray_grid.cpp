@@ -120,8 +120,8 @@ void RayGrid::trace(const octomap::OcTree& tree, const octomap::point3d& from,
     walk<false>(step);
 }
 
-/// Inside, a voxel's bit says where it is: three quarters of a cloud's time are spent here, so all
-/// of a step is in registers.
+/// Inside, a voxel's bit says where it is. Marks have the type of the strides, which the compiler
+/// would read again after each: so all of a step is in variables of its own.
 template <bool kInside>
 void RayGrid::walk(Step& step) {
   uint64_t* const passed = passed_.data();

@@ -121,7 +121,7 @@ void cloud(benchmark::State& state) {
 }
 BENCHMARK(cloud)->UseManualTime()->Iterations(25)->Unit(benchmark::kMillisecond);
 
-/// The same by itself, as in a process of its own: nothing else empties the caches between.
+/// The same by itself, as in a process of its own, without OctoMap between.
 void cloudAlone(benchmark::State& state) {
   const Pointcloud scan = scanOf(state);
   OcTree tree(kResolution);
