@@ -8,19 +8,30 @@
 #include "common/messages/blank.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/messages/operator_beacon.hpp"
+#include "modules/motor_bridge/line_protocol/line_connection.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
 
 namespace tread::motor {
 namespace {
 
-MakeMotorController roboteq(ConfigReader section, const DriveDescription& drive) {
-  const RoboteqConfig config = readRoboteqConfig(section, drive);
-  return [config] { return std::make_unique<RoboteqConnection>(config); };
+template <class Connection, class Config>
+MakeMotorController making(const Config& config) {
+  return [config] { return std::make_unique<Connection>(config); };
+}
+
+MakeMotorController roboteq(ConfigReader& reader, const DriveDescription& drive) {
+  ConfigReader section = reader.section("roboteq");
+  return making<RoboteqConnection>(readRoboteqConfig(section, drive));
+}
+
+MakeMotorController lineProtocol(ConfigReader& reader, const DriveDescription& drive) {
+  ConfigReader description = reader.file("line_protocol", "line_protocol.yaml");
+  return making<LineConnection>(readLineDescription(description, drive));
 }
 
 /// A new controller is one line here and a folder of its own.
-const std::map<std::string, MakeMotorController (*)(ConfigReader, const DriveDescription&)>
-    kControllers{{"roboteq", roboteq}};
+const std::map<std::string, MakeMotorController (*)(ConfigReader&, const DriveDescription&)>
+    kControllers{{"line_protocol", lineProtocol}, {"roboteq", roboteq}};
 
 void readTimes(ConfigReader& reader, BridgeConfig& bridge) {
   reader.seconds("step", bridge.step_us, {0.001, 0.02});
@@ -130,7 +141,7 @@ MakeMotorController readMotorController(ConfigReader& reader, const DriveDescrip
   for (const auto& [name, read] : kControllers) known.push_back(name);
   std::string name = "roboteq";
   reader.choice("controller", name, known);
-  return kControllers.at(name)(reader.section(name), drive);
+  return kControllers.at(name)(reader, drive);
 }
 
 MotorBridgeConfig readMotorBridgeConfig(ConfigReader& reader) {

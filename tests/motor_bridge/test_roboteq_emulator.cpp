@@ -2,93 +2,21 @@
 // Copyright (c) 2026 The Tread authors
 // Against the emulated controller, which was written from the protocol's documents by somebody
 // else.
-#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include <catch2/catch.hpp>
 
-#include "modules/motor_bridge/core/bridge.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
 #include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
-#include "tests/motor_bridge/endless_planner.hpp"
+#include "tests/motor_bridge/emulated_rig.hpp"
 
 using namespace tread;
 using namespace tread::motor;
 
 namespace {
 
-/// Bridge, connection and emulated controller in steps of 10 ms; the line is paced at 115200 baud.
-struct EmulatedRig {
-  Bridge bridge{BridgeConfig{}};
-  RoboteqConnection connection;
-  sim::RoboteqEmulator device;
-  EndlessPlanner planner;
-  BridgeOutput out;
-  int64_t now = 10'000'000;
-  int64_t last_motion = 0;
-  bool planner_alive = true;
-  bool bridge_alive = true;
-  double lost_bytes = 0.0;  ///< share, both ways
-  std::mt19937 random{1};
-
-  explicit EmulatedRig(const RoboteqConfig& config = {}, const sim::RoboteqSettings& settings = {})
-      : connection(config), device(settings) {
-    connection.open();
-  }
-
-  void step() {
-    for (int i = 0; i < 10; ++i) {
-      now += 1'000;
-      if (turning()) last_motion = now;
-    }
-    if (!bridge_alive) return;
-    if (now % 20'000 == 0) bridge.receive(InsNotice{now - 5'000, true}, now);
-    if (planner_alive && now % 50'000 == 0) {
-      const auto& log = bridge.executions().records();
-      const auto last = log.empty() ? std::nullopt : std::optional(log.back());
-      bridge.receive(planner.plan(now - 1'000, last), now);
-    }
-    if (now % 200'000 == 0) bridge.receive(OperatorNotice{1, "operator", true, now, 0, ""}, now);
-    connection.receive(thinned(device.transmit(now)), now);
-    out = bridge.step(now, connection.report(now));
-    connection.holdStop(out.hold_device_stop);
-    if (out.release_device_stop) connection.releaseStop(now);
-    if (out.send) connection.command(out.command, now);
-    device.receive(thinned(connection.poll(now)), now);
-  }
-  std::string thinned(std::string bytes) {
-    std::uniform_real_distribution<double> share(0.0, 1.0);
-    bytes.erase(std::remove_if(bytes.begin(), bytes.end(),
-                               [&](char) { return share(random) < lost_bytes; }),
-                bytes.end());
-    return bytes;
-  }
-  void run(int64_t us) {
-    for (const int64_t end = now + us; now < end;) step();
-  }
-  void drive() {
-    run(1'600'000);
-    bridge.receive(ArmRequest{now, true, "operator", "go"}, now);
-    run(400'000);
-  }
-  bool turning() {
-    const std::array<double, 2> power = device.output(now);
-    return power[0] != 0.0 || power[1] != 0.0;
-  }
-  int64_t lastMotionWithin(int64_t us) {
-    const int64_t begin = now;
-    run(us);
-    return std::max<int64_t>(0, last_motion - begin);
-  }
-  int64_t count(const std::string& name) const {
-    const auto counters = connection.counters();
-    const auto found = counters.find(name);
-    return found == counters.end() ? 0 : found->second;
-  }
-  State state() const { return out.failsafe.state; }
-};
-
+using Rig = EmulatedRig<RoboteqConnection, sim::RoboteqEmulator>;
 }  // namespace
 
 TEST_CASE("emulated controller: started up, it gets what is played, and every line is answered") {
@@ -96,7 +24,7 @@ TEST_CASE("emulated controller: started up, it gets what is played, and every li
   settings.encoders = true;
   RoboteqConfig config;
   config.layout.rpm_per_mps = settings.rpm_per_speed;
-  EmulatedRig rig(config, settings);
+  Rig rig(config, settings);
   sim::DriveMeasurements measured;
   measured.battery_voltage = 24.3;
   measured.motor_current = {5.5, 6.5};
@@ -124,7 +52,7 @@ TEST_CASE(
   RoboteqConfig config;
   config.layout.both_in_one_line = false;
   config.layout.rpm_per_mps = 400.0;
-  EmulatedRig rig(config);
+  Rig rig(config);
   rig.drive();
   rig.run(5'000'000);
   CHECK(rig.state() == State::kDriving);
@@ -134,7 +62,7 @@ TEST_CASE(
 }
 
 TEST_CASE("emulated controller: planner dead, bridge dead, controller silent: zero in time") {
-  EmulatedRig rig;
+  Rig rig{RoboteqConfig{}};
   rig.planner.commands = 200;
   rig.drive();
   REQUIRE(rig.turning());
@@ -159,7 +87,7 @@ TEST_CASE("emulated controller: planner dead, bridge dead, controller silent: ze
 }
 
 TEST_CASE("emulated controller: an undervoltage is told within 40 ms, at any moment") {
-  EmulatedRig rig;
+  Rig rig{RoboteqConfig{}};
   rig.planner.commands = 200;
   rig.drive();
   int64_t longest = 0;
@@ -178,7 +106,7 @@ TEST_CASE("emulated controller: an undervoltage is told within 40 ms, at any mom
 }
 
 TEST_CASE("a line that loses a tenth of its bytes is told, a sound one is not") {
-  EmulatedRig rig;
+  Rig rig{RoboteqConfig{}};
   rig.drive();
   rig.run(10'000'000);
   CHECK(rig.connection.lineProblem().empty());
@@ -196,7 +124,7 @@ TEST_CASE("a line that loses a tenth of its bytes is told, a sound one is not") 
 }
 
 TEST_CASE("emulated controller: reboot and brown-out stop, afterwards it drives only after ARM") {
-  EmulatedRig rig;
+  Rig rig{RoboteqConfig{}};
   rig.drive();
   SECTION("reboot") {
     rig.device.reboot(rig.now);
@@ -220,7 +148,7 @@ TEST_CASE("emulated controller: reboot and brown-out stop, afterwards it drives 
 }
 
 TEST_CASE("emulated controller: its emergency stop is held and released, and nothing jumps") {
-  EmulatedRig rig;
+  Rig rig{RoboteqConfig{}};
   rig.drive();
   rig.bridge.receive(EstopRequest{rig.now, true, "operator", "person"}, rig.now);
   CHECK(rig.lastMotionWithin(2'000'000) <= 15'000);
@@ -237,7 +165,7 @@ TEST_CASE("emulated controller: its emergency stop is held and released, and not
 
 TEST_CASE("emulated controller: lost and cut replies at random for ten minutes stop nobody") {
   std::mt19937_64 random(3);
-  EmulatedRig rig;
+  Rig rig{RoboteqConfig{}};
   rig.drive();
   for (int i = 0; i < 600; ++i) {
     rig.run(1'000'000);

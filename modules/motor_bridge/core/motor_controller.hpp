@@ -26,6 +26,7 @@ struct MotorTelemetry {
   double current_right = std::numeric_limits<double>::quiet_NaN();
   double speed_left = std::numeric_limits<double>::quiet_NaN();  ///< track speed [m/s], + forward
   double speed_right = std::numeric_limits<double>::quiet_NaN();
+  double temperature = std::numeric_limits<double>::quiet_NaN();  ///< of the hottest part [degC]
   int32_t device_flags =
       0;  ///< of MOTOR's device_fault, as the controller's own documents have them
 };
@@ -62,6 +63,9 @@ class MotorController {
   virtual MotorTelemetry telemetry() const = 0;
   /// What is wrong with a line that still works, one line; empty = it is sound.
   virtual std::string lineProblem() const { return ""; }
+  /// What cannot be verified with this kind, one line to be told once at the start; empty =
+  /// nothing.
+  virtual std::string notice() const { return ""; }
   /// What was counted, by its name in words.
   virtual std::map<std::string, int64_t> counters() const = 0;
 };

@@ -216,21 +216,8 @@ std::optional<std::string> RoboteqFirmware::channelAnswer(const RoboteqWords& wo
 }
 
 RoboteqEmulator::RoboteqEmulator(const RoboteqSettings& settings)
-    : settings_(settings),
-      firmware_(settings),
-      from_robot_(settings.baud),
-      to_robot_(settings.baud) {}
-
-void RoboteqEmulator::receive(std::string_view bytes, int64_t utime) {
-  advance(utime);
-  from_robot_.send(bytes, utime);
-}
-
-std::string RoboteqEmulator::transmit(int64_t utime) {
-  advance(utime);
-  std::string out = to_robot_.takeArrived(utime);
-  return silent_ ? std::string() : out;
-}
+    : SerialMotorEmulator(settings.baud, settings.reply_delay_us, settings.boot_us),
+      firmware_(settings) {}
 
 std::array<double, 2> RoboteqEmulator::output(int64_t utime) {
   advance(utime);
@@ -238,33 +225,19 @@ std::array<double, 2> RoboteqEmulator::output(int64_t utime) {
   return {applied[0] / 1000.0, applied[1] / 1000.0};
 }
 
-void RoboteqEmulator::reboot(int64_t utime) {
-  advance(utime);
-  from_robot_.clear();
-  to_robot_.clear();
+void RoboteqEmulator::powerUp(int64_t /*utime*/) {
   line_.clear();
   firmware_.powerUp();
-  deaf_until_ = utime + settings_.boot_us;
-}
-
-void RoboteqEmulator::advance(int64_t utime) {
-  while (from_robot_.arrived(utime)) {
-    const SerialLine::Byte byte = from_robot_.front();
-    from_robot_.pop();
-    firmware_.advance(byte.utime);
-    if (!silent_ && byte.utime >= deaf_until_) hear(byte.value, byte.utime);
-  }
-  firmware_.advance(utime);
 }
 
 void RoboteqEmulator::hear(char byte, int64_t utime) {
   if (byte == kEnquiry) {
-    to_robot_.send(std::string_view(&kAcknowledge, 1), utime);
+    say(std::string_view(&kAcknowledge, 1), utime);
     return;
   }
   const bool end = byte == '\r' || byte == '_';
   if (!end && byte < ' ') return;
-  if (firmware_.echo()) to_robot_.send(std::string_view(&byte, 1), utime);
+  if (firmware_.echo()) say(std::string_view(&byte, 1), utime);
   if (end) {
     endLine(utime);
   } else if (line_.size() <= kLongestLine) {
@@ -274,20 +247,9 @@ void RoboteqEmulator::hear(char byte, int64_t utime) {
 
 void RoboteqEmulator::endLine(int64_t utime) {
   const std::string line = std::exchange(line_, {});
-  if (line.size() > kLongestLine) return reply("-", utime);
+  if (line.size() > kLongestLine) return reply("-\r", utime);
   const auto answer = firmware_.execute(line, utime);
-  if (answer) reply(*answer, utime);
-}
-
-void RoboteqEmulator::reply(const std::string& line, int64_t utime) {
-  if (lost_replies_ > 0) {
-    --lost_replies_;
-    return;
-  }
-  const std::string whole = line + "\r";
-  const size_t length = cut_reply_ ? whole.size() / 2 : whole.size();
-  cut_reply_ = false;
-  to_robot_.send(whole.substr(0, length), utime + settings_.reply_delay_us);
+  if (answer) reply(*answer + "\r", utime);
 }
 
 }  // namespace tread::sim

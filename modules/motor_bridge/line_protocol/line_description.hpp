@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/config/config_reader.hpp"
+#include "common/vehicle/robot_description.hpp"
+#include "modules/motor_bridge/core/controller_connection.hpp"
+#include "modules/motor_bridge/line_protocol/line_template.hpp"
+
+namespace tread::motor {
+
+/// What stands behind each line to prove it.
+enum class LineChecksum { kNone, kXor, kSum8, kCrc8, kCrc16 };
+
+/// A request and the reply that it must get.
+struct LineExchange {
+  LineTemplate send;
+  LineTemplate expect;
+};
+
+/// Bits of a number `faults` that a reply brought.
+struct LineFault {
+  int32_t mask = 0;
+  std::string means;     ///< for people
+  bool latched = false;  ///< it is the controller's own emergency stop
+};
+
+/// A controller's line protocol as its description (YAML) tells it.
+struct LineDescription {
+  std::string name;
+  std::string end = "\r";  ///< of each line we write; CR or LF at the end of what we read
+  LineChecksum checksum = LineChecksum::kNone;
+  std::string checksum_mark;  ///< text between a line and its checksum, which is in hexadecimal
+  size_t checksum_skip = 0;   ///< so many characters in front are not covered
+  std::vector<LineTemplate> command;  ///< lines with {left} and {right}
+  std::vector<LineTemplate> stop;     ///< lines for zero; empty: the command with zeros
+  std::string acknowledge;            ///< reply to each of these lines; empty = none comes
+  std::vector<LineTemplate> errors;   ///< replies that refuse
+  std::string restarted;              ///< a line that only a restarted controller says
+  std::vector<LineExchange> start;
+  std::vector<LineExchange> queries;
+  std::string emergency_stop;  ///< line that latches the controller's own stop; empty = none
+  std::string release_stop;
+  std::vector<LineFault> faults;
+  double full_command = 1000.0;  ///< {left} and {right} at full command
+  double watchdog_unit = 0.001;  ///< [s] of a count of {watchdog}
+  double battery_voltage = 1.0;  ///< [V] of a count
+  double current = 1.0;          ///< [A] of a count
+  double speed = 1.0;            ///< [m/s] of track of a count
+  double temperature = 1.0;      ///< [degC] of a count
+  int64_t query_interval_us = 20'000;
+  ConnectionTimes times;
+  // Of the robot.
+  double full_scale = 1.0;  ///< command that is full, in the unit of the drive
+  bool swapped = false;     ///< the right track hangs on the controller's {left}
+  bool invert_left = false;
+  bool invert_right = false;
+
+  /// Whether one of the start-up's replies, or a query's, reads the watchdog back.
+  bool readsWatchdog() const;
+  /// {watchdog} in the controller's counts.
+  double watchdogCounts() const;
+  /// A line with its checksum and end.
+  std::string framed(const std::string& line) const;
+  /// The line without its checksum; false if that is wrong or missing.
+  bool unframe(std::string& line) const;
+};
+
+/// Reads a description; throws ConfigError with file:line. config/robots/line_protocols has one.
+/** Names of numbers: {left}, {right} in `command` (counts; full_command is full ahead), {watchdog}
+ * in `start` and `queries`; in replies also battery_voltage, current_left, current_right,
+ * speed_left, speed_right, temperature, faults. {left} is what robot.yaml's channel 1 is. */
+LineDescription readLineDescription(ConfigReader& reader, const DriveDescription& drive);
+
+}  // namespace tread::motor

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "modules/simulator/emulators/serial_motor_emulator.hpp"
+
+namespace tread::sim {
+
+/// A controller of an invented protocol, for drivers that are described and not written.
+/** Lines $BODY*CCCC LF; CCCC is CRC-16/XMODEM of BODY without its $, in hexadecimal. What has a
+ * wrong checksum is not answered.
+ *
+ *      $DRV,LLLL,RRRR  power, 32000 = full, two's complement   $OK or $ERR,reason
+ *      $HLT            zero                                    $OK
+ *      $WDT,s.ss       watchdog (1.00 after power-up)          $OK or $ERR,range
+ *      $WDT?                                                   $WDT,s.ss
+ *      $STA            $STA,faults (hex),volts,degC
+ *      $TEL            $TEL,amperes,amperes,mm/s,mm/s
+ *      $LCK, $ULK      latches and frees a stop (fault 1)      $OK
+ *
+ * After power-up it says $BOOT. Only $DRV and $HLT feed the watchdog; when it has expired, the next
+ * of them and $ULK let the motors run on at the old speed first, as the worst real ones do. */
+class MoleEmulator final : public SerialMotorEmulator {
+ public:
+  MoleEmulator() : SerialMotorEmulator(115200, 400, 300'000) {}
+
+  std::array<double, 2> output(int64_t utime) override;
+  void measure(const DriveMeasurements& measurements) override { measurements_ = measurements; }
+  /// Faults beside the lock: 2 undervoltage, 4 stall.
+  void setFaults(int faults) { faults_ = faults; }
+  double watchdog() const { return watchdog_; }
+  /// How often a watchdog's stop ended with another speed than zero.
+  int resumed() const { return resumed_; }
+
+ private:
+  void run(int64_t utime) override;
+  void powerUp(int64_t utime) override;
+  void hear(char byte, int64_t utime) override;
+  std::string answer(const std::string& body, int64_t utime);
+  std::string drive(int left, int right, int64_t utime);
+  std::string setWatchdog(const std::string& text);
+  std::string status() const;
+  std::string telemetry() const;
+  static std::string framed(const std::string& body);
+
+  DriveMeasurements measurements_;
+  std::string line_;
+  std::array<int, 2> power_{0, 0};  ///< of 32000
+  double watchdog_ = 1.0;           ///< [s]
+  bool expired_ = true;
+  bool locked_ = false;
+  int faults_ = 0;
+  int resumed_ = 0;
+  int64_t fed_ = 0;
+};
+
+}  // namespace tread::sim

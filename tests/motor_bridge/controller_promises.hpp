@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// What every kind of controller promises, whatever it speaks.
+#pragma once
+
+#include <random>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "tests/helpers.hpp"
+#include "tests/motor_bridge/emulated_rig.hpp"
+
+namespace tread::motor {
+
+/// Drives until the commands are on the motors.
+template <class Rig>
+void requireDriving(Rig& rig) {
+  rig.drive();
+  REQUIRE(rig.state() == State::kDriving);
+  REQUIRE(rig.turning());
+}
+
+/// Nothing moves for so long; then an ARM makes it drive again.
+template <class Rig>
+void standsUntilArmed(Rig& rig, int64_t us) {
+  rig.last_motion = 0;
+  rig.run(us);
+  CHECK(rig.last_motion == 0);
+  requireDriving(rig);
+}
+
+/// The planner's end, the bridge's end and a pulled plug bring the motors to zero in time [us].
+template <class Make>
+void stopsInTime(Make make, int64_t watchdog_us) {
+  {
+    auto rig = make();
+    rig.planner.commands = 200;
+    requireDriving(rig);
+    rig.planner_alive = false;
+    CHECK(rig.lastMotionWithin(2'000'000) <= 230'000);
+  }
+  {
+    auto rig = make();
+    requireDriving(rig);
+    rig.bridge_alive = false;
+    CHECK(rig.lastMotionWithin(3'000'000) <= watchdog_us + 15'000);
+  }
+  auto rig = make();
+  requireDriving(rig);
+  rig.unplug();
+  CHECK(rig.lastMotionWithin(2'000'000) <= watchdog_us + 15'000);
+  rig.plugIn();
+  standsUntilArmed(rig, 3'000'000);
+  CHECK(rig.count("start-ups") == 2);
+}
+
+/// Random bytes and mutated talk of the device, `count` in all: no crash, no growth, and nothing
+/// but zero while it is never started up. `talk` is what the device says to a good start-up.
+template <class Connection, class Config>
+void bearsRandomBytes(const Config& config, const std::string& talk, int64_t count) {
+  std::mt19937_64 random(11);
+  const int64_t wanted = testing::effort(static_cast<int>(count));
+  int64_t now = 0;
+  for (int64_t fed = 0; fed < wanted;) {
+    Connection connection{config};
+    connection.open();
+    const std::string zero = connection.zeros(1);
+    for (int i = 0; i < 500; ++i) {
+      now += 10'000;
+      std::string bytes;
+      if (i % 2 == 0) {
+        const size_t from = random() % (talk.size() + 1);
+        bytes = talk.substr(from, 1 + random() % 80);
+        if (!bytes.empty()) bytes[random() % bytes.size()] ^= static_cast<char>(1 << random() % 8);
+      } else {
+        for (size_t n = random() % 80; n > 0; --n) bytes += static_cast<char>(random());
+      }
+      fed += static_cast<int64_t>(bytes.size());
+      connection.receive(bytes, now);
+      connection.command({}, now);
+      REQUIRE(connection.poll(now).size() < 2000);
+      connection.report(now);
+      connection.telemetry();
+    }
+    REQUIRE(connection.counters().size() < 40);
+  }
+}
+
+}  // namespace tread::motor
