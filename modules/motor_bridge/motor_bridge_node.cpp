@@ -10,6 +10,8 @@
 #include "common/messages/operator_beacon.hpp"
 #include "modules/motor_bridge/line_protocol/line_connection.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
+#include "modules/motor_bridge/sabertooth/sabertooth_connection.hpp"
+#include "modules/motor_bridge/vesc/vesc_connection.hpp"
 
 namespace tread::motor {
 namespace {
@@ -29,9 +31,31 @@ MakeMotorController lineProtocol(ConfigReader& reader, const DriveDescription& d
   return making<LineConnection>(readLineDescription(description, drive));
 }
 
+MakeMotorController sabertooth(ConfigReader& reader, const DriveDescription& drive) {
+  if (drive.kind != CommandKind::kPower)
+    throw reader.error("controller",
+                       "sabertooth takes power only, the robot's drive is track_speed");
+  ConfigReader section = reader.section("sabertooth");
+  return making<SabertoothConnection>(readSabertoothConfig(section, drive));
+}
+
+template <class Connection>
+MakeMotorController vesc(ConfigReader section, const DriveDescription& drive) {
+  return making<Connection>(readVescConfig(section, drive));
+}
+
 /// A new controller is one line here and a folder of its own.
 const std::map<std::string, MakeMotorController (*)(ConfigReader&, const DriveDescription&)>
-    kControllers{{"line_protocol", lineProtocol}, {"roboteq", roboteq}};
+    kControllers{{"line_protocol", lineProtocol},
+                 {"roboteq", roboteq},
+                 {"sabertooth", sabertooth},
+                 {"vesc",
+                  [](ConfigReader& reader, const DriveDescription& drive) {
+                    return vesc<VescUart>(reader.section("vesc"), drive);
+                  }},
+                 {"vesc_can", [](ConfigReader& reader, const DriveDescription& drive) {
+                    return vesc<VescCan>(reader.section("vesc_can"), drive);
+                  }}};
 
 void readTimes(ConfigReader& reader, BridgeConfig& bridge) {
   reader.seconds("step", bridge.step_us, {0.001, 0.02});

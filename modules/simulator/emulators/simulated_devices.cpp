@@ -12,10 +12,12 @@
 #include "modules/simulator/emulators/novatel/novatel_emulator.hpp"
 #include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
 #include "modules/simulator/emulators/rplidar/rplidar_emulator.hpp"
+#include "modules/simulator/emulators/sabertooth/sabertooth_emulator.hpp"
 #include "modules/simulator/emulators/sick_cola/cola_emulator.hpp"
 #include "modules/simulator/emulators/sick_lms2xx/lms_emulator.hpp"
 #include "modules/simulator/emulators/ublox/ublox_emulator.hpp"
 #include "modules/simulator/emulators/vectornav/vectornav_emulator.hpp"
+#include "modules/simulator/emulators/vesc/vesc_emulators.hpp"
 
 namespace tread::sim {
 namespace {
@@ -43,8 +45,16 @@ const Table<MotorEmulator> kControllers{
      [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
        return std::make_unique<MoleEmulator>();
      }},
-    {"roboteq", [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
+    {"roboteq",
+     [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
        return std::make_unique<RoboteqEmulator>();
+     }},
+    {"vesc",
+     [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
+       return std::make_unique<VescUartEmulator>();
+     }},
+    {"vesc_can", [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
+       return std::make_unique<VescCanEmulator>();
      }}};
 template <class Device>
 std::unique_ptr<InsEmulator> binaryIns(const Settings& settings, uint64_t seed) {

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/motor_bridge/vesc/vesc_group.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/geometry/se2.hpp"
+
+namespace tread::motor {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDutyUnit = 1e-5;
+constexpr double kLargestRpm = 1e6;  // electrical [1/min]
+
+std::vector<int> readIds(ConfigReader& reader, const std::string& key, int usual) {
+  std::vector<double> numbers{static_cast<double>(usual)};
+  reader.numbers(key, numbers, 0, {0.0, 253.0}, "");
+  std::vector<int> ids;
+  for (const double number : numbers) {
+    if (number != std::floor(number)) throw reader.error(key, "ids are whole numbers");
+    ids.push_back(static_cast<int>(number));
+  }
+  if (ids.empty() || ids.size() > 2) throw reader.error(key, "needs one or two ids");
+  return ids;
+}
+
+bool contains(const std::vector<int>& ids, int id) {
+  return std::find(ids.begin(), ids.end(), id) != ids.end();
+}
+
+double readErpmPerSpeed(ConfigReader& reader, bool required) {
+  double pole_pairs = 0.0, gear_ratio = 1.0, wheel_radius = 0.0;
+  reader.number("pole_pairs", pole_pairs, {1.0, 100.0}, "", required);
+  reader.number("gear_ratio", gear_ratio, {0.01, 1000.0}, "motor turns a turn of the wheel");
+  reader.number("wheel_radius", wheel_radius, {0.01, 2.0}, "m", required);
+  if (reader.has("pole_pairs") != reader.has("wheel_radius"))
+    throw reader.error(reader.has("pole_pairs") ? "pole_pairs" : "wheel_radius",
+                       "speeds need pole_pairs and wheel_radius, both");
+  if (wheel_radius <= 0.0) return 0.0;
+  return 60.0 * pole_pairs * gear_ratio / (2.0 * kPi * wheel_radius);
+}
+
+}  // namespace
+
+std::vector<int> VescConfig::ids() const {
+  std::vector<int> all = left;
+  all.insert(all.end(), right.begin(), right.end());
+  return all;
+}
+
+VescConfig readVescConfig(ConfigReader& reader, const DriveDescription& drive) {
+  VescConfig config;
+  config.kind = drive.kind;
+  config.full_scale = drive.fullCommand();
+  config.invert_left = drive.invert_left;
+  config.invert_right = drive.invert_right;
+  const bool swapped = drive.left_channel == 2;
+  config.left = readIds(reader, "left", swapped ? 2 : 1);
+  config.right = readIds(reader, "right", swapped ? 1 : 2);
+  std::vector<int> ids = config.ids();
+  int64_t local = ids.front();
+  std::sort(ids.begin(), ids.end());
+  if (std::adjacent_find(ids.begin(), ids.end()) != ids.end())
+    throw reader.error("right", "names a controller twice, here or in left");
+  reader.integer("local", local, {0.0, 253.0}, "");
+  config.local = static_cast<int>(local);
+  if (!contains(ids, config.local))
+    throw reader.error("local", "must be one of the ids in left and right");
+  config.erpm_per_mps = readErpmPerSpeed(reader, drive.kind == CommandKind::kTrackSpeed);
+  reader.number("brake_current", config.brake_current, {0.0, 200.0}, "A");
+  reader.seconds("watchdog", config.times.watchdog_us, {0.15, 1.0});
+  return config;
+}
+
+VescCommand vescCommand(const TrackCommand& command, int id, const VescConfig& config) {
+  const bool left = contains(config.left, id);
+  const bool invert = left ? config.invert_left : config.invert_right;
+  const double value = left ? command.left : command.right;
+  const double finite = std::isfinite(value) ? value : 0.0;
+  const double wanted = invert ? -finite : finite;
+  using Kind = VescCommand::Kind;
+  if (wanted == 0.0 && config.brake_current > 0.0)
+    return {Kind::kBrakeCurrent, static_cast<int32_t>(std::lround(1000.0 * config.brake_current))};
+  const double share = std::clamp(wanted / config.full_scale, -1.0, 1.0);
+  if (config.kind == CommandKind::kPower)
+    return {Kind::kDuty, static_cast<int32_t>(std::lround(share / kDutyUnit))};
+  const double rpm =
+      std::clamp(share * config.full_scale * config.erpm_per_mps, -kLargestRpm, kLargestRpm);
+  return {Kind::kRpm, static_cast<int32_t>(std::lround(rpm))};
+}
+
+VescGroup::VescGroup(const VescConfig& config) : config_(config) {
+  for (const int id : config.ids()) {
+    Member member;
+    member.id = id;
+    member.left = contains(config.left, id);
+    members_.push_back(member);
+  }
+}
+
+void VescGroup::begin(int64_t now) {
+  for (Member& member : members_) {
+    member.heard = false;
+    member.heard_at = now;
+    member.told = VescReading{};
+  }
+}
+
+bool VescGroup::take(const VescReading& reading, int64_t now) {
+  const auto member = std::find_if(members_.begin(), members_.end(),
+                                   [&](const Member& m) { return m.id == reading.id; });
+  if (member == members_.end()) return false;
+  // Over CAN only the first status frame proves that the motor is watched.
+  if (reading.erpm) {
+    member->heard = true;
+    member->heard_at = now;
+  }
+  VescReading& told = member->told;
+  if (reading.temperature) told.temperature = reading.temperature;
+  if (reading.motor_current) told.motor_current = reading.motor_current;
+  if (reading.erpm) told.erpm = reading.erpm;
+  if (reading.voltage) told.voltage = reading.voltage;
+  if (reading.fault) told.fault = reading.fault;
+  return true;
+}
+
+std::string VescGroup::silent(int64_t now, int64_t limit_us) const {
+  std::string words;
+  for (const Member& member : members_)
+    if (now - member.heard_at > limit_us)
+      words += (words.empty() ? "" : ", ") + std::to_string(member.id);
+  return words;
+}
+
+std::string VescGroup::unheard() const {
+  std::string words;
+  for (const Member& member : members_)
+    if (!member.heard) words += (words.empty() ? "" : ", ") + std::to_string(member.id);
+  return words;
+}
+
+/// Mean of a side's controllers.
+double VescGroup::speedOf(bool left) const {
+  double sum = 0.0;
+  int count = 0;
+  for (const Member& member : members_) {
+    if (member.left != left || !member.told.erpm) continue;
+    sum += *member.told.erpm;
+    ++count;
+  }
+  if (count == 0 || config_.erpm_per_mps <= 0.0) return kNan;
+  const bool invert = left ? config_.invert_left : config_.invert_right;
+  return (invert ? -sum : sum) / count / config_.erpm_per_mps;
+}
+
+/// Sum of a side's controllers.
+double VescGroup::currentOf(bool left) const {
+  double sum = 0.0;
+  bool told = false;
+  for (const Member& member : members_) {
+    if (member.left != left || !member.told.motor_current) continue;
+    sum += *member.told.motor_current;
+    told = true;
+  }
+  return told ? sum : kNan;
+}
+
+MotorTelemetry VescGroup::telemetry() const {
+  MotorTelemetry all;
+  all.speed_left = speedOf(true);
+  all.speed_right = speedOf(false);
+  all.current_left = currentOf(true);
+  all.current_right = currentOf(false);
+  for (const Member& member : members_) {
+    const VescReading& told = member.told;
+    if (told.voltage) all.battery_voltage = std::fmin(all.battery_voltage, *told.voltage);
+    if (told.temperature) all.temperature = std::fmax(all.temperature, *told.temperature);
+    if (told.fault && all.device_flags == 0) all.device_flags = *told.fault;
+  }
+  return all;
+}
+
+std::string VescGroup::faults() const {
+  std::string words;
+  for (const Member& member : members_) {
+    if (member.told.fault.value_or(0) == 0) continue;
+    words += (words.empty() ? "controller " : ", ") + std::to_string(member.id) + ": " +
+             vescFault(*member.told.fault);
+  }
+  return words;
+}
+
+}  // namespace tread::motor

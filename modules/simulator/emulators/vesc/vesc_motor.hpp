@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+
+namespace tread::sim {
+
+/// How the emulated VESC controllers are set up.
+struct VescSettings {
+  int controllers = 2;       ///< ids 1, 2 (left, right) or 1 to 4 (left, right, left, right)
+  int64_t timeout_ms = 200;  ///< without a command until the motor is let go; 0 = never
+  double erpm_per_mps = 5000.0;
+  bool statuses = true;  ///< CAN status messages are switched on
+};
+
+/// The firmware of one controller: its command, its timeout, its speed control.
+class VescMotor {
+ public:
+  VescMotor(int id, const VescSettings& settings) : id_(id), settings_(settings) {}
+
+  void setDuty(double duty, int64_t utime);
+  void setRpm(double erpm, int64_t utime);
+  void setBrake(double amperes, int64_t utime);
+  /// COMM_ALIVE: the timeout begins anew, whatever was commanded goes on.
+  void keepAlive(int64_t utime) { fed_ = utime; }
+  void measure(double track_speed, double current, double battery);
+  void setFault(int code) { fault_ = code; }
+  void powerUp();
+
+  /// Power on the motor at a time, -1..1.
+  double output(int64_t utime);
+
+  int id() const { return id_; }
+  int fault() const { return fault_; }
+  int64_t timeoutMs() const { return settings_.timeout_ms; }
+  double erpm() const { return erpm_; }
+  double current() const { return current_; }
+  double battery() const { return battery_; }
+  double duty() const { return power_; }
+
+ private:
+  enum class Mode { kReleased, kDuty, kRpm };
+  void set(Mode mode, double wanted, int64_t utime);
+
+  int id_;
+  VescSettings settings_;
+  Mode mode_ = Mode::kReleased;
+  double wanted_ = 0.0;
+  double sum_ = 0.0;  ///< of the speed control's error
+  double power_ = 0.0;
+  double erpm_ = 0.0;
+  double current_ = 0.0;
+  double battery_ = 25.0;
+  int fault_ = 0;
+  int64_t fed_ = 0;
+  int64_t stepped_ = 0;
+};
+
+}  // namespace tread::sim
